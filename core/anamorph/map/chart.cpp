@@ -1,0 +1,201 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "anamorph/map/chart.h"
+
+#include <cstdio>
+#include <utility>
+
+#include "anamorph/error.h"
+
+namespace anamorph {
+namespace {
+
+constexpr double kPi = std::numbers::pi;
+constexpr int kMaxSize = 1 << 24;
+
+constexpr std::pair<std::string_view, Projection> kNames[] = {
+    {"equirectangular", Projection::equirectangular},
+    {"cylindrical", Projection::cylindrical},
+    {"rectilinear", Projection::rectilinear},
+    {"fisheye", Projection::fisheye},
+    {"equisolid", Projection::equisolid},
+    {"stereographic", Projection::stereographic},
+    {"mercator", Projection::mercator},
+    {"cubemap", Projection::cubemap},
+    {"cubemap3x2", Projection::cubemap3x2},
+    {"cubecross", Projection::cubecross},
+};
+
+std::string print(double value)
+{
+    char text[32];
+    std::snprintf(text, sizeof text, "%.10g", value);
+    return text;
+}
+
+/// The largest field of view of a lens in degrees, and whether that value itself is allowed.
+std::pair<double, bool> fov_limit(Projection projection)
+{
+    switch (projection) {
+        case Projection::rectilinear: return {180, false};
+        case Projection::stereographic: return {360, false};
+        default: return {360, true};
+    }
+}
+
+/// The width of the chart plane that a horizontal field of view covers.
+double plane_width(Projection projection, double fov)
+{
+    const double half = fov * kPi / 360;
+    switch (projection) {
+        case Projection::rectilinear: return 2 * std::tan(half);
+        case Projection::equisolid: return 4 * std::sin(half / 2);
+        case Projection::stereographic: return 4 * std::tan(half / 2);
+        default: return 2 * half;
+    }
+}
+
+/// Columns and rows of faces in a cube layout.
+std::pair<int, int> cube_grid(Projection projection)
+{
+    if (projection == Projection::cubemap) return {1, 6};
+    return projection == Projection::cubemap3x2 ? std::pair{3, 2} : std::pair{4, 3};
+}
+
+using Axis = std::array<double, 3>;
+
+struct Face {
+    Axis right, down, forward;
+};
+
+// Six faces upright as seen from inside, the upper and lower one hinged to the front.
+constexpr Face kRight{{0, 0, -1}, {0, 1, 0}, {1, 0, 0}};
+constexpr Face kLeft{{0, 0, 1}, {0, 1, 0}, {-1, 0, 0}};
+constexpr Face kUp{{1, 0, 0}, {0, 0, 1}, {0, -1, 0}};
+constexpr Face kDown{{1, 0, 0}, {0, 0, -1}, {0, 1, 0}};
+constexpr Face kFront{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+constexpr Face kBack{{-1, 0, 0}, {0, 1, 0}, {0, 0, -1}};
+// OpenEXR hinges them to the back (its x axis points to our left, its y axis up).
+constexpr Face kUpExr{{-1, 0, 0}, {0, 0, -1}, {0, -1, 0}};
+constexpr Face kDownExr{{-1, 0, 0}, {0, 0, 1}, {0, 1, 0}};
+
+std::vector<Piece> cube_pieces(Projection projection, int n)
+{
+    struct Placed {
+        Face face;
+        int column, row;
+    };
+    std::vector<Placed> placed;
+    if (projection == Projection::cubemap)
+        placed = {{kLeft, 0, 0}, {kRight, 0, 1}, {kUpExr, 0, 2}, {kDownExr, 0, 3}, {kFront, 0, 4}, {kBack, 0, 5}};
+    else if (projection == Projection::cubemap3x2)
+        placed = {{kRight, 0, 0}, {kLeft, 1, 0}, {kUp, 2, 0}, {kDown, 0, 1}, {kFront, 1, 1}, {kBack, 2, 1}};
+    else
+        placed = {{kUp, 1, 0}, {kLeft, 0, 1}, {kFront, 1, 1}, {kRight, 2, 1}, {kBack, 3, 1}, {kDown, 1, 2}};
+    std::vector<Piece> pieces;
+    for (const Placed& p : placed)
+        pieces.push_back({{p.column * n, p.row * n, (p.column + 1) * n, (p.row + 1) * n},
+                          p.face.right,
+                          p.face.down,
+                          p.face.forward});
+    return pieces;
+}
+
+}  // namespace
+
+Projection projection_from_name(std::string_view name, const std::string& parameter)
+{
+    if (name == "latlong") return Projection::equirectangular;
+    for (const auto& [known, projection] : kNames)
+        if (known == name) return projection;
+    throw Error(parameter, std::string(name), "allowed are " + projection_names());
+}
+
+std::string_view name_of(Projection projection)
+{
+    for (const auto& [name, known] : kNames)
+        if (known == projection) return name;
+    return "";
+}
+
+std::string projection_names()
+{
+    std::string names;
+    for (const auto& [name, projection] : kNames) names += (names.empty() ? "" : ", ") + std::string(name);
+    return names;
+}
+
+bool is_cube(Projection projection)
+{
+    return projection == Projection::cubemap || projection == Projection::cubemap3x2 ||
+           projection == Projection::cubecross;
+}
+
+double Chart::default_fov(Projection projection)
+{
+    switch (projection) {
+        case Projection::equirectangular:
+        case Projection::cylindrical:
+        case Projection::mercator: return 360;
+        case Projection::fisheye:
+        case Projection::equisolid:
+        case Projection::stereographic: return 180;
+        default: return 90;
+    }
+}
+
+Chart::Chart(Projection projection, int width, int height, double fov, PixelSpacing spacing,
+             const std::string& prefix)
+    : m_projection(projection), m_width(width), m_height(height), m_fov(fov), m_spacing(spacing)
+{
+    const std::string size = std::to_string(width) + "x" + std::to_string(height);
+    if (width < 1 || height < 1 || width > kMaxSize || height > kMaxSize)
+        throw Error(prefix + "size", size, "allowed is 1x1 to 16777216x16777216 pixels");
+    if (m_fov == 0) m_fov = default_fov(projection);
+    const auto [limit, inclusive] = fov_limit(projection);
+    if (is_cube(projection)) {
+        if (m_fov != 90) throw Error(prefix + "fov", print(fov), "the faces of a cube have 90 degrees");
+    }
+    else if (!(m_fov > 0 && (m_fov < limit || (inclusive && m_fov == limit))))
+        throw Error(prefix + "fov", print(fov),
+                    std::string("allowed for ") + std::string(name_of(projection)) + " is above 0 and " +
+                        (inclusive ? "up to " : "below ") + print(limit) + " degrees");
+
+    int columns = width;
+    double plane = plane_width(is_cube(projection) ? Projection::rectilinear : projection, m_fov);
+    if (is_cube(projection)) {
+        const auto [across, rows] = cube_grid(projection);
+        if (width % across != 0 || height % rows != 0 || width / across != height / rows)
+            throw Error(prefix + "size", size,
+                        std::string(name_of(projection)) + " needs square faces, " + std::to_string(across) +
+                            " across and " + std::to_string(rows) + " down");
+        columns = width / across;
+        plane = 2;
+        m_pieces = cube_pieces(projection, columns);
+    }
+    else
+        m_pieces = {Piece{{0, 0, width, height}}};
+
+    const int rows = is_cube(projection) ? columns : height;
+    m_sx = m_sy = columns / plane;
+    if (spacing == PixelSpacing::centers) {
+        if (columns < 2 || rows < 2)
+            throw Error(prefix + "size", size, "pixels=centers needs at least 2 pixels each way");
+        m_sx = (columns - 1) / plane;
+        m_sy = (rows - 1) / (plane * rows / columns);
+    }
+    m_closed = has_azimuth() && m_fov == 360;
+    m_poles = projection == Projection::equirectangular && m_closed && width == 2 * height;
+}
+
+Branch Chart::branch_around(const Ray<double>& ray) const
+{
+    Branch b = branch_of(ray);
+    const double rho = std::hypot(ray.x, ray.z);
+    if (!has_azimuth() || !(rho > 0)) return b;
+    b.azimuth = std::atan2(ray.x, ray.z);
+    b.sin_azimuth = ray.x / rho;
+    b.cos_azimuth = ray.z / rho;
+    return b;
+}
+
+}  // namespace anamorph
