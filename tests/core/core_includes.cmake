@@ -1,0 +1,18 @@
+# SPDX-License-Identifier: Apache-2.0
+# No file of the core includes a host header, and only core/anamorph/simd includes Highway. Needs: CORE_DIR.
+file(GLOB_RECURSE files ${CORE_DIR}/*.h ${CORE_DIR}/*.cpp)
+if(NOT files)
+    message(FATAL_ERROR "no sources under ${CORE_DIR}")
+endif()
+foreach(file ${files})
+    file(STRINGS ${file} hosts REGEX "# *include *[<\"](OpenImageIO|OpenColorIO|Imath|OpenEXR|opencv2|vtk)")
+    if(hosts)
+        message(SEND_ERROR "${file}: ${hosts}")
+    endif()
+    if(NOT file MATCHES "/core/anamorph/simd/")
+        file(STRINGS ${file} highway REGEX "# *include *[<\"]hwy/")
+        if(highway)
+            message(SEND_ERROR "${file}: ${highway}")
+        endif()
+    endif()
+endforeach()

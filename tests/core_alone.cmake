@@ -1,0 +1,37 @@
+# SPDX-License-Identifier: Apache-2.0
+# The core configures, builds and passes its tests with no host library to be found, and reads no host header.
+# Needs: SOURCE_DIR, WORK_DIR (emptied), CXX_COMPILER, CTEST_COMMAND.
+
+function(run)
+    execute_process(COMMAND ${ARGV} RESULT_VARIABLE status OUTPUT_VARIABLE text ERROR_VARIABLE text)
+    if(status)
+        list(JOIN ARGV " " command)
+        message(FATAL_ERROR "${command}\nfailed (${status}):\n${text}")
+    endif()
+    set(text "${text}" PARENT_SCOPE)
+endfunction()
+
+set(hidden "")
+foreach(package OpenImageIO OpenColorIO Imath OpenEXR VTK ParaView OpenCV)
+    list(APPEND hidden -DCMAKE_DISABLE_FIND_PACKAGE_${package}=ON)
+endforeach()
+
+file(REMOVE_RECURSE ${WORK_DIR})
+# Makefiles, because they keep the compiler's list of every header read (*.d).
+run(${CMAKE_COMMAND} -S ${SOURCE_DIR} -B ${WORK_DIR} -G "Unix Makefiles" -DCMAKE_BUILD_TYPE=Release
+    -DCMAKE_CXX_COMPILER=${CXX_COMPILER} -DANAMORPH_TOOLKIT=NONE -DANAMORPH_OIIO=OFF ${hidden})
+run(${CMAKE_COMMAND} --build ${WORK_DIR} --parallel 2)
+
+file(GLOB_RECURSE lists ${WORK_DIR}/*.d)
+if(NOT lists)
+    message(FATAL_ERROR "no lists of headers under ${WORK_DIR}")
+endif()
+foreach(list ${lists})
+    file(STRINGS ${list} host_headers REGEX "/(OpenImageIO|OpenColorIO|Imath|OpenEXR|vtk[^/]*|paraview[^/]*|opencv[^/]*)/")
+    if(host_headers)
+        message(FATAL_ERROR "${list}: reads a host header: ${host_headers}")
+    endif()
+endforeach()
+
+run(${CTEST_COMMAND} --test-dir ${WORK_DIR} --output-on-failure --no-tests=error)
+message(STATUS "${text}")
