@@ -27,11 +27,20 @@ public:
     /// `row_stride` bytes apart. False when they cannot be had; the source keeps the reason for its owner.
     virtual bool read(int level, const Box& box, std::byte* texels, std::ptrdiff_t row_stride) const noexcept = 0;
 
-    /// The level's pixels when they stand in memory as a whole, else null.
+    /// The level's pixels when they stand in memory as a whole, else null. Only what prepare() has been asked for
+    /// need hold its texels.
     virtual const ConstImageView* view(int level) const noexcept
     {
         static_cast<void>(level);
         return nullptr;
+    }
+
+    /// Makes the texels of `box`, which lies inside the level, ready to be read through view(level). False when they
+    /// cannot be had.
+    virtual bool prepare(int level, const Box& box) const noexcept
+    {
+        static_cast<void>(level), static_cast<void>(box);
+        return true;
     }
 };
 

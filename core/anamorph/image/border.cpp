@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "anamorph/image/border.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace anamorph {
+namespace {
+
+/// The remainder in [0, n), for any a.
+std::int64_t modulo(std::int64_t a, std::int64_t n) {
+    const std::int64_t r = a % n;
+    return r < 0 ? r + n : r;
+}
+
+/// Where `a` stands in [first, end) repeated for ever.
+int periodic(std::int64_t a, int first, int end) {
+    const std::int64_t n = end - first;
+    return first + static_cast<int>(modulo(modulo(a, n) - first, n));
+}
+
+/// Where `a` stands in [first, end) unfolded for ever, as paper is; the edge texels repeat.
+int mirrored(std::int64_t a, int first, int end) {
+    const std::int64_t n = end - first;
+    const std::int64_t r = modulo(modulo(a, 2 * n) - first, 2 * n);
+    return first + static_cast<int>(r < n ? r : 2 * n - 1 - r);
+}
+
+/// An edge of a piece of an image of `full` pixels, on a level of `size`.
+int scaled(int edge, int full, int size) {
+    return static_cast<int>((2 * std::int64_t{edge} * size + full) / (2 * std::int64_t{full}));
+}
+
+bool holds(const Box& box, std::int64_t x, std::int64_t y) {
+    return box.x0 <= x && x < box.x1 && box.y0 <= y && y < box.y1;
+}
+
+/// The texel of a cube's level that the ray through (x, y) of the extended plane of `piece` meets.
+Texel across_cube_edge(const Chart& chart, double x, double y, int piece, const Source::Size& level,
+                       const Border& border) {
+    const double kx = static_cast<double>(chart.width()) / level.width;
+    const double ky = static_cast<double>(chart.height()) / level.height;
+    const Ray<double> ray = chart.ray((x + 0.5) * kx, (y + 0.5) * ky, piece);
+    const Branch branch = chart.branch_of(ray);
+    const Point<double> p = chart.point(ray, branch);
+    const Box face = border.interior(branch.piece, level);
+    const auto inside = [](double at, int first, int end) {
+        return static_cast<int>(std::clamp(std::floor(at), double(first), double(end - 1)));
+    };
+    return {inside(p.x / kx, face.x0, face.x1), inside(p.y / ky, face.y0, face.y1)};
+}
+
+/// A chart whose azimuth closes: around the seam and, where rows end at the poles, over them.
+Texel around_sphere(const Chart& chart, std::int64_t x, std::int64_t y, const Source::Size& level) {
+    // Where fields of view run between pixel centres the last texel of a row repeats the first one's
+    // direction and the outer rows stand on the poles: an overlap of one pixel, which the coarser levels
+    // hardly see.
+    const bool centers = chart.spacing() == PixelSpacing::centers;
+    const int overlap_x = centers && 2 * std::int64_t{level.width} >= chart.width() ? 1 : 0;
+    const int overlap_y = centers && 2 * std::int64_t{level.height} >= chart.height() ? 1 : 0;
+    const std::int64_t period = std::max(1, level.width - overlap_x);
+    bool over_pole = false;
+    if (y < 0 || y >= level.height) {
+        if (!chart.reaches_poles()) return {0, 0, true};
+        // Down one meridian and up the opposite one.
+        const std::int64_t turn = std::max<std::int64_t>(1, 2 * (std::int64_t{level.height} - overlap_y));
+        y = modulo(y, turn);
+        over_pole = y >= level.height;
+        if (over_pole) y = 2 * std::int64_t{level.height} - 1 - overlap_y - y;
+    }
+    if (over_pole || x < 0 || x >= level.width)
+        x = modulo(modulo(x, period) + (over_pole ? period / 2 : 0), period);
+    return {static_cast<int>(x), static_cast<int>(y)};
+}
+
+}  // namespace
+
+Border::Border(const Chart& chart, Wrap wrap) : m_chart(chart), m_wrap(wrap) {}
+
+Box Border::interior(int piece, const Source::Size& level) const noexcept {
+    if (!is_cube(m_chart.projection())) return {0, 0, level.width, level.height};
+    const Box& box = m_chart.pieces()[static_cast<std::size_t>(piece)].box;
+    const int w = m_chart.width(), h = m_chart.height();
+    Box r{scaled(box.x0, w, level.width), scaled(box.y0, h, level.height), scaled(box.x1, w, level.width),
+          scaled(box.y1, h, level.height)};
+    // A level too small for its faces: each keeps a texel, perhaps another's.
+    r.x0 = std::min(r.x0, level.width - 1);
+    r.y0 = std::min(r.y0, level.height - 1);
+    r.x1 = std::max(r.x1, r.x0 + 1);
+    r.y1 = std::max(r.y1, r.y0 + 1);
+    return r;
+}
+
+Texel Border::resolve(std::int64_t x, std::int64_t y, int piece, const Source::Size& level) const noexcept {
+    const Box box = interior(piece, level);
+    if (holds(box, x, y)) return {static_cast<int>(x), static_cast<int>(y)};
+    switch (m_wrap) {
+        case Wrap::black:
+            break;
+        case Wrap::clamp:
+            return {static_cast<int>(std::clamp<std::int64_t>(x, box.x0, box.x1 - 1)),
+                    static_cast<int>(std::clamp<std::int64_t>(y, box.y0, box.y1 - 1))};
+        case Wrap::periodic:
+            return {periodic(x, box.x0, box.x1), periodic(y, box.y0, box.y1)};
+        case Wrap::mirror:
+            return {mirrored(x, box.x0, box.x1), mirrored(y, box.y0, box.y1)};
+        case Wrap::automatic:
+            if (is_cube(m_chart.projection()))
+                return across_cube_edge(m_chart, static_cast<double>(x), static_cast<double>(y), piece, level,
+                                        *this);
+            if (m_chart.closed()) return around_sphere(m_chart, x, y, level);
+            break;
+    }
+    return {0, 0, true};
+}
+
+}  // namespace anamorph
