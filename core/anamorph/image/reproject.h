@@ -7,14 +7,11 @@
 #include "anamorph/approx/plan.h"
 #include "anamorph/error.h"
 #include "anamorph/image/border.h"
+#include "anamorph/image/filter.h"
 #include "anamorph/image/source.h"
 #include "anamorph/map/panorama.h"
 
 namespace anamorph {
-
-/// nearest, bilinear and bicubic (Catmull-Rom) read the source as it is; antialias is bilinear where the map
-/// magnifies and averages over the pixel's footprint, on the pyramid level that fits it, where it minifies.
-enum class Filter { nearest, bilinear, bicubic, antialias };
 
 /// What is drawn: colour; the source point as (u, v) in 0..1, v down, (-1, -1) where there is none; the
 /// distance of the source point used from the exact one; its proven bound. Distances in source pixels.
