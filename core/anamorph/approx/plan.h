@@ -49,6 +49,8 @@ struct PlanOptions {
     Scheme scheme = Scheme::automatic;
     double tol = 0.01;  ///< source pixels
     int degree = 2;     ///< of the polynomials of scheme blocks: 1 or 2
+    /// Source points that lie outside the source image by more than a filter's support need not be found.
+    bool cull = true;
 };
 
 class Plan {

@@ -61,27 +61,22 @@ std::pair<int, int> cube_grid(Projection projection)
     return projection == Projection::cubemap3x2 ? std::pair{3, 2} : std::pair{4, 3};
 }
 
-using Axis = std::array<double, 3>;
-
-struct Face {
-    Axis right, down, forward;
-};
-
-// Six faces upright as seen from inside, the upper and lower one hinged to the front.
-constexpr Face kRight{{0, 0, -1}, {0, 1, 0}, {1, 0, 0}};
-constexpr Face kLeft{{0, 0, 1}, {0, 1, 0}, {-1, 0, 0}};
-constexpr Face kUp{{1, 0, 0}, {0, 0, 1}, {0, -1, 0}};
-constexpr Face kDown{{1, 0, 0}, {0, 0, -1}, {0, 1, 0}};
-constexpr Face kFront{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
-constexpr Face kBack{{-1, 0, 0}, {0, 1, 0}, {0, 0, -1}};
+// Faces by their axes right, down, forward: six upright as seen from inside, the upper and lower one hinged to the
+// front.
+const glm::dmat3 kRight(0, 0, -1, 0, 1, 0, 1, 0, 0);
+const glm::dmat3 kLeft(0, 0, 1, 0, 1, 0, -1, 0, 0);
+const glm::dmat3 kUp(1, 0, 0, 0, 0, 1, 0, -1, 0);
+const glm::dmat3 kDown(1, 0, 0, 0, 0, -1, 0, 1, 0);
+const glm::dmat3 kFront(1, 0, 0, 0, 1, 0, 0, 0, 1);
+const glm::dmat3 kBack(-1, 0, 0, 0, 1, 0, 0, 0, -1);
 // OpenEXR hinges them to the back (its x axis points to our left, its y axis up).
-constexpr Face kUpExr{{-1, 0, 0}, {0, 0, -1}, {0, -1, 0}};
-constexpr Face kDownExr{{-1, 0, 0}, {0, 0, 1}, {0, 1, 0}};
+const glm::dmat3 kUpExr(-1, 0, 0, 0, 0, -1, 0, -1, 0);
+const glm::dmat3 kDownExr(-1, 0, 0, 0, 0, 1, 0, 1, 0);
 
 std::vector<Piece> cube_pieces(Projection projection, int n)
 {
     struct Placed {
-        Face face;
+        glm::dmat3 axes;
         int column, row;
     };
     std::vector<Placed> placed;
@@ -93,10 +88,7 @@ std::vector<Piece> cube_pieces(Projection projection, int n)
         placed = {{kUp, 1, 0}, {kLeft, 0, 1}, {kFront, 1, 1}, {kRight, 2, 1}, {kBack, 3, 1}, {kDown, 1, 2}};
     std::vector<Piece> pieces;
     for (const Placed& p : placed)
-        pieces.push_back({{p.column * n, p.row * n, (p.column + 1) * n, (p.row + 1) * n},
-                          p.face.right,
-                          p.face.down,
-                          p.face.forward});
+        pieces.push_back({{p.column * n, p.row * n, (p.column + 1) * n, (p.row + 1) * n}, p.axes});
     return pieces;
 }
 
@@ -143,6 +135,15 @@ double Chart::default_fov(Projection projection)
     }
 }
 
+Heading::Heading(double y, double x)
+{
+    const double r = std::hypot(x, y);
+    if (!(r > 0 && r < HUGE_VAL)) return;
+    angle = std::atan2(y, x);
+    cos = x / r;
+    sin = y / r;
+}
+
 Chart::Chart(Projection projection, int width, int height, double fov, PixelSpacing spacing,
              const std::string& prefix)
     : m_projection(projection), m_width(width), m_height(height), m_fov(fov), m_spacing(spacing)
@@ -183,18 +184,30 @@ Chart::Chart(Projection projection, int width, int height, double fov, PixelSpac
         m_sx = (columns - 1) / plane;
         m_sy = (rows - 1) / (plane * rows / columns);
     }
+    for (std::size_t i = 0; i < m_pieces.size(); ++i)
+        m_branches.push_back({static_cast<int>(i), {}, {}, m_pieces[i].axes});
     m_closed = has_azimuth() && m_fov == 360;
     m_poles = projection == Projection::equirectangular && m_closed && width == 2 * height;
 }
 
+Branch Chart::branch_around(double x, double y, int piece) const
+{
+    return branch_around(ray(x, y, piece));
+}
+
 Branch Chart::branch_around(const Ray<double>& ray) const
 {
-    Branch b = branch_of(ray);
-    const double rho = std::hypot(ray.x, ray.z);
-    if (!has_azimuth() || !(rho > 0)) return b;
-    b.azimuth = std::atan2(ray.x, ray.z);
-    b.sin_azimuth = ray.x / rho;
-    b.cos_azimuth = ray.z / rho;
+    Branch b = branch(piece_of(ray));
+    if (has_azimuth()) {
+        b.around = {ray.x, ray.z};
+        b.along = {ray.y, std::hypot(ray.x, ray.z)};
+        b.axes = {b.around.cos, 0, -b.around.sin, 0, 1, 0, b.around.sin, 0, b.around.cos};
+    }
+    else if (m_projection == Projection::fisheye) {
+        b.around = {ray.y, ray.x};
+        b.along = {std::hypot(ray.x, ray.y), ray.z};
+        b.axes = {b.around.cos, b.around.sin, 0, -b.around.sin, b.around.cos, 0, 0, 0, 1};
+    }
     return b;
 }
 

@@ -19,8 +19,8 @@
 //   cubecross        up / left front right back / down on a 4 x 3 grid
 #pragma once
 
-#include <array>
 #include <cmath>
+#include <glm/mat3x3.hpp>
 #include <numbers>
 #include <string>
 #include <string_view>
@@ -77,18 +77,38 @@ struct Point {
     T x, y;
 };
 
-/// One smooth piece of a chart: where it stands in the image, and which way it faces (cube faces only).
-/// A ray of the face is forward + X right + Y down.
+/// matrix * ray
+template <class T>
+Ray<T> transform(const glm::dmat3& matrix, const Ray<T>& ray)
+{
+    const auto row = [&](int i) { return ray.x * matrix[0][i] + ray.y * matrix[1][i] + ray.z * matrix[2][i]; };
+    return {row(0), row(1), row(2)};
+}
+
+/// One smooth piece of a chart: where it stands in the image, and its axes (right, down, forward) as columns in
+/// the frame of rays; only a cube has more than one.
 struct Piece {
     Box box;
-    std::array<double, 3> right{1, 0, 0}, down{0, 1, 0}, forward{0, 0, 1};
+    glm::dmat3 axes{1};
 };
 
-/// Which branch of a chart's inverse to take: the piece, and the azimuth from which angles are counted, so that
-/// a neighbourhood of that azimuth meets no seam.
+/// An angle from which others are counted.
+struct Heading {
+    double angle = 0, cos = 1, sin = 0;
+
+    Heading() = default;
+    /// The angle of (x, y); 0 for the origin.
+    Heading(double y, double x);
+};
+
+/// Where on a chart its formulas are read: the piece, and the direction from which angles are counted. A
+/// neighbourhood of that direction meets no seam, and intervals stay narrow there; nothing else depends on it.
+/// `around` is the azimuth, or the angle about the axis of a fisheye; `along` the elevation, or the angle from
+/// that axis. A local ray has the direction straight ahead: ray = axes * local ray.
 struct Branch {
     int piece = 0;
-    double azimuth = 0, cos_azimuth = 1, sin_azimuth = 0;
+    Heading around, along;
+    glm::dmat3 axes{1};
 };
 
 class Chart {
@@ -124,27 +144,43 @@ public:
     double scale_x() const { return m_sx; }
     double scale_y() const { return m_sy; }
 
-    /// The ray through an image point, in the frame of `piece`. Meaningful where inside() >= 0.
+    /// The local ray through an image point. Meaningful where inside() >= 0.
     template <class T>
-    Ray<T> ray(const T& x, const T& y, int piece = 0) const;
+    Ray<T> local_ray(const T& x, const T& y, const Branch& branch) const;
 
     /// >= 0 where the image point has a ray; the sign holds for all members of an interval, or is open.
     template <class T>
     T inside(const T& x, const T& y, int piece = 0) const;
 
-    /// The image point of a ray on a branch.
+    /// The image point of a local ray.
     template <class T>
-    Point<T> point(const Ray<T>& ray, const Branch& branch) const;
+    Point<T> local_point(const Ray<T>& local, const Branch& branch) const;
 
-    /// >= 0 where the ray is seen by the lens and lies on the branch's piece.
+    /// >= 0 where a local ray is seen by the lens and lies on the branch's piece.
     template <class T>
-    T sees(const Ray<T>& ray, const Branch& branch) const;
+    T sees(const Ray<T>& local) const;
 
-    /// The branch whose azimuth is that of `ray` (for a neighbourhood of it).
+    /// The branch for single points of a piece: azimuths counted from straight ahead, in [-180, 180].
+    const Branch& branch(int piece = 0) const { return m_branches[static_cast<std::size_t>(piece)]; }
+    /// The branch for a neighbourhood of an image point, or of a ray.
+    Branch branch_around(double x, double y, int piece) const;
     Branch branch_around(const Ray<double>& ray) const;
-    /// The branch for one ray alone: azimuths counted from straight ahead, in [-180, 180].
+
+    /// The piece that sees a ray.
     template <class T>
-    Branch branch_of(const Ray<T>& ray) const;
+    int piece_of(const Ray<T>& ray) const;
+
+    /// The ray through an image point, and the image point of a ray.
+    template <class T>
+    Ray<T> ray(const T& x, const T& y, int piece = 0) const
+    {
+        return transform(branch(piece).axes, local_ray(x, y, branch(piece)));
+    }
+    template <class T>
+    Point<T> point(const Ray<T>& ray, int piece) const
+    {
+        return local_point(transform(glm::transpose(branch(piece).axes), ray), branch(piece));
+    }
 
 private:
     template <class T>
@@ -157,6 +193,7 @@ private:
     double m_sx = 0, m_sy = 0;
     bool m_closed = false, m_poles = false;
     std::vector<Piece> m_pieces;
+    std::vector<Branch> m_branches;
 };
 
 // ---------------------------------------------------------------------------------------------------------
@@ -184,33 +221,33 @@ T Chart::inside(const T& x, const T& y, int piece) const
 }
 
 template <class T>
-Ray<T> Chart::ray(const T& x, const T& y, int piece) const
+Ray<T> Chart::local_ray(const T& x, const T& y, const Branch& branch) const
 {
     using std::sinh;
     using std::sqrt;
-    const Piece& face = m_pieces[static_cast<std::size_t>(piece)];
-    const Point<T> p = to_plane(x, y, face);
+    const Point<T> p = to_plane(x, y, m_pieces[static_cast<std::size_t>(branch.piece)]);
+    const Heading& around = branch.around;
     T sa, ca, se, ce;
     switch (m_projection) {
-        case Projection::rectilinear: return {p.x, p.y, T(1)};
         case Projection::equirectangular:
-            sin_cos(p.x, sa, ca);
+            sin_cos(T(p.x - around.angle), sa, ca);
             sin_cos(p.y, se, ce);
             return {sa * ce, se, ca * ce};
         case Projection::cylindrical:
-            sin_cos(p.x, sa, ca);
+            sin_cos(T(p.x - around.angle), sa, ca);
             return {sa, p.y, ca};
         case Projection::mercator:
             // tan e = sinh Y
-            sin_cos(p.x, sa, ca);
+            sin_cos(T(p.x - around.angle), sa, ca);
             return {sa, sinh(p.y), ca};
         case Projection::fisheye: {
             // sin t along the radius, cos t along the axis
-            const T r = sqrt(square(p.x) + square(p.y));
-            if (is_zero(constant_part(r))) return {p.x, p.y, T(1)};
+            const T u = p.x * around.cos + p.y * around.sin, v = p.y * around.cos - p.x * around.sin;
+            const T r = sqrt(square(u) + square(v));
+            if (is_zero(constant_part(r))) return {u, v, T(1)};
             sin_cos(r, sa, ca);
             const T k = sa / r;
-            return {p.x * k, p.y * k, ca};
+            return {u * k, v * k, ca};
         }
         case Projection::equisolid: {
             // sin t = r sqrt(1 - r^2 / 4), cos t = 1 - r^2 / 2
@@ -223,99 +260,82 @@ Ray<T> Chart::ray(const T& x, const T& y, int piece) const
             const T r2 = square(p.x) + square(p.y);
             return {p.x, p.y, 1.0 - r2 * 0.25};
         }
-        default: {
-            const auto axis = [&](std::size_t i) {
-                return face.forward[i] + p.x * face.right[i] + p.y * face.down[i];
-            };
-            return {axis(0), axis(1), axis(2)};
-        }
+        default: return {p.x, p.y, T(1)};
     }
 }
 
 template <class T>
-T Chart::sees(const Ray<T>& ray, const Branch& branch) const
+T Chart::sees(const Ray<T>& local) const
 {
-    if (m_projection == Projection::rectilinear) return ray.z;
+    if (m_projection == Projection::rectilinear) return local.z;
     if (!is_cube(m_projection)) return T(1);
     // On a face the forward component is the largest.
-    const Piece& face = m_pieces[static_cast<std::size_t>(branch.piece)];
-    const auto along = [&](const std::array<double, 3>& v) {
-        return ray.x * v[0] + ray.y * v[1] + ray.z * v[2];
-    };
-    const T f = along(face.forward), a = along(face.right), b = along(face.down);
-    T least = f - a;
-    for (const T& other : {f + a, f - b, f + b})
-        if (lower_end(constant_part(other)) < lower_end(constant_part(least))) least = other;
+    T least = local.z - local.x;
+    for (const T& other : {local.z + local.x, local.z - local.y, local.z + local.y})
+        if (lower_end(other) < lower_end(least)) least = other;
     return least;
 }
 
 template <class T>
-Point<T> Chart::point(const Ray<T>& ray, const Branch& branch) const
+Point<T> Chart::local_point(const Ray<T>& local, const Branch& branch) const
 {
     using std::asinh;
     using std::atan2;
     using std::sqrt;
-    const Piece& face = m_pieces[static_cast<std::size_t>(branch.piece)];
-    const double cx = 0.5 * (face.box.x0 + face.box.x1), cy = 0.5 * (face.box.y0 + face.box.y1);
-    const auto image = [&](const T& px, const T& py) {
-        return Point<T>{px * m_sx + cx, py * m_sy + cy};
+    const Box& box = m_pieces[static_cast<std::size_t>(branch.piece)].box;
+    const Heading &around = branch.around, &along = branch.along;
+    const double cx = 0.5 * (box.x0 + box.x1), cy = 0.5 * (box.y0 + box.y1);
+    const auto image = [&](const T& px, const T& py) { return Point<T>{px * m_sx + cx, py * m_sy + cy}; };
+    // The angle of (across, ahead), counted from `along`.
+    const auto tilt = [&](const T& across, const T& ahead) {
+        return atan2(across * along.cos - ahead * along.sin, ahead * along.cos + across * along.sin) + along.angle;
     };
     switch (m_projection) {
-        case Projection::rectilinear: return image(ray.x / ray.z, ray.y / ray.z);
         case Projection::equirectangular:
         case Projection::cylindrical:
         case Projection::mercator: {
-            // Turn the branch's azimuth to straight ahead, where atan2 has no cut.
-            const T sx = ray.x * branch.cos_azimuth - ray.z * branch.sin_azimuth;
-            const T sz = ray.x * branch.sin_azimuth + ray.z * branch.cos_azimuth;
-            const T azimuth = atan2(sx, sz) + branch.azimuth;
-            const T rho = sqrt(square(ray.x) + square(ray.z));
-            if (m_projection == Projection::equirectangular) return image(azimuth, atan2(ray.y, rho));
-            const T slope = ray.y / rho;
+            const T azimuth = atan2(local.x, local.z) + around.angle;
+            const T rho = sqrt(square(local.x) + square(local.z));
+            if (m_projection == Projection::equirectangular) return image(azimuth, tilt(local.y, rho));
+            const T slope = local.y / rho;
             return image(azimuth, m_projection == Projection::cylindrical ? slope : T(asinh(slope)));
         }
         case Projection::fisheye: {
-            const T rho = sqrt(square(ray.x) + square(ray.y));
-            if (is_zero(constant_part(rho))) return image(ray.x, ray.y);
-            const T k = atan2(rho, ray.z) / rho;
-            return image(ray.x * k, ray.y * k);
+            const T rho = sqrt(square(local.x) + square(local.y));
+            if (is_zero(constant_part(rho))) return image(local.x, local.y);
+            const T k = tilt(rho, local.z) / rho;
+            return image((local.x * around.cos - local.y * around.sin) * k,
+                         (local.y * around.cos + local.x * around.sin) * k);
         }
         case Projection::equisolid: {
             // For a unit ray X = x / cos(t / 2) = x sqrt(2 / (1 + z)).
-            const T n = sqrt(square(ray.x) + square(ray.y) + square(ray.z));
-            const T k = sqrt(T(2) / (n * (n + ray.z)));
-            return image(ray.x * k, ray.y * k);
+            const T n = sqrt(square(local.x) + square(local.y) + square(local.z));
+            const T k = sqrt(T(2) / (n * (n + local.z)));
+            return image(local.x * k, local.y * k);
         }
         case Projection::stereographic: {
-            const T n = sqrt(square(ray.x) + square(ray.y) + square(ray.z));
-            const T k = T(2) / (n + ray.z);
-            return image(ray.x * k, ray.y * k);
+            const T n = sqrt(square(local.x) + square(local.y) + square(local.z));
+            const T k = T(2) / (n + local.z);
+            return image(local.x * k, local.y * k);
         }
-        default: {
-            const auto along = [&](const std::array<double, 3>& v) {
-                return ray.x * v[0] + ray.y * v[1] + ray.z * v[2];
-            };
-            const T f = along(face.forward);
-            return image(along(face.right) / f, along(face.down) / f);
-        }
+        default: return image(local.x / local.z, local.y / local.z);
     }
 }
 
 template <class T>
-Branch Chart::branch_of(const Ray<T>& ray) const
+int Chart::piece_of(const Ray<T>& ray) const
 {
-    Branch b;
-    if (!is_cube(m_projection)) return b;
-    T best = T(-1);
-    for (std::size_t i = 0; i < m_pieces.size(); ++i) {
-        const auto& f = m_pieces[i].forward;
+    int best = 0;
+    T most = T(0);
+    for (std::size_t i = 0; i < m_pieces.size() && m_pieces.size() > 1; ++i) {
+        const auto& f = m_pieces[i].axes[2];
         const T along = ray.x * f[0] + ray.y * f[1] + ray.z * f[2];
-        if (i == 0 || along > best) {
-            best = along;
-            b.piece = static_cast<int>(i);
+        if (i == 0 || along > most) {
+            most = along;
+            best = static_cast<int>(i);
         }
     }
-    return b;
+    return best;
 }
 
 }  // namespace anamorph

@@ -28,4 +28,15 @@ Panorama::Panorama(const Chart& source, const Chart& target, const Orientation& 
     m_rotation = rotation(orientation);
 }
 
+Panorama::Local Panorama::local_around(double x, double y, int piece) const
+{
+    Local local;
+    // The target's own angles count from this point only where that narrows intervals; its piece is given.
+    local.target = m_target.branch_around(x, y, piece);
+    if (local.target.piece != piece) local.target = m_target.branch(piece);
+    local.source = m_source.branch_around(transform(m_rotation, m_target.ray(x, y, piece)));
+    local.rotation = glm::transpose(local.source.axes) * m_rotation * local.target.axes;
+    return local;
+}
+
 }  // namespace anamorph

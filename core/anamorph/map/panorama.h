@@ -26,22 +26,26 @@ public:
     const Chart& source() const { return m_source; }
     const Chart& target() const { return m_target; }
 
-    /// The source's ray of a target point.
+    /// The map about one point: a branch of either chart, and the rotation between their local rays.
+    struct Local {
+        Branch target, source;
+        glm::dmat3 rotation;
+    };
+    /// For a neighbourhood of a target point.
+    Local local_around(double x, double y, int piece) const;
+
+    /// The source's local ray of a target point.
     template <class T>
-    Ray<T> ray(const T& x, const T& y, int piece) const
+    Ray<T> local_ray(const T& x, const T& y, const Local& local) const
     {
-        const Ray<T> r = m_target.ray(x, y, piece);
-        const auto row = [&](int i) {
-            return r.x * m_rotation[0][i] + r.y * m_rotation[1][i] + r.z * m_rotation[2][i];
-        };
-        return {row(0), row(1), row(2)};
+        return transform(local.rotation, m_target.local_ray(x, y, local.target));
     }
 
-    /// The source point of a target point on a given branch of the source's chart.
+    /// The source point of a target point.
     template <class T>
-    Point<T> operator()(const T& x, const T& y, int piece, const Branch& branch) const
+    Point<T> operator()(const T& x, const T& y, const Local& local) const
     {
-        return m_source.point(ray(x, y, piece), branch);
+        return m_source.local_point(local_ray(x, y, local), local.source);
     }
 
     /// The source point of one target point, read with double or long double: the truth. False where the target
@@ -50,12 +54,10 @@ public:
     bool exact(const T& x, const T& y, int piece, Point<T>& source_point, int& source_piece) const
     {
         if (!(m_target.inside(x, y, piece) >= 0)) return false;
-        const Ray<T> r = ray(x, y, piece);
-        const Branch branch = m_source.branch_of(r);
-        const T seen = m_source.sees(r, branch);
-        if (!(seen >= 0) || (seen == 0 && m_source.projection() == Projection::rectilinear)) return false;
-        source_piece = branch.piece;
-        source_point = m_source.point(r, branch);
+        const Ray<T> r = transform(m_rotation, m_target.ray(x, y, piece));
+        if (m_source.projection() == Projection::rectilinear && !(r.z > 0)) return false;
+        source_piece = m_source.piece_of(r);
+        source_point = m_source.point(r, source_piece);
         return std::isfinite(source_point.x) && std::isfinite(source_point.y);
     }
 

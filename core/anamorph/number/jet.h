@@ -17,6 +17,11 @@
 
 namespace anamorph {
 
+/// Is this certainly the number zero?
+inline bool is_zero(double a) { return a == 0; }
+inline bool is_zero(long double a) { return a == 0; }
+inline bool is_zero(const Interval& a) { return a.lo == 0 && a.hi == 0; }
+
 template <class T, int N>
 struct Jet {
     static constexpr int kDegree = N;
@@ -71,6 +76,8 @@ inline void add_product(Jet<T, N>& r, const Jet<T, N>& f, const Jet<T, N>& g)
     using J = Jet<T, N>;
     unroll<A + 1>([&](auto i) __attribute__((always_inline)) {
         T fi = f.c[J::part(A) + i];
+        // Lines, constants and even functions are mostly zeros.
+        if (is_zero(fi)) return;
         if constexpr (Scale == -1) fi = -fi;
         if constexpr (Scale != 1 && Scale != -1) fi = fi * T(Scale);
         unroll<B + 1>([&](auto j) __attribute__((always_inline)) { r.c[J::part(A + B) + i + j] += fi * g.c[J::part(B) + j]; });
@@ -310,9 +317,4 @@ inline const Interval& constant_part(const Interval& a) { return a; }
 inline double lower_end(double a) { return a; }
 inline long double lower_end(long double a) { return a; }
 inline double lower_end(const Interval& a) { return a.lo; }
-/// Is this certainly the number zero?
-inline bool is_zero(double a) { return a == 0; }
-inline bool is_zero(long double a) { return a == 0; }
-inline bool is_zero(const Interval& a) { return a.lo == 0 && a.hi == 0; }
-
 }  // namespace anamorph

@@ -1,0 +1,383 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "anamorph/approx/plan.h"
+
+#include <algorithm>
+#include <atomic>
+#include <bit>
+#include <cstdio>
+#include <optional>
+#include <unordered_map>
+
+#include "anamorph/approx/residual.h"
+#include "anamorph/approx/taylor.h"
+
+namespace anamorph {
+namespace {
+
+// A block is at most as large as keeps its source and target rows in the first-level cache.
+constexpr int kBlockWidth = 64, kBlockHeight = 32;
+// Below this a polynomial costs more than its pixels.
+constexpr int kFloor = 8, kResidualFloor = 4;
+
+// Rounding of a point's coordinates to float and of their evaluation: the coefficients, s and t are each rounded
+// once, and at most five operations are rounded on the way from the smallest term to the sum, so that each term errs
+// by less than 8 half-ULP of its size.
+constexpr double kFloatRounding = 8 * 0x1p-24;
+// Rounding of the formula itself in double, relative to the extent of the source: some hundred operations, each
+// well conditioned wherever the bound is finite (tests/core holds it against long double).
+constexpr double kDoubleRounding = 256 * 0x1p-53;
+
+// The part of a bound that its remainder may make up before a fresh one, over a smaller box, is worth its cost.
+constexpr double kTailShare = 0.25;
+
+/// Half the distance between the first and the last of a row of pixel centres.
+double half(int pixels)
+{
+    return pixels > 1 ? 0.5 * (pixels - 1) : 0.5;
+}
+
+Box sub_box(const Box& box, bool vertical_cut, bool second)
+{
+    Box b = box;
+    if (vertical_cut) {
+        const int cut = box.x0 + static_cast<int>(std::bit_ceil(static_cast<unsigned>(box.width()))) / 2;
+        (second ? b.x0 : b.x1) = cut;
+    }
+    else {
+        const int cut = box.y0 + static_cast<int>(std::bit_ceil(static_cast<unsigned>(box.height()))) / 2;
+        (second ? b.y0 : b.y1) = cut;
+    }
+    return b;
+}
+
+/// Plans one piece of the target; blocks are appended to `blocks`.
+class Planner {
+public:
+    Planner(const Panorama& map, const PlanOptions& options, int piece, std::vector<Block>& blocks)
+        : m_map(map), m_options(options), m_piece(piece), m_blocks(blocks)
+    {
+        const Chart& source = map.source();
+        m_extent = source.width() + source.height() + source.scale_x() + source.scale_y();
+    }
+
+    void exact(const Box& box)
+    {
+        for_blocks(box, [&](const Box& b) { emit(b, Block::Kind::exact); });
+    }
+
+    /// Top-down: bounds the map over a large box, and settles its blocks with that bound if it serves them.
+    void settle(const Box& box)
+    {
+        const std::size_t first = m_blocks.size();
+        const Panorama::Local local = m_map.local_around(0.5 * (box.x0 + box.x1), 0.5 * (box.y0 + box.y1), m_piece);
+        switch (cover(box, local)) {
+            case Cover::outside: emit(box, Block::Kind::outside); return;
+            case Cover::mixed: split(box, first); return;
+            case Cover::inside: break;
+        }
+        if (m_options.scheme == Scheme::residual)
+            settle_residual(box, local, first);
+        else
+            settle_blocks(box, local, first);
+    }
+
+private:
+    enum class Cover { inside, outside, mixed };
+    // The Taylor polynomial of a block has degree 4; its remainder is bounded over large boxes.
+    using Tail = Remainder<5>;
+
+    /// The map's Taylor coefficients over a box, in pixels of the target.
+    template <int N>
+    Point<Jet<Interval, N>> enclose(const Box& box, const Panorama::Local& local) const
+    {
+        using J = Jet<Interval, N>;
+        return m_map(J::variable({box.x0 + 0.5, box.x1 - 0.5}, 1, 0),
+                     J::variable({box.y0 + 0.5, box.y1 - 0.5}, 0, 1), local);
+    }
+
+    /// Does every pixel of the box have a source point on one smooth branch of the map?
+    Cover cover(const Box& box, const Panorama::Local& local) const
+    {
+        const Interval x{box.x0 + 0.5, box.x1 - 0.5}, y{box.y0 + 0.5, box.y1 - 0.5};
+        const Interval in = m_map.target().inside(x, y, m_piece);
+        if (in.hi < 0) return Cover::outside;
+        if (!(in.lo >= 0)) return Cover::mixed;
+        const Chart& source = m_map.source();
+        const Ray<Interval> ray = m_map.local_ray(x, y, local);
+        const Interval seen = source.sees(ray);
+        if (seen.hi < 0) return Cover::outside;
+        if (!(seen.lo > 0)) return Cover::mixed;
+        if (source.has_azimuth()) {
+            // The branch serves less than half a turn; an image that does not close on itself has an edge at the
+            // far side, which it must not cross.
+            if (!(ray.z.lo > 0)) return Cover::mixed;
+            const Interval azimuth = atan2(ray.x, ray.z) + local.source.around.angle;
+            if (!source.closed() && !(azimuth.lo > -std::numbers::pi && azimuth.hi < std::numbers::pi))
+                return Cover::mixed;
+        }
+        return m_options.cull ? culled(box, local) : Cover::inside;
+    }
+
+    /// Outside when every pixel's footprint lies beyond the source image's edges.
+    Cover culled(const Box& box, const Panorama::Local& local) const
+    {
+        const Chart& source = m_map.source();
+        const auto p = enclose<1>(box, local);
+        const auto beyond = [&](const Jet<Interval, 1>& f, int size) {
+            // Half the footprint on each side, and the support of the widest filter.
+            const double margin = magnitude(f.c[1]) + magnitude(f.c[2]) + 4;
+            return f.c[0].hi < -margin || f.c[0].lo > size + margin;
+        };
+        const bool out = (!source.closed() && beyond(p.x, source.width())) || beyond(p.y, source.height());
+        return out && !is_cube(source.projection()) ? Cover::outside : Cover::inside;
+    }
+
+    void settle_blocks(const Box& box, const Panorama::Local& local, std::size_t first)
+    {
+        const auto p = enclose<5>(box, local);
+        const Tail tx(p.x), ty(p.y);
+        const double hx = half(std::min(box.width(), kBlockWidth)), hy = half(std::min(box.height(), kBlockHeight));
+        const double tail = std::hypot(tx.over(hx, hy), ty.over(hx, hy));
+        const bool is_block = box.width() <= kBlockWidth && box.height() <= kBlockHeight;
+        if (tail <= kTailShare * m_options.tol || (is_block && tail < HUGE_VAL))
+            for_blocks(box, [&](const Box& b) { place(b, local, tx, ty); });
+        else
+            split(box, first);
+    }
+
+    /// Emits the box as one polynomial block if that holds the tolerance, else halves it.
+    void place(const Box& box, const Panorama::Local& local, const Tail& tx, const Tail& ty)
+    {
+        const std::size_t first = m_blocks.size();
+        const double hx = half(box.width()), hy = half(box.height());
+        const double cx = 0.5 * (box.x0 + box.x1), cy = 0.5 * (box.y0 + box.y1);
+        using J = Jet<double, 4>;
+        const Point<J> f = m_map(J::variable(cx, hx, 0), J::variable(cy, 0, hy), local);
+        const Economized ex(f.x, m_options.degree), ey(f.y, m_options.degree);
+        const double fit = std::hypot(ex.error, ey.error);
+        const double tail = std::hypot(tx.over(hx, hy), ty.over(hx, hy));
+        if (emit_polynomial(box, local.source.piece, ex.c, ey.c, fit + tail)) return;
+        // Halve the side along which more was dropped, with a new remainder where that is to blame.
+        const int k = m_options.degree + 1;
+        const auto dropped = [&](int i, int j) { return std::fabs(f.x.at(i, j)) + std::fabs(f.y.at(i, j)); };
+        const bool vertical_cut = dropped(k, 0) + dropped(k - 1, 1) >= dropped(0, k) + dropped(1, k - 1);
+        const bool renew = !(tail <= kTailShare * fit);
+        halve(box, vertical_cut, kFloor, first, [&](const Box& b) {
+            if (renew)
+                settle(b);
+            else
+                place(b, local, tx, ty);
+        });
+    }
+
+    /// Kim's table: bilinear cells between nodes on a regular grid, as wide as the second derivatives allow.
+    void settle_residual(const Box& box, const Panorama::Local& local, std::size_t first)
+    {
+        const auto p = enclose<2>(box, local);
+        // |f - its bilinear interpolant| <= h^2 / 2 max |f_ss| per direction, h half the cell.
+        const auto error = [&](int w, int h) {
+            const auto of = [&](const Jet<Interval, 2>& f) {
+                return 0.25 * (magnitude(f.at(2, 0)) * w * w + magnitude(f.at(0, 2)) * h * h);
+            };
+            return std::hypot(of(p.x), of(p.y));
+        };
+        const bool is_block = box.width() <= kBlockWidth && box.height() <= kBlockHeight;
+        const bool holds = error(std::min(box.width(), kBlockWidth), std::min(box.height(), kBlockHeight)) <=
+                           m_options.tol;
+        if (holds)
+            for_blocks(box, [&](const Box& b) { place_cell(b, local, error(b.width(), b.height())); });
+        else if (!is_block)
+            split(box, first);
+        else {
+            const double wide = magnitude(p.x.at(2, 0)) + magnitude(p.y.at(2, 0));
+            const double high = magnitude(p.x.at(0, 2)) + magnitude(p.y.at(0, 2));
+            const bool vertical_cut = wide * box.width() * box.width() >= high * box.height() * box.height();
+            halve(box, vertical_cut, kResidualFloor, first, [&](const Box& b) { settle(b); });
+        }
+    }
+
+    /// One cell of the table: residuals at its four corners in float, plus the linear part.
+    void place_cell(const Box& box, const Panorama::Local& local, double interpolation_error)
+    {
+        if (!m_linear) m_linear = linear_part(m_map, m_piece);
+        double x[4], y[4], stored = 0;
+        for (int i = 0; i < 4; ++i) {
+            const double px = i & 1 ? box.x1 : box.x0, py = i & 2 ? box.y1 : box.y0;
+            const Point<double> f = m_map(px, py, local), l = (*m_linear)(px, py);
+            const double nx = static_cast<float>(f.x - l.x), ny = static_cast<float>(f.y - l.y);
+            stored = std::max(stored, std::fabs(nx) + std::fabs(ny));
+            x[i] = l.x + nx;
+            y[i] = l.y + ny;
+        }
+        // From values at the cell's corners (beyond the outermost pixel centres) to coefficients in s and t.
+        const double ks = half(box.width()) / (0.5 * box.width()), kt = half(box.height()) / (0.5 * box.height());
+        const auto bilinear = [&](const double* v, double* c) {
+            c[0] = 0.25 * (v[0] + v[1] + v[2] + v[3]);
+            c[1] = 0.25 * (v[1] + v[3] - v[0] - v[2]) * ks;
+            c[2] = 0.25 * (v[2] + v[3] - v[0] - v[1]) * kt;
+            c[4] = 0.25 * (v[0] + v[3] - v[1] - v[2]) * ks * kt;
+            c[3] = c[5] = 0;
+        };
+        double cx[6], cy[6];
+        bilinear(x, cx);
+        bilinear(y, cy);
+        const std::size_t first = m_blocks.size();
+        if (emit_polynomial(box, local.source.piece, cx, cy, interpolation_error + stored * 0x1p-24)) return;
+        halve(box, box.width() > box.height(), kResidualFloor, first, [&](const Box& b) { settle(b); });
+    }
+
+    /// True when the polynomial, evaluated in float, keeps the tolerance: then the block is appended.
+    bool emit_polynomial(const Box& box, int source_piece, const double* cx, const double* cy, double fit)
+    {
+        Block block;
+        block.box = box;
+        block.kind = Block::Kind::polynomial;
+        block.piece = m_piece;
+        block.source_piece = source_piece;
+        const double limit = 1 << 30;
+        if (!(std::fabs(cx[0]) < limit && std::fabs(cy[0]) < limit)) return false;
+        block.base_x = static_cast<std::int32_t>(std::floor(cx[0]));
+        block.base_y = static_cast<std::int32_t>(std::floor(cy[0]));
+        const auto store = [](const double* c, std::int32_t base, float* to) {
+            double sum = 0;
+            for (int i = 0; i < 6; ++i) {
+                to[i] = static_cast<float>(i == 0 ? c[0] - base : c[i]);
+                sum += std::fabs(c[i] - (i == 0 ? base : 0));
+            }
+            return sum * kFloatRounding;
+        };
+        const double ex = store(cx, block.base_x, block.x), ey = store(cy, block.base_y, block.y);
+        block.bound = fit + std::hypot(ex, ey) + kDoubleRounding * m_extent;
+        if (!(block.bound <= m_options.tol)) return false;
+        m_blocks.push_back(block);
+        return true;
+    }
+
+    void emit(const Box& box, Block::Kind kind)
+    {
+        Block block;
+        block.box = box;
+        block.kind = kind;
+        block.piece = m_piece;
+        m_blocks.push_back(block);
+    }
+
+    template <class Body>
+    void for_blocks(const Box& box, const Body& body)
+    {
+        for (int y = box.y0; y < box.y1; y += kBlockHeight)
+            for (int x = box.x0; x < box.x1; x += kBlockWidth)
+                body(Box{x, y, std::min(x + kBlockWidth, box.x1), std::min(y + kBlockHeight, box.y1)});
+    }
+
+    /// Settles the halves of a box, cut across its longer side (counted in blocks).
+    void split(const Box& box, std::size_t first)
+    {
+        const int wide = box.width() * kBlockHeight, high = box.height() * kBlockWidth;
+        halve(box, wide > high || (wide == high && box.width() > kFloor), kFloor, first,
+              [&](const Box& b) { settle(b); });
+    }
+
+    /// `body` on the halves of the box; where neither side can be cut above the floor, or everything in the box came
+    /// out exact, one exact block. `first`: the number of blocks before the box's own.
+    template <class Body>
+    void halve(const Box& box, bool vertical_cut, int floor, std::size_t first, const Body& body)
+    {
+        if (vertical_cut ? box.width() <= floor : box.height() <= floor) vertical_cut = !vertical_cut;
+        if (vertical_cut ? box.width() <= floor : box.height() <= floor) {
+            emit(box, Block::Kind::exact);
+            return;
+        }
+        body(sub_box(box, vertical_cut, false));
+        body(sub_box(box, vertical_cut, true));
+        const auto is_exact = [](const Block& b) { return b.kind == Block::Kind::exact; };
+        if (box.width() <= kBlockWidth && box.height() <= kBlockHeight &&
+            std::all_of(m_blocks.begin() + static_cast<std::ptrdiff_t>(first), m_blocks.end(), is_exact)) {
+            m_blocks.resize(first);
+            emit(box, Block::Kind::exact);
+        }
+    }
+
+    const Panorama& m_map;
+    const PlanOptions& m_options;
+    int m_piece;
+    std::vector<Block>& m_blocks;
+    double m_extent;
+    std::optional<LinearPart> m_linear;
+};
+
+}  // namespace
+
+struct Plan::Cache {
+    static constexpr std::size_t kMost = 2048;
+    std::mutex mutex;
+    std::unordered_map<std::int64_t, std::shared_ptr<const std::vector<Block>>> regions;
+    std::optional<Reached> reached;
+};
+
+Plan::Plan(const Panorama& map, const PlanOptions& options)
+    : m_map(map), m_options(options), m_cache(std::make_shared<Cache>())
+{
+    if (!(options.tol >= 0 && options.tol < HUGE_VAL)) {
+        char text[32];
+        std::snprintf(text, sizeof text, "%g", options.tol);
+        throw Error("tol", text, "allowed is 0 (exact) or a finite number of source pixels above it");
+    }
+    const auto& pieces = map.target().pieces();
+    for (std::size_t i = 0; i < pieces.size(); ++i) {
+        const Box& box = pieces[i].box;
+        for (int y = box.y0; y < box.y1; y += kRegion)
+            for (int x = box.x0; x < box.x1; x += kRegion)
+                m_regions.push_back(
+                    {{x, y, std::min(x + kRegion, box.x1), std::min(y + kRegion, box.y1)}, static_cast<int>(i)});
+    }
+}
+
+std::shared_ptr<const std::vector<Block>> Plan::blocks(std::int64_t region) const
+{
+    {
+        const std::lock_guard lock(m_cache->mutex);
+        const auto found = m_cache->regions.find(region);
+        if (found != m_cache->regions.end()) return found->second;
+    }
+    const Region& r = m_regions[static_cast<std::size_t>(region)];
+    auto blocks = std::make_shared<std::vector<Block>>();
+    Planner planner(m_map, m_options, r.piece, *blocks);
+    if (m_options.scheme == Scheme::exact || m_options.tol == 0)
+        planner.exact(r.box);
+    else
+        planner.settle(r.box);
+    const std::lock_guard lock(m_cache->mutex);
+    if (m_cache->regions.size() >= Cache::kMost) m_cache->regions.clear();
+    return m_cache->regions.try_emplace(region, std::move(blocks)).first->second;
+}
+
+Reached Plan::reached(const ParallelFor& parallel_for) const
+{
+    {
+        const std::lock_guard lock(m_cache->mutex);
+        if (m_cache->reached) return *m_cache->reached;
+    }
+    std::vector<double> bounds(m_regions.size());
+    std::vector<std::int64_t> exact(m_regions.size());
+    parallel_for(regions(), [&](std::int64_t i) {
+        const auto k = static_cast<std::size_t>(i);
+        for (const Block& b : *blocks(i)) {
+            bounds[k] = std::max(bounds[k], b.bound);
+            if (b.kind == Block::Kind::exact) exact[k] += std::int64_t{b.box.width()} * b.box.height();
+        }
+    });
+    Reached reached;
+    std::int64_t pixels = 0;
+    for (std::size_t k = 0; k < m_regions.size(); ++k) {
+        reached.max_error = std::max(reached.max_error, bounds[k]);
+        pixels += exact[k];
+    }
+    reached.exact_fraction =
+        static_cast<double>(pixels) / (double(m_map.target().width()) * m_map.target().height());
+    const std::lock_guard lock(m_cache->mutex);
+    m_cache->reached = reached;
+    return reached;
+}
+
+}  // namespace anamorph
