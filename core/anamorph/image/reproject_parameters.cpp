@@ -1,0 +1,209 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "anamorph/image/reproject_parameters.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace anamorph {
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kMaxSize = 1 << 24;
+
+// In the order of their enumerations.
+const std::vector<std::string> kSpacings = {"edges", "centers"};
+const std::vector<std::string> kFilters = {"nearest", "bilinear", "bicubic", "antialias"};
+const std::vector<std::string> kWraps = {"automatic", "black", "clamp", "periodic", "mirror"};
+const std::vector<std::string> kSchemes = {"auto", "exact", "blocks", "residual"};
+const std::vector<std::string> kOutputs = {"color", "stmap", "error", "bound"};
+
+template <class Enumeration>
+Enumeration chosen(const ParameterValues& values, std::string_view name,
+                   const std::vector<std::string>& names) {
+    const auto found = std::find(names.begin(), names.end(), values.text(name));
+    return static_cast<Enumeration>(found - names.begin());
+}
+
+std::vector<std::string> projections() {
+    std::vector<std::string> names = {"latlong"};
+    for (int i = 0; i <= static_cast<int>(Projection::cubecross); ++i)
+        names.insert(names.end() - 1, std::string(name_of(static_cast<Projection>(i))));
+    return names;
+}
+
+ParameterTable make_table() {
+    const auto choice = [](const char* name, const char* value, std::vector<std::string> choices,
+                           const char* doc) {
+        return Parameter{name, ParameterType::choice, "", value, std::move(choices), 0, 0, doc, ""};
+    };
+    const auto number = [](const char* name, const char* unit, const char* value, double least, double most,
+                           const char* doc) {
+        return Parameter{name, ParameterType::number, unit, value, {}, least, most, doc, ""};
+    };
+    const auto text = [](const char* name, const char* doc) {
+        return Parameter{name, ParameterType::text, "", "", {}, 0, 0, doc, ""};
+    };
+    return {
+        text("src",
+             "the source image; by default the recipe's name without .pano; in a name it stands last when it "
+             "has arguments of its own"),
+        choice("from", "", projections(),
+               "projection of the source; by default what the image says of itself"),
+        choice("to", "rectilinear", projections(), "projection of the picture"),
+        number(
+            "srcfov", "degrees", "", 0, 360,
+            "horizontal field of view of the source, edge to edge; by default 360 for equirectangular, "
+            "cylindrical "
+            "and mercator, 180 for fisheye, equisolid and stereographic, 90 for rectilinear and cube faces"),
+        number("fov", "degrees", "", 0, 360,
+               "horizontal field of view of the picture, edge to edge; defaults as for srcfov"),
+        number("yaw", "degrees", "0", -kInfinity, kInfinity, "where the camera looks: to the right"),
+        number("pitch", "degrees", "0", -kInfinity, kInfinity, "where the camera looks: up"),
+        number("roll", "degrees", "0", -kInfinity, kInfinity,
+               "the camera's turn about its axis, clockwise; roll is applied first, then pitch, then yaw"),
+        Parameter{
+            "size",
+            ParameterType::extent,
+            "pixels",
+            "",
+            {},
+            1,
+            kMaxSize,
+            "width and height of the picture, or its width alone; by default as fine as the source at the "
+            "centre",
+            "res"},
+        Parameter{"tile",
+                  ParameterType::extent,
+                  "pixels",
+                  "256",
+                  {},
+                  0,
+                  kMaxSize,
+                  "tile size that a host is told; 0 for scanlines",
+                  ""},
+        Parameter{"mip", ParameterType::toggle, "", "0", {}, 0, 0, "1: the picture has MIP levels", ""},
+        choice("filter", "antialias", kFilters, "antialias is bilinear where the map magnifies"),
+        choice("wrap", "automatic", kWraps,
+               "what lies beyond the source's edge; automatic goes on across the seam, the poles and cube "
+               "edges"),
+        number("tol", "source pixels", "0.01", 0, kInfinity,
+               "most that a source point may be off; 0: every pixel exactly"),
+        choice("pixels", "edges", kSpacings,
+               "where the source's field of view ends: at the edges of its outer pixels or at their centers"),
+        choice("scheme", "auto", kSchemes, "how source points are found within tol"),
+        text("colorspace", "color space to filter in; by default the source's own"),
+        choice("output", "color", kOutputs,
+               "color, or per pixel: stmap, the source point (u, v) in 0 to 1 with v down; error, its "
+               "distance from "
+               "the exact one in source pixels; bound, the proven bound of that"),
+    };
+}
+
+/// Height over width of the picture of a projection.
+double natural_aspect(Projection projection, double fov) {
+    switch (projection) {
+        case Projection::equirectangular:
+            return std::min(fov, 180.0) / fov;
+        // 90 degrees of elevation: 2 tan 45 over the azimuth.
+        case Projection::cylindrical:
+            return 2 / (fov * std::numbers::pi / 180);
+        case Projection::cubemap:
+            return 6;
+        case Projection::cubemap3x2:
+            return 2.0 / 3;
+        case Projection::cubecross:
+            return 3.0 / 4;
+        default:
+            return 1;
+    }
+}
+
+int columns_of_faces(Projection projection) {
+    return projection == Projection::cubemap3x2 ? 3 : projection == Projection::cubecross ? 4 : 1;
+}
+
+Extent natural_size(Projection projection, double fov, double width) {
+    const double limit = kMaxSize;
+    const int w = static_cast<int>(std::clamp(std::round(width), 1.0, limit));
+    const int h = static_cast<int>(std::clamp(std::round(w * natural_aspect(projection, fov)), 1.0, limit));
+    return {w, h};
+}
+
+/// The picture's size where none was given: as many pixels per radian at its centre as the source has.
+Extent default_size(Projection projection, double fov, const Chart& source) {
+    const int probe = 1200;  // holds whole faces of every cube layout
+    const Extent shape = natural_size(projection, fov, probe);
+    const Chart chart(projection, shape.width, shape.height, fov);
+    const double width = probe * source.scale_x() / chart.scale_x();
+    const double most = kMaxDefaultSize / std::max(1.0, natural_aspect(projection, fov));
+    const int faces = columns_of_faces(projection);
+    const double face = std::max(1.0, std::floor(std::min(width, most) / faces));
+    return natural_size(projection, fov, face * faces);
+}
+
+Projection source_projection(const ParameterValues& values, const SourceFacts& source) {
+    if (values.given("from")) return projection_from_name(values.text("from"), "from");
+    if (source.projection) return *source.projection;
+    if (std::int64_t{source.width} == std::int64_t{source.height} * 2) return Projection::equirectangular;
+    if (std::int64_t{source.width} * 6 == source.height) return Projection::cubemap;
+    throw Error("from is not given and the source (" + std::to_string(source.width) + "x" +
+                std::to_string(source.height) + ") does not say its projection: allowed are " +
+                projection_names());
+}
+
+double field_of_view(const ParameterValues& values, std::string_view name, Projection projection) {
+    if (!values.given(name)) return Chart::default_fov(projection);
+    const double fov = values.number(name);
+    if (!(fov > 0)) throw Error(std::string(name), values.text(name), "allowed is above 0 degrees");
+    return fov;
+}
+
+}  // namespace
+
+const ParameterTable& reproject_parameters() {
+    static const ParameterTable table = make_table();
+    return table;
+}
+
+ReprojectRequest read_reproject_request(const ParameterValues& values, const SourceFacts& facts) {
+    const Projection from = source_projection(values, facts);
+    const Chart source(from, facts.width, facts.height, field_of_view(values, "srcfov", from),
+                       chosen<PixelSpacing>(values, "pixels", kSpacings), "src");
+
+    const Projection to = projection_from_name(values.text("to"), "to");
+    const double fov = field_of_view(values, "fov", to);
+    // Reports a field of view that the lens cannot have before a size is made of it.
+    const int probe = 12;
+    Chart(to, probe, is_cube(to) ? static_cast<int>(probe * natural_aspect(to, fov)) : probe, fov);
+
+    Extent size;
+    if (!values.given("size")) {
+        size = default_size(to, fov, source);
+    } else {
+        size = values.extent("size");
+        if (size.height < 0) size = natural_size(to, fov, size.width);
+    }
+
+    ReprojectOptions options;
+    options.scheme = chosen<Scheme>(values, "scheme", kSchemes);
+    options.tol = values.number("tol");
+    options.filter = chosen<Filter>(values, "filter", kFilters);
+    options.wrap = chosen<Wrap>(values, "wrap", kWraps);
+    options.output = chosen<Output>(values, "output", kOutputs);
+    return {source,
+            Chart(to, size.width, size.height, fov),
+            {values.number("yaw"), values.number("pitch"), values.number("roll")},
+            options};
+}
+
+std::optional<Chart> half_size(const Chart& chart) {
+    const int columns = columns_of_faces(chart.projection());
+    const int rows = is_cube(chart.projection()) ? chart.height() / (chart.width() / columns) : 1;
+    const int w = chart.width() / columns, h = chart.height() / rows;
+    if (w == 1 && h == 1) return {};
+    return Chart(chart.projection(), std::max(1, w / 2) * columns, std::max(1, h / 2) * rows, chart.fov(),
+                 chart.spacing());
+}
+
+}  // namespace anamorph

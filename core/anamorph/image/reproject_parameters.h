@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: Apache-2.0
+// The parameters of a panorama reprojection, and what they make of a source of a given size.
+#pragma once
+
+#include <optional>
+#include <string_view>
+
+#include "anamorph/image/reproject.h"
+#include "anamorph/parameter.h"
+
+namespace anamorph {
+
+const ParameterTable& reproject_parameters();
+
+/// What is known of the source before a pixel is read.
+struct SourceFacts {
+    int width = 0, height = 0;
+    /// What the image says of itself, if it does.
+    std::optional<Projection> projection;
+};
+
+/// A reprojection as asked for.
+struct ReprojectRequest {
+    Chart source, target;
+    Orientation orientation;
+    ReprojectOptions options;
+
+    Panorama map() const { return Panorama(source, target, orientation); }
+};
+
+/// Reads a table's values. Throws Error; it names `from` when the source does not say what it is.
+///
+/// Without `from`: what the image says, else 2:1 is equirectangular and 1:6 a cubemap.
+/// Without `size`: the source's pixels per degree at the centre of both, at most kMaxDefaultSize either way.
+/// With one number, the width; the height is then the projection's own: half the width for a full
+/// equirectangular image, 90 degrees for a cylindrical one, square faces for cubes, else the width.
+ReprojectRequest read_reproject_request(const ParameterValues& values, const SourceFacts& source);
+constexpr int kMaxDefaultSize = 16384;
+
+/// The next level of a picture's pyramid: half the pixels each way (rounded down, at least 1), the same view;
+/// none after the last.
+std::optional<Chart> half_size(const Chart& chart);
+
+}  // namespace anamorph

@@ -1,0 +1,250 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "anamorph/parameter.h"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <optional>
+#include <set>
+
+namespace anamorph {
+namespace {
+
+constexpr std::string_view kBlanks = " \t";
+
+std::string_view trimmed(std::string_view text) {
+    const std::size_t first = text.find_first_not_of(kBlanks);
+    if (first == std::string_view::npos) return {};
+    return text.substr(first, text.find_last_not_of(kBlanks) - first + 1);
+}
+
+std::string lower(std::string_view text) {
+    std::string out(text);
+    for (char& c : out)
+        if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+    return out;
+}
+
+std::string joined(const std::vector<std::string>& words) {
+    std::string out;
+    for (const std::string& word : words) out += (out.empty() ? "" : ", ") + word;
+    return out;
+}
+
+/// All of `text` as a finite number; locale-independent.
+std::optional<double> to_number(std::string_view text) {
+    // from_chars takes no plus sign.
+    if (text.size() > 1 && text[0] == '+' && text[1] != '-') text.remove_prefix(1);
+    double value = 0;
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+    if (error != std::errc() || end != text.data() + text.size() || !std::isfinite(value)) return {};
+    return value;
+}
+
+std::optional<int> to_whole(std::string_view text) {
+    int value = 0;
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+    if (error != std::errc() || end != text.data() + text.size()) return {};
+    return value;
+}
+
+std::optional<Extent> to_extent(std::string_view text) {
+    const std::size_t cross = text.find_first_of("xX");
+    const std::optional<int> width = to_whole(text.substr(0, cross));
+    if (!width) return {};
+    if (cross == std::string_view::npos) return Extent{*width, -1};
+    const std::optional<int> height = to_whole(text.substr(cross + 1));
+    if (!height) return {};
+    return Extent{*width, *height};
+}
+
+bool is_allowed(const Parameter& parameter, const std::string& value) {
+    const auto in_range = [&](double v) { return v >= parameter.minimum && v <= parameter.maximum; };
+    switch (parameter.type) {
+        case ParameterType::number: {
+            const std::optional<double> v = to_number(value);
+            return v && in_range(*v);
+        }
+        case ParameterType::toggle:
+            return value == "0" || value == "1";
+        case ParameterType::choice:
+            return std::find(parameter.choices.begin(), parameter.choices.end(), value) !=
+                   parameter.choices.end();
+        case ParameterType::extent: {
+            const std::optional<Extent> v = to_extent(value);
+            const bool one = value.find_first_of("xX") == std::string::npos;
+            return v && in_range(v->width) && (one || in_range(v->height));
+        }
+        case ParameterType::text:
+            return !value.empty();
+    }
+    return false;
+}
+
+const Parameter* find(const ParameterTable& table, std::string_view key) {
+    const std::string name = lower(key);
+    for (const Parameter& parameter : table)
+        if (parameter.name == name || (!parameter.alias.empty() && parameter.alias == name))
+            return &parameter;
+    return nullptr;
+}
+
+std::vector<std::string> names(const ParameterTable& table) {
+    std::vector<std::string> out;
+    for (const Parameter& parameter : table) out.push_back(parameter.name);
+    return out;
+}
+
+/// "key=value" cut at its first equals sign.
+std::optional<Assignment> to_assignment(std::string_view text) {
+    const std::size_t equals = text.find('=');
+    if (equals == std::string_view::npos) return {};
+    const std::string_view key = trimmed(text.substr(0, equals));
+    if (key.empty()) return {};
+    return Assignment{std::string(key), std::string(trimmed(text.substr(equals + 1)))};
+}
+
+bool is_control(char c) {
+    const auto byte = static_cast<unsigned char>(c);
+    return (byte < 0x20 && c != '\t') || byte == 0x7f;
+}
+
+template <class Number>
+std::string fewest_digits(Number value) {
+    char text[64];
+    const auto [end, error] = std::to_chars(text, text + sizeof text, value);
+    return error == std::errc() ? std::string(text, end) : std::string();
+}
+
+}  // namespace
+
+std::string shortest(double value) {
+    return fewest_digits(value);
+}
+std::string shortest(float value) {
+    return fewest_digits(value);
+}
+
+std::string printable(std::string_view text) {
+    constexpr std::size_t kMost = 100;
+    std::string out(text.substr(0, kMost));
+    std::replace_if(
+        out.begin(), out.end(), [](char c) { return is_control(c) || c == '\t'; }, '?');
+    return text.size() > kMost ? out + "..." : out;
+}
+
+std::string Parameter::allowed() const {
+    switch (type) {
+        case ParameterType::number: {
+            const bool low = std::isfinite(minimum), high = std::isfinite(maximum);
+            if (low && high)
+                return "allowed is a number from " + shortest(minimum) + " to " + shortest(maximum);
+            return low ? "allowed is a number from " + shortest(minimum) : "allowed is a finite number";
+        }
+        case ParameterType::toggle:
+            return "allowed are 0, 1";
+        case ParameterType::choice:
+            return "allowed are " + joined(choices);
+        case ParameterType::extent:
+            return "allowed is N or NxM, whole numbers from " + shortest(minimum) + " to " +
+                   shortest(maximum);
+        case ParameterType::text:
+            return "allowed is any text but none";
+    }
+    return {};
+}
+
+void ParameterValues::assign(const std::vector<Assignment>& place) {
+    std::set<std::string> seen;
+    for (const Assignment& a : place) {
+        const Parameter* parameter = find(*m_table, a.key);
+        if (!parameter)
+            throw Error(printable(a.key), printable(a.value),
+                        "there is no such parameter; allowed are " + joined(names(*m_table)));
+        if (!seen.insert(parameter->name).second)
+            throw Error(parameter->name, printable(a.value), "given twice in one place; allowed is once");
+        if (!is_allowed(*parameter, a.value))
+            throw Error(parameter->name, printable(a.value), parameter->allowed());
+        m_given[parameter->name] = a.value;
+    }
+}
+
+const std::string& ParameterValues::text(std::string_view name) const {
+    const auto given = m_given.find(std::string(name));
+    if (given != m_given.end()) return given->second;
+    const Parameter* parameter = find(*m_table, name);
+    if (!parameter) throw Error("there is no parameter " + std::string(name));
+    return parameter->default_value;
+}
+
+double ParameterValues::number(std::string_view name) const {
+    const std::optional<double> value = to_number(text(name));
+    if (!value) throw Error(std::string(name), text(name), "not a number");
+    return *value;
+}
+
+Extent ParameterValues::extent(std::string_view name) const {
+    const std::optional<Extent> value = to_extent(text(name));
+    if (!value) throw Error(std::string(name), text(name), "not an extent");
+    return *value;
+}
+
+std::vector<Assignment> parse_recipe(std::string_view text) {
+    if (text.size() > kMaxRecipeBytes)
+        throw Error("recipe of " + std::to_string(text.size()) + " bytes: allowed are at most " +
+                    std::to_string(kMaxRecipeBytes));
+    if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);
+    std::vector<Assignment> out;
+    for (int number = 1; !text.empty(); ++number) {
+        const std::size_t end = text.find('\n');
+        std::string_view line = text.substr(0, end);
+        text.remove_prefix(end == std::string_view::npos ? text.size() : end + 1);
+        if (line.ends_with('\r')) line.remove_suffix(1);
+        const std::string where = "recipe line " + std::to_string(number);
+        if (std::any_of(line.begin(), line.end(), is_control))
+            throw Error(where + " holds a control character: allowed is text, one key=value a line");
+        line = trimmed(line);
+        if (line.empty() || line.front() == '#') continue;
+        const std::optional<Assignment> assignment = to_assignment(line);
+        if (!assignment)
+            throw Error(where + " is \"" + printable(line) + "\": allowed are key=value and # comments");
+        out.push_back(*assignment);
+    }
+    return out;
+}
+
+RecipeName parse_recipe_name(std::string_view name) {
+    const std::size_t question = name.find('?');
+    RecipeName out{std::string(name.substr(0, question)), {}};
+    if (question == std::string_view::npos) return out;
+    std::string_view rest = name.substr(question + 1);
+    while (!rest.empty()) {
+        std::size_t end = rest.find('&');
+        std::optional<Assignment> assignment = to_assignment(rest.substr(0, end));
+        if (!assignment || std::any_of(assignment->value.begin(), assignment->value.end(), is_control))
+            throw Error("argument \"" + printable(rest.substr(0, end)) + "\": allowed is key=value");
+        // A nested recipe name keeps its own arguments.
+        if (lower(assignment->key) == "src" && assignment->value.find('?') != std::string::npos) {
+            end = std::string_view::npos;
+            assignment = to_assignment(rest);
+        }
+        out.assignments.push_back(*assignment);
+        rest.remove_prefix(end == std::string_view::npos ? rest.size() : end + 1);
+    }
+    return out;
+}
+
+std::string reference_page(const std::string& title, const ParameterTable& table) {
+    std::string page =
+        "# " + title + "\n\n| key | default | unit | allowed | meaning |\n|---|---|---|---|---|\n";
+    for (const Parameter& p : table) {
+        const std::string allowed = p.allowed();
+        const std::string key = p.alias.empty() ? "`" + p.name + "`" : "`" + p.name + "` (`" + p.alias + "`)";
+        page += "| " + key + " | " + (p.default_value.empty() ? "" : "`" + p.default_value + "`") + " | " +
+                p.unit + " | " + allowed.substr(allowed.find(' ', allowed.find(' ') + 1) + 1) + " | " +
+                p.documentation + " |\n";
+    }
+    return page;
+}
+
+}  // namespace anamorph

@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: Apache-2.0
+// The parameters of an operation: one table says what there is, and the parser of recipe files and names, the
+// checks and the reference page all read that table.
+//
+// A recipe file has one `key=value` a line. Blank lines and lines that start with # say nothing; blanks
+// around key and value do not count; a byte order mark and Windows line ends are read over. A recipe name is
+// `BASE?key=value&key=value`. Its values may hold any character but `&`, with one exception: a `src` that is
+// itself a recipe name (its value holds a `?`) takes all the rest of the name, so it stands last. Nothing is
+// decoded: %20 stays %20. Keys are read in upper or lower case.
+#pragma once
+
+#include <cstddef>
+#include <map>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "anamorph/error.h"
+
+namespace anamorph {
+
+enum class ParameterType {
+    number,  ///< finite, decimal, with a point whatever the locale
+    toggle,  ///< 0 or 1
+    choice,  ///< one of `choices`
+    extent,  ///< N or NxM, whole numbers
+    text     ///< any
+};
+
+struct Parameter {
+    std::string name;
+    ParameterType type = ParameterType::text;
+    std::string unit;
+    std::string default_value;  ///< as written in a recipe; may be empty, which `documentation` then explains
+    std::vector<std::string> choices;
+    double minimum = 0, maximum = 0;  ///< of number and extent
+    std::string documentation;        ///< one line
+    std::string alias;                ///< another key for the same
+
+    /// "allowed is a number from 0 to 10", "allowed are edges, centers".
+    std::string allowed() const;
+};
+
+using ParameterTable = std::vector<Parameter>;
+
+/// A width and a height; the height is -1 where only one number was given.
+struct Extent {
+    int width = 0, height = -1;
+};
+
+/// One `key=value`, as written.
+struct Assignment {
+    std::string key, value;
+};
+
+/// What was asked for: values checked against a table, later ones over earlier ones.
+class ParameterValues {
+  public:
+    explicit ParameterValues(const ParameterTable& table) : m_table(&table) {}
+
+    /// Takes the assignments of one place (a file, a name, a call). Throws Error on an unknown key, a key
+    /// given twice and a value that is not allowed.
+    void assign(const std::vector<Assignment>& place);
+
+    const ParameterTable& table() const { return *m_table; }
+    bool given(std::string_view name) const { return m_given.count(std::string(name)) != 0; }
+    /// As written, or the default.
+    const std::string& text(std::string_view name) const;
+    /// For parameters of type number, toggle and extent that were given or have a default.
+    double number(std::string_view name) const;
+    bool toggle(std::string_view name) const { return text(name) == "1"; }
+    Extent extent(std::string_view name) const;
+
+  private:
+    const ParameterTable* m_table;
+    std::map<std::string, std::string> m_given;
+};
+
+/// The assignments of a recipe file's text. Throws Error naming the line.
+std::vector<Assignment> parse_recipe(std::string_view text);
+constexpr std::size_t kMaxRecipeBytes = std::size_t{1} << 20;
+
+struct RecipeName {
+    std::string base;
+    std::vector<Assignment> assignments;
+};
+
+/// Splits a recipe name. Throws Error on an argument that is not key=value.
+RecipeName parse_recipe_name(std::string_view name);
+
+/// `text` for a message: at most 100 characters, all printable.
+std::string printable(std::string_view text);
+
+/// A number in the fewest digits that read back as the same number.
+std::string shortest(double value);
+std::string shortest(float value);
+
+/// The table as a page of Markdown.
+std::string reference_page(const std::string& title, const ParameterTable& table);
+
+}  // namespace anamorph

@@ -1,0 +1,252 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "anamorph/parameter.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <clocale>
+#include <random>
+
+#include "anamorph/image/reproject_parameters.h"
+
+namespace anamorph {
+namespace {
+
+using testing::AllOf;
+using testing::HasSubstr;
+using testing::Not;
+
+template <class Body>
+std::string error_of(const Body& body) {
+    try {
+        body();
+    } catch (const Error& e) {
+        return e.what();
+    }
+    return "no error";
+}
+
+ParameterValues values(const std::vector<Assignment>& assignments) {
+    ParameterValues v(reproject_parameters());
+    v.assign(assignments);
+    return v;
+}
+
+ReprojectRequest request(const std::vector<Assignment>& assignments,
+                         const SourceFacts& source = {2048, 1024, {}}) {
+    return read_reproject_request(values(assignments), source);
+}
+
+TEST(Parameter, EveryDefaultIsAllowed) {
+    for (const Parameter& p : reproject_parameters()) {
+        SCOPED_TRACE(p.name);
+        EXPECT_FALSE(p.documentation.empty());
+        if (!p.default_value.empty()) {
+            EXPECT_NO_THROW(values({{p.name, p.default_value}}));
+        }
+    }
+}
+
+TEST(Parameter, LaterPlacesOverrideEarlierOnes) {
+    ParameterValues v(reproject_parameters());
+    v.assign({{"yaw", "10"}, {"pitch", "5"}});
+    v.assign({{"yaw", "20"}});
+    EXPECT_EQ(v.number("yaw"), 20);
+    EXPECT_EQ(v.number("pitch"), 5);
+    EXPECT_EQ(v.number("roll"), 0);
+    EXPECT_TRUE(v.given("yaw"));
+    EXPECT_FALSE(v.given("roll"));
+}
+
+TEST(Parameter, KeysAndAliasesInAnyCase) {
+    const ParameterValues v = values({{"RES", "64x32"}, {"Tile", "16"}, {"MIP", "1"}});
+    EXPECT_EQ(v.extent("size").width, 64);
+    EXPECT_EQ(v.extent("size").height, 32);
+    EXPECT_EQ(v.extent("tile").width, 16);
+    EXPECT_EQ(v.extent("tile").height, -1);
+    EXPECT_TRUE(v.toggle("mip"));
+    EXPECT_THAT(error_of([] { values({{"RES", "64"}, {"size", "32"}}); }), HasSubstr("size=32: given twice"));
+}
+
+TEST(Parameter, ErrorsNameParameterValueAndWhatIsAllowed) {
+    const auto says = [](const char* key, const std::string& value, const char* allowed) {
+        const std::string error = error_of([&] { values({{key, value}}); });
+        EXPECT_THAT(error, AllOf(HasSubstr(key), HasSubstr(printable(value)), HasSubstr(allowed)));
+        EXPECT_THAT(error, Not(HasSubstr("\n")));
+        EXPECT_LT(error.size(), 400u);
+    };
+    for (const char* bad :
+         {"", "abc", "nan", "inf", "-inf", "1e400", "1,5", "0x10", "1 2", "--1", "+-1", "1.5.2"})
+        says("yaw", bad, "allowed is a finite number");
+    for (const char* bad : {"-1", "-0.001", "nan", "infinity"})
+        says("tol", bad, "allowed is a number from 0");
+    for (const char* bad :
+         {"0", "0x0", "-1", "12x", "x12", "1x2x3", "99999999999", "1.5", "64 x 64", "16777217"})
+        says("size", bad, "allowed is N or NxM");
+    says("filter", "sinc", "nearest, bilinear, bicubic, antialias");
+    says("to", "Rectilinear", "rectilinear");
+    says("mip", "yes", "0, 1");
+    says("src", "", "text");
+    says("yaws", "1", "src, from, to");
+    says("yaw", std::string(100000, '7'), "finite");
+    says("yaw", "1\n2\t3", "finite");
+}
+
+TEST(Parameter, NumbersDoNotDependOnTheLocale) {
+    for (const char* name : {"de_DE.UTF-8", "fr_FR.UTF-8", "C"})
+        if (std::setlocale(LC_ALL, name)) break;
+    EXPECT_EQ(values({{"yaw", "1.5"}}).number("yaw"), 1.5);
+    EXPECT_EQ(values({{"yaw", "+.25"}}).number("yaw"), 0.25);
+    EXPECT_EQ(values({{"yaw", "-2e1"}}).number("yaw"), -20);
+    EXPECT_EQ(shortest(0.01), "0.01");
+    EXPECT_EQ(shortest(0.01f), "0.01");
+    std::setlocale(LC_ALL, "C");
+}
+
+TEST(Recipe, LinesCommentsAndBlanks) {
+    const auto a =
+        parse_recipe("\xEF\xBB\xBF# view\r\n\r\n  to = rectilinear \r\n\tsrc=a = b#1.exr\n#yaw=1\nfov=90");
+    ASSERT_EQ(a.size(), 3u);
+    EXPECT_EQ(a[0].key, "to");
+    EXPECT_EQ(a[0].value, "rectilinear");
+    EXPECT_EQ(a[1].value, "a = b#1.exr");
+    EXPECT_EQ(a[2].value, "90");
+    EXPECT_TRUE(parse_recipe("").empty());
+    EXPECT_TRUE(parse_recipe("\n\n#\n").empty());
+}
+
+TEST(Recipe, ErrorsNameTheLine) {
+    EXPECT_THAT(error_of([] { parse_recipe("yaw=1\nnonsense\n"); }), HasSubstr("line 2 is \"nonsense\""));
+    EXPECT_THAT(error_of([] { parse_recipe("\n=1"); }), HasSubstr("line 2"));
+    EXPECT_THAT(error_of([] { parse_recipe(std::string_view("a=1\nb=\0", 7)); }), HasSubstr("line 2"));
+    EXPECT_THAT(error_of([] {
+                    parse_recipe(
+                        "\x7f"
+                        "ELF\x02\x01");
+                }),
+                HasSubstr("line 1 holds a control character"));
+    EXPECT_THAT(error_of([] { parse_recipe(std::string(kMaxRecipeBytes + 1, '\n')); }),
+                HasSubstr("1048577 bytes"));
+    EXPECT_NO_THROW(parse_recipe(std::string(kMaxRecipeBytes, '\n')));
+}
+
+TEST(RecipeName, SplitsArguments) {
+    const RecipeName n = parse_recipe_name("a/b.exr.pano?to=rectilinear&src=c d/e;(1)[2]+*:%20,x.exr&yaw=3");
+    EXPECT_EQ(n.base, "a/b.exr.pano");
+    ASSERT_EQ(n.assignments.size(), 3u);
+    EXPECT_EQ(n.assignments[1].value, "c d/e;(1)[2]+*:%20,x.exr");
+    EXPECT_EQ(n.assignments[2].key, "yaw");
+    EXPECT_TRUE(parse_recipe_name("plain.pano").assignments.empty());
+    EXPECT_TRUE(parse_recipe_name("plain.pano?").assignments.empty());
+}
+
+TEST(RecipeName, ANestedNameTakesTheRest) {
+    const RecipeName n = parse_recipe_name("x.pano?yaw=1&src=y.pano?yaw=2&src=z.null?RES=8x4&TILE=2x2");
+    ASSERT_EQ(n.assignments.size(), 2u);
+    EXPECT_EQ(n.assignments[1].value, "y.pano?yaw=2&src=z.null?RES=8x4&TILE=2x2");
+    const RecipeName inner = parse_recipe_name(n.assignments[1].value);
+    ASSERT_EQ(inner.assignments.size(), 2u);
+    EXPECT_EQ(inner.assignments[1].value, "z.null?RES=8x4&TILE=2x2");
+}
+
+TEST(RecipeName, RefusesWhatIsNotAnAssignment) {
+    for (const char* bad :
+         {"a.pano?flag", "a.pano?yaw=1&", "a.pano?&yaw=1", "a.pano?=1", "a.pano?yaw=1&&fov=2"}) {
+        SCOPED_TRACE(bad);
+        if (std::string_view(bad) == "a.pano?yaw=1&") {
+            EXPECT_NO_THROW(parse_recipe_name(bad));
+        } else {
+            EXPECT_THAT(error_of([&] { parse_recipe_name(bad); }), HasSubstr("allowed is key=value"));
+        }
+    }
+}
+
+TEST(RecipeName, RandomBytesGiveAnErrorOrAResult) {
+    const unsigned seed = 20260729;
+    SCOPED_TRACE(seed);
+    std::mt19937 random(seed);
+    const std::string alphabet = std::string("src=yaw?&.pano#\r\n \t\xEF\xBB\xBF%x0123456789", 37) + '\0';
+    for (int i = 0; i < 20000; ++i) {
+        std::string text(random() % 40, ' ');
+        for (char& c : text) c = alphabet[random() % alphabet.size()];
+        try {
+            for (const Assignment& a : parse_recipe(text)) EXPECT_FALSE(a.key.empty());
+        } catch (const Error&) {
+        }
+        try {
+            for (const Assignment& a : parse_recipe_name(text).assignments) EXPECT_FALSE(a.key.empty());
+        } catch (const Error&) {
+        }
+    }
+}
+
+TEST(ReprojectRequest, SaysFromWhereItCanBeKnown) {
+    EXPECT_EQ(request({}).source.projection(), Projection::equirectangular);
+    EXPECT_EQ(request({}, {64, 384, {}}).source.projection(), Projection::cubemap);
+    EXPECT_EQ(request({}, {2048, 1024, Projection::mercator}).source.projection(), Projection::mercator);
+    EXPECT_EQ(request({{"from", "latlong"}}, {300, 200, {}}).source.projection(),
+              Projection::equirectangular);
+    EXPECT_THAT(error_of([] {
+                    request({}, {300, 200, {}});
+                }),
+                AllOf(HasSubstr("from"), HasSubstr("300x200")));
+}
+
+TEST(ReprojectRequest, SizeOfThePicture) {
+    const auto size = [](const std::vector<Assignment>& assignments) {
+        const Chart target = request(assignments).target;
+        return std::pair(target.width(), target.height());
+    };
+    using Pair = std::pair<int, int>;
+    EXPECT_EQ(size({{"size", "300x200"}}), Pair(300, 200));
+    EXPECT_EQ(size({{"size", "300"}}), Pair(300, 300));
+    EXPECT_EQ(size({{"size", "300"}, {"to", "equirectangular"}}), Pair(300, 150));
+    EXPECT_EQ(size({{"size", "300"}, {"to", "equirectangular"}, {"fov", "90"}}), Pair(300, 300));
+    EXPECT_EQ(size({{"size", "314"}, {"to", "cylindrical"}}), Pair(314, 100));
+    EXPECT_EQ(size({{"size", "64"}, {"to", "cubemap"}}), Pair(64, 384));
+    EXPECT_EQ(size({{"size", "96"}, {"to", "cubemap3x2"}}), Pair(96, 64));
+    EXPECT_EQ(size({{"size", "128"}, {"to", "cubecross"}}), Pair(128, 96));
+    // 2048 pixels for 2 pi: a 90 degree view is 2 tan 45 of them wide.
+    EXPECT_EQ(size({}), Pair(652, 652));
+    EXPECT_EQ(size({{"to", "equirectangular"}}), Pair(2048, 1024));
+    EXPECT_EQ(size({{"to", "cubemap"}}), Pair(651, 6 * 651));
+    EXPECT_EQ(size({{"fov", "179.9"}}), Pair(kMaxDefaultSize, kMaxDefaultSize));
+}
+
+TEST(ReprojectRequest, ErrorsOfLensesAndSizes) {
+    EXPECT_THAT(error_of([] {
+                    request({{"fov", "180"}});
+                }),
+                AllOf(HasSubstr("fov=180"), HasSubstr("below 180")));
+    EXPECT_THAT(error_of([] { request({{"fov", "0"}}); }), HasSubstr("fov=0: allowed is above 0"));
+    EXPECT_THAT(error_of([] { request({{"to", "cubemap"}, {"fov", "80"}}); }), HasSubstr("fov=80"));
+    EXPECT_THAT(error_of([] { request({{"to", "cubemap"}, {"size", "8x8"}}); }), HasSubstr("size=8x8"));
+    EXPECT_THAT(error_of([] { request({{"from", "cubemap"}}); }), HasSubstr("srcsize=2048x1024"));
+    EXPECT_THAT(error_of([] {
+                    request({{"from", "rectilinear"}, {"srcfov", "190"}});
+                }),
+                HasSubstr("srcfov=190"));
+}
+
+TEST(ReprojectRequest, HalfSizes) {
+    const auto levels = [](const std::vector<Assignment>& assignments) {
+        std::optional<Chart> chart = request(assignments).target;
+        int n = 0;
+        for (; chart; chart = half_size(*chart)) ++n;
+        return n;
+    };
+    EXPECT_EQ(levels({{"size", "64x64"}}), 7);
+    EXPECT_EQ(levels({{"size", "100x3"}}), 7);
+    EXPECT_EQ(levels({{"size", "1x1"}}), 1);
+    EXPECT_EQ(levels({{"to", "cubemap"}, {"size", "12"}}), 4);
+    EXPECT_EQ(levels({{"to", "cubecross"}, {"size", "64"}}), 5);
+}
+
+TEST(ReferencePage, HasEveryParameter) {
+    const std::string page = reference_page("Panorama", reproject_parameters());
+    for (const Parameter& p : reproject_parameters()) EXPECT_THAT(page, HasSubstr("| `" + p.name + "`"));
+    EXPECT_THAT(page, HasSubstr("| `tol` | `0.01` | source pixels | a number from 0 |"));
+}
+
+}  // namespace
+}  // namespace anamorph
