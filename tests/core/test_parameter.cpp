@@ -151,21 +151,15 @@ TEST(RecipeName, ANestedNameTakesTheRest) {
 
 TEST(RecipeName, RefusesWhatIsNotAnAssignment) {
     for (const char* bad :
-         {"a.pano?flag", "a.pano?yaw=1&", "a.pano?&yaw=1", "a.pano?=1", "a.pano?yaw=1&&fov=2"}) {
-        SCOPED_TRACE(bad);
-        if (std::string_view(bad) == "a.pano?yaw=1&") {
-            EXPECT_NO_THROW(parse_recipe_name(bad));
-        } else {
-            EXPECT_THAT(error_of([&] { parse_recipe_name(bad); }), HasSubstr("allowed is key=value"));
-        }
-    }
+         {"a.pano?flag", "a.pano?&yaw=1", "a.pano?=1", "a.pano?yaw=1&&fov=2", "a.pano?yaw=\n"})
+        EXPECT_THAT(error_of([&] { parse_recipe_name(bad); }), HasSubstr("allowed is key=value")) << bad;
 }
 
 TEST(RecipeName, RandomBytesGiveAnErrorOrAResult) {
     const unsigned seed = 20260729;
     SCOPED_TRACE(seed);
     std::mt19937 random(seed);
-    const std::string alphabet = std::string("src=yaw?&.pano#\r\n \t\xEF\xBB\xBF%x0123456789", 37) + '\0';
+    const std::string alphabet = std::string("src=yaw?&.pano#\r\n \t\xEF\xBB\xBF%x0123456789") + '\0';
     for (int i = 0; i < 20000; ++i) {
         std::string text(random() % 40, ' ');
         for (char& c : text) c = alphabet[random() % alphabet.size()];
@@ -209,7 +203,7 @@ TEST(ReprojectRequest, SizeOfThePicture) {
     // 2048 pixels for 2 pi: a 90 degree view is 2 tan 45 of them wide.
     EXPECT_EQ(size({}), Pair(652, 652));
     EXPECT_EQ(size({{"to", "equirectangular"}}), Pair(2048, 1024));
-    EXPECT_EQ(size({{"to", "cubemap"}}), Pair(651, 6 * 651));
+    EXPECT_EQ(size({{"to", "cubemap"}}), Pair(652, 6 * 652));
     EXPECT_EQ(size({{"fov", "179.9"}}), Pair(kMaxDefaultSize, kMaxDefaultSize));
 }
 

@@ -138,7 +138,7 @@ Extent default_size(Projection projection, double fov, const Chart& source) {
     const double width = probe * source.scale_x() / chart.scale_x();
     const double most = kMaxDefaultSize / std::max(1.0, natural_aspect(projection, fov));
     const int faces = columns_of_faces(projection);
-    const double face = std::max(1.0, std::floor(std::min(width, most) / faces));
+    const double face = std::max(1.0, std::min(std::round(width / faces), std::floor(most / faces)));
     return natural_size(projection, fov, face * faces);
 }
 
