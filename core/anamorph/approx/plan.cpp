@@ -108,11 +108,10 @@ private:
         if (seen.hi < 0) return Cover::outside;
         if (!(seen.lo > 0)) return Cover::mixed;
         if (source.has_azimuth()) {
-            // The branch serves less than half a turn; an image that does not close on itself has an edge at the
-            // far side, which it must not cross.
+            // The branch serves less than half a turn. It must not cross the far side where the image has an edge.
             if (!(ray.z.lo > 0)) return Cover::mixed;
             const Interval azimuth = atan2(ray.x, ray.z) + local.source.around.angle;
-            if (!source.closed() && !(azimuth.lo > -std::numbers::pi && azimuth.hi < std::numbers::pi))
+            if (!(source.closed() && m_options.across_seam) && !(azimuth.lo > -std::numbers::pi && azimuth.hi < std::numbers::pi))
                 return Cover::mixed;
         }
         return m_options.cull ? culled(box, local) : Cover::inside;
@@ -247,6 +246,9 @@ private:
             return sum * kFloatRounding;
         };
         const double ex = store(cx, block.base_x, block.x), ey = store(cy, block.base_y, block.y);
+        // The turn that brings the block's middle into the image.
+        if (const int period = m_map.source().period(); m_map.source().closed())
+            block.base_x -= static_cast<int>(std::floor(static_cast<double>(block.base_x) / period)) * period;
         block.bound = fit + std::hypot(ex, ey) + kDoubleRounding * m_extent;
         if (!(block.bound <= m_options.tol)) return false;
         m_blocks.push_back(block);

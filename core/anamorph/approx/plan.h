@@ -51,6 +51,8 @@ struct PlanOptions {
     int degree = 2;     ///< of the polynomials of scheme blocks: 1 or 2
     /// Source points that lie outside the source image by more than a filter's support need not be found.
     bool cull = true;
+    /// Blocks may run over the seam of a source that closes on itself, with x beyond its edges.
+    bool across_seam = true;
 };
 
 class Plan {

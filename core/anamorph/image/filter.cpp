@@ -26,11 +26,6 @@ Taps taps_at(Filter filter, double at) {
     return {below, 2, {first, second}};
 }
 
-/// The unit vector along (x, y), or none.
-Point<double> direction(double x, double y) {
-    const double length = std::hypot(x, y);
-    return length > 0 ? Point<double>{x / length, y / length} : Point<double>{0, 0};
-}
 
 }  // namespace
 
@@ -70,15 +65,11 @@ bool PointSampler::sample(const Footprint& footprint, const Jacobian& jacobian, 
     const Source::Size full = m_source.size(0), size = m_source.size(footprint.level);
     const double sx = static_cast<double>(size.width) / full.width,
                  sy = static_cast<double>(size.height) / full.height;
-    const Point<double> a = direction(jacobian.x_i * sx, jacobian.y_i * sy);
-    const Point<double> b = direction(jacobian.x_j * sx, jacobian.y_j * sy);
     std::fill(m_sum.begin(), m_sum.end(), 0.0);
     for (int j = 0; j < footprint.taps_b; ++j)
         for (int i = 0; i < footprint.taps_a; ++i) {
-            const double da = (i - 0.5 * (footprint.taps_a - 1)) * static_cast<double>(footprint.spacing_a);
-            const double db = (j - 0.5 * (footprint.taps_b - 1)) * static_cast<double>(footprint.spacing_b);
-            if (!sample(Filter::bilinear, footprint.level, piece, x * sx + da * a.x + db * b.x,
-                        y * sy + da * a.y + db * b.y, m_tap.data()))
+            const Point<double> tap = tap_offset(footprint, jacobian, {sx, sy}, i, j);
+            if (!sample(Filter::bilinear, footprint.level, piece, x * sx + tap.x, y * sy + tap.y, m_tap.data()))
                 return false;
             for (std::size_t c = 0; c < m_sum.size(); ++c) m_sum[c] += static_cast<double>(m_tap[c]);
         }

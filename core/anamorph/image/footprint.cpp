@@ -53,7 +53,22 @@ double least_stretch(const Jacobian& j) {
     return std::fabs(sum - difference);
 }
 
+/// The unit vector along (x, y), or none.
+Point<double> direction(double x, double y) {
+    const double length = std::hypot(x, y);
+    return length > 0 ? Point<double>{x / length, y / length} : Point<double>{0, 0};
+}
+
 }  // namespace
+
+Point<double> tap_offset(const Footprint& footprint, const Jacobian& jacobian, const std::array<double, 2>& scale,
+                         int i, int j) noexcept {
+    const Point<double> a = direction(jacobian.x_i * scale[0], jacobian.y_i * scale[1]);
+    const Point<double> b = direction(jacobian.x_j * scale[0], jacobian.y_j * scale[1]);
+    const double da = (i - 0.5 * (footprint.taps_a - 1)) * static_cast<double>(footprint.spacing_a);
+    const double db = (j - 0.5 * (footprint.taps_b - 1)) * static_cast<double>(footprint.spacing_b);
+    return {da * a.x + db * b.x, da * a.y + db * b.y};
+}
 
 double box_energy(double width) {
     const double w = std::max(width, 1.0);

@@ -1,0 +1,390 @@
+// SPDX-License-Identifier: Apache-2.0
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "anamorph/simd/block_sampler.cpp"
+#include "anamorph/simd/block_sampler.h"
+
+#include <cstring>
+#include <string>
+#include <vector>
+
+#include "hwy/foreach_target.h"  // must come before highway.h
+#include "hwy/cache_control.h"
+#include "hwy/highway.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace anamorph::simd {
+namespace HWY_NAMESPACE {
+namespace hn = hwy::HWY_NAMESPACE;
+
+// Coordinates: as many lanes as there are. Texels: four channels, or two neighbouring texels of them.
+using Floats = hn::CappedTag<float, 16>;
+using Ints = hn::RebindToSigned<Floats>;
+using Quad = hn::CappedTag<float, 4>;
+constexpr size_t kLanes = hn::MaxLanes(Floats());
+constexpr int kQuad = static_cast<int>(hn::MaxLanes(Quad()));  // 1 where Highway has no vectors
+
+/// s or t of pixel `i` of `count`: -1 at the first, 1 at the last, 0 when there is one.
+HWY_INLINE float step_of(int count)
+{
+    return count > 1 ? 1.0f / static_cast<float>(count - 1) : 0.0f;
+}
+
+void BlockPoints(const float* HWY_RESTRICT cx, const float* HWY_RESTRICT cy, int width, int height, int row, int begin,
+                 int end, float* HWY_RESTRICT out_x, float* HWY_RESTRICT out_y)
+{
+    const Floats d;
+    const float t = static_cast<float>(2 * row - (height - 1)) * step_of(height);
+    // In s: a + s (b + s c)
+    const auto ax = hn::Set(d, (cx[5] * t + cx[2]) * t + cx[0]), bx = hn::Set(d, cx[4] * t + cx[1]),
+               qx = hn::Set(d, cx[3]);
+    const auto ay = hn::Set(d, (cy[5] * t + cy[2]) * t + cy[0]), by = hn::Set(d, cy[4] * t + cy[1]),
+               qy = hn::Set(d, cy[3]);
+    const auto step = hn::Set(d, step_of(width));
+    for (int i = begin; i < end; i += static_cast<int>(kLanes)) {
+        // Pixel i + k stands 2 (i + k) - (width - 1) half steps from the middle.
+        const auto s =
+            hn::Mul(hn::Add(hn::Iota(d, static_cast<float>(2 * i - (width - 1))), hn::Iota(d, 0.0f)), step);
+        hn::StoreU(hn::MulAdd(s, hn::MulAdd(s, qx, bx), ax), d, out_x + (i - begin));
+        hn::StoreU(hn::MulAdd(s, hn::MulAdd(s, qy, by), ay), d, out_y + (i - begin));
+    }
+}
+
+/// kQuad channels from `p`, as floats.
+template <class T>
+HWY_INLINE hn::Vec<Quad> LoadQuad(const T* p)
+{
+    const Quad d;
+    if constexpr (std::is_same_v<T, float>) {
+        return hn::LoadU(d, p);
+    }
+    else if constexpr (std::is_same_v<T, hwy::float16_t>) {
+        const hn::Rebind<hwy::float16_t, Quad> d16;
+        return hn::PromoteTo(d, hn::LoadU(d16, p));
+    }
+    else {
+        const hn::Rebind<T, Quad> dt;
+        return hn::ConvertTo(d, hn::PromoteTo(hn::RebindToSigned<Quad>(), hn::LoadU(dt, p)));
+    }
+}
+
+/// Where a tap falls: whole texels as an element offset, and the fractions.
+struct Positions {
+    alignas(64) int32_t offset[kRowRoom];
+    alignas(64) float fx[kRowRoom], fy[kRowRoom];
+};
+
+/// Texel (floor(x - shift), floor(y - shift)) and the rest, for `count` points from `first` on, moved by a tap.
+HWY_INLINE void Locate(const Offsets& at, int first, int count, const Tap& tap, float shift, int channels,
+                       int32_t row_elements, Positions& p)
+{
+    const Floats d;
+    const Ints di;
+    const auto dx = hn::Set(d, tap.x - shift), dy = hn::Set(d, tap.y - shift);
+    const auto row = hn::Set(di, row_elements), pixel = hn::Set(di, channels);
+    for (int i = 0; i < count; i += static_cast<int>(kLanes)) {
+        const auto px = hn::Add(hn::LoadU(d, at.x + first + i), dx),
+                   py = hn::Add(hn::LoadU(d, at.y + first + i), dy);
+        const auto ix = hn::Floor(px), iy = hn::Floor(py);
+        hn::StoreU(hn::Sub(px, ix), d, p.fx + i);
+        hn::StoreU(hn::Sub(py, iy), d, p.fy + i);
+        auto tx = hn::ConvertTo(di, ix), ty = hn::ConvertTo(di, iy);
+        if (at.whole_x) {
+            tx = hn::Add(tx, hn::LoadU(di, at.whole_x + first + i));
+            ty = hn::Add(ty, hn::LoadU(di, at.whole_y + first + i));
+        }
+        hn::StoreU(hn::Add(hn::Mul(ty, row), hn::Mul(tx, pixel)), di, p.offset + i);
+    }
+}
+
+/// The texel pair at `p` and the pair below, mixed by fy then fx: kQuad channels of a pixel.
+template <class T, int kChannels>
+HWY_INLINE hn::Vec<Quad> Bilinear(const T* HWY_RESTRICT p, ptrdiff_t row, int channels, float fx, float fy)
+{
+    const Quad d;
+    const int next = kChannels ? kChannels : channels;
+    const auto vx = hn::Set(d, fx), vy = hn::Set(d, fy);
+    const auto a = LoadQuad(p), b = LoadQuad(p + row);
+    const auto left = hn::MulAdd(vy, hn::Sub(b, a), a);
+    const auto e = LoadQuad(p + next), f = LoadQuad(p + row + next);
+    const auto right = hn::MulAdd(vy, hn::Sub(f, e), e);
+    return hn::MulAdd(vx, hn::Sub(right, left), left);
+}
+
+/// One bilinear tap a pixel. kChannels 0: any number, four at a time; a store's surplus lanes are overwritten by the
+/// next pixel's.
+template <class T, int kChannels>
+HWY_INLINE void SampleBilinear(const Texels& s, const Offsets& at, float* HWY_RESTRICT out)
+{
+    const Quad d;
+    const auto* origin = reinterpret_cast<const T*>(s.texels);
+    const ptrdiff_t row = s.row_stride / static_cast<ptrdiff_t>(sizeof(T));
+    const int channels = kChannels ? kChannels : s.channels;
+    Positions p;
+    Locate(at, 0, at.count, s.taps[0], 0.5f, channels, static_cast<int32_t>(row), p);
+    for (int i = 0; i < at.count; ++i)
+        for (int c = 0; c < channels; c += kQuad)
+            hn::StoreU(Bilinear<T, kChannels>(origin + p.offset[i] + c, row, channels, p.fx[i], p.fy[i]), d,
+                       out + i * channels + c);
+}
+
+/// The mean of several bilinear taps a pixel.
+template <class T, int kChannels>
+HWY_INLINE void SampleTaps(const Texels& s, const Offsets& at, float* HWY_RESTRICT out)
+{
+    const Quad d;
+    const auto* origin = reinterpret_cast<const T*>(s.texels);
+    const ptrdiff_t row = s.row_stride / static_cast<ptrdiff_t>(sizeof(T));
+    const int channels = kChannels ? kChannels : s.channels;
+    // Some pixels at a time, so that the positions of all taps stay near.
+    constexpr int kGroup = 16;
+    Positions p[4];
+    const auto weight = hn::Set(d, 1.0f / static_cast<float>(s.tap_count));
+    for (int first = 0; first < at.count; first += kGroup) {
+        const int n = HWY_MIN(kGroup, at.count - first);
+        HWY_ALIGN float sum[kGroup * kQuad];
+        for (int c = 0; c < channels; c += kQuad) {
+            for (int tap = 0; tap < s.tap_count; tap += 4) {
+                const int taps = HWY_MIN(4, s.tap_count - tap);
+                for (int k = 0; k < taps; ++k)
+                    Locate(at, first, n, s.taps[tap + k], 0.5f, channels, static_cast<int32_t>(row), p[k]);
+                for (int i = 0; i < n; ++i) {
+                    auto v = tap == 0 ? hn::Zero(d) : hn::Load(d, sum + kQuad * i);
+                    for (int k = 0; k < taps; ++k)
+                        v = hn::Add(v, Bilinear<T, kChannels>(origin + p[k].offset[i] + c, row, channels, p[k].fx[i],
+                                                              p[k].fy[i]));
+                    hn::Store(v, d, sum + kQuad * i);
+                }
+            }
+            // Ascending pixels: a surplus lane is overwritten by the next pixel, or by this one's next channels.
+            for (int i = 0; i < n; ++i) {
+                HWY_ALIGN float v[kQuad];
+                hn::Store(hn::Mul(hn::Load(d, sum + kQuad * i), weight), d, v);
+                std::memcpy(out + (first + i) * channels + c, v,
+                            sizeof(float) * static_cast<size_t>(HWY_MIN(kQuad, channels - c)));
+            }
+        }
+    }
+}
+
+/// Catmull-Rom weights of the four texels about a fraction f.
+HWY_INLINE void CubicWeights(float f, float* w)
+{
+    const float g = 1 - f;
+    w[0] = -0.5f * f * g * g;
+    w[1] = 1 + f * f * (1.5f * f - 2.5f);
+    w[2] = 1 + g * g * (1.5f * g - 2.5f);
+    w[3] = -0.5f * g * f * f;
+}
+
+template <class T>
+HWY_INLINE void SampleBicubic(const Texels& s, const Offsets& at, float* HWY_RESTRICT out)
+{
+    const Quad d;
+    const auto* origin = reinterpret_cast<const T*>(s.texels);
+    const ptrdiff_t row = s.row_stride / static_cast<ptrdiff_t>(sizeof(T));
+    Positions p;
+    // The first of four texels is one before the one a bilinear tap starts with.
+    Locate(at, 0, at.count, s.taps[0], 0.5f, s.channels, static_cast<int32_t>(row), p);
+    for (int i = 0; i < at.count; ++i) {
+        float wx[4], wy[4];
+        CubicWeights(p.fx[i], wx);
+        CubicWeights(p.fy[i], wy);
+        for (int c = 0; c < s.channels; c += kQuad) {
+            const T* texel = origin + p.offset[i] + c - row - s.channels;
+            auto sum = hn::Zero(d);
+            for (int j = 0; j < 4; ++j) {
+                auto line = hn::Zero(d);
+                for (int k = 0; k < 4; ++k)
+                    line = hn::MulAdd(hn::Set(d, wx[k]), LoadQuad(texel + j * row + k * s.channels), line);
+                sum = hn::MulAdd(hn::Set(d, wy[j]), line, sum);
+            }
+            hn::StoreU(sum, d, out + i * s.channels + c);
+        }
+    }
+}
+
+template <class T>
+HWY_INLINE void SampleNearest(const Texels& s, const Offsets& at, float* HWY_RESTRICT out)
+{
+    const auto* origin = reinterpret_cast<const T*>(s.texels);
+    const ptrdiff_t row = s.row_stride / static_cast<ptrdiff_t>(sizeof(T));
+    Positions p;
+    Locate(at, 0, at.count, s.taps[0], 0.0f, s.channels, static_cast<int32_t>(row), p);
+    for (int i = 0; i < at.count; ++i)
+        for (int c = 0; c < s.channels; c += kQuad)
+            hn::StoreU(LoadQuad(origin + p.offset[i] + c), Quad(), out + i * s.channels + c);
+}
+
+template <class T>
+void SampleTyped(const Texels& s, const Offsets& at, float* out)
+{
+    if (s.kernel == Kernel::nearest) return SampleNearest<T>(s, at, out);
+    if (s.kernel == Kernel::bicubic) return SampleBicubic<T>(s, at, out);
+    const auto with = [&](auto channels) {
+        constexpr int k = decltype(channels)::value;
+        if (s.tap_count == 1)
+            SampleBilinear<T, k>(s, at, out);
+        else
+            SampleTaps<T, k>(s, at, out);
+    };
+    if (s.channels == 3) return with(std::integral_constant<int, 3>{});
+    if (s.channels == 4) return with(std::integral_constant<int, 4>{});
+    with(std::integral_constant<int, 0>{});
+}
+
+void SampleRow(const Texels& s, const Offsets& at, float* out)
+{
+    switch (s.type) {
+        case PixelType::uint8: return SampleTyped<uint8_t>(s, at, out);
+        case PixelType::uint16: return SampleTyped<uint16_t>(s, at, out);
+        case PixelType::half: return SampleTyped<hwy::float16_t>(s, at, out);
+        case PixelType::float32: return SampleTyped<float>(s, at, out);
+    }
+}
+
+/// Float to float: whole aligned vectors bypass the cache.
+void StoreFloats(const float* HWY_RESTRICT values, int count, float scale, float* HWY_RESTRICT to)
+{
+    const hn::ScalableTag<float> d;
+    constexpr size_t kLine = 64;
+    const auto v = hn::Set(d, scale);
+    int i = 0;
+    const size_t misaligned = reinterpret_cast<uintptr_t>(to) % kLine;
+    const int head = HWY_MIN(count, static_cast<int>(misaligned ? (kLine - misaligned) / sizeof(float) : 0));
+    for (; i < head; ++i) to[i] = values[i] * scale;
+    const int lanes = static_cast<int>(hn::Lanes(d));
+    const int line = static_cast<int>(kLine / sizeof(float));
+    for (; i + line <= count; i += line)
+        for (int k = 0; k < line; k += lanes) hn::Stream(hn::Mul(v, hn::LoadU(d, values + i + k)), d, to + i + k);
+    for (; i < count; ++i) to[i] = values[i] * scale;
+}
+
+/// Float to 8 or 16 bits: rounded to nearest, clamped, NaN to 0.
+template <class T>
+void StoreIntegers(const float* HWY_RESTRICT values, int count, float scale, T* HWY_RESTRICT to)
+{
+    const Floats d;
+    const hn::Rebind<T, Floats> dt;
+    const auto v = hn::Set(d, scale), zero = hn::Zero(d), most = hn::Set(d, static_cast<float>(hwy::LimitsMax<T>()));
+    HWY_ALIGN T tail[kLanes];
+    for (int i = 0; i < count; i += static_cast<int>(kLanes)) {
+        auto x = hn::Mul(v, hn::LoadU(d, values + i));
+        x = hn::Min(hn::IfThenElse(hn::Gt(x, zero), x, zero), most);
+        const auto n = hn::DemoteTo(dt, hn::NearestInt(x));
+        const int rest = count - i;
+        if (rest >= static_cast<int>(kLanes)) {
+            hn::StoreU(n, dt, to + i);
+        }
+        else {
+            hn::StoreU(n, dt, tail);
+            std::memcpy(to + i, tail, sizeof(T) * static_cast<size_t>(rest));
+        }
+    }
+}
+
+void StoreHalf(const float* HWY_RESTRICT values, int count, float scale, hwy::float16_t* HWY_RESTRICT to)
+{
+    const Floats d;
+    const hn::Rebind<hwy::float16_t, Floats> dh;
+    const auto v = hn::Set(d, scale);
+    HWY_ALIGN hwy::float16_t tail[kLanes];
+    for (int i = 0; i < count; i += static_cast<int>(kLanes)) {
+        const auto n = hn::DemoteTo(dh, hn::Mul(v, hn::LoadU(d, values + i)));
+        hn::StoreU(n, dh, tail);
+        std::memcpy(to + i, tail, sizeof(hwy::float16_t) * static_cast<size_t>(HWY_MIN(static_cast<int>(kLanes), count - i)));
+    }
+}
+
+void StoreRow(const float* values, int count, float scale, PixelType type, std::byte* to)
+{
+    switch (type) {
+        case PixelType::uint8: return StoreIntegers(values, count, scale, reinterpret_cast<uint8_t*>(to));
+        case PixelType::uint16: return StoreIntegers(values, count, scale, reinterpret_cast<uint16_t*>(to));
+        case PixelType::half: return StoreHalf(values, count, scale, reinterpret_cast<hwy::float16_t*>(to));
+        case PixelType::float32: return StoreFloats(values, count, scale, reinterpret_cast<float*>(to));
+    }
+}
+
+}  // namespace HWY_NAMESPACE
+}  // namespace anamorph::simd
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace anamorph::simd {
+
+HWY_EXPORT(BlockPoints);
+HWY_EXPORT(SampleRow);
+HWY_EXPORT(StoreRow);
+
+void block_points(const float* x, const float* y, int width, int height, int row, int begin, int end, float* out_x,
+                  float* out_y)
+{
+    HWY_DYNAMIC_DISPATCH(BlockPoints)(x, y, width, height, row, begin, end, out_x, out_y);
+}
+
+void sample_row(const Texels& texels, const Offsets& offsets, float* out)
+{
+    HWY_DYNAMIC_DISPATCH(SampleRow)(texels, offsets, out);
+}
+
+void store_row(const float* values, int count, float scale, PixelType type, std::byte* to)
+{
+    HWY_DYNAMIC_DISPATCH(StoreRow)(values, count, scale, type, to);
+}
+
+void finish_stores()
+{
+    hwy::FlushStream();
+}
+
+void prefetch(const std::byte* first, std::ptrdiff_t row_stride, int rows, int bytes)
+{
+    for (int r = 0; r < rows; ++r)
+        for (int b = 0; b < bytes; b += 64) hwy::Prefetch(first + r * row_stride + b);
+}
+
+namespace {
+
+const std::vector<std::pair<int64_t, std::string>>& available()
+{
+    static const auto sets = [] {
+        std::vector<std::pair<int64_t, std::string>> list;
+        // Better instruction sets have lower bits.
+        for (int64_t left = hwy::SupportedTargets() & HWY_TARGETS; left != 0; left &= left - 1)
+            list.emplace_back(left & -left, hwy::TargetName(left & -left));
+        return list;
+    }();
+    return sets;
+}
+
+}  // namespace
+
+const char* const* instruction_sets()
+{
+    static const auto names = [] {
+        std::vector<const char*> list;
+        for (const auto& set : available()) list.push_back(set.second.c_str());
+        list.push_back(nullptr);
+        return list;
+    }();
+    return names.data();
+}
+
+bool use_instruction_set(const char* name)
+{
+    if (*name == '\0') {
+        hwy::SetSupportedTargetsForTest(0);
+        hwy::GetChosenTarget().Update(hwy::SupportedTargets());
+        return true;
+    }
+    for (const auto& set : available())
+        if (set.second == name) {
+            hwy::SetSupportedTargetsForTest(set.first);
+            hwy::GetChosenTarget().Update(hwy::SupportedTargets());
+            return true;
+        }
+    return false;
+}
+
+}  // namespace anamorph::simd
+#endif

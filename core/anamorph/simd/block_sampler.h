@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: Apache-2.0
+// The hot loops: from the polynomials of a block to its filtered pixels. Compiled for every instruction set Highway
+// knows and chosen once per call; tests run each against the scalar path.
+//
+// Errors. Coordinates are evaluated in float as plan.h states (fused where the machine fuses), within the rounding
+// term of the block's bound. A filtered value differs from the scalar path's by float rounding: at most 16 half-ULP of
+// the largest texel read.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+#include "anamorph/image/view.h"
+
+namespace anamorph::simd {
+
+/// The source points of one row of a block: for pixel i of `width`, row j of `height`, with s and t as plan.h says.
+/// Writes the offsets from the block's base (texels, x and y apart) for pixels [begin, end).
+/// There is room for kRowRoom floats in each.
+void block_points(const float* x, const float* y, int width, int height, int row, int begin, int end, float* out_x,
+                  float* out_y);
+
+enum class Kernel : std::uint8_t { nearest, bilinear, bicubic };
+
+/// One of the taps that make up a filtered pixel, all of equal weight: its offset in texels.
+struct Tap {
+    float x = 0, y = 0;
+};
+
+/// What a block reads: `texels` points at the texel that offset (0, 0) falls into; all texels that the
+/// pixels' taps and the kernel need are there, and 64 bytes behind each row's last one may be read.
+struct Texels {
+    const std::byte* texels = nullptr;
+    std::ptrdiff_t row_stride = 0;
+    PixelType type = PixelType::float32;
+    int channels = 0;
+    Kernel kernel = Kernel::bilinear;
+    /// At most kMaxTaps (one for nearest and bicubic).
+    const Tap* taps = nullptr;
+    int tap_count = 1;
+};
+inline constexpr int kMaxTaps = 64;
+
+/// Rows of pixels longer than this do not occur.
+inline constexpr int kMaxRow = 64;
+
+/// Offsets of `count` <= kMaxRow pixels in texels (centres at + 0.5): (x[i], y[i]), or (whole_x[i] + x[i],
+/// whole_y[i] + y[i]) where those are given.
+struct Offsets {
+    const float *x, *y;
+    int count;
+    const std::int32_t *whole_x = nullptr, *whole_y = nullptr;
+};
+/// Arrays of Offsets have room for this many pixels.
+inline constexpr int kRowRoom = kMaxRow + 16;
+
+/// Samples a row of pixels into `out`: `channels` floats a pixel, in units of the source's type (0..255 for uint8).
+/// `out` has room for kMaxRow * channels + 16 floats.
+void sample_row(const Texels& texels, const Offsets& offsets, float* out);
+
+/// Converts `count` values to `type` and writes them, `scale` times (source units to the picture's); whole cache lines
+/// bypass the cache. uint8 and uint16 are rounded and clamped, NaN gives 0.
+void store_row(const float* values, int count, float scale, PixelType type, std::byte* to);
+
+/// Makes what store_row wrote visible to other threads; to be called once after the last row.
+void finish_stores();
+
+/// Asks for the texels of a box to be brought near: `rows` rows of `bytes` bytes.
+void prefetch(const std::byte* first, std::ptrdiff_t row_stride, int rows, int bytes);
+
+/// The instruction sets compiled in that this machine has, best first, and a way to force one (for tests); an empty
+/// name chooses the best again. False when there is no such set.
+const char* const* instruction_sets();
+bool use_instruction_set(const char* name);
+
+}  // namespace anamorph::simd
