@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The compiler's own _Float16 is the reference.
+// The reference is arithmetic on the definition of binary16, in double.
 #include <gtest/gtest.h>
 
 #include <bit>
@@ -14,8 +14,25 @@ namespace {
 
 using namespace anamorph;
 
-float reference(std::uint16_t half) { return static_cast<float>(std::bit_cast<_Float16>(half)); }
-std::uint16_t reference(float value) { return std::bit_cast<std::uint16_t>(static_cast<_Float16>(value)); }
+float reference(std::uint16_t half) {
+    const int exponent = (half >> 10) & 31, fraction = half & 1023;
+    const double sign = half & 0x8000 ? -1 : 1;
+    if (exponent == 31)
+        return fraction ? std::numeric_limits<float>::quiet_NaN()
+                        : static_cast<float>(sign * std::numeric_limits<double>::infinity());
+    const int significand = exponent == 0 ? fraction : fraction + 1024;
+    return static_cast<float>(sign * std::ldexp(significand, std::max(exponent, 1) - 25));
+}
+
+std::uint16_t reference(float value) {
+    const unsigned sign = std::signbit(value) ? 0x8000 : 0;
+    const double magnitude = std::fabs(static_cast<double>(value));
+    if (magnitude >= 65520) return static_cast<std::uint16_t>(sign | 0x7c00);
+    const int exponent = magnitude == 0 ? -14 : std::max(std::ilogb(magnitude), -14);
+    // In units of the last place, ties to even; a significand of 2048 is 1024 with the next exponent.
+    const unsigned significand = static_cast<unsigned>(std::nearbyint(std::ldexp(magnitude, 10 - exponent)));
+    return static_cast<std::uint16_t>(sign | ((static_cast<unsigned>(exponent + 14) << 10) + significand));
+}
 
 TEST(Half, EveryHalfBecomesItsFloatAndBack) {
     for (unsigned i = 0; i < 65536; ++i) {
