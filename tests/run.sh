@@ -1,0 +1,58 @@
+#!/bin/bash
+# SPDX-License-Identifier: Apache-2.0
+# Builds and tests everything on Debian 12, from a fresh machine on. The last line is ctest's own summary.
+# Logs are in build/log; the log of a step that fails is printed.
+set -euo pipefail
+cd "$(dirname "$0")/.."
+tests/install_packages.sh build hosts tests
+
+log_dir=build/log
+mkdir -p "$log_dir"
+jobs="$(nproc)"
+fuzz_seconds=10
+if command -v ccache >/dev/null; then
+    export CMAKE_CXX_COMPILER_LAUNCHER=ccache
+fi
+
+# step NAME COMMAND...: quiet when it succeeds; prints its log and ends the run when it fails.
+step() {
+    local name="$1"
+    shift
+    local start=$SECONDS
+    if ! "$@" >"$log_dir/$name.txt" 2>&1; then
+        cat "$log_dir/$name.txt" >&2
+        echo "run.sh: $name failed; its log is $log_dir/$name.txt" >&2
+        exit 1
+    fi
+    echo "$name: ok, $((SECONDS - start)) s"
+}
+
+check_format() {
+    find core oiio_ops plugins tests -name '*.h' -o -name '*.cpp' | xargs clang-format --dry-run -Werror
+}
+
+build() {
+    cmake --preset "$1" -DANAMORPH_WERROR=ON && cmake --build --preset "$1" -j "$jobs"
+}
+
+run_tests() {
+    ctest --preset "$1" -j "$jobs" --no-tests=error --no-label-summary
+}
+
+run_fuzz_targets() {
+    local target
+    for target in build/fuzz/fuzz/*; do
+        [ -x "$target" ] || continue
+        "$target" -max_total_time="$fuzz_seconds" -timeout=10 -rss_limit_mb=2048 \
+            -artifact_prefix=build/fuzz/ -print_final_stats=1 || return 1
+    done
+}
+
+step format check_format
+step build-fuzz build fuzz
+step fuzz run_fuzz_targets
+step build-asan build asan
+step test-asan run_tests asan
+step build-release build release
+step test-release run_tests release
+sed -n '/tests passed/,$p' "$log_dir/test-release.txt"
