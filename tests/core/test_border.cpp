@@ -16,8 +16,12 @@ namespace anamorph {
 static bool operator==(const Texel& a, const Texel& b) {
     return a.none == b.none && (a.none || (a.x == b.x && a.y == b.y));
 }
-static void PrintTo(const Texel& t, std::ostream* out) { *out << (t.none ? "none " : "") << t.x << ',' << t.y; }
-static void PrintTo(const Box& b, std::ostream* out) { *out << b.x0 << ',' << b.y0 << ',' << b.x1 << ',' << b.y1; }
+static void PrintTo(const Texel& t, std::ostream* out) {
+    *out << (t.none ? "none " : "") << t.x << ',' << t.y;
+}
+static void PrintTo(const Box& b, std::ostream* out) {
+    *out << b.x0 << ',' << b.y0 << ',' << b.x1 << ',' << b.y1;
+}
 
 }  // namespace anamorph
 
@@ -39,10 +43,14 @@ constexpr std::int64_t kExtremes[] = {std::numeric_limits<std::int64_t>::min(),
 
 std::pair<int, int> size_for(Projection projection, int n) {
     switch (projection) {
-        case Projection::cubemap: return {n, 6 * n};
-        case Projection::cubemap3x2: return {3 * n, 2 * n};
-        case Projection::cubecross: return {4 * n, 3 * n};
-        default: return {2 * n, n};
+        case Projection::cubemap:
+            return {n, 6 * n};
+        case Projection::cubemap3x2:
+            return {3 * n, 2 * n};
+        case Projection::cubecross:
+            return {4 * n, 3 * n};
+        default:
+            return {2 * n, n};
     }
 }
 
@@ -51,10 +59,10 @@ Chart chart_for(Projection projection, int n, PixelSpacing spacing = PixelSpacin
     return Chart(projection, w, h, 0, spacing);
 }
 
-constexpr Projection kAll[] = {Projection::equirectangular, Projection::cylindrical, Projection::rectilinear,
-                               Projection::fisheye,         Projection::equisolid,   Projection::stereographic,
-                               Projection::mercator,        Projection::cubemap,     Projection::cubemap3x2,
-                               Projection::cubecross};
+constexpr Projection kAll[] = {
+    Projection::equirectangular, Projection::cylindrical,   Projection::rectilinear, Projection::fisheye,
+    Projection::equisolid,       Projection::stereographic, Projection::mercator,    Projection::cubemap,
+    Projection::cubemap3x2,      Projection::cubecross};
 constexpr Projection kCubes[] = {Projection::cubemap, Projection::cubemap3x2, Projection::cubecross};
 
 TEST(Border, TexelsInsideStandForThemselvesAndAllOthersLieInside) {
@@ -73,18 +81,17 @@ TEST(Border, TexelsInsideStandForThemselvesAndAllOthersLieInside) {
                                 const bool inside = x >= box.x0 && x < box.x1 && y >= box.y0 && y < box.y1;
                                 if (inside) {
                                     ASSERT_EQ(texel, (Texel{x, y}));
-                                }
-                                else if (wrap != Wrap::automatic) {
+                                } else if (wrap != Wrap::automatic) {
                                     ASSERT_EQ(texel.none, wrap == Wrap::black);
                                 }
-                                ASSERT_TRUE(texel.none || (texel.x >= 0 && texel.x < level.width && texel.y >= 0 &&
-                                                           texel.y < level.height));
+                                ASSERT_TRUE(texel.none || (texel.x >= 0 && texel.x < level.width &&
+                                                           texel.y >= 0 && texel.y < level.height));
                             }
                         for (const std::int64_t y : kExtremes)
                             for (const std::int64_t x : kExtremes) {
                                 const Texel texel = border.resolve(x, y, piece, level);
-                                ASSERT_TRUE(texel.none || (texel.x >= 0 && texel.x < level.width && texel.y >= 0 &&
-                                                           texel.y < level.height));
+                                ASSERT_TRUE(texel.none || (texel.x >= 0 && texel.x < level.width &&
+                                                           texel.y >= 0 && texel.y < level.height));
                             }
                     }
                 }
@@ -101,8 +108,8 @@ TEST(Border, OddAndTinyLevelsAreSafe) {
                     for (int y = -9; y < 9; ++y)
                         for (int x = -9; x < 9; ++x) {
                             const Texel texel = border.resolve(x, y, piece, level);
-                            ASSERT_TRUE(texel.none || (texel.x >= 0 && texel.x < level.width && texel.y >= 0 &&
-                                                       texel.y < level.height));
+                            ASSERT_TRUE(texel.none || (texel.x >= 0 && texel.x < level.width &&
+                                                       texel.y >= 0 && texel.y < level.height));
                         }
                 }
             }
@@ -193,7 +200,8 @@ double angle_between(const Ray<double>& a, const Ray<double>& b) {
 
 /// The ray through the centre of a texel of a level.
 Ray<double> ray_of(const Chart& chart, int x, int y, int piece, const Source::Size& level) {
-    return chart.ray((x + 0.5) * chart.width() / level.width, (y + 0.5) * chart.height() / level.height, piece);
+    return chart.ray((x + 0.5) * chart.width() / level.width, (y + 0.5) * chart.height() / level.height,
+                     piece);
 }
 
 int piece_at(const Border& border, const Chart& chart, const Texel& texel, const Source::Size& level) {
@@ -224,7 +232,8 @@ TEST(Border, CubeFacesGoOnOnTheirNeighbours) {
                             ASSERT_GE(found, 0);
                             const double angle = angle_between(ray_of(chart, x, y, piece, level),
                                                                ray_of(chart, texel.x, texel.y, found, level));
-                            ASSERT_LE(angle, allowed) << piece << ": " << x << ' ' << y << " -> " << texel.x << ' ' << texel.y;
+                            ASSERT_LE(angle, allowed)
+                                << piece << ": " << x << ' ' << y << " -> " << texel.x << ' ' << texel.y;
                         }
                 }
             }
@@ -248,7 +257,8 @@ TEST(Border, CubeEdgesMeetWithoutASeam) {
                     const int other = piece_at(border, chart, texel, level);
                     ASSERT_NE(other, piece);
                     const Box face = border.interior(other, level);
-                    ASSERT_TRUE(texel.x == face.x0 || texel.x == face.x1 - 1 || texel.y == face.y0 || texel.y == face.y1 - 1);
+                    ASSERT_TRUE(texel.x == face.x0 || texel.x == face.x1 - 1 || texel.y == face.y0 ||
+                                texel.y == face.y1 - 1);
                     seen.emplace_back(texel.x, texel.y);
                 }
                 std::sort(seen.begin(), seen.end());

@@ -25,20 +25,16 @@ struct Picture {
           bytes(static_cast<std::size_t>(width * height * channels * size_of(type))),
           image(packed_view(bytes.data(), type, width, height, channels)),
           source(packed_view<const std::byte>(bytes.data(), type, width, height, channels), alpha),
-          border(chart, wrap)
-    {
-    }
+          border(chart, wrap) {}
     template <class Function>
-    void fill(const Function& value)
-    {
+    void fill(const Function& value) {
         for (int y = 0; y < height; ++y)
             for (int x = 0; x < width; ++x)
                 for (int c = 0; c < channels; ++c)
                     store_channel(static_cast<float>(value(x + 0.5, y + 0.5, c)),
                                   image.at(x, y) + c * size_of(image.type), image.type);
     }
-    std::vector<float> sample(Filter filter, double x, double y, int piece = 0)
-    {
+    std::vector<float> sample(Filter filter, double x, double y, int piece = 0) {
         std::vector<float> pixel(static_cast<std::size_t>(channels), -7);
         PointSampler sampler(source, border);
         EXPECT_TRUE(sampler.sample(filter, 0, piece, x, y, pixel.data()));
@@ -93,16 +89,21 @@ TEST(PointSampler, BilinearReproducesLinearAndBicubicQuadraticFunctions) {
     std::mt19937 random(kSeed);
     std::uniform_real_distribution<double> inner(2.5, 27.5);
     for (const PixelType type : {PixelType::uint8, PixelType::uint16, PixelType::half, PixelType::float32}) {
-        const double step = type == PixelType::uint8 ? 0.5 / 255 : type == PixelType::uint16 ? 0.5 / 65535 : 0x1p-11;
+        const double step = type == PixelType::uint8    ? 0.5 / 255
+                            : type == PixelType::uint16 ? 0.5 / 65535
+                                                        : 0x1p-11;
         const double allowed = type == PixelType::float32 ? 1e-6 : 1.6 * step;
         Picture linear(flat(), 3, type, Wrap::automatic), quadratic(flat(), 3, type, Wrap::automatic);
         const auto plane = [](double x, double y, int c) { return 0.02 * x + 0.003 * (c + 1) * y; };
-        const auto bowl = [](double x, double y, int c) { return (x * x + (c + 1) * y * x - y * y + 900) / 6000; };
+        const auto bowl = [](double x, double y, int c) {
+            return (x * x + (c + 1) * y * x - y * y + 900) / 6000;
+        };
         linear.fill(plane);
         quadratic.fill(bowl);
         for (int i = 0; i < 300; ++i) {
             const double x = inner(random), y = inner(random);
-            const auto one = linear.sample(Filter::bilinear, x, y), two = quadratic.sample(Filter::bicubic, x, y);
+            const auto one = linear.sample(Filter::bilinear, x, y),
+                       two = quadratic.sample(Filter::bicubic, x, y);
             for (int c = 0; c < 3; ++c) {
                 ASSERT_NEAR(one[static_cast<std::size_t>(c)], plane(x, y, c), allowed);
                 ASSERT_NEAR(two[static_cast<std::size_t>(c)], bowl(x, y, c), allowed);
@@ -117,13 +118,16 @@ TEST(PointSampler, TexelCentresAreReadExactly) {
     for (const Filter filter : {Filter::nearest, Filter::bilinear, Filter::bicubic})
         for (int y = 0; y < 30; ++y)
             for (int x = 0; x < 40; ++x)
-                ASSERT_EQ(picture.sample(filter, x + 0.5, y + 0.5)[0], load_channel(picture.image.at(x, y), PixelType::float32));
+                ASSERT_EQ(picture.sample(filter, x + 0.5, y + 0.5)[0],
+                          load_channel(picture.image.at(x, y), PixelType::float32));
 }
 
 TEST(PointSampler, NanAndInfinityStayInTheirFootprint) {
     for (const float poison : {kNan, std::numeric_limits<float>::infinity()}) {
         Picture picture(flat(), 1, PixelType::float32, Wrap::automatic);
-        picture.fill([&](double x, double y, int) { return std::floor(x) == 12 && std::floor(y) == 9 ? poison : 1.0; });
+        picture.fill([&](double x, double y, int) {
+            return std::floor(x) == 12 && std::floor(y) == 9 ? poison : 1.0;
+        });
         // Texel 12 has its centre at 12.5; a filter of reach r sees it from points nearer than r.
         const std::pair<Filter, double> reaches[] = {{Filter::bilinear, 1}, {Filter::bicubic, 2}};
         for (const auto& [filter, reach] : reaches)
@@ -134,7 +138,9 @@ TEST(PointSampler, NanAndInfinityStayInTheirFootprint) {
                     for (const double d : {x - 12.5, y - 9.5}) sees = sees && !(d != 0 && std::floor(d) == d);
                     const float value = picture.sample(filter, x, y)[0];
                     ASSERT_EQ(sees, !std::isfinite(value)) << x << ' ' << y;
-                    if (!sees) { ASSERT_NEAR(value, 1, 1e-6); }
+                    if (!sees) {
+                        ASSERT_NEAR(value, 1, 1e-6);
+                    }
                 }
     }
 }
@@ -158,7 +164,8 @@ TEST(PointSampler, PointsFarAwayOrNoPointsAreSafe) {
 TEST(PointSampler, UnassociatedAlphaWeighsColour) {
     Picture picture(flat(), 2, PixelType::float32, Wrap::automatic, 1);
     // Bright colour under zero alpha must not bleed.
-    picture.fill([](double x, double, int c) { return x < 20 ? (c == 0 ? 0.25 : 1.0) : (c == 0 ? 1000.0 : 0.0); });
+    picture.fill(
+        [](double x, double, int c) { return x < 20 ? (c == 0 ? 0.25 : 1.0) : (c == 0 ? 1000.0 : 0.0); });
     std::vector<float> pixel = picture.sample(Filter::bilinear, 20.0, 10.0);
     EXPECT_FLOAT_EQ(pixel[0], 0.125f);
     EXPECT_FLOAT_EQ(pixel[1], 0.5f);
@@ -194,7 +201,8 @@ TEST(PointSampler, AFootprintIsTheMeanOfItsTaps) {
     double sum = 0;
     for (const double a : {-1.5, 0.0, 1.5})
         for (const double b : {-0.5, 0.5}) {
-            ASSERT_TRUE(sampler.sample(Filter::bilinear, 0, 0, 20.2 + 0.6 * a - 0.8 * b, 15.3 + 0.8 * a + 0.6 * b, one));
+            ASSERT_TRUE(sampler.sample(Filter::bilinear, 0, 0, 20.2 + 0.6 * a - 0.8 * b,
+                                       15.3 + 0.8 * a + 0.6 * b, one));
             sum += static_cast<double>(one[1]);
         }
     EXPECT_NEAR(pixel[1], sum / 6, 1e-3);

@@ -19,14 +19,15 @@ using namespace anamorph;
 
 /// Hides that a source stands in memory, counts its reads, and fails on demand.
 class Remote final : public Source {
-public:
+  public:
     explicit Remote(const MemorySource& source) : m_source(source) {}
     PixelType type() const noexcept override { return m_source.type(); }
     int channels() const noexcept override { return m_source.channels(); }
     int unassociated_alpha() const noexcept override { return m_source.unassociated_alpha(); }
     int levels() const noexcept override { return 1; }
     Size size(int level) const noexcept override { return m_source.size(level); }
-    bool read(int level, const Box& box, std::byte* texels, std::ptrdiff_t row_stride) const noexcept override {
+    bool read(int level, const Box& box, std::byte* texels,
+              std::ptrdiff_t row_stride) const noexcept override {
         const Size all = m_source.size(level);
         EXPECT_FALSE(box.empty());
         EXPECT_TRUE(box.x0 >= 0 && box.y0 >= 0 && box.x1 <= all.width && box.y1 <= all.height);
@@ -37,7 +38,7 @@ public:
     mutable int reads = 0;
     bool fails = false;
 
-private:
+  private:
     const MemorySource& m_source;
 };
 
@@ -109,7 +110,8 @@ TEST(Window, EqualsResolvePerTexelOverAllEdgesAndDirectEqualsCopied) {
                     for (int i = 0; i < 12; ++i) {
                         const int piece = between(0, static_cast<int>(chart.pieces().size()) - 1);
                         const Box own = border.interior(piece, picture.source->size(0));
-                        const int x = between(own.x0 - 20, own.x1 + 10), y = between(own.y0 - 20, own.y1 + 10);
+                        const int x = between(own.x0 - 20, own.x1 + 10),
+                                  y = between(own.y0 - 20, own.y1 + 10);
                         const Box box{x, y, x + between(1, 30), y + between(1, 30)};
                         Window window;
                         for (WindowReader* reader : {&near, &far}) {
@@ -134,7 +136,8 @@ TEST(Window, PointsIntoMemoryWhereItMay) {
         EXPECT_TRUE(reader.get(0, 0, box, window));
         touch_slack(window);
         expect_equals_resolve(window, picture, border, 0);
-        return window.texels == picture.view.at(box.x0, box.y0) && window.row_stride == picture.view.row_stride;
+        return window.texels == picture.view.at(box.x0, box.y0) &&
+               window.row_stride == picture.view.row_stride;
     };
     EXPECT_TRUE(direct({0, 0, 64, 31}));
     EXPECT_TRUE(direct({5, 5, 20, 20}));
@@ -158,7 +161,8 @@ TEST(Window, NegativeStridesAndGapsAreUnderstood) {
     for (const ConstImageView& view : {flipped, sparse}) {
         const MemorySource source(view);
         WindowReader reader(source, border);
-        for (const Box box : {Box{0, 0, 10, 18}, Box{2, 3, 6, 9}, Box{3, 0, 10, 1}, Box{0, 17, 5, 18}, Box{-2, -2, 12, 20}}) {
+        for (const Box box :
+             {Box{0, 0, 10, 18}, Box{2, 3, 6, 9}, Box{3, 0, 10, 1}, Box{0, 17, 5, 18}, Box{-2, -2, 12, 20}}) {
             Window window;
             ASSERT_TRUE(reader.get(0, 0, box, window));
             touch_slack(window);
@@ -167,7 +171,8 @@ TEST(Window, NegativeStridesAndGapsAreUnderstood) {
                     const bool inside = x >= 0 && y >= 0 && x < view.width && y < view.height;
                     const std::byte black[4] = {};
                     ASSERT_EQ(std::memcmp(window.texels + (y - box.y0) * window.row_stride + (x - box.x0) * 4,
-                                          inside ? view.at(x, y) : black, 4), 0);
+                                          inside ? view.at(x, y) : black, 4),
+                              0);
                 }
         }
     }

@@ -25,7 +25,8 @@ int taps_for(double energy) {
 double spacing_for(int taps, double energy) {
     if (taps == 1) return 0;
     double near = 0, far = 2;
-    for (int i = 0; i < 24; ++i) {
+    // To 1e-4 texels, which is 1e-4 of the noise.
+    for (int i = 0; i < 14; ++i) {
         const double middle = 0.5 * (near + far);
         (tap_energy(taps, middle) > energy ? near : far) = middle;
     }
@@ -61,8 +62,8 @@ Point<double> direction(double x, double y) {
 
 }  // namespace
 
-Point<double> tap_offset(const Footprint& footprint, const Jacobian& jacobian, const std::array<double, 2>& scale,
-                         int i, int j) noexcept {
+Point<double> tap_offset(const Footprint& footprint, const Jacobian& jacobian,
+                         const std::array<double, 2>& scale, int i, int j) noexcept {
     const Point<double> a = direction(jacobian.x_i * scale[0], jacobian.y_i * scale[1]);
     const Point<double> b = direction(jacobian.x_j * scale[0], jacobian.y_j * scale[1]);
     const double da = (i - 0.5 * (footprint.taps_a - 1)) * static_cast<double>(footprint.spacing_a);

@@ -23,9 +23,10 @@ class Pages {
         m_data =
             ::mmap(nullptr, size, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
         if (m_data == MAP_FAILED) throw std::bad_alloc();
-#ifdef MADV_NOHUGEPAGE
-        // A tile's rows lie far apart: a huge page for each would be a hundred times the tile.
-        ::madvise(m_data, size, MADV_NOHUGEPAGE);
+#ifdef MADV_HUGEPAGE
+        // Huge pages are faster, but a tile's rows lie far apart, and in a large level each would take a page
+        // of its own.
+        ::madvise(m_data, size, size <= kHuge ? MADV_HUGEPAGE : MADV_NOHUGEPAGE);
 #endif
     }
     ~Pages() {
@@ -39,6 +40,8 @@ class Pages {
     }
 
   private:
+    static constexpr std::size_t kHuge = std::size_t{128} << 20;
+
     std::size_t m_size;
     void* m_data;
 };
@@ -103,7 +106,8 @@ void assign(float value, Half& to) {
 
 /// sum += weight * row, pixel by pixel; colour multiplied by alpha where `alpha` >= 0.
 template <class T>
-void add_row(const std::byte* row, float weight, int values, int channels, int alpha, float* sum) {
+void add_row(const std::byte* __restrict row, float weight, int values, int channels, int alpha,
+             float* __restrict sum) {
     const auto at = [&](int i) { return number(pixel_detail::get<T>(row + i * std::ptrdiff_t{sizeof(T)})); };
     if (alpha < 0) {
         for (int i = 0; i < values; ++i) sum[i] += weight * at(i);
@@ -115,26 +119,26 @@ void add_row(const std::byte* row, float weight, int values, int channels, int a
     }
 }
 
-/// One row of the coarser level from the weighted sum of finer rows, which begins at texel `first`.
-template <class T>
-void reduce_row(const float* sum, const std::vector<Span>& spans, int first, int channels, int alpha,
-                std::byte* row) {
-    const auto average = [&](const Span& span, int c) {
-        const float* from = sum + std::ptrdiff_t{span.first - first} * channels + c;
-        float value = span.weight[0] * from[0] + span.weight[1] * from[channels];
-        for (int k = 2; k < span.count; ++k)
-            value += span.weight[static_cast<std::size_t>(k)] * from[k * channels];
-        return value;
-    };
+/// Averages a row, which begins at texel `first` of the finer level.
+void average_row(const float* __restrict row, const std::vector<Span>& spans, int first, int channels,
+                 float* __restrict average) {
     for (const Span& span : spans) {
-        const float a = alpha < 0 ? 1 : average(span, alpha);
-        for (int c = 0; c < channels; ++c, row += sizeof(T)) {
-            float value = average(span, c);
-            if (alpha >= 0 && c != alpha && a != 0) value /= a;
-            T stored;
-            assign(value, stored);
-            pixel_detail::put(stored, row);
-        }
+        const float* from = row + std::ptrdiff_t{span.first - first} * channels;
+        const float w0 = span.weight[0], w1 = span.weight[1];
+        for (int c = 0; c < channels; ++c) average[c] = w0 * from[c] + w1 * from[channels + c];
+        for (int k = 2; k < span.count; ++k)
+            for (int c = 0; c < channels; ++c)
+                average[c] += span.weight[static_cast<std::size_t>(k)] * from[k * channels + c];
+        average += channels;
+    }
+}
+
+template <class T>
+void store_row(const float* __restrict values, int count, std::byte* __restrict row) {
+    for (int i = 0; i < count; ++i) {
+        T stored;
+        assign(values[i], stored);
+        pixel_detail::put(stored, row + i * std::ptrdiff_t{sizeof(T)});
     }
 }
 
@@ -142,14 +146,18 @@ void reduce_row(const float* sum, const std::vector<Span>& spans, int first, int
 template <class T>
 void reduce(const ConstImageView& fine, int corner_x, int corner_y, const std::vector<Span>& across,
             const std::vector<Span>& down, int alpha, std::byte* coarse, std::ptrdiff_t row_stride) {
-    const int values = fine.width * fine.channels;
-    std::vector<float> sum(static_cast<std::size_t>(values));
+    const int channels = fine.channels, values = fine.width * channels;
+    const int count = static_cast<int>(across.size()) * channels;
+    std::vector<float> sum(static_cast<std::size_t>(values)), average(static_cast<std::size_t>(count));
     for (const Span& span : down) {
         std::fill(sum.begin(), sum.end(), 0.0f);
         for (int k = 0; k < span.count; ++k)
             add_row<T>(fine.at(0, span.first - corner_y + k), span.weight[static_cast<std::size_t>(k)],
-                       values, fine.channels, alpha, sum.data());
-        reduce_row<T>(sum.data(), across, corner_x, fine.channels, alpha, coarse);
+                       values, channels, alpha, sum.data());
+        average_row(sum.data(), across, corner_x, channels, average.data());
+        for (int i = 0; alpha >= 0 && i < count; i += channels)
+            unassociate_alpha(&average[static_cast<std::size_t>(i)], channels, alpha);
+        store_row<T>(average.data(), count, coarse);
         coarse += row_stride;
     }
 }

@@ -27,6 +27,8 @@ class Pyramid final : public Source {
     /// their sizes are even. The base is kept by reference. Throws std::bad_alloc.
     explicit Pyramid(const Source& base, int columns = 1, int rows = 1);
     ~Pyramid() override;
+    Pyramid(const Pyramid&) = delete;
+    Pyramid& operator=(const Pyramid&) = delete;
 
     PixelType type() const noexcept override { return m_base.type(); }
     int channels() const noexcept override { return m_base.channels(); }
