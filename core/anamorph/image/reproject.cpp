@@ -53,13 +53,19 @@ public:
 
     const Box& box() const { return m_box; }
     int channels() const { return m_view.channels; }
+    PixelType type() const { return m_view.type; }
+    bool packed() const { return m_view.packed(); }
+    std::ptrdiff_t row_stride() const { return m_view.row_stride; }
+    std::byte* at(int x, int y) const { return m_view.at(x - m_box.x0, y - m_box.y0); }
+    /// The factor from values of which `one` stands for 1.
+    float scale_from(float one) const { return one_of(m_view.type) / one; }
 
     /// Writes a row of pixels from x on; `one` is the value that stands for 1.
     void store(int x, int y, int count, const float* values, float one = 1) const
     {
-        std::byte* to = m_view.at(x - m_box.x0, y - m_box.y0);
+        std::byte* to = at(x, y);
         const int channels = m_view.channels;
-        const float scale = one_of(m_view.type) / one;
+        const float scale = scale_from(one);
         if (m_view.packed()) return simd::store_row(values, count * channels, scale, m_view.type, to);
         for (int i = 0; i < count; ++i)
             simd::store_row(values + i * channels, channels, scale, m_view.type, to + i * m_view.pixel_stride);
@@ -84,39 +90,41 @@ public:
         m_chooser.emplace(*source);
     }
 
-    /// False when the source could not be read.
-    bool draw(const Block& block)
+    /// False when the source could not be read. `next` is the block to be drawn after this one, if any.
+    bool draw(const Block& block, const Block* next)
     {
         const Box box = intersection(block.box, m_canvas.box());
         if (box.empty()) return true;
         if (m_options.output != Output::color) return draw_map(block, box), true;
         if (block.kind == Block::Kind::outside) return fill(box, 0), true;
-        return block.kind == Block::Kind::polynomial ? draw_polynomial(block, box) : draw_exact(block, box);
+        return block.kind == Block::Kind::polynomial ? draw_polynomial(block, box, next) : draw_exact(block, box);
     }
 
 private:
     // --- colour ------------------------------------------------------------------------------------------
 
-    bool draw_polynomial(const Block& block, const Box& box)
+    bool draw_polynomial(const Block& block, const Box& box, const Block* next)
     {
         const Filtering f = filtering(jacobian_of(block));
-        // The polynomial in texels of the level.
-        float x[6], y[6];
-        std::int32_t base_x = 0, base_y = 0;
-        Reach reach_x, reach_y;
-        to_level(block.x, block.base_x, f.scale_x, x, base_x, reach_x);
-        to_level(block.y, block.base_y, f.scale_y, y, base_y, reach_y);
+        const LevelPolynomial x(block.x, block.base_x, f.scale_x), y(block.y, block.base_y, f.scale_y);
         Window window;
-        switch (get_window(f, block.source_piece, base_x, reach_x, base_y, reach_y, block.box, window)) {
+        switch (get_window(f, block.source_piece, x.base, x.reach, y.base, y.reach, block.box, window)) {
             case Got::failed: return false;
             case Got::too_large: return draw_points(block, box);
             case Got::window: break;
         }
-        const simd::Texels texels = texels_of(f, window, base_x, base_y);
+        const simd::Texels texels = texels_of(f, window, x.base, y.base);
+        const simd::Polynomials polynomials{x.c, y.c, block.box.width(), block.box.height()};
+        const int begin = box.x0 - block.box.x0, end = box.x1 - block.box.x0;
+        if (m_canvas.packed() && m_source->unassociated_alpha() < 0) {
+            simd::draw_block(texels, polynomials, begin, end, box.y0 - block.box.y0, box.y1 - block.box.y0,
+                             m_canvas.scale_from(one_of(window.type)), m_canvas.type(), m_canvas.at(box.x0, box.y0),
+                             m_canvas.row_stride(), upcoming(next, f));
+            return true;
+        }
         alignas(64) float px[simd::kRowRoom], py[simd::kRowRoom];
-        const int w = block.box.width(), h = block.box.height(), begin = box.x0 - block.box.x0;
         for (int j = box.y0; j < box.y1; ++j) {
-            simd::block_points(x, y, w, h, j - block.box.y0, begin, begin + box.width(), px, py);
+            simd::block_points(polynomials, j - block.box.y0, begin, end, px, py);
             sample(texels, {px, py, box.width()}, window.type, box.x0, j);
         }
         return true;
@@ -220,41 +228,67 @@ private:
     enum class Got { window, too_large, failed };
 
     /// A block's polynomial for one coordinate in texels of a level: base + c, and the range of c.
-    static void to_level(const float* from, std::int32_t from_base, double scale, float* c, std::int32_t& base,
-                         Reach& reach)
-    {
-        const double origin = (from_base + static_cast<double>(from[0])) * scale;
-        base = scale == 1 ? from_base : static_cast<std::int32_t>(std::floor(origin));
-        c[0] = scale == 1 ? from[0] : static_cast<float>(origin - base);
-        double spread = 0;
-        for (int i = 1; i < 6; ++i) {
-            c[i] = static_cast<float>(from[i] * scale);
-            spread += std::fabs(c[i]);
-        }
-        // With room for the rounding of the sum.
-        spread = spread * (1 + 1e-5) + 1e-3;
-        reach = {c[0] - spread, c[0] + spread};
-    }
+    struct LevelPolynomial {
+        float c[6];
+        std::int32_t base;
+        Reach reach;
 
-    Got get_window(const Filtering& f, int piece, std::int32_t base_x, const Reach& x, std::int32_t base_y,
-                   const Reach& y, const Box& block, Window& window)
+        LevelPolynomial(const float* from, std::int32_t from_base, double scale)
+        {
+            const double origin = (from_base + static_cast<double>(from[0])) * scale;
+            base = scale == 1 ? from_base : static_cast<std::int32_t>(std::floor(origin));
+            c[0] = scale == 1 ? from[0] : static_cast<float>(origin - base);
+            double spread = 0;
+            for (int i = 1; i < 6; ++i) {
+                c[i] = static_cast<float>(from[i] * scale);
+                spread += std::fabs(c[i]);
+            }
+            // With room for the rounding of the sum.
+            spread = spread * (1 + 1e-5) + 1e-3;
+            reach = {c[0] - spread, c[0] + spread};
+        }
+    };
+
+    /// The texels from `low` to `high` past a base, with those that taps and kernel need around them.
+    struct Span {
+        double first, last;
+
+        Span(const Filtering& f, double tap_reach, std::int32_t base, const Reach& reach)
+        {
+            const int support = f.kernel == simd::Kernel::bicubic ? 2 : f.kernel == simd::Kernel::bilinear ? 1 : 0;
+            first = base + std::floor(reach.low - tap_reach) - support;
+            last = base + std::floor(reach.high + tap_reach) + support + 1;
+        }
+        bool fits() const { return std::max(std::fabs(first), std::fabs(last)) < (1 << 30); }
+    };
+
+    Got get_window(const Filtering& f, int piece, std::int32_t base_x, const Reach& reach_x, std::int32_t base_y,
+                   const Reach& reach_y, const Box& block, Window& window)
     {
-        // Texels before and after the one a point falls into.
-        const int before = f.kernel == simd::Kernel::bicubic ? 2 : f.kernel == simd::Kernel::bilinear ? 1 : 0;
-        const double x0 = base_x + std::floor(x.low - f.reach_x) - before;
-        const double y0 = base_y + std::floor(y.low - f.reach_y) - before;
-        const double x1 = base_x + std::floor(x.high + f.reach_x) + before + 1;
-        const double y1 = base_y + std::floor(y.high + f.reach_y) + before + 1;
+        const Span x(f, f.reach_x, base_x, reach_x), y(f, f.reach_y, base_y, reach_y);
         // More texels than this per pixel are better fetched one pixel at a time.
         constexpr double kMost = 32;
+        const double texels = (x.last - x.first) * (y.last - y.first);
         const double pixels = double(block.width()) * block.height();
-        if (!((x1 - x0) * (y1 - y0) <= kMost * pixels + 4096)) return Got::too_large;
-        if (std::max({std::fabs(x0), std::fabs(x1), std::fabs(y0), std::fabs(y1)}) > (1 << 30)) return Got::too_large;
-        const Box box{static_cast<int>(x0), static_cast<int>(y0), static_cast<int>(x1), static_cast<int>(y1)};
+        if (!(texels <= kMost * pixels + 4096) || !x.fits() || !y.fits()) return Got::too_large;
+        const Box box{static_cast<int>(x.first), static_cast<int>(y.first), static_cast<int>(x.last),
+                      static_cast<int>(y.last)};
         if (!m_reader->get(f.level, piece, box, window)) return Got::failed;
         // Offsets inside a window are counted in 32 bits.
         const double span = double(window.row_stride) * (box.height() + 1);
         return std::fabs(span) < std::numeric_limits<std::int32_t>::max() ? Got::window : Got::too_large;
+    }
+
+    /// Where the next block's texels stand in memory, if they do; filtered like this one's.
+    simd::Upcoming upcoming(const Block* next, const Filtering& f) const
+    {
+        const ConstImageView* view = m_source->view(f.level);
+        if (!next || !view || next->kind != Block::Kind::polynomial) return {};
+        const LevelPolynomial px(next->x, next->base_x, f.scale_x), py(next->y, next->base_y, f.scale_y);
+        const Span x(f, f.reach_x, px.base, px.reach), y(f, f.reach_y, py.base, py.reach);
+        if (!(x.first >= 0 && y.first >= 0 && x.last <= view->width && y.last <= view->height)) return {};
+        return {view->at(static_cast<std::ptrdiff_t>(x.first), static_cast<std::ptrdiff_t>(y.first)), view->row_stride,
+                static_cast<int>(y.last - y.first), static_cast<int>((x.last - x.first) * view->pixel_stride)};
     }
 
     static simd::Texels texels_of(const Filtering& f, const Window& window, std::int32_t base_x, std::int32_t base_y)
@@ -325,7 +359,7 @@ private:
         const bool polynomial = block.kind == Block::Kind::polynomial;
         for (int j = box.y0; j < box.y1; ++j) {
             if (polynomial)
-                simd::block_points(block.x, block.y, block.box.width(), block.box.height(), j - block.box.y0,
+                simd::block_points({block.x, block.y, block.box.width(), block.box.height()}, j - block.box.y0,
                                    box.x0 - block.box.x0, box.x1 - block.box.x0, px, py);
             for (int i = 0; i < box.width(); ++i) {
                 Point<double> exact{}, used{};
@@ -451,7 +485,9 @@ bool Reprojection::draw(const Source* source, const Box& box, const ImageView& p
     parallel_for(static_cast<std::int64_t>(units.size()), [&](std::int64_t i) {
         const Unit& unit = units[static_cast<std::size_t>(i)];
         Painter painter(state.plan, state.options, state.border, source, canvas);
-        for (Block block : *state.plan.blocks(unit.region)) {
+        const auto blocks = state.plan.blocks(unit.region);
+        for (std::size_t k = 0; k < blocks->size(); ++k) {
+            Block block = (*blocks)[k];
             // A block without texels may be cut at will; others are no taller than a strip.
             if (block.kind == Block::Kind::outside) {
                 block.box.y0 = std::max(block.box.y0, unit.y0);
@@ -459,7 +495,7 @@ bool Reprojection::draw(const Source* source, const Box& box, const ImageView& p
             }
             else if (block.box.y0 < unit.y0 || block.box.y0 >= unit.y1)
                 continue;
-            if (!painter.draw(block)) ok = false;
+            if (!painter.draw(block, k + 1 < blocks->size() ? &(*blocks)[k + 1] : nullptr)) ok = false;
         }
         simd::finish_stores();
     });

@@ -20,6 +20,7 @@ namespace hn = hwy::HWY_NAMESPACE;
 using Floats = hn::CappedTag<float, 16>;
 using Ints = hn::RebindToSigned<Floats>;
 using Quad = hn::CappedTag<float, 4>;
+using Pair = hn::CappedTag<float, 8>;
 constexpr size_t kLanes = hn::MaxLanes(Floats());
 constexpr int kQuad = static_cast<int>(hn::MaxLanes(Quad()));  // 1 where Highway has no vectors
 
@@ -29,71 +30,108 @@ HWY_INLINE float step_of(int count)
     return count > 1 ? 1.0f / static_cast<float>(count - 1) : 0.0f;
 }
 
-void BlockPoints(const float* HWY_RESTRICT cx, const float* HWY_RESTRICT cy, int width, int height, int row, int begin,
-                 int end, float* HWY_RESTRICT out_x, float* HWY_RESTRICT out_y)
+/// The polynomials on one row, as polynomials in s: a + s (b + s c).
+struct RowPolynomial {
+    hn::Vec<Floats> ax, bx, qx, ay, by, qy, step;
+    float first;
+
+    HWY_INLINE RowPolynomial(const Polynomials& block, int row)
+    {
+        const Floats d;
+        const float *x = block.x, *y = block.y;
+        const float t = static_cast<float>(2 * row - (block.height - 1)) * step_of(block.height);
+        ax = hn::Set(d, (x[5] * t + x[2]) * t + x[0]);
+        bx = hn::Set(d, x[4] * t + x[1]);
+        qx = hn::Set(d, x[3]);
+        ay = hn::Set(d, (y[5] * t + y[2]) * t + y[0]);
+        by = hn::Set(d, y[4] * t + y[1]);
+        qy = hn::Set(d, y[3]);
+        step = hn::Set(d, step_of(block.width));
+        first = static_cast<float>(1 - block.width);
+    }
+    /// The points of pixels i, i + 1, ...: pixel i stands 2 i - (width - 1) half steps from the middle.
+    HWY_INLINE void At(int i, hn::Vec<Floats>& x, hn::Vec<Floats>& y) const
+    {
+        const Floats d;
+        const auto lanes = hn::Iota(d, 0.0f);
+        const auto s = hn::Mul(hn::Add(hn::Add(lanes, lanes), hn::Set(d, first + static_cast<float>(2 * i))), step);
+        x = hn::MulAdd(s, hn::MulAdd(s, qx, bx), ax);
+        y = hn::MulAdd(s, hn::MulAdd(s, qy, by), ay);
+    }
+};
+
+void BlockPoints(const Polynomials& block, int row, int begin, int end, float* HWY_RESTRICT out_x,
+                 float* HWY_RESTRICT out_y)
 {
     const Floats d;
-    const float t = static_cast<float>(2 * row - (height - 1)) * step_of(height);
-    // In s: a + s (b + s c)
-    const auto ax = hn::Set(d, (cx[5] * t + cx[2]) * t + cx[0]), bx = hn::Set(d, cx[4] * t + cx[1]),
-               qx = hn::Set(d, cx[3]);
-    const auto ay = hn::Set(d, (cy[5] * t + cy[2]) * t + cy[0]), by = hn::Set(d, cy[4] * t + cy[1]),
-               qy = hn::Set(d, cy[3]);
-    const auto step = hn::Set(d, step_of(width));
+    const RowPolynomial polynomial(block, row);
     for (int i = begin; i < end; i += static_cast<int>(kLanes)) {
-        // Pixel i + k stands 2 (i + k) - (width - 1) half steps from the middle.
-        const auto s =
-            hn::Mul(hn::Add(hn::Iota(d, static_cast<float>(2 * i - (width - 1))), hn::Iota(d, 0.0f)), step);
-        hn::StoreU(hn::MulAdd(s, hn::MulAdd(s, qx, bx), ax), d, out_x + (i - begin));
-        hn::StoreU(hn::MulAdd(s, hn::MulAdd(s, qy, by), ay), d, out_y + (i - begin));
+        hn::Vec<Floats> x, y;
+        polynomial.At(i, x, y);
+        hn::StoreU(x, d, out_x + (i - begin));
+        hn::StoreU(y, d, out_y + (i - begin));
     }
 }
 
-/// kQuad channels from `p`, as floats.
-template <class T>
-HWY_INLINE hn::Vec<Quad> LoadQuad(const T* p)
+constexpr bool kHasPair = hn::MaxLanes(Pair()) == 8;  // two texels of up to four channels in one vector
+
+/// As many channels from `p` as D has lanes, as floats.
+template <class D, class T>
+HWY_INLINE hn::Vec<D> LoadFloats(D d, const T* p)
 {
-    const Quad d;
     if constexpr (std::is_same_v<T, float>) {
         return hn::LoadU(d, p);
     }
     else if constexpr (std::is_same_v<T, hwy::float16_t>) {
-        const hn::Rebind<hwy::float16_t, Quad> d16;
-        return hn::PromoteTo(d, hn::LoadU(d16, p));
+        return hn::PromoteTo(d, hn::LoadU(hn::Rebind<hwy::float16_t, D>(), p));
     }
     else {
-        const hn::Rebind<T, Quad> dt;
-        return hn::ConvertTo(d, hn::PromoteTo(hn::RebindToSigned<Quad>(), hn::LoadU(dt, p)));
+        return hn::ConvertTo(d, hn::PromoteTo(hn::RebindToSigned<D>(), hn::LoadU(hn::Rebind<T, D>(), p)));
     }
 }
+template <class T>
+HWY_INLINE hn::Vec<Quad> LoadQuad(const T* p)
+{
+    return LoadFloats(Quad(), p);
+}
 
-/// Where a tap falls: whole texels as an element offset, and the fractions.
+/// Where taps fall: whole texels as an element offset, and the fractions.
+template <int kCount>
 struct Positions {
-    alignas(64) int32_t offset[kRowRoom];
-    alignas(64) float fx[kRowRoom], fy[kRowRoom];
+    HWY_ALIGN int32_t offset[kCount];
+    HWY_ALIGN float fx[kCount], fy[kCount];
 };
 
-/// Texel (floor(x - shift), floor(y - shift)) and the rest, for `count` points from `first` on, moved by a tap.
+/// Texel (floor x, floor y) and the rest, for one vector of points, into lanes i, i + 1, ...
+template <int kCount>
+HWY_INLINE void Locate(hn::Vec<Floats> x, hn::Vec<Floats> y, hn::Vec<Ints> row, hn::Vec<Ints> pixel, int i,
+                       Positions<kCount>& p, const int32_t* whole_x = nullptr, const int32_t* whole_y = nullptr)
+{
+    const Floats d;
+    const Ints di;
+    const auto ix = hn::Floor(x), iy = hn::Floor(y);
+    hn::Store(hn::Sub(x, ix), d, p.fx + i);
+    hn::Store(hn::Sub(y, iy), d, p.fy + i);
+    auto tx = hn::ConvertTo(di, ix), ty = hn::ConvertTo(di, iy);
+    if (whole_x) {
+        tx = hn::Add(tx, hn::LoadU(di, whole_x));
+        ty = hn::Add(ty, hn::LoadU(di, whole_y));
+    }
+    hn::Store(hn::Add(hn::Mul(ty, row), hn::Mul(tx, pixel)), di, p.offset + i);
+}
+
+/// The same for `count` points from `first` on, moved by a tap and back by `shift`.
+template <int kCount>
 HWY_INLINE void Locate(const Offsets& at, int first, int count, const Tap& tap, float shift, int channels,
-                       int32_t row_elements, Positions& p)
+                       int32_t row_elements, Positions<kCount>& p)
 {
     const Floats d;
     const Ints di;
     const auto dx = hn::Set(d, tap.x - shift), dy = hn::Set(d, tap.y - shift);
     const auto row = hn::Set(di, row_elements), pixel = hn::Set(di, channels);
-    for (int i = 0; i < count; i += static_cast<int>(kLanes)) {
-        const auto px = hn::Add(hn::LoadU(d, at.x + first + i), dx),
-                   py = hn::Add(hn::LoadU(d, at.y + first + i), dy);
-        const auto ix = hn::Floor(px), iy = hn::Floor(py);
-        hn::StoreU(hn::Sub(px, ix), d, p.fx + i);
-        hn::StoreU(hn::Sub(py, iy), d, p.fy + i);
-        auto tx = hn::ConvertTo(di, ix), ty = hn::ConvertTo(di, iy);
-        if (at.whole_x) {
-            tx = hn::Add(tx, hn::LoadU(di, at.whole_x + first + i));
-            ty = hn::Add(ty, hn::LoadU(di, at.whole_y + first + i));
-        }
-        hn::StoreU(hn::Add(hn::Mul(ty, row), hn::Mul(tx, pixel)), di, p.offset + i);
-    }
+    for (int i = 0; i < count; i += static_cast<int>(kLanes))
+        Locate(hn::Add(hn::LoadU(d, at.x + first + i), dx), hn::Add(hn::LoadU(d, at.y + first + i), dy), row, pixel, i,
+               p, at.whole_x ? at.whole_x + first + i : nullptr, at.whole_y ? at.whole_y + first + i : nullptr);
 }
 
 /// The texel pair at `p` and the pair below, mixed by fy then fx: kQuad channels of a pixel.
@@ -103,6 +141,21 @@ HWY_INLINE hn::Vec<Quad> Bilinear(const T* HWY_RESTRICT p, ptrdiff_t row, int ch
     const Quad d;
     const int next = kChannels ? kChannels : channels;
     const auto vx = hn::Set(d, fx), vy = hn::Set(d, fy);
+#if HWY_TARGET != HWY_SCALAR
+    if constexpr (kHasPair && (kChannels == 3 || kChannels == 4)) {
+        // Both texels of a row at once.
+        const Pair d2;
+        const auto above = LoadFloats(d2, p), below = LoadFloats(d2, p + row);
+        const auto both = hn::MulAdd(hn::Set(d2, fy), hn::Sub(below, above), above);
+        const auto first = hn::LowerHalf(d, both);
+        auto second = hn::UpperHalf(d, both);
+        if constexpr (kChannels == 3) {
+            HWY_ALIGN static constexpr int32_t kShift[8] = {3, 4, 5, 6, 7, 7, 7, 7};
+            second = hn::LowerHalf(d, hn::TableLookupLanes(both, hn::SetTableIndices(d2, kShift)));
+        }
+        return hn::MulAdd(vx, hn::Sub(second, first), first);
+    }
+#endif
     const auto a = LoadQuad(p), b = LoadQuad(p + row);
     const auto left = hn::MulAdd(vy, hn::Sub(b, a), a);
     const auto e = LoadQuad(p + next), f = LoadQuad(p + row + next);
@@ -119,7 +172,7 @@ HWY_INLINE void SampleBilinear(const Texels& s, const Offsets& at, float* HWY_RE
     const auto* origin = reinterpret_cast<const T*>(s.texels);
     const ptrdiff_t row = s.row_stride / static_cast<ptrdiff_t>(sizeof(T));
     const int channels = kChannels ? kChannels : s.channels;
-    Positions p;
+    Positions<kRowRoom> p;
     Locate(at, 0, at.count, s.taps[0], 0.5f, channels, static_cast<int32_t>(row), p);
     for (int i = 0; i < at.count; ++i)
         for (int c = 0; c < channels; c += kQuad)
@@ -137,7 +190,7 @@ HWY_INLINE void SampleTaps(const Texels& s, const Offsets& at, float* HWY_RESTRI
     const int channels = kChannels ? kChannels : s.channels;
     // Some pixels at a time, so that the positions of all taps stay near.
     constexpr int kGroup = 16;
-    Positions p[4];
+    Positions<kGroup> p[4];
     const auto weight = hn::Set(d, 1.0f / static_cast<float>(s.tap_count));
     for (int first = 0; first < at.count; first += kGroup) {
         const int n = HWY_MIN(kGroup, at.count - first);
@@ -182,7 +235,7 @@ HWY_INLINE void SampleBicubic(const Texels& s, const Offsets& at, float* HWY_RES
     const Quad d;
     const auto* origin = reinterpret_cast<const T*>(s.texels);
     const ptrdiff_t row = s.row_stride / static_cast<ptrdiff_t>(sizeof(T));
-    Positions p;
+    Positions<kRowRoom> p;
     // The first of four texels is one before the one a bilinear tap starts with.
     Locate(at, 0, at.count, s.taps[0], 0.5f, s.channels, static_cast<int32_t>(row), p);
     for (int i = 0; i < at.count; ++i) {
@@ -208,7 +261,7 @@ HWY_INLINE void SampleNearest(const Texels& s, const Offsets& at, float* HWY_RES
 {
     const auto* origin = reinterpret_cast<const T*>(s.texels);
     const ptrdiff_t row = s.row_stride / static_cast<ptrdiff_t>(sizeof(T));
-    Positions p;
+    Positions<kRowRoom> p;
     Locate(at, 0, at.count, s.taps[0], 0.0f, s.channels, static_cast<int32_t>(row), p);
     for (int i = 0; i < at.count; ++i)
         for (int c = 0; c < s.channels; c += kQuad)
@@ -305,6 +358,94 @@ void StoreRow(const float* values, int count, float scale, PixelType type, std::
     }
 }
 
+/// Brings part `part` of `parts` of the texels near.
+HWY_INLINE void FetchPart(const Upcoming& upcoming, int part, int parts)
+{
+    const int first = upcoming.rows * part / parts, last = upcoming.rows * (part + 1) / parts;
+    for (int r = first; r < last; ++r)
+        for (int b = 0; b < upcoming.bytes; b += 64) hwy::Prefetch(upcoming.first + r * upcoming.row_stride + b);
+}
+
+/// The common case without detours: one bilinear tap, three or four channels. Rows go through three stages, each one
+/// row ahead of the next: located, sampled, stored. Reading what was just written in pieces of another size would
+/// wait for those writes.
+template <class T, int kChannels>
+void DrawBilinear(const Texels& s, const Polynomials& block, int begin, int end, int row_begin, int row_end,
+                  float scale, PixelType type, std::byte* to, ptrdiff_t row_stride, const Upcoming& upcoming)
+{
+    const Floats d;
+    const Ints di;
+    const auto* origin = reinterpret_cast<const T*>(s.texels);
+    const ptrdiff_t row = s.row_stride / static_cast<ptrdiff_t>(sizeof(T));
+    const auto row_step = hn::Set(di, static_cast<int32_t>(row)), pixel_step = hn::Set(di, kChannels);
+    const auto shift_x = hn::Set(d, s.taps[0].x - 0.5f), shift_y = hn::Set(d, s.taps[0].y - 0.5f);
+    const int count = end - begin;
+    Positions<kRowRoom> positions[2];
+    HWY_ALIGN float values[2][kRowRoom * kChannels];
+
+    const auto locate = [&](int j) HWY_ATTR {
+        const RowPolynomial polynomial(block, j);
+        for (int i = 0; i < count; i += static_cast<int>(kLanes)) {
+            hn::Vec<Floats> x, y;
+            polynomial.At(begin + i, x, y);
+            Locate(hn::Add(x, shift_x), hn::Add(y, shift_y), row_step, pixel_step, i, positions[j & 1]);
+        }
+    };
+    const auto sample = [&](int j) HWY_ATTR {
+        const Positions<kRowRoom>& p = positions[j & 1];
+        float* HWY_RESTRICT out = values[j & 1];
+        HWY_UNROLL(8)
+        for (int i = 0; i < count; ++i)
+            hn::StoreU(Bilinear<T, kChannels>(origin + p.offset[i], row, kChannels, p.fx[i], p.fy[i]), Quad(),
+                       out + i * kChannels);
+    };
+    const auto store = [&](int j) HWY_ATTR {
+        StoreRow(values[j & 1], count * kChannels, scale, type, to + (j - row_begin) * row_stride);
+    };
+    locate(row_begin);
+    for (int j = row_begin; j < row_end; ++j) {
+        FetchPart(upcoming, j - row_begin, row_end - row_begin);
+        if (j + 1 < row_end) locate(j + 1);
+        sample(j);
+        if (j > row_begin) store(j - 1);
+    }
+    store(row_end - 1);
+}
+
+template <class T>
+void DrawTyped(const Texels& s, const Polynomials& block, int begin, int end, int row_begin, int row_end, float scale,
+               PixelType type, std::byte* to, ptrdiff_t row_stride, const Upcoming& upcoming)
+{
+    if (s.kernel == Kernel::bilinear && s.tap_count == 1 && kQuad == 4) {
+        if (s.channels == 3)
+            return DrawBilinear<T, 3>(s, block, begin, end, row_begin, row_end, scale, type, to, row_stride, upcoming);
+        if (s.channels == 4)
+            return DrawBilinear<T, 4>(s, block, begin, end, row_begin, row_end, scale, type, to, row_stride, upcoming);
+    }
+    HWY_ALIGN float x[kRowRoom], y[kRowRoom];
+    std::vector<float> values(static_cast<size_t>(kMaxRow * s.channels + 16));
+    for (int j = row_begin; j < row_end; ++j, to += row_stride) {
+        FetchPart(upcoming, j - row_begin, row_end - row_begin);
+        BlockPoints(block, j, begin, end, x, y);
+        SampleTyped<T>(s, {x, y, end - begin}, values.data());
+        StoreRow(values.data(), (end - begin) * s.channels, scale, type, to);
+    }
+}
+
+void DrawBlock(const Texels& s, const Polynomials& block, int begin, int end, int row_begin, int row_end, float scale,
+               PixelType type, std::byte* to, ptrdiff_t row_stride, const Upcoming& upcoming)
+{
+    const auto draw = [&](auto texel) {
+        DrawTyped<decltype(texel)>(s, block, begin, end, row_begin, row_end, scale, type, to, row_stride, upcoming);
+    };
+    switch (s.type) {
+        case PixelType::uint8: return draw(uint8_t{});
+        case PixelType::uint16: return draw(uint16_t{});
+        case PixelType::half: return draw(hwy::float16_t{});
+        case PixelType::float32: return draw(float{});
+    }
+}
+
 }  // namespace HWY_NAMESPACE
 }  // namespace anamorph::simd
 HWY_AFTER_NAMESPACE();
@@ -315,11 +456,17 @@ namespace anamorph::simd {
 HWY_EXPORT(BlockPoints);
 HWY_EXPORT(SampleRow);
 HWY_EXPORT(StoreRow);
+HWY_EXPORT(DrawBlock);
 
-void block_points(const float* x, const float* y, int width, int height, int row, int begin, int end, float* out_x,
-                  float* out_y)
+void block_points(const Polynomials& block, int row, int begin, int end, float* out_x, float* out_y)
 {
-    HWY_DYNAMIC_DISPATCH(BlockPoints)(x, y, width, height, row, begin, end, out_x, out_y);
+    HWY_DYNAMIC_DISPATCH(BlockPoints)(block, row, begin, end, out_x, out_y);
+}
+
+void draw_block(const Texels& texels, const Polynomials& block, int begin, int end, int row_begin, int row_end,
+                float scale, PixelType type, std::byte* to, std::ptrdiff_t row_stride, const Upcoming& upcoming)
+{
+    HWY_DYNAMIC_DISPATCH(DrawBlock)(texels, block, begin, end, row_begin, row_end, scale, type, to, row_stride, upcoming);
 }
 
 void sample_row(const Texels& texels, const Offsets& offsets, float* out)
@@ -335,12 +482,6 @@ void store_row(const float* values, int count, float scale, PixelType type, std:
 void finish_stores()
 {
     hwy::FlushStream();
-}
-
-void prefetch(const std::byte* first, std::ptrdiff_t row_stride, int rows, int bytes)
-{
-    for (int r = 0; r < rows; ++r)
-        for (int b = 0; b < bytes; b += 64) hwy::Prefetch(first + r * row_stride + b);
 }
 
 namespace {

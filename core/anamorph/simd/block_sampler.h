@@ -14,11 +14,15 @@
 
 namespace anamorph::simd {
 
-/// The source points of one row of a block: for pixel i of `width`, row j of `height`, with s and t as plan.h says.
-/// Writes the offsets from the block's base (texels, x and y apart) for pixels [begin, end).
-/// There is room for kRowRoom floats in each.
-void block_points(const float* x, const float* y, int width, int height, int row, int begin, int end, float* out_x,
-                  float* out_y);
+/// The polynomials of a block for the source points of its pixels, as Block::x and y, and its size.
+struct Polynomials {
+    const float *x, *y;
+    int width, height;
+};
+
+/// The source points of pixels [begin, end) of row `row`: offsets from the block's base in texels. There is room for
+/// kRowRoom floats in each array.
+void block_points(const Polynomials& block, int row, int begin, int end, float* out_x, float* out_y);
 
 enum class Kernel : std::uint8_t { nearest, bilinear, bicubic };
 
@@ -58,15 +62,25 @@ inline constexpr int kRowRoom = kMaxRow + 16;
 /// `out` has room for kMaxRow * channels + 16 floats.
 void sample_row(const Texels& texels, const Offsets& offsets, float* out);
 
+/// Texels that will be read soon: `rows` rows of `bytes` bytes.
+struct Upcoming {
+    const std::byte* first = nullptr;
+    std::ptrdiff_t row_stride = 0;
+    int rows = 0, bytes = 0;
+};
+
+/// Samples pixels [begin, end) x [row_begin, row_end) of a block and stores them: block_points, sample_row and
+/// store_row in one. `to` points at pixel (begin, row_begin) of a picture with packed pixels. Meanwhile `upcoming` is
+/// brought near.
+void draw_block(const Texels& texels, const Polynomials& block, int begin, int end, int row_begin, int row_end,
+                float scale, PixelType type, std::byte* to, std::ptrdiff_t row_stride, const Upcoming& upcoming = {});
+
 /// Converts `count` values to `type` and writes them, `scale` times (source units to the picture's); whole cache lines
 /// bypass the cache. uint8 and uint16 are rounded and clamped, NaN gives 0.
 void store_row(const float* values, int count, float scale, PixelType type, std::byte* to);
 
 /// Makes what store_row wrote visible to other threads; to be called once after the last row.
 void finish_stores();
-
-/// Asks for the texels of a box to be brought near: `rows` rows of `bytes` bytes.
-void prefetch(const std::byte* first, std::ptrdiff_t row_stride, int rows, int bytes);
 
 /// The instruction sets compiled in that this machine has, best first, and a way to force one (for tests); an empty
 /// name chooses the best again. False when there is no such set.
