@@ -1,0 +1,367 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "anamorph/image_source.h"
+
+#include <algorithm>
+#include <cstring>
+#include <map>
+
+#include "anamorph/error.h"
+#include "anamorph/image/pixel.h"
+#include "anamorph/parameter.h"
+
+namespace anamorph {
+namespace {
+
+using OIIO::ImageCache;
+using OIIO::ImageSpec;
+using OIIO::TypeDesc;
+
+/// One of a cache's thread records, borrowed. They are never destroyed: OpenImageIO 2.4 fails when one is and
+/// its statistics are asked for afterwards.
+class CacheThread {
+  public:
+    explicit CacheThread(const ImageCacheRef& cache) : m_pool(pool_of(&*cache)) {
+        {
+            std::lock_guard lock(m_pool.mutex);
+            if (!m_pool.idle.empty()) {
+                m_record = m_pool.idle.back();
+                m_pool.idle.pop_back();
+            }
+        }
+        if (!m_record) m_record = cache->create_thread_info();
+        // Lets go of tiles that were purged since.
+        m_record = cache->get_perthread_info(m_record);
+    }
+    ~CacheThread() {
+        std::lock_guard lock(m_pool.mutex);
+        m_pool.idle.push_back(m_record);
+    }
+    CacheThread(const CacheThread&) = delete;
+    CacheThread& operator=(const CacheThread&) = delete;
+
+    operator ImageCache::Perthread*() const { return m_record; }
+
+  private:
+    struct Pool {
+        std::mutex mutex;
+        std::vector<ImageCache::Perthread*> idle;
+    };
+    static Pool& pool_of(const ImageCache* cache) {
+        static std::mutex mutex;
+        static auto& pools = *new std::map<const ImageCache*, Pool>;
+        std::lock_guard lock(mutex);
+        return pools[cache];
+    }
+
+    Pool& m_pool;
+    ImageCache::Perthread* m_record = nullptr;
+};
+
+std::ptrdiff_t pixel_size(PixelType type, int channels) {
+    return std::ptrdiff_t{channels} * size_of(type);
+}
+
+/// Zeros for the texels of `box` outside `data`.
+void clear_around(const Box& box, const Box& data, std::ptrdiff_t pixel, std::byte* texels,
+                  std::ptrdiff_t row_stride) {
+    for (int y = box.y0; y < box.y1; ++y) {
+        std::byte* row = texels + (y - box.y0) * row_stride;
+        const auto clear = [&](int x0, int x1) {
+            if (x0 < x1)
+                std::memset(row + (x0 - box.x0) * pixel, 0, static_cast<std::size_t>((x1 - x0) * pixel));
+        };
+        if (data.empty() || y < data.y0 || y >= data.y1) {
+            clear(box.x0, box.x1);
+        } else {
+            clear(box.x0, data.x0);
+            clear(data.x1, box.x1);
+        }
+    }
+}
+
+std::string first_line(std::string message) {
+    message.resize(std::min(message.size(), message.find('\n')));
+    return message;
+}
+
+}  // namespace
+
+PixelType pixel_type(TypeDesc type) {
+    if (type == OIIO::TypeUInt8) return PixelType::uint8;
+    if (type == OIIO::TypeUInt16) return PixelType::uint16;
+    return type == OIIO::TypeHalf ? PixelType::half : PixelType::float32;
+}
+
+TypeDesc oiio_type(PixelType type) {
+    switch (type) {
+        case PixelType::uint8:
+            return OIIO::TypeUInt8;
+        case PixelType::uint16:
+            return OIIO::TypeUInt16;
+        case PixelType::half:
+            return OIIO::TypeHalf;
+        case PixelType::float32:
+            break;
+    }
+    return OIIO::TypeFloat;
+}
+
+Frame frame_of(const ImageSpec& spec) {
+    const int full_width = spec.get_int_attribute("GPano:FullPanoWidthPixels");
+    const int full_height = spec.get_int_attribute("GPano:FullPanoHeightPixels");
+    const bool same_size = spec.get_int_attribute("GPano:CroppedAreaImageWidthPixels") == spec.width &&
+                           spec.get_int_attribute("GPano:CroppedAreaImageHeightPixels") == spec.height;
+    if (same_size && full_width >= spec.width && full_height >= spec.height) {
+        const int left = spec.get_int_attribute("GPano:CroppedAreaLeftPixels");
+        const int top = spec.get_int_attribute("GPano:CroppedAreaTopPixels");
+        return {full_width, full_height, {left, top, left + spec.width, top + spec.height}};
+    }
+    const int left = spec.x - spec.full_x, top = spec.y - spec.full_y;
+    return {spec.full_width, spec.full_height, {left, top, left + spec.width, top + spec.height}};
+}
+
+int unassociated_alpha_of(const ImageSpec& spec) {
+    return spec.get_int_attribute("oiio:UnassociatedAlpha") ? spec.alpha_channel : -1;
+}
+
+void check_flat(const ImageSpec& spec, const std::string& name) {
+    const std::string image = "source \"" + printable(name) + "\"";
+    if (spec.deep) throw Error(image + " is deep: allowed are flat images");
+    if (spec.depth > 1 || spec.full_depth > 1) throw Error(image + " is a volume: allowed are flat images");
+    if (spec.width < 1 || spec.height < 1 || spec.full_width < 1 || spec.full_height < 1 ||
+        spec.nchannels < 1)
+        throw Error(image + " has no pixels");
+}
+
+// --- CacheSource -------------------------------------------------------------------------------------------
+
+CacheSource::CacheSource(ImageCacheRef cache, const std::string& name, int subimage, int first_level)
+    : m_cache(std::move(cache)), m_name(name), m_subimage(subimage), m_first_level(first_level) {
+    const CacheThread thread(m_cache);
+    ImageCache::ImageHandle* image = m_cache->get_image_handle(m_name, thread);
+    const auto get_level = [&](int level) {
+        Level l;
+        if (!image ||
+            !m_cache->get_imagespec(image, thread, l.spec, m_subimage, m_first_level + level, true)) {
+            std::string why = first_line(m_cache->geterror());
+            throw Error("source \"" + printable(name) + "\": " + (why.empty() ? "cannot be read" : why));
+        }
+        l.frame = frame_of(l.spec);
+        m_levels.push_back(l);
+    };
+    get_level(0);
+    check_flat(spec(), name);
+    m_type = pixel_type(spec().format);
+    m_alpha = unassociated_alpha_of(spec());
+
+    int count = 1;
+    m_cache->get_image_info(image, thread, m_subimage, 0, OIIO::ustring("miplevels"), OIIO::TypeInt, &count);
+    const auto full = [](const Level& l) {
+        return l.frame.data == Box{0, 0, l.frame.width, l.frame.height} && l.spec.width > 0 &&
+               l.spec.height > 0;
+    };
+    // Levels serve while each is half of the one before and has all its pixels.
+    for (int level = 1; level < count - m_first_level && full(m_levels.back()); ++level) {
+        const Frame before = m_levels.back().frame;
+        get_level(level);
+        const Frame& now = m_levels.back().frame;
+        const bool half =
+            now.width == std::max(1, before.width / 2) && now.height == std::max(1, before.height / 2);
+        if (half && full(m_levels.back()) && m_levels.back().spec.nchannels == spec().nchannels) continue;
+        m_levels.pop_back();
+        break;
+    }
+}
+
+Source::Size CacheSource::size(int level) const noexcept {
+    const Frame& f = m_levels[static_cast<std::size_t>(level)].frame;
+    return {f.width, f.height};
+}
+
+std::string CacheSource::error() const {
+    std::lock_guard lock(m_mutex);
+    return m_error;
+}
+
+bool CacheSource::fail(const std::string& message) const {
+    std::lock_guard lock(m_mutex);
+    m_error =
+        "source \"" + printable(m_name.string()) + "\": " + (message.empty() ? "cannot be read" : message);
+    return false;
+}
+
+bool CacheSource::read(int level, const Box& box, std::byte* texels,
+                       std::ptrdiff_t row_stride) const noexcept {
+    try {
+        const Box data = intersection(box, m_levels[static_cast<std::size_t>(level)].frame.data);
+        const std::ptrdiff_t pixel = pixel_size(m_type, channels());
+        if (!(data == box)) clear_around(box, data, pixel, texels, row_stride);
+        if (data.empty()) return true;
+        return copy_tiles(level, data, texels + (data.y0 - box.y0) * row_stride + (data.x0 - box.x0) * pixel,
+                          row_stride);
+    } catch (const std::exception& e) {
+        return fail(e.what());
+    }
+}
+
+/// `box` lies inside the data window.
+bool CacheSource::copy_tiles(int level, const Box& box, std::byte* texels, std::ptrdiff_t row_stride) const {
+    const Level& l = m_levels[static_cast<std::size_t>(level)];
+    const int file_level = m_first_level + level;
+    const CacheThread thread(m_cache);
+    ImageCache::ImageHandle* image = m_cache->get_image_handle(m_name, thread);
+    const ImageSpec* now = image ? m_cache->imagespec(image, thread, m_subimage, file_level) : nullptr;
+    if (!now) return fail(first_line(m_cache->geterror()));
+    if (now->width != l.spec.width || now->height != l.spec.height || now->nchannels != l.spec.nchannels)
+        return fail("has changed since it was opened");
+
+    // From the panorama's corner to the file's coordinates.
+    const int to_x = l.spec.x - l.frame.data.x0, to_y = l.spec.y - l.frame.data.y0;
+    const std::ptrdiff_t pixel = pixel_size(m_type, channels());
+    for (int y = box.y0; y < box.y1;) {
+        int next_y = box.y1;
+        for (int x = box.x0; x < box.x1;) {
+            ImageCache::Tile* tile =
+                m_cache->get_tile(image, thread, m_subimage, file_level, x + to_x, y + to_y, l.spec.z);
+            if (!tile) return fail(first_line(m_cache->geterror()));
+            const OIIO::ROI where = m_cache->tile_roi(tile);
+            TypeDesc format;
+            const auto* pixels = static_cast<const std::byte*>(m_cache->tile_pixels(tile, format));
+            const std::ptrdiff_t tile_pixel = std::ptrdiff_t(format.size()) * channels();
+            const int x1 = std::min(box.x1, where.xend - to_x), y1 = std::min(box.y1, where.yend - to_y);
+            const bool usable = pixels && x1 > x && y1 > y;
+            for (int j = y; usable && j < y1; ++j) {
+                const std::byte* from = pixels + (std::ptrdiff_t(j + to_y - where.ybegin) * where.width() +
+                                                  x + to_x - where.xbegin) *
+                                                     tile_pixel;
+                std::byte* to = texels + (j - box.y0) * row_stride + (x - box.x0) * pixel;
+                if (format == oiio_type(m_type))
+                    std::memcpy(to, from, static_cast<std::size_t>((x1 - x) * pixel));
+                else
+                    // A cache that holds everything as float: back to the very values of the file.
+                    OIIO::convert_pixel_values(format, from, oiio_type(m_type), to, (x1 - x) * channels());
+            }
+            m_cache->release_tile(tile);
+            if (!usable) return fail("a tile holds no pixels");
+            x = x1;
+            next_y = y1;
+        }
+        y = next_y;
+    }
+    return true;
+}
+
+// --- BufferSource ------------------------------------------------------------------------------------------
+
+BufferSource::BufferSource(const OIIO::ImageBuf& image)
+    : m_image(image),
+      m_frame(frame_of(image.spec())),
+      m_type(pixel_type(image.spec().format)),
+      m_alpha(unassociated_alpha_of(image.spec())) {
+    const bool whole = m_frame.data == Box{0, 0, m_frame.width, m_frame.height};
+    if (whole && image.localpixels() && oiio_type(m_type) == image.spec().format)
+        m_view = ConstImageView{static_cast<const std::byte*>(image.localpixels()),
+                                m_type,
+                                m_frame.width,
+                                m_frame.height,
+                                image.nchannels(),
+                                image.pixel_stride(),
+                                image.scanline_stride()};
+}
+
+bool BufferSource::read(int, const Box& box, std::byte* texels, std::ptrdiff_t row_stride) const noexcept {
+    const Box data = intersection(box, m_frame.data);
+    const std::ptrdiff_t pixel = pixel_size(m_type, channels());
+    if (!(data == box)) clear_around(box, data, pixel, texels, row_stride);
+    if (data.empty()) return true;
+    const TypeDesc format = m_image.spec().format;
+    const auto* pixels = static_cast<const std::byte*>(m_image.localpixels());
+    if (!pixels) return false;
+    for (int y = data.y0; y < data.y1; ++y) {
+        const std::byte* from = pixels + (y - m_frame.data.y0) * m_image.scanline_stride() +
+                                (data.x0 - m_frame.data.x0) * m_image.pixel_stride();
+        std::byte* to = texels + (y - box.y0) * row_stride + (data.x0 - box.x0) * pixel;
+        OIIO::convert_image(channels(), data.width(), 1, 1, from, format, m_image.pixel_stride(),
+                            OIIO::AutoStride, OIIO::AutoStride, to, oiio_type(m_type), pixel,
+                            OIIO::AutoStride, OIIO::AutoStride);
+    }
+    return true;
+}
+
+// --- colour ------------------------------------------------------------------------------------------------
+
+namespace {
+
+const OIIO::ColorConfig& color_config() {
+    static const auto& config = *new OIIO::ColorConfig;
+    return config;
+}
+
+std::string joined(const std::vector<std::string>& words) {
+    std::string out;
+    for (const std::string& word : words) out += (out.empty() ? "" : ", ") + word;
+    return out;
+}
+
+}  // namespace
+
+std::shared_ptr<const WorkingSpace> WorkingSpace::make(const std::string& name, const ImageSpec& spec) {
+    if (spec.nchannels < 3)
+        throw Error("colorspace", printable(name), "allowed are sources of at least 3 channels");
+    const OIIO::ColorConfig& config = color_config();
+    const char* role = config.getColorSpaceNameByRole(name);
+    const std::string space = role ? role : name;
+    const std::string own = spec.get_string_attribute("oiio:ColorSpace");
+    if (own.empty())
+        throw Error("colorspace", printable(name),
+                    "the source does not say its own color space; allowed is none for such a source");
+    if (own == space) return nullptr;
+    auto result = std::make_shared<WorkingSpace>();
+    result->m_there = config.createColorProcessor(own, space);
+    result->m_back = config.createColorProcessor(space, own);
+    if (!result->m_there || !result->m_back) {
+        throw Error("colorspace", printable(name),
+                    "no way to it from \"" + own + "\"; allowed are the role scene_linear and " +
+                        joined(config.getColorSpaceNames()));
+    }
+    result->m_channels = spec.nchannels;
+    if (unassociated_alpha_of(spec) < 0) result->m_alpha = spec.alpha_channel;
+    return result;
+}
+
+void WorkingSpace::convert(const OIIO::ColorProcessor& processor, float* pixels, int width,
+                           int height) const {
+    const std::ptrdiff_t count = std::ptrdiff_t{width} * height;
+    // Colour curves are for colour that is not multiplied by alpha.
+    const auto each = [&](auto change) {
+        for (std::ptrdiff_t i = 0; m_alpha >= 0 && i < count; ++i)
+            change(pixels + i * m_channels, m_channels, m_alpha);
+    };
+    each([](float* pixel, int channels, int alpha) { unassociate_alpha(pixel, channels, alpha); });
+    const auto stride = static_cast<OIIO::stride_t>(m_channels * sizeof(float));
+    processor.apply(pixels, width, height, std::min(m_channels, 3), sizeof(float), stride, stride * width);
+    each([](float* pixel, int channels, int alpha) {
+        if (pixel[alpha] != 0) associate_alpha(pixel, channels, alpha);
+    });
+}
+
+bool WorkingSource::read(int level, const Box& box, std::byte* texels,
+                         std::ptrdiff_t row_stride) const noexcept {
+    try {
+        const int values = box.width() * channels();
+        std::vector<std::byte> raw(static_cast<std::size_t>(values) * box.height() * size_of(m_base.type()));
+        const std::ptrdiff_t raw_stride = std::ptrdiff_t{values} * size_of(m_base.type());
+        if (!m_base.read(level, box, raw.data(), raw_stride)) return false;
+        std::vector<float> row(static_cast<std::size_t>(values));
+        for (int y = 0; y < box.height(); ++y) {
+            load_channels(raw.data() + y * raw_stride, m_base.type(), values, row.data());
+            m_space->to_working(row.data(), box.width(), 1);
+            std::memcpy(texels + y * row_stride, row.data(), row.size() * sizeof(float));
+        }
+        return true;
+    } catch (const std::exception&) {
+        return false;
+    }
+}
+
+}  // namespace anamorph

@@ -1,0 +1,150 @@
+// SPDX-License-Identifier: Apache-2.0
+// OpenImageIO's images as sources: an ImageBuf, a file behind an ImageCache, either in a working colour
+// space.
+//
+// The image of a source is the display window: pixels outside the data window are 0 (black, transparent).
+// Pixel types other than uint8, uint16, half and float are read as float.
+#pragma once
+
+#include <OpenImageIO/color.h>
+#include <OpenImageIO/imagebuf.h>
+#include <OpenImageIO/imagecache.h>
+
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "anamorph/image/source.h"
+
+namespace anamorph {
+
+#if OIIO_VERSION >= 30000
+using ImageCacheRef = std::shared_ptr<OIIO::ImageCache>;
+#else
+using ImageCacheRef = OIIO::ImageCache*;
+#endif
+
+/// The core's type for an OpenImageIO type: itself, or float.
+PixelType pixel_type(OIIO::TypeDesc type);
+OIIO::TypeDesc oiio_type(PixelType type);
+
+/// The data window inside the panorama: from the display window, or from GPano's cropped area where the image
+/// has one.
+struct Frame {
+    int width = 0, height = 0;  ///< of the panorama
+    Box data;                   ///< relative to the panorama's corner
+};
+Frame frame_of(const OIIO::ImageSpec& spec);
+
+/// The channel by which a picture's colour is not yet multiplied, or -1.
+int unassociated_alpha_of(const OIIO::ImageSpec& spec);
+
+/// Throws Error when the image is deep, has depth, or has no pixels or channels.
+void check_flat(const OIIO::ImageSpec& spec, const std::string& name);
+
+/// A file, read tile by tile through an ImageCache. Each read borrows one of a pool of the cache's thread
+/// records, so it may happen inside another read of the same cache. Throws Error when the image cannot be
+/// opened.
+class CacheSource final : public Source {
+  public:
+    CacheSource(ImageCacheRef cache, const std::string& name, int subimage = 0, int first_level = 0);
+
+    const OIIO::ImageSpec& spec() const { return m_levels.front().spec; }
+    const Frame& frame() const { return m_levels.front().frame; }
+    /// What the last failed read failed of.
+    std::string error() const;
+
+    PixelType type() const noexcept override { return m_type; }
+    int channels() const noexcept override { return spec().nchannels; }
+    int unassociated_alpha() const noexcept override { return m_alpha; }
+    int levels() const noexcept override { return static_cast<int>(m_levels.size()); }
+    Size size(int level) const noexcept override;
+    bool read(int level, const Box& box, std::byte* texels,
+              std::ptrdiff_t row_stride) const noexcept override;
+
+    /// Leaves level 0 only, where the coarser levels cannot serve (cube faces that do not halve).
+    void keep_first_level() { m_levels.resize(1); }
+
+  private:
+    struct Level {
+        OIIO::ImageSpec spec;  ///< the file's
+        Frame frame;
+    };
+    bool copy_tiles(int level, const Box& box, std::byte* texels, std::ptrdiff_t row_stride) const;
+    bool fail(const std::string& message) const;
+
+    ImageCacheRef m_cache;
+    OIIO::ustring m_name;
+    int m_subimage, m_first_level;
+    PixelType m_type = PixelType::float32;
+    int m_alpha = -1;
+    std::vector<Level> m_levels;
+    mutable std::mutex m_mutex;
+    mutable std::string m_error;
+};
+
+/// Pixels that an ImageBuf holds in memory; read in place where type and window allow it. Keeps a reference.
+class BufferSource final : public Source {
+  public:
+    explicit BufferSource(const OIIO::ImageBuf& image);
+
+    PixelType type() const noexcept override { return m_type; }
+    int channels() const noexcept override { return m_image.nchannels(); }
+    int unassociated_alpha() const noexcept override { return m_alpha; }
+    int levels() const noexcept override { return 1; }
+    Size size(int) const noexcept override { return {m_frame.width, m_frame.height}; }
+    bool read(int level, const Box& box, std::byte* texels,
+              std::ptrdiff_t row_stride) const noexcept override;
+    const ConstImageView* view(int) const noexcept override { return m_view ? &*m_view : nullptr; }
+
+  private:
+    const OIIO::ImageBuf& m_image;
+    Frame m_frame;
+    PixelType m_type;
+    int m_alpha;
+    std::optional<ConstImageView> m_view;
+};
+
+/// The way to a colour space to filter in, and back.
+class WorkingSpace {
+  public:
+    /// `name`: a colour space or a role of OpenColorIO's configuration ($OCIO, or OpenImageIO's own). Throws
+    /// Error when it is unknown or when the image does not say its own. Null when there is nothing to
+    /// convert.
+    static std::shared_ptr<const WorkingSpace> make(const std::string& name, const OIIO::ImageSpec& spec);
+
+    void to_working(float* pixels, int width, int height) const { convert(*m_there, pixels, width, height); }
+    void from_working(float* pixels, int width, int height) const { convert(*m_back, pixels, width, height); }
+
+  private:
+    void convert(const OIIO::ColorProcessor& processor, float* pixels, int width, int height) const;
+
+    OIIO::ColorProcessorHandle m_there, m_back;
+    int m_channels = 0;
+    int m_alpha = -1;  ///< of colour that is multiplied by it
+};
+
+/// A source as float in a working space. Keeps a reference to the base.
+class WorkingSource final : public Source {
+  public:
+    WorkingSource(const Source& base, std::shared_ptr<const WorkingSpace> space)
+        : m_base(base), m_space(std::move(space)) {}
+
+    PixelType type() const noexcept override { return PixelType::float32; }
+    int channels() const noexcept override { return m_base.channels(); }
+    int unassociated_alpha() const noexcept override { return m_base.unassociated_alpha(); }
+    int levels() const noexcept override {
+        return 1;
+    }  // an average before the conversion is not one after it
+    Size size(int level) const noexcept override { return m_base.size(level); }
+    bool read(int level, const Box& box, std::byte* texels,
+              std::ptrdiff_t row_stride) const noexcept override;
+
+  private:
+    const Source& m_base;
+    std::shared_ptr<const WorkingSpace> m_space;
+};
+
+}  // namespace anamorph

@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: Apache-2.0
+// What an image says of itself, and what a picture made of it may still say.
+#pragma once
+
+#include <OpenImageIO/imageio.h>
+
+#include "anamorph/image/reproject_parameters.h"
+
+namespace anamorph {
+
+/// The panorama's size, and its projection as GPano, OpenEXR's envmap or a texture's format name it.
+SourceFacts facts_of(const OIIO::ImageSpec& spec);
+
+/// The options of a call as assignments: names with `prefix` (taken off), all names without one. Numbers are
+/// written in the fewest digits that read back, so that 0.01f means 0.01.
+std::vector<Assignment> assignments_of(const OIIO::ParamValueList& options, const std::string& prefix = "");
+
+/// The picture's header: its size and channels, the source's metadata that still holds, and anamorph:tol,
+/// anamorph:max_error, anamorph:exact_fraction. No tiles.
+OIIO::ImageSpec picture_spec(const OIIO::ImageSpec& source, const ReprojectRequest& request,
+                             const Reached& reached);
+
+}  // namespace anamorph

@@ -1,0 +1,145 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "anamorph/oiio_ops.h"
+
+#include <algorithm>
+#include <memory>
+
+#include "anamorph/image_source.h"
+#include "anamorph/metadata.h"
+#include "anamorph/parallel.h"
+#include "anamorph/picture.h"
+
+namespace anamorph {
+namespace {
+
+using OIIO::ImageBuf;
+using OIIO::ImageSpec;
+using OIIO::ROI;
+
+ParallelFor default_parallel_for(int threads) {
+    OIIO::thread_pool& pool = *OIIO::default_thread_pool();
+    return parallel_for_on(pool, threads > 0 ? threads : pool.size() + 1);
+}
+
+std::unique_ptr<Source> source_of(const ImageBuf& src) {
+    if (src.localpixels()) return std::make_unique<BufferSource>(src);
+    return std::make_unique<CacheSource>(src.imagecache(), src.name(), src.subimage(), src.miplevel());
+}
+
+/// Options of the call, and the size of an initialised dst where no other is asked for.
+ParameterValues values_of(const OIIO::ParamValueList& options, const ImageBuf& dst) {
+    ParameterValues values(reproject_parameters());
+    if (dst.initialized() && dst.spec().full_width > 0 && dst.spec().full_height > 0)
+        values.assign(
+            {{"size", std::to_string(dst.spec().full_width) + "x" + std::to_string(dst.spec().full_height)}});
+    const std::vector<Assignment> assignments = assignments_of(options);
+    ParameterValues asked(reproject_parameters());
+    asked.assign(assignments);
+    for (const char* name : {"src", "tile", "mip"})
+        if (asked.given(name)) throw Error(name, printable(asked.text(name)), "allowed in recipes only");
+    values.assign(assignments);
+    return values;
+}
+
+/// Brings dst and roi into the state in which pixels can be filled.
+void prepare(ImageBuf& dst, const ImageSpec& picture, ROI& roi) {
+    if (!dst.initialized()) {
+        ImageSpec spec = picture;
+        if (roi.defined()) {
+            spec.x = roi.xbegin;
+            spec.y = roi.ybegin;
+            spec.width = roi.width();
+            spec.height = roi.height();
+            if (spec.width < 1 || spec.height < 1) throw Error("roi has no pixels");
+        }
+        dst.reset(spec, OIIO::InitializePixels::Yes);
+        if (dst.has_error() || !dst.localpixels())
+            throw Error("no memory for " + std::to_string(spec.width) + "x" + std::to_string(spec.height) +
+                        " pixels");
+        roi = ROI(spec.x, spec.x + spec.width, spec.y, spec.y + spec.height, 0, 1,
+                  roi.defined() ? roi.chbegin : 0, roi.defined() ? roi.chend : spec.nchannels);
+    } else {
+        if (dst.deep() || dst.spec().depth > 1)
+            throw Error("dst is deep or a volume: allowed are flat images");
+        roi = roi.defined() ? roi_intersection(roi, dst.roi()) : dst.roi();
+        if (!dst.localpixels() && !dst.make_writable(true)) throw Error("dst cannot be written");
+    }
+    roi.chend = std::min({roi.chend, dst.nchannels(), picture.nchannels});
+    if (roi.chbegin >= roi.chend) throw Error("roi has no channel of the picture");
+}
+
+/// The part of the picture that `roi` of dst shows.
+Box box_of(const ROI& roi, const ImageSpec& dst) {
+    return {roi.xbegin - dst.full_x, roi.ybegin - dst.full_y, roi.xend - dst.full_x, roi.yend - dst.full_y};
+}
+
+void fill(ImageBuf& dst, const Picture& picture, const ROI& roi, const ParallelFor& parallel_for) {
+    const ImageSpec& spec = dst.spec();
+    const Box box = box_of(roi, spec);
+    const bool all_channels =
+        roi.chbegin == 0 && roi.chend == picture.channels() && spec.nchannels == roi.chend;
+    const PixelType type = pixel_type(spec.format);
+    if (all_channels && oiio_type(type) == spec.format) {
+        picture.draw(box,
+                     {static_cast<std::byte*>(dst.pixeladdr(roi.xbegin, roi.ybegin)), type, box.width(),
+                      box.height(), spec.nchannels, dst.pixel_stride(), dst.scanline_stride()},
+                     parallel_for);
+        return;
+    }
+    // Other channels or types: by way of float, some rows at a time.
+    constexpr int kRows = 512;
+    const int channels = picture.channels();
+    std::vector<float> pixels;
+    for (int y = roi.ybegin; y < roi.yend; y += kRows) {
+        ROI rows = roi;
+        rows.ybegin = y;
+        rows.yend = std::min(y + kRows, roi.yend);
+        const Box part = box_of(rows, spec);
+        pixels.resize(static_cast<std::size_t>(part.width()) * part.height() * channels);
+        picture.draw(part,
+                     packed_view(reinterpret_cast<std::byte*>(pixels.data()), PixelType::float32,
+                                 part.width(), part.height(), channels),
+                     parallel_for);
+        const auto pixel = static_cast<OIIO::stride_t>(channels * sizeof(float));
+        if (!dst.set_pixels(rows, OIIO::TypeFloat, pixels.data() + roi.chbegin, pixel, pixel * part.width()))
+            throw Error(dst.geterror());
+    }
+}
+
+}  // namespace
+
+bool reproject(ImageBuf& dst, const ImageBuf& src, const OIIO::ParamValueList& options, ROI roi,
+               int nthreads) {
+    if (&dst == &src) return reproject(dst, ImageBuf(src), options, roi, nthreads);
+    try {
+        if (!src.initialized()) throw Error("the source image is not initialised");
+        // Asking for the pixels reads a file that was only named so far.
+        if (!src.localpixels() && src.storage() != ImageBuf::IMAGECACHE)
+            throw Error("the source image cannot be read: " + src.geterror());
+        check_flat(src.spec(), src.name());
+        const ParameterValues values = values_of(options, dst);
+        const ReprojectRequest request = read_reproject_request(values, facts_of(src.spec()));
+        const ParallelFor parallel_for = default_parallel_for(nthreads);
+        const Reprojection reprojection(request.map(), request.options);
+        const ImageSpec spec = picture_spec(src.spec(), request, reprojection.reached(parallel_for));
+
+        const SourceStack source(source_of(src), src.spec(), request, values.text("colorspace"));
+        const Picture picture(reprojection, source);
+        prepare(dst, spec, roi);
+        fill(dst, picture, roi, parallel_for);
+        for (const char* name : {"anamorph:tol", "anamorph:max_error", "anamorph:exact_fraction"})
+            dst.specmod().attribute(name, spec.get_float_attribute(name));
+        return true;
+    } catch (const std::exception& e) {
+        dst.errorfmt("reproject: {}", e.what());
+        return false;
+    }
+}
+
+ImageBuf reproject(const ImageBuf& src, const OIIO::ParamValueList& options, ROI roi, int nthreads) {
+    ImageBuf result;
+    reproject(result, src, options, roi, nthreads);
+    return result;
+}
+
+}  // namespace anamorph

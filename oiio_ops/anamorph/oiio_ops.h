@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: Apache-2.0
+// Image warping for OpenImageIO's ImageBufs, with the contract of ImageBufAlgo.
+#pragma once
+
+#include <OpenImageIO/imagebuf.h>
+
+namespace anamorph {
+
+/// A panorama seen through another lens.
+///
+/// `options`: the keys of a recipe (docs of the `pano` recipe; from, to, fov, yaw, pitch, roll, size, filter,
+/// tol, ...) as strings or numbers. `src`, `tile` and `mip` are a file's and not taken here.
+///
+/// An uninitialised `dst` gets the picture's size (of `roi`, if one is given), the source's channels and
+/// pixel type and its metadata that still holds. An initialised one keeps its spec, and `roi` of it is
+/// filled: without `size` its display window is the picture; channels that the picture does not have are left
+/// alone. anamorph:tol, anamorph:max_error (source pixels) and anamorph:exact_fraction tell what was reached.
+/// `nthreads`: 0 for OpenImageIO's default. On any error: false, and `dst` has a message of one line.
+bool reproject(OIIO::ImageBuf& dst, const OIIO::ImageBuf& src, const OIIO::ParamValueList& options = {},
+               OIIO::ROI roi = {}, int nthreads = 0);
+
+/// The same as a new image; on an error the result has_error().
+OIIO::ImageBuf reproject(const OIIO::ImageBuf& src, const OIIO::ParamValueList& options = {},
+                         OIIO::ROI roi = {}, int nthreads = 0);
+
+}  // namespace anamorph
