@@ -89,6 +89,15 @@ std::vector<Assignment> assignments_of(const OIIO::ParamValueList& options, cons
     return out;
 }
 
+void check_size(const Chart& target, int channels, TypeDesc type) {
+    const int limit = OIIO::get_int_attribute("limits:imagesize_MB", 32768);
+    const double megabytes =
+        double(target.width()) * target.height() * channels * double(type.size()) / (1024.0 * 1024.0);
+    if (limit > 0 && megabytes > limit)
+        throw Error("size", std::to_string(target.width()) + "x" + std::to_string(target.height()),
+                    "allowed are at most " + std::to_string(limit) + " MB (limits:imagesize_MB)");
+}
+
 ImageSpec picture_spec(const ImageSpec& source, const ReprojectRequest& request, const Reached& reached) {
     ImageSpec spec = source;
     const Chart& target = request.target;

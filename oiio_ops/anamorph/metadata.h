@@ -15,6 +15,9 @@ SourceFacts facts_of(const OIIO::ImageSpec& spec);
 /// written in the fewest digits that read back, so that 0.01f means 0.01.
 std::vector<Assignment> assignments_of(const OIIO::ParamValueList& options, const std::string& prefix = "");
 
+/// Throws Error when a picture is larger than OpenImageIO's attribute limits:imagesize_MB.
+void check_size(const Chart& target, int channels, OIIO::TypeDesc type);
+
 /// The picture's header: its size and channels, the source's metadata that still holds, and anamorph:tol,
 /// anamorph:max_error, anamorph:exact_fraction. No tiles.
 OIIO::ImageSpec picture_spec(const OIIO::ImageSpec& source, const ReprojectRequest& request,

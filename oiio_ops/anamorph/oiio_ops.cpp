@@ -119,6 +119,7 @@ bool reproject(ImageBuf& dst, const ImageBuf& src, const OIIO::ParamValueList& o
         check_flat(src.spec(), src.name());
         const ParameterValues values = values_of(options, dst);
         const ReprojectRequest request = read_reproject_request(values, facts_of(src.spec()));
+        check_size(request.target, src.nchannels(), src.spec().format);
         const ParallelFor parallel_for = default_parallel_for(nthreads);
         const Reprojection reprojection(request.map(), request.options);
         const ImageSpec spec = picture_spec(src.spec(), request, reprojection.reached(parallel_for));

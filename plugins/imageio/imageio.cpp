@@ -1,0 +1,274 @@
+// SPDX-License-Identifier: Apache-2.0
+// The OpenImageIO plugin: inputs for panorama recipes (NAME.pano, NAME.pano?key=value&...) and for images in
+// memory (NAME.anabuf), and the output that puts them there.
+#include <OpenImageIO/imagebuf.h>
+#include <OpenImageIO/imageio.h>
+
+#include <algorithm>
+#include <cstring>
+#include <memory>
+#include <mutex>
+#include <vector>
+
+#include "anamorph/metadata.h"
+#include "anamorph/version.h"
+#include "buffer_store.h"
+#include "content.h"
+#include "pano_content.h"
+#include "recipe.h"
+
+namespace anamorph {
+namespace {
+
+using OIIO::ImageInput;
+using OIIO::ImageOutput;
+using OIIO::ImageSpec;
+
+class FileInput final : public ImageInput {
+    // Newer versions of OpenImageIO have more overloads of these.
+    using ImageInput::read_native_scanlines;
+    using ImageInput::read_native_tiles;
+    using ImageInput::valid_file;
+
+  public:
+    ~FileInput() override { close(); }
+
+    const char* format_name() const override { return "anamorph"; }
+
+    int supports(OIIO::string_view feature) const override {
+#if OIIO_VERSION >= 30000
+        // Before 3.0 a host that is told so aborts where open() fails.
+        if (feature == "procedural") return true;
+#endif
+        return feature == "arbitrary_metadata" || feature == "exif" || feature == "iptc" ||
+               feature == "mipmap";
+    }
+
+    bool valid_file(const std::string& name) const override {
+        return has_extension(name, kRecipeExtension) || has_extension(name, kBufferExtension);
+    }
+
+    bool open(const std::string& name, ImageSpec& spec) override {
+        return open(name, spec, ImageSpec());
+    }
+
+    bool open(const std::string& name, ImageSpec& spec, const ImageSpec& config) override {
+        // The extension first: OpenImageIO offers names of all kinds.
+        if (!valid_file(name)) return failed("not a .pano or .anabuf name");
+        return guarded([&] {
+            close();
+            std::shared_ptr<const Content> content =
+                has_extension(name, kBufferExtension)
+                    ? open_buffer(name)
+                    : open_pano(name, assignments_of(config.extra_attribs, "pano:"));
+            const lock_guard lock(*this);
+            m_content = std::move(content);
+            m_level = 0;
+            m_spec = spec = m_content->spec(0);
+        });
+    }
+
+    bool close() override {
+        const lock_guard lock(*this);
+        m_content.reset();
+        m_level = -1;
+        m_spec = ImageSpec();
+        return true;
+    }
+
+    int current_subimage() const override {
+        const lock_guard lock(*this);
+        return m_content ? 0 : -1;
+    }
+    int current_miplevel() const override {
+        const lock_guard lock(*this);
+        return m_level;
+    }
+
+    bool seek_subimage(int subimage, int miplevel) override {
+        const lock_guard lock(*this);
+        if (!m_content || subimage != 0 || miplevel < 0 || miplevel >= m_content->levels()) return false;
+        if (miplevel != m_level) m_spec = m_content->spec(miplevel);
+        m_level = miplevel;
+        return true;
+    }
+
+    bool read_native_scanline(int subimage, int miplevel, int y, int, void* data) override {
+        return read(subimage, miplevel, Rows{y, y + 1}, data);
+    }
+    bool read_native_scanlines(int subimage, int miplevel, int ybegin, int yend, int, void* data) override {
+        return read(subimage, miplevel, Rows{ybegin, yend}, data);
+    }
+    bool read_native_scanlines(int subimage, int miplevel, int ybegin, int yend, int z, int chbegin,
+                               int chend, void* data) override {
+        // All channels at once: the default does it line by line.
+        return guarded([&] {
+            const std::shared_ptr<const Content> open = content();
+            const ImageSpec& spec = level_spec(*open, subimage, miplevel);
+            if (chbegin < 0 || chend > spec.nchannels || chbegin >= chend)
+                throw Error("channels " + std::to_string(chbegin) + " to " + std::to_string(chend) +
+                            ": allowed are 0 to " + std::to_string(spec.nchannels));
+            const std::size_t channel = spec.format.size(),
+                              pixel = channel * static_cast<std::size_t>(spec.nchannels);
+            const std::size_t part = channel * static_cast<std::size_t>(chend - chbegin);
+            const std::size_t pixels =
+                static_cast<std::size_t>(spec.width) * static_cast<std::size_t>(std::max(0, yend - ybegin));
+            std::vector<std::byte> all(pixels * pixel);
+            if (!read_native_scanlines(subimage, miplevel, ybegin, yend, z, all.data()))
+                throw Error(geterror());
+            for (std::size_t i = 0; i < pixels; ++i)
+                std::memcpy(static_cast<std::byte*>(data) + i * part,
+                            all.data() + i * pixel + static_cast<std::size_t>(chbegin) * channel, part);
+        });
+    }
+    bool read_native_tile(int subimage, int miplevel, int x, int y, int, void* data) override {
+        // A tile's buffer is always a whole one.
+        return guarded([&] {
+            const std::shared_ptr<const Content> open = content();
+            const ImageSpec& spec = level_spec(*open, subimage, miplevel);
+            if (spec.tile_width == 0) throw Error("the picture has no tiles (tile=0)");
+            read_box(*open, miplevel, {x, y, x + spec.tile_width, y + spec.tile_height}, data);
+        });
+    }
+    bool read_native_tiles(int subimage, int miplevel, int xbegin, int xend, int ybegin, int yend, int, int,
+                           void* data) override {
+        return guarded([&] {
+            const std::shared_ptr<const Content> open = content();
+            level_spec(*open, subimage, miplevel);
+            read_box(*open, miplevel, {xbegin, ybegin, xend, yend}, data);
+        });
+    }
+
+  private:
+    struct Rows {
+        int begin, end;
+    };
+
+    bool read(int subimage, int miplevel, const Rows& rows, void* data) {
+        return guarded([&] {
+            const std::shared_ptr<const Content> open = content();
+            const ImageSpec& spec = level_spec(*open, subimage, miplevel);
+            if (rows.end > spec.y + spec.height)
+                throw Error("rows up to " + std::to_string(rows.end) + ": allowed are up to " +
+                            std::to_string(spec.y + spec.height));
+            read_box(*open, miplevel, {spec.x, rows.begin, spec.x + spec.width, rows.end}, data);
+        });
+    }
+
+    /// `box` in the file's coordinates.
+    static void read_box(const Content& content, int miplevel, const Box& box, void* data) {
+        const ImageSpec& spec = content.spec(miplevel);
+        const Box local{box.x0 - spec.x, box.y0 - spec.y, box.x1 - spec.x, box.y1 - spec.y};
+        if (local.empty() || local.x0 < 0 || local.y0 < 0 || local.x0 >= spec.width ||
+            local.y0 >= spec.height)
+            throw Error("pixels " + std::to_string(box.width()) + "x" + std::to_string(box.height()) + "+" +
+                        std::to_string(box.x0) + "+" + std::to_string(box.y0) + " lie outside the image of " +
+                        std::to_string(spec.width) + "x" + std::to_string(spec.height));
+        content.read(miplevel, local, static_cast<std::byte*>(data));
+    }
+
+    std::shared_ptr<const Content> content() const {
+        const lock_guard lock(*this);
+        if (!m_content) throw Error("the file is not open");
+        return m_content;
+    }
+    static const ImageSpec& level_spec(const Content& content, int subimage, int miplevel) {
+        if (subimage != 0 || miplevel < 0 || miplevel >= content.levels())
+            throw Error("subimage " + std::to_string(subimage) + ", MIP level " + std::to_string(miplevel) +
+                        ": there are 1 and " + std::to_string(content.levels()));
+        return content.spec(miplevel);
+    }
+
+    bool failed(const std::string& message) {
+        errorfmt("anamorph: {}", message);
+        return false;
+    }
+    template <class Body>
+    bool guarded(const Body& body) {
+        try {
+            body();
+            return true;
+        } catch (const std::exception& e) {
+            return failed(e.what());
+        }
+    }
+
+    std::shared_ptr<const Content> m_content;
+    int m_level = -1;
+};
+
+class BufferOutput final : public ImageOutput {
+  public:
+    ~BufferOutput() override { close(); }
+
+    const char* format_name() const override { return "anamorph"; }
+
+    int supports(OIIO::string_view feature) const override {
+        // Procedural: hosts do not rename a file that is none.
+        for (const char* has :
+             {"procedural", "alpha", "nchannels", "random_access", "rewrite", "displaywindow", "origin",
+              "negativeorigin", "arbitrary_metadata", "exif", "iptc"})
+            if (feature == has) return true;
+        return false;
+    }
+
+    bool open(const std::string& name, const ImageSpec& spec, OpenMode mode) override {
+        if (mode != Create) return failed("an image in memory has one subimage and one level");
+        if (spec.deep || spec.depth > 1) return failed("allowed are flat images");
+        if (spec.width < 1 || spec.height < 1 || spec.nchannels < 1) return failed("the image has no pixels");
+        m_name = name;
+        m_spec = spec;
+        m_spec.channelformats.clear();
+        m_spec.tile_width = m_spec.tile_height = 0;
+        m_image = std::make_shared<OIIO::ImageBuf>(m_spec, OIIO::InitializePixels::Yes);
+        if (m_image->localpixels()) return true;
+        m_image.reset();
+        return failed("no memory for the image");
+    }
+
+    bool write_scanline(int y, int, OIIO::TypeDesc format, const void* data,
+                        OIIO::stride_t xstride) override {
+        if (!m_image) return failed("the file is not open");
+        const OIIO::ROI row(m_spec.x, m_spec.x + m_spec.width, y, y + 1);
+        return m_image->set_pixels(row, format, data, xstride) || failed(m_image->geterror());
+    }
+
+    bool close() override {
+        if (m_image) store_buffer(m_name, std::move(m_image));
+        m_image.reset();
+        return true;
+    }
+
+  private:
+    bool failed(const std::string& message) {
+        errorfmt("anamorph: {}", message);
+        return false;
+    }
+
+    std::string m_name;
+    std::shared_ptr<OIIO::ImageBuf> m_image;
+};
+
+}  // namespace
+}  // namespace anamorph
+
+OIIO_PLUGIN_EXPORTS_BEGIN
+
+OIIO_EXPORT int anamorph_imageio_version = OIIO_PLUGIN_VERSION;
+
+OIIO_EXPORT const char* anamorph_imageio_library_version() {
+    static const std::string text = std::string("Anamorph ") + anamorph::version();
+    return text.c_str();
+}
+
+OIIO_EXPORT OIIO::ImageInput* anamorph_input_imageio_create() {
+    return new anamorph::FileInput;
+}
+OIIO_EXPORT const char* anamorph_input_extensions[] = {"pano", "anabuf", nullptr};
+
+OIIO_EXPORT OIIO::ImageOutput* anamorph_output_imageio_create() {
+    return new anamorph::BufferOutput;
+}
+OIIO_EXPORT const char* anamorph_output_extensions[] = {"anabuf", nullptr};
+
+OIIO_PLUGIN_EXPORTS_END
