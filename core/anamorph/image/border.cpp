@@ -41,9 +41,9 @@ Texel across_cube_edge(const Chart& chart, double x, double y, int piece, const 
     const double kx = static_cast<double>(chart.width()) / level.width;
     const double ky = static_cast<double>(chart.height()) / level.height;
     const Ray<double> ray = chart.ray((x + 0.5) * kx, (y + 0.5) * ky, piece);
-    const Branch branch = chart.branch_of(ray);
-    const Point<double> p = chart.point(ray, branch);
-    const Box face = border.interior(branch.piece, level);
+    const int other = chart.piece_of(ray);
+    const Point<double> p = chart.point(ray, other);
+    const Box face = border.interior(other, level);
     const auto inside = [](double at, int first, int end) {
         return static_cast<int>(std::clamp(std::floor(at), double(first), double(end - 1)));
     };
