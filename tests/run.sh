@@ -4,7 +4,7 @@
 # Logs are in build/log; the log of a step that fails is printed.
 set -euo pipefail
 cd "$(dirname "$0")/.."
-tests/install_packages.sh build hosts tests
+tests/install_packages.sh build hosts tests peers plots
 
 log_dir=build/log
 mkdir -p "$log_dir"

@@ -1,0 +1,83 @@
+#!/usr/bin/python3
+# SPDX-License-Identifier: Apache-2.0
+"""Draws the table of `speed_vs_error --csv` as time per pixel against the largest error, one panel for each case.
+
+Usage: plot_speed_vs_error.py TABLE.csv PICTURE...     (the endings say the formats: .png, .svg, .pdf)
+
+Only the largest size of the table is drawn, on one thread. A scheme without a tolerance that makes no error (or
+none that has a meaning, as the copy of the bytes touched) is a horizontal line.
+"""
+import csv
+import sys
+
+import matplotlib
+
+matplotlib.use("Agg")
+import matplotlib.pyplot as plt
+
+COLUMNS = ("op case scheme tol_px size threads ns_per_px ratio_to_exact mean_error_px p99_error_px "
+           "max_error_px bound_px exact_fraction").split()
+
+
+def read_table(path):
+    with open(path, newline="") as file:
+        reader = csv.DictReader(file)
+        if reader.fieldnames != COLUMNS:
+            sys.exit(f"{path}: the columns are {reader.fieldnames}, expected are {COLUMNS}")
+        rows = list(reader)
+    if not rows:
+        sys.exit(f"{path}: no rows")
+    size = max(int(row["size"]) for row in rows)
+    return size, [row for row in rows if int(row["size"]) == size and int(row["threads"]) == 1]
+
+
+def number(text):
+    """The value of a field, 0 where it is empty or not finite."""
+    value = float(text) if text else 0.0
+    return value if 0 < value < float("inf") else 0.0
+
+
+def draw_case(axes, rows, colors):
+    for scheme, color in colors.items():
+        mine = [row for row in rows if row["scheme"] == scheme]
+        points = sorted((number(row["max_error_px"]), number(row["ns_per_px"])) for row in mine)
+        inexact = [point for point in points if point[0] > 0]
+        if inexact:
+            axes.plot(*zip(*inexact), "o-", color=color, label=scheme, markersize=4)
+        for _, ns in [point for point in points if point[0] == 0]:
+            axes.axhline(ns, color=color, linestyle="--", linewidth=1, label=None if inexact else scheme)
+    axes.set(xscale="log", yscale="log", title=rows[0]["case"], xlabel="largest error, source pixels")
+    axes.grid(True, which="both", linewidth=0.3)
+
+
+def main():
+    if len(sys.argv) < 3:
+        sys.exit(__doc__)
+    size, rows = read_table(sys.argv[1])
+    cases = list(dict.fromkeys(row["case"] for row in rows))
+    schemes = list(dict.fromkeys(row["scheme"] for row in rows))
+    colors = {scheme: plt.get_cmap("tab20" if len(schemes) > 10 else "tab10")(i) for i, scheme in enumerate(schemes)}
+
+    across = min(len(cases), 3)
+    down = -(-len(cases) // across)
+    figure, panels = plt.subplots(down, across, figsize=(4.6 * across + 1.8, 3.6 * down), squeeze=False, sharey=True)
+    for case, axes in zip(cases, panels.flat):
+        draw_case(axes, [row for row in rows if row["case"] == case], colors)
+    for axes in panels.flat[len(cases):]:
+        axes.set_visible(False)
+    for axes in panels[:, 0]:
+        axes.set_ylabel("ns per pixel, 1 thread")
+
+    entries = {}
+    for axes in panels.flat[:len(cases)]:
+        for handle, label in zip(*axes.get_legend_handles_labels()):
+            entries.setdefault(label, handle)
+    figure.legend(entries.values(), entries.keys(), loc="center right", fontsize=8)
+    figure.suptitle(f"Time against error, {size} x {size} view")
+    figure.tight_layout(rect=(0, 0, 1 - 1.9 / figure.get_figwidth(), 1))
+    for picture in sys.argv[2:]:
+        figure.savefig(picture, dpi=110)
+
+
+if __name__ == "__main__":
+    main()
