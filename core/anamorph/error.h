@@ -11,17 +11,15 @@ namespace anamorph {
 
 /// A parameter was given a value it cannot take. `what()` is one line: "fov=200: allowed is ...".
 class Error : public std::runtime_error {
-public:
+  public:
     Error(const std::string& parameter, const std::string& value, const std::string& allowed)
-        : std::runtime_error(parameter + "=" + value + ": " + allowed), m_parameter(parameter)
-    {
-    }
+        : std::runtime_error(parameter + "=" + value + ": " + allowed), m_parameter(parameter) {}
     /// A failure that no single parameter caused.
     explicit Error(const std::string& message) : std::runtime_error(message) {}
 
     const std::string& parameter() const noexcept { return m_parameter; }
 
-private:
+  private:
     std::string m_parameter;
 };
 
@@ -30,8 +28,7 @@ private:
 using ParallelFor = std::function<void(std::int64_t count, const std::function<void(std::int64_t)>& body)>;
 
 /// The loop without threads.
-inline void serial_for(std::int64_t count, const std::function<void(std::int64_t)>& body)
-{
+inline void serial_for(std::int64_t count, const std::function<void(std::int64_t)>& body) {
     for (std::int64_t i = 0; i < count; ++i) body(i);
 }
 

@@ -19,31 +19,29 @@ constexpr int kBlockWidth = 64, kBlockHeight = 32;
 // Below this a polynomial costs more than its pixels.
 constexpr int kFloor = 8, kResidualFloor = 4;
 
-// Rounding of a point's coordinates to float and of their evaluation: the coefficients, s and t are each rounded
-// once, and at most five operations are rounded on the way from the smallest term to the sum, so that each term errs
-// by less than 8 half-ULP of its size.
+// Rounding of a point's coordinates to float and of their evaluation: the coefficients, s and t are each
+// rounded once, and at most five operations are rounded on the way from the smallest term to the sum, so that
+// each term errs by less than 8 half-ULP of its size.
 constexpr double kFloatRounding = 8 * 0x1p-24;
-// Rounding of the formula itself in double, relative to the extent of the source: some hundred operations, each
-// well conditioned wherever the bound is finite (tests/core holds it against long double).
+// Rounding of the formula itself in double, relative to the extent of the source: some hundred operations,
+// each well conditioned wherever the bound is finite (tests/core holds it against long double).
 constexpr double kDoubleRounding = 256 * 0x1p-53;
 
-// The part of a bound that its remainder may make up before a fresh one, over a smaller box, is worth its cost.
+// The part of a bound that its remainder may make up before a fresh one, over a smaller box, is worth its
+// cost.
 constexpr double kTailShare = 0.25;
 
 /// Half the distance between the first and the last of a row of pixel centres.
-double half(int pixels)
-{
+double half(int pixels) {
     return pixels > 1 ? 0.5 * (pixels - 1) : 0.5;
 }
 
-Box sub_box(const Box& box, bool vertical_cut, bool second)
-{
+Box sub_box(const Box& box, bool vertical_cut, bool second) {
     Box b = box;
     if (vertical_cut) {
         const int cut = box.x0 + static_cast<int>(std::bit_ceil(static_cast<unsigned>(box.width()))) / 2;
         (second ? b.x0 : b.x1) = cut;
-    }
-    else {
+    } else {
         const int cut = box.y0 + static_cast<int>(std::bit_ceil(static_cast<unsigned>(box.height()))) / 2;
         (second ? b.y0 : b.y1) = cut;
     }
@@ -52,28 +50,31 @@ Box sub_box(const Box& box, bool vertical_cut, bool second)
 
 /// Plans one piece of the target; blocks are appended to `blocks`.
 class Planner {
-public:
+  public:
     Planner(const Panorama& map, const PlanOptions& options, int piece, std::vector<Block>& blocks)
-        : m_map(map), m_options(options), m_piece(piece), m_blocks(blocks)
-    {
+        : m_map(map), m_options(options), m_piece(piece), m_blocks(blocks) {
         const Chart& source = map.source();
         m_extent = source.width() + source.height() + source.scale_x() + source.scale_y();
     }
 
-    void exact(const Box& box)
-    {
+    void exact(const Box& box) {
         for_blocks(box, [&](const Box& b) { emit(b, Block::Kind::exact); });
     }
 
     /// Top-down: bounds the map over a large box, and settles its blocks with that bound if it serves them.
-    void settle(const Box& box)
-    {
+    void settle(const Box& box) {
         const std::size_t first = m_blocks.size();
-        const Panorama::Local local = m_map.local_around(0.5 * (box.x0 + box.x1), 0.5 * (box.y0 + box.y1), m_piece);
+        const Panorama::Local local =
+            m_map.local_around(0.5 * (box.x0 + box.x1), 0.5 * (box.y0 + box.y1), m_piece);
         switch (cover(box, local)) {
-            case Cover::outside: emit(box, Block::Kind::outside); return;
-            case Cover::mixed: split(box, first); return;
-            case Cover::inside: break;
+            case Cover::outside:
+                emit(box, Block::Kind::outside);
+                return;
+            case Cover::mixed:
+                split(box, first);
+                return;
+            case Cover::inside:
+                break;
         }
         if (m_options.scheme == Scheme::residual)
             settle_residual(box, local, first);
@@ -81,23 +82,21 @@ public:
             settle_blocks(box, local, first);
     }
 
-private:
+  private:
     enum class Cover { inside, outside, mixed };
     // The Taylor polynomial of a block has degree 4; its remainder is bounded over large boxes.
     using Tail = Remainder<5>;
 
     /// The map's Taylor coefficients over a box, in pixels of the target.
     template <int N>
-    Point<Jet<Interval, N>> enclose(const Box& box, const Panorama::Local& local) const
-    {
+    Point<Jet<Interval, N>> enclose(const Box& box, const Panorama::Local& local) const {
         using J = Jet<Interval, N>;
         return m_map(J::variable({box.x0 + 0.5, box.x1 - 0.5}, 1, 0),
                      J::variable({box.y0 + 0.5, box.y1 - 0.5}, 0, 1), local);
     }
 
     /// Does every pixel of the box have a source point on one smooth branch of the map?
-    Cover cover(const Box& box, const Panorama::Local& local) const
-    {
+    Cover cover(const Box& box, const Panorama::Local& local) const {
         const Interval x{box.x0 + 0.5, box.x1 - 0.5}, y{box.y0 + 0.5, box.y1 - 0.5};
         const Interval in = m_map.target().inside(x, y, m_piece);
         if (in.hi < 0) return Cover::outside;
@@ -108,18 +107,19 @@ private:
         if (seen.hi < 0) return Cover::outside;
         if (!(seen.lo > 0)) return Cover::mixed;
         if (source.has_azimuth()) {
-            // The branch serves less than half a turn. It must not cross the far side where the image has an edge.
+            // The branch serves less than half a turn. It must not cross the far side where the image has an
+            // edge.
             if (!(ray.z.lo > 0)) return Cover::mixed;
             const Interval azimuth = atan2(ray.x, ray.z) + local.source.around.angle;
-            if (!(source.closed() && m_options.across_seam) && !(azimuth.lo > -std::numbers::pi && azimuth.hi < std::numbers::pi))
+            if (!(source.closed() && m_options.across_seam) &&
+                !(azimuth.lo > -std::numbers::pi && azimuth.hi < std::numbers::pi))
                 return Cover::mixed;
         }
         return m_options.cull ? culled(box, local) : Cover::inside;
     }
 
     /// Outside when every pixel's footprint lies beyond the source image's edges.
-    Cover culled(const Box& box, const Panorama::Local& local) const
-    {
+    Cover culled(const Box& box, const Panorama::Local& local) const {
         const Chart& source = m_map.source();
         const auto p = enclose<1>(box, local);
         const auto beyond = [&](const Jet<Interval, 1>& f, int size) {
@@ -131,11 +131,11 @@ private:
         return out && !is_cube(source.projection()) ? Cover::outside : Cover::inside;
     }
 
-    void settle_blocks(const Box& box, const Panorama::Local& local, std::size_t first)
-    {
+    void settle_blocks(const Box& box, const Panorama::Local& local, std::size_t first) {
         const auto p = enclose<5>(box, local);
         const Tail tx(p.x), ty(p.y);
-        const double hx = half(std::min(box.width(), kBlockWidth)), hy = half(std::min(box.height(), kBlockHeight));
+        const double hx = half(std::min(box.width(), kBlockWidth)),
+                     hy = half(std::min(box.height(), kBlockHeight));
         const double tail = std::hypot(tx.over(hx, hy), ty.over(hx, hy));
         const bool is_block = box.width() <= kBlockWidth && box.height() <= kBlockHeight;
         if (tail <= kTailShare * m_options.tol || (is_block && tail < HUGE_VAL))
@@ -145,8 +145,7 @@ private:
     }
 
     /// Emits the box as one polynomial block if that holds the tolerance, else halves it.
-    void place(const Box& box, const Panorama::Local& local, const Tail& tx, const Tail& ty)
-    {
+    void place(const Box& box, const Panorama::Local& local, const Tail& tx, const Tail& ty) {
         const std::size_t first = m_blocks.size();
         const double hx = half(box.width()), hy = half(box.height());
         const double cx = 0.5 * (box.x0 + box.x1), cy = 0.5 * (box.y0 + box.y1);
@@ -170,8 +169,7 @@ private:
     }
 
     /// Kim's table: bilinear cells between nodes on a regular grid, as wide as the second derivatives allow.
-    void settle_residual(const Box& box, const Panorama::Local& local, std::size_t first)
-    {
+    void settle_residual(const Box& box, const Panorama::Local& local, std::size_t first) {
         const auto p = enclose<2>(box, local);
         // |f - its bilinear interpolant| <= h^2 / 2 max |f_ss| per direction, h half the cell.
         const auto error = [&](int w, int h) {
@@ -181,8 +179,8 @@ private:
             return std::hypot(of(p.x), of(p.y));
         };
         const bool is_block = box.width() <= kBlockWidth && box.height() <= kBlockHeight;
-        const bool holds = error(std::min(box.width(), kBlockWidth), std::min(box.height(), kBlockHeight)) <=
-                           m_options.tol;
+        const bool holds =
+            error(std::min(box.width(), kBlockWidth), std::min(box.height(), kBlockHeight)) <= m_options.tol;
         if (holds)
             for_blocks(box, [&](const Box& b) { place_cell(b, local, error(b.width(), b.height())); });
         else if (!is_block)
@@ -196,8 +194,7 @@ private:
     }
 
     /// One cell of the table: residuals at its four corners in float, plus the linear part.
-    void place_cell(const Box& box, const Panorama::Local& local, double interpolation_error)
-    {
+    void place_cell(const Box& box, const Panorama::Local& local, double interpolation_error) {
         if (!m_linear) m_linear = linear_part(m_map, m_piece);
         double x[4], y[4], stored = 0;
         for (int i = 0; i < 4; ++i) {
@@ -209,7 +206,8 @@ private:
             y[i] = l.y + ny;
         }
         // From values at the cell's corners (beyond the outermost pixel centres) to coefficients in s and t.
-        const double ks = half(box.width()) / (0.5 * box.width()), kt = half(box.height()) / (0.5 * box.height());
+        const double ks = half(box.width()) / (0.5 * box.width()),
+                     kt = half(box.height()) / (0.5 * box.height());
         const auto bilinear = [&](const double* v, double* c) {
             c[0] = 0.25 * (v[0] + v[1] + v[2] + v[3]);
             c[1] = 0.25 * (v[1] + v[3] - v[0] - v[2]) * ks;
@@ -226,8 +224,7 @@ private:
     }
 
     /// True when the polynomial, evaluated in float, keeps the tolerance: then the block is appended.
-    bool emit_polynomial(const Box& box, int source_piece, const double* cx, const double* cy, double fit)
-    {
+    bool emit_polynomial(const Box& box, int source_piece, const double* cx, const double* cy, double fit) {
         Block block;
         block.box = box;
         block.kind = Block::Kind::polynomial;
@@ -255,8 +252,7 @@ private:
         return true;
     }
 
-    void emit(const Box& box, Block::Kind kind)
-    {
+    void emit(const Box& box, Block::Kind kind) {
         Block block;
         block.box = box;
         block.kind = kind;
@@ -265,26 +261,23 @@ private:
     }
 
     template <class Body>
-    void for_blocks(const Box& box, const Body& body)
-    {
+    void for_blocks(const Box& box, const Body& body) {
         for (int y = box.y0; y < box.y1; y += kBlockHeight)
             for (int x = box.x0; x < box.x1; x += kBlockWidth)
                 body(Box{x, y, std::min(x + kBlockWidth, box.x1), std::min(y + kBlockHeight, box.y1)});
     }
 
     /// Settles the halves of a box, cut across its longer side (counted in blocks).
-    void split(const Box& box, std::size_t first)
-    {
+    void split(const Box& box, std::size_t first) {
         const int wide = box.width() * kBlockHeight, high = box.height() * kBlockWidth;
         halve(box, wide > high || (wide == high && box.width() > kFloor), kFloor, first,
               [&](const Box& b) { settle(b); });
     }
 
-    /// `body` on the halves of the box; where neither side can be cut above the floor, or everything in the box came
-    /// out exact, one exact block. `first`: the number of blocks before the box's own.
+    /// `body` on the halves of the box; where neither side can be cut above the floor, or everything in the
+    /// box came out exact, one exact block. `first`: the number of blocks before the box's own.
     template <class Body>
-    void halve(const Box& box, bool vertical_cut, int floor, std::size_t first, const Body& body)
-    {
+    void halve(const Box& box, bool vertical_cut, int floor, std::size_t first, const Body& body) {
         if (vertical_cut ? box.width() <= floor : box.height() <= floor) vertical_cut = !vertical_cut;
         if (vertical_cut ? box.width() <= floor : box.height() <= floor) {
             emit(box, Block::Kind::exact);
@@ -318,8 +311,7 @@ struct Plan::Cache {
 };
 
 Plan::Plan(const Panorama& map, const PlanOptions& options)
-    : m_map(map), m_options(options), m_cache(std::make_shared<Cache>())
-{
+    : m_map(map), m_options(options), m_cache(std::make_shared<Cache>()) {
     if (!(options.tol >= 0 && options.tol < HUGE_VAL)) {
         char text[32];
         std::snprintf(text, sizeof text, "%g", options.tol);
@@ -330,13 +322,12 @@ Plan::Plan(const Panorama& map, const PlanOptions& options)
         const Box& box = pieces[i].box;
         for (int y = box.y0; y < box.y1; y += kRegion)
             for (int x = box.x0; x < box.x1; x += kRegion)
-                m_regions.push_back(
-                    {{x, y, std::min(x + kRegion, box.x1), std::min(y + kRegion, box.y1)}, static_cast<int>(i)});
+                m_regions.push_back({{x, y, std::min(x + kRegion, box.x1), std::min(y + kRegion, box.y1)},
+                                     static_cast<int>(i)});
     }
 }
 
-std::shared_ptr<const std::vector<Block>> Plan::blocks(std::int64_t region) const
-{
+std::shared_ptr<const std::vector<Block>> Plan::blocks(std::int64_t region) const {
     {
         const std::lock_guard lock(m_cache->mutex);
         const auto found = m_cache->regions.find(region);
@@ -354,8 +345,7 @@ std::shared_ptr<const std::vector<Block>> Plan::blocks(std::int64_t region) cons
     return m_cache->regions.try_emplace(region, std::move(blocks)).first->second;
 }
 
-Reached Plan::reached(const ParallelFor& parallel_for) const
-{
+Reached Plan::reached(const ParallelFor& parallel_for) const {
     {
         const std::lock_guard lock(m_cache->mutex);
         if (m_cache->reached) return *m_cache->reached;

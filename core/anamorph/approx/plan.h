@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// A pull map made cheap with its bound: the picture cut into blocks, each with polynomials for the source point and
-// a proven bound of their error, split where the bound exceeds the tolerance, exact where no block holds it.
+// A pull map made cheap with its bound: the picture cut into blocks, each with polynomials for the source
+// point and a proven bound of their error, split where the bound exceeds the tolerance, exact where no block
+// holds it.
 //
-// Blocks are anchored to the pieces of the whole target image: what part of the picture is asked for, in what order
-// and by how many threads changes none of them.
+// Blocks are anchored to the pieces of the whole target image: what part of the picture is asked for, in what
+// order and by how many threads changes none of them.
 #pragma once
 
 #include <cstdint>
@@ -18,15 +19,16 @@
 
 namespace anamorph {
 
-/// exact: every pixel in double. blocks: quadratic polynomials on blocks. residual: Kim's decomposition (3.1), one
-/// linear map and a bilinear table of residuals (4.3, 4.4). automatic: the fastest that holds.
+/// exact: every pixel in double. blocks: quadratic polynomials on blocks. residual: Kim's decomposition
+/// (3.1), one linear map and a bilinear table of residuals (4.3, 4.4). automatic: the fastest that holds.
 enum class Scheme { automatic, exact, blocks, residual };
 
 /// A rectangle of target pixels with one way to find their source points.
 ///
-/// For a polynomial block, with s and t in [-1, 1] running over the pixel centres of the block (s right, t down), the
-/// source point is base + (x or y)[0] + [1] s + [2] t + [3] s^2 + [4] s t + [5] t^2, in source pixels, the sum
-/// evaluated in float by Block-wide loops as ((([5] t + [2]) t + [0]) + s (([4] t + [1]) + s [3])).
+/// For a polynomial block, with s and t in [-1, 1] running over the pixel centres of the block (s right, t
+/// down), the source point is base + (x or y)[0] + [1] s + [2] t + [3] s^2 + [4] s t + [5] t^2, in source
+/// pixels, the sum evaluated in float by Block-wide loops as ((([5] t + [2]) t + [0]) + s (([4] t + [1]) + s
+/// [3])).
 struct Block {
     enum class Kind : std::uint8_t { polynomial, exact, outside };
 
@@ -56,7 +58,7 @@ struct PlanOptions {
 };
 
 class Plan {
-public:
+  public:
     /// Throws Error when tol is negative or not a number.
     Plan(const Panorama& map, const PlanOptions& options);
 
@@ -66,16 +68,18 @@ public:
     /// The picture is planned region by region: at most kRegion pixels square, anchored to each piece.
     static constexpr int kRegion = 512;
     std::int64_t regions() const { return static_cast<std::int64_t>(m_regions.size()); }
-    const Box& region_box(std::int64_t region) const { return m_regions[static_cast<std::size_t>(region)].box; }
+    const Box& region_box(std::int64_t region) const {
+        return m_regions[static_cast<std::size_t>(region)].box;
+    }
 
-    /// The blocks of a region, which cover its box without overlap. Computed when first asked for and kept for a
-    /// while; thread safe.
+    /// The blocks of a region, which cover its box without overlap. Computed when first asked for and kept
+    /// for a while; thread safe.
     std::shared_ptr<const std::vector<Block>> blocks(std::int64_t region) const;
 
     /// Over the whole picture.
     Reached reached(const ParallelFor& parallel_for) const;
 
-private:
+  private:
     struct Region {
         Box box;
         int piece;

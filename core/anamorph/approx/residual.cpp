@@ -3,8 +3,7 @@
 
 namespace anamorph {
 
-LinearCoefficients minimax_coefficients(double x_max, double height)
-{
+LinearCoefficients minimax_coefficients(double x_max, double height) {
     constexpr double kTurn = 2 * std::numbers::pi;
     const auto residual = [](double x, double a) { return std::atan(x) / kTurn - a * x; };
     // R_theta(x_c) + R_theta(x_max) falls as a grows; x_c, where R_theta' = 0, solves 1 / (1 + x^2) = 2 pi a.
@@ -19,8 +18,7 @@ LinearCoefficients minimax_coefficients(double x_max, double height)
     return {0.5 * (low + high), b};
 }
 
-LinearPart linear_part(const Panorama& map, int piece)
-{
+LinearPart linear_part(const Panorama& map, int piece) {
     const Chart &source = map.source(), &target = map.target();
     const Box& box = target.pieces()[static_cast<std::size_t>(piece)].box;
     LinearPart part{0.5 * (box.x0 + box.x1), 0.5 * (box.y0 + box.y1), {}, {}, {}};
@@ -37,11 +35,14 @@ LinearPart linear_part(const Panorama& map, int piece)
     part.down = {p.x.c[2], p.y.c[2]};
     const bool level = std::fabs(part.right.y) + std::fabs(part.down.x) < 1e-12 * source.width() &&
                        std::fabs(axis.y) < 1e-12 * (std::fabs(axis.x) + std::fabs(axis.z));
-    if (source.projection() == Projection::cylindrical && target.projection() == Projection::rectilinear && level) {
+    if (source.projection() == Projection::cylindrical && target.projection() == Projection::rectilinear &&
+        level) {
         // In units of the plane: theta = azimuth / 2 pi, v = slope / height.
-        const double x_max = 0.5 * target.width() / target.scale_x(), height = source.height() / source.scale_y();
+        const double x_max = 0.5 * target.width() / target.scale_x(),
+                     height = source.height() / source.scale_y();
         const LinearCoefficients k = minimax_coefficients(x_max, height);
-        part.right.x = std::copysign(k.a * 2 * std::numbers::pi * source.scale_x() / target.scale_x(), part.right.x);
+        part.right.x =
+            std::copysign(k.a * 2 * std::numbers::pi * source.scale_x() / target.scale_x(), part.right.x);
         part.down.y = std::copysign(k.b * height * source.scale_y() / target.scale_y(), part.down.y);
     }
     return part;

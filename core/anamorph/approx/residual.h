@@ -6,10 +6,10 @@
 
 namespace anamorph {
 
-/// The coefficients of eq. 4.3, theta = theta_0 + a x' and v = 0.5 + b y', for |x'| <= x_max on the projection plane
-/// of a unit cylinder of height `height` (theta and v in 0..1): those for which the residuals (4.4) are least in the
-/// maximum norm. Section 4.3: the residual of theta has extremes of equal size and opposite sign at x_max and in
-/// between; the residual of v is as large at x' = 0 as at x' = x_max.
+/// The coefficients of eq. 4.3, theta = theta_0 + a x' and v = 0.5 + b y', for |x'| <= x_max on the
+/// projection plane of a unit cylinder of height `height` (theta and v in 0..1): those for which the
+/// residuals (4.4) are least in the maximum norm. Section 4.3: the residual of theta has extremes of equal
+/// size and opposite sign at x_max and in between; the residual of v is as large at x' = 0 as at x' = x_max.
 struct LinearCoefficients {
     double a, b;
 };
@@ -21,8 +21,7 @@ struct LinearPart {
     double cx, cy;
     Point<double> origin, right, down;
 
-    Point<double> operator()(double x, double y) const
-    {
+    Point<double> operator()(double x, double y) const {
         return {origin.x + right.x * (x - cx) + down.x * (y - cy),
                 origin.y + right.y * (x - cx) + down.y * (y - cy)};
     }

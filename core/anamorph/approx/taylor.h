@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The Taylor polynomial of a pull map on a block, its remainder, and what is lost by keeping a low degree of it.
+// The Taylor polynomial of a pull map on a block, its remainder, and what is lost by keeping a low degree of
+// it.
 #pragma once
 
 #include <cmath>
@@ -15,13 +16,11 @@ struct Remainder {
     double c[K + 1] = {};
 
     template <int N>
-    explicit Remainder(const Jet<Interval, N>& jet)
-    {
+    explicit Remainder(const Jet<Interval, N>& jet) {
         static_assert(N >= K);
         for (int j = 0; j <= K; ++j) c[j] = magnitude(jet.at(K - j, j));
     }
-    double over(double hx, double hy) const
-    {
+    double over(double hx, double hy) const {
         // Horner in hy with falling powers of hx.
         double sum = c[K], power = 1;
         for (int j = K - 1; j >= 0; --j) {
@@ -32,17 +31,17 @@ struct Remainder {
     }
 };
 
-/// The polynomial c[0] + c[1] s + c[2] t + c[3] s^2 + c[4] s t + c[5] t^2 nearest to a Taylor polynomial of degree 4
-/// on [-1, 1]^2, found by dropping the products of Chebyshev polynomials above `degree`; `error` bounds what was
-/// dropped (each product is at most 1).
+/// The polynomial c[0] + c[1] s + c[2] t + c[3] s^2 + c[4] s t + c[5] t^2 nearest to a Taylor polynomial of
+/// degree 4 on [-1, 1]^2, found by dropping the products of Chebyshev polynomials above `degree`; `error`
+/// bounds what was dropped (each product is at most 1).
 struct Economized {
     double c[6];
     double error;
 
-    Economized(const Jet<double, 4>& f, int degree)
-    {
+    Economized(const Jet<double, 4>& f, int degree) {
         const auto size = [&](int i, int j) { return std::fabs(f.at(i, j)); };
-        // s^3 = (3 T1 + T3) / 4, s^2 t = (1 + T2) t / 2, s^4 = (3 + 4 T2 + T4) / 8, s^2 t^2 = (1 + T2)(1 + T2) / 4
+        // s^3 = (3 T1 + T3) / 4, s^2 t = (1 + T2) t / 2, s^4 = (3 + 4 T2 + T4) / 8, s^2 t^2 = (1 + T2)(1 +
+        // T2) / 4
         const double ss = 0.5 * (f.at(2, 0) + f.at(4, 0)) + 0.25 * f.at(2, 2);  // of T2(s)
         const double tt = 0.5 * (f.at(0, 2) + f.at(0, 4)) + 0.25 * f.at(2, 2);  // of T2(t)
         c[0] = f.at(0, 0) - 0.125 * (f.at(4, 0) + f.at(0, 4)) - 0.25 * f.at(2, 2);

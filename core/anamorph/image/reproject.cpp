@@ -18,9 +18,7 @@ namespace anamorph {
 
 struct Reprojection::State {
     State(const Panorama& map, const ReprojectOptions& reproject, const PlanOptions& plan_options)
-        : options(reproject), plan(map, plan_options), border(map.source(), reproject.wrap)
-    {
-    }
+        : options(reproject), plan(map, plan_options), border(map.source(), reproject.wrap) {}
     ReprojectOptions options;
     Plan plan;
     Border border;
@@ -31,8 +29,7 @@ namespace {
 constexpr int kMaxRow = simd::kMaxRow;
 
 /// The value of this type that stands for 1.
-float one_of(PixelType type)
-{
+float one_of(PixelType type) {
     return type == PixelType::uint8 ? 255.0f : type == PixelType::uint16 ? 65535.0f : 1.0f;
 }
 
@@ -48,7 +45,7 @@ struct Filtering {
 
 /// A box of pixels of the picture being drawn.
 class Canvas {
-public:
+  public:
     Canvas(const ImageView& view, const Box& box) : m_view(view), m_box(box) {}
 
     const Box& box() const { return m_box; }
@@ -61,28 +58,27 @@ public:
     float scale_from(float one) const { return one_of(m_view.type) / one; }
 
     /// Writes a row of pixels from x on; `one` is the value that stands for 1.
-    void store(int x, int y, int count, const float* values, float one = 1) const
-    {
+    void store(int x, int y, int count, const float* values, float one = 1) const {
         std::byte* to = at(x, y);
         const int channels = m_view.channels;
         const float scale = scale_from(one);
         if (m_view.packed()) return simd::store_row(values, count * channels, scale, m_view.type, to);
         for (int i = 0; i < count; ++i)
-            simd::store_row(values + i * channels, channels, scale, m_view.type, to + i * m_view.pixel_stride);
+            simd::store_row(values + i * channels, channels, scale, m_view.type,
+                            to + i * m_view.pixel_stride);
     }
 
-private:
+  private:
     ImageView m_view;
     Box m_box;
 };
 
 /// Draws blocks into a canvas; one per thread.
 class Painter {
-public:
+  public:
     Painter(const Plan& plan, const ReprojectOptions& options, const Border& border, const Source* source,
             const Canvas& canvas)
-        : m_plan(plan), m_map(plan.map()), m_options(options), m_canvas(canvas), m_source(source)
-    {
+        : m_plan(plan), m_map(plan.map()), m_options(options), m_canvas(canvas), m_source(source) {
         m_values.resize(static_cast<std::size_t>(kMaxRow * canvas.channels() + 16));
         if (!source) return;
         m_reader.emplace(*source, border);
@@ -91,35 +87,37 @@ public:
     }
 
     /// False when the source could not be read. `next` is the block to be drawn after this one, if any.
-    bool draw(const Block& block, const Block* next)
-    {
+    bool draw(const Block& block, const Block* next) {
         const Box box = intersection(block.box, m_canvas.box());
         if (box.empty()) return true;
         if (m_options.output != Output::color) return draw_map(block, box), true;
         if (block.kind == Block::Kind::outside) return fill(box, 0), true;
-        return block.kind == Block::Kind::polynomial ? draw_polynomial(block, box, next) : draw_exact(block, box);
+        return block.kind == Block::Kind::polynomial ? draw_polynomial(block, box, next)
+                                                     : draw_exact(block, box);
     }
 
-private:
+  private:
     // --- colour ------------------------------------------------------------------------------------------
 
-    bool draw_polynomial(const Block& block, const Box& box, const Block* next)
-    {
+    bool draw_polynomial(const Block& block, const Box& box, const Block* next) {
         const Filtering f = filtering(jacobian_of(block));
         const LevelPolynomial x(block.x, block.base_x, f.scale_x), y(block.y, block.base_y, f.scale_y);
         Window window;
         switch (get_window(f, block.source_piece, x.base, x.reach, y.base, y.reach, block.box, window)) {
-            case Got::failed: return false;
-            case Got::too_large: return draw_points(block, box);
-            case Got::window: break;
+            case Got::failed:
+                return false;
+            case Got::too_large:
+                return draw_points(block, box);
+            case Got::window:
+                break;
         }
         const simd::Texels texels = texels_of(f, window, x.base, y.base);
         const simd::Polynomials polynomials{x.c, y.c, block.box.width(), block.box.height()};
         const int begin = box.x0 - block.box.x0, end = box.x1 - block.box.x0;
         if (m_canvas.packed() && m_source->unassociated_alpha() < 0) {
             simd::draw_block(texels, polynomials, begin, end, box.y0 - block.box.y0, box.y1 - block.box.y0,
-                             m_canvas.scale_from(one_of(window.type)), m_canvas.type(), m_canvas.at(box.x0, box.y0),
-                             m_canvas.row_stride(), upcoming(next, f));
+                             m_canvas.scale_from(one_of(window.type)), m_canvas.type(),
+                             m_canvas.at(box.x0, box.y0), m_canvas.row_stride(), upcoming(next, f));
             return true;
         }
         alignas(64) float px[simd::kRowRoom], py[simd::kRowRoom];
@@ -130,8 +128,7 @@ private:
         return true;
     }
 
-    bool draw_exact(const Block& block, const Box& box)
-    {
+    bool draw_exact(const Block& block, const Box& box) {
         // Positions of the whole block decide how it is read, whatever part of it is asked for.
         const int w = block.box.width();
         m_exact.resize(static_cast<std::size_t>(w) * static_cast<std::size_t>(block.box.height()));
@@ -155,15 +152,19 @@ private:
         Window window;
         switch (get_window(f, m_exact[0].piece, base_x, {0, x1 * f.scale_x - base_x}, base_y,
                            {0, y1 * f.scale_y - base_y}, block.box, window)) {
-            case Got::failed: return false;
-            case Got::too_large: return draw_points(block, box);
-            case Got::window: break;
+            case Got::failed:
+                return false;
+            case Got::too_large:
+                return draw_points(block, box);
+            case Got::window:
+                break;
         }
         const simd::Texels texels = texels_of(f, window, base_x, base_y);
         alignas(64) float fx[simd::kRowRoom], fy[simd::kRowRoom];
         alignas(64) std::int32_t ix[simd::kRowRoom], iy[simd::kRowRoom];
         for (int j = box.y0; j < box.y1; ++j) {
-            const Exact* row = &m_exact[static_cast<std::size_t>((j - block.box.y0) * w + box.x0 - block.box.x0)];
+            const Exact* row =
+                &m_exact[static_cast<std::size_t>((j - block.box.y0) * w + box.x0 - block.box.x0)];
             for (int i = 0; i < box.width(); ++i) {
                 // Whole texels apart: a fraction loses nothing in float.
                 const double x = row[i].at.x * f.scale_x, y = row[i].at.y * f.scale_y;
@@ -178,8 +179,7 @@ private:
     }
 
     /// Pixel by pixel, each with a window of its own: where a block's texels lie far apart.
-    bool draw_points(const Block& block, const Box& box)
-    {
+    bool draw_points(const Block& block, const Box& box) {
         const int channels = m_canvas.channels();
         bool ok = true;
         for (int j = box.y0; j < box.y1; ++j) {
@@ -197,23 +197,20 @@ private:
         return ok;
     }
 
-    bool sample_point(int i, int j, int target_piece, const Point<double>& p, int piece, float* pixel)
-    {
+    bool sample_point(int i, int j, int target_piece, const Point<double>& p, int piece, float* pixel) {
         if (m_options.filter != Filter::antialias)
             return m_points->sample(m_options.filter, 0, piece, p.x, p.y, pixel);
         const Jacobian jacobian = jacobian_at(i + 0.5, j + 0.5, target_piece);
         return m_points->sample((*m_chooser)(jacobian), jacobian, piece, p.x, p.y, pixel);
     }
 
-    void sample(const simd::Texels& texels, const simd::Offsets& offsets, PixelType type, int x, int y)
-    {
+    void sample(const simd::Texels& texels, const simd::Offsets& offsets, PixelType type, int x, int y) {
         simd::sample_row(texels, offsets, m_values.data());
         finish_row(x, y, offsets.count, one_of(type));
     }
 
     /// A row of filtered values to the picture.
-    void finish_row(int x, int y, int count, float one = 1)
-    {
+    void finish_row(int x, int y, int count, float one = 1) {
         const int alpha = m_source->unassociated_alpha(), channels = m_canvas.channels();
         for (int i = 0; alpha >= 0 && i < count; ++i)
             unassociate_alpha(&m_values[static_cast<std::size_t>(i * channels)], channels, alpha);
@@ -233,8 +230,7 @@ private:
         std::int32_t base;
         Reach reach;
 
-        LevelPolynomial(const float* from, std::int32_t from_base, double scale)
-        {
+        LevelPolynomial(const float* from, std::int32_t from_base, double scale) {
             const double origin = (from_base + static_cast<double>(from[0])) * scale;
             base = scale == 1 ? from_base : static_cast<std::int32_t>(std::floor(origin));
             c[0] = scale == 1 ? from[0] : static_cast<float>(origin - base);
@@ -253,18 +249,18 @@ private:
     struct Span {
         double first, last;
 
-        Span(const Filtering& f, double tap_reach, std::int32_t base, const Reach& reach)
-        {
-            const int support = f.kernel == simd::Kernel::bicubic ? 2 : f.kernel == simd::Kernel::bilinear ? 1 : 0;
+        Span(const Filtering& f, double tap_reach, std::int32_t base, const Reach& reach) {
+            const int support = f.kernel == simd::Kernel::bicubic    ? 2
+                                : f.kernel == simd::Kernel::bilinear ? 1
+                                                                     : 0;
             first = base + std::floor(reach.low - tap_reach) - support;
             last = base + std::floor(reach.high + tap_reach) + support + 1;
         }
         bool fits() const { return std::max(std::fabs(first), std::fabs(last)) < (1 << 30); }
     };
 
-    Got get_window(const Filtering& f, int piece, std::int32_t base_x, const Reach& reach_x, std::int32_t base_y,
-                   const Reach& reach_y, const Box& block, Window& window)
-    {
+    Got get_window(const Filtering& f, int piece, std::int32_t base_x, const Reach& reach_x,
+                   std::int32_t base_y, const Reach& reach_y, const Box& block, Window& window) {
         const Span x(f, f.reach_x, base_x, reach_x), y(f, f.reach_y, base_y, reach_y);
         // More texels than this per pixel are better fetched one pixel at a time.
         constexpr double kMost = 32;
@@ -280,46 +276,45 @@ private:
     }
 
     /// Where the next block's texels stand in memory, if they do; filtered like this one's.
-    simd::Upcoming upcoming(const Block* next, const Filtering& f) const
-    {
+    simd::Upcoming upcoming(const Block* next, const Filtering& f) const {
         const ConstImageView* view = m_source->view(f.level);
         if (!next || !view || next->kind != Block::Kind::polynomial) return {};
         const LevelPolynomial px(next->x, next->base_x, f.scale_x), py(next->y, next->base_y, f.scale_y);
         const Span x(f, f.reach_x, px.base, px.reach), y(f, f.reach_y, py.base, py.reach);
         if (!(x.first >= 0 && y.first >= 0 && x.last <= view->width && y.last <= view->height)) return {};
-        return {view->at(static_cast<std::ptrdiff_t>(x.first), static_cast<std::ptrdiff_t>(y.first)), view->row_stride,
-                static_cast<int>(y.last - y.first), static_cast<int>((x.last - x.first) * view->pixel_stride)};
+        return {view->at(static_cast<std::ptrdiff_t>(x.first), static_cast<std::ptrdiff_t>(y.first)),
+                view->row_stride, static_cast<int>(y.last - y.first),
+                static_cast<int>((x.last - x.first) * view->pixel_stride)};
     }
 
-    static simd::Texels texels_of(const Filtering& f, const Window& window, std::int32_t base_x, std::int32_t base_y)
-    {
+    static simd::Texels texels_of(const Filtering& f, const Window& window, std::int32_t base_x,
+                                  std::int32_t base_y) {
         const std::ptrdiff_t pixel = std::ptrdiff_t{window.channels} * size_of(window.type);
-        return {window.texels + (base_y - window.box.y0) * window.row_stride + (base_x - window.box.x0) * pixel,
-                window.row_stride,
-                window.type,
-                window.channels,
-                f.kernel,
-                f.taps.data(),
-                f.tap_count};
+        return {
+            window.texels + (base_y - window.box.y0) * window.row_stride + (base_x - window.box.x0) * pixel,
+            window.row_stride,
+            window.type,
+            window.channels,
+            f.kernel,
+            f.taps.data(),
+            f.tap_count};
     }
 
     // --- filters -----------------------------------------------------------------------------------------
 
-    Jacobian jacobian_of(const Block& block) const
-    {
-        const double hx = 0.5 * std::max(1, block.box.width() - 1), hy = 0.5 * std::max(1, block.box.height() - 1);
+    Jacobian jacobian_of(const Block& block) const {
+        const double hx = 0.5 * std::max(1, block.box.width() - 1),
+                     hy = 0.5 * std::max(1, block.box.height() - 1);
         return {block.x[1] / hx, block.y[1] / hx, block.x[2] / hy, block.y[2] / hy};
     }
 
-    Jacobian jacobian_at(double x, double y, int piece) const
-    {
+    Jacobian jacobian_at(double x, double y, int piece) const {
         using J = Jet1<double>;
         const Point<J> p = m_map(J::variable(x, 1, 0), J::variable(y, 0, 1), m_map.local_around(x, y, piece));
         return {p.x.c[1], p.y.c[1], p.x.c[2], p.y.c[2]};
     }
 
-    Filtering filtering(const Jacobian& jacobian) const
-    {
+    Filtering filtering(const Jacobian& jacobian) const {
         Filtering f;
         if (m_options.filter == Filter::nearest) f.kernel = simd::Kernel::nearest;
         if (m_options.filter == Filter::bicubic) f.kernel = simd::Kernel::bicubic;
@@ -332,7 +327,8 @@ private:
         for (int b = 0; b < footprint.taps_b; ++b)
             for (int a = 0; a < footprint.taps_a; ++a) {
                 const Point<double> o = tap_offset(footprint, jacobian, {f.scale_x, f.scale_y}, a, b);
-                f.taps[static_cast<std::size_t>(f.tap_count++)] = {static_cast<float>(o.x), static_cast<float>(o.y)};
+                f.taps[static_cast<std::size_t>(f.tap_count++)] = {static_cast<float>(o.x),
+                                                                   static_cast<float>(o.y)};
                 f.reach_x = std::max(f.reach_x, std::fabs(o.x));
                 f.reach_y = std::max(f.reach_y, std::fabs(o.y));
             }
@@ -341,16 +337,14 @@ private:
 
     // --- the map itself ----------------------------------------------------------------------------------
 
-    void fill(const Box& box, float value)
-    {
+    void fill(const Box& box, float value) {
         std::fill(m_values.begin(), m_values.end(), value);
         for (int j = box.y0; j < box.y1; ++j)
             for (int x = box.x0; x < box.x1; x += kMaxRow)
                 m_canvas.store(x, j, std::min(kMaxRow, box.x1 - x), m_values.data());
     }
 
-    void draw_map(const Block& block, const Box& box)
-    {
+    void draw_map(const Block& block, const Box& box) {
         if (block.kind == Block::Kind::outside || m_options.output == Output::bound) {
             fill(box, m_options.output == Output::stmap ? -1 : static_cast<float>(block.bound));
             return;
@@ -359,25 +353,27 @@ private:
         const bool polynomial = block.kind == Block::Kind::polynomial;
         for (int j = box.y0; j < box.y1; ++j) {
             if (polynomial)
-                simd::block_points({block.x, block.y, block.box.width(), block.box.height()}, j - block.box.y0,
-                                   box.x0 - block.box.x0, box.x1 - block.box.x0, px, py);
+                simd::block_points({block.x, block.y, block.box.width(), block.box.height()},
+                                   j - block.box.y0, box.x0 - block.box.x0, box.x1 - block.box.x0, px, py);
             for (int i = 0; i < box.width(); ++i) {
                 Point<double> exact{}, used{};
                 int piece = 0;
                 const bool seen = m_map.exact(box.x0 + i + 0.5, j + 0.5, block.piece, exact, piece);
-                used = polynomial ? Point<double>{block.base_x + double(px[i]), block.base_y + double(py[i])} : exact;
+                used = polynomial ? Point<double>{block.base_x + double(px[i]), block.base_y + double(py[i])}
+                                  : exact;
                 put_map(i, seen, exact, used);
             }
             m_canvas.store(box.x0, j, box.width(), m_values.data());
         }
     }
 
-    void put_map(int i, bool seen, const Point<double>& exact, const Point<double>& used)
-    {
+    void put_map(int i, bool seen, const Point<double>& exact, const Point<double>& used) {
         const Chart& source = m_map.source();
         if (m_options.output == Output::stmap) {
-            m_values[static_cast<std::size_t>(2 * i)] = seen ? static_cast<float>(used.x / source.width()) : -1;
-            m_values[static_cast<std::size_t>(2 * i + 1)] = seen ? static_cast<float>(used.y / source.height()) : -1;
+            m_values[static_cast<std::size_t>(2 * i)] =
+                seen ? static_cast<float>(used.x / source.width()) : -1;
+            m_values[static_cast<std::size_t>(2 * i + 1)] =
+                seen ? static_cast<float>(used.y / source.height()) : -1;
             return;
         }
         double dx = seen ? used.x - exact.x : 0;
@@ -404,8 +400,7 @@ private:
     std::vector<Exact> m_exact;
 };
 
-PlanOptions plan_options(const ReprojectOptions& options)
-{
+PlanOptions plan_options(const ReprojectOptions& options) {
     PlanOptions plan;
     plan.scheme = options.scheme;
     plan.tol = options.tol;
@@ -417,43 +412,37 @@ PlanOptions plan_options(const ReprojectOptions& options)
 }  // namespace
 
 Reprojection::Reprojection(const Panorama& map, const ReprojectOptions& options)
-    : m_state(std::make_unique<State>(map, options, plan_options(options)))
-{
-}
+    : m_state(std::make_unique<State>(map, options, plan_options(options))) {}
 Reprojection::~Reprojection() = default;
 Reprojection::Reprojection(Reprojection&&) noexcept = default;
 Reprojection& Reprojection::operator=(Reprojection&&) noexcept = default;
 
-const Panorama& Reprojection::map() const
-{
+const Panorama& Reprojection::map() const {
     return m_state->plan.map();
 }
-const ReprojectOptions& Reprojection::options() const
-{
+const ReprojectOptions& Reprojection::options() const {
     return m_state->options;
 }
-int Reprojection::channels(const Source& source) const
-{
+int Reprojection::channels(const Source& source) const {
     const Output output = m_state->options.output;
     return output == Output::color ? source.channels() : output == Output::stmap ? 2 : 1;
 }
-Reached Reprojection::reached(const ParallelFor& parallel_for) const
-{
+Reached Reprojection::reached(const ParallelFor& parallel_for) const {
     return m_state->plan.reached(parallel_for);
 }
 
 bool Reprojection::draw(const Source* source, const Box& box, const ImageView& picture,
-                        const ParallelFor& parallel_for) const
-{
+                        const ParallelFor& parallel_for) const {
     const State& state = *m_state;
     const Chart &from = state.plan.map().source(), &to = state.plan.map().target();
     const bool color = state.options.output == Output::color;
     if (color && !source) throw Error("a picture in colour needs a source");
     const int channels = color ? source->channels() : state.options.output == Output::stmap ? 2 : 1;
     if (color && (source->size(0).width != from.width() || source->size(0).height != from.height()))
-        throw Error("source size",
-                    std::to_string(source->size(0).width) + "x" + std::to_string(source->size(0).height),
-                    "the map was made for " + std::to_string(from.width()) + "x" + std::to_string(from.height()));
+        throw Error(
+            "source size",
+            std::to_string(source->size(0).width) + "x" + std::to_string(source->size(0).height),
+            "the map was made for " + std::to_string(from.width()) + "x" + std::to_string(from.height()));
     if (picture.channels != channels)
         throw Error("channels", std::to_string(picture.channels), "needed are " + std::to_string(channels));
 
@@ -492,8 +481,7 @@ bool Reprojection::draw(const Source* source, const Box& box, const ImageView& p
             if (block.kind == Block::Kind::outside) {
                 block.box.y0 = std::max(block.box.y0, unit.y0);
                 block.box.y1 = std::min(block.box.y1, unit.y1);
-            }
-            else if (block.box.y0 < unit.y0 || block.box.y0 >= unit.y1)
+            } else if (block.box.y0 < unit.y0 || block.box.y0 >= unit.y1)
                 continue;
             if (!painter.draw(block, k + 1 < blocks->size() ? &(*blocks)[k + 1] : nullptr)) ok = false;
         }

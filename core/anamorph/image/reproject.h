@@ -25,10 +25,10 @@ struct ReprojectOptions {
     Output output = Output::color;
 };
 
-/// One reprojection, ready to draw any box of the picture in any order from any number of threads: the bits of a
-/// pixel depend on nothing but the map, the options and the source.
+/// One reprojection, ready to draw any box of the picture in any order from any number of threads: the bits
+/// of a pixel depend on nothing but the map, the options and the source.
 class Reprojection {
-public:
+  public:
     /// Throws Error.
     Reprojection(const Panorama& map, const ReprojectOptions& options);
     ~Reprojection();
@@ -41,17 +41,17 @@ public:
     /// Channels of the picture: the source's for color, 2 for stmap, 1 for error and bound.
     int channels(const Source& source) const;
 
-    /// The largest proven bound in use (source pixels) and the fraction of pixels computed exactly, over the whole
-    /// picture.
+    /// The largest proven bound in use (source pixels) and the fraction of pixels computed exactly, over the
+    /// whole picture.
     Reached reached(const ParallelFor& parallel_for = serial_for) const;
 
     /// Draws the pixels of `box` (of the target image) to `picture`, whose pixel (0, 0) is (box.x0, box.y0).
-    /// `source` has the size of the map's source chart at level 0; it is not read for the other outputs and may
-    /// then be null. False when the source could not be read: the picture is then incomplete.
+    /// `source` has the size of the map's source chart at level 0; it is not read for the other outputs and
+    /// may then be null. False when the source could not be read: the picture is then incomplete.
     bool draw(const Source* source, const Box& box, const ImageView& picture,
               const ParallelFor& parallel_for = serial_for) const;
 
-private:
+  private:
     struct State;
     std::unique_ptr<State> m_state;
 };

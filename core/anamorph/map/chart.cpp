@@ -25,44 +25,47 @@ constexpr std::pair<std::string_view, Projection> kNames[] = {
     {"cubecross", Projection::cubecross},
 };
 
-std::string print(double value)
-{
+std::string print(double value) {
     char text[32];
     std::snprintf(text, sizeof text, "%.10g", value);
     return text;
 }
 
 /// The largest field of view of a lens in degrees, and whether that value itself is allowed.
-std::pair<double, bool> fov_limit(Projection projection)
-{
+std::pair<double, bool> fov_limit(Projection projection) {
     switch (projection) {
-        case Projection::rectilinear: return {180, false};
-        case Projection::stereographic: return {360, false};
-        default: return {360, true};
+        case Projection::rectilinear:
+            return {180, false};
+        case Projection::stereographic:
+            return {360, false};
+        default:
+            return {360, true};
     }
 }
 
 /// The width of the chart plane that a horizontal field of view covers.
-double plane_width(Projection projection, double fov)
-{
+double plane_width(Projection projection, double fov) {
     const double half = fov * kPi / 360;
     switch (projection) {
-        case Projection::rectilinear: return 2 * std::tan(half);
-        case Projection::equisolid: return 4 * std::sin(half / 2);
-        case Projection::stereographic: return 4 * std::tan(half / 2);
-        default: return 2 * half;
+        case Projection::rectilinear:
+            return 2 * std::tan(half);
+        case Projection::equisolid:
+            return 4 * std::sin(half / 2);
+        case Projection::stereographic:
+            return 4 * std::tan(half / 2);
+        default:
+            return 2 * half;
     }
 }
 
 /// Columns and rows of faces in a cube layout.
-std::pair<int, int> cube_grid(Projection projection)
-{
+std::pair<int, int> cube_grid(Projection projection) {
     if (projection == Projection::cubemap) return {1, 6};
     return projection == Projection::cubemap3x2 ? std::pair{3, 2} : std::pair{4, 3};
 }
 
-// Faces by their axes right, down, forward: six upright as seen from inside, the upper and lower one hinged to the
-// front.
+// Faces by their axes right, down, forward: six upright as seen from inside, the upper and lower one hinged
+// to the front.
 const glm::dmat3 kRight(0, 0, -1, 0, 1, 0, 1, 0, 0);
 const glm::dmat3 kLeft(0, 0, 1, 0, 1, 0, -1, 0, 0);
 const glm::dmat3 kUp(1, 0, 0, 0, 0, 1, 0, -1, 0);
@@ -73,15 +76,15 @@ const glm::dmat3 kBack(-1, 0, 0, 0, 1, 0, 0, 0, -1);
 const glm::dmat3 kUpExr(-1, 0, 0, 0, 0, -1, 0, -1, 0);
 const glm::dmat3 kDownExr(-1, 0, 0, 0, 0, 1, 0, 1, 0);
 
-std::vector<Piece> cube_pieces(Projection projection, int n)
-{
+std::vector<Piece> cube_pieces(Projection projection, int n) {
     struct Placed {
         glm::dmat3 axes;
         int column, row;
     };
     std::vector<Placed> placed;
     if (projection == Projection::cubemap)
-        placed = {{kLeft, 0, 0}, {kRight, 0, 1}, {kUpExr, 0, 2}, {kDownExr, 0, 3}, {kFront, 0, 4}, {kBack, 0, 5}};
+        placed = {{kLeft, 0, 0},    {kRight, 0, 1}, {kUpExr, 0, 2},
+                  {kDownExr, 0, 3}, {kFront, 0, 4}, {kBack, 0, 5}};
     else if (projection == Projection::cubemap3x2)
         placed = {{kRight, 0, 0}, {kLeft, 1, 0}, {kUp, 2, 0}, {kDown, 0, 1}, {kFront, 1, 1}, {kBack, 2, 1}};
     else
@@ -94,49 +97,46 @@ std::vector<Piece> cube_pieces(Projection projection, int n)
 
 }  // namespace
 
-Projection projection_from_name(std::string_view name, const std::string& parameter)
-{
+Projection projection_from_name(std::string_view name, const std::string& parameter) {
     if (name == "latlong") return Projection::equirectangular;
     for (const auto& [known, projection] : kNames)
         if (known == name) return projection;
     throw Error(parameter, std::string(name), "allowed are " + projection_names());
 }
 
-std::string_view name_of(Projection projection)
-{
+std::string_view name_of(Projection projection) {
     for (const auto& [name, known] : kNames)
         if (known == projection) return name;
     return "";
 }
 
-std::string projection_names()
-{
+std::string projection_names() {
     std::string names;
     for (const auto& [name, projection] : kNames) names += (names.empty() ? "" : ", ") + std::string(name);
     return names;
 }
 
-bool is_cube(Projection projection)
-{
+bool is_cube(Projection projection) {
     return projection == Projection::cubemap || projection == Projection::cubemap3x2 ||
            projection == Projection::cubecross;
 }
 
-double Chart::default_fov(Projection projection)
-{
+double Chart::default_fov(Projection projection) {
     switch (projection) {
         case Projection::equirectangular:
         case Projection::cylindrical:
-        case Projection::mercator: return 360;
+        case Projection::mercator:
+            return 360;
         case Projection::fisheye:
         case Projection::equisolid:
-        case Projection::stereographic: return 180;
-        default: return 90;
+        case Projection::stereographic:
+            return 180;
+        default:
+            return 90;
     }
 }
 
-Heading::Heading(double y, double x)
-{
+Heading::Heading(double y, double x) {
     const double r = std::hypot(x, y);
     if (!(r > 0 && r < HUGE_VAL)) return;
     angle = std::atan2(y, x);
@@ -146,8 +146,7 @@ Heading::Heading(double y, double x)
 
 Chart::Chart(Projection projection, int width, int height, double fov, PixelSpacing spacing,
              const std::string& prefix)
-    : m_projection(projection), m_width(width), m_height(height), m_fov(fov), m_spacing(spacing)
-{
+    : m_projection(projection), m_width(width), m_height(height), m_fov(fov), m_spacing(spacing) {
     const std::string size = std::to_string(width) + "x" + std::to_string(height);
     if (width < 1 || height < 1 || width > kMaxSize || height > kMaxSize)
         throw Error(prefix + "size", size, "allowed is 1x1 to 16777216x16777216 pixels");
@@ -155,8 +154,7 @@ Chart::Chart(Projection projection, int width, int height, double fov, PixelSpac
     const auto [limit, inclusive] = fov_limit(projection);
     if (is_cube(projection)) {
         if (m_fov != 90) throw Error(prefix + "fov", print(fov), "the faces of a cube have 90 degrees");
-    }
-    else if (!(m_fov > 0 && (m_fov < limit || (inclusive && m_fov == limit))))
+    } else if (!(m_fov > 0 && (m_fov < limit || (inclusive && m_fov == limit))))
         throw Error(prefix + "fov", print(fov),
                     std::string("allowed for ") + std::string(name_of(projection)) + " is above 0 and " +
                         (inclusive ? "up to " : "below ") + print(limit) + " degrees");
@@ -172,8 +170,7 @@ Chart::Chart(Projection projection, int width, int height, double fov, PixelSpac
         columns = width / across;
         plane = 2;
         m_pieces = cube_pieces(projection, columns);
-    }
-    else
+    } else
         m_pieces = {Piece{{0, 0, width, height}}};
 
     const int rows = is_cube(projection) ? columns : height;
@@ -190,20 +187,17 @@ Chart::Chart(Projection projection, int width, int height, double fov, PixelSpac
     m_poles = projection == Projection::equirectangular && m_closed && width == 2 * height;
 }
 
-Branch Chart::branch_around(double x, double y, int piece) const
-{
+Branch Chart::branch_around(double x, double y, int piece) const {
     return branch_around(ray(x, y, piece));
 }
 
-Branch Chart::branch_around(const Ray<double>& ray) const
-{
+Branch Chart::branch_around(const Ray<double>& ray) const {
     Branch b = branch(piece_of(ray));
     if (has_azimuth()) {
         b.around = {ray.x, ray.z};
         b.along = {ray.y, std::hypot(ray.x, ray.z)};
         b.axes = {b.around.cos, 0, -b.around.sin, 0, 1, 0, b.around.sin, 0, b.around.cos};
-    }
-    else if (m_projection == Projection::fisheye) {
+    } else if (m_projection == Projection::fisheye) {
         b.around = {ray.y, ray.x};
         b.along = {std::hypot(ray.x, ray.y), ray.z};
         b.axes = {b.around.cos, b.around.sin, 0, -b.around.sin, b.around.cos, 0, 0, 0, 1};

@@ -2,9 +2,9 @@
 // Charts: the flat pictures of the sphere of directions. A chart maps a point of its image to a ray and a ray
 // to a point of its image; each formula is written once, as a template over the scalar.
 //
-// Frames. Image: pixels, x right, y down, the centre of pixel (i, j) at (i + 0.5, j + 0.5). Ray: x right, y down,
-// z forward, any length. Chart plane: (X, Y) = (image - centre) / pixels per unit, in the unit of the lens
-// (radians for angles).
+// Frames. Image: pixels, x right, y down, the centre of pixel (i, j) at (i + 0.5, j + 0.5). Ray: x right, y
+// down, z forward, any length. Chart plane: (X, Y) = (image - centre) / pixels per unit, in the unit of the
+// lens (radians for angles).
 //
 // Lenses, with azimuth a and elevation e (downwards) of the ray, or polar angle t from the axis:
 //   rectilinear      X = x / z, Y = y / z
@@ -14,8 +14,8 @@
 //   fisheye          radius t (equidistant)
 //   equisolid        radius 2 sin(t / 2)
 //   stereographic    radius 2 tan(t / 2)
-//   cubemap          six rectilinear faces of 90 degrees in a vertical strip, in OpenEXR's order and orientation
-//   cubemap3x2       right left up / down front back, each face upright as seen from inside
+//   cubemap          six rectilinear faces of 90 degrees in a vertical strip, in OpenEXR's order and
+//   orientation cubemap3x2       right left up / down front back, each face upright as seen from inside
 //   cubecross        up / left front right back / down on a 4 x 3 grid
 #pragma once
 
@@ -43,7 +43,8 @@ enum class Projection {
     cubecross
 };
 
-/// How a field of view spreads over W pixels: edge to edge, or from the first pixel's centre to the last one's.
+/// How a field of view spreads over W pixels: edge to edge, or from the first pixel's centre to the last
+/// one's.
 enum class PixelSpacing { edges, centers };
 
 /// "equirectangular" and so on; "latlong" is an alias. Throws Error naming `parameter`.
@@ -62,8 +63,7 @@ struct Box {
     bool empty() const { return x1 <= x0 || y1 <= y0; }
     friend bool operator==(const Box&, const Box&) = default;
 };
-inline Box intersection(const Box& a, const Box& b)
-{
+inline Box intersection(const Box& a, const Box& b) {
     return {std::max(a.x0, b.x0), std::max(a.y0, b.y0), std::min(a.x1, b.x1), std::min(a.y1, b.y1)};
 }
 
@@ -79,14 +79,15 @@ struct Point {
 
 /// matrix * ray
 template <class T>
-Ray<T> transform(const glm::dmat3& matrix, const Ray<T>& ray)
-{
-    const auto row = [&](int i) { return ray.x * matrix[0][i] + ray.y * matrix[1][i] + ray.z * matrix[2][i]; };
+Ray<T> transform(const glm::dmat3& matrix, const Ray<T>& ray) {
+    const auto row = [&](int i) {
+        return ray.x * matrix[0][i] + ray.y * matrix[1][i] + ray.z * matrix[2][i];
+    };
     return {row(0), row(1), row(2)};
 }
 
-/// One smooth piece of a chart: where it stands in the image, and its axes (right, down, forward) as columns in
-/// the frame of rays; only a cube has more than one.
+/// One smooth piece of a chart: where it stands in the image, and its axes (right, down, forward) as columns
+/// in the frame of rays; only a cube has more than one.
 struct Piece {
     Box box;
     glm::dmat3 axes{1};
@@ -102,9 +103,9 @@ struct Heading {
 };
 
 /// Where on a chart its formulas are read: the piece, and the direction from which angles are counted. A
-/// neighbourhood of that direction meets no seam, and intervals stay narrow there; nothing else depends on it.
-/// `around` is the azimuth, or the angle about the axis of a fisheye; `along` the elevation, or the angle from
-/// that axis. A local ray has the direction straight ahead: ray = axes * local ray.
+/// neighbourhood of that direction meets no seam, and intervals stay narrow there; nothing else depends on
+/// it. `around` is the azimuth, or the angle about the axis of a fisheye; `along` the elevation, or the angle
+/// from that axis. A local ray has the direction straight ahead: ray = axes * local ray.
 struct Branch {
     int piece = 0;
     Heading around, along;
@@ -112,13 +113,14 @@ struct Branch {
 };
 
 class Chart {
-public:
+  public:
     /// `fov`: the horizontal field of view of the whole image in degrees; 0 takes the projection's default
     /// (default_fov). `prefix` is put before "fov" and "size" in errors. Throws Error.
     Chart(Projection projection, int width, int height, double fov = 0,
           PixelSpacing spacing = PixelSpacing::edges, const std::string& prefix = "");
 
-    /// 360 for equirectangular, cylindrical and mercator, 180 for fisheye, equisolid and stereographic, else 90.
+    /// 360 for equirectangular, cylindrical and mercator, 180 for fisheye, equisolid and stereographic,
+    /// else 90.
     static double default_fov(Projection projection);
 
     Projection projection() const { return m_projection; }
@@ -133,8 +135,7 @@ public:
     /// Pixels of a full turn: the width, or one less where fields of view run between pixel centres.
     int period() const { return m_spacing == PixelSpacing::edges ? m_width : m_width - 1; }
     /// Is the image an angle's: equirectangular, cylindrical, mercator?
-    bool has_azimuth() const
-    {
+    bool has_azimuth() const {
         return m_projection == Projection::equirectangular || m_projection == Projection::cylindrical ||
                m_projection == Projection::mercator;
     }
@@ -172,17 +173,15 @@ public:
 
     /// The ray through an image point, and the image point of a ray.
     template <class T>
-    Ray<T> ray(const T& x, const T& y, int piece = 0) const
-    {
+    Ray<T> ray(const T& x, const T& y, int piece = 0) const {
         return transform(branch(piece).axes, local_ray(x, y, branch(piece)));
     }
     template <class T>
-    Point<T> point(const Ray<T>& ray, int piece) const
-    {
+    Point<T> point(const Ray<T>& ray, int piece) const {
         return local_point(transform(glm::transpose(branch(piece).axes), ray), branch(piece));
     }
 
-private:
+  private:
     template <class T>
     Point<T> to_plane(const T& x, const T& y, const Piece& piece) const;
 
@@ -199,30 +198,31 @@ private:
 // ---------------------------------------------------------------------------------------------------------
 
 template <class T>
-Point<T> Chart::to_plane(const T& x, const T& y, const Piece& piece) const
-{
+Point<T> Chart::to_plane(const T& x, const T& y, const Piece& piece) const {
     const double cx = 0.5 * (piece.box.x0 + piece.box.x1), cy = 0.5 * (piece.box.y0 + piece.box.y1);
     return {(x - cx) * (1 / m_sx), (y - cy) * (1 / m_sy)};
 }
 
 template <class T>
-T Chart::inside(const T& x, const T& y, int piece) const
-{
+T Chart::inside(const T& x, const T& y, int piece) const {
     const Point<T> p = to_plane(x, y, m_pieces[static_cast<std::size_t>(piece)]);
     constexpr double kPi = std::numbers::pi;
     // A hair over the limit still counts, so that the last pixel of a full image is never lost to rounding.
     constexpr double kSlack = 1 + 1e-12;
     switch (m_projection) {
-        case Projection::equirectangular: return kPi * kPi / 4 * kSlack - square(p.y);
-        case Projection::fisheye: return kPi * kPi * kSlack - (square(p.x) + square(p.y));
-        case Projection::equisolid: return 4 * kSlack - (square(p.x) + square(p.y));
-        default: return T(1);
+        case Projection::equirectangular:
+            return kPi * kPi / 4 * kSlack - square(p.y);
+        case Projection::fisheye:
+            return kPi * kPi * kSlack - (square(p.x) + square(p.y));
+        case Projection::equisolid:
+            return 4 * kSlack - (square(p.x) + square(p.y));
+        default:
+            return T(1);
     }
 }
 
 template <class T>
-Ray<T> Chart::local_ray(const T& x, const T& y, const Branch& branch) const
-{
+Ray<T> Chart::local_ray(const T& x, const T& y, const Branch& branch) const {
     using std::sinh;
     using std::sqrt;
     const Point<T> p = to_plane(x, y, m_pieces[static_cast<std::size_t>(branch.piece)]);
@@ -260,13 +260,13 @@ Ray<T> Chart::local_ray(const T& x, const T& y, const Branch& branch) const
             const T r2 = square(p.x) + square(p.y);
             return {p.x, p.y, 1.0 - r2 * 0.25};
         }
-        default: return {p.x, p.y, T(1)};
+        default:
+            return {p.x, p.y, T(1)};
     }
 }
 
 template <class T>
-T Chart::sees(const Ray<T>& local) const
-{
+T Chart::sees(const Ray<T>& local) const {
     if (m_projection == Projection::rectilinear) return local.z;
     if (!is_cube(m_projection)) return T(1);
     // On a face the forward component is the largest.
@@ -277,8 +277,7 @@ T Chart::sees(const Ray<T>& local) const
 }
 
 template <class T>
-Point<T> Chart::local_point(const Ray<T>& local, const Branch& branch) const
-{
+Point<T> Chart::local_point(const Ray<T>& local, const Branch& branch) const {
     using std::asinh;
     using std::atan2;
     using std::sqrt;
@@ -288,7 +287,8 @@ Point<T> Chart::local_point(const Ray<T>& local, const Branch& branch) const
     const auto image = [&](const T& px, const T& py) { return Point<T>{px * m_sx + cx, py * m_sy + cy}; };
     // The angle of (across, ahead), counted from `along`.
     const auto tilt = [&](const T& across, const T& ahead) {
-        return atan2(across * along.cos - ahead * along.sin, ahead * along.cos + across * along.sin) + along.angle;
+        return atan2(across * along.cos - ahead * along.sin, ahead * along.cos + across * along.sin) +
+               along.angle;
     };
     switch (m_projection) {
         case Projection::equirectangular:
@@ -318,13 +318,13 @@ Point<T> Chart::local_point(const Ray<T>& local, const Branch& branch) const
             const T k = T(2) / (n + local.z);
             return image(local.x * k, local.y * k);
         }
-        default: return image(local.x / local.z, local.y / local.z);
+        default:
+            return image(local.x / local.z, local.y / local.z);
     }
 }
 
 template <class T>
-int Chart::piece_of(const Ray<T>& ray) const
-{
+int Chart::piece_of(const Ray<T>& ray) const {
     int best = 0;
     T most = T(0);
     for (std::size_t i = 0; i < m_pieces.size() && m_pieces.size() > 1; ++i) {

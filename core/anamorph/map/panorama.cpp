@@ -7,8 +7,7 @@
 
 namespace anamorph {
 
-glm::dmat3 rotation(const Orientation& orientation)
-{
+glm::dmat3 rotation(const Orientation& orientation) {
     const double y = glm::radians(orientation.yaw), p = glm::radians(orientation.pitch),
                  r = glm::radians(orientation.roll);
     // glm's matrices are written column by column.
@@ -19,17 +18,16 @@ glm::dmat3 rotation(const Orientation& orientation)
 }
 
 Panorama::Panorama(const Chart& source, const Chart& target, const Orientation& orientation)
-    : m_source(source), m_target(target)
-{
+    : m_source(source), m_target(target) {
     const std::pair<const char*, double> angles[] = {
         {"yaw", orientation.yaw}, {"pitch", orientation.pitch}, {"roll", orientation.roll}};
     for (const auto& [name, value] : angles)
-        if (!std::isfinite(value)) throw Error(name, std::to_string(value), "allowed are finite angles in degrees");
+        if (!std::isfinite(value))
+            throw Error(name, std::to_string(value), "allowed are finite angles in degrees");
     m_rotation = rotation(orientation);
 }
 
-Panorama::Local Panorama::local_around(double x, double y, int piece) const
-{
+Panorama::Local Panorama::local_around(double x, double y, int piece) const {
     Local local;
     // The target's own angles count from this point only where that narrows intervals; its piece is given.
     local.target = m_target.branch_around(x, y, piece);

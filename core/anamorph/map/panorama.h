@@ -9,8 +9,8 @@
 
 namespace anamorph {
 
-/// Where the target's camera looks, in degrees: yaw to the right, pitch up, roll clockwise; the camera is rolled
-/// first, then pitched, then turned.
+/// Where the target's camera looks, in degrees: yaw to the right, pitch up, roll clockwise; the camera is
+/// rolled first, then pitched, then turned.
 struct Orientation {
     double yaw = 0, pitch = 0, roll = 0;
 };
@@ -19,7 +19,7 @@ struct Orientation {
 glm::dmat3 rotation(const Orientation& orientation);
 
 class Panorama {
-public:
+  public:
     /// Throws Error when an angle is not finite.
     Panorama(const Chart& source, const Chart& target, const Orientation& orientation = {});
 
@@ -36,23 +36,20 @@ public:
 
     /// The source's local ray of a target point.
     template <class T>
-    Ray<T> local_ray(const T& x, const T& y, const Local& local) const
-    {
+    Ray<T> local_ray(const T& x, const T& y, const Local& local) const {
         return transform(local.rotation, m_target.local_ray(x, y, local.target));
     }
 
     /// The source point of a target point.
     template <class T>
-    Point<T> operator()(const T& x, const T& y, const Local& local) const
-    {
+    Point<T> operator()(const T& x, const T& y, const Local& local) const {
         return m_source.local_point(local_ray(x, y, local), local.source);
     }
 
-    /// The source point of one target point, read with double or long double: the truth. False where the target
-    /// point has no ray, or the source's lens does not see it.
+    /// The source point of one target point, read with double or long double: the truth. False where the
+    /// target point has no ray, or the source's lens does not see it.
     template <class T>
-    bool exact(const T& x, const T& y, int piece, Point<T>& source_point, int& source_piece) const
-    {
+    bool exact(const T& x, const T& y, int piece, Point<T>& source_point, int& source_piece) const {
         if (!(m_target.inside(x, y, piece) >= 0)) return false;
         const Ray<T> r = transform(m_rotation, m_target.ray(x, y, piece));
         if (m_source.projection() == Projection::rectilinear && !(r.z > 0)) return false;
@@ -61,7 +58,7 @@ public:
         return std::isfinite(source_point.x) && std::isfinite(source_point.y);
     }
 
-private:
+  private:
     Chart m_source, m_target;
     glm::dmat3 m_rotation;
 };

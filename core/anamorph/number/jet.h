@@ -18,9 +18,15 @@
 namespace anamorph {
 
 /// Is this certainly the number zero?
-inline bool is_zero(double a) { return a == 0; }
-inline bool is_zero(long double a) { return a == 0; }
-inline bool is_zero(const Interval& a) { return a.lo == 0 && a.hi == 0; }
+inline bool is_zero(double a) {
+    return a == 0;
+}
+inline bool is_zero(long double a) {
+    return a == 0;
+}
+inline bool is_zero(const Interval& a) {
+    return a.lo == 0 && a.hi == 0;
+}
 
 template <class T, int N>
 struct Jet {
@@ -33,15 +39,13 @@ struct Jet {
     Jet() = default;
     Jet(const T& constant) { c[0] = constant; }  // NOLINT: a number is a jet
     template <class U>
-        requires(std::is_arithmetic_v<U> && !std::is_same_v<U, T>)
-    Jet(U constant)  // NOLINT: a number is a jet
+    requires(std::is_arithmetic_v<U> && !std::is_same_v<U, T>) Jet(U constant)  // NOLINT: a number is a jet
     {
         c[0] = T(constant);
     }
 
     /// value + ds * s + dt * t
-    static Jet variable(const T& value, const T& ds, const T& dt)
-    {
+    static Jet variable(const T& value, const T& ds, const T& dt) {
         Jet r(value);
         r.c[1] = ds;
         r.c[2] = dt;
@@ -62,17 +66,16 @@ namespace jet_detail {
 
 /// body(0), ..., body(Count - 1), each with its index as a constant: unrolled.
 template <int Count, class Body>
-[[gnu::always_inline]] inline void unroll(const Body& body)
-{
+[[gnu::always_inline]] inline void unroll(const Body& body) {
     [&]<int... I>(std::integer_sequence<int, I...>) __attribute__((always_inline)) {
         (body(std::integral_constant<int, I>{}), ...);
-    }(std::make_integer_sequence<int, Count>{});
+    }
+    (std::make_integer_sequence<int, Count>{});
 }
 
 /// r_(A+B) += Scale * f_A * g_B, homogeneous parts of degree A and B.
 template <int A, int B, int Scale = 1, class T, int N>
-inline void add_product(Jet<T, N>& r, const Jet<T, N>& f, const Jet<T, N>& g)
-{
+inline void add_product(Jet<T, N>& r, const Jet<T, N>& f, const Jet<T, N>& g) {
     using J = Jet<T, N>;
     unroll<A + 1>([&](auto i) __attribute__((always_inline)) {
         T fi = f.c[J::part(A) + i];
@@ -80,21 +83,21 @@ inline void add_product(Jet<T, N>& r, const Jet<T, N>& f, const Jet<T, N>& g)
         if (is_zero(fi)) return;
         if constexpr (Scale == -1) fi = -fi;
         if constexpr (Scale != 1 && Scale != -1) fi = fi * T(Scale);
-        unroll<B + 1>([&](auto j) __attribute__((always_inline)) { r.c[J::part(A + B) + i + j] += fi * g.c[J::part(B) + j]; });
+        unroll<B + 1>([&](auto j) __attribute__((always_inline)) {
+            r.c[J::part(A + B) + i + j] += fi * g.c[J::part(B) + j];
+        });
     });
 }
 
 /// r_K *= factor
 template <int K, class T, int N>
-inline void scale_part(Jet<T, N>& r, const T& factor)
-{
+inline void scale_part(Jet<T, N>& r, const T& factor) {
     unroll<K + 1>([&](auto i) __attribute__((always_inline)) { r.c[Jet<T, N>::part(K) + i] *= factor; });
 }
 
 /// Solves q E g = w for the parts of g above the constant: k q_0 g_k = w_k - sum_(0<j<k) j g_j q_(k-j).
 template <class T, int N>
-inline void integrate_quotient(Jet<T, N>& g, const Jet<T, N>& w, const Jet<T, N>& q)
-{
+inline void integrate_quotient(Jet<T, N>& g, const Jet<T, N>& w, const Jet<T, N>& q) {
     const T inverse = T(1) / q.c[0];
     const T constant = g.c[0];
     g = w;
@@ -111,8 +114,7 @@ inline void integrate_quotient(Jet<T, N>& g, const Jet<T, N>& w, const Jet<T, N>
 
 /// E f: the part of degree k times k.
 template <class T, int N>
-inline Jet<T, N> euler(const Jet<T, N>& f)
-{
+inline Jet<T, N> euler(const Jet<T, N>& f) {
     Jet<T, N> r = f;
     r.c[0] = T(0);
     unroll<N + 1>([&](auto k) __attribute__((always_inline)) {
@@ -123,8 +125,7 @@ inline Jet<T, N> euler(const Jet<T, N>& f)
 
 /// E u = v E a and E v = Sign * u E a: sine and cosine (Sign -1), or their hyperbolic twins (Sign 1).
 template <int Sign, class T, int N>
-inline void oscillate(Jet<T, N>& u, Jet<T, N>& v, const Jet<T, N>& a)
-{
+inline void oscillate(Jet<T, N>& u, Jet<T, N>& v, const Jet<T, N>& a) {
     unroll<N>([&](auto index) __attribute__((always_inline)) {
         constexpr int k = index + 1;
         unroll<k>([&](auto below) __attribute__((always_inline)) {
@@ -140,95 +141,93 @@ inline void oscillate(Jet<T, N>& u, Jet<T, N>& v, const Jet<T, N>& a)
 }  // namespace jet_detail
 
 template <class T, int N>
-inline Jet<T, N> operator-(const Jet<T, N>& a)
-{
+inline Jet<T, N> operator-(const Jet<T, N>& a) {
     Jet<T, N> r;
     for (int i = 0; i < Jet<T, N>::kSize; ++i) r.c[i] = -a.c[i];
     return r;
 }
 template <class T, int N>
-inline Jet<T, N> operator+(const Jet<T, N>& a, const Jet<T, N>& b)
-{
+inline Jet<T, N> operator+(const Jet<T, N>& a, const Jet<T, N>& b) {
     Jet<T, N> r;
     for (int i = 0; i < Jet<T, N>::kSize; ++i) r.c[i] = a.c[i] + b.c[i];
     return r;
 }
 template <class T, int N>
-inline Jet<T, N> operator-(const Jet<T, N>& a, const Jet<T, N>& b)
-{
+inline Jet<T, N> operator-(const Jet<T, N>& a, const Jet<T, N>& b) {
     Jet<T, N> r;
     for (int i = 0; i < Jet<T, N>::kSize; ++i) r.c[i] = a.c[i] - b.c[i];
     return r;
 }
 template <class T, int N>
-inline Jet<T, N> operator*(const Jet<T, N>& a, const Jet<T, N>& b)
-{
+inline Jet<T, N> operator*(const Jet<T, N>& a, const Jet<T, N>& b) {
     Jet<T, N> r;
     jet_detail::unroll<N + 1>([&](auto k) __attribute__((always_inline)) {
-        jet_detail::unroll<k + 1>([&](auto j) __attribute__((always_inline)) { jet_detail::add_product<j, k - j>(r, a, b); });
+        jet_detail::unroll<k + 1>([&](auto j) __attribute__((always_inline)) {
+            jet_detail::add_product<j, k - j>(r, a, b);
+        });
     });
     return r;
 }
 template <class T, int N>
-inline Jet<T, N> operator*(const Jet<T, N>& a, double b)
-{
+inline Jet<T, N> operator*(const Jet<T, N>& a, double b) {
     Jet<T, N> r;
     for (int i = 0; i < Jet<T, N>::kSize; ++i) r.c[i] = a.c[i] * T(b);
     return r;
 }
 template <class T, int N>
-inline Jet<T, N> operator*(double a, const Jet<T, N>& b)
-{
+inline Jet<T, N> operator*(double a, const Jet<T, N>& b) {
     return b * a;
 }
 template <class T, int N>
-inline Jet<T, N> operator+(const Jet<T, N>& a, double b)
-{
+inline Jet<T, N> operator+(const Jet<T, N>& a, double b) {
     Jet<T, N> r = a;
     r.c[0] = r.c[0] + T(b);
     return r;
 }
 template <class T, int N>
-inline Jet<T, N> operator+(double a, const Jet<T, N>& b)
-{
+inline Jet<T, N> operator+(double a, const Jet<T, N>& b) {
     return b + a;
 }
 template <class T, int N>
-inline Jet<T, N> operator-(const Jet<T, N>& a, double b)
-{
+inline Jet<T, N> operator-(const Jet<T, N>& a, double b) {
     return a + (-b);
 }
 template <class T, int N>
-inline Jet<T, N> operator-(double a, const Jet<T, N>& b)
-{
+inline Jet<T, N> operator-(double a, const Jet<T, N>& b) {
     return -b + a;
 }
 
 /// q with q g = f: g_0 q_k = f_k - sum_(j<k) q_j g_(k-j)
 template <class T, int N>
-inline Jet<T, N> operator/(const Jet<T, N>& f, const Jet<T, N>& g)
-{
+inline Jet<T, N> operator/(const Jet<T, N>& f, const Jet<T, N>& g) {
     Jet<T, N> q = f;
     const T inverse = T(1) / g.c[0];
     jet_detail::unroll<N + 1>([&](auto k) __attribute__((always_inline)) {
-        jet_detail::unroll<k>([&](auto j) __attribute__((always_inline)) { jet_detail::add_product<j, k - j, -1>(q, q, g); });
+        jet_detail::unroll<k>([&](auto j) __attribute__((always_inline)) {
+            jet_detail::add_product<j, k - j, -1>(q, q, g);
+        });
         jet_detail::scale_part<k>(q, inverse);
     });
     return q;
 }
 
-inline double square(double a) { return a * a; }
-inline long double square(long double a) { return a * a; }
+inline double square(double a) {
+    return a * a;
+}
+inline long double square(long double a) {
+    return a * a;
+}
 
 /// a a: each pair of different parts counts twice; the constant part is never negative.
 template <class T, int N>
-inline Jet<T, N> square(const Jet<T, N>& a)
-{
+inline Jet<T, N> square(const Jet<T, N>& a) {
     Jet<T, N> r;
     r.c[0] = square(a.c[0]);
     jet_detail::unroll<N>([&](auto index) __attribute__((always_inline)) {
         constexpr int k = index + 1;
-        jet_detail::unroll<(k + 1) / 2>([&](auto j) __attribute__((always_inline)) { jet_detail::add_product<j, k - j, 2>(r, a, a); });
+        jet_detail::unroll<(k + 1) / 2>([&](auto j) __attribute__((always_inline)) {
+            jet_detail::add_product<j, k - j, 2>(r, a, a);
+        });
         if constexpr (k % 2 == 0) jet_detail::add_product<k / 2, k / 2>(r, a, a);
     });
     return r;
@@ -236,8 +235,7 @@ inline Jet<T, N> square(const Jet<T, N>& a)
 
 /// r with r r = f: 2 r_0 r_k = f_k - sum_(0<j<k) r_j r_(k-j)
 template <class T, int N>
-inline Jet<T, N> sqrt(const Jet<T, N>& f)
-{
+inline Jet<T, N> sqrt(const Jet<T, N>& f) {
     using std::sqrt;
     Jet<T, N> r = f;
     r.c[0] = sqrt(f.c[0]);
@@ -254,8 +252,7 @@ inline Jet<T, N> sqrt(const Jet<T, N>& f)
 }
 
 template <class T, int N>
-inline void sin_cos(const Jet<T, N>& a, Jet<T, N>& s, Jet<T, N>& c)
-{
+inline void sin_cos(const Jet<T, N>& a, Jet<T, N>& s, Jet<T, N>& c) {
     using std::cos;
     using std::sin;
     s = Jet<T, N>(sin(a.c[0]));
@@ -263,9 +260,8 @@ inline void sin_cos(const Jet<T, N>& a, Jet<T, N>& s, Jet<T, N>& c)
     jet_detail::oscillate<-1>(s, c, a);
 }
 template <class T>
-    requires(std::is_floating_point_v<T> || std::is_same_v<T, Interval>)
-inline void sin_cos(const T& a, T& s, T& c)
-{
+requires(std::is_floating_point_v<T> || std::is_same_v<T, Interval>) inline void sin_cos(const T& a, T& s,
+                                                                                         T& c) {
     using std::cos;
     using std::sin;
     s = sin(a);
@@ -273,8 +269,7 @@ inline void sin_cos(const T& a, T& s, T& c)
 }
 
 template <class T, int N>
-inline Jet<T, N> sinh(const Jet<T, N>& a)
-{
+inline Jet<T, N> sinh(const Jet<T, N>& a) {
     using std::cosh;
     using std::sinh;
     Jet<T, N> s(sinh(a.c[0])), c(cosh(a.c[0]));
@@ -284,8 +279,7 @@ inline Jet<T, N> sinh(const Jet<T, N>& a)
 
 /// E g sqrt(1 + a^2) = E a
 template <class T, int N>
-inline Jet<T, N> asinh(const Jet<T, N>& a)
-{
+inline Jet<T, N> asinh(const Jet<T, N>& a) {
     using std::asinh;
     Jet<T, N> g(asinh(a.c[0]));
     jet_detail::integrate_quotient(g, jet_detail::euler(a), sqrt(square(a) + 1.0));
@@ -294,8 +288,7 @@ inline Jet<T, N> asinh(const Jet<T, N>& a)
 
 /// (x^2 + y^2) E g = x E y - y E x
 template <class T, int N>
-inline Jet<T, N> atan2(const Jet<T, N>& y, const Jet<T, N>& x)
-{
+inline Jet<T, N> atan2(const Jet<T, N>& y, const Jet<T, N>& x) {
     using std::atan2;
     Jet<T, N> g(atan2(y.c[0], x.c[0]));
     jet_detail::integrate_quotient(g, x * jet_detail::euler(y) - y * jet_detail::euler(x),
@@ -305,16 +298,27 @@ inline Jet<T, N> atan2(const Jet<T, N>& y, const Jet<T, N>& x)
 
 /// The constant part of a jet; a plain number is its own.
 template <class T, int N>
-inline const T& constant_part(const Jet<T, N>& a)
-{
+inline const T& constant_part(const Jet<T, N>& a) {
     return a.c[0];
 }
-inline double constant_part(double a) { return a; }
-inline long double constant_part(long double a) { return a; }
-inline const Interval& constant_part(const Interval& a) { return a; }
+inline double constant_part(double a) {
+    return a;
+}
+inline long double constant_part(long double a) {
+    return a;
+}
+inline const Interval& constant_part(const Interval& a) {
+    return a;
+}
 
 /// The least member.
-inline double lower_end(double a) { return a; }
-inline long double lower_end(long double a) { return a; }
-inline double lower_end(const Interval& a) { return a.lo; }
+inline double lower_end(double a) {
+    return a;
+}
+inline long double lower_end(long double a) {
+    return a;
+}
+inline double lower_end(const Interval& a) {
+    return a.lo;
+}
 }  // namespace anamorph

@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "hwy/foreach_target.h"  // must come before highway.h
 #include "hwy/cache_control.h"
+#include "hwy/foreach_target.h"  // must come before highway.h
 #include "hwy/highway.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -25,8 +25,7 @@ constexpr size_t kLanes = hn::MaxLanes(Floats());
 constexpr int kQuad = static_cast<int>(hn::MaxLanes(Quad()));  // 1 where Highway has no vectors
 
 /// s or t of pixel `i` of `count`: -1 at the first, 1 at the last, 0 when there is one.
-HWY_INLINE float step_of(int count)
-{
+HWY_INLINE float step_of(int count) {
     return count > 1 ? 1.0f / static_cast<float>(count - 1) : 0.0f;
 }
 
@@ -35,8 +34,7 @@ struct RowPolynomial {
     hn::Vec<Floats> ax, bx, qx, ay, by, qy, step;
     float first;
 
-    HWY_INLINE RowPolynomial(const Polynomials& block, int row)
-    {
+    HWY_INLINE RowPolynomial(const Polynomials& block, int row) {
         const Floats d;
         const float *x = block.x, *y = block.y;
         const float t = static_cast<float>(2 * row - (block.height - 1)) * step_of(block.height);
@@ -50,19 +48,18 @@ struct RowPolynomial {
         first = static_cast<float>(1 - block.width);
     }
     /// The points of pixels i, i + 1, ...: pixel i stands 2 i - (width - 1) half steps from the middle.
-    HWY_INLINE void At(int i, hn::Vec<Floats>& x, hn::Vec<Floats>& y) const
-    {
+    HWY_INLINE void At(int i, hn::Vec<Floats>& x, hn::Vec<Floats>& y) const {
         const Floats d;
         const auto lanes = hn::Iota(d, 0.0f);
-        const auto s = hn::Mul(hn::Add(hn::Add(lanes, lanes), hn::Set(d, first + static_cast<float>(2 * i))), step);
+        const auto s =
+            hn::Mul(hn::Add(hn::Add(lanes, lanes), hn::Set(d, first + static_cast<float>(2 * i))), step);
         x = hn::MulAdd(s, hn::MulAdd(s, qx, bx), ax);
         y = hn::MulAdd(s, hn::MulAdd(s, qy, by), ay);
     }
 };
 
 void BlockPoints(const Polynomials& block, int row, int begin, int end, float* HWY_RESTRICT out_x,
-                 float* HWY_RESTRICT out_y)
-{
+                 float* HWY_RESTRICT out_y) {
     const Floats d;
     const RowPolynomial polynomial(block, row);
     for (int i = begin; i < end; i += static_cast<int>(kLanes)) {
@@ -77,21 +74,17 @@ constexpr bool kHasPair = hn::MaxLanes(Pair()) == 8;  // two texels of up to fou
 
 /// As many channels from `p` as D has lanes, as floats.
 template <class D, class T>
-HWY_INLINE hn::Vec<D> LoadFloats(D d, const T* p)
-{
+HWY_INLINE hn::Vec<D> LoadFloats(D d, const T* p) {
     if constexpr (std::is_same_v<T, float>) {
         return hn::LoadU(d, p);
-    }
-    else if constexpr (std::is_same_v<T, hwy::float16_t>) {
+    } else if constexpr (std::is_same_v<T, hwy::float16_t>) {
         return hn::PromoteTo(d, hn::LoadU(hn::Rebind<hwy::float16_t, D>(), p));
-    }
-    else {
+    } else {
         return hn::ConvertTo(d, hn::PromoteTo(hn::RebindToSigned<D>(), hn::LoadU(hn::Rebind<T, D>(), p)));
     }
 }
 template <class T>
-HWY_INLINE hn::Vec<Quad> LoadQuad(const T* p)
-{
+HWY_INLINE hn::Vec<Quad> LoadQuad(const T* p) {
     return LoadFloats(Quad(), p);
 }
 
@@ -105,8 +98,8 @@ struct Positions {
 /// Texel (floor x, floor y) and the rest, for one vector of points, into lanes i, i + 1, ...
 template <int kCount>
 HWY_INLINE void Locate(hn::Vec<Floats> x, hn::Vec<Floats> y, hn::Vec<Ints> row, hn::Vec<Ints> pixel, int i,
-                       Positions<kCount>& p, const int32_t* whole_x = nullptr, const int32_t* whole_y = nullptr)
-{
+                       Positions<kCount>& p, const int32_t* whole_x = nullptr,
+                       const int32_t* whole_y = nullptr) {
     const Floats d;
     const Ints di;
     const auto ix = hn::Floor(x), iy = hn::Floor(y);
@@ -123,21 +116,20 @@ HWY_INLINE void Locate(hn::Vec<Floats> x, hn::Vec<Floats> y, hn::Vec<Ints> row, 
 /// The same for `count` points from `first` on, moved by a tap and back by `shift`.
 template <int kCount>
 HWY_INLINE void Locate(const Offsets& at, int first, int count, const Tap& tap, float shift, int channels,
-                       int32_t row_elements, Positions<kCount>& p)
-{
+                       int32_t row_elements, Positions<kCount>& p) {
     const Floats d;
     const Ints di;
     const auto dx = hn::Set(d, tap.x - shift), dy = hn::Set(d, tap.y - shift);
     const auto row = hn::Set(di, row_elements), pixel = hn::Set(di, channels);
     for (int i = 0; i < count; i += static_cast<int>(kLanes))
-        Locate(hn::Add(hn::LoadU(d, at.x + first + i), dx), hn::Add(hn::LoadU(d, at.y + first + i), dy), row, pixel, i,
-               p, at.whole_x ? at.whole_x + first + i : nullptr, at.whole_y ? at.whole_y + first + i : nullptr);
+        Locate(hn::Add(hn::LoadU(d, at.x + first + i), dx), hn::Add(hn::LoadU(d, at.y + first + i), dy), row,
+               pixel, i, p, at.whole_x ? at.whole_x + first + i : nullptr,
+               at.whole_y ? at.whole_y + first + i : nullptr);
 }
 
 /// The texel pair at `p` and the pair below, mixed by fy then fx: kQuad channels of a pixel.
 template <class T, int kChannels>
-HWY_INLINE hn::Vec<Quad> Bilinear(const T* HWY_RESTRICT p, ptrdiff_t row, int channels, float fx, float fy)
-{
+HWY_INLINE hn::Vec<Quad> Bilinear(const T* HWY_RESTRICT p, ptrdiff_t row, int channels, float fx, float fy) {
     const Quad d;
     const int next = kChannels ? kChannels : channels;
     const auto vx = hn::Set(d, fx), vy = hn::Set(d, fy);
@@ -163,11 +155,10 @@ HWY_INLINE hn::Vec<Quad> Bilinear(const T* HWY_RESTRICT p, ptrdiff_t row, int ch
     return hn::MulAdd(vx, hn::Sub(right, left), left);
 }
 
-/// One bilinear tap a pixel. kChannels 0: any number, four at a time; a store's surplus lanes are overwritten by the
-/// next pixel's.
+/// One bilinear tap a pixel. kChannels 0: any number, four at a time; a store's surplus lanes are overwritten
+/// by the next pixel's.
 template <class T, int kChannels>
-HWY_INLINE void SampleBilinear(const Texels& s, const Offsets& at, float* HWY_RESTRICT out)
-{
+HWY_INLINE void SampleBilinear(const Texels& s, const Offsets& at, float* HWY_RESTRICT out) {
     const Quad d;
     const auto* origin = reinterpret_cast<const T*>(s.texels);
     const ptrdiff_t row = s.row_stride / static_cast<ptrdiff_t>(sizeof(T));
@@ -182,8 +173,7 @@ HWY_INLINE void SampleBilinear(const Texels& s, const Offsets& at, float* HWY_RE
 
 /// The mean of several bilinear taps a pixel.
 template <class T, int kChannels>
-HWY_INLINE void SampleTaps(const Texels& s, const Offsets& at, float* HWY_RESTRICT out)
-{
+HWY_INLINE void SampleTaps(const Texels& s, const Offsets& at, float* HWY_RESTRICT out) {
     const Quad d;
     const auto* origin = reinterpret_cast<const T*>(s.texels);
     const ptrdiff_t row = s.row_stride / static_cast<ptrdiff_t>(sizeof(T));
@@ -203,12 +193,13 @@ HWY_INLINE void SampleTaps(const Texels& s, const Offsets& at, float* HWY_RESTRI
                 for (int i = 0; i < n; ++i) {
                     auto v = tap == 0 ? hn::Zero(d) : hn::Load(d, sum + kQuad * i);
                     for (int k = 0; k < taps; ++k)
-                        v = hn::Add(v, Bilinear<T, kChannels>(origin + p[k].offset[i] + c, row, channels, p[k].fx[i],
-                                                              p[k].fy[i]));
+                        v = hn::Add(v, Bilinear<T, kChannels>(origin + p[k].offset[i] + c, row, channels,
+                                                              p[k].fx[i], p[k].fy[i]));
                     hn::Store(v, d, sum + kQuad * i);
                 }
             }
-            // Ascending pixels: a surplus lane is overwritten by the next pixel, or by this one's next channels.
+            // Ascending pixels: a surplus lane is overwritten by the next pixel, or by this one's next
+            // channels.
             for (int i = 0; i < n; ++i) {
                 HWY_ALIGN float v[kQuad];
                 hn::Store(hn::Mul(hn::Load(d, sum + kQuad * i), weight), d, v);
@@ -220,8 +211,7 @@ HWY_INLINE void SampleTaps(const Texels& s, const Offsets& at, float* HWY_RESTRI
 }
 
 /// Catmull-Rom weights of the four texels about a fraction f.
-HWY_INLINE void CubicWeights(float f, float* w)
-{
+HWY_INLINE void CubicWeights(float f, float* w) {
     const float g = 1 - f;
     w[0] = -0.5f * f * g * g;
     w[1] = 1 + f * f * (1.5f * f - 2.5f);
@@ -230,8 +220,7 @@ HWY_INLINE void CubicWeights(float f, float* w)
 }
 
 template <class T>
-HWY_INLINE void SampleBicubic(const Texels& s, const Offsets& at, float* HWY_RESTRICT out)
-{
+HWY_INLINE void SampleBicubic(const Texels& s, const Offsets& at, float* HWY_RESTRICT out) {
     const Quad d;
     const auto* origin = reinterpret_cast<const T*>(s.texels);
     const ptrdiff_t row = s.row_stride / static_cast<ptrdiff_t>(sizeof(T));
@@ -257,8 +246,7 @@ HWY_INLINE void SampleBicubic(const Texels& s, const Offsets& at, float* HWY_RES
 }
 
 template <class T>
-HWY_INLINE void SampleNearest(const Texels& s, const Offsets& at, float* HWY_RESTRICT out)
-{
+HWY_INLINE void SampleNearest(const Texels& s, const Offsets& at, float* HWY_RESTRICT out) {
     const auto* origin = reinterpret_cast<const T*>(s.texels);
     const ptrdiff_t row = s.row_stride / static_cast<ptrdiff_t>(sizeof(T));
     Positions<kRowRoom> p;
@@ -269,8 +257,7 @@ HWY_INLINE void SampleNearest(const Texels& s, const Offsets& at, float* HWY_RES
 }
 
 template <class T>
-void SampleTyped(const Texels& s, const Offsets& at, float* out)
-{
+void SampleTyped(const Texels& s, const Offsets& at, float* out) {
     if (s.kernel == Kernel::nearest) return SampleNearest<T>(s, at, out);
     if (s.kernel == Kernel::bicubic) return SampleBicubic<T>(s, at, out);
     const auto with = [&](auto channels) {
@@ -285,19 +272,21 @@ void SampleTyped(const Texels& s, const Offsets& at, float* out)
     with(std::integral_constant<int, 0>{});
 }
 
-void SampleRow(const Texels& s, const Offsets& at, float* out)
-{
+void SampleRow(const Texels& s, const Offsets& at, float* out) {
     switch (s.type) {
-        case PixelType::uint8: return SampleTyped<uint8_t>(s, at, out);
-        case PixelType::uint16: return SampleTyped<uint16_t>(s, at, out);
-        case PixelType::half: return SampleTyped<hwy::float16_t>(s, at, out);
-        case PixelType::float32: return SampleTyped<float>(s, at, out);
+        case PixelType::uint8:
+            return SampleTyped<uint8_t>(s, at, out);
+        case PixelType::uint16:
+            return SampleTyped<uint16_t>(s, at, out);
+        case PixelType::half:
+            return SampleTyped<hwy::float16_t>(s, at, out);
+        case PixelType::float32:
+            return SampleTyped<float>(s, at, out);
     }
 }
 
 /// Float to float: whole aligned vectors bypass the cache.
-void StoreFloats(const float* HWY_RESTRICT values, int count, float scale, float* HWY_RESTRICT to)
-{
+void StoreFloats(const float* HWY_RESTRICT values, int count, float scale, float* HWY_RESTRICT to) {
     const hn::ScalableTag<float> d;
     constexpr size_t kLine = 64;
     const auto v = hn::Set(d, scale);
@@ -308,17 +297,18 @@ void StoreFloats(const float* HWY_RESTRICT values, int count, float scale, float
     const int lanes = static_cast<int>(hn::Lanes(d));
     const int line = static_cast<int>(kLine / sizeof(float));
     for (; i + line <= count; i += line)
-        for (int k = 0; k < line; k += lanes) hn::Stream(hn::Mul(v, hn::LoadU(d, values + i + k)), d, to + i + k);
+        for (int k = 0; k < line; k += lanes)
+            hn::Stream(hn::Mul(v, hn::LoadU(d, values + i + k)), d, to + i + k);
     for (; i < count; ++i) to[i] = values[i] * scale;
 }
 
 /// Float to 8 or 16 bits: rounded to nearest, clamped, NaN to 0.
 template <class T>
-void StoreIntegers(const float* HWY_RESTRICT values, int count, float scale, T* HWY_RESTRICT to)
-{
+void StoreIntegers(const float* HWY_RESTRICT values, int count, float scale, T* HWY_RESTRICT to) {
     const Floats d;
     const hn::Rebind<T, Floats> dt;
-    const auto v = hn::Set(d, scale), zero = hn::Zero(d), most = hn::Set(d, static_cast<float>(hwy::LimitsMax<T>()));
+    const auto v = hn::Set(d, scale), zero = hn::Zero(d),
+               most = hn::Set(d, static_cast<float>(hwy::LimitsMax<T>()));
     HWY_ALIGN T tail[kLanes];
     for (int i = 0; i < count; i += static_cast<int>(kLanes)) {
         auto x = hn::Mul(v, hn::LoadU(d, values + i));
@@ -327,16 +317,14 @@ void StoreIntegers(const float* HWY_RESTRICT values, int count, float scale, T* 
         const int rest = count - i;
         if (rest >= static_cast<int>(kLanes)) {
             hn::StoreU(n, dt, to + i);
-        }
-        else {
+        } else {
             hn::StoreU(n, dt, tail);
             std::memcpy(to + i, tail, sizeof(T) * static_cast<size_t>(rest));
         }
     }
 }
 
-void StoreHalf(const float* HWY_RESTRICT values, int count, float scale, hwy::float16_t* HWY_RESTRICT to)
-{
+void StoreHalf(const float* HWY_RESTRICT values, int count, float scale, hwy::float16_t* HWY_RESTRICT to) {
     const Floats d;
     const hn::Rebind<hwy::float16_t, Floats> dh;
     const auto v = hn::Set(d, scale);
@@ -344,35 +332,40 @@ void StoreHalf(const float* HWY_RESTRICT values, int count, float scale, hwy::fl
     for (int i = 0; i < count; i += static_cast<int>(kLanes)) {
         const auto n = hn::DemoteTo(dh, hn::Mul(v, hn::LoadU(d, values + i)));
         hn::StoreU(n, dh, tail);
-        std::memcpy(to + i, tail, sizeof(hwy::float16_t) * static_cast<size_t>(HWY_MIN(static_cast<int>(kLanes), count - i)));
+        std::memcpy(
+            to + i, tail,
+            sizeof(hwy::float16_t) * static_cast<size_t>(HWY_MIN(static_cast<int>(kLanes), count - i)));
     }
 }
 
-void StoreRow(const float* values, int count, float scale, PixelType type, std::byte* to)
-{
+void StoreRow(const float* values, int count, float scale, PixelType type, std::byte* to) {
     switch (type) {
-        case PixelType::uint8: return StoreIntegers(values, count, scale, reinterpret_cast<uint8_t*>(to));
-        case PixelType::uint16: return StoreIntegers(values, count, scale, reinterpret_cast<uint16_t*>(to));
-        case PixelType::half: return StoreHalf(values, count, scale, reinterpret_cast<hwy::float16_t*>(to));
-        case PixelType::float32: return StoreFloats(values, count, scale, reinterpret_cast<float*>(to));
+        case PixelType::uint8:
+            return StoreIntegers(values, count, scale, reinterpret_cast<uint8_t*>(to));
+        case PixelType::uint16:
+            return StoreIntegers(values, count, scale, reinterpret_cast<uint16_t*>(to));
+        case PixelType::half:
+            return StoreHalf(values, count, scale, reinterpret_cast<hwy::float16_t*>(to));
+        case PixelType::float32:
+            return StoreFloats(values, count, scale, reinterpret_cast<float*>(to));
     }
 }
 
 /// Brings part `part` of `parts` of the texels near.
-HWY_INLINE void FetchPart(const Upcoming& upcoming, int part, int parts)
-{
+HWY_INLINE void FetchPart(const Upcoming& upcoming, int part, int parts) {
     const int first = upcoming.rows * part / parts, last = upcoming.rows * (part + 1) / parts;
     for (int r = first; r < last; ++r)
-        for (int b = 0; b < upcoming.bytes; b += 64) hwy::Prefetch(upcoming.first + r * upcoming.row_stride + b);
+        for (int b = 0; b < upcoming.bytes; b += 64)
+            hwy::Prefetch(upcoming.first + r * upcoming.row_stride + b);
 }
 
-/// The common case without detours: one bilinear tap, three or four channels. Rows go through three stages, each one
-/// row ahead of the next: located, sampled, stored. Reading what was just written in pieces of another size would
-/// wait for those writes.
+/// The common case without detours: one bilinear tap, three or four channels. Rows go through three stages,
+/// each one row ahead of the next: located, sampled, stored. Reading what was just written in pieces of
+/// another size would wait for those writes.
 template <class T, int kChannels>
 void DrawBilinear(const Texels& s, const Polynomials& block, int begin, int end, int row_begin, int row_end,
-                  float scale, PixelType type, std::byte* to, ptrdiff_t row_stride, const Upcoming& upcoming)
-{
+                  float scale, PixelType type, std::byte* to, ptrdiff_t row_stride,
+                  const Upcoming& upcoming) {
     const Floats d;
     const Ints di;
     const auto* origin = reinterpret_cast<const T*>(s.texels);
@@ -413,14 +406,15 @@ void DrawBilinear(const Texels& s, const Polynomials& block, int begin, int end,
 }
 
 template <class T>
-void DrawTyped(const Texels& s, const Polynomials& block, int begin, int end, int row_begin, int row_end, float scale,
-               PixelType type, std::byte* to, ptrdiff_t row_stride, const Upcoming& upcoming)
-{
+void DrawTyped(const Texels& s, const Polynomials& block, int begin, int end, int row_begin, int row_end,
+               float scale, PixelType type, std::byte* to, ptrdiff_t row_stride, const Upcoming& upcoming) {
     if (s.kernel == Kernel::bilinear && s.tap_count == 1 && kQuad == 4) {
         if (s.channels == 3)
-            return DrawBilinear<T, 3>(s, block, begin, end, row_begin, row_end, scale, type, to, row_stride, upcoming);
+            return DrawBilinear<T, 3>(s, block, begin, end, row_begin, row_end, scale, type, to, row_stride,
+                                      upcoming);
         if (s.channels == 4)
-            return DrawBilinear<T, 4>(s, block, begin, end, row_begin, row_end, scale, type, to, row_stride, upcoming);
+            return DrawBilinear<T, 4>(s, block, begin, end, row_begin, row_end, scale, type, to, row_stride,
+                                      upcoming);
     }
     HWY_ALIGN float x[kRowRoom], y[kRowRoom];
     std::vector<float> values(static_cast<size_t>(kMaxRow * s.channels + 16));
@@ -432,17 +426,21 @@ void DrawTyped(const Texels& s, const Polynomials& block, int begin, int end, in
     }
 }
 
-void DrawBlock(const Texels& s, const Polynomials& block, int begin, int end, int row_begin, int row_end, float scale,
-               PixelType type, std::byte* to, ptrdiff_t row_stride, const Upcoming& upcoming)
-{
+void DrawBlock(const Texels& s, const Polynomials& block, int begin, int end, int row_begin, int row_end,
+               float scale, PixelType type, std::byte* to, ptrdiff_t row_stride, const Upcoming& upcoming) {
     const auto draw = [&](auto texel) {
-        DrawTyped<decltype(texel)>(s, block, begin, end, row_begin, row_end, scale, type, to, row_stride, upcoming);
+        DrawTyped<decltype(texel)>(s, block, begin, end, row_begin, row_end, scale, type, to, row_stride,
+                                   upcoming);
     };
     switch (s.type) {
-        case PixelType::uint8: return draw(uint8_t{});
-        case PixelType::uint16: return draw(uint16_t{});
-        case PixelType::half: return draw(hwy::float16_t{});
-        case PixelType::float32: return draw(float{});
+        case PixelType::uint8:
+            return draw(uint8_t{});
+        case PixelType::uint16:
+            return draw(uint16_t{});
+        case PixelType::half:
+            return draw(hwy::float16_t{});
+        case PixelType::float32:
+            return draw(float{});
     }
 }
 
@@ -458,36 +456,32 @@ HWY_EXPORT(SampleRow);
 HWY_EXPORT(StoreRow);
 HWY_EXPORT(DrawBlock);
 
-void block_points(const Polynomials& block, int row, int begin, int end, float* out_x, float* out_y)
-{
+void block_points(const Polynomials& block, int row, int begin, int end, float* out_x, float* out_y) {
     HWY_DYNAMIC_DISPATCH(BlockPoints)(block, row, begin, end, out_x, out_y);
 }
 
-void draw_block(const Texels& texels, const Polynomials& block, int begin, int end, int row_begin, int row_end,
-                float scale, PixelType type, std::byte* to, std::ptrdiff_t row_stride, const Upcoming& upcoming)
-{
-    HWY_DYNAMIC_DISPATCH(DrawBlock)(texels, block, begin, end, row_begin, row_end, scale, type, to, row_stride, upcoming);
+void draw_block(const Texels& texels, const Polynomials& block, int begin, int end, int row_begin,
+                int row_end, float scale, PixelType type, std::byte* to, std::ptrdiff_t row_stride,
+                const Upcoming& upcoming) {
+    HWY_DYNAMIC_DISPATCH(DrawBlock)
+    (texels, block, begin, end, row_begin, row_end, scale, type, to, row_stride, upcoming);
 }
 
-void sample_row(const Texels& texels, const Offsets& offsets, float* out)
-{
+void sample_row(const Texels& texels, const Offsets& offsets, float* out) {
     HWY_DYNAMIC_DISPATCH(SampleRow)(texels, offsets, out);
 }
 
-void store_row(const float* values, int count, float scale, PixelType type, std::byte* to)
-{
+void store_row(const float* values, int count, float scale, PixelType type, std::byte* to) {
     HWY_DYNAMIC_DISPATCH(StoreRow)(values, count, scale, type, to);
 }
 
-void finish_stores()
-{
+void finish_stores() {
     hwy::FlushStream();
 }
 
 namespace {
 
-const std::vector<std::pair<int64_t, std::string>>& available()
-{
+const std::vector<std::pair<int64_t, std::string>>& available() {
     static const auto sets = [] {
         std::vector<std::pair<int64_t, std::string>> list;
         // Better instruction sets have lower bits.
@@ -500,8 +494,7 @@ const std::vector<std::pair<int64_t, std::string>>& available()
 
 }  // namespace
 
-const char* const* instruction_sets()
-{
+const char* const* instruction_sets() {
     static const auto names = [] {
         std::vector<const char*> list;
         for (const auto& set : available()) list.push_back(set.second.c_str());
@@ -511,8 +504,7 @@ const char* const* instruction_sets()
     return names.data();
 }
 
-bool use_instruction_set(const char* name)
-{
+bool use_instruction_set(const char* name) {
     if (*name == '\0') {
         hwy::SetSupportedTargetsForTest(0);
         hwy::GetChosenTarget().Update(hwy::SupportedTargets());

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// The hot loops: from the polynomials of a block to its filtered pixels. Compiled for every instruction set Highway
-// knows and chosen once per call; tests run each against the scalar path.
+// The hot loops: from the polynomials of a block to its filtered pixels. Compiled for every instruction set
+// Highway knows and chosen once per call; tests run each against the scalar path.
 //
-// Errors. Coordinates are evaluated in float as plan.h states (fused where the machine fuses), within the rounding
-// term of the block's bound. A filtered value differs from the scalar path's by float rounding: at most 16 half-ULP of
-// the largest texel read.
+// Errors. Coordinates are evaluated in float as plan.h states (fused where the machine fuses), within the
+// rounding term of the block's bound. A filtered value differs from the scalar path's by float rounding: at
+// most 16 half-ULP of the largest texel read.
 #pragma once
 
 #include <cstddef>
@@ -20,8 +20,8 @@ struct Polynomials {
     int width, height;
 };
 
-/// The source points of pixels [begin, end) of row `row`: offsets from the block's base in texels. There is room for
-/// kRowRoom floats in each array.
+/// The source points of pixels [begin, end) of row `row`: offsets from the block's base in texels. There is
+/// room for kRowRoom floats in each array.
 void block_points(const Polynomials& block, int row, int begin, int end, float* out_x, float* out_y);
 
 enum class Kernel : std::uint8_t { nearest, bilinear, bicubic };
@@ -58,8 +58,8 @@ struct Offsets {
 /// Arrays of Offsets have room for this many pixels.
 inline constexpr int kRowRoom = kMaxRow + 16;
 
-/// Samples a row of pixels into `out`: `channels` floats a pixel, in units of the source's type (0..255 for uint8).
-/// `out` has room for kMaxRow * channels + 16 floats.
+/// Samples a row of pixels into `out`: `channels` floats a pixel, in units of the source's type (0..255 for
+/// uint8). `out` has room for kMaxRow * channels + 16 floats.
 void sample_row(const Texels& texels, const Offsets& offsets, float* out);
 
 /// Texels that will be read soon: `rows` rows of `bytes` bytes.
@@ -69,21 +69,22 @@ struct Upcoming {
     int rows = 0, bytes = 0;
 };
 
-/// Samples pixels [begin, end) x [row_begin, row_end) of a block and stores them: block_points, sample_row and
-/// store_row in one. `to` points at pixel (begin, row_begin) of a picture with packed pixels. Meanwhile `upcoming` is
-/// brought near.
-void draw_block(const Texels& texels, const Polynomials& block, int begin, int end, int row_begin, int row_end,
-                float scale, PixelType type, std::byte* to, std::ptrdiff_t row_stride, const Upcoming& upcoming = {});
+/// Samples pixels [begin, end) x [row_begin, row_end) of a block and stores them: block_points, sample_row
+/// and store_row in one. `to` points at pixel (begin, row_begin) of a picture with packed pixels. Meanwhile
+/// `upcoming` is brought near.
+void draw_block(const Texels& texels, const Polynomials& block, int begin, int end, int row_begin,
+                int row_end, float scale, PixelType type, std::byte* to, std::ptrdiff_t row_stride,
+                const Upcoming& upcoming = {});
 
-/// Converts `count` values to `type` and writes them, `scale` times (source units to the picture's); whole cache lines
-/// bypass the cache. uint8 and uint16 are rounded and clamped, NaN gives 0.
+/// Converts `count` values to `type` and writes them, `scale` times (source units to the picture's); whole
+/// cache lines bypass the cache. uint8 and uint16 are rounded and clamped, NaN gives 0.
 void store_row(const float* values, int count, float scale, PixelType type, std::byte* to);
 
 /// Makes what store_row wrote visible to other threads; to be called once after the last row.
 void finish_stores();
 
-/// The instruction sets compiled in that this machine has, best first, and a way to force one (for tests); an empty
-/// name chooses the best again. False when there is no such set.
+/// The instruction sets compiled in that this machine has, best first, and a way to force one (for tests); an
+/// empty name chooses the best again. False when there is no such set.
 const char* const* instruction_sets();
 bool use_instruction_set(const char* name);
 

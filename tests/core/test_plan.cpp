@@ -1,0 +1,250 @@
+// SPDX-License-Identifier: Apache-2.0
+// The promise: no pixel's source point is farther from the exact one than its block's bound, and no bound
+// than tol.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <random>
+
+#include "anamorph/approx/plan.h"
+#include "anamorph/simd/block_sampler.h"
+
+namespace anamorph {
+namespace {
+
+struct View {
+    Projection source, target;
+    int source_width = 1024, target_width = 96;
+    double source_fov = 0, target_fov = 0;
+    Orientation look;
+    PixelSpacing spacing = PixelSpacing::edges;
+};
+
+/// A chart of about that width in the projection's own shape.
+Chart chart_of(Projection projection, int width, double fov, PixelSpacing spacing = PixelSpacing::edges) {
+    switch (projection) {
+        case Projection::cubemap:
+            return {projection, width / 4, width / 4 * 6, 0, spacing};
+        case Projection::cubemap3x2:
+            return {projection, width / 3 * 3, width / 3 * 2, 0, spacing};
+        case Projection::cubecross:
+            return {projection, width / 4 * 4, width / 4 * 3, 0, spacing};
+        case Projection::equirectangular:
+            return {projection, width, width / 2, fov, spacing};
+        default:
+            return {projection, width, width * 3 / 4, fov, spacing};
+    }
+}
+
+struct Findings {
+    double worst_excess = -HUGE_VAL;  ///< error - bound
+    double worst_bound = 0;
+    std::int64_t pixels = 0, exact_pixels = 0, lost = 0;
+    std::vector<double> ratios;  ///< bound over largest true error, a block
+};
+
+/// Distance in source pixels, x counted around a source that closes on itself.
+double distance(const Chart& source, double x, double y, const Point<long double>& exact) {
+    double dx = static_cast<double>(x - exact.x);
+    if (source.closed()) dx -= std::round(dx / source.period()) * source.period();
+    return std::hypot(dx, static_cast<double>(y - exact.y));
+}
+
+/// Looks at every pixel of every block.
+Findings examine(const Panorama& map, const PlanOptions& options) {
+    Findings found;
+    const Plan plan(map, options);
+    std::vector<int> covered(static_cast<std::size_t>(map.target().width()) *
+                             static_cast<std::size_t>(map.target().height()));
+    for (std::int64_t r = 0; r < plan.regions(); ++r)
+        for (const Block& block : *plan.blocks(r)) {
+            double largest = 0;
+            float px[simd::kRowRoom], py[simd::kRowRoom];
+            for (int j = block.box.y0; j < block.box.y1; ++j) {
+                const bool polynomial = block.kind == Block::Kind::polynomial;
+                if (polynomial)
+                    simd::block_points({block.x, block.y, block.box.width(), block.box.height()},
+                                       j - block.box.y0, 0, block.box.width(), px, py);
+                for (int i = block.box.x0; i < block.box.x1; ++i) {
+                    ++covered[static_cast<std::size_t>(j) * static_cast<std::size_t>(map.target().width()) +
+                              static_cast<std::size_t>(i)];
+                    ++found.pixels;
+                    if (block.kind == Block::Kind::exact) {
+                        ++found.exact_pixels;
+                        continue;
+                    }
+                    Point<long double> p{};
+                    int piece = 0;
+                    const bool seen = map.exact(i + 0.5L, j + 0.5L, block.piece, p, piece);
+                    if (!polynomial) {
+                        const bool within = seen && p.x > -4 && p.x < map.source().width() + 4 && p.y > -4 &&
+                                            p.y < map.source().height() + 4;
+                        found.lost += within;
+                        continue;
+                    }
+                    if (!seen || piece != block.source_piece) {
+                        ++found.lost;
+                        continue;
+                    }
+                    const double e = distance(map.source(), block.base_x + double(px[i - block.box.x0]),
+                                              block.base_y + double(py[i - block.box.x0]), p);
+                    largest = std::max(largest, e);
+                }
+            }
+            if (block.kind != Block::Kind::polynomial) continue;
+            found.worst_excess = std::max(found.worst_excess, largest - block.bound);
+            found.worst_bound = std::max(found.worst_bound, block.bound);
+            if (largest > 0) found.ratios.push_back(block.bound / largest);
+        }
+    // Every pixel of every piece exactly once.
+    std::int64_t wanted = 0;
+    for (const Piece& piece : map.target().pieces())
+        wanted += std::int64_t{piece.box.width()} * piece.box.height();
+    EXPECT_EQ(found.pixels, wanted);
+    EXPECT_LE(*std::max_element(covered.begin(), covered.end()), 1);
+    return found;
+}
+
+void expect_promise(const View& view, double tol, Scheme scheme, std::vector<double>* ratios = nullptr) {
+    const Panorama map(chart_of(view.source, view.source_width, view.source_fov, view.spacing),
+                       chart_of(view.target, view.target_width, view.target_fov), view.look);
+    PlanOptions options;
+    options.tol = tol;
+    options.scheme = scheme;
+    const Findings found = examine(map, options);
+    EXPECT_LE(found.worst_excess, 0);
+    EXPECT_LE(found.worst_bound, tol);
+    EXPECT_EQ(found.lost, 0);
+    if (ratios) ratios->insert(ratios->end(), found.ratios.begin(), found.ratios.end());
+}
+
+constexpr Projection kAll[] = {
+    Projection::equirectangular, Projection::cylindrical,   Projection::rectilinear, Projection::fisheye,
+    Projection::equisolid,       Projection::stereographic, Projection::mercator,    Projection::cubemap,
+    Projection::cubemap3x2,      Projection::cubecross};
+constexpr double kTols[] = {1, 1.0 / 16, 0.01, 0.001};
+
+double median(std::vector<double> values) {
+    std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2),
+                     values.end());
+    return values[values.size() / 2];
+}
+
+TEST(Plan, HoldsTheToleranceForEveryPairOfProjections) {
+    constexpr unsigned kSeed = 20031;
+    SCOPED_TRACE(::testing::Message() << "seed " << kSeed);
+    std::mt19937 random(kSeed);
+    const auto between = [&](double low, double high) {
+        return std::uniform_real_distribution<double>(low, high)(random);
+    };
+    for (const double tol : kTols) {
+        std::vector<double> ratios;
+        for (const Projection source : kAll)
+            for (const Projection target : kAll) {
+                View view;
+                view.source = source;
+                view.target = target;
+                view.source_width = static_cast<int>(between(256, 9000));
+                view.target_width = static_cast<int>(between(48, 130));
+                if (target == Projection::rectilinear) view.target_fov = between(1, 170);
+                if (source == Projection::equirectangular && between(0, 1) < 0.3)
+                    view.source_fov = between(60, 359);
+                view.look = {between(-180, 180), between(-90, 90), between(-180, 180)};
+                if (between(0, 1) < 0.2) view.spacing = PixelSpacing::centers;
+                SCOPED_TRACE(::testing::Message()
+                             << name_of(source) << " -> " << name_of(target) << " tol " << tol);
+                expect_promise(view, tol, Scheme::blocks, &ratios);
+            }
+        EXPECT_LT(median(ratios), 2) << "bound over true error, tol " << tol;
+        RecordProperty("median_bound_over_error_at_" + std::to_string(tol), std::to_string(median(ratios)));
+    }
+}
+
+TEST(Plan, HoldsTheToleranceInHardViews) {
+    using enum Projection;
+    const View views[] = {
+        {equirectangular, rectilinear, 8192, 128, 0, 90, {10, 90, 0}},       // pole in the middle
+        {equirectangular, rectilinear, 8192, 128, 0, 100, {-170, -70, 33}},  // pole and seam
+        {equirectangular, rectilinear, 65536, 128, 0, 1e-3, {180, 0, 0}},    // seam, tiny field of view
+        {equirectangular, rectilinear, 65536, 128, 0, 179.9, {0, 0, 0}},     // widest field of view
+        {cylindrical, rectilinear, 4096, 128, 0, 90, {0, 90, 0}},            // along the cylinder's axis
+        {mercator, rectilinear, 4096, 128, 0, 120, {90, -85, 0}},
+        {rectilinear, equirectangular, 2048, 160, 120, 360, {0, 0, 0}},  // the horizon of the lens in view
+        {rectilinear, fisheye, 2048, 128, 179.9, 360, {40, 50, 60}},
+        {fisheye, equirectangular, 2048, 160, 360, 360, {77, -20, 5}},  // axis and antipode in view
+        {stereographic, equirectangular, 2048, 160, 359, 360, {0, 90, 0}},
+        {equisolid, stereographic, 2048, 128, 360, 350, {0, 180, 0}},
+        {equirectangular, stereographic, 8192, 128, 0, 359.9, {0, -90, 0}},  // little planet
+        {cubemap, rectilinear, 2048, 128, 0, 90, {45, 35.26, 0}},            // a corner of the cube
+        {equirectangular, cubecross, 2048, 128, 0, 0, {1e-9, 1e-9, 0}},
+        {equirectangular, rectilinear, 2, 64, 0, 90, {0, 0, 0}},         // a source of two pixels
+        {equirectangular, equirectangular, 4096, 2, 0, 0.5, {0, 0, 0}},  // a picture of two pixels
+    };
+    for (const View& view : views)
+        for (const double tol : kTols)
+            for (const Scheme scheme : {Scheme::blocks, Scheme::residual}) {
+                SCOPED_TRACE(::testing::Message()
+                             << name_of(view.source) << " -> " << name_of(view.target) << " fov "
+                             << view.target_fov << " pitch " << view.look.pitch << " tol " << tol);
+                expect_promise(view, tol, scheme);
+            }
+}
+
+TEST(Plan, DegreeOneHoldsTheToleranceToo) {
+    const Panorama map(Chart(Projection::equirectangular, 2048, 1024),
+                       Chart(Projection::rectilinear, 256, 256, 90), {30, 20, 10});
+    PlanOptions options;
+    options.degree = 1;
+    options.tol = 0.25;
+    const Findings found = examine(map, options);
+    EXPECT_LE(found.worst_excess, 0);
+    EXPECT_LE(found.worst_bound, 0.25);
+    EXPECT_EQ(found.lost, 0);
+    EXPECT_LT(found.exact_pixels, found.pixels);
+}
+
+TEST(Plan, ZeroToleranceIsExactEverywhere) {
+    const Panorama map(Chart(Projection::equirectangular, 512, 256),
+                       Chart(Projection::rectilinear, 100, 70, 90));
+    PlanOptions options;
+    options.tol = 0;
+    const Plan plan(map, options);
+    const Reached reached = plan.reached(serial_for);
+    EXPECT_EQ(reached.exact_fraction, 1);
+    EXPECT_EQ(reached.max_error, 0);
+}
+
+TEST(Plan, ReachedIsTheLargestBoundAndTheExactShare) {
+    const Panorama map(Chart(Projection::equirectangular, 4096, 2048),
+                       Chart(Projection::rectilinear, 300, 200, 100), {0, 80, 0});
+    const Plan plan(map, {});
+    double bound = 0;
+    std::int64_t exact = 0;
+    for (std::int64_t r = 0; r < plan.regions(); ++r)
+        for (const Block& b : *plan.blocks(r)) {
+            bound = std::max(bound, b.bound);
+            if (b.kind == Block::Kind::exact) exact += std::int64_t{b.box.width()} * b.box.height();
+        }
+    const Reached reached = plan.reached(serial_for);
+    EXPECT_EQ(reached.max_error, bound);
+    EXPECT_GT(exact, 0);
+    EXPECT_DOUBLE_EQ(reached.exact_fraction, double(exact) / (300 * 200));
+}
+
+TEST(Plan, RefusesATolerance) {
+    const Panorama map(Chart(Projection::equirectangular, 512, 256),
+                       Chart(Projection::rectilinear, 100, 70, 90));
+    for (const double tol : {-1.0, double(NAN), HUGE_VAL}) {
+        PlanOptions options;
+        options.tol = tol;
+        try {
+            const Plan plan(map, options);
+            ADD_FAILURE() << "tol " << tol << " was taken";
+        } catch (const Error& error) {
+            EXPECT_EQ(error.parameter(), "tol");
+        }
+    }
+}
+
+}  // namespace
+}  // namespace anamorph
