@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: Apache-2.0
+// The benchmark's frame: what the command line asks for, the table of results, the list of operations, and clocks.
+#pragma once
+
+#include <functional>
+#include <limits>
+#include <string>
+#include <vector>
+
+namespace anamorph::bench {
+
+inline constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+
+struct Settings {
+    std::string csv, op = "all", case_name, scheme;
+    int size = 2048;    ///< of the picture, pixels each way
+    int threads = 1;
+    int rounds = 15;
+    bool bounds = false;  ///< report bounds over true errors instead of times
+
+    bool wants_case(const std::string& name) const { return case_name.empty() || case_name == name; }
+    bool wants_scheme(const std::string& name) const { return scheme.empty() || scheme == name; }
+};
+
+/// Distances from the exact source points, in source pixels.
+struct Accuracy {
+    double mean = kNone, p99 = kNone, max = kNone;
+};
+
+/// One line of the table. Where a number makes no sense for a scheme, it is NaN.
+struct Row {
+    std::string op, case_name, scheme;
+    double tol_px = kNone;
+    int size = 0, threads = 1;
+    double ns_per_px = 0;       ///< wall time: median over the rounds
+    double best_ns_per_px = 0;  ///< least over the rounds (not in the CSV)
+    double ratio_to_exact = 0;  ///< how many times faster than the plain double loop of the same case
+    Accuracy error;
+    double bound_px = kNone, exact_fraction = kNone;
+};
+
+/// A promise about the table: `reached` is to be at least (or at most) `wanted`.
+struct Target {
+    std::string what;
+    double wanted, reached, reached_by_best;
+    bool at_most = false;
+};
+
+struct Report {
+    std::vector<Row> rows;
+    std::vector<Target> targets;
+    std::vector<std::string> failures;  ///< of the checks that the benchmark makes of itself
+
+    /// The row of a case and scheme (with this tolerance, unless NaN, on so many threads, unless 0), or null.
+    const Row* find(const std::string& case_name, const std::string& scheme, double tol_px = kNone,
+                    int threads = 0) const;
+    /// Adds the target that `fast` takes at most 1 / `wanted` of the time of `slow`, if both were measured.
+    void add_speed_target(const std::string& what, double wanted, const Row* slow, const Row* fast);
+    void add_limit(const std::string& what, double at_most, double reached);
+};
+
+/// One operation of the product. `run` adds rows and targets; `report_bounds` prints.
+struct Op {
+    std::string name;
+    std::function<void(const Settings&, Report&)> run;
+    std::function<void(const Settings&)> report_bounds;
+};
+
+/// Every file of an operation registers it: `const RegisterOp registered({...});` at namespace scope.
+struct RegisterOp {
+    explicit RegisterOp(Op op);
+};
+
+/// Wall times in ns, one run each.
+struct Times {
+    double median = 0, best = 0;
+};
+/// Runs all contenders in turn, in another order every round, so that whatever else the machine does hits all alike.
+/// Quick ones run twice in a row; the better of the two counts.
+std::vector<Times> time_interleaved(const std::vector<std::function<void()>>& contenders, int rounds);
+
+/// Mean, 99th percentile and largest of `errors`, which it reorders.
+Accuracy accuracy_of(std::vector<float>& errors);
+
+}  // namespace anamorph::bench

@@ -1,0 +1,695 @@
+// SPDX-License-Identifier: Apache-2.0
+// Panorama reprojection: speed against error.
+//
+// Sources are 8192 pixels wide (less for small pictures), views square. The views of one source are measured in the
+// same rounds. Schemes: automatic, blocks, residual and exact draw a fresh Reprojection each time, planning
+// included; automatic_kept draws with a plan made before. Rivals: pano_rivals.h.
+//
+// Errors are distances of the source points used from Panorama::exact<long double>, over all pixels. The points come
+// from evaluating the plan's blocks here (pano_points.h), from the rivals' own formulas, and are checked twice: against
+// Output::error, and by drawing a picture whose values are its coordinates.
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <memory>
+#include <optional>
+#include <random>
+#include <string>
+#include <utility>
+
+#include "anamorph/image/pyramid.h"
+#include "anamorph/image/reproject.h"
+#include "bench.h"
+#include "pano_points.h"
+#include "pano_rivals.h"
+#include "pixels.h"
+
+namespace anamorph::bench {
+namespace {
+
+constexpr double kDefaultTol = 0.01;
+constexpr double kTols[] = {1, 1.0 / 16, kDefaultTol, 0.001, 0};
+constexpr Orientation kTurned{30, 20, 10};
+
+const std::pair<Scheme, const char*> kSchemes[] = {
+    {Scheme::automatic, "automatic"}, {Scheme::blocks, "blocks"}, {Scheme::residual, "residual"}};
+
+/// A view to be measured.
+struct View {
+    View(std::string case_name, const Chart& source, int size, double fov, const Orientation& orientation,
+         const ParallelFor& parallel_for)
+        : name(std::move(case_name)),
+          map(source, Chart(Projection::rectilinear, size, size, fov), orientation),
+          plain(map, orientation),
+          truth(true_points(map, parallel_for))
+    {
+    }
+    int size() const { return map.target().width(); }
+    Box box() const { return {0, 0, size(), size()}; }
+
+    std::string name;
+    Panorama map;
+    PlainView plain;
+    Points truth;
+};
+
+/// One way to draw a view.
+struct Contender {
+    const View* view;
+    std::string scheme;
+    double tol = kNone;
+    int threads = 1;
+    std::function<void()> draw;
+    std::function<Points()> points = nullptr;  ///< the source points that draw() uses, if it uses any
+    double bound = kNone, exact_fraction = kNone;
+};
+
+int source_width(const Settings& settings) { return std::min(8192, 8 * settings.size / 8 * 8); }
+
+/// Three packed channels of PixelType `type`.
+class Picture {
+public:
+    Picture(PixelType type, int width, int height)
+        : m_type(type),
+          m_width(width),
+          m_height(height),
+          m_memory(static_cast<std::size_t>(width) * static_cast<std::size_t>(height) * 3 *
+                   static_cast<std::size_t>(size_of(type)))
+    {
+    }
+
+    /// Calls `value(x, y, channel)` for every sample; 0..1.
+    template <class Value>
+    void fill(const ParallelFor& parallel_for, const Value& value) const
+    {
+        parallel_for(m_height, [&](std::int64_t row) {
+            const int y = static_cast<int>(row);
+            const std::size_t first = static_cast<std::size_t>(y) * static_cast<std::size_t>(m_width) * 3;
+            for (int x = 0; x < m_width; ++x)
+                for (int c = 0; c < 3; ++c) {
+                    const std::size_t k = first + static_cast<std::size_t>(3 * x + c);
+                    const float v = value(x, y, c);
+                    if (m_type == PixelType::float32)
+                        m_memory.as<float>()[k] = v;
+                    else
+                        m_memory.as<std::uint8_t>()[k] = static_cast<std::uint8_t>(v * 255 + 0.5f);
+                }
+        });
+    }
+
+    ConstImageView source() const
+    {
+        return packed_view<const std::byte>(m_memory.bytes(), m_type, m_width, m_height, 3);
+    }
+    /// The first pixels, as a picture of this size.
+    ImageView view(int width, int height) const { return packed_view(m_memory.bytes(), m_type, width, height, 3); }
+    PixelType type() const { return m_type; }
+    std::byte* bytes() const { return m_memory.bytes(); }
+    template <class T>
+    T* as() const
+    {
+        return m_memory.as<T>();
+    }
+
+private:
+    PixelType m_type;
+    int m_width, m_height;
+    Buffer m_memory;
+};
+
+/// Uniform noise in 0..1: one multiplicative hash a sample.
+float noise(int x, int y, int c)
+{
+    std::uint64_t h = (static_cast<std::uint64_t>(y) << 34 | static_cast<std::uint64_t>(x) << 2 |
+                       static_cast<std::uint64_t>(c)) +
+                      1;
+    h *= 0x9E3779B97F4A7C15u;
+    h ^= h >> 29;
+    h *= 0xBF58476D1CE4E5B9u;
+    return static_cast<float>(h >> 40) * 0x1p-24f;
+}
+
+/// A smooth picture with some noise on it.
+void fill_with_scene(const Picture& picture, int width, int height, const ParallelFor& parallel_for)
+{
+    std::vector<float> wave(static_cast<std::size_t>(width));
+    for (int x = 0; x < width; ++x)
+        wave[static_cast<std::size_t>(x)] = 0.3f * std::sin(6.2831853f * 5 * static_cast<float>(x) / static_cast<float>(width));
+    picture.fill(parallel_for, [&](int x, int y, int c) {
+        const float slope = 0.3f * static_cast<float>(y) / static_cast<float>(height);
+        return 0.3f + wave[static_cast<std::size_t>(x)] + slope + 0.1f * noise(x, y, c);
+    });
+}
+
+Reached draw_ours(const View& view, const Source& source, const ReprojectOptions& options, const ImageView& to,
+                  const ParallelFor& parallel_for)
+{
+    const Reprojection reprojection(view.map, options);
+    if (!reprojection.draw(&source, view.box(), to, parallel_for)) throw Error("the source could not be read");
+    return {};
+}
+
+/// One source, its views, and everybody who draws them.
+class Scene {
+public:
+    Scene(const Settings& settings, Report& report, const Chart& chart, PixelType type, std::string op)
+        : m_settings(settings),
+          m_report(report),
+          m_op(std::move(op)),
+          m_chart(chart),
+          m_pool(settings.threads),
+          m_pair(2),
+          m_all(static_cast<int>(std::max(1u, std::thread::hardware_concurrency()))),
+          m_texels(type, chart.width(), chart.height()),
+          m_picture(type, settings.size, settings.size),
+          m_source(m_texels.source())
+    {
+        fill_with_scene(m_texels, chart.width(), chart.height(), m_all.parallel_for());
+    }
+
+    const Picture& texels() const { return m_texels; }
+    ParallelFor all() { return m_all.parallel_for(); }
+    ParallelFor threads() { return m_pool.parallel_for(); }
+    ImageView target(const View& view) const { return m_picture.view(view.size(), view.size()); }
+    const Picture& picture() const { return m_picture; }
+    const Source& source() const { return m_source; }
+
+    void add_view(const std::string& name, int size, double fov, const Orientation& orientation)
+    {
+        if (m_settings.wants_case(name))
+            m_views.push_back(std::make_unique<View>(name, m_chart, size, fov, orientation, all()));
+    }
+    const std::vector<std::unique_ptr<View>>& views() const { return m_views; }
+
+    void add(Contender contender)
+    {
+        if (m_settings.wants_scheme(contender.scheme) || contender.scheme == "double")
+            m_contenders.push_back(std::move(contender));
+    }
+
+    void add_ours(const View& view, const std::string& name, const ReprojectOptions& options, Pool& pool,
+                  int thread_count)
+    {
+        if (!m_settings.wants_scheme(name)) return;
+        Contender c{&view, name, options.tol, thread_count, {}};
+        c.draw = [this, &view, options, &pool] {
+            draw_ours(view, m_source, options, target(view), pool.parallel_for());
+        };
+        describe_ours(c, options);
+        add(std::move(c));
+    }
+
+    void describe_ours(Contender& c, const ReprojectOptions& options)
+    {
+        PlanOptions plan;
+        plan.scheme = options.scheme;
+        plan.tol = options.tol;
+        const View& view = *c.view;
+        c.points = [this, &view, plan] { return plan_points(Plan(view.map, plan), all()); };
+        const Reached reached = Reprojection(view.map, options).reached(all());
+        c.bound = reached.max_error;
+        c.exact_fraction = reached.exact_fraction;
+    }
+
+    void add_schemes(const View& view, const std::vector<double>& tols)
+    {
+        ReprojectOptions options;
+        options.filter = Filter::bilinear;
+        for (const double tol : tols)
+            for (const auto& [scheme, name] : kSchemes) {
+                options.scheme = scheme;
+                options.tol = tol;
+                add_ours(view, name, options, m_pool, m_settings.threads);
+            }
+        options.scheme = Scheme::exact;
+        options.tol = 0;
+        add_ours(view, "exact", options, m_pool, m_settings.threads);
+
+        options.scheme = Scheme::automatic;
+        options.tol = kDefaultTol;
+        if (m_settings.threads == 1 && std::thread::hardware_concurrency() > 1)
+            add_ours(view, "automatic", options, m_pair, 2);
+        Contender kept{&view, "automatic_kept", options.tol, m_settings.threads, {}};
+        auto reprojection = std::make_shared<Reprojection>(view.map, options);
+        kept.draw = [this, &view, reprojection] {
+            reprojection->draw(&m_source, view.box(), target(view), threads());
+        };
+        describe_ours(kept, options);
+        add(std::move(kept));
+    }
+
+    template <class Texel>
+    void add_rivals(const View& view)
+    {
+        const Texel* from = m_texels.as<Texel>();
+        Texel* to = m_picture.as<Texel>();
+        const int threads_count = m_settings.threads;
+        const auto points_by = [&view](auto formula) {
+            return [&view, formula] {
+                Points points;
+                for (int j = 0; j < view.size(); ++j)
+                    for (int i = 0; i < view.size(); ++i) points.push_back(formula(view.plain, i, j));
+                return points;
+            };
+        };
+        add({&view, "double", kNone, threads_count,
+             [=, this, &view] { draw_double(view.plain, from, to, threads()); }, points_by(double_point), kNone, 1});
+        if constexpr (std::is_same_v<Texel, float>) {
+            if (!m_padded && m_settings.wants_scheme("simd_exact")) m_padded.emplace(view.plain, from, all());
+            add({&view, "simd_exact", kNone, threads_count,
+                 [=, this, &view] { draw_simd_exact(view.plain, *m_padded, to, threads()); },
+                 [&view] {
+                     Points points;
+                     for (const Point<float>& p : simd_exact_points(view.plain)) points.push_back({p.x, p.y});
+                     return points;
+                 },
+                 kNone, 1});
+        }
+        if (have_opencv()) {
+            auto opencv = std::make_shared<OpenCv<Texel>>(view.plain, from, to, threads_count, threads());
+            opencv->compute_map();
+            add({&view, "opencv", kNone, threads_count,
+                 [opencv] {
+                     opencv->compute_map();
+                     opencv->remap();
+                 },
+                 points_by(opencv_point)});
+            add({&view, "opencv_remap", kNone, threads_count, [opencv] { opencv->remap(); },
+                 points_by(opencv_point)});
+        }
+        auto traffic = std::make_shared<Traffic>(view.plain, m_texels.bytes(), 3 * size_of(m_texels.type()), all());
+        add({&view, "memory", kNone, threads_count,
+             [=, this] { traffic->copy(m_picture.bytes(), threads()); }});
+    }
+
+    /// Times all contenders together, then measures their errors and adds their rows.
+    void measure()
+    {
+        std::vector<std::function<void()>> draws;
+        for (const Contender& c : m_contenders) draws.push_back(c.draw);
+        const std::vector<Times> times = time_interleaved(draws, m_settings.rounds);
+        const auto plain_time = [&](const View* view) {
+            for (std::size_t k = 0; k < times.size(); ++k)
+                if (m_contenders[k].view == view && m_contenders[k].scheme == "double") return times[k].median;
+            return kNone;
+        };
+        for (std::size_t k = 0; k < times.size(); ++k) {
+            const Contender& c = m_contenders[k];
+            const double pixels = double(c.view->size()) * c.view->size();
+            Row row{m_op,   c.view->name, c.scheme, c.tol, c.view->size(), c.threads, times[k].median / pixels,
+                    times[k].best / pixels, plain_time(c.view) / times[k].median, {}, c.bound, c.exact_fraction};
+            if (c.points) {
+                std::vector<float> errors = distances(m_chart, c.points(), c.view->truth);
+                row.error = accuracy_of(errors);
+                if (!std::isnan(c.tol)) check_bound(row);
+            }
+            if (m_settings.wants_scheme(c.scheme)) m_report.rows.push_back(row);
+        }
+    }
+
+    void check_bound(const Row& row)
+    {
+        // What double leaves of a coordinate of thousands of pixels.
+        const double slack = 1e-9;
+        if (!(row.error.max <= row.bound_px * (1 + 1e-6) + slack) ||
+            !(row.bound_px <= row.tol_px * (1 + 1e-12) + slack))
+            fail(row.case_name, row.scheme, row.tol_px,
+                 "largest error " + std::to_string(row.error.max) + ", bound " + std::to_string(row.bound_px));
+    }
+
+    /// The errors again, as the product reports them: Output::error against our own evaluation.
+    void check_error_pictures()
+    {
+        // Float polynomials with and without fused multiply-adds, and the picture's own rounding.
+        const double slack = 2e-4;
+        std::vector<std::pair<const View*, std::pair<std::string, double>>> done;
+        for (const Contender& c : m_contenders) {
+            if (std::isnan(c.tol) || !c.points || c.scheme == "automatic_kept" || c.threads != m_settings.threads)
+                continue;
+            ReprojectOptions options;
+            options.tol = c.tol;
+            options.filter = Filter::bilinear;
+            options.output = Output::error;
+            options.scheme = Scheme::exact;
+            for (const auto& [scheme, name] : kSchemes)
+                if (c.scheme == name) options.scheme = scheme;
+            const View& view = *c.view;
+            std::vector<float> drawn(view.truth.size());
+            const ImageView picture = packed_view(reinterpret_cast<std::byte*>(drawn.data()), PixelType::float32,
+                                                  view.size(), view.size(), 1);
+            Reprojection(view.map, options).draw(nullptr, view.box(), picture, all());
+            const Points points = c.points();
+            double worst = 0;
+            for (std::size_t k = 0; k < points.size(); ++k)
+                if (well_inside(m_chart, view.truth[k]))
+                    worst = std::max(worst, std::fabs(distance(m_chart, points[k], view.truth[k]) -
+                                                      static_cast<double>(drawn[k])));
+            if (!(worst <= slack))
+                fail(view.name, c.scheme, c.tol, "the error picture is off by " + std::to_string(worst) + " px");
+        }
+    }
+
+    /// And once more through what is drawn: a source that holds its own coordinates comes out as the points used.
+    void check_through_pictures()
+    {
+        if (m_texels.type() != PixelType::float32) return;
+        const double cx = 0.5 * m_chart.width(), cy = 0.5 * m_chart.height();
+        m_texels.fill(all(), [&](int x, int y, int c) {
+            return static_cast<float>(c == 0 ? x + 0.5 - cx : c == 1 ? y + 0.5 - cy : 0);
+        });
+        if (m_padded) m_padded.emplace(m_views.front()->plain, m_texels.as<float>(), all());
+        // Values of up to half the source's width, interpolated in float.
+        const double slack = 2e-6 * m_chart.width() / 8 + 1e-4;
+        for (const Contender& c : m_contenders) {
+            if (!c.points) continue;
+            c.draw();
+            const Points points = c.points();
+            const float* drawn = m_picture.as<float>();
+            double worst = 0;
+            for (std::size_t k = 0; k < points.size(); ++k)
+                if (well_inside(m_chart, points[k]))
+                    worst = std::max(worst, distance(m_chart, points[k],
+                                                     {static_cast<double>(drawn[3 * k]) + cx,
+                                                      static_cast<double>(drawn[3 * k + 1]) + cy}));
+            if (!(worst <= slack))
+                fail(c.view->name, c.scheme, c.tol, "draws " + std::to_string(worst) + " px from where it says");
+        }
+    }
+
+private:
+    void fail(const std::string& case_name, const std::string& scheme, double tol, const std::string& what)
+    {
+        m_report.failures.push_back(case_name + ", " + scheme + ", tol " + std::to_string(tol) + ": " + what);
+    }
+
+    const Settings& m_settings;
+    Report& m_report;
+    std::string m_op;
+    Chart m_chart;
+    Pool m_pool, m_pair, m_all;
+    Picture m_texels, m_picture;
+    MemorySource m_source;
+    std::optional<PaddedSource> m_padded;
+    std::vector<std::unique_ptr<View>> m_views;
+    std::vector<Contender> m_contenders;
+};
+
+Chart equirectangular(int width) { return Chart(Projection::equirectangular, width, width / 2, 360); }
+
+/// 360 degrees around, 45 degrees up and down at least.
+Chart cylinder(int width)
+{
+    return Chart(Projection::cylindrical, width, static_cast<int>(std::ceil(width / 3.14159265358979)), 360);
+}
+
+// --- bilinear, float ----------------------------------------------------------------------------------------------
+
+void run_bilinear(const Settings& settings, Report& report, const Chart& chart, const std::string& name)
+{
+    const std::string turned = name + "_rotated";
+    if (!settings.wants_case(name) && !settings.wants_case(turned)) return;
+    Scene scene(settings, report, chart, PixelType::float32, "pano");
+    scene.add_view(name, settings.size, 90, {});
+    scene.add_view(turned, settings.size, 90, kTurned);
+    for (const auto& view : scene.views()) {
+        scene.add_schemes(*view, {std::begin(kTols), std::end(kTols)});
+        scene.add_rivals<float>(*view);
+    }
+    scene.measure();
+    scene.check_error_pictures();
+    scene.check_through_pictures();
+
+    const int threads = settings.threads;
+    const Row* ours = report.find(name, "automatic", kDefaultTol, threads);
+    const auto rival = [&](const char* scheme) { return report.find(name, scheme); };
+    const bool cylindrical = chart.projection() == Projection::cylindrical;
+    report.add_speed_target(name + ": times the plain double loop's speed", 14, rival("double"), ours);
+    report.add_speed_target(name + ": times OpenCV's map + remap", cylindrical ? 8 : 12, rival("opencv"), ours);
+    report.add_speed_target(name + ": times the exact SIMD scheme", 1.4, rival("simd_exact"), ours);
+    report.add_speed_target(name + ": of the memory limit", 0.4, rival("memory"), ours);
+    if (threads == 1)
+        report.add_speed_target(name + ": two threads over one", 1.8, ours,
+                                report.find(name, "automatic", kDefaultTol, 2));
+    report.add_speed_target(name + ": rotated 30/20/10 over straight", 0.8, ours,
+                            report.find(turned, "automatic", kDefaultTol, threads));
+}
+
+// --- bilinear, uint8 ----------------------------------------------------------------------------------------------
+
+void run_uint8(const Settings& settings, Report& report)
+{
+    const std::string name = "equirect_uint8";
+    if (!settings.wants_case(name)) return;
+    constexpr double kFine = 1.0 / 256;
+    Scene scene(settings, report, equirectangular(source_width(settings)), PixelType::uint8, "pano");
+    scene.add_view(name, settings.size, 90, {});
+    const View& view = *scene.views().front();
+    scene.add_schemes(view, {1, 1.0 / 16, kDefaultTol, kFine, 0.001, 0});
+    scene.add_rivals<std::uint8_t>(view);
+    scene.measure();
+    scene.check_error_pictures();
+    const Row* fine = report.find(name, "automatic", kFine, settings.threads);
+    report.add_speed_target(name + ": times OpenCV's remap alone, at tol 1/256", 1.3, report.find(name, "opencv_remap"),
+                            fine);
+    if (fine) report.add_limit(name + ": largest error at tol 1/256", kFine, fine->error.max);
+}
+
+// --- antialiased --------------------------------------------------------------------------------------------------
+
+using Polygon = std::vector<Point<double>>;
+
+/// The part of a convex polygon where sign * (coordinate - limit) >= 0.
+Polygon clipped(const Polygon& polygon, double Point<double>::*coordinate, double limit, double sign)
+{
+    Polygon result;
+    for (std::size_t k = 0; k < polygon.size(); ++k) {
+        const Point<double>&a = polygon[k], &b = polygon[(k + 1) % polygon.size()];
+        const double da = sign * (a.*coordinate - limit), db = sign * (b.*coordinate - limit);
+        if (da >= 0) result.push_back(a);
+        if ((da >= 0) != (db >= 0)) {
+            const double t = da / (da - db);
+            result.push_back({a.x + t * (b.x - a.x), a.y + t * (b.y - a.y)});
+        }
+    }
+    return result;
+}
+
+double area(const Polygon& polygon)
+{
+    double twice = 0;
+    for (std::size_t k = 0; k < polygon.size(); ++k) {
+        const Point<double>&a = polygon[k], &b = polygon[(k + 1) % polygon.size()];
+        twice += a.x * b.y - a.y * b.x;
+    }
+    return std::fabs(twice) / 2;
+}
+
+/// Variance of the exact average of white noise of variance 1 over a polygon of texels: the sum of squared coverages.
+double box_variance(const Polygon& polygon)
+{
+    const auto [top, bottom] =
+        std::minmax_element(polygon.begin(), polygon.end(), [](const auto& a, const auto& b) { return a.y < b.y; });
+    double squares = 0;
+    for (double y = std::floor(top->y); y < bottom->y; ++y) {
+        const Polygon row = clipped(clipped(polygon, &Point<double>::y, y, 1), &Point<double>::y, y + 1, -1);
+        if (row.empty()) continue;
+        const auto [left, right] =
+            std::minmax_element(row.begin(), row.end(), [](const auto& a, const auto& b) { return a.x < b.x; });
+        for (double x = std::floor(left->x); x < right->x; ++x) {
+            const double texel =
+                area(clipped(clipped(row, &Point<double>::x, x, 1), &Point<double>::x, x + 1, -1));
+            squares += texel * texel;
+        }
+    }
+    const double all = area(polygon);
+    return squares / (all * all);
+}
+
+/// Standard deviation of a view of white noise of variance 1, each pixel the average over its footprint: the mean
+/// over some thousand pixels.
+double ideal_noise(const View& view)
+{
+    const int step = std::max(1, view.size() / 48);
+    double sum = 0;
+    int count = 0;
+    for (int j = step / 2; j < view.size(); j += step)
+        for (int i = step / 2; i < view.size(); i += step) {
+            Polygon corners;
+            for (const auto& [dx, dy] : {std::pair{0, 0}, {1, 0}, {1, 1}, {0, 1}}) {
+                Point<double> p{};
+                int piece = 0;
+                view.map.exact(double(i + dx), double(j + dy), 0, p, piece);
+                corners.push_back(p);
+            }
+            sum += box_variance(corners);
+            ++count;
+        }
+    return std::sqrt(sum / count);
+}
+
+double standard_deviation(const float* values, std::size_t count)
+{
+    double mean = 0, squares = 0;
+    for (std::size_t k = 0; k < count; ++k) mean += static_cast<double>(values[k]) / static_cast<double>(count);
+    for (std::size_t k = 0; k < count; ++k) squares += (values[k] - mean) * (values[k] - mean);
+    return std::sqrt(squares / static_cast<double>(count));
+}
+
+void run_antialias(const Settings& settings, Report& report)
+{
+    const std::string names[] = {"antialias_half", "antialias_eighth"};
+    if (!settings.wants_case(names[0]) && !settings.wants_case(names[1])) return;
+    const Chart chart = equirectangular(source_width(settings));
+    Scene scene(settings, report, chart, PixelType::float32, "pano");
+    scene.texels().fill(scene.all(), noise);
+    scene.add_view(names[0], settings.size / 2, 120, {});
+    scene.add_view(names[1], settings.size / 8, 120, {});
+    const Pyramid pyramid(scene.source());
+    ReprojectOptions options;
+    ReprojectOptions bilinear;
+    bilinear.filter = Filter::bilinear;
+    for (const auto& view_pointer : scene.views()) {
+        const View& view = *view_pointer;
+        const auto drawing = [&](const ReprojectOptions& how) {
+            return [&scene, &view, &pyramid, how] {
+                draw_ours(view, pyramid, how, scene.target(view), scene.threads());
+            };
+        };
+        for (const auto& [name, how] : {std::pair{"automatic", options}, {"bilinear", bilinear}}) {
+            Contender c{&view, name, options.tol, settings.threads, drawing(how)};
+            scene.describe_ours(c, how);
+            scene.add(std::move(c));
+        }
+        Contender with_levels{&view, "with_pyramid", options.tol, settings.threads, [&scene, &view, options] {
+                                  const Pyramid fresh(scene.source());
+                                  draw_ours(view, fresh, options, scene.target(view), scene.threads());
+                              }};
+        scene.describe_ours(with_levels, options);
+        scene.add(std::move(with_levels));
+        scene.add_rivals<float>(view);
+    }
+    scene.measure();
+    for (const auto& view : scene.views()) {
+        const Row* ours = report.find(view->name, "automatic");
+        const std::string title = view->name + " (" + std::to_string(view->size()) + " px)";
+        report.add_speed_target(title + ": of our own bilinear rate", 0.25, report.find(view->name, "bilinear"), ours);
+        if (!ours) continue;
+        draw_ours(*view, pyramid, options, scene.target(*view), scene.all());
+        // Uniform noise in 0..1 has variance 1/12.
+        const double drawn = standard_deviation(scene.picture().as<float>(), 3 * view->truth.size());
+        report.add_limit(title + ": noise, relative distance from the ideal box figure", 0.05,
+                         std::fabs(drawn / (ideal_noise(*view) * std::sqrt(1 / 12.0)) - 1));
+    }
+}
+
+void run(const Settings& settings, Report& report)
+{
+    std::printf("pano: instruction set %s, %d thread(s)\n", simd_target().c_str(), settings.threads);
+    const int width = source_width(settings);
+    run_bilinear(settings, report, equirectangular(width), "equirect");
+    run_bilinear(settings, report, cylinder(width), "cylinder");
+    run_uint8(settings, report);
+    run_antialias(settings, report);
+}
+
+// --- bound over true error ----------------------------------------------------------------------------------------
+
+double median(std::vector<double>& values)
+{
+    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+    std::nth_element(values.begin(), middle, values.end());
+    return *middle;
+}
+
+/// Prints one line on the polynomial blocks of a plan and returns the median of bound over largest true error; NaN
+/// when there is none.
+double report_blocks(const std::string& view, const Plan& plan, const char* scheme, const Points& truth,
+                     const ParallelFor& parallel_for)
+{
+    std::mutex mutex;
+    std::vector<double> ratios;
+    int broken = 0;
+    const int width = plan.map().target().width();
+    parallel_for(plan.regions(), [&](std::int64_t region) {
+        for (const Block& block : *plan.blocks(region)) {
+            if (block.kind != Block::Kind::polynomial) continue;
+            double worst = 0;
+            for_points(plan.map(), block, [&](int i, int j, const Point<double>& p) {
+                const Point<double>& q = truth[static_cast<std::size_t>(j) * static_cast<std::size_t>(width) +
+                                               static_cast<std::size_t>(i)];
+                worst = std::max(worst, distance(plan.map().source(), p, q));
+            });
+            const std::lock_guard lock(mutex);
+            if (!(worst <= block.bound)) ++broken;
+            if (worst > 0) ratios.push_back(block.bound / worst);
+        }
+    });
+    if (ratios.empty()) return kNone;
+    std::vector<double> sorted = ratios;
+    std::sort(sorted.begin(), sorted.end());
+    std::printf("%-64s %-9s %8.4g %8zu %8.3f %8.3f %8.3f %7d\n", view.c_str(), scheme, plan.options().tol,
+                sorted.size(), sorted[sorted.size() / 2], sorted[sorted.size() * 9 / 10], sorted.back(), broken);
+    return median(ratios);
+}
+
+/// The benchmark's own views and seeded random ones between all projections.
+std::vector<std::pair<std::string, Panorama>> bound_views(const Settings& settings)
+{
+    std::vector<std::pair<std::string, Panorama>> views;
+    const int width = source_width(settings);
+    const Chart target(Projection::rectilinear, settings.size, settings.size, 90);
+    for (const auto& [name, chart] : {std::pair{"equirect", equirectangular(width)}, {"cylinder", cylinder(width)}}) {
+        views.emplace_back(name, Panorama(chart, target));
+        views.emplace_back(std::string(name) + "_rotated", Panorama(chart, target, kTurned));
+    }
+    std::mt19937 random(2);
+    const auto uniform = [&](double low, double high) {
+        return low + (high - low) * (static_cast<double>(random()) / 4294967296.0);
+    };
+    const Projection all[] = {Projection::equirectangular, Projection::cylindrical, Projection::rectilinear,
+                              Projection::fisheye,         Projection::equisolid,   Projection::stereographic,
+                              Projection::mercator,        Projection::cubemap};
+    const int n = std::max(64, settings.size / 4);
+    for (const Projection from : all)
+        for (const Projection to : all) {
+            const bool from_cube = from == Projection::cubemap, to_cube = to == Projection::cubemap;
+            const Chart source(from, from_cube ? n : 4 * n, from_cube ? 6 * n : 2 * n);
+            const double fov = to_cube ? 90 : uniform(20, to == Projection::rectilinear ? 120 : 160);
+            const Orientation o{uniform(-180, 180), uniform(-80, 80), uniform(-180, 180)};
+            char name[96];
+            std::snprintf(name, sizeof name, "%s to %s %.0f, %.0f/%.0f/%.0f", std::string(name_of(from)).c_str(),
+                          std::string(name_of(to)).c_str(), fov, o.yaw, o.pitch, o.roll);
+            views.emplace_back(name, Panorama(source, Chart(to, n, to_cube ? 6 * n : n, fov), o));
+        }
+    return views;
+}
+
+void report_bounds(const Settings& settings)
+{
+    Pool pool(static_cast<int>(std::max(1u, std::thread::hardware_concurrency())));
+    std::printf("pano: proven bound over largest true error, per polynomial block\n");
+    std::printf("%-64s %-9s %8s %8s %8s %8s %8s %7s\n", "view", "scheme", "tol px", "blocks", "median", "90%", "most",
+                "broken");
+    std::vector<double> medians;
+    for (const auto& [name, map] : bound_views(settings)) {
+        if (!settings.wants_case(name)) continue;
+        const Points truth = true_points(map, pool.parallel_for());
+        for (const auto& [scheme, scheme_name] : kSchemes) {
+            if (scheme == Scheme::automatic ? settings.scheme != "automatic" : !settings.wants_scheme(scheme_name))
+                continue;
+            for (const double tol : kTols) {
+                PlanOptions options;
+                options.scheme = scheme;
+                options.tol = tol;
+                const double m = report_blocks(name, Plan(map, options), scheme_name, truth, pool.parallel_for());
+                if (!std::isnan(m)) medians.push_back(m);
+            }
+        }
+    }
+    if (!medians.empty()) std::printf("median over views and tolerances: %.3f\n", median(medians));
+}
+
+const RegisterOp registered({"pano", run, report_bounds});
+
+}  // namespace
+}  // namespace anamorph::bench

@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: Apache-2.0
+// Where in the source each pixel of a view is read: by the exact map in long double, and by a plan's blocks.
+#pragma once
+
+#include <vector>
+
+#include "anamorph/approx/plan.h"
+#include "anamorph/map/panorama.h"
+
+namespace anamorph::bench {
+
+/// One point a pixel, row by row; NaN where there is none.
+using Points = std::vector<Point<double>>;
+
+/// Panorama::exact read with long double.
+Points true_points(const Panorama& map, const ParallelFor& parallel_for);
+
+/// Calls `body(i, j, point)` for the pixels of a block. Polynomials are evaluated here as plan.h states them, in plain
+/// float arithmetic, apart from the product's own loops; exact pixels by Panorama::exact<double>.
+template <class Body>
+void for_points(const Panorama& map, const Block& block, const Body& body)
+{
+    const Box& box = block.box;
+    // s and t run from -1 to 1 over the pixel centres; a single one stands at 0.
+    const auto along = [](int k, int count) {
+        return count > 1 ? static_cast<float>(2 * k - (count - 1)) / static_cast<float>(count - 1) : 0.0f;
+    };
+    const auto value = [](const float* c, float s, float t) {
+        return ((c[5] * t + c[2]) * t + c[0]) + s * ((c[4] * t + c[1]) + s * c[3]);
+    };
+    for (int j = box.y0; j < box.y1; ++j)
+        for (int i = box.x0; i < box.x1; ++i) {
+            Point<double> p{std::nan(""), std::nan("")};
+            if (block.kind == Block::Kind::polynomial) {
+                const float s = along(i - box.x0, box.width()), t = along(j - box.y0, box.height());
+                p = {block.base_x + static_cast<double>(value(block.x, s, t)),
+                     block.base_y + static_cast<double>(value(block.y, s, t))};
+            }
+            else if (block.kind == Block::Kind::exact) {
+                int piece = 0;
+                Point<double> q{};
+                if (map.exact(i + 0.5, j + 0.5, block.piece, q, piece)) p = q;
+            }
+            body(i, j, p);
+        }
+}
+
+/// The points that a plan leads to.
+Points plan_points(const Plan& plan, const ParallelFor& parallel_for);
+
+/// Distance of two source points; a turn apart is the same where the source closes on itself.
+double distance(const Chart& source, const Point<double>& a, const Point<double>& b);
+
+/// Does a bilinear filter at this point read texels of the source image only?
+bool well_inside(const Chart& source, const Point<double>& p);
+
+/// Distances for all pixels whose true point lies in the source image. A pixel that has a true point there but none
+/// in `used` counts as infinite.
+std::vector<float> distances(const Chart& source, const Points& used, const Points& truth);
+
+}  // namespace anamorph::bench

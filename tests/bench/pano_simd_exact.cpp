@@ -1,0 +1,249 @@
+// SPDX-License-Identifier: Apache-2.0
+// The rival to beat: every pixel exact, with vectors of pixels, tiles, wide loads, prefetches and streaming stores.
+#include <algorithm>
+#include <cstring>
+
+#include "pano_rivals.h"
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "pano_simd_exact.cpp"
+#include "hwy/foreach_target.h"  // before highway.h
+#include "hwy/cache_control.h"
+#include "hwy/highway.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace anamorph::bench::HWY_NAMESPACE {
+namespace hn = hwy::HWY_NAMESPACE;
+
+using D = hn::ScalableTag<float>;
+using V = hn::Vec<D>;
+using DI = hn::RebindToSigned<D>;
+
+constexpr int kTileWidth = 64, kTileHeight = kSimdTileHeight;
+
+/// What one row of a tile reads: where the upper left taps stand (floats from the origin) and the weights of the
+/// taps to the right and below.
+struct RowTaps {
+    HWY_ALIGN_MAX std::int32_t offset[kTileWidth];
+    HWY_ALIGN_MAX float x[kTileWidth], y[kTileWidth];
+};
+
+/// atan t for 0 <= t <= 1: minimax polynomial in t^2, absolute error below 4e-8, below 1.4e-7 with rounding.
+HWY_INLINE V atan_to_one(D d, V t)
+{
+    const V a = hn::Mul(t, t);
+    V r = hn::Set(d, -0.004054567139f);
+    for (const float c : {0.0218629576f, -0.05591232636f, 0.09642197297f, -0.1390862954f, 0.1994656565f,
+                          -0.3332986078f, 0.9999993356f})
+        r = hn::MulAdd(r, a, hn::Set(d, c));
+    return hn::Mul(r, t);
+}
+
+HWY_INLINE V atan2(D d, V y, V x)
+{
+    constexpr float kHalfTurn = 3.14159265f, kQuarterTurn = 1.57079633f;
+    const V ax = hn::Abs(x), ay = hn::Abs(y);
+    V r = atan_to_one(d, hn::Div(hn::Min(ax, ay), hn::Max(ax, ay)));
+    r = hn::IfThenElse(hn::Gt(ay, ax), hn::Sub(hn::Set(d, kQuarterTurn), r), r);
+    r = hn::IfThenElse(hn::Lt(x, hn::Zero(d)), hn::Sub(hn::Set(d, kHalfTurn), r), r);
+    return hn::CopySign(r, y);
+}
+
+/// The map in float.
+struct FloatMap {
+    explicit FloatMap(const PlainView& view)
+        : cylinder(view.cylinder),
+          last_row(static_cast<float>(view.source_height)),
+          step(static_cast<float>(view.step)),
+          first(static_cast<float>(view.first)),
+          scale_x(static_cast<float>(view.scale_x)),
+          scale_y(static_cast<float>(view.scale_y)),
+          centre_x(static_cast<float>(0.5 * view.source_width - 0.5)),
+          centre_y(static_cast<float>(0.5 * view.source_height - 0.5))
+    {
+        std::copy_n(view.rotation, 9, rotation);
+    }
+
+    /// Source points of the pixels (i + lane, j), texel centres at whole numbers.
+    HWY_INLINE void operator()(D d, int i, int j, V& x, V& y) const
+    {
+        const float* r = rotation;
+        const V u = hn::MulAdd(hn::Iota(d, static_cast<float>(i)), hn::Set(d, step), hn::Set(d, first));
+        const float v = first + static_cast<float>(j) * step;
+        const V rx = hn::MulAdd(u, hn::Set(d, r[0]), hn::Set(d, r[1] * v + r[2]));
+        const V ry = hn::MulAdd(u, hn::Set(d, r[3]), hn::Set(d, r[4] * v + r[5]));
+        const V rz = hn::MulAdd(u, hn::Set(d, r[6]), hn::Set(d, r[7] * v + r[8]));
+        const V rho = hn::Sqrt(hn::MulAdd(rx, rx, hn::Mul(rz, rz)));
+        const V down = cylinder ? hn::Div(ry, rho) : atan2(d, ry, rho);
+        x = hn::MulAdd(atan2(d, rx, rz), hn::Set(d, scale_x), hn::Set(d, centre_x));
+        y = hn::MulAdd(down, hn::Set(d, scale_y), hn::Set(d, centre_y));
+        y = hn::Min(hn::Max(y, hn::Set(d, -1.0f)), hn::Set(d, last_row));
+    }
+
+    bool cylinder;
+    float last_row, step, first, scale_x, scale_y, centre_x, centre_y;
+    float rotation[9];
+};
+
+/// The taps of as many pixels as a vector holds, pixel k of the row being (i + k, j).
+HWY_INLINE void compute_taps(const FloatMap& map, int i, int j, int k, std::int32_t row_floats, RowTaps& taps)
+{
+    const D d;
+    const DI di;
+    V x, y;
+    map(d, i + k, j, x, y);
+    const V left = hn::Floor(x), top = hn::Floor(y);
+    hn::Store(hn::Sub(x, left), d, taps.x + k);
+    hn::Store(hn::Sub(y, top), d, taps.y + k);
+    // The bits of n + 1.5 * 2^23 are kBits + n; integers wrap, so one constant takes kBits out of both terms.
+    constexpr std::uint32_t kBits = 0x4B400000;
+    const auto bits = [&](V n) { return hn::BitCast(di, hn::Add(n, hn::Set(d, 12582912.0f))); };
+    const auto none = static_cast<std::int32_t>(kBits + kBits * (static_cast<std::uint32_t>(row_floats) / 3));
+    const auto rows = hn::Mul(bits(top), hn::Set(di, row_floats));
+    const auto columns = hn::Sub(bits(left), hn::Set(di, none));
+    hn::Store(hn::Add(rows, hn::Add(columns, hn::Add(columns, columns))), di, taps.offset + k);
+}
+
+HWY_INLINE void prefetch(const RowTaps& taps, const float* below)
+{
+    constexpr int kPixelsPerLine = 4;
+    for (int k = 0; k < kTileWidth; k += kPixelsPerLine) hwy::Prefetch(below + taps.offset[k]);
+}
+
+/// Bilinear samples of three channels to `row`, which has room for one float more.
+HWY_INLINE void sample(const RowTaps& taps, int first, int count, const float* origin, std::int32_t row_floats,
+                       float* row)
+{
+#if HWY_MAX_BYTES >= 32
+    const hn::FixedTag<float, 4> d4;
+    const hn::FixedTag<float, 8> d8;
+    HWY_ALIGN static constexpr std::int32_t kRight[8] = {3, 4, 5, 6, 7, 7, 7, 7};
+    const auto right = hn::SetTableIndices(d8, kRight);
+    HWY_UNROLL(16)
+    for (int k = first; k < first + count; ++k) {
+        // Both taps of a texel row by one load: r g b r g b.
+        const float* p = origin + taps.offset[k];
+        const auto above = hn::LoadU(d8, p), below = hn::LoadU(d8, p + row_floats);
+        const auto both = hn::MulAdd(hn::Set(d8, taps.y[k]), hn::Sub(below, above), above);
+        const auto a = hn::LowerHalf(d4, both), b = hn::LowerHalf(d4, hn::TableLookupLanes(both, right));
+        hn::StoreU(hn::MulAdd(hn::Set(d4, taps.x[k]), hn::Sub(b, a), a), d4, row + 3 * k);
+    }
+#else
+    for (int k = first; k < first + count; ++k) {
+        const float *a = origin + taps.offset[k], *b = a + row_floats;
+        for (int c = 0; c < 3; ++c) {
+            const float left = a[c] + taps.y[k] * (b[c] - a[c]);
+            const float right = a[c + 3] + taps.y[k] * (b[c + 3] - a[c + 3]);
+            row[3 * k + c] = left + taps.x[k] * (right - left);
+        }
+    }
+#endif
+}
+
+HWY_INLINE void stream_row(const float* row, float* to)
+{
+    const D d;
+    for (std::size_t k = 0; k < 3 * kTileWidth; k += hn::Lanes(d)) hn::Stream(hn::Load(d, row + k), d, to + k);
+}
+
+/// The tiles of one strip of the picture. Coordinates run kAhead rows ahead of the samples, which gives the prefetches
+/// their time; a row is streamed after the next one is sampled, when its stores have reached the cache.
+void draw_strip(const PlainView& view, const float* origin, std::ptrdiff_t row_floats, float* picture, int strip)
+{
+    constexpr int kAhead = 3;
+    const FloatMap map(view);
+    const int size = view.size, top = strip * kTileHeight, rows = std::min(kTileHeight, size - top);
+    const int steps = (size + kTileWidth - 1) / kTileWidth * rows;
+    const int lanes = static_cast<int>(hn::Lanes(D()));
+    const auto stride = static_cast<std::int32_t>(row_floats);
+    RowTaps taps[kAhead + 1];
+    HWY_ALIGN_MAX float drawn[2][3 * kTileWidth + 16];
+    const auto finish = [&](int step) {
+        const int left = step / rows * kTileWidth, j = top + step % rows;
+        float* to = picture + 3 * (static_cast<std::ptrdiff_t>(j) * size + left);
+        if (size % kTileWidth == 0)
+            stream_row(drawn[step & 1], to);
+        else
+            std::memcpy(to, drawn[step & 1], static_cast<std::size_t>(std::min(kTileWidth, size - left)) * 12);
+    };
+    for (int step = 0; step < steps + kAhead; ++step) {
+        RowTaps& next = taps[step % (kAhead + 1)];
+        const int now = step - kAhead;
+        const RowTaps& current = taps[(now + kAhead + 1) % (kAhead + 1)];
+        // Arithmetic and loads side by side.
+        for (int k = 0; k < kTileWidth; k += lanes) {
+            if (step < steps)
+                compute_taps(map, step / rows * kTileWidth, top + step % rows, k, stride, next);
+            if (now >= 0) sample(current, k, lanes, origin, stride, drawn[now & 1]);
+        }
+        if (step < steps) prefetch(next, origin + row_floats);
+        if (now > 0) finish(now - 1);
+    }
+    finish(steps - 1);
+}
+
+void points(const PlainView& view, Point<float>* to)
+{
+    const D d;
+    const FloatMap map(view);
+    const int lanes = static_cast<int>(hn::Lanes(d));
+    HWY_ALIGN_MAX float x[kTileWidth], y[kTileWidth];
+    for (int j = 0; j < view.size; ++j)
+        for (int i = 0; i < view.size; i += lanes) {
+            V vx, vy;
+            map(d, i, j, vx, vy);
+            hn::Store(vx, d, x);
+            hn::Store(vy, d, y);
+            for (int k = 0; k < std::min(lanes, view.size - i); ++k) *to++ = {x[k] + 0.5f, y[k] + 0.5f};
+        }
+}
+
+void read_and_fill(const std::byte* source, std::size_t read, std::byte* target, std::size_t written)
+{
+    const hn::ScalableTag<std::uint32_t> d;
+    const std::size_t lanes = hn::Lanes(d);
+    const auto* from = reinterpret_cast<const std::uint32_t*>(source);
+    auto* to = reinterpret_cast<std::uint32_t*>(target);
+    auto sum = hn::Zero(d);
+    for (std::size_t k = 0; k < read / 4; k += lanes) sum = hn::Add(sum, hn::Load(d, from + k));
+    for (std::size_t k = 0; k < written / 4; k += lanes) hn::Stream(sum, d, to + k);
+}
+
+const char* target() { return hwy::TargetName(HWY_TARGET); }
+
+}  // namespace anamorph::bench::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace anamorph::bench {
+
+HWY_EXPORT(draw_strip);
+HWY_EXPORT(points);
+HWY_EXPORT(read_and_fill);
+HWY_EXPORT(target);
+
+void draw_simd_exact(const PlainView& view, const PaddedSource& source, float* picture,
+                     const ParallelFor& parallel_for)
+{
+    parallel_for((view.size + kSimdTileHeight - 1) / kSimdTileHeight, [&](std::int64_t strip) {
+        HWY_DYNAMIC_DISPATCH(draw_strip)(view, source.origin, source.row_floats, picture, static_cast<int>(strip));
+        hwy::FlushStream();
+    });
+}
+
+std::vector<Point<float>> simd_exact_points(const PlainView& view)
+{
+    std::vector<Point<float>> all(static_cast<std::size_t>(view.size) * static_cast<std::size_t>(view.size));
+    HWY_DYNAMIC_DISPATCH(points)(view, all.data());
+    return all;
+}
+
+std::string simd_target() { return HWY_DYNAMIC_DISPATCH(target)(); }
+
+void stream(const std::byte* source, std::size_t read, std::byte* target, std::size_t written)
+{
+    HWY_DYNAMIC_DISPATCH(read_and_fill)(source, read, target, written);
+}
+
+}  // namespace anamorph::bench
+#endif

@@ -1,0 +1,209 @@
+// SPDX-License-Identifier: Apache-2.0
+// speed_vs_error --csv FILE [--op NAME] [--size N] [--threads N] [--case NAME] [--scheme NAME] [--rounds N]
+// speed_vs_error --bounds [...]
+//
+// Measures how fast each scheme draws and how far it is from the exact map, next to what else one could use, all in
+// one run. The CSV has a line per case, scheme and tolerance; a summary goes to standard output.
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <exception>
+#include <fstream>
+#include <iomanip>
+#include <iostream>
+#include <numeric>
+#include <random>
+#include <stdexcept>
+#include <string_view>
+#include <thread>
+
+#include "bench.h"
+
+namespace anamorph::bench {
+namespace {
+
+std::vector<Op>& ops()
+{
+    static std::vector<Op> list;
+    return list;
+}
+
+double now_ns()
+{
+    return std::chrono::duration<double, std::nano>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
+int whole_number(std::string_view option, const char* text, int least, int most)
+{
+    char* end = nullptr;
+    const long value = std::strtol(text, &end, 10);
+    if (end == text || *end || value < least || value > most)
+        throw std::invalid_argument(std::string(option) + " " + text + ": allowed is " + std::to_string(least) +
+                                    " to " + std::to_string(most));
+    return static_cast<int>(value);
+}
+
+Settings parse(int argc, char** argv)
+{
+    Settings s;
+    for (int i = 1; i < argc; ++i) {
+        const std::string_view option = argv[i];
+        if (option == "--bounds") {
+            s.bounds = true;
+            continue;
+        }
+        if (i + 1 == argc) throw std::invalid_argument(std::string(option) + ": needs a value");
+        const char* value = argv[++i];
+        if (option == "--csv") s.csv = value;
+        else if (option == "--op") s.op = value;
+        else if (option == "--case") s.case_name = value;
+        else if (option == "--scheme") s.scheme = value;
+        else if (option == "--size") s.size = whole_number(option, value, 16, 8192);
+        else if (option == "--threads") s.threads = whole_number(option, value, 1, 1024);
+        else if (option == "--rounds") s.rounds = whole_number(option, value, 1, 1000);
+        else
+            throw std::invalid_argument(std::string(option) +
+                                        ": allowed are --csv, --op, --size, --threads, --case, --scheme, --rounds "
+                                        "and --bounds");
+    }
+    if (s.csv.empty() && !s.bounds) throw std::invalid_argument("--csv: a file to write is needed");
+    const auto known = [&](const Op& op) { return op.name == s.op; };
+    if (s.op != "all" && std::none_of(ops().begin(), ops().end(), known)) {
+        std::string names = "all";
+        for (const Op& op : ops()) names += ", " + op.name;
+        throw std::invalid_argument("--op " + s.op + ": allowed are " + names);
+    }
+    return s;
+}
+
+void write_csv(std::ostream& out, const Report& report)
+{
+    out << "op,case,scheme,tol_px,size,threads,ns_per_px,ratio_to_exact,mean_error_px,p99_error_px,max_error_px,"
+           "bound_px,exact_fraction\n";
+    for (const Row& r : report.rows)
+        out << r.op << ',' << r.case_name << ',' << r.scheme << ',' << r.tol_px << ',' << r.size << ',' << r.threads
+            << ',' << r.ns_per_px << ',' << r.ratio_to_exact << ',' << r.error.mean << ',' << r.error.p99 << ','
+            << r.error.max << ',' << r.bound_px << ',' << r.exact_fraction << '\n';
+}
+
+void print_rows(const Report& report)
+{
+    std::printf("%-20s %-16s %9s %3s %9s %9s %8s %9s %9s %9s %9s %6s\n", "case", "scheme", "tol px", "thr", "ns/px",
+                "best", "x double", "mean err", "p99 err", "max err", "bound", "exact");
+    for (const Row& r : report.rows)
+        std::printf("%-20s %-16s %9.4g %3d %9.3f %9.3f %8.2f %9.2g %9.2g %9.2g %9.2g %6.3f\n", r.case_name.c_str(),
+                    r.scheme.c_str(), r.tol_px, r.threads, r.ns_per_px, r.best_ns_per_px, r.ratio_to_exact,
+                    r.error.mean, r.error.p99, r.error.max, r.bound_px, r.exact_fraction);
+}
+
+void print_targets(const Report& report)
+{
+    if (report.targets.empty()) return;
+    std::printf("\n%-78s %8s %9s %9s\n", "target", "wanted", "reached", "best");
+    for (const Target& t : report.targets) {
+        const bool pass = t.at_most ? t.reached <= t.wanted : t.reached >= t.wanted;
+        std::printf("%-78s %2s %5.4g %9.4g %9.4g  %s\n", t.what.c_str(), t.at_most ? "<=" : ">=", t.wanted, t.reached,
+                    t.reached_by_best, pass ? "pass" : "MISS");
+    }
+}
+
+int run(int argc, char** argv)
+{
+    const Settings settings = parse(argc, argv);
+    Report report;
+    for (const Op& op : ops()) {
+        if (settings.op != "all" && settings.op != op.name) continue;
+        if (!settings.bounds)
+            op.run(settings, report);
+        else if (op.report_bounds)
+            op.report_bounds(settings);
+    }
+    if (settings.bounds) return 0;
+    if (report.rows.empty())
+        throw std::invalid_argument("--case " + settings.case_name + " --scheme " + settings.scheme +
+                                    ": no such row");
+    std::ofstream csv(settings.csv);
+    write_csv(csv, report);
+    if (!csv.flush()) throw std::runtime_error("--csv " + settings.csv + ": cannot be written");
+    print_rows(report);
+    print_targets(report);
+    for (const std::string& failure : report.failures) std::fprintf(stderr, "speed_vs_error: %s\n", failure.c_str());
+    return report.failures.empty() ? 0 : 1;
+}
+
+}  // namespace
+
+RegisterOp::RegisterOp(Op op) { ops().push_back(std::move(op)); }
+
+
+const Row* Report::find(const std::string& case_name, const std::string& scheme, double tol_px, int threads) const
+{
+    for (const Row& r : rows)
+        if (r.case_name == case_name && r.scheme == scheme && (std::isnan(tol_px) || r.tol_px == tol_px) &&
+            (threads == 0 || r.threads == threads))
+            return &r;
+    return nullptr;
+}
+
+void Report::add_speed_target(const std::string& what, double wanted, const Row* slow, const Row* fast)
+{
+    if (slow && fast)
+        targets.push_back(
+            {what, wanted, slow->ns_per_px / fast->ns_per_px, slow->best_ns_per_px / fast->best_ns_per_px});
+}
+
+void Report::add_limit(const std::string& what, double at_most, double reached)
+{
+    targets.push_back({what, at_most, reached, reached, true});
+}
+
+std::vector<Times> time_interleaved(const std::vector<std::function<void()>>& contenders, int rounds)
+{
+    constexpr double kQuick = 40e6;
+    std::vector<std::vector<double>> times(contenders.size());
+    std::vector<std::size_t> order(contenders.size());
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    std::mt19937 random(1);
+    const auto once = [&](std::size_t i) {
+        const double start = now_ns();
+        contenders[i]();
+        return now_ns() - start;
+    };
+    for (const auto& contender : contenders) contender();
+    for (int round = 0; round < rounds; ++round) {
+        std::shuffle(order.begin(), order.end(), random);
+        for (const std::size_t i : order) {
+            const double time = once(i);
+            times[i].push_back(time < kQuick ? std::min(time, once(i)) : time);
+        }
+    }
+    std::vector<Times> result;
+    for (std::vector<double>& t : times) {
+        std::sort(t.begin(), t.end());
+        result.push_back({t[t.size() / 2], t.front()});
+    }
+    return result;
+}
+
+Accuracy accuracy_of(std::vector<float>& errors)
+{
+    if (errors.empty()) return {};
+    double sum = 0;
+    for (const float e : errors) sum += e;
+    const auto p99 = errors.begin() + static_cast<std::ptrdiff_t>((errors.size() - 1) * 99 / 100);
+    std::nth_element(errors.begin(), p99, errors.end());
+    return {sum / static_cast<double>(errors.size()), *p99, *std::max_element(p99, errors.end())};
+}
+
+}  // namespace anamorph::bench
+
+int main(int argc, char** argv)
+{
+    try {
+        return anamorph::bench::run(argc, argv);
+    } catch (const std::exception& error) {
+        std::fprintf(stderr, "speed_vs_error: %s\n", error.what());
+        return 1;
+    }
+}
