@@ -80,6 +80,7 @@ inline double magnitude(const Interval& a) {
 /// The square, which unlike a * a is never negative.
 inline Interval square(const Interval& a) {
     const double p = a.lo * a.lo, q = a.hi * a.hi;
+    if (std::isnan(p + q)) return Interval::all();
     const bool zero = a.contains(0);
     Interval r = interval_detail::widen(zero ? 0 : std::min(p, q), std::max(p, q));
     r.lo = std::max(r.lo, 0.0);
@@ -121,6 +122,7 @@ inline Interval sinh(const Interval& a) {
 }
 inline Interval cosh(const Interval& a) {
     const double p = std::cosh(a.lo), q = std::cosh(a.hi);
+    if (std::isnan(p + q)) return Interval::all();
     return interval_detail::widen(a.contains(0) ? 1 : std::min(p, q), std::max(p, q),
                                   interval_detail::kLibmMargin);
 }
