@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // The OpenImageIO plugin: inputs for panorama recipes (NAME.pano, NAME.pano?key=value&...) and for images in
 // memory (NAME.anabuf), and the output that puts them there.
+#include <OpenImageIO/filesystem.h>
 #include <OpenImageIO/imagebuf.h>
 #include <OpenImageIO/imageio.h>
+#include <OpenImageIO/sysutil.h>
 
 #include <algorithm>
+#include <cstdio>
 #include <cstring>
 #include <memory>
 #include <mutex>
@@ -23,6 +26,22 @@ namespace {
 using OIIO::ImageInput;
 using OIIO::ImageOutput;
 using OIIO::ImageSpec;
+
+/// oiiotool before 3.0 answers "File does not exist" where a name that is not on disk fails to open, whatever
+/// the reason was; so there the reason is said here, once.
+void explain_to_oiiotool(const std::string& name, const std::string& reason) {
+#if OIIO_VERSION < 30000
+    static auto& mutex = *new std::mutex;
+    static auto& last = *new std::string;
+    const std::string program = OIIO::Filesystem::filename(OIIO::Sysutil::this_program_path());
+    if (program != "oiiotool" || OIIO::Filesystem::exists(name)) return;
+    const std::lock_guard lock(mutex);
+    if (last != reason) std::fprintf(stderr, "anamorph: %s\n", reason.c_str());
+    last = reason;
+#else
+    static_cast<void>(name), static_cast<void>(reason);
+#endif
+}
 
 class FileInput final : public ImageInput {
     // Newer versions of OpenImageIO have more overloads of these.
@@ -55,7 +74,7 @@ class FileInput final : public ImageInput {
     bool open(const std::string& name, ImageSpec& spec, const ImageSpec& config) override {
         // The extension first: OpenImageIO offers names of all kinds.
         if (!valid_file(name)) return failed("not a .pano or .anabuf name");
-        return guarded([&] {
+        try {
             close();
             std::shared_ptr<const Content> content =
                 has_extension(name, kBufferExtension)
@@ -65,7 +84,11 @@ class FileInput final : public ImageInput {
             m_content = std::move(content);
             m_level = 0;
             m_spec = spec = m_content->spec(0);
-        });
+            return true;
+        } catch (const std::exception& e) {
+            explain_to_oiiotool(name, e.what());
+            return failed(e.what());
+        }
     }
 
     bool close() override {
