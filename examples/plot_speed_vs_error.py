@@ -4,8 +4,8 @@
 
 Usage: plot_speed_vs_error.py TABLE.csv PICTURE...     (the endings say the formats: .png, .svg, .pdf)
 
-Only the largest size of the table is drawn, on one thread. A scheme without a tolerance that makes no error (or
-none that has a meaning, as the copy of the bytes touched) is a horizontal line.
+Only the largest size of the table is drawn, on one thread. A scheme that makes no error (or none that has a meaning,
+as the copy of the bytes touched) is a dashed line. What fell back to the exact map at every pixel is not drawn.
 """
 import csv
 import sys
@@ -17,6 +17,7 @@ import matplotlib.pyplot as plt
 
 COLUMNS = ("op case scheme tol_px size threads ns_per_px ratio_to_exact mean_error_px p99_error_px "
            "max_error_px bound_px exact_fraction").split()
+ROUNDING = 1e-9  # source pixels
 
 
 def read_table(path):
@@ -31,21 +32,21 @@ def read_table(path):
     return size, [row for row in rows if int(row["size"]) == size and int(row["threads"]) == 1]
 
 
-def number(text):
-    """The value of a field, 0 where it is empty or not finite."""
-    value = float(text) if text else 0.0
-    return value if 0 < value < float("inf") else 0.0
+def error(row):
+    """The largest error; 0 where it is that of rounding only, or has no meaning."""
+    value = float(row["max_error_px"])
+    return value if value > ROUNDING else 0.0
 
 
 def draw_case(axes, rows, colors):
     for scheme, color in colors.items():
         mine = [row for row in rows if row["scheme"] == scheme]
-        points = sorted((number(row["max_error_px"]), number(row["ns_per_px"])) for row in mine)
+        points = sorted((error(row), float(row["ns_per_px"])) for row in mine)
         inexact = [point for point in points if point[0] > 0]
         if inexact:
             axes.plot(*zip(*inexact), "o-", color=color, label=scheme, markersize=4)
-        for _, ns in [point for point in points if point[0] == 0]:
-            axes.axhline(ns, color=color, linestyle="--", linewidth=1, label=None if inexact else scheme)
+        elif points:
+            axes.axhline(points[0][1], color=color, linestyle="--", linewidth=1, label=scheme)
     axes.set(xscale="log", yscale="log", title=rows[0]["case"], xlabel="largest error, source pixels")
     axes.grid(True, which="both", linewidth=0.3)
 

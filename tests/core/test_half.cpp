@@ -89,7 +89,7 @@ TEST(Pixel, EveryStoredValueComesBack) {
     for (const PixelType type : {PixelType::uint8, PixelType::uint16}) {
         const int limit = type == PixelType::uint8 ? 255 : 65535;
         for (int i = 0; i <= limit; ++i) {
-            std::byte bytes[2] = {};
+            std::byte bytes[sizeof(float)] = {};
             const float value = static_cast<float>(static_cast<double>(i) / limit);
             store_channel(value, bytes, type);
             ASSERT_EQ(load_channel(bytes, type), value) << i;
@@ -101,7 +101,7 @@ TEST(Pixel, StoringRoundsAndClamps) {
     constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
     constexpr float kInfinity = std::numeric_limits<float>::infinity();
     const auto stored = [](float value, PixelType type) {
-        std::byte bytes[2] = {};
+        std::byte bytes[sizeof(float)] = {};
         store_channel(value, bytes, type);
         return type == PixelType::uint8 ? std::to_integer<int>(bytes[0])
                                         : int{pixel_detail::get<std::uint16_t>(bytes)};

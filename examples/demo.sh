@@ -1,0 +1,70 @@
+#!/bin/bash
+# SPDX-License-Identifier: Apache-2.0
+# Shows what Anamorph does, on Debian 12 from a fresh machine on: builds it, and lets the stock oiiotool draw views of an
+# HDR panorama. Everything it makes is in build/demo/out.
+set -euo pipefail
+cd "$(dirname "$0")/.."
+tests/install_packages.sh build hosts tests plots
+
+demo="$PWD/build/demo"
+out="$demo/out"
+mkdir -p "$out"
+
+echo "building"
+{
+    cmake --preset release && cmake --build --preset release --target anamorph.imageio speed_vs_error
+} >"$demo/build.txt" 2>&1 || { cat "$demo/build.txt" >&2; exit 1; }
+export OIIO_LIBRARY_PATH="$PWD/build/release/plugins/imageio"
+
+# A real HDR panorama: one of the studio lights that come with Blender (CC0, by Greg Zaal). Only the package's file is
+# fetched and unpacked; nothing of it is installed.
+fetch_panorama() {
+    local lights="$demo/blender/usr/share/blender/datafiles/studiolights/world"
+    if [ ! -e "$lights/sunset.exr" ]; then
+        echo "fetching Debian's blender-data (31 MB)"
+        (cd "$demo" && rm -f blender-data_*.deb && apt-get -q download blender-data &&
+            dpkg-deb -x blender-data_*.deb blender) >"$demo/fetch.txt" 2>&1 || return 1
+        rm -f "$demo"/blender-data_*.deb
+    fi
+    cp "$lights/sunset.exr" "$out/panorama.exr"
+}
+if ! fetch_panorama; then
+    echo "it cannot be had: computing a panorama instead"
+    /usr/bin/python3 examples/make_panorama.py "$out/panorama.exr"
+fi
+
+cd "$out"
+# Highlights compressed into what a screen shows, then as screens want it.
+tone_map=(--ch R,G,B --rangecompress --colorconvert linear sRGB -d uint8)
+
+# draw NAME ARGUMENTS: a picture out of the panorama, drawn by the stock oiiotool.
+draw() {
+    echo "$1.png: panorama.exr.pano?$2"
+    oiiotool "panorama.exr.pano?$2" "${tone_map[@]}" -o "$1.png"
+}
+oiiotool panorama.exr "${tone_map[@]}" -o panorama.png
+draw rectilinear "to=rectilinear&fov=100&yaw=160&pitch=5&size=480x360"
+draw rolled "to=rectilinear&fov=80&yaw=-70&pitch=-15&roll=20&size=480x360"
+draw fisheye "to=fisheye&fov=180&pitch=-20&yaw=140&size=480x480"
+draw little_planet "to=stereographic&fov=240&pitch=-90&size=480x480"
+draw cylindrical "to=cylindrical&fov=200&yaw=90&size=640x320"
+draw mercator "to=mercator&fov=360&size=480x400"
+draw cube_faces "to=cubecross&size=640x480"
+
+# The same from a recipe on disk, which every program that reads files by OpenImageIO can open; as an OpenEXR cube map.
+printf '%s\n' '# six faces as a vertical strip' 'src=panorama.exr' 'to=cubemap' 'size=256' >cube.pano
+echo "cube.exr: cube.pano"
+oiiotool cube.pano -o cube.exr
+
+# How far every source point used is from the exact one, in source pixels: brightest where it is furthest.
+echo "error.png: output=error"
+oiiotool "panorama.exr.pano?to=rectilinear&fov=100&yaw=160&pitch=5&size=480x360&output=error" \
+    --divc "{TOP.MAXCOLOR}" --colormap inferno -d uint8 -o error.png
+
+echo "speed_vs_error.csv, .png, .svg"
+../../release/tests/bench/speed_vs_error --op pano --size 1024 --csv speed_vs_error.csv >speed_vs_error.txt
+/usr/bin/python3 ../../../examples/plot_speed_vs_error.py speed_vs_error.csv speed_vs_error.png speed_vs_error.svg
+
+/usr/bin/python3 ../../../examples/contact_sheet.py contact_sheet.png panorama.png rectilinear.png rolled.png fisheye.png \
+    little_planet.png cylindrical.png mercator.png cube_faces.png error.png
+echo "done: $out"
