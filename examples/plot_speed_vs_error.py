@@ -39,12 +39,13 @@ def error(row):
 
 
 def draw_case(axes, rows, colors):
-    for scheme, color in colors.items():
+    # Schemes that coincide stay visible: the first are drawn the widest.
+    for i, (scheme, color) in enumerate(colors.items()):
         mine = [row for row in rows if row["scheme"] == scheme]
         points = sorted((error(row), float(row["ns_per_px"])) for row in mine)
         inexact = [point for point in points if point[0] > 0]
         if inexact:
-            axes.plot(*zip(*inexact), "o-", color=color, label=scheme, markersize=4)
+            axes.plot(*zip(*inexact), "o-", color=color, label=scheme, markersize=4, linewidth=max(1, 4 - i))
         elif points:
             axes.axhline(points[0][1], color=color, linestyle="--", linewidth=1, label=scheme)
     axes.set(xscale="log", yscale="log", title=rows[0]["case"], xlabel="largest error, source pixels")
@@ -61,7 +62,8 @@ def main():
 
     across = min(len(cases), 3)
     down = -(-len(cases) // across)
-    figure, panels = plt.subplots(down, across, figsize=(4.6 * across + 1.8, 3.6 * down), squeeze=False, sharey=True)
+    figure, panels = plt.subplots(down, across, figsize=(4.6 * across + 1.8, 3.6 * down), squeeze=False, sharex=True,
+                                  sharey=True)
     for case, axes in zip(cases, panels.flat):
         draw_case(axes, [row for row in rows if row["case"] == case], colors)
     for axes in panels.flat[len(cases):]:
