@@ -51,6 +51,8 @@ struct Report {
     std::vector<Target> targets;
     std::vector<std::string> failures;  ///< of the checks that the benchmark makes of itself
 
+    /// Keeps the row and prints it.
+    void add(const Row& row);
     /// The row of a case and scheme (with this tolerance, unless NaN, on so many threads, unless 0), or null.
     const Row* find(const std::string& case_name, const std::string& scheme, double tol_px = kNone,
                     int threads = 0) const;
@@ -76,7 +78,8 @@ struct Times {
     double median = 0, best = 0;
 };
 /// Runs all contenders in turn, in another order every round, so that whatever else the machine does hits all alike.
-/// Quick ones run twice in a row; the better of the two counts.
+/// Quick ones
+/// run twice in a row and the better of the two counts; slow ones sit out two rounds of three.
 std::vector<Times> time_interleaved(const std::vector<std::function<void()>>& contenders, int rounds);
 
 /// Mean, 99th percentile and largest of `errors`, which it reorders.

@@ -62,6 +62,8 @@ struct Contender {
     std::function<void()> draw;
     std::function<Points()> points = nullptr;  ///< the source points that draw() uses, if it uses any
     double bound = kNone, exact_fraction = kNone;
+    ReprojectOptions options{};  ///< of the product's own schemes
+    bool one_tap = true;         ///< each pixel comes from one point, not from an average over several
 };
 
 int source_width(const Settings& settings) { return std::min(8192, 8 * settings.size / 8 * 8); }
@@ -141,12 +143,11 @@ void fill_with_scene(const Picture& picture, int width, int height, const Parall
     });
 }
 
-Reached draw_ours(const View& view, const Source& source, const ReprojectOptions& options, const ImageView& to,
+void draw_ours(const View& view, const Source& source, const ReprojectOptions& options, const ImageView& to,
                   const ParallelFor& parallel_for)
 {
     const Reprojection reprojection(view.map, options);
     if (!reprojection.draw(&source, view.box(), to, parallel_for)) throw Error("the source could not be read");
-    return {};
 }
 
 /// One source, its views, and everybody who draws them.
@@ -207,6 +208,8 @@ public:
         const View& view = *c.view;
         c.points = [this, &view, plan] { return plan_points(Plan(view.map, plan), all()); };
         const Reached reached = Reprojection(view.map, options).reached(all());
+        c.options = options;
+        c.one_tap = options.filter == Filter::bilinear;
         c.bound = reached.max_error;
         c.exact_fraction = reached.exact_fraction;
     }
@@ -282,7 +285,7 @@ public:
              [=, this] { traffic->copy(m_picture.bytes(), threads()); }});
     }
 
-    /// Times all contenders together, then measures their errors and adds their rows.
+    /// Times all contenders together, then measures and checks their errors and adds their rows.
     void measure()
     {
         std::vector<std::function<void()>> draws;
@@ -293,20 +296,27 @@ public:
                 if (m_contenders[k].view == view && m_contenders[k].scheme == "double") return times[k].median;
             return kNone;
         };
+        fill_with_coordinates();
         for (std::size_t k = 0; k < times.size(); ++k) {
             const Contender& c = m_contenders[k];
             const double pixels = double(c.view->size()) * c.view->size();
             Row row{m_op,   c.view->name, c.scheme, c.tol, c.view->size(), c.threads, times[k].median / pixels,
                     times[k].best / pixels, plain_time(c.view) / times[k].median, {}, c.bound, c.exact_fraction};
             if (c.points) {
-                std::vector<float> errors = distances(m_chart, c.points(), c.view->truth);
+                const Points points = c.points();
+                std::vector<float> errors = distances(m_chart, points, c.view->truth);
                 row.error = accuracy_of(errors);
-                if (!std::isnan(c.tol)) check_bound(row);
+                if (!std::isnan(c.tol)) {
+                    check_bound(row);
+                    check_error_picture(c, points);
+                }
+                check_drawn(c, points);
             }
-            if (m_settings.wants_scheme(c.scheme)) m_report.rows.push_back(row);
+            if (m_settings.wants_scheme(c.scheme)) m_report.add(row);
         }
     }
 
+private:
     void check_bound(const Row& row)
     {
         // What double leaves of a coordinate of thousands of pixels.
@@ -317,66 +327,55 @@ public:
                  "largest error " + std::to_string(row.error.max) + ", bound " + std::to_string(row.bound_px));
     }
 
-    /// The errors again, as the product reports them: Output::error against our own evaluation.
-    void check_error_pictures()
+    /// The errors again, as the product reports them.
+    void check_error_picture(const Contender& c, const Points& points)
     {
         // Float polynomials with and without fused multiply-adds, and the picture's own rounding.
         const double slack = 2e-4;
-        std::vector<std::pair<const View*, std::pair<std::string, double>>> done;
-        for (const Contender& c : m_contenders) {
-            if (std::isnan(c.tol) || !c.points || c.scheme == "automatic_kept" || c.threads != m_settings.threads)
-                continue;
-            ReprojectOptions options;
-            options.tol = c.tol;
-            options.filter = Filter::bilinear;
-            options.output = Output::error;
-            options.scheme = Scheme::exact;
-            for (const auto& [scheme, name] : kSchemes)
-                if (c.scheme == name) options.scheme = scheme;
-            const View& view = *c.view;
-            std::vector<float> drawn(view.truth.size());
-            const ImageView picture = packed_view(reinterpret_cast<std::byte*>(drawn.data()), PixelType::float32,
-                                                  view.size(), view.size(), 1);
-            Reprojection(view.map, options).draw(nullptr, view.box(), picture, all());
-            const Points points = c.points();
-            double worst = 0;
-            for (std::size_t k = 0; k < points.size(); ++k)
-                if (well_inside(m_chart, view.truth[k]))
-                    worst = std::max(worst, std::fabs(distance(m_chart, points[k], view.truth[k]) -
-                                                      static_cast<double>(drawn[k])));
-            if (!(worst <= slack))
-                fail(view.name, c.scheme, c.tol, "the error picture is off by " + std::to_string(worst) + " px");
-        }
+        ReprojectOptions options = c.options;
+        options.output = Output::error;
+        const View& view = *c.view;
+        std::vector<float> drawn(points.size());
+        const ImageView picture = packed_view(reinterpret_cast<std::byte*>(drawn.data()), PixelType::float32,
+                                              view.size(), view.size(), 1);
+        Reprojection(view.map, options).draw(nullptr, view.box(), picture, all());
+        double worst = 0;
+        for (std::size_t k = 0; k < points.size(); ++k)
+            if (well_inside(m_chart, view.truth[k]))
+                worst = std::max(worst, std::fabs(distance(m_chart, points[k], view.truth[k]) -
+                                                  static_cast<double>(drawn[k])));
+        if (!(worst <= slack))
+            fail(view.name, c.scheme, c.tol, "the error picture is off by " + std::to_string(worst) + " px");
     }
 
-    /// And once more through what is drawn: a source that holds its own coordinates comes out as the points used.
-    void check_through_pictures()
+    void fill_with_coordinates()
     {
         if (m_texels.type() != PixelType::float32) return;
-        const double cx = 0.5 * m_chart.width(), cy = 0.5 * m_chart.height();
         m_texels.fill(all(), [&](int x, int y, int c) {
-            return static_cast<float>(c == 0 ? x + 0.5 - cx : c == 1 ? y + 0.5 - cy : 0);
+            return static_cast<float>(c == 0 ? x + 0.5 - 0.5 * m_chart.width()
+                                             : c == 1 ? y + 0.5 - 0.5 * m_chart.height() : 0);
         });
         if (m_padded) m_padded.emplace(m_views.front()->plain, m_texels.as<float>(), all());
-        // Values of up to half the source's width, interpolated in float.
-        const double slack = 2e-6 * m_chart.width() / 8 + 1e-4;
-        for (const Contender& c : m_contenders) {
-            if (!c.points) continue;
-            c.draw();
-            const Points points = c.points();
-            const float* drawn = m_picture.as<float>();
-            double worst = 0;
-            for (std::size_t k = 0; k < points.size(); ++k)
-                if (well_inside(m_chart, points[k]))
-                    worst = std::max(worst, distance(m_chart, points[k],
-                                                     {static_cast<double>(drawn[3 * k]) + cx,
-                                                      static_cast<double>(drawn[3 * k + 1]) + cy}));
-            if (!(worst <= slack))
-                fail(c.view->name, c.scheme, c.tol, "draws " + std::to_string(worst) + " px from where it says");
-        }
     }
 
-private:
+    /// The points again, through what is drawn from a source that holds its own coordinates.
+    void check_drawn(const Contender& c, const Points& points)
+    {
+        if (m_texels.type() != PixelType::float32 || !c.one_tap) return;
+        // Values of up to a quarter of the source's width, interpolated in float.
+        const double slack = 2.5e-7 * m_chart.width() + 1e-4;
+        c.draw();
+        const float* drawn = m_picture.as<float>();
+        double worst = 0;
+        for (std::size_t k = 0; k < points.size(); ++k)
+            if (well_inside(m_chart, points[k]))
+                worst = std::max(worst, distance(m_chart, points[k],
+                                                 {static_cast<double>(drawn[3 * k]) + 0.5 * m_chart.width(),
+                                                  static_cast<double>(drawn[3 * k + 1]) + 0.5 * m_chart.height()}));
+        if (!(worst <= slack))
+            fail(c.view->name, c.scheme, c.tol, "draws " + std::to_string(worst) + " px from where it says");
+    }
+
     void fail(const std::string& case_name, const std::string& scheme, double tol, const std::string& what)
     {
         m_report.failures.push_back(case_name + ", " + scheme + ", tol " + std::to_string(tol) + ": " + what);
@@ -416,8 +415,6 @@ void run_bilinear(const Settings& settings, Report& report, const Chart& chart, 
         scene.add_rivals<float>(*view);
     }
     scene.measure();
-    scene.check_error_pictures();
-    scene.check_through_pictures();
 
     const int threads = settings.threads;
     const Row* ours = report.find(name, "automatic", kDefaultTol, threads);
@@ -447,7 +444,6 @@ void run_uint8(const Settings& settings, Report& report)
     scene.add_schemes(view, {1, 1.0 / 16, kDefaultTol, kFine, 0.001, 0});
     scene.add_rivals<std::uint8_t>(view);
     scene.measure();
-    scene.check_error_pictures();
     const Row* fine = report.find(name, "automatic", kFine, settings.threads);
     report.add_speed_target(name + ": times OpenCV's remap alone, at tol 1/256", 1.3, report.find(name, "opencv_remap"),
                             fine);
@@ -568,17 +564,21 @@ void run_antialias(const Settings& settings, Report& report)
         scene.add(std::move(with_levels));
         scene.add_rivals<float>(view);
     }
-    scene.measure();
+    // Noise first: measuring ends with another source.
+    std::vector<double> excess;
     for (const auto& view : scene.views()) {
-        const Row* ours = report.find(view->name, "automatic");
-        const std::string title = view->name + " (" + std::to_string(view->size()) + " px)";
-        report.add_speed_target(title + ": of our own bilinear rate", 0.25, report.find(view->name, "bilinear"), ours);
-        if (!ours) continue;
         draw_ours(*view, pyramid, options, scene.target(*view), scene.all());
         // Uniform noise in 0..1 has variance 1/12.
-        const double drawn = standard_deviation(scene.picture().as<float>(), 3 * view->truth.size());
-        report.add_limit(title + ": noise, relative distance from the ideal box figure", 0.05,
-                         std::fabs(drawn / (ideal_noise(*view) * std::sqrt(1 / 12.0)) - 1));
+        const double ideal = ideal_noise(*view) * std::sqrt(1 / 12.0);
+        excess.push_back(standard_deviation(scene.picture().as<float>(), 3 * view->truth.size()) / ideal - 1);
+    }
+    scene.measure();
+    for (std::size_t k = 0; k < excess.size(); ++k) {
+        const View& view = *scene.views()[k];
+        const std::string title = view.name + " (" + std::to_string(view.size()) + " px)";
+        report.add_speed_target(title + ": of our own bilinear rate", 0.25, report.find(view.name, "bilinear"),
+                                report.find(view.name, "automatic"));
+        report.add_limit(title + ": noise, relative distance from the ideal box figure", 0.05, std::fabs(excess[k]));
     }
 }
 

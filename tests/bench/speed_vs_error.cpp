@@ -87,14 +87,18 @@ void write_csv(std::ostream& out, const Report& report)
             << r.error.max << ',' << r.bound_px << ',' << r.exact_fraction << '\n';
 }
 
-void print_rows(const Report& report)
+void print_head()
 {
     std::printf("%-20s %-16s %9s %3s %9s %9s %8s %9s %9s %9s %9s %6s\n", "case", "scheme", "tol px", "thr", "ns/px",
                 "best", "x double", "mean err", "p99 err", "max err", "bound", "exact");
-    for (const Row& r : report.rows)
-        std::printf("%-20s %-16s %9.4g %3d %9.3f %9.3f %8.2f %9.2g %9.2g %9.2g %9.2g %6.3f\n", r.case_name.c_str(),
-                    r.scheme.c_str(), r.tol_px, r.threads, r.ns_per_px, r.best_ns_per_px, r.ratio_to_exact,
-                    r.error.mean, r.error.p99, r.error.max, r.bound_px, r.exact_fraction);
+}
+
+void print_row(const Row& r)
+{
+    std::printf("%-20s %-16s %9.4g %3d %9.3f %9.3f %8.2f %9.2g %9.2g %9.2g %9.2g %6.3f\n", r.case_name.c_str(),
+                r.scheme.c_str(), r.tol_px, r.threads, r.ns_per_px, r.best_ns_per_px, r.ratio_to_exact,
+                r.error.mean, r.error.p99, r.error.max, r.bound_px, r.exact_fraction);
+    std::fflush(stdout);
 }
 
 void print_targets(const Report& report)
@@ -112,6 +116,7 @@ int run(int argc, char** argv)
 {
     const Settings settings = parse(argc, argv);
     Report report;
+    if (!settings.bounds) print_head();
     for (const Op& op : ops()) {
         if (settings.op != "all" && settings.op != op.name) continue;
         if (!settings.bounds)
@@ -126,7 +131,6 @@ int run(int argc, char** argv)
     std::ofstream csv(settings.csv);
     write_csv(csv, report);
     if (!csv.flush()) throw std::runtime_error("--csv " + settings.csv + ": cannot be written");
-    print_rows(report);
     print_targets(report);
     for (const std::string& failure : report.failures) std::fprintf(stderr, "speed_vs_error: %s\n", failure.c_str());
     return report.failures.empty() ? 0 : 1;
@@ -136,6 +140,12 @@ int run(int argc, char** argv)
 
 RegisterOp::RegisterOp(Op op) { ops().push_back(std::move(op)); }
 
+
+void Report::add(const Row& row)
+{
+    rows.push_back(row);
+    print_row(row);
+}
 
 const Row* Report::find(const std::string& case_name, const std::string& scheme, double tol_px, int threads) const
 {
@@ -161,6 +171,7 @@ void Report::add_limit(const std::string& what, double at_most, double reached)
 std::vector<Times> time_interleaved(const std::vector<std::function<void()>>& contenders, int rounds)
 {
     constexpr double kQuick = 40e6;
+    constexpr int kSlowEvery = 3;
     std::vector<std::vector<double>> times(contenders.size());
     std::vector<std::size_t> order(contenders.size());
     std::iota(order.begin(), order.end(), std::size_t{0});
@@ -170,12 +181,18 @@ std::vector<Times> time_interleaved(const std::vector<std::function<void()>>& co
         contenders[i]();
         return now_ns() - start;
     };
-    for (const auto& contender : contenders) contender();
+    std::vector<bool> quick;
+    for (std::size_t i = 0; i < contenders.size(); ++i) {
+        contenders[i]();
+        quick.push_back(once(i) < kQuick);
+    }
     for (int round = 0; round < rounds; ++round) {
         std::shuffle(order.begin(), order.end(), random);
         for (const std::size_t i : order) {
-            const double time = once(i);
-            times[i].push_back(time < kQuick ? std::min(time, once(i)) : time);
+            if (quick[i])
+                times[i].push_back(std::min(once(i), once(i)));
+            else if (round % kSlowEvery == 0)
+                times[i].push_back(once(i));
         }
     }
     std::vector<Times> result;
