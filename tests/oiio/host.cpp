@@ -1,0 +1,139 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "host.h"
+
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <array>
+#include <cmath>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+
+namespace anamorph::testing_oiio {
+
+namespace fs = std::filesystem;
+
+void InFolder::SetUp() {
+    ASSERT_TRUE(std::getenv("OIIO_LIBRARY_PATH")) << "set OIIO_LIBRARY_PATH to the plugin's folder";
+    const auto* info = testing::UnitTest::GetInstance()->current_test_info();
+    m_before = fs::current_path().string();
+    m_folder = testing::TempDir() + "anamorph_" + std::to_string(::getpid()) + "_" + info->name();
+    fs::remove_all(m_folder);
+    fs::create_directories(m_folder);
+    fs::current_path(m_folder);
+}
+
+void InFolder::TearDown() {
+    fs::current_path(m_before);
+    fs::remove_all(m_folder);
+}
+
+Ran run(const std::string& command) {
+    Ran ran;
+    int ends[2];
+    if (::pipe(ends) != 0) return ran;
+    const pid_t child = ::fork();
+    if (child == 0) {
+        ::dup2(ends[1], 1);
+        ::dup2(ends[1], 2);
+        ::close(ends[0]);
+        ::close(ends[1]);
+        ::execlp("timeout", "timeout", "120", "sh", "-c", command.c_str(), static_cast<char*>(nullptr));
+        ::_exit(127);
+    }
+    ::close(ends[1]);
+    std::array<char, 4096> part;
+    for (ssize_t n = 0; (n = ::read(ends[0], part.data(), part.size())) > 0;)
+        ran.text.append(part.data(), static_cast<std::size_t>(n));
+    ::close(ends[0]);
+    int status = 0;
+    rusage usage{};
+    ::wait4(child, &status, 0, &usage);
+    ran.status = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+    ran.megabytes = double(usage.ru_maxrss) / 1024;
+    return ran;
+}
+
+float panorama_value(int x, int y, int c, int width, int height) {
+    const double u = (x + 0.5) / width, v = (y + 0.5) / height, turn = 6.283185307179586;
+    const double wave = std::sin(turn * (3 * u + c * 0.1)) * std::cos(turn * (2 * v + 0.3 * c)) +
+                        0.5 * std::sin(turn * 17 * u) * std::sin(turn * 11 * v);
+    const unsigned hash = (static_cast<unsigned>(x) * 73856093u) ^ (static_cast<unsigned>(y) * 19349663u) ^
+                          (static_cast<unsigned>(c) * 83492791u);
+    return static_cast<float>(0.45 + 0.25 * wave + 0.05 * double((hash >> 8) & 255) / 255);
+}
+
+OIIO::ImageBuf panorama(int width, int height, OIIO::TypeDesc type, int channels) {
+    OIIO::ImageBuf image(OIIO::ImageSpec(width, height, channels, type));
+    std::vector<float> pixel(static_cast<std::size_t>(channels));
+    for (int y = 0; y < height; ++y)
+        for (int x = 0; x < width; ++x) {
+            for (int c = 0; c < channels; ++c)
+                pixel[static_cast<std::size_t>(c)] = panorama_value(x, y, c, width, height);
+            image.setpixel(x, y, pixel.data());
+        }
+    return image;
+}
+
+void write_image(const OIIO::ImageBuf& image, const std::string& name) {
+    ASSERT_TRUE(image.write(name)) << name << ": " << image.geterror();
+}
+
+void write_panorama(const std::string& name, int width, int height, OIIO::TypeDesc type, int channels,
+                    int tile) {
+    OIIO::ImageBuf image = panorama(width, height, type, channels);
+    if (tile > 0) image.set_write_tiles(tile, tile);
+    write_image(image, name);
+}
+
+Pixels read_pixels(const std::string& name, int miplevel) {
+    Pixels pixels;
+    auto input = OIIO::ImageInput::open(name);
+    if (!input) {
+        ADD_FAILURE() << name << ": " << OIIO::geterror();
+        return pixels;
+    }
+    pixels.spec = input->spec(0, miplevel);
+    pixels.bytes.resize(pixels.spec.image_bytes());
+    EXPECT_TRUE(
+        input->read_image(0, miplevel, 0, pixels.spec.nchannels, pixels.spec.format, pixels.bytes.data()))
+        << name << ": " << input->geterror();
+    return pixels;
+}
+
+std::vector<float> read_floats(const std::string& name, int miplevel) {
+    auto input = OIIO::ImageInput::open(name);
+    if (!input) {
+        ADD_FAILURE() << name << ": " << OIIO::geterror();
+        return {};
+    }
+    const OIIO::ImageSpec spec = input->spec(0, miplevel);
+    std::vector<float> pixels(static_cast<std::size_t>(spec.image_pixels()) *
+                              static_cast<std::size_t>(spec.nchannels));
+    EXPECT_TRUE(input->read_image(0, miplevel, 0, spec.nchannels, OIIO::TypeFloat, pixels.data()))
+        << name << ": " << input->geterror();
+    return pixels;
+}
+
+std::string open_error(const std::string& name) {
+    auto input = OIIO::ImageInput::open(name);
+    const std::string error = OIIO::geterror();
+    EXPECT_FALSE(input) << name;
+    return input ? "" : error;
+}
+
+void write_text(const std::string& name, const std::string& text) {
+    std::ofstream(name, std::ios::binary) << text;
+}
+
+double largest_difference(const std::vector<float>& a, const std::vector<float>& b) {
+    EXPECT_EQ(a.size(), b.size());
+    double largest = 0;
+    for (std::size_t i = 0; i < std::min(a.size(), b.size()); ++i)
+        largest = std::max(largest, std::fabs(double(a[i]) - double(b[i])));
+    return largest;
+}
+
+}  // namespace anamorph::testing_oiio

@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: Apache-2.0
+// What the tests of the OpenImageIO side share: a folder of their own, test images, stock programs run as a
+// user runs them.
+#pragma once
+
+#include <OpenImageIO/imagebuf.h>
+#include <OpenImageIO/imageio.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+namespace anamorph::testing_oiio {
+
+/// Runs each test in an empty folder and removes it afterwards.
+class InFolder : public testing::Test {
+  protected:
+    void SetUp() override;
+    void TearDown() override;
+
+  private:
+    std::string m_folder, m_before;
+};
+
+struct Ran {
+    int status = -1;       ///< exit status; 128 + signal where one ended it
+    std::string text;      ///< standard output and error
+    double megabytes = 0;  ///< largest resident size
+};
+
+/// Runs a shell command; one that takes longer than two minutes gets status 124.
+Ran run(const std::string& command);
+
+/// A panorama with detail everywhere, positive, not symmetric: channel c of pixel (x, y).
+float panorama_value(int x, int y, int c, int width, int height);
+OIIO::ImageBuf panorama(int width, int height, OIIO::TypeDesc type = OIIO::TypeFloat, int channels = 3);
+/// The same in a file; `tile` 0: scanlines.
+void write_panorama(const std::string& name, int width, int height, OIIO::TypeDesc type = OIIO::TypeFloat,
+                    int channels = 3, int tile = 64);
+void write_image(const OIIO::ImageBuf& image, const std::string& name);
+
+/// The pixels of an image file as they are stored; the test fails where it cannot be read.
+struct Pixels {
+    OIIO::ImageSpec spec;
+    std::vector<std::byte> bytes;
+    friend bool operator==(const Pixels& a, const Pixels& b) {
+        return a.spec.width == b.spec.width && a.spec.height == b.spec.height &&
+               a.spec.nchannels == b.spec.nchannels && a.spec.format == b.spec.format && a.bytes == b.bytes;
+    }
+};
+Pixels read_pixels(const std::string& name, int miplevel = 0);
+std::vector<float> read_floats(const std::string& name, int miplevel = 0);
+
+/// The message of a failing open; "" and a failed test where it succeeds.
+std::string open_error(const std::string& name);
+
+void write_text(const std::string& name, const std::string& text);
+
+/// The largest difference of any channel.
+double largest_difference(const std::vector<float>& a, const std::vector<float>& b);
+
+}  // namespace anamorph::testing_oiio
