@@ -73,52 +73,69 @@ template <int Count, class Body>
     (std::make_integer_sequence<int, Count>{});
 }
 
-/// r_(A+B) += Scale * f_A * g_B, homogeneous parts of degree A and B.
-template <int A, int B, int Scale = 1, class T, int N>
-inline void add_product(Jet<T, N>& r, const Jet<T, N>& f, const Jet<T, N>& g) {
+/// Coefficient m of the part of degree K of sum_(First <= a <= Last) weight(a) f_a g_(K-a).
+template <int K, int First, int Last, class T, int N, class Weight>
+[[gnu::always_inline]] inline T convolve(const Jet<T, N>& f, const Jet<T, N>& g, int m,
+                                         const Weight& weight) {
     using J = Jet<T, N>;
-    unroll<A + 1>([&](auto i) __attribute__((always_inline)) {
-        T fi = f.c[J::part(A) + i];
-        // Lines, constants and even functions are mostly zeros.
-        if (is_zero(fi)) return;
-        if constexpr (Scale == -1) fi = -fi;
-        if constexpr (Scale != 1 && Scale != -1) fi = fi * T(Scale);
-        unroll<B + 1>([&](auto j) __attribute__((always_inline)) {
-            r.c[J::part(A + B) + i + j] += fi * g.c[J::part(B) + j];
+    T sum(0);
+    unroll<Last - First + 1>([&](auto offset) __attribute__((always_inline)) {
+        constexpr int a = First + offset, b = K - a;
+        T part(0);
+        unroll<a + 1>([&](auto i) __attribute__((always_inline)) {
+            const int j = m - i;
+            if (j < 0 || j > b) return;
+            const T& left = f.c[J::part(a) + i];
+            // Lines, constants and even functions are mostly zeros; intervals gain by seeing it.
+            if constexpr (std::is_same_v<T, Interval>)
+                if (is_zero(left)) return;
+            part += left * g.c[J::part(b) + j];
         });
+        const int w = weight(a);
+        sum += w == 1 ? part : part * T(w);
     });
+    return sum;
 }
 
-/// r_K *= factor
-template <int K, class T, int N>
-inline void scale_part(Jet<T, N>& r, const T& factor) {
-    unroll<K + 1>([&](auto i) __attribute__((always_inline)) { r.c[Jet<T, N>::part(K) + i] *= factor; });
+/// body(k, m) for the coefficients m of the parts of degree k = 1 ... N, part by part.
+template <int N, class Body>
+[[gnu::always_inline]] inline void each_coefficient(const Body& body) {
+    unroll<N>([&](auto below) __attribute__((always_inline)) {
+        constexpr int k = below + 1;
+        unroll<k + 1>([&](auto m)
+                          __attribute__((always_inline)) { body(std::integral_constant<int, k>{}, m); });
+    });
 }
 
 /// Solves q E g = w for the parts of g above the constant: k q_0 g_k = w_k - sum_(0<j<k) j g_j q_(k-j).
 template <class T, int N>
 inline void integrate_quotient(Jet<T, N>& g, const Jet<T, N>& w, const Jet<T, N>& q) {
     const T inverse = T(1) / q.c[0];
-    const T constant = g.c[0];
-    g = w;
-    g.c[0] = constant;
-    unroll<N>([&](auto index) __attribute__((always_inline)) {
-        constexpr int k = index + 1;
-        unroll<k - 1>([&](auto below) __attribute__((always_inline)) {
-            constexpr int j = below + 1;
-            add_product<j, k - j, -j>(g, g, q);
-        });
-        scale_part<k>(g, inverse / T(k));
+    each_coefficient<N>([&](auto k, auto m) __attribute__((always_inline)) {
+        const T known = convolve<k, 1, k - 1>(g, q, m, [](int j) { return j; });
+        const int at = Jet<T, N>::part(k) + m;
+        g.c[at] = (w.c[at] - known) * (inverse / T(k));
     });
+}
+
+/// x E y - y E x, whose part of degree k is sum_a (k - 2 a) x_a y_(k-a).
+template <class T, int N>
+inline Jet<T, N> wronskian(const Jet<T, N>& x, const Jet<T, N>& y) {
+    Jet<T, N> r;
+    each_coefficient<N>([&](auto k, auto m) __attribute__((always_inline)) {
+        constexpr int degree = k;
+        r.c[Jet<T, N>::part(k) + m] = convolve<k, 0, k>(x, y, m, [](int a) { return degree - 2 * a; });
+    });
+    return r;
 }
 
 /// E f: the part of degree k times k.
 template <class T, int N>
 inline Jet<T, N> euler(const Jet<T, N>& f) {
-    Jet<T, N> r = f;
-    r.c[0] = T(0);
-    unroll<N + 1>([&](auto k) __attribute__((always_inline)) {
-        if constexpr (k >= 2) scale_part<k>(r, T(k));
+    Jet<T, N> r;
+    each_coefficient<N>([&](auto k, auto m) __attribute__((always_inline)) {
+        const int at = Jet<T, N>::part(k) + m;
+        r.c[at] = f.c[at] * T(k);
     });
     return r;
 }
@@ -126,15 +143,10 @@ inline Jet<T, N> euler(const Jet<T, N>& f) {
 /// E u = v E a and E v = Sign * u E a: sine and cosine (Sign -1), or their hyperbolic twins (Sign 1).
 template <int Sign, class T, int N>
 inline void oscillate(Jet<T, N>& u, Jet<T, N>& v, const Jet<T, N>& a) {
-    unroll<N>([&](auto index) __attribute__((always_inline)) {
-        constexpr int k = index + 1;
-        unroll<k>([&](auto below) __attribute__((always_inline)) {
-            constexpr int j = below + 1;
-            add_product<j, k - j, j>(u, a, v);
-            add_product<j, k - j, Sign * j>(v, a, u);
-        });
-        scale_part<k>(u, T(1) / T(k));
-        scale_part<k>(v, T(1) / T(k));
+    each_coefficient<N>([&](auto k, auto m) __attribute__((always_inline)) {
+        const int at = Jet<T, N>::part(k) + m;
+        u.c[at] = convolve<k, 1, k>(a, v, m, [](int j) { return j; }) / T(k);
+        v.c[at] = convolve<k, 1, k>(a, u, m, [](int j) { return Sign * j; }) / T(k);
     });
 }
 
@@ -160,11 +172,9 @@ inline Jet<T, N> operator-(const Jet<T, N>& a, const Jet<T, N>& b) {
 }
 template <class T, int N>
 inline Jet<T, N> operator*(const Jet<T, N>& a, const Jet<T, N>& b) {
-    Jet<T, N> r;
-    jet_detail::unroll<N + 1>([&](auto k) __attribute__((always_inline)) {
-        jet_detail::unroll<k + 1>([&](auto j) __attribute__((always_inline)) {
-            jet_detail::add_product<j, k - j>(r, a, b);
-        });
+    Jet<T, N> r(a.c[0] * b.c[0]);
+    jet_detail::each_coefficient<N>([&](auto k, auto m) __attribute__((always_inline)) {
+        r.c[Jet<T, N>::part(k) + m] = jet_detail::convolve<k, 0, k>(a, b, m, [](int) { return 1; });
     });
     return r;
 }
@@ -200,13 +210,12 @@ inline Jet<T, N> operator-(double a, const Jet<T, N>& b) {
 /// q with q g = f: g_0 q_k = f_k - sum_(j<k) q_j g_(k-j)
 template <class T, int N>
 inline Jet<T, N> operator/(const Jet<T, N>& f, const Jet<T, N>& g) {
-    Jet<T, N> q = f;
     const T inverse = T(1) / g.c[0];
-    jet_detail::unroll<N + 1>([&](auto k) __attribute__((always_inline)) {
-        jet_detail::unroll<k>([&](auto j) __attribute__((always_inline)) {
-            jet_detail::add_product<j, k - j, -1>(q, q, g);
-        });
-        jet_detail::scale_part<k>(q, inverse);
+    Jet<T, N> q(f.c[0] * inverse);
+    jet_detail::each_coefficient<N>([&](auto k, auto m) __attribute__((always_inline)) {
+        const T known = jet_detail::convolve<k, 0, k - 1>(q, g, m, [](int) { return 1; });
+        const int at = Jet<T, N>::part(k) + m;
+        q.c[at] = (f.c[at] - known) * inverse;
     });
     return q;
 }
@@ -218,17 +227,15 @@ inline long double square(long double a) {
     return a * a;
 }
 
-/// a a: each pair of different parts counts twice; the constant part is never negative.
+/// a a, with a constant part that is never negative.
 template <class T, int N>
 inline Jet<T, N> square(const Jet<T, N>& a) {
-    Jet<T, N> r;
-    r.c[0] = square(a.c[0]);
-    jet_detail::unroll<N>([&](auto index) __attribute__((always_inline)) {
-        constexpr int k = index + 1;
-        jet_detail::unroll<(k + 1) / 2>([&](auto j) __attribute__((always_inline)) {
-            jet_detail::add_product<j, k - j, 2>(r, a, a);
-        });
-        if constexpr (k % 2 == 0) jet_detail::add_product<k / 2, k / 2>(r, a, a);
+    Jet<T, N> r(square(a.c[0]));
+    jet_detail::each_coefficient<N>([&](auto k, auto m) __attribute__((always_inline)) {
+        constexpr int degree = k;
+        // Each pair of different parts counts twice.
+        r.c[Jet<T, N>::part(k) + m] =
+            jet_detail::convolve<k, 0, k / 2>(a, a, m, [](int j) { return 2 * j == degree ? 1 : 2; });
     });
     return r;
 }
@@ -237,16 +244,12 @@ inline Jet<T, N> square(const Jet<T, N>& a) {
 template <class T, int N>
 inline Jet<T, N> sqrt(const Jet<T, N>& f) {
     using std::sqrt;
-    Jet<T, N> r = f;
-    r.c[0] = sqrt(f.c[0]);
+    Jet<T, N> r(sqrt(f.c[0]));
     const T inverse = T(0.5) / r.c[0];
-    jet_detail::unroll<N>([&](auto index) __attribute__((always_inline)) {
-        constexpr int k = index + 1;
-        jet_detail::unroll<k - 1>([&](auto below) __attribute__((always_inline)) {
-            constexpr int j = below + 1;
-            jet_detail::add_product<j, k - j, -1>(r, r, r);
-        });
-        jet_detail::scale_part<k>(r, inverse);
+    jet_detail::each_coefficient<N>([&](auto k, auto m) __attribute__((always_inline)) {
+        const T known = jet_detail::convolve<k, 1, k - 1>(r, r, m, [](int) { return 1; });
+        const int at = Jet<T, N>::part(k) + m;
+        r.c[at] = (f.c[at] - known) * inverse;
     });
     return r;
 }
@@ -291,8 +294,7 @@ template <class T, int N>
 inline Jet<T, N> atan2(const Jet<T, N>& y, const Jet<T, N>& x) {
     using std::atan2;
     Jet<T, N> g(atan2(y.c[0], x.c[0]));
-    jet_detail::integrate_quotient(g, x * jet_detail::euler(y) - y * jet_detail::euler(x),
-                                   square(x) + square(y));
+    jet_detail::integrate_quotient(g, jet_detail::wronskian(x, y), square(x) + square(y));
     return g;
 }
 
