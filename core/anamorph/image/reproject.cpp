@@ -78,7 +78,7 @@ class Painter {
   public:
     Painter(const Plan& plan, const ReprojectOptions& options, const Border& border, const Source* source,
             const Canvas& canvas)
-        : m_plan(plan), m_map(plan.map()), m_options(options), m_canvas(canvas), m_source(source) {
+        : m_map(plan.map()), m_options(options), m_canvas(canvas), m_source(source) {
         m_values.resize(static_cast<std::size_t>(kMaxRow * canvas.channels() + 16));
         if (!source) return;
         m_reader.emplace(*source, border);
@@ -388,7 +388,6 @@ class Painter {
         bool seen;
     };
 
-    const Plan& m_plan;
     const Panorama& m_map;
     const ReprojectOptions& m_options;
     const Canvas& m_canvas;
