@@ -97,6 +97,37 @@ TEST(Border, TexelsInsideStandForThemselvesAndAllOthersLieInside) {
                 }
 }
 
+TEST(Border, RunsAreWhatResolvesTexelByTexel) {
+    for (const Projection projection : kAll)
+        for (const PixelSpacing spacing : {PixelSpacing::edges, PixelSpacing::centers})
+            for (const Wrap wrap :
+                 {Wrap::automatic, Wrap::black, Wrap::clamp, Wrap::periodic, Wrap::mirror}) {
+                const Chart chart = chart_for(projection, 10, spacing);
+                const Border border(chart, wrap);
+                const Source::Size level{chart.width(), chart.height()};
+                const int piece = static_cast<int>(chart.pieces().size()) - 1;
+                const Box box = border.interior(piece, level);
+                for (const int limit : {1, 7, 100})
+                    for (int y = box.y0 - 25; y < box.y1 + 25; ++y)
+                        for (int x = box.x0 - 45; x < box.x1 + 45; ++x) {
+                            const TexelRun run = border.resolve_run(x, y, piece, level, limit);
+                            ASSERT_GE(run.count, 1);
+                            ASSERT_LE(run.count, limit);
+                            for (int k = 0; k < run.count; ++k)
+                                ASSERT_EQ(border.resolve(x + k, y, piece, level),
+                                          (Texel{run.first.x + k, run.first.y, run.first.none}));
+                        }
+                for (const std::int64_t y : kExtremes)
+                    for (const std::int64_t x : kExtremes)
+                        ASSERT_GE(border.resolve_run(x, y, piece, level, 1 << 20).count, 1);
+            }
+    // A row of a panorama is one run on either side of the seam.
+    const Chart chart(Projection::equirectangular, 16, 8);
+    EXPECT_EQ(Border(chart, Wrap::automatic).resolve_run(-5, 3, 0, {16, 8}, 100).count, 5);
+    EXPECT_EQ(Border(chart, Wrap::automatic).resolve_run(0, 3, 0, {16, 8}, 100).count, 16);
+    EXPECT_EQ(Border(chart, Wrap::automatic).resolve_run(0, -1, 0, {16, 8}, 100).count, 8);
+}
+
 TEST(Border, OddAndTinyLevelsAreSafe) {
     for (const Projection projection : kAll)
         for (const PixelSpacing spacing : {PixelSpacing::edges, PixelSpacing::centers})

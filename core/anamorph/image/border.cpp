@@ -31,10 +31,6 @@ int scaled(int edge, int full, int size) {
     return static_cast<int>((2 * std::int64_t{edge} * size + full) / (2 * std::int64_t{full}));
 }
 
-bool holds(const Box& box, std::int64_t x, std::int64_t y) {
-    return box.x0 <= x && x < box.x1 && box.y0 <= y && y < box.y1;
-}
-
 /// The texel of a cube's level that the ray through (x, y) of the extended plane of `piece` meets.
 Texel across_cube_edge(const Chart& chart, double x, double y, int piece, const Source::Size& level,
                        const Border& border) {
@@ -50,27 +46,30 @@ Texel across_cube_edge(const Chart& chart, double x, double y, int piece, const 
     return {inside(p.x / kx, face.x0, face.x1), inside(p.y / ky, face.y0, face.y1)};
 }
 
-/// A chart whose azimuth closes: around the seam and, where rows end at the poles, over them.
-Texel around_sphere(const Chart& chart, std::int64_t x, std::int64_t y, const Source::Size& level) {
+/// A chart whose azimuth closes: around the seam and, where rows end at the poles, over them. `count` is as
+/// far as the image goes.
+TexelRun around_sphere(const Chart& chart, std::int64_t x, std::int64_t y, const Source::Size& level) {
     // Where fields of view run between pixel centres the last texel of a row repeats the first one's
     // direction and the outer rows stand on the poles: an overlap of one pixel, which the coarser levels
     // hardly see.
     const bool centers = chart.spacing() == PixelSpacing::centers;
     const int overlap_x = centers && 2 * std::int64_t{level.width} >= chart.width() ? 1 : 0;
     const int overlap_y = centers && 2 * std::int64_t{level.height} >= chart.height() ? 1 : 0;
-    const std::int64_t period = std::max(1, level.width - overlap_x);
+    const int period = std::max(1, level.width - overlap_x);
     bool over_pole = false;
     if (y < 0 || y >= level.height) {
-        if (!chart.reaches_poles()) return {0, 0, true};
         // Down one meridian and up the opposite one.
         const std::int64_t turn = std::max<std::int64_t>(1, 2 * (std::int64_t{level.height} - overlap_y));
         y = modulo(y, turn);
         over_pole = y >= level.height;
         if (over_pole) y = 2 * std::int64_t{level.height} - 1 - overlap_y - y;
     }
-    if (over_pole || x < 0 || x >= level.width)
+    int end = level.width;
+    if (over_pole || x < 0 || x >= level.width) {
         x = modulo(modulo(x, period) + (over_pole ? period / 2 : 0), period);
-    return {static_cast<int>(x), static_cast<int>(y)};
+        end = period;
+    }
+    return {{static_cast<int>(x), static_cast<int>(y)}, end - static_cast<int>(x)};
 }
 
 }  // namespace
@@ -91,27 +90,37 @@ Box Border::interior(int piece, const Source::Size& level) const noexcept {
     return r;
 }
 
-Texel Border::resolve(std::int64_t x, std::int64_t y, int piece, const Source::Size& level) const noexcept {
+TexelRun Border::resolve_run(std::int64_t x, std::int64_t y, int piece, const Source::Size& level,
+                             int limit) const noexcept {
     const Box box = interior(piece, level);
-    if (holds(box, x, y)) return {static_cast<int>(x), static_cast<int>(y)};
+    const bool in_column = box.x0 <= x && x < box.x1, in_row = box.y0 <= y && y < box.y1;
+    const auto run = [&](TexelRun r) { return TexelRun{r.first, std::min(r.count, limit)}; };
+    if (in_column && in_row)
+        return run({{static_cast<int>(x), static_cast<int>(y)}, box.x1 - static_cast<int>(x)});
     switch (m_wrap) {
         case Wrap::black:
             break;
         case Wrap::clamp:
-            return {static_cast<int>(std::clamp<std::int64_t>(x, box.x0, box.x1 - 1)),
-                    static_cast<int>(std::clamp<std::int64_t>(y, box.y0, box.y1 - 1))};
-        case Wrap::periodic:
-            return {periodic(x, box.x0, box.x1), periodic(y, box.y0, box.y1)};
+            return run({{static_cast<int>(std::clamp<std::int64_t>(x, box.x0, box.x1 - 1)),
+                         static_cast<int>(std::clamp<std::int64_t>(y, box.y0, box.y1 - 1))},
+                        in_column ? box.x1 - static_cast<int>(x) : 1});
+        case Wrap::periodic: {
+            const int from = periodic(x, box.x0, box.x1);
+            return run({{from, periodic(y, box.y0, box.y1)}, box.x1 - from});
+        }
         case Wrap::mirror:
-            return {mirrored(x, box.x0, box.x1), mirrored(y, box.y0, box.y1)};
+            return {{mirrored(x, box.x0, box.x1), mirrored(y, box.y0, box.y1)}};
         case Wrap::automatic:
             if (is_cube(m_chart.projection()))
-                return across_cube_edge(m_chart, static_cast<double>(x), static_cast<double>(y), piece, level,
-                                        *this);
-            if (m_chart.closed()) return around_sphere(m_chart, x, y, level);
+                return {across_cube_edge(m_chart, static_cast<double>(x), static_cast<double>(y), piece,
+                                         level, *this)};
+            if (m_chart.closed() && (in_row || m_chart.reaches_poles()))
+                return run(around_sphere(m_chart, x, y, level));
             break;
     }
-    return {0, 0, true};
+    // Nothing, up to where the interior begins.
+    const bool enters = in_row && x < box.x0 && x > std::int64_t{box.x0} - limit;
+    return {{0, 0, true}, enters ? static_cast<int>(box.x0 - x) : limit};
 }
 
 }  // namespace anamorph

@@ -26,7 +26,6 @@ Taps taps_at(Filter filter, double at) {
     return {below, 2, {first, second}};
 }
 
-
 }  // namespace
 
 PointSampler::PointSampler(const Source& source, const Border& border)
@@ -69,7 +68,8 @@ bool PointSampler::sample(const Footprint& footprint, const Jacobian& jacobian, 
     for (int j = 0; j < footprint.taps_b; ++j)
         for (int i = 0; i < footprint.taps_a; ++i) {
             const Point<double> tap = tap_offset(footprint, jacobian, {sx, sy}, i, j);
-            if (!sample(Filter::bilinear, footprint.level, piece, x * sx + tap.x, y * sy + tap.y, m_tap.data()))
+            if (!sample(Filter::bilinear, footprint.level, piece, x * sx + tap.x, y * sy + tap.y,
+                        m_tap.data()))
                 return false;
             for (std::size_t c = 0; c < m_sum.size(); ++c) m_sum[c] += static_cast<double>(m_tap[c]);
         }

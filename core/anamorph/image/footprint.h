@@ -32,9 +32,10 @@ struct Footprint {
     friend bool operator==(const Footprint&, const Footprint&) = default;
 };
 
-/// The offset of tap (i, j) in texels of the footprint's level; `scale`: texels of the level per texel of level 0.
-Point<double> tap_offset(const Footprint& footprint, const Jacobian& jacobian, const std::array<double, 2>& scale,
-                         int i, int j) noexcept;
+/// The offset of tap (i, j) in texels of the footprint's level; `scale`: texels of the level per texel of
+/// level 0.
+Point<double> tap_offset(const Footprint& footprint, const Jacobian& jacobian,
+                         const std::array<double, 2>& scale, int i, int j) noexcept;
 
 /// Energy of white noise after an exact average over `width` >= 1 texels; below 1 as at 1.
 double box_energy(double width);

@@ -22,6 +22,13 @@ void put(T value, std::byte* channel) noexcept {
     std::memcpy(channel, &value, sizeof value);
 }
 
+inline float value(std::uint8_t stored) noexcept {
+    return static_cast<float>(stored) / 255.0f;
+}
+inline float value(std::uint16_t stored) noexcept {
+    return static_cast<float>(stored) / 65535.0f;
+}
+
 /// The nearest of 0..limit for 0..1, halves upwards; NaN gives 0.
 template <class T>
 T normalised(float value, float limit) noexcept {
@@ -34,9 +41,9 @@ T normalised(float value, float limit) noexcept {
 inline float load_channel(const std::byte* channel, PixelType type) noexcept {
     switch (type) {
         case PixelType::uint8:
-            return static_cast<float>(pixel_detail::get<std::uint8_t>(channel)) / 255.0f;
+            return pixel_detail::value(pixel_detail::get<std::uint8_t>(channel));
         case PixelType::uint16:
-            return static_cast<float>(pixel_detail::get<std::uint16_t>(channel)) / 65535.0f;
+            return pixel_detail::value(pixel_detail::get<std::uint16_t>(channel));
         case PixelType::half:
             return float_from_half(pixel_detail::get<std::uint16_t>(channel));
         default:
@@ -66,8 +73,22 @@ inline void store_channel(float value, std::byte* channel, PixelType type) noexc
 /// `count` channels that stand next to each other, to float.
 inline void load_channels(const std::byte* channels, PixelType type, std::int64_t count,
                           float* values) noexcept {
-    const int size = size_of(type);
-    for (std::int64_t i = 0; i < count; ++i) values[i] = load_channel(channels + i * size, type);
+    // A loop for each type, so that it can be vectorised.
+    const auto load = [&]<class T>(T, auto value) {
+        for (std::int64_t i = 0; i < count; ++i)
+            values[i] = value(pixel_detail::get<T>(channels + i * std::int64_t{sizeof(T)}));
+    };
+    const auto normal = [](auto stored) { return pixel_detail::value(stored); };
+    switch (type) {
+        case PixelType::uint8:
+            return load(std::uint8_t{}, normal);
+        case PixelType::uint16:
+            return load(std::uint16_t{}, normal);
+        case PixelType::half:
+            return load(std::uint16_t{}, [](std::uint16_t half) { return float_from_half(half); });
+        default:
+            return load(float{}, [](float value) { return value; });
+    }
 }
 
 /// Multiplies colour by alpha: the pixel as it is filtered. Where alpha is 0 there is no colour, whatever it

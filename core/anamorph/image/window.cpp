@@ -31,7 +31,8 @@ struct Patch {
 /// Collects the texels outside the interior, row by row, into few rectangles.
 class Patches {
   public:
-    void add(int x, int y, const Texel& texel) {
+    void add(int x, int y, const TexelRun& run) {
+        const Texel& texel = run.first;
         if (m_row != y) {
             join_rows();
             m_above = m_begin;
@@ -43,11 +44,11 @@ class Patches {
             const bool follows = last.x + last.texels.width() == x && last.none == texel.none &&
                                  (texel.none || (last.texels.x1 == texel.x && last.texels.y0 == texel.y));
             if (follows) {
-                ++last.texels.x1;
+                last.texels.x1 += run.count;
                 return;
             }
         }
-        m_patches.push_back({{texel.x, texel.y, texel.x + 1, texel.y + 1}, x, y, texel.none});
+        m_patches.push_back({{texel.x, texel.y, texel.x + run.count, texel.y + 1}, x, y, texel.none});
     }
     const std::vector<Patch>& finish() {
         join_rows();
@@ -102,10 +103,15 @@ class Gather {
         Patches patches;
         for (int y = m_box.y0; y < m_box.y1; ++y) {
             const bool crosses = !own.empty() && own.y0 <= y && y < own.y1;
-            for (int x = m_box.x0; x < m_box.x1; ++x) {
-                if (crosses && x == own.x0) x = own.x1;
-                if (x == m_box.x1) break;
-                patches.add(x - m_box.x0, y - m_box.y0, m_border.resolve(x, y, m_piece, size));
+            for (int x = m_box.x0; x < m_box.x1;) {
+                if (crosses && x == own.x0) {
+                    x = own.x1;
+                    continue;
+                }
+                const int limit = (crosses && x < own.x0 ? own.x0 : m_box.x1) - x;
+                const TexelRun run = m_border.resolve_run(x, y, m_piece, size, limit);
+                patches.add(x - m_box.x0, y - m_box.y0, run);
+                x += run.count;
             }
         }
         for (const Patch& patch : patches.finish())
