@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <filesystem>
 #include <map>
 #include <mutex>
 
@@ -27,8 +28,9 @@ Store& store() {
     return s;
 }
 
-/// The name without ".XXXXXXXX.temp" in front of its extension.
-std::string key_of(const std::string& name) {
+/// The path in its shortest spelling, without ".XXXXXXXX.temp" in front of its extension.
+std::string key_of(const std::string& path) {
+    const std::string name = std::filesystem::path(path).lexically_normal().string();
     constexpr std::size_t kMark = 9, kTemp = 5;
     if (name.size() < kBufferExtension.size() + kTemp + kMark) return name;
     const std::size_t end = name.size() - kBufferExtension.size();
@@ -82,13 +84,13 @@ void store_buffer(const std::string& name, std::shared_ptr<const OIIO::ImageBuf>
 
 std::int64_t buffer_generation(const std::string& name) {
     std::lock_guard lock(store().mutex);
-    const auto found = store().images.find(name);
+    const auto found = store().images.find(key_of(name));
     return found == store().images.end() ? 0 : found->second.generation;
 }
 
 std::shared_ptr<const Content> open_buffer(const std::string& name) {
     std::lock_guard lock(store().mutex);
-    const auto found = store().images.find(name);
+    const auto found = store().images.find(key_of(name));
     if (found == store().images.end())
         throw Error("no image \"" + printable(name) + "\" is in memory: write it first in the same process");
     return std::make_shared<BufferContent>(found->second.image);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "pano_content.h"
 
+#include <filesystem>
 #include <map>
 #include <mutex>
 #include <thread>
@@ -70,21 +71,27 @@ std::shared_ptr<Solved> solve(const ReprojectRequest& request) {
     return memo.get(key, [&] { return std::make_shared<Solved>(request.map(), p); });
 }
 
-/// Has the cache forget a source that is not what it was when last opened here.
-void refresh(const std::string& source, const std::string& identity) {
+/// The name by which the cache is asked for a source: another spelling of its path after each change of its
+/// identity, since the cache would go on with what it knows, and to have it forget is not safe while others
+/// read.
+std::string cached_name(const std::string& source, const std::string& identity) {
+    struct Known {
+        std::string identity;
+        unsigned changes = 0;
+    };
     static auto& mutex = *new std::mutex;
-    static auto& known = *new std::map<std::string, std::string>;
-    constexpr std::size_t kMost = 1000;
-    {
-        std::lock_guard lock(mutex);
-        if (known.size() > kMost) known.clear();
-        std::string& last = known[source];
-        if (last == identity) return;
-        const bool first = last.empty();
-        last = identity;
-        if (first) return;
-    }
-    shared_cache()->invalidate(OIIO::ustring(source));
+    static auto& known = *new std::map<std::string, Known>;
+    const std::lock_guard lock(mutex);
+    Known& k = known[source];
+    if (!k.identity.empty() && k.identity != identity) ++k.changes;
+    k.identity = identity;
+    if (k.changes == 0) return source;
+    // The number of changes in binary, of "./" and ".//".
+    const std::filesystem::path path(source.substr(0, source.find('?')));
+    std::string spelling;
+    for (unsigned rest = k.changes; rest > 0; rest >>= 1) spelling += rest & 1 ? ".//" : "./";
+    const std::string folder = path.has_parent_path() ? path.parent_path().string() + "/" : "";
+    return folder + spelling + path.filename().string() + source.substr(path.string().size());
 }
 
 class PanoContent final : public Content {
@@ -92,8 +99,7 @@ class PanoContent final : public Content {
     PanoContent(const std::string& name, const std::vector<Assignment>& config) {
         const Recipe recipe = load_recipe(name, config);
         const std::string identity = source_identity(name, recipe);
-        refresh(recipe.source, identity);
-        auto image = std::make_unique<CacheSource>(shared_cache(), recipe.source);
+        auto image = std::make_unique<CacheSource>(shared_cache(), cached_name(recipe.source, identity));
         const ImageSpec source = image->spec();
         ReprojectRequest request = read_reproject_request(recipe.values, facts_of(source));
         check_size(request.target, source.nchannels, source.format);

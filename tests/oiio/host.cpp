@@ -5,6 +5,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdlib>
@@ -19,7 +20,10 @@ void InFolder::SetUp() {
     ASSERT_TRUE(std::getenv("OIIO_LIBRARY_PATH")) << "set OIIO_LIBRARY_PATH to the plugin's folder";
     const auto* info = testing::UnitTest::GetInstance()->current_test_info();
     m_before = fs::current_path().string();
-    m_folder = testing::TempDir() + "anamorph_" + std::to_string(::getpid()) + "_" + info->name();
+    m_folder = testing::TempDir();
+    m_folder += "anamorph_";
+    m_folder += std::to_string(::getpid());
+    m_folder += info->name();
     fs::remove_all(m_folder);
     fs::create_directories(m_folder);
     fs::current_path(m_folder);

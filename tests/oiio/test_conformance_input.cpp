@@ -20,7 +20,7 @@ using testing::AllOf;
 using testing::HasSubstr;
 using testing::Not;
 
-class Conformance : public InFolder {
+class InputConformance : public InFolder {
   protected:
     void SetUp() override {
         InFolder::SetUp();
@@ -36,14 +36,14 @@ std::unique_ptr<ImageInput> open(const std::string& name) {
     return input;
 }
 
-TEST_F(Conformance, conformance_02_version_and_extensions_are_listed) {
+TEST_F(InputConformance, conformance_02_version_and_extensions_are_listed) {
     EXPECT_THAT(OIIO::get_string_attribute("extension_list"), HasSubstr("anamorph:pano,anabuf"));
     EXPECT_THAT(OIIO::get_string_attribute("library_list"), HasSubstr("anamorph:Anamorph "));
     EXPECT_THAT(OIIO::get_string_attribute("input_format_list"), HasSubstr("anamorph"));
     EXPECT_THAT(OIIO::get_string_attribute("output_format_list"), HasSubstr("anamorph"));
 }
 
-TEST_F(Conformance, conformance_03_valid_file_knows_names_without_reading) {
+TEST_F(InputConformance, conformance_03_valid_file_knows_names_without_reading) {
     const auto input = ImageInput::create("anamorph");
     ASSERT_TRUE(input) << OIIO::geterror();
     // Opening a pipe would wait for ever.
@@ -56,14 +56,14 @@ TEST_F(Conformance, conformance_03_valid_file_knows_names_without_reading) {
         EXPECT_TRUE(input->valid_file(name)) << name;
 }
 
-TEST_F(Conformance, conformance_04_upper_case_extension) {
+TEST_F(InputConformance, conformance_04_upper_case_extension) {
     const Pixels lower = read_pixels(kView);
     EXPECT_EQ(read_pixels("city.exr.PANO?yaw=30&pitch=10&size=150x100"), lower);
     write_text("VIEW.PANO", "src=city.exr\nyaw=30\npitch=10\nsize=150x100\n");
     EXPECT_EQ(read_pixels("VIEW.PANO"), lower);
 }
 
-TEST_F(Conformance, conformance_05_open_close_reopen_destroy) {
+TEST_F(InputConformance, conformance_05_open_close_reopen_destroy) {
     const auto input = ImageInput::create("anamorph");
     ASSERT_TRUE(input);
     EXPECT_TRUE(input->close());
@@ -92,7 +92,7 @@ TEST_F(Conformance, conformance_05_open_close_reopen_destroy) {
     ASSERT_TRUE(ImageInput::create("anamorph")->open(kView, spec));
 }
 
-TEST_F(Conformance, conformance_06_config_and_name_agree) {
+TEST_F(InputConformance, conformance_06_config_and_name_agree) {
     ImageSpec config;
     config.attribute("pano:yaw", 30.0f);
     config.attribute("pano:pitch", 10);
@@ -113,7 +113,7 @@ TEST_F(Conformance, conformance_06_config_and_name_agree) {
                 AllOf(HasSubstr("jaw=1"), HasSubstr("allowed are src, from")));
 }
 
-TEST_F(Conformance, conformance_07_every_way_to_read_gives_the_same_bits) {
+TEST_F(InputConformance, conformance_07_every_way_to_read_gives_the_same_bits) {
     for (const TypeDesc type : {TypeDesc::UINT8, TypeDesc::UINT16, TypeDesc::HALF, TypeDesc::FLOAT}) {
         SCOPED_TRACE(type.c_str());
         const std::string source = type == TypeDesc::UINT8 || type == TypeDesc::UINT16 ? "s.tif" : "s.exr";
@@ -160,7 +160,7 @@ TEST_F(Conformance, conformance_07_every_way_to_read_gives_the_same_bits) {
     }
 }
 
-TEST_F(Conformance, conformance_08_edge_tiles_have_full_buffers) {
+TEST_F(InputConformance, conformance_08_edge_tiles_have_full_buffers) {
     const auto input = open("city.exr.pano?size=100x70&tile=64");
     ASSERT_TRUE(input);
     const std::vector<float> whole = read_floats("city.exr.pano?size=100x70&tile=64");
@@ -178,7 +178,7 @@ TEST_F(Conformance, conformance_08_edge_tiles_have_full_buffers) {
     }
 }
 
-TEST_F(Conformance, conformance_09_formats_channels_strides) {
+TEST_F(InputConformance, conformance_09_formats_channels_strides) {
     write_panorama("four.exr", 256, 128, TypeDesc::FLOAT, 4);
     for (const char* tile : {"32", "0"}) {
         const std::string name = std::string("four.exr.pano?size=90x60&tile=") + tile;
@@ -214,7 +214,7 @@ TEST_F(Conformance, conformance_09_formats_channels_strides) {
     }
 }
 
-TEST_F(Conformance, conformance_10_data_and_display_windows) {
+TEST_F(InputConformance, conformance_10_data_and_display_windows) {
     // A crop of a panorama, its display window anywhere, is that panorama with black around the crop.
     const OIIO::ImageBuf whole = panorama(256, 128);
     OIIO::ImageBuf padded(ImageSpec(256, 128, 3, OIIO::TypeFloat));
@@ -248,7 +248,7 @@ TEST_F(Conformance, conformance_10_data_and_display_windows) {
     }
 }
 
-TEST_F(Conformance, conformance_11_bad_subimage_level_and_range) {
+TEST_F(InputConformance, conformance_11_bad_subimage_level_and_range) {
     const auto input = open(kView + "&tile=64");
     ASSERT_TRUE(input);
     std::vector<float> pixels(1 << 16);
@@ -271,7 +271,7 @@ TEST_F(Conformance, conformance_11_bad_subimage_level_and_range) {
     EXPECT_TRUE(input->read_native_tile(0, 0, 128, 64, 0, pixels.data())) << input->geterror();
 }
 
-TEST_F(Conformance, conformance_12_seeks_out_of_order) {
+TEST_F(InputConformance, conformance_12_seeks_out_of_order) {
     const std::string name = kView + "&mip=1&tile=16";
     const auto input = open(name);
     ASSERT_TRUE(input);
@@ -297,7 +297,7 @@ TEST_F(Conformance, conformance_12_seeks_out_of_order) {
     }
 }
 
-TEST_F(Conformance, conformance_13_one_input_many_threads) {
+TEST_F(InputConformance, conformance_13_one_input_many_threads) {
     const std::string name = kView + "&tile=16";
     const std::vector<float> whole = read_floats(name);
     const auto input = open(name);
@@ -321,7 +321,7 @@ TEST_F(Conformance, conformance_13_one_input_many_threads) {
     EXPECT_EQ(wrong, 0);
 }
 
-TEST_F(Conformance, conformance_14_tiles_and_threads_never_change_pixels) {
+TEST_F(InputConformance, conformance_14_tiles_and_threads_never_change_pixels) {
     for (const char* arguments :
          {"yaw=170&pitch=60&fov=120&size=300x200", "to=equirectangular&roll=20&size=256x128",
           "to=cubemap&size=48&filter=bicubic", "to=fisheye&fov=300&size=200&tol=0"}) {
