@@ -19,6 +19,9 @@ constexpr int kBlockWidth = 64, kBlockHeight = 32;
 // Below this a polynomial costs more than its pixels.
 constexpr int kFloor = 8, kResidualFloor = 4;
 
+// A bound costs as much as some hundred exact pixels.
+constexpr int kBoundPixels = 512;
+
 // Rounding of a point's coordinates to float and of their evaluation: the coefficients, s and t are each
 // rounded once, and at most five operations are rounded on the way from the smallest term to the sum, so that
 // each term errs by less than 8 half-ULP of its size.
@@ -63,6 +66,7 @@ class Planner {
 
     /// Top-down: bounds the map over a large box, and settles its blocks with that bound if it serves them.
     void settle(const Box& box) {
+        if (!worth_a_bound(box)) return emit(box, Block::Kind::exact);
         const std::size_t first = m_blocks.size();
         const Panorama::Local local =
             m_map.local_around(0.5 * (box.x0 + box.x1), 0.5 * (box.y0 + box.y1), m_piece);
@@ -83,6 +87,11 @@ class Planner {
     }
 
   private:
+    /// Is a bound over the box cheaper than its pixels? Where only the fastest way is asked for.
+    bool worth_a_bound(const Box& box) const {
+        return m_options.scheme != Scheme::automatic || box.width() * box.height() >= kBoundPixels;
+    }
+
     enum class Cover { inside, outside, mixed };
     // The Taylor polynomial of a block has degree 4; its remainder is bounded over large boxes.
     using Tail = Remainder<5>;
@@ -134,34 +143,62 @@ class Planner {
     void settle_blocks(const Box& box, const Panorama::Local& local, std::size_t first) {
         const auto p = enclose<5>(box, local);
         const Tail tx(p.x), ty(p.y);
-        const double hx = half(std::min(box.width(), kBlockWidth)),
-                     hy = half(std::min(box.height(), kBlockHeight));
-        const double tail = std::hypot(tx.over(hx, hy), ty.over(hx, hy));
         const bool is_block = box.width() <= kBlockWidth && box.height() <= kBlockHeight;
-        if (tail <= kTailShare * m_options.tol || (is_block && tail < HUGE_VAL))
+        if (is_block ? tail_over(box, tx, ty) < HUGE_VAL : serves(box, local, tx, ty))
             for_blocks(box, [&](const Box& b) { place(b, local, tx, ty); });
         else
             split(box, first);
     }
 
+    static double tail_over(const Box& box, const Tail& tx, const Tail& ty) {
+        const double hx = half(box.width()), hy = half(box.height());
+        return std::hypot(tx.over(hx, hy), ty.over(hx, hy));
+    }
+
+    /// Is a remainder small enough for the blocks of a box? Tried on the one in its middle.
+    bool serves(const Box& box, const Panorama::Local& local, const Tail& tx, const Tail& ty) const {
+        const int x0 = (box.x0 + box.x1) / 2, y0 = (box.y0 + box.y1) / 2;
+        const Box middle{x0, y0, std::min(x0 + kBlockWidth, box.x1), std::min(y0 + kBlockHeight, box.y1)};
+        const double tail = tail_over(middle, tx, ty);
+        return tail < HUGE_VAL && small_tail(tail, fit_of(middle, local).error);
+    }
+
+    /// A block that misses the tolerance is cut until it holds it; what is left of the remainder by then
+    /// decides.
+    bool small_tail(double tail, double fit) const {
+        const double cut =
+            fit > m_options.tol ? std::pow(m_options.tol / fit, 1.0 / (m_options.degree + 1)) : 1;
+        return tail * std::pow(cut, 5) <= kTailShare * m_options.tol;
+    }
+
+    struct Fit {
+        Point<Jet<double, 4>> taylor;
+        Economized x, y;
+        double error;
+    };
+    Fit fit_of(const Box& box, const Panorama::Local& local) const {
+        using J = Jet<double, 4>;
+        const Point<J> f = m_map(J::variable(0.5 * (box.x0 + box.x1), half(box.width()), 0),
+                                 J::variable(0.5 * (box.y0 + box.y1), 0, half(box.height())), local);
+        const Economized x(f.x, m_options.degree), y(f.y, m_options.degree);
+        return {f, x, y, std::hypot(x.error, y.error)};
+    }
+
     /// Emits the box as one polynomial block if that holds the tolerance, else halves it.
     void place(const Box& box, const Panorama::Local& local, const Tail& tx, const Tail& ty) {
         const std::size_t first = m_blocks.size();
-        const double hx = half(box.width()), hy = half(box.height());
-        const double cx = 0.5 * (box.x0 + box.x1), cy = 0.5 * (box.y0 + box.y1);
-        using J = Jet<double, 4>;
-        const Point<J> f = m_map(J::variable(cx, hx, 0), J::variable(cy, 0, hy), local);
-        const Economized ex(f.x, m_options.degree), ey(f.y, m_options.degree);
-        const double fit = std::hypot(ex.error, ey.error);
-        const double tail = std::hypot(tx.over(hx, hy), ty.over(hx, hy));
-        if (emit_polynomial(box, local.source.piece, ex.c, ey.c, fit + tail)) return;
+        const Fit fit = fit_of(box, local);
+        const double tail = tail_over(box, tx, ty);
+        if (emit_polynomial(box, local.source.piece, fit.x.c, fit.y.c, fit.error + tail)) return;
         // Halve the side along which more was dropped, with a new remainder where that is to blame.
         const int k = m_options.degree + 1;
-        const auto dropped = [&](int i, int j) { return std::fabs(f.x.at(i, j)) + std::fabs(f.y.at(i, j)); };
+        const auto dropped = [&](int i, int j) {
+            return std::fabs(fit.taylor.x.at(i, j)) + std::fabs(fit.taylor.y.at(i, j));
+        };
         const bool vertical_cut = dropped(k, 0) + dropped(k - 1, 1) >= dropped(0, k) + dropped(1, k - 1);
-        const bool renew = !(tail <= kTailShare * fit);
+        const bool renew = !small_tail(tail, fit.error);
         halve(box, vertical_cut, kFloor, first, [&](const Box& b) {
-            if (renew)
+            if (renew && worth_a_bound(b))
                 settle(b);
             else
                 place(b, local, tx, ty);
