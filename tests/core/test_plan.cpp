@@ -58,6 +58,8 @@ Findings examine(const Panorama& map, const PlanOptions& options) {
                              static_cast<std::size_t>(map.target().height()));
     for (std::int64_t r = 0; r < plan.regions(); ++r)
         for (const Block& block : *plan.blocks(r)) {
+            EXPECT_TRUE(block.kind == Block::Kind::outside ||
+                        (block.box.width() <= simd::kMaxRow && block.box.height() <= 32));
             double largest = 0;
             float px[simd::kRowRoom], py[simd::kRowRoom];
             for (int j = block.box.y0; j < block.box.y1; ++j) {
@@ -154,6 +156,7 @@ TEST(Plan, HoldsTheToleranceForEveryPairOfProjections) {
                 SCOPED_TRACE(::testing::Message()
                              << name_of(source) << " -> " << name_of(target) << " tol " << tol);
                 expect_promise(view, tol, Scheme::blocks, &ratios);
+                expect_promise(view, tol, Scheme::automatic);
             }
         EXPECT_LT(median(ratios), 2) << "bound over true error, tol " << tol;
         RecordProperty("median_bound_over_error_at_" + std::to_string(tol), std::to_string(median(ratios)));
@@ -182,7 +185,7 @@ TEST(Plan, HoldsTheToleranceInHardViews) {
     };
     for (const View& view : views)
         for (const double tol : kTols)
-            for (const Scheme scheme : {Scheme::blocks, Scheme::residual}) {
+            for (const Scheme scheme : {Scheme::automatic, Scheme::blocks, Scheme::residual}) {
                 SCOPED_TRACE(::testing::Message()
                              << name_of(view.source) << " -> " << name_of(view.target) << " fov "
                              << view.target_fov << " pitch " << view.look.pitch << " tol " << tol);

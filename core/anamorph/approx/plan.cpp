@@ -66,7 +66,7 @@ class Planner {
 
     /// Top-down: bounds the map over a large box, and settles its blocks with that bound if it serves them.
     void settle(const Box& box) {
-        if (!worth_a_bound(box)) return emit(box, Block::Kind::exact);
+        if (!worth_a_bound(box)) return exact(box);
         const std::size_t first = m_blocks.size();
         const Panorama::Local local =
             m_map.local_around(0.5 * (box.x0 + box.x1), 0.5 * (box.y0 + box.y1), m_piece);
