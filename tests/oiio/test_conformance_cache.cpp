@@ -3,6 +3,7 @@
 // conformance items 15 to 19, 28, 29, 31.
 #include <OpenImageIO/imagebufalgo.h>
 #include <OpenImageIO/imagecache.h>
+#include <OpenImageIO/strutil.h>
 #include <OpenImageIO/texture.h>
 
 #include <atomic>
@@ -138,7 +139,7 @@ TEST_F(CacheConformance, conformance_16_cycles) {
     // Each name is new, so that only depth ends it.
     std::string deep = "city.exr";
     for (int i = 0; i < 40; ++i)
-        deep = "n" + std::to_string(i) + ".pano?to=equirectangular&size=8&src=" + deep;
+        deep = OIIO::Strutil::fmt::format("n{}.pano?to=equirectangular&size=8&src={}", i, deep);
     EXPECT_THAT(open_error(deep), HasSubstr("nest too deep: allowed are 16"));
     // Two threads that enter a cycle from both ends must not wait for each other.
     std::vector<std::thread> threads;

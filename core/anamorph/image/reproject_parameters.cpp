@@ -9,7 +9,7 @@ namespace anamorph {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr double kMaxSize = 1 << 24;
+constexpr double kMaxSize = 1 << 24, kMaxTile = 4096;
 
 // In the order of their enumerations.
 const std::vector<std::string> kSpacings = {"edges", "centers"};
@@ -79,7 +79,7 @@ ParameterTable make_table() {
                   "256",
                   {},
                   0,
-                  kMaxSize,
+                  kMaxTile,
                   "tile size that a host is told; 0 for scanlines",
                   ""},
         Parameter{"mip", ParameterType::toggle, "", "0", {}, 0, 0, "1: the picture has MIP levels", ""},

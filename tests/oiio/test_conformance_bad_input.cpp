@@ -1,0 +1,219 @@
+// SPDX-License-Identifier: Apache-2.0
+// Wrong names, recipes and values, and none that crashes or hangs: conformance items 20, 21, 23, 24, 32.
+#include <filesystem>
+#include <random>
+
+#include "host.h"
+
+namespace anamorph {
+namespace {
+
+using namespace testing_oiio;
+using OIIO::ImageInput;
+using testing::AllOf;
+using testing::AnyOf;
+using testing::HasSubstr;
+using testing::Not;
+
+class BadInput : public InFolder {
+  protected:
+    void SetUp() override {
+        InFolder::SetUp();
+        write_panorama("city.exr", 64, 32);
+    }
+};
+
+/// One line that names the parameter, what was given and what is allowed.
+void expect_refused(const std::string& arguments, const std::string& parameter,
+                    const std::string& allowed = "allowed") {
+    SCOPED_TRACE(arguments);
+    const std::string error = open_error("city.exr.pano?" + arguments);
+    EXPECT_THAT(error, AllOf(HasSubstr(parameter), HasSubstr(allowed), Not(HasSubstr("\n"))));
+    EXPECT_LT(error.size(), 500u);
+}
+
+/// Opens and reads what opens; the values are such that either is right.
+void open_and_read(const std::string& name) {
+    auto input = ImageInput::open(name);
+    if (!input) {
+        EXPECT_NE(OIIO::geterror(), "") << name;
+        return;
+    }
+    const OIIO::ImageSpec spec = input->spec();
+    ASSERT_LE(spec.image_pixels(), 1u << 24) << name;
+    std::vector<float> pixels(static_cast<std::size_t>(spec.image_pixels()) *
+                              static_cast<std::size_t>(spec.nchannels));
+    EXPECT_TRUE(input->read_image(0, 0, 0, spec.nchannels, OIIO::TypeFloat, pixels.data()))
+        << name << ": " << input->geterror();
+}
+
+TEST_F(BadInput, conformance_20_sizes) {
+    for (const char* size :
+         {"0", "-1", "0x5", "5x0", "5x-5", "99999999999", "16777217", "1e3", "5x", "x", "4294967297x1"})
+        expect_refused(std::string("size=") + size, "size=");
+    // More than limits:imagesize_MB, which is 32 GB unless set.
+    for (const char* size : {"16777216", "16777216x16777216", "100000x100000"})
+        expect_refused(std::string("size=") + size, "limits:imagesize_MB");
+    for (const char* tile : {"-1", "99999", "64x", "1x1x1"})
+        expect_refused(std::string("tile=") + tile, "tile=");
+    int limit = 0;
+    ASSERT_TRUE(OIIO::getattribute("limits:imagesize_MB", limit));
+    OIIO::attribute("limits:imagesize_MB", 1);
+    expect_refused("size=1024", "allowed are at most 1 MB");
+    open_and_read("city.exr.pano?size=100");
+    OIIO::attribute("limits:imagesize_MB", limit);
+    expect_refused("size=16x16&to=cubemap", "size=16x16", "needs square faces, 1 across and 6 down");
+}
+
+TEST_F(BadInput, conformance_21_values) {
+    for (const char* key : {"yaw", "pitch", "roll", "fov", "srcfov", "tol"})
+        for (const char* value :
+             {"nan", "-nan", "inf", "-inf", "1e999", "", "abc", "1,5", "1 2", "0x1p3", "--1", "1e"})
+            expect_refused(std::string(key) + "=" + value, key);
+    for (const char* key : {"from", "to", "filter", "wrap", "pixels", "scheme", "output"})
+        for (const char* value : {"", "none", "BILINEAR ", "1"})
+            expect_refused(std::string(key) + "=" + value, key);
+    expect_refused("fov=0", "fov=0");
+    expect_refused("fov=-10", "fov=-10");
+    expect_refused("fov=180", "fov=180");
+    expect_refused("to=fisheye&fov=361", "fov=361");
+    expect_refused("to=cubemap&fov=80", "fov=80", "have 90 degrees");
+    expect_refused("tol=-0.1", "tol=-0.1");
+    expect_refused("mip=2", "mip=2");
+    expect_refused("yaw=1&yaw=2", "yaw=2: given twice");
+    expect_refused("size=8&RES=8", "size=8: given twice");
+    expect_refused("jaw=1", "there is no such parameter");
+    expect_refused("colorspace=nonsense", "colorspace=nonsense");
+    expect_refused("=3", "argument \"=3\"");
+    // These OpenImageIO refuses itself.
+    for (const char* arguments : {"flag", "yaw=1&&fov=3", "yaw=1&"})
+        open_error(std::string("city.exr.pano?") + arguments);
+    expect_refused("yaw=" + std::string(200000, '9'), "yaw=999");
+    expect_refused(std::string(200000, 'k') + "=1", "there is no such parameter");
+}
+
+TEST_F(BadInput, conformance_21_extreme_values) {
+    for (const char* arguments :
+         {"yaw=1e308", "yaw=-1e308&pitch=1e307", "fov=1e-300", "fov=1e-9", "fov=179.999999", "srcfov=1e-300",
+          "srcfov=1e-9&from=rectilinear", "tol=1e300", "tol=1e-300", "to=stereographic&fov=359.999999",
+          "to=mercator&fov=1e-12", "to=cylindrical&size=64x4096", "to=equirectangular&size=1x1",
+          "to=equirectangular&size=4096x1", "pixels=centers", "from=fisheye&srcfov=360&fov=170",
+          "filter=nearest&tol=1e9"})
+        open_and_read(std::string("city.exr.pano?") + arguments +
+                      (std::string(arguments).find("size") == std::string::npos ? "&size=48x32" : ""));
+    // The smallest sources.
+    write_panorama("one.exr", 1, 1, OIIO::TypeFloat, 1, 0);
+    write_panorama("two.exr", 2, 1, OIIO::TypeFloat, 1, 0);
+    for (const char* from : {"equirectangular", "rectilinear", "fisheye", "mercator"})
+        for (const char* filter : {"nearest", "bilinear", "bicubic", "antialias"})
+            for (const char* name : {"one.exr", "two.exr"})
+                open_and_read(std::string(name) + ".pano?size=33x17&pixels=edges&from=" + from +
+                              "&filter=" + filter);
+    open_and_read("two.exr.pano?size=33x17&pixels=centers");
+}
+
+TEST_F(BadInput, conformance_21_nan_and_infinity_in_pixels_stay_local) {
+    OIIO::ImageBuf image = panorama(256, 128);
+    const float bad[] = {std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity(),
+                         0.5f};
+    image.setpixel(128, 64, bad);
+    write_image(image, "bad.exr");
+    for (const char* filter : {"nearest", "bilinear", "bicubic", "antialias"}) {
+        SCOPED_TRACE(filter);
+        const std::vector<float> view =
+            read_floats(std::string("bad.exr.pano?size=256x256&filter=") + filter);
+        int touched = 0;
+        for (std::size_t i = 0; i < view.size(); i += 3)
+            touched += !std::isfinite(view[i]) || !std::isfinite(view[i + 1]);
+        // A source pixel is about 3 view pixels wide; the widest footprint is 4 source pixels.
+        EXPECT_GT(touched, 0);
+        EXPECT_LE(touched, 16 * 16 * 4);
+    }
+}
+
+TEST_F(BadInput, conformance_23_recipe_files) {
+    const auto expect_error = [](const std::string& text, const std::string& part) {
+        write_text("r.pano", text);
+        const std::string error = open_error("r.pano");
+        EXPECT_THAT(error, AllOf(HasSubstr("r.pano"), HasSubstr(part), Not(HasSubstr("\n"))));
+    };
+    const std::vector<float> expected = read_floats("city.exr.pano?size=20&yaw=3");
+    write_text("city.exr.pano", "");
+    EXPECT_EQ(read_floats("city.exr.pano?size=20&yaw=3"), expected);
+    std::filesystem::remove("city.exr.pano");
+    write_text("r.pano", "src=city.exr\r\nsize=20\r\n\r\n# yaw=5\r\nyaw=3\r\n");
+    EXPECT_EQ(read_floats("r.pano"), expected);
+    write_text("r.pano", "\xEF\xBB\xBFsrc=city.exr\nsize=20\nyaw=3");
+    EXPECT_EQ(read_floats("r.pano"), expected);
+    expect_error("src=city.exr\nyaw=3\nyaw=4\n", "yaw=4: given twice");
+    expect_error("src=city.exr\nyaw three\n", "line 2 is \"yaw three\"");
+    expect_error(std::string("src=city.exr\nyaw=\0 3\n", 21), "line 2 holds a control character");
+    expect_error("\x89PNG\r\n\x1a\n", "line");
+    expect_error("src=city.exr\nfov=1e999\n", "fov=1e999: allowed is a number from 0 to 360");
+
+    write_text("huge.pano", "src=city.exr\n");
+    std::filesystem::resize_file("huge.pano", 100 << 20);
+    EXPECT_THAT(open_error("huge.pano"), HasSubstr("104857600 bytes: allowed are at most 1048576"));
+    std::filesystem::create_directory("folder.pano");
+    EXPECT_THAT(open_error("folder.pano"), HasSubstr("is not a file"));
+
+    const std::string whole =
+        "\xEF\xBB\xBF# view\r\nsrc=city.exr\r\nsize=20x10\nto=rectilinear\nyaw=3.25e0\nmip=1\n";
+    for (std::size_t n = 0; n <= whole.size(); ++n) {
+        SCOPED_TRACE(n);
+        write_text("cut.pano", whole.substr(0, n));
+        auto input = ImageInput::open("cut.pano");
+        if (!input) {
+            EXPECT_THAT(OIIO::geterror(), Not(testing::IsEmpty()));
+        }
+    }
+}
+
+TEST_F(BadInput, conformance_24_foreign_names_are_left_alone) {
+    write_text("junk.foo", "this is no image");
+    write_text("junk.pano.foo", "src=city.exr");
+    for (const char* name : {"junk.foo", "missing.foo", "junk.pano.foo", "junk.foo?src=a.pano"}) {
+        SCOPED_TRACE(name);
+        const Ran ran = run(std::string("iinfo '") + name + "'");
+        EXPECT_EQ(ran.status, 1) << ran.text;
+        EXPECT_THAT(ran.text, Not(HasSubstr("anamorph")));
+    }
+    const auto input = ImageInput::create("anamorph");
+    OIIO::ImageSpec spec;
+    EXPECT_FALSE(input->open("city.exr", spec));
+    EXPECT_THAT(input->geterror(), HasSubstr("not a .pano"));
+}
+
+TEST_F(BadInput, conformance_32_random_names_and_recipes) {
+    const unsigned seed = 90210;
+    SCOPED_TRACE(seed);
+    std::mt19937 random(seed);
+    const auto pick = [&](const auto& list) { return std::string(list[random() % std::size(list)]); };
+    const char* const keys[] = {"src",    "from",       "to",     "fov",  "srcfov", "yaw",    "size",
+                                "tile",   "mip",        "filter", "wrap", "tol",    "pixels", "scheme",
+                                "output", "colorspace", "RES",    "x",    ""};
+    const char* const values[] = {"city.exr", "a.pano?yaw=1", "b.pano",  "cubemap", "latlong", "90",
+                                  "1e-5",     "-3",           "8x4",     "64",      "0",       "1",
+                                  "nearest",  "mirror",       "centers", "exact",   "stmap",   "linear",
+                                  "\xff",     "%20",          "",        "?",       "="};
+    int opened = 0;
+    for (int i = 0; i < 3000; ++i) {
+        std::string text;
+        const char separator = i % 2 ? '&' : '\n';
+        for (unsigned n = random() % 5; n > 0; --n) text += pick(keys) + "=" + pick(values) + separator;
+        if (!text.empty()) text.pop_back();
+        if (random() % 4 == 0 && !text.empty())
+            text[random() % text.size()] = static_cast<char>(random() % 256);
+        if (i % 2 == 0) write_text("r.pano", text);
+        const std::string name = i % 2 ? "city.exr.pano?" + text : "r.pano";
+        auto input = ImageInput::open(name);
+        opened += input ? 1 : 0;
+        if (!input) {
+            ASSERT_NE(OIIO::geterror(), "") << name;
+        }
+    }
+    EXPECT_GT(opened, 50);
+}
+
+}  // namespace
+}  // namespace anamorph
