@@ -44,7 +44,7 @@ run_fuzz_targets() {
     for target in build/fuzz/fuzz/*; do
         [ -x "$target" ] || continue
         "$target" -max_total_time="$fuzz_seconds" -timeout=10 -rss_limit_mb=2048 \
-            -artifact_prefix=build/fuzz/ -print_final_stats=1 || return 1
+            -dict=tests/fuzz/fuzz.dict -artifact_prefix=build/fuzz/ -print_final_stats=1 || return 1
     done
 }
 

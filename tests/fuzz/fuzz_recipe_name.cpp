@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: Apache-2.0
+// Recipe names of any bytes.
+#include <cstddef>
+#include <cstdint>
+#include <string>
+
+#include "anamorph/image/reproject_parameters.h"
+#include "expect_error.h"
+
+using namespace anamorph;
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+    const std::string text(reinterpret_cast<const char*>(data), size);
+    fuzz::expect_no_failure_but_error([&] {
+        const RecipeName name = parse_recipe_name(text);
+        fuzz::require(text.starts_with(name.base), "a name starts with its base");
+        for (const Assignment& a : name.assignments) fuzz::require(!a.key.empty(), "a key is never empty");
+        ParameterValues values(reproject_parameters());
+        values.assign(name.assignments);
+        read_reproject_request(values, {1024, 512, std::nullopt});
+    });
+    return 0;
+}
