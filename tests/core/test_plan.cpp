@@ -234,6 +234,26 @@ TEST(Plan, ReachedIsTheLargestBoundAndTheExactShare) {
     EXPECT_DOUBLE_EQ(reached.exact_fraction, double(exact) / (300 * 200));
 }
 
+TEST(Plan, FindsTheRegionsOfABox) {
+    for (const Projection projection :
+         {Projection::rectilinear, Projection::cubecross, Projection::cubemap}) {
+        const Panorama map(Chart(Projection::equirectangular, 512, 256), chart_of(projection, 4000, 0));
+        const Plan plan(map, {});
+        for (const Box& box : {Box{0, 0, 1, 1}, Box{500, 300, 1700, 1030}, Box{1023, 1023, 1025, 1025},
+                               Box{-5, -5, 0, 100}, Box{0, 0, 4000, 6000}}) {
+            std::vector<std::int64_t> expected;
+            for (std::int64_t r = 0; r < plan.regions(); ++r)
+                if (!intersection(plan.region_box(r), box).empty()) expected.push_back(r);
+            EXPECT_EQ(plan.regions_in(box), expected) << name_of(projection);
+        }
+    }
+    // A picture far too large to draw costs nothing to begin.
+    const Panorama huge(Chart(Projection::equirectangular, 512, 256),
+                        Chart(Projection::rectilinear, 1 << 24, 1 << 24, 90));
+    EXPECT_EQ(Plan(huge, {}).regions(), std::int64_t{1} << 30);
+    EXPECT_EQ(Plan(huge, {}).regions_in({1 << 23, 1 << 23, (1 << 23) + 1, (1 << 23) + 1}).size(), 1u);
+}
+
 TEST(Plan, RefusesATolerance) {
     const Panorama map(Chart(Projection::equirectangular, 512, 256),
                        Chart(Projection::rectilinear, 100, 70, 90));

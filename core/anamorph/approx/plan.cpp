@@ -354,14 +354,37 @@ Plan::Plan(const Panorama& map, const PlanOptions& options)
         std::snprintf(text, sizeof text, "%g", options.tol);
         throw Error("tol", text, "allowed is 0 (exact) or a finite number of source pixels above it");
     }
-    const auto& pieces = map.target().pieces();
-    for (std::size_t i = 0; i < pieces.size(); ++i) {
-        const Box& box = pieces[i].box;
-        for (int y = box.y0; y < box.y1; y += kRegion)
-            for (int x = box.x0; x < box.x1; x += kRegion)
-                m_regions.push_back({{x, y, std::min(x + kRegion, box.x1), std::min(y + kRegion, box.y1)},
-                                     static_cast<int>(i)});
+    for (const Piece& piece : map.target().pieces()) {
+        const Grid grid{m_regions, (piece.box.width() + kRegion - 1) / kRegion,
+                        (piece.box.height() + kRegion - 1) / kRegion};
+        m_grids.push_back(grid);
+        m_regions += std::int64_t{grid.columns} * grid.rows;
     }
+}
+
+Plan::Place Plan::place_of(std::int64_t region) const {
+    std::size_t piece = m_grids.size() - 1;
+    while (m_grids[piece].first > region) --piece;
+    const Grid& grid = m_grids[piece];
+    const Box& box = m_map.target().pieces()[piece].box;
+    const int x = box.x0 + static_cast<int>((region - grid.first) % grid.columns) * kRegion;
+    const int y = box.y0 + static_cast<int>((region - grid.first) / grid.columns) * kRegion;
+    return {intersection({x, y, x + kRegion, y + kRegion}, box), static_cast<int>(piece)};
+}
+
+std::vector<std::int64_t> Plan::regions_in(const Box& box) const {
+    std::vector<std::int64_t> found;
+    for (std::size_t piece = 0; piece < m_grids.size(); ++piece) {
+        const Grid& grid = m_grids[piece];
+        const Box& whole = m_map.target().pieces()[piece].box;
+        const Box part = intersection(box, whole);
+        if (part.empty()) continue;
+        for (int row = (part.y0 - whole.y0) / kRegion; row <= (part.y1 - 1 - whole.y0) / kRegion; ++row)
+            for (int column = (part.x0 - whole.x0) / kRegion; column <= (part.x1 - 1 - whole.x0) / kRegion;
+                 ++column)
+                found.push_back(grid.first + std::int64_t{row} * grid.columns + column);
+    }
+    return found;
 }
 
 std::shared_ptr<const std::vector<Block>> Plan::blocks(std::int64_t region) const {
@@ -370,13 +393,13 @@ std::shared_ptr<const std::vector<Block>> Plan::blocks(std::int64_t region) cons
         const auto found = m_cache->regions.find(region);
         if (found != m_cache->regions.end()) return found->second;
     }
-    const Region& r = m_regions[static_cast<std::size_t>(region)];
+    const Place place = place_of(region);
     auto blocks = std::make_shared<std::vector<Block>>();
-    Planner planner(m_map, m_options, r.piece, *blocks);
+    Planner planner(m_map, m_options, place.piece, *blocks);
     if (m_options.scheme == Scheme::exact || m_options.tol == 0)
-        planner.exact(r.box);
+        planner.exact(place.box);
     else
-        planner.settle(r.box);
+        planner.settle(place.box);
     const std::lock_guard lock(m_cache->mutex);
     if (m_cache->regions.size() >= Cache::kMost) m_cache->regions.clear();
     return m_cache->regions.try_emplace(region, std::move(blocks)).first->second;
@@ -387,23 +410,22 @@ Reached Plan::reached(const ParallelFor& parallel_for) const {
         const std::lock_guard lock(m_cache->mutex);
         if (m_cache->reached) return *m_cache->reached;
     }
-    std::vector<double> bounds(m_regions.size());
-    std::vector<std::int64_t> exact(m_regions.size());
-    parallel_for(regions(), [&](std::int64_t i) {
-        const auto k = static_cast<std::size_t>(i);
-        for (const Block& b : *blocks(i)) {
-            bounds[k] = std::max(bounds[k], b.bound);
-            if (b.kind == Block::Kind::exact) exact[k] += std::int64_t{b.box.width()} * b.box.height();
-        }
-    });
     Reached reached;
-    std::int64_t pixels = 0;
-    for (std::size_t k = 0; k < m_regions.size(); ++k) {
-        reached.max_error = std::max(reached.max_error, bounds[k]);
-        pixels += exact[k];
-    }
+    std::int64_t exact = 0;
+    std::mutex mutex;
+    parallel_for(regions(), [&](std::int64_t region) {
+        double bound = 0;
+        std::int64_t pixels = 0;
+        for (const Block& b : *blocks(region)) {
+            bound = std::max(bound, b.bound);
+            if (b.kind == Block::Kind::exact) pixels += std::int64_t{b.box.width()} * b.box.height();
+        }
+        const std::lock_guard lock(mutex);
+        reached.max_error = std::max(reached.max_error, bound);
+        exact += pixels;
+    });
     reached.exact_fraction =
-        static_cast<double>(pixels) / (double(m_map.target().width()) * m_map.target().height());
+        static_cast<double>(exact) / (double(m_map.target().width()) * m_map.target().height());
     const std::lock_guard lock(m_cache->mutex);
     m_cache->reached = reached;
     return reached;

@@ -67,10 +67,10 @@ class Plan {
 
     /// The picture is planned region by region: at most kRegion pixels square, anchored to each piece.
     static constexpr int kRegion = 512;
-    std::int64_t regions() const { return static_cast<std::int64_t>(m_regions.size()); }
-    const Box& region_box(std::int64_t region) const {
-        return m_regions[static_cast<std::size_t>(region)].box;
-    }
+    std::int64_t regions() const { return m_regions; }
+    Box region_box(std::int64_t region) const { return place_of(region).box; }
+    /// The regions that meet a box of the picture.
+    std::vector<std::int64_t> regions_in(const Box& box) const;
 
     /// The blocks of a region, which cover its box without overlap. Computed when first asked for and kept
     /// for a while; thread safe.
@@ -80,15 +80,23 @@ class Plan {
     Reached reached(const ParallelFor& parallel_for) const;
 
   private:
-    struct Region {
+    struct Place {
         Box box;
         int piece;
     };
+    /// Regions of one piece, numbered row by row.
+    struct Grid {
+        std::int64_t first;
+        int columns, rows;
+    };
     struct Cache;
+
+    Place place_of(std::int64_t region) const;
 
     Panorama m_map;
     PlanOptions m_options;
-    std::vector<Region> m_regions;
+    std::vector<Grid> m_grids;
+    std::int64_t m_regions = 0;
     std::shared_ptr<Cache> m_cache;
 };
 

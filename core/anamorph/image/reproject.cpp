@@ -463,9 +463,8 @@ bool Reprojection::draw(const Source* source, const Box& box, const ImageView& p
         int y0, y1;
     };
     std::vector<Unit> units;
-    for (std::int64_t r = 0; r < state.plan.regions(); ++r) {
+    for (const std::int64_t r : state.plan.regions_in(box)) {
         const Box region = state.plan.region_box(r), part = intersection(region, box);
-        if (part.empty()) continue;
         for (int y = region.y0; y < region.y1; y += kStrip)
             if (y < part.y1 && y + kStrip > part.y0) units.push_back({r, y, y + kStrip});
     }
