@@ -26,6 +26,15 @@ std::unique_ptr<Source> source_of(const ImageBuf& src) {
     return std::make_unique<CacheSource>(src.imagecache(), src.name(), src.subimage(), src.miplevel());
 }
 
+void check_readable(const ImageBuf& src) {
+    // Asking for the pixels reads a file that was only named so far.
+    const bool local = src.localpixels() != nullptr;
+    if (!src.initialized() && src.name().empty()) throw Error("the source image is not initialised");
+    if (src.initialized()) check_flat(src.spec(), src.name());
+    if (!src.initialized() || (!local && src.storage() != ImageBuf::IMAGECACHE))
+        throw Error("the source image cannot be read: " + src.geterror());
+}
+
 /// Options of the call, and the size of an initialised dst where no other is asked for.
 ParameterValues values_of(const OIIO::ParamValueList& options, const ImageBuf& dst) {
     ParameterValues values(reproject_parameters());
@@ -112,11 +121,7 @@ bool reproject(ImageBuf& dst, const ImageBuf& src, const OIIO::ParamValueList& o
                int nthreads) {
     if (&dst == &src) return reproject(dst, ImageBuf(src), options, roi, nthreads);
     try {
-        if (!src.initialized()) throw Error("the source image is not initialised");
-        // Asking for the pixels reads a file that was only named so far.
-        if (!src.localpixels() && src.storage() != ImageBuf::IMAGECACHE)
-            throw Error("the source image cannot be read: " + src.geterror());
-        check_flat(src.spec(), src.name());
+        check_readable(src);
         const ParameterValues values = values_of(options, dst);
         const ReprojectRequest request = read_reproject_request(values, facts_of(src.spec()));
         check_size(request.target, src.nchannels(), src.spec().format);

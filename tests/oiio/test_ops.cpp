@@ -1,0 +1,292 @@
+// SPDX-License-Identifier: Apache-2.0
+// anamorph::reproject with the contract of ImageBufAlgo, and its agreement with the recipe.
+#include "anamorph/oiio_ops.h"
+
+#include <OpenImageIO/color.h>
+#include <OpenImageIO/imagebufalgo.h>
+#include <OpenImageIO/imagecache.h>
+
+#include "anamorph/parallel.h"
+#include "host.h"
+
+namespace anamorph {
+namespace {
+
+using namespace testing_oiio;
+using OIIO::ImageBuf;
+using OIIO::ImageSpec;
+using OIIO::ParamValueList;
+using OIIO::ROI;
+using OIIO::TypeDesc;
+using testing::AllOf;
+using testing::HasSubstr;
+using testing::Not;
+
+class Ops : public InFolder {};
+
+ParamValueList options(std::initializer_list<std::pair<const char*, const char*>> list) {
+    ParamValueList out;
+    for (const auto& [key, value] : list) out.attribute(key, value);
+    return out;
+}
+
+std::vector<std::byte> bytes(const ImageBuf& image) {
+    std::vector<std::byte> out(image.spec().image_bytes());
+    EXPECT_TRUE(image.get_pixels(image.roi(), image.spec().format, out.data())) << image.geterror();
+    return out;
+}
+
+TEST_F(Ops, ReturnsWhatItFills) {
+    const ImageBuf source = panorama(256, 128);
+    const ParamValueList o = options({{"yaw", "30"}, {"size", "100x80"}});
+    ImageBuf filled;
+    ASSERT_TRUE(reproject(filled, source, o)) << filled.geterror();
+    EXPECT_EQ(filled.spec().width, 100);
+    EXPECT_EQ(filled.spec().height, 80);
+    EXPECT_EQ(filled.spec().format, TypeDesc::FLOAT);
+    const ImageBuf returned = reproject(source, o);
+    ASSERT_FALSE(returned.has_error()) << returned.geterror();
+    EXPECT_EQ(bytes(returned), bytes(filled));
+    // Options as numbers.
+    ParamValueList numbers;
+    numbers.attribute("yaw", 30.0f);
+    const int size[] = {100, 80};
+    numbers.attribute("size", TypeDesc(TypeDesc::INT, 2), size);
+    EXPECT_EQ(bytes(reproject(source, numbers)), bytes(filled));
+}
+
+TEST_F(Ops, AgreesWithTheRecipe) {
+    for (const TypeDesc type : {TypeDesc::UINT8, TypeDesc::UINT16, TypeDesc::HALF, TypeDesc::FLOAT})
+        for (const int channels : {1, 3, 4}) {
+            SCOPED_TRACE(std::string(type.c_str()) + " " + std::to_string(channels));
+            const bool integer = type == TypeDesc::UINT8 || type == TypeDesc::UINT16;
+            const std::string name = integer ? "s.tif" : "s.exr";
+            write_panorama(name, 256, 128, type, channels);
+            ImageBuf source(name);
+            ASSERT_TRUE(source.read(0, 0, true));
+            ASSERT_EQ(source.spec().format, type);
+            const ImageBuf made =
+                reproject(source, options({{"pitch", "85"}, {"roll", "10"}, {"size", "90x70"}}));
+            EXPECT_EQ(bytes(made), read_pixels(name + ".pano?pitch=85&roll=10&size=90x70").bytes);
+        }
+}
+
+TEST_F(Ops, ReadsAnImageBehindACache) {
+    write_panorama("s.exr", 256, 128);
+    ImageBuf local("s.exr"), cached("s.exr", 0, 0, OIIO::ImageCache::create(true));
+    ASSERT_TRUE(local.read(0, 0, true));
+    ASSERT_TRUE(cached.read(0, 0, false));
+    ASSERT_EQ(cached.storage(), ImageBuf::IMAGECACHE);
+    const ParamValueList o = options({{"yaw", "175"}, {"size", "90x70"}});
+    EXPECT_EQ(bytes(reproject(cached, o)), bytes(reproject(local, o)));
+    // One that was only named so far.
+    EXPECT_EQ(bytes(reproject(ImageBuf("s.exr"), o)), bytes(reproject(local, o)));
+    const ImageBuf missing = reproject(ImageBuf("none.exr"), o);
+    EXPECT_TRUE(missing.has_error());
+    EXPECT_THAT(missing.geterror(), HasSubstr("none.exr"));
+}
+
+TEST_F(Ops, AnInitialisedImageKeepsItsSpec) {
+    const ImageBuf source = panorama(256, 128);
+    const ImageBuf whole = reproject(source, options({{"size", "100x80"}}));
+    ImageSpec spec(100, 80, 3, TypeDesc::UINT16);
+    spec.attribute("mine", 5);
+    ImageBuf dst(spec);
+    const ROI roi(20, 70, 10, 60, 0, 1, 1, 2);
+    const float grey[] = {0.25f, 0.25f, 0.25f};
+    OIIO::ImageBufAlgo::fill(dst, grey);
+    // Without a size, dst's.
+    ASSERT_TRUE(reproject(dst, source, {}, roi)) << dst.geterror();
+    EXPECT_EQ(dst.spec().format, TypeDesc::UINT16);
+    EXPECT_EQ(dst.spec().get_int_attribute("mine"), 5);
+    EXPECT_LE(dst.spec().get_float_attribute("anamorph:max_error", 9), 0.01f);
+    for (int y = 0; y < 80; ++y)
+        for (int x = 0; x < 100; ++x)
+            for (int c = 0; c < 3; ++c) {
+                const bool inside = roi.contains(x, y, 0, c);
+                ASSERT_NEAR(dst.getchannel(x, y, 0, c), inside ? whole.getchannel(x, y, 0, c) : 0.25f, 1e-4)
+                    << x << " " << y << " " << c;
+            }
+    // A roi of a new image is its data window.
+    ImageBuf part;
+    ASSERT_TRUE(reproject(part, source, options({{"size", "100x80"}}), ROI(20, 70, 10, 60)));
+    EXPECT_EQ(part.spec().x, 20);
+    EXPECT_EQ(part.spec().width, 50);
+    EXPECT_EQ(part.spec().full_width, 100);
+    for (int y = 10; y < 60; ++y)
+        for (int x = 20; x < 70; ++x) ASSERT_EQ(part.getchannel(x, y, 0, 2), whole.getchannel(x, y, 0, 2));
+    // More channels than the picture has: the others stay.
+    ImageBuf four(ImageSpec(100, 80, 4, TypeDesc::FLOAT));
+    const float white[] = {1, 1, 1, 0.75f};
+    OIIO::ImageBufAlgo::fill(four, white);
+    ASSERT_TRUE(reproject(four, source));
+    EXPECT_EQ(four.getchannel(50, 40, 0, 1), whole.getchannel(50, 40, 0, 1));
+    EXPECT_EQ(four.getchannel(50, 40, 0, 3), 0.75f);
+    // In place.
+    ImageBuf itself = panorama(256, 128);
+    ASSERT_TRUE(reproject(itself, itself, options({{"to", "equirectangular"}, {"yaw", "90"}})));
+    EXPECT_NEAR(itself.getchannel(10, 64, 0, 0), source.getchannel(74, 64, 0, 0), 1e-4);
+}
+
+TEST_F(Ops, ThreadsDoNotChangeAnyBit) {
+    const ImageBuf source = panorama(512, 256);
+    const ParamValueList o = options({{"to", "cubemap"}, {"yaw", "33"}, {"size", "200"}});
+    const std::vector<std::byte> one = bytes(reproject(source, o, {}, 1));
+    for (const int threads : {0, 2, 3, 7})
+        EXPECT_EQ(bytes(reproject(source, o, {}, threads)), one) << threads;
+}
+
+TEST_F(Ops, OtherPixelTypesGoThroughFloat) {
+    for (const TypeDesc type : {TypeDesc::INT16, TypeDesc::UINT32, TypeDesc::DOUBLE}) {
+        const ImageBuf source = panorama(256, 128, type);
+        ImageBuf dst(ImageSpec(64, 64, 3, type));
+        ASSERT_TRUE(reproject(dst, source)) << dst.geterror();
+        const ImageBuf expected = reproject(panorama(256, 128), options({{"size", "64x64"}}));
+        const auto result = OIIO::ImageBufAlgo::compare(dst, expected, 2e-4f, 2e-4f);
+        EXPECT_EQ(result.nfail, 0u) << type.c_str() << " " << result.maxerror;
+    }
+}
+
+TEST_F(Ops, ErrorsAreOneLineOfTheDestination) {
+    const ImageBuf source = panorama(256, 128);
+    const auto refuses = [&](const ParamValueList& o, const char* part, const ImageBuf& from) {
+        ImageBuf dst;
+        EXPECT_FALSE(reproject(dst, from, o));
+        const std::string error = dst.geterror();
+        EXPECT_THAT(error, AllOf(HasSubstr("reproject: "), HasSubstr(part), Not(HasSubstr("\n"))));
+        EXPECT_TRUE(reproject(from, o).has_error());
+    };
+    refuses(options({{"fov", "200"}}), "fov=200", source);
+    refuses(options({{"jaw", "2"}}), "jaw=2: there is no such parameter", source);
+    refuses(options({{"src", "x.exr"}}), "src=x.exr: allowed in recipes only", source);
+    refuses(options({{"tile", "64"}}), "tile=64", source);
+    refuses(options({{"size", "16777216"}}), "limits:imagesize_MB", source);
+    refuses(options({}), "not initialised", ImageBuf());
+    refuses(options({}), "from is not given", ImageBuf(ImageSpec(100, 70, 3, TypeDesc::FLOAT)));
+    refuses(options({}), "volume", ImageBuf([] {
+                ImageSpec spec(8, 4, 1, TypeDesc::FLOAT);
+                spec.depth = spec.full_depth = 3;
+                return spec;
+            }()));
+    ImageBuf deep([] {
+        ImageSpec spec(8, 4, 1, TypeDesc::FLOAT);
+        spec.deep = true;
+        return spec;
+    }());
+    refuses(options({}), "deep", deep);
+}
+
+TEST_F(Ops, MetadataThatHoldsIsKept) {
+    ImageBuf source = panorama(256, 128);
+    source.specmod().attribute("Artist", "somebody");
+    source.specmod().attribute("GPano:ProjectionType", "equirectangular");
+    source.specmod().attribute("textureformat", "LatLong Environment");
+    source.specmod().attribute("oiio:ColorSpace", "sRGB");
+    source.specmod().attribute("Orientation", 6);
+    const ImageSpec spec = reproject(source, options({{"size", "64"}, {"tol", "0.02"}})).spec();
+    EXPECT_EQ(spec.get_string_attribute("Artist"), "somebody");
+    EXPECT_EQ(spec.get_string_attribute("oiio:ColorSpace"), "sRGB");
+    EXPECT_FALSE(spec.find_attribute("GPano:ProjectionType"));
+    EXPECT_FALSE(spec.find_attribute("textureformat"));
+    EXPECT_FALSE(spec.find_attribute("Orientation"));
+    EXPECT_FLOAT_EQ(spec.get_float_attribute("anamorph:tol"), 0.02f);
+    EXPECT_LE(spec.get_float_attribute("anamorph:max_error", 9), 0.02f);
+    EXPECT_GE(spec.get_float_attribute("anamorph:exact_fraction", -1), 0.0f);
+    // What an image says of itself.
+    ImageBuf square = panorama(128, 128);
+    square.specmod().attribute("GPano:ProjectionType", "fisheye");
+    EXPECT_FALSE(reproject(square, options({{"size", "8"}})).has_error());
+    square.specmod().attribute("GPano:ProjectionType", "unknown");
+    EXPECT_TRUE(reproject(square, options({{"size", "8"}})).has_error());
+    // Maps have their own channels and no colour.
+    const ImageSpec map = reproject(source, options({{"size", "64"}, {"output", "stmap"}})).spec();
+    EXPECT_EQ(map.channelnames, (std::vector<std::string>{"R", "G"}));
+    EXPECT_FALSE(map.find_attribute("oiio:ColorSpace"));
+    EXPECT_EQ(reproject(source, options({{"size", "64"}, {"output", "bound"}})).nchannels(), 1);
+}
+
+TEST_F(Ops, ACroppedPanoramaStandsWhereGPanoSays) {
+    const ImageBuf whole = panorama(256, 128);
+    ImageBuf part = OIIO::ImageBufAlgo::cut(whole, ROI(60, 190, 30, 90));
+    for (const auto& [key, value] : {std::pair{"FullPanoWidthPixels", 256},
+                                     {"FullPanoHeightPixels", 128},
+                                     {"CroppedAreaImageWidthPixels", 130},
+                                     {"CroppedAreaImageHeightPixels", 60},
+                                     {"CroppedAreaLeftPixels", 60},
+                                     {"CroppedAreaTopPixels", 30}})
+        part.specmod().attribute(std::string("GPano:") + key, value);
+    const ParamValueList o = options({{"size", "64"}, {"fov", "30"}, {"yaw", "10"}});
+    EXPECT_EQ(bytes(reproject(part, o)), bytes(reproject(whole, o)));
+}
+
+TEST_F(Ops, UnassociatedAlphaIsMultipliedForFiltering) {
+    // Red where there is cover, green where there is none: no green may come through.
+    ImageSpec spec(256, 128, 4, TypeDesc::FLOAT);
+    spec.alpha_channel = 3;
+    spec.attribute("oiio:UnassociatedAlpha", 1);
+    ImageBuf source(spec);
+    for (int y = 0; y < 128; ++y)
+        for (int x = 0; x < 256; ++x) {
+            const bool cover = (x / 3 + y / 3) % 2 == 0;
+            const float pixel[] = {cover ? 1.0f : 0.0f, cover ? 0.0f : 1.0f, 0, cover ? 1.0f : 0.0f};
+            source.setpixel(x, y, pixel);
+        }
+    for (const char* size : {"300x300", "20x20"}) {
+        const ImageBuf view = reproject(source, options({{"size", size}, {"yaw", "20"}}));
+        for (ImageBuf::ConstIterator<float> p(view); !p.done(); ++p) {
+            ASSERT_NEAR(p[1] * p[3], 0, 1e-5);
+            if (p[3] > 1e-3f) {
+                ASSERT_NEAR(p[0], 1, 1e-3);
+            }
+        }
+    }
+}
+
+TEST_F(Ops, FiltersInTheColorSpaceAskedFor) {
+    ImageBuf source = panorama(256, 128);
+    source.specmod().attribute("oiio:ColorSpace", "sRGB");
+    const ParamValueList plain = options({{"size", "20x20"}}),
+                         linear = options({{"size", "20x20"}, {"colorspace", "scene_linear"}});
+    const ImageBuf made = reproject(source, linear);
+    ASSERT_FALSE(made.has_error()) << made.geterror();
+    EXPECT_EQ(made.spec().get_string_attribute("oiio:ColorSpace"), "sRGB");
+    // The long way round: convert the whole image, draw, convert back.
+    const ImageBuf converted = OIIO::ImageBufAlgo::colorconvert(source, "sRGB", "linear");
+    const ImageBuf expected = OIIO::ImageBufAlgo::colorconvert(reproject(converted, plain), "linear", "sRGB");
+    const auto same = OIIO::ImageBufAlgo::compare(made, expected, 1e-4f, 1e-4f);
+    EXPECT_EQ(same.nfail, 0u) << same.maxerror;
+    const auto different = OIIO::ImageBufAlgo::compare(made, reproject(source, plain), 1e-3f, 1e-3f);
+    EXPECT_GT(different.nfail, 40u) << "filtering in another space makes a difference where the map minifies";
+    // The recipe agrees.
+    source.specmod().attribute("oiio:ColorSpace", "sRGB");
+    write_image(source, "s.tif");
+    write_image(reproject(ImageBuf("s.tif"), linear), "view.tif");
+    EXPECT_EQ(read_pixels("view.tif").bytes,
+              read_pixels("s.tif.pano?size=20x20&colorspace=scene_linear").bytes);
+    // An image that does not say its own.
+    ImageBuf untagged = panorama(256, 128);
+    untagged.specmod().erase_attribute("oiio:ColorSpace");
+    EXPECT_THAT(reproject(untagged, linear).geterror(),
+                HasSubstr("colorspace=scene_linear: the source does not say"));
+}
+
+TEST(ParallelFor, RunsEachIndexOnceAndNests) {
+    OIIO::thread_pool pool(3);
+    const ParallelFor loop = parallel_for_on(pool, 4);
+    for (const int count : {0, 1, 2, 100, 5000}) {
+        std::vector<std::atomic<int>> seen(static_cast<std::size_t>(count));
+        loop(count, [&](std::int64_t i) { ++seen[static_cast<std::size_t>(i)]; });
+        for (const auto& n : seen) ASSERT_EQ(n, 1);
+    }
+    std::atomic<int> sum{0};
+    loop(20, [&](std::int64_t) { loop(20, [&](std::int64_t) { loop(5, [&](std::int64_t) { ++sum; }); }); });
+    EXPECT_EQ(sum, 2000);
+    EXPECT_THROW(loop(100,
+                      [](std::int64_t i) {
+                          if (i == 50) throw Error("stop");
+                      }),
+                 Error);
+}
+
+}  // namespace
+}  // namespace anamorph
