@@ -64,7 +64,7 @@ class Canvas {
         const float scale = scale_from(one);
         if (m_view.packed()) return simd::store_row(values, count * channels, scale, m_view.type, to);
         for (int i = 0; i < count; ++i)
-            simd::store_row(values + i * channels, channels, scale, m_view.type,
+            simd::store_row(values + std::ptrdiff_t{i} * channels, channels, scale, m_view.type,
                             to + i * m_view.pixel_stride);
     }
 
@@ -79,7 +79,7 @@ class Painter {
     Painter(const Plan& plan, const ReprojectOptions& options, const Border& border, const Source* source,
             const Canvas& canvas)
         : m_map(plan.map()), m_options(options), m_canvas(canvas), m_source(source) {
-        m_values.resize(static_cast<std::size_t>(kMaxRow * canvas.channels() + 16));
+        m_values.resize(static_cast<std::size_t>(kMaxRow) * static_cast<std::size_t>(canvas.channels()) + 16);
         if (!source) return;
         m_reader.emplace(*source, border);
         m_points.emplace(*source, border);
@@ -136,7 +136,7 @@ class Painter {
         bool together = true;
         for (int j = block.box.y0; j < block.box.y1; ++j)
             for (int i = block.box.x0; i < block.box.x1; ++i) {
-                Exact& e = m_exact[static_cast<std::size_t>((j - block.box.y0) * w + i - block.box.x0)];
+                Exact& e = m_exact.data()[(j - block.box.y0) * w + i - block.box.x0];
                 e.seen = m_map.exact(i + 0.5, j + 0.5, block.piece, e.at, e.piece);
                 together = together && e.seen && e.piece == m_exact[0].piece;
                 x0 = std::min(x0, e.at.x);
@@ -163,8 +163,7 @@ class Painter {
         alignas(64) float fx[simd::kRowRoom], fy[simd::kRowRoom];
         alignas(64) std::int32_t ix[simd::kRowRoom], iy[simd::kRowRoom];
         for (int j = box.y0; j < box.y1; ++j) {
-            const Exact* row =
-                &m_exact[static_cast<std::size_t>((j - block.box.y0) * w + box.x0 - block.box.x0)];
+            const Exact* row = m_exact.data() + (j - block.box.y0) * w + box.x0 - block.box.x0;
             for (int i = 0; i < box.width(); ++i) {
                 // Whole texels apart: a fraction loses nothing in float.
                 const double x = row[i].at.x * f.scale_x, y = row[i].at.y * f.scale_y;
@@ -184,7 +183,7 @@ class Painter {
         bool ok = true;
         for (int j = box.y0; j < box.y1; ++j) {
             for (int i = box.x0; i < box.x1; ++i) {
-                float* pixel = &m_values[static_cast<std::size_t>((i - box.x0) * channels)];
+                float* pixel = m_values.data() + (i - box.x0) * channels;
                 Point<double> p{};
                 int piece = 0;
                 if (!m_map.exact(i + 0.5, j + 0.5, block.piece, p, piece))
@@ -213,7 +212,7 @@ class Painter {
     void finish_row(int x, int y, int count, float one = 1) {
         const int alpha = m_source->unassociated_alpha(), channels = m_canvas.channels();
         for (int i = 0; alpha >= 0 && i < count; ++i)
-            unassociate_alpha(&m_values[static_cast<std::size_t>(i * channels)], channels, alpha);
+            unassociate_alpha(m_values.data() + i * channels, channels, alpha);
         m_canvas.store(x, y, count, m_values.data(), one);
     }
 
@@ -370,16 +369,13 @@ class Painter {
     void put_map(int i, bool seen, const Point<double>& exact, const Point<double>& used) {
         const Chart& source = m_map.source();
         if (m_options.output == Output::stmap) {
-            m_values[static_cast<std::size_t>(2 * i)] =
-                seen ? static_cast<float>(used.x / source.width()) : -1;
-            m_values[static_cast<std::size_t>(2 * i + 1)] =
-                seen ? static_cast<float>(used.y / source.height()) : -1;
+            m_values.data()[2 * i] = seen ? static_cast<float>(used.x / source.width()) : -1;
+            m_values.data()[2 * i + 1] = seen ? static_cast<float>(used.y / source.height()) : -1;
             return;
         }
         double dx = seen ? used.x - exact.x : 0;
         if (source.closed()) dx -= std::round(dx / source.period()) * source.period();
-        m_values[static_cast<std::size_t>(i)] =
-            static_cast<float>(std::hypot(dx, seen ? used.y - exact.y : 0));
+        m_values.data()[i] = static_cast<float>(std::hypot(dx, seen ? used.y - exact.y : 0));
     }
 
     struct Exact {

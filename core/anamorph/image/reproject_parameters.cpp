@@ -175,7 +175,8 @@ ReprojectRequest read_reproject_request(const ParameterValues& values, const Sou
     const double fov = field_of_view(values, "fov", to);
     // Reports a field of view that the lens cannot have before a size is made of it.
     const int probe = 12;
-    Chart(to, probe, is_cube(to) ? static_cast<int>(probe * natural_aspect(to, fov)) : probe, fov);
+    static_cast<void>(
+        Chart(to, probe, is_cube(to) ? static_cast<int>(probe * natural_aspect(to, fov)) : probe, fov));
 
     Extent size;
     if (!values.given("size")) {

@@ -12,8 +12,7 @@ namespace anamorph {
 /// uint8 and uint16 stand for 0..1 (normalised), half is IEEE binary16.
 enum class PixelType : std::uint8_t { uint8, uint16, half, float32 };
 
-constexpr int size_of(PixelType type)
-{
+constexpr int size_of(PixelType type) {
     return type == PixelType::uint8 ? 1 : type == PixelType::float32 ? 4 : 2;
 }
 
@@ -28,7 +27,7 @@ struct BasicView {
 
     Byte* at(std::ptrdiff_t x, std::ptrdiff_t y) const { return data + y * row_stride + x * pixel_stride; }
     /// Do pixels of a row follow each other without a gap?
-    bool packed() const { return pixel_stride == channels * size_of(type); }
+    bool packed() const { return pixel_stride == std::ptrdiff_t{channels} * size_of(type); }
 };
 
 using ImageView = BasicView<std::byte>;
@@ -36,8 +35,7 @@ using ConstImageView = BasicView<const std::byte>;
 
 /// A packed view of `data`.
 template <class Byte>
-BasicView<Byte> packed_view(Byte* data, PixelType type, int width, int height, int channels)
-{
+BasicView<Byte> packed_view(Byte* data, PixelType type, int width, int height, int channels) {
     const std::ptrdiff_t pixel = std::ptrdiff_t{channels} * size_of(type);
     return {data, type, width, height, channels, pixel, pixel * width};
 }

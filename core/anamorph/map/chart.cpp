@@ -90,6 +90,7 @@ std::vector<Piece> cube_pieces(Projection projection, int n) {
     else
         placed = {{kUp, 1, 0}, {kLeft, 0, 1}, {kFront, 1, 1}, {kRight, 2, 1}, {kBack, 3, 1}, {kDown, 1, 2}};
     std::vector<Piece> pieces;
+    pieces.reserve(placed.size());
     for (const Placed& p : placed)
         pieces.push_back({{p.column * n, p.row * n, (p.column + 1) * n, (p.row + 1) * n}, p.axes});
     return pieces;
