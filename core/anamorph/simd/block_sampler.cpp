@@ -302,6 +302,13 @@ void StoreFloats(const float* HWY_RESTRICT values, int count, float scale, float
     for (; i < count; ++i) to[i] = values[i] * scale;
 }
 
+/// `values` where a whole vector can be read there, else a copy of the rest in `padded`.
+const float* whole_vector(const float* values, int rest, float* padded) {
+    if (rest >= static_cast<int>(kLanes)) return values;
+    std::memcpy(padded, values, sizeof(float) * static_cast<size_t>(rest));
+    return padded;
+}
+
 /// Float to 8 or 16 bits: rounded to nearest, clamped, NaN to 0.
 template <class T>
 void StoreIntegers(const float* HWY_RESTRICT values, int count, float scale, T* HWY_RESTRICT to) {
@@ -310,8 +317,9 @@ void StoreIntegers(const float* HWY_RESTRICT values, int count, float scale, T* 
     const auto v = hn::Set(d, scale), zero = hn::Zero(d),
                most = hn::Set(d, static_cast<float>(hwy::LimitsMax<T>()));
     HWY_ALIGN T tail[kLanes];
+    HWY_ALIGN float padded[kLanes] = {};
     for (int i = 0; i < count; i += static_cast<int>(kLanes)) {
-        auto x = hn::Mul(v, hn::LoadU(d, values + i));
+        auto x = hn::Mul(v, hn::LoadU(d, whole_vector(values + i, count - i, padded)));
         x = hn::Min(hn::IfThenElse(hn::Gt(x, zero), x, zero), most);
         const auto n = hn::DemoteTo(dt, hn::NearestInt(x));
         const int rest = count - i;
@@ -329,8 +337,10 @@ void StoreHalf(const float* HWY_RESTRICT values, int count, float scale, hwy::fl
     const hn::Rebind<hwy::float16_t, Floats> dh;
     const auto v = hn::Set(d, scale);
     HWY_ALIGN hwy::float16_t tail[kLanes];
+    HWY_ALIGN float padded[kLanes] = {};
     for (int i = 0; i < count; i += static_cast<int>(kLanes)) {
-        const auto n = hn::DemoteTo(dh, hn::Mul(v, hn::LoadU(d, values + i)));
+        const auto n =
+            hn::DemoteTo(dh, hn::Mul(v, hn::LoadU(d, whole_vector(values + i, count - i, padded))));
         hn::StoreU(n, dh, tail);
         std::memcpy(
             to + i, tail,
