@@ -180,13 +180,16 @@ class Painter {
     /// Pixel by pixel, each with a window of its own: where a block's texels lie far apart.
     bool draw_points(const Block& block, const Box& box) {
         const int channels = m_canvas.channels();
+        const bool polynomial = block.kind == Block::Kind::polynomial;
+        alignas(64) float px[simd::kRowRoom] = {}, py[simd::kRowRoom] = {};
         bool ok = true;
         for (int j = box.y0; j < box.y1; ++j) {
+            if (polynomial) points_of(block, box, j, px, py);
             for (int i = box.x0; i < box.x1; ++i) {
                 float* pixel = m_values.data() + (i - box.x0) * channels;
-                Point<double> p{};
-                int piece = 0;
-                if (!m_map.exact(i + 0.5, j + 0.5, block.piece, p, piece))
+                Point<double> p{block.base_x + double(px[i - box.x0]), block.base_y + double(py[i - box.x0])};
+                int piece = block.source_piece;
+                if (!polynomial && !m_map.exact(i + 0.5, j + 0.5, block.piece, p, piece))
                     std::fill_n(pixel, channels, 0.0f);
                 else
                     ok = sample_point(i, j, block.piece, p, piece, pixel) && ok;
@@ -194,6 +197,12 @@ class Painter {
             finish_row(box.x0, j, box.width());
         }
         return ok;
+    }
+
+    /// The offsets from a polynomial block's base for row j of a box in it.
+    static void points_of(const Block& block, const Box& box, int j, float* px, float* py) {
+        simd::block_points({block.x, block.y, block.box.width(), block.box.height()}, j - block.box.y0,
+                           box.x0 - block.box.x0, box.x1 - block.box.x0, px, py);
     }
 
     bool sample_point(int i, int j, int target_piece, const Point<double>& p, int piece, float* pixel) {
@@ -351,9 +360,7 @@ class Painter {
         alignas(64) float px[simd::kRowRoom], py[simd::kRowRoom];
         const bool polynomial = block.kind == Block::Kind::polynomial;
         for (int j = box.y0; j < box.y1; ++j) {
-            if (polynomial)
-                simd::block_points({block.x, block.y, block.box.width(), block.box.height()},
-                                   j - block.box.y0, box.x0 - block.box.x0, box.x1 - block.box.x0, px, py);
+            if (polynomial) points_of(block, box, j, px, py);
             for (int i = 0; i < box.width(); ++i) {
                 Point<double> exact{}, used{};
                 int piece = 0;
