@@ -117,31 +117,37 @@ class FileInput final : public ImageInput {
     }
 
     bool read_native_scanline(int subimage, int miplevel, int y, int, void* data) override {
-        return read(subimage, miplevel, Rows{y, y + 1}, data);
+        return guarded([&] { read_rows(subimage, miplevel, y, y + 1, data); });
     }
     bool read_native_scanlines(int subimage, int miplevel, int ybegin, int yend, int, void* data) override {
-        return read(subimage, miplevel, Rows{ybegin, yend}, data);
+        return guarded([&] { read_rows(subimage, miplevel, ybegin, yend, data); });
     }
-    bool read_native_scanlines(int subimage, int miplevel, int ybegin, int yend, int z, int chbegin,
-                               int chend, void* data) override {
-        // All channels at once: the default does it line by line.
+    bool read_native_scanlines(int subimage, int miplevel, int ybegin, int yend, int, int chbegin, int chend,
+                               void* data) override {
+        // Some rows at a time, all channels at once: the default does it row by row.
         return guarded([&] {
             const std::shared_ptr<const Content> open = content();
             const ImageSpec& spec = level_spec(*open, subimage, miplevel);
             if (chbegin < 0 || chend > spec.nchannels || chbegin >= chend)
                 throw Error("channels " + std::to_string(chbegin) + " to " + std::to_string(chend) +
                             ": allowed are 0 to " + std::to_string(spec.nchannels));
-            const std::size_t channel = spec.format.size(),
-                              pixel = channel * static_cast<std::size_t>(spec.nchannels);
+            if (chend - chbegin == spec.nchannels) return read_rows(subimage, miplevel, ybegin, yend, data);
+            constexpr int kRows = 256;
+            const std::size_t channel = spec.format.size(), pixel = spec.pixel_bytes();
             const std::size_t part = channel * static_cast<std::size_t>(chend - chbegin);
-            const std::size_t pixels =
-                static_cast<std::size_t>(spec.width) * static_cast<std::size_t>(std::max(0, yend - ybegin));
-            std::vector<std::byte> all(pixels * pixel);
-            if (!read_native_scanlines(subimage, miplevel, ybegin, yend, z, all.data()))
-                throw Error(geterror());
-            for (std::size_t i = 0; i < pixels; ++i)
-                std::memcpy(static_cast<std::byte*>(data) + i * part,
-                            all.data() + i * pixel + static_cast<std::size_t>(chbegin) * channel, part);
+            std::vector<std::byte> all(spec.scanline_bytes() * kRows);
+            auto* to = static_cast<std::byte*>(data);
+            for (int y = ybegin; y < yend; y += kRows) {
+                const int end = std::min(yend, y + kRows);
+                read_rows(subimage, miplevel, y, end, all.data());
+                const std::byte* from = all.data() + static_cast<std::size_t>(chbegin) * channel;
+                for (std::size_t n = spec.scanline_bytes() * static_cast<std::size_t>(end - y) / pixel; n > 0;
+                     --n) {
+                    std::memcpy(to, from, part);
+                    to += part;
+                    from += pixel;
+                }
+            }
         });
     }
     bool read_native_tile(int subimage, int miplevel, int x, int y, int, void* data) override {
@@ -163,19 +169,13 @@ class FileInput final : public ImageInput {
     }
 
   private:
-    struct Rows {
-        int begin, end;
-    };
-
-    bool read(int subimage, int miplevel, const Rows& rows, void* data) {
-        return guarded([&] {
-            const std::shared_ptr<const Content> open = content();
-            const ImageSpec& spec = level_spec(*open, subimage, miplevel);
-            if (rows.end > spec.y + spec.height)
-                throw Error("rows up to " + std::to_string(rows.end) + ": allowed are up to " +
-                            std::to_string(spec.y + spec.height));
-            read_box(*open, miplevel, {spec.x, rows.begin, spec.x + spec.width, rows.end}, data);
-        });
+    void read_rows(int subimage, int miplevel, int begin, int end, void* data) const {
+        const std::shared_ptr<const Content> open = content();
+        const ImageSpec& spec = level_spec(*open, subimage, miplevel);
+        if (end > spec.y + spec.height)
+            throw Error("rows up to " + std::to_string(end) + ": allowed are up to " +
+                        std::to_string(spec.y + spec.height));
+        read_box(*open, miplevel, {spec.x, begin, spec.x + spec.width, end}, data);
     }
 
     /// `box` in the file's coordinates.
