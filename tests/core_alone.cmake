@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 # The core configures, builds and passes its tests with no host library to be found, and reads no host header.
-# Needs: SOURCE_DIR, WORK_DIR (emptied), CXX_COMPILER, CTEST_COMMAND.
+# Needs: SOURCE_DIR, WORK_DIR (emptied), CXX_COMPILER, WERROR, CTEST_COMMAND.
 
 function(run)
     execute_process(COMMAND ${ARGV} RESULT_VARIABLE status OUTPUT_VARIABLE text ERROR_VARIABLE text)
@@ -19,7 +19,7 @@ endforeach()
 file(REMOVE_RECURSE ${WORK_DIR})
 # Makefiles, because they keep the compiler's list of every header read (*.d).
 run(${CMAKE_COMMAND} -S ${SOURCE_DIR} -B ${WORK_DIR} -G "Unix Makefiles" -DCMAKE_BUILD_TYPE=Release
-    -DCMAKE_CXX_COMPILER=${CXX_COMPILER} -DANAMORPH_TOOLKIT=NONE -DANAMORPH_OIIO=OFF ${hidden})
+    -DCMAKE_CXX_COMPILER=${CXX_COMPILER} -DANAMORPH_WERROR=${WERROR} -DANAMORPH_TOOLKIT=NONE -DANAMORPH_OIIO=OFF ${hidden})
 run(${CMAKE_COMMAND} --build ${WORK_DIR} --parallel 2)
 
 file(GLOB_RECURSE lists ${WORK_DIR}/*.d)

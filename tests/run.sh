@@ -10,9 +10,7 @@ log_dir=build/log
 mkdir -p "$log_dir"
 jobs="$(nproc)"
 fuzz_seconds=10
-if command -v ccache >/dev/null; then
-    export CMAKE_CXX_COMPILER_LAUNCHER=ccache
-fi
+export CMAKE_CXX_COMPILER_LAUNCHER=ccache  # the core is built twice: with its hosts, and alone
 
 # step NAME COMMAND...: quiet when it succeeds; prints its log and ends the run when it fails.
 step() {
