@@ -453,10 +453,11 @@ bool Reprojection::draw(const Source* source, const Box& box, const ImageView& p
     const bool gaps = to.projection() == Projection::cubecross;
     const Box whole{0, 0, to.width(), to.height()};
     if (gaps || !(intersection(box, whole) == box)) {
-        const std::vector<float> background(static_cast<std::size_t>(channels),
+        const std::vector<float> background(static_cast<std::size_t>(kMaxRow * channels + 16),
                                             state.options.output == Output::stmap ? -1.0f : 0.0f);
         for (int y = box.y0; y < box.y1; ++y)
-            for (int x = box.x0; x < box.x1; ++x) canvas.store(x, y, 1, background.data());
+            for (int x = box.x0; x < box.x1; x += kMaxRow)
+                canvas.store(x, y, std::min(kMaxRow, box.x1 - x), background.data());
     }
 
     // Strips of regions, so that two threads share one region's blocks.
