@@ -338,7 +338,7 @@ void WorkingSpace::convert(const OIIO::ColorProcessor& processor, float* pixels,
             change(pixels + i * m_channels, m_channels, m_alpha);
     };
     each([](float* pixel, int channels, int alpha) { unassociate_alpha(pixel, channels, alpha); });
-    const auto stride = static_cast<OIIO::stride_t>(m_channels * sizeof(float));
+    const auto stride = OIIO::stride_t{m_channels} * OIIO::stride_t{sizeof(float)};
     processor.apply(pixels, width, height, std::min(m_channels, 3), sizeof(float), stride, stride * width);
     each([](float* pixel, int channels, int alpha) {
         if (pixel[alpha] != 0) associate_alpha(pixel, channels, alpha);
@@ -349,8 +349,8 @@ bool WorkingSource::read(int level, const Box& box, std::byte* texels,
                          std::ptrdiff_t row_stride) const noexcept {
     try {
         const int values = box.width() * channels();
-        std::vector<std::byte> raw(static_cast<std::size_t>(values) * box.height() * size_of(m_base.type()));
         const std::ptrdiff_t raw_stride = std::ptrdiff_t{values} * size_of(m_base.type());
+        std::vector<std::byte> raw(static_cast<std::size_t>(raw_stride * box.height()));
         if (!m_base.read(level, box, raw.data(), raw_stride)) return false;
         std::vector<float> row(static_cast<std::size_t>(values));
         for (int y = 0; y < box.height(); ++y) {

@@ -104,12 +104,12 @@ void fill(ImageBuf& dst, const Picture& picture, const ROI& roi, const ParallelF
         rows.ybegin = y;
         rows.yend = std::min(y + kRows, roi.yend);
         const Box part = box_of(rows, spec);
-        pixels.resize(static_cast<std::size_t>(part.width()) * part.height() * channels);
+        pixels.resize(static_cast<std::size_t>(std::int64_t{part.width()} * part.height() * channels));
         picture.draw(part,
                      packed_view(reinterpret_cast<std::byte*>(pixels.data()), PixelType::float32,
                                  part.width(), part.height(), channels),
                      parallel_for);
-        const auto pixel = static_cast<OIIO::stride_t>(channels * sizeof(float));
+        const auto pixel = OIIO::stride_t{channels} * OIIO::stride_t{sizeof(float)};
         if (!dst.set_pixels(rows, OIIO::TypeFloat, pixels.data() + roi.chbegin, pixel, pixel * part.width()))
             throw Error(dst.geterror());
     }
@@ -129,7 +129,7 @@ bool reproject(ImageBuf& dst, const ImageBuf& src, const OIIO::ParamValueList& o
         const Reprojection reprojection(request.map(), request.options);
         const ImageSpec spec = picture_spec(src.spec(), request, reprojection.reached(parallel_for));
 
-        const SourceStack source(source_of(src), src.spec(), request, values.text("colorspace"));
+        const SourceStack source(source_of(src), src.spec(), request, filtering_space(values, request));
         const Picture picture(reprojection, source);
         prepare(dst, spec, roi);
         fill(dst, picture, roi, parallel_for);

@@ -9,10 +9,14 @@
 
 namespace anamorph {
 
+std::string filtering_space(const ParameterValues& values, const ReprojectRequest& request) {
+    return request.options.output == Output::color ? values.text("colorspace") : "";
+}
+
 SourceStack::SourceStack(std::unique_ptr<Source> image, const OIIO::ImageSpec& spec,
                          const ReprojectRequest& request, const std::string& colorspace)
     : m_image(std::move(image)), m_top(m_image.get()) {
-    if (!colorspace.empty() && request.options.output == Output::color) {
+    if (!colorspace.empty()) {
         m_space = WorkingSpace::make(colorspace, spec);
         if (m_space) {
             m_working = std::make_unique<WorkingSource>(*m_top, m_space);

@@ -4,7 +4,6 @@
 
 #include <OpenImageIO/imageio.h>
 
-#include <functional>
 #include <memory>
 #include <string>
 
@@ -12,6 +11,9 @@
 #include "anamorph/image_source.h"
 
 namespace anamorph {
+
+/// The colour space to filter in that was asked for; empty where no colour is drawn.
+std::string filtering_space(const ParameterValues& values, const ReprojectRequest& request);
 
 /// What stands between a file and the resampler: the image, its working space, its pyramid. Reading is thread
 /// safe.

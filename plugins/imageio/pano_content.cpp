@@ -104,7 +104,7 @@ class PanoContent final : public Content {
         ReprojectRequest request = read_reproject_request(recipe.values, facts_of(source));
         check_size(request.target, source.nchannels, source.format);
 
-        const std::string space = recipe.values.text("colorspace");
+        const std::string space = filtering_space(recipe.values, request);
         static auto& stacks = *new Memo<const SourceStack>(2);
         m_source = stacks.get(identity + space + "\n" + std::to_string(request.source.pieces().size()), [&] {
             return std::make_shared<const SourceStack>(std::move(image), source, request, space);

@@ -261,6 +261,8 @@ TEST_F(Ops, FiltersInTheColorSpaceAskedFor) {
     source.specmod().attribute("oiio:ColorSpace", "sRGB");
     write_image(source, "s.tif");
     write_image(reproject(ImageBuf("s.tif"), linear), "view.tif");
+    // (Also after a map of the same source, which has no colour to convert.)
+    read_pixels("s.tif.pano?size=20x20&colorspace=scene_linear&output=stmap");
     EXPECT_EQ(read_pixels("view.tif").bytes,
               read_pixels("s.tif.pano?size=20x20&colorspace=scene_linear").bytes);
     // An image that does not say its own.
