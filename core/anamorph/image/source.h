@@ -8,7 +8,7 @@ namespace anamorph {
 
 /// The pixels of one image at one or more resolutions, level 0 the finest. Reading is thread safe.
 class Source {
-public:
+  public:
     struct Size {
         int width = 0, height = 0;
     };
@@ -25,20 +25,19 @@ public:
 
     /// Copies the texels of `box`, which lies inside the level, to `texels`: packed pixels of type(), rows
     /// `row_stride` bytes apart. False when they cannot be had; the source keeps the reason for its owner.
-    virtual bool read(int level, const Box& box, std::byte* texels, std::ptrdiff_t row_stride) const noexcept = 0;
+    virtual bool read(int level, const Box& box, std::byte* texels,
+                      std::ptrdiff_t row_stride) const noexcept = 0;
 
-    /// The level's pixels when they stand in memory as a whole, else null. Only what prepare() has been asked for
-    /// need hold its texels.
-    virtual const ConstImageView* view(int level) const noexcept
-    {
+    /// The level's pixels when they stand in memory as a whole, else null. Only what prepare() has been asked
+    /// for need hold its texels.
+    virtual const ConstImageView* view(int level) const noexcept {
         static_cast<void>(level);
         return nullptr;
     }
 
-    /// Makes the texels of `box`, which lies inside the level, ready to be read through view(level). False when they
-    /// cannot be had.
-    virtual bool prepare(int level, const Box& box) const noexcept
-    {
+    /// Makes the texels of `box`, which lies inside the level, ready to be read through view(level). False
+    /// when they cannot be had.
+    virtual bool prepare(int level, const Box& box) const noexcept {
         static_cast<void>(level), static_cast<void>(box);
         return true;
     }
@@ -46,20 +45,19 @@ public:
 
 /// An image in memory, not owned.
 class MemorySource final : public Source {
-public:
+  public:
     explicit MemorySource(const ConstImageView& image, int unassociated_alpha = -1)
-        : m_image(image), m_alpha(unassociated_alpha)
-    {
-    }
+        : m_image(image), m_alpha(unassociated_alpha) {}
     PixelType type() const noexcept override { return m_image.type; }
     int channels() const noexcept override { return m_image.channels; }
     int unassociated_alpha() const noexcept override { return m_alpha; }
     int levels() const noexcept override { return 1; }
     Size size(int) const noexcept override { return {m_image.width, m_image.height}; }
-    bool read(int level, const Box& box, std::byte* texels, std::ptrdiff_t row_stride) const noexcept override;
+    bool read(int level, const Box& box, std::byte* texels,
+              std::ptrdiff_t row_stride) const noexcept override;
     const ConstImageView* view(int) const noexcept override { return &m_image; }
 
-private:
+  private:
     ConstImageView m_image;
     int m_alpha;
 };
