@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The benchmark's frame: what the command line asks for, the table of results, the list of operations, and clocks.
+// The benchmark's frame: what the command line asks for, the table of results, the list of operations, and
+// clocks.
 #pragma once
 
 #include <functional>
@@ -13,7 +14,7 @@ inline constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
 struct Settings {
     std::string csv, op = "all", case_name, scheme;
-    int size = 2048;    ///< of the picture, pixels each way
+    int size = 2048;  ///< of the picture, pixels each way
     int threads = 1;
     int rounds = 15;
     bool bounds = false;  ///< report bounds over true errors instead of times
@@ -32,7 +33,7 @@ struct Row {
     std::string op, case_name, scheme;
     double tol_px = kNone;
     int size = 0, threads = 1;
-    double ns_per_px = 0;       ///< wall time: median over the rounds
+    double ns_per_px = 0;       ///< median over the rounds (Times)
     double best_ns_per_px = 0;  ///< least over the rounds (not in the CSV)
     double ratio_to_exact = 0;  ///< how many times faster than the plain double loop of the same case
     Accuracy error;
@@ -73,14 +74,20 @@ struct RegisterOp {
     explicit RegisterOp(Op op);
 };
 
-/// Wall times in ns, one run each.
+/// A way to draw that is to be timed.
+struct Timed {
+    std::function<void()> draw;
+    int threads = 1;
+};
+/// Times of one run in ns: of the processor where one thread draws, so that programs that run beside count
+/// less; of the clock on the wall where several do.
 struct Times {
     double median = 0, best = 0;
 };
-/// Runs all contenders in turn, in another order every round, so that whatever else the machine does hits all alike.
-/// Quick ones
-/// run twice in a row and the better of the two counts; slow ones sit out two rounds of three.
-std::vector<Times> time_interleaved(const std::vector<std::function<void()>>& contenders, int rounds);
+/// Runs all contenders in turn, in another order every round, so that whatever else the machine does hits all
+/// alike. Quick ones run twice in a row and the better of the two counts; slow ones sit out two rounds of
+/// three.
+std::vector<Times> time_interleaved(const std::vector<Timed>& contenders, int rounds);
 
 /// Mean, 99th percentile and largest of `errors`, which it reorders.
 Accuracy accuracy_of(std::vector<float>& errors);

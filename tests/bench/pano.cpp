@@ -1,17 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
 // Panorama reprojection: speed against error.
 //
-// Sources are 8192 pixels wide (less for small pictures), views square. The views of one source are measured in the
-// same rounds. Schemes: automatic, blocks, residual and exact draw a fresh Reprojection each time, planning
-// included; automatic_kept draws with a plan made before. Rivals: pano_rivals.h.
+// Sources are 8192 pixels wide (less for small pictures), views square. The views of one source are measured
+// in the same rounds. Schemes: automatic, blocks, residual and exact draw a fresh Reprojection each time,
+// planning included; automatic_kept draws with a plan made before. Rivals: pano_rivals.h.
 //
-// Errors are distances of the source points used from Panorama::exact<long double>, over all pixels. The points come
-// from evaluating the plan's blocks here (pano_points.h), from the rivals' own formulas, and are checked twice: against
-// Output::error, and by drawing a picture whose values are its coordinates.
+// Errors are distances of the source points used from Panorama::exact<long double>, over all pixels. The
+// points come from evaluating the plan's blocks here (pano_points.h), from the rivals' own formulas, and are
+// checked twice: against Output::error, and by drawing a picture whose values are its coordinates.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <memory>
+#include <mutex>
 #include <optional>
 #include <random>
 #include <string>
@@ -41,9 +42,7 @@ struct View {
         : name(std::move(case_name)),
           map(source, Chart(Projection::rectilinear, size, size, fov), orientation),
           plain(map, orientation),
-          truth(true_points(map, parallel_for))
-    {
-    }
+          truth(true_points(map, parallel_for)) {}
     int size() const { return map.target().width(); }
     Box box() const { return {0, 0, size(), size()}; }
 
@@ -66,24 +65,23 @@ struct Contender {
     bool one_tap = true;         ///< each pixel comes from one point, not from an average over several
 };
 
-int source_width(const Settings& settings) { return std::min(8192, 8 * settings.size / 8 * 8); }
+int source_width(const Settings& settings) {
+    return std::min(8192, 8 * settings.size / 8 * 8);
+}
 
 /// Three packed channels of PixelType `type`.
 class Picture {
-public:
+  public:
     Picture(PixelType type, int width, int height)
         : m_type(type),
           m_width(width),
           m_height(height),
           m_memory(static_cast<std::size_t>(width) * static_cast<std::size_t>(height) * 3 *
-                   static_cast<std::size_t>(size_of(type)))
-    {
-    }
+                   static_cast<std::size_t>(size_of(type))) {}
 
     /// Calls `value(x, y, channel)` for every sample; 0..1.
     template <class Value>
-    void fill(const ParallelFor& parallel_for, const Value& value) const
-    {
+    void fill(const ParallelFor& parallel_for, const Value& value) const {
         parallel_for(m_height, [&](std::int64_t row) {
             const int y = static_cast<int>(row);
             const std::size_t first = static_cast<std::size_t>(y) * static_cast<std::size_t>(m_width) * 3;
@@ -99,29 +97,28 @@ public:
         });
     }
 
-    ConstImageView source() const
-    {
+    ConstImageView source() const {
         return packed_view<const std::byte>(m_memory.bytes(), m_type, m_width, m_height, 3);
     }
     /// The first pixels, as a picture of this size.
-    ImageView view(int width, int height) const { return packed_view(m_memory.bytes(), m_type, width, height, 3); }
+    ImageView view(int width, int height) const {
+        return packed_view(m_memory.bytes(), m_type, width, height, 3);
+    }
     PixelType type() const { return m_type; }
     std::byte* bytes() const { return m_memory.bytes(); }
     template <class T>
-    T* as() const
-    {
+    T* as() const {
         return m_memory.as<T>();
     }
 
-private:
+  private:
     PixelType m_type;
     int m_width, m_height;
     Buffer m_memory;
 };
 
 /// Uniform noise in 0..1: one multiplicative hash a sample.
-float noise(int x, int y, int c)
-{
+float noise(int x, int y, int c) {
     std::uint64_t h = (static_cast<std::uint64_t>(y) << 34 | static_cast<std::uint64_t>(x) << 2 |
                        static_cast<std::uint64_t>(c)) +
                       1;
@@ -132,11 +129,11 @@ float noise(int x, int y, int c)
 }
 
 /// A smooth picture with some noise on it.
-void fill_with_scene(const Picture& picture, int width, int height, const ParallelFor& parallel_for)
-{
+void fill_with_scene(const Picture& picture, int width, int height, const ParallelFor& parallel_for) {
     std::vector<float> wave(static_cast<std::size_t>(width));
     for (int x = 0; x < width; ++x)
-        wave[static_cast<std::size_t>(x)] = 0.3f * std::sin(6.2831853f * 5 * static_cast<float>(x) / static_cast<float>(width));
+        wave[static_cast<std::size_t>(x)] =
+            0.3f * std::sin(6.2831853f * 5 * static_cast<float>(x) / static_cast<float>(width));
     picture.fill(parallel_for, [&](int x, int y, int c) {
         const float slope = 0.3f * static_cast<float>(y) / static_cast<float>(height);
         return 0.3f + wave[static_cast<std::size_t>(x)] + slope + 0.1f * noise(x, y, c);
@@ -144,15 +141,15 @@ void fill_with_scene(const Picture& picture, int width, int height, const Parall
 }
 
 void draw_ours(const View& view, const Source& source, const ReprojectOptions& options, const ImageView& to,
-                  const ParallelFor& parallel_for)
-{
+               const ParallelFor& parallel_for) {
     const Reprojection reprojection(view.map, options);
-    if (!reprojection.draw(&source, view.box(), to, parallel_for)) throw Error("the source could not be read");
+    if (!reprojection.draw(&source, view.box(), to, parallel_for))
+        throw Error("the source could not be read");
 }
 
 /// One source, its views, and everybody who draws them.
 class Scene {
-public:
+  public:
     Scene(const Settings& settings, Report& report, const Chart& chart, PixelType type, std::string op)
         : m_settings(settings),
           m_report(report),
@@ -163,8 +160,7 @@ public:
           m_all(static_cast<int>(std::max(1u, std::thread::hardware_concurrency()))),
           m_texels(type, chart.width(), chart.height()),
           m_picture(type, settings.size, settings.size),
-          m_source(m_texels.source())
-    {
+          m_source(m_texels.source()) {
         fill_with_scene(m_texels, chart.width(), chart.height(), m_all.parallel_for());
     }
 
@@ -175,22 +171,19 @@ public:
     const Picture& picture() const { return m_picture; }
     const Source& source() const { return m_source; }
 
-    void add_view(const std::string& name, int size, double fov, const Orientation& orientation)
-    {
+    void add_view(const std::string& name, int size, double fov, const Orientation& orientation) {
         if (m_settings.wants_case(name))
             m_views.push_back(std::make_unique<View>(name, m_chart, size, fov, orientation, all()));
     }
     const std::vector<std::unique_ptr<View>>& views() const { return m_views; }
 
-    void add(Contender contender)
-    {
+    void add(Contender contender) {
         if (m_settings.wants_scheme(contender.scheme) || contender.scheme == "double")
             m_contenders.push_back(std::move(contender));
     }
 
     void add_ours(const View& view, const std::string& name, const ReprojectOptions& options, Pool& pool,
-                  int thread_count)
-    {
+                  int thread_count) {
         if (!m_settings.wants_scheme(name)) return;
         Contender c{&view, name, options.tol, thread_count, {}};
         c.draw = [this, &view, options, &pool] {
@@ -200,8 +193,7 @@ public:
         add(std::move(c));
     }
 
-    void describe_ours(Contender& c, const ReprojectOptions& options)
-    {
+    void describe_ours(Contender& c, const ReprojectOptions& options) {
         PlanOptions plan;
         plan.scheme = options.scheme;
         plan.tol = options.tol;
@@ -214,8 +206,7 @@ public:
         c.exact_fraction = reached.exact_fraction;
     }
 
-    void add_schemes(const View& view, const std::vector<double>& tols)
-    {
+    void add_schemes(const View& view, const std::vector<double>& tols) {
         ReprojectOptions options;
         options.filter = Filter::bilinear;
         for (const double tol : tols)
@@ -242,8 +233,7 @@ public:
     }
 
     template <class Texel>
-    void add_rivals(const View& view)
-    {
+    void add_rivals(const View& view) {
         const Texel* from = m_texels.as<Texel>();
         Texel* to = m_picture.as<Texel>();
         const int threads_count = m_settings.threads;
@@ -256,7 +246,8 @@ public:
             };
         };
         add({&view, "double", kNone, threads_count,
-             [=, this, &view] { draw_double(view.plain, from, to, threads()); }, points_by(double_point), kNone, 1});
+             [=, this, &view] { draw_double(view.plain, from, to, threads()); }, points_by(double_point),
+             kNone, 1});
         if constexpr (std::is_same_v<Texel, float>) {
             if (!m_padded && m_settings.wants_scheme("simd_exact")) m_padded.emplace(view.plain, from, all());
             add({&view, "simd_exact", kNone, threads_count,
@@ -280,28 +271,39 @@ public:
             add({&view, "opencv_remap", kNone, threads_count, [opencv] { opencv->remap(); },
                  points_by(opencv_point)});
         }
-        auto traffic = std::make_shared<Traffic>(view.plain, m_texels.bytes(), 3 * size_of(m_texels.type()), all());
+        auto traffic =
+            std::make_shared<Traffic>(view.plain, m_texels.bytes(), 3 * size_of(m_texels.type()), all());
         add({&view, "memory", kNone, threads_count,
              [=, this] { traffic->copy(m_picture.bytes(), threads()); }});
     }
 
     /// Times all contenders together, then measures and checks their errors and adds their rows.
-    void measure()
-    {
-        std::vector<std::function<void()>> draws;
-        for (const Contender& c : m_contenders) draws.push_back(c.draw);
+    void measure() {
+        std::vector<Timed> draws;
+        for (const Contender& c : m_contenders) draws.push_back({c.draw, c.threads});
         const std::vector<Times> times = time_interleaved(draws, m_settings.rounds);
         const auto plain_time = [&](const View* view) {
             for (std::size_t k = 0; k < times.size(); ++k)
-                if (m_contenders[k].view == view && m_contenders[k].scheme == "double") return times[k].median;
+                if (m_contenders[k].view == view && m_contenders[k].scheme == "double")
+                    return times[k].median;
             return kNone;
         };
         fill_with_coordinates();
         for (std::size_t k = 0; k < times.size(); ++k) {
             const Contender& c = m_contenders[k];
             const double pixels = double(c.view->size()) * c.view->size();
-            Row row{m_op,   c.view->name, c.scheme, c.tol, c.view->size(), c.threads, times[k].median / pixels,
-                    times[k].best / pixels, plain_time(c.view) / times[k].median, {}, c.bound, c.exact_fraction};
+            Row row{m_op,
+                    c.view->name,
+                    c.scheme,
+                    c.tol,
+                    c.view->size(),
+                    c.threads,
+                    times[k].median / pixels,
+                    times[k].best / pixels,
+                    plain_time(c.view) / times[k].median,
+                    {},
+                    c.bound,
+                    c.exact_fraction};
             if (c.points) {
                 const Points points = c.points();
                 std::vector<float> errors = distances(m_chart, points, c.view->truth);
@@ -316,20 +318,19 @@ public:
         }
     }
 
-private:
-    void check_bound(const Row& row)
-    {
+  private:
+    void check_bound(const Row& row) {
         // What double leaves of a coordinate of thousands of pixels.
         const double slack = 1e-9;
         if (!(row.error.max <= row.bound_px * (1 + 1e-6) + slack) ||
             !(row.bound_px <= row.tol_px * (1 + 1e-12) + slack))
-            fail(row.case_name, row.scheme, row.tol_px,
-                 "largest error " + std::to_string(row.error.max) + ", bound " + std::to_string(row.bound_px));
+            fail(
+                row.case_name, row.scheme, row.tol_px,
+                "largest error " + std::to_string(row.error.max) + ", bound " + std::to_string(row.bound_px));
     }
 
     /// The errors again, as the product reports them.
-    void check_error_picture(const Contender& c, const Points& points)
-    {
+    void check_error_picture(const Contender& c, const Points& points) {
         // Float polynomials with and without fused multiply-adds, and the picture's own rounding.
         const double slack = 2e-4;
         ReprojectOptions options = c.options;
@@ -348,19 +349,18 @@ private:
             fail(view.name, c.scheme, c.tol, "the error picture is off by " + std::to_string(worst) + " px");
     }
 
-    void fill_with_coordinates()
-    {
+    void fill_with_coordinates() {
         if (m_texels.type() != PixelType::float32) return;
         m_texels.fill(all(), [&](int x, int y, int c) {
-            return static_cast<float>(c == 0 ? x + 0.5 - 0.5 * m_chart.width()
-                                             : c == 1 ? y + 0.5 - 0.5 * m_chart.height() : 0);
+            return static_cast<float>(c == 0   ? x + 0.5 - 0.5 * m_chart.width()
+                                      : c == 1 ? y + 0.5 - 0.5 * m_chart.height()
+                                               : 0);
         });
         if (m_padded) m_padded.emplace(m_views.front()->plain, m_texels.as<float>(), all());
     }
 
     /// The points again, through what is drawn from a source that holds its own coordinates.
-    void check_drawn(const Contender& c, const Points& points)
-    {
+    void check_drawn(const Contender& c, const Points& points) {
         if (m_texels.type() != PixelType::float32 || !c.one_tap) return;
         // Values of up to a quarter of the source's width, interpolated in float.
         const double slack = 2.5e-7 * m_chart.width() + 1e-4;
@@ -369,15 +369,15 @@ private:
         double worst = 0;
         for (std::size_t k = 0; k < points.size(); ++k)
             if (well_inside(m_chart, points[k]))
-                worst = std::max(worst, distance(m_chart, points[k],
-                                                 {static_cast<double>(drawn[3 * k]) + 0.5 * m_chart.width(),
-                                                  static_cast<double>(drawn[3 * k + 1]) + 0.5 * m_chart.height()}));
+                worst = std::max(worst,
+                                 distance(m_chart, points[k],
+                                          {static_cast<double>(drawn[3 * k]) + 0.5 * m_chart.width(),
+                                           static_cast<double>(drawn[3 * k + 1]) + 0.5 * m_chart.height()}));
         if (!(worst <= slack))
             fail(c.view->name, c.scheme, c.tol, "draws " + std::to_string(worst) + " px from where it says");
     }
 
-    void fail(const std::string& case_name, const std::string& scheme, double tol, const std::string& what)
-    {
+    void fail(const std::string& case_name, const std::string& scheme, double tol, const std::string& what) {
         m_report.failures.push_back(case_name + ", " + scheme + ", tol " + std::to_string(tol) + ": " + what);
     }
 
@@ -393,18 +393,19 @@ private:
     std::vector<Contender> m_contenders;
 };
 
-Chart equirectangular(int width) { return Chart(Projection::equirectangular, width, width / 2, 360); }
+Chart equirectangular(int width) {
+    return Chart(Projection::equirectangular, width, width / 2, 360);
+}
 
 /// 360 degrees around, 45 degrees up and down at least.
-Chart cylinder(int width)
-{
+Chart cylinder(int width) {
     return Chart(Projection::cylindrical, width, static_cast<int>(std::ceil(width / 3.14159265358979)), 360);
 }
 
-// --- bilinear, float ----------------------------------------------------------------------------------------------
+// --- bilinear, float
+// ----------------------------------------------------------------------------------------------
 
-void run_bilinear(const Settings& settings, Report& report, const Chart& chart, const std::string& name)
-{
+void run_bilinear(const Settings& settings, Report& report, const Chart& chart, const std::string& name) {
     const std::string turned = name + "_rotated";
     if (!settings.wants_case(name) && !settings.wants_case(turned)) return;
     Scene scene(settings, report, chart, PixelType::float32, "pano");
@@ -421,7 +422,8 @@ void run_bilinear(const Settings& settings, Report& report, const Chart& chart, 
     const auto rival = [&](const char* scheme) { return report.find(name, scheme); };
     const bool cylindrical = chart.projection() == Projection::cylindrical;
     report.add_speed_target(name + ": times the plain double loop's speed", 14, rival("double"), ours);
-    report.add_speed_target(name + ": times OpenCV's map + remap", cylindrical ? 8 : 12, rival("opencv"), ours);
+    report.add_speed_target(name + ": times OpenCV's map + remap", cylindrical ? 8 : 12, rival("opencv"),
+                            ours);
     report.add_speed_target(name + ": times the exact SIMD scheme", 1.4, rival("simd_exact"), ours);
     report.add_speed_target(name + ": of the memory limit", 0.4, rival("memory"), ours);
     if (threads == 1)
@@ -431,10 +433,10 @@ void run_bilinear(const Settings& settings, Report& report, const Chart& chart, 
                             report.find(turned, "automatic", kDefaultTol, threads));
 }
 
-// --- bilinear, uint8 ----------------------------------------------------------------------------------------------
+// --- bilinear, uint8
+// ----------------------------------------------------------------------------------------------
 
-void run_uint8(const Settings& settings, Report& report)
-{
+void run_uint8(const Settings& settings, Report& report) {
     const std::string name = "equirect_uint8";
     if (!settings.wants_case(name)) return;
     constexpr double kFine = 1.0 / 256;
@@ -445,18 +447,18 @@ void run_uint8(const Settings& settings, Report& report)
     scene.add_rivals<std::uint8_t>(view);
     scene.measure();
     const Row* fine = report.find(name, "automatic", kFine, settings.threads);
-    report.add_speed_target(name + ": times OpenCV's remap alone, at tol 1/256", 1.3, report.find(name, "opencv_remap"),
-                            fine);
+    report.add_speed_target(name + ": times OpenCV's remap alone, at tol 1/256", 1.3,
+                            report.find(name, "opencv_remap"), fine);
     if (fine) report.add_limit(name + ": largest error at tol 1/256", kFine, fine->error.max);
 }
 
-// --- antialiased --------------------------------------------------------------------------------------------------
+// --- antialiased
+// --------------------------------------------------------------------------------------------------
 
 using Polygon = std::vector<Point<double>>;
 
 /// The part of a convex polygon where sign * (coordinate - limit) >= 0.
-Polygon clipped(const Polygon& polygon, double Point<double>::*coordinate, double limit, double sign)
-{
+Polygon clipped(const Polygon& polygon, double Point<double>::*coordinate, double limit, double sign) {
     Polygon result;
     for (std::size_t k = 0; k < polygon.size(); ++k) {
         const Point<double>&a = polygon[k], &b = polygon[(k + 1) % polygon.size()];
@@ -470,8 +472,7 @@ Polygon clipped(const Polygon& polygon, double Point<double>::*coordinate, doubl
     return result;
 }
 
-double area(const Polygon& polygon)
-{
+double area(const Polygon& polygon) {
     double twice = 0;
     for (std::size_t k = 0; k < polygon.size(); ++k) {
         const Point<double>&a = polygon[k], &b = polygon[(k + 1) % polygon.size()];
@@ -480,17 +481,17 @@ double area(const Polygon& polygon)
     return std::fabs(twice) / 2;
 }
 
-/// Variance of the exact average of white noise of variance 1 over a polygon of texels: the sum of squared coverages.
-double box_variance(const Polygon& polygon)
-{
-    const auto [top, bottom] =
-        std::minmax_element(polygon.begin(), polygon.end(), [](const auto& a, const auto& b) { return a.y < b.y; });
+/// Variance of the exact average of white noise of variance 1 over a polygon of texels: the sum of squared
+/// coverages.
+double box_variance(const Polygon& polygon) {
+    const auto [top, bottom] = std::minmax_element(polygon.begin(), polygon.end(),
+                                                   [](const auto& a, const auto& b) { return a.y < b.y; });
     double squares = 0;
     for (double y = std::floor(top->y); y < bottom->y; ++y) {
         const Polygon row = clipped(clipped(polygon, &Point<double>::y, y, 1), &Point<double>::y, y + 1, -1);
         if (row.empty()) continue;
-        const auto [left, right] =
-            std::minmax_element(row.begin(), row.end(), [](const auto& a, const auto& b) { return a.x < b.x; });
+        const auto [left, right] = std::minmax_element(
+            row.begin(), row.end(), [](const auto& a, const auto& b) { return a.x < b.x; });
         for (double x = std::floor(left->x); x < right->x; ++x) {
             const double texel =
                 area(clipped(clipped(row, &Point<double>::x, x, 1), &Point<double>::x, x + 1, -1));
@@ -501,10 +502,9 @@ double box_variance(const Polygon& polygon)
     return squares / (all * all);
 }
 
-/// Standard deviation of a view of white noise of variance 1, each pixel the average over its footprint: the mean
-/// over some thousand pixels.
-double ideal_noise(const View& view)
-{
+/// Standard deviation of a view of white noise of variance 1, each pixel the average over its footprint: the
+/// mean over some thousand pixels.
+double ideal_noise(const View& view) {
     const int step = std::max(1, view.size() / 48);
     double sum = 0;
     int count = 0;
@@ -523,16 +523,15 @@ double ideal_noise(const View& view)
     return std::sqrt(sum / count);
 }
 
-double standard_deviation(const float* values, std::size_t count)
-{
+double standard_deviation(const float* values, std::size_t count) {
     double mean = 0, squares = 0;
-    for (std::size_t k = 0; k < count; ++k) mean += static_cast<double>(values[k]) / static_cast<double>(count);
+    for (std::size_t k = 0; k < count; ++k)
+        mean += static_cast<double>(values[k]) / static_cast<double>(count);
     for (std::size_t k = 0; k < count; ++k) squares += (values[k] - mean) * (values[k] - mean);
     return std::sqrt(squares / static_cast<double>(count));
 }
 
-void run_antialias(const Settings& settings, Report& report)
-{
+void run_antialias(const Settings& settings, Report& report) {
     const std::string names[] = {"antialias_half", "antialias_eighth"};
     if (!settings.wants_case(names[0]) && !settings.wants_case(names[1])) return;
     const Chart chart = equirectangular(source_width(settings));
@@ -576,14 +575,14 @@ void run_antialias(const Settings& settings, Report& report)
     for (std::size_t k = 0; k < excess.size(); ++k) {
         const View& view = *scene.views()[k];
         const std::string title = view.name + " (" + std::to_string(view.size()) + " px)";
-        report.add_speed_target(title + ": of our own bilinear rate", 0.25, report.find(view.name, "bilinear"),
-                                report.find(view.name, "automatic"));
-        report.add_limit(title + ": noise, relative distance from the ideal box figure", 0.05, std::fabs(excess[k]));
+        report.add_speed_target(title + ": of our own bilinear rate", 0.25,
+                                report.find(view.name, "bilinear"), report.find(view.name, "automatic"));
+        report.add_limit(title + ": noise, relative distance from the ideal box figure", 0.05,
+                         std::fabs(excess[k]));
     }
 }
 
-void run(const Settings& settings, Report& report)
-{
+void run(const Settings& settings, Report& report) {
     std::printf("pano: instruction set %s, %d thread(s)\n", simd_target().c_str(), settings.threads);
     const int width = source_width(settings);
     run_bilinear(settings, report, equirectangular(width), "equirect");
@@ -592,20 +591,19 @@ void run(const Settings& settings, Report& report)
     run_antialias(settings, report);
 }
 
-// --- bound over true error ----------------------------------------------------------------------------------------
+// --- bound over true error
+// ----------------------------------------------------------------------------------------
 
-double median(std::vector<double>& values)
-{
+double median(std::vector<double>& values) {
     const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
     std::nth_element(values.begin(), middle, values.end());
     return *middle;
 }
 
-/// Prints one line on the polynomial blocks of a plan and returns the median of bound over largest true error; NaN
-/// when there is none.
+/// Prints one line on the polynomial blocks of a plan and returns the median of bound over largest true
+/// error; NaN when there is none.
 double report_blocks(const std::string& view, const Plan& plan, const char* scheme, const Points& truth,
-                     const ParallelFor& parallel_for)
-{
+                     const ParallelFor& parallel_for) {
     std::mutex mutex;
     std::vector<double> ratios;
     int broken = 0;
@@ -628,17 +626,18 @@ double report_blocks(const std::string& view, const Plan& plan, const char* sche
     std::vector<double> sorted = ratios;
     std::sort(sorted.begin(), sorted.end());
     std::printf("%-64s %-9s %8.4g %8zu %8.3f %8.3f %8.3f %7d\n", view.c_str(), scheme, plan.options().tol,
-                sorted.size(), sorted[sorted.size() / 2], sorted[sorted.size() * 9 / 10], sorted.back(), broken);
+                sorted.size(), sorted[sorted.size() / 2], sorted[sorted.size() * 9 / 10], sorted.back(),
+                broken);
     return median(ratios);
 }
 
 /// The benchmark's own views and seeded random ones between all projections.
-std::vector<std::pair<std::string, Panorama>> bound_views(const Settings& settings)
-{
+std::vector<std::pair<std::string, Panorama>> bound_views(const Settings& settings) {
     std::vector<std::pair<std::string, Panorama>> views;
     const int width = source_width(settings);
     const Chart target(Projection::rectilinear, settings.size, settings.size, 90);
-    for (const auto& [name, chart] : {std::pair{"equirect", equirectangular(width)}, {"cylinder", cylinder(width)}}) {
+    for (const auto& [name, chart] :
+         {std::pair{"equirect", equirectangular(width)}, {"cylinder", cylinder(width)}}) {
         views.emplace_back(name, Panorama(chart, target));
         views.emplace_back(std::string(name) + "_rotated", Panorama(chart, target, kTurned));
     }
@@ -657,31 +656,33 @@ std::vector<std::pair<std::string, Panorama>> bound_views(const Settings& settin
             const double fov = to_cube ? 90 : uniform(20, to == Projection::rectilinear ? 120 : 160);
             const Orientation o{uniform(-180, 180), uniform(-80, 80), uniform(-180, 180)};
             char name[96];
-            std::snprintf(name, sizeof name, "%s to %s %.0f, %.0f/%.0f/%.0f", std::string(name_of(from)).c_str(),
-                          std::string(name_of(to)).c_str(), fov, o.yaw, o.pitch, o.roll);
+            std::snprintf(name, sizeof name, "%s to %s %.0f, %.0f/%.0f/%.0f",
+                          std::string(name_of(from)).c_str(), std::string(name_of(to)).c_str(), fov, o.yaw,
+                          o.pitch, o.roll);
             views.emplace_back(name, Panorama(source, Chart(to, n, to_cube ? 6 * n : n, fov), o));
         }
     return views;
 }
 
-void report_bounds(const Settings& settings)
-{
+void report_bounds(const Settings& settings) {
     Pool pool(static_cast<int>(std::max(1u, std::thread::hardware_concurrency())));
     std::printf("pano: proven bound over largest true error, per polynomial block\n");
-    std::printf("%-64s %-9s %8s %8s %8s %8s %8s %7s\n", "view", "scheme", "tol px", "blocks", "median", "90%", "most",
-                "broken");
+    std::printf("%-64s %-9s %8s %8s %8s %8s %8s %7s\n", "view", "scheme", "tol px", "blocks", "median", "90%",
+                "most", "broken");
     std::vector<double> medians;
     for (const auto& [name, map] : bound_views(settings)) {
         if (!settings.wants_case(name)) continue;
         const Points truth = true_points(map, pool.parallel_for());
         for (const auto& [scheme, scheme_name] : kSchemes) {
-            if (scheme == Scheme::automatic ? settings.scheme != "automatic" : !settings.wants_scheme(scheme_name))
+            if (scheme == Scheme::automatic ? settings.scheme != "automatic"
+                                            : !settings.wants_scheme(scheme_name))
                 continue;
             for (const double tol : kTols) {
                 PlanOptions options;
                 options.scheme = scheme;
                 options.tol = tol;
-                const double m = report_blocks(name, Plan(map, options), scheme_name, truth, pool.parallel_for());
+                const double m =
+                    report_blocks(name, Plan(map, options), scheme_name, truth, pool.parallel_for());
                 if (!std::isnan(m)) medians.push_back(m);
             }
         }

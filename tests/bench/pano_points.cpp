@@ -6,21 +6,18 @@
 namespace anamorph::bench {
 namespace {
 
-std::size_t pixels(const Panorama& map)
-{
+std::size_t pixels(const Panorama& map) {
     return static_cast<std::size_t>(map.target().width()) * static_cast<std::size_t>(map.target().height());
 }
 
-Point<double>& at(const Panorama& map, Points& points, int i, int j)
-{
+Point<double>& at(const Panorama& map, Points& points, int i, int j) {
     return points[static_cast<std::size_t>(j) * static_cast<std::size_t>(map.target().width()) +
                   static_cast<std::size_t>(i)];
 }
 
 }  // namespace
 
-Points true_points(const Panorama& map, const ParallelFor& parallel_for)
-{
+Points true_points(const Panorama& map, const ParallelFor& parallel_for) {
     Points points(pixels(map), {std::nan(""), std::nan("")});
     for (std::size_t k = 0; k < map.target().pieces().size(); ++k) {
         const Box box = map.target().pieces()[k].box;
@@ -37,8 +34,7 @@ Points true_points(const Panorama& map, const ParallelFor& parallel_for)
     return points;
 }
 
-Points plan_points(const Plan& plan, const ParallelFor& parallel_for)
-{
+Points plan_points(const Plan& plan, const ParallelFor& parallel_for) {
     Points points(pixels(plan.map()), {std::nan(""), std::nan("")});
     parallel_for(plan.regions(), [&](std::int64_t region) {
         for (const Block& block : *plan.blocks(region))
@@ -48,20 +44,17 @@ Points plan_points(const Plan& plan, const ParallelFor& parallel_for)
     return points;
 }
 
-double distance(const Chart& source, const Point<double>& a, const Point<double>& b)
-{
+double distance(const Chart& source, const Point<double>& a, const Point<double>& b) {
     double dx = a.x - b.x;
     if (source.closed()) dx = std::remainder(dx, static_cast<double>(source.period()));
     return std::hypot(dx, a.y - b.y);
 }
 
-bool well_inside(const Chart& source, const Point<double>& p)
-{
+bool well_inside(const Chart& source, const Point<double>& p) {
     return p.x > 1 && p.y > 1 && p.x < source.width() - 1 && p.y < source.height() - 1;
 }
 
-std::vector<float> distances(const Chart& source, const Points& used, const Points& truth)
-{
+std::vector<float> distances(const Chart& source, const Points& used, const Points& truth) {
     std::vector<float> errors;
     errors.reserve(truth.size());
     for (std::size_t k = 0; k < truth.size(); ++k) {

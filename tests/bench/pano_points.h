@@ -15,11 +15,10 @@ using Points = std::vector<Point<double>>;
 /// Panorama::exact read with long double.
 Points true_points(const Panorama& map, const ParallelFor& parallel_for);
 
-/// Calls `body(i, j, point)` for the pixels of a block. Polynomials are evaluated here as plan.h states them, in plain
-/// float arithmetic, apart from the product's own loops; exact pixels by Panorama::exact<double>.
+/// Calls `body(i, j, point)` for the pixels of a block. Polynomials are evaluated here as plan.h states them,
+/// in plain float arithmetic, apart from the product's own loops; exact pixels by Panorama::exact<double>.
 template <class Body>
-void for_points(const Panorama& map, const Block& block, const Body& body)
-{
+void for_points(const Panorama& map, const Block& block, const Body& body) {
     const Box& box = block.box;
     // s and t run from -1 to 1 over the pixel centres; a single one stands at 0.
     const auto along = [](int k, int count) {
@@ -35,8 +34,7 @@ void for_points(const Panorama& map, const Block& block, const Body& body)
                 const float s = along(i - box.x0, box.width()), t = along(j - box.y0, box.height());
                 p = {block.base_x + static_cast<double>(value(block.x, s, t)),
                      block.base_y + static_cast<double>(value(block.y, s, t))};
-            }
-            else if (block.kind == Block::Kind::exact) {
+            } else if (block.kind == Block::Kind::exact) {
                 int piece = 0;
                 Point<double> q{};
                 if (map.exact(i + 0.5, j + 0.5, block.piece, q, piece)) p = q;
@@ -54,8 +52,8 @@ double distance(const Chart& source, const Point<double>& a, const Point<double>
 /// Does a bilinear filter at this point read texels of the source image only?
 bool well_inside(const Chart& source, const Point<double>& p);
 
-/// Distances for all pixels whose true point lies in the source image. A pixel that has a true point there but none
-/// in `used` counts as infinite.
+/// Distances for all pixels whose true point lies in the source image. A pixel that has a true point there
+/// but none in `used` counts as infinite.
 std::vector<float> distances(const Chart& source, const Points& used, const Points& truth);
 
 }  // namespace anamorph::bench

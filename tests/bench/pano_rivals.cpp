@@ -16,8 +16,7 @@ namespace {
 
 constexpr int kStrip = 16;
 
-void for_strips(int rows, const ParallelFor& parallel_for, const std::function<void(int, int)>& body)
-{
+void for_strips(int rows, const ParallelFor& parallel_for, const std::function<void(int, int)>& body) {
     parallel_for((rows + kStrip - 1) / kStrip, [&](std::int64_t strip) {
         const int first = static_cast<int>(strip) * kStrip;
         body(first, std::min(first + kStrip, rows));
@@ -34,15 +33,13 @@ PlainView::PlainView(const Panorama& map, const Orientation& orientation)
       scale_x(map.source().scale_x()),
       scale_y(map.source().scale_y()),
       step(1 / map.target().scale_x()),
-      first((0.5 - 0.5 * size) * step)
-{
+      first((0.5 - 0.5 * size) * step) {
     const glm::dmat3 m = anamorph::rotation(orientation);
     for (int row = 0; row < 3; ++row)
         for (int column = 0; column < 3; ++column) rotation[3 * row + column] = m[column][row];
 }
 
-Point<double> double_point(const PlainView& view, int i, int j)
-{
+Point<double> double_point(const PlainView& view, int i, int j) {
     const double* r = view.rotation;
     const double x = view.first + i * view.step, y = view.first + j * view.step;
     const double rx = r[0] * x + r[1] * y + r[2];
@@ -55,8 +52,8 @@ Point<double> double_point(const PlainView& view, int i, int j)
 }
 
 template <class Texel>
-void draw_double(const PlainView& view, const Texel* source, Texel* picture, const ParallelFor& parallel_for)
-{
+void draw_double(const PlainView& view, const Texel* source, Texel* picture,
+                 const ParallelFor& parallel_for) {
     const int w = view.source_width, h = view.source_height;
     for_strips(view.size, parallel_for, [&](int first, int last) {
         for (int j = first; j < last; ++j)
@@ -73,12 +70,15 @@ void draw_double(const PlainView& view, const Texel* source, Texel* picture, con
                 const Texel* b = source + 3 * (above + static_cast<std::size_t>(x1));
                 const Texel* c = source + 3 * (below + static_cast<std::size_t>(x0));
                 const Texel* d = source + 3 * (below + static_cast<std::size_t>(x1));
-                Texel* out = picture + 3 * (static_cast<std::size_t>(j) * static_cast<std::size_t>(view.size) +
-                                            static_cast<std::size_t>(i));
+                Texel* out =
+                    picture + 3 * (static_cast<std::size_t>(j) * static_cast<std::size_t>(view.size) +
+                                   static_cast<std::size_t>(i));
                 for (int k = 0; k < 3; ++k) {
-                    const float value = (1 - fy) * ((1 - fx) * static_cast<float>(a[k]) + fx * static_cast<float>(b[k])) +
-                                        fy * ((1 - fx) * static_cast<float>(c[k]) + fx * static_cast<float>(d[k]));
-                    out[k] = std::is_integral_v<Texel> ? static_cast<Texel>(value + 0.5f) : static_cast<Texel>(value);
+                    const float value =
+                        (1 - fy) * ((1 - fx) * static_cast<float>(a[k]) + fx * static_cast<float>(b[k])) +
+                        fy * ((1 - fx) * static_cast<float>(c[k]) + fx * static_cast<float>(d[k]));
+                    out[k] = std::is_integral_v<Texel> ? static_cast<Texel>(value + 0.5f)
+                                                       : static_cast<Texel>(value);
                 }
             }
     });
@@ -90,8 +90,7 @@ PaddedSource::PaddedSource(const PlainView& view, const float* source, const Par
     : texels(static_cast<std::size_t>(view.source_width + 2 * kColumns) *
              static_cast<std::size_t>(view.source_height + 2 * kRows) * 12),
       row_floats(3 * (view.source_width + 2 * kColumns)),
-      origin(texels.as<float>() + kRows * row_floats + 3 * kColumns)
-{
+      origin(texels.as<float>() + kRows * row_floats + 3 * kColumns) {
     const int w = view.source_width, h = view.source_height;
     float* first = texels.as<float>() + 3 * kColumns;
     for_strips(h + 2 * kRows, parallel_for, [&](int begin, int end) {
@@ -105,8 +104,7 @@ PaddedSource::PaddedSource(const PlainView& view, const float* source, const Par
     });
 }
 
-Point<double> opencv_point(const PlainView& view, int i, int j)
-{
+Point<double> opencv_point(const PlainView& view, int i, int j) {
     const Point<double> p = double_point(view, i, j);
     const auto rounded = [](double c) {
         return std::nearbyint(static_cast<double>(static_cast<float>(c - 0.5)) * 32) / 32 + 0.5;
@@ -116,7 +114,9 @@ Point<double> opencv_point(const PlainView& view, int i, int j)
 
 #ifdef ANAMORPH_HAVE_OPENCV
 
-bool have_opencv() { return true; }
+bool have_opencv() {
+    return true;
+}
 
 template <class Texel>
 OpenCv<Texel>::OpenCv(const PlainView& view, const Texel* source, Texel* picture, int threads,
@@ -127,13 +127,10 @@ OpenCv<Texel>::OpenCv(const PlainView& view, const Texel* source, Texel* picture
       m_threads(threads),
       m_parallel_for(parallel_for),
       m_x(static_cast<std::size_t>(view.size) * static_cast<std::size_t>(view.size)),
-      m_y(m_x.size())
-{
-}
+      m_y(m_x.size()) {}
 
 template <class Texel>
-void OpenCv<Texel>::compute_map()
-{
+void OpenCv<Texel>::compute_map() {
     for_strips(m_view.size, m_parallel_for, [&](int first, int last) {
         for (int j = first; j < last; ++j)
             for (int i = 0; i < m_view.size; ++i) {
@@ -147,8 +144,7 @@ void OpenCv<Texel>::compute_map()
 }
 
 template <class Texel>
-void OpenCv<Texel>::remap()
-{
+void OpenCv<Texel>::remap() {
     const int type = std::is_same_v<Texel, float> ? CV_32FC3 : CV_8UC3, n = m_view.size;
     const cv::Mat from(m_view.source_height, m_view.source_width, type, const_cast<Texel*>(m_source));
     cv::Mat to(n, n, type, m_picture);
@@ -159,33 +155,30 @@ void OpenCv<Texel>::remap()
 
 #else
 
-bool have_opencv() { return false; }
+bool have_opencv() {
+    return false;
+}
 
 template <class Texel>
 OpenCv<Texel>::OpenCv(const PlainView& view, const Texel* source, Texel* picture, int threads,
                       const ParallelFor& parallel_for)
-    : m_view(view), m_source(source), m_picture(picture), m_threads(threads), m_parallel_for(parallel_for)
-{
+    : m_view(view), m_source(source), m_picture(picture), m_threads(threads), m_parallel_for(parallel_for) {
     throw Error("this benchmark was built without OpenCV");
 }
 template <class Texel>
-void OpenCv<Texel>::compute_map()
-{
-}
+void OpenCv<Texel>::compute_map() {}
 template <class Texel>
-void OpenCv<Texel>::remap()
-{
-}
+void OpenCv<Texel>::remap() {}
 
 #endif
 
 template class OpenCv<float>;
 template class OpenCv<std::uint8_t>;
 
-Traffic::Traffic(const PlainView& view, const std::byte* source, int texel_bytes, const ParallelFor& parallel_for)
+Traffic::Traffic(const PlainView& view, const std::byte* source, int texel_bytes,
+                 const ParallelFor& parallel_for)
     : m_picture_bytes(static_cast<std::size_t>(view.size) * static_cast<std::size_t>(view.size) *
-                      static_cast<std::size_t>(texel_bytes))
-{
+                      static_cast<std::size_t>(texel_bytes)) {
     constexpr std::size_t kLine = 64;
     const std::int64_t row = std::int64_t{view.source_width} * texel_bytes;
     const std::size_t lines = static_cast<std::size_t>(row * view.source_height + 63) / kLine;
@@ -214,20 +207,19 @@ Traffic::Traffic(const PlainView& view, const std::byte* source, int texel_bytes
     }
 }
 
-std::size_t Traffic::bytes_read() const
-{
+std::size_t Traffic::bytes_read() const {
     std::size_t bytes = 0;
     for (const Run& run : m_runs) bytes += run.bytes;
     return bytes;
 }
 
-void Traffic::copy(std::byte* picture, const ParallelFor& parallel_for) const
-{
+void Traffic::copy(std::byte* picture, const ParallelFor& parallel_for) const {
     // Each run with its share of the picture, so that reading and writing alternate as in a resampler.
     const std::size_t runs = m_runs.size();
     const std::int64_t tasks = static_cast<std::int64_t>((runs + kStrip - 1) / kStrip);
     parallel_for(tasks, [&](std::int64_t task) {
-        const std::size_t first = static_cast<std::size_t>(task) * kStrip, last = std::min(first + kStrip, runs);
+        const std::size_t first = static_cast<std::size_t>(task) * kStrip,
+                          last = std::min(first + kStrip, runs);
         for (std::size_t i = first; i < last; ++i) {
             const std::size_t begin = m_picture_bytes * i / runs / 64 * 64;
             const std::size_t end = m_picture_bytes * (i + 1) / runs / 64 * 64;

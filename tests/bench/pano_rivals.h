@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a panorama can be reprojected with instead: the loop that one writes in an afternoon, an exact loop with all
-// the tricks of vector units and caches, OpenCV, and the memory traffic alone, below which nobody gets.
-// All draw a square rectilinear view, three channels, bilinear.
+// What a panorama can be reprojected with instead: the loop that one writes in an afternoon, an exact loop
+// with all the tricks of vector units and caches, OpenCV, and the memory traffic alone, below which nobody
+// gets. All draw a square rectilinear view, three channels, bilinear.
 #pragma once
 
 #include <cstddef>
@@ -31,8 +31,9 @@ Point<double> double_point(const PlainView& view, int i, int j);
 template <class Texel>
 void draw_double(const PlainView& view, const Texel* source, Texel* picture, const ParallelFor& parallel_for);
 
-// (2) Every pixel with float polynomials for the trigonometry, a vector of pixels at once, in tiles of 64 x 32; both
-// taps and all channels of a texel row by one load; streaming stores. The source has a border to read without tests.
+// (2) Every pixel with float polynomials for the trigonometry, a vector of pixels at once, in tiles of 64 x
+// 32; both taps and all channels of a texel row by one load; streaming stores. The source has a border to
+// read without tests.
 struct PaddedSource {
     PaddedSource(const PlainView& view, const float* source, const ParallelFor& parallel_for);
 
@@ -52,14 +53,14 @@ std::string simd_target();
 bool have_opencv();
 template <class Texel>
 class OpenCv {
-public:
+  public:
     OpenCv(const PlainView& view, const Texel* source, Texel* picture, int threads,
            const ParallelFor& parallel_for);
 
     void compute_map();
     void remap();
 
-private:
+  private:
     PlainView m_view;
     const Texel* m_source;
     Texel* m_picture;
@@ -70,16 +71,16 @@ private:
 /// The source point that OpenCV uses: its map is rounded to 1/32 pixel (INTER_BITS = 5).
 Point<double> opencv_point(const PlainView& view, int i, int j);
 
-// (4) Reads every cache line of the source that holds a tap, once and in order, and writes the picture with streaming
-// stores.
+// (4) Reads every cache line of the source that holds a tap, once and in order, and writes the picture with
+// streaming stores.
 class Traffic {
-public:
+  public:
     Traffic(const PlainView& view, const std::byte* source, int texel_bytes, const ParallelFor& parallel_for);
 
     std::size_t bytes_read() const;
     void copy(std::byte* picture, const ParallelFor& parallel_for) const;
 
-private:
+  private:
     struct Run {
         const std::byte* begin;
         std::size_t bytes;
@@ -88,8 +89,8 @@ private:
     std::size_t m_picture_bytes;
 };
 
-/// Sums all bytes of [source, source + read) and fills [target, target + written), streaming; both 64-byte aligned,
-/// sizes multiples of 64. The sum is what is written.
+/// Sums all bytes of [source, source + read) and fills [target, target + written), streaming; both 64-byte
+/// aligned, sizes multiples of 64. The sum is what is written.
 void stream(const std::byte* source, std::size_t read, std::byte* target, std::size_t written);
 
 }  // namespace anamorph::bench

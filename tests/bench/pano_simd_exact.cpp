@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The rival to beat: every pixel exact, with vectors of pixels, tiles, wide loads, prefetches and streaming stores.
+// The rival to beat: every pixel exact, with vectors of pixels, tiles, wide loads, prefetches and streaming
+// stores.
 #include <algorithm>
 #include <cstring>
 
@@ -7,8 +8,8 @@
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "pano_simd_exact.cpp"
-#include "hwy/foreach_target.h"  // before highway.h
 #include "hwy/cache_control.h"
+#include "hwy/foreach_target.h"  // before highway.h
 #include "hwy/highway.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -21,16 +22,15 @@ using DI = hn::RebindToSigned<D>;
 
 constexpr int kTileWidth = 64, kTileHeight = kSimdTileHeight;
 
-/// What one row of a tile reads: where the upper left taps stand (floats from the origin) and the weights of the
-/// taps to the right and below.
+/// What one row of a tile reads: where the upper left taps stand (floats from the origin) and the weights of
+/// the taps to the right and below.
 struct RowTaps {
     HWY_ALIGN_MAX std::int32_t offset[kTileWidth];
     HWY_ALIGN_MAX float x[kTileWidth], y[kTileWidth];
 };
 
 /// atan t for 0 <= t <= 1: minimax polynomial in t^2, absolute error below 4e-8, below 1.4e-7 with rounding.
-HWY_INLINE V atan_to_one(D d, V t)
-{
+HWY_INLINE V atan_to_one(D d, V t) {
     const V a = hn::Mul(t, t);
     V r = hn::Set(d, -0.004054567139f);
     for (const float c : {0.0218629576f, -0.05591232636f, 0.09642197297f, -0.1390862954f, 0.1994656565f,
@@ -39,8 +39,7 @@ HWY_INLINE V atan_to_one(D d, V t)
     return hn::Mul(r, t);
 }
 
-HWY_INLINE V atan2(D d, V y, V x)
-{
+HWY_INLINE V atan2(D d, V y, V x) {
     constexpr float kHalfTurn = 3.14159265f, kQuarterTurn = 1.57079633f;
     const V ax = hn::Abs(x), ay = hn::Abs(y);
     V r = atan_to_one(d, hn::Div(hn::Min(ax, ay), hn::Max(ax, ay)));
@@ -59,14 +58,12 @@ struct FloatMap {
           scale_x(static_cast<float>(view.scale_x)),
           scale_y(static_cast<float>(view.scale_y)),
           centre_x(static_cast<float>(0.5 * view.source_width - 0.5)),
-          centre_y(static_cast<float>(0.5 * view.source_height - 0.5))
-    {
+          centre_y(static_cast<float>(0.5 * view.source_height - 0.5)) {
         std::copy_n(view.rotation, 9, rotation);
     }
 
     /// Source points of the pixels (i + lane, j), texel centres at whole numbers.
-    HWY_INLINE void operator()(D d, int i, int j, V& x, V& y) const
-    {
+    HWY_INLINE void operator()(D d, int i, int j, V& x, V& y) const {
         const float* r = rotation;
         const V u = hn::MulAdd(hn::Iota(d, static_cast<float>(i)), hn::Set(d, step), hn::Set(d, first));
         const float v = first + static_cast<float>(j) * step;
@@ -86,8 +83,8 @@ struct FloatMap {
 };
 
 /// The taps of as many pixels as a vector holds, pixel k of the row being (i + k, j).
-HWY_INLINE void compute_taps(const FloatMap& map, int i, int j, int k, std::int32_t row_floats, RowTaps& taps)
-{
+HWY_INLINE void compute_taps(const FloatMap& map, int i, int j, int k, std::int32_t row_floats,
+                             RowTaps& taps) {
     const D d;
     const DI di;
     V x, y;
@@ -104,16 +101,14 @@ HWY_INLINE void compute_taps(const FloatMap& map, int i, int j, int k, std::int3
     hn::Store(hn::Add(rows, hn::Add(columns, hn::Add(columns, columns))), di, taps.offset + k);
 }
 
-HWY_INLINE void prefetch(const RowTaps& taps, const float* below)
-{
+HWY_INLINE void prefetch(const RowTaps& taps, const float* below) {
     constexpr int kPixelsPerLine = 4;
     for (int k = 0; k < kTileWidth; k += kPixelsPerLine) hwy::Prefetch(below + taps.offset[k]);
 }
 
 /// Bilinear samples of three channels to `row`, which has room for one float more.
-HWY_INLINE void sample(const RowTaps& taps, int first, int count, const float* origin, std::int32_t row_floats,
-                       float* row)
-{
+HWY_INLINE void sample(const RowTaps& taps, int first, int count, const float* origin,
+                       std::int32_t row_floats, float* row) {
 #if HWY_MAX_BYTES >= 32
     const hn::FixedTag<float, 4> d4;
     const hn::FixedTag<float, 8> d8;
@@ -140,16 +135,17 @@ HWY_INLINE void sample(const RowTaps& taps, int first, int count, const float* o
 #endif
 }
 
-HWY_INLINE void stream_row(const float* row, float* to)
-{
+HWY_INLINE void stream_row(const float* row, float* to) {
     const D d;
-    for (std::size_t k = 0; k < 3 * kTileWidth; k += hn::Lanes(d)) hn::Stream(hn::Load(d, row + k), d, to + k);
+    for (std::size_t k = 0; k < 3 * kTileWidth; k += hn::Lanes(d))
+        hn::Stream(hn::Load(d, row + k), d, to + k);
 }
 
-/// The tiles of one strip of the picture. Coordinates run kAhead rows ahead of the samples, which gives the prefetches
-/// their time; a row is streamed after the next one is sampled, when its stores have reached the cache.
-void draw_strip(const PlainView& view, const float* origin, std::ptrdiff_t row_floats, float* picture, int strip)
-{
+/// The tiles of one strip of the picture. Coordinates run kAhead rows ahead of the samples, which gives the
+/// prefetches their time; a row is streamed after the next one is sampled, when its stores have reached the
+/// cache.
+void draw_strip(const PlainView& view, const float* origin, std::ptrdiff_t row_floats, float* picture,
+                int strip) {
     constexpr int kAhead = 3;
     const FloatMap map(view);
     const int size = view.size, top = strip * kTileHeight, rows = std::min(kTileHeight, size - top);
@@ -164,7 +160,8 @@ void draw_strip(const PlainView& view, const float* origin, std::ptrdiff_t row_f
         if (size % kTileWidth == 0)
             stream_row(drawn[step & 1], to);
         else
-            std::memcpy(to, drawn[step & 1], static_cast<std::size_t>(std::min(kTileWidth, size - left)) * 12);
+            std::memcpy(to, drawn[step & 1],
+                        static_cast<std::size_t>(std::min(kTileWidth, size - left)) * 12);
     };
     for (int step = 0; step < steps + kAhead; ++step) {
         RowTaps& next = taps[step % (kAhead + 1)];
@@ -172,8 +169,7 @@ void draw_strip(const PlainView& view, const float* origin, std::ptrdiff_t row_f
         const RowTaps& current = taps[(now + kAhead + 1) % (kAhead + 1)];
         // Arithmetic and loads side by side.
         for (int k = 0; k < kTileWidth; k += lanes) {
-            if (step < steps)
-                compute_taps(map, step / rows * kTileWidth, top + step % rows, k, stride, next);
+            if (step < steps) compute_taps(map, step / rows * kTileWidth, top + step % rows, k, stride, next);
             if (now >= 0) sample(current, k, lanes, origin, stride, drawn[now & 1]);
         }
         if (step < steps) prefetch(next, origin + row_floats);
@@ -182,8 +178,7 @@ void draw_strip(const PlainView& view, const float* origin, std::ptrdiff_t row_f
     finish(steps - 1);
 }
 
-void points(const PlainView& view, Point<float>* to)
-{
+void points(const PlainView& view, Point<float>* to) {
     const D d;
     const FloatMap map(view);
     const int lanes = static_cast<int>(hn::Lanes(d));
@@ -198,8 +193,7 @@ void points(const PlainView& view, Point<float>* to)
         }
 }
 
-void read_and_fill(const std::byte* source, std::size_t read, std::byte* target, std::size_t written)
-{
+void read_and_fill(const std::byte* source, std::size_t read, std::byte* target, std::size_t written) {
     const hn::ScalableTag<std::uint32_t> d;
     const std::size_t lanes = hn::Lanes(d);
     const auto* from = reinterpret_cast<const std::uint32_t*>(source);
@@ -209,7 +203,9 @@ void read_and_fill(const std::byte* source, std::size_t read, std::byte* target,
     for (std::size_t k = 0; k < written / 4; k += lanes) hn::Stream(sum, d, to + k);
 }
 
-const char* target() { return hwy::TargetName(HWY_TARGET); }
+const char* target() {
+    return hwy::TargetName(HWY_TARGET);
+}
 
 }  // namespace anamorph::bench::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
@@ -223,25 +219,25 @@ HWY_EXPORT(read_and_fill);
 HWY_EXPORT(target);
 
 void draw_simd_exact(const PlainView& view, const PaddedSource& source, float* picture,
-                     const ParallelFor& parallel_for)
-{
+                     const ParallelFor& parallel_for) {
     parallel_for((view.size + kSimdTileHeight - 1) / kSimdTileHeight, [&](std::int64_t strip) {
-        HWY_DYNAMIC_DISPATCH(draw_strip)(view, source.origin, source.row_floats, picture, static_cast<int>(strip));
+        HWY_DYNAMIC_DISPATCH(draw_strip)
+        (view, source.origin, source.row_floats, picture, static_cast<int>(strip));
         hwy::FlushStream();
     });
 }
 
-std::vector<Point<float>> simd_exact_points(const PlainView& view)
-{
+std::vector<Point<float>> simd_exact_points(const PlainView& view) {
     std::vector<Point<float>> all(static_cast<std::size_t>(view.size) * static_cast<std::size_t>(view.size));
     HWY_DYNAMIC_DISPATCH(points)(view, all.data());
     return all;
 }
 
-std::string simd_target() { return HWY_DYNAMIC_DISPATCH(target)(); }
+std::string simd_target() {
+    return HWY_DYNAMIC_DISPATCH(target)();
+}
 
-void stream(const std::byte* source, std::size_t read, std::byte* target, std::size_t written)
-{
+void stream(const std::byte* source, std::size_t read, std::byte* target, std::size_t written) {
     HWY_DYNAMIC_DISPATCH(read_and_fill)(source, read, target, written);
 }
 

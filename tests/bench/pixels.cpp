@@ -9,8 +9,7 @@
 
 namespace anamorph::bench {
 
-Buffer::Buffer(std::size_t bytes)
-{
+Buffer::Buffer(std::size_t bytes) {
     constexpr std::size_t kPage = std::size_t{2} << 20, kRoom = 4096;
     const std::size_t size = (bytes + kRoom + kPage - 1) / kPage * kPage;
     void* data = std::aligned_alloc(kPage, size);
@@ -20,15 +19,15 @@ Buffer::Buffer(std::size_t bytes)
     m_data.reset(static_cast<std::byte*>(data));
 }
 
-void Buffer::Free::operator()(std::byte* data) const { std::free(data); }
+void Buffer::Free::operator()(std::byte* data) const {
+    std::free(data);
+}
 
-Pool::Pool(int count)
-{
+Pool::Pool(int count) {
     for (int i = 1; i < count; ++i) m_threads.emplace_back([this] { work(); });
 }
 
-Pool::~Pool()
-{
+Pool::~Pool() {
     {
         const std::lock_guard lock(m_mutex);
         m_stop = true;
@@ -37,14 +36,12 @@ Pool::~Pool()
     for (std::thread& thread : m_threads) thread.join();
 }
 
-ParallelFor Pool::parallel_for()
-{
+ParallelFor Pool::parallel_for() {
     if (m_threads.empty()) return serial_for;
     return [this](std::int64_t count, const std::function<void(std::int64_t)>& body) { run(count, body); };
 }
 
-void Pool::run(std::int64_t count, const std::function<void(std::int64_t)>& body)
-{
+void Pool::run(std::int64_t count, const std::function<void(std::int64_t)>& body) {
     {
         const std::lock_guard lock(m_mutex);
         m_body = &body;
@@ -59,13 +56,11 @@ void Pool::run(std::int64_t count, const std::function<void(std::int64_t)>& body
     m_done.wait(lock, [this] { return m_busy == 0; });
 }
 
-void Pool::drain()
-{
+void Pool::drain() {
     for (std::int64_t i = m_next++; i < m_count; i = m_next++) (*m_body)(i);
 }
 
-void Pool::work()
-{
+void Pool::work() {
     std::uint64_t seen = 0;
     for (;;) {
         {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Memory and threads of the benchmark: buffers on huge pages, so that page faults and TLB misses weigh on nobody,
-// and a pool that lends its threads as a ParallelFor.
+// Memory and threads of the benchmark: buffers on huge pages, so that page faults and TLB misses weigh on
+// nobody, and a pool that lends its threads as a ParallelFor.
 #pragma once
 
 #include <atomic>
@@ -19,17 +19,16 @@ namespace anamorph::bench {
 
 /// Zeroed memory, aligned to 2 MiB, with some room behind the last byte for wide loads.
 class Buffer {
-public:
+  public:
     explicit Buffer(std::size_t bytes);
 
     std::byte* bytes() const { return m_data.get(); }
     template <class T>
-    T* as() const
-    {
+    T* as() const {
         return reinterpret_cast<T*>(m_data.get());
     }
 
-private:
+  private:
     struct Free {
         void operator()(std::byte* data) const;
     };
@@ -38,7 +37,7 @@ private:
 
 /// `count` threads that work: the caller and count - 1 more, kept between loops.
 class Pool {
-public:
+  public:
     explicit Pool(int count);
     ~Pool();
     Pool(const Pool&) = delete;
@@ -46,7 +45,7 @@ public:
 
     ParallelFor parallel_for();
 
-private:
+  private:
     void run(std::int64_t count, const std::function<void(std::int64_t)>& body);
     void work();
     void drain();

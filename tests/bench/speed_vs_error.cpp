@@ -2,50 +2,47 @@
 // speed_vs_error --csv FILE [--op NAME] [--size N] [--threads N] [--case NAME] [--scheme NAME] [--rounds N]
 // speed_vs_error --bounds [...]
 //
-// Measures how fast each scheme draws and how far it is from the exact map, next to what else one could use, all in
-// one run. The CSV has a line per case, scheme and tolerance; a summary goes to standard output.
+// Measures how fast each scheme draws and how far it is from the exact map, next to what else one could use,
+// all in one run. The CSV has a line per case, scheme and tolerance; a summary goes to standard output.
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <cstdio>
+#include <cstdlib>
+#include <ctime>
 #include <exception>
 #include <fstream>
-#include <iomanip>
-#include <iostream>
 #include <numeric>
 #include <random>
 #include <stdexcept>
 #include <string_view>
-#include <thread>
+#include <utility>
 
 #include "bench.h"
 
 namespace anamorph::bench {
 namespace {
 
-std::vector<Op>& ops()
-{
+std::vector<Op>& ops() {
     static std::vector<Op> list;
     return list;
 }
 
-double now_ns()
-{
-    return std::chrono::duration<double, std::nano>(std::chrono::steady_clock::now().time_since_epoch()).count();
+double now_ns(int threads) {
+    timespec t{};
+    clock_gettime(threads == 1 ? CLOCK_THREAD_CPUTIME_ID : CLOCK_MONOTONIC, &t);
+    return static_cast<double>(t.tv_sec) * 1e9 + static_cast<double>(t.tv_nsec);
 }
 
-int whole_number(std::string_view option, const char* text, int least, int most)
-{
+int whole_number(std::string_view option, const char* text, int least, int most) {
     char* end = nullptr;
     const long value = std::strtol(text, &end, 10);
     if (end == text || *end || value < least || value > most)
-        throw std::invalid_argument(std::string(option) + " " + text + ": allowed is " + std::to_string(least) +
-                                    " to " + std::to_string(most));
+        throw std::invalid_argument(std::string(option) + " " + text + ": allowed is " +
+                                    std::to_string(least) + " to " + std::to_string(most));
     return static_cast<int>(value);
 }
 
-Settings parse(int argc, char** argv)
-{
+Settings parse(int argc, char** argv) {
     Settings s;
     for (int i = 1; i < argc; ++i) {
         const std::string_view option = argv[i];
@@ -55,17 +52,25 @@ Settings parse(int argc, char** argv)
         }
         if (i + 1 == argc) throw std::invalid_argument(std::string(option) + ": needs a value");
         const char* value = argv[++i];
-        if (option == "--csv") s.csv = value;
-        else if (option == "--op") s.op = value;
-        else if (option == "--case") s.case_name = value;
-        else if (option == "--scheme") s.scheme = value;
-        else if (option == "--size") s.size = whole_number(option, value, 16, 8192);
-        else if (option == "--threads") s.threads = whole_number(option, value, 1, 1024);
-        else if (option == "--rounds") s.rounds = whole_number(option, value, 1, 1000);
+        if (option == "--csv")
+            s.csv = value;
+        else if (option == "--op")
+            s.op = value;
+        else if (option == "--case")
+            s.case_name = value;
+        else if (option == "--scheme")
+            s.scheme = value;
+        else if (option == "--size")
+            s.size = whole_number(option, value, 16, 8192);
+        else if (option == "--threads")
+            s.threads = whole_number(option, value, 1, 1024);
+        else if (option == "--rounds")
+            s.rounds = whole_number(option, value, 1, 1000);
         else
-            throw std::invalid_argument(std::string(option) +
-                                        ": allowed are --csv, --op, --size, --threads, --case, --scheme, --rounds "
-                                        "and --bounds");
+            throw std::invalid_argument(
+                std::string(option) +
+                ": allowed are --csv, --op, --size, --threads, --case, --scheme, --rounds "
+                "and --bounds");
     }
     if (s.csv.empty() && !s.bounds) throw std::invalid_argument("--csv: a file to write is needed");
     const auto known = [&](const Op& op) { return op.name == s.op; };
@@ -77,43 +82,39 @@ Settings parse(int argc, char** argv)
     return s;
 }
 
-void write_csv(std::ostream& out, const Report& report)
-{
-    out << "op,case,scheme,tol_px,size,threads,ns_per_px,ratio_to_exact,mean_error_px,p99_error_px,max_error_px,"
+void write_csv(std::ostream& out, const Report& report) {
+    out << "op,case,scheme,tol_px,size,threads,ns_per_px,ratio_to_exact,mean_error_px,p99_error_px,max_error_"
+           "px,"
            "bound_px,exact_fraction\n";
     for (const Row& r : report.rows)
-        out << r.op << ',' << r.case_name << ',' << r.scheme << ',' << r.tol_px << ',' << r.size << ',' << r.threads
-            << ',' << r.ns_per_px << ',' << r.ratio_to_exact << ',' << r.error.mean << ',' << r.error.p99 << ','
-            << r.error.max << ',' << r.bound_px << ',' << r.exact_fraction << '\n';
+        out << r.op << ',' << r.case_name << ',' << r.scheme << ',' << r.tol_px << ',' << r.size << ','
+            << r.threads << ',' << r.ns_per_px << ',' << r.ratio_to_exact << ',' << r.error.mean << ','
+            << r.error.p99 << ',' << r.error.max << ',' << r.bound_px << ',' << r.exact_fraction << '\n';
 }
 
-void print_head()
-{
-    std::printf("%-20s %-16s %9s %3s %9s %9s %8s %9s %9s %9s %9s %6s\n", "case", "scheme", "tol px", "thr", "ns/px",
-                "best", "x double", "mean err", "p99 err", "max err", "bound", "exact");
+void print_head() {
+    std::printf("%-20s %-16s %9s %3s %9s %9s %8s %9s %9s %9s %9s %6s\n", "case", "scheme", "tol px", "thr",
+                "ns/px", "best", "x double", "mean err", "p99 err", "max err", "bound", "exact");
 }
 
-void print_row(const Row& r)
-{
-    std::printf("%-20s %-16s %9.4g %3d %9.3f %9.3f %8.2f %9.2g %9.2g %9.2g %9.2g %6.3f\n", r.case_name.c_str(),
-                r.scheme.c_str(), r.tol_px, r.threads, r.ns_per_px, r.best_ns_per_px, r.ratio_to_exact,
-                r.error.mean, r.error.p99, r.error.max, r.bound_px, r.exact_fraction);
+void print_row(const Row& r) {
+    std::printf("%-20s %-16s %9.4g %3d %9.3f %9.3f %8.2f %9.2g %9.2g %9.2g %9.2g %6.3f\n",
+                r.case_name.c_str(), r.scheme.c_str(), r.tol_px, r.threads, r.ns_per_px, r.best_ns_per_px,
+                r.ratio_to_exact, r.error.mean, r.error.p99, r.error.max, r.bound_px, r.exact_fraction);
     std::fflush(stdout);
 }
 
-void print_targets(const Report& report)
-{
+void print_targets(const Report& report) {
     if (report.targets.empty()) return;
     std::printf("\n%-78s %8s %9s %9s\n", "target", "wanted", "reached", "best");
     for (const Target& t : report.targets) {
         const bool pass = t.at_most ? t.reached <= t.wanted : t.reached >= t.wanted;
-        std::printf("%-78s %2s %5.4g %9.4g %9.4g  %s\n", t.what.c_str(), t.at_most ? "<=" : ">=", t.wanted, t.reached,
-                    t.reached_by_best, pass ? "pass" : "MISS");
+        std::printf("%-78s %2s %5.4g %9.4g %9.4g  %s\n", t.what.c_str(), t.at_most ? "<=" : ">=", t.wanted,
+                    t.reached, t.reached_by_best, pass ? "pass" : "MISS");
     }
 }
 
-int run(int argc, char** argv)
-{
+int run(int argc, char** argv) {
     const Settings settings = parse(argc, argv);
     Report report;
     if (!settings.bounds) print_head();
@@ -132,23 +133,24 @@ int run(int argc, char** argv)
     write_csv(csv, report);
     if (!csv.flush()) throw std::runtime_error("--csv " + settings.csv + ": cannot be written");
     print_targets(report);
-    for (const std::string& failure : report.failures) std::fprintf(stderr, "speed_vs_error: %s\n", failure.c_str());
+    for (const std::string& failure : report.failures)
+        std::fprintf(stderr, "speed_vs_error: %s\n", failure.c_str());
     return report.failures.empty() ? 0 : 1;
 }
 
 }  // namespace
 
-RegisterOp::RegisterOp(Op op) { ops().push_back(std::move(op)); }
+RegisterOp::RegisterOp(Op op) {
+    ops().push_back(std::move(op));
+}
 
-
-void Report::add(const Row& row)
-{
+void Report::add(const Row& row) {
     rows.push_back(row);
     print_row(row);
 }
 
-const Row* Report::find(const std::string& case_name, const std::string& scheme, double tol_px, int threads) const
-{
+const Row* Report::find(const std::string& case_name, const std::string& scheme, double tol_px,
+                        int threads) const {
     for (const Row& r : rows)
         if (r.case_name == case_name && r.scheme == scheme && (std::isnan(tol_px) || r.tol_px == tol_px) &&
             (threads == 0 || r.threads == threads))
@@ -156,20 +158,17 @@ const Row* Report::find(const std::string& case_name, const std::string& scheme,
     return nullptr;
 }
 
-void Report::add_speed_target(const std::string& what, double wanted, const Row* slow, const Row* fast)
-{
+void Report::add_speed_target(const std::string& what, double wanted, const Row* slow, const Row* fast) {
     if (slow && fast)
         targets.push_back(
             {what, wanted, slow->ns_per_px / fast->ns_per_px, slow->best_ns_per_px / fast->best_ns_per_px});
 }
 
-void Report::add_limit(const std::string& what, double at_most, double reached)
-{
+void Report::add_limit(const std::string& what, double at_most, double reached) {
     targets.push_back({what, at_most, reached, reached, true});
 }
 
-std::vector<Times> time_interleaved(const std::vector<std::function<void()>>& contenders, int rounds)
-{
+std::vector<Times> time_interleaved(const std::vector<Timed>& contenders, int rounds) {
     constexpr double kQuick = 40e6;
     constexpr int kSlowEvery = 3;
     std::vector<std::vector<double>> times(contenders.size());
@@ -177,13 +176,13 @@ std::vector<Times> time_interleaved(const std::vector<std::function<void()>>& co
     std::iota(order.begin(), order.end(), std::size_t{0});
     std::mt19937 random(1);
     const auto once = [&](std::size_t i) {
-        const double start = now_ns();
-        contenders[i]();
-        return now_ns() - start;
+        const double start = now_ns(contenders[i].threads);
+        contenders[i].draw();
+        return now_ns(contenders[i].threads) - start;
     };
     std::vector<bool> quick;
     for (std::size_t i = 0; i < contenders.size(); ++i) {
-        contenders[i]();
+        contenders[i].draw();
         quick.push_back(once(i) < kQuick);
     }
     for (int round = 0; round < rounds; ++round) {
@@ -203,8 +202,7 @@ std::vector<Times> time_interleaved(const std::vector<std::function<void()>>& co
     return result;
 }
 
-Accuracy accuracy_of(std::vector<float>& errors)
-{
+Accuracy accuracy_of(std::vector<float>& errors) {
     if (errors.empty()) return {};
     double sum = 0;
     for (const float e : errors) sum += e;
@@ -215,8 +213,7 @@ Accuracy accuracy_of(std::vector<float>& errors)
 
 }  // namespace anamorph::bench
 
-int main(int argc, char** argv)
-{
+int main(int argc, char** argv) {
     try {
         return anamorph::bench::run(argc, argv);
     } catch (const std::exception& error) {
