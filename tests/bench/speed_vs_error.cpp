@@ -116,8 +116,13 @@ void print_targets(const Report& report) {
 
 int run(int argc, char** argv) {
     const Settings settings = parse(argc, argv);
+    std::ofstream csv;
+    if (!settings.bounds) {
+        csv.open(settings.csv);
+        if (!csv) throw std::runtime_error("--csv " + settings.csv + ": cannot be written");
+        print_head();
+    }
     Report report;
-    if (!settings.bounds) print_head();
     for (const Op& op : ops()) {
         if (settings.op != "all" && settings.op != op.name) continue;
         if (!settings.bounds)
@@ -129,7 +134,6 @@ int run(int argc, char** argv) {
     if (report.rows.empty())
         throw std::invalid_argument("--case " + settings.case_name + " --scheme " + settings.scheme +
                                     ": no such row");
-    std::ofstream csv(settings.csv);
     write_csv(csv, report);
     if (!csv.flush()) throw std::runtime_error("--csv " + settings.csv + ": cannot be written");
     print_targets(report);
