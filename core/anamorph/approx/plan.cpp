@@ -2,11 +2,9 @@
 #include "anamorph/approx/plan.h"
 
 #include <algorithm>
-#include <atomic>
 #include <bit>
 #include <cstdio>
 #include <optional>
-#include <unordered_map>
 
 #include "anamorph/approx/residual.h"
 #include "anamorph/approx/taylor.h"
@@ -338,97 +336,42 @@ class Planner {
     std::optional<LinearPart> m_linear;
 };
 
+std::vector<Box> boxes_of(const Chart& chart) {
+    std::vector<Box> boxes;
+    for (const Piece& piece : chart.pieces()) boxes.push_back(piece.box);
+    return boxes;
+}
+
 }  // namespace
 
-struct Plan::Cache {
-    static constexpr std::size_t kMost = 2048;
-    std::mutex mutex;
-    std::unordered_map<std::int64_t, std::shared_ptr<const std::vector<Block>>> regions;
-    std::optional<Reached> reached;
-};
-
 Plan::Plan(const Panorama& map, const PlanOptions& options)
-    : m_map(map), m_options(options), m_cache(std::make_shared<Cache>()) {
+    : BlockMap(map.target().width(), map.target().height(), boxes_of(map.target())),
+      m_map(map),
+      m_options(options) {
     if (!(options.tol >= 0 && options.tol < HUGE_VAL)) {
         char text[32];
         std::snprintf(text, sizeof text, "%g", options.tol);
         throw Error("tol", text, "allowed is 0 (exact) or a finite number of source pixels above it");
     }
-    for (const Piece& piece : map.target().pieces()) {
-        const Grid grid{m_regions, (piece.box.width() + kRegion - 1) / kRegion,
-                        (piece.box.height() + kRegion - 1) / kRegion};
-        m_grids.push_back(grid);
-        m_regions += std::int64_t{grid.columns} * grid.rows;
-    }
 }
 
-Plan::Place Plan::place_of(std::int64_t region) const {
-    std::size_t piece = m_grids.size() - 1;
-    while (m_grids[piece].first > region) --piece;
-    const Grid& grid = m_grids[piece];
-    const Box& box = m_map.target().pieces()[piece].box;
-    const int x = box.x0 + static_cast<int>((region - grid.first) % grid.columns) * kRegion;
-    const int y = box.y0 + static_cast<int>((region - grid.first) / grid.columns) * kRegion;
-    return {intersection({x, y, x + kRegion, y + kRegion}, box), static_cast<int>(piece)};
-}
-
-std::vector<std::int64_t> Plan::regions_in(const Box& box) const {
-    std::vector<std::int64_t> found;
-    for (std::size_t piece = 0; piece < m_grids.size(); ++piece) {
-        const Grid& grid = m_grids[piece];
-        const Box& whole = m_map.target().pieces()[piece].box;
-        const Box part = intersection(box, whole);
-        if (part.empty()) continue;
-        for (int row = (part.y0 - whole.y0) / kRegion; row <= (part.y1 - 1 - whole.y0) / kRegion; ++row)
-            for (int column = (part.x0 - whole.x0) / kRegion; column <= (part.x1 - 1 - whole.x0) / kRegion;
-                 ++column)
-                found.push_back(grid.first + std::int64_t{row} * grid.columns + column);
-    }
-    return found;
-}
-
-std::shared_ptr<const std::vector<Block>> Plan::blocks(std::int64_t region) const {
-    {
-        const std::lock_guard lock(m_cache->mutex);
-        const auto found = m_cache->regions.find(region);
-        if (found != m_cache->regions.end()) return found->second;
-    }
-    const Place place = place_of(region);
-    auto blocks = std::make_shared<std::vector<Block>>();
-    Planner planner(m_map, m_options, place.piece, *blocks);
+void Plan::plan(const Box& box, int piece, Blocks& blocks) const {
+    Planner planner(m_map, m_options, piece, blocks);
     if (m_options.scheme == Scheme::exact || m_options.tol == 0)
-        planner.exact(place.box);
+        planner.exact(box);
     else
-        planner.settle(place.box);
-    const std::lock_guard lock(m_cache->mutex);
-    if (m_cache->regions.size() >= Cache::kMost) m_cache->regions.clear();
-    return m_cache->regions.try_emplace(region, std::move(blocks)).first->second;
+        planner.settle(box);
 }
 
-Reached Plan::reached(const ParallelFor& parallel_for) const {
-    {
-        const std::lock_guard lock(m_cache->mutex);
-        if (m_cache->reached) return *m_cache->reached;
-    }
-    Reached reached;
-    std::int64_t exact = 0;
-    std::mutex mutex;
-    parallel_for(regions(), [&](std::int64_t region) {
-        double bound = 0;
-        std::int64_t pixels = 0;
-        for (const Block& b : *blocks(region)) {
-            bound = std::max(bound, b.bound);
-            if (b.kind == Block::Kind::exact) pixels += std::int64_t{b.box.width()} * b.box.height();
-        }
-        const std::lock_guard lock(mutex);
-        reached.max_error = std::max(reached.max_error, bound);
-        exact += pixels;
-    });
-    reached.exact_fraction =
-        static_cast<double>(exact) / (double(m_map.target().width()) * m_map.target().height());
-    const std::lock_guard lock(m_cache->mutex);
-    m_cache->reached = reached;
-    return reached;
+bool Plan::exact(double x, double y, int piece, Point<double>& source_point,
+                 int& source_piece) const noexcept {
+    return m_map.exact(x, y, piece, source_point, source_piece);
+}
+
+Jacobian Plan::jacobian(double x, double y, int piece) const noexcept {
+    using J = Jet1<double>;
+    const Point<J> p = m_map(J::variable(x, 1, 0), J::variable(y, 0, 1), m_map.local_around(x, y, piece));
+    return {p.x.c[1], p.y.c[1], p.x.c[2], p.y.c[2]};
 }
 
 }  // namespace anamorph

@@ -32,6 +32,8 @@ class Border {
   public:
     Border(const Chart& chart, Wrap wrap);
 
+    const Chart& chart() const noexcept { return m_chart; }
+
     /// The rectangle of texels of a level that stand for themselves on `piece`.
     Box interior(int piece, const Source::Size& level) const noexcept;
 

@@ -16,12 +16,6 @@
 
 namespace anamorph {
 
-/// Source pixels (level 0) that the source point moves per target pixel: right, (x_i, y_i), and down, (x_j,
-/// y_j).
-struct Jacobian {
-    double x_i = 1, y_i = 0, x_j = 0, y_j = 1;
-};
-
 /// taps_a x taps_b bilinear taps on `level`, weighted alike: tap k of n stands (k - (n - 1) / 2) * spacing
 /// level texels from the centre along the level's direction of (x_i, y_i), and so along (x_j, y_j) for b.
 struct Footprint {

@@ -5,17 +5,9 @@
 #include <memory>
 
 #include "anamorph/approx/plan.h"
-#include "anamorph/error.h"
-#include "anamorph/image/border.h"
-#include "anamorph/image/filter.h"
-#include "anamorph/image/source.h"
-#include "anamorph/map/panorama.h"
+#include "anamorph/image/draw.h"
 
 namespace anamorph {
-
-/// What is drawn: colour; the source point as (u, v) in 0..1, v down, (-1, -1) where there is none; the
-/// distance of the source point used from the exact one; its proven bound. Distances in source pixels.
-enum class Output { color, stmap, error, bound };
 
 struct ReprojectOptions {
     Scheme scheme = Scheme::automatic;

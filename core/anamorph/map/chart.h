@@ -77,6 +77,12 @@ struct Point {
     T x, y;
 };
 
+/// Source pixels (level 0) that the source point moves per target pixel: right, (x_i, y_i), and down, (x_j,
+/// y_j).
+struct Jacobian {
+    double x_i = 1, y_i = 0, x_j = 0, y_j = 1;
+};
+
 /// matrix * ray
 template <class T>
 Ray<T> transform(const glm::dmat3& matrix, const Ray<T>& ray) {

@@ -1,0 +1,111 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "anamorph/approx/block.h"
+
+#include <algorithm>
+#include <mutex>
+#include <optional>
+#include <unordered_map>
+
+namespace anamorph {
+
+struct BlockMap::Cache {
+    static constexpr std::size_t kMost = 2048;
+
+    struct Region {
+        std::once_flag once;
+        Blocks blocks;
+    };
+    std::mutex mutex;
+    std::unordered_map<std::int64_t, std::shared_ptr<Region>> regions;
+    std::optional<Reached> reached;
+};
+
+BlockMap::BlockMap(int width, int height, const std::vector<Box>& pieces)
+    : m_width(width), m_height(height), m_cache(std::make_shared<Cache>()) {
+    for (const Box& box : pieces) {
+        const int columns = (box.width() + kRegion - 1) / kRegion,
+                  rows = (box.height() + kRegion - 1) / kRegion;
+        m_grids.push_back({box, m_regions, columns});
+        m_regions += std::int64_t{columns} * rows;
+    }
+}
+
+BlockMap::Place BlockMap::place_of(std::int64_t region) const {
+    std::size_t piece = m_grids.size() - 1;
+    while (m_grids[piece].first > region) --piece;
+    const Grid& grid = m_grids[piece];
+    const int x = grid.box.x0 + static_cast<int>((region - grid.first) % grid.columns) * kRegion;
+    const int y = grid.box.y0 + static_cast<int>((region - grid.first) / grid.columns) * kRegion;
+    return {intersection({x, y, x + kRegion, y + kRegion}, grid.box), static_cast<int>(piece)};
+}
+
+std::vector<std::int64_t> BlockMap::regions_in(const Box& box) const {
+    std::vector<std::int64_t> found;
+    for (const Grid& grid : m_grids) {
+        const Box part = intersection(box, grid.box);
+        if (part.empty()) continue;
+        const auto number = [](int at, int from) { return (at - from) / kRegion; };
+        for (int row = number(part.y0, grid.box.y0); row <= number(part.y1 - 1, grid.box.y0); ++row)
+            for (int column = number(part.x0, grid.box.x0); column <= number(part.x1 - 1, grid.box.x0);
+                 ++column)
+                found.push_back(grid.first + std::int64_t{row} * grid.columns + column);
+    }
+    return found;
+}
+
+bool BlockMap::covers(const Box& box) const {
+    std::int64_t pixels = 0;
+    for (const Grid& grid : m_grids) {
+        const Box part = intersection(box, grid.box);
+        if (!part.empty()) pixels += std::int64_t{part.width()} * part.height();
+    }
+    return pixels == std::int64_t{box.width()} * box.height();
+}
+
+std::shared_ptr<const Blocks> BlockMap::blocks(std::int64_t region) const {
+    std::shared_ptr<Cache::Region> found;
+    {
+        const std::lock_guard lock(m_cache->mutex);
+        if (m_cache->regions.size() >= Cache::kMost) m_cache->regions.clear();
+        std::shared_ptr<Cache::Region>& entry = m_cache->regions[region];
+        if (!entry) entry = std::make_shared<Cache::Region>();
+        found = entry;
+    }
+    std::call_once(found->once, [&] {
+        const Place place = place_of(region);
+        plan(place.box, place.piece, found->blocks);
+    });
+    return {found, &found->blocks};
+}
+
+Reached BlockMap::reached(const ParallelFor& parallel_for) const {
+    {
+        const std::lock_guard lock(m_cache->mutex);
+        if (m_cache->reached) return *m_cache->reached;
+    }
+    Reached reached;
+    std::int64_t exact = 0;
+    std::mutex mutex;
+    parallel_for(regions(), [&](std::int64_t region) {
+        double bound = 0;
+        std::int64_t pixels = 0;
+        for (const Block& b : *blocks(region)) {
+            bound = std::max(bound, b.bound);
+            if (b.kind == Block::Kind::exact) pixels += std::int64_t{b.box.width()} * b.box.height();
+        }
+        const std::lock_guard lock(mutex);
+        reached.max_error = std::max(reached.max_error, bound);
+        exact += pixels;
+    });
+    reached.exact_fraction = static_cast<double>(exact) / (double(m_width) * m_height);
+    const std::lock_guard lock(m_cache->mutex);
+    m_cache->reached = reached;
+    return reached;
+}
+
+void BlockMap::computed_row(const Block&, int, int begin, int end, float* x, float* y) const noexcept {
+    std::fill_n(x, end - begin, 0.0f);
+    std::fill_n(y, end - begin, 0.0f);
+}
+
+}  // namespace anamorph

@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: Apache-2.0
+// A pull map made cheap: the picture cut into blocks, each with a way to find the source points of its pixels
+// and a proven bound of their error.
+//
+// Blocks are anchored to the whole target image: what part of the picture is asked for, in what order and by
+// how many threads changes none of them.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "anamorph/error.h"
+#include "anamorph/map/chart.h"
+
+namespace anamorph {
+
+/// A rectangle of target pixels, at most kMaxSide either way (outside blocks: any size), with one way to find
+/// their source points.
+///
+/// For a polynomial block, with s and t in [-1, 1] running over the pixel centres of the block (s right, t
+/// down), the source point is base + (x or y)[0] + [1] s + [2] t + [3] s^2 + [4] s t + [5] t^2, in source
+/// pixels, the sum evaluated in float by Block-wide loops as ((([5] t + [2]) t + [0]) + s (([4] t + [1]) + s
+/// [3])).
+struct Block {
+    /// computed: the map gives the points as offsets from the base, row by row (BlockMap::computed_row).
+    /// exact: point by point in double. outside: there are none.
+    enum class Kind : std::uint8_t { polynomial, computed, exact, outside };
+    static constexpr int kMaxSide = 64;
+
+    Box box;
+    Kind kind = Kind::exact;
+    int piece = 0;         ///< of the target
+    int source_piece = 0;  ///< polynomial and computed blocks only
+    std::int32_t base_x = 0, base_y = 0;
+    float x[6] = {}, y[6] = {};
+    std::int64_t data = 0;  ///< the map's own, for computed blocks
+    double bound = 0;       ///< of the distance to the exact source point, in source pixels
+};
+
+/// What a picture reached: the largest proven bound in use and the fraction of pixels evaluated exactly.
+struct Reached {
+    double max_error = 0;
+    double exact_fraction = 0;
+};
+
+/// The blocks of a region of the picture.
+using Blocks = std::vector<Block>;
+
+/// A pull map cut into blocks. The target consists of pieces, each cut into regions of at most kRegion pixels
+/// square from its corner on; the blocks of a region cover it without overlap.
+class BlockMap {
+  public:
+    static constexpr int kRegion = 512;
+
+    /// `pieces`: boxes of a target of width x height pixels.
+    BlockMap(int width, int height, const std::vector<Box>& pieces);
+    virtual ~BlockMap() = default;
+
+    int width() const { return m_width; }
+    int height() const { return m_height; }
+
+    /// Does every pixel of a box belong to a piece?
+    bool covers(const Box& box) const;
+
+    std::int64_t regions() const { return m_regions; }
+    Box region_box(std::int64_t region) const { return place_of(region).box; }
+    /// The regions that meet a box of the picture.
+    std::vector<std::int64_t> regions_in(const Box& box) const;
+
+    /// The blocks of a region: planned when first asked for and kept for a while. Thread safe; several
+    /// threads that ask for the same region plan it once.
+    std::shared_ptr<const Blocks> blocks(std::int64_t region) const;
+
+    /// Over the whole picture.
+    Reached reached(const ParallelFor& parallel_for) const;
+
+    /// The truth in double: the source point of a target point. False where there is none.
+    virtual bool exact(double x, double y, int piece, Point<double>& source_point,
+                       int& source_piece) const noexcept = 0;
+    /// Source pixels per target pixel at a target point.
+    virtual Jacobian jacobian(double x, double y, int piece) const noexcept = 0;
+    /// Pixels [begin, end) of row `row` (0 is the block's first) of a computed block: source points less the
+    /// block's base. There is room for 16 more floats.
+    virtual void computed_row(const Block& block, int row, int begin, int end, float* x,
+                              float* y) const noexcept;
+
+  protected:
+    /// Cuts `box`, a region of `piece`, into blocks.
+    virtual void plan(const Box& box, int piece, Blocks& blocks) const = 0;
+
+  private:
+    struct Place {
+        Box box;
+        int piece;
+    };
+    /// Regions of one piece, numbered row by row.
+    struct Grid {
+        Box box;
+        std::int64_t first;
+        int columns;
+    };
+    struct Cache;
+
+    Place place_of(std::int64_t region) const;
+
+    int m_width, m_height;
+    std::vector<Grid> m_grids;
+    std::int64_t m_regions = 0;
+    std::shared_ptr<Cache> m_cache;
+};
+
+}  // namespace anamorph

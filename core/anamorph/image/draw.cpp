@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "anamorph/image/draw.h"
+
+#include <atomic>
+#include <cmath>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "anamorph/image/block_reader.h"
+#include "anamorph/image/strips.h"
+
+namespace anamorph {
+namespace {
+
+/// Draws the map itself: what Output names but for colour. One per thread.
+class MapPainter {
+  public:
+    MapPainter(const BlockMap& map, const Chart& source, Output output, const Canvas& canvas)
+        : m_map(map), m_source(source), m_output(output), m_canvas(canvas) {
+        m_values.resize(static_cast<std::size_t>(simd::kMaxRow * canvas.channels() + 16));
+    }
+
+    void draw(const Block& block, const Box& part) {
+        if (block.kind == Block::Kind::outside || m_output == Output::bound) {
+            m_canvas.fill(part, m_output == Output::stmap ? -1 : static_cast<float>(block.bound));
+            return;
+        }
+        alignas(64) float px[simd::kRowRoom], py[simd::kRowRoom];
+        for (int j = part.y0; j < part.y1; ++j) {
+            block_row(m_map, block, part, j, px, py);
+            for (int i = 0; i < part.width(); ++i) {
+                Point<double> exact{};
+                int piece = 0;
+                const bool seen = m_map.exact(part.x0 + i + 0.5, j + 0.5, block.piece, exact, piece);
+                const bool stated = block.kind != Block::Kind::exact;
+                put(i, seen, exact,
+                    stated ? Point<double>{block.base_x + double{px[i]}, block.base_y + double{py[i]}}
+                           : exact);
+            }
+            m_canvas.store(part.x0, j, part.width(), m_values.data());
+        }
+    }
+
+  private:
+    void put(int i, bool seen, const Point<double>& exact, const Point<double>& used) {
+        if (m_output == Output::stmap) {
+            m_values.data()[2 * i] = seen ? static_cast<float>(used.x / m_source.width()) : -1;
+            m_values.data()[2 * i + 1] = seen ? static_cast<float>(used.y / m_source.height()) : -1;
+            return;
+        }
+        double dx = seen ? used.x - exact.x : 0;
+        if (m_source.closed()) dx -= std::round(dx / m_source.period()) * m_source.period();
+        m_values.data()[i] = static_cast<float>(std::hypot(dx, seen ? used.y - exact.y : 0));
+    }
+
+    const BlockMap& m_map;
+    const Chart& m_source;
+    Output m_output;
+    const Canvas& m_canvas;
+    std::vector<float> m_values;
+};
+
+void check(const Chart& chart, Output output, const Source* source, const ImageView& picture) {
+    if (output == Output::color && !source) throw Error("a picture in colour needs a source");
+    if (output == Output::color) {
+        const Source::Size size = source->size(0);
+        if (size.width != chart.width() || size.height != chart.height())
+            throw Error("source size", std::to_string(size.width) + "x" + std::to_string(size.height),
+                        "the map was made for " + std::to_string(chart.width()) + "x" +
+                            std::to_string(chart.height()));
+    }
+    const int channels = channels_of(output, source);
+    if (picture.channels != channels)
+        throw Error("channels", std::to_string(picture.channels), "needed are " + std::to_string(channels));
+}
+
+}  // namespace
+
+int channels_of(Output output, const Source* source) {
+    return output == Output::color ? source->channels() : output == Output::stmap ? 2 : 1;
+}
+
+bool draw_blocks(const BlockMap& map, const Border& border, Filter filter, Output output,
+                 const Source* source, const Box& box, const ImageView& picture,
+                 const ParallelFor& parallel_for) {
+    check(border.chart(), output, source, picture);
+    const Canvas canvas(picture, box);
+    if (!map.covers(box)) canvas.fill(box, output == Output::stmap ? -1.0f : 0.0f);
+    std::atomic<bool> ok{true};
+    for_each_strip(map, box, parallel_for, [&](const Strip& strip) {
+        if (output != Output::color) {
+            MapPainter painter(map, border.chart(), output, canvas);
+            strip.for_each_block(
+                [&](const Block& block, const Box& part, const Block*) { painter.draw(block, part); });
+        } else {
+            BlockReader reader(map, *source, border, filter);
+            strip.for_each_block([&](const Block& block, const Box& part, const Block* next) {
+                if (!reader.draw(block, part, canvas, next)) ok = false;
+            });
+        }
+        simd::finish_stores();
+    });
+    return ok;
+}
+
+}  // namespace anamorph
