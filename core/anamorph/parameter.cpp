@@ -58,11 +58,28 @@ std::optional<Extent> to_extent(std::string_view text) {
     return Extent{*width, *height};
 }
 
+/// "1,2.5,-3", with or without blanks
+std::optional<std::vector<double>> to_numbers(std::string_view text) {
+    std::vector<double> values;
+    while (true) {
+        const std::size_t comma = text.find(',');
+        const std::optional<double> value = to_number(trimmed(text.substr(0, comma)));
+        if (!value) return {};
+        values.push_back(*value);
+        if (comma == std::string_view::npos) return values;
+        text.remove_prefix(comma + 1);
+    }
+}
+
 bool is_allowed(const Parameter& parameter, const std::string& value) {
     const auto in_range = [&](double v) { return v >= parameter.minimum && v <= parameter.maximum; };
     switch (parameter.type) {
         case ParameterType::number: {
             const std::optional<double> v = to_number(value);
+            return v && in_range(*v);
+        }
+        case ParameterType::whole: {
+            const std::optional<int> v = to_whole(value);
             return v && in_range(*v);
         }
         case ParameterType::toggle:
@@ -75,6 +92,12 @@ bool is_allowed(const Parameter& parameter, const std::string& value) {
             const bool one = value.find_first_of("xX") == std::string::npos;
             return v && in_range(v->width) && (one || in_range(v->height));
         }
+        case ParameterType::numbers: {
+            const std::optional<std::vector<double>> v = to_numbers(value);
+            return v && std::all_of(v->begin(), v->end(), in_range);
+        }
+        case ParameterType::image:
+        case ParameterType::file:
         case ParameterType::text:
             return !value.empty();
     }
@@ -102,6 +125,19 @@ std::optional<Assignment> to_assignment(std::string_view text) {
     const std::string_view key = trimmed(text.substr(0, equals));
     if (key.empty()) return {};
     return Assignment{std::string(key), std::string(trimmed(text.substr(equals + 1)))};
+}
+
+/// The length of a "(NAME?...)" that is the whole of the value at the start of `text`; 0 where there is none.
+std::size_t bracketed_name(std::string_view text) {
+    if (!text.starts_with('(')) return 0;
+    int depth = 0;
+    for (std::size_t i = 0; i < text.size(); ++i) {
+        depth += text[i] == '(' ? 1 : text[i] == ')' ? -1 : 0;
+        if (depth > 0) continue;
+        const bool whole = i + 1 == text.size() || text[i + 1] == '&';
+        return whole && text.substr(0, i).find('?') != std::string_view::npos ? i + 1 : 0;
+    }
+    return 0;
 }
 
 bool is_control(char c) {
@@ -141,6 +177,8 @@ std::string Parameter::allowed() const {
                 return "allowed is a number from " + shortest(minimum) + " to " + shortest(maximum);
             return low ? "allowed is a number from " + shortest(minimum) : "allowed is a finite number";
         }
+        case ParameterType::whole:
+            return "allowed is a whole number from " + shortest(minimum) + " to " + shortest(maximum);
         case ParameterType::toggle:
             return "allowed are 0, 1";
         case ParameterType::choice:
@@ -148,6 +186,12 @@ std::string Parameter::allowed() const {
         case ParameterType::extent:
             return "allowed is N or NxM, whole numbers from " + shortest(minimum) + " to " +
                    shortest(maximum);
+        case ParameterType::numbers:
+            return std::isfinite(minimum)
+                       ? "allowed are numbers from " + shortest(minimum) + ", separated by commas"
+                       : "allowed are finite numbers, separated by commas";
+        case ParameterType::image:
+        case ParameterType::file:
         case ParameterType::text:
             return "allowed is any text but none";
     }
@@ -181,6 +225,18 @@ double ParameterValues::number(std::string_view name) const {
     const std::optional<double> value = to_number(text(name));
     if (!value) throw Error(std::string(name), text(name), "not a number");
     return *value;
+}
+
+int ParameterValues::whole(std::string_view name) const {
+    const std::optional<int> value = to_whole(text(name));
+    if (!value) throw Error(std::string(name), text(name), "not a whole number");
+    return *value;
+}
+
+std::vector<double> ParameterValues::numbers(std::string_view name) const {
+    const std::optional<std::vector<double>> values = to_numbers(text(name));
+    if (!values) throw Error(std::string(name), text(name), "not numbers");
+    return *values;
 }
 
 Extent ParameterValues::extent(std::string_view name) const {
@@ -224,12 +280,16 @@ RecipeName parse_recipe_name(std::string_view name) {
         if (!assignment || std::any_of(assignment->value.begin(), assignment->value.end(), is_control))
             throw Error("argument \"" + printable(rest.substr(0, end)) + "\": allowed is key=value");
         // A nested recipe name keeps its own arguments.
-        if (lower(assignment->key) == "src" && assignment->value.find('?') != std::string::npos) {
+        const std::size_t value = rest.find('=') + 1, bracketed = bracketed_name(rest.substr(value));
+        if (bracketed > 0) {
+            end = value + bracketed;
+            assignment->value = rest.substr(value + 1, bracketed - 2);
+        } else if (assignment->value.find('?') != std::string::npos) {
             end = std::string_view::npos;
             assignment = to_assignment(rest);
         }
         out.assignments.push_back(*assignment);
-        rest.remove_prefix(end == std::string_view::npos ? rest.size() : end + 1);
+        rest.remove_prefix(std::min(rest.size(), end == std::string_view::npos ? rest.size() : end + 1));
     }
     return out;
 }

@@ -4,9 +4,10 @@
 //
 // A recipe file has one `key=value` a line. Blank lines and lines that start with # say nothing; blanks
 // around key and value do not count; a byte order mark and Windows line ends are read over. A recipe name is
-// `BASE?key=value&key=value`. Its values may hold any character but `&`, with one exception: a `src` that is
-// itself a recipe name (its value holds a `?`) takes all the rest of the name, so it stands last. Nothing is
-// decoded: %20 stays %20. Keys are read in upper or lower case.
+// `BASE?key=value&key=value`. Its values may hold any character but `&`, with one exception: a value that is
+// itself a recipe name with arguments (it holds a `?`) takes all the rest of the name, so it stands last, or
+// it stands in brackets: `a=(x.pano?yaw=3&fov=40)&b=y.exr`. Nothing is decoded: %20 stays %20. Keys are read
+// in upper or lower case.
 #pragma once
 
 #include <cstddef>
@@ -20,11 +21,15 @@
 namespace anamorph {
 
 enum class ParameterType {
-    number,  ///< finite, decimal, with a point whatever the locale
-    toggle,  ///< 0 or 1
-    choice,  ///< one of `choices`
-    extent,  ///< N or NxM, whole numbers
-    text     ///< any
+    number,   ///< finite, decimal, with a point whatever the locale
+    whole,    ///< a whole number
+    toggle,   ///< 0 or 1
+    choice,   ///< one of `choices`
+    extent,   ///< N or NxM, whole numbers
+    numbers,  ///< as number, one or more, separated by commas
+    image,    ///< the name of an image, or of a recipe
+    file,     ///< the name of another file
+    text      ///< any
 };
 
 struct Parameter {
@@ -33,7 +38,7 @@ struct Parameter {
     std::string unit;
     std::string default_value;  ///< as written in a recipe; may be empty, which `documentation` then explains
     std::vector<std::string> choices;
-    double minimum = 0, maximum = 0;  ///< of number and extent
+    double minimum = 0, maximum = 0;  ///< of number, whole, numbers and extent
     std::string documentation;        ///< one line
     std::string alias;                ///< another key for the same
 
@@ -66,8 +71,10 @@ class ParameterValues {
     bool given(std::string_view name) const { return m_given.count(std::string(name)) != 0; }
     /// As written, or the default.
     const std::string& text(std::string_view name) const;
-    /// For parameters of type number, toggle and extent that were given or have a default.
+    /// For parameters of type number, whole, numbers, toggle and extent that were given or have a default.
     double number(std::string_view name) const;
+    int whole(std::string_view name) const;
+    std::vector<double> numbers(std::string_view name) const;
     bool toggle(std::string_view name) const { return text(name) == "1"; }
     Extent extent(std::string_view name) const;
 

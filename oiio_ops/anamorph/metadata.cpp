@@ -16,7 +16,8 @@ namespace Strutil = OIIO::Strutil;
 
 /// Of the pixels' layout, of the camera or of the file, not of what the picture shows.
 bool holds_no_longer(const std::string& name) {
-    constexpr std::array prefixes = {"GPano:", "tiff:", "png:", "thumbnail_", "openexr:", "oiio:subimage"};
+    constexpr std::array prefixes = {"GPano:",   "tiff:",         "png:",     "thumbnail_",
+                                     "openexr:", "oiio:subimage", "anamorph:"};
     for (const char* prefix : prefixes)
         if (Strutil::istarts_with(name, prefix)) return true;
     constexpr std::array names = {"Orientation",
@@ -89,31 +90,30 @@ std::vector<Assignment> assignments_of(const OIIO::ParamValueList& options, cons
     return out;
 }
 
-void check_size(const Chart& target, int channels, TypeDesc type) {
+void check_size(const PictureRequest& picture, const ImageSpec& source) {
     const int limit = OIIO::get_int_attribute("limits:imagesize_MB", 32768);
-    const double megabytes =
-        double(target.width()) * target.height() * channels * double(type.size()) / (1024.0 * 1024.0);
+    const double megabytes = double(picture.width) * picture.height * source.nchannels *
+                             double(source.format.size()) / (1024.0 * 1024.0);
     if (limit > 0 && megabytes > limit)
-        throw Error("size", std::to_string(target.width()) + "x" + std::to_string(target.height()),
+        throw Error("size", std::to_string(picture.width) + "x" + std::to_string(picture.height),
                     "allowed are at most " + std::to_string(limit) + " MB (limits:imagesize_MB)");
 }
 
-ImageSpec picture_spec(const ImageSpec& source, const ReprojectRequest& request, const Reached& reached) {
+ImageSpec picture_spec(const ImageSpec& source, const PictureRequest& picture) {
     ImageSpec spec = source;
-    const Chart& target = request.target;
     spec.x = spec.y = spec.z = 0;
     spec.full_x = spec.full_y = spec.full_z = 0;
-    spec.width = spec.full_width = target.width();
-    spec.height = spec.full_height = target.height();
+    spec.width = spec.full_width = picture.width;
+    spec.height = spec.full_height = picture.height;
     spec.depth = spec.full_depth = 1;
     spec.tile_width = spec.tile_height = 0;
     spec.tile_depth = 1;
     spec.channelformats.clear();
     spec.format = oiio_type(pixel_type(source.format));
-    if (request.options.output != Output::color) {
-        const bool stmap = request.options.output == Output::stmap;
-        spec.nchannels = stmap ? 2 : 1;
-        spec.channelnames = stmap ? std::vector<std::string>{"R", "G"} : std::vector<std::string>{"Y"};
+    if (picture.pixels != PixelKind::color) {
+        const bool point = picture.pixels == PixelKind::point;
+        spec.nchannels = point ? 2 : 1;
+        spec.channelnames = point ? std::vector<std::string>{"R", "G"} : std::vector<std::string>{"Y"};
         spec.alpha_channel = spec.z_channel = -1;
         spec.format = OIIO::TypeFloat;
         spec.erase_attribute("oiio:ColorSpace");
@@ -125,10 +125,12 @@ ImageSpec picture_spec(const ImageSpec& source, const ReprojectRequest& request,
     for (const OIIO::ParamValue& attribute : spec.extra_attribs)
         if (!holds_no_longer(attribute.name().string())) kept.push_back(attribute);
     spec.extra_attribs = kept;
-    spec.attribute("anamorph:tol", static_cast<float>(request.options.tol));
-    spec.attribute("anamorph:max_error", static_cast<float>(reached.max_error));
-    spec.attribute("anamorph:exact_fraction", static_cast<float>(reached.exact_fraction));
+    add_facts(spec, picture.facts);
     return spec;
+}
+
+void add_facts(ImageSpec& spec, const Facts& facts) {
+    for (const auto& [name, value] : facts) spec.attribute(name, static_cast<float>(value));
 }
 
 }  // namespace anamorph

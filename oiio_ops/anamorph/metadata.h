@@ -5,6 +5,7 @@
 #include <OpenImageIO/imageio.h>
 
 #include "anamorph/image/reproject_parameters.h"
+#include "anamorph/operation.h"
 
 namespace anamorph {
 
@@ -16,11 +17,13 @@ SourceFacts facts_of(const OIIO::ImageSpec& spec);
 std::vector<Assignment> assignments_of(const OIIO::ParamValueList& options, const std::string& prefix = "");
 
 /// Throws Error when a picture is larger than OpenImageIO's attribute limits:imagesize_MB.
-void check_size(const Chart& target, int channels, OIIO::TypeDesc type);
+void check_size(const PictureRequest& picture, const OIIO::ImageSpec& source);
 
-/// The picture's header: its size and channels, the source's metadata that still holds, and anamorph:tol,
-/// anamorph:max_error, anamorph:exact_fraction. No tiles.
-OIIO::ImageSpec picture_spec(const OIIO::ImageSpec& source, const ReprojectRequest& request,
-                             const Reached& reached);
+/// The picture's header: its size and channels, the source's metadata that still holds, and the picture's own
+/// facts: anamorph:tol, anamorph:max_error and so on. No tiles.
+OIIO::ImageSpec picture_spec(const OIIO::ImageSpec& source, const PictureRequest& picture);
+
+/// Sets them as attributes of type float.
+void add_facts(OIIO::ImageSpec& spec, const Facts& facts);
 
 }  // namespace anamorph

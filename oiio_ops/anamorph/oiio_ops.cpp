@@ -36,18 +36,32 @@ void check_readable(const ImageBuf& src) {
 }
 
 /// Options of the call, and the size of an initialised dst where no other is asked for.
-ParameterValues values_of(const OIIO::ParamValueList& options, const ImageBuf& dst) {
-    ParameterValues values(reproject_parameters());
+ParameterValues values_of(const OperationKind& kind, const OIIO::ParamValueList& options,
+                          const ImageBuf& dst) {
+    const ParameterTable& table = *kind.parameters;
+    ParameterValues values(table);
     if (dst.initialized() && dst.spec().full_width > 0 && dst.spec().full_height > 0)
         values.assign(
             {{"size", std::to_string(dst.spec().full_width) + "x" + std::to_string(dst.spec().full_height)}});
     const std::vector<Assignment> assignments = assignments_of(options);
-    ParameterValues asked(reproject_parameters());
+    ParameterValues asked(table);
     asked.assign(assignments);
-    for (const char* name : {"src", "tile", "mip"})
+    std::vector<std::string> of_recipes = kind.sources;
+    of_recipes.insert(of_recipes.end(), {"tile", "mip", "frames"});
+    for (const std::string& name : of_recipes)
         if (asked.given(name)) throw Error(name, printable(asked.text(name)), "allowed in recipes only");
     values.assign(assignments);
     return values;
+}
+
+/// The files that the options name.
+SideFiles side_files_of(const OperationKind& kind, const ParameterValues& values) {
+    SideFiles files;
+    for (const Parameter& p : *kind.parameters) {
+        const bool names_a_file = p.type == ParameterType::image || p.type == ParameterType::file;
+        if (names_a_file && values.given(p.name)) files[p.name] = {values.text(p.name), ""};
+    }
+    return files;
 }
 
 /// Brings dst and roi into the state in which pixels can be filled.
@@ -82,11 +96,11 @@ Box box_of(const ROI& roi, const ImageSpec& dst) {
     return {roi.xbegin - dst.full_x, roi.ybegin - dst.full_y, roi.xend - dst.full_x, roi.yend - dst.full_y};
 }
 
-void fill(ImageBuf& dst, const Picture& picture, const ROI& roi, const ParallelFor& parallel_for) {
+void fill(ImageBuf& dst, const Picture& picture, int channels, const ROI& roi,
+          const ParallelFor& parallel_for) {
     const ImageSpec& spec = dst.spec();
     const Box box = box_of(roi, spec);
-    const bool all_channels =
-        roi.chbegin == 0 && roi.chend == picture.channels() && spec.nchannels == roi.chend;
+    const bool all_channels = roi.chbegin == 0 && roi.chend == channels && spec.nchannels == roi.chend;
     const PixelType type = pixel_type(spec.format);
     if (all_channels && oiio_type(type) == spec.format) {
         picture.draw(box,
@@ -97,7 +111,6 @@ void fill(ImageBuf& dst, const Picture& picture, const ROI& roi, const ParallelF
     }
     // Other channels or types: by way of float, some rows at a time.
     constexpr int kRows = 512;
-    const int channels = picture.channels();
     std::vector<float> pixels;
     for (int y = roi.ybegin; y < roi.yend; y += kRows) {
         ROI rows = roi;
@@ -115,31 +128,63 @@ void fill(ImageBuf& dst, const Picture& picture, const ROI& roi, const ParallelF
     }
 }
 
+/// The operation `name`, of sources that are not dst.
+bool run(const OperationKind& kind, const char* name, ImageBuf& dst,
+         const std::vector<const ImageBuf*>& sources, const OIIO::ParamValueList& options, ROI roi,
+         int nthreads) {
+    try {
+        if (sources.size() < kind.least_sources || sources.size() > kind.sources.size())
+            throw Error(std::to_string(sources.size()) + " source images: allowed are " +
+                        std::to_string(kind.least_sources) + " to " + std::to_string(kind.sources.size()));
+        std::vector<ImageSpec> specs;
+        for (const ImageBuf* src : sources) {
+            if (!src) throw Error("a source image is null");
+            check_readable(*src);
+            specs.push_back(src->spec());
+        }
+        const ParameterValues values = values_of(kind, options, dst);
+        const std::unique_ptr<const Operation> operation =
+            kind.read(values, specs, side_files_of(kind, values));
+        const PictureRequest request = *operation->picture(0, 0);
+        check_size(request, specs[0]);
+        const ParallelFor parallel_for = default_parallel_for(nthreads);
+        const std::unique_ptr<const Drawing> drawing = request.solve();
+        const ImageSpec spec = picture_spec(specs[0], request);
+        const Facts reached = drawing->reached(parallel_for);
+
+        std::vector<std::unique_ptr<Source>> images;
+        for (const ImageBuf* src : sources) images.push_back(source_of(*src));
+        const SourceStacks stacks = make_source_stacks(std::move(images), specs, operation->faces(),
+                                                       filtering_space(values, request.pixels));
+        prepare(dst, spec, roi);
+        fill(dst, Picture(*drawing, stacks), spec.nchannels, roi, parallel_for);
+        add_facts(dst.specmod(), request.facts);
+        add_facts(dst.specmod(), reached);
+        return true;
+    } catch (const std::exception& e) {
+        dst.errorfmt("{}: {}", name, e.what());
+        return false;
+    }
+}
+
+/// The same; a source that is dst is copied first.
+bool run_in_place(const OperationKind& kind, const char* name, ImageBuf& dst,
+                  std::vector<const ImageBuf*> sources, const OIIO::ParamValueList& options, ROI roi,
+                  int nthreads) {
+    ImageBuf copy;
+    for (const ImageBuf*& src : sources) {
+        if (src != &dst) continue;
+        if (!copy.initialized()) copy = dst;
+        src = &copy;
+    }
+    return run(kind, name, dst, sources, options, roi, nthreads);
+}
+
 }  // namespace
 
 bool reproject(ImageBuf& dst, const ImageBuf& src, const OIIO::ParamValueList& options, ROI roi,
                int nthreads) {
-    if (&dst == &src) return reproject(dst, ImageBuf(src), options, roi, nthreads);
-    try {
-        check_readable(src);
-        const ParameterValues values = values_of(options, dst);
-        const ReprojectRequest request = read_reproject_request(values, facts_of(src.spec()));
-        check_size(request.target, src.nchannels(), src.spec().format);
-        const ParallelFor parallel_for = default_parallel_for(nthreads);
-        const Reprojection reprojection(request.map(), request.options);
-        const ImageSpec spec = picture_spec(src.spec(), request, reprojection.reached(parallel_for));
-
-        const SourceStack source(source_of(src), src.spec(), request, filtering_space(values, request));
-        const Picture picture(reprojection, source);
-        prepare(dst, spec, roi);
-        fill(dst, picture, roi, parallel_for);
-        for (const char* name : {"anamorph:tol", "anamorph:max_error", "anamorph:exact_fraction"})
-            dst.specmod().attribute(name, spec.get_float_attribute(name));
-        return true;
-    } catch (const std::exception& e) {
-        dst.errorfmt("reproject: {}", e.what());
-        return false;
-    }
+    return run_in_place(pano_kind(), "reproject", dst, {&src}, options, roi, nthreads);
 }
 
 ImageBuf reproject(const ImageBuf& src, const OIIO::ParamValueList& options, ROI roi, int nthreads) {

@@ -1,15 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
-// Image warping for OpenImageIO's ImageBufs, with the contract of ImageBufAlgo.
+// Image warping for OpenImageIO's ImageBufs, with the contract of ImageBufAlgo. Each function has a twin that
+// returns a new image; on an error the result has_error().
 #pragma once
 
 #include <OpenImageIO/imagebuf.h>
+
+#include <vector>
 
 namespace anamorph {
 
 /// A panorama seen through another lens.
 ///
 /// `options`: the keys of a recipe (docs of the `pano` recipe; from, to, fov, yaw, pitch, roll, size, filter,
-/// tol, ...) as strings or numbers. `src`, `tile` and `mip` are a file's and not taken here.
+/// tol, ...) as strings or numbers. The sources' keys, `tile`, `mip` and `frames` are a file's and not taken
+/// here.
 ///
 /// An uninitialised `dst` gets the picture's size (of `roi`, if one is given), the source's channels and
 /// pixel type and its metadata that still holds. An initialised one keeps its spec, and `roi` of it is
@@ -19,7 +23,6 @@ namespace anamorph {
 bool reproject(OIIO::ImageBuf& dst, const OIIO::ImageBuf& src, const OIIO::ParamValueList& options = {},
                OIIO::ROI roi = {}, int nthreads = 0);
 
-/// The same as a new image; on an error the result has_error().
 OIIO::ImageBuf reproject(const OIIO::ImageBuf& src, const OIIO::ParamValueList& options = {},
                          OIIO::ROI roi = {}, int nthreads = 0);
 

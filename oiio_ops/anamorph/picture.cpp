@@ -9,12 +9,12 @@
 
 namespace anamorph {
 
-std::string filtering_space(const ParameterValues& values, const ReprojectRequest& request) {
-    return request.options.output == Output::color ? values.text("colorspace") : "";
+std::string filtering_space(const ParameterValues& values, PixelKind pixels) {
+    return pixels == PixelKind::color ? values.text("colorspace") : "";
 }
 
 SourceStack::SourceStack(std::unique_ptr<Source> image, const OIIO::ImageSpec& spec,
-                         const ReprojectRequest& request, const std::string& colorspace)
+                         const Operation::Faces& faces, const std::string& colorspace)
     : m_image(std::move(image)), m_top(m_image.get()) {
     if (!colorspace.empty()) {
         m_space = WorkingSpace::make(colorspace, spec);
@@ -23,13 +23,10 @@ SourceStack::SourceStack(std::unique_ptr<Source> image, const OIIO::ImageSpec& s
             m_top = m_working.get();
         }
     }
-    const std::vector<Piece>& pieces = request.source.pieces();
-    const int columns = request.source.width() / pieces[0].box.width();
-    const int rows = request.source.height() / pieces[0].box.height();
     // Coarser levels of a file blend faces that do not halve.
-    if (auto* file = dynamic_cast<CacheSource*>(m_image.get()); file && columns * rows > 1)
+    if (auto* file = dynamic_cast<CacheSource*>(m_image.get()); file && faces.columns * faces.rows > 1)
         file->keep_first_level();
-    m_pyramid = std::make_unique<Pyramid>(*m_top, columns, rows);
+    m_pyramid = std::make_unique<Pyramid>(*m_top, faces.columns, faces.rows);
     m_top = m_pyramid.get();
 }
 
@@ -37,16 +34,34 @@ SourceStack::~SourceStack() = default;
 
 std::string SourceStack::error() const {
     const auto* file = dynamic_cast<const CacheSource*>(m_image.get());
-    const std::string error = file ? file->error() : "";
-    return error.empty() ? "the source cannot be read" : error;
+    return file ? file->error() : "";
+}
+
+SourceStacks make_source_stacks(std::vector<std::unique_ptr<Source>> images,
+                                const std::vector<OIIO::ImageSpec>& specs, const Operation::Faces& faces,
+                                const std::string& colorspace) {
+    SourceStacks stacks;
+    for (std::size_t i = 0; i < images.size(); ++i)
+        stacks.push_back(std::make_unique<const SourceStack>(
+            std::move(images[i]), specs[i], i == 0 ? faces : Operation::Faces{}, colorspace));
+    return stacks;
+}
+
+Picture::Picture(const Drawing& drawing, const SourceStacks& sources)
+    : m_drawing(drawing), m_sources(sources) {
+    for (const auto& stack : sources) m_tops.push_back(&stack->top());
 }
 
 void Picture::draw_raw(const Box& box, const ImageView& view, const ParallelFor& parallel_for) const {
-    if (!m_reprojection.draw(&m_source.top(), box, view, parallel_for)) throw Error(m_source.error());
+    if (m_drawing.draw(m_tops, box, view, parallel_for)) return;
+    for (const auto& stack : m_sources)
+        if (const std::string error = stack->error(); !error.empty()) throw Error(error);
+    throw Error("a source cannot be read");
 }
 
 void Picture::draw(const Box& box, const ImageView& view, const ParallelFor& parallel_for) const {
-    if (!m_source.space()) return draw_raw(box, view, parallel_for);
+    const WorkingSpace* space = m_sources[0]->space();
+    if (!space) return draw_raw(box, view, parallel_for);
     // In float and the working space, then back, row by row.
     const std::size_t row = static_cast<std::size_t>(box.width()) * static_cast<std::size_t>(view.channels);
     std::vector<float> pixels(row * static_cast<std::size_t>(box.height()));
@@ -56,7 +71,7 @@ void Picture::draw(const Box& box, const ImageView& view, const ParallelFor& par
              parallel_for);
     parallel_for(box.height(), [&](std::int64_t y) {
         float* values = pixels.data() + row * static_cast<std::size_t>(y);
-        m_source.space()->from_working(values, box.width(), 1);
+        space->from_working(values, box.width(), 1);
         for (int x = 0; x < box.width(); ++x)
             for (int c = 0; c < view.channels; ++c)
                 store_channel(values[static_cast<std::size_t>(x * view.channels + c)],

@@ -1,32 +1,33 @@
 // SPDX-License-Identifier: Apache-2.0
-// A reprojection with its source, in the working colour space that was asked for.
+// A picture with its sources, in the working colour space that was asked for.
 #pragma once
 
 #include <OpenImageIO/imageio.h>
 
 #include <memory>
 #include <string>
+#include <vector>
 
-#include "anamorph/image/reproject_parameters.h"
 #include "anamorph/image_source.h"
+#include "anamorph/operation.h"
 
 namespace anamorph {
 
 /// The colour space to filter in that was asked for; empty where no colour is drawn.
-std::string filtering_space(const ParameterValues& values, const ReprojectRequest& request);
+std::string filtering_space(const ParameterValues& values, PixelKind pixels);
 
 /// What stands between a file and the resampler: the image, its working space, its pyramid. Reading is thread
 /// safe.
 class SourceStack {
   public:
     /// `colorspace` may be empty. Throws Error.
-    SourceStack(std::unique_ptr<Source> image, const OIIO::ImageSpec& spec, const ReprojectRequest& request,
+    SourceStack(std::unique_ptr<Source> image, const OIIO::ImageSpec& spec, const Operation::Faces& faces,
                 const std::string& colorspace);
     ~SourceStack();
 
     const Source& top() const { return *m_top; }
     const WorkingSpace* space() const { return m_space.get(); }
-    /// What the last failed read failed of.
+    /// What the last failed read failed of; empty where none did.
     std::string error() const;
 
   private:
@@ -35,22 +36,27 @@ class SourceStack {
     const Source* m_top;
 };
 
+/// The sources of a picture, as many as the operation takes.
+using SourceStacks = std::vector<std::unique_ptr<const SourceStack>>;
+SourceStacks make_source_stacks(std::vector<std::unique_ptr<Source>> images,
+                                const std::vector<OIIO::ImageSpec>& specs, const Operation::Faces& faces,
+                                const std::string& colorspace);
+
 /// Keeps references to both.
 class Picture {
   public:
-    Picture(const Reprojection& reprojection, const SourceStack& source)
-        : m_reprojection(reprojection), m_source(source) {}
+    Picture(const Drawing& drawing, const SourceStacks& sources);
 
-    int channels() const { return m_reprojection.channels(m_source.top()); }
-    /// Fills `view` with the pixels of `box`, in the source's own colour space. Throws Error when the source
-    /// cannot be read.
+    /// Fills `view` with the pixels of `box`, in the first source's own colour space. Throws Error when a
+    /// source cannot be read.
     void draw(const Box& box, const ImageView& view, const ParallelFor& parallel_for) const;
 
   private:
     void draw_raw(const Box& box, const ImageView& view, const ParallelFor& parallel_for) const;
 
-    const Reprojection& m_reprojection;
-    const SourceStack& m_source;
+    const Drawing& m_drawing;
+    const SourceStacks& m_sources;
+    std::vector<const Source*> m_tops;
 };
 
 }  // namespace anamorph

@@ -49,10 +49,10 @@ class BufferContent final : public Content {
         m_spec.tile_depth = 1;
     }
 
-    int levels() const override { return 1; }
-    const OIIO::ImageSpec& spec(int) const override { return m_spec; }
+    int levels(int) const override { return 1; }
+    const OIIO::ImageSpec& spec(int, int) const override { return m_spec; }
 
-    void read(int, const Box& box, std::byte* pixels) const override {
+    void read(int, int, const Box& box, std::byte* pixels) const override {
         const Box inside = intersection(box, {0, 0, m_spec.width, m_spec.height});
         const auto pixel = static_cast<std::ptrdiff_t>(m_spec.pixel_bytes());
         const auto* from = static_cast<const std::byte*>(m_image->localpixels());

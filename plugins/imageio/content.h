@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What an open input shows: the pixels of one or more MIP levels, whoever makes them.
+// What an open input shows: the pixels of one or more subimages and MIP levels, whoever makes them.
 #pragma once
 
 #include <OpenImageIO/imageio.h>
@@ -10,15 +10,17 @@
 
 namespace anamorph {
 
+/// Thread safe.
 class Content {
   public:
     virtual ~Content() = default;
 
-    virtual int levels() const = 0;
-    virtual const OIIO::ImageSpec& spec(int level) const = 0;
+    virtual int subimages() const { return 1; }
+    virtual int levels(int subimage) const = 0;
+    virtual const OIIO::ImageSpec& spec(int subimage, int level) const = 0;
     /// The pixels of `box`, from the corner of the data window, packed, in the spec's format. The box may
-    /// reach over the right and lower edge (0 there). Thread safe. Throws Error.
-    virtual void read(int level, const Box& box, std::byte* pixels) const = 0;
+    /// reach over the right and lower edge (0 there). Throws Error.
+    virtual void read(int subimage, int level, const Box& box, std::byte* pixels) const = 0;
 };
 
 }  // namespace anamorph

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The OpenImageIO plugin: inputs for panorama recipes (NAME.pano, NAME.pano?key=value&...) and for images in
-// memory (NAME.anabuf), and the output that puts them there.
+// The OpenImageIO plugin: inputs for recipes (NAME.pano, NAME.pano?key=value&..., NAME.warp, NAME.morph) and
+// for images in memory (NAME.anabuf), and the output that puts them there.
 #include <OpenImageIO/filesystem.h>
 #include <OpenImageIO/imagebuf.h>
 #include <OpenImageIO/imageio.h>
@@ -17,8 +17,8 @@
 #include "anamorph/version.h"
 #include "buffer_store.h"
 #include "content.h"
-#include "pano_content.h"
 #include "recipe.h"
+#include "recipe_content.h"
 
 namespace anamorph {
 namespace {
@@ -60,11 +60,11 @@ class FileInput final : public ImageInput {
         if (feature == "procedural") return true;
 #endif
         return feature == "arbitrary_metadata" || feature == "exif" || feature == "iptc" ||
-               feature == "mipmap";
+               feature == "mipmap" || feature == "multiimage";
     }
 
     bool valid_file(const std::string& name) const override {
-        return has_extension(name, kRecipeExtension) || has_extension(name, kBufferExtension);
+        return kind_of(name) || has_extension(name, kBufferExtension);
     }
 
     bool open(const std::string& name, ImageSpec& spec) override {
@@ -76,14 +76,14 @@ class FileInput final : public ImageInput {
         if (!valid_file(name)) return failed("not a .pano or .anabuf name");
         try {
             close();
+            const OperationKind* kind = kind_of(name);
             std::shared_ptr<const Content> content =
-                has_extension(name, kBufferExtension)
-                    ? open_buffer(name)
-                    : open_pano(name, assignments_of(config.extra_attribs, "pano:"));
+                kind ? open_recipe(name, assignments_of(config.extra_attribs, kind->name + ":"))
+                     : open_buffer(name);
             const lock_guard lock(*this);
             m_content = std::move(content);
-            m_level = 0;
-            m_spec = spec = m_content->spec(0);
+            m_subimage = m_level = 0;
+            m_spec = spec = m_content->spec(0, 0);
             return true;
         } catch (const std::exception& e) {
             explain_to_oiiotool(name, e.what());
@@ -94,14 +94,14 @@ class FileInput final : public ImageInput {
     bool close() override {
         const lock_guard lock(*this);
         m_content.reset();
-        m_level = -1;
+        m_subimage = m_level = -1;
         m_spec = ImageSpec();
         return true;
     }
 
     int current_subimage() const override {
         const lock_guard lock(*this);
-        return m_content ? 0 : -1;
+        return m_subimage;
     }
     int current_miplevel() const override {
         const lock_guard lock(*this);
@@ -110,8 +110,9 @@ class FileInput final : public ImageInput {
 
     bool seek_subimage(int subimage, int miplevel) override {
         const lock_guard lock(*this);
-        if (!m_content || subimage != 0 || miplevel < 0 || miplevel >= m_content->levels()) return false;
-        if (miplevel != m_level) m_spec = m_content->spec(miplevel);
+        if (!m_content || !has_level(*m_content, subimage, miplevel)) return false;
+        if (subimage != m_subimage || miplevel != m_level) m_spec = m_content->spec(subimage, miplevel);
+        m_subimage = subimage;
         m_level = miplevel;
         return true;
     }
@@ -156,7 +157,7 @@ class FileInput final : public ImageInput {
             const std::shared_ptr<const Content> open = content();
             const ImageSpec& spec = level_spec(*open, subimage, miplevel);
             if (spec.tile_width == 0) throw Error("the picture has no tiles (tile=0)");
-            read_box(*open, miplevel, {x, y, x + spec.tile_width, y + spec.tile_height}, data);
+            read_box(*open, subimage, miplevel, {x, y, x + spec.tile_width, y + spec.tile_height}, data);
         });
     }
     bool read_native_tiles(int subimage, int miplevel, int xbegin, int xend, int ybegin, int yend, int, int,
@@ -164,7 +165,7 @@ class FileInput final : public ImageInput {
         return guarded([&] {
             const std::shared_ptr<const Content> open = content();
             level_spec(*open, subimage, miplevel);
-            read_box(*open, miplevel, {xbegin, ybegin, xend, yend}, data);
+            read_box(*open, subimage, miplevel, {xbegin, ybegin, xend, yend}, data);
         });
     }
 
@@ -175,19 +176,19 @@ class FileInput final : public ImageInput {
         if (end > spec.y + spec.height)
             throw Error("rows up to " + std::to_string(end) + ": allowed are up to " +
                         std::to_string(spec.y + spec.height));
-        read_box(*open, miplevel, {spec.x, begin, spec.x + spec.width, end}, data);
+        read_box(*open, subimage, miplevel, {spec.x, begin, spec.x + spec.width, end}, data);
     }
 
     /// `box` in the file's coordinates.
-    static void read_box(const Content& content, int miplevel, const Box& box, void* data) {
-        const ImageSpec& spec = content.spec(miplevel);
+    static void read_box(const Content& content, int subimage, int miplevel, const Box& box, void* data) {
+        const ImageSpec& spec = content.spec(subimage, miplevel);
         const Box local{box.x0 - spec.x, box.y0 - spec.y, box.x1 - spec.x, box.y1 - spec.y};
         if (local.empty() || local.x0 < 0 || local.y0 < 0 || local.x0 >= spec.width ||
             local.y0 >= spec.height)
             throw Error("pixels " + std::to_string(box.width()) + "x" + std::to_string(box.height()) + "+" +
                         std::to_string(box.x0) + "+" + std::to_string(box.y0) + " lie outside the image of " +
                         std::to_string(spec.width) + "x" + std::to_string(spec.height));
-        content.read(miplevel, local, static_cast<std::byte*>(data));
+        content.read(subimage, miplevel, local, static_cast<std::byte*>(data));
     }
 
     std::shared_ptr<const Content> content() const {
@@ -195,11 +196,16 @@ class FileInput final : public ImageInput {
         if (!m_content) throw Error("the file is not open");
         return m_content;
     }
+    static bool has_level(const Content& content, int subimage, int miplevel) {
+        return subimage >= 0 && subimage < content.subimages() && miplevel >= 0 &&
+               miplevel < content.levels(subimage);
+    }
     static const ImageSpec& level_spec(const Content& content, int subimage, int miplevel) {
-        if (subimage != 0 || miplevel < 0 || miplevel >= content.levels())
+        if (!has_level(content, subimage, miplevel))
             throw Error("subimage " + std::to_string(subimage) + ", MIP level " + std::to_string(miplevel) +
-                        ": there are 1 and " + std::to_string(content.levels()));
-        return content.spec(miplevel);
+                        ": there are " + std::to_string(content.subimages()) + " and " +
+                        std::to_string(content.levels(0)));
+        return content.spec(subimage, miplevel);
     }
 
     bool failed(const std::string& message) {
@@ -217,7 +223,7 @@ class FileInput final : public ImageInput {
     }
 
     std::shared_ptr<const Content> m_content;
-    int m_level = -1;
+    int m_subimage = -1, m_level = -1;
 };
 
 class BufferOutput final : public ImageOutput {

@@ -6,8 +6,8 @@
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
+#include <set>
 
-#include "anamorph/image/reproject_parameters.h"
 #include "buffer_store.h"
 
 namespace anamorph {
@@ -54,6 +54,77 @@ std::string state_of(const std::string& name) {
     return state + "\n";
 }
 
+/// The values of a recipe, and the files that they name; nothing is known of those yet.
+Recipe read_recipe(const OperationKind& kind, const std::string& name,
+                   const std::vector<Assignment>& config) {
+    const RecipeName parsed = parse_recipe_name(name);
+    Recipe recipe{&kind, ParameterValues(*kind.parameters), {}};
+    // Takes the values of one place; files there are relative to `folder`.
+    const auto take = [&](const std::vector<Assignment>& place, const fs::path& folder) {
+        ParameterValues own(*kind.parameters);
+        own.assign(place);
+        for (const Parameter& p : *kind.parameters) {
+            if ((p.type != ParameterType::image && p.type != ParameterType::file) || !own.given(p.name))
+                continue;
+            const std::string& file = own.text(p.name);
+            const bool in_memory = has_extension(file, kBufferExtension);
+            recipe.files[p.name].name = in_memory ? file : (folder / file).string();
+        }
+        recipe.values.assign(place);
+    };
+    std::string text;
+    if (read_recipe_file(parsed.base, text)) {
+        try {
+            take(parse_recipe(text), fs::path(parsed.base).parent_path());
+        } catch (const Error& e) {
+            throw Error("recipe \"" + printable(parsed.base) + "\": " + e.what());
+        }
+    }
+    take(parsed.assignments, {});
+    take(config, {});
+    if (!recipe.files.count(kind.sources[0]))
+        recipe.files[kind.sources[0]].name = parsed.base.substr(0, parsed.base.size() - kind.name.size() - 1);
+    return recipe;
+}
+
+/// Walks the files that a file is made of, each once. `way` are the recipes that lead to it.
+class Walk {
+  public:
+    /// The states of `file` and of all that it is made of.
+    std::string identity_of(const std::string& file, const std::string& recipe) {
+        m_seen.clear();
+        m_way = {normal(recipe)};
+        m_identity.clear();
+        visit(file);
+        return m_identity;
+    }
+
+  private:
+    void visit(const std::string& file) {
+        const std::string name = normal(file);
+        const OperationKind* kind = kind_of(file);
+        const bool again = std::find(m_way.begin(), m_way.end(), name) != m_way.end();
+        m_way.push_back(name);
+        if (kind && again) {
+            std::string cycle;
+            for (const std::string& n : m_way) cycle += (cycle.empty() ? "" : " -> ") + printable(n);
+            throw Error("recipes read each other: " + cycle);
+        }
+        if (kind && static_cast<int>(m_way.size()) > kMaxDepth)
+            throw Error("recipes nest too deep: allowed are " + std::to_string(kMaxDepth));
+        if (m_seen.insert(name).second) {
+            m_identity += state_of(file);
+            if (kind)
+                for (const auto& [key, used] : read_recipe(*kind, file, {}).files) visit(used.name);
+        }
+        m_way.pop_back();
+    }
+
+    std::vector<std::string> m_way;  ///< the recipes that lead to the file
+    std::set<std::string> m_seen;
+    std::string m_identity;
+};
+
 }  // namespace
 
 bool has_extension(std::string_view name, std::string_view extension) {
@@ -64,52 +135,19 @@ bool has_extension(std::string_view name, std::string_view extension) {
                       [](char a, char b) { return (a >= 'A' && a <= 'Z' ? a - 'A' + 'a' : a) == b; });
 }
 
-Recipe load_recipe(const std::string& name, const std::vector<Assignment>& config) {
-    const RecipeName parsed = parse_recipe_name(name);
-    Recipe recipe{"", ParameterValues(reproject_parameters())};
-    std::string text;
-    if (read_recipe_file(parsed.base, text)) {
-        std::vector<Assignment> lines;
-        try {
-            lines = parse_recipe(text);
-            recipe.values.assign(lines);
-        } catch (const Error& e) {
-            throw Error("recipe \"" + printable(parsed.base) + "\": " + e.what());
-        }
-        if (recipe.values.given("src")) {
-            const std::string& src = recipe.values.text("src");
-            const bool in_memory = has_extension(src, kBufferExtension);
-            recipe.source = in_memory ? src : (fs::path(parsed.base).parent_path() / src).string();
-        }
-    }
-    for (const auto* place : {&parsed.assignments, &config}) {
-        ParameterValues own(reproject_parameters());
-        own.assign(*place);
-        if (own.given("src")) recipe.source = own.text("src");
-        recipe.values.assign(*place);
-    }
-    if (recipe.source.empty())
-        recipe.source = parsed.base.substr(0, parsed.base.size() - kRecipeExtension.size());
-    return recipe;
+const OperationKind* kind_of(std::string_view name) {
+    for (const OperationKind* kind : {&pano_kind()})
+        if (has_extension(name, "." + kind->name)) return kind;
+    return nullptr;
 }
 
-std::string source_identity(const std::string& name, const Recipe& recipe) {
-    std::vector<std::string> names = {normal(name)};
-    std::string identity, source = recipe.source;
-    while (true) {
-        identity += state_of(source);
-        if (!has_extension(source, kRecipeExtension)) return identity;
-        const bool again = std::find(names.begin(), names.end(), normal(source)) != names.end();
-        names.push_back(normal(source));
-        if (again) {
-            std::string cycle;
-            for (const std::string& n : names) cycle += (cycle.empty() ? "" : " -> ") + printable(n);
-            throw Error("recipes read each other: " + cycle);
-        }
-        if (static_cast<int>(names.size()) > kMaxDepth)
-            throw Error("recipes nest too deep: allowed are " + std::to_string(kMaxDepth));
-        source = load_recipe(source).source;
-    }
+Recipe load_recipe(const std::string& name, const std::vector<Assignment>& config) {
+    const OperationKind* kind = kind_of(name);
+    if (!kind) throw Error("\"" + printable(name) + "\" is not a recipe's name");
+    Recipe recipe = read_recipe(*kind, name, config);
+    Walk walk;
+    for (auto& [key, file] : recipe.files) file.identity = walk.identity_of(file.name, name);
+    return recipe;
 }
 
 }  // namespace anamorph

@@ -1,34 +1,36 @@
 // SPDX-License-Identifier: Apache-2.0
-// Recipes as files and names: where the values come from, and which sources they lead to.
+// Recipes as files and names: where the values come from, and which files they lead to.
 #pragma once
 
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "anamorph/operation.h"
 #include "anamorph/parameter.h"
 
 namespace anamorph {
 
 /// Is the part before the first `?` a name that ends in `extension` (".pano"), in any case of letters?
 bool has_extension(std::string_view name, std::string_view extension);
-constexpr std::string_view kRecipeExtension = ".pano";
 constexpr std::string_view kBufferExtension = ".anabuf";
 
+/// The operation whose recipes have such a name, or null.
+const OperationKind* kind_of(std::string_view name);
+
 struct Recipe {
-    std::string source;
+    const OperationKind* kind;
     ParameterValues values;
+    /// The sources and side files by key, each with the folder it stands in. Identities tell states of the
+    /// file, and of all that it is made of where it is a recipe, apart: names, times of writing (ns), sizes.
+    SideFiles files;
 };
 
 /// The recipe file if there is one, overridden by the name's arguments, overridden by `config`. A relative
-/// `src` of a file is relative to that file's folder, else to the working folder; `src` is by default the
-/// file's name without its extension. Reads nothing but the recipe file. Throws Error.
+/// file name in a file is relative to that file's folder, else to the working folder; the first source is by
+/// default the recipe's name without its extension. Follows the recipes that the recipe reads from. Throws
+/// Error, also on a cycle and beyond kMaxDepth.
 Recipe load_recipe(const std::string& name, const std::vector<Assignment>& config = {});
-
-/// Follows the recipes that a recipe reads from. Throws Error on a cycle and beyond kMaxDepth. The result
-/// tells states of the last source, and of all recipes on the way, apart: names, times of writing (ns),
-/// sizes.
-std::string source_identity(const std::string& name, const Recipe& recipe);
 constexpr int kMaxDepth = 16;
 
 }  // namespace anamorph

@@ -3,27 +3,19 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
+
+#include "anamorph/image/picture_parameters.h"
 
 namespace anamorph {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr double kMaxSize = 1 << 24, kMaxTile = 4096;
+using rows::chosen;
 
 // In the order of their enumerations.
 const std::vector<std::string> kSpacings = {"edges", "centers"};
-const std::vector<std::string> kFilters = {"nearest", "bilinear", "bicubic", "antialias"};
 const std::vector<std::string> kWraps = {"automatic", "black", "clamp", "periodic", "mirror"};
 const std::vector<std::string> kSchemes = {"auto", "exact", "blocks", "residual"};
 const std::vector<std::string> kOutputs = {"color", "stmap", "error", "bound"};
-
-template <class Enumeration>
-Enumeration chosen(const ParameterValues& values, std::string_view name,
-                   const std::vector<std::string>& names) {
-    const auto found = std::find(names.begin(), names.end(), values.text(name));
-    return static_cast<Enumeration>(found - names.begin());
-}
 
 std::vector<std::string> projections() {
     std::vector<std::string> names = {"latlong"};
@@ -33,21 +25,12 @@ std::vector<std::string> projections() {
 }
 
 ParameterTable make_table() {
-    const auto choice = [](const char* name, const char* value, std::vector<std::string> choices,
-                           const char* doc) {
-        return Parameter{name, ParameterType::choice, "", value, std::move(choices), 0, 0, doc, ""};
-    };
-    const auto number = [](const char* name, const char* unit, const char* value, double least, double most,
-                           const char* doc) {
-        return Parameter{name, ParameterType::number, unit, value, {}, least, most, doc, ""};
-    };
-    const auto text = [](const char* name, const char* doc) {
-        return Parameter{name, ParameterType::text, "", "", {}, 0, 0, doc, ""};
-    };
+    using namespace rows;
     return {
-        text("src",
-             "the source image; by default the recipe's name without .pano; in a name it stands last when it "
-             "has arguments of its own"),
+        image(
+            "src",
+            "the source image; by default the recipe's name without .pano; in a name it stands last when it "
+            "has arguments of its own"),
         choice("from", "", projections(),
                "projection of the source; by default what the image says of itself"),
         choice("to", "rectilinear", projections(), "projection of the picture"),
@@ -62,37 +45,19 @@ ParameterTable make_table() {
         number("pitch", "degrees", "0", -kInfinity, kInfinity, "where the camera looks: up"),
         number("roll", "degrees", "0", -kInfinity, kInfinity,
                "the camera's turn about its axis, clockwise; roll is applied first, then pitch, then yaw"),
-        Parameter{
-            "size",
-            ParameterType::extent,
-            "pixels",
-            "",
-            {},
-            1,
-            kMaxSize,
-            "width and height of the picture, or its width alone; by default as fine as the source at the "
-            "centre",
-            "res"},
-        Parameter{"tile",
-                  ParameterType::extent,
-                  "pixels",
-                  "256",
-                  {},
-                  0,
-                  kMaxTile,
-                  "tile size that a host is told; 0 for scanlines",
-                  ""},
-        Parameter{"mip", ParameterType::toggle, "", "0", {}, 0, 0, "1: the picture has MIP levels", ""},
-        choice("filter", "antialias", kFilters, "antialias is bilinear where the map magnifies"),
+        size("width and height of the picture, or its width alone; by default as fine as the source at the "
+             "centre"),
+        tile(),
+        mip(),
+        filter(),
         choice("wrap", "automatic", kWraps,
                "what lies beyond the source's edge; automatic goes on across the seam, the poles and cube "
                "edges"),
-        number("tol", "source pixels", "0.01", 0, kInfinity,
-               "most that a source point may be off; 0: every pixel exactly"),
+        tol(),
         choice("pixels", "edges", kSpacings,
                "where the source's field of view ends: at the edges of its outer pixels or at their centers"),
         choice("scheme", "auto", kSchemes, "how source points are found within tol"),
-        text("colorspace", "color space to filter in; by default the source's own"),
+        colorspace("color space to filter in; by default the source's own"),
         choice("output", "color", kOutputs,
                "color, or per pixel: stmap, the source point (u, v) in 0 to 1 with v down; error, its "
                "distance from "
@@ -124,7 +89,7 @@ int columns_of_faces(Projection projection) {
 }
 
 Extent natural_size(Projection projection, double fov, double width) {
-    const double limit = kMaxSize;
+    const double limit = rows::kMaxSize;
     const int w = static_cast<int>(std::clamp(std::round(width), 1.0, limit));
     const int h = static_cast<int>(std::clamp(std::round(w * natural_aspect(projection, fov)), 1.0, limit));
     return {w, h};
@@ -189,7 +154,7 @@ ReprojectRequest read_reproject_request(const ParameterValues& values, const Sou
     ReprojectOptions options;
     options.scheme = chosen<Scheme>(values, "scheme", kSchemes);
     options.tol = values.number("tol");
-    options.filter = chosen<Filter>(values, "filter", kFilters);
+    options.filter = chosen<Filter>(values, "filter", rows::filters());
     options.wrap = chosen<Wrap>(values, "wrap", kWraps);
     options.output = chosen<Output>(values, "output", kOutputs);
     return {source,

@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: Apache-2.0
+// A panorama seen through another lens.
+#include "anamorph/image/reproject_parameters.h"
+#include "anamorph/metadata.h"
+#include "anamorph/operation.h"
+
+namespace anamorph {
+namespace {
+
+class PanoDrawing final : public Drawing {
+  public:
+    explicit PanoDrawing(const ReprojectRequest& request) : m_reprojection(request.map(), request.options) {}
+
+    Facts reached(const ParallelFor& parallel_for) const override {
+        const Reached reached = m_reprojection.reached(parallel_for);
+        return {{"anamorph:max_error", reached.max_error},
+                {"anamorph:exact_fraction", reached.exact_fraction}};
+    }
+    bool draw(const std::vector<const Source*>& sources, const Box& box, const ImageView& view,
+              const ParallelFor& parallel_for) const override {
+        return m_reprojection.draw(sources[0], box, view, parallel_for);
+    }
+
+  private:
+    Reprojection m_reprojection;
+};
+
+std::string text_of(const Chart& chart) {
+    return std::string(name_of(chart.projection())) + " " + std::to_string(chart.width()) + "x" +
+           std::to_string(chart.height()) + " " + shortest(chart.fov()) + " " +
+           std::to_string(static_cast<int>(chart.spacing())) + " ";
+}
+
+std::string key_of(const ReprojectRequest& request) {
+    const Orientation& o = request.orientation;
+    const ReprojectOptions& p = request.options;
+    std::string key = "pano " + text_of(request.source) + text_of(request.target);
+    for (const double number : {o.yaw, o.pitch, o.roll, p.tol}) key += shortest(number) + " ";
+    for (const int number : {static_cast<int>(p.scheme), static_cast<int>(p.filter), static_cast<int>(p.wrap),
+                             static_cast<int>(p.output)})
+        key += std::to_string(number) + " ";
+    return key;
+}
+
+class PanoOperation final : public Operation {
+  public:
+    explicit PanoOperation(const ReprojectRequest& request) : m_request(request) {}
+
+    std::optional<PictureRequest> picture(int, int level) const override {
+        ReprojectRequest request = m_request;
+        for (; level > 0; --level) {
+            const std::optional<Chart> half = half_size(request.target);
+            if (!half) return {};
+            request.target = *half;
+        }
+        const Output output = request.options.output;
+        return PictureRequest{
+            request.target.width(),
+            request.target.height(),
+            output == Output::color   ? PixelKind::color
+            : output == Output::stmap ? PixelKind::point
+                                      : PixelKind::value,
+            {{"anamorph:tol", request.options.tol}},
+            key_of(request),
+            [request] { return std::make_unique<PanoDrawing>(request); },
+        };
+    }
+
+    Faces faces() const override {
+        const Chart& source = m_request.source;
+        const Box& face = source.pieces()[0].box;
+        return {source.width() / face.width(), source.height() / face.height()};
+    }
+
+  private:
+    ReprojectRequest m_request;
+};
+
+}  // namespace
+
+const OperationKind& pano_kind() {
+    static const OperationKind kind{
+        "pano",
+        &reproject_parameters(),
+        {"src"},
+        1,
+        [](const ParameterValues& values, const std::vector<OIIO::ImageSpec>& specs, const SideFiles&) {
+            const ReprojectRequest request = read_reproject_request(values, facts_of(specs[0]));
+            return std::unique_ptr<const Operation>(std::make_unique<PanoOperation>(request));
+        }};
+    return kind;
+}
+
+}  // namespace anamorph
