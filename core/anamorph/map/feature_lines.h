@@ -9,10 +9,15 @@
 // that shape is hence exactly the scaling (the identity where the sizes agree).
 #pragma once
 
+#include <algorithm>
+#include <cmath>
+#include <limits>
 #include <string>
+#include <type_traits>
 #include <vector>
 
 #include "anamorph/map/chart.h"
+#include "anamorph/number/jet.h"
 
 namespace anamorph {
 
@@ -72,5 +77,164 @@ class Features {
     std::vector<Frame> m_frames;
     double m_border = 0;
 };
+
+/// The weights of eq. 5.11 between lines: weight = (length^p / (a + dist))^b.
+struct LineWeights {
+    double a = 1, b = 2, p = 0.5;
+};
+
+namespace feature_detail {
+
+template <class T>
+inline T max(const T& x, const T& y) {
+    return constant_part(x) < constant_part(y) ? y : x;
+}
+template <class T>
+inline T root(const T& square) {
+    using std::sqrt;
+    // On a line the root has a kink: its derivative is taken to be 0 there.
+    if (constant_part(square) == 0) return T(0);
+    return sqrt(square);
+}
+/// x^-b for x >= 1.
+template <class T>
+inline T inverse_power(const T& x, double b) {
+    using std::pow;
+    const auto value = pow(constant_part(x), -b);
+    if constexpr (std::is_floating_point_v<T>)
+        return value;
+    else
+        return T(value) + (x - constant_part(x)) * (-b * value / constant_part(x));
+}
+
+#include "anamorph/map/feature_formula.h"
+
+}  // namespace feature_detail
+
+/// The maps from the target to every shape's picture that features make, at one mixture of the shapes. All
+/// share the target's lines, hence u, v and the weights.
+///
+/// Limits. With a = 0 a pixel on a line goes exactly where that line says; on several at once, to the mean of
+/// what they say, by their weights at equal distance (what a -> 0 tends to). Far from all lines, and for any
+/// b, the weights are taken relative to the nearest line's: none overflows, and those that underflow are 0.
+class FeatureMap {
+  public:
+    /// A line of the target and what it says: see feature_formula.h.
+    struct TargetLine {
+        Point<double> p, along;  ///< along: unit vector from p to q
+        double length;
+        double factor;  ///< weight * length^(p b), relative to the greatest of each
+        bool moves;     ///< not the same line in every shape
+    };
+    /// Of one line for one shape, in the target's pixels.
+    struct Displacement {
+        Point<double> origin, along_rate, beside_rate;
+    };
+    struct Size {
+        int width, height;
+    };
+
+    /// `mixture`: the shapes' weights, with sum 1. Throws Error naming a line that has no length in the
+    /// target, and sizes or weights that do not fit.
+    FeatureMap(const Features& features, const std::vector<Size>& pictures, const Size& target,
+               const std::vector<double>& mixture, const LineWeights& weights);
+
+    int shapes() const { return m_shapes; }
+    Size target() const { return m_target; }
+    Size picture(int shape) const { return m_pictures[static_cast<std::size_t>(shape)]; }
+    const LineWeights& weights() const { return m_weights; }
+    std::size_t size() const { return m_lines.size(); }
+    const TargetLine& line(std::size_t i) const { return m_lines[i]; }
+    const Displacement& displacement(std::size_t i, int shape) const {
+        return m_displacements[i * static_cast<std::size_t>(m_shapes) + static_cast<std::size_t>(shape)];
+    }
+    /// Pixels of a shape's picture per pixel of the target.
+    Point<double> scale(int shape) const { return m_scales[static_cast<std::size_t>(shape)]; }
+
+    /// The point of one shape's picture that is seen at (x, y) of the target.
+    template <class T>
+    Point<T> operator()(const T& x, const T& y, int shape) const;
+    /// The points of all shapes' pictures.
+    template <class T>
+    void all(const T& x, const T& y, Point<T>* points) const;
+
+  private:
+    template <class T>
+    struct Frame {
+        T along, beside;
+    };
+    template <class T>
+    Frame<T> frame(const TargetLine& line, const T& x, const T& y) const {
+        const T dx = x - line.p.x, dy = y - line.p.y;
+        return {dx * line.along.x + dy * line.along.y, dy * line.along.x - dx * line.along.y};
+    }
+    template <class T>
+    T distance(const TargetLine& line, const Frame<T>& at) const {
+        return feature_detail::distance_to_line<T>(-at.along, at.along - line.length, at.beside) +
+               m_weights.a;
+    }
+    template <class T>
+    void sum(const T& x, const T& y, int first, int last, Point<T>* points) const;
+
+    int m_shapes;
+    Size m_target;
+    std::vector<Size> m_pictures;
+    std::vector<Point<double>> m_scales;
+    LineWeights m_weights;
+    std::vector<TargetLine> m_lines;
+    std::vector<Displacement> m_displacements;  ///< line by line, shape by shape
+};
+
+template <class T>
+void FeatureMap::sum(const T& x, const T& y, int first, int last, Point<T>* points) const {
+    // The nearest line's a + dist, to which weights are relative.
+    auto nearest = constant_part(T(std::numeric_limits<double>::infinity()));
+    for (const TargetLine& line : m_lines)
+        nearest = std::min(nearest, constant_part(distance(line, frame(line, x, y))));
+
+    T weights(0);
+    for (int k = first; k < last; ++k) points[k - first] = {T(0), T(0)};
+    for (std::size_t i = 0; i < m_lines.size(); ++i) {
+        const TargetLine& line = m_lines[i];
+        const Frame<T> at = frame(line, x, y);
+        const T far = distance(line, at);
+        T weight(line.factor);
+        if (m_weights.b > 0) {
+            if (nearest > 0)
+                weight = feature_detail::inverse_power<T>(far / T(nearest), m_weights.b) * line.factor;
+            else if (constant_part(far) > 0)
+                continue;
+        }
+        weights = weights + weight;
+        if (!line.moves) continue;
+        for (int k = first; k < last; ++k) {
+            const Displacement& d = displacement(i, k);
+            Point<T>& p = points[k - first];
+            const auto along = [&](double origin, double along_rate, double beside_rate) {
+                return feature_detail::displacement_by_line<T>(T(origin), T(along_rate), at.along,
+                                                               T(beside_rate), at.beside);
+            };
+            p.x = p.x + weight * along(d.origin.x, d.along_rate.x, d.beside_rate.x);
+            p.y = p.y + weight * along(d.origin.y, d.along_rate.y, d.beside_rate.y);
+        }
+    }
+    for (int k = first; k < last; ++k) {
+        Point<T>& p = points[k - first];
+        const Point<double> s = scale(k);
+        p = {(x + p.x / weights) * s.x, (y + p.y / weights) * s.y};
+    }
+}
+
+template <class T>
+Point<T> FeatureMap::operator()(const T& x, const T& y, int shape) const {
+    Point<T> point{};
+    sum(x, y, shape, shape + 1, &point);
+    return point;
+}
+
+template <class T>
+void FeatureMap::all(const T& x, const T& y, Point<T>* points) const {
+    sum(x, y, 0, m_shapes, points);
+}
 
 }  // namespace anamorph

@@ -26,9 +26,9 @@
 // belong together when their inkscape:label is the same, or their id: ids are unique in a file, so the
 // id of the other layers' drawing may have a tail after a "-" or "_" ("brow" and "brow-5", which Inkscape
 // makes of a copy, or "brow_b"; a tail on both, "brow-a" and "brow-b", when it is the layers' labels). They
-// need the same number of vertices and straight and curved segments at the same places. An attribute
-// data-weight is the weight. Coordinates: where a layer holds an image element, pixels of a picture that
-// fills that element; else user units of the drawing are pixels.
+// need the same number of parts and segments; where one is straight and the other curved, both count as
+// curves. An attribute data-weight of the first layer's drawing is its weight. Coordinates: where a layer
+// holds an image element, pixels of a picture that fills that element; else user units are pixels.
 #pragma once
 
 #include <cstddef>

@@ -1,0 +1,237 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "anamorph/map/feature_lines.h"
+
+#include <cstdio>
+
+#include "anamorph/error.h"
+
+namespace anamorph {
+namespace {
+
+// Farther out, and longer, than any picture; products of two of them stay far from overflow.
+constexpr double kMostCoordinate = 1e9;
+// Relative to the greatest: so that no sum of weights is 0.
+constexpr double kLeastFactor = 1e-250;
+
+std::string number(double value) {
+    char text[32];
+    std::snprintf(text, sizeof text, "%g", value);
+    return text;
+}
+
+std::string written(const Line& line) {
+    return number(line.p.x) + "," + number(line.p.y) + "," + number(line.q.x) + "," + number(line.q.y);
+}
+
+bool fits(const Point<double>& p) {
+    return std::fabs(p.x) <= kMostCoordinate && std::fabs(p.y) <= kMostCoordinate;
+}
+
+/// The name of a feature in messages, before it has been added.
+std::string name_of(const std::string& name, std::size_t index) {
+    return name.empty() ? "line " + std::to_string(index + 1) : name;
+}
+
+double length_of(const Point<double>& v) {
+    return std::sqrt(v.x * v.x + v.y * v.y);
+}
+
+/// Lines that keep the chain within kCurveDeviation of a cubic: between two points at a step h of its
+/// parameter a curve strays by at most h^2 / 8 of its second derivative.
+int lines_of(const Point<double>* c) {
+    const auto second = [&](int i) {
+        return length_of({c[i].x - 2 * c[i + 1].x + c[i + 2].x, c[i].y - 2 * c[i + 1].y + c[i + 2].y});
+    };
+    const double most = 6 * std::max(second(0), second(1));
+    const double n = std::ceil(std::sqrt(most / (8 * Features::kCurveDeviation)));
+    return n >= 1 ? static_cast<int>(std::min<double>(n, Features::kMostCurveLines)) : 1;
+}
+
+Point<double> on_cubic(const Point<double>* c, double t) {
+    const double s = 1 - t, w[4] = {s * s * s, 3 * s * s * t, 3 * s * t * t, t * t * t};
+    Point<double> p{0, 0};
+    for (int i = 0; i < 4; ++i) p = {p.x + w[i] * c[i].x, p.y + w[i] * c[i].y};
+    return p;
+}
+
+}  // namespace
+
+// --- Features
+// -----------------------------------------------------------------------------------------------
+
+Features::Features(int shapes) : m_shapes(shapes) {
+    if (shapes < 2) throw Error("shapes", std::to_string(shapes), "a morph needs two or more");
+    m_frames.resize(static_cast<std::size_t>(shapes));
+}
+
+std::string Features::name(std::size_t i) const {
+    return name_of(m_names[i], i);
+}
+
+void Features::add_line(const std::vector<Line>& line, double weight, const std::string& name) {
+    const std::string what = name_of(name, size());
+    if (line.size() != static_cast<std::size_t>(m_shapes))
+        throw Error(what, std::to_string(line.size()) + " shapes", "needed are " + std::to_string(m_shapes));
+    for (const Line& l : line) {
+        if (!fits(l.p) || !fits(l.q))
+            throw Error(what, written(l), "allowed are coordinates up to 1e9 pixels");
+        if (l.p.x == l.q.x && l.p.y == l.q.y) throw Error(what, written(l), "a line needs a length");
+    }
+    if (!(weight >= 0 && std::isfinite(weight)))
+        throw Error(what + " weight", number(weight), "allowed is 0 or a finite number above it");
+    m_lines.insert(m_lines.end(), line.begin(), line.end());
+    m_weights.push_back(weight);
+    m_names.push_back(name);
+}
+
+void Features::add_polyline(const std::vector<std::vector<Point<double>>>& vertices, double weight,
+                            const std::string& name) {
+    const std::string what = name_of(name, size());
+    if (vertices.size() != static_cast<std::size_t>(m_shapes))
+        throw Error(what, std::to_string(vertices.size()) + " shapes",
+                    "needed are " + std::to_string(m_shapes));
+    const std::size_t count = vertices[0].size();
+    if (count < 2) throw Error(what, std::to_string(count) + " vertices", "needed are two or more");
+    for (const auto& v : vertices)
+        if (v.size() != count)
+            throw Error(what, std::to_string(v.size()) + " vertices",
+                        "the first shape has " + std::to_string(count));
+    std::vector<Line> line(vertices.size());
+    for (std::size_t i = 0; i + 1 < count; ++i) {
+        for (std::size_t k = 0; k < vertices.size(); ++k) line[k] = {vertices[k][i], vertices[k][i + 1]};
+        add_line(line, weight, name);
+    }
+}
+
+void Features::add_curve(const std::vector<std::vector<Point<double>>>& control_points, double weight,
+                         const std::string& name) {
+    const std::string what = name_of(name, size());
+    if (control_points.size() != static_cast<std::size_t>(m_shapes))
+        throw Error(what, std::to_string(control_points.size()) + " shapes",
+                    "needed are " + std::to_string(m_shapes));
+    const std::size_t count = control_points[0].size();
+    if (count < 4 || count % 3 != 1)
+        throw Error(what, std::to_string(count) + " control points", "allowed are 4, 7, 10 ...");
+    for (const auto& points : control_points) {
+        if (points.size() != count)
+            throw Error(what, std::to_string(points.size()) + " control points",
+                        "the first shape has " + std::to_string(count));
+        for (const Point<double>& p : points)
+            if (!fits(p))
+                throw Error(what, number(p.x) + "," + number(p.y),
+                            "allowed are coordinates up to 1e9 pixels");
+    }
+    std::vector<std::vector<Point<double>>> chain(control_points.size());
+    for (std::size_t k = 0; k < chain.size(); ++k) chain[k].push_back(control_points[k][0]);
+    for (std::size_t i = 0; i + 3 < count; i += 3) {
+        int n = 1;
+        for (const auto& points : control_points) n = std::max(n, lines_of(points.data() + i));
+        for (std::size_t k = 0; k < chain.size(); ++k)
+            for (int j = 1; j <= n; ++j)
+                chain[k].push_back(on_cubic(control_points[k].data() + i, static_cast<double>(j) / n));
+    }
+    add_polyline(chain, weight, name);
+}
+
+void Features::pin_border(double weight) {
+    if (!(weight >= 0 && std::isfinite(weight)))
+        throw Error("pin_border", number(weight), "allowed is 0 or a finite weight above it");
+    m_border = weight;
+}
+
+void Features::set_frame(int shape, const Frame& frame) {
+    if (!(frame.width > 0 && frame.height > 0 && frame.width <= kMostCoordinate &&
+          frame.height <= kMostCoordinate))
+        throw Error("size", number(frame.width) + "x" + number(frame.height),
+                    "allowed are sizes above 0 up to 1e9 pixels");
+    m_frames[static_cast<std::size_t>(shape)] = frame;
+}
+
+// --- FeatureMap
+// ---------------------------------------------------------------------------------------------
+
+FeatureMap::FeatureMap(const Features& features, const std::vector<Size>& pictures, const Size& target,
+                       const std::vector<double>& mixture, const LineWeights& weights)
+    : m_shapes(features.shapes()), m_target(target), m_pictures(pictures), m_weights(weights) {
+    const auto shapes = static_cast<std::size_t>(m_shapes);
+    if (pictures.size() != shapes)
+        throw Error("pictures", std::to_string(pictures.size()),
+                    "the features have " + std::to_string(m_shapes) + " shapes");
+    if (mixture.size() != shapes)
+        throw Error("shape weights", std::to_string(mixture.size()),
+                    "the features have " + std::to_string(m_shapes) + " shapes");
+    const auto check = [](const char* name, double value, double most) {
+        if (!(value >= 0 && value <= most))
+            throw Error(name, number(value), "allowed is a number from 0 to " + number(most));
+    };
+    check("weight_a", weights.a, 1e6);
+    check("weight_b", weights.b, 16);
+    check("weight_p", weights.p, 16);
+    for (const Size& picture : pictures)
+        m_scales.push_back({double(picture.width) / target.width, double(picture.height) / target.height});
+
+    const auto add = [&](const std::vector<Line>& shape_lines, double weight, const std::string& name) {
+        Line line{{0, 0}, {0, 0}};
+        bool moves = false;
+        for (std::size_t k = 0; k < shapes; ++k) {
+            const Line& l = shape_lines[k];
+            line.p = {line.p.x + mixture[k] * l.p.x, line.p.y + mixture[k] * l.p.y};
+            line.q = {line.q.x + mixture[k] * l.q.x, line.q.y + mixture[k] * l.q.y};
+        }
+        const Point<double> e{line.q.x - line.p.x, line.q.y - line.p.y};
+        const double length = length_of(e);
+        // Shorter than this its direction is rounding.
+        const double size =
+            std::fabs(line.p.x) + std::fabs(line.p.y) + std::fabs(line.q.x) + std::fabs(line.q.y);
+        if (!(length > 1e-12 * size && length > 1e-9))
+            throw Error(name, written(line), "a line needs a length, here too");
+        const Point<double> along{e.x / length, e.y / length};
+        for (std::size_t k = 0; k < shapes; ++k) {
+            const Line& l = shape_lines[k];
+            const Point<double> to{l.q.x - l.p.x, l.q.y - l.p.y};
+            const double to_length = length_of(to);
+            if (!(to_length > 1e-9)) throw Error(name, written(l), "a line needs a length");
+            // Eq. 5.10 less X: (P' - P) + u (e' - e) + v (perp(e') / |e'| - perp(e) / |e|)
+            const Displacement d{{l.p.x - line.p.x, l.p.y - line.p.y},
+                                 {to.x / length - along.x, to.y / length - along.y},
+                                 {along.y - to.y / to_length, to.x / to_length - along.x}};
+            m_displacements.push_back(d);
+            for (const Point<double>& v : {d.origin, d.along_rate, d.beside_rate})
+                moves = moves || v.x != 0 || v.y != 0;
+        }
+        m_lines.push_back({line.p, along, length, weight, moves});
+    };
+
+    std::vector<Line> scaled(shapes);
+    for (std::size_t i = 0; i < features.size(); ++i) {
+        if (features.weight(i) == 0) continue;
+        for (int k = 0; k < m_shapes; ++k) {
+            const Features::Frame frame = features.frame(k);
+            const double sx = target.width / (frame.width > 0 ? frame.width : picture(k).width);
+            const double sy = target.height / (frame.height > 0 ? frame.height : picture(k).height);
+            const Line& l = features.line(i, k);
+            scaled[static_cast<std::size_t>(k)] = {{l.p.x * sx, l.p.y * sy}, {l.q.x * sx, l.q.y * sy}};
+        }
+        add(scaled, features.weight(i), features.name(i));
+    }
+    if (features.border_weight() > 0) {
+        const double w = target.width, h = target.height;
+        const Point<double> corners[] = {{0, 0}, {w, 0}, {w, h}, {0, h}};
+        for (int i = 0; i < 4; ++i) {
+            scaled.assign(shapes, {corners[i], corners[(i + 1) % 4]});
+            add(scaled, features.border_weight(), "border");
+        }
+    }
+    if (m_lines.empty()) throw Error("features", "0 lines", "needed is one with a weight above 0");
+
+    double longest = 0, heaviest = 0;
+    for (const TargetLine& line : m_lines) {
+        longest = std::max(longest, line.length);
+        heaviest = std::max(heaviest, line.factor);
+    }
+    for (TargetLine& line : m_lines)
+        line.factor = std::max(
+            line.factor / heaviest * std::pow(line.length / longest, weights.p * weights.b), kLeastFactor);
+}
+
+}  // namespace anamorph
