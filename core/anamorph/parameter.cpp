@@ -48,14 +48,14 @@ std::optional<int> to_whole(std::string_view text) {
     return value;
 }
 
-std::optional<Extent> to_extent(std::string_view text) {
+std::optional<SizeValue> to_extent(std::string_view text) {
     const std::size_t cross = text.find_first_of("xX");
     const std::optional<int> width = to_whole(text.substr(0, cross));
     if (!width) return {};
-    if (cross == std::string_view::npos) return Extent{*width, -1};
+    if (cross == std::string_view::npos) return SizeValue{*width, -1};
     const std::optional<int> height = to_whole(text.substr(cross + 1));
     if (!height) return {};
-    return Extent{*width, *height};
+    return SizeValue{*width, *height};
 }
 
 /// "1,2.5,-3", with or without blanks
@@ -88,7 +88,7 @@ bool is_allowed(const Parameter& parameter, const std::string& value) {
             return std::find(parameter.choices.begin(), parameter.choices.end(), value) !=
                    parameter.choices.end();
         case ParameterType::extent: {
-            const std::optional<Extent> v = to_extent(value);
+            const std::optional<SizeValue> v = to_extent(value);
             const bool one = value.find_first_of("xX") == std::string::npos;
             return v && in_range(v->width) && (one || in_range(v->height));
         }
@@ -239,8 +239,8 @@ std::vector<double> ParameterValues::numbers(std::string_view name) const {
     return *values;
 }
 
-Extent ParameterValues::extent(std::string_view name) const {
-    const std::optional<Extent> value = to_extent(text(name));
+SizeValue ParameterValues::extent(std::string_view name) const {
+    const std::optional<SizeValue> value = to_extent(text(name));
     if (!value) throw Error(std::string(name), text(name), "not an extent");
     return *value;
 }

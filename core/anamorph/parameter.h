@@ -49,7 +49,7 @@ struct Parameter {
 using ParameterTable = std::vector<Parameter>;
 
 /// A width and a height; the height is -1 where only one number was given.
-struct Extent {
+struct SizeValue {
     int width = 0, height = -1;
 };
 
@@ -76,7 +76,7 @@ class ParameterValues {
     int whole(std::string_view name) const;
     std::vector<double> numbers(std::string_view name) const;
     bool toggle(std::string_view name) const { return text(name) == "1"; }
-    Extent extent(std::string_view name) const;
+    SizeValue extent(std::string_view name) const;
 
   private:
     const ParameterTable* m_table;

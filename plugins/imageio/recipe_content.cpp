@@ -179,7 +179,7 @@ class RecipeContent final : public Content {
     ImageSpec m_source;  ///< of the first source
     std::unique_ptr<const Operation> m_operation;
     std::shared_ptr<const SourceStacks> m_stacks;
-    Extent m_tile;
+    SizeValue m_tile;
     int m_levels = 1;
     mutable std::mutex m_mutex;
     mutable std::map<std::pair<int, int>, Level> m_known;  ///< by frame and MIP level

@@ -96,9 +96,9 @@ Parameter colorspace(const char* doc) {
     return text("colorspace", doc);
 }
 
-Extent size_of(const ParameterValues& values, const Extent& natural) {
+SizeValue size_of(const ParameterValues& values, const SizeValue& natural) {
     if (!values.given("size")) return natural;
-    Extent size = values.extent("size");
+    SizeValue size = values.extent("size");
     if (size.height < 0) {
         const double height = std::round(double(size.width) * natural.height / natural.width);
         size.height = static_cast<int>(std::clamp(height, 1.0, kMaxSize));

@@ -33,7 +33,7 @@ Parameter colorspace(const char* doc);
 
 /// Width and height asked for by `size`: those of `natural` where none is, its shape where only a width is
 /// given.
-Extent size_of(const ParameterValues& values, const Extent& natural);
+SizeValue size_of(const ParameterValues& values, const SizeValue& natural);
 
 /// What was chosen of a list in the order of its enumeration.
 template <class Enumeration>

@@ -88,7 +88,7 @@ int columns_of_faces(Projection projection) {
     return projection == Projection::cubemap3x2 ? 3 : projection == Projection::cubecross ? 4 : 1;
 }
 
-Extent natural_size(Projection projection, double fov, double width) {
+SizeValue natural_size(Projection projection, double fov, double width) {
     const double limit = rows::kMaxSize;
     const int w = static_cast<int>(std::clamp(std::round(width), 1.0, limit));
     const int h = static_cast<int>(std::clamp(std::round(w * natural_aspect(projection, fov)), 1.0, limit));
@@ -96,9 +96,9 @@ Extent natural_size(Projection projection, double fov, double width) {
 }
 
 /// The picture's size where none was given: as many pixels per radian at its centre as the source has.
-Extent default_size(Projection projection, double fov, const Chart& source) {
+SizeValue default_size(Projection projection, double fov, const Chart& source) {
     const int probe = 1200;  // holds whole faces of every cube layout
-    const Extent shape = natural_size(projection, fov, probe);
+    const SizeValue shape = natural_size(projection, fov, probe);
     const Chart chart(projection, shape.width, shape.height, fov);
     const double width = probe * source.scale_x() / chart.scale_x();
     const double most = kMaxDefaultSize / std::max(1.0, natural_aspect(projection, fov));
@@ -143,7 +143,7 @@ ReprojectRequest read_reproject_request(const ParameterValues& values, const Sou
     static_cast<void>(
         Chart(to, probe, is_cube(to) ? static_cast<int>(probe * natural_aspect(to, fov)) : probe, fov));
 
-    Extent size;
+    SizeValue size;
     if (!values.given("size")) {
         size = default_size(to, fov, source);
     } else {
