@@ -7,6 +7,7 @@
 #include <clocale>
 #include <random>
 
+#include "anamorph/image/picture_parameters.h"
 #include "anamorph/image/reproject_parameters.h"
 
 namespace anamorph {
@@ -92,6 +93,29 @@ TEST(Parameter, ErrorsNameParameterValueAndWhatIsAllowed) {
     says("yaw", "1\n2\t3", "finite");
 }
 
+TEST(Parameter, WholeNumbersAndLists) {
+    const ParameterTable table = {rows::whole("count", "", "2", 1, 99, "some"),
+                                  rows::numbers("parts", -rows::kInfinity, "more"),
+                                  rows::numbers("gains", 0, "more")};
+    ParameterValues v(table);
+    EXPECT_EQ(v.whole("count"), 2);
+    v.assign({{"count", "17"}, {"parts", "0.5, -1e1,3"}});
+    EXPECT_EQ(v.whole("count"), 17);
+    EXPECT_EQ(v.numbers("parts"), (std::vector<double>{0.5, -10, 3}));
+    const auto refuses = [&](const char* key, const char* value, const char* allowed) {
+        EXPECT_THAT(error_of([&] {
+                        v.assign({{key, value}});
+                    }),
+                    AllOf(HasSubstr(key), HasSubstr(allowed)))
+            << value;
+    };
+    for (const char* bad : {"0", "100", "1.5", "", "one", "1,2", "99999999999"})
+        refuses("count", bad, "allowed is a whole number from 1 to 99");
+    for (const char* bad : {"", ",", "1,", "1;2", "nan", "1,inf", "1 2"})
+        refuses("parts", bad, "allowed are finite numbers, separated by commas");
+    refuses("gains", "1,-2", "allowed are numbers from 0, separated by commas");
+}
+
 TEST(Parameter, NumbersDoNotDependOnTheLocale) {
     for (const char* name : {"de_DE.UTF-8", "fr_FR.UTF-8", "C"})
         if (std::setlocale(LC_ALL, name)) break;
@@ -149,6 +173,24 @@ TEST(RecipeName, ANestedNameTakesTheRest) {
     EXPECT_EQ(inner.assignments[1].value, "z.null?RES=8x4&TILE=2x2");
 }
 
+TEST(RecipeName, ANestedNameInBracketsStandsAnywhere) {
+    const RecipeName n =
+        parse_recipe_name("x.morph?a=(y.pano?yaw=2&fov=40)&t=0.3&b=(z(1).warp?mesh=(q.pano?a=1)&step=2)");
+    ASSERT_EQ(n.assignments.size(), 3u);
+    EXPECT_EQ(n.assignments[0].value, "y.pano?yaw=2&fov=40");
+    EXPECT_EQ(n.assignments[1].value, "0.3");
+    EXPECT_EQ(n.assignments[2].value, "z(1).warp?mesh=(q.pano?a=1)&step=2");
+    // Brackets that are part of a name: those without arguments inside, and those that are not all of the
+    // value.
+    for (const char* value : {"(1).exr", "(old)/x.exr", "((", "(a", "a)", "()"})
+        EXPECT_EQ(parse_recipe_name(std::string("x.pano?src=") + value + "&yaw=3").assignments[0].value,
+                  value);
+    EXPECT_EQ(parse_recipe_name("x.pano?src=(old)/y.pano?yaw=1&fov=3").assignments[0].value,
+              "(old)/y.pano?yaw=1&fov=3");
+    EXPECT_EQ(parse_recipe_name("x.pano?src=(y.pano?yaw=1&fov=3").assignments[0].value,
+              "(y.pano?yaw=1&fov=3");
+}
+
 TEST(RecipeName, RefusesWhatIsNotAnAssignment) {
     for (const char* bad :
          {"a.pano?flag", "a.pano?&yaw=1", "a.pano?=1", "a.pano?yaw=1&&fov=2", "a.pano?yaw=\n"})
@@ -159,7 +201,7 @@ TEST(RecipeName, RandomBytesGiveAnErrorOrAResult) {
     const unsigned seed = 20260729;
     SCOPED_TRACE(seed);
     std::mt19937 random(seed);
-    const std::string alphabet = std::string("src=yaw?&.pano#\r\n \t\xEF\xBB\xBF%x0123456789") + '\0';
+    const std::string alphabet = std::string("src=yaw?&().pano#\r\n \t\xEF\xBB\xBF%x0123456789") + '\0';
     for (int i = 0; i < 20000; ++i) {
         std::string text(random() % 40, ' ');
         for (char& c : text) c = alphabet[random() % alphabet.size()];

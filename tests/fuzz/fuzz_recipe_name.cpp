@@ -14,7 +14,10 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     fuzz::expect_no_failure_but_error([&] {
         const RecipeName name = parse_recipe_name(text);
         fuzz::require(text.starts_with(name.base), "a name starts with its base");
-        for (const Assignment& a : name.assignments) fuzz::require(!a.key.empty(), "a key is never empty");
+        for (const Assignment& a : name.assignments) {
+            fuzz::require(!a.key.empty(), "a key is never empty");
+            fuzz::require(text.find(a.value) != std::string::npos, "a value stands in the name as it is");
+        }
         ParameterValues values(reproject_parameters());
         values.assign(name.assignments);
         read_reproject_request(values, {1024, 512, std::nullopt});
