@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: Apache-2.0
+// Kim's approximation of a morph (2003, 5.6.2): the maps are evaluated at the vertices of a grid only, which
+// is cut finer near the lines, with Hermite patches in between. It holds no tolerance, since the maps have
+// kinks on the lines: the bound is infinite.
+#pragma once
+
+#include "anamorph/approx/near_far.h"
+
+namespace anamorph {
+
+class FeatureMesh final : public CellField {
+  public:
+    /// `cells` each way, those near a line cut `levels` times into four. The map outlives this.
+    FeatureMesh(const FeatureMap& map, int cells, int levels, const std::vector<int>& shapes);
+    ~FeatureMesh() override;
+
+    /// How often the map was evaluated: once for each vertex.
+    std::int64_t evaluations() const;
+
+    void each_block(const Box& region, const Box& part, const Visit& visit) const override;
+    Tally tally(const Box& region) const override;
+
+  private:
+    struct State;
+    std::unique_ptr<State> m_state;
+};
+
+}  // namespace anamorph

@@ -1,0 +1,276 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "anamorph/image/morph.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstring>
+#include <random>
+#include <thread>
+
+namespace anamorph {
+namespace {
+
+/// A packed picture and its source.
+template <class T>
+struct Picture {
+    Picture(int w, int h, int c, PixelType pixel_type)
+        : width(w),
+          height(h),
+          channels(c),
+          type(pixel_type),
+          pixels(static_cast<std::size_t>(w) * static_cast<std::size_t>(h * c)) {}
+    ConstImageView source() const {
+        return packed_view(reinterpret_cast<const std::byte*>(pixels.data()), type, width, height, channels);
+    }
+    ImageView view() {
+        return packed_view(reinterpret_cast<std::byte*>(pixels.data()), type, width, height, channels);
+    }
+    T& at(int x, int y, int c) { return pixels[static_cast<std::size_t>((y * width + x) * channels + c)]; }
+    int width, height, channels;
+    PixelType type;
+    std::vector<T> pixels;
+};
+using FloatPicture = Picture<float>;
+using BytePicture = Picture<std::uint8_t>;
+
+FloatPicture noise(int w, int h, int c, unsigned seed) {
+    FloatPicture p(w, h, c, PixelType::float32);
+    std::mt19937 random(seed);
+    std::uniform_real_distribution<float> value(0, 1);
+    for (float& v : p.pixels) v = value(random);
+    return p;
+}
+
+std::shared_ptr<const Features> face(double scale_b = 1) {
+    auto features = std::make_shared<Features>();
+    const auto add = [&](Line a, Line b) {
+        for (Point<double>* p : {&b.p, &b.q}) *p = {p->x * scale_b, p->y * scale_b};
+        features->add_line({a, b});
+    };
+    add({{40, 40}, {80, 38}}, {{44, 50}, {82, 44}});
+    add({{110, 38}, {150, 42}}, {{108, 46}, {146, 52}});
+    add({{60, 110}, {130, 112}}, {{66, 100}, {124, 106}});
+    add({{95, 55}, {96, 90}}, {{95, 60}, {93, 88}});
+    return features;
+}
+
+constexpr int kWidth = 190, kHeight = 150;
+constexpr Source::Size kSize{kWidth, kHeight};
+
+FloatPicture draw(const Morph& morph, const std::vector<const Source*>& sources, int channels,
+                  const Box& box = {0, 0, kWidth, kHeight}, const ParallelFor& parallel_for = serial_for) {
+    FloatPicture p(box.width(), box.height(), channels, PixelType::float32);
+    EXPECT_TRUE(morph.draw(sources, box, p.view(), parallel_for));
+    return p;
+}
+
+void threads(std::int64_t count, const std::function<void(std::int64_t)>& body) {
+    std::vector<std::thread> pool;
+    for (int t = 0; t < 3; ++t)
+        pool.emplace_back([&, t] {
+            for (std::int64_t i = count - 1 - t; i >= 0; i -= 3) body(i);
+        });
+    for (std::thread& t : pool) t.join();
+}
+
+TEST(Morph, AtItsEndsItIsThePicturesToTheBit) {
+    FloatPicture a = noise(kWidth, kHeight, 3, 1), b = noise(kWidth, kHeight, 3, 2);
+    // The other picture is not read: what it holds does not matter.
+    for (int end = 0; end < 2; ++end) {
+        FloatPicture &kept = end ? b : a, poison = noise(kWidth, kHeight, 3, 3);
+        std::fill(poison.pixels.begin(), poison.pixels.end(), NAN);
+        const MemorySource sa(end ? poison.source() : kept.source()), sb(end ? kept.source() : poison.source());
+        for (const Filter filter : {Filter::nearest, Filter::bilinear, Filter::bicubic, Filter::antialias})
+            for (const MorphScheme scheme : {MorphScheme::automatic, MorphScheme::exact}) {
+                MorphOptions options;
+                options.t = end;
+                options.tol = 0;
+                options.filter = filter;
+                options.scheme = scheme;
+                const Morph morph(face(), {kSize, kSize}, kWidth, kHeight, options);
+                EXPECT_EQ(draw(morph, {&sa, &sb}, 3).pixels, kept.pixels);
+                EXPECT_EQ(morph.reads(), (std::vector<bool>{end == 0, end == 1}));
+            }
+    }
+}
+
+TEST(Morph, AShapeAndTheOthersColour) {
+    const FloatPicture a = noise(kWidth, kHeight, 3, 1), b = noise(kWidth, kHeight, 3, 2);
+    const MemorySource sa(a.source()), sb(b.source());
+    MorphOptions options;
+    options.t = 0.4;
+    options.t_color = 1;
+    options.filter = Filter::bilinear;
+    const Morph morph(face(), {kSize, kSize}, kWidth, kHeight, options);
+    EXPECT_EQ(morph.reads(), (std::vector<bool>{false, true}));
+    options.output = MorphOutput::warp_b;
+    const Morph warp(face(), {kSize, kSize}, kWidth, kHeight, options);
+    EXPECT_EQ(draw(morph, {nullptr, &sb}, 3).pixels, draw(warp, {&sa, &sb}, 3).pixels);
+}
+
+TEST(Morph, BlendsTheTwoWarps) {
+    const FloatPicture a = noise(kWidth, kHeight, 3, 4), b = noise(kWidth, kHeight, 3, 5);
+    const MemorySource sa(a.source()), sb(b.source());
+    MorphOptions options;
+    options.t = 0.5;
+    options.t_color = 0.25;
+    options.tol = 0;
+    options.filter = Filter::bilinear;
+    const auto drawn = [&](MorphOutput output) {
+        options.output = output;
+        return draw(Morph(face(), {kSize, kSize}, kWidth, kHeight, options), {&sa, &sb}, 3);
+    };
+    const FloatPicture morph = drawn(MorphOutput::color), wa = drawn(MorphOutput::warp_a),
+                       wb = drawn(MorphOutput::warp_b);
+    for (std::size_t i = 0; i < morph.pixels.size(); ++i)
+        ASSERT_NEAR(morph.pixels[i], 0.75f * wa.pixels[i] + 0.25f * wb.pixels[i], 1e-6f);
+}
+
+TEST(Morph, BitsDependOnNeitherCropNorThreads) {
+    const FloatPicture a = noise(kWidth, kHeight, 3, 6), b = noise(kWidth, kHeight, 3, 7);
+    const MemorySource sa(a.source()), sb(b.source());
+    for (const MorphScheme scheme : {MorphScheme::automatic, MorphScheme::exact, MorphScheme::mesh})
+        for (const MorphOutput output : {MorphOutput::color, MorphOutput::stmap_b, MorphOutput::lines}) {
+            MorphOptions options;
+            options.scheme = scheme;
+            options.output = output;
+            options.tol = 0.02;
+            const int channels = output == MorphOutput::stmap_b ? 2 : 3;
+            const Morph morph(face(), {kSize, kSize}, kWidth, kHeight, options);
+            const FloatPicture whole = draw(morph, {&sa, &sb}, channels);
+            const Morph again(face(), {kSize, kSize}, kWidth, kHeight, options);
+            EXPECT_EQ(whole.pixels,
+                      draw(again, {&sa, &sb}, channels, {0, 0, kWidth, kHeight}, threads).pixels);
+            for (const Box& box : {Box{17, 23, 18, 24}, Box{100, 60, 163, 131}, Box{-5, -7, 60, 40}}) {
+                const Morph fresh(face(), {kSize, kSize}, kWidth, kHeight, options);
+                FloatPicture part = draw(fresh, {&sa, &sb}, channels, box);
+                for (int y = std::max(0, box.y0); y < box.y1; ++y)
+                    for (int x = std::max(0, box.x0); x < box.x1; ++x)
+                        for (int c = 0; c < channels; ++c)
+                            ASSERT_EQ(
+                                part.at(x - box.x0, y - box.y0, c),
+                                whole.pixels[static_cast<std::size_t>((y * kWidth + x) * channels + c)]);
+            }
+        }
+}
+
+TEST(Morph, PicturesOfAnotherSizeShowTheSame) {
+    // B is twice as large and its features too: a morph of a smooth picture with itself.
+    const auto smooth = [](int w, int h) {
+        FloatPicture p(w, h, 1, PixelType::float32);
+        for (int y = 0; y < h; ++y)
+            for (int x = 0; x < w; ++x)
+                p.at(x, y, 0) = static_cast<float>((x + 0.5) / w + 0.5 * (y + 0.5) / h);
+        return p;
+    };
+    const FloatPicture a = smooth(kWidth, kHeight), b = smooth(2 * kWidth, 2 * kHeight);
+    const MemorySource sa(a.source()), sb(b.source());
+    auto features = std::make_shared<Features>();
+    features->add_line({{{40, 40}, {80, 45}}, {{40, 40}, {80, 45}}});
+    features->set_frame(0, {kWidth, kHeight});
+    features->set_frame(1, {kWidth, kHeight});
+    MorphOptions options;
+    options.filter = Filter::bilinear;
+    const Morph morph(features, {kSize, {2 * kWidth, 2 * kHeight}}, kWidth, kHeight, options);
+    const FloatPicture m = draw(morph, {&sa, &sb}, 1);
+    for (std::size_t i = 0; i < m.pixels.size(); ++i) ASSERT_NEAR(m.pixels[i], a.pixels[i], 2e-5f);
+}
+
+TEST(Morph, KeepsTheTypeOfWhatItIsAskedFor) {
+    BytePicture a(kWidth, kHeight, 3, PixelType::uint8), b(kWidth, kHeight, 3, PixelType::uint8);
+    std::fill(a.pixels.begin(), a.pixels.end(), 200);
+    std::fill(b.pixels.begin(), b.pixels.end(), 100);
+    const MemorySource sa(a.source()), sb(b.source());
+    BytePicture to(kWidth, kHeight, 3, PixelType::uint8);
+    const Morph morph(face(), {kSize, kSize}, kWidth, kHeight, {});
+    ASSERT_TRUE(morph.draw({&sa, &sb}, {0, 0, kWidth, kHeight}, to.view()));
+    for (const std::uint8_t v : to.pixels) ASSERT_EQ(v, 150);
+}
+
+TEST(Morph, UnassociatedAlphaWeighsColour) {
+    // A is red and opaque, B is green and clear: what is seen half way is red.
+    FloatPicture a(kWidth, kHeight, 4, PixelType::float32), b = a;
+    for (std::size_t i = 0; i < a.pixels.size(); i += 4) {
+        a.pixels[i] = a.pixels[i + 3] = 1;
+        b.pixels[i + 1] = 1;
+    }
+    const MemorySource sa(a.source(), 3), sb(b.source(), 3);
+    const FloatPicture m = draw(Morph(face(), {kSize, kSize}, kWidth, kHeight, {}), {&sa, &sb}, 4);
+    for (std::size_t i = 0; i < m.pixels.size(); i += 4) {
+        ASSERT_NEAR(m.pixels[i], 1, 1e-6);
+        ASSERT_NEAR(m.pixels[i + 1], 0, 1e-6);
+        ASSERT_NEAR(m.pixels[i + 3], 0.5, 1e-6);
+    }
+}
+
+TEST(Morph, ThreePicturesMixByTheirWeights) {
+    auto features = std::make_shared<Features>(3);
+    features->add_line({{{40, 40}, {80, 38}}, {{44, 50}, {82, 44}}, {{30, 45}, {85, 40}}});
+    std::vector<FloatPicture> pictures;
+    std::vector<MemorySource> sources;
+    for (int k = 0; k < 3; ++k) {
+        pictures.emplace_back(kWidth, kHeight, 1, PixelType::float32);
+        std::fill(pictures.back().pixels.begin(), pictures.back().pixels.end(), static_cast<float>(k));
+    }
+    for (const FloatPicture& p : pictures) sources.emplace_back(p.source());
+    MorphOptions options;
+    options.shape_weights = {0.2, 0.3, 0.5};
+    const Morph morph(features, {kSize, kSize, kSize}, kWidth, kHeight, options);
+    const FloatPicture m = draw(morph, {&sources[0], &sources[1], &sources[2]}, 1);
+    for (const float v : m.pixels) ASSERT_NEAR(v, 1.3f, 1e-5f);
+    options.shape_weights = {0.2, 0.3, 0.4};
+    EXPECT_THROW(Morph(features, {kSize, kSize, kSize}, kWidth, kHeight, options), Error);
+    options.shape_weights.clear();
+    EXPECT_THROW(Morph(features, {kSize, kSize, kSize}, kWidth, kHeight, options), Error);
+}
+
+TEST(Morph, TheMeshSaysThatItHoldsNothing) {
+    MorphOptions options;
+    options.scheme = MorphScheme::mesh;
+    options.mesh_levels = 0;
+    options.output = MorphOutput::bound;
+    const Morph morph(face(), {kSize, kSize}, kWidth, kHeight, options);
+    EXPECT_EQ(morph.mesh_evaluations(), 169);
+    EXPECT_TRUE(std::isinf(morph.reached().max_error));
+    EXPECT_TRUE(std::isinf(draw(morph, {nullptr, nullptr}, 1).pixels[0]));
+    options.output = MorphOutput::error;
+    options.mesh_cells = 96;
+    options.weight_a = 20;
+    const FloatPicture error =
+        draw(Morph(face(), {kSize, kSize}, kWidth, kHeight, options), {nullptr, nullptr}, 1);
+    for (const float e : error.pixels) ASSERT_LT(e, 0.1f);
+}
+
+TEST(Morph, BadParametersAreNamed) {
+    const auto message = [](MorphOptions options, Source::Size b = kSize) -> std::string {
+        try {
+            const Morph morph(face(), {kSize, b}, kWidth, kHeight, options);
+        } catch (const Error& error) {
+            return error.what();
+        }
+        return "no error";
+    };
+    MorphOptions options;
+    EXPECT_EQ(message(options), "no error");
+    options.tol = -1;
+    EXPECT_EQ(message(options), "tol=-1: allowed is 0 (exact) or a finite number of source pixels above it");
+    options = {};
+    options.tol = NAN;
+    options.scheme = MorphScheme::exact;
+    EXPECT_NE(message(options), "no error");
+    options = {};
+    options.t = NAN;
+    EXPECT_EQ(message(options), "t=nan: allowed is a finite number");
+    options = {};
+    options.weight_b = NAN;
+    EXPECT_EQ(message(options), "weight_b=nan: allowed is a number from 0 to 16");
+    options = {};
+    EXPECT_NE(message(options, {0, 5}), "no error");
+    options.scheme = MorphScheme::mesh;
+    options.mesh_cells = 0;
+    EXPECT_EQ(message(options), "mesh_cells=0: allowed is 1 to 1024");
+}
+
+}  // namespace
+}  // namespace anamorph
