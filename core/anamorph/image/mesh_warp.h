@@ -5,18 +5,12 @@
 
 #include <memory>
 
-#include "anamorph/approx/block.h"
+#include "anamorph/approx/mesh_plan.h"
 #include "anamorph/image/border.h"
 #include "anamorph/image/filter.h"
 #include "anamorph/map/mesh_data.h"
 
 namespace anamorph {
-
-/// exact: every pixel in double. hermite: the bicubic patch in full at every pixel (5.3.5), in float.
-/// residual: a linear map for each of a cell's two triangles plus thirteen tabulated products (5.4 to 5.7).
-/// automatic: the patch as a quadratic on blocks, the fastest. Maps that are no bicubic patches (pairs of
-/// points, and meshes that push) know exact and automatic, and take the latter for the other two.
-enum class WarpScheme { automatic, exact, hermite, residual };
 
 /// color; stmap: the source point as (u, v) in 0..1, v down, (-1, -1) where there is none; error: its
 /// distance from the exact one, and bound: what is proven of that, in source pixels; folds: 0 where the map

@@ -1,0 +1,320 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "anamorph/approx/mesh_plan.h"
+
+#include <algorithm>
+#include <cstdio>
+#include <cstring>
+#include <limits>
+
+#include "anamorph/approx/hermite.h"
+#include "anamorph/approx/mesh_residual.h"
+
+namespace anamorph {
+namespace {
+
+// A block is at most as large as keeps its source and target rows in the first-level cache.
+constexpr int kBlockWidth = 64, kBlockHeight = 32;
+// A polynomial costs as much to plan as so many exact pixels.
+constexpr int kFloorPixels = 12;
+
+// Rounding of a point's coordinates to float and of their evaluation: the coefficients, s and t are each
+// rounded once, and at most five operations are rounded on the way from the smallest term to the sum, so that
+// each term errs by less than 8 half-ULP of its size. So for a cubic in s alone.
+constexpr double kFloatRounding = 8 * 0x1p-24;
+
+/// Half the distance between the first and the last of a row of pixel centres.
+double half(int pixels) {
+    return pixels > 1 ? 0.5 * (pixels - 1) : 0.5;
+}
+
+/// The pixels whose centres lie in [from, to), as far as they lie in [first, last).
+void pixels_between(double from, double to, int first, int last, int& begin, int& end) {
+    const auto number = [&](double at) {
+        return static_cast<int>(std::clamp(std::ceil(at - 0.5), double(first), double(last)));
+    };
+    begin = number(from);
+    end = number(to);
+}
+
+/// One cell of the mesh, as it is planned.
+struct CellForm {
+    Mesh const& mesh;
+    MeshCell cell;
+    Patch patch;
+    Bicubic powers;
+    double rounding;  ///< of the map in double
+
+    CellForm(const Mesh& m, const MeshCell& c)
+        : mesh(m), cell(c), patch(m.patch(c)), powers(power_form(patch)), rounding(rounding_of(m, patch)) {}
+
+    /// The parameters of a row or column of pixel centres.
+    Part across(const Box& b) const {
+        const double w = 1 / (cell.x1 - cell.x0);
+        return {(0.5 * (b.x0 + b.x1) - cell.x0) * w, half(b.width()) * w};
+    }
+    Part down(const Box& b) const {
+        const double h = 1 / (cell.y1 - cell.y0);
+        return {(0.5 * (b.y0 + b.y1) - cell.y0) * h, half(b.height()) * h};
+    }
+
+    /// The map, not only the displacement, on a block, in powers of parameters in [-1, 1].
+    Bicubic on(const Box& b) const {
+        Bicubic f = restricted(powers, across(b), down(b));
+        f.x[0][0] += 0.5 * (b.x0 + b.x1) * mesh.scale().x;
+        f.x[1][0] += half(b.width()) * mesh.scale().x;
+        f.y[0][0] += 0.5 * (b.y0 + b.y1) * mesh.scale().y;
+        f.y[0][1] += half(b.height()) * mesh.scale().y;
+        return f;
+    }
+
+    /// Rounding in double of the patch, of its other forms and of their restriction: sums of at most some
+    /// dozen products, of terms that the conversion to powers makes at most 36 times larger together than the
+    /// Hermite data (the columns of M in eq. 5.2 sum to at most 6).
+    static double rounding_of(const Mesh& mesh, const Patch& p) {
+        double size = (std::fabs(p.x0) + std::fabs(p.x1)) * mesh.scale().x +
+                      (std::fabs(p.y0) + std::fabs(p.y1)) * mesh.scale().y;
+        for (const auto& row : p.g)
+            for (const Point<double>& g : row) size += std::fabs(g.x) + std::fabs(g.y);
+        return 1024 * 0x1p-53 * size;
+    }
+};
+
+/// Plans one region; blocks are appended to `blocks`.
+class Planner {
+  public:
+    Planner(const Mesh& mesh, WarpScheme scheme, double tol, const ResidualTables* tables, Blocks& blocks)
+        : m_mesh(mesh), m_scheme(scheme), m_tol(tol), m_tables(tables), m_blocks(blocks) {}
+
+    void exact(const Box& box) {
+        for_blocks(box, [&](const Box& b) { emit_exact(b); });
+    }
+
+    void region(const Box& box) {
+        // Where cells have few pixels, blocks that take no notice of them.
+        double cells = 0;
+        m_mesh.each_cell(box.x0 + 0.5, box.y0 + 0.5, box.x1 - 0.5, box.y1 - 0.5,
+                         [&](const MeshCell&) { ++cells; });
+        if (double(box.width()) * box.height() < kFloorPixels * cells) return exact(box);
+        m_mesh.each_cell(box.x0 + 0.5, box.y0 + 0.5, box.x1 - 0.5, box.y1 - 0.5, [&](const MeshCell& cell) {
+            Box part;
+            // The outermost cells go on to the edges of the image.
+            pixels_between(cell.x0 <= m_mesh.x_lines().front() ? -1 : cell.x0,
+                           cell.x1 >= m_mesh.x_lines().back() ? HUGE_VAL : cell.x1, box.x0, box.x1, part.x0,
+                           part.x1);
+            pixels_between(cell.y0 <= m_mesh.y_lines().front() ? -1 : cell.y0,
+                           cell.y1 >= m_mesh.y_lines().back() ? HUGE_VAL : cell.y1, box.y0, box.y1, part.y0,
+                           part.y1);
+            if (!part.empty()) settle(CellForm(m_mesh, cell), part);
+        });
+    }
+
+  private:
+    void settle(const CellForm& form, const Box& box) {
+        switch (m_scheme) {
+            case WarpScheme::automatic:
+                return for_blocks(box, [&](const Box& b) { place(form, b); });
+            case WarpScheme::hermite:
+                return for_blocks(box, [&](const Box& b) { place_rows(form, b); });
+            case WarpScheme::residual:
+                return place_residual(form, box);
+            case WarpScheme::exact:
+                return exact(box);
+        }
+    }
+
+    /// One quadratic block, or its halves.
+    void place(const CellForm& form, const Box& box) {
+        if (box.width() * box.height() < kFloorPixels) return emit_exact(box);
+        const Bicubic f = form.on(box);
+        const EconomizedBicubic x(f.x), y(f.y);
+        if (emit_polynomial(box, x.c, y.c, std::hypot(x.dropped, y.dropped) + form.rounding)) return;
+        const std::size_t first = m_blocks.size();
+        const bool vertical_cut = x.dropped_s + y.dropped_s >= x.dropped_t + y.dropped_t;
+        const auto [a, b] = halves(box, vertical_cut ? box.width() > 1 : box.height() <= 1);
+        place(form, a);
+        place(form, b);
+        merge_exact(box, first);
+    }
+
+    static std::pair<Box, Box> halves(const Box& box, bool vertical_cut) {
+        Box a = box, b = box;
+        if (vertical_cut)
+            a.x1 = b.x0 = (box.x0 + box.x1) / 2;
+        else
+            a.y1 = b.y0 = (box.y0 + box.y1) / 2;
+        return {a, b};
+    }
+
+    /// Where everything in a box came out exact, one exact block.
+    void merge_exact(const Box& box, std::size_t first) {
+        for (std::size_t i = first; i < m_blocks.size(); ++i)
+            if (m_blocks[i].kind != Block::Kind::exact) return;
+        m_blocks.resize(first);
+        emit_exact(box);
+    }
+
+    /// True when the polynomial, evaluated in float, keeps the tolerance: then the block is appended.
+    bool emit_polynomial(const Box& box, const double* cx, const double* cy, double error) {
+        if (!(std::fabs(cx[0]) < kFarthest && std::fabs(cy[0]) < kFarthest)) return false;
+        Block block;
+        block.box = box;
+        block.kind = Block::Kind::polynomial;
+        block.base_x = static_cast<std::int32_t>(std::floor(cx[0]));
+        block.base_y = static_cast<std::int32_t>(std::floor(cy[0]));
+        const auto store = [](const double* c, std::int32_t base, float* to) {
+            to[0] = static_cast<float>(c[0] - base);
+            double sum = std::fabs(c[0] - base);
+            for (int i = 1; i < 6; ++i) {
+                to[i] = static_cast<float>(c[i]);
+                sum += std::fabs(c[i]);
+            }
+            return sum * kFloatRounding;
+        };
+        const double ex = store(cx, block.base_x, block.x), ey = store(cy, block.base_y, block.y);
+        block.bound = error + std::hypot(ex, ey);
+        if (!(block.bound <= m_tol)) return false;
+        m_blocks.push_back(block);
+        return true;
+    }
+
+    /// A computed block whose base is the map at its middle; exact where `error` exceeds the tolerance.
+    void emit_computed(const CellForm& form, const Box& box, double error) {
+        const Point<double> middle =
+            form.mesh.at(form.patch, 0.5 * (box.x0 + box.x1), 0.5 * (box.y0 + box.y1));
+        if (!(error <= m_tol && std::fabs(middle.x) < kFarthest && std::fabs(middle.y) < kFarthest))
+            return emit_exact(box);
+        Block block;
+        block.box = box;
+        block.kind = Block::Kind::computed;
+        block.base_x = static_cast<std::int32_t>(std::floor(middle.x));
+        block.base_y = static_cast<std::int32_t>(std::floor(middle.y));
+        block.bound = error;
+        m_blocks.push_back(block);
+    }
+
+    /// The full patch (5.3.5): a row is a cubic in float, each term of which errs as kFloatRounding says.
+    void place_rows(const CellForm& form, const Box& box) {
+        const Bicubic f = form.on(box);
+        const auto sum = [](const double(&c)[4][4]) { return sum_of_magnitudes(c) - std::fabs(c[0][0]) + 1; };
+        // The base is the middle rounded down: what is left of the constant term is below 1.
+        emit_computed(form, box, kFloatRounding * std::hypot(sum(f.x), sum(f.y)) + form.rounding);
+    }
+
+    void place_residual(const CellForm& form, const Box& box) {
+        const ResidualPatch residual(form.patch);
+        for_blocks(box, [&](const Box& b) {
+            emit_computed(form, b,
+                          m_tables->bound(residual) + residual.float_rounding(form.on(b)) + form.rounding);
+        });
+    }
+
+    void emit_exact(const Box& box) {
+        Block block;
+        block.box = box;
+        m_blocks.push_back(block);
+    }
+
+    template <class Body>
+    static void for_blocks(const Box& box, const Body& body) {
+        for (int y = box.y0; y < box.y1; y += kBlockHeight)
+            for (int x = box.x0; x < box.x1; x += kBlockWidth)
+                body(Box{x, y, std::min(x + kBlockWidth, box.x1), std::min(y + kBlockHeight, box.y1)});
+    }
+
+    const Mesh& m_mesh;
+    WarpScheme m_scheme;
+    double m_tol;
+    const ResidualTables* m_tables;
+    Blocks& m_blocks;
+};
+
+}  // namespace
+
+void check_tol(double tol) {
+    if (tol >= 0 && tol < HUGE_VAL) return;
+    char text[32];
+    std::snprintf(text, sizeof text, "%g", tol);
+    throw Error("tol", text, "allowed is 0 (exact) or a finite number of source pixels above it");
+}
+
+std::int64_t WarpPlan::folded_pixels(const Box& box) const {
+    std::int64_t count = 0;
+    for (int y = box.y0; y < box.y1; ++y)
+        for (int x = box.x0; x < box.x1; ++x) count += folds(x + 0.5, y + 0.5) != 0;
+    return count;
+}
+
+MeshPlan::MeshPlan(Mesh mesh, WarpScheme scheme, double tol)
+    : WarpPlan(mesh.from().width, mesh.from().height, {Box{0, 0, mesh.from().width, mesh.from().height}}),
+      m_mesh(std::move(mesh)),
+      m_scheme(scheme),
+      m_tol(tol) {
+    check_tol(tol);
+    if (scheme == WarpScheme::residual && tol > 0) m_tables = ResidualTables::shared();
+}
+
+void MeshPlan::plan(const Box& box, int, Blocks& blocks) const {
+    Planner planner(m_mesh, m_scheme, m_tol, m_tables.get(), blocks);
+    if (m_tol == 0)
+        planner.exact(box);
+    else
+        planner.region(box);
+}
+
+bool MeshPlan::exact(double x, double y, int, Point<double>& source_point, int& source_piece) const noexcept {
+    source_point = m_mesh.at(x, y);
+    source_piece = 0;
+    return std::fabs(source_point.x) < kFarthest && std::fabs(source_point.y) < kFarthest;
+}
+
+Jacobian MeshPlan::jacobian(double x, double y, int) const noexcept {
+    using J = Jet1<double>;
+    const Point<J> p =
+        m_mesh.at(m_mesh.patch(m_mesh.cell_at(x, y)), J::variable(x, 1, 0), J::variable(y, 0, 1));
+    return {p.x.c[1], p.y.c[1], p.x.c[2], p.y.c[2]};
+}
+
+float MeshPlan::folds(double x, double y) const noexcept {
+    const Jacobian j = jacobian(x, y, 0);
+    return (j.x_i * j.y_j - j.x_j * j.y_i) * m_mesh.orientation() < 0 ? 1.0f : 0.0f;
+}
+
+void MeshPlan::computed_row(const Block& block, int row, int begin, int end, float* x,
+                            float* y) const noexcept {
+    const Box& b = block.box;
+    const CellForm form(m_mesh, m_mesh.leaf_at(b.x0 + 0.5, b.y0 + 0.5));
+    if (m_scheme == WarpScheme::residual) {
+        const double step = 1 / (form.cell.x1 - form.cell.x0);
+        const double first = (b.x0 + 0.5 - form.cell.x0) * step;
+        const double at_t = (b.y0 + row + 0.5 - form.cell.y0) / (form.cell.y1 - form.cell.y0);
+        const double px = (b.x0 + 0.5) * m_mesh.scale().x - block.base_x,
+                     py = (b.y0 + row + 0.5) * m_mesh.scale().y - block.base_y;
+        return m_tables->row(ResidualPatch(form.patch), {px, py, m_mesh.scale().x}, first, step, at_t, begin,
+                             end, x, y);
+    }
+    // The row's cubic in powers of a parameter in [-1, 1].
+    const Box line{b.x0, b.y0 + row, b.x1, b.y0 + row + 1};
+    Part t = form.down(line);
+    t.half = 0;
+    Bicubic f = restricted(form.powers, form.across(line), t);
+    f.x[0][0] += 0.5 * (b.x0 + b.x1) * m_mesh.scale().x - block.base_x;
+    f.x[1][0] += half(b.width()) * m_mesh.scale().x;
+    f.y[0][0] += (b.y0 + row + 0.5) * m_mesh.scale().y - block.base_y;
+    float cx[4], cy[4];
+    for (int i = 0; i < 4; ++i) {
+        cx[i] = static_cast<float>(f.x[i][0]);
+        cy[i] = static_cast<float>(f.y[i][0]);
+    }
+    const float step = b.width() > 1 ? 1.0f / static_cast<float>(b.width() - 1) : 0;
+    for (int i = begin; i < end; ++i) {
+        const float s = static_cast<float>(2 * i - (b.width() - 1)) * step;
+        x[i - begin] = ((cx[3] * s + cx[2]) * s + cx[1]) * s + cx[0];
+        y[i - begin] = ((cy[3] * s + cy[2]) * s + cy[1]) * s + cy[0];
+    }
+}
+
+std::int64_t MeshPlan::folded_pixels(const Box& box) const {
+    return WarpPlan::folded_pixels(box);
+}
+
+}  // namespace anamorph

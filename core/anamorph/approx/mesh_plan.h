@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: Apache-2.0
+// The blocks of a mesh warp. A block lies in one cell of the mesh, where the map is one bicubic patch, so
+// that every bound is in closed form from the patch's own coefficients:
+//
+//   automatic  the patch restricted to the block, economised to a quadratic (hermite.h), split while too
+//   coarse hermite    the whole patch (Kim 2003, 5.3.5): a cubic in x for every row, evaluated in float
+//   residual   the plane through three vertices for each of a cell's two triangles, in double, plus the
+//              thirteen non-linear products of eq. 5.5 and 5.7 from tables read bilinearly (5.4)
+//
+// and exact, point by point, where that exceeds the tolerance or a cell has few pixels.
+#pragma once
+
+#include <memory>
+
+#include "anamorph/approx/block.h"
+#include "anamorph/map/mesh.h"
+
+namespace anamorph {
+
+/// exact: every pixel in double. hermite: the bicubic patch in full at every pixel (5.3.5), in float.
+/// residual: a linear map for each of a cell's two triangles plus thirteen tabulated products (5.4 to 5.7).
+/// automatic: the patch as a quadratic on blocks, the fastest. Maps that are no bicubic patches (pairs of
+/// points, and meshes that push) know exact and automatic, and take the latter for the other two.
+enum class WarpScheme { automatic, exact, hermite, residual };
+
+/// The source points of a warp, in blocks, and where it folds.
+class WarpPlan : public BlockMap {
+  public:
+    using BlockMap::BlockMap;
+
+    /// At a pixel's centre: what WarpOutput::folds shows.
+    virtual float folds(double x, double y) const noexcept = 0;
+    /// How many pixels of a box are folded (folds is not 0).
+    virtual std::int64_t folded_pixels(const Box& box) const;
+};
+
+class ResidualTables;
+
+class MeshPlan final : public WarpPlan {
+  public:
+    /// `tol`: source pixels. Throws Error when it is negative or not a number.
+    MeshPlan(Mesh mesh, WarpScheme scheme, double tol);
+
+    const Mesh& mesh() const { return m_mesh; }
+
+    bool exact(double x, double y, int piece, Point<double>& source_point,
+               int& source_piece) const noexcept override;
+    Jacobian jacobian(double x, double y, int piece) const noexcept override;
+    void computed_row(const Block& block, int row, int begin, int end, float* x,
+                      float* y) const noexcept override;
+    float folds(double x, double y) const noexcept override;
+    std::int64_t folded_pixels(const Box& box) const override;
+
+  protected:
+    void plan(const Box& box, int piece, Blocks& blocks) const override;
+
+  private:
+    Mesh m_mesh;
+    WarpScheme m_scheme;
+    double m_tol;
+    std::shared_ptr<const ResidualTables> m_tables;
+};
+
+/// Throws Error unless tol is 0 or a finite number above it.
+void check_tol(double tol);
+
+/// Source points farther away than this are none.
+inline constexpr double kFarthest = 1 << 30;
+
+}  // namespace anamorph

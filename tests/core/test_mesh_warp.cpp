@@ -1,0 +1,153 @@
+// SPDX-License-Identifier: Apache-2.0
+// Mesh warps as they are drawn: the same bits however they are cut, and what the other outputs say.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <thread>
+
+#include "anamorph/image/mesh_warp.h"
+#include "mesh_cases.h"
+
+namespace anamorph {
+namespace {
+
+/// Packed float pixels.
+struct Picture {
+    int width, height, channels;
+    std::vector<float> values;
+
+    Picture(int w, int h, int c)
+        : width(w),
+          height(h),
+          channels(c),
+          values(static_cast<std::size_t>(w) * static_cast<std::size_t>(h * c)) {}
+    ImageView view() {
+        return packed_view(reinterpret_cast<std::byte*>(values.data()), PixelType::float32, width, height,
+                           channels);
+    }
+    ConstImageView source() const {
+        return packed_view(reinterpret_cast<const std::byte*>(values.data()), PixelType::float32, width,
+                           height, channels);
+    }
+    float at(int x, int y, int c) const {
+        return values[static_cast<std::size_t>((y * width + x) * channels + c)];
+    }
+};
+
+Picture noise(test::Random& random, int width, int height) {
+    Picture picture(width, height, 3);
+    for (float& v : picture.values) v = static_cast<float>(random.between(0, 1));
+    return picture;
+}
+
+void two_threads(std::int64_t count, const std::function<void(std::int64_t)>& body) {
+    std::thread other([&] {
+        for (std::int64_t i = count - 1; i >= 0; i -= 2) body(i);
+    });
+    for (std::int64_t i = count - 2; i >= 0; i -= 2) body(i);
+    other.join();
+}
+
+TEST(MeshWarp, SameBitsForAnyCutAndThreads) {
+    constexpr unsigned kSeed = 541;
+    SCOPED_TRACE(::testing::Message() << "seed " << kSeed);
+    test::Random random(kSeed);
+    const Extent target{700, 530}, size{400, 300};
+    const Picture texels = noise(random, size.width, size.height);
+    const MemorySource source(texels.source());
+    const WarpMap map{"grid", test::random_mesh(random, target, size, 5, 4, 0.4, true, 2)};
+    for (const WarpScheme scheme :
+         {WarpScheme::automatic, WarpScheme::hermite, WarpScheme::residual, WarpScheme::exact})
+        for (const WarpOutput output : {WarpOutput::color, WarpOutput::stmap, WarpOutput::error,
+                                        WarpOutput::bound, WarpOutput::folds}) {
+            if (scheme != WarpScheme::automatic && output != WarpOutput::color) continue;
+            MeshWarpOptions options;
+            options.scheme = scheme;
+            options.output = output;
+            options.tol = 1.0 / 16;
+            const MeshWarp warp(map, size.width, size.height, target.width, target.height, options);
+            const int channels = warp.channels(source);
+            Picture whole(target.width, target.height, channels), cut(target.width, target.height, channels);
+            ASSERT_TRUE(warp.draw(&source, {0, 0, 700, 530}, whole.view()));
+            const MeshWarp again(map, size.width, size.height, target.width, target.height, options);
+            for (int y = 0; y < 530; y += 97)
+                for (int x = 699 / 131 * 131; x >= 0; x -= 131) {
+                    const Box box{x, y, std::min(x + 131, 700), std::min(y + 97, 530)};
+                    ImageView view = cut.view();
+                    view.data = view.at(box.x0, box.y0);
+                    view.width = box.width();
+                    view.height = box.height();
+                    ASSERT_TRUE(again.draw(&source, box, view, two_threads));
+                }
+            EXPECT_EQ(whole.values, cut.values)
+                << static_cast<int>(scheme) << ' ' << static_cast<int>(output);
+        }
+}
+
+TEST(MeshWarp, AmountZeroIsTheSourceToTheBit) {
+    test::Random random(542);
+    const Extent size{300, 200};
+    const Picture texels = noise(random, size.width, size.height);
+    const MemorySource source(texels.source());
+    const WarpMap map{"grid", test::random_mesh(random, size, size, 5, 4, 0.4, true, 2)};
+    MeshWarpOptions options;
+    options.amount = 0;
+    options.tol = 0;
+    options.filter = Filter::bilinear;
+    const MeshWarp warp(map, 300, 200, 300, 200, options);
+    Picture drawn(300, 200, 3);
+    ASSERT_TRUE(warp.draw(&source, {0, 0, 300, 200}, drawn.view()));
+    EXPECT_EQ(drawn.values, texels.values);
+}
+
+TEST(MeshWarp, OutputsAgree) {
+    test::Random random(543);
+    const Extent target{256, 192}, size{400, 300};
+    const WarpMap map{"grid", test::random_mesh(random, target, size, 3, 3, 0.9, false, 1)};
+    MeshWarpOptions options;
+    options.tol = 0.25;
+    const auto draw = [&](WarpOutput output, int channels) {
+        options.output = output;
+        const MeshWarp warp(map, size.width, size.height, target.width, target.height, options);
+        Picture picture(target.width, target.height, channels);
+        EXPECT_TRUE(warp.draw(nullptr, {0, 0, target.width, target.height}, picture.view()));
+        return picture;
+    };
+    const Picture st = draw(WarpOutput::stmap, 2), error = draw(WarpOutput::error, 1),
+                  bound = draw(WarpOutput::bound, 1), folds = draw(WarpOutput::folds, 1);
+    const Mesh mesh(std::get<ControlMesh>(map.shape), target, size, 1);
+    double folded = 0, largest = 0;
+    for (int y = 0; y < target.height; ++y)
+        for (int x = 0; x < target.width; ++x) {
+            const Point<double> p = mesh.at(x + 0.5, y + 0.5);
+            const double off = std::hypot(double(st.at(x, y, 0)) * size.width - p.x,
+                                          double(st.at(x, y, 1)) * size.height - p.y);
+            EXPECT_NEAR(off, error.at(x, y, 0), 1e-3);
+            EXPECT_LE(error.at(x, y, 0), bound.at(x, y, 0));
+            largest = std::max(largest, double(bound.at(x, y, 0)));
+            folded += folds.at(x, y, 0) != 0;
+        }
+    options.output = WarpOutput::color;
+    const MeshWarp warp(map, size.width, size.height, target.width, target.height, options);
+    EXPECT_FLOAT_EQ(static_cast<float>(warp.reached().max_error), static_cast<float>(largest));
+    EXPECT_GT(folded, 0);
+    EXPECT_DOUBLE_EQ(warp.folded_fraction(two_threads), folded / (target.width * target.height));
+}
+
+TEST(MeshWarp, RefusesWhatDoesNotFit) {
+    const WarpMap map{"grid", test::identity_mesh({10, 10}, 2, 2)};
+    EXPECT_THROW(MeshWarp(map, 0, 10, 10, 10, {}), Error);
+    EXPECT_THROW(MeshWarp(map, 10, 10, 10, 1 << 30, {}), Error);
+    MeshWarpOptions options;
+    options.tol = -1;
+    EXPECT_THROW(MeshWarp(map, 10, 10, 10, 10, options), Error);
+    options.tol = 1;
+    options.amount = HUGE_VAL;
+    EXPECT_THROW(MeshWarp(map, 10, 10, 10, 10, options), Error);
+    Picture three(10, 10, 3);
+    const MeshWarp warp(map, 10, 10, 10, 10, {});
+    EXPECT_THROW(warp.draw(nullptr, {0, 0, 10, 10}, three.view()), Error);
+}
+
+}  // namespace
+}  // namespace anamorph
