@@ -1,0 +1,313 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "anamorph/map/mesh_file.h"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "anamorph/error.h"
+
+namespace anamorph {
+namespace {
+
+using Json = nlohmann::json;
+
+/// A value as it stands in a message: its beginning, on one line.
+std::string shown(const Json& value) {
+    std::string text;
+    if (value.is_array())
+        text = "a list of " + std::to_string(value.size());
+    else if (value.is_object())
+        text = "an object";
+    else
+        text = value.dump(-1, ' ', true, Json::error_handler_t::replace);
+    if (text.size() > 40) text = text.substr(0, 40) + "...";
+    return text;
+}
+
+/// Text from outside, on one line of a message.
+std::string plain(std::string_view text) {
+    std::string line(text.substr(0, 100));
+    for (char& c : line)
+        if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) c = ' ';
+    return line;
+}
+
+/// An entry of the file: its value and its path from the top, for messages.
+class Entry {
+  public:
+    Entry(const Json& value, std::string path) : m_value(value), m_path(std::move(path)) {}
+
+    const Json& value() const { return m_value; }
+
+    [[noreturn]] void refuse(const std::string& needed) const { throw Error(m_path, shown(m_value), needed); }
+
+    Entry operator[](std::size_t i) const { return {m_value[i], m_path + "[" + std::to_string(i) + "]"}; }
+    Entry at(const char* key) const {
+        const std::string path = m_path + (m_path.ends_with(": ") ? "" : ".") + key;
+        const auto found = m_value.find(key);
+        if (found == m_value.end()) throw Error(path + ": is missing");
+        return {*found, path};
+    }
+    bool has(const char* key) const { return m_value.contains(key); }
+
+    /// An object with no keys but these.
+    void expect_object(std::initializer_list<const char*> keys) const {
+        if (!m_value.is_object()) refuse("an object is needed");
+        for (const auto& [key, unused] : m_value.items()) {
+            if (std::any_of(keys.begin(), keys.end(), [&](const char* k) { return key == k; })) continue;
+            std::string known;
+            for (const char* k : keys) known += (known.empty() ? "" : ", ") + std::string(k);
+            throw Error(m_path + "\"" + plain(key) + "\": no such key, known are " + known);
+        }
+    }
+    std::size_t expect_list(std::size_t most) const {
+        if (!m_value.is_array()) refuse("a list is needed");
+        if (m_value.size() > most) refuse("allowed are at most " + std::to_string(most) + " entries");
+        return m_value.size();
+    }
+    void expect_tuple(std::size_t size) const {
+        if (!m_value.is_array() || m_value.size() != size)
+            refuse("a list of " + std::to_string(size) + " numbers is needed");
+    }
+    double number() const {
+        if (!m_value.is_number()) refuse("a number is needed");
+        return m_value.get<double>();
+    }
+    int whole(int least, int most) const {
+        const double v = number();
+        if (!(v >= least && v <= most && v == std::floor(v)))
+            refuse("allowed are whole numbers from " + std::to_string(least) + " to " + std::to_string(most));
+        return static_cast<int>(v);
+    }
+    /// The number of the word among `words`.
+    std::size_t word(std::initializer_list<const char*> words) const {
+        std::string known;
+        std::size_t i = 0;
+        for (const char* w : words) {
+            if (m_value.is_string() && m_value.get_ref<const std::string&>() == w) return i;
+            known += (i++ ? " or \"" : "\"") + std::string(w) + "\"";
+        }
+        refuse("allowed is " + known);
+    }
+
+  private:
+    const Json& m_value;
+    std::string m_path;
+};
+
+Units units_of(const Entry& top) {
+    return top.has("units") && top.at("units").word({"pixels", "fractions"}) == 1 ? Units::fractions
+                                                                                  : Units::pixels;
+}
+
+Point<double> position(const Entry& list, std::size_t first) {
+    return {list[first].number(), list[first + 1].number()};
+}
+
+std::vector<double> lines(const Entry& top, const char* key) {
+    std::vector<double> values;
+    if (!top.has(key)) return values;
+    const Entry list = top.at(key);
+    const std::size_t count = list.expect_list(ControlMesh::kMaxCells + 1);
+    for (std::size_t i = 0; i < count; ++i) values.push_back(list[i].number());
+    return values;
+}
+
+ControlMesh::Level level(const Entry& entry) {
+    entry.expect_object({"cells", "vertices"});
+    ControlMesh::Level level;
+    constexpr int kMost = 1 << 29;
+    const Entry cells = entry.at("cells");
+    const std::size_t cell_count = cells.expect_list(ControlMesh::kMaxVertices);
+    for (std::size_t i = 0; i < cell_count; ++i) {
+        const Entry cell = cells[i];
+        cell.expect_tuple(2);
+        level.cells.push_back({cell[0].whole(0, kMost), cell[1].whole(0, kMost)});
+    }
+    if (!entry.has("vertices")) return level;
+    const Entry vertices = entry.at("vertices");
+    const std::size_t vertex_count = vertices.expect_list(ControlMesh::kMaxVertices);
+    for (std::size_t i = 0; i < vertex_count; ++i) {
+        const Entry vertex = vertices[i];
+        vertex.expect_tuple(4);
+        level.vertices.push_back({vertex[0].whole(0, kMost), vertex[1].whole(0, kMost), position(vertex, 2)});
+    }
+    return level;
+}
+
+ControlMesh control_mesh(const Entry& top) {
+    top.expect_object({"direction", "units", "columns", "rows", "vertices", "x", "y", "levels"});
+    ControlMesh mesh;
+    mesh.units = units_of(top);
+    if (top.has("direction") && top.at("direction").word({"pull", "push"}) == 1)
+        mesh.direction = Direction::push;
+    mesh.columns = top.at("columns").whole(1, ControlMesh::kMaxCells);
+    mesh.rows = top.at("rows").whole(1, ControlMesh::kMaxCells);
+    const Entry vertices = top.at("vertices");
+    const std::size_t count = vertices.expect_list(ControlMesh::kMaxVertices);
+    const std::size_t across = static_cast<std::size_t>(mesh.columns) + 1,
+                      needed = across * (static_cast<std::size_t>(mesh.rows) + 1);
+    if (count != needed) vertices.refuse("needed are (columns + 1) (rows + 1) = " + std::to_string(needed));
+    mesh.vertices.reserve(count);
+    for (std::size_t i = 0; i < count; ++i) {
+        const Entry vertex = vertices[i];
+        vertex.expect_tuple(2);
+        mesh.vertices.push_back(position(vertex, 0));
+    }
+    mesh.x_lines = lines(top, "x");
+    mesh.y_lines = lines(top, "y");
+    if (top.has("levels")) {
+        const Entry levels = top.at("levels");
+        const std::size_t level_count = levels.expect_list(ControlMesh::kMaxLevels);
+        for (std::size_t k = 0; k < level_count; ++k) mesh.levels.push_back(level(levels[k]));
+    }
+    return mesh;
+}
+
+ControlPoints control_points(const Entry& top) {
+    top.expect_object({"units", "points"});
+    ControlPoints points;
+    points.units = units_of(top);
+    const Entry list = top.at("points");
+    const std::size_t count = list.expect_list(ControlPoints::kMaxPoints);
+    points.pairs.reserve(count);
+    for (std::size_t i = 0; i < count; ++i) {
+        const Entry pair = list[i];
+        pair.expect_tuple(4);
+        points.pairs.push_back({pair[0].number(), pair[1].number(), pair[2].number(), pair[3].number()});
+    }
+    return points;
+}
+
+void check_length(std::string_view text, std::string_view name) {
+    if (text.size() > kMaxMeshText)
+        throw Error(plain(name), std::to_string(text.size()) + " bytes",
+                    "allowed are at most " + std::to_string(kMaxMeshText));
+}
+
+/// What the JSON reader complains about, without its own prefix.
+std::string complaint(const Json::exception& error) {
+    const std::string text = error.what();
+    const std::size_t end = text.find("] ");
+    return plain(end == std::string::npos ? text : text.substr(end + 2));
+}
+
+std::string_view trimmed(std::string_view text) {
+    const auto space = [](char c) { return c == ' ' || c == '\t' || c == '\r'; };
+    while (!text.empty() && space(text.front())) text.remove_prefix(1);
+    while (!text.empty() && space(text.back())) text.remove_suffix(1);
+    return text;
+}
+
+/// Four numbers between commas; the entry at fault is returned, or nothing.
+std::string_view four_numbers(std::string_view line, double (&numbers)[4]) {
+    for (int i = 0; i < 4; ++i) {
+        const std::size_t comma = i < 3 ? line.find(',') : line.size();
+        if (comma == std::string_view::npos) return line.empty() ? "an end" : line;
+        std::string_view field = trimmed(line.substr(0, comma));
+        if (field.starts_with('+')) field.remove_prefix(1);
+        const auto [end, error] = std::from_chars(field.data(), field.data() + field.size(), numbers[i]);
+        if (error != std::errc() || end != field.data() + field.size())
+            return field.empty() ? "nothing" : field;
+        line.remove_prefix(std::min(comma + 1, line.size()));
+    }
+    return {};
+}
+
+}  // namespace
+
+WarpMap parse_mesh_json(std::string_view text, std::string_view name) {
+    check_length(text, name);
+    Json json;
+    try {
+        // A file that is nothing but brackets must not fill the memory.
+        constexpr int kDepth = 8;
+        json = Json::parse(text, [&](int depth, Json::parse_event_t, const Json&) {
+            if (depth > kDepth) throw Error(plain(name) + ": brackets stand more than 8 deep");
+            return true;
+        });
+    } catch (const Json::exception& error) {
+        throw Error(plain(name) + ": is no JSON: " + complaint(error));
+    }
+    const Entry top(json, plain(name) + ": ");
+    if (!json.is_object()) throw Error(plain(name) + ": an object with \"vertices\" or \"points\" is needed");
+    if (top.has("points")) return {plain(name), control_points(top)};
+    return {plain(name), control_mesh(top)};
+}
+
+WarpMap parse_points_csv(std::string_view text, std::string_view name) {
+    check_length(text, name);
+    ControlPoints points;
+    if (text.starts_with("\xef\xbb\xbf")) text.remove_prefix(3);
+    bool first = true;
+    for (int number = 1; !text.empty(); ++number) {
+        const std::size_t end = std::min(text.find('\n'), text.size());
+        const std::string_view line = trimmed(text.substr(0, end));
+        text.remove_prefix(std::min(end + 1, text.size()));
+        if (line.empty() || line.starts_with('#')) continue;
+        double v[4];
+        const std::string_view fault = four_numbers(line, v);
+        const bool title = first && line.find_first_of("0123456789") == std::string_view::npos;
+        first = false;
+        if (!fault.empty()) {
+            if (title) continue;
+            throw Error(plain(name) + ": line " + std::to_string(number), plain(fault),
+                        "four numbers x,y,u,v are needed");
+        }
+        if (points.pairs.size() == ControlPoints::kMaxPoints)
+            throw Error(plain(name) + ": line " + std::to_string(number) + ": allowed are at most " +
+                        std::to_string(ControlPoints::kMaxPoints) + " points");
+        points.pairs.push_back({v[0], v[1], v[2], v[3]});
+    }
+    return {plain(name), std::move(points)};
+}
+
+WarpMap parse_warp_file(std::string_view text, std::string_view name) {
+    std::string end(name.substr(name.size() < 4 ? 0 : name.size() - 4));
+    std::transform(end.begin(), end.end(), end.begin(),
+                   [](char c) { return c >= 'A' && c <= 'Z' ? char(c + 32) : c; });
+    return end == ".csv" ? parse_points_csv(text, name) : parse_mesh_json(text, name);
+}
+
+WarpMap mesh_from_stmap(const float* uv, int width, int height, std::ptrdiff_t pixel_stride,
+                        std::ptrdiff_t row_stride, int step, std::string_view name) {
+    if (width < 2 || height < 2)
+        throw Error(plain(name), std::to_string(width) + "x" + std::to_string(height),
+                    "an ST-map has at least 2 pixels either way");
+    if (step < 1) throw Error("step", std::to_string(step), "allowed are whole numbers from 1");
+    // Every step-th pixel, and the last.
+    const auto taken = [&](int size) {
+        std::vector<int> pixels;
+        for (std::int64_t i = 0; i < size - 1; i += step) pixels.push_back(static_cast<int>(i));
+        pixels.push_back(size - 1);
+        return pixels;
+    };
+    const std::vector<int> columns = taken(width), rows = taken(height);
+    ControlMesh mesh;
+    mesh.units = Units::fractions;
+    mesh.columns = static_cast<int>(columns.size()) - 1;
+    mesh.rows = static_cast<int>(rows.size()) - 1;
+    if (mesh.columns > ControlMesh::kMaxCells || mesh.rows > ControlMesh::kMaxCells ||
+        columns.size() * rows.size() > ControlMesh::kMaxVertices)
+        throw Error(plain(name),
+                    std::to_string(columns.size()) + "x" + std::to_string(rows.size()) + " vertices",
+                    "allowed are at most " + std::to_string(ControlMesh::kMaxVertices) + ", and " +
+                        std::to_string(ControlMesh::kMaxCells) + " cells either way: take a larger step");
+    for (const int x : columns) mesh.x_lines.push_back((x + 0.5) / width);
+    for (const int y : rows) mesh.y_lines.push_back((y + 0.5) / height);
+    mesh.vertices.reserve(columns.size() * rows.size());
+    for (const int y : rows)
+        for (const int x : columns) {
+            const float* at = uv + y * row_stride + x * pixel_stride;
+            if (!std::isfinite(at[0]) || !std::isfinite(at[1]))
+                throw Error(plain(name) + ": pixel [" + std::to_string(x) + ", " + std::to_string(y) + "]",
+                            std::to_string(at[0]) + "," + std::to_string(at[1]), "allowed are numbers");
+            mesh.vertices.push_back({at[0], at[1]});
+        }
+    return {plain(name), std::move(mesh)};
+}
+
+}  // namespace anamorph
