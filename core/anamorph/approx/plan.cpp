@@ -28,13 +28,17 @@ constexpr double kFloatRounding = 8 * 0x1p-24;
 // each well conditioned wherever the bound is finite (tests/core holds it against long double).
 constexpr double kDoubleRounding = 256 * 0x1p-53;
 
-// The part of a bound that its remainder may make up before a fresh one, over a smaller box, is worth its
-// cost.
-constexpr double kTailShare = 0.25;
+// The part of the tolerance that a remainder may take up before a fresh one, over a smaller box, is worth its
+// cost; and before two blocks are better off with a Taylor polynomial each.
+constexpr double kTailShare = 0.25, kSharedTailShare = 0.2;
 
 /// Half the distance between the first and the last of a row of pixel centres.
 double half(int pixels) {
     return pixels > 1 ? 0.5 * (pixels - 1) : 0.5;
+}
+
+double length(double x, double y) {
+    return std::sqrt(x * x + y * y);
 }
 
 Box sub_box(const Box& box, bool vertical_cut, bool second) {
@@ -143,14 +147,14 @@ class Planner {
         const Tail tx(p.x), ty(p.y);
         const bool is_block = box.width() <= kBlockWidth && box.height() <= kBlockHeight;
         if (is_block ? tail_over(box, tx, ty) < HUGE_VAL : serves(box, local, tx, ty))
-            for_blocks(box, [&](const Box& b) { place(b, local, tx, ty); });
+            place_all(box, local, tx, ty);
         else
             split(box, first);
     }
 
     static double tail_over(const Box& box, const Tail& tx, const Tail& ty) {
         const double hx = half(box.width()), hy = half(box.height());
-        return std::hypot(tx.over(hx, hy), ty.over(hx, hy));
+        return length(tx.over(hx, hy), ty.over(hx, hy));
     }
 
     /// Is a remainder small enough for the blocks of a box? Tried on the one in its middle.
@@ -173,13 +177,40 @@ class Planner {
         Point<Jet<double, 4>> taylor;
         Economized x, y;
         double error;
+
+        Fit(const Point<Jet<double, 4>>& f, int degree)
+            : taylor(f), x(f.x, degree), y(f.y, degree), error(length(x.error, y.error)) {}
     };
-    Fit fit_of(const Box& box, const Panorama::Local& local) const {
+    /// The map's Taylor polynomial about the middle of a box, with offsets of -1 to 1 over its pixel centres.
+    static Point<Jet<double, 4>> taylor_of(const Panorama& map, const Box& box,
+                                           const Panorama::Local& local) {
         using J = Jet<double, 4>;
-        const Point<J> f = m_map(J::variable(0.5 * (box.x0 + box.x1), half(box.width()), 0),
-                                 J::variable(0.5 * (box.y0 + box.y1), 0, half(box.height())), local);
-        const Economized x(f.x, m_options.degree), y(f.y, m_options.degree);
-        return {f, x, y, std::hypot(x.error, y.error)};
+        return map(J::variable(0.5 * (box.x0 + box.x1), half(box.width()), 0),
+                   J::variable(0.5 * (box.y0 + box.y1), 0, half(box.height())), local);
+    }
+    Fit fit_of(const Box& box, const Panorama::Local& local) const {
+        return {taylor_of(m_map, box, local), m_options.degree};
+    }
+
+    /// All blocks of a box: two, one above the other, from one Taylor polynomial where it serves both.
+    void place_all(const Box& box, const Panorama::Local& local, const Tail& tx, const Tail& ty) {
+        for_boxes(box, kBlockWidth, 2 * kBlockHeight, [&](const Box& pair) {
+            const double tail = tail_over(pair, tx, ty);
+            if (pair.height() <= kBlockHeight || !(tail <= kSharedTailShare * m_options.tol)) {
+                for_blocks(pair, [&](const Box& b) { place(b, local, tx, ty); });
+                return;
+            }
+            const Point<Jet<double, 4>> taylor = taylor_of(m_map, pair, local);
+            for_blocks(pair, [&](const Box& b) {
+                // From the offsets of the pair to those of the block.
+                const double scale = half(b.height()) / half(pair.height());
+                const double shift = 0.5 * (b.y0 + b.y1 - pair.y0 - pair.y1) / half(pair.height());
+                const Fit fit({along_second(taylor.x, shift, scale), along_second(taylor.y, shift, scale)},
+                              m_options.degree);
+                if (!emit_polynomial(b, local.source.piece, fit.x.c, fit.y.c, fit.error + tail))
+                    place(b, local, tx, ty);
+            });
+        });
     }
 
     /// Emits the box as one polynomial block if that holds the tolerance, else halves it.
@@ -211,7 +242,7 @@ class Planner {
             const auto of = [&](const Jet<Interval, 2>& f) {
                 return 0.25 * (magnitude(f.at(2, 0)) * w * w + magnitude(f.at(0, 2)) * h * h);
             };
-            return std::hypot(of(p.x), of(p.y));
+            return length(of(p.x), of(p.y));
         };
         const bool is_block = box.width() <= kBlockWidth && box.height() <= kBlockHeight;
         const bool holds =
@@ -281,7 +312,7 @@ class Planner {
         // The turn that brings the block's middle into the image.
         if (const int period = m_map.source().period(); m_map.source().closed())
             block.base_x -= static_cast<int>(std::floor(static_cast<double>(block.base_x) / period)) * period;
-        block.bound = fit + std::hypot(ex, ey) + kDoubleRounding * m_extent;
+        block.bound = fit + length(ex, ey) + kDoubleRounding * m_extent;
         if (!(block.bound <= m_options.tol)) return false;
         m_blocks.push_back(block);
         return true;
@@ -295,11 +326,16 @@ class Planner {
         m_blocks.push_back(block);
     }
 
+    /// body(part) for the parts of a box on a grid of width x height from its corner.
     template <class Body>
-    void for_blocks(const Box& box, const Body& body) {
-        for (int y = box.y0; y < box.y1; y += kBlockHeight)
-            for (int x = box.x0; x < box.x1; x += kBlockWidth)
-                body(Box{x, y, std::min(x + kBlockWidth, box.x1), std::min(y + kBlockHeight, box.y1)});
+    static void for_boxes(const Box& box, int width, int height, const Body& body) {
+        for (int y = box.y0; y < box.y1; y += height)
+            for (int x = box.x0; x < box.x1; x += width)
+                body(Box{x, y, std::min(x + width, box.x1), std::min(y + height, box.y1)});
+    }
+    template <class Body>
+    static void for_blocks(const Box& box, const Body& body) {
+        for_boxes(box, kBlockWidth, kBlockHeight, body);
     }
 
     /// Settles the halves of a box, cut across its longer side (counted in blocks).
@@ -356,6 +392,7 @@ Plan::Plan(const Panorama& map, const PlanOptions& options)
 }
 
 void Plan::plan(const Box& box, int piece, Blocks& blocks) const {
+    blocks.reserve(2 * kRegion * kRegion / (kBlockWidth * kBlockHeight));
     Planner planner(m_map, m_options, piece, blocks);
     if (m_options.scheme == Scheme::exact || m_options.tol == 0)
         planner.exact(box);

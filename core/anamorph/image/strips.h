@@ -40,27 +40,35 @@ class Strip {
     Box m_box;
 };
 
-/// body(strip) for strips that together hold every block that meets `box`. Regions are planned first, so that
-/// no thread waits for another's plan.
+/// body(strip) for strips that together hold every block that meets `box`. Plans come first in the same loop,
+/// so that threads neither wait for each other's plan nor meet in between.
 template <class Body>
 void for_each_strip(const BlockMap& map, const Box& box, const ParallelFor& parallel_for, const Body& body) {
+    struct Work {
+        std::int64_t region;
+        int y0;
+    };
     // As many regions at a time as their plans are kept for.
     constexpr std::size_t kBatch = 1024;
     const std::vector<std::int64_t> regions = map.regions_in(box);
     for (std::size_t first = 0; first < regions.size(); first += kBatch) {
         const std::size_t count = std::min(kBatch, regions.size() - first);
-        std::vector<std::shared_ptr<const Blocks>> plans(count);
-        parallel_for(static_cast<std::int64_t>(count), [&](std::int64_t i) {
-            plans[static_cast<std::size_t>(i)] = map.blocks(regions[first + static_cast<std::size_t>(i)]);
-        });
-        std::vector<Strip> strips;
-        for (std::size_t i = 0; i < count; ++i) {
-            const Box region = map.region_box(regions[first + i]), part = intersection(region, box);
+        std::vector<Work> strips;
+        for (std::size_t i = first; i < first + count; ++i) {
+            const Box region = map.region_box(regions[i]), part = intersection(region, box);
             for (int y = region.y0; y < part.y1; y += Strip::kHeight)
-                if (y + 2 * Strip::kHeight > part.y0) strips.emplace_back(*plans[i], y, box);
+                if (y + 2 * Strip::kHeight > part.y0) strips.push_back({regions[i], y});
         }
-        parallel_for(static_cast<std::int64_t>(strips.size()),
-                     [&](std::int64_t i) { body(strips[static_cast<std::size_t>(i)]); });
+        parallel_for(static_cast<std::int64_t>(count + strips.size()), [&](std::int64_t item) {
+            const auto i = static_cast<std::size_t>(item);
+            if (i < count) {
+                map.blocks(regions[first + i]);
+                return;
+            }
+            const auto [region, y0] = strips[i - count];
+            const std::shared_ptr<const Blocks> blocks = map.blocks(region);
+            body(Strip(*blocks, y0, box));
+        });
     }
 }
 
