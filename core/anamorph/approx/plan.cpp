@@ -17,8 +17,11 @@ constexpr int kBlockWidth = 64, kBlockHeight = 32;
 // Below this a polynomial costs more than its pixels.
 constexpr int kFloor = 8, kResidualFloor = 4;
 
-// A bound costs as much as some hundred exact pixels.
-constexpr int kBoundPixels = 512;
+// A bound costs as much as so many exact pixels, and is not tried over boxes that it could not pay for.
+constexpr int kBoundCost = 170, kBoundPixels = 512;
+// Where only the fastest way is asked for, bounds may cost more than they have saved so far by this part of
+// the region's pixels.
+constexpr double kCredit = 1.0 / 16;
 
 // Rounding of a point's coordinates to float and of their evaluation: the coefficients, s and t are each
 // rounded once, and at most five operations are rounded on the way from the smallest term to the sum, so that
@@ -35,6 +38,10 @@ constexpr double kTailShare = 0.25, kSharedTailShare = 0.2;
 /// Half the distance between the first and the last of a row of pixel centres.
 double half(int pixels) {
     return pixels > 1 ? 0.5 * (pixels - 1) : 0.5;
+}
+
+int pixels_of(const Box& box) {
+    return box.width() * box.height();
 }
 
 double length(double x, double y) {
@@ -56,8 +63,12 @@ Box sub_box(const Box& box, bool vertical_cut, bool second) {
 /// Plans one piece of the target; blocks are appended to `blocks`.
 class Planner {
   public:
-    Planner(const Panorama& map, const PlanOptions& options, int piece, std::vector<Block>& blocks)
-        : m_map(map), m_options(options), m_piece(piece), m_blocks(blocks) {
+    Planner(const Panorama& map, const PlanOptions& options, const Box& region, int piece, Blocks& blocks)
+        : m_map(map),
+          m_options(options),
+          m_piece(piece),
+          m_blocks(blocks),
+          m_balance(kCredit * pixels_of(region)) {
         const Chart& source = map.source();
         m_extent = source.width() + source.height() + source.scale_x() + source.scale_y();
     }
@@ -89,9 +100,9 @@ class Planner {
     }
 
   private:
-    /// Is a bound over the box cheaper than its pixels? Where only the fastest way is asked for.
+    /// May a bound over the box pay? Where only the fastest way is asked for.
     bool worth_a_bound(const Box& box) const {
-        return m_options.scheme != Scheme::automatic || box.width() * box.height() >= kBoundPixels;
+        return m_options.scheme != Scheme::automatic || (pixels_of(box) >= kBoundPixels && m_balance >= 0);
     }
 
     enum class Cover { inside, outside, mixed };
@@ -143,6 +154,7 @@ class Planner {
     }
 
     void settle_blocks(const Box& box, const Panorama::Local& local, std::size_t first) {
+        m_balance -= kBoundCost;
         const auto p = enclose<5>(box, local);
         const Tail tx(p.x), ty(p.y);
         const bool is_block = box.width() <= kBlockWidth && box.height() <= kBlockHeight;
@@ -314,6 +326,7 @@ class Planner {
             block.base_x -= static_cast<int>(std::floor(static_cast<double>(block.base_x) / period)) * period;
         block.bound = fit + length(ex, ey) + kDoubleRounding * m_extent;
         if (!(block.bound <= m_options.tol)) return false;
+        m_balance += pixels_of(box);
         m_blocks.push_back(block);
         return true;
     }
@@ -367,7 +380,8 @@ class Planner {
     const Panorama& m_map;
     const PlanOptions& m_options;
     int m_piece;
-    std::vector<Block>& m_blocks;
+    Blocks& m_blocks;
+    double m_balance;  ///< exact pixels saved less those that bounds would have paid for
     double m_extent;
     std::optional<LinearPart> m_linear;
 };
@@ -393,7 +407,7 @@ Plan::Plan(const Panorama& map, const PlanOptions& options)
 
 void Plan::plan(const Box& box, int piece, Blocks& blocks) const {
     blocks.reserve(2 * kRegion * kRegion / (kBlockWidth * kBlockHeight));
-    Planner planner(m_map, m_options, piece, blocks);
+    Planner planner(m_map, m_options, box, piece, blocks);
     if (m_options.scheme == Scheme::exact || m_options.tol == 0)
         planner.exact(box);
     else
