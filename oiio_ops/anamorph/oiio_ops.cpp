@@ -35,7 +35,8 @@ void check_readable(const ImageBuf& src) {
         throw Error("the source image cannot be read: " + src.geterror());
 }
 
-/// Options of the call, and the size of an initialised dst where no other is asked for.
+/// Options of the call, and the size of an initialised dst where no other is
+/// asked for.
 ParameterValues values_of(const OperationKind& kind, const OIIO::ParamValueList& options,
                           const ImageBuf& dst) {
     const ParameterTable& table = *kind.parameters;
@@ -187,9 +188,42 @@ bool reproject(ImageBuf& dst, const ImageBuf& src, const OIIO::ParamValueList& o
     return run_in_place(pano_kind(), "reproject", dst, {&src}, options, roi, nthreads);
 }
 
+bool mesh_warp(ImageBuf& dst, const ImageBuf& src, const OIIO::ParamValueList& options, ROI roi,
+               int nthreads) {
+    return run_in_place(warp_kind(), "mesh_warp", dst, {&src}, options, roi, nthreads);
+}
+
+bool morph(ImageBuf& dst, const ImageBuf& a, const ImageBuf& b, const OIIO::ParamValueList& options, ROI roi,
+           int nthreads) {
+    return morph(dst, {&a, &b}, options, roi, nthreads);
+}
+
+bool morph(ImageBuf& dst, const std::vector<const ImageBuf*>& pictures, const OIIO::ParamValueList& options,
+           ROI roi, int nthreads) {
+    return run_in_place(morph_kind(), "morph", dst, pictures, options, roi, nthreads);
+}
+
 ImageBuf reproject(const ImageBuf& src, const OIIO::ParamValueList& options, ROI roi, int nthreads) {
     ImageBuf result;
     reproject(result, src, options, roi, nthreads);
+    return result;
+}
+
+ImageBuf mesh_warp(const ImageBuf& src, const OIIO::ParamValueList& options, ROI roi, int nthreads) {
+    ImageBuf result;
+    mesh_warp(result, src, options, roi, nthreads);
+    return result;
+}
+
+ImageBuf morph(const ImageBuf& a, const ImageBuf& b, const OIIO::ParamValueList& options, ROI roi,
+               int nthreads) {
+    return morph({&a, &b}, options, roi, nthreads);
+}
+
+ImageBuf morph(const std::vector<const ImageBuf*>& pictures, const OIIO::ParamValueList& options, ROI roi,
+               int nthreads) {
+    ImageBuf result;
+    morph(result, pictures, options, roi, nthreads);
     return result;
 }
 

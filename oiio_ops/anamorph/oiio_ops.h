@@ -26,4 +26,27 @@ bool reproject(OIIO::ImageBuf& dst, const OIIO::ImageBuf& src, const OIIO::Param
 OIIO::ImageBuf reproject(const OIIO::ImageBuf& src, const OIIO::ParamValueList& options = {},
                          OIIO::ROI roi = {}, int nthreads = 0);
 
+/// A picture drawn through a control mesh. As reproject; `options` are the keys of a `warp` recipe (mesh,
+/// points, amount, ...), files named relative to the working folder. anamorph:folded_fraction tells of how
+/// much of the picture the warp folds.
+bool mesh_warp(OIIO::ImageBuf& dst, const OIIO::ImageBuf& src, const OIIO::ParamValueList& options = {},
+               OIIO::ROI roi = {}, int nthreads = 0);
+OIIO::ImageBuf mesh_warp(const OIIO::ImageBuf& src, const OIIO::ParamValueList& options = {},
+                         OIIO::ROI roi = {}, int nthreads = 0);
+
+/// A step of the way from one picture to another along features that correspond to each other. As reproject;
+/// `options` are the keys of a `morph` recipe (features, t, ...). The picture is like `a` in type, metadata
+/// and, without `size`, in size.
+bool morph(OIIO::ImageBuf& dst, const OIIO::ImageBuf& a, const OIIO::ImageBuf& b,
+           const OIIO::ParamValueList& options = {}, OIIO::ROI roi = {}, int nthreads = 0);
+OIIO::ImageBuf morph(const OIIO::ImageBuf& a, const OIIO::ImageBuf& b,
+                     const OIIO::ParamValueList& options = {}, OIIO::ROI roi = {}, int nthreads = 0);
+
+/// The same of two to eight pictures, in the order of the features' shapes; `shape_weights` says how much of
+/// each.
+bool morph(OIIO::ImageBuf& dst, const std::vector<const OIIO::ImageBuf*>& pictures,
+           const OIIO::ParamValueList& options = {}, OIIO::ROI roi = {}, int nthreads = 0);
+OIIO::ImageBuf morph(const std::vector<const OIIO::ImageBuf*>& pictures,
+                     const OIIO::ParamValueList& options = {}, OIIO::ROI roi = {}, int nthreads = 0);
+
 }  // namespace anamorph

@@ -82,5 +82,7 @@ struct OperationKind {
 };
 
 const OperationKind& pano_kind();
+const OperationKind& warp_kind();
+const OperationKind& morph_kind();
 
 }  // namespace anamorph

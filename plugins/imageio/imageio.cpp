@@ -73,7 +73,7 @@ class FileInput final : public ImageInput {
 
     bool open(const std::string& name, ImageSpec& spec, const ImageSpec& config) override {
         // The extension first: OpenImageIO offers names of all kinds.
-        if (!valid_file(name)) return failed("not a .pano or .anabuf name");
+        if (!valid_file(name)) return failed("not a .pano, .warp, .morph or .anabuf name");
         try {
             close();
             const OperationKind* kind = kind_of(name);
@@ -293,7 +293,7 @@ OIIO_EXPORT const char* anamorph_imageio_library_version() {
 OIIO_EXPORT OIIO::ImageInput* anamorph_input_imageio_create() {
     return new anamorph::FileInput;
 }
-OIIO_EXPORT const char* anamorph_input_extensions[] = {"pano", "anabuf", nullptr};
+OIIO_EXPORT const char* anamorph_input_extensions[] = {"pano", "warp", "morph", "anabuf", nullptr};
 
 OIIO_EXPORT OIIO::ImageOutput* anamorph_output_imageio_create() {
     return new anamorph::BufferOutput;

@@ -136,7 +136,7 @@ bool has_extension(std::string_view name, std::string_view extension) {
 }
 
 const OperationKind* kind_of(std::string_view name) {
-    for (const OperationKind* kind : {&pano_kind()})
+    for (const OperationKind* kind : {&pano_kind(), &warp_kind(), &morph_kind()})
         if (has_extension(name, "." + kind->name)) return kind;
     return nullptr;
 }

@@ -37,7 +37,7 @@ std::unique_ptr<ImageInput> open(const std::string& name) {
 }
 
 TEST_F(InputConformance, conformance_02_version_and_extensions_are_listed) {
-    EXPECT_THAT(OIIO::get_string_attribute("extension_list"), HasSubstr("anamorph:pano,anabuf"));
+    EXPECT_THAT(OIIO::get_string_attribute("extension_list"), HasSubstr("anamorph:pano,warp,morph,anabuf"));
     EXPECT_THAT(OIIO::get_string_attribute("library_list"), HasSubstr("anamorph:Anamorph "));
     EXPECT_THAT(OIIO::get_string_attribute("input_format_list"), HasSubstr("anamorph"));
     EXPECT_THAT(OIIO::get_string_attribute("output_format_list"), HasSubstr("anamorph"));

@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: Apache-2.0
+// The parameters of a mesh warp, and what they make of a source of a given size.
+#pragma once
+
+#include <optional>
+
+#include "anamorph/image/mesh_warp.h"
+#include "anamorph/image/source.h"
+#include "anamorph/parameter.h"
+
+namespace anamorph {
+
+const ParameterTable& warp_parameters();
+
+/// A warp as asked for, but for the mesh itself.
+struct WarpRequest {
+    Source::Size source, target;
+    MeshWarpOptions options;
+    int step = 1;                        ///< of an ST-map: every step-th pixel is a vertex
+    std::optional<Direction> direction;  ///< unless as the mesh says
+};
+
+/// Reads a table's values. Without `size` the picture has the source's; with one number, the source's shape.
+/// Throws Error.
+WarpRequest read_warp_request(const ParameterValues& values, const Source::Size& source);
+
+/// The same warp with every position in fractions of its image: for pictures of another size than the one
+/// that positions in pixels are given for.
+WarpMap in_fractions(const WarpMap& map, const Source::Size& source, const Source::Size& target);
+
+}  // namespace anamorph

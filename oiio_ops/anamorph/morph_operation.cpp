@@ -1,0 +1,144 @@
+// SPDX-License-Identifier: Apache-2.0
+// Pictures that turn into each other along corresponding lines.
+#include "anamorph/image/morph_parameters.h"
+#include "anamorph/image_source.h"
+#include "anamorph/operation.h"
+#include "anamorph/side_files.h"
+
+namespace anamorph {
+namespace {
+
+class MorphDrawing final : public Drawing {
+  public:
+    MorphDrawing(std::shared_ptr<const Features> features, const MorphRequest& r, const MorphOptions& options)
+        : m_morph(std::move(features), r.pictures, r.width, r.height, options) {}
+
+    Facts reached(const ParallelFor& parallel_for) const override {
+        const Reached reached = m_morph.reached(parallel_for);
+        return {{"anamorph:max_error", reached.max_error},
+                {"anamorph:exact_fraction", reached.exact_fraction}};
+    }
+    bool draw(const std::vector<const Source*>& sources, const Box& box, const ImageView& view,
+              const ParallelFor& parallel_for) const override {
+        return m_morph.draw(sources, box, view, parallel_for);
+    }
+
+  private:
+    Morph m_morph;
+};
+
+class MorphOperation final : public Operation {
+  public:
+    MorphOperation(const MorphRequest& request, std::shared_ptr<const Features> features,
+                   std::string identity)
+        : m_request(request), m_features(std::move(features)), m_identity(std::move(identity)) {}
+
+    int frames() const override { return m_request.frames; }
+
+    std::optional<PictureRequest> picture(int frame, int level) const override {
+        MorphRequest request = m_request;
+        if (level > 0 && std::max(request.width, request.height) >> level < 1) return {};
+        request.width = std::max(1, request.width >> level);
+        request.height = std::max(1, request.height >> level);
+        const MorphOptions options = request.frame_options(frame);
+        PictureRequest picture;
+        picture.width = request.width;
+        picture.height = request.height;
+        picture.pixels = pixels_of(options.output);
+        picture.facts = {{"anamorph:tol", options.tol}};
+        if (options.shape_weights.empty()) picture.facts.push_back({"anamorph:t", options.t});
+        picture.key = key_of(request, options) + "\n" + m_identity;
+        picture.solve = [request, options, features = m_features] {
+            return std::make_unique<MorphDrawing>(features, request, options);
+        };
+        return picture;
+    }
+
+  private:
+    static PixelKind pixels_of(MorphOutput output) {
+        switch (output) {
+            case MorphOutput::stmap_a:
+            case MorphOutput::stmap_b:
+                return PixelKind::point;
+            case MorphOutput::error:
+            case MorphOutput::bound:
+                return PixelKind::value;
+            default:
+                return PixelKind::color;
+        }
+    }
+
+    static std::string key_of(const MorphRequest& r, const MorphOptions& o) {
+        std::string key = "morph ";
+        for (const int number : {r.width, r.height, static_cast<int>(o.scheme), static_cast<int>(o.filter),
+                                 static_cast<int>(o.wrap), static_cast<int>(o.output), o.mesh_cells,
+                                 o.mesh_levels, o.t_color ? 1 : 0})
+            key += std::to_string(number) + " ";
+        for (const double number : {o.tol, o.t, o.t_color.value_or(o.t), o.weight_a, o.weight_b, o.weight_p,
+                                    r.pin_border.value_or(-1)})
+            key += shortest(number) + " ";
+        for (const auto* weights : {&o.shape_weights, &o.color_weights}) {
+            for (const double weight : *weights) key += shortest(weight) + ",";
+            key += " ";
+        }
+        for (const Source::Size& size : r.pictures)
+            key += std::to_string(size.width) + "x" + std::to_string(size.height) + " ";
+        return key;
+    }
+
+    MorphRequest m_request;
+    std::shared_ptr<const Features> m_features;
+    std::string m_identity;  ///< of the features
+};
+
+/// What a blend needs: as many channels of the same meaning, colour in one space.
+void check_alike(const std::vector<OIIO::ImageSpec>& specs, const ParameterValues& values) {
+    for (std::size_t i = 1; i < specs.size(); ++i) {
+        const OIIO::ImageSpec &a = specs[0], &other = specs[i];
+        const std::string& key = morph_pictures()[i];
+        if (other.nchannels != a.nchannels)
+            throw Error("picture " + key + " has " + std::to_string(other.nchannels) +
+                        " channels and a has " + std::to_string(a.nchannels) + ": allowed are as many");
+        const std::string space = other.get_string_attribute("oiio:ColorSpace"),
+                          space_a = a.get_string_attribute("oiio:ColorSpace");
+        if (!values.given("colorspace") && !space.empty() && !space_a.empty() && space != space_a)
+            throw Error("picture " + key + " is in color space \"" + printable(space) + "\" and a in \"" +
+                        printable(space_a) + "\": allowed with colorspace= only");
+    }
+}
+
+}  // namespace
+
+const OperationKind& morph_kind() {
+    static const OperationKind kind{
+        "morph", &morph_parameters(), morph_pictures(), 2,
+        [](const ParameterValues& values, const std::vector<OIIO::ImageSpec>& specs, const SideFiles& files) {
+            std::vector<Source::Size> sizes;
+            for (const OIIO::ImageSpec& spec : specs) {
+                const Frame frame = frame_of(spec);
+                sizes.push_back({frame.width, frame.height});
+            }
+            check_alike(specs, values);
+            const MorphRequest request = read_morph_request(values, sizes);
+            const auto file = files.find("features");
+            if (file == files.end())
+                throw Error(
+                    "features is not given: allowed is the name of a .json, "
+                    ".csv or .svg file");
+            std::shared_ptr<const Features> features = read_features(file->second);
+            if (static_cast<std::size_t>(features->shapes()) != specs.size())
+                throw Error("features", printable(file->second.name),
+                            "the file has " + std::to_string(features->shapes()) + " shapes; given are " +
+                                std::to_string(specs.size()) + " pictures");
+            if (request.pin_border) {
+                auto pinned = std::make_shared<Features>(*features);
+                pinned->pin_border(*request.pin_border);
+                features = pinned;
+            }
+            return std::unique_ptr<const Operation>(
+                std::make_unique<MorphOperation>(request, features, file->second.identity));
+        }};
+    return kind;
+}
+
+}  // namespace anamorph

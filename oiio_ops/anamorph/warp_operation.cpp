@@ -1,0 +1,119 @@
+// SPDX-License-Identifier: Apache-2.0
+// A picture drawn through a control mesh.
+#include "anamorph/image/warp_parameters.h"
+#include "anamorph/image_source.h"
+#include "anamorph/operation.h"
+#include "anamorph/side_files.h"
+
+namespace anamorph {
+namespace {
+
+class WarpDrawing final : public Drawing {
+  public:
+    WarpDrawing(const WarpMap& map, const WarpRequest& r)
+        : m_warp(map, r.source.width, r.source.height, r.target.width, r.target.height, r.options) {}
+
+    Facts reached(const ParallelFor& parallel_for) const override {
+        const Reached reached = m_warp.reached(parallel_for);
+        return {{"anamorph:max_error", reached.max_error},
+                {"anamorph:exact_fraction", reached.exact_fraction},
+                {"anamorph:folded_fraction", m_warp.folded_fraction(parallel_for)}};
+    }
+    bool draw(const std::vector<const Source*>& sources, const Box& box, const ImageView& view,
+              const ParallelFor& parallel_for) const override {
+        return m_warp.draw(sources[0], box, view, parallel_for);
+    }
+
+  private:
+    MeshWarp m_warp;
+};
+
+/// The mesh or the points that were asked for, and what tells them apart from others.
+struct GivenMap {
+    std::shared_ptr<const WarpMap> map;
+    std::string key;
+};
+
+GivenMap read_map(const WarpRequest& request, const SideFiles& files) {
+    const auto mesh = files.find("mesh"), points = files.find("points");
+    const bool has_mesh = mesh != files.end(), has_points = points != files.end();
+    if (has_mesh && has_points)
+        throw Error("points", printable(points->second.name), "allowed without mesh only");
+    if (!has_mesh && !has_points)
+        throw Error(
+            "mesh is not given: allowed are a mesh (.json), an ST-map (an "
+            "image), or points");
+    const SideFile& file = has_mesh ? mesh->second : points->second;
+    std::shared_ptr<const WarpMap> map = has_mesh ? read_warp_map(file, request.step) : read_points(file);
+    if (has_points && std::holds_alternative<ControlMesh>(map->shape))
+        throw Error("points", printable(file.name), "the file holds a mesh: allowed as mesh");
+    if (request.direction) {
+        auto turned = std::make_shared<WarpMap>(*map);
+        auto* shape = std::get_if<ControlMesh>(&turned->shape);
+        if (!shape) throw Error("direction is given for points: allowed for a mesh only");
+        shape->direction = *request.direction;
+        map = turned;
+    }
+    return {map, file.identity};
+}
+
+class WarpOperation final : public Operation {
+  public:
+    WarpOperation(const WarpRequest& request, const GivenMap& given) : m_request(request), m_given(given) {}
+
+    std::optional<PictureRequest> picture(int, int level) const override {
+        WarpRequest request = m_request;
+        if (level > 0 && std::max(request.target.width, request.target.height) >> level < 1) return {};
+        request.target.width = std::max(1, request.target.width >> level);
+        request.target.height = std::max(1, request.target.height >> level);
+        const WarpOutput output = request.options.output;
+        PictureRequest picture;
+        picture.width = request.target.width;
+        picture.height = request.target.height;
+        picture.pixels = output == WarpOutput::color   ? PixelKind::color
+                         : output == WarpOutput::stmap ? PixelKind::point
+                                                       : PixelKind::value;
+        picture.facts = {{"anamorph:tol", request.options.tol}};
+        picture.key = key_of(request) + std::to_string(level) + "\n" + m_given.key;
+        // Positions in pixels are pixels of the finest level.
+        picture.solve = [request, level, map = m_given.map, whole = m_request] {
+            return std::make_unique<WarpDrawing>(
+                level > 0 ? in_fractions(*map, whole.source, whole.target) : *map, request);
+        };
+        return picture;
+    }
+
+  private:
+    static std::string key_of(const WarpRequest& r) {
+        const MeshWarpOptions& o = r.options;
+        std::string key = "warp ";
+        for (const int number :
+             {r.source.width, r.source.height, r.target.width, r.target.height, static_cast<int>(o.scheme),
+              static_cast<int>(o.filter), static_cast<int>(o.wrap), static_cast<int>(o.output), r.step,
+              r.direction ? static_cast<int>(*r.direction) : -1})
+            key += std::to_string(number) + " ";
+        return key + shortest(o.tol) + " " + shortest(o.amount) + " ";
+    }
+
+    WarpRequest m_request;
+    GivenMap m_given;
+};
+
+}  // namespace
+
+const OperationKind& warp_kind() {
+    static const OperationKind kind{
+        "warp",
+        &warp_parameters(),
+        {"src"},
+        1,
+        [](const ParameterValues& values, const std::vector<OIIO::ImageSpec>& specs, const SideFiles& files) {
+            const Frame frame = frame_of(specs[0]);
+            const WarpRequest request = read_warp_request(values, {frame.width, frame.height});
+            return std::unique_ptr<const Operation>(
+                std::make_unique<WarpOperation>(request, read_map(request, files)));
+        }};
+    return kind;
+}
+
+}  // namespace anamorph

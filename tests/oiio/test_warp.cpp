@@ -1,0 +1,352 @@
+// SPDX-License-Identifier: Apache-2.0
+// Mesh warps: recipes and the function, that they agree, what they read and what they refuse.
+#include <OpenImageIO/imagebufalgo.h>
+#include <OpenImageIO/imagecache.h>
+
+#include <cmath>
+#include <filesystem>
+
+#include "anamorph/oiio_ops.h"
+#include "host.h"
+
+namespace anamorph {
+namespace {
+
+using namespace testing_oiio;
+using OIIO::ImageBuf;
+using OIIO::ImageSpec;
+using OIIO::ParamValueList;
+using OIIO::TypeDesc;
+using testing::AllOf;
+using testing::HasSubstr;
+using testing::Not;
+namespace fs = std::filesystem;
+
+/// Three cells by two, its inner vertices moved, for a picture and a source of 192 x 128.
+const std::string kMesh = R"({"columns": 3, "rows": 2, "vertices": [
+    [0, 0], [64, 0], [128, 0], [192, 0],
+    [0, 64], [76.5, 53], [119, 80.25], [192, 64],
+    [0, 128], [64, 128], [128, 128], [192, 128]]})";
+/// The same moved so far that it folds.
+const std::string kFolded = R"({"columns": 3, "rows": 2, "vertices": [
+    [0, 0], [64, 0], [128, 0], [192, 0],
+    [0, 64], [150, 64], [40, 64], [192, 64],
+    [0, 128], [64, 128], [128, 128], [192, 128]]})";
+const std::string kPoints =
+    "x,y,u,v\n0,0,0,0\n192,0,192,0\n0,128,0,128\n192,128,192,128\n90,60,100,70\n40,90,35,80\n";
+
+class Warp : public InFolder {
+  protected:
+    void SetUp() override {
+        InFolder::SetUp();
+        write_panorama("city.exr", 192, 128);
+        write_text("grid.json", kMesh);
+        write_text("folded.json", kFolded);
+        write_text("points.csv", kPoints);
+    }
+};
+
+ParamValueList options(std::initializer_list<std::pair<const char*, const char*>> list) {
+    ParamValueList out;
+    for (const auto& [key, value] : list) out.attribute(key, value);
+    return out;
+}
+
+std::vector<std::byte> bytes(const ImageBuf& image) {
+    EXPECT_FALSE(image.has_error()) << image.geterror();
+    std::vector<std::byte> out(image.spec().image_bytes());
+    EXPECT_TRUE(image.get_pixels(image.roi(), image.spec().format, out.data())) << image.geterror();
+    return out;
+}
+
+ImageBuf read(const std::string& name) {
+    ImageBuf image(name);
+    EXPECT_TRUE(image.read(0, 0, true)) << image.geterror();
+    return image;
+}
+
+TEST_F(Warp, TheRecipeIsTheCall) {
+    read_pixels("city.exr.warp?mesh=grid.json&output=stmap&size=24x16");  // an ST-map to read back
+    const Ran made = run("oiiotool 'city.exr.warp?mesh=grid.json&output=stmap&size=24x16' -o st.exr");
+    ASSERT_EQ(made.status, 0) << made.text;
+    for (const TypeDesc type : {TypeDesc::UINT8, TypeDesc::UINT16, TypeDesc::HALF, TypeDesc::FLOAT})
+        for (const auto& [key, value] :
+             {std::pair{"mesh", "grid.json"}, {"mesh", "st.exr"}, {"points", "points.csv"}}) {
+            SCOPED_TRACE(std::string(type.c_str()) + " " + value);
+            const bool integer = type == TypeDesc::UINT8 || type == TypeDesc::UINT16;
+            const std::string name = integer ? "s.tif" : "s.exr";
+            write_panorama(name, 192, 128, type, 4);
+            const ImageBuf source = read(name);
+            ASSERT_EQ(source.spec().format, type);
+            const ImageBuf call =
+                mesh_warp(source, options({{key, value}, {"amount", "0.7"}, {"size", "150x90"}}));
+            const Pixels recipe = read_pixels(name + ".warp?size=150x90&amount=0.7&" + key + "=" + value);
+            EXPECT_EQ(bytes(call), recipe.bytes);
+            EXPECT_NE(recipe.bytes,
+                      read_pixels(name + ".warp?size=150x90&amount=0&" + key + "=" + value).bytes);
+            EXPECT_EQ(call.spec().get_float_attribute("anamorph:max_error", -1),
+                      recipe.spec.get_float_attribute("anamorph:max_error", -2));
+        }
+}
+
+TEST_F(Warp, AmountZeroIsTheSource) {
+    for (const char* shape :
+         {"mesh=grid.json", "mesh=folded.json", "points=points.csv", "mesh=grid.json&direction=push"}) {
+        const std::string name = std::string("city.exr.warp?amount=0&") + shape;
+        EXPECT_TRUE(read_pixels(name + "&tol=0").bytes == read_pixels("city.exr").bytes) << shape;
+        EXPECT_LT(largest_difference(read_floats(name), read_floats("city.exr")), 1e-5) << shape;
+    }
+}
+
+TEST_F(Warp, TilesThreadsAndCropsNeverChangePixels) {
+    for (const char* arguments :
+         {"mesh=grid.json&size=300x200", "mesh=grid.json&direction=push", "points=points.csv&size=150x200",
+          "mesh=folded.json&filter=bicubic&scheme=hermite", "mesh=grid.json&scheme=residual",
+          "mesh=grid.json&tol=0", "mesh=folded.json&direction=push&output=folds"}) {
+        SCOPED_TRACE(arguments);
+        const std::string name = std::string("city.exr.warp?") + arguments;
+        OIIO::attribute("threads", 1);
+        const Pixels expected = read_pixels(name + "&tile=0");
+        for (const char* tile : {"16", "17x31", "64", "512", "0"})
+            for (const int threads : {1, 3}) {
+                OIIO::attribute("threads", threads);
+                EXPECT_EQ(read_pixels(name + "&tile=" + tile), expected) << tile << " " << threads;
+            }
+        // A crop of it alone.
+        const Ran cut = run("oiiotool '" + name + "&tile=32' --cut 40x30+70+50 -o cut.exr '" + name +
+                            "' -o whole.exr --cut 40x30+70+50 -o cut2.exr");
+        ASSERT_EQ(cut.status, 0) << cut.text;
+        EXPECT_EQ(read_pixels("cut.exr").bytes, read_pixels("cut2.exr").bytes);
+    }
+    OIIO::attribute("threads", 0);
+}
+
+TEST_F(Warp, WhatWasReachedIsTold) {
+    for (const char* tol : {"1", "0.25", "0.0625", "0.015625", "0"}) {
+        SCOPED_TRACE(tol);
+        const ImageSpec spec = read_pixels(std::string("city.exr.warp?mesh=grid.json&tol=") + tol).spec;
+        const float limit = std::stof(tol);
+        EXPECT_EQ(spec.get_float_attribute("anamorph:tol", -1), limit);
+        EXPECT_LE(spec.get_float_attribute("anamorph:max_error", 99), limit);
+        EXPECT_EQ(spec.get_float_attribute("anamorph:folded_fraction", -1), 0.0f);
+        EXPECT_GE(spec.get_float_attribute("anamorph:exact_fraction", -1), limit == 0 ? 1.0f : 0.0f);
+        // And it is so, at every pixel.
+        const std::string map = std::string("city.exr.warp?mesh=grid.json&tol=") + tol + "&output=";
+        const std::vector<float> error = read_floats(map + "error"), bound = read_floats(map + "bound");
+        for (std::size_t i = 0; i < error.size(); ++i) ASSERT_LE(error[i], bound[i] + 1e-6f) << i;
+        EXPECT_LE(*std::max_element(bound.begin(), bound.end()), limit);
+    }
+    for (const char* direction : {"pull", "push"}) {
+        const Pixels folds =
+            read_pixels(std::string("city.exr.warp?mesh=folded.json&output=folds&direction=") + direction);
+        EXPECT_EQ(folds.spec.nchannels, 1);
+        const std::vector<float> values =
+            read_floats(std::string("city.exr.warp?mesh=folded.json&output=folds&direction=") + direction);
+        const auto folded = std::count_if(values.begin(), values.end(), [](float v) { return v != 0; });
+        EXPECT_GT(folded, 100) << direction;
+        EXPECT_NEAR(folds.spec.get_float_attribute("anamorph:folded_fraction"),
+                    double(folded) / double(values.size()), 1e-4);
+    }
+}
+
+TEST_F(Warp, AnStMapIsAMesh) {
+    // A view's source map, every pixel of it, draws that view again.
+    const std::string view = "pano?from=latlong&size=192x128&fov=50&yaw=20&filter=bilinear&tol=0";
+    const Ran map = run("oiiotool 'city.exr." + view + "&output=stmap' -o st.exr");
+    ASSERT_EQ(map.status, 0) << map.text;
+    const std::vector<float> drawn = read_floats("city.exr." + view);
+    const std::string warp = "city.exr.warp?filter=bilinear&size=192x128&";
+    EXPECT_LT(largest_difference(read_floats(warp + "mesh=st.exr"), drawn), 1e-3);
+    EXPECT_LT(largest_difference(read_floats(warp + "mesh=st.exr&step=4"), drawn), 0.05);
+    // The map need not be written first.
+    EXPECT_EQ(read_floats(warp + "mesh=city.exr." + view + "&output=stmap"),
+              read_floats(warp + "mesh=st.exr"));
+    EXPECT_EQ(
+        read_floats("city.exr.warp?mesh=(city.exr." + view + "&output=stmap)&filter=bilinear&size=192x128"),
+        read_floats(warp + "mesh=st.exr"));
+    // Nor written at all, from an image in memory.
+    const Ran memory = run("oiiotool st.exr -o M.anabuf --pop '" + warp + "mesh=M.anabuf' -o out.exr");
+    EXPECT_EQ(memory.status, 0) << memory.text;
+    EXPECT_EQ(read_floats("out.exr"), read_floats(warp + "mesh=st.exr"));
+}
+
+TEST_F(Warp, FilesStandWhereTheRecipeStands) {
+    const Pixels expected = read_pixels("city.exr.warp?mesh=grid.json");
+    fs::create_directories("shots/meshes");
+    fs::copy_file("city.exr", "shots/city.exr");
+    fs::copy_file("grid.json", "shots/meshes/g.json");
+    write_text("shots/v.warp", "src=city.exr\nmesh=meshes/g.json\n");
+    EXPECT_EQ(read_pixels("shots/v.warp"), expected);
+    EXPECT_EQ(read_pixels("./shots/v.warp?mesh=grid.json"), expected) << "in a name, from the working folder";
+    EXPECT_EQ(read_pixels(fs::current_path().string() + "/shots/v.warp"), expected);
+    const Ran tool =
+        run("cd shots && oiiotool v.warp -o ../v.exr && cd / && oiiotool " + fs::current_path().string() +
+            "/shots/v.warp -o " + fs::current_path().string() + "/w.exr");
+    EXPECT_EQ(tool.status, 0) << tool.text;
+    EXPECT_EQ(read_pixels("v.exr").bytes, expected.bytes);
+    EXPECT_EQ(read_pixels("w.exr").bytes, expected.bytes);
+}
+
+TEST_F(Warp, AnEditedMeshIsSeen) {
+    write_text("g.json", kMesh);
+    write_text("w.warp", "src=city.exr\nmesh=g.json\n");
+    const std::string outer = "x.pano?size=64&fov=60&from=rectilinear&src=w.warp";
+    const Pixels first = read_pixels("w.warp"), first_outer = read_pixels(outer);
+    // As many bytes as before.
+    std::string edited = kMesh;
+    edited.replace(edited.find("76.5, 53"), 8, "56.5, 73");
+    write_text("g.json", edited);
+    const Pixels second = read_pixels("w.warp"), second_outer = read_pixels(outer);
+    EXPECT_NE(second.bytes, first.bytes);
+    EXPECT_NE(second_outer.bytes, first_outer.bytes);
+    EXPECT_EQ(second.bytes, bytes(mesh_warp(read("city.exr"), options({{"mesh", "g.json"}}))));
+    write_text("g.json", kMesh);
+    EXPECT_EQ(read_pixels("w.warp"), first);
+    EXPECT_EQ(read_pixels(outer), first_outer);
+    // An ST-map too, and what that is made of.
+    const auto write_map = [](const char* view) {
+        const Ran ran = run(std::string("oiiotool 'city.exr.warp?output=stmap&mesh=") + view + "' -o st.exr");
+        EXPECT_EQ(ran.status, 0) << ran.text;
+    };
+    write_map("grid.json");
+    const Pixels one = read_pixels("city.exr.warp?mesh=st.exr");
+    write_map("folded.json");
+    EXPECT_NE(read_pixels("city.exr.warp?mesh=st.exr").bytes, one.bytes);
+    write_map("grid.json");
+    EXPECT_EQ(read_pixels("city.exr.warp?mesh=st.exr"), one);
+}
+
+TEST_F(Warp, Levels) {
+    // Positions in pixels are those of the finest level.
+    for (const char* shape : {"mesh=grid.json", "mesh=grid.json&direction=push", "points=points.csv"}) {
+        SCOPED_TRACE(shape);
+        const std::string name = std::string("city.exr.warp?mip=1&") + shape;
+        const ImageBuf whole = read(name);
+        for (int level = 1; level < 4; ++level) {
+            const Pixels pixels = read_pixels(name, level);
+            EXPECT_EQ(pixels.spec.width, 192 >> level);
+            EXPECT_EQ(pixels.spec.height, 128 >> level);
+            const OIIO::ROI roi(0, 192 >> level, 0, 128 >> level, 0, 1, 0, 3);
+            const ImageBuf small = OIIO::ImageBufAlgo::resize(whole, "box", 0, roi);
+            std::vector<float> expected(static_cast<std::size_t>(roi.npixels()) * 3);
+            ASSERT_TRUE(small.get_pixels(small.roi(), OIIO::TypeFloat, expected.data()));
+            const std::vector<float> own = read_floats(name, level);
+            ASSERT_EQ(own.size(), expected.size());
+            double sum = 0;
+            for (std::size_t i = 0; i < own.size(); ++i) sum += std::fabs(own[i] - expected[i]);
+            // The picture's detail has amplitude 0.35.
+            EXPECT_LT(sum / double(own.size()), 0.02) << level;
+        }
+    }
+}
+
+TEST_F(Warp, RecipesOfAllKindsNest) {
+    write_text("l.csv", "50,30,60,90,60,30,70,95\n");
+    write_text("m.morph", "a=city.exr\nb=city.exr.warp?mesh=grid.json\nfeatures=l.csv\nt=0.4\n");
+    write_text("p.pano", "src=m.morph\nfrom=rectilinear\nsrcfov=90\nsize=160x100\n");
+    write_text("w.warp", "src=p.pano\nmesh=st.warp\n");
+    write_text("st.warp", "src=city.exr\nmesh=grid.json\noutput=stmap\n");
+    const Ran ran =
+        run("oiiotool w.warp -o w.exr m.morph -o m.exr m.exr -o p0.exr && oiiotool "
+            "'m.exr.pano?from=rectilinear&srcfov=90&size=160x100' -o p.exr && oiiotool "
+            "st.warp -o st.exr && oiiotool 'p.exr.warp?mesh=st.exr' -o step_by_step.exr");
+    ASSERT_EQ(ran.status, 0) << ran.text;
+    EXPECT_EQ(read_pixels("w.exr").bytes, read_pixels("step_by_step.exr").bytes);
+    // Through the cache, from the middle of other reads, with little memory.
+    const auto cache = OIIO::ImageCache::create(true);
+    cache->invalidate_all(true);
+    std::vector<float> pixels(160 * 100 * 3);
+    ASSERT_TRUE(cache->get_pixels(OIIO::ustring("w.warp"), 0, 0, 0, 160, 0, 100, 0, 1, OIIO::TypeFloat,
+                                  pixels.data()))
+        << cache->geterror();
+    EXPECT_EQ(pixels, read_floats("w.exr"));
+    // Cycles over any key.
+    write_text("st.warp", "src=city.exr\nmesh=w.warp\noutput=stmap\n");
+    EXPECT_THAT(open_error("w.warp"), HasSubstr("recipes read each other: w.warp -> st.warp -> w.warp"));
+    write_text("st.warp", "src=w.warp\nmesh=grid.json\n");
+    EXPECT_THAT(open_error("p.pano?src=w.warp"), HasSubstr("recipes read each other"));
+    write_text("m.morph", "a=city.exr\nb=m.morph\nfeatures=l.csv\n");
+    EXPECT_THAT(open_error("m.morph"), HasSubstr("m.morph -> m.morph"));
+    // Twice the same, sixteen deep: not two to the sixteenth.
+    std::string below = "city.exr";
+    for (const char letter : std::string("abcdefghijklmn")) {
+        const std::string name = std::string(1, letter) + ".morph";
+        write_text(name, "a=" + below + "\nb=" + below + "\nfeatures=l.csv\nsize=8x8\n");
+        below = name;
+    }
+    EXPECT_EQ(read_floats("n.morph").size(), 8u * 8 * 3);
+}
+
+TEST_F(Warp, WhatFailsFailsWithStatus1AndALine) {
+    write_text("short.json", R"({"columns": 2, "rows": 1, "vertices": [[0, 0], [1, 1]]})");
+    write_text("cut.json", kMesh.substr(0, kMesh.size() / 2));
+    write_text("nan.json", R"({"columns": 1, "rows": 1, "vertices": [[0, 0], [1, 1], [NaN, 2], [3, 3]]})");
+    write_text("text.json", R"({"columns": 1, "rows": 1, "vertices": [[0, 0], ["a", 1], [1, 2], [3, 3]]})");
+    write_text("empty.json", "");
+    write_text("bad.csv", "x,y,u,v\n1,2,3\n");
+    write_text("huge.json", "{");
+    fs::resize_file("huge.json", 100 << 20);
+    fs::create_directory("folder.json");
+    write_panorama("one.exr", 16, 16, OIIO::TypeFloat, 1);
+    write_text("self.warp", "src=self.warp\nmesh=grid.json\n");
+    const std::pair<std::string, std::string> failing[] = {
+        {"city.exr.warp", "mesh is not given"},
+        {"city.exr.warp?mesh=none.json", "none.json\" does not exist"},
+        {"city.exr.warp?mesh=none.exr", "none.exr"},
+        {"city.exr.warp?points=none.csv", "none.csv\" does not exist"},
+        {"city.exr.warp?mesh=grid.json&points=points.csv", "allowed without mesh"},
+        {"city.exr.warp?mesh=grid.json&step=2", "step=2: allowed for ST-maps only"},
+        {"city.exr.warp?mesh=one.exr", "has one channel"},
+        {"city.exr.warp?mesh=short.json", "short.json"},
+        {"city.exr.warp?mesh=cut.json", "cut.json"},
+        {"city.exr.warp?mesh=nan.json", "nan.json"},
+        {"city.exr.warp?mesh=text.json", "text.json"},
+        {"city.exr.warp?mesh=empty.json", "empty.json"},
+        {"city.exr.warp?points=bad.csv", "bad.csv"},
+        {"city.exr.warp?points=grid.json", "the file holds a mesh"},
+        {"city.exr.warp?points=points.csv&direction=push", "direction"},
+        {"city.exr.warp?mesh=huge.json", "104857600 bytes"},
+        {"city.exr.warp?mesh=folder.json", "is not a file"},
+        {"city.exr.warp?mesh=big.null?RES=60000x60000&CHANNELS=3", "60000x60000 pixels"},
+        {"city.exr.warp?mesh=big.null?RES=8000x8000&CHANNELS=3", "step=1"},
+        {"city.exr.warp?mesh=grid.json&amount=inf", "amount=inf"},
+        {"city.exr.warp?mesh=grid.json&amount=1e300", "amount"},
+        {"city.exr.warp?mesh=grid.json&tol=-1", "tol=-1"},
+        {"city.exr.warp?mesh=grid.json&size=16777216x16777216", "limits:imagesize_MB"},
+        {"city.exr.warp?mesh=grid.json&size=0", "size=0"},
+        {"city.exr.warp?mesh=grid.json&yaw=3", "yaw=3: there is no such parameter"},
+        {"city.exr.warp?mesh=grid.json&output=lines", "output=lines"},
+        {"missing.exr.warp?mesh=grid.json", "missing.exr"},
+        {"self.warp", "read each other"},
+    };
+    for (const auto& [name, reason] : failing) {
+        SCOPED_TRACE(name);
+        const std::string error = open_error(name);
+        EXPECT_THAT(error, AllOf(HasSubstr(reason), Not(HasSubstr("\n"))));
+        EXPECT_LT(error.size(), 500u);
+        const Ran tool = run("oiiotool '" + name + "' -o out.exr");
+        EXPECT_EQ(tool.status, 1) << tool.text;
+        EXPECT_THAT(tool.text, HasSubstr(reason));
+    }
+    // Through maketx, which opens what exists.
+    write_text("bad.warp", "src=city.exr\nmesh=cut.json\n");
+    const Ran made = run("maketx bad.warp -o out.tx");
+    EXPECT_EQ(made.status, 1) << made.text;
+    EXPECT_THAT(made.text, HasSubstr("cut.json"));
+    write_text("good.warp", "src=city.exr\nmesh=grid.json\n");
+    EXPECT_EQ(run("maketx good.warp -o out.tx").status, 0);
+    // The call says the same.
+    const ImageBuf source = panorama(192, 128);
+    const auto refuses = [&](const ParamValueList& o, const char* part) {
+        ImageBuf dst;
+        EXPECT_FALSE(mesh_warp(dst, source, o));
+        EXPECT_THAT(dst.geterror(), AllOf(HasSubstr("mesh_warp: "), HasSubstr(part), Not(HasSubstr("\n"))));
+    };
+    refuses(options({}), "mesh is not given");
+    refuses(options({{"mesh", "none.json"}}), "none.json");
+    refuses(options({{"mesh", "grid.json"}, {"src", "x.exr"}}), "src=x.exr: allowed in recipes only");
+    refuses(options({{"mesh", "grid.json"}, {"mip", "1"}}), "mip=1");
+}
+
+}  // namespace
+}  // namespace anamorph
