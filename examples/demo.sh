@@ -1,7 +1,7 @@
 #!/bin/bash
 # SPDX-License-Identifier: Apache-2.0
 # Shows what Anamorph does, on Debian 12 from a fresh machine on: builds it, and lets the stock oiiotool draw views of an
-# HDR panorama. Everything it makes is in build/demo/out.
+# HDR panorama, warp a picture and film a morph of two. Everything it makes is in build/demo/out.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 tests/install_packages.sh build hosts tests plots
@@ -61,10 +61,39 @@ echo "error.png: output=error"
 oiiotool "panorama.exr.pano?to=rectilinear&fov=100&yaw=160&pitch=5&size=480x360&output=error" \
     --divc "{TOP.MAXCOLOR}" --colormap inferno -d uint8 -o error.png
 
-echo "speed_vs_error.csv, .png, .svg"
-../../release/tests/bench/speed_vs_error --op pano --size 1024 --csv speed_vs_error.csv >speed_vs_error.txt
-/usr/bin/python3 ../../../examples/plot_speed_vs_error.py speed_vs_error.csv speed_vs_error.png speed_vs_error.svg
+# A picture through a control mesh, as it is and half as strong, and how far every source point is off.
+cp ../../../examples/pictures/{cat,raccoon}.jpg ../../../examples/{bulge.json,face.csv} .
+echo "warp.jpg: cat.jpg.warp?mesh=bulge.json"
+oiiotool "cat.jpg.warp?mesh=bulge.json" -o warp.jpg
+echo "half_warp.jpg: cat.jpg.warp?mesh=bulge.json&amount=0.5"
+oiiotool "cat.jpg.warp?mesh=bulge.json&amount=0.5" -o half_warp.jpg
+echo "warp_error.png: output=error"
+oiiotool "cat.jpg.warp?mesh=bulge.json&output=error" --divc "{TOP.MAXCOLOR}" --colormap inferno -d uint8 -o warp_error.png
+
+# From one picture to another along corresponding lines: a film, frame by frame.
+echo "lines.jpg: cat.jpg.morph?b=raccoon.jpg&features=face.csv&output=lines"
+oiiotool "cat.jpg.morph?b=raccoon.jpg&features=face.csv&output=lines" -o lines.jpg
+echo "film.0000.jpg to film.0048.jpg: t={FRAME_NUMBER/48}"
+oiiotool --frames 0-48 "cat.jpg.morph?b=raccoon.jpg&features=face.csv&t={FRAME_NUMBER/48}" -o film.%04d.jpg
+cp film.0024.jpg morph.jpg
+if command -v ffmpeg >/dev/null; then
+    echo "film.mp4"
+    ffmpeg -loglevel error -y -framerate 24 -i film.%04d.jpg -pix_fmt yuv420p film.mp4
+else
+    echo "(no film.mp4: ffmpeg is not installed)"
+fi
+
+# Speed against error of all operations: one table and one plot each.
+for op in pano warp morph; do
+    table="speed_vs_error_$op"
+    size=1024
+    [ "$op" = morph ] && size=600
+    echo "$table.csv, .png, .svg"
+    ../../release/tests/bench/speed_vs_error --op "$op" --size "$size" --csv "$table.csv" >"$table.txt"
+    /usr/bin/python3 ../../../examples/plot_speed_vs_error.py "$table.csv" "$table.png" "$table.svg"
+done
 
 /usr/bin/python3 ../../../examples/contact_sheet.py contact_sheet.png panorama.png rectilinear.png rolled.png fisheye.png \
-    little_planet.png cylindrical.png mercator.png cube_faces.png error.png
+    little_planet.png cylindrical.png mercator.png cube_faces.png error.png cat.jpg warp.jpg warp_error.png \
+    film.0012.jpg morph.jpg film.0036.jpg
 echo "done: $out"

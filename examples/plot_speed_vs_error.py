@@ -76,7 +76,7 @@ def main():
         for handle, label in zip(*axes.get_legend_handles_labels()):
             entries.setdefault(label, handle)
     figure.legend(entries.values(), entries.keys(), loc="center right", fontsize=8)
-    figure.suptitle(f"Time against error, {size} x {size} view")
+    figure.suptitle(f"Time against error, {rows[0]['op']}, {size} x {size}")
     figure.tight_layout(rect=(0, 0, 1 - 1.9 / figure.get_figwidth(), 1))
     for picture in sys.argv[2:]:
         figure.savefig(picture, dpi=110)

@@ -1,11 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-// The README's table of keys is the one that the parameter table makes.
+// The README's tables of keys are those that the parameter tables make.
 #include <gtest/gtest.h>
 
 #include <fstream>
 #include <sstream>
 
+#include "anamorph/image/morph_parameters.h"
 #include "anamorph/image/reproject_parameters.h"
+#include "anamorph/image/warp_parameters.h"
+#include "anamorph/map/features_file.h"
+#include "anamorph/map/mesh_file.h"
 
 namespace {
 
@@ -15,16 +19,44 @@ std::string between(const std::string& text, const std::string& begin, const std
     return text.substr(from + begin.size(), to - from - begin.size());
 }
 
-TEST(Readme, ListsTheKeys) {
+std::string readme() {
     std::ifstream file(ANAMORPH_README);
     std::stringstream text;
     text << file.rdbuf();
+    return text.str();
+}
 
-    std::string page = anamorph::reference_page("", anamorph::reproject_parameters());
+void expect_listed(const std::string& recipe, const anamorph::ParameterTable& table) {
+    std::string page = anamorph::reference_page("", table);
     page.erase(0, page.find('|'));
-    EXPECT_EQ(between(text.str(), "<!-- keys: begin -->\n\n", "\n<!-- keys: end -->"), page)
+    EXPECT_EQ(between(readme(), "<!-- keys of " + recipe + ": begin -->\n\n",
+                      "\n<!-- keys of " + recipe + ": end -->"),
+              page)
         << "README.md is to have between its marks:\n\n"
         << page;
+}
+
+TEST(Readme, ListsTheKeys) {
+    expect_listed("pano", anamorph::reproject_parameters());
+    expect_listed("warp", anamorph::warp_parameters());
+    expect_listed("morph", anamorph::morph_parameters());
+}
+
+TEST(Readme, ItsFilesCanBeRead) {
+    // Blocks of code that are JSON, in their order.
+    const std::string text = readme();
+    const auto block_with = [&](const std::string& key) {
+        const std::size_t inside = text.find("      \"" + key + "\"");
+        const std::size_t begin = text.rfind("\n    {\n", inside), end = text.find("\n    }\n", inside);
+        return text.substr(begin, end + 7 - begin);
+    };
+    const anamorph::WarpMap mesh = anamorph::parse_mesh_json(block_with("columns"), "README");
+    EXPECT_EQ(std::get<anamorph::ControlMesh>(mesh.shape).columns, 2);
+    EXPECT_EQ(std::get<anamorph::ControlMesh>(mesh.shape).levels.size(), 1u);
+    const anamorph::Features features = anamorph::parse_features_json(block_with("features"), "README");
+    EXPECT_EQ(features.shapes(), 2);
+    EXPECT_GE(features.size(), 4u);
+    EXPECT_EQ(features.border_weight(), 1);
 }
 
 }  // namespace

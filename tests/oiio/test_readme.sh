@@ -3,13 +3,24 @@
 # The README's one-liners, as they stand there, make the pictures they name.
 set -euo pipefail
 readme="$ANAMORPH_SOURCE_DIR/README.md"
-"$PYTHON" "$ANAMORPH_SOURCE_DIR/examples/make_panorama.py" panorama.exr 512
+examples="$ANAMORPH_SOURCE_DIR/examples"
+rm -f ./*.jpg
+"$PYTHON" "$examples/make_panorama.py" panorama.exr 512
+cp "$examples"/pictures/{cat,raccoon}.jpg "$examples"/{face.csv,bulge.json} .
 
 grep '^    oiiotool ' "$readme" >one_liners.sh
-[ "$(wc -l <one_liners.sh)" -eq 5 ]
-rm -f ./*.jpg
+[ "$(wc -l <one_liners.sh)" -eq 11 ]
 bash -ex one_liners.sh
-for picture in view.jpg:480x360 planet.jpg:400x400 fisheye.jpg:400x400 cross.jpg:640x480 error.jpg:480x360; do
+for picture in view.jpg:480x360 planet.jpg:400x400 fisheye.jpg:400x400 cross.jpg:640x480 error.jpg:480x360 \
+    warp.jpg:480x480 morph.jpg:480x480 lines.jpg:480x480; do
     iinfo "${picture%:*}" | tr -d ' ' | grep ":${picture#*:},3channel,uint8jpeg"
-    [ -s "$ANAMORPH_SOURCE_DIR/examples/pictures/${picture%:*}" ]
+    [ -s "$examples/pictures/${picture%:*}" ]
 done
+[ -s both.jpg ]
+[ "$(ls film.*.jpg | wc -l)" -eq 25 ]
+[ "$(ls step.*.jpg | wc -l)" -eq 5 ]
+# The film's ends are the pictures, but for what JPEG loses by writing them again.
+idiff -fail 0.05 -failpercent 0.1 -hardfail 0.3 film.0000.jpg cat.jpg
+idiff -fail 0.05 -failpercent 0.1 -hardfail 0.3 film.0024.jpg raccoon.jpg
+idiff -fail 0 film.0012.jpg morph.jpg
+idiff -fail 0 step.0003.jpg morph.jpg
