@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <string>
 
+#include "anamorph/image/morph_parameters.h"
 #include "anamorph/image/reproject_parameters.h"
 #include "expect_error.h"
 
@@ -21,6 +22,11 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
         ParameterValues values(reproject_parameters());
         values.assign(name.assignments);
         read_reproject_request(values, {1024, 512, std::nullopt});
+    });
+    fuzz::expect_no_failure_but_error([&] {
+        ParameterValues values(morph_parameters());
+        values.assign(parse_recipe_name(text).assignments);
+        read_morph_request(values, {{1024, 512}, {64, 64}, {8, 8}});
     });
     return 0;
 }

@@ -9,8 +9,15 @@ oiio.ImageBufAlgo.noise(source, "uniform", 0.0, 1.0, False, 7)
 source.set_write_tiles(32, 32)
 assert source.write("city.exr"), source.geterror()
 
+with open("grid.json", "w") as file:
+    file.write('{"columns": 1, "rows": 1, "vertices": [[0, 0], [240, 10], [10, 120], [250, 128]]}')
+with open("lines.csv", "w") as file:
+    file.write("60,30,180,40,80,20,190,60\n")
+
 names = [f"city.exr.pano?size=96x64&tile=16&yaw={yaw}&pitch={yaw / 3}" for yaw in range(0, 360, 45)]
 names += [f"x.pano?size=96x64&src=y.pano?to=equirectangular&size=256x128&roll={roll}&src=city.exr" for roll in (20, 30)]
+names += [f"city.exr.warp?mesh=grid.json&size=96x64&tile=16&amount={amount}" for amount in (0.5, 1)]
+names += [f"city.exr.morph?b=(city.exr.warp?mesh=grid.json)&features=lines.csv&size=96x64&t={t}" for t in (0.2, 0.8)]
 
 
 def pixels(name):

@@ -1,0 +1,409 @@
+// SPDX-License-Identifier: Apache-2.0
+// What OpenImageIO expects of any input, asked of warps, morphs and films: the conformance items that depend
+// on what is drawn, on several sources, on files beside them and on subimages.
+#include <OpenImageIO/imagebufalgo.h>
+#include <OpenImageIO/imagecache.h>
+
+#include <atomic>
+#include <filesystem>
+#include <fstream>
+#include <random>
+#include <thread>
+
+#include "host.h"
+
+namespace anamorph {
+namespace {
+
+using namespace testing_oiio;
+using OIIO::ImageInput;
+using OIIO::ImageSpec;
+using OIIO::TypeDesc;
+using OIIO::ustring;
+using testing::HasSubstr;
+using testing::Not;
+namespace fs = std::filesystem;
+
+const char* const kGrid = R"({"columns": 2, "rows": 2, "units": "fractions", "vertices": [
+    [0, 0], [0.5, 0], [1, 0],  [0, 0.5], [0.61, 0.42], [1, 0.5],  [0, 1], [0.5, 1], [1, 1]]})";
+const char* const kLines = "60,30,120,40,80,20,130,50\n40,100,90,90,30,80,70,100\n";
+
+class RecipeConformance : public InFolder, public testing::WithParamInterface<const char*> {
+  protected:
+    void SetUp() override {
+        InFolder::SetUp();
+        OIIO::ImageCache::create(true)->invalidate_all(true);
+        write_panorama("city.exr", 150, 100);
+        write_image(OIIO::ImageBufAlgo::flop(panorama(150, 100)), "town.exr");
+        write_text("grid.json", kGrid);
+        write_text("lines.csv", kLines);
+    }
+    /// The recipe under test with more arguments.
+    static std::string name(const std::string& more = {}) { return GetParam() + more; }
+};
+
+std::string kind_name(const testing::TestParamInfo<const char*>& info) {
+    const char* const kinds[] = {"warp", "morph", "film"};
+    return kinds[info.index];
+}
+INSTANTIATE_TEST_SUITE_P(Kinds, RecipeConformance,
+                         testing::Values("city.exr.warp?mesh=grid.json",
+                                         "city.exr.morph?b=town.exr&features=lines.csv&t=0.3",
+                                         "city.exr.morph?b=town.exr&features=lines.csv&frames=3"),
+                         kind_name);
+
+std::unique_ptr<ImageInput> open(const std::string& name) {
+    auto input = ImageInput::open(name);
+    EXPECT_TRUE(input) << name << ": " << OIIO::geterror();
+    return input;
+}
+
+std::vector<float> read_subimage(ImageInput& input, int subimage, int level = 0) {
+    const ImageSpec spec = input.spec(subimage, level);
+    std::vector<float> pixels(static_cast<std::size_t>(spec.image_pixels()) *
+                              static_cast<std::size_t>(spec.nchannels));
+    EXPECT_TRUE(input.read_image(subimage, level, 0, spec.nchannels, TypeDesc::FLOAT, pixels.data()))
+        << input.geterror();
+    return pixels;
+}
+
+TEST_P(RecipeConformance, conformance_03_04_names) {
+    const auto input = ImageInput::create("anamorph");
+    ASSERT_TRUE(input);
+    for (const char* known : {"a.warp", "a.WARP?x=1", "a.b.morph", "a.Morph"})
+        EXPECT_TRUE(input->valid_file(known));
+    for (const char* other : {".warp", "warp", "a.warp.exr", "a.morphs", "a.exr?b=c.morph"})
+        EXPECT_FALSE(input->valid_file(other)) << other;
+    std::string upper = name();
+    const std::size_t dot = upper.find('?') - 4;
+    for (std::size_t i = dot; i < dot + 4; ++i) upper[i] = static_cast<char>(std::toupper(upper[i]));
+    EXPECT_EQ(read_pixels(upper), read_pixels(name()));
+}
+
+TEST_P(RecipeConformance, conformance_05_open_close_reopen) {
+    const auto input = ImageInput::create("anamorph");
+    ImageSpec spec;
+    const Pixels expected = read_pixels(name());
+    for (int i = 0; i < 3; ++i) {
+        ASSERT_TRUE(input->open(name(), spec)) << input->geterror();
+        EXPECT_EQ(input->current_subimage(), 0);
+        std::vector<std::byte> pixels(spec.image_bytes());
+        ASSERT_TRUE(input->read_image(0, 0, 0, 3, spec.format, pixels.data()));
+        EXPECT_EQ(pixels, expected.bytes);
+        EXPECT_TRUE(input->close());
+        EXPECT_EQ(input->current_subimage(), -1);
+        EXPECT_TRUE(input->close());
+    }
+    ASSERT_TRUE(input->open("city.exr.pano?from=latlong&size=8", spec));
+    ASSERT_TRUE(input->open(name(), spec));
+    EXPECT_FALSE(input->open(name("&size=none"), spec));
+    EXPECT_THAT(input->geterror(), HasSubstr("size=none"));
+}
+
+TEST_P(RecipeConformance, conformance_06_config_and_name_agree) {
+    const bool warp = name().find(".warp") != std::string::npos;
+    const std::string prefix = warp ? "warp:" : "morph:", key = warp ? "amount" : "weight_b";
+    ImageSpec config;
+    config.attribute(prefix + key, 0.5f);
+    config.attribute("pano:yaw", 3.0f);
+    auto input = ImageInput::open(name(), &config);
+    ASSERT_TRUE(input) << OIIO::geterror();
+    EXPECT_EQ(read_subimage(*input, 0), read_floats(name("&" + key + "=0.5")));
+    config.attribute(prefix + "jaw", 1);
+    EXPECT_FALSE(ImageInput::open(name(), &config));
+    EXPECT_THAT(OIIO::geterror(), HasSubstr("jaw=1: there is no such parameter"));
+}
+
+TEST_P(RecipeConformance, conformance_07_08_every_way_to_read_gives_the_same_bits) {
+    for (const std::string tile : {"32", "0", "48x16"}) {
+        SCOPED_TRACE(tile);
+        const auto input = open(name("&tile=" + tile));
+        ASSERT_TRUE(input);
+        for (int subimage = 0; input->seek_subimage(subimage, 0); ++subimage) {
+            const ImageSpec spec = input->spec();
+            const std::vector<float> whole = read_subimage(*input, subimage);
+            std::vector<float> other(whole.size());
+            ASSERT_TRUE(input->seek_subimage(subimage, 0));
+            if (spec.tile_width == 0) {
+                for (int y = 99; y >= 0; --y)
+                    ASSERT_TRUE(input->read_scanline(y, 0, TypeDesc::FLOAT,
+                                                     &other[static_cast<std::size_t>(y) * 450]));
+                EXPECT_TRUE(other == whole);
+                continue;
+            }
+            const int tw = spec.tile_width, th = spec.tile_height;
+            for (int y = 0; y < 100; y += th)
+                for (int x = 0; x < 150; x += tw) {
+                    // Exactly one tile: an address sanitizer sees what is written beyond.
+                    const std::size_t values = static_cast<std::size_t>(tw * th) * 3;
+                    const auto buffer = std::make_unique<float[]>(values);
+                    ASSERT_TRUE(input->read_native_tile(subimage, 0, x, y, 0, buffer.get()))
+                        << input->geterror();
+                    for (int j = 0; j < th; ++j)
+                        for (int i = 0; i < tw * 3; ++i) {
+                            const float value = buffer[static_cast<std::size_t>(j * tw * 3 + i)];
+                            if (y + j < 100 && x * 3 + i < 450)
+                                other[static_cast<std::size_t>((y + j) * 450 + x * 3 + i)] = value;
+                            else
+                                ASSERT_EQ(value, 0) << "outside the picture";
+                        }
+                }
+            EXPECT_TRUE(other == whole);
+            ASSERT_TRUE(
+                input->read_tiles(subimage, 0, 0, 150, 0, 100, 0, 1, 0, 3, TypeDesc::FLOAT, other.data()));
+            EXPECT_TRUE(other == whole);
+        }
+    }
+}
+
+TEST_P(RecipeConformance, conformance_10_data_windows_of_the_sources) {
+    // A crop whose display window is the whole is the whole with black around it.
+    for (const std::string source : {"city.exr", "town.exr"}) {
+        const std::size_t at = name().find(source);
+        if (at == std::string::npos) continue;
+        const std::string part = "part_of_" + source, padded_part = "padded_" + source;
+        const Ran ran = run("oiiotool " + source + " --crop 100x60+30+25 -o " + part);
+        ASSERT_EQ(ran.status, 0) << ran.text;
+        OIIO::ImageBuf padded(ImageSpec(150, 100, 3, TypeDesc::FLOAT)), crop(part);
+        ASSERT_TRUE(OIIO::ImageBufAlgo::paste(padded, 0, 0, 0, 0, crop)) << padded.geterror();
+        write_image(padded, padded_part);
+        std::string cropped = name(), whole = name();
+        cropped.replace(at, source.size(), part);
+        whole.replace(at, source.size(), padded_part);
+        EXPECT_TRUE(read_pixels(cropped) == read_pixels(whole)) << source;
+        const bool drawn = source == "city.exr" || name().find("frames") == std::string::npos;
+        EXPECT_EQ(read_pixels(cropped) == read_pixels(name()), !drawn) << source;
+    }
+}
+
+TEST_P(RecipeConformance, conformance_11_12_subimages_and_levels) {
+    const auto input = open(name("&mip=1&tile=32"));
+    ASSERT_TRUE(input);
+    const int frames = name().find("frames") != std::string::npos ? 3 : 1;
+    std::vector<std::vector<std::vector<float>>> expected(static_cast<std::size_t>(frames));
+    for (int i = 0; i < frames; ++i)
+        for (int level = 0; input->seek_subimage(i, level); ++level) {
+            EXPECT_EQ(input->spec().width, std::max(1, 150 >> level));
+            expected[static_cast<std::size_t>(i)].push_back(read_subimage(*input, i, level));
+        }
+    EXPECT_FALSE(input->seek_subimage(frames, 0));
+    EXPECT_FALSE(input->seek_subimage(-1, 0));
+    ASSERT_EQ(expected[0].size(), 8u);
+    std::vector<float> pixels(32 * 32 * 3);
+    EXPECT_FALSE(input->read_native_tile(frames, 0, 0, 0, 0, pixels.data()));
+    EXPECT_THAT(input->geterror(), HasSubstr("there are " + std::to_string(frames)));
+    EXPECT_FALSE(input->read_native_tile(0, 8, 0, 0, 0, pixels.data()));
+    EXPECT_THAT(input->geterror(), Not(testing::IsEmpty()));
+    std::mt19937 random(7);
+    SCOPED_TRACE("seed 7");
+    for (int k = 0; k < 60; ++k) {
+        const auto i = random() % unsigned(frames);
+        const auto level = random() % unsigned(expected[i].size());
+        ASSERT_TRUE(read_subimage(*input, static_cast<int>(i), static_cast<int>(level)) ==
+                    expected[i][level]);
+    }
+}
+
+TEST_P(RecipeConformance, conformance_13_one_input_many_threads) {
+    const auto input = open(name("&tile=16"));
+    ASSERT_TRUE(input);
+    std::vector<std::vector<float>> whole;
+    for (int i = 0; input->seek_subimage(i, 0); ++i) whole.push_back(read_subimage(*input, i));
+    std::atomic<int> wrong{0};
+    std::vector<std::thread> threads;
+    for (unsigned t = 0; t < 6; ++t)
+        threads.emplace_back([&, t] {
+            std::mt19937 random(t);
+            std::vector<float> tile(16 * 16 * 3);
+            for (int k = 0; k < 100; ++k) {
+                const auto subimage = random() % unsigned(whole.size());
+                const int x = static_cast<int>(random() % 9) * 16, y = static_cast<int>(random() % 6) * 16;
+                if (!input->read_native_tile(static_cast<int>(subimage), 0, x, y, 0, tile.data())) ++wrong;
+                for (int j = 0; j < 16 * 16 * 3; ++j)
+                    wrong += tile[static_cast<std::size_t>(j)] !=
+                             whole[subimage][static_cast<std::size_t>(((y + j / 48) * 150 + x) * 3 + j % 48)];
+            }
+        });
+    for (std::thread& thread : threads) thread.join();
+    EXPECT_EQ(wrong, 0);
+}
+
+TEST_P(RecipeConformance, conformance_15_19_behind_a_cache_with_little_memory) {
+    const auto cache = OIIO::ImageCache::create(true);
+    write_text("inner.warp", "src=city.exr\nmesh=grid.json\ntile=16\n");
+    const std::string nested = "n.morph?tile=16&a=inner.warp&features=lines.csv&b=" + name();
+    const std::vector<std::string> names = {name("&tile=16"), nested};
+    std::vector<std::vector<float>> expected;
+    for (const std::string& n : names) expected.push_back(read_floats(n));
+    for (const auto& [megabytes, files] : {std::pair{256.0f, 100}, {10.0f, 1}}) {
+        cache->invalidate_all(true);
+        cache->attribute("max_memory_MB", megabytes);
+        cache->attribute("max_open_files", files);
+        std::atomic<int> wrong{0};
+        std::vector<std::thread> threads;
+        for (unsigned t = 0; t < 5; ++t)
+            threads.emplace_back([&, t] {
+                std::mt19937 random(t + 1);
+                for (int i = 0; i < 400; ++i) {
+                    const std::size_t n = random() % names.size();
+                    const int x = static_cast<int>(random() % 150), y = static_cast<int>(random() % 100);
+                    float pixel[3] = {};
+                    const bool read = cache->get_pixels(ustring(names[n]), 0, 0, x, x + 1, y, y + 1, 0, 1,
+                                                        OIIO::TypeFloat, pixel);
+                    if (!read || !std::equal(pixel, pixel + 3,
+                                             &expected[n][static_cast<std::size_t>((y * 150 + x) * 3)]))
+                        ++wrong;
+                }
+            });
+        for (std::thread& thread : threads) thread.join();
+        EXPECT_EQ(wrong, 0) << cache->geterror();
+    }
+    EXPECT_THAT(cache->getstats(5), HasSubstr("ImageCache statistics"));
+    cache->attribute("max_memory_MB", 256.0f);
+    cache->attribute("max_open_files", 100);
+}
+
+TEST_P(RecipeConformance, conformance_17_18_sources_that_change) {
+    const auto input = open(name());
+    ASSERT_TRUE(input);
+    const std::vector<float> first = read_floats(name());
+    write_panorama("city.exr", 80, 60);
+    OIIO::ImageCache::create(true)->invalidate_all(true);
+    std::vector<float> pixels(150 * 100 * 3);
+    EXPECT_FALSE(input->read_image(0, 0, 0, 3, TypeDesc::FLOAT, pixels.data()));
+    EXPECT_THAT(input->geterror(), HasSubstr("has changed since it was opened"));
+    // Opened again, it is what is there now.
+    EXPECT_EQ(read_pixels(name()).spec.width, 80);
+    write_image(OIIO::ImageBufAlgo::mul(panorama(150, 100), 0.5f), "city.exr");
+    EXPECT_FALSE(read_floats(name()) == first);
+    write_panorama("city.exr", 150, 100);
+    EXPECT_TRUE(read_floats(name()) == first);
+    fs::remove("city.exr");
+    EXPECT_THAT(open_error(name()), HasSubstr("city.exr"));
+}
+
+TEST_P(RecipeConformance, conformance_22_special_characters) {
+    const std::string here = fs::current_path().string();
+    for (const char* odd :
+         {"a b", "a,b", "a:b", "a;b", "a=b", "a(b)", "(ab)", "a[b]", "a+b", "\xC3\xBC", "a%20x"}) {
+        SCOPED_TRACE(odd);
+        std::string text = name();
+        for (const std::string file : {"grid.json", "lines.csv", "town.exr", "city.exr"}) {
+            const std::string other = odd + file.substr(file.find('.'));
+            const std::size_t at = text.find(file);
+            if (at == std::string::npos) continue;
+            fs::copy_file(file, other, fs::copy_options::overwrite_existing);
+            const std::string renamed = text.substr(0, at) + other + text.substr(at + file.size());
+            EXPECT_TRUE(read_pixels(renamed) == read_pixels(name())) << renamed;
+            const Ran ran = run("oiiotool '" + renamed + "' -o out.exr");
+            EXPECT_EQ(ran.status, 0) << ran.text;
+        }
+    }
+}
+
+TEST_P(RecipeConformance, conformance_29_a_crop_reads_only_what_it_needs) {
+    const auto cache = OIIO::ImageCache::create(true);
+    cache->invalidate_all(true);
+    write_panorama("fine.exr", 4096, 2048, TypeDesc::HALF, 3, 64);
+    write_text("wide.csv", "600,300,2200,400,700,300,2300,500\n");
+    const bool warp = name().find(".warp") != std::string::npos;
+    const std::string fine = warp ? "fine.exr.warp?mesh=grid.json&tile=64"
+                                  : "fine.exr.morph?b=fine.exr&features=wide.csv&t=0.4&tile=64";
+    std::vector<float> pixels(128 * 128 * 3);
+    ASSERT_TRUE(
+        cache->get_pixels(ustring(fine), 0, 0, 1024, 1152, 1024, 1152, 0, 1, OIIO::TypeFloat, pixels.data()))
+        << cache->geterror();
+    long long tiles = -1;
+    ASSERT_TRUE(cache->get_image_info(ustring("fine.exr"), 0, 0, ustring("stat:tilesread"),
+                                      OIIO::TypeDesc::INT64, &tiles));
+    // 128 pixels each way, hardly scaled, of each picture: of 2048 tiles.
+    EXPECT_GT(tiles, 0);
+    EXPECT_LE(tiles, 64);
+}
+
+TEST_P(RecipeConformance, conformance_31_a_thousand_opens) {
+    const auto handles = [] {
+        int n = 0;
+        for ([[maybe_unused]] const auto& entry : fs::directory_iterator("/proc/self/fd")) ++n;
+        return n;
+    };
+    const auto resident = [] {
+        std::ifstream file("/proc/self/statm");
+        long total = 0, pages = 0;
+        file >> total >> pages;
+        return double(pages) * 4096 / (1 << 20);
+    };
+    const auto open_many = [&](int from, int to) {
+        for (int i = from; i < to; ++i) {
+            auto input = ImageInput::open(
+                name("&size=" + std::to_string(16 + i % 100) + "&tol=0.0" + std::to_string(i + 1)));
+            ASSERT_TRUE(input) << OIIO::geterror();
+            if (i % 2) read_subimage(*input, 0);
+            if (i % 3) input->close();
+        }
+    };
+    open_many(0, 200);
+    const int handles_before = handles();
+    [[maybe_unused]] const double memory_before = resident();
+    open_many(200, 1200);
+    EXPECT_LE(handles(), handles_before + 2);
+#if !defined(__SANITIZE_ADDRESS__)
+    EXPECT_LE(resident(), memory_before + 30);
+#endif
+}
+
+TEST_P(RecipeConformance, conformance_21_32_random_names_and_recipes) {
+    const unsigned seed = 4711;
+    SCOPED_TRACE(seed);
+    std::mt19937 random(seed);
+    const auto pick = [&](const auto& list) { return std::string(list[random() % std::size(list)]); };
+    const char* const keys[] = {
+        "src",       "a",        "b",        "c",        "mesh",       "step",          "points",
+        "direction", "amount",   "features", "t",        "t_color",    "shape_weights", "color_weights",
+        "frames",    "weight_a", "weight_b", "weight_p", "pin_border", "mesh_cells",    "size",
+        "tile",      "mip",      "filter",   "wrap",     "tol",        "scheme",        "output",
+        "x",         ""};
+    const char* const values[] = {"city.exr", "town.exr",  "(city.exr.warp?mesh=grid.json)",
+                                  "(a?b",     "grid.json", "lines.csv",
+                                  "0",        "1",         "0.5",
+                                  "-3",       "1e300",     "1e-300",
+                                  "8x4",      "16",        "push",
+                                  "mesh",     "exact",     "hermite",
+                                  "stmap",    "warp_b",    "lines",
+                                  "folds",    "0.5,0.5",   "1,",
+                                  "nan",      "\xff",      "?",
+                                  "="};
+    const std::string base = name().substr(0, name().find('?'));
+    int opened = 0;
+    for (int i = 0; i < 1500; ++i) {
+        std::string text = random() % 2 ? name().substr(base.size() + 1) : std::string();
+        for (unsigned n = random() % 4; n > 0; --n) {
+            if (!text.empty()) text += '&';
+            text += pick(keys) + "=" + pick(values);
+        }
+        if (random() % 4 == 0 && !text.empty())
+            text[random() % text.size()] = static_cast<char>(random() % 256);
+        if (text.find("size") == std::string::npos) text += std::string(text.empty() ? "" : "&") + "size=9x7";
+        if (i % 2 == 0) {
+            std::replace(text.begin(), text.end(), '&', '\n');
+            const std::string file = std::string("r").append(base.substr(base.rfind('.')));
+            write_text(file, text);
+            text = file;
+        } else {
+            text = base + "?" + text;
+        }
+        auto input = ImageInput::open(text);
+        opened += input ? 1 : 0;
+        if (!input) {
+            const std::string error = OIIO::geterror();
+            ASSERT_NE(error, "") << text;
+            ASSERT_THAT(error, Not(HasSubstr("\n"))) << text;
+        } else if (input->spec().image_pixels() <= 4096) {
+            read_subimage(*input, 0);
+        }
+    }
+    EXPECT_GT(opened, 50);
+}
+
+}  // namespace
+}  // namespace anamorph
