@@ -1,16 +1,771 @@
 // SPDX-License-Identifier: Apache-2.0
+// Near/far with its proof.
+//
+// On a square cell, s and t in [-1, 1] across it, a line's weight is w = factor (a + r)^-b, and its
+// displacement D is affine. The K x K tensor interpolant at Chebyshev's nodes of w and w D replaces them for
+// lines that are far. For 0 < b <= 2 its error has a closed form, from three facts.
+//
+// (1) Interpolating f = 1 / q, q a polynomial without a root in [-1, 1], at the roots of T_K gives
+//     f - p = T_K l f, with l the polynomial of degree < deg q that equals 1 / T_K at the roots of q: the
+//     error is relative, |T_K| <= 1. For q = s + x, l = 1 / T_K(x). For q = |s - z|^2, l is the line through
+//     1 / T_K at z and its conjugate. The error of s f has z / T_K(z) in its place.
+// (2) Beside a line r is linear, and (x + s)^-b with 0 < b <= 1 is a mean of 1 / (s + x'), x' >= x, with
+//     positive weights (Stieltjes); for 1 < b <= 2 it is a mean of products of two. Beyond a line's end r^2
+//     is |s - z|^2 on each row, z complex, and (a + sqrt(r^2))^-b with 0 < b <= 2 is a Stieltjes function
+//     of r^2 (it maps the upper half plane into the lower one): a mean of 1 / (|s - z|^2 + y), y >= 0, whose
+//     poles lie farther off still. So the relative error is at most that of the nearest poles, where l and
+//     its slope are bounded with |T_K(z)| >= sinh(K m), m = log rho(z), rho the sum of the half axes of the
+//     ellipse with foci -1, 1 through z: both fall with rho.
+// (3) In two dimensions f - I_s I_t f = (f - I_s f) + I_s (f - I_t f), hence E <= E_s + Lebesgue_K E_t, and
+//     the same with s and t changed.
+//
+// simd/near_far.cpp evaluates these (BesideError, EndError). Lines that the cell touches, whose ends or whose
+// extension's ends lie level with it (there r has a kink in its second derivative), and all for b > 2, are
+// near.
+//
+// The displacement is S / W. With a sum off by dS and dW the quotient is off by (dS - D dW) / (W + dW). The
+// interpolant is linear in f, so dS - D dW is what it makes of the sum of w_i (D_i - D): each line counts
+// with |D_i - D| only. D is a mean of the D_i, which bounds |D - D*| for any reference D* (`spread`).
+//
+// Rounding: simd/near_far.h says what floats cost a line's sums. A relative error e_i of a near line's weight
+// moves the quotient by e_i w_i |D_i - D| / W, which stays small on the line itself: there D is D_i.
 #include "anamorph/approx/near_far.h"
 
+#include <algorithm>
+#include <array>
+#include <bit>
 #include <cmath>
 #include <cstdio>
+#include <limits>
+#include <mutex>
+#include <numbers>
+#include <unordered_map>
 
 #include "anamorph/error.h"
+#include "anamorph/simd/near_far.h"
 
 namespace anamorph {
+namespace {
+
+using simd::CellFrame;
+using simd::FieldLine;
+using simd::kComponents;
+using simd::kMaxDegree;
+using simd::kSums;
+using simd::LineTable;
+
+constexpr int kRegion = CellField::kRegion;
+constexpr double kHalfRegion = kRegion / 2;
+// Cells are not cut below this.
+constexpr int kFloor = 8;
+constexpr double kUlp = 0x1p-24;
+// The part of the tolerance that interpolation may use; the rest is for rounding.
+constexpr double kInterpolationShare = 0.9;
+// And the part of what is left of it that a cell uses up for lines that are far already from a cell to be
+// cut.
+constexpr double kParentShare = 0.25;
+constexpr std::size_t kCoefficients = kMaxDegree * kMaxDegree * 8;
+
+using Vector = std::array<double, kComponents>;
+
+/// The longer of a vector's two halves: the displacements of the shapes.
+double length_of(const Vector& v) {
+    return std::max(std::hypot(v[0], v[1]), std::hypot(v[2], v[3]));
+}
+
+/// Interpolation at the K roots of T_K.
+struct Chebyshev {
+    int k;
+    float nodes[kMaxDegree];
+    double lebesgue;
+    /// From values at the nodes to coefficients of powers.
+    double powers[kMaxDegree * kMaxDegree];
+    /// From coefficients in s to those in s' where s = (s' -+ 1) / 2: the left and the right half.
+    double halves[2][kMaxDegree * kMaxDegree];
+
+    explicit Chebyshev(int degree) : k(degree) {
+        double node[kMaxDegree];
+        lebesgue = 0;
+        for (int i = 0; i < k; ++i) {
+            const double angle = (2 * i + 1) * std::numbers::pi / (2 * k);
+            // What is evaluated are floats; the interpolant is exact for them.
+            nodes[i] = static_cast<float>(std::cos(angle));
+            node[i] = nodes[i];
+            lebesgue += 1 / std::tan(angle / 2) / k;
+        }
+        // With room for nodes that are rounded, and for the rounding of what is evaluated there.
+        lebesgue *= 1 + 1e-5;
+        // Lagrange's polynomials, multiplied out.
+        for (int i = 0; i < k; ++i) {
+            double c[kMaxDegree] = {1};
+            int degree_so_far = 0;
+            for (int j = 0; j < k; ++j) {
+                if (j == i) continue;
+                const double scale = 1 / (node[i] - node[j]);
+                for (int m = ++degree_so_far; m >= 0; --m)
+                    c[m] = scale * ((m > 0 ? c[m - 1] : 0) - (m < degree_so_far ? node[j] * c[m] : 0));
+            }
+            for (int m = 0; m < k; ++m) powers[m * k + i] = c[m];
+        }
+        for (int half = 0; half < 2; ++half) {
+            const double shift = half ? 0.5 : -0.5;
+            for (int n = 0; n < k; ++n) {
+                // (shift + s' / 2)^n
+                double binomial = 1;
+                for (int m = 0; m <= n; ++m) {
+                    halves[half][m * k + n] = binomial * std::pow(shift, n - m) * std::pow(0.5, m);
+                    binomial = binomial * (n - m) / (m + 1);
+                }
+                for (int m = n + 1; m < k; ++m) halves[half][m * k + n] = 0;
+            }
+        }
+    }
+};
+
+/// Coefficients each way that make a tolerance cheapest (measured).
+int degree_for(double tol) {
+    return tol >= 0.03 ? 4 : tol >= 2e-4 ? 6 : 8;
+}
+
+struct Cell {
+    Box box;
+    bool exact;
+    double bound;
+    CellFrame frame;
+    std::int32_t base[kComponents];
+    std::size_t coefficients, near;  ///< where they begin in the region's lists
+    int near_count;
+};
+
+struct Region {
+    std::vector<Cell> cells;
+    std::vector<float> coefficients;
+    std::vector<FieldLine> lines;  ///< those that are near some cell
+    std::vector<std::int32_t> near;
+    Vector origin;  ///< source point of the region's centre under the reference displacement
+};
+
+/// Lines and what is known of them over the cell at hand; one for each depth of the recursion.
+class Candidates {
+  public:
+    void reset(std::size_t count) {
+        m_count = count;
+        m_stride = (count + 15) / 16 * 16;
+        const std::size_t fields = LineTable::kFields + 2 * kComponents;
+        if (m_table.size() < fields * m_stride) m_table.resize(fields * m_stride);
+        if (m_bounds.size() < kBounds * m_stride) m_bounds.resize(kBounds * m_stride);
+        ids.resize(count);
+        // Lines of factor 0 fill up the last vector, far from everything.
+        for (std::size_t f = 0; f < fields; ++f)
+            for (std::size_t i = count; i < m_stride; ++i)
+                m_table[f * m_stride + i] = f == LineTable::kBefore   ? 1e6f
+                                            : f == LineTable::kAlongX ? 1.0f
+                                                                      : 0.0f;
+    }
+    std::size_t count() const { return m_count; }
+
+    void set(std::size_t i, std::int32_t id, const FieldLine& l, float slope) {
+        ids[i] = id;
+        const auto put = [&](std::size_t f, float v) { m_table[f * m_stride + i] = v; };
+        put(LineTable::kBefore, l.before);
+        put(LineTable::kBehind, l.behind);
+        put(LineTable::kBeside, l.beside);
+        put(LineTable::kAlongX, l.along_x);
+        put(LineTable::kAlongY, l.along_y);
+        put(LineTable::kFactor, l.factor);
+        put(LineTable::kSlope, slope);
+        for (std::size_t c = 0; c < kComponents; ++c) {
+            put(LineTable::kAt + c, l.at[c]);
+            put(LineTable::kFields + c, l.right[c]);
+            put(LineTable::kFields + kComponents + c, l.down[c]);
+        }
+    }
+    void copy(std::size_t i, const Candidates& from, std::size_t j) {
+        ids[i] = from.ids[j];
+        for (std::size_t f = 0; f < LineTable::kFields + 2 * kComponents; ++f)
+            m_table[f * m_stride + i] = from.m_table[f * from.m_stride + j];
+    }
+
+    LineTable table() const {
+        const auto stride = static_cast<std::ptrdiff_t>(m_stride);
+        return {m_table.data(), stride, m_table.data() + LineTable::kFields * stride,
+                m_table.data() + (LineTable::kFields + kComponents) * stride, static_cast<int>(m_count)};
+    }
+    float slope(std::size_t i) const { return m_table[LineTable::kSlope * m_stride + i]; }
+
+    simd::LineBounds bounds() {
+        const auto array = [&](std::size_t k) { return m_bounds.data() + k * m_stride; };
+        return {array(0), array(1), array(2), array(3), {array(4), array(5), array(6), array(7)}, {}, 0};
+    }
+    float* reach() { return m_bounds.data() + 8 * m_stride; }
+    float* error() { return m_bounds.data() + 9 * m_stride; }
+
+    std::vector<std::int32_t> ids;  ///< in the region's list of all lines
+    std::vector<std::uint8_t> far;
+
+  private:
+    static constexpr std::size_t kBounds = 10;
+    std::size_t m_count = 0, m_stride = 0;
+    std::vector<float> m_table, m_bounds;
+};
+
+/// Sums over lines that are far, for all of them what Candidates knows of one. Relative to `center`.
+struct FarSums {
+    double value = 0;        ///< of the weights' errors
+    double error = 0;        ///< of the weighted displacements' errors
+    double most = 0;         ///< of the greatest weights
+    double reach = 0;        ///< of those times the greatest displacement
+    double slope = 0;        ///< of those times the displacement's change per pixel
+    double least = 0;        ///< of the least weights
+    double farthest = 0;     ///< the greatest displacement
+    double steep = 0;        ///< of the weights' greatest changes per pixel
+    double steep_reach = 0;  ///< and of those times the greatest displacement
+    double noise = 0;        ///< of the weights' rounding
+    double noise_reach = 0;  ///< and of that times the greatest displacement
+    Vector center{};
+
+    void move(const Vector& to) {
+        Vector d;
+        for (std::size_t c = 0; c < kComponents; ++c) d[c] = to[c] - center[c];
+        const double shift = length_of(d);
+        error += shift * value;
+        reach += shift * most;
+        noise_reach += shift * noise;
+        steep_reach += shift * steep;
+        farthest += shift;
+        center = to;
+    }
+};
+
+/// A polynomial that a cell has from the cells above it.
+struct Inherited {
+    bool any = false;
+    FarSums sums;
+    alignas(64) double coefficients[kCoefficients] = {};
+};
+
+/// Plans one region.
+class Planner {
+  public:
+    Planner(const FeatureMap& map, const NearFarOptions& options, const Chebyshev& chebyshev,
+            const Box& picture, Region& region)
+        : m_map(map),
+          m_options(options),
+          m_chebyshev(chebyshev),
+          m_picture(picture),
+          m_region(region),
+          m_weights{static_cast<float>(map.weights().a), static_cast<float>(map.weights().b)} {}
+
+    void plan(int x0, int y0) {
+        m_x = x0 + kHalfRegion;
+        m_y = y0 + kHalfRegion;
+        if (!gather()) return exact(x0, y0, kRegion);
+        Candidates& all = level(0);
+        all.reset(m_lines.size());
+        for (std::size_t i = 0; i < m_lines.size(); ++i)
+            all.set(i, static_cast<std::int32_t>(i), m_lines[i], m_slopes[i]);
+        settle(x0, y0, kRegion, 0, Inherited{});
+        keep_near_lines();
+    }
+
+  private:
+    Candidates& level(std::size_t depth) {
+        if (m_levels.size() <= depth) m_levels.resize(depth + 1);
+        if (!m_levels[depth]) m_levels[depth] = std::make_unique<Candidates>();
+        return *m_levels[depth];
+    }
+
+    /// The lines as seen from the region's centre. False where floats cannot hold them.
+    bool gather() {
+        const std::vector<int>& shapes = m_options.shapes;
+        Vector reference{};
+        for (std::size_t n = 0; n < shapes.size(); ++n) {
+            const Point<double> at = m_map(m_x, m_y, shapes[n]), scale = m_map.scale(shapes[n]);
+            m_region.origin[2 * n] = at.x;
+            m_region.origin[2 * n + 1] = at.y;
+            reference[2 * n] = at.x - m_x * scale.x;
+            reference[2 * n + 1] = at.y - m_y * scale.y;
+        }
+        // Weights in units of what a line at this distance has, so that floats hold them.
+        double unit = HUGE_VAL;
+        m_lines.resize(m_map.size());
+        m_slopes.resize(m_map.size());
+        const double a = m_map.weights().a, b = m_map.weights().b;
+        for (std::size_t i = 0; i < m_map.size(); ++i) {
+            const FeatureMap::TargetLine& line = m_map.line(i);
+            const double dx = m_x - line.p.x, dy = m_y - line.p.y;
+            const double along = dx * line.along.x + dy * line.along.y;
+            const double beside = dy * line.along.x - dx * line.along.y;
+            unit = std::min(unit, a + kHalfRegion +
+                                      feature_detail::distance_to_line(-along, along - line.length, beside));
+            FieldLine& to = m_lines[i];
+            to.before = static_cast<float>(-along);
+            to.behind = static_cast<float>(along - line.length);
+            to.beside = static_cast<float>(beside);
+            to.along_x = static_cast<float>(line.along.x);
+            to.along_y = static_cast<float>(line.along.y);
+            double slope = 0;
+            for (std::size_t n = 0; n < 2; ++n) {
+                const int shape = n < shapes.size() ? shapes[n] : -1;
+                slope = std::max(slope, displace(i, shape, n, along, beside, reference, to));
+            }
+            m_slopes[i] = static_cast<float>(slope * (1 + 1e-5) + 1e-12);
+            if (!(slope < 1e9 && std::fabs(along) < 1e12)) return false;
+        }
+        const double scale = std::pow(unit, b);
+        for (std::size_t i = 0; i < m_map.size(); ++i) {
+            const double factor = m_map.line(i).factor * scale;
+            if (!(factor > 1e-25 && factor < 1e25)) return false;
+            m_lines[i].factor = static_cast<float>(factor);
+        }
+        return true;
+    }
+
+    /// One shape's displacement by a line; returns how much it changes over a pixel right and one down.
+    double displace(std::size_t i, int shape, std::size_t n, double along, double beside,
+                    const Vector& reference, FieldLine& to) const {
+        Point<double> at{0, 0}, right{0, 0}, down{0, 0};
+        if (shape >= 0) {
+            const FeatureMap::TargetLine& line = m_map.line(i);
+            const FeatureMap::Displacement& d = m_map.displacement(i, shape);
+            const Point<double> scale = m_map.scale(shape);
+            const auto set = [&](double origin, double along_rate, double beside_rate, double k, double ref,
+                                 double& value, double& per_x, double& per_y) {
+                value =
+                    feature_detail::displacement_by_line(origin, along_rate, along, beside_rate, beside) * k -
+                    ref;
+                per_x = (along_rate * line.along.x - beside_rate * line.along.y) * k;
+                per_y = (along_rate * line.along.y + beside_rate * line.along.x) * k;
+            };
+            set(d.origin.x, d.along_rate.x, d.beside_rate.x, scale.x, reference[2 * n], at.x, right.x,
+                down.x);
+            set(d.origin.y, d.along_rate.y, d.beside_rate.y, scale.y, reference[2 * n + 1], at.y, right.y,
+                down.y);
+        }
+        to.at[2 * n] = static_cast<float>(at.x);
+        to.at[2 * n + 1] = static_cast<float>(at.y);
+        to.right[2 * n] = static_cast<float>(right.x);
+        to.right[2 * n + 1] = static_cast<float>(right.y);
+        to.down[2 * n] = static_cast<float>(down.x);
+        to.down[2 * n + 1] = static_cast<float>(down.y);
+        return std::hypot(right.x, right.y) + std::hypot(down.x, down.y);
+    }
+
+    // --- a cell ------------------------------------------------------------------------------------------
+
+    /// What is known of a cell beside its lines' own bounds.
+    struct Known {
+        CellFrame frame;
+        Vector center;    ///< displacement at the centre
+        double least;     ///< sum of weights, at least
+        double spread;    ///< the mean of |D_i - center|, at most
+        double farthest;  ///< the greatest of them
+        double rounding;  ///< of polynomials, about
+        bool finite;
+    };
+
+    void settle(int x0, int y0, int size, std::size_t depth, const Inherited& given) {
+        const Box box = intersection({x0, y0, x0 + size, y0 + size}, m_picture);
+        if (box.empty()) return;
+        Candidates& lines = level(depth);
+        Inherited inherited = given;
+        simd::LineBounds bounds = lines.bounds();
+        const Known known = look(x0, y0, size, lines, bounds, inherited.sums);
+        if (!known.finite) return divide(x0, y0, size, depth, lines, bounds, known, inherited);
+
+        if (size <= Block::kMaxSide) {
+            const double budget =
+                kInterpolationShare * m_options.tol - known.rounding - quotient_error(inherited.sums, known);
+            const std::size_t near = select(lines, bounds, known, budget);
+            if (near <= most_near(size) || size <= kFloor) {
+                FarSums sums = inherited.sums;
+                add_far(lines, bounds, known, sums);
+                if (emit(box, lines, bounds, known, sums, inherited)) return;
+                if (base_rounding(known, near) > m_options.tol) return exact(x0, y0, size);
+            }
+        }
+        divide(x0, y0, size, depth, lines, bounds, known, inherited);
+    }
+
+    Known look(int x0, int y0, int size, Candidates& lines, simd::LineBounds& bounds, FarSums& sums) const {
+        Known known;
+        known.frame = {static_cast<float>(x0 + 0.5 * size - m_x), static_cast<float>(y0 + 0.5 * size - m_y),
+                       static_cast<float>(0.5 * size)};
+        simd::bound_lines(lines.table(), known.frame, m_weights, m_chebyshev.k,
+                          static_cast<float>(m_chebyshev.lebesgue), bounds);
+        // Any displacement serves as a reference; the one at the centre is best.
+        const double* constant = m_constant;
+        float center[kComponents];
+        for (std::size_t c = 0; c < kComponents; ++c) {
+            known.center[c] = (bounds.center[c + 1] + constant[c + 1]) / (bounds.center[0] + constant[0]);
+            center[c] = static_cast<float>(known.center[c]);
+            known.center[c] = static_cast<double>(center[c]);
+        }
+        sums.move(known.center);
+        known.least = (bounds.least + sums.least) * (1 - 1e-4);
+        known.finite = known.least > 0 && known.least < HUGE_VAL && length_of(known.center) < HUGE_VAL;
+        simd::bound_displacements(lines.table(), known.frame, center, bounds, lines.reach(), lines.error());
+
+        // D is a mean of the D_i: no farther off than the farthest, and lines of little weight count by that.
+        const float *most = bounds.most, *nearest = bounds.nearest, *reach = lines.reach();
+        const double much = 0.25 * known.least, b = m_map.weights().b;
+        double light = sums.reach, heavy = 0, steep = sums.steep_reach, slope = sums.slope;
+        double noise = sums.noise, noise_reach = sums.noise_reach, all = sums.most, all_reach = sums.reach;
+        known.farthest = sums.farthest;
+        for (std::size_t i = 0; i < lines.count(); ++i) {
+            const double r = static_cast<double>(reach[i]), m = static_cast<double>(most[i]);
+            known.farthest = std::max(known.farthest, r);
+            if (m <= much)
+                light += m * r;
+            else
+                heavy = std::max(heavy, r);
+            const double near = static_cast<double>(nearest[i]);
+            steep += b * m / near * r;
+            slope += m * static_cast<double>(lines.slope(i));
+            // Lines that may become far.
+            if (!(m <= much && bounds.value[i] < HUGE_VALF)) continue;
+            const double e = m * weight_rounding(near);
+            noise += e;
+            noise_reach += e * r;
+            all += m;
+            all_reach += m * r;
+        }
+        // And D - center is the mean of (w_i - w_i at the centre) (D_i - center) and of w_i at the centre
+        // times the change of D_i, since the sum of w_i (D_i - center) is 0 there.
+        const double half = static_cast<double>(known.frame.half);
+        const double change = half * (std::numbers::sqrt2 * steep + slope) / known.least;
+        known.spread = std::min({light / known.least + heavy, known.farthest, change}) * (1 + 1e-3);
+        known.rounding = m_chebyshev.lebesgue * m_chebyshev.lebesgue *
+                         (noise_reach + known.spread * noise + 16 * kUlp * (all_reach + known.spread * all)) /
+                         known.least;
+        return known;
+    }
+
+    static double quotient_error(const FarSums& sums, const Known& known) {
+        return (sums.error + known.spread * sums.value) / known.least;
+    }
+
+    /// Marks lines far, those of least error first, as long as their errors fit the budget. Returns how many
+    /// stay near.
+    static std::size_t select(Candidates& lines, const simd::LineBounds& bounds, const Known& known,
+                              double budget) {
+        const std::size_t count = lines.count();
+        lines.far.assign(count, 0);
+        if (!(budget > 0)) return count;
+        const auto unit = static_cast<float>(1 / (known.least * budget)),
+                   spread = static_cast<float>(known.spread);
+        const float *error = lines.error(), *value = bounds.value;
+        // Parts of the budget, by their binary exponents.
+        constexpr int kBins = 40;
+        const auto part = [&](std::size_t i) { return (error[i] + spread * value[i]) * unit; };
+        const auto bin = [](float p) {
+            return std::clamp(static_cast<int>(std::bit_cast<std::uint32_t>(p) >> 23) - (127 - kBins + 2), 0,
+                              kBins - 1);
+        };
+        double sums[kBins] = {};
+        for (std::size_t i = 0; i < count; ++i) {
+            const float p = part(i);
+            sums[bin(p)] += static_cast<double>(p);
+        }
+        double used = 0;
+        int last = 0;
+        for (; last < kBins && used + sums[last] <= 1; ++last) used += sums[last];
+        std::size_t near = 0;
+        for (std::size_t i = 0; i < count; ++i) {
+            const float p = part(i);
+            const int b = bin(p);
+            if (b < last)
+                lines.far[i] = 1;
+            else if (b == last && used + static_cast<double>(p) <= 1) {
+                used += static_cast<double>(p);
+                lines.far[i] = 1;
+            } else
+                ++near;
+        }
+        return near;
+    }
+
+    void add_far(Candidates& lines, const simd::LineBounds& bounds, const Known& known, FarSums& sums) const {
+        const double across = 2 * std::numbers::sqrt2 * static_cast<double>(known.frame.half) + 2e-3;
+        const double b = m_map.weights().b;
+        for (std::size_t i = 0; i < lines.count(); ++i) {
+            if (!lines.far[i]) continue;
+            const double most = static_cast<double>(bounds.most[i]),
+                         reach = static_cast<double>(lines.reach()[i]);
+            sums.value += static_cast<double>(bounds.value[i]);
+            sums.error += static_cast<double>(lines.error()[i]);
+            sums.most += most;
+            sums.reach += most * reach;
+            sums.slope += most * static_cast<double>(lines.slope(i));
+            sums.farthest = std::max(sums.farthest, reach);
+            const double nearest = static_cast<double>(bounds.nearest[i]);
+            const double noise = most * weight_rounding(nearest);
+            sums.steep += m_map.weights().b * most / nearest;
+            sums.steep_reach += m_map.weights().b * most / nearest * reach;
+            sums.noise += noise;
+            sums.noise_reach += noise * reach;
+            // From the nearest to the farthest point of the cell.
+            const double ratio = nearest / (nearest + across + 4e-6 * (nearest + across));
+            sums.least += most * (b == 2 ? ratio * ratio : b == 1 ? ratio : std::pow(ratio, b)) * (1 - 1e-4);
+        }
+    }
+
+    /// How many near lines a cell of this size may have before it is cut (measured).
+    static std::size_t most_near(int size) {
+        return size >= 64 ? 3 : size >= 32 ? 10 : size >= 16 ? 20 : std::numeric_limits<std::size_t>::max();
+    }
+
+    void divide(int x0, int y0, int size, std::size_t depth, Candidates& lines, simd::LineBounds& bounds,
+                const Known& known, const Inherited& inherited) {
+        if (size <= kFloor) return exact(x0, y0, size);
+        // Lines that are far from the whole cell go into its polynomial.
+        Inherited next = inherited;
+        std::size_t near = lines.count();
+        if (known.finite) {
+            const double budget = kParentShare * (kInterpolationShare * m_options.tol - known.rounding -
+                                                  quotient_error(inherited.sums, known));
+            near = select(lines, bounds, known, budget);
+        }
+        Candidates& rest = level(depth + 1);
+        rest.reset(near);
+        if (near < lines.count()) {
+            add_far(lines, bounds, known, next.sums);
+            add_polynomial(lines, known.frame, next);
+            std::size_t to = 0;
+            for (std::size_t i = 0; i < lines.count(); ++i)
+                if (!lines.far[i]) rest.copy(to++, lines, i);
+        } else
+            for (std::size_t i = 0; i < lines.count(); ++i) rest.copy(i, lines, i);
+
+        const int half = size / 2;
+        for (int child = 0; child < 4; ++child) {
+            Inherited part;
+            part.any = next.any;
+            part.sums = next.sums;
+            const int right = child & 1, below = child >> 1;
+            if (next.any)
+                simd::transform(m_chebyshev.halves[below], m_chebyshev.halves[right], m_chebyshev.k,
+                                next.coefficients, part.coefficients);
+            std::copy_n(part.coefficients, kSums, m_constant);
+            settle(x0 + right * half, y0 + below * half, half, depth + 1, part);
+        }
+    }
+
+    /// Adds the interpolant of the far lines' sums over a cell.
+    void add_polynomial(const Candidates& lines, const CellFrame& frame, Inherited& to) {
+        m_far.clear();
+        for (std::size_t i = 0; i < lines.count(); ++i)
+            if (lines.far[i]) m_far.push_back(lines.ids[i]);
+        if (m_far.empty()) return;
+        const int k = m_chebyshev.k;
+        alignas(64) double sums[kCoefficients], powers[kCoefficients];
+        std::fill_n(sums, static_cast<std::size_t>(k * k * 8), 0.0);
+        simd::node_sums(m_lines.data(), m_far.data(), static_cast<int>(m_far.size()), frame, m_weights, k,
+                        m_chebyshev.nodes, sums);
+        simd::transform(m_chebyshev.powers, m_chebyshev.powers, k, sums, powers);
+        for (int i = 0; i < k * k; ++i)
+            for (int c = 0; c < kSums; ++c) to.coefficients[i * 8 + c] += powers[i * 8 + c];
+        to.any = true;
+    }
+
+    // --- rounding ----------------------------------------------------------------------------------------
+
+    /// Relative rounding of a weight at a + dist >= nearest.
+    double weight_rounding(double nearest) const {
+        const double b = m_map.weights().b;
+        const bool fast = b == 0 || b == 0.5 || b == 1 || b == 2;
+        const double log = fast ? 0 : 1 + std::max(16.0, std::fabs(std::log(nearest)));
+        return kUlp * (b * (5 + 11 * kHalfRegion / nearest) + simd::kWeightRounding +
+                       (fast ? 0 : simd::kPowerRounding * b * log));
+    }
+
+    double scale() const {
+        double most = 0;
+        for (const int k : m_options.shapes) most = std::max({most, m_map.scale(k).x, m_map.scale(k).y});
+        return most;
+    }
+
+    /// Of adding up, dividing and placing: what no cutting of cells reduces.
+    double base_rounding(const Known& known, std::size_t near) const {
+        const double value = known.spread + length_of(known.center);
+        return kUlp * (2 * (static_cast<double>(near) + m_chebyshev.k + 12) * value +
+                       6 * (130 * scale() + 2 * value));
+    }
+
+    double far_rounding(const Known& known, const FarSums& sums, const float* coefficients) const {
+        if (sums.most == 0) return 0;
+        const double offset = length_of(known.center);
+        const double reach = sums.reach + offset * sums.most;
+        // Values at the nodes: weights, their sums over runs of lines, displacements.
+        const double noise = sums.noise_reach + known.spread * sums.noise +
+                             12 * kUlp * (reach + (known.spread + offset) * sums.most) +
+                             kUlp * (4 * reach + 10 * kHalfRegion * sums.slope);
+        // Horner's rule, and the coefficients themselves.
+        double size[kSums] = {};
+        const int k = m_chebyshev.k;
+        for (int i = 0; i < k * k; ++i)
+            for (int c = 0; c < kSums; ++c)
+                size[c] += static_cast<double>(std::fabs(coefficients[i * 8 + c]));
+        const double moved = std::max(size[1] + size[2], size[3] + size[4]);
+        const double horner = kUlp * (2 * k + 2) * (moved + (known.spread + offset) * size[0]);
+        return (m_chebyshev.lebesgue * m_chebyshev.lebesgue * noise + horner) / known.least;
+    }
+
+    /// Of the near lines' weights and displacements.
+    double near_rounding(Candidates& lines, const simd::LineBounds& bounds, const Known& known,
+                         const FarSums& far) const {
+        const double b = m_map.weights().b, offset = length_of(known.center);
+        double total = 0, slope = 0, worst = 0;
+        double others = far.most;
+        for (std::size_t i = 0; i < lines.count(); ++i)
+            if (!lines.far[i]) others += static_cast<double>(bounds.most[i]);
+        for (std::size_t i = 0; i < lines.count(); ++i) {
+            if (lines.far[i]) continue;
+            slope = std::max(slope, static_cast<double>(lines.slope(i)));
+            const double reach = static_cast<double>(lines.reach()[i]) + known.spread;
+            const double most = static_cast<double>(bounds.most[i]);
+            double nearest = static_cast<double>(bounds.nearest[i]);
+            // The weight is most (nearest / d)^b at distance d. Where it outweighs the others by `ratio` or
+            // more, the displacement is this line's, to that degree: with b >= 1 the worst is where it does.
+            const double rest = std::max(others - most, 0.0) + 1e-6 * most;
+            const double ratio = most * reach / (rest * 2 * (known.farthest + known.spread) + 1e-300);
+            double share = 1;
+            if (b >= 1 && ratio > 1)
+                nearest *= b == 2 ? std::sqrt(ratio) : b == 1 ? ratio : std::pow(ratio, 1 / b);
+            else if (ratio > 1)
+                share = 1 / ratio;
+            const double relative = weight_rounding(static_cast<double>(bounds.nearest[i]));
+            worst = std::max(worst, relative);
+            total += std::min(weight_rounding(nearest), relative) * share * reach;
+        }
+        if (!(worst < 0.25)) return HUGE_VAL;
+        const double displacements = kUlp * (4 * (known.spread + offset) + 10 * kHalfRegion * slope);
+        return total / (1 - worst) + displacements;
+    }
+
+    // --- results -----------------------------------------------------------------------------------------
+
+    /// Keeps the cell if its bound holds the tolerance.
+    bool emit(const Box& box, Candidates& lines, const simd::LineBounds& bounds, const Known& known,
+              const FarSums& sums, const Inherited& given) {
+        const double off = sums.value / known.least;
+        if (!(off < 0.05)) return false;
+        const double interpolation = quotient_error(sums, known);
+        std::size_t near = 0;
+        for (std::size_t i = 0; i < lines.count(); ++i) near += !lines.far[i];
+        const double before = base_rounding(known, near) + near_rounding(lines, bounds, known, sums);
+        if (!(interpolation + before <= m_options.tol)) return false;
+
+        Inherited inherited = given;
+        add_polynomial(lines, known.frame, inherited);
+        float coefficients[kCoefficients];
+        const int k = m_chebyshev.k;
+        for (int i = 0; i < k * k * 8; ++i)
+            coefficients[i] = i % 8 < kSums ? static_cast<float>(inherited.coefficients[i]) : 0.0f;
+        const double bound =
+            (interpolation + before + far_rounding(known, sums, coefficients)) / (1 - off) * (1 + 1e-3);
+        if (!(bound <= m_options.tol)) return false;
+
+        Cell cell{box, false, bound, known.frame, {}, m_region.coefficients.size(), m_region.near.size(), 0};
+        const std::vector<int>& shapes = m_options.shapes;
+        for (std::size_t n = 0; n < shapes.size(); ++n) {
+            const Point<double> s = m_map.scale(shapes[n]);
+            const double x =
+                m_region.origin[2 * n] + s.x * static_cast<double>(known.frame.x) + known.center[2 * n];
+            const double y = m_region.origin[2 * n + 1] + s.y * static_cast<double>(known.frame.y) +
+                             known.center[2 * n + 1];
+            if (!(std::fabs(x) < 1 << 30 && std::fabs(y) < 1 << 30)) return false;
+            cell.base[2 * n] = static_cast<std::int32_t>(std::floor(x));
+            cell.base[2 * n + 1] = static_cast<std::int32_t>(std::floor(y));
+        }
+        if (inherited.any)
+            m_region.coefficients.insert(m_region.coefficients.end(), coefficients,
+                                         coefficients + static_cast<std::ptrdiff_t>(k * k * 8));
+        else
+            cell.coefficients = std::numeric_limits<std::size_t>::max();
+        for (std::size_t i = 0; i < lines.count(); ++i)
+            if (!lines.far[i]) m_region.near.push_back(lines.ids[i]);
+        cell.near_count = static_cast<int>(m_region.near.size() - cell.near);
+        m_region.cells.push_back(cell);
+        return true;
+    }
+
+    /// Exact blocks on a square.
+    void exact(int x0, int y0, int size) {
+        for (int y = y0; y < y0 + size; y += Block::kMaxSide)
+            for (int x = x0; x < x0 + size; x += Block::kMaxSide) {
+                const int side = std::min(size, Block::kMaxSide);
+                const Box box = intersection({x, y, x + side, y + side}, m_picture);
+                if (!box.empty()) m_region.cells.push_back({box, true, 0, {}, {}, 0, 0, 0});
+            }
+    }
+
+    /// Only the lines that are near some cell are kept.
+    void keep_near_lines() {
+        std::vector<std::int32_t> place(m_lines.size(), -1);
+        for (std::int32_t& id : m_region.near) {
+            std::int32_t& at = place[static_cast<std::size_t>(id)];
+            if (at < 0) {
+                at = static_cast<std::int32_t>(m_region.lines.size());
+                m_region.lines.push_back(m_lines[static_cast<std::size_t>(id)]);
+            }
+            id = at;
+        }
+    }
+
+    const FeatureMap& m_map;
+    const NearFarOptions& m_options;
+    const Chebyshev& m_chebyshev;
+    const Box m_picture;
+    Region& m_region;
+    simd::WeightParameters m_weights;
+    double m_x = 0, m_y = 0;        ///< the region's centre
+    double m_constant[kSums] = {};  ///< the inherited sums at its centre
+    std::vector<FieldLine> m_lines;
+    std::vector<float> m_slopes;
+    std::vector<std::int32_t> m_far;
+    std::vector<std::unique_ptr<Candidates>> m_levels;
+};
+
+}  // namespace
 
 struct NearFar::State {
+    static constexpr std::size_t kMost = 4096;
+
+    struct Planned {
+        std::once_flag once;
+        Region region;
+    };
+
     const FeatureMap& map;
     NearFarOptions options;
+    Chebyshev chebyshev;
+    std::mutex mutex;
+    std::unordered_map<std::int64_t, std::shared_ptr<Planned>> regions;
+
+    State(const FeatureMap& feature_map, const NearFarOptions& near_far)
+        : map(feature_map), options(near_far), chebyshev(degree_for(near_far.tol)) {}
+
+    /// The plan of a region: made when first asked for, kept for a while.
+    std::shared_ptr<const Region> region(const Box& box) {
+        const std::int64_t key = std::int64_t{box.y0 / kRegion} << 32 | box.x0 / kRegion;
+        std::shared_ptr<Planned> found;
+        {
+            const std::lock_guard lock(mutex);
+            if (regions.size() >= kMost) regions.clear();
+            std::shared_ptr<Planned>& entry = regions[key];
+            if (!entry) entry = std::make_shared<Planned>();
+            found = entry;
+        }
+        std::call_once(found->once, [&] {
+            const Box picture{0, 0, map.target().width, map.target().height};
+            Planner planner(map, options, chebyshev, picture, found->region);
+            planner.plan(box.x0, box.y0);
+        });
+        return {found, &found->region};
+    }
+
+    bool exact() const { return options.tol == 0; }
 };
 
 NearFar::NearFar(const FeatureMap& map, const NearFarOptions& options) {
@@ -19,22 +774,92 @@ NearFar::NearFar(const FeatureMap& map, const NearFarOptions& options) {
         std::snprintf(text, sizeof text, "%g", options.tol);
         throw Error("tol", text, "allowed is 0 (exact) or a finite number of source pixels above it");
     }
-    m_state = std::make_unique<State>(State{map, options});
+    m_state = std::make_unique<State>(map, options);
 }
 NearFar::~NearFar() = default;
 
-void NearFar::each_block(const Box& region, const Box& part, const Visit& visit) const {
-    Block block;
-    for (int y = region.y0; y < region.y1; y += Block::kMaxSide)
-        for (int x = region.x0; x < region.x1; x += Block::kMaxSide) {
-            block.box = intersection({x, y, x + Block::kMaxSide, y + Block::kMaxSide}, region);
-            if (intersection(block.box, part).empty()) continue;
-            for (const int k : m_state->options.shapes) visit(k, block, {});
+namespace {
+
+/// The points of all pixels of a cell, for both shapes.
+void cell_points(const FeatureMap& map, const std::vector<int>& shapes, int degree, const Region& region,
+                 const Cell& cell, float* const* to, std::ptrdiff_t stride) {
+    simd::FieldCell field{cell.frame,
+                          0,
+                          nullptr,
+                          region.lines.data(),
+                          region.near.data() + cell.near,
+                          cell.near_count,
+                          {static_cast<float>(map.weights().a), static_cast<float>(map.weights().b)}};
+    if (cell.coefficients != std::numeric_limits<std::size_t>::max()) {
+        field.k = degree;
+        field.coefficients = region.coefficients.data() + cell.coefficients;
+    }
+    // Regions stand on multiples of their size.
+    const auto from_center = [](int pixel) {
+        return static_cast<float>(pixel % kRegion + 0.5 - kHalfRegion);
+    };
+    simd::FieldOutput out{};
+    out.x = from_center(cell.box.x0);
+    out.y = from_center(cell.box.y0);
+    out.width = cell.box.width();
+    out.height = cell.box.height();
+    out.components = 2 * static_cast<int>(shapes.size());
+    out.stride = stride;
+    for (std::size_t n = 0; n < shapes.size(); ++n) {
+        const Point<double> scale = map.scale(shapes[n]);
+        for (std::size_t axis = 0; axis < 2; ++axis) {
+            const std::size_t c = 2 * n + axis;
+            out.slope[c] = static_cast<float>(axis ? scale.y : scale.x);
+            out.offset[c] = static_cast<float>(region.origin[c] - cell.base[c]);
+            out.to[c] = to[c];
         }
+    }
+    simd::field_points(field, out);
+}
+
+}  // namespace
+
+void NearFar::each_block(const Box& region, const Box& part, const Visit& visit) const {
+    const std::vector<int>& shapes = m_state->options.shapes;
+    Block block;
+    if (m_state->exact()) {
+        for (int y = region.y0; y < region.y1; y += Block::kMaxSide)
+            for (int x = region.x0; x < region.x1; x += Block::kMaxSide) {
+                block.box = intersection({x, y, x + Block::kMaxSide, y + Block::kMaxSide}, region);
+                if (intersection(block.box, part).empty()) continue;
+                for (const int k : shapes) visit(k, block, {});
+            }
+        return;
+    }
+    const std::shared_ptr<const Region> planned = m_state->region(region);
+    constexpr std::ptrdiff_t kStride = Block::kMaxSide + 16;
+    constexpr std::ptrdiff_t kPlane = Block::kMaxSide * kStride;
+    std::vector<float> points(kComponents * kPlane);
+    float* to[kComponents];
+    for (std::ptrdiff_t c = 0; c < kComponents; ++c) to[c] = points.data() + c * kPlane;
+    for (const Cell& cell : planned->cells) {
+        if (intersection(cell.box, part).empty()) continue;
+        block.box = cell.box;
+        block.kind = cell.exact ? Block::Kind::exact : Block::Kind::computed;
+        block.bound = cell.bound;
+        if (!cell.exact) cell_points(m_state->map, shapes, m_state->chebyshev.k, *planned, cell, to, kStride);
+        for (std::size_t n = 0; n < shapes.size(); ++n) {
+            block.base_x = cell.base[2 * n];
+            block.base_y = cell.base[2 * n + 1];
+            visit(shapes[n], block,
+                  cell.exact ? CellPoints{} : CellPoints{to[2 * n], to[2 * n + 1], kStride});
+        }
+    }
 }
 
 CellField::Tally NearFar::tally(const Box& region) const {
-    return {0, std::int64_t{region.width()} * region.height()};
+    if (m_state->exact()) return {0, std::int64_t{region.width()} * region.height()};
+    Tally tally;
+    for (const Cell& cell : m_state->region(region)->cells) {
+        tally.bound = std::max(tally.bound, cell.bound);
+        if (cell.exact) tally.exact_pixels += std::int64_t{cell.box.width()} * cell.box.height();
+    }
+    return tally;
 }
 
 }  // namespace anamorph

@@ -1,0 +1,231 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "anamorph/approx/near_far.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "anamorph/error.h"
+#include "anamorph/simd/block_sampler.h"
+#include "feature_families.h"
+
+namespace anamorph {
+namespace {
+
+/// The worst pixel of a plan, and what it promised.
+struct Outcome {
+    double error = 0, bound = 0, over = 0;  ///< over: the most by which an error exceeds its block's bound
+    double exact_fraction = 0;
+    std::int64_t pixels = 0;
+};
+
+Outcome measure(const FeatureMap& map, double tol) {
+    const NearFar field(map, {tol, {0, 1}});
+    const FeatureMap::Size size = map.target();
+    Outcome out;
+    for (int y = 0; y < size.height; y += CellField::kRegion)
+        for (int x = 0; x < size.width; x += CellField::kRegion) {
+            const Box region = intersection({x, y, x + CellField::kRegion, y + CellField::kRegion},
+                                            {0, 0, size.width, size.height});
+            field.each_block(region, region, [&](int k, const Block& block, const CellPoints& points) {
+                out.bound = std::max(out.bound, block.bound);
+                out.pixels += std::int64_t{block.box.width()} * block.box.height();
+                if (!points.x) {
+                    out.exact_fraction += double(block.box.width()) * block.box.height();
+                    return;
+                }
+                for (int j = block.box.y0; j < block.box.y1; ++j)
+                    for (int i = block.box.x0; i < block.box.x1; ++i) {
+                        const Point<double> truth = map(i + 0.5, j + 0.5, k);
+                        const std::ptrdiff_t at = (j - block.box.y0) * points.row_stride + i - block.box.x0;
+                        const double error = std::hypot(block.base_x + double(points.x[at]) - truth.x,
+                                                        block.base_y + double(points.y[at]) - truth.y);
+                        // A NaN counts as the worst there is.
+                        out.error = std::isnan(error) ? HUGE_VAL : std::max(out.error, error);
+                        out.over = std::isnan(error) ? HUGE_VAL : std::max(out.over, error - block.bound);
+                    }
+            });
+        }
+    out.exact_fraction /= static_cast<double>(out.pixels);
+    return out;
+}
+
+FeatureMap map_of(const Features& features, FeatureMap::Size size, const LineWeights& weights,
+                  double t = 0.5) {
+    return FeatureMap(features, {size, size}, size, {1 - t, t}, weights);
+}
+
+void expect_holds(const FeatureMap& map, double tol) {
+    const Outcome o = measure(map, tol);
+    EXPECT_LE(o.over, 0) << "a pixel is farther off than its bound; error " << o.error << " bound "
+                         << o.bound;
+    EXPECT_LE(o.bound, tol);
+    EXPECT_EQ(o.pixels, std::int64_t{2} * map.target().width * map.target().height);
+}
+
+constexpr double kTols[] = {1, 0.25, 0.1, 1.0 / 16, 1.0 / 64, 0.005};
+
+TEST(NearFar, NoPixelIsOverItsBoundAndNoBoundOverTheTolerance) {
+    constexpr unsigned kSeed = 5;
+    SCOPED_TRACE(testing::Message() << "seed " << kSeed);
+    for (const std::string& family : families::names())
+        for (const LineWeights& w :
+             {LineWeights{2, 1, 0.5}, LineWeights{1, 2, 0.5}, LineWeights{0.1, 0.5, 1},
+              LineWeights{0.01, 2, 0}, LineWeights{0.01, 1, 0.5}, LineWeights{1, 1.5, 0.5}}) {
+            SCOPED_TRACE(testing::Message() << family << " a " << w.a << " b " << w.b << " p " << w.p);
+            const auto features = families::Maker(220, kSeed).make(family, 32);
+            const FeatureMap map = map_of(*features, {220, 150}, w, 0.3);
+            for (const double tol : kTols) {
+                SCOPED_TRACE(testing::Message() << "tol " << tol);
+                expect_holds(map, tol);
+            }
+        }
+}
+
+TEST(NearFar, ManySeedsHold) {
+    for (unsigned seed = 100; seed < 112; ++seed)
+        for (const std::string& family : families::names()) {
+            SCOPED_TRACE(testing::Message() << "seed " << seed << " " << family);
+            std::mt19937 random(seed);
+            std::uniform_real_distribution<double> unit(0, 1);
+            const auto features =
+                families::Maker(160, seed).make(family, 3 + static_cast<int>(60 * unit(random)));
+            const LineWeights w{std::pow(10, 2 * unit(random) - 2), 2 * unit(random), unit(random)};
+            const FeatureMap map = map_of(*features, {131, 97}, w, unit(random));
+            expect_holds(map, std::pow(10, -3 * unit(random)));
+        }
+}
+
+TEST(NearFar, MostPixelsAreNotComputedInDouble) {
+    const auto features = families::Maker(300, 3).make("random", 32);
+    const Outcome o = measure(map_of(*features, {300, 300}, {1, 2, 0.5}), 1.0 / 16);
+    EXPECT_EQ(o.exact_fraction, 0);
+}
+
+TEST(NearFar, CoincidentAndCrossingLinesHold) {
+    Features features;
+    // One line three times, to three places; its reverse; and a star through one point.
+    for (const double d : {10.0, -7.0, 3.0})
+        features.add_line({{{20, 60}, {100, 60}}, {{20 + d, 60}, {100, 60 - d}}});
+    features.add_line({{{100, 60}, {20, 60}}, {{110, 50}, {15, 61}}});
+    for (int i = 0; i < 8; ++i) {
+        const double c = 40 * std::cos(0.4 * i), s = 40 * std::sin(0.4 * i);
+        features.add_line({{{64 - c, 80 - s}, {64 + c, 80 + s}}, {{60 - s, 84 - c}, {68 + s, 76 + c}}});
+    }
+    for (const double a : {1.0, 0.01, 0.0})
+        for (const double b : {0.5, 1.0, 2.0})
+            for (const double tol : kTols) {
+                SCOPED_TRACE(testing::Message() << "a " << a << " b " << b << " tol " << tol);
+                expect_holds(map_of(features, {140, 130}, {a, b, 0.5}), tol);
+            }
+}
+
+TEST(NearFar, PixelsExactlyOnALineWithoutAHold) {
+    Features features;
+    features.add_line({{{10.5, 30.5}, {90.5, 30.5}}, {{10.5, 44.5}, {90.5, 38.5}}});
+    features.add_line({{{50.5, 10.5}, {50.5, 70.5}}, {{54.5, 10.5}, {59.5, 70.5}}});
+    features.add_line({{{3.5, 3.5}, {80.5, 80.5}}, {{3.5, 8.5}, {80.5, 70.5}}});
+    for (const double b : {0.5, 1.0, 2.0, 8.0})
+        for (const double t : {0.0, 0.5}) expect_holds(map_of(features, {100, 90}, {0, b, 0.5}, t), 1.0 / 64);
+}
+
+TEST(NearFar, AllExponentsHold) {
+    const auto features = families::Maker(120, 8).make("random", 20);
+    for (const double b : {0.0, 0.1, 1.7, 2.3, 8.0, 16.0})
+        for (const double tol : {1.0, 1.0 / 64}) {
+            SCOPED_TRACE(testing::Message() << "b " << b << " tol " << tol);
+            expect_holds(map_of(*features, {120, 90}, {0.5, b, 0.5}), tol);
+        }
+}
+
+TEST(NearFar, LinesAMillionPixelsAwayHold) {
+    Features features;
+    features.add_line({{{20, 20}, {80, 30}}, {{25, 22}, {78, 40}}});
+    features.add_line({{{1e6, 2e5}, {1.1e6, 3e5}}, {{1e6 + 40, 2e5}, {1.1e6, 3e5 + 90}}});
+    features.add_line({{{-1e6, 50}, {1e6, 51}}, {{-1e6, 60}, {1e6, 40}}});
+    for (const double b : {0.5, 1.0, 2.0})
+        for (const double tol : kTols) expect_holds(map_of(features, {150, 140}, {1, b, 0.5}), tol);
+}
+
+TEST(NearFar, OddSymmetricMapsHold) {
+    // Turned about the middle of the picture, and of its cells: every test at a midpoint sees the identity.
+    for (const double middle : {64.0, 128.0, 100.0}) {
+        Features features;
+        for (int i = 0; i < 6; ++i) {
+            const double x = 9.0 * i + 12, y = 5.0 * i + 3, d = 20.0 - 3 * i;
+            features.add_line({{{middle + x, middle + y}, {middle + x + 20, middle - y}},
+                               {{middle + x + d, middle + y}, {middle + x + 20, middle - y + d}}});
+            features.add_line({{{middle - x, middle - y}, {middle - x - 20, middle + y}},
+                               {{middle - x - d, middle - y}, {middle - x - 20, middle + y - d}}});
+        }
+        for (const double tol : kTols) expect_holds(map_of(features, {200, 200}, {1, 1, 0.5}, 0), tol);
+    }
+}
+
+TEST(NearFar, ThousandsOfLinesHold) {
+    const auto features = families::Maker(400, 77).make("short", 3000);
+    const FeatureMap map = map_of(*features, {150, 70}, {1, 2, 0.5});
+    for (const double tol : {1.0, 1.0 / 16}) expect_holds(map, tol);
+}
+
+TEST(NearFar, AHundredThousandLinesHold) {
+    const auto features = families::Maker(4000, 78).make("random", 100000);
+    const FeatureMap map = map_of(*features, {2000, 2000}, {1, 2, 0.5});
+    const NearFar field(map, {1.0 / 16, {0, 1}});
+    // One region of many; the truth costs 1e5 lines a pixel.
+    const Box region{640, 640, 768, 768};
+    double over = -HUGE_VAL, bound = 0;
+    int count = 0;
+    field.each_block(region, region, [&](int k, const Block& block, const CellPoints& points) {
+        bound = std::max(bound, block.bound);
+        if (!points.x || count++ % 7) return;
+        for (const int at : {0, block.box.width() - 1}) {
+            const Point<double> truth = map(block.box.x0 + at + 0.5, block.box.y0 + 0.5, k);
+            over = std::max(over, std::hypot(block.base_x + double(points.x[at]) - truth.x,
+                                             block.base_y + double(points.y[at]) - truth.y) -
+                                      block.bound);
+        }
+    });
+    EXPECT_LE(over, 0);
+    EXPECT_LE(bound, 1.0 / 16);
+}
+
+TEST(NearFar, EveryInstructionSetHolds) {
+    const auto features = families::Maker(160, 21).make("crossing", 24);
+    const FeatureMap map = map_of(*features, {160, 130}, {0.1, 2, 0.5});
+    const FeatureMap other = map_of(*features, {160, 130}, {0.1, 1.3, 0.5});
+    for (const char* const* set = simd::instruction_sets(); *set; ++set) {
+        SCOPED_TRACE(*set);
+        ASSERT_TRUE(simd::use_instruction_set(*set));
+        for (const double tol : {0.25, 0.005}) {
+            expect_holds(map, tol);
+            expect_holds(other, tol);
+        }
+    }
+    simd::use_instruction_set("");
+}
+
+TEST(NearFar, OneShapeAlone) {
+    const auto features = families::Maker(150, 9).make("face", 32);
+    const FeatureMap map = map_of(*features, {150, 150}, {1, 2, 0.5});
+    const NearFar field(map, {0.05, {1}});
+    const Box region{0, 0, 128, 128};
+    double worst = 0;
+    field.each_block(region, region, [&](int k, const Block& block, const CellPoints& points) {
+        EXPECT_EQ(k, 1);
+        const Point<double> truth = map(block.box.x0 + 0.5, block.box.y0 + 0.5, 1);
+        worst = std::max(worst, std::hypot(block.base_x + double(points.x[0]) - truth.x,
+                                           block.base_y + double(points.y[0]) - truth.y));
+    });
+    EXPECT_LE(worst, 0.05);
+}
+
+TEST(NearFar, BadTolerancesAreNamed) {
+    const auto features = families::Maker(100, 1).make("short", 2);
+    const FeatureMap map = map_of(*features, {100, 100}, {});
+    EXPECT_THROW(NearFar(map, {-1, {0, 1}}), Error);
+    EXPECT_THROW(NearFar(map, {NAN, {0, 1}}), Error);
+}
+
+}  // namespace
+}  // namespace anamorph
