@@ -62,12 +62,19 @@ using Jet1 = Jet<T, 1>;
 template <class T>
 using Jet2 = Jet<T, 2>;
 
+// Recurrences are unrolled whole, except where instruments would be put into every copy.
+#if defined(__OPTIMIZE__) && !defined(__SANITIZE_ADDRESS__)
+#define ANAMORPH_UNROLLED __attribute__((always_inline))
+#else
+#define ANAMORPH_UNROLLED
+#endif
+
 namespace jet_detail {
 
 /// body(0), ..., body(Count - 1), each with its index as a constant: unrolled.
 template <int Count, class Body>
-[[gnu::always_inline]] inline void unroll(const Body& body) {
-    [&]<int... I>(std::integer_sequence<int, I...>) __attribute__((always_inline)) {
+ANAMORPH_UNROLLED inline void unroll(const Body& body) {
+    [&]<int... I>(std::integer_sequence<int, I...>) ANAMORPH_UNROLLED {
         (body(std::integral_constant<int, I>{}), ...);
     }
     (std::make_integer_sequence<int, Count>{});
@@ -75,14 +82,13 @@ template <int Count, class Body>
 
 /// Coefficient m of the part of degree K of sum_(First <= a <= Last) weight(a) f_a g_(K-a).
 template <int K, int First, int Last, class T, int N, class Weight>
-[[gnu::always_inline]] inline T convolve(const Jet<T, N>& f, const Jet<T, N>& g, int m,
-                                         const Weight& weight) {
+ANAMORPH_UNROLLED inline T convolve(const Jet<T, N>& f, const Jet<T, N>& g, int m, const Weight& weight) {
     using J = Jet<T, N>;
     T sum(0);
-    unroll<Last - First + 1>([&](auto offset) __attribute__((always_inline)) {
+    unroll<Last - First + 1>([&](auto offset) ANAMORPH_UNROLLED {
         constexpr int a = First + offset, b = K - a;
         T part(0);
-        unroll<a + 1>([&](auto i) __attribute__((always_inline)) {
+        unroll<a + 1>([&](auto i) ANAMORPH_UNROLLED {
             const int j = m - i;
             if (j < 0 || j > b) return;
             const T& left = f.c[J::part(a) + i];
@@ -99,11 +105,10 @@ template <int K, int First, int Last, class T, int N, class Weight>
 
 /// body(k, m) for the coefficients m of the parts of degree k = 1 ... N, part by part.
 template <int N, class Body>
-[[gnu::always_inline]] inline void each_coefficient(const Body& body) {
-    unroll<N>([&](auto below) __attribute__((always_inline)) {
+ANAMORPH_UNROLLED inline void each_coefficient(const Body& body) {
+    unroll<N>([&](auto below) ANAMORPH_UNROLLED {
         constexpr int k = below + 1;
-        unroll<k + 1>([&](auto m)
-                          __attribute__((always_inline)) { body(std::integral_constant<int, k>{}, m); });
+        unroll<k + 1>([&](auto m) ANAMORPH_UNROLLED { body(std::integral_constant<int, k>{}, m); });
     });
 }
 
@@ -111,7 +116,7 @@ template <int N, class Body>
 template <class T, int N>
 inline void integrate_quotient(Jet<T, N>& g, const Jet<T, N>& w, const Jet<T, N>& q) {
     const T inverse = T(1) / q.c[0];
-    each_coefficient<N>([&](auto k, auto m) __attribute__((always_inline)) {
+    each_coefficient<N>([&](auto k, auto m) ANAMORPH_UNROLLED {
         const T known = convolve<k, 1, k - 1>(g, q, m, [](int j) { return j; });
         const int at = Jet<T, N>::part(k) + m;
         g.c[at] = (w.c[at] - known) * (inverse / T(k));
@@ -122,7 +127,7 @@ inline void integrate_quotient(Jet<T, N>& g, const Jet<T, N>& w, const Jet<T, N>
 template <class T, int N>
 inline Jet<T, N> wronskian(const Jet<T, N>& x, const Jet<T, N>& y) {
     Jet<T, N> r;
-    each_coefficient<N>([&](auto k, auto m) __attribute__((always_inline)) {
+    each_coefficient<N>([&](auto k, auto m) ANAMORPH_UNROLLED {
         constexpr int degree = k;
         r.c[Jet<T, N>::part(k) + m] = convolve<k, 0, k>(x, y, m, [](int a) { return degree - 2 * a; });
     });
@@ -133,7 +138,7 @@ inline Jet<T, N> wronskian(const Jet<T, N>& x, const Jet<T, N>& y) {
 template <class T, int N>
 inline Jet<T, N> euler(const Jet<T, N>& f) {
     Jet<T, N> r;
-    each_coefficient<N>([&](auto k, auto m) __attribute__((always_inline)) {
+    each_coefficient<N>([&](auto k, auto m) ANAMORPH_UNROLLED {
         const int at = Jet<T, N>::part(k) + m;
         r.c[at] = f.c[at] * T(k);
     });
@@ -143,7 +148,7 @@ inline Jet<T, N> euler(const Jet<T, N>& f) {
 /// E u = v E a and E v = Sign * u E a: sine and cosine (Sign -1), or their hyperbolic twins (Sign 1).
 template <int Sign, class T, int N>
 inline void oscillate(Jet<T, N>& u, Jet<T, N>& v, const Jet<T, N>& a) {
-    each_coefficient<N>([&](auto k, auto m) __attribute__((always_inline)) {
+    each_coefficient<N>([&](auto k, auto m) ANAMORPH_UNROLLED {
         const int at = Jet<T, N>::part(k) + m;
         u.c[at] = convolve<k, 1, k>(a, v, m, [](int j) { return j; }) / T(k);
         v.c[at] = convolve<k, 1, k>(a, u, m, [](int j) { return Sign * j; }) / T(k);
@@ -173,7 +178,7 @@ inline Jet<T, N> operator-(const Jet<T, N>& a, const Jet<T, N>& b) {
 template <class T, int N>
 inline Jet<T, N> operator*(const Jet<T, N>& a, const Jet<T, N>& b) {
     Jet<T, N> r(a.c[0] * b.c[0]);
-    jet_detail::each_coefficient<N>([&](auto k, auto m) __attribute__((always_inline)) {
+    jet_detail::each_coefficient<N>([&](auto k, auto m) ANAMORPH_UNROLLED {
         r.c[Jet<T, N>::part(k) + m] = jet_detail::convolve<k, 0, k>(a, b, m, [](int) { return 1; });
     });
     return r;
@@ -212,7 +217,7 @@ template <class T, int N>
 inline Jet<T, N> operator/(const Jet<T, N>& f, const Jet<T, N>& g) {
     const T inverse = T(1) / g.c[0];
     Jet<T, N> q(f.c[0] * inverse);
-    jet_detail::each_coefficient<N>([&](auto k, auto m) __attribute__((always_inline)) {
+    jet_detail::each_coefficient<N>([&](auto k, auto m) ANAMORPH_UNROLLED {
         const T known = jet_detail::convolve<k, 0, k - 1>(q, g, m, [](int) { return 1; });
         const int at = Jet<T, N>::part(k) + m;
         q.c[at] = (f.c[at] - known) * inverse;
@@ -231,7 +236,7 @@ inline long double square(long double a) {
 template <class T, int N>
 inline Jet<T, N> square(const Jet<T, N>& a) {
     Jet<T, N> r(square(a.c[0]));
-    jet_detail::each_coefficient<N>([&](auto k, auto m) __attribute__((always_inline)) {
+    jet_detail::each_coefficient<N>([&](auto k, auto m) ANAMORPH_UNROLLED {
         constexpr int degree = k;
         // Each pair of different parts counts twice.
         r.c[Jet<T, N>::part(k) + m] =
@@ -246,7 +251,7 @@ inline Jet<T, N> sqrt(const Jet<T, N>& f) {
     using std::sqrt;
     Jet<T, N> r(sqrt(f.c[0]));
     const T inverse = T(0.5) / r.c[0];
-    jet_detail::each_coefficient<N>([&](auto k, auto m) __attribute__((always_inline)) {
+    jet_detail::each_coefficient<N>([&](auto k, auto m) ANAMORPH_UNROLLED {
         const T known = jet_detail::convolve<k, 1, k - 1>(r, r, m, [](int) { return 1; });
         const int at = Jet<T, N>::part(k) + m;
         r.c[at] = (f.c[at] - known) * inverse;
@@ -323,4 +328,7 @@ inline long double lower_end(long double a) {
 inline double lower_end(const Interval& a) {
     return a.lo;
 }
+
+#undef ANAMORPH_UNROLLED
+
 }  // namespace anamorph
