@@ -199,8 +199,8 @@ namespace {
 /// Draws one region at a time; one per thread.
 class RegionPainter {
   public:
-    RegionPainter(const FeatureMap& map, const MorphOptions& options, const Canvas& canvas)
-        : m_map(map), m_options(options), m_canvas(canvas), m_channels(canvas.channels()) {
+    RegionPainter(const FeatureMap& map, const Canvas& canvas)
+        : m_map(map), m_canvas(canvas), m_channels(canvas.channels()) {
         m_values.resize(static_cast<std::size_t>(kRegion) * kRegion * static_cast<std::size_t>(m_channels) +
                         16);
     }
@@ -285,7 +285,6 @@ class RegionPainter {
     }
 
     const FeatureMap& m_map;
-    const MorphOptions& m_options;
     const Canvas& m_canvas;
     int m_channels;
     Box m_region, m_part;
@@ -488,7 +487,7 @@ bool Morph::draw(const std::vector<const Source*>& sources, const Box& box, cons
 
     parallel_for(static_cast<std::int64_t>(regions.size()), [&](std::int64_t i) {
         const Box& region = regions[static_cast<std::size_t>(i)];
-        RegionPainter painter(state.map, state.options, canvas);
+        RegionPainter painter(state.map, canvas);
         painter.begin(region);
         if (is_colour(output)) {
             std::vector<std::unique_ptr<BlockReader>> readers(needed.size());
