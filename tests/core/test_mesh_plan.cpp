@@ -60,7 +60,7 @@ TEST(MeshPlan, HoldsTheToleranceOnHardMeshes) {
         SCOPED_TRACE(name);
         for (const WarpScheme scheme : kSchemes)
             for (const double tol : kTols)
-                for (const double amount : {1.0, 0.0, -1.5, 3.0})
+                for (const double amount : {1.0, -1.5})
                     expect_promise(mesh, target, source, scheme, tol, amount);
     }
 }

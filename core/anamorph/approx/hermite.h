@@ -71,6 +71,25 @@ inline Bicubic restricted(const Bicubic& f, const Part& s, const Part& t) {
     return result;
 }
 
+/// Turns a displacement, in powers of parameters in [-1, 1] on a part of the image (pixels), into the map.
+inline void add_identity(Bicubic& f, const Mesh& mesh, const Part& x, const Part& y) {
+    f.x[0][0] += x.middle * mesh.scale().x;
+    f.x[1][0] += x.half * mesh.scale().x;
+    f.y[0][0] += y.middle * mesh.scale().y;
+    f.y[0][1] += y.half * mesh.scale().y;
+}
+
+/// Bounds the rounding in double of the map on a cell, of its other forms and of their restriction: sums of
+/// at most some dozen products, of terms that the conversion to powers makes at most 36 times larger together
+/// than the Hermite data (the columns of M in eq. 5.2 sum to at most 6).
+inline double double_rounding(const Mesh& mesh, const Patch& patch) {
+    double size = (std::fabs(patch.x0) + std::fabs(patch.x1)) * mesh.scale().x +
+                  (std::fabs(patch.y0) + std::fabs(patch.y1)) * mesh.scale().y;
+    for (const auto& row : patch.g)
+        for (const Point<double>& g : row) size += std::fabs(g.x) + std::fabs(g.y);
+    return 1024 * 0x1p-53 * size;
+}
+
 /// The polynomial c[0] + c[1] s + c[2] t + c[3] s^2 + c[4] s t + c[5] t^2 that is left of a bicubic on [-1,
 /// 1]^2 when its products of Chebyshev polynomials above degree 2 are dropped. Each product is at most 1, so
 /// that the sum of what was dropped bounds the difference; it is kept apart by whose cutting makes it

@@ -7,25 +7,11 @@
 #include <limits>
 
 #include "anamorph/approx/hermite.h"
+#include "anamorph/approx/mesh_blocks.h"
 #include "anamorph/approx/mesh_residual.h"
 
 namespace anamorph {
 namespace {
-
-// A block is at most as large as keeps its source and target rows in the first-level cache.
-constexpr int kBlockWidth = 64, kBlockHeight = 32;
-// A polynomial costs as much to plan as so many exact pixels.
-constexpr int kFloorPixels = 12;
-
-// Rounding of a point's coordinates to float and of their evaluation: the coefficients, s and t are each
-// rounded once, and at most five operations are rounded on the way from the smallest term to the sum, so that
-// each term errs by less than 8 half-ULP of its size. So for a cubic in s alone.
-constexpr double kFloatRounding = 8 * 0x1p-24;
-
-/// Half the distance between the first and the last of a row of pixel centres.
-double half(int pixels) {
-    return pixels > 1 ? 0.5 * (pixels - 1) : 0.5;
-}
 
 /// The pixels whose centres lie in [from, to), as far as they lie in [first, last).
 void pixels_between(double from, double to, int first, int last, int& begin, int& end) {
@@ -45,7 +31,11 @@ struct CellForm {
     double rounding;  ///< of the map in double
 
     CellForm(const Mesh& m, const MeshCell& c)
-        : mesh(m), cell(c), patch(m.patch(c)), powers(power_form(patch)), rounding(rounding_of(m, patch)) {}
+        : mesh(m),
+          cell(c),
+          patch(m.patch(c)),
+          powers(power_form(patch)),
+          rounding(double_rounding(m, patch)) {}
 
     /// The parameters of a row or column of pixel centres.
     Part across(const Box& b) const {
@@ -60,22 +50,9 @@ struct CellForm {
     /// The map, not only the displacement, on a block, in powers of parameters in [-1, 1].
     Bicubic on(const Box& b) const {
         Bicubic f = restricted(powers, across(b), down(b));
-        f.x[0][0] += 0.5 * (b.x0 + b.x1) * mesh.scale().x;
-        f.x[1][0] += half(b.width()) * mesh.scale().x;
-        f.y[0][0] += 0.5 * (b.y0 + b.y1) * mesh.scale().y;
-        f.y[0][1] += half(b.height()) * mesh.scale().y;
+        add_identity(f, mesh, {0.5 * (b.x0 + b.x1), half(b.width())},
+                     {0.5 * (b.y0 + b.y1), half(b.height())});
         return f;
-    }
-
-    /// Rounding in double of the patch, of its other forms and of their restriction: sums of at most some
-    /// dozen products, of terms that the conversion to powers makes at most 36 times larger together than the
-    /// Hermite data (the columns of M in eq. 5.2 sum to at most 6).
-    static double rounding_of(const Mesh& mesh, const Patch& p) {
-        double size = (std::fabs(p.x0) + std::fabs(p.x1)) * mesh.scale().x +
-                      (std::fabs(p.y0) + std::fabs(p.y1)) * mesh.scale().y;
-        for (const auto& row : p.g)
-            for (const Point<double>& g : row) size += std::fabs(g.x) + std::fabs(g.y);
-        return 1024 * 0x1p-53 * size;
     }
 };
 
@@ -83,10 +60,10 @@ struct CellForm {
 class Planner {
   public:
     Planner(const Mesh& mesh, WarpScheme scheme, double tol, const ResidualTables* tables, Blocks& blocks)
-        : m_mesh(mesh), m_scheme(scheme), m_tol(tol), m_tables(tables), m_blocks(blocks) {}
+        : m_mesh(mesh), m_scheme(scheme), m_tables(tables), m_writer(tol, blocks) {}
 
     void exact(const Box& box) {
-        for_blocks(box, [&](const Box& b) { emit_exact(b); });
+        BlockWriter::for_blocks(box, [&](const Box& b) { m_writer.exact(b); });
     }
 
     void region(const Box& box) {
@@ -94,7 +71,7 @@ class Planner {
         double cells = 0;
         m_mesh.each_cell(box.x0 + 0.5, box.y0 + 0.5, box.x1 - 0.5, box.y1 - 0.5,
                          [&](const MeshCell&) { ++cells; });
-        if (double(box.width()) * box.height() < kFloorPixels * cells) return exact(box);
+        if (double(box.width()) * box.height() < BlockWriter::kFloorPixels * cells) return exact(box);
         m_mesh.each_cell(box.x0 + 0.5, box.y0 + 0.5, box.x1 - 0.5, box.y1 - 0.5, [&](const MeshCell& cell) {
             Box part;
             // The outermost cells go on to the edges of the image.
@@ -112,9 +89,9 @@ class Planner {
     void settle(const CellForm& form, const Box& box) {
         switch (m_scheme) {
             case WarpScheme::automatic:
-                return for_blocks(box, [&](const Box& b) { place(form, b); });
+                return BlockWriter::for_blocks(box, [&](const Box& b) { place(form, b); });
             case WarpScheme::hermite:
-                return for_blocks(box, [&](const Box& b) { place_rows(form, b); });
+                return BlockWriter::for_blocks(box, [&](const Box& b) { place_rows(form, b); });
             case WarpScheme::residual:
                 return place_residual(form, box);
             case WarpScheme::exact:
@@ -124,72 +101,19 @@ class Planner {
 
     /// One quadratic block, or its halves.
     void place(const CellForm& form, const Box& box) {
-        if (box.width() * box.height() < kFloorPixels) return emit_exact(box);
+        if (BlockWriter::below_floor(box)) return m_writer.exact(box);
         const Bicubic f = form.on(box);
         const EconomizedBicubic x(f.x), y(f.y);
-        if (emit_polynomial(box, x.c, y.c, std::hypot(x.dropped, y.dropped) + form.rounding)) return;
-        const std::size_t first = m_blocks.size();
-        const bool vertical_cut = x.dropped_s + y.dropped_s >= x.dropped_t + y.dropped_t;
-        const auto [a, b] = halves(box, vertical_cut ? box.width() > 1 : box.height() <= 1);
-        place(form, a);
-        place(form, b);
-        merge_exact(box, first);
-    }
-
-    static std::pair<Box, Box> halves(const Box& box, bool vertical_cut) {
-        Box a = box, b = box;
-        if (vertical_cut)
-            a.x1 = b.x0 = (box.x0 + box.x1) / 2;
-        else
-            a.y1 = b.y0 = (box.y0 + box.y1) / 2;
-        return {a, b};
-    }
-
-    /// Where everything in a box came out exact, one exact block.
-    void merge_exact(const Box& box, std::size_t first) {
-        for (std::size_t i = first; i < m_blocks.size(); ++i)
-            if (m_blocks[i].kind != Block::Kind::exact) return;
-        m_blocks.resize(first);
-        emit_exact(box);
-    }
-
-    /// True when the polynomial, evaluated in float, keeps the tolerance: then the block is appended.
-    bool emit_polynomial(const Box& box, const double* cx, const double* cy, double error) {
-        if (!(std::fabs(cx[0]) < kFarthest && std::fabs(cy[0]) < kFarthest)) return false;
-        Block block;
-        block.box = box;
-        block.kind = Block::Kind::polynomial;
-        block.base_x = static_cast<std::int32_t>(std::floor(cx[0]));
-        block.base_y = static_cast<std::int32_t>(std::floor(cy[0]));
-        const auto store = [](const double* c, std::int32_t base, float* to) {
-            to[0] = static_cast<float>(c[0] - base);
-            double sum = std::fabs(c[0] - base);
-            for (int i = 1; i < 6; ++i) {
-                to[i] = static_cast<float>(c[i]);
-                sum += std::fabs(c[i]);
-            }
-            return sum * kFloatRounding;
-        };
-        const double ex = store(cx, block.base_x, block.x), ey = store(cy, block.base_y, block.y);
-        block.bound = error + std::hypot(ex, ey);
-        if (!(block.bound <= m_tol)) return false;
-        m_blocks.push_back(block);
-        return true;
+        if (m_writer.polynomial(box, x.c, y.c, std::hypot(x.dropped, y.dropped) + form.rounding)) return;
+        m_writer.halve(box, x.dropped_s + y.dropped_s >= x.dropped_t + y.dropped_t,
+                       [&](const Box& b) { place(form, b); });
     }
 
     /// A computed block whose base is the map at its middle; exact where `error` exceeds the tolerance.
     void emit_computed(const CellForm& form, const Box& box, double error) {
         const Point<double> middle =
             form.mesh.at(form.patch, 0.5 * (box.x0 + box.x1), 0.5 * (box.y0 + box.y1));
-        if (!(error <= m_tol && std::fabs(middle.x) < kFarthest && std::fabs(middle.y) < kFarthest))
-            return emit_exact(box);
-        Block block;
-        block.box = box;
-        block.kind = Block::Kind::computed;
-        block.base_x = static_cast<std::int32_t>(std::floor(middle.x));
-        block.base_y = static_cast<std::int32_t>(std::floor(middle.y));
-        block.bound = error;
-        m_blocks.push_back(block);
+        m_writer.computed(box, middle, error);
     }
 
     /// The full patch (5.3.5): a row is a cubic in float, each term of which errs as kFloatRounding says.
@@ -202,30 +126,16 @@ class Planner {
 
     void place_residual(const CellForm& form, const Box& box) {
         const ResidualPatch residual(form.patch);
-        for_blocks(box, [&](const Box& b) {
+        BlockWriter::for_blocks(box, [&](const Box& b) {
             emit_computed(form, b,
                           m_tables->bound(residual) + residual.float_rounding(form.on(b)) + form.rounding);
         });
     }
 
-    void emit_exact(const Box& box) {
-        Block block;
-        block.box = box;
-        m_blocks.push_back(block);
-    }
-
-    template <class Body>
-    static void for_blocks(const Box& box, const Body& body) {
-        for (int y = box.y0; y < box.y1; y += kBlockHeight)
-            for (int x = box.x0; x < box.x1; x += kBlockWidth)
-                body(Box{x, y, std::min(x + kBlockWidth, box.x1), std::min(y + kBlockHeight, box.y1)});
-    }
-
     const Mesh& m_mesh;
     WarpScheme m_scheme;
-    double m_tol;
     const ResidualTables* m_tables;
-    Blocks& m_blocks;
+    BlockWriter m_writer;
 };
 
 }  // namespace

@@ -64,7 +64,4 @@ class MeshPlan final : public WarpPlan {
 /// Throws Error unless tol is 0 or a finite number above it.
 void check_tol(double tol);
 
-/// Source points farther away than this are none.
-inline constexpr double kFarthest = 1 << 30;
-
 }  // namespace anamorph

@@ -1,0 +1,623 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "anamorph/approx/inverse.h"
+
+#include <array>
+#include <atomic>
+#include <optional>
+
+#include "anamorph/approx/hermite.h"
+#include "anamorph/approx/mesh_blocks.h"
+
+namespace anamorph {
+namespace {
+
+using Sheet = InversePlan::Sheet;
+
+// Parts of a mesh that turns over nearly everywhere need never end.
+constexpr std::size_t kMostSheets = std::size_t{1} << 21;
+constexpr int kMostCuts = 80;
+// Parameters of a part run a hair beyond it, so that no point on an edge is lost between two parts.
+constexpr double kHair = 1e-9;
+// Source points nearer than this are one, found from two parts.
+constexpr double kSame = 1e-6;
+
+struct Matrix {
+    double a11, a12, a21, a22;
+
+    double determinant() const { return a11 * a22 - a12 * a21; }
+    Point<double> operator()(double x, double y) const { return {a11 * x + a12 * y, a21 * x + a22 * y}; }
+    /// Of magnitudes: what a box of half sizes (x, y) spans.
+    Point<double> span(double x, double y) const {
+        return {std::fabs(a11) * x + std::fabs(a12) * y, std::fabs(a21) * x + std::fabs(a22) * y};
+    }
+    Matrix inverse() const {
+        const double k = 1 / determinant();
+        return {a22 * k, -a12 * k, -a21 * k, a11 * k};
+    }
+};
+
+double largest(const Point<double>& p) {
+    return std::max(std::fabs(p.x), std::fabs(p.y));
+}
+
+/// The map on a part of a cell, in powers of parameters in [-1, 1].
+Bicubic map_on(const Mesh& mesh, const MeshCell& cell, const Bicubic& powers, const Part& s, const Part& t) {
+    Bicubic f = restricted(powers, s, t);
+    const double w = cell.x1 - cell.x0, h = cell.y1 - cell.y0;
+    add_identity(f, mesh, {cell.x0 + s.middle * w, s.half * w}, {cell.y0 + t.middle * h, t.half * h});
+    return f;
+}
+
+/// Cuts one patch into sheets; those that do not meet the target are left out.
+class Cutter {
+  public:
+    Cutter(const Mesh& mesh, const std::string& name, std::vector<Sheet>& sheets, std::vector<Bounds>& bounds)
+        : m_mesh(mesh), m_name(name), m_sheets(sheets), m_bounds(bounds) {}
+
+    void cut(const MeshCell& cell, int number) {
+        m_cell = cell;
+        m_number = number;
+        const Patch patch = m_mesh.patch(cell);
+        m_powers = power_form(patch);
+        m_rounding = double_rounding(m_mesh, patch);
+        cut({0.5, 0.5}, {0.5, 0.5}, 0);
+    }
+
+  private:
+    void cut(const Part& s, const Part& t, int depth) {
+        const Bicubic f = map_on(m_mesh, m_cell, m_powers, s, t);
+        const double rx = sum_of_magnitudes(f.x) - std::fabs(f.x[0][0]) + m_rounding,
+                     ry = sum_of_magnitudes(f.y) - std::fabs(f.y[0][0]) + m_rounding;
+        const Bounds bounds{f.x[0][0] - rx, f.y[0][0] - ry, f.x[0][0] + rx, f.y[0][0] + ry};
+        if (!bounds.meets({0, 0, double(m_mesh.to().width), double(m_mesh.to().height)})) return;
+        const Matrix a{f.x[1][0], f.x[0][1], f.y[1][0], f.y[0][1]};
+        const double size = std::max(largest({a.a11, a.a12}), largest({a.a21, a.a22}));
+        const bool regular = std::fabs(a.determinant()) > 1e-9 * size * size;
+        // The Lipschitz constant of N in both coordinates: as it is, and about what it is after a cut.
+        double now[2] = {}, after_s[2] = {}, after_t[2] = {}, reach = 0;
+        if (regular) {
+            const Matrix y = a.inverse();
+            for (int i = 0; i < 4; ++i)
+                for (int j = 0; j < 4; ++j) {
+                    if (i + j < 2) continue;
+                    const Point<double> v = y(f.x[i][j], f.y[i][j]);
+                    reach += largest(v);
+                    // Half a parameter's range divides a term by 2 for each of its powers, and that parameter
+                    // is then counted in halves.
+                    const double size_s = (i + j) * std::fabs(v.x), size_t = (i + j) * std::fabs(v.y);
+                    now[0] += size_s;
+                    now[1] += size_t;
+                    after_s[0] += std::ldexp(size_s, 1 - i);
+                    after_s[1] += std::ldexp(size_t, -i);
+                    after_t[0] += std::ldexp(size_s, -j);
+                    after_t[1] += std::ldexp(size_t, 1 - j);
+                }
+            if (std::max(now[0], now[1]) <= InversePlan::kContraction)
+                return add({m_number,
+                            false,
+                            s.middle,
+                            t.middle,
+                            s.half,
+                            t.half,
+                            {f.x[0][0], f.y[0][0]},
+                            y.a11,
+                            y.a12,
+                            y.a21,
+                            y.a22,
+                            reach + kHair},
+                           bounds);
+        }
+        if (std::max(rx, ry) <= 0.5 * InversePlan::kFoldSize || depth == kMostCuts)
+            return add(
+                {m_number, true, s.middle, t.middle, s.half, t.half, {f.x[0][0], f.y[0][0]}, 0, 0, 0, 0, 0},
+                bounds);
+        bool cut_s = std::max(after_s[0], after_s[1]) <= std::max(after_t[0], after_t[1]);
+        // Near a fold Y says little: cut what is longer in the target.
+        if (!regular || !(std::max(now[0], now[1]) < 4)) {
+            double along_s = 0, along_t = 0;
+            for (int i = 0; i < 4; ++i)
+                for (int j = 0; j < 4; ++j) {
+                    const double v = largest({f.x[i][j], f.y[i][j]});
+                    along_s += i * v;
+                    along_t += j * v;
+                }
+            cut_s = along_s >= along_t;
+        }
+        for (const double side : {-0.5, 0.5}) {
+            const Part half_s{s.middle + side * s.half, 0.5 * s.half},
+                half_t{t.middle + side * t.half, 0.5 * t.half};
+            cut_s ? cut(half_s, t, depth + 1) : cut(s, half_t, depth + 1);
+        }
+    }
+
+    void add(const Sheet& sheet, const Bounds& bounds) {
+        if (m_sheets.size() >= kMostSheets)
+            throw Error(m_name + ": the mesh turns over at too many places to be inverted");
+        m_sheets.push_back(sheet);
+        m_bounds.push_back(bounds);
+    }
+
+    const Mesh& m_mesh;
+    const std::string& m_name;
+    std::vector<Sheet>& m_sheets;
+    std::vector<Bounds>& m_bounds;
+    MeshCell m_cell{};
+    int m_number = 0;
+    Bicubic m_powers{};
+    double m_rounding = 0;
+};
+
+// ----------------------------------------------------------------------------------------------------------
+
+/// Homogeneous polynomials of two variables: the coefficient of s^(K-j) t^j stands at j.
+template <std::size_t K>
+using Form = std::array<double, K + 1>;
+
+template <std::size_t A, std::size_t B>
+Form<A + B - 2> times(const std::array<double, A>& a, const std::array<double, B>& b) {
+    Form<A + B - 2> product{};
+    for (std::size_t i = 0; i < A; ++i)
+        for (std::size_t j = 0; j < B; ++j) product[i + j] += a[i] * b[j];
+    return product;
+}
+template <std::size_t N>
+double norm(const std::array<double, N>& a) {
+    double sum = 0;
+    for (const double v : a) sum += std::fabs(v);
+    return sum;
+}
+template <std::size_t N>
+double norm(const std::array<double, N>& x, const std::array<double, N>& y) {
+    return std::max(norm(x), norm(y));
+}
+
+/// By total degree, what a bicubic's coefficients in source pixels about a point are at most in units of the
+/// block, in either coordinate.
+using Sizes = std::array<double, 7>;
+
+/// sum of size[d] r^d from degree `first` on, and of d size[d] r^(d-1).
+double value_at(const Sizes& sizes, std::size_t first, double r) {
+    double sum = 0;
+    for (std::size_t d = sizes.size(); d-- > first;) sum = sum * r + sizes[d];
+    return sum * std::pow(r, double(first));
+}
+double slope_at(const Sizes& sizes, double r) {
+    double sum = 0;
+    for (std::size_t d = sizes.size(); d-- > 1;) sum = sum * r + double(d) * sizes[d];
+    return sum;
+}
+
+/// The inverse on a block: a cubic in its parameters and the distance to the truth in source pixels.
+struct LocalInverse {
+    double x[4][4] = {}, y[4][4] = {};  ///< as Bicubic
+    double error = HUGE_VAL;
+};
+
+/// Plans one region.
+class Planner {
+  public:
+    Planner(const InversePlan& plan, double tol, Blocks& blocks)
+        : m_plan(plan), m_mesh(plan.mesh()), m_writer(tol, blocks) {}
+
+    void exact(const Box& box) {
+        BlockWriter::for_blocks(box, [&](const Box& b) { m_writer.exact(b); });
+    }
+
+    void region(const Box& box) {
+        BlockWriter::for_blocks(box, [&](const Box& b) { place(b); });
+    }
+
+  private:
+    void place(const Box& box) {
+        m_x = 0.5 * (box.x0 + box.x1);
+        m_y = 0.5 * (box.y0 + box.y1);
+        m_hx = half(box.width());
+        m_hy = half(box.height());
+        const bool on_fold = gather();
+        if (m_near.empty() && !on_fold) return m_writer.outside(box);
+        if (BlockWriter::below_floor(box)) return m_writer.exact(box);
+        bool vertical_cut = box.width() >= box.height();
+        if (!on_fold) {
+            const LocalInverse inverse = invert();
+            if (inverse.error < HUGE_VAL) {
+                const EconomizedBicubic x(inverse.x), y(inverse.y);
+                if (m_writer.polynomial(box, x.c, y.c, std::hypot(x.dropped, y.dropped) + inverse.error))
+                    return;
+                vertical_cut = x.dropped_s + y.dropped_s >= x.dropped_t + y.dropped_t;
+            }
+        }
+        m_writer.halve(box, vertical_cut, [&](const Box& b) { place(b); });
+    }
+
+    /// A sheet, and the box in its parameters where source points of the block's pixels may be.
+    struct Near {
+        const Sheet* sheet;
+        Part s, t;
+    };
+
+    /// Finds the sheets that may hold source points of the block's pixels; is a fold among them?
+    bool gather() {
+        m_near.clear();
+        bool fold = false;
+        m_plan.tree().each({m_x - m_hx, m_y - m_hy, m_x + m_hx, m_y + m_hy}, [&](std::int32_t i) {
+            const Sheet& sheet = m_plan.sheets()[static_cast<std::size_t>(i)];
+            if (sheet.fold)
+                fold = true;
+            else if (const std::optional<Near> near = narrowed(sheet))
+                m_near.push_back(*near);
+        });
+        return fold;
+    }
+
+    /// Krawczyk's operator for all pixels of the block at once: z = w - N(z), and in a box about c
+    /// N(z) = N(c) +- contraction * its half size.
+    std::optional<Near> narrowed(const Sheet& sheet) const {
+        const Matrix y{sheet.y11, sheet.y12, sheet.y21, sheet.y22};
+        const Point<double> w = y(m_x - sheet.at.x, m_y - sheet.at.y), span = y.span(m_hx, m_hy);
+        const auto cut = [](double middle, double half_size) {
+            const double low = std::max(middle - half_size, -1 - kHair),
+                         high = std::min(middle + half_size, 1 + kHair);
+            return Part{0.5 * (low + high), 0.5 * (high - low)};
+        };
+        Near near{&sheet, cut(w.x, span.x + sheet.reach), cut(w.y, span.y + sheet.reach)};
+        if (near.s.half < 0 || near.t.half < 0) return std::nullopt;
+        constexpr int kSteps = 3;
+        for (int n = 0; n < kSteps; ++n) {
+            const double half_size = std::max(near.s.half, near.t.half);
+            if (half_size < 1.5 * std::max(span.x, span.y)) break;
+            const Point<double> c{near.s.middle, near.t.middle}, f = m_plan.on_sheet(sheet, c);
+            const Point<double> off = y(f.x - m_x, f.y - m_y);
+            const double slack = InversePlan::kContraction * half_size + kHair;
+            near.s = cut(c.x - off.x, span.x + slack);
+            near.t = cut(c.y - off.y, span.y + slack);
+            if (near.s.half < 0 || near.t.half < 0) return std::nullopt;
+        }
+        return near;
+    }
+
+    /// See inverse.h. The error is infinite where nothing is proven.
+    LocalInverse invert() {
+        LocalInverse result;
+        const InversePlan::Preimages found = m_plan.preimages(m_x, m_y);
+        if (found.count != 1) return result;
+        const Point<double> m = found.best.at;
+        const MeshCell& cell = m_plan.cells()[static_cast<std::size_t>(found.best.cell)];
+        const Patch patch = m_mesh.patch(cell);
+        const Bicubic f = about(patch, m);
+
+        // The linear part: M leads from the block's parameters to source pixels.
+        const Matrix j{f.x[1][0], f.x[0][1], f.y[1][0], f.y[0][1]};
+        if (j.determinant() == 0) return result;
+        const Matrix ji = j.inverse();
+        const Matrix to_source{ji.a11 * m_hx, ji.a12 * m_hy, ji.a21 * m_hx, ji.a22 * m_hy};
+        const Point<double> span = to_source.span(1, 1);  // of the ball of radius 1, source pixels
+
+        // z + Q + C + higher terms, in units of the block.
+        const Form<1> a{to_source.a11, to_source.a12}, b{to_source.a21, to_source.a22};
+        const Form<2> aa = times(a, a), ab = times(a, b), bb = times(b, b);
+        const Form<3> aaa = times(aa, a), aab = times(aa, b), abb = times(a, bb), bbb = times(bb, b);
+        Form<2> q[2];
+        Form<3> c[2];
+        for (int k = 0; k < 2; ++k) {
+            const auto& g = k ? f.y : f.x;
+            const double unit = 1 / (k ? m_hy : m_hx);
+            for (std::size_t i = 0; i < 3; ++i)
+                q[k][i] = (g[2][0] * aa[i] + g[1][1] * ab[i] + g[0][2] * bb[i]) * unit;
+            for (std::size_t i = 0; i < 4; ++i)
+                c[k][i] = (g[3][0] * aaa[i] + g[2][1] * aab[i] + g[1][2] * abb[i] + g[0][3] * bbb[i]) * unit;
+        }
+        Sizes sizes = sizes_of(f, span);
+        sizes[0] = sizes[1] = 0;
+        sizes[2] = norm(q[0], q[1]);
+        sizes[3] = norm(c[0], c[1]);
+
+        // 2 Q(z, Q(z)) - C(z): the derivative of Q along Q.
+        Form<3> third[2];
+        for (int k = 0; k < 2; ++k) {
+            const Form<1> ds{2 * q[k][0], q[k][1]}, dt{q[k][1], 2 * q[k][2]};
+            const Form<3> p = times(ds, q[0]), r = times(dt, q[1]);
+            for (std::size_t i = 0; i < 4; ++i) third[k][i] = p[i] + r[i] - c[k][i];
+        }
+
+        // The residual of z - Q + T: 2 Q(z, T) + Q(d) + C(z + d) - C(z) + higher(z + d), with d = T - Q.
+        const double t = norm(third[0], third[1]), d = sizes[2] + t;
+        const double residual = 2 * sizes[2] * t + sizes[2] * d * d +
+                                sizes[3] * (3 * d + 3 * d * d + d * d * d) + value_at(sizes, 4, 1 + d);
+
+        // The middle's own error, and rounding.
+        const double start = middle_error(patch, m, f);
+        // A ball that holds block, approximation and every source point that a sheet may have.
+        double radius = 1 + d;
+        for (int i = 0; i < 3; ++i)
+            radius = std::max(radius, 1 + 1.05 * (value_at(sizes, 2, radius) + start));
+        radius = std::max(radius, reach_of_sheets(m, to_source.inverse()));
+        if (!(radius < 8)) return result;
+        const std::optional<Step> step = step_to_neighbours(cell, f, m, span, radius, 1 + d);
+        if (!step) return result;
+        const double outside = value_at(step->sizes, 0, radius);
+        // One root in the ball: the map less the identity takes it into itself and contracts.
+        double wide = radius;
+        if (outside > 0) wide = std::max(wide, 1 + 1.05 * (value_at(sizes, 2, radius) + outside + start));
+        if (wide > radius) return result;
+        const double contraction = slope_at(sizes, radius) + slope_at(step->sizes, radius);
+        if (!(contraction <= 0.75) || !(1 + value_at(sizes, 2, radius) + outside + start <= radius))
+            return result;
+
+        const double error = (residual + step->most + start) / (1 - contraction);
+        result.error = std::hypot(span.x, span.y) * error;
+        // z - Q + T, through M to source pixels.
+        for (int k = 0; k < 2; ++k) {
+            auto& to = k ? result.y : result.x;
+            const Form<1>& row = k ? b : a;
+            to[0][0] = k ? m.y : m.x;
+            to[1][0] = row[0];
+            to[0][1] = row[1];
+            for (std::size_t i = 0; i < 3; ++i) to[2 - i][i] = -(row[0] * q[0][i] + row[1] * q[1][i]);
+            for (std::size_t i = 0; i < 4; ++i) to[3 - i][i] = row[0] * third[0][i] + row[1] * third[1][i];
+        }
+        return result;
+    }
+
+    /// A cell's map in powers of source pixels from a point.
+    Bicubic about(const Patch& patch, const Point<double>& m) const {
+        const double w = 1 / (patch.x1 - patch.x0), h = 1 / (patch.y1 - patch.y0);
+        Bicubic f = restricted(power_form(patch), {(m.x - patch.x0) * w, w}, {(m.y - patch.y0) * h, h});
+        add_identity(f, m_mesh, {m.x, 1}, {m.y, 1});
+        return f;
+    }
+
+    Sizes sizes_of(const Bicubic& f, const Point<double>& span) const {
+        Sizes sizes{};
+        const double px[4] = {1, span.x, span.x * span.x, span.x * span.x * span.x};
+        const double py[4] = {1, span.y, span.y * span.y, span.y * span.y * span.y};
+        for (std::size_t i = 0; i < 4; ++i)
+            for (std::size_t j = 0; j < 4; ++j)
+                sizes[i + j] +=
+                    std::max(std::fabs(f.x[i][j]) / m_hx, std::fabs(f.y[i][j]) / m_hy) * px[i] * py[j];
+        return sizes;
+    }
+
+    /// How far f(m) is from the block's middle, with the rounding of everything here, in units of the block.
+    double middle_error(const Patch& patch, const Point<double>& m, const Bicubic& f) const {
+        const Point<double> off{f.x[0][0] - m_x, f.y[0][0] - m_y};
+        const double rounding = 16 * double_rounding(m_mesh, patch) +
+                                0x1p-44 * (std::fabs(m.x) + std::fabs(m.y) + std::fabs(m_x) + std::fabs(m_y));
+        return std::max((std::fabs(off.x) + rounding) / m_hx, (std::fabs(off.y) + rounding) / m_hy);
+    }
+
+    /// How far from the block's middle, in its units, the sheets' source points can be.
+    double reach_of_sheets(const Point<double>& m, const Matrix& to_block) const {
+        double reach = 0;
+        for (const Near& near : m_near) {
+            const Sheet& sheet = *near.sheet;
+            const MeshCell& cell = m_plan.cells()[static_cast<std::size_t>(sheet.cell)];
+            const double w = cell.x1 - cell.x0, h = cell.y1 - cell.y0;
+            const Part x{cell.x0 + (sheet.s + near.s.middle * sheet.hs) * w, near.s.half * sheet.hs * w};
+            const Part v{cell.y0 + (sheet.t + near.t.middle * sheet.ht) * h, near.t.half * sheet.ht * h};
+            const Point<double> at = to_block(x.middle - m.x, v.middle - m.y),
+                                far = to_block.span(x.half, v.half);
+            reach = std::max({reach, std::fabs(at.x) + far.x, std::fabs(at.y) + far.y});
+        }
+        return reach;
+    }
+
+    /// By how much the maps of the cells that a ball meets differ from the one in the middle, in units of the
+    /// block: everywhere in the ball, and where a cell meets a smaller one.
+    struct Step {
+        Sizes sizes{};
+        double most = 0;
+    };
+    /// None where the ball leaves the mesh or meets many cells.
+    std::optional<Step> step_to_neighbours(const MeshCell& cell, const Bicubic& f, const Point<double>& m,
+                                           const Point<double>& span, double radius, double smaller) const {
+        const double rx = span.x * radius, ry = span.y * radius;
+        if (!(m.x - rx >= m_mesh.x_lines().front() && m.x + rx <= m_mesh.x_lines().back() &&
+              m.y - ry >= m_mesh.y_lines().front() && m.y + ry <= m_mesh.y_lines().back()))
+            return std::nullopt;
+        Step step;
+        if (m.x - rx >= cell.x0 && m.x + rx <= cell.x1 && m.y - ry >= cell.y0 && m.y + ry <= cell.y1)
+            return step;
+        constexpr int kMost = 9;
+        int count = 0;
+        m_mesh.each_cell(m.x - rx, m.y - ry, m.x + rx, m.y + ry, [&](const MeshCell& other) {
+            if (++count > kMost) return;
+            Bicubic g = about(m_mesh.patch(other), m);
+            for (int i = 0; i < 4; ++i)
+                for (int k = 0; k < 4; ++k) {
+                    g.x[i][k] -= f.x[i][k];
+                    g.y[i][k] -= f.y[i][k];
+                }
+            const Sizes sizes = sizes_of(g, span);
+            for (std::size_t i = 0; i < sizes.size(); ++i) step.sizes[i] = std::max(step.sizes[i], sizes[i]);
+            const Part x = common(m.x, span.x * smaller, other.x0, other.x1),
+                       y = common(m.y, span.y * smaller, other.y0, other.y1);
+            if (x.half < 0 || y.half < 0) return;
+            const Bicubic there = restricted(g, x, y);
+            step.most =
+                std::max({step.most, sum_of_magnitudes(there.x) / m_hx, sum_of_magnitudes(there.y) / m_hy});
+        });
+        if (count > kMost) return std::nullopt;
+        return step;
+    }
+
+    /// [middle - radius, middle + radius] and [low, high], less the middle; a hair more.
+    static Part common(double middle, double radius, double low, double high) {
+        const double from = std::max(low - middle, -radius), to = std::min(high - middle, radius);
+        return {0.5 * (from + to), 0.5 * (to - from) + kHair};
+    }
+
+    const InversePlan& m_plan;
+    const Mesh& m_mesh;
+    BlockWriter m_writer;
+    double m_x = 0, m_y = 0, m_hx = 0, m_hy = 0;  ///< the block's middle and half its size, target pixels
+    std::vector<Near> m_near;
+};
+
+}  // namespace
+
+InversePlan::InversePlan(Mesh mesh, WarpScheme scheme, double tol, const std::string& name)
+    : WarpPlan(mesh.to().width, mesh.to().height, {Box{0, 0, mesh.to().width, mesh.to().height}}),
+      m_mesh(std::move(mesh)),
+      m_scheme(scheme),
+      m_tol(tol) {
+    check_tol(tol);
+    m_mesh.each_cell(0, 0, m_mesh.from().width, m_mesh.from().height,
+                     [&](const MeshCell& cell) { m_cells.push_back(cell); });
+    std::vector<Bounds> bounds;
+    Cutter cutter(m_mesh, name, m_sheets, bounds);
+    for (std::size_t i = 0; i < m_cells.size(); ++i) cutter.cut(m_cells[i], static_cast<int>(i));
+    m_tree = BoundsTree(std::move(bounds));
+}
+
+void InversePlan::plan(const Box& box, int, Blocks& blocks) const {
+    Planner planner(*this, m_tol, blocks);
+    if (m_tol == 0 || m_scheme == WarpScheme::exact)
+        planner.exact(box);
+    else
+        planner.region(box);
+}
+
+Point<double> InversePlan::on_sheet(const Sheet& sheet, const Point<double>& z) const noexcept {
+    const MeshCell& cell = m_cells[static_cast<std::size_t>(sheet.cell)];
+    const Patch patch = m_mesh.patch(cell);
+    return m_mesh.at(patch, cell.x0 + (sheet.s + sheet.hs * z.x) * (cell.x1 - cell.x0),
+                     cell.y0 + (sheet.t + sheet.ht * z.y) * (cell.y1 - cell.y0));
+}
+
+/// The source point on a sheet, if there is one.
+bool InversePlan::find(const Sheet& sheet, double x, double y, Preimage& found) const noexcept {
+    const MeshCell& cell = m_cells[static_cast<std::size_t>(sheet.cell)];
+    const double w = cell.x1 - cell.x0, h = cell.y1 - cell.y0;
+    const auto position = [&](const Point<double>& z) {
+        return Point<double>{cell.x0 + (sheet.s + sheet.hs * z.x) * w,
+                             cell.y0 + (sheet.t + sheet.ht * z.y) * h};
+    };
+    const auto clamped = [](const Point<double>& z) {
+        constexpr double kEnd = 1 + kHair;
+        return Point<double>{std::clamp(z.x, -kEnd, kEnd), std::clamp(z.y, -kEnd, kEnd)};
+    };
+    if (!sheet.fold) {
+        const Matrix to_sheet{sheet.y11, sheet.y12, sheet.y21, sheet.y22};
+        const Point<double> first = to_sheet(x - sheet.at.x, y - sheet.at.y);
+        if (!(largest(first) <= 1 + sheet.reach + kHair)) return false;
+        const Patch patch = m_mesh.patch(cell);
+        Point<double> z = clamped(first);
+        double off = HUGE_VAL;
+        // Each step gains two bits or more.
+        for (int n = 0; n < 32; ++n) {
+            const Point<double> at = position(z), f = m_mesh.at(patch, at.x, at.y);
+            const Point<double> step = to_sheet(f.x - x, f.y - y);
+            const Point<double> next = clamped({z.x - step.x, z.y - step.y});
+            off = largest(step);
+            const double moved = largest({next.x - z.x, next.y - z.y});
+            z = next;
+            if (moved <= 1e-15) break;
+        }
+        if (!(off <= kHair)) return false;
+        found = {position(z), sheet.cell, to_sheet.determinant() * m_mesh.orientation() < 0};
+        return true;
+    }
+    // Levenberg and Marquardt's damped Newton steps: on a fold the derivative is singular.
+    using J = Jet1<double>;
+    const Patch patch = m_mesh.patch(cell);
+    Point<double> z{0, 0};
+    double damping = 1e-3, last = HUGE_VAL;
+    Point<double> tried = z;
+    for (int n = 0; n < 60; ++n) {
+        const Point<double> at = position(tried);
+        const Point<J> f =
+            m_mesh.at(patch, J::variable(at.x, sheet.hs * w, 0), J::variable(at.y, 0, sheet.ht * h));
+        const double ex = f.x.c[0] - x, ey = f.y.c[0] - y, size = std::hypot(ex, ey);
+        if (size < last) {
+            z = tried;
+            last = size;
+            damping *= 0.2;
+            found = {at, sheet.cell, (f.x.c[1] * f.y.c[2] - f.x.c[2] * f.y.c[1]) * m_mesh.orientation() < 0};
+        } else {
+            damping *= 8;
+        }
+        const double d =
+            damping * (square(f.x.c[1]) + square(f.x.c[2]) + square(f.y.c[1]) + square(f.y.c[2]));
+        const Matrix normal{
+            square(f.x.c[1]) + square(f.y.c[1]) + d, f.x.c[1] * f.x.c[2] + f.y.c[1] * f.y.c[2],
+            f.x.c[1] * f.x.c[2] + f.y.c[1] * f.y.c[2], square(f.x.c[2]) + square(f.y.c[2]) + d};
+        if (!(normal.determinant() > 0)) break;
+        const Point<double> step =
+            normal.inverse()(f.x.c[1] * ex + f.y.c[1] * ey, f.x.c[2] * ex + f.y.c[2] * ey);
+        tried = clamped({z.x - step.x, z.y - step.y});
+        if (last < 1e-12) break;
+    }
+    return last <= 1e-7;
+}
+
+bool InversePlan::before(const Preimage& a, const Preimage& b) const noexcept {
+    if (a.turned != b.turned) return b.turned;
+    const auto number = [&](const Preimage& p) {
+        const MeshCell& c = m_cells[static_cast<std::size_t>(p.cell)];
+        return std::int64_t{c.row >> c.level} * m_mesh.columns() + (c.column >> c.level);
+    };
+    const std::int64_t na = number(a), nb = number(b);
+    if (na != nb) return na > nb;
+    return a.at.y != b.at.y ? a.at.y > b.at.y : a.at.x > b.at.x;
+}
+
+InversePlan::Preimages InversePlan::preimages(double x, double y) const noexcept {
+    // More than this many source points of one pixel are not told apart.
+    constexpr int kMost = 64;
+    Preimage distinct[kMost];
+    Preimages all;
+    m_tree.each({x, y, x, y}, [&](std::int32_t i) {
+        const Sheet& sheet = m_sheets[static_cast<std::size_t>(i)];
+        all.on_fold = all.on_fold || sheet.fold;
+        Preimage found{};
+        if (!find(sheet, x, y, found)) return;
+        for (int k = 0; k < all.count; ++k)
+            if (largest({distinct[k].at.x - found.at.x, distinct[k].at.y - found.at.y}) <= kSame) {
+                // The same, from two parts that share an edge.
+                if (before(found, distinct[k])) distinct[k] = found;
+                return;
+            }
+        if (all.count < kMost) distinct[all.count++] = found;
+    });
+    for (int k = 0; k < all.count; ++k)
+        if (k == 0 || before(distinct[k], all.best)) all.best = distinct[k];
+    return all;
+}
+
+bool InversePlan::exact(double x, double y, int, Point<double>& source_point,
+                        int& source_piece) const noexcept {
+    const Preimages all = preimages(x, y);
+    if (all.count == 0) return false;
+    source_point = all.best.at;
+    source_piece = 0;
+    return true;
+}
+
+Jacobian InversePlan::jacobian(double x, double y, int) const noexcept {
+    const Preimages all = preimages(x, y);
+    if (all.count == 0) return {};
+    using J = Jet1<double>;
+    const MeshCell& cell = m_cells[static_cast<std::size_t>(all.best.cell)];
+    const Point<J> f =
+        m_mesh.at(m_mesh.patch(cell), J::variable(all.best.at.x, 1, 0), J::variable(all.best.at.y, 0, 1));
+    const Matrix inverse = Matrix{f.x.c[1], f.x.c[2], f.y.c[1], f.y.c[2]}.inverse();
+    return {inverse.a11, inverse.a21, inverse.a12, inverse.a22};
+}
+
+float InversePlan::folds(double x, double y) const noexcept {
+    const Preimages all = preimages(x, y);
+    return static_cast<float>(std::max(all.count - 1, all.on_fold ? 1 : 0));
+}
+
+std::int64_t InversePlan::folded_pixels(const Box& box) const {
+    // Polynomial blocks are proven to be one to one.
+    std::int64_t count = 0;
+    for (const std::int64_t region : regions_in(box))
+        for (const Block& block : *blocks(region)) {
+            const Box part = intersection(block.box, box);
+            if (block.kind == Block::Kind::exact && !part.empty()) count += WarpPlan::folded_pixels(part);
+        }
+    return count;
+}
+
+}  // namespace anamorph
