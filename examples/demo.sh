@@ -16,7 +16,7 @@ echo "building"
 } >"$demo/build.txt" 2>&1 || { cat "$demo/build.txt" >&2; exit 1; }
 export OIIO_LIBRARY_PATH="$PWD/build/release/plugins/imageio"
 
-# A real HDR panorama: one of the studio lights that come with Blender (CC0, by Greg Zaal). Only the package's file is
+# A real HDR panorama: one of the studio lights that come with Blender (CC0). Only the package's file is
 # fetched and unpacked; nothing of it is installed.
 fetch_panorama() {
     local lights="$demo/blender/usr/share/blender/datafiles/studiolights/world"
@@ -62,20 +62,41 @@ oiiotool "panorama.exr.pano?to=rectilinear&fov=100&yaw=160&pitch=5&size=480x360&
     --divc "{TOP.MAXCOLOR}" --colormap inferno -d uint8 -o error.png
 
 # A picture through a control mesh, as it is and half as strong, and how far every source point is off.
-cp ../../../examples/pictures/{cat,raccoon}.jpg ../../../examples/{bulge.json,face.csv} .
-echo "warp.jpg: cat.jpg.warp?mesh=bulge.json"
-oiiotool "cat.jpg.warp?mesh=bulge.json" -o warp.jpg
-echo "half_warp.jpg: cat.jpg.warp?mesh=bulge.json&amount=0.5"
-oiiotool "cat.jpg.warp?mesh=bulge.json&amount=0.5" -o half_warp.jpg
+/usr/bin/python3 ../../../examples/make_faces.py round.png long.png faces.csv
+cp ../../../examples/bulge.json .
+echo "warp.jpg: round.png.warp?mesh=bulge.json"
+oiiotool "round.png.warp?mesh=bulge.json" -o warp.jpg
+echo "half_warp.jpg: round.png.warp?mesh=bulge.json&amount=0.5"
+oiiotool "round.png.warp?mesh=bulge.json&amount=0.5" -o half_warp.jpg
 echo "warp_error.png: output=error"
-oiiotool "cat.jpg.warp?mesh=bulge.json&output=error" --divc "{TOP.MAXCOLOR}" --colormap inferno -d uint8 -o warp_error.png
+oiiotool "round.png.warp?mesh=bulge.json&output=error" --divc "{TOP.MAXCOLOR}" --colormap inferno -d uint8 -o warp_error.png
+
+# Two real pictures: a cat (CC0) and a raccoon (public domain) that come with scikit-image and SciPy.
+fetch_animals() {
+    local data="$demo/animals/usr/lib/python3/dist-packages"
+    if [ ! -e "$data/scipy/misc/face.dat" ]; then
+        echo "fetching Debian's python3-skimage and python3-scipy (36 MB)"
+        (cd "$demo" && rm -f python3-*.deb && apt-get -q download python3-skimage python3-scipy &&
+            for deb in python3-*.deb; do dpkg-deb -x "$deb" animals; done) >"$demo/fetch_animals.txt" 2>&1 || return 1
+        rm -f "$demo"/python3-*.deb
+    fi
+    /usr/bin/python3 -c 'import bz2, sys; sys.stdout.buffer.write(b"P6 1024 768 255\n" + bz2.open(sys.argv[1]).read())' \
+        "$data/scipy/misc/face.dat" >raccoon.ppm
+    oiiotool raccoon.ppm --cut 540x540+400+20 --resize 480x480 -o raccoon.jpg
+    oiiotool "$data/skimage/data/chelsea.png" --cut 300x300+85+0 --resize 480x480 -o cat.jpg
+    cp ../../../examples/cat_raccoon.csv .
+    a=cat.jpg morph="cat.jpg.morph?b=raccoon.jpg&features=cat_raccoon.csv"
+}
+if ! fetch_animals; then
+    echo "they cannot be had: the film is one of the computed faces instead"
+    a=round.png morph="round.png.morph?b=long.png&features=faces.csv"
+fi
 
 # From one picture to another along corresponding lines: a film, frame by frame.
-echo "lines.jpg: cat.jpg.morph?b=raccoon.jpg&features=face.csv&output=lines"
-oiiotool "cat.jpg.morph?b=raccoon.jpg&features=face.csv&output=lines" -o lines.jpg
-echo "film.0000.jpg to film.0048.jpg: t={FRAME_NUMBER/48}"
-oiiotool --frames 0-48 "cat.jpg.morph?b=raccoon.jpg&features=face.csv&t={FRAME_NUMBER/48}" -o film.%04d.jpg
-cp film.0024.jpg morph.jpg
+echo "lines.jpg: $morph&output=lines"
+oiiotool "$morph&output=lines" -o lines.jpg
+echo "film.0000.jpg to film.0048.jpg: $morph&t={FRAME_NUMBER/48}"
+oiiotool --frames 0-48 "$morph&t={FRAME_NUMBER/48}" -o film.%04d.jpg
 if command -v ffmpeg >/dev/null; then
     echo "film.mp4"
     ffmpeg -loglevel error -y -framerate 24 -i film.%04d.jpg -pix_fmt yuv420p film.mp4
@@ -94,6 +115,6 @@ for op in pano warp morph; do
 done
 
 /usr/bin/python3 ../../../examples/contact_sheet.py contact_sheet.png panorama.png rectilinear.png rolled.png fisheye.png \
-    little_planet.png cylindrical.png mercator.png cube_faces.png error.png cat.jpg warp.jpg warp_error.png \
-    film.0012.jpg morph.jpg film.0036.jpg
+    little_planet.png cylindrical.png mercator.png cube_faces.png error.png round.png warp.jpg \
+    warp_error.png "$a" lines.jpg film.0024.jpg
 echo "done: $out"
