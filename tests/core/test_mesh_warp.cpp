@@ -48,40 +48,60 @@ void two_threads(std::int64_t count, const std::function<void(std::int64_t)>& bo
     other.join();
 }
 
+/// Draws the picture at once, and in pieces, last ones first, on two threads.
+void expect_same_bits(const WarpMap& map, const MeshWarpOptions& options, const Extent& target,
+                      const Picture& texels) {
+    SCOPED_TRACE(::testing::Message() << map.name << ", scheme " << static_cast<int>(options.scheme)
+                                      << ", output " << static_cast<int>(options.output));
+    const MemorySource source(texels.source());
+    const auto make = [&] {
+        return MeshWarp(map, texels.width, texels.height, target.width, target.height, options);
+    };
+    const MeshWarp warp = make(), again = make();
+    const int channels = warp.channels(source);
+    Picture whole(target.width, target.height, channels), cut(target.width, target.height, channels);
+    ASSERT_TRUE(warp.draw(&source, {0, 0, target.width, target.height}, whole.view()));
+    for (int y = 0; y < target.height; y += 97)
+        for (int x = (target.width - 1) / 131 * 131; x >= 0; x -= 131) {
+            const Box box{x, y, std::min(x + 131, target.width), std::min(y + 97, target.height)};
+            ImageView view = cut.view();
+            view.data = view.at(box.x0, box.y0);
+            view.width = box.width();
+            view.height = box.height();
+            ASSERT_TRUE(again.draw(&source, box, view, two_threads));
+        }
+    EXPECT_EQ(whole.values, cut.values);
+}
+
 TEST(MeshWarp, SameBitsForAnyCutAndThreads) {
     constexpr unsigned kSeed = 541;
     SCOPED_TRACE(::testing::Message() << "seed " << kSeed);
     test::Random random(kSeed);
     const Extent target{700, 530}, size{400, 300};
     const Picture texels = noise(random, size.width, size.height);
-    const MemorySource source(texels.source());
-    const WarpMap map{"grid", test::random_mesh(random, target, size, 5, 4, 0.4, true, 2)};
+    const WarpMap pull{"pull", test::random_mesh(random, target, size, 5, 4, 0.4, true, 2)};
+    ControlMesh mesh = test::random_mesh(random, size, target, 5, 4, 0.3, false, 1);
+    mesh.direction = Direction::push;
+    const WarpMap push{"push", mesh};
+    ControlPoints pairs;
+    for (int i = 0; i < 40; ++i) {
+        const double x = random.between(0, 700), y = random.between(0, 530);
+        pairs.pairs.push_back({x, y, x * 4 / 7 + random.between(-9, 9), y * 3 / 5.3 + random.between(-9, 9)});
+    }
+    const WarpMap points{"points", pairs};
+    MeshWarpOptions options;
+    options.tol = 1.0 / 16;
     for (const WarpScheme scheme :
-         {WarpScheme::automatic, WarpScheme::hermite, WarpScheme::residual, WarpScheme::exact})
-        for (const WarpOutput output : {WarpOutput::color, WarpOutput::stmap, WarpOutput::error,
-                                        WarpOutput::bound, WarpOutput::folds}) {
-            if (scheme != WarpScheme::automatic && output != WarpOutput::color) continue;
-            MeshWarpOptions options;
-            options.scheme = scheme;
-            options.output = output;
-            options.tol = 1.0 / 16;
-            const MeshWarp warp(map, size.width, size.height, target.width, target.height, options);
-            const int channels = warp.channels(source);
-            Picture whole(target.width, target.height, channels), cut(target.width, target.height, channels);
-            ASSERT_TRUE(warp.draw(&source, {0, 0, 700, 530}, whole.view()));
-            const MeshWarp again(map, size.width, size.height, target.width, target.height, options);
-            for (int y = 0; y < 530; y += 97)
-                for (int x = 699 / 131 * 131; x >= 0; x -= 131) {
-                    const Box box{x, y, std::min(x + 131, 700), std::min(y + 97, 530)};
-                    ImageView view = cut.view();
-                    view.data = view.at(box.x0, box.y0);
-                    view.width = box.width();
-                    view.height = box.height();
-                    ASSERT_TRUE(again.draw(&source, box, view, two_threads));
-                }
-            EXPECT_EQ(whole.values, cut.values)
-                << static_cast<int>(scheme) << ' ' << static_cast<int>(output);
-        }
+         {WarpScheme::automatic, WarpScheme::hermite, WarpScheme::residual, WarpScheme::exact}) {
+        options.scheme = scheme;
+        for (const WarpMap* map : {&pull, &push, &points}) expect_same_bits(*map, options, target, texels);
+    }
+    options.scheme = WarpScheme::automatic;
+    for (const WarpOutput output :
+         {WarpOutput::stmap, WarpOutput::error, WarpOutput::bound, WarpOutput::folds}) {
+        options.output = output;
+        for (const WarpMap* map : {&pull, &push, &points}) expect_same_bits(*map, options, target, texels);
+    }
 }
 
 TEST(MeshWarp, AmountZeroIsTheSourceToTheBit) {

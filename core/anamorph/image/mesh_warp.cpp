@@ -4,6 +4,7 @@
 #include <atomic>
 
 #include "anamorph/approx/inverse.h"
+#include "anamorph/approx/mesh_scattered.h"
 #include "anamorph/image/canvas.h"
 #include "anamorph/image/draw.h"
 
@@ -15,6 +16,9 @@ constexpr int kRows = 16;
 
 std::unique_ptr<const WarpPlan> make_plan(const WarpMap& map, const Extent& source, const Extent& target,
                                           const MeshWarpOptions& options) {
+    if (const ControlPoints* points = std::get_if<ControlPoints>(&map.shape))
+        return std::make_unique<ScatteredPlan>(Scattered(*points, target, source, options.amount, map.name),
+                                               options.scheme, options.tol);
     const ControlMesh& mesh = std::get<ControlMesh>(map.shape);
     if (mesh.direction == Direction::push)
         return std::make_unique<InversePlan>(Mesh(mesh, source, target, options.amount, map.name),

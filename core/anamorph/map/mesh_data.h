@@ -59,7 +59,7 @@ struct ControlMesh {
 
 /// Pairs of points: (x, y) in the target comes from (u, v) in the source.
 struct ControlPoints {
-    static constexpr int kMaxPoints = 1 << 20;
+    static constexpr int kMaxPoints = 1 << 17;
 
     struct Pair {
         double x, y, u, v;

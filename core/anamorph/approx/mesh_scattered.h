@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: Apache-2.0
+// The blocks of a warp through pairs of points: the cubic at a block's middle economised to a quadratic; the
+// other cubics that the block meets enter with their difference from that one, bounded on what they share.
+#pragma once
+
+#include "anamorph/approx/mesh_plan.h"
+#include "anamorph/map/scattered.h"
+
+namespace anamorph {
+
+class ScatteredPlan final : public WarpPlan {
+  public:
+    /// `tol`: source pixels. Throws Error when it is negative or not a number.
+    ScatteredPlan(Scattered map, WarpScheme scheme, double tol);
+
+    const Scattered& map() const { return m_map; }
+
+    bool exact(double x, double y, int piece, Point<double>& source_point,
+               int& source_piece) const noexcept override;
+    Jacobian jacobian(double x, double y, int piece) const noexcept override;
+    float folds(double x, double y) const noexcept override;
+
+  protected:
+    void plan(const Box& box, int piece, Blocks& blocks) const override;
+
+  private:
+    Scattered m_map;
+    WarpScheme m_scheme;
+    double m_tol;
+};
+
+}  // namespace anamorph
