@@ -19,8 +19,15 @@
 // (3) In two dimensions f - I_s I_t f = (f - I_s f) + I_s (f - I_t f), hence E <= E_s + Lebesgue_K E_t, and
 //     the same with s and t changed.
 //
-// simd/near_far.cpp evaluates these (BesideError, EndError). Lines that the cell touches, whose ends or whose
-// extension's ends lie level with it (there r has a kink in its second derivative), and all for b > 2, are
+// (4) Where the cell does not touch the line, but the level of its ends, or its extension, crosses the cell,
+// w
+//     has a jump in its second derivative and is smooth on either side. With Peano's kernel of order 3 the
+//     error is at most the jump times the kernel's supremum plus the greatest third derivative times the
+//     kernel's integral. The jump is b w / ((a + r) r) times the square of the direction; the derivatives of
+//     (a + r)^-b along a line are at most b (b + 1) w / r^2 and b (b + 2) max(b + 1, 2 / sqrt(2 - b) if b <
+//     1) w / r^3, from r' = cos, r'' = sin^2 / r, r''' = -3 cos sin^2 / r^2 of the angle to the ray. Any b.
+//
+// simd/near_far.cpp evaluates these (BesideError, EndError, BoundLines). Lines that the cell touches are
 // near.
 //
 // The displacement is S / W. With a sum off by dS and dW the quotient is off by (dS - D dW) / (W + dW). The
@@ -70,7 +77,7 @@ using Vector = std::array<double, kComponents>;
 
 /// The longer of a vector's two halves: the displacements of the shapes.
 double length_of(const Vector& v) {
-    return std::max(std::hypot(v[0], v[1]), std::hypot(v[2], v[3]));
+    return std::sqrt(std::max(v[0] * v[0] + v[1] * v[1], v[2] * v[2] + v[3] * v[3]));
 }
 
 /// Interpolation at the K roots of T_K.
@@ -195,16 +202,19 @@ class Candidates {
 
     simd::LineBounds bounds() {
         const auto array = [&](std::size_t k) { return m_bounds.data() + k * m_stride; };
-        return {array(0), array(1), array(2), array(3), {array(4), array(5), array(6), array(7)}, {}, 0};
+        return {array(0), array(1), array(2), array(3), array(4), {array(5), array(6), array(7), array(8)},
+                {},       0};
     }
-    float* reach() { return m_bounds.data() + 8 * m_stride; }
-    float* error() { return m_bounds.data() + 9 * m_stride; }
+    float* reach() { return m_bounds.data() + 9 * m_stride; }
+    float* error() { return m_bounds.data() + 10 * m_stride; }
 
     std::vector<std::int32_t> ids;  ///< in the region's list of all lines
     std::vector<std::uint8_t> far;
+    /// The polynomial that the cell has from the cells above it; lane 5 to 7 of each coefficient are 0.
+    alignas(64) double polynomial[kCoefficients] = {};
 
   private:
-    static constexpr std::size_t kBounds = 10;
+    static constexpr std::size_t kBounds = 11;
     std::size_t m_count = 0, m_stride = 0;
     std::vector<float> m_table, m_bounds;
 };
@@ -237,13 +247,6 @@ struct FarSums {
     }
 };
 
-/// A polynomial that a cell has from the cells above it.
-struct Inherited {
-    bool any = false;
-    FarSums sums;
-    alignas(64) double coefficients[kCoefficients] = {};
-};
-
 /// Plans one region.
 class Planner {
   public:
@@ -264,7 +267,7 @@ class Planner {
         all.reset(m_lines.size());
         for (std::size_t i = 0; i < m_lines.size(); ++i)
             all.set(i, static_cast<std::int32_t>(i), m_lines[i], m_slopes[i]);
-        settle(x0, y0, kRegion, 0, Inherited{});
+        settle(x0, y0, kRegion, 0, FarSums{}, false);
         keep_near_lines();
     }
 
@@ -359,84 +362,76 @@ class Planner {
         Vector center;    ///< displacement at the centre
         double least;     ///< sum of weights, at least
         double spread;    ///< the mean of |D_i - center|, at most
+        double offset;    ///< length of `center`
         double farthest;  ///< the greatest of them
         double rounding;  ///< of polynomials, about
         bool finite;
     };
 
-    void settle(int x0, int y0, int size, std::size_t depth, const Inherited& given) {
+    /// `sums`: over the lines that are in the polynomial of `level(depth)` already, if it has one.
+    void settle(int x0, int y0, int size, std::size_t depth, FarSums sums, bool has_polynomial) {
         const Box box = intersection({x0, y0, x0 + size, y0 + size}, m_picture);
         if (box.empty()) return;
         Candidates& lines = level(depth);
-        Inherited inherited = given;
         simd::LineBounds bounds = lines.bounds();
-        const Known known = look(x0, y0, size, lines, bounds, inherited.sums);
-        if (!known.finite) return divide(x0, y0, size, depth, lines, bounds, known, inherited);
-
-        if (size <= Block::kMaxSide) {
-            const double budget =
-                kInterpolationShare * m_options.tol - known.rounding - quotient_error(inherited.sums, known);
+        const Known known = look(x0, y0, size, lines, bounds, sums, has_polynomial);
+        const double budget =
+            kInterpolationShare * m_options.tol - known.rounding - quotient_error(sums, known);
+        if (known.finite && size <= Block::kMaxSide) {
             const std::size_t near = select(lines, bounds, known, budget);
             if (near <= most_near(size) || size <= kFloor) {
-                FarSums sums = inherited.sums;
-                add_far(lines, bounds, known, sums);
-                if (emit(box, lines, bounds, known, sums, inherited)) return;
+                FarSums all = sums;
+                add_far(lines, bounds, all);
+                if (emit(box, lines, bounds, known, all, near, has_polynomial)) return;
                 if (base_rounding(known, near) > m_options.tol) return exact(x0, y0, size);
             }
         }
-        divide(x0, y0, size, depth, lines, bounds, known, inherited);
+        if (size <= kFloor) return exact(x0, y0, size);
+        divide(x0, y0, size, depth, bounds, known, sums, budget, has_polynomial);
     }
 
-    Known look(int x0, int y0, int size, Candidates& lines, simd::LineBounds& bounds, FarSums& sums) const {
+    Known look(int x0, int y0, int size, Candidates& lines, simd::LineBounds& bounds, FarSums& sums,
+               bool has_polynomial) const {
         Known known;
         known.frame = {static_cast<float>(x0 + 0.5 * size - m_x), static_cast<float>(y0 + 0.5 * size - m_y),
                        static_cast<float>(0.5 * size)};
         simd::bound_lines(lines.table(), known.frame, m_weights, m_chebyshev.k,
                           static_cast<float>(m_chebyshev.lebesgue), bounds);
         // Any displacement serves as a reference; the one at the centre is best.
-        const double* constant = m_constant;
         float center[kComponents];
+        const auto at_center = [&](std::size_t c) {
+            return bounds.center[c] + (has_polynomial ? lines.polynomial[c] : 0);
+        };
         for (std::size_t c = 0; c < kComponents; ++c) {
-            known.center[c] = (bounds.center[c + 1] + constant[c + 1]) / (bounds.center[0] + constant[0]);
-            center[c] = static_cast<float>(known.center[c]);
+            center[c] = static_cast<float>(at_center(c + 1) / at_center(0));
             known.center[c] = static_cast<double>(center[c]);
         }
         sums.move(known.center);
-        known.least = (bounds.least + sums.least) * (1 - 1e-4);
-        known.finite = known.least > 0 && known.least < HUGE_VAL && length_of(known.center) < HUGE_VAL;
-        simd::bound_displacements(lines.table(), known.frame, center, bounds, lines.reach(), lines.error());
+        known.offset = length_of(known.center);
+        known.least = (bounds.least_sum + sums.least) * (1 - 1e-4);
+        known.finite = known.least > 0 && known.least < HUGE_VAL && known.offset < HUGE_VAL;
+        const simd::SpreadSums over = simd::bound_displacements(lines.table(), known.frame, center,
+                                                                static_cast<float>(0.25 * known.least),
+                                                                bounds, lines.reach(), lines.error());
 
         // D is a mean of the D_i: no farther off than the farthest, and lines of little weight count by that.
-        const float *most = bounds.most, *nearest = bounds.nearest, *reach = lines.reach();
-        const double much = 0.25 * known.least, b = m_map.weights().b;
-        double light = sums.reach, heavy = 0, steep = sums.steep_reach, slope = sums.slope;
-        double noise = sums.noise, noise_reach = sums.noise_reach, all = sums.most, all_reach = sums.reach;
-        known.farthest = sums.farthest;
-        for (std::size_t i = 0; i < lines.count(); ++i) {
-            const double r = static_cast<double>(reach[i]), m = static_cast<double>(most[i]);
-            known.farthest = std::max(known.farthest, r);
-            if (m <= much)
-                light += m * r;
-            else
-                heavy = std::max(heavy, r);
-            const double near = static_cast<double>(nearest[i]);
-            steep += b * m / near * r;
-            slope += m * static_cast<double>(lines.slope(i));
-            // Lines that may become far.
-            if (!(m <= much && bounds.value[i] < HUGE_VALF)) continue;
-            const double e = m * weight_rounding(near);
-            noise += e;
-            noise_reach += e * r;
-            all += m;
-            all_reach += m * r;
-        }
         // And D - center is the mean of (w_i - w_i at the centre) (D_i - center) and of w_i at the centre
         // times the change of D_i, since the sum of w_i (D_i - center) is 0 there.
-        const double half = static_cast<double>(known.frame.half);
-        const double change = half * (std::numbers::sqrt2 * steep + slope) / known.least;
-        known.spread = std::min({light / known.least + heavy, known.farthest, change}) * (1 + 1e-3);
+        const double half = static_cast<double>(known.frame.half), b = m_map.weights().b;
+        known.farthest = std::max(sums.farthest, over.farthest);
+        const double change =
+            half * (std::numbers::sqrt2 * (sums.steep_reach + b * over.steep) + sums.slope + over.slope) /
+            known.least;
+        known.spread =
+            std::min({(sums.reach + over.light) / known.least + over.heavy, known.farthest, change}) *
+            (1 + 1e-3);
+        // If all lines became far that may.
+        const double per_weight = weight_rounding(HUGE_VAL), per_near = kUlp * b * 11 * kHalfRegion;
+        const double noise = sums.noise + per_weight * over.most + per_near * over.near;
+        const double noise_reach = sums.noise_reach + per_weight * over.reach + per_near * over.near_reach;
         known.rounding = m_chebyshev.lebesgue * m_chebyshev.lebesgue *
-                         (noise_reach + known.spread * noise + 16 * kUlp * (all_reach + known.spread * all)) /
+                         (noise_reach + known.spread * noise +
+                          16 * kUlp * (sums.reach + over.reach + known.spread * (sums.most + over.most))) /
                          known.least;
         return known;
     }
@@ -485,87 +480,82 @@ class Planner {
         return near;
     }
 
-    void add_far(Candidates& lines, const simd::LineBounds& bounds, const Known& known, FarSums& sums) const {
-        const double across = 2 * std::numbers::sqrt2 * static_cast<double>(known.frame.half) + 2e-3;
+    void add_far(Candidates& lines, const simd::LineBounds& bounds, FarSums& sums) const {
         const double b = m_map.weights().b;
         for (std::size_t i = 0; i < lines.count(); ++i) {
             if (!lines.far[i]) continue;
-            const double most = static_cast<double>(bounds.most[i]),
-                         reach = static_cast<double>(lines.reach()[i]);
+            const double most = static_cast<double>(bounds.most[i]);
+            const double reach = static_cast<double>(lines.reach()[i]);
+            const double nearest = static_cast<double>(bounds.nearest[i]);
             sums.value += static_cast<double>(bounds.value[i]);
             sums.error += static_cast<double>(lines.error()[i]);
             sums.most += most;
             sums.reach += most * reach;
             sums.slope += most * static_cast<double>(lines.slope(i));
             sums.farthest = std::max(sums.farthest, reach);
-            const double nearest = static_cast<double>(bounds.nearest[i]);
+            const double steep = b * most / nearest;
+            sums.steep += steep;
+            sums.steep_reach += steep * reach;
             const double noise = most * weight_rounding(nearest);
-            sums.steep += m_map.weights().b * most / nearest;
-            sums.steep_reach += m_map.weights().b * most / nearest * reach;
             sums.noise += noise;
             sums.noise_reach += noise * reach;
-            // From the nearest to the farthest point of the cell.
-            const double ratio = nearest / (nearest + across + 4e-6 * (nearest + across));
-            sums.least += most * (b == 2 ? ratio * ratio : b == 1 ? ratio : std::pow(ratio, b)) * (1 - 1e-4);
+            sums.least += static_cast<double>(bounds.least[i]) * (1 - 1e-4);
         }
     }
 
     /// How many near lines a cell of this size may have before it is cut (measured).
-    static std::size_t most_near(int size) {
-        return size >= 64 ? 3 : size >= 32 ? 10 : size >= 16 ? 20 : std::numeric_limits<std::size_t>::max();
-    }
+    static std::size_t most_near(int size) { return size >= 64 ? 3 : size >= 32 ? 6 : 12; }
 
-    void divide(int x0, int y0, int size, std::size_t depth, Candidates& lines, simd::LineBounds& bounds,
-                const Known& known, const Inherited& inherited) {
-        if (size <= kFloor) return exact(x0, y0, size);
+    void divide(int x0, int y0, int size, std::size_t depth, const simd::LineBounds& bounds,
+                const Known& known, FarSums sums, double budget, bool has_polynomial) {
         // Lines that are far from the whole cell go into its polynomial.
-        Inherited next = inherited;
-        std::size_t near = lines.count();
-        if (known.finite) {
-            const double budget = kParentShare * (kInterpolationShare * m_options.tol - known.rounding -
-                                                  quotient_error(inherited.sums, known));
-            near = select(lines, bounds, known, budget);
-        }
+        Candidates& lines = level(depth);
         Candidates& rest = level(depth + 1);
+        alignas(64) double polynomial[kCoefficients];
+        const double* whole = lines.polynomial;
+        std::size_t near = lines.count();
+        if (known.finite) near = select(lines, bounds, known, kParentShare * budget);
         rest.reset(near);
-        if (near < lines.count()) {
-            add_far(lines, bounds, known, next.sums);
-            add_polynomial(lines, known.frame, next);
-            std::size_t to = 0;
-            for (std::size_t i = 0; i < lines.count(); ++i)
-                if (!lines.far[i]) rest.copy(to++, lines, i);
-        } else
-            for (std::size_t i = 0; i < lines.count(); ++i) rest.copy(i, lines, i);
+        const bool all_near = near == lines.count();
+        if (!all_near) {
+            add_far(lines, bounds, sums);
+            interpolate(lines, known.frame, has_polynomial, polynomial);
+            whole = polynomial;
+            has_polynomial = true;
+        }
+        std::size_t to = 0;
+        for (std::size_t i = 0; i < lines.count(); ++i)
+            if (all_near || !lines.far[i]) rest.copy(to++, lines, i);
 
         const int half = size / 2;
         for (int child = 0; child < 4; ++child) {
-            Inherited part;
-            part.any = next.any;
-            part.sums = next.sums;
             const int right = child & 1, below = child >> 1;
-            if (next.any)
-                simd::transform(m_chebyshev.halves[below], m_chebyshev.halves[right], m_chebyshev.k,
-                                next.coefficients, part.coefficients);
-            std::copy_n(part.coefficients, kSums, m_constant);
-            settle(x0 + right * half, y0 + below * half, half, depth + 1, part);
+            if (has_polynomial)
+                simd::transform(m_chebyshev.halves[below], m_chebyshev.halves[right], m_chebyshev.k, whole,
+                                rest.polynomial);
+            settle(x0 + right * half, y0 + below * half, half, depth + 1, sums, has_polynomial);
         }
     }
 
-    /// Adds the interpolant of the far lines' sums over a cell.
-    void add_polynomial(const Candidates& lines, const CellFrame& frame, Inherited& to) {
+    /// The polynomial of a cell: what it has from above and the interpolant of the far lines' sums.
+    void interpolate(const Candidates& lines, const CellFrame& frame, bool has_polynomial, double* to) {
+        const int k = m_chebyshev.k;
+        const auto size = static_cast<std::size_t>(k * k * 8);
         m_far.clear();
         for (std::size_t i = 0; i < lines.count(); ++i)
             if (lines.far[i]) m_far.push_back(lines.ids[i]);
-        if (m_far.empty()) return;
-        const int k = m_chebyshev.k;
-        alignas(64) double sums[kCoefficients], powers[kCoefficients];
-        std::fill_n(sums, static_cast<std::size_t>(k * k * 8), 0.0);
+        if (m_far.empty()) {
+            std::copy_n(lines.polynomial, size, to);
+            return;
+        }
+        alignas(64) double sums[kCoefficients];
+        std::fill_n(sums, size, 0.0);
         simd::node_sums(m_lines.data(), m_far.data(), static_cast<int>(m_far.size()), frame, m_weights, k,
                         m_chebyshev.nodes, sums);
-        simd::transform(m_chebyshev.powers, m_chebyshev.powers, k, sums, powers);
-        for (int i = 0; i < k * k; ++i)
-            for (int c = 0; c < kSums; ++c) to.coefficients[i * 8 + c] += powers[i * 8 + c];
-        to.any = true;
+        std::fill_n(to, size, 0.0);
+        simd::transform(m_chebyshev.powers, m_chebyshev.powers, k, sums, to);
+        if (has_polynomial)
+            for (std::size_t i = 0; i < size; ++i) to[i] += lines.polynomial[i];
     }
 
     // --- rounding ----------------------------------------------------------------------------------------
@@ -587,14 +577,14 @@ class Planner {
 
     /// Of adding up, dividing and placing: what no cutting of cells reduces.
     double base_rounding(const Known& known, std::size_t near) const {
-        const double value = known.spread + length_of(known.center);
+        const double value = known.spread + known.offset;
         return kUlp * (2 * (static_cast<double>(near) + m_chebyshev.k + 12) * value +
                        6 * (130 * scale() + 2 * value));
     }
 
     double far_rounding(const Known& known, const FarSums& sums, const float* coefficients) const {
         if (sums.most == 0) return 0;
-        const double offset = length_of(known.center);
+        const double offset = known.offset;
         const double reach = sums.reach + offset * sums.most;
         // Values at the nodes: weights, their sums over runs of lines, displacements.
         const double noise = sums.noise_reach + known.spread * sums.noise +
@@ -614,7 +604,7 @@ class Planner {
     /// Of the near lines' weights and displacements.
     double near_rounding(Candidates& lines, const simd::LineBounds& bounds, const Known& known,
                          const FarSums& far) const {
-        const double b = m_map.weights().b, offset = length_of(known.center);
+        const double b = m_map.weights().b, offset = known.offset;
         double total = 0, slope = 0, worst = 0;
         double others = far.most;
         for (std::size_t i = 0; i < lines.count(); ++i)
@@ -647,23 +637,23 @@ class Planner {
 
     /// Keeps the cell if its bound holds the tolerance.
     bool emit(const Box& box, Candidates& lines, const simd::LineBounds& bounds, const Known& known,
-              const FarSums& sums, const Inherited& given) {
+              const FarSums& sums, std::size_t near, bool has_polynomial) {
         const double off = sums.value / known.least;
         if (!(off < 0.05)) return false;
         const double interpolation = quotient_error(sums, known);
-        std::size_t near = 0;
-        for (std::size_t i = 0; i < lines.count(); ++i) near += !lines.far[i];
         const double before = base_rounding(known, near) + near_rounding(lines, bounds, known, sums);
         if (!(interpolation + before <= m_options.tol)) return false;
 
-        Inherited inherited = given;
-        add_polynomial(lines, known.frame, inherited);
+        const bool any = has_polynomial || near < lines.count();
+        const auto size = static_cast<std::size_t>(m_chebyshev.k * m_chebyshev.k * 8);
         float coefficients[kCoefficients];
-        const int k = m_chebyshev.k;
-        for (int i = 0; i < k * k * 8; ++i)
-            coefficients[i] = i % 8 < kSums ? static_cast<float>(inherited.coefficients[i]) : 0.0f;
-        const double bound =
-            (interpolation + before + far_rounding(known, sums, coefficients)) / (1 - off) * (1 + 1e-3);
+        if (any) {
+            alignas(64) double polynomial[kCoefficients];
+            interpolate(lines, known.frame, has_polynomial, polynomial);
+            for (std::size_t i = 0; i < size; ++i) coefficients[i] = static_cast<float>(polynomial[i]);
+        }
+        const double bound = (interpolation + before + (any ? far_rounding(known, sums, coefficients) : 0)) /
+                             (1 - off) * (1 + 1e-3);
         if (!(bound <= m_options.tol)) return false;
 
         Cell cell{box, false, bound, known.frame, {}, m_region.coefficients.size(), m_region.near.size(), 0};
@@ -678,9 +668,8 @@ class Planner {
             cell.base[2 * n] = static_cast<std::int32_t>(std::floor(x));
             cell.base[2 * n + 1] = static_cast<std::int32_t>(std::floor(y));
         }
-        if (inherited.any)
-            m_region.coefficients.insert(m_region.coefficients.end(), coefficients,
-                                         coefficients + static_cast<std::ptrdiff_t>(k * k * 8));
+        if (any)
+            m_region.coefficients.insert(m_region.coefficients.end(), coefficients, coefficients + size);
         else
             cell.coefficients = std::numeric_limits<std::size_t>::max();
         for (std::size_t i = 0; i < lines.count(); ++i)
@@ -719,8 +708,7 @@ class Planner {
     const Box m_picture;
     Region& m_region;
     simd::WeightParameters m_weights;
-    double m_x = 0, m_y = 0;        ///< the region's centre
-    double m_constant[kSums] = {};  ///< the inherited sums at its centre
+    double m_x = 0, m_y = 0;  ///< the region's centre
     std::vector<FieldLine> m_lines;
     std::vector<float> m_slopes;
     std::vector<std::int32_t> m_far;
@@ -834,9 +822,9 @@ void NearFar::each_block(const Box& region, const Box& part, const Visit& visit)
     const std::shared_ptr<const Region> planned = m_state->region(region);
     constexpr std::ptrdiff_t kStride = Block::kMaxSide + 16;
     constexpr std::ptrdiff_t kPlane = Block::kMaxSide * kStride;
-    std::vector<float> points(kComponents * kPlane);
+    const std::unique_ptr<float[]> points(new float[kComponents * kPlane]);
     float* to[kComponents];
-    for (std::ptrdiff_t c = 0; c < kComponents; ++c) to[c] = points.data() + c * kPlane;
+    for (std::ptrdiff_t c = 0; c < kComponents; ++c) to[c] = points.get() + c * kPlane;
     for (const Cell& cell : planned->cells) {
         if (intersection(cell.box, part).empty()) continue;
         block.box = cell.box;

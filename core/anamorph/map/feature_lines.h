@@ -100,11 +100,13 @@ inline T root(const T& square) {
 template <class T>
 inline T inverse_power(const T& x, double b) {
     using std::pow;
-    const auto value = pow(constant_part(x), -b);
+    using std::sqrt;
+    const auto c = constant_part(x);
+    const auto value = b == 2 ? 1 / (c * c) : b == 1 ? 1 / c : b == 0.5 ? 1 / sqrt(c) : pow(c, -b);
     if constexpr (std::is_floating_point_v<T>)
         return value;
     else
-        return T(value) + (x - constant_part(x)) * (-b * value / constant_part(x));
+        return T(value) + (x - c) * (-b * value / c);
 }
 
 #include "anamorph/map/feature_formula.h"

@@ -151,6 +151,17 @@ HWY_INLINE AxisError Both(const AxisError& s, const AxisError& t, V lebesgue) {
     return {value, linear};
 }
 
+/// Interpolating functions whose second derivative jumps: the error per unit of the jump, and per unit of the
+/// third derivative on either side (suprema of Peano's kernel and of its integral, rounded up).
+template <int K>
+constexpr float kJumpError = K == 4   ? 0.0190f
+                             : K == 6 ? 0.00775f
+                                      : 0.00425f;
+template <int K>
+constexpr float kThirdError = K == 4   ? 0.0161f
+                              : K == 6 ? 0.0049f
+                                       : 0.0023f;
+
 template <Exponent kExponent, int K>
 HWY_INLINE void BoundLines(const LineTable& lines, const CellFrame& cell, const WeightParameters& weights,
                            float lebesgue, LineBounds& out) {
@@ -159,6 +170,12 @@ HWY_INLINE void BoundLines(const LineTable& lines, const CellFrame& cell, const 
     const V a = Set(weights.a), b = Set(weights.b), least_distance = Set(kLeastDistance);
     const V diagonal = Set(cell.half * 1.41422f), constant = Set(lebesgue), infinite = Set(HUGE_VALF);
     const bool smooth = weights.b > 0 && weights.b <= 2, above_one = weights.b > 1;
+    // Bounds of the second and third derivatives of (a + r)^-b along a line, times (r / half side)^2 and ^3
+    // over the function, times the interpolation's constant on both axes.
+    const float b1 = weights.b < 1 ? HWY_MAX(weights.b + 1, 2 / std::sqrt(2 - weights.b)) : weights.b + 1;
+    const float axes = kThirdError<K> * (1 + lebesgue);
+    const float third_of_weight = axes * weights.b * (weights.b + 2) * b1;
+    const float second_of_weight = axes * 3 * weights.b * (weights.b + 1);
     V sums[kSums], least_sum = zero;
     for (V& s : sums) s = zero;
     for (int i = 0; i < lines.count; i += kLanes) {
@@ -181,6 +198,7 @@ HWY_INLINE void BoundLines(const LineTable& lines, const CellFrame& cell, const 
         const V weight = hn::Mul(factor, Power<kExponent>(hn::Max(hn::Add(a, far), least_distance), b));
         hn::StoreU(most, d, out.most + i);
         hn::StoreU(nearest, d, out.nearest + i);
+        hn::StoreU(least, d, out.least + i);
         least_sum = hn::Add(least_sum, least);
         sums[0] = hn::Add(sums[0], weight);
         for (int c = 0; c < kComponents; ++c) {
@@ -192,40 +210,55 @@ HWY_INLINE void BoundLines(const LineTable& lines, const CellFrame& cell, const 
         }
 
         AxisError error{zero, zero};
-        if (smooth) {
+        if (weights.b > 0) {
+            // From anywhere but on the line itself: its ends' levels are jumps of the second derivative.
             const V hx = hn::Mul(half, hn::Abs(ux)), hy = hn::Mul(half, hn::Abs(uy));
             const V extent = hn::Add(hn::Add(hx, hy), rounding);
-            // Beside the line, on one side of it, from end to end.
-            const V distance = hn::Sub(hn::Add(a, hn::Abs(beside)), rounding);
-            const auto is_beside =
-                hn::And(hn::And(hn::Lt(before, hn::Neg(extent)), hn::Lt(behind, hn::Neg(extent))),
-                        hn::Gt(hn::Abs(beside), extent));
-            const V tiny = Set(cell.half * 1e-6f);
-            const V xs = hn::Max(hn::Div(hn::Sub(distance, hx), hn::Max(hy, tiny)), one);
-            const V xt = hn::Max(hn::Div(hn::Sub(distance, hy), hn::Max(hx, tiny)), one);
-            const AxisError by_line =
-                above_one ? Both(BesideError<K, true>(xs), BesideError<K, true>(xt), constant)
-                          : Both(BesideError<K, false>(xs), BesideError<K, false>(xt), constant);
-            // Beyond an end, seen from everywhere in the cell.
-            const V beyond = hn::Max(before, behind);
-            const auto is_beyond = hn::Gt(beyond, extent);
-            const V z = hn::IfThenElse(hn::Gt(before, behind), before, hn::Neg(behind));
-            const V unit = Set(1 / cell.half), room = hn::Mul(rounding, unit);
-            const V px =
-                hn::Max(hn::Sub(hn::Mul(hn::Abs(hn::MulAdd(z, ux, hn::Mul(beside, uy))), unit), room), zero);
-            const V py =
-                hn::Max(hn::Sub(hn::Mul(hn::Abs(hn::MulSub(z, uy, hn::Mul(beside, ux))), unit), room), zero);
-            const V ex = hn::Max(hn::Sub(px, one), zero), ey = hn::Max(hn::Sub(py, one), zero);
-            const AxisError by_end = Both(EndError<K>(px, ey), EndError<K>(py, ex), constant);
-            const auto outside = hn::Gt(hn::Max(px, py), Set(1.05f));
-
-            const auto known = hn::Or(is_beside, hn::And(is_beyond, outside));
-            error.value = hn::IfThenElse(is_beside, by_line.value, by_end.value);
-            error.linear = hn::IfThenElse(is_beside, by_line.linear, by_end.linear);
-            error.value = hn::IfThenElse(known, error.value, infinite);
-            error.linear = hn::IfThenElse(known, error.linear, infinite);
-        } else if (weights.b > 2) {
-            error = {infinite, infinite};
+            const V clear = hn::Sub(hn::Sub(far, diagonal), rounding);
+            const V apart = hn::Max(clear, Set(1e-3f)), size = hn::Div(half, apart),
+                    size2 = hn::Mul(size, size);
+            const V larger = hn::Max(hn::Mul(ux, ux), hn::Mul(uy, uy));
+            const V jumps = hn::Add(hn::IfThenElseZero(hn::Lt(hn::Abs(before), extent), one),
+                                    hn::IfThenElseZero(hn::Lt(hn::Abs(behind), extent), one));
+            const V jump = hn::Mul(hn::Mul(jumps, hn::Mul(size, hn::Div(half, nearest))),
+                                   hn::MulAdd(larger, hn::Sub(one, constant), constant));
+            const V third = hn::Mul(size2, hn::Mul(size, Set(third_of_weight)));
+            error.value = hn::MulAdd(jump, Set(kJumpError<K> * weights.b), third);
+            error.linear = hn::MulAdd(size2, Set(second_of_weight), error.value);
+            const auto is_apart = hn::Gt(clear, Set(1e-3f));
+            error.value = hn::IfThenElse(is_apart, error.value, infinite);
+            error.linear = hn::IfThenElse(is_apart, error.linear, infinite);
+            if (smooth) {
+                // Beside the line, on one side of it, from end to end.
+                const V distance = hn::Sub(hn::Add(a, hn::Abs(beside)), rounding);
+                const auto is_beside =
+                    hn::And(hn::And(hn::Lt(before, hn::Neg(extent)), hn::Lt(behind, hn::Neg(extent))),
+                            hn::Gt(hn::Abs(beside), extent));
+                const V tiny = Set(cell.half * 1e-6f);
+                const V xs = hn::Max(hn::Div(hn::Sub(distance, hx), hn::Max(hy, tiny)), one);
+                const V xt = hn::Max(hn::Div(hn::Sub(distance, hy), hn::Max(hx, tiny)), one);
+                const AxisError by_line =
+                    above_one ? Both(BesideError<K, true>(xs), BesideError<K, true>(xt), constant)
+                              : Both(BesideError<K, false>(xs), BesideError<K, false>(xt), constant);
+                // Beyond an end, seen from everywhere in the cell.
+                const V beyond = hn::Max(before, behind);
+                const auto is_beyond = hn::Gt(beyond, extent);
+                const V z = hn::IfThenElse(hn::Gt(before, behind), before, hn::Neg(behind));
+                const V unit = Set(1 / cell.half), room = hn::Mul(rounding, unit);
+                const V px = hn::Max(
+                    hn::Sub(hn::Mul(hn::Abs(hn::MulAdd(z, ux, hn::Mul(beside, uy))), unit), room), zero);
+                const V py = hn::Max(
+                    hn::Sub(hn::Mul(hn::Abs(hn::MulSub(z, uy, hn::Mul(beside, ux))), unit), room), zero);
+                const V ex = hn::Max(hn::Sub(px, one), zero), ey = hn::Max(hn::Sub(py, one), zero);
+                const AxisError by_end = Both(EndError<K>(px, ey), EndError<K>(py, ex), constant);
+                const auto outside = hn::And(is_beyond, hn::Gt(hn::Max(px, py), Set(1.05f)));
+                const auto better = [&](V general, V line, V end) HWY_ATTR {
+                    const V closed = hn::IfThenElse(is_beside, line, hn::IfThenElse(outside, end, infinite));
+                    return hn::Min(general, closed);
+                };
+                error.value = better(error.value, by_line.value, by_end.value);
+                error.linear = better(error.linear, by_line.linear, by_end.linear);
+            }
         }
         const V change = hn::Mul(half, field(LineTable::kSlope));
         // Lines of factor 0 fill up the last vector.
@@ -236,7 +269,7 @@ HWY_INLINE void BoundLines(const LineTable& lines, const CellFrame& cell, const 
     }
     for (int c = 0; c < kSums; ++c)
         out.center[c] = static_cast<double>(hn::GetLane(hn::SumOfLanes(d, sums[c])));
-    out.least = static_cast<double>(hn::GetLane(hn::SumOfLanes(d, least_sum)));
+    out.least_sum = static_cast<double>(hn::GetLane(hn::SumOfLanes(d, least_sum)));
 }
 
 void BoundLinesOf(const LineTable& lines, const CellFrame& cell, const WeightParameters& weights, int k,
@@ -249,26 +282,46 @@ void BoundLinesOf(const LineTable& lines, const CellFrame& cell, const WeightPar
     });
 }
 
-void BoundDisplacements(const LineTable& lines, const CellFrame& cell, const float* center,
-                        const LineBounds& bounds, float* reach, float* error) {
+SpreadSums BoundDisplacements(const LineTable& lines, const CellFrame& cell, const float* center, float much,
+                              const LineBounds& bounds, float* reach, float* error) {
     const Floats d;
+    const V zero = Set(0), infinite = Set(HUGE_VALF);
+    V farthest = zero, heavy = zero, light = zero, steep = zero, slope = zero;
+    V most_sum = zero, reach_sum = zero, near_sum = zero, near_reach = zero;
     for (int i = 0; i < lines.count; i += kLanes) {
-        V square = Set(0);
+        V square = zero;
         for (int c = 0; c < kComponents; c += 2) {
             const V dx = hn::Sub(hn::LoadU(d, bounds.displacement[c] + i), Set(center[c]));
             const V dy = hn::Sub(hn::LoadU(d, bounds.displacement[c + 1] + i), Set(center[c + 1]));
             square = hn::Max(square, hn::MulAdd(dx, dx, hn::Mul(dy, dy)));
         }
-        const V distance = hn::Sqrt(square);
-        const V change =
-            hn::Mul(Set(cell.half), hn::LoadU(d, lines.data + LineTable::kSlope * lines.stride + i));
-        hn::StoreU(hn::Add(distance, change), d, reach + i);
+        const auto real = hn::Gt(hn::LoadU(d, lines.data + LineTable::kFactor * lines.stride + i), zero);
+        const V distance = hn::IfThenElseZero(real, hn::Sqrt(square));
+        const V change = hn::LoadU(d, lines.data + LineTable::kSlope * lines.stride + i);
+        const V r = hn::MulAdd(Set(cell.half), change, distance);
+        hn::StoreU(r, d, reach + i);
         const V value = hn::LoadU(d, bounds.value + i), linear = hn::LoadU(d, bounds.linear + i);
         // An unknown error stays so, whatever the displacement.
-        hn::StoreU(hn::IfThenElse(hn::Lt(value, Set(HUGE_VALF)), hn::MulAdd(value, distance, linear),
-                                  Set(HUGE_VALF)),
-                   d, error + i);
+        const auto known = hn::Lt(value, infinite);
+        hn::StoreU(hn::IfThenElse(known, hn::MulAdd(value, distance, linear), infinite), d, error + i);
+
+        const V m = hn::LoadU(d, bounds.most + i);
+        const V near = hn::Div(m, hn::LoadU(d, bounds.nearest + i));
+        const auto is_light = hn::Le(m, Set(much)), may_be_far = hn::And(is_light, known);
+        farthest = hn::Max(farthest, r);
+        heavy = hn::Max(heavy, hn::IfThenZeroElse(is_light, r));
+        light = hn::Add(light, hn::IfThenElseZero(is_light, hn::Mul(m, r)));
+        steep = hn::MulAdd(near, r, steep);
+        slope = hn::MulAdd(m, change, slope);
+        most_sum = hn::Add(most_sum, hn::IfThenElseZero(may_be_far, m));
+        reach_sum = hn::Add(reach_sum, hn::IfThenElseZero(may_be_far, hn::Mul(m, r)));
+        near_sum = hn::Add(near_sum, hn::IfThenElseZero(may_be_far, near));
+        near_reach = hn::Add(near_reach, hn::IfThenElseZero(may_be_far, hn::Mul(near, r)));
     }
+    const auto sum = [&](V v) HWY_ATTR { return static_cast<double>(hn::GetLane(hn::SumOfLanes(d, v))); };
+    const auto max_of = [&](V v) HWY_ATTR { return static_cast<double>(hn::GetLane(hn::MaxOfLanes(d, v))); };
+    return {max_of(farthest), max_of(heavy),  sum(light),    sum(steep),     sum(slope),
+            sum(most_sum),    sum(reach_sum), sum(near_sum), sum(near_reach)};
 }
 
 // --- sums --------------------------------------------------------------------------------------------------
@@ -362,47 +415,47 @@ void NodeSumsOf(const FieldLine* lines, const int32_t* which, int count, const C
     });
 }
 
-void Transform(const double* left, const double* right, int k, const double* HWY_RESTRICT from,
-               double* HWY_RESTRICT to) {
-#if HWY_HAVE_FLOAT64
+template <int K>
+HWY_INLINE void TransformDegree(const double* left, const double* right, const double* HWY_RESTRICT from,
+                                double* HWY_RESTRICT to) {
+#if HWY_HAVE_FLOAT64 && HWY_TARGET != HWY_SCALAR
     const hn::CappedTag<double, 8> d;
-    constexpr int kStep = static_cast<int>(hn::MaxLanes(d));
-    HWY_ALIGN double between[kMaxDegree * kMaxDegree * 8];
-    for (int lane = 0; lane < kSums; lane += kStep) {
-        for (int m = 0; m < k; ++m)
-            for (int i = 0; i < k; ++i) {
-                auto sum = hn::Zero(d);
-                for (int j = 0; j < k; ++j)
-                    sum = hn::MulAdd(hn::Set(d, left[m * k + j]), hn::LoadU(d, from + (j * k + i) * 8 + lane),
-                                     sum);
-                hn::Store(sum, d, between + (m * k + i) * 8 + lane);
-            }
-        for (int m = 0; m < k; ++m)
-            for (int n = 0; n < k; ++n) {
-                auto sum = hn::Zero(d);
-                for (int i = 0; i < k; ++i)
-                    sum = hn::MulAdd(hn::Set(d, right[n * k + i]),
-                                     hn::Load(d, between + (m * k + i) * 8 + lane), sum);
-                hn::StoreU(sum, d, to + (m * k + n) * 8 + lane);
-            }
-    }
 #else
-    double between[kMaxDegree * kMaxDegree * 8];
-    for (int c = 0; c < kSums; ++c) {
-        for (int m = 0; m < k; ++m)
-            for (int i = 0; i < k; ++i) {
-                double sum = 0;
-                for (int j = 0; j < k; ++j) sum += left[m * k + j] * from[(j * k + i) * 8 + c];
-                between[(m * k + i) * 8 + c] = sum;
-            }
-        for (int m = 0; m < k; ++m)
-            for (int n = 0; n < k; ++n) {
-                double sum = 0;
-                for (int i = 0; i < k; ++i) sum += right[n * k + i] * between[(m * k + i) * 8 + c];
-                to[(m * k + n) * 8 + c] = sum;
-            }
-    }
+    const hn::CappedTag<double, 1> d;
 #endif
+    constexpr int kStep = static_cast<int>(hn::MaxLanes(d));
+    HWY_ALIGN double between[K * K * 8];
+    for (int lane = 0; lane < kSums; lane += kStep) {
+        for (int i = 0; i < K; ++i) {
+            hn::Vec<decltype(d)> column[K];
+            HWY_UNROLL(8)
+            for (int j = 0; j < K; ++j) column[j] = hn::LoadU(d, from + (j * K + i) * 8 + lane);
+            HWY_UNROLL(8)
+            for (int m = 0; m < K; ++m) {
+                auto sum = hn::Mul(hn::Set(d, left[m * K]), column[0]);
+                HWY_UNROLL(8)
+                for (int j = 1; j < K; ++j) sum = hn::MulAdd(hn::Set(d, left[m * K + j]), column[j], sum);
+                hn::Store(sum, d, between + (m * K + i) * 8 + lane);
+            }
+        }
+        for (int m = 0; m < K; ++m) {
+            hn::Vec<decltype(d)> row[K];
+            HWY_UNROLL(8)
+            for (int i = 0; i < K; ++i) row[i] = hn::Load(d, between + (m * K + i) * 8 + lane);
+            HWY_UNROLL(8)
+            for (int n = 0; n < K; ++n) {
+                auto sum = hn::Mul(hn::Set(d, right[n * K]), row[0]);
+                HWY_UNROLL(8)
+                for (int i = 1; i < K; ++i) sum = hn::MulAdd(hn::Set(d, right[n * K + i]), row[i], sum);
+                hn::StoreU(sum, d, to + (m * K + n) * 8 + lane);
+            }
+        }
+    }
+}
+
+void Transform(const double* left, const double* right, int k, const double* from, double* to) {
+    WithDegree(
+        k, [&](auto degree) HWY_ATTR { TransformDegree<decltype(degree)::value>(left, right, from, to); });
 }
 
 // --- pixels ------------------------------------------------------------------------------------------------
@@ -486,9 +539,9 @@ void bound_lines(const LineTable& lines, const CellFrame& cell, const WeightPara
                  float lebesgue, LineBounds& bounds) {
     HWY_DYNAMIC_DISPATCH(BoundLinesOf)(lines, cell, weights, k, lebesgue, bounds);
 }
-void bound_displacements(const LineTable& lines, const CellFrame& cell, const float* center,
-                         const LineBounds& bounds, float* reach, float* error) {
-    HWY_DYNAMIC_DISPATCH(BoundDisplacements)(lines, cell, center, bounds, reach, error);
+SpreadSums bound_displacements(const LineTable& lines, const CellFrame& cell, const float* center, float much,
+                               const LineBounds& bounds, float* reach, float* error) {
+    return HWY_DYNAMIC_DISPATCH(BoundDisplacements)(lines, cell, center, much, bounds, reach, error);
 }
 void node_sums(const FieldLine* lines, const std::int32_t* which, int count, const CellFrame& cell,
                const WeightParameters& weights, int k, const float* nodes, double* sums) {

@@ -67,21 +67,33 @@ struct CellFrame {
 /// What is known of lines over a cell: arrays of as many numbers as LineTable has room for.
 struct LineBounds {
     float* most;     ///< the greatest weight in the cell
+    float* least;    ///< the least
     float* value;    ///< most times the interpolation's relative error of the weight; infinite where unknown
     float* linear;   ///< the same of the weight times an offset in the cell, times the displacement's change
     float* nearest;  ///< a + dist, the least in the cell
     float* displacement[kComponents];  ///< at the centre
     double center[kSums];              ///< sums at the centre
-    double least;                      ///< sum of the least weights
+    double least_sum;
 };
 /// K: coefficients each way (4, 6 or 8); lebesgue: K's Lebesgue constant.
 void bound_lines(const LineTable& lines, const CellFrame& cell, const WeightParameters& weights, int k,
                  float lebesgue, LineBounds& bounds);
 
+/// Sums and maxima over lines, of the greatest weight m, the reach r, a + dist d, and the displacement's
+/// change per pixel.
+struct SpreadSums {
+    double farthest = 0;  ///< max r
+    double heavy = 0;     ///< max r of lines with m > much
+    double light = 0;     ///< sum m r of the others
+    double steep = 0;     ///< sum m r / d
+    double slope = 0;     ///< sum m * change
+    /// Sums of m, m r, m / d, m r / d over lines that may be far (not heavy, error known).
+    double most = 0, reach = 0, near = 0, near_reach = 0;
+};
 /// reach[i]: the greatest distance of a line's displacement from `center` (kComponents numbers) in the cell;
 /// error[i]: value * (the distance at the cell's centre) + linear.
-void bound_displacements(const LineTable& lines, const CellFrame& cell, const float* center,
-                         const LineBounds& bounds, float* reach, float* error);
+SpreadSums bound_displacements(const LineTable& lines, const CellFrame& cell, const float* center, float much,
+                               const LineBounds& bounds, float* reach, float* error);
 
 /// Adds the kSums sums over `count` lines at the K x K nodes of a cell: sums[(row * K + column) * 8 + c].
 void node_sums(const FieldLine* lines, const std::int32_t* which, int count, const CellFrame& cell,
