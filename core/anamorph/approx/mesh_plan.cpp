@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cstdio>
 #include <cstring>
+#include <functional>
 #include <limits>
 
 #include "anamorph/approx/hermite.h"
@@ -56,33 +57,70 @@ struct CellForm {
     }
 };
 
+/// Calls body(cell, part) for the cells that meet a box of pixels, with the pixels whose centres they hold.
+template <class Body>
+void each_cell_of(const Mesh& mesh, const Box& box, const Body& body) {
+    mesh.each_cell(box.x0 + 0.5, box.y0 + 0.5, box.x1 - 0.5, box.y1 - 0.5, [&](const MeshCell& cell) {
+        Box part;
+        // The outermost cells go on to the edges of the image.
+        pixels_between(cell.x0 <= mesh.x_lines().front() ? -1 : cell.x0,
+                       cell.x1 >= mesh.x_lines().back() ? HUGE_VAL : cell.x1, box.x0, box.x1, part.x0,
+                       part.x1);
+        pixels_between(cell.y0 <= mesh.y_lines().front() ? -1 : cell.y0,
+                       cell.y1 >= mesh.y_lines().back() ? HUGE_VAL : cell.y1, box.y0, box.y1, part.y0,
+                       part.y1);
+        if (!part.empty()) body(cell, part);
+    });
+}
+
+/// Have cells so few pixels in a box that blocks are better off without them?
+bool has_small_cells(const Mesh& mesh, const Box& box) {
+    double cells = 0;
+    mesh.each_cell(box.x0 + 0.5, box.y0 + 0.5, box.x1 - 0.5, box.y1 - 0.5, [&](const MeshCell&) { ++cells; });
+    return double(box.width()) * box.height() < BlockWriter::kFloorPixels * cells;
+}
+
+/// The sign of the Jacobian's determinant on a block: of a map in powers of parameters in [-1, 1], each of
+/// whose derivatives errs by at most `rounding`. 0 where it is not the same everywhere, as far as can be
+/// seen.
+int sign_of_determinant(const Bicubic& f, double rounding) {
+    // A derivative is c[1][0] (along s) or c[0][1] (along t), give or take the magnitudes of its other terms.
+    struct Range {
+        double middle, radius;
+    };
+    const auto range = [&](const double(&c)[4][4], bool along_s) {
+        Range r{along_s ? c[1][0] : c[0][1], rounding - std::fabs(along_s ? c[1][0] : c[0][1])};
+        for (int i = 0; i < 4; ++i)
+            for (int j = 0; j < 4; ++j) r.radius += (along_s ? i : j) * std::fabs(c[i][j]);
+        return r;
+    };
+    const auto times = [](const Range& a, const Range& b) {
+        const double radius =
+            std::fabs(a.middle) * b.radius + a.radius * std::fabs(b.middle) + a.radius * b.radius;
+        return Range{a.middle * b.middle, radius};
+    };
+    const Range forth = times(range(f.x, true), range(f.y, false)),
+                back = times(range(f.x, false), range(f.y, true));
+    const double middle = forth.middle - back.middle;
+    const double radius =
+        (forth.radius + back.radius) + 1e-14 * (std::fabs(forth.middle) + std::fabs(back.middle));
+    return middle > radius ? 1 : middle < -radius ? -1 : 0;
+}
+
 /// Plans one region; blocks are appended to `blocks`.
 class Planner {
   public:
     Planner(const Mesh& mesh, WarpScheme scheme, double tol, const ResidualTables* tables, Blocks& blocks)
-        : m_mesh(mesh), m_scheme(scheme), m_tables(tables), m_writer(tol, blocks) {}
+        : m_mesh(mesh), m_scheme(scheme), m_tol(tol), m_tables(tables), m_writer(tol, blocks) {}
 
     void exact(const Box& box) {
         BlockWriter::for_blocks(box, [&](const Box& b) { m_writer.exact(b); });
     }
 
     void region(const Box& box) {
-        // Where cells have few pixels, blocks that take no notice of them.
-        double cells = 0;
-        m_mesh.each_cell(box.x0 + 0.5, box.y0 + 0.5, box.x1 - 0.5, box.y1 - 0.5,
-                         [&](const MeshCell&) { ++cells; });
-        if (double(box.width()) * box.height() < BlockWriter::kFloorPixels * cells) return exact(box);
-        m_mesh.each_cell(box.x0 + 0.5, box.y0 + 0.5, box.x1 - 0.5, box.y1 - 0.5, [&](const MeshCell& cell) {
-            Box part;
-            // The outermost cells go on to the edges of the image.
-            pixels_between(cell.x0 <= m_mesh.x_lines().front() ? -1 : cell.x0,
-                           cell.x1 >= m_mesh.x_lines().back() ? HUGE_VAL : cell.x1, box.x0, box.x1, part.x0,
-                           part.x1);
-            pixels_between(cell.y0 <= m_mesh.y_lines().front() ? -1 : cell.y0,
-                           cell.y1 >= m_mesh.y_lines().back() ? HUGE_VAL : cell.y1, box.y0, box.y1, part.y0,
-                           part.y1);
-            if (!part.empty()) settle(CellForm(m_mesh, cell), part);
-        });
+        if (has_small_cells(m_mesh, box)) return exact(box);
+        each_cell_of(m_mesh, box,
+                     [&](const MeshCell& cell, const Box& part) { settle(CellForm(m_mesh, cell), part); });
     }
 
   private:
@@ -91,7 +129,9 @@ class Planner {
             case WarpScheme::automatic:
                 return BlockWriter::for_blocks(box, [&](const Box& b) { place(form, b); });
             case WarpScheme::hermite:
-                return BlockWriter::for_blocks(box, [&](const Box& b) { place_rows(form, b); });
+                return BlockWriter::for_blocks(box, [&](const Box& b) {
+                    if (!place_rows(form, b, form.on(b))) m_writer.exact(b);
+                });
             case WarpScheme::residual:
                 return place_residual(form, box);
             case WarpScheme::exact:
@@ -105,35 +145,45 @@ class Planner {
         const Bicubic f = form.on(box);
         const EconomizedBicubic x(f.x), y(f.y);
         if (m_writer.polynomial(box, x.c, y.c, std::hypot(x.dropped, y.dropped) + form.rounding)) return;
+        if (needs_small_pieces(box, x.dropped_s + y.dropped_s, x.dropped_t + y.dropped_t) &&
+            place_rows(form, box, f))
+            return;
         m_writer.halve(box, x.dropped_s + y.dropped_s >= x.dropped_t + y.dropped_t,
                        [&](const Box& b) { place(form, b); });
     }
 
-    /// A computed block whose base is the map at its middle; exact where `error` exceeds the tolerance.
-    void emit_computed(const CellForm& form, const Box& box, double error) {
-        const Point<double> middle =
-            form.mesh.at(form.patch, 0.5 * (box.x0 + box.x1), 0.5 * (box.y0 + box.y1));
-        m_writer.computed(box, middle, error);
+    /// Would quadratic blocks be so small that the whole patch costs less? What is dropped is mostly cubic.
+    bool needs_small_pieces(const Box& box, double dropped_s, double dropped_t) const {
+        constexpr double kFewPixels = 96;
+        const auto pieces = [&](double dropped) { return std::max(1.0, std::cbrt(2 * dropped / m_tol)); };
+        return double(box.width()) * box.height() < kFewPixels * pieces(dropped_s) * pieces(dropped_t);
+    }
+
+    /// A computed block whose base is the map at its middle. False where `error` exceeds the tolerance.
+    bool emit_computed(const CellForm& form, const Box& box, double error) {
+        return m_writer.computed(
+            box, form.mesh.at(form.patch, 0.5 * (box.x0 + box.x1), 0.5 * (box.y0 + box.y1)), error);
     }
 
     /// The full patch (5.3.5): a row is a cubic in float, each term of which errs as kFloatRounding says.
-    void place_rows(const CellForm& form, const Box& box) {
-        const Bicubic f = form.on(box);
+    bool place_rows(const CellForm& form, const Box& box, const Bicubic& f) {
         const auto sum = [](const double(&c)[4][4]) { return sum_of_magnitudes(c) - std::fabs(c[0][0]) + 1; };
         // The base is the middle rounded down: what is left of the constant term is below 1.
-        emit_computed(form, box, kFloatRounding * std::hypot(sum(f.x), sum(f.y)) + form.rounding);
+        return emit_computed(form, box, kFloatRounding * std::hypot(sum(f.x), sum(f.y)) + form.rounding);
     }
 
     void place_residual(const CellForm& form, const Box& box) {
         const ResidualPatch residual(form.patch);
         BlockWriter::for_blocks(box, [&](const Box& b) {
-            emit_computed(form, b,
-                          m_tables->bound(residual) + residual.float_rounding(form.on(b)) + form.rounding);
+            const double error =
+                m_tables->bound(residual) + residual.float_rounding(form.on(b)) + form.rounding;
+            if (!emit_computed(form, b, error)) m_writer.exact(b);
         });
     }
 
     const Mesh& m_mesh;
     WarpScheme m_scheme;
+    double m_tol;
     const ResidualTables* m_tables;
     BlockWriter m_writer;
 };
@@ -224,7 +274,26 @@ void MeshPlan::computed_row(const Block& block, int row, int begin, int end, flo
 }
 
 std::int64_t MeshPlan::folded_pixels(const Box& box) const {
-    return WarpPlan::folded_pixels(box);
+    if (has_small_cells(m_mesh, box)) return WarpPlan::folded_pixels(box);
+    std::int64_t folded = 0;
+    each_cell_of(m_mesh, box, [&](const MeshCell& cell, const Box& part) {
+        const CellForm form(m_mesh, cell);
+        const std::function<std::int64_t(const Box&)> count = [&](const Box& b) -> std::int64_t {
+            // A derivative sums up to 16 terms, each up to three times a coefficient.
+            const double sign = sign_of_determinant(form.on(b), 48 * form.rounding) * m_mesh.orientation();
+            if (sign > 0) return 0;
+            if (sign < 0) return std::int64_t{b.width()} * b.height();
+            if (BlockWriter::below_floor(b)) return WarpPlan::folded_pixels(b);
+            Box first = b, second = b;
+            if (b.width() > b.height())
+                first.x1 = second.x0 = (b.x0 + b.x1) / 2;
+            else
+                first.y1 = second.y0 = (b.y0 + b.y1) / 2;
+            return count(first) + count(second);
+        };
+        folded += count(part);
+    });
+    return folded;
 }
 
 }  // namespace anamorph
