@@ -6,14 +6,14 @@
 #include <cstdio>
 #include <optional>
 
+#include "anamorph/approx/mesh_blocks.h"
 #include "anamorph/approx/residual.h"
 #include "anamorph/approx/taylor.h"
 
 namespace anamorph {
 namespace {
 
-// A block is at most as large as keeps its source and target rows in the first-level cache.
-constexpr int kBlockWidth = 64, kBlockHeight = 32;
+constexpr int kBlockWidth = BlockWriter::kWidth, kBlockHeight = BlockWriter::kHeight;
 // Below this a polynomial costs more than its pixels.
 constexpr int kFloor = 8, kResidualFloor = 4;
 
@@ -23,10 +23,6 @@ constexpr int kBoundCost = 170, kBoundPixels = 512;
 // the region's pixels.
 constexpr double kCredit = 1.0 / 16;
 
-// Rounding of a point's coordinates to float and of their evaluation: the coefficients, s and t are each
-// rounded once, and at most five operations are rounded on the way from the smallest term to the sum, so that
-// each term errs by less than 8 half-ULP of its size.
-constexpr double kFloatRounding = 8 * 0x1p-24;
 // Rounding of the formula itself in double, relative to the extent of the source: some hundred operations,
 // each well conditioned wherever the bound is finite (tests/core holds it against long double).
 constexpr double kDoubleRounding = 256 * 0x1p-53;
@@ -34,11 +30,6 @@ constexpr double kDoubleRounding = 256 * 0x1p-53;
 // The part of the tolerance that a remainder may take up before a fresh one, over a smaller box, is worth its
 // cost; and before two blocks are better off with a Taylor polynomial each.
 constexpr double kTailShare = 0.25, kSharedTailShare = 0.2;
-
-/// Half the distance between the first and the last of a row of pixel centres.
-double half(int pixels) {
-    return pixels > 1 ? 0.5 * (pixels - 1) : 0.5;
-}
 
 int pixels_of(const Box& box) {
     return box.width() * box.height();
@@ -303,31 +294,15 @@ class Planner {
 
     /// True when the polynomial, evaluated in float, keeps the tolerance: then the block is appended.
     bool emit_polynomial(const Box& box, int source_piece, const double* cx, const double* cy, double fit) {
-        Block block;
-        block.box = box;
-        block.kind = Block::Kind::polynomial;
+        if (!BlockWriter(m_options.tol, m_blocks).polynomial(box, cx, cy, fit + kDoubleRounding * m_extent))
+            return false;
+        m_balance += pixels_of(box);
+        Block& block = m_blocks.back();
         block.piece = m_piece;
         block.source_piece = source_piece;
-        const double limit = 1 << 30;
-        if (!(std::fabs(cx[0]) < limit && std::fabs(cy[0]) < limit)) return false;
-        block.base_x = static_cast<std::int32_t>(std::floor(cx[0]));
-        block.base_y = static_cast<std::int32_t>(std::floor(cy[0]));
-        const auto store = [](const double* c, std::int32_t base, float* to) {
-            double sum = 0;
-            for (int i = 0; i < 6; ++i) {
-                to[i] = static_cast<float>(i == 0 ? c[0] - base : c[i]);
-                sum += std::fabs(c[i] - (i == 0 ? base : 0));
-            }
-            return sum * kFloatRounding;
-        };
-        const double ex = store(cx, block.base_x, block.x), ey = store(cy, block.base_y, block.y);
         // The turn that brings the block's middle into the image.
         if (const int period = m_map.source().period(); m_map.source().closed())
             block.base_x -= static_cast<int>(std::floor(static_cast<double>(block.base_x) / period)) * period;
-        block.bound = fit + length(ex, ey) + kDoubleRounding * m_extent;
-        if (!(block.bound <= m_options.tol)) return false;
-        m_balance += pixels_of(box);
-        m_blocks.push_back(block);
         return true;
     }
 
