@@ -276,6 +276,18 @@ requires(std::is_floating_point_v<T> || std::is_same_v<T, Interval>) inline void
     c = cos(a);
 }
 
+/// E g = g E a, so k g_k = sum_(0<j<=k) j a_j g_(k-j)
+template <class T, int N>
+inline Jet<T, N> exp(const Jet<T, N>& a) {
+    using std::exp;
+    Jet<T, N> g(exp(a.c[0]));
+    jet_detail::each_coefficient<N>([&](auto k, auto m) ANAMORPH_UNROLLED {
+        const int at = Jet<T, N>::part(k) + m;
+        g.c[at] = jet_detail::convolve<k, 1, k>(a, g, m, [](int j) { return j; }) / T(k);
+    });
+    return g;
+}
+
 template <class T, int N>
 inline Jet<T, N> sinh(const Jet<T, N>& a) {
     using std::cosh;

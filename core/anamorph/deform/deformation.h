@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: Apache-2.0
+// Free-form deformation by a list of editable bumps (Oka 1987, section 4.1).
+//
+//     P_i = P_(i-1) + V_i F(p, c_i, a_i)                                   (4.1)
+//
+// moves the point P of a surface that belongs to the point p = (u, v) of the texture plane. c and a are in
+// the units of u and v, V in those of P. The list is plain data: what evaluates it (deformed_surface.h) adds
+// in fixed point, so the surface depends neither on the order of the list nor on how it came about.
+#pragma once
+
+#include <cmath>
+#include <cstddef>
+#include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "anamorph/number/jet.h"
+
+namespace anamorph {
+
+enum class DeformationKernel {
+    gaussian,    ///< exp(-r^2)                                            (4.2)
+    wendland_c2  ///< (1 - r)^4 (4 r + 1) up to r = 1, then 0: twice continuously differentiable (Wendland
+                 ///< 1995, phi_(3,1))
+};
+
+struct Deformation {
+    glm::dvec3 vector{0.0};  ///< V
+    glm::dvec2 center{0.0};  ///< c
+    glm::dvec2 extent{1.0};  ///< a: r is 1 on the ellipse with these half axes
+    DeformationKernel kernel = DeformationKernel::gaussian;
+    bool enabled = true;
+
+    bool operator==(const Deformation&) const = default;
+};
+
+/// Extents lie between these, so that neither they nor their inverses leave the range of double.
+inline constexpr double kLeastExtent = 1e-300, kMostExtent = 1e300;
+
+/// Throws Error that names the field, unless all numbers are finite and extents in their range.
+void check_deformation(const Deformation& deformation);
+
+/// F of x = (u - c_u) / a_u and y = (v - c_v) / a_v: 1 at the centre. T: double, long double, or jets of them
+/// up to the second degree.
+template <class T>
+T kernel_value(DeformationKernel kernel, const T& x, const T& y) {
+    using std::exp;
+    using std::sqrt;
+    const T squared = square(x) + square(y);
+    if (kernel == DeformationKernel::gaussian) return exp(-squared);
+    const auto at = constant_part(squared);
+    if (!(at < 1)) return T(0.0);
+    // Expanded: 1 - 10 r^2 + 20 r^3 - 15 r^4 + 4 r^5. At r = 0, r^3 has no derivatives up to the second.
+    if (at == 0) return T(1.0) - T(10.0) * squared;
+    const T r = sqrt(squared), rest = T(1.0) - r;
+    return square(square(rest)) * (T(4.0) * r + T(1.0));
+}
+
+/// F(p, c, a) at p = (u, v), exactly (with no cutoff).
+template <class T>
+T influence(const Deformation& d, const T& u, const T& v) {
+    return kernel_value(d.kernel, (u - T(d.center.x)) * T(1 / d.extent.x),
+                        (v - T(d.center.y)) * T(1 / d.extent.y));
+}
+
+/// The displacement sum_i V_i F(p, c_i, a_i) of the enabled deformations at p and its derivatives by u and v.
+struct DisplacementJet {
+    glm::dvec3 value{0.0}, by_u{0.0}, by_v{0.0};
+};
+DisplacementJet displacement_at(const std::vector<Deformation>& list, glm::dvec2 p);
+
+/// The unit normal of the deformed surface at p, where the undeformed one has the derivatives base_u and
+/// base_v: (base_u + D_u) x (base_v + D_v). Zero where these are parallel.
+glm::dvec3 deformed_normal(const std::vector<Deformation>& list, glm::dvec2 p, glm::dvec3 base_u,
+                           glm::dvec3 base_v);
+
+/// What an edit of a list does to the surface: `before` is taken away, `after` is added. Neither is there if
+/// the edit moves nothing.
+struct DeformationChange {
+    std::optional<Deformation> before, after;
+
+    DeformationChange undo() const { return {after, before}; }
+};
+
+/// The list and its edits. Each says what it does to the surface; undoing is applying the opposite. Throws
+/// Error on a deformation that check_deformation refuses and on a position that is not in the list.
+class DeformationList {
+  public:
+    DeformationList() = default;
+    explicit DeformationList(std::vector<Deformation> entries);
+
+    const std::vector<Deformation>& entries() const { return m_entries; }
+
+    DeformationChange add(const Deformation& deformation);
+    DeformationChange insert(std::size_t position, const Deformation& deformation);
+    DeformationChange change(std::size_t position, const Deformation& deformation);
+    DeformationChange remove(std::size_t position);
+    DeformationChange enable(std::size_t position, bool enabled);
+    /// The entry at `from` then stands at `to`. The surface stays as it is.
+    void move(std::size_t from, std::size_t to);
+
+  private:
+    void check_position(std::size_t position, std::size_t end) const;
+
+    std::vector<Deformation> m_entries;
+};
+
+/// The changes that lead from the surface of one list to that of another: only what differs, in any order.
+std::vector<DeformationChange> difference(const std::vector<Deformation>& from,
+                                          const std::vector<Deformation>& to);
+
+}  // namespace anamorph

@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: Apache-2.0
+// Hot loops of deformed surfaces (deform/deformed_surface.h) and of inbetweening (deform/inbetween.h),
+// compiled for every instruction set Highway knows.
+//
+// Displacements are added as whole numbers of a resolution, a power of two: V F / resolution is rounded to
+// the nearest whole number, ties to even, so adding a term and adding it with V of the other sign cancel to
+// the bit, and order does not matter. Each component of V / resolution is less than kMostUnits, and so is
+// what is added at once. Contributions err by half a unit, and relatively by kKernelError 2^-53.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+namespace anamorph::simd {
+
+/// Rounding by adding 1.5 * 2^52 holds up to here.
+inline constexpr double kMostUnits = 0x1p50;
+/// Of a kernel's value, in units of 2^-53: the distance over the extent errs by 2.5, times the kernel's
+/// greatest change with it, 2 t^2 e^(-t^2) <= 0.74, each way; the exponential function and products by 8.
+inline constexpr double kKernelError = 16;
+
+inline constexpr int kGridBlock = 32;  ///< columns that are culled together; tables are padded to it
+inline constexpr int kGridRows = 2;    ///< rows drawn together; rows of sums are padded to it
+inline constexpr int kPointBlock = 8;  ///< points handled together; cells of points are padded to it
+
+/// out[i] = exp(-t^2), t = (x[i] - center) inverse_extent, and 0 where |t| > reach. count: any.
+void gaussian_factors(const double* x, int count, double center, double inverse_extent, double reach,
+                      double* out);
+/// out[i] = t^2, at most 2.
+void squared_distances(const double* x, int count, double center, double inverse_extent, double* out);
+
+/// A deformation over a grid. Gaussian: F = column[i] row[j]; otherwise F is Wendland's function of
+/// r^2 = column[i] + row[j].
+struct GridTerm {
+    const double* column;  ///< of columns [column_begin, column_end), multiples of kGridBlock
+    const double* row;     ///< of rows [row_begin, row_end), multiples of kGridRows
+    int column_begin, column_end, row_begin, row_end;
+    double units[3];  ///< V / resolution
+    bool gaussian;
+};
+
+/// Rows of a grid. Row j of component c of the sums starts at sums + (3 j + c) stride; without sums (null)
+/// they start at zero and are not kept. out = base + sums * resolution, three numbers a point without gaps,
+/// rows of `columns` points; without base (null): the displacement alone.
+template <class T>
+struct GridBand {
+    const GridTerm* terms;
+    std::size_t count;
+    int row_begin, row_end;  ///< row_begin is a multiple of kGridRows
+    int columns;
+    std::int64_t* sums;
+    std::ptrdiff_t stride;  ///< a multiple of kGridBlock
+    double resolution;
+    const T* base;
+    T* out;    ///< null: sums only
+    bool all;  ///< write blocks too that no term reaches
+};
+void deform_band(const GridBand<float>& band);
+void deform_band(const GridBand<double>& band);
+
+/// A deformation at single points: F counts where |u - center| inverse_extent <= reach, each way.
+struct PointTerm {
+    double center[2], inverse_extent[2];
+    double reach;
+    double units[3];
+    bool gaussian;
+};
+/// Adds terms to sums[c][i] of points (u[i], v[i]). count: a multiple of kPointBlock; NaN points get nothing.
+void deform_points(const PointTerm* const* terms, std::size_t term_count, const double* u, const double* v,
+                   std::size_t count, std::int64_t* const sums[3]);
+
+/// out[i] = sum_k weights[k] shapes[k][i], added in double in the order of the shapes and rounded once. Errs
+/// by half a unit in the last place of the result, plus (shape_count + 1) 2^-53 of the sum of the magnitudes.
+void blend(const float* const* shapes, const double* weights, std::size_t shape_count, std::size_t count,
+           float* out);
+void blend(const double* const* shapes, const double* weights, std::size_t shape_count, std::size_t count,
+           double* out);
+/// out[i] = base[i] + sum_k weights[k] masks[k][i] (shapes[k][i] - base[i]), with 1 for a mask that is null.
+/// Errors as above, with shape_count + 3.
+void blend_masked(const float* const* shapes, const float* const* masks, const double* weights,
+                  std::size_t shape_count, const float* base, std::size_t count, float* out);
+void blend_masked(const double* const* shapes, const float* const* masks, const double* weights,
+                  std::size_t shape_count, const double* base, std::size_t count, double* out);
+
+}  // namespace anamorph::simd
