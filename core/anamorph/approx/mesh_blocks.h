@@ -51,10 +51,10 @@ class BlockWriter {
         return true;
     }
 
-    /// A computed block whose base is `middle` rounded down; exact where `error` exceeds the tolerance.
-    void computed(const Box& box, const Point<double>& middle, double error) {
+    /// A computed block whose base is `middle` rounded down. True when it keeps the tolerance.
+    bool computed(const Box& box, const Point<double>& middle, double error) {
         if (!(error <= m_tol && std::fabs(middle.x) < kFarthest && std::fabs(middle.y) < kFarthest))
-            return exact(box);
+            return false;
         Block block;
         block.box = box;
         block.kind = Block::Kind::computed;
@@ -62,6 +62,7 @@ class BlockWriter {
         block.base_y = static_cast<std::int32_t>(std::floor(middle.y));
         block.bound = error;
         m_blocks.push_back(block);
+        return true;
     }
 
     /// `body` on the halves of a box of at least two pixels; where all that comes of it is exact, one block.

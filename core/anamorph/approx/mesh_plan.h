@@ -2,12 +2,13 @@
 // The blocks of a mesh warp. A block lies in one cell of the mesh, where the map is one bicubic patch, so
 // that every bound is in closed form from the patch's own coefficients:
 //
-//   automatic  the patch restricted to the block, economised to a quadratic (hermite.h), split while too
-//   coarse hermite    the whole patch (Kim 2003, 5.3.5): a cubic in x for every row, evaluated in float
-//   residual   the plane through three vertices for each of a cell's two triangles, in double, plus the
-//              thirteen non-linear products of eq. 5.5 and 5.7 from tables read bilinearly (5.4)
+// - automatic: the patch restricted to the block, economised to a quadratic (hermite.h), split while too
+//   coarse; as hermite where the pieces would be small.
+// - hermite: the whole patch (Kim 2003, 5.3.5), a cubic in x for every row, evaluated in float.
+// - residual: the plane through three vertices for each of a cell's two triangles, in double, plus the
+//   thirteen non-linear products of eq. 5.5 and 5.7 from tables read bilinearly (5.4).
 //
-// and exact, point by point, where that exceeds the tolerance or a cell has few pixels.
+// Point by point where that exceeds the tolerance or a cell has few pixels.
 #pragma once
 
 #include <memory>
