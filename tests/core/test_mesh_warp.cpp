@@ -94,9 +94,10 @@ TEST(MeshWarp, SameBitsForAnyCutAndThreads) {
     for (const WarpScheme scheme :
          {WarpScheme::automatic, WarpScheme::hermite, WarpScheme::residual, WarpScheme::exact}) {
         options.scheme = scheme;
-        for (const WarpMap* map : {&pull, &push, &points}) expect_same_bits(*map, options, target, texels);
+        expect_same_bits(pull, options, target, texels);
     }
     options.scheme = WarpScheme::automatic;
+    for (const WarpMap* map : {&push, &points}) expect_same_bits(*map, options, target, texels);
     for (const WarpOutput output :
          {WarpOutput::stmap, WarpOutput::error, WarpOutput::bound, WarpOutput::folds}) {
         options.output = output;
