@@ -56,7 +56,8 @@ class Entry {
     /// An object with no keys but these.
     void expect_object(std::initializer_list<const char*> keys) const {
         if (!m_value.is_object()) refuse("an object is needed");
-        for (const auto& [key, unused] : m_value.items()) {
+        for (const auto& item : m_value.items()) {
+            const std::string& key = item.key();
             if (std::any_of(keys.begin(), keys.end(), [&](const char* k) { return key == k; })) continue;
             std::string known;
             for (const char* k : keys) known += (known.empty() ? "" : ", ") + std::string(k);
