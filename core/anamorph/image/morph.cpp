@@ -201,8 +201,10 @@ class RegionPainter {
   public:
     RegionPainter(const FeatureMap& map, const Canvas& canvas)
         : m_map(map), m_canvas(canvas), m_channels(canvas.channels()) {
-        m_values.resize(static_cast<std::size_t>(kRegion) * kRegion * static_cast<std::size_t>(m_channels) +
-                        16);
+        // Written before it is read: every pixel of a region belongs to a block.
+        m_values.reset(
+            new float[static_cast<std::size_t>(kRegion) * kRegion * static_cast<std::size_t>(m_channels) +
+                      16]);
     }
 
     void begin(const Box& region) {
@@ -211,7 +213,7 @@ class RegionPainter {
     }
     const Box& part() const { return m_part; }
     float* pixel(int x, int y) {
-        return m_values.data() + (std::ptrdiff_t{y - m_region.y0} * kRegion + x - m_region.x0) * m_channels;
+        return m_values.get() + (std::ptrdiff_t{y - m_region.y0} * kRegion + x - m_region.x0) * m_channels;
     }
 
     /// Adds a row of a picture's pixels, `weight` times; the first one replaces what was there. Colour is
@@ -288,7 +290,7 @@ class RegionPainter {
     const Canvas& m_canvas;
     int m_channels;
     Box m_region, m_part;
-    std::vector<float> m_values;
+    std::unique_ptr<float[]> m_values;
 };
 
 std::vector<Box> regions_of(const Box& box, const Box& whole) {
