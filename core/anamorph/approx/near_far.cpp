@@ -147,9 +147,8 @@ struct Cell {
 struct Region {
     std::vector<Cell> cells;
     std::vector<float> coefficients;
-    std::vector<FieldLine> lines;  ///< those that are near some cell
-    std::vector<std::int32_t> near;
-    Vector origin;  ///< source point of the region's centre under the reference displacement
+    std::vector<FieldLine> lines;  ///< that are near, cell by cell, as seen from the cell's centre
+    Vector origin;                 ///< source point of the region's centre under the reference displacement
 };
 
 /// Lines and what is known of them over the cell at hand; one for each depth of the recursion.
@@ -268,7 +267,6 @@ class Planner {
         for (std::size_t i = 0; i < m_lines.size(); ++i)
             all.set(i, static_cast<std::int32_t>(i), m_lines[i], m_slopes[i]);
         settle(x0, y0, kRegion, 0, FarSums{}, false);
-        keep_near_lines();
     }
 
   private:
@@ -281,77 +279,75 @@ class Planner {
     /// The lines as seen from the region's centre. False where floats cannot hold them.
     bool gather() {
         const std::vector<int>& shapes = m_options.shapes;
-        Vector reference{};
         for (std::size_t n = 0; n < shapes.size(); ++n) {
             const Point<double> at = m_map(m_x, m_y, shapes[n]), scale = m_map.scale(shapes[n]);
             m_region.origin[2 * n] = at.x;
             m_region.origin[2 * n + 1] = at.y;
-            reference[2 * n] = at.x - m_x * scale.x;
-            reference[2 * n + 1] = at.y - m_y * scale.y;
+            m_reference[2 * n] = at.x - m_x * scale.x;
+            m_reference[2 * n + 1] = at.y - m_y * scale.y;
         }
         // Weights in units of what a line at this distance has, so that floats hold them.
         double unit = HUGE_VAL;
-        m_lines.resize(m_map.size());
-        m_slopes.resize(m_map.size());
-        const double a = m_map.weights().a, b = m_map.weights().b;
         for (std::size_t i = 0; i < m_map.size(); ++i) {
             const FeatureMap::TargetLine& line = m_map.line(i);
             const double dx = m_x - line.p.x, dy = m_y - line.p.y;
             const double along = dx * line.along.x + dy * line.along.y;
             const double beside = dy * line.along.x - dx * line.along.y;
-            unit = std::min(unit, a + kHalfRegion +
+            unit = std::min(unit, m_map.weights().a + kHalfRegion +
                                       feature_detail::distance_to_line(-along, along - line.length, beside));
-            FieldLine& to = m_lines[i];
-            to.before = static_cast<float>(-along);
-            to.behind = static_cast<float>(along - line.length);
-            to.beside = static_cast<float>(beside);
-            to.along_x = static_cast<float>(line.along.x);
-            to.along_y = static_cast<float>(line.along.y);
+        }
+        m_unit = std::pow(unit, m_map.weights().b);
+        m_lines.resize(m_map.size());
+        m_slopes.resize(m_map.size());
+        for (std::size_t i = 0; i < m_map.size(); ++i) {
+            FieldLine& l = m_lines[i];
+            if (!see(i, m_x, m_y, l)) return false;
             double slope = 0;
-            for (std::size_t n = 0; n < 2; ++n) {
-                const int shape = n < shapes.size() ? shapes[n] : -1;
-                slope = std::max(slope, displace(i, shape, n, along, beside, reference, to));
+            for (int c = 0; c < kComponents; c += 2) {
+                const auto length = [](float x, float y) {
+                    return std::sqrt(static_cast<double>(x) * static_cast<double>(x) +
+                                     static_cast<double>(y) * static_cast<double>(y));
+                };
+                slope =
+                    std::max(slope, length(l.right[c], l.right[c + 1]) + length(l.down[c], l.down[c + 1]));
             }
             m_slopes[i] = static_cast<float>(slope * (1 + 1e-5) + 1e-12);
-            if (!(slope < 1e9 && std::fabs(along) < 1e12)) return false;
-        }
-        const double scale = std::pow(unit, b);
-        for (std::size_t i = 0; i < m_map.size(); ++i) {
-            const double factor = m_map.line(i).factor * scale;
-            if (!(factor > 1e-25 && factor < 1e25)) return false;
-            m_lines[i].factor = static_cast<float>(factor);
+            if (!(slope < 1e9)) return false;
         }
         return true;
     }
 
-    /// One shape's displacement by a line; returns how much it changes over a pixel right and one down.
-    double displace(std::size_t i, int shape, std::size_t n, double along, double beside,
-                    const Vector& reference, FieldLine& to) const {
-        Point<double> at{0, 0}, right{0, 0}, down{0, 0};
-        if (shape >= 0) {
-            const FeatureMap::TargetLine& line = m_map.line(i);
-            const FeatureMap::Displacement& d = m_map.displacement(i, shape);
-            const Point<double> scale = m_map.scale(shape);
-            const auto set = [&](double origin, double along_rate, double beside_rate, double k, double ref,
-                                 double& value, double& per_x, double& per_y) {
-                value =
+    /// A line as seen from a point. False where floats cannot hold it.
+    bool see(std::size_t i, double x, double y, FieldLine& to) const {
+        const FeatureMap::TargetLine& line = m_map.line(i);
+        const double dx = x - line.p.x, dy = y - line.p.y;
+        const double along = dx * line.along.x + dy * line.along.y;
+        const double beside = dy * line.along.x - dx * line.along.y;
+        to = {};
+        to.before = static_cast<float>(-along);
+        to.behind = static_cast<float>(along - line.length);
+        to.beside = static_cast<float>(beside);
+        to.along_x = static_cast<float>(line.along.x);
+        to.along_y = static_cast<float>(line.along.y);
+        const double factor = line.factor * m_unit;
+        to.factor = static_cast<float>(factor);
+        const std::vector<int>& shapes = m_options.shapes;
+        for (std::size_t n = 0; n < shapes.size(); ++n) {
+            const FeatureMap::Displacement& d = m_map.displacement(i, shapes[n]);
+            const Point<double> scale = m_map.scale(shapes[n]);
+            const auto set = [&](std::size_t c, double origin, double along_rate, double beside_rate,
+                                 double k) {
+                to.at[c] = static_cast<float>(
                     feature_detail::displacement_by_line(origin, along_rate, along, beside_rate, beside) * k -
-                    ref;
-                per_x = (along_rate * line.along.x - beside_rate * line.along.y) * k;
-                per_y = (along_rate * line.along.y + beside_rate * line.along.x) * k;
+                    m_reference[c]);
+                to.right[c] =
+                    static_cast<float>((along_rate * line.along.x - beside_rate * line.along.y) * k);
+                to.down[c] = static_cast<float>((along_rate * line.along.y + beside_rate * line.along.x) * k);
             };
-            set(d.origin.x, d.along_rate.x, d.beside_rate.x, scale.x, reference[2 * n], at.x, right.x,
-                down.x);
-            set(d.origin.y, d.along_rate.y, d.beside_rate.y, scale.y, reference[2 * n + 1], at.y, right.y,
-                down.y);
+            set(2 * n, d.origin.x, d.along_rate.x, d.beside_rate.x, scale.x);
+            set(2 * n + 1, d.origin.y, d.along_rate.y, d.beside_rate.y, scale.y);
         }
-        to.at[2 * n] = static_cast<float>(at.x);
-        to.at[2 * n + 1] = static_cast<float>(at.y);
-        to.right[2 * n] = static_cast<float>(right.x);
-        to.right[2 * n + 1] = static_cast<float>(right.y);
-        to.down[2 * n] = static_cast<float>(down.x);
-        to.down[2 * n + 1] = static_cast<float>(down.y);
-        return std::hypot(right.x, right.y) + std::hypot(down.x, down.y);
+        return factor > 1e-25 && factor < 1e25 && std::fabs(along) < 1e12;
     }
 
     // --- a cell ------------------------------------------------------------------------------------------
@@ -560,12 +556,13 @@ class Planner {
 
     // --- rounding ----------------------------------------------------------------------------------------
 
-    /// Relative rounding of a weight at a + dist >= nearest.
-    double weight_rounding(double nearest) const {
+    /// Relative rounding of a weight at a + dist >= nearest, of a line seen from a point at most `half` off
+    /// along each axis.
+    double weight_rounding(double nearest, double half = kHalfRegion) const {
         const double b = m_map.weights().b;
         const bool fast = b == 0 || b == 0.5 || b == 1 || b == 2;
         const double log = fast ? 0 : 1 + std::max(16.0, std::fabs(std::log(nearest)));
-        return kUlp * (b * (5 + 11 * kHalfRegion / nearest) + simd::kWeightRounding +
+        return kUlp * (b * (5 + 11 * half / nearest) + simd::kWeightRounding +
                        (fast ? 0 : simd::kPowerRounding * b * log));
     }
 
@@ -601,35 +598,39 @@ class Planner {
         return (m_chebyshev.lebesgue * m_chebyshev.lebesgue * noise + horner) / known.least;
     }
 
-    /// Of the near lines' weights and displacements.
+    /// Of the near lines' weights and displacements. A weight off by a factor 1 + e moves D by e l |D_i - D|,
+    /// l the weight's part of all, which is l (1 - l) times the distance of D_i from the mean of the others.
     double near_rounding(Candidates& lines, const simd::LineBounds& bounds, const Known& known,
                          const FarSums& far) const {
-        const double b = m_map.weights().b, offset = known.offset;
+        const double b = m_map.weights().b, half = static_cast<double>(known.frame.half);
         double total = 0, slope = 0, worst = 0;
-        double others = far.most;
+        double all = far.most;
         for (std::size_t i = 0; i < lines.count(); ++i)
-            if (!lines.far[i]) others += static_cast<double>(bounds.most[i]);
+            if (!lines.far[i]) all += static_cast<double>(bounds.most[i]);
         for (std::size_t i = 0; i < lines.count(); ++i) {
             if (lines.far[i]) continue;
             slope = std::max(slope, static_cast<double>(lines.slope(i)));
-            const double reach = static_cast<double>(lines.reach()[i]) + known.spread;
+            const double reach = static_cast<double>(lines.reach()[i]);
             const double most = static_cast<double>(bounds.most[i]);
-            double nearest = static_cast<double>(bounds.nearest[i]);
-            // The weight is most (nearest / d)^b at distance d. Where it outweighs the others by `ratio` or
-            // more, the displacement is this line's, to that degree: with b >= 1 the worst is where it does.
-            const double rest = std::max(others - most, 0.0) + 1e-6 * most;
-            const double ratio = most * reach / (rest * 2 * (known.farthest + known.spread) + 1e-300);
-            double share = 1;
+            const double nearest = static_cast<double>(bounds.nearest[i]);
+            const double part = std::min(1.0, most / known.least), between = reach + known.farthest;
+            double moved = std::min(part * (reach + known.spread), std::min(part, 0.25) * between);
+            // The weight is most (nearest / d)^b at distance d, and with it 1 - l at most others / weight.
+            // With b >= 1 the worst distance is where that is as good as `moved`, if there is one; else the
+            // nearest.
+            const double others = std::max(all - most, 0.0) + 1e-6 * most;
+            const double ratio = most * moved / (others * between + 1e-300);
+            double from = nearest;
             if (b >= 1 && ratio > 1)
-                nearest *= b == 2 ? std::sqrt(ratio) : b == 1 ? ratio : std::pow(ratio, 1 / b);
+                from *= b == 2 ? std::sqrt(ratio) : b == 1 ? ratio : std::pow(ratio, 1 / b);
             else if (ratio > 1)
-                share = 1 / ratio;
-            const double relative = weight_rounding(static_cast<double>(bounds.nearest[i]));
+                moved /= ratio;
+            const double relative = weight_rounding(nearest, half);
             worst = std::max(worst, relative);
-            total += std::min(weight_rounding(nearest), relative) * share * reach;
+            total += std::min(weight_rounding(from, half), relative) * moved;
         }
         if (!(worst < 0.25)) return HUGE_VAL;
-        const double displacements = kUlp * (4 * (known.spread + offset) + 10 * kHalfRegion * slope);
+        const double displacements = kUlp * (4 * (known.spread + known.offset) + 10 * half * slope);
         return total / (1 - worst) + displacements;
     }
 
@@ -656,7 +657,7 @@ class Planner {
                              (1 - off) * (1 + 1e-3);
         if (!(bound <= m_options.tol)) return false;
 
-        Cell cell{box, false, bound, known.frame, {}, m_region.coefficients.size(), m_region.near.size(), 0};
+        Cell cell{box, false, bound, known.frame, {}, m_region.coefficients.size(), m_region.lines.size(), 0};
         const std::vector<int>& shapes = m_options.shapes;
         for (std::size_t n = 0; n < shapes.size(); ++n) {
             const Point<double> s = m_map.scale(shapes[n]);
@@ -672,9 +673,14 @@ class Planner {
             m_region.coefficients.insert(m_region.coefficients.end(), coefficients, coefficients + size);
         else
             cell.coefficients = std::numeric_limits<std::size_t>::max();
-        for (std::size_t i = 0; i < lines.count(); ++i)
-            if (!lines.far[i]) m_region.near.push_back(lines.ids[i]);
-        cell.near_count = static_cast<int>(m_region.near.size() - cell.near);
+        for (std::size_t i = 0; i < lines.count(); ++i) {
+            if (lines.far[i]) continue;
+            FieldLine seen;
+            see(static_cast<std::size_t>(lines.ids[i]), m_x + static_cast<double>(known.frame.x),
+                m_y + static_cast<double>(known.frame.y), seen);
+            m_region.lines.push_back(seen);
+        }
+        cell.near_count = static_cast<int>(near);
         m_region.cells.push_back(cell);
         return true;
     }
@@ -689,19 +695,6 @@ class Planner {
             }
     }
 
-    /// Only the lines that are near some cell are kept.
-    void keep_near_lines() {
-        std::vector<std::int32_t> place(m_lines.size(), -1);
-        for (std::int32_t& id : m_region.near) {
-            std::int32_t& at = place[static_cast<std::size_t>(id)];
-            if (at < 0) {
-                at = static_cast<std::int32_t>(m_region.lines.size());
-                m_region.lines.push_back(m_lines[static_cast<std::size_t>(id)]);
-            }
-            id = at;
-        }
-    }
-
     const FeatureMap& m_map;
     const NearFarOptions& m_options;
     const Chebyshev& m_chebyshev;
@@ -709,6 +702,8 @@ class Planner {
     Region& m_region;
     simd::WeightParameters m_weights;
     double m_x = 0, m_y = 0;  ///< the region's centre
+    double m_unit = 1;        ///< of weights
+    Vector m_reference{};     ///< displacements are relative to this
     std::vector<FieldLine> m_lines;
     std::vector<float> m_slopes;
     std::vector<std::int32_t> m_far;
@@ -771,11 +766,11 @@ namespace {
 /// The points of all pixels of a cell, for both shapes.
 void cell_points(const FeatureMap& map, const std::vector<int>& shapes, int degree, const Region& region,
                  const Cell& cell, float* const* to, std::ptrdiff_t stride) {
-    simd::FieldCell field{cell.frame,
+    // In the frame of the cell's centre.
+    simd::FieldCell field{{0, 0, cell.frame.half},
                           0,
                           nullptr,
-                          region.lines.data(),
-                          region.near.data() + cell.near,
+                          region.lines.data() + cell.near,
                           cell.near_count,
                           {static_cast<float>(map.weights().a), static_cast<float>(map.weights().b)}};
     if (cell.coefficients != std::numeric_limits<std::size_t>::max()) {
@@ -783,12 +778,12 @@ void cell_points(const FeatureMap& map, const std::vector<int>& shapes, int degr
         field.coefficients = region.coefficients.data() + cell.coefficients;
     }
     // Regions stand on multiples of their size.
-    const auto from_center = [](int pixel) {
-        return static_cast<float>(pixel % kRegion + 0.5 - kHalfRegion);
+    const auto from_center = [](int pixel, float center) {
+        return static_cast<float>(pixel % kRegion + 0.5 - kHalfRegion - static_cast<double>(center));
     };
     simd::FieldOutput out{};
-    out.x = from_center(cell.box.x0);
-    out.y = from_center(cell.box.y0);
+    out.x = from_center(cell.box.x0, cell.frame.x);
+    out.y = from_center(cell.box.y0, cell.frame.y);
     out.width = cell.box.width();
     out.height = cell.box.height();
     out.components = 2 * static_cast<int>(shapes.size());
@@ -797,8 +792,10 @@ void cell_points(const FeatureMap& map, const std::vector<int>& shapes, int degr
         const Point<double> scale = map.scale(shapes[n]);
         for (std::size_t axis = 0; axis < 2; ++axis) {
             const std::size_t c = 2 * n + axis;
-            out.slope[c] = static_cast<float>(axis ? scale.y : scale.x);
-            out.offset[c] = static_cast<float>(region.origin[c] - cell.base[c]);
+            const double slope = axis ? scale.y : scale.x;
+            const double center = static_cast<double>(axis ? cell.frame.y : cell.frame.x);
+            out.slope[c] = static_cast<float>(slope);
+            out.offset[c] = static_cast<float>(region.origin[c] + slope * center - cell.base[c]);
             out.to[c] = to[c];
         }
     }

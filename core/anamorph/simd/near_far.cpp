@@ -493,7 +493,7 @@ HWY_INLINE void FieldPoints(const FieldCell& cell, const FieldOutput& out) {
             } else
                 for (int c = 0; c <= kCount; ++c) sums[c] = Set(0);
             for (int n = 0; n < cell.near_count; ++n)
-                AddLine<kExponent, kCount>(LineOnRow(cell.lines[cell.near_lines[n]], y), x, a, b, sums);
+                AddLine<kExponent, kCount>(LineOnRow(cell.near_lines[n], y), x, a, b, sums);
             const V inverse = Reciprocal(sums[0]);
             for (int c = 0; c < kCount; ++c) {
                 // x + its displacement, or y and its.

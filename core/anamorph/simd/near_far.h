@@ -108,8 +108,7 @@ struct FieldCell {
     CellFrame frame;
     int k;
     const float* coefficients;
-    const FieldLine* lines;
-    const std::int32_t* near_lines;
+    const FieldLine* near_lines;  ///< as seen from the origin of `frame`
     int near_count;
     WeightParameters weights;
 };
