@@ -7,6 +7,7 @@
 
 #include "anamorph/error.h"
 #include "anamorph/simd/block_sampler.h"
+#include "anamorph/simd/near_far.h"
 #include "feature_families.h"
 
 namespace anamorph {
@@ -94,6 +95,92 @@ TEST(NearFar, ManySeedsHold) {
             const FeatureMap map = map_of(*features, {131, 97}, w, unit(random));
             expect_holds(map, std::pow(10, -3 * unit(random)));
         }
+}
+
+/// The weight of a line from (0, 0) to (length, 0), in double.
+double weight_at(double x, double y, double length, const LineWeights& w) {
+    return std::pow(w.a + feature_detail::distance_to_line(-x, x - length, y), -w.b);
+}
+
+/// Interpolates values at the K x K Chebyshev nodes, and compares on a grid: the largest difference.
+template <class F>
+double interpolation_error(int k, const F& f) {
+    constexpr int kGrid = 25;
+    std::vector<double> node(static_cast<std::size_t>(k));
+    for (int i = 0; i < k; ++i)
+        node[static_cast<std::size_t>(i)] = std::cos((2 * i + 1) * std::numbers::pi / (2 * k));
+    const auto lagrange = [&](int i, double s) {
+        double l = 1;
+        for (int j = 0; j < k; ++j)
+            if (j != i)
+                l *= (s - node[static_cast<std::size_t>(j)]) /
+                     (node[static_cast<std::size_t>(i)] - node[static_cast<std::size_t>(j)]);
+        return l;
+    };
+    double worst = 0;
+    for (int a = 0; a <= kGrid; ++a)
+        for (int b = 0; b <= kGrid; ++b) {
+            const double s = 2.0 * a / kGrid - 1, t = 2.0 * b / kGrid - 1;
+            double p = 0;
+            for (int i = 0; i < k; ++i)
+                for (int j = 0; j < k; ++j)
+                    p += lagrange(i, s) * lagrange(j, t) *
+                         f(node[static_cast<std::size_t>(i)], node[static_cast<std::size_t>(j)]);
+            worst = std::max(worst, std::fabs(f(s, t) - p));
+        }
+    return worst;
+}
+
+TEST(NearFar, InterpolationErrorsStayBelowTheirClosedForms) {
+    constexpr unsigned kSeed = 31;
+    SCOPED_TRACE(testing::Message() << "seed " << kSeed);
+    std::mt19937 random(kSeed);
+    std::uniform_real_distribution<double> unit(0, 1);
+    int known = 0, close = 0;
+    for (int n = 0; n < 3000; ++n) {
+        const int k = 4 + 2 * static_cast<int>(3 * unit(random));
+        const LineWeights w{unit(random) < 0.3 ? 0 : 5 * unit(random), std::pow(4, unit(random) * 2 - 1), 0};
+        const double half = 4 + 28 * unit(random), length = 100 * unit(random) * unit(random) + 1;
+        const double angle = 6.2832 * unit(random), c = std::cos(angle), s = std::sin(angle);
+        // The cell stands at the origin of its region, the line anywhere around it and turned.
+        const double away = half * (1 + 4 * unit(random)), turn = 6.2832 * unit(random);
+        const double x0 = away * std::cos(turn) + 0.5 * length, y0 = away * std::sin(turn);
+        alignas(64) float data[23 * 16] = {};
+        const auto put = [&](int field, double v) { data[field * 16] = static_cast<float>(v); };
+        for (int i = 1; i < 16; ++i) data[i] = 1e6f;
+        put(simd::LineTable::kBefore, -x0);
+        put(simd::LineTable::kBehind, x0 - length);
+        put(simd::LineTable::kBeside, y0);
+        put(simd::LineTable::kAlongX, c);
+        put(simd::LineTable::kAlongY, s);
+        put(simd::LineTable::kFactor, 1);
+        put(simd::LineTable::kSlope, 1 / half);
+        const simd::LineTable table{data, 16, data + simd::LineTable::kFields * 16,
+                                    data + (simd::LineTable::kFields + 4) * 16, 1};
+        alignas(64) float out[9][16];
+        simd::LineBounds bounds{out[0], out[1], out[2], out[3], out[4], {out[5], out[6], out[7], out[8]},
+                                {},     0};
+        const float lebesgue = k == 4 ? 1.8478f : k == 6 ? 2.1045f : 2.2872f;
+        simd::bound_lines(table, {0, 0, static_cast<float>(half)},
+                          {static_cast<float>(w.a), static_cast<float>(w.b)}, k, lebesgue, bounds);
+        if (!(bounds.value[0] < HUGE_VALF)) continue;
+        ++known;
+        const auto weight = [&](double u, double v) {
+            return weight_at(x0 + half * (u * c + v * s), y0 + half * (v * c - u * s), length, w);
+        };
+        SCOPED_TRACE(testing::Message() << "line " << n << " K " << k << " a " << w.a << " b " << w.b);
+        const double error = interpolation_error(k, weight);
+        const double slack = 1e-6 * double(bounds.most[0]);
+        EXPECT_LE(error, double(bounds.value[0]) + slack);
+        EXPECT_LE(interpolation_error(k, [&](double u, double v) { return u * weight(u, v); }),
+                  double(bounds.linear[0]) + slack);
+        EXPECT_LE(interpolation_error(k, [&](double u, double v) { return v * weight(u, v); }),
+                  double(bounds.linear[0]) + slack);
+        close += error > 0.1 * double(bounds.value[0]);
+    }
+    // The test looks at something, and the bounds are of use.
+    EXPECT_GT(known, 1500);
+    EXPECT_GT(close, known / 100);
 }
 
 TEST(NearFar, MostPixelsAreNotComputedInDouble) {

@@ -16,26 +16,29 @@
 //     poles lie farther off still. So the relative error is at most that of the nearest poles, where l and
 //     its slope are bounded with |T_K(z)| >= sinh(K m), m = log rho(z), rho the sum of the half axes of the
 //     ellipse with foci -1, 1 through z: both fall with rho.
+//     The same for s f: beside the line s (1 + e s)^-b = ((1 + e s)^(1 - b) - (1 + e s)^-b) / e, two of these
+//     (for b < 1 the first is a mean of 1 - y / (1 + e s + y)); beyond an end the line through z / T_K(z) is
+//     s l less the slope of l times |s - z|^2.
 // (3) In two dimensions f - I_s I_t f = (f - I_s f) + I_s (f - I_t f), hence E <= E_s + Lebesgue_K E_t, and
 //     the same with s and t changed.
-//
 // (4) Where the cell does not touch the line, but the level of its ends, or its extension, crosses the cell,
-// w
-//     has a jump in its second derivative and is smooth on either side. With Peano's kernel of order 3 the
+//     w has a jump in its second derivative and is smooth on either side. With Peano's kernel of order 3 the
 //     error is at most the jump times the kernel's supremum plus the greatest third derivative times the
 //     kernel's integral. The jump is b w / ((a + r) r) times the square of the direction; the derivatives of
-//     (a + r)^-b along a line are at most b (b + 1) w / r^2 and b (b + 2) max(b + 1, 2 / sqrt(2 - b) if b <
-//     1) w / r^3, from r' = cos, r'' = sin^2 / r, r''' = -3 cos sin^2 / r^2 of the angle to the ray. Any b.
+//     (a + r)^-b along a line are at most b (b + 1) w / r^2 and b (b + 2) k w / r^3, k = b + 1 or, where that
+//     is more, 2 / sqrt(2 - b) (b < 1): r' is the cosine of the angle to the ray, r'' its sine^2 / r, r''' is
+//     -3 cosine sine^2 / r^2. Any b.
 //
-// simd/near_far.cpp evaluates these (BesideError, EndError, BoundLines). Lines that the cell touches are
-// near.
+// simd/near_far.cpp evaluates these (BesideError, EndError, BoundLines); tests/core holds them against errors
+// of interpolants. Lines that the cell touches are near.
 //
 // The displacement is S / W. With a sum off by dS and dW the quotient is off by (dS - D dW) / (W + dW). The
 // interpolant is linear in f, so dS - D dW is what it makes of the sum of w_i (D_i - D): each line counts
 // with |D_i - D| only. D is a mean of the D_i, which bounds |D - D*| for any reference D* (`spread`).
 //
-// Rounding: simd/near_far.h says what floats cost a line's sums. A relative error e_i of a near line's weight
-// moves the quotient by e_i w_i |D_i - D| / W, which stays small on the line itself: there D is D_i.
+// Rounding: simd/near_far.h says what floats cost a line's sums. Near lines are seen from the cell's centre,
+// so that numbers are small. A relative error e_i of a near line's weight moves the quotient by e_i w_i |D_i
+// - D| / W, which stays small on the line itself: there D is D_i.
 #include "anamorph/approx/near_far.h"
 
 #include <algorithm>
@@ -418,9 +421,9 @@ class Planner {
         const double change =
             half * (std::numbers::sqrt2 * (sums.steep_reach + b * over.steep) + sums.slope + over.slope) /
             known.least;
-        known.spread =
-            std::min({(sums.reach + over.light) / known.least + over.heavy, known.farthest, change}) *
-            (1 + 1e-3);
+        const double mean = std::min((sums.reach + over.light) / known.least + over.heavy, known.farthest);
+        // The centre's displacement is itself a float's.
+        known.spread = std::min(mean, change) * (1 + 1e-3) + 64 * kUlp * (mean + known.offset);
         // If all lines became far that may.
         const double per_weight = weight_rounding(HUGE_VAL), per_near = kUlp * b * 11 * kHalfRegion;
         const double noise = sums.noise + per_weight * over.most + per_near * over.near;
