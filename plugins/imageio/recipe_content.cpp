@@ -54,7 +54,7 @@ class Solved {
 };
 
 std::shared_ptr<Solved> solve(const PictureRequest& request) {
-    static auto& memo = *new Memo<Solved>(64);
+    static auto& memo = *new Memo<Solved>(16);
     return memo.get(request.key, [&] { return std::make_shared<Solved>(request); });
 }
 
@@ -128,9 +128,7 @@ class RecipeContent final : public Content {
 
     void read(int subimage, int level, const Box& box, std::byte* pixels) const override {
         const Level& l = this->level(subimage, level);
-        const std::shared_ptr<Solved> solved =
-            l.solved ? l.solved
-                     : m_frames.get(l.request.key, [&] { return std::make_shared<Solved>(l.request); });
+        const std::shared_ptr<Solved> solved = l.solved ? l.solved : solve(l.request);
         const bool small = std::int64_t{box.width()} * box.height() < kParallelPixels;
         const Picture picture(solved->drawing(), *m_stacks);
         picture.draw(
@@ -183,7 +181,6 @@ class RecipeContent final : public Content {
     int m_levels = 1;
     mutable std::mutex m_mutex;
     mutable std::map<std::pair<int, int>, Level> m_known;  ///< by frame and MIP level
-    mutable Memo<Solved> m_frames{2};                      ///< of a film, the last ones
 };
 
 }  // namespace
