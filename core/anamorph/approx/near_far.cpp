@@ -67,7 +67,7 @@ using simd::LineTable;
 constexpr int kRegion = CellField::kRegion;
 constexpr double kHalfRegion = kRegion / 2;
 // Cells are not cut below this.
-constexpr int kFloor = 8;
+constexpr int kFloor = 4;
 constexpr double kUlp = 0x1p-24;
 // The part of the tolerance that interpolation may use; the rest is for rounding.
 constexpr double kInterpolationShare = 0.9;
@@ -607,16 +607,35 @@ class Planner {
                          const FarSums& far) const {
         const double b = m_map.weights().b, half = static_cast<double>(known.frame.half);
         double total = 0, slope = 0, worst = 0;
-        double all = far.most;
-        for (std::size_t i = 0; i < lines.count(); ++i)
-            if (!lines.far[i]) all += static_cast<double>(bounds.most[i]);
+        // For the mean of the others: lines of little weight count by that, the two farthest of the rest.
+        const double much = 0.25 * known.least;
+        double all = far.most, light = far.reach, farthest = 0, second = 0;
+        std::size_t farthest_line = lines.count();
+        for (std::size_t i = 0; i < lines.count(); ++i) {
+            if (lines.far[i]) continue;
+            const double most = static_cast<double>(bounds.most[i]),
+                         reach = static_cast<double>(lines.reach()[i]);
+            all += most;
+            if (most <= much)
+                light += most * reach;
+            else if (reach >= farthest) {
+                second = farthest;
+                farthest = reach;
+                farthest_line = i;
+            } else
+                second = std::max(second, reach);
+        }
         for (std::size_t i = 0; i < lines.count(); ++i) {
             if (lines.far[i]) continue;
             slope = std::max(slope, static_cast<double>(lines.slope(i)));
             const double reach = static_cast<double>(lines.reach()[i]);
             const double most = static_cast<double>(bounds.most[i]);
             const double nearest = static_cast<double>(bounds.nearest[i]);
-            const double part = std::min(1.0, most / known.least), between = reach + known.farthest;
+            const double rest = known.least - static_cast<double>(bounds.least[i]);
+            const double mean =
+                (light - (most <= much ? most * reach : 0)) / rest + (i == farthest_line ? second : farthest);
+            const double part = std::min(1.0, most / known.least);
+            const double between = reach + (rest > 0 ? std::min(mean, known.farthest) : known.farthest);
             double moved = std::min(part * (reach + known.spread), std::min(part, 0.25) * between);
             // The weight is most (nearest / d)^b at distance d, and with it 1 - l at most others / weight.
             // With b >= 1 the worst distance is where that is as good as `moved`, if there is one; else the
