@@ -2,11 +2,12 @@
 # SPDX-License-Identifier: Apache-2.0
 """Draws the table of `speed_vs_error --csv` as time per pixel against the largest error, one panel for each case.
 
-Usage: plot_speed_vs_error.py TABLE.csv PICTURE...     (the endings say the formats: .png, .svg, .pdf)
+Usage: plot_speed_vs_error.py [--cases NAME,NAME...] TABLE.csv PICTURE...
 
-Only the largest size of the table is drawn, on one thread. A scheme that makes no error (or none that has a meaning,
+The endings of the pictures' names say their formats: .png, .svg, .pdf. Without --cases all cases are drawn. Only the largest size of the table is drawn, on one thread. A scheme that makes no error (or none that has a meaning,
 as the copy of the bytes touched) is a dashed line. What fell back to the exact map at every pixel is not drawn.
 """
+import argparse
 import csv
 import sys
 
@@ -53,10 +54,20 @@ def draw_case(axes, rows, colors):
 
 
 def main():
-    if len(sys.argv) < 3:
-        sys.exit(__doc__)
-    size, rows = read_table(sys.argv[1])
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--cases", help="those to draw, separated by commas")
+    parser.add_argument("table")
+    parser.add_argument("picture", nargs="+")
+    arguments = parser.parse_args()
+
+    size, rows = read_table(arguments.table)
     cases = list(dict.fromkeys(row["case"] for row in rows))
+    if arguments.cases:
+        unknown = set(arguments.cases.split(",")) - set(cases)
+        if unknown:
+            sys.exit(f"{arguments.table}: no case {', '.join(sorted(unknown))}")
+        cases = arguments.cases.split(",")
+        rows = [row for row in rows if row["case"] in cases]
     schemes = list(dict.fromkeys(row["scheme"] for row in rows))
     colors = {scheme: plt.get_cmap("tab20" if len(schemes) > 10 else "tab10")(i) for i, scheme in enumerate(schemes)}
 
@@ -78,7 +89,7 @@ def main():
     figure.legend(entries.values(), entries.keys(), loc="center right", fontsize=8)
     figure.suptitle(f"Time against error, {rows[0]['op']}, {size} x {size}")
     figure.tight_layout(rect=(0, 0, 1 - 1.9 / figure.get_figwidth(), 1))
-    for picture in sys.argv[2:]:
+    for picture in arguments.picture:
         figure.savefig(picture, dpi=110)
 
 
