@@ -118,10 +118,6 @@ GridTerms prepare(std::span<const Term> all, std::size_t& next, std::span<const 
     return ready;
 }
 
-std::ptrdiff_t stride_of(std::size_t columns) {
-    return round_up(static_cast<int>(columns), simd::kGridBlock);
-}
-
 /// Draws terms on bands of rows; without sums nothing is kept.
 template <class T>
 void draw_terms(const GridTerms& ready, bool all, int columns, int rows, double resolution,
@@ -137,8 +133,8 @@ void draw_terms(const GridTerms& ready, bool all, int columns, int rows, double 
         std::vector<simd::GridTerm> terms;
         for (const simd::GridTerm& t : ready.terms)
             if (t.row_begin < band_end && begin < t.row_end) terms.push_back(t);
-        simd::deform_band({terms.data(), terms.size(), begin, band_end, columns, sums, stride_of(columns),
-                           resolution, base, out, all});
+        simd::deform_band(
+            {terms.data(), terms.size(), begin, band_end, columns, sums, resolution, base, out, all});
     });
 }
 
@@ -236,8 +232,8 @@ template <class T>
 GridPart DeformedGrid::draw(bool all, const T* base, T* out, const ParallelFor& parallel_for) {
     const int columns = static_cast<int>(m_u.size()), rows = static_cast<int>(m_v.size());
     if (m_sums.empty() && (all || !m_pending.empty())) try {
-            m_sums.resize(static_cast<std::size_t>(stride_of(m_u.size())) * 3 *
-                          static_cast<std::size_t>(round_up(rows, simd::kGridRows)));
+            m_sums.resize(
+                static_cast<std::size_t>(simd::grid_sums(round_up(rows, simd::kGridRows), columns)));
         } catch (const std::exception&) {
             throw Error("u and v", std::to_string(columns) + "x" + std::to_string(rows) + " points",
                         "there is no memory for so many");

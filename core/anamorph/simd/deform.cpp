@@ -103,24 +103,28 @@ constexpr int kAcross = HWY_TARGET <= HWY_AVX3 ? 4 : 1;
 constexpr int kStep = std::min(kAcross * kLanes, kGridBlock);
 constexpr int kVectors = kStep / kLanes;
 
-/// Adds terms to a block of kGridBlock columns from `column` on. sums[r][c]: row r, component c.
-void AddToBlock(const PairTerm* const* terms, std::size_t count, int column,
-                std::int64_t* const (&sums)[kGridRows][3]) {
+constexpr int kBlockSums = 3 * kGridRows * kGridBlock;
+
+/// Adds terms to a block of kGridBlock columns from `column` on; sums as in grid_sums().
+void AddToBlock(const PairTerm* const* terms, std::size_t count, int column, std::int64_t* sums) {
     const D d;
     const DI di;
     for (int at = 0; at < kGridBlock; at += kStep) {
         VI sum[kGridRows][3][kVectors];
+        const auto place = [&](int r, int c, int v) {
+            return sums + (3 * r + c) * kGridBlock + at + v * kLanes;
+        };
         for (int r = 0; r < kGridRows; ++r)
             for (int c = 0; c < 3; ++c)
                 for (int v = 0; v < kVectors; ++v)
-                    sum[r][c][v] = WithoutRounders(hn::LoadU(di, sums[r][c] + at + v * kLanes), count);
+                    sum[r][c][v] = WithoutRounders(hn::LoadU(di, place(r, c, v)), count);
         for (std::size_t k = 0; k < count; ++k) {
             const PairTerm& term = *terms[k];
             const double* from = term.column + (column - term.column_begin) + at;
             for (int v = 0; v < kVectors; ++v) {
-                const V factor = hn::LoadU(d, from + v * kLanes);
+                const V across = hn::LoadU(d, from + v * kLanes);
                 for (int r = 0; r < kGridRows; ++r) {
-                    const V f = term.gaussian ? factor : WendlandOf(hn::Add(factor, hn::Set(d, term.row[r])));
+                    const V f = term.gaussian ? across : WendlandOf(hn::Add(across, hn::Set(d, term.row[r])));
                     for (int c = 0; c < 3; ++c)
                         sum[r][c][v] = AddRounded(sum[r][c][v], hn::Set(d, term.weight[r][c]), f);
                 }
@@ -128,7 +132,7 @@ void AddToBlock(const PairTerm* const* terms, std::size_t count, int column,
         }
         for (int r = 0; r < kGridRows; ++r)
             for (int c = 0; c < 3; ++c)
-                for (int v = 0; v < kVectors; ++v) hn::StoreU(sum[r][c][v], di, sums[r][c] + at + v * kLanes);
+                for (int v = 0; v < kVectors; ++v) hn::StoreU(sum[r][c][v], di, place(r, c, v));
     }
 }
 
@@ -145,9 +149,10 @@ HWY_INLINE V StoreAs(const double*, V v) {
     return v;
 }
 
-/// out = base + sums * resolution for `count` points without gaps. The product is exact.
+/// out = base + sums * resolution for `count` <= kGridBlock points of a row, without gaps. The product is
+/// exact.
 template <class T>
-void WritePoints(const std::int64_t* const (&sums)[3], int count, double resolution, const T* base, T* out) {
+void WritePoints(const std::int64_t* sums, int count, double resolution, const T* base, T* out) {
     const D d;
     const DI di;
     const hn::Rebind<T, D> dt;
@@ -163,19 +168,20 @@ void WritePoints(const std::int64_t* const (&sums)[3], int count, double resolut
             p[2] = LoadDoubles(base, z);
         }
         for (int c = 0; c < 3; ++c)
-            p[c] = hn::MulAdd(hn::ConvertTo(d, hn::LoadU(di, sums[c] + i)), unit, p[c]);
+            p[c] = hn::MulAdd(hn::ConvertTo(d, hn::LoadU(di, sums + c * kGridBlock + i)), unit, p[c]);
         hn::StoreInterleaved3(StoreAs(out, p[0]), StoreAs(out, p[1]), StoreAs(out, p[2]), dt, out + 3 * i);
     }
     for (; i < count; ++i)
         for (int c = 0; c < 3; ++c) {
             const double start = base ? static_cast<double>(base[3 * i + c]) : 0;
-            out[3 * i + c] = static_cast<T>(static_cast<double>(sums[c][i]) * resolution + start);
+            out[3 * i + c] =
+                static_cast<T>(static_cast<double>(sums[c * kGridBlock + i]) * resolution + start);
         }
 }
 
 template <class T>
 void DeformBand(const GridBand<T>& band) {
-    HWY_ALIGN std::int64_t room[kGridRows][3][kGridBlock];
+    HWY_ALIGN std::int64_t room[kBlockSums];
     std::vector<PairTerm> on_rows;
     std::vector<const PairTerm*> on_block;
     for (int row = band.row_begin; row < band.row_end; row += kGridRows) {
@@ -189,21 +195,18 @@ void DeformBand(const GridBand<T>& band) {
             for (const PairTerm& term : on_rows)
                 if (term.column_begin <= column && column < term.column_end) on_block.push_back(&term);
             if (on_block.empty() && !band.all) continue;
-            std::int64_t* sums[kGridRows][3];
-            for (int r = 0; r < kGridRows; ++r)
-                for (int c = 0; c < 3; ++c)
-                    sums[r][c] = band.sums
-                                     ? band.sums + (3 * std::ptrdiff_t{row + r} + c) * band.stride + column
-                                     : room[r][c];
-            if (!band.sums) std::memset(room, 0, sizeof(room));
+            std::int64_t* sums = room;
+            if (band.sums)
+                sums = band.sums + grid_sums(row, band.columns) + 3 * kGridRows * std::ptrdiff_t{column};
+            else
+                std::memset(room, 0, sizeof(room));
             if (!on_block.empty()) AddToBlock(on_block.data(), on_block.size(), column, sums);
             if (!band.out) continue;
             const int count = std::min(kGridBlock, band.columns - column);
             for (int r = 0; r < kGridRows && row + r < band.row_end; ++r) {
                 const std::ptrdiff_t first = 3 * (std::ptrdiff_t{row + r} * band.columns + column);
-                const std::int64_t* const of_row[3] = {sums[r][0], sums[r][1], sums[r][2]};
-                WritePoints(of_row, count, band.resolution, band.base ? band.base + first : nullptr,
-                            band.out + first);
+                WritePoints(sums + 3 * r * kGridBlock, count, band.resolution,
+                            band.base ? band.base + first : nullptr, band.out + first);
             }
         }
     }

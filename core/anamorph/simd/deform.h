@@ -39,9 +39,15 @@ struct GridTerm {
     bool gaussian;
 };
 
-/// Rows of a grid. Row j of component c of the sums starts at sums + (3 j + c) stride; without sums (null)
-/// they start at zero and are not kept. out = base + sums * resolution, three numbers a point without gaps,
-/// rows of `columns` points; without base (null): the displacement alone.
+/// Where the sums of row `row`, a multiple of kGridRows, begin. From there on follow, for every kGridBlock
+/// columns, those of x, y and z of the first row, then those of the next.
+constexpr std::ptrdiff_t grid_sums(int row, int columns) {
+    const std::ptrdiff_t blocks = (std::ptrdiff_t{columns} + kGridBlock - 1) / kGridBlock;
+    return 3 * row * blocks * kGridBlock;
+}
+
+/// Rows of a grid. Without sums (null) they start at zero and are not kept. out = base + sums * resolution,
+/// three numbers a point without gaps, rows of `columns` points; without base (null): the displacement alone.
 template <class T>
 struct GridBand {
     const GridTerm* terms;
@@ -49,7 +55,6 @@ struct GridBand {
     int row_begin, row_end;  ///< row_begin is a multiple of kGridRows
     int columns;
     std::int64_t* sums;
-    std::ptrdiff_t stride;  ///< a multiple of kGridBlock
     double resolution;
     const T* base;
     T* out;    ///< null: sums only

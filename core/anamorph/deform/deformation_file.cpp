@@ -1,0 +1,208 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "anamorph/deform/deformation_file.h"
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "anamorph/error.h"
+#include "anamorph/map/features_text.h"
+#include "anamorph/parameter.h"
+
+namespace anamorph {
+namespace {
+
+using features_text::excerpt;
+using features_text::fail;
+using features_text::in_entry;
+using Json = nlohmann::json;
+
+constexpr char kColumns[] = "center_u,center_v,extent_u,extent_v,x,y,z,kernel,enabled";
+
+void check_size(std::string_view text, std::string_view name) {
+    if (text.size() > kMaxDeformationText)
+        fail(name, "", "allowed are files up to " + std::to_string(kMaxDeformationText >> 20) + " MB");
+}
+
+void check_count(const std::vector<Deformation>& list, std::string_view name, const std::string& label) {
+    if (list.size() > kMaxDeformations)
+        fail(name, label, "allowed are up to " + std::to_string(kMaxDeformations) + " deformations");
+}
+
+// --- JSON
+
+/// Copies the numbers of entry[key].
+template <class Vector>
+void read_numbers(const Json& entry, const char* key, Vector& to) {
+    const auto found = entry.find(key);
+    constexpr auto size = static_cast<std::size_t>(Vector::length());
+    if (found == entry.end() || !found->is_array() || found->size() != size ||
+        !std::all_of(found->begin(), found->end(), [](const Json& v) { return v.is_number(); }))
+        throw Error(std::string(key) + ": needed is a list of " + std::to_string(size) + " numbers");
+    for (std::size_t i = 0; i < size; ++i) to[static_cast<int>(i)] = (*found)[i].template get<double>();
+}
+
+Deformation read_deformation(const Json& entry) {
+    if (!entry.is_object()) throw Error("needed is an object with vector, center and extent");
+    for (const auto& [key, value] : entry.items())
+        if (key != "vector" && key != "center" && key != "extent" && key != "kernel" && key != "enabled")
+            throw Error(excerpt(key) + ": allowed are vector, center, extent, kernel, enabled");
+    Deformation d;
+    read_numbers(entry, "vector", d.vector);
+    read_numbers(entry, "center", d.center);
+    read_numbers(entry, "extent", d.extent);
+    if (entry.contains("kernel")) {
+        if (!entry["kernel"].is_string()) throw Error("kernel: needed is a name in quotes");
+        d.kernel = kernel_named(entry["kernel"].get_ref<const std::string&>());
+    }
+    if (entry.contains("enabled")) {
+        if (!entry["enabled"].is_boolean()) throw Error("enabled: needed is true or false");
+        d.enabled = entry["enabled"].get<bool>();
+    }
+    check_deformation(d);
+    return d;
+}
+
+// --- CSV
+
+std::string_view trimmed(std::string_view text) {
+    const auto blank = [](char c) { return c == ' ' || c == '\t' || c == '\r'; };
+    while (!text.empty() && blank(text.front())) text.remove_prefix(1);
+    while (!text.empty() && blank(text.back())) text.remove_suffix(1);
+    return text;
+}
+
+std::vector<std::string_view> fields_of(std::string_view row) {
+    std::vector<std::string_view> fields;
+    for (;;) {
+        const std::size_t comma = row.find(',');
+        fields.push_back(trimmed(row.substr(0, comma)));
+        if (comma == std::string_view::npos) return fields;
+        row.remove_prefix(comma + 1);
+    }
+}
+
+Deformation read_row(std::string_view row) {
+    const std::vector<std::string_view> fields = fields_of(row);
+    if (fields.size() < 7 || fields.size() > 9)
+        throw Error("needed are " + std::string(kColumns) + " (the last two if wanted), not " +
+                    std::to_string(fields.size()) + " fields");
+    Deformation d;
+    double* const numbers[7] = {&d.center.x, &d.center.y, &d.extent.x, &d.extent.y,
+                                &d.vector.x, &d.vector.y, &d.vector.z};
+    for (std::size_t i = 0; i < 7; ++i) {
+        std::string_view rest = fields[i];
+        if (!features_text::take_number(rest, *numbers[i]) || !rest.empty())
+            throw Error("needed is a number, not \"" + excerpt(fields[i]) + "\"");
+    }
+    if (fields.size() > 7) d.kernel = kernel_named(fields[7]);
+    if (fields.size() > 8) {
+        if (fields[8] != "0" && fields[8] != "1")
+            throw Error("enabled", excerpt(fields[8]), "allowed are 0 and 1");
+        d.enabled = fields[8] == "1";
+    }
+    check_deformation(d);
+    return d;
+}
+
+std::string joined(std::initializer_list<double> numbers, const char* separator) {
+    std::string text;
+    for (const double v : numbers) {
+        if (!text.empty()) text += separator;
+        // JSON readers take -0 for a whole number, which has no sign.
+        text += v == 0 && std::signbit(v) ? "-0.0" : shortest(v);
+    }
+    return text;
+}
+
+}  // namespace
+
+const char* name_of(DeformationKernel kernel) {
+    return kernel == DeformationKernel::gaussian ? "gaussian" : "wendland_c2";
+}
+
+DeformationKernel kernel_named(std::string_view name) {
+    for (const DeformationKernel kernel : {DeformationKernel::gaussian, DeformationKernel::wendland_c2})
+        if (name == name_of(kernel)) return kernel;
+    throw Error("kernel", excerpt(name), "allowed are gaussian, wendland_c2");
+}
+
+std::vector<Deformation> parse_deformations_json(std::string_view text, std::string_view name) {
+    check_size(text, name);
+    Json json;
+    try {
+        // A file that is nothing but brackets must not fill the memory.
+        constexpr int kDepth = 8;
+        json = Json::parse(text, [&](int depth, Json::parse_event_t, const Json&) {
+            if (depth > kDepth) fail(name, "", "brackets stand more than 8 deep");
+            return true;
+        });
+    } catch (const Json::exception& error) {
+        fail(name, "", "no JSON: " + excerpt(error.what()));
+    }
+    if (!json.is_object() || json.size() != 1 || !json.contains("deformations") ||
+        !json["deformations"].is_array())
+        fail(name, "", "needed is an object with nothing but a list, deformations");
+    std::vector<Deformation> list;
+    for (const Json& entry : json["deformations"]) {
+        const std::string label = "deformations[" + std::to_string(list.size()) + "]";
+        in_entry(name, label, [&] { list.push_back(read_deformation(entry)); });
+        check_count(list, name, label);
+    }
+    return list;
+}
+
+std::vector<Deformation> parse_deformations_csv(std::string_view text, std::string_view name) {
+    check_size(text, name);
+    if (text.starts_with("\xef\xbb\xbf")) text.remove_prefix(3);
+    std::vector<Deformation> list;
+    bool first = true;
+    for (std::size_t number = 1; !text.empty(); ++number) {
+        const std::size_t end = text.find('\n');
+        const std::string_view row = trimmed(text.substr(0, end));
+        text.remove_prefix(end == std::string_view::npos ? text.size() : end + 1);
+        if (row.empty() || row.front() == '#') continue;
+        const bool head = first && row.starts_with("center_u");
+        first = false;
+        if (head) continue;
+        const std::string label = "row " + std::to_string(number);
+        in_entry(name, label, [&] { list.push_back(read_row(row)); });
+        check_count(list, name, label);
+    }
+    return list;
+}
+
+std::vector<Deformation> parse_deformations_file(std::string_view text, std::string_view name) {
+    constexpr std::string_view kEnd = ".csv";
+    const std::string_view end = name.substr(name.size() - std::min(name.size(), kEnd.size()));
+    const bool csv = std::equal(end.begin(), end.end(), kEnd.begin(), kEnd.end(), [](char a, char b) {
+        return std::tolower(static_cast<unsigned char>(a)) == b;
+    });
+    return csv ? parse_deformations_csv(text, name) : parse_deformations_json(text, name);
+}
+
+std::string deformations_json(const std::vector<Deformation>& list) {
+    std::string text = "{\"deformations\": [";
+    const char* separator = "\n";
+    for (const Deformation& d : list) {
+        text += std::string(separator) + "  {\"vector\": [" +
+                joined({d.vector.x, d.vector.y, d.vector.z}, ", ") + "], \"center\": [" +
+                joined({d.center.x, d.center.y}, ", ") + "], \"extent\": [" +
+                joined({d.extent.x, d.extent.y}, ", ") + "], \"kernel\": \"" + name_of(d.kernel) +
+                "\", \"enabled\": " + (d.enabled ? "true" : "false") + "}";
+        separator = ",\n";
+    }
+    return text + "\n]}\n";
+}
+
+std::string deformations_csv(const std::vector<Deformation>& list) {
+    std::string text = kColumns + std::string("\n");
+    for (const Deformation& d : list)
+        text += joined({d.center.x, d.center.y, d.extent.x, d.extent.y, d.vector.x, d.vector.y, d.vector.z},
+                       ",") +
+                "," + name_of(d.kernel) + (d.enabled ? ",1\n" : ",0\n");
+    return text;
+}
+
+}  // namespace anamorph

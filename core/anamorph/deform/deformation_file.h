@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: Apache-2.0
+// Lists of deformations as text. The core opens no files: a host hands over what it has read, and a name for
+// messages. Readers throw Error: one line that names the file and the entry.
+//
+// JSON (other keys are refused):
+//
+//     {"deformations": [
+//         {"vector": [x, y, z], "center": [u, v], "extent": [a_u, a_v],
+//          "kernel": "gaussian",      optional: gaussian (the default) or wendland_c2
+//          "enabled": true}]}         optional: true (the default) or false
+//
+// CSV: one deformation a line, center_u,center_v,extent_u,extent_v,x,y,z and then, if wanted, kernel and
+// enabled (1 or 0). Empty lines and lines that start with # are passed over, and so is a first line that
+// names the columns (it starts with center_u).
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "anamorph/deform/deformation.h"
+
+namespace anamorph {
+
+/// Longer texts and lists are refused.
+inline constexpr std::size_t kMaxDeformationText = std::size_t{64} << 20;
+inline constexpr std::size_t kMaxDeformations = std::size_t{1} << 20;
+
+std::vector<Deformation> parse_deformations_json(std::string_view text, std::string_view name);
+std::vector<Deformation> parse_deformations_csv(std::string_view text, std::string_view name);
+/// Chooses by the end of the name: .csv, else JSON.
+std::vector<Deformation> parse_deformations_file(std::string_view text, std::string_view name);
+
+/// What reads back as the same list, to the bit.
+std::string deformations_json(const std::vector<Deformation>& list);
+std::string deformations_csv(const std::vector<Deformation>& list);
+
+/// "gaussian", "wendland_c2".
+const char* name_of(DeformationKernel kernel);
+/// Throws Error on other names.
+DeformationKernel kernel_named(std::string_view name);
+
+}  // namespace anamorph

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: Apache-2.0
+// Key frames: numbers over time (weights of inbetweening, parameters of deformations), given at some times
+// and interpolated in between (Oka 1987, section 4.2). Before the first and after the last time they stand
+// still.
+#pragma once
+
+#include <vector>
+
+#include "anamorph/error.h"
+
+namespace anamorph {
+
+enum class KeyInterpolation {
+    step,  ///< the last frame's, up to the next
+    linear,
+    catmull_rom,    ///< cubic Hermite with slopes (v_(i+1) - v_(i-1)) / (t_(i+1) - t_(i-1)) (Catmull and Rom
+                    ///< 1974, for any times); it overshoots
+    monotone_cubic  ///< cubic Hermite whose slopes, harmonic means of the secants weighted by Brodlie's
+                    ///< formula (Fritsch and Butland 1984), never overshoot. Not linear in the values:
+                    ///< weights that sum to 1 at the frames need not in between, so normalize them. The other
+                    ///< ways keep the sum.
+};
+
+class KeyFrames {
+  public:
+    /// values[k] are the numbers at times[k]. Throws Error, naming the entry, unless there is a frame, times
+    /// ascend, all have as many numbers as the first, and all are between -1e300 and 1e300.
+    KeyFrames(std::vector<double> times, std::vector<std::vector<double>> values,
+              KeyInterpolation interpolation);
+
+    /// The numbers at a time. Throws Error on NaN.
+    std::vector<double> at(double time) const;
+
+    const std::vector<double>& times() const { return m_times; }
+    /// How many numbers a frame has.
+    std::size_t size() const { return m_values.front().size(); }
+
+  private:
+    double cubic(std::size_t frame, std::size_t number, double s) const;
+    double slope(std::size_t frame, std::size_t number, double length) const;
+
+    std::vector<double> m_times;
+    std::vector<std::vector<double>> m_values;
+    KeyInterpolation m_interpolation;
+};
+
+}  // namespace anamorph
