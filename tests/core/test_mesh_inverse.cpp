@@ -106,8 +106,7 @@ TEST(MeshInverse, FindsAllSourcePointsOfAFold) {
     ControlMesh mesh = test::identity_mesh(size, 3, 1);
     for (std::size_t r = 0; r < 2; ++r) std::swap(mesh.vertices[4 * r + 1], mesh.vertices[4 * r + 2]);
     const InversePlan plan(Mesh(mesh, size, size, 1), WarpScheme::automatic, 1.0 / 16, "mesh");
-    // In the middle cell, 200 - 50 (s - 1)... x(s) = 200 + 50 s - 450 s^2 + 300 s^3 turns at s = 1/2 -+
-    // sqrt(7/36).
+    // In the middle cell x(s) = 200 + 50 s - 450 s^2 + 300 s^3 turns at s = 1/2 -+ sqrt(7/36).
     const auto x_of = [](double s) { return 200 + s * (50 + s * (-450 + s * 300)); };
     const double low = x_of(0.5 + std::sqrt(7.0 / 36)), high = x_of(0.5 - std::sqrt(7.0 / 36));
     std::int64_t folded = 0;

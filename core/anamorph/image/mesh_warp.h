@@ -32,8 +32,10 @@ struct MeshWarpOptions {
 /// pixel depend on nothing but the map, the options, the sizes and the source.
 ///
 /// The identity maps the source image onto the whole target image. Where several source points land on a
-/// pixel (a mesh that pushes, folded), the one in the cell with the largest number (row by row) is drawn:
-/// what was laid down last. Where none lands, the picture is black.
+/// pixel (a mesh that pushes, folded), those come first where the mesh is not turned over, of these the one
+/// in the cell with the largest number, row by row; where none lands, the picture is black. A fold counts as
+/// up to a quarter of a pixel wide. Between the outermost lines of a mesh and the edges of the image it lies
+/// in, and beyond given points, the map goes on (mesh_data.h, scattered.h).
 class MeshWarp {
   public:
     /// Throws Error: a vertex that is not a number, a tolerance below 0, an amount that is not finite, sizes
