@@ -13,6 +13,7 @@
 
 #include "anamorph/deform/deformation.h"
 #include "anamorph/deform/deformed_surface.h"
+#include "anamorph/simd/block_sampler.h"
 
 namespace anamorph {
 namespace {
@@ -212,6 +213,35 @@ TEST(DeformedSurface, StaysWithinItsErrorBound) {
                 }
             }
     }
+}
+
+/// On every instruction set: within the bound, and what cancels cancels.
+TEST(DeformedSurface, EveryInstructionSet) {
+    Random random(17);
+    const std::vector<Deformation> list = random.list(40, .02, .4);
+    const std::vector<double> u = even(101), v = even(35);
+    const std::vector<glm::dvec2> points = parameters(u, v);
+    const std::vector<long double> exact = truth(list, points);
+    for (const char* const* set = simd::instruction_sets(); *set; ++set) {
+        SCOPED_TRACE(*set);
+        ASSERT_TRUE(simd::use_instruction_set(*set));
+        std::vector<double> grid_out(3 * points.size()), points_out(grid_out.size());
+        DeformedGrid grid(u, v);
+        DeformedPoints scattered(points);
+        grid.apply(additions(list));
+        scattered.apply(additions(list));
+        grid.write<double>(nullptr, grid_out.data());
+        scattered.write<double>(nullptr, points_out.data());
+        EXPECT_LE(largest_error(grid_out, exact), grid.error_bound());
+        EXPECT_LE(largest_error(points_out, exact), grid.error_bound());
+        grid.apply(difference(list, {}));
+        scattered.apply(difference(list, {}));
+        grid.update<double>(nullptr, grid_out.data());
+        scattered.update<double>(nullptr, points_out.data());
+        EXPECT_EQ(grid_out, std::vector<double>(grid_out.size()));
+        EXPECT_EQ(points_out, std::vector<double>(points_out.size()));
+    }
+    simd::use_instruction_set("");
 }
 
 TEST(DeformedSurface, RoundsOnceToFloat) {

@@ -122,9 +122,10 @@ void inbetween_from_base(const T* base, std::span<const T* const> shapes, std::s
         for (std::size_t k = 0; k < mask_of.size(); ++k) {
             from.push_back(active.shapes[k] + first * components);
             if (!mask_of[k]) continue;
-            repeated[k].reserve(values);
-            for (std::int64_t p = first; p < first + count; ++p)
-                repeated[k].insert(repeated[k].end(), static_cast<std::size_t>(components), mask_of[k][p]);
+            repeated[k].resize(values);
+            float* to = repeated[k].data();
+            for (std::int64_t p = first; p < first + count; ++p, to += components)
+                std::fill(to, to + components, mask_of[k][p]);
             mask[k] = repeated[k].data();
         }
         simd::blend_masked(from.data(), mask.data(), active.weights.data(), from.size(),

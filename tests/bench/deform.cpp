@@ -1,0 +1,294 @@
+// SPDX-License-Identifier: Apache-2.0
+// Deformed surfaces and inbetweening: speed against error.
+//
+// A plane of up to 1000 x 1000 points with 50 Gaussians, local ones and wide ones. double and float: plain
+// loops over eq. (4.1), no cutoff. fixed and fixed_double: deform_grid to float and double points. kept: a
+// DeformedGrid filled and drawn. edit: one bump of a DeformedGrid changed and drawn, averaged over all bumps.
+// points and points_edit: the same of DeformedPoints. memory: as many bytes copied as fixed reads and writes.
+//
+// A blend of 10 shapes of as many points, weights from -0.3 to 0.4. double: the plain loop. blend: inbetween.
+// regions: inbetween_from_base with a mask for every other shape. memory: as many bytes copied as blend reads
+// and writes.
+//
+// Errors are those of a component of a point, in units of the surface (u and v go from 0 to 1), from eq.
+// (4.1) in long double, over every 31st point. Times are a point's ("px").
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <random>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "anamorph/deform/deformed_surface.h"
+#include "anamorph/deform/inbetween.h"
+#include "bench.h"
+#include "pixels.h"
+
+namespace anamorph::bench {
+namespace {
+
+constexpr int kMostSide = 1000;
+constexpr std::size_t kTruthStep = 31;
+
+struct Contender {
+    std::string scheme;
+    std::function<void()> draw;
+    double repeats = 1;                          ///< what `draw` does how many times
+    std::function<double(std::size_t)> value{};  ///< what it has drawn: component k of the surface
+    double bound = kNone;
+};
+
+/// Times contenders together and adds their rows. `truth` has component k for multiples of kTruthStep points.
+void measure(const std::string& case_name, int side, std::size_t points, const Settings& settings,
+             const std::vector<Contender>& contenders, const std::function<long double(std::size_t)>& truth,
+             Report& report) {
+    std::vector<Timed> timed;
+    for (const Contender& c : contenders) timed.push_back({c.draw, 1});
+    const std::vector<Times> times = time_interleaved(timed, settings.rounds);
+    for (std::size_t k = 0; k < contenders.size(); ++k) {
+        const Contender& c = contenders[k];
+        const double share = 1 / (c.repeats * static_cast<double>(points));
+        Row row;
+        row.op = "deform";
+        row.case_name = case_name;
+        row.scheme = c.scheme;
+        row.size = side;
+        row.ns_per_px = times[k].median * share;
+        row.best_ns_per_px = times[k].best * share;
+        row.ratio_to_exact = times[0].median / times[k].median * c.repeats;
+        row.bound_px = c.bound;
+        if (c.value) {
+            c.draw();
+            std::vector<float> errors;
+            for (std::size_t p = 0; p < points; p += kTruthStep)
+                for (std::size_t i = 3 * p; i < 3 * p + 3; ++i)
+                    errors.push_back(static_cast<float>(std::fabs(c.value(i) - truth(i))));
+            row.error = accuracy_of(errors);
+            // Points in float are rounded to 2^-24 of themselves, which are below 2.
+            if (!std::isnan(c.bound) && !(row.error.max <= c.bound + 0x1p-23))
+                report.failures.push_back(case_name + ", " + c.scheme + ": largest error " +
+                                          std::to_string(row.error.max) + ", bound " +
+                                          std::to_string(c.bound));
+        }
+        if (settings.wants_scheme(c.scheme)) report.add(row);
+    }
+}
+
+std::vector<Deformation> gaussians(unsigned seed, double least_extent, double most_extent) {
+    std::mt19937 random(seed);
+    const auto number = [&](double least, double most) {
+        return std::uniform_real_distribution<double>(least, most)(random);
+    };
+    std::vector<Deformation> list(50);
+    for (Deformation& d : list) {
+        d.vector = {number(-.05, .05), number(-.05, .05), number(-.2, .2)};
+        d.center = {number(0, 1), number(0, 1)};
+        d.extent = {number(least_extent, most_extent), number(least_extent, most_extent)};
+    }
+    return list;
+}
+
+/// The loop that one would write first. Real: of the arithmetic.
+template <class Real, class T>
+void plain_loop(const std::vector<Deformation>& list, const std::vector<double>& u, const T* base, T* out) {
+    std::vector<Real> p(list.size() * 7);
+    for (std::size_t k = 0; k < list.size(); ++k) {
+        const Deformation& d = list[k];
+        const double from[7] = {d.center.x, d.center.y, d.extent.x, d.extent.y,
+                                d.vector.x, d.vector.y, d.vector.z};
+        std::transform(from, from + 7, &p[7 * k], [](double x) { return static_cast<Real>(x); });
+    }
+    for (const double v : u)
+        for (const double column : u) {
+            Real x = base[0], y = base[1], z = base[2];
+            for (std::size_t k = 0; k < p.size(); k += 7) {
+                const Real s = (static_cast<Real>(column) - p[k]) / p[k + 2],
+                           t = (static_cast<Real>(v) - p[k + 1]) / p[k + 3], f = std::exp(-s * s - t * t);
+                x += p[k + 4] * f;
+                y += p[k + 5] * f;
+                z += p[k + 6] * f;
+            }
+            *out++ = static_cast<T>(x);
+            *out++ = static_cast<T>(y);
+            *out++ = static_cast<T>(z);
+            base += 3;
+        }
+}
+
+/// A list whose bumps are changed one after the other, there and back.
+template <class Surface, class T>
+class Edits {
+  public:
+    Edits(Surface surface, const std::vector<Deformation>& list, const T* base, T* out)
+        : m_surface(std::move(surface)), m_list(list), m_base(base), m_out(out) {
+        m_surface.apply(difference({}, list));
+        m_surface.write(base, out);
+    }
+    void run() {
+        m_there = !m_there;
+        for (std::size_t k = 0; k < m_list.entries().size(); ++k) {
+            Deformation d = m_list.entries()[k];
+            d.vector.z *= m_there ? 1.5 : 1 / 1.5;
+            d.center.x += m_there ? .01 : -.01;
+            m_surface.apply(m_list.change(k, d));
+            m_surface.update(m_base, m_out);
+        }
+    }
+
+  private:
+    Surface m_surface;
+    DeformationList m_list;
+    const T* m_base;
+    T* m_out;
+    bool m_there = false;
+};
+
+void run_list(const Settings& settings, Report& report, const std::string& name, double least_extent,
+              double most_extent) {
+    if (!settings.wants_case(name)) return;
+    const int side = std::min(settings.size, kMostSide);
+    const std::vector<Deformation> list = gaussians(1, least_extent, most_extent);
+    std::vector<double> u;
+    for (int i = 0; i < side; ++i) u.push_back((i + 0.5) / side);
+    const std::size_t across = u.size(), points = across * across, bytes = 3 * points * sizeof(double);
+    // The points in float are those of the plane in double to the bit: u and v are rounded first.
+    for (double& x : u) x = static_cast<float>(x);
+    const Buffer base(bytes), base_double(bytes), out(bytes), out_double(bytes), edited(bytes), copied(bytes);
+    std::vector<glm::dvec2> parameters;
+    for (std::size_t p = 0; p < points; ++p) {
+        const double at[3] = {u[p % across], u[p / across], 0};
+        parameters.push_back({at[0], at[1]});
+        for (std::size_t c = 0; c < 3; ++c) {
+            base_double.as<double>()[3 * p + c] = at[c];
+            base.as<float>()[3 * p + c] = static_cast<float>(at[c]);
+        }
+    }
+    std::vector<long double> exact(3 * points);
+    for (std::size_t p = 0; p < points; p += kTruthStep)
+        for (std::size_t c = 0; c < 3; ++c) {
+            long double& sum = exact[3 * p + c] = base_double.as<double>()[3 * p + c];
+            for (const Deformation& d : list)
+                sum += d.vector[static_cast<int>(c)] *
+                       kernel_value(d.kernel,
+                                    (parameters[p].x - static_cast<long double>(d.center.x)) / d.extent.x,
+                                    (parameters[p].y - static_cast<long double>(d.center.y)) / d.extent.y);
+        }
+    const auto floats = [to = out.as<float>()](std::size_t k) { return static_cast<double>(to[k]); };
+    const auto doubles = [to = out_double.as<double>()](std::size_t k) { return to[k]; };
+    const DeformOptions options;
+    const double bound = deform_grid<float>(list, u, u, options, nullptr, out.as<float>());
+
+    Edits<DeformedGrid, float> grid_edits(DeformedGrid(u, u, options), list, base.as<float>(),
+                                          edited.as<float>());
+    Edits<DeformedPoints, float> point_edits(DeformedPoints(parameters, options), list, base.as<float>(),
+                                             edited.as<float>());
+    DeformedPoints scattered(parameters, options);
+    const std::vector<DeformationChange> changes = difference({}, list);
+    std::vector<DeformationChange> renewed;  // taken away and added: the surface stays
+    for (const DeformationChange& change : changes) renewed.push_back({change.after, change.after});
+    scattered.apply(changes);
+    scattered.write(base.as<float>(), out.as<float>());
+    const double edits = static_cast<double>(list.size());
+    const std::vector<Contender> contenders = {
+        {"double", [&] { plain_loop<double>(list, u, base_double.as<double>(), out_double.as<double>()); }, 1,
+         doubles},
+        {"float", [&] { plain_loop<float>(list, u, base.as<float>(), out.as<float>()); }, 1, floats},
+        {"fixed", [&] { deform_grid(list, u, u, options, base.as<float>(), out.as<float>()); }, 1, floats,
+         bound},
+        {"fixed_double",
+         [&] { deform_grid(list, u, u, options, base_double.as<double>(), out_double.as<double>()); }, 1,
+         doubles, bound},
+        {"kept",
+         [&] {
+             DeformedGrid grid(u, u, options);
+             grid.apply(changes);
+             grid.write(base.as<float>(), out.as<float>());
+         },
+         1, floats, bound},
+        {"edit", [&] { grid_edits.run(); }, edits},
+        {"points",
+         [&] {
+             scattered.apply(renewed);
+             scattered.write(base.as<float>(), out.as<float>());
+         },
+         2, floats, bound},
+        {"points_edit", [&] { point_edits.run(); }, edits},
+        {"memory", [&] { std::memcpy(copied.bytes(), base.bytes(), 3 * points * sizeof(float)); }}};
+    measure(
+        name, side, points, settings, contenders, [&](std::size_t k) { return exact[k]; }, report);
+}
+
+void run_blend(const Settings& settings, Report& report) {
+    if (!settings.wants_case("blend10")) return;
+    const int side = std::min(settings.size, kMostSide);
+    const auto points = static_cast<std::size_t>(side) * static_cast<std::size_t>(side), values = 3 * points;
+    const std::vector<double> weights = {.3, .2, -.1, .4, .1, .05, .05, .2, -.3, .1};
+    const std::size_t count = weights.size(), bytes = values * sizeof(float);
+    const Buffer memory(count * bytes), out(bytes), copied((count + 1) * bytes / 2);
+    std::mt19937 random(1);
+    for (std::size_t i = 0; i < count * values; ++i)
+        memory.as<float>()[i] = std::uniform_real_distribution<float>(0, 1)(random);
+    std::vector<const float*> shapes;
+    for (std::size_t k = 0; k < count; ++k) shapes.push_back(memory.as<float>() + k * values);
+    const std::vector<float> mask(points, .5f);
+    std::vector<const float*> masks(count, nullptr);
+    for (std::size_t k = 0; k < count; k += 2) masks[k] = mask.data();
+
+    float* to = out.as<float>();
+    const auto drawn = [to](std::size_t i) { return static_cast<double>(to[i]); };
+    const std::vector<Contender> contenders = {
+        {"double",
+         [&] {
+             for (std::size_t i = 0; i < values; ++i) {
+                 double sum = 0;
+                 for (std::size_t k = 0; k < count; ++k)
+                     sum += weights[k] * static_cast<double>(shapes[k][i]);
+                 to[i] = static_cast<float>(sum);
+             }
+         },
+         1, drawn},
+        {"blend",
+         [&] {
+             inbetween<float>(shapes, weights, WeightSum::checked, static_cast<std::int64_t>(points), 3, to);
+         },
+         1, drawn, 0x1p-24},
+        {"regions",
+         [&] {
+             inbetween_from_base<float>(shapes[0], shapes, weights, masks, static_cast<std::int64_t>(points),
+                                        3, to);
+         }},
+        {"memory", [&] { std::memcpy(copied.bytes(), memory.bytes(), (count + 1) * bytes / 2); }}};
+    const auto truth = [&](std::size_t i) {
+        long double sum = 0;
+        for (std::size_t k = 0; k < count; ++k) sum += static_cast<long double>(weights[k]) * shapes[k][i];
+        return sum;
+    };
+    measure("blend10", side, points, settings, contenders, truth, report);
+}
+
+void run(const Settings& settings, Report& report) {
+    run_list(settings, report, "gaussians_local", .02, .08);
+    run_list(settings, report, "gaussians_wide", .1, .3);
+    run_blend(settings, report);
+    const auto row = [&](const char* case_name, const char* scheme) {
+        return report.find(case_name, scheme);
+    };
+    report.add_speed_target("deform: 50 local Gaussians, times the plain double loop", 100,
+                            row("gaussians_local", "double"), row("gaussians_local", "fixed"));
+    report.add_speed_target("deform: 50 wide Gaussians, times the plain double loop", 30,
+                            row("gaussians_wide", "double"), row("gaussians_wide", "fixed"));
+    report.add_speed_target("deform: one edit of local Gaussians, times recomputing", 15,
+                            row("gaussians_local", "fixed"), row("gaussians_local", "edit"));
+    report.add_speed_target("deform: one edit of wide Gaussians, times recomputing", 15,
+                            row("gaussians_wide", "fixed"), row("gaussians_wide", "edit"));
+    report.add_speed_target("deform: a blend of 10 shapes, times the plain loop", 1.8,
+                            row("blend10", "double"), row("blend10", "blend"));
+    report.add_speed_target("deform: a blend of 10 shapes, share of the memory limit", .45,
+                            row("blend10", "memory"), row("blend10", "blend"));
+}
+
+const RegisterOp registered({"deform", run, nullptr});
+
+}  // namespace
+}  // namespace anamorph::bench
