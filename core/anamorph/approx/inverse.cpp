@@ -5,8 +5,8 @@
 #include <atomic>
 #include <optional>
 
+#include "anamorph/approx/block_writer.h"
 #include "anamorph/approx/hermite.h"
-#include "anamorph/approx/mesh_blocks.h"
 
 namespace anamorph {
 namespace {

@@ -7,8 +7,8 @@
 #include <functional>
 #include <limits>
 
+#include "anamorph/approx/block_writer.h"
 #include "anamorph/approx/hermite.h"
-#include "anamorph/approx/mesh_blocks.h"
 #include "anamorph/approx/mesh_residual.h"
 
 namespace anamorph {

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "anamorph/approx/mesh_scattered.h"
 
+#include "anamorph/approx/block_writer.h"
 #include "anamorph/approx/hermite.h"
-#include "anamorph/approx/mesh_blocks.h"
 
 namespace anamorph {
 namespace {

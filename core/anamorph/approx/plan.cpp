@@ -6,7 +6,7 @@
 #include <cstdio>
 #include <optional>
 
-#include "anamorph/approx/mesh_blocks.h"
+#include "anamorph/approx/block_writer.h"
 #include "anamorph/approx/residual.h"
 #include "anamorph/approx/taylor.h"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Blocks as the plans of warps write them: checked against the tolerance, halved where they miss it.
+// Blocks as plans write them: checked against the tolerance, halved where they miss it.
 #pragma once
 
 #include <algorithm>
@@ -45,7 +45,8 @@ class BlockWriter {
         block.kind = Block::Kind::polynomial;
         block.base_x = static_cast<std::int32_t>(std::floor(x[0]));
         block.base_y = static_cast<std::int32_t>(std::floor(y[0]));
-        block.bound = error + std::hypot(store(x, block.base_x, block.x), store(y, block.base_y, block.y));
+        const double ex = store(x, block.base_x, block.x), ey = store(y, block.base_y, block.y);
+        block.bound = error + std::sqrt(ex * ex + ey * ey);
         if (!(block.bound <= m_tol)) return false;
         m_blocks.push_back(block);
         return true;
