@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <glm/geometric.hpp>
 #include <limits>
 #include <numeric>
 #include <random>
@@ -177,12 +178,50 @@ TEST(DeformKernel, NormalsOfABump) {
     d.extent = {2, 3};
     const double u = .7, v = -1.1, f = std::exp(-u * u / 4 - v * v / 9);
     // z = 2 F: the normal is (-z_u, -z_v, 1), and F_u = -2 u / a^2 F.
-    const glm::dvec3 normal = deformed_normal({d}, {u, v}, {1, 0, 0}, {0, 1, 0});
+    const glm::dvec3 normal = normal_of(displacement_at({d}, {u, v}), {1, 0, 0}, {0, 1, 0});
     const double zu = 2 * -2 * u / 4 * f, zv = 2 * -2 * v / 9 * f, length = std::sqrt(zu * zu + zv * zv + 1);
     EXPECT_NEAR(normal.x, -zu / length, 1e-15);
     EXPECT_NEAR(normal.y, -zv / length, 1e-15);
     EXPECT_NEAR(normal.z, 1 / length, 1e-15);
-    EXPECT_EQ(deformed_normal({}, {0, 0}, {1, 0, 0}, {2, 0, 0}), glm::dvec3(0));
+    EXPECT_EQ(normal_of({}, {1, 0, 0}, {2, 0, 0}), glm::dvec3(0));
+}
+
+TEST(DeformKernel, NormalsOfManyPoints) {
+    for (unsigned seed = 1; seed <= 4; ++seed) {
+        SCOPED_TRACE("seed " + std::to_string(seed));
+        Random random(seed);
+        std::vector<Deformation> list = random.list(50, .02, .3);
+        list[7].enabled = false;
+        const std::vector<glm::dvec2> points = parameters(even(61), even(23));
+        const std::vector<glm::dvec3> base_u{{1, 0, 0}}, base_v{{0, 1, 0}};
+        const DeformOptions options;
+        std::vector<glm::dvec3> normals(points.size()), again(points.size());
+        deformed_normals(list, points, base_u, base_v, options, normals.data());
+        for (std::size_t i = 0; i < points.size(); ++i) {
+            // 50 derivatives without up to 2 * 4.1 * 1e-7 * 0.42 / 0.02 each; a length near 0 magnifies that.
+            const DisplacementJet d = displacement_at(list, points[i]);
+            const double length = glm::length(glm::cross(base_u[0] + d.by_u, base_v[0] + d.by_v));
+            const double slope = 2 + glm::length(d.by_u) + glm::length(d.by_v);
+            ASSERT_LE(glm::distance(normals[i], normal_of(d, base_u[0], base_v[0])), 1e-3 * slope / length);
+        }
+        deformed_normals(list, points, base_u, base_v, {0, 0x1p-40}, again.data());
+        for (std::size_t i = 0; i < points.size(); ++i)
+            ASSERT_LE(
+                glm::distance(again[i], normal_of(displacement_at(list, points[i]), base_u[0], base_v[0])),
+                1e-11);
+        random.shuffle(list);
+        const std::vector<glm::dvec3> every_u(points.size(), base_u[0]);
+        deformed_normals(list, points, every_u, base_v, options, again.data(), threads(3));
+        EXPECT_EQ(again, normals);
+        const std::span<const glm::dvec2> piece = std::span(points).subspan(101, 300);
+        deformed_normals(list, piece, base_u, base_v, options, again.data());
+        EXPECT_TRUE(std::equal(again.begin(), again.begin() + 300, normals.begin() + 101));
+        EXPECT_THAT(fault_of([&] { deformed_normals(list, piece, {}, base_v, options, again.data()); }),
+                    HasSubstr("base_u=0 vectors"));
+        const std::vector<glm::dvec2> bad{{0, kNan}};
+        EXPECT_THAT(fault_of([&] { deformed_normals(list, bad, base_u, base_v, options, again.data()); }),
+                    HasSubstr("points[0]=nan"));
+    }
 }
 
 // --- Error

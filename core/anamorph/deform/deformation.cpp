@@ -50,23 +50,22 @@ void check_deformation(const Deformation& d) {
     check_extent(d.extent.y);
 }
 
-DisplacementJet displacement_at(const std::vector<Deformation>& list, glm::dvec2 p) {
+void add_displacement(const Deformation& d, glm::dvec2 p, DisplacementJet& sum) {
     using J = Jet1<double>;
-    const J u = J::variable(p.x, 1, 0), v = J::variable(p.y, 0, 1);
+    const J f = influence(d, J::variable(p.x, 1, 0), J::variable(p.y, 0, 1));
+    sum.value += d.vector * f.c[0];
+    sum.by_u += d.vector * f.c[1];
+    sum.by_v += d.vector * f.c[2];
+}
+
+DisplacementJet displacement_at(const std::vector<Deformation>& list, glm::dvec2 p) {
     DisplacementJet sum;
-    for (const Deformation& d : list) {
-        if (!d.enabled) continue;
-        const J f = influence(d, u, v);
-        sum.value += d.vector * f.c[0];
-        sum.by_u += d.vector * f.c[1];
-        sum.by_v += d.vector * f.c[2];
-    }
+    for (const Deformation& d : list)
+        if (d.enabled) add_displacement(d, p, sum);
     return sum;
 }
 
-glm::dvec3 deformed_normal(const std::vector<Deformation>& list, glm::dvec2 p, glm::dvec3 base_u,
-                           glm::dvec3 base_v) {
-    const DisplacementJet d = displacement_at(list, p);
+glm::dvec3 normal_of(const DisplacementJet& d, glm::dvec3 base_u, glm::dvec3 base_v) {
     const glm::dvec3 normal = glm::cross(base_u + d.by_u, base_v + d.by_v);
     const double length = glm::length(normal);
     return length > 0 ? normal / length : glm::dvec3(0.0);

@@ -70,11 +70,12 @@ struct DisplacementJet {
     glm::dvec3 value{0.0}, by_u{0.0}, by_v{0.0};
 };
 DisplacementJet displacement_at(const std::vector<Deformation>& list, glm::dvec2 p);
+/// Adds one of them, enabled or not.
+void add_displacement(const Deformation& deformation, glm::dvec2 p, DisplacementJet& sum);
 
-/// The unit normal of the deformed surface at p, where the undeformed one has the derivatives base_u and
+/// The unit normal of a displaced surface at a point where the one before has the derivatives base_u and
 /// base_v: (base_u + D_u) x (base_v + D_v). Zero where these are parallel.
-glm::dvec3 deformed_normal(const std::vector<Deformation>& list, glm::dvec2 p, glm::dvec3 base_u,
-                           glm::dvec3 base_v);
+glm::dvec3 normal_of(const DisplacementJet& displacement, glm::dvec3 base_u, glm::dvec3 base_v);
 
 /// What an edit of a list does to the surface: `before` is taken away, `after` is added. Neither is there if
 /// the edit moves nothing.

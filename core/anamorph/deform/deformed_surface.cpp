@@ -308,6 +308,17 @@ int part_of(double value, double least, double most, int count) {
     return std::clamp(static_cast<int>(at), 0, count - 1);
 }
 
+simd::PointTerm point_term(const Term& from, const DisplacementSum& sum) {
+    const Deformation& d = *from.deformation;
+    simd::PointTerm term{{d.center.x, d.center.y},
+                         {1 / d.extent.x, 1 / d.extent.y},
+                         sum.reach(d.kernel),
+                         {},
+                         d.kernel == DeformationKernel::gaussian};
+    set_units(from, sum.options().resolution, term.units);
+    return term;
+}
+
 /// Does a term move points with coordinates from `least` to `most`? The arithmetic of simd::deform_points,
 /// monotonic in the coordinate.
 bool reaches(const simd::PointTerm& term, int axis, double least, double most) {
@@ -372,16 +383,7 @@ void DeformedPoints::apply(std::span<const DeformationChange> changes) {
 template <class T>
 std::int64_t DeformedPoints::draw(bool all, const T* base, T* out, const ParallelFor& parallel_for) {
     std::vector<simd::PointTerm> terms;
-    for (const Term& from : terms_of(m_pending)) {
-        const Deformation& d = *from.deformation;
-        simd::PointTerm term{{d.center.x, d.center.y},
-                             {1 / d.extent.x, 1 / d.extent.y},
-                             m_sum.reach(d.kernel),
-                             {},
-                             d.kernel == DeformationKernel::gaussian};
-        set_units(from, m_sum.options().resolution, term.units);
-        terms.push_back(term);
-    }
+    for (const Term& from : terms_of(m_pending)) terms.push_back(point_term(from, m_sum));
     std::atomic<std::int64_t> written = 0;
     const double resolution = m_sum.options().resolution;
     const auto draw_cell = [&](const Cell& cell, const std::vector<const simd::PointTerm*>& on_row,
@@ -438,5 +440,51 @@ template std::int64_t DeformedPoints::update(const float*, float*, const Paralle
 template std::int64_t DeformedPoints::update(const double*, double*, const ParallelFor&);
 template void DeformedPoints::write(const float*, float*, const ParallelFor&);
 template void DeformedPoints::write(const double*, double*, const ParallelFor&);
+
+// --- Normals
+
+void deformed_normals(const std::vector<Deformation>& list, std::span<const glm::dvec2> points,
+                      std::span<const glm::dvec3> base_u, std::span<const glm::dvec3> base_v,
+                      const DeformOptions& options, glm::dvec3* out, const ParallelFor& parallel_for) {
+    for (std::size_t i = 0; i < points.size(); ++i)
+        for (int c = 0; c < 2; ++c)
+            if (!std::isfinite(points[i][c]))
+                throw Error("points[" + std::to_string(i) + "]", shortest(points[i][c]),
+                            "allowed are finite numbers");
+    for (const auto& [name, size] : {std::pair("base_u", base_u.size()), std::pair("base_v", base_v.size())})
+        if (size != 1 && size != points.size())
+            throw Error(name, std::to_string(size) + " vectors",
+                        "needed are one, or as many as points, " + std::to_string(points.size()));
+    DisplacementSum sum(options);
+    const std::vector<DeformationChange> changes = difference({}, list);
+    sum.apply(changes);
+    const std::vector<Term> all = terms_of(changes);
+    std::vector<simd::PointTerm> terms;
+    for (const Term& term : all) terms.push_back(point_term(term, sum));
+    constexpr std::size_t kChunk = 64;
+    parallel_for(static_cast<std::int64_t>((points.size() + kChunk - 1) / kChunk), [&](std::int64_t chunk) {
+        const std::size_t begin = static_cast<std::size_t>(chunk) * kChunk,
+                          end = std::min(begin + kChunk, points.size());
+        glm::dvec2 least = points[begin], most = least;
+        for (std::size_t i = begin; i < end; ++i)
+            for (int c = 0; c < 2; ++c) {
+                least[c] = std::min(least[c], points[i][c]);
+                most[c] = std::max(most[c], points[i][c]);
+            }
+        std::vector<std::size_t> near;
+        for (std::size_t k = 0; k < terms.size(); ++k)
+            if (reaches(terms[k], 0, least.x, most.x) && reaches(terms[k], 1, least.y, most.y))
+                near.push_back(k);
+        for (std::size_t i = begin; i < end; ++i) {
+            const glm::dvec2 p = points[i];
+            DisplacementJet displacement;
+            for (const std::size_t k : near)
+                if (reaches(terms[k], 0, p.x, p.x) && reaches(terms[k], 1, p.y, p.y))
+                    add_displacement(*all[k].deformation, p, displacement);
+            out[i] = normal_of(displacement, base_u[base_u.size() == 1 ? 0 : i],
+                               base_v[base_v.size() == 1 ? 0 : i]);
+        }
+    });
+}
 
 }  // namespace anamorph

@@ -16,6 +16,7 @@
 
 #include <cstdint>
 #include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
 #include <span>
 #include <vector>
 
@@ -137,5 +138,15 @@ class DeformedPoints {
     std::vector<std::int64_t> m_sums[3];   ///< by slot
     std::vector<DeformationChange> m_pending;
 };
+
+/// Unit normals of the deformed surface at points of the texture plane, from the kernels' exact derivatives.
+/// base_u and base_v: the undeformed surface's derivatives at every point, or one for all (a plane). A cut
+/// off Gaussian is missing up to 2 reach cutoff |V| / a of a derivative. A point's normal does not depend on
+/// the order of the list nor on the other points; points that follow each other are best close together.
+/// out: as many as points. Throws Error on sizes that do not fit.
+void deformed_normals(const std::vector<Deformation>& list, std::span<const glm::dvec2> points,
+                      std::span<const glm::dvec3> base_u, std::span<const glm::dvec3> base_v,
+                      const DeformOptions& options, glm::dvec3* out,
+                      const ParallelFor& parallel_for = serial_for);
 
 }  // namespace anamorph
