@@ -630,6 +630,8 @@ TEST(DeformedSurface, WhatIsRefused) {
     refused([](Deformation& d) { d.extent.y = -1; }, "extent", "-1");
     refused([](Deformation& d) { d.extent.y = 1e-310; }, "extent", "1e-310");
     EXPECT_THAT(fault_of([] { DeformedGrid({}, {0.0}); }), HasSubstr("u=0 values"));
+    const std::vector<double> many(std::size_t{1} << 21);
+    EXPECT_THAT(fault_of([&] { DeformedGrid(many, many); }), HasSubstr("2097152x2097152 points"));
     EXPECT_THAT(fault_of([] { DisplacementSum({1, 1}); }), HasSubstr("cutoff=1"));
     EXPECT_THAT(fault_of([] { DisplacementSum({1e-7, 3}); }), HasSubstr("resolution=3"));
     DeformedPoints none(std::span<const glm::dvec2>{});

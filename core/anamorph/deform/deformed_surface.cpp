@@ -149,6 +149,15 @@ void check_axis(const char* name, std::span<const double> values) {
                         "allowed are finite numbers");
 }
 
+void check_grid(std::span<const double> u, std::span<const double> v) {
+    check_axis("u", u);
+    check_axis("v", v);
+    constexpr std::size_t kMostPoints = std::size_t{1} << 40;
+    if (u.size() > kMostPoints / v.size())
+        throw Error("u and v", std::to_string(u.size()) + "x" + std::to_string(v.size()) + " points",
+                    "allowed are up to 2^40");
+}
+
 void hull(GridPart& part, const GridPart& other) {
     if (other.empty()) return;
     if (part.empty()) {
@@ -219,8 +228,7 @@ double DisplacementSum::error_bound() const {
 
 DeformedGrid::DeformedGrid(std::vector<double> u, std::vector<double> v, const DeformOptions& options)
     : m_u(std::move(u)), m_v(std::move(v)), m_sum(options) {
-    check_axis("u", m_u);
-    check_axis("v", m_v);
+    check_grid(m_u, m_v);
 }
 
 void DeformedGrid::apply(std::span<const DeformationChange> changes) {
@@ -266,8 +274,7 @@ void DeformedGrid::write(const T* base, T* out, const ParallelFor& parallel_for)
 template <class T>
 double deform_grid(const std::vector<Deformation>& list, std::span<const double> u, std::span<const double> v,
                    const DeformOptions& options, const T* base, T* out, const ParallelFor& parallel_for) {
-    check_axis("u", u);
-    check_axis("v", v);
+    check_grid(u, v);
     const std::vector<DeformationChange> changes = difference({}, list);
     DisplacementSum sum(options);
     sum.apply(changes);

@@ -43,7 +43,7 @@ struct GridTerm {
 /// columns, those of x, y and z of the first row, then those of the next.
 constexpr std::ptrdiff_t grid_sums(int row, int columns) {
     const std::ptrdiff_t blocks = (std::ptrdiff_t{columns} + kGridBlock - 1) / kGridBlock;
-    return 3 * row * blocks * kGridBlock;
+    return std::ptrdiff_t{3} * row * blocks * kGridBlock;
 }
 
 /// Rows of a grid. Without sums (null) they start at zero and are not kept. out = base + sums * resolution,
