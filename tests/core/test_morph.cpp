@@ -80,7 +80,8 @@ TEST(Morph, AtItsEndsItIsThePicturesToTheBit) {
     for (int end = 0; end < 2; ++end) {
         FloatPicture &kept = end ? b : a, poison = noise(kWidth, kHeight, 3, 3);
         std::fill(poison.pixels.begin(), poison.pixels.end(), NAN);
-        const MemorySource sa(end ? poison.source() : kept.source()), sb(end ? kept.source() : poison.source());
+        const MemorySource sa(end ? poison.source() : kept.source()),
+            sb(end ? kept.source() : poison.source());
         for (const Filter filter : {Filter::nearest, Filter::bilinear, Filter::bicubic, Filter::antialias})
             for (const MorphScheme scheme : {MorphScheme::automatic, MorphScheme::exact}) {
                 MorphOptions options;
