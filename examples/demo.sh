@@ -4,7 +4,7 @@
 # HDR panorama, warp a picture and film a morph of two. Everything it makes is in build/demo/out.
 set -euo pipefail
 cd "$(dirname "$0")/.."
-tests/install_packages.sh build hosts tests plots
+tests/install_packages.sh build hosts tests plots rivals
 
 demo="$PWD/build/demo"
 out="$demo/out"
