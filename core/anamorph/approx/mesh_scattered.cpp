@@ -21,7 +21,7 @@ class Planner {
 
   private:
     void place(const Box& box) {
-        if (box.width() * box.height() < kFloorPixels) return m_writer.exact(box);
+        if (BlockWriter::below_floor(box)) return m_writer.exact(box);
         const Part across{0.5 * (box.x0 + box.x1), half(box.width())},
             down{0.5 * (box.y0 + box.y1), half(box.height())};
         const CubicTriangle& middle = m_map.triangle_at(across.middle, down.middle);
@@ -93,8 +93,6 @@ class Planner {
     }
 
     static constexpr int kMost = 12;
-    // A block that meets some triangles costs as much to plan as so many exact pixels.
-    static constexpr int kFloorPixels = 64;
 
     const Scattered& m_map;
     BlockWriter m_writer;
