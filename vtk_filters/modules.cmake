@@ -1,0 +1,49 @@
+# SPDX-License-Identifier: Apache-2.0
+# The VTK modules and their Python package. Included at the top, so that all rooms see the toolkit's targets.
+
+# Found the same way by our build and by the users of the installed package.
+if(ANAMORPH_TOOLKIT STREQUAL "PARAVIEW")
+    set(find_toolkit "find_package(ParaView REQUIRED COMPONENTS RemotingCore RemotingServerManager)")
+else()
+    set(find_toolkit "find_package(VTK 9.1 REQUIRED COMPONENTS CommonExecutionModel FiltersCore
+             FiltersSources IOImage ImagingCore ParallelCore WrappingPythonCore Python)")
+endif()
+file(WRITE ${PROJECT_BINARY_DIR}/AnamorphToolkit.cmake "# SPDX-License-Identifier: Apache-2.0\n${find_toolkit}\n")
+include(${PROJECT_BINARY_DIR}/AnamorphToolkit.cmake)
+install(FILES ${PROJECT_BINARY_DIR}/AnamorphToolkit.cmake DESTINATION ${package_dir})
+
+# One folder of libraries: a plugin then finds the modules from the build tree as from an installation.
+set(CMAKE_LIBRARY_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/${CMAKE_INSTALL_LIBDIR})
+set(CMAKE_ARCHIVE_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/${CMAKE_INSTALL_LIBDIR})
+set(CMAKE_RUNTIME_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/${CMAKE_INSTALL_BINDIR})
+
+vtk_module_find_modules(module_files ${PROJECT_SOURCE_DIR}/vtk_filters)
+vtk_module_scan(MODULE_FILES ${module_files}
+                PROVIDES_MODULES anamorph_modules
+                REQUIRES_MODULES required_modules
+                HIDE_MODULES_FROM_CACHE ON
+                WANT_BY_DEFAULT ON)
+foreach(module IN LISTS required_modules)
+    if(NOT TARGET ${module})
+        message(FATAL_ERROR "ANAMORPH_TOOLKIT=${ANAMORPH_TOOLKIT}: its module ${module} is missing")
+    endif()
+endforeach()
+vtk_module_build(MODULES ${anamorph_modules}
+                 PACKAGE AnamorphVTK
+                 INSTALL_EXPORT AnamorphVTK
+                 CMAKE_DESTINATION ${package_dir}
+                 HEADERS_DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/anamorph/vtk
+                 USE_EXTERNAL OFF)
+
+find_package(Python3 REQUIRED COMPONENTS Interpreter Development.Module)
+set(python_dir ${CMAKE_INSTALL_LIBDIR}/python3/dist-packages)
+vtk_module_wrap_python(MODULES ${anamorph_modules}
+                       TARGET Anamorph::AnamorphPython
+                       PYTHON_PACKAGE anamorph
+                       MODULE_DESTINATION ${python_dir}
+                       LIBRARY_DESTINATION ${CMAKE_INSTALL_LIBDIR}
+                       CMAKE_DESTINATION ${package_dir}
+                       INSTALL_EXPORT AnamorphVTK)
+configure_file(${PROJECT_SOURCE_DIR}/vtk_filters/python/__init__.py
+               ${PROJECT_BINARY_DIR}/${python_dir}/anamorph/__init__.py COPYONLY)
+install(FILES vtk_filters/python/__init__.py DESTINATION ${python_dir}/anamorph)
