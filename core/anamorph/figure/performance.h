@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: Apache-2.0
+// Performs a program: what its ellipsoids do, frame by frame.
+//
+// A movement f0 f1 works on the frames f0 < f <= f1 (f0 = f1 counts as f1 + 1), in the order written. The
+// smallest f0 of a subroutine, and of the script itself, is its zero (only numbers count; where all are
+// variables, their values when the frame begins). Frame 0 is the figures at rest. Each frame takes a share of
+// an action that increments (frac), or of what remains of one with a target (prop); see timing.h.
+//
+// Frames may be asked for in any order. States are kept at intervals, in at most `memory` bytes, so that a
+// frame costs one interval at most; frames asked in order cost themselves alone. A frame is the same, to the
+// bit, in whatever order it is asked for.
+//
+// The strict dialect differs so: `limit` is enforced, `ground` ends grounded, `drag` finds the exact angle,
+// `attach` counts its offset from the second ellipsoid, variables must have been set and hold what is asked
+// for. `touch` and `abut` find exact contact in both (map/ellipsoid_distance.h), and `movjnt`, which stops
+// the original, works in both.
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <memory>
+#include <string>
+
+#include "anamorph/figure/frame.h"
+#include "anamorph/figure/program.h"
+
+namespace anamorph {
+
+struct PerformanceOptions {
+    /// What `print` says and warnings, one line each, once for each frame however often it is performed.
+    std::function<void(const std::string& line)> message;
+    std::size_t memory = std::size_t{64} << 20;  ///< bytes of states kept
+};
+
+/// Not for use by two threads at once.
+class Performance {
+  public:
+    explicit Performance(Program program, PerformanceOptions options = {});
+    ~Performance();
+    Performance(Performance&&) noexcept;
+    Performance& operator=(Performance&&) noexcept;
+
+    /// The frames shown: first_frame() + i frame_step() up to last_frame(), none when last < first. Where
+    /// frame numbers of the script are variables, asking for the last one performs it.
+    int first_frame() const;
+    int last_frame();
+    int frame_step() const;
+    /// How many are shown.
+    int frame_count();
+
+    /// Any frame from 0 to the last that the script performs, shown or not. Throws Error: outside of these,
+    /// or naming the line of the script where performing it fails.
+    FigureFrame frame(int number);
+
+    /// The frames shown, in order, until `body` returns false.
+    void for_each_frame(const std::function<bool(const FigureFrame&)>& body);
+
+    const Program& program() const;
+
+  private:
+    struct Impl;
+    std::unique_ptr<Impl> m_impl;
+};
+
+}  // namespace anamorph

@@ -1,0 +1,138 @@
+// SPDX-License-Identifier: Apache-2.0
+// A NUDES script as parsed: what it declares, and the movements of its subroutines in the order written.
+//
+// Names are positions in the tables of the program, and ellipsoid 0 is `world`, figure 0 `every`, figure 1
+// `world`, subroutine 0 the script outside subroutines. Lengths in the units of the window, angles in
+// degrees.
+#pragma once
+
+#include <array>
+#include <glm/vec3.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace anamorph {
+
+enum class Dialect {
+    classic,  ///< as the programs of 2003 ran scripts
+    strict    ///< as the language is documented; see script.h and performance.h for what differs
+};
+
+/// How the share of an action is spread over its frames.
+enum class Distribution { repeat, linear, quadratic, cubic, accelerate, decelerate, call };
+
+enum class Action {
+    abduct,
+    abut,
+    add,
+    allow,
+    angles,
+    attach,
+    axes,
+    balance,
+    bendby,
+    bendto,
+    call,
+    centre,
+    colour,
+    detach,
+    divide,
+    drag,
+    flex,
+    forbid,
+    grofig,
+    groell,
+    grojnt,
+    ground,
+    growto,
+    invert,
+    linkx,
+    moveby,
+    moveto,
+    movjnt,
+    multiply,
+    negate,
+    observe,
+    place,
+    print,
+    rotate,
+    set,
+    spinby,
+    spinto,
+    subtract,
+    texture,
+    touch
+};
+
+enum class OperandKind { number, variable, ellipsoid, joint, figure, axis, subroutine, image };
+
+struct Operand {
+    OperandKind kind = OperandKind::number;
+    double number = 0;  ///< of a number
+    int index = 0;      ///< of all others: the position in the table of its kind; axes are 0, 1, 2
+
+    bool operator==(const Operand&) const = default;
+};
+
+/// Where something was written: a position in Program::files, and the line and column from 1.
+struct ScriptPosition {
+    int file = 0, line = 0, column = 0;
+};
+
+/// One action over the frames start < f <= stop of its subroutine.
+struct Movement {
+    Distribution distribution = Distribution::repeat;
+    Operand start, stop;  ///< numbers or variables
+    Action action = Action::call;
+    std::vector<Operand> operands;
+    ScriptPosition position;
+};
+
+struct EllipsoidDeclaration {
+    std::string name;
+    glm::dvec3 axes{1.0};  ///< half the lengths
+    ScriptPosition position;
+};
+
+struct JointDeclaration {
+    std::string name;
+    bool attached = false;  ///< it is made by `attach`, and is not there before
+    int first = 0, second = 0;
+    glm::dvec3 first_offset{0.0}, second_offset{0.0};  ///< from the centre of each, at rest
+    std::optional<std::array<double, 6>> limit;        ///< x, y, z: smallest and largest angle
+    ScriptPosition position;
+};
+
+struct FigureDeclaration {
+    std::string name;
+    std::vector<int> ellipsoids;  ///< as listed; empty when `detach` makes it
+    ScriptPosition position;
+};
+
+struct Subroutine {
+    std::string name;
+    std::vector<Movement> movements;
+    ScriptPosition position;
+};
+
+struct Program {
+    Dialect dialect = Dialect::classic;
+    std::vector<std::string> files;
+    std::vector<EllipsoidDeclaration> ellipsoids;
+    std::vector<JointDeclaration> joints;
+    std::vector<FigureDeclaration> figures;
+    std::vector<Subroutine> subroutines;
+    std::vector<std::string> variables, images;
+    int speed = 1;  ///< > 0 multiplies frame numbers; < 0: only each |speed|th is shown
+    std::optional<std::array<int, 2>> view;  ///< frames view[0] < f <= view[1] are shown
+
+    /// "walk.n:12:5"
+    std::string where(const ScriptPosition& position) const;
+};
+
+/// The word of the language.
+const char* name_of(Action action);
+const char* name_of(Distribution distribution);
+
+}  // namespace anamorph

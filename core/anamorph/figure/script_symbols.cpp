@@ -1,0 +1,179 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "anamorph/figure/script_symbols.h"
+
+#include <algorithm>
+
+namespace anamorph {
+namespace {
+
+std::size_t column(OperandKind kind) {
+    return static_cast<std::size_t>(kind);
+}
+
+/// The kinds that are looked up for a letter, after variables.
+std::string_view kinds_for(char letter) {
+    switch (letter) {
+        case 'j':
+        case 'J':
+            return "j";
+        case 'f':
+        case 'F':
+            return "f";
+        case '*':
+            return "ejfsa";
+        case 'e':
+            return "e";
+        case 's':
+            return "s";
+        case 'a':
+            return "a";
+        case 'i':
+            return "i";
+        default:
+            return "";
+    }
+}
+
+OperandKind kind_of(char letter) {
+    switch (letter) {
+        case 'e':
+            return OperandKind::ellipsoid;
+        case 'j':
+            return OperandKind::joint;
+        case 'f':
+            return OperandKind::figure;
+        case 's':
+            return OperandKind::subroutine;
+        case 'a':
+            return OperandKind::axis;
+        default:
+            return OperandKind::image;
+    }
+}
+
+}  // namespace
+
+const char* description_of(char letter) {
+    switch (letter) {
+        case 'n':
+            return "a number or a variable";
+        case 'v':
+            return "a variable";
+        case 'e':
+            return "an ellipsoid";
+        case 'j':
+        case 'J':
+            return "a joint";
+        case 'f':
+        case 'F':
+            return "a figure";
+        case 'a':
+            return "an axis, x, y or z";
+        case 's':
+            return "a subroutine";
+        case 'i':
+            return "a picture";
+        default:
+            return "a number or a name";
+    }
+}
+
+const char* description_of(OperandKind kind) {
+    switch (kind) {
+        case OperandKind::number:
+            return "a number";
+        case OperandKind::variable:
+            return "a variable";
+        case OperandKind::ellipsoid:
+            return "an ellipsoid";
+        case OperandKind::joint:
+            return "a joint";
+        case OperandKind::figure:
+            return "a figure";
+        case OperandKind::axis:
+            return "an axis";
+        case OperandKind::subroutine:
+            return "a subroutine";
+        case OperandKind::image:
+            return "a picture";
+    }
+    return "";
+}
+
+ScriptSymbols::ScriptSymbols(Program& program) : m_program(program) {
+    make(OperandKind::subroutine, "nudes", {});
+    make(OperandKind::figure, "every", {});
+    make(OperandKind::figure, "world", {});
+    make(OperandKind::ellipsoid, "world", {});
+    make(OperandKind::variable, "variab", {});
+    constexpr const char* axes[] = {"x", "y", "z"};
+    for (int i = 0; i < 3; ++i) {
+        auto& row = m_indices.try_emplace(axes[i]).first->second;
+        row.fill(-1);
+        row[column(OperandKind::axis)] = i;
+    }
+}
+
+std::optional<int> ScriptSymbols::find(OperandKind kind, std::string_view name) const {
+    const auto found = m_indices.find(std::string(name));
+    if (found == m_indices.end() || found->second[column(kind)] < 0) return std::nullopt;
+    return found->second[column(kind)];
+}
+
+int ScriptSymbols::make(OperandKind kind, std::string_view name, const ScriptPosition& position) {
+    const auto [entry, inserted] = m_indices.try_emplace(std::string(name));
+    if (inserted) entry->second.fill(-1);
+    int& index = entry->second[column(kind)];
+    if (index >= 0) return index;
+    const auto append = [&](auto& table, auto item) {
+        index = static_cast<int>(table.size());
+        table.push_back(std::move(item));
+    };
+    const std::string text(name);
+    switch (kind) {
+        case OperandKind::ellipsoid:
+            append(m_program.ellipsoids, EllipsoidDeclaration{text, glm::dvec3(1.0), position});
+            break;
+        case OperandKind::joint: {
+            JointDeclaration joint;
+            joint.name = text;
+            joint.attached = true;
+            joint.position = position;
+            append(m_program.joints, joint);
+            break;
+        }
+        case OperandKind::figure:
+            append(m_program.figures, FigureDeclaration{text, {}, position});
+            break;
+        case OperandKind::subroutine:
+            append(m_program.subroutines, Subroutine{text, {}, position});
+            break;
+        case OperandKind::variable:
+            append(m_program.variables, text);
+            break;
+        default:
+            append(m_program.images, text);
+    }
+    return index;
+}
+
+std::optional<OperandKind> ScriptSymbols::other_kind(OperandKind kind, std::string_view name) const {
+    for (const char letter : std::string_view("ejfsa"))
+        if (kind_of(letter) != kind && find(kind_of(letter), name)) return kind_of(letter);
+    if (kind != OperandKind::variable && find(OperandKind::variable, name)) return OperandKind::variable;
+    return std::nullopt;
+}
+
+bool ScriptSymbols::known(std::string_view name) const {
+    return m_indices.contains(std::string(name));
+}
+
+std::optional<Operand> ScriptSymbols::resolve(char letter, std::string_view name) const {
+    if (const auto variable = find(OperandKind::variable, name))
+        return Operand{OperandKind::variable, 0, *variable};
+    for (const char kind : kinds_for(letter))
+        if (const auto index = find(kind_of(kind), name)) return Operand{kind_of(kind), 0, *index};
+    return std::nullopt;
+}
+
+}  // namespace anamorph
