@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "anamorph/figure/level_of_detail.h"
+
+#include <utility>
+
+#include "anamorph/figure/outline.h"
+#include "anamorph/parameter.h"
+
+namespace anamorph {
+namespace {
+
+Detail detail_of(const Outline& outline, const DetailOptions& options) {
+    if (outline.kind == OutlineKind::behind) return Detail::none;
+    if (outline.kind != OutlineKind::whole) return Detail::body;
+    const PrincipalAxes axes = principal_axes(outline.screen);
+    const double longest = 2 * axes.major, widest = 2 * axes.minor;
+    if (options.lod == 0) return Detail::body;
+    if (longest <= options.lod) return Detail::dot;
+    if (widest <= options.lod) return Detail::line;
+    return longest <= options.body_factor * options.lod ? Detail::ellipse : Detail::body;
+}
+
+}  // namespace
+
+std::vector<Detail> levels_of_detail(std::span<const Ellipsoid> bodies, const View& view,
+                                     const DetailOptions& options) {
+    for (const auto& [name, value] : {std::pair{"lod", options.lod}, {"body_factor", options.body_factor}})
+        if (!(value >= 0)) throw Error(name, shortest(value), "allowed is a number not less than 0");
+    OutlineOptions limbs;
+    limbs.hide = false;
+    std::vector<Detail> details;
+    for (const Outline& outline : outlines(bodies, view, limbs).bodies)
+        details.push_back(detail_of(outline, options));
+    return details;
+}
+
+}  // namespace anamorph

@@ -1,0 +1,207 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "anamorph/figure/outline_hiding.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <numeric>
+
+#include "anamorph/figure/outline_arcs.h"
+
+namespace anamorph {
+namespace {
+
+constexpr double kTurn = 2 * std::numbers::pi;
+// Roundings of an operation or two per term.
+constexpr double kRounding = 32 * 0x1p-52;
+
+/// row . (a point of the limb - origin), as the point moves along the limb.
+Wave wave_of(const glm::dvec3& row, const Ellipse<glm::dvec3>& limb, const glm::dvec3& from_origin) {
+    return {glm::dot(row, from_origin), glm::dot(row, limb.cosine), glm::dot(row, limb.sine)};
+}
+
+/// Where a point stands against one body.
+struct Standing {
+    double surface;  ///< |u|^2 - 1 in the body's unit sphere: negative inside
+    double cone;     ///< negative where the view line through the point meets the limb's area
+    double beyond;   ///< positive on the far side of the limb's plane
+};
+
+/// The point of a limb as a body `other` has it.
+struct Path {
+    WaveSquares surface, cone;
+    Wave beyond;
+    double beyond_noise = 0;
+
+    Path(const SeenBody& body, const SeenBody& other, bool perspective) {
+        const double reach = body.reach + glm::length(other.center);
+        if (other.solid) {
+            const glm::dvec3 d = body.viewed.center - other.center;
+            surface.x = wave_of(other.unit[0], body.viewed, d);
+            surface.y = wave_of(other.unit[1], body.viewed, d);
+            surface.z = wave_of(other.unit[2], body.viewed, d);
+            surface.w.k = 1;
+            surface.noise = kRounding * other.unit_size * reach;
+        }
+        if (other.covers) {
+            const glm::dvec3 d = body.viewed.center - other.viewed.center;
+            cone.x = wave_of(other.x_row, body.viewed, d);
+            cone.y = wave_of(other.y_row, body.viewed, d);
+            beyond = wave_of(other.beyond, body.viewed, d);
+            if (perspective) cone.w = beyond;
+            cone.w.k += 1;
+            cone.noise = kRounding * other.cone_size * reach;
+            beyond_noise = cone.noise;
+        }
+    }
+};
+
+/// Hidden: inside the body, or behind it. Around the eye: outside it.
+bool is_hidden(const Path& path, const SeenBody& other, double t) {
+    const double c = std::cos(t), s = std::sin(t);
+    if (other.kind == OutlineKind::around_eye) return path.surface.at(c, s) > path.surface.noise;
+    if (other.solid && path.surface.at(c, s) < -path.surface.noise) return true;
+    return other.covers && path.beyond.at(c, s) > path.beyond_noise && path.cone.at(c, s) < -path.cone.noise;
+}
+
+/// Is an arc hidden on which nothing changes? Bodies that touch from inside leave single points of it open,
+/// two at most: three are asked.
+bool is_hidden(const Path& path, const SeenBody& other, const Arc& arc) {
+    for (const double part : {0.5, 0.31, 0.77})
+        if (is_hidden(path, other, arc.begin + part * arc.length())) return true;
+    return false;
+}
+
+/// No point of the path comes within the circle about the limb of `other` on its own scale.
+bool passes_by(const WaveSquares& cone) {
+    const double reach =
+        std::sqrt(cone.x.c * cone.x.c + cone.y.c * cone.y.c + cone.x.s * cone.x.s + cone.y.s * cone.y.s) +
+        std::fabs(cone.w.k) + cone.w.amplitude();
+    return cone.x.k * cone.x.k + cone.y.k * cone.y.k > reach * reach * (1 + 0x1p-40);
+}
+
+}  // namespace
+
+void add_hidden(const SeenBody& body, const SeenBody& other, bool perspective, std::vector<Arc>& hidden) {
+    const bool around_eye = other.kind == OutlineKind::around_eye;
+    if (around_eye ? !other.solid : !other.covers && !other.solid) return;
+    const Path path(body, other, perspective);
+    Roots roots;
+    if (!around_eye && other.covers) {
+        if (passes_by(path.cone)) return;
+        add_roots(path.cone, roots);
+        if (!other.solid) add_roots(path.beyond, roots);
+    }
+    if (other.solid) add_roots(path.surface, roots);
+    if (roots.count == 0) {
+        if (is_hidden(path, other, Arc{0, kTurn})) hidden.push_back({0, kTurn});
+        return;
+    }
+    // Between two roots nothing changes: the middle decides.
+    std::sort(roots.angle, roots.angle + roots.count);
+    for (int k = 0; k < roots.count; ++k) {
+        const bool last = k + 1 == roots.count;
+        const Arc arc{roots.angle[k], last ? roots.angle[0] + kTurn : roots.angle[k + 1]};
+        if (arc.end > arc.begin && is_hidden(path, other, arc)) hidden.push_back(arc);
+    }
+}
+
+namespace {
+
+/// The roots of |a + s b|^2 = 1 + 2 s h + s^2 g, of a point on a line, in s.
+void add_line_roots(double constant, double half_linear, double square, std::vector<double>& roots) {
+    const double discriminant = half_linear * half_linear - constant * square;
+    if (!(discriminant >= 0)) return;
+    const double q = -(half_linear + std::copysign(std::sqrt(discriminant), half_linear));
+    if (square != 0) roots.push_back(q / square);
+    if (q != 0) roots.push_back(constant / q);
+}
+
+}  // namespace
+
+void add_hidden(const glm::dvec3& from, const glm::dvec3& to, const SeenBody& other, bool perspective,
+                std::vector<Arc>& hidden) {
+    const glm::dvec3 step = to - from;
+    const bool around_eye = other.kind == OutlineKind::around_eye;
+    const double reach = glm::length(from) + glm::length(to) + glm::length(other.center);
+    const double surface_noise = kRounding * other.unit_size * reach;
+    const double cone_noise = kRounding * other.cone_size * reach;
+    std::vector<double> cuts;
+    glm::dvec3 u{0.0}, v{0.0};
+    if (other.solid) {
+        // Transposed: rows stand in the columns.
+        u = (from - other.center) * other.unit;
+        v = step * other.unit;
+        add_line_roots(glm::dot(u, u) - 1, glm::dot(u, v), glm::dot(v, v), cuts);
+    }
+    const glm::dvec3 d = from - other.viewed.center;
+    const auto along = [&](const glm::dvec3& row) {
+        return glm::dvec2(glm::dot(row, d), glm::dot(row, step));
+    };
+    glm::dvec2 x{0.0}, y{0.0}, beyond{0.0}, w{1, 0};
+    if (other.covers && !around_eye) {
+        x = along(other.x_row);
+        y = along(other.y_row);
+        beyond = along(other.beyond);
+        if (perspective) w += beyond;
+        add_line_roots(x.x * x.x + y.x * y.x - w.x * w.x, x.x * x.y + y.x * y.y - w.x * w.y,
+                       x.y * x.y + y.y * y.y - w.y * w.y, cuts);
+        if (!other.solid && beyond.y != 0) cuts.push_back(-beyond.x / beyond.y);
+    }
+    const auto is_hidden = [&](double s) {
+        const glm::dvec3 at = u + v * s;
+        const double surface = glm::dot(at, at) - 1;
+        if (around_eye) return other.solid && surface > surface_noise;
+        if (other.solid && surface < -surface_noise) return true;
+        const glm::dvec2 p{x.x + s * x.y, y.x + s * y.y};
+        const double depth = w.x + s * w.y;
+        return other.covers && beyond.x + s * beyond.y > cone_noise &&
+               glm::dot(p, p) - depth * depth < -cone_noise;
+    };
+    std::erase_if(cuts, [](double s) { return !(s > 0 && s < 1); });
+    cuts.push_back(0);
+    cuts.push_back(1);
+    std::sort(cuts.begin(), cuts.end());
+    for (std::size_t k = 0; k + 1 < cuts.size(); ++k)
+        if (cuts[k + 1] > cuts[k] && is_hidden(0.5 * (cuts[k] + cuts[k + 1])))
+            hidden.push_back({cuts[k], cuts[k + 1]});
+}
+
+std::vector<std::vector<int>> overlapping(const std::vector<ScreenBox>& boxes,
+                                          const std::vector<SeenBody>& bodies) {
+    // A sweep in x over the left ends of both: each meets those of the other kind that are still open.
+    struct Entry {
+        double left;
+        int box, body;
+    };
+    std::vector<Entry> entries;
+    for (int i = 0; i < static_cast<int>(boxes.size()); ++i)
+        entries.push_back({boxes[static_cast<std::size_t>(i)].low.x, i, -1});
+    for (int i = 0; i < static_cast<int>(bodies.size()); ++i)
+        entries.push_back({bodies[static_cast<std::size_t>(i)].low.x, -1, i});
+    std::sort(entries.begin(), entries.end(), [](const Entry& a, const Entry& b) { return a.left < b.left; });
+
+    std::vector<std::vector<int>> found(boxes.size());
+    std::vector<int> open_boxes, open_bodies;
+    const auto meet = [&](int i, int j) {
+        const ScreenBox& box = boxes[static_cast<std::size_t>(i)];
+        const SeenBody& body = bodies[static_cast<std::size_t>(j)];
+        if (box.low.y <= body.high.y && body.low.y <= box.high.y && body.nearest <= box.farthest)
+            found[static_cast<std::size_t>(i)].push_back(j);
+    };
+    for (const Entry& e : entries) {
+        std::erase_if(open_boxes, [&](int i) { return boxes[static_cast<std::size_t>(i)].high.x < e.left; });
+        std::erase_if(open_bodies,
+                      [&](int j) { return bodies[static_cast<std::size_t>(j)].high.x < e.left; });
+        if (e.box >= 0) {
+            for (const int j : open_bodies) meet(e.box, j);
+            open_boxes.push_back(e.box);
+        } else {
+            for (const int i : open_boxes) meet(i, e.body);
+            open_bodies.push_back(e.body);
+        }
+    }
+    return found;
+}
+
+}  // namespace anamorph

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: Apache-2.0
+// Where a point that moves along an ellipse crosses a quadric: the roots in the angle of
+//
+//     f(t) = x^2 + y^2 + z^2 - w^2,   each of x, y, z, w of the form k + c cos(t) + s sin(t).
+//
+// f is only ever evaluated in this factored form: in the coefficients of its expansion, or of the quartic in
+// tan(t/2), the digits are lost that tell a tangent from a crossing. The expansion serves for bounds.
+#pragma once
+
+#include <cmath>
+
+namespace anamorph {
+
+/// k + c cos(t) + s sin(t).
+struct Wave {
+    double k = 0, c = 0, s = 0;
+
+    double at(double cosine, double sine) const { return k + c * cosine + s * sine; }
+    double slope(double cosine, double sine) const { return s * cosine - c * sine; }
+    double amplitude() const { return std::sqrt(c * c + s * s); }
+};
+
+struct WaveSquares {
+    Wave x, y, z, w;
+    double noise = 0;  ///< what rounding may add to f near its roots
+
+    double at(double cosine, double sine) const {
+        const double a = x.at(cosine, sine), b = y.at(cosine, sine), c = z.at(cosine, sine),
+                     d = w.at(cosine, sine);
+        return a * a + b * b + c * c - d * d;
+    }
+};
+
+/// The sign changes of f on the circle, in [0, 2 pi), ascending; at most as many as the array holds. Changes
+/// within the noise may be left out, in pairs.
+struct Roots {
+    static constexpr int kMost = 16;
+    double angle[kMost];
+    int count = 0;
+
+    void add(double t) {
+        if (count < kMost) angle[count++] = t;
+    }
+};
+
+void add_roots(const WaveSquares& f, Roots& roots);
+void add_roots(const Wave& f, Roots& roots);
+
+}  // namespace anamorph
