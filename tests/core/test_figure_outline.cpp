@@ -24,7 +24,9 @@ TEST(FigureOutline, ArcsAgreeWithDepthTests) {
             // Scenes in which nothing is hidden, or all, would prove nothing.
             EXPECT_GT(all.hidden, all.samples / 10);
             EXPECT_LT(all.hidden, all.samples * 9 / 10);
-            if (family != test::Family::tangent) EXPECT_LE(all.grazing + all.near, all.samples / 10000);
+            if (family != test::Family::tangent) {
+                EXPECT_LE(all.grazing + all.near, all.samples / 10000);
+            }
         }
 }
 
