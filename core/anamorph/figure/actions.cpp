@@ -181,7 +181,7 @@ void FigureAction::spinto() const {
     const FigurePart part = figure(0);
     const auto& moved = body(ellipsoid(1));
     const glm::dquat target = body(ellipsoid(2)).turn * turn_of_angles(vector(3));
-    turn(m_state, part, part_of_turn(moved.turn, target, m_shares.prop), glm::dvec3(moved.center));
+    turn(m_state, part, part_of_turn(moved.turn, target, m_shares.prop), moved.center);
 }
 
 void FigureAction::bend(int ellipsoid, int joint, const glm::dquat& by) const {

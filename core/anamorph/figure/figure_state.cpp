@@ -86,7 +86,7 @@ void translate(FigureState& state, const FigurePart& part, const glm::dvec3& by)
     for (const int j : part.joints) state.joints[at(j)] += by;
 }
 
-void turn(FigureState& state, const FigurePart& part, const glm::dquat& by, const glm::dvec3& about) {
+void turn(FigureState& state, const FigurePart& part, const glm::dquat& by, glm::dvec3 about) {
     const glm::dmat3 matrix = glm::mat3_cast(by);
     for (const int i : part.bodies) {
         if (i == 0) continue;
@@ -172,13 +172,18 @@ FigureFrame frame_of(const FigureState& state, const Program& program, int numbe
         if (topology.figure_first[f] >= 0 &&
             topology.figure_of[at(topology.figure_first[f])] == static_cast<int>(f))
             list(f, program.figures[f].name);
+    std::vector<int> declared(state.bodies.size(), 0);
+    for (std::size_t f = program.figures.size(); f-- > 2;)
+        for (const int e : program.figures[f].ellipsoids) declared[at(e)] = static_cast<int>(f);
     for (std::size_t i = 1; i < state.bodies.size(); ++i) {
         const auto& from = state.bodies[i];
         Body& body = frame.bodies[i - 1];
         body.shape = shape_of(from);
         body.name = program.ellipsoids[i].name;
-        const auto f = at(std::max(topology.figure_of[i], 0));
-        if (listed[f] < 0) list(f, "");
+        // Where a figure is in pieces, only the first is found by its joints: the others by their
+        // declaration.
+        const auto f = at(topology.figure_of[i] >= 0 ? topology.figure_of[i] : declared[i]);
+        if (listed[f] < 0) list(f, f == 0 ? "" : program.figures[f].name);
         body.figure = listed[f];
         body.color = from.color;
         if (from.image >= 0) body.texture = program.images[at(from.image)];

@@ -71,7 +71,7 @@ FigurePart part_from(const FigureState& state, int ellipsoid, int joint);
 FigurePart part_of_figure(const FigureState& state, int figure);
 
 void translate(FigureState& state, const FigurePart& part, const glm::dvec3& by);
-void turn(FigureState& state, const FigurePart& part, const glm::dquat& by, const glm::dvec3& about);
+void turn(FigureState& state, const FigurePart& part, const glm::dquat& by, glm::dvec3 about);
 
 /// How far down and up an ellipsoid reaches from its centre: sqrt(sum_k (a_k R_yk)^2).
 double half_height(const FigureState::Body& body);

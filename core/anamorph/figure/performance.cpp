@@ -15,6 +15,7 @@ namespace anamorph {
 namespace {
 
 constexpr int kLargestFrame = 1000000000;
+constexpr int kMostUnknownFrames = 1000000;
 constexpr int kDeepestCall = 200;
 constexpr int kMostCalls = 10000;  // of subroutines in one frame
 
@@ -29,55 +30,79 @@ struct Span {
 struct Performance::Impl {
     Impl(Program p, PerformanceOptions o) : program(std::move(p)), options(std::move(o)) {
         speed = std::max(program.speed, 1);
-        for (std::size_t s = 0; s < program.subroutines.size(); ++s)
-            constant_zeros.push_back(constant_zero(s));
         state = figures_at_rest(program);
         kept.emplace(0, state);
         kept_bytes = state.bytes();
-        find_constant_end();
+        find_constant_spans();
     }
 
     // --- When things happen
 
-    double frame_number(const Operand& operand, const ScriptPosition& position) const {
-        const double value = std::round(FigureAction::number(program, state, operand, position));
-        return std::clamp(value, -1.0 * kLargestFrame, 1.0 * kLargestFrame);
+    static double frame_number(double value) {
+        return std::clamp(std::round(value), -1.0 * kLargestFrame, 1.0 * kLargestFrame);
     }
 
-    Span span_of(const Movement& m) const {
-        Span span{frame_number(m.start, m.position), frame_number(m.stop, m.position)};
-        if (span.start == span.stop) span.stop += 1;
-        return {span.start * speed, span.stop * speed};
+    Span span_between(double start, double stop) const {
+        const double first = frame_number(start), last = frame_number(stop);
+        return {first * speed, (last == first ? last + 1 : last) * speed};
     }
 
-    std::optional<double> constant_zero(std::size_t subroutine) const {
-        std::optional<double> zero;
-        for (const Movement& m : program.subroutines[subroutine].movements)
-            if (m.start.kind == OperandKind::number) {
-                const double start = frame_number(m.start, m.position) * speed;
-                zero = std::min(zero.value_or(start), start);
+    void find_constant_spans() {
+        spans.resize(program.subroutines.size());
+        zeros.resize(program.subroutines.size());
+        for (std::size_t s = 0; s < spans.size(); ++s)
+            for (const Movement& m : program.subroutines[s].movements) {
+                const bool constant_start = m.start.kind == OperandKind::number;
+                if (constant_start) {
+                    const double start = frame_number(m.start.number) * speed;
+                    zeros[s] = std::min(zeros[s].value_or(start), start);
+                }
+                const bool constant = constant_start && m.stop.kind == OperandKind::number;
+                spans[s].push_back(constant ? std::optional(span_between(m.start.number, m.stop.number))
+                                            : std::nullopt);
             }
-        return zero;
+        if (std::any_of(spans[0].begin(), spans[0].end(), [](const auto& span) { return !span; })) return;
+        end = static_cast<int>(last_pending(0));
+    }
+
+    Span span_of(std::size_t s, std::size_t i) const {
+        if (spans[s][i]) return *spans[s][i];
+        const Movement& m = program.subroutines[s].movements[i];
+        return span_between(FigureAction::number(program, state, m.start, m.position),
+                            FigureAction::number(program, state, m.stop, m.position));
+    }
+
+    /// The same, but nothing where variables are not ready for it.
+    std::optional<Span> span_ahead(std::size_t s, std::size_t i) const {
+        if (spans[s][i]) return spans[s][i];
+        const Movement& m = program.subroutines[s].movements[i];
+        for (const Operand* operand : {&m.start, &m.stop}) {
+            if (operand->kind != OperandKind::variable || program.dialect == Dialect::classic) continue;
+            const auto& value = state.variables[static_cast<std::size_t>(operand->index)];
+            if (!value.set || value.kind != OperandKind::number) return std::nullopt;
+        }
+        return span_of(s, i);
     }
 
     /// The frame of a subroutine's clock that comes just before its first.
     double zero_of(int subroutine) const {
         const auto s = static_cast<std::size_t>(subroutine);
-        if (constant_zeros[s]) return *constant_zeros[s];
+        if (zeros[s]) return *zeros[s];
         double zero = std::numeric_limits<double>::infinity();
-        for (const Movement& m : program.subroutines[s].movements) zero = std::min(zero, span_of(m).start);
+        for (std::size_t i = 0; i < spans[s].size(); ++i)
+            if (const auto span = span_ahead(s, i)) zero = std::min(zero, span->start);
         return std::isfinite(zero) ? zero : 0;
     }
 
-    /// Sets `end` where the script's own frame numbers are all numbers.
-    void find_constant_end() {
-        double last = 0;
-        for (const Movement& m : program.subroutines[0].movements) {
-            if (m.start.kind != OperandKind::number || m.stop.kind != OperandKind::number) return;
-            const Span span = span_of(m);
-            if (span.start < span.stop) last = std::max(last, span.stop - zero_of(0));
+    /// The last frame of the script's own movements after `frame`, or `frame` when there is none.
+    double last_pending(double frame) const {
+        const double zero = zero_of(0);
+        double last = frame;
+        for (std::size_t i = 0; i < spans[0].size(); ++i) {
+            const auto span = span_ahead(0, i);
+            if (span && span->start < span->stop) last = std::max(last, span->stop - zero);
         }
-        end = static_cast<int>(std::min(last, 1.0 * kLargestFrame));
+        return std::min(last, 1.0 * kLargestFrame);
     }
 
     // --- Performing
@@ -87,9 +112,11 @@ struct Performance::Impl {
             throw Error("frame " + std::to_string(performing) +
                         ": subroutines call each other without end, by way of " +
                         program.subroutines[static_cast<std::size_t>(subroutine)].name);
-        for (const Movement& m : program.subroutines[static_cast<std::size_t>(subroutine)].movements) {
-            const Span span = span_of(m);
+        const auto s = static_cast<std::size_t>(subroutine);
+        for (std::size_t i = 0; i < spans[s].size(); ++i) {
+            const Span span = span_of(s, i);
             if (!span.holds(clock)) continue;
+            const Movement& m = program.subroutines[s].movements[i];
             idle = false;
             if (m.action == Action::call) {
                 const int called =
@@ -131,21 +158,20 @@ struct Performance::Impl {
     int idle_until() const {
         double next = kLargestFrame;
         const double zero = zero_of(0);
-        for (const Movement& m : program.subroutines[0].movements) {
-            const Span span = span_of(m);
-            if (span.start < span.stop && span.stop - zero > now) next = std::min(next, span.start - zero);
+        for (std::size_t i = 0; i < spans[0].size(); ++i) {
+            const auto span = span_ahead(0, i);
+            if (span && span->start < span->stop && span->stop - zero > now)
+                next = std::min(next, span->start - zero);
         }
         return static_cast<int>(std::max(next, 1.0 * now));
     }
 
+    // --- States kept
+
     void go_to(int number) {
-        // The state at hand, or the last that was kept before.
-        const auto after = kept.upper_bound(number);
-        const auto before = std::prev(after);
-        if (now > number || now < before->first) {
-            state = before->second;
-            now = before->first;
-        }
+        if (number < now) restore(number);
+        const auto before = std::prev(kept.upper_bound(number));
+        if (now < before->first) restore(number);
         try {
             while (now < number) {
                 perform_next();
@@ -159,11 +185,31 @@ struct Performance::Impl {
         }
     }
 
+    /// Goes back to the last state kept at or before a frame.
+    void restore(int number) {
+        const auto far = std::prev(kept.upper_bound(number));
+        auto near = recent.upper_bound(number);
+        const bool has_near = near != recent.begin() && (--near)->first > far->first;
+        now = has_near ? near->first : far->first;
+        state = has_near ? near->second : far->second;
+        // What is performed from here on is kept for a while: the next frame asked for may be the one before.
+        if (!has_near) recent.clear();
+    }
+
     void keep() {
-        if (now - std::prev(kept.upper_bound(now))->first < interval) return;
-        kept_bytes += state.bytes();
-        kept.emplace(now, state);
-        while (kept_bytes > options.memory && kept.size() > 2) thin_out();
+        const auto last = std::prev(kept.upper_bound(now))->first;
+        if (now - last >= interval) {
+            kept_bytes += state.bytes();
+            kept.emplace(now, state);
+            while (kept_bytes > options.memory / 4 * 3 && kept.size() > 2) thin_out();
+            recent.clear();
+        } else if (now == last) {
+            recent.clear();
+        } else if (now < told) {
+            const auto room = std::max<std::size_t>(options.memory / 4 / state.bytes(), 1);
+            const auto stride = static_cast<long long>(static_cast<std::size_t>(interval) / room + 1);
+            if (now % stride == 0) recent.emplace(now, state);
+        }
     }
 
     /// Doubles the interval between the states that are kept.
@@ -180,37 +226,45 @@ struct Performance::Impl {
         }
     }
 
-    /// The last frame in which the script has something to do.
-    int last() {
-        while (!end) {
-            // Numbers of frames are variables: the script ends where none lies ahead.
-            go_to(now);
-            bool pending = false;
-            const double zero = zero_of(0);
-            for (const Movement& m : program.subroutines[0].movements) {
-                const Span span = span_of(m);
-                pending = pending || (span.start < span.stop && span.stop - zero > now);
-            }
-            if (!pending || now >= kLargestFrame)
+    // --- Where it ends
+
+    /// Whether the script has something to do in a frame or after it. Where numbers of frames are variables,
+    /// that takes performing: it ends where none lies ahead.
+    bool reaches(int number) {
+        while (!end && reached < number) {
+            go_to(reached);
+            if (last_pending(now) > now) {
+                if (reached == kMostUnknownFrames)
+                    throw Error("the script does not end within " + std::to_string(kMostUnknownFrames) +
+                                " frames");
+                go_to(++reached);
+            } else {
                 end = now;
-            else
-                go_to(now + 1);
+            }
         }
+        return end ? number <= *end : true;
+    }
+
+    int last() {
+        while (!end) reaches(reached + 1);
         return *end;
     }
 
     Program program;
     PerformanceOptions options;
     int speed = 1;
-    std::vector<std::optional<double>> constant_zeros;
+    std::vector<std::vector<std::optional<Span>>> spans;  ///< of each movement; nothing where it is variable
+    std::vector<std::optional<double>> zeros;  ///< of each subroutine; nothing where it is variable
     std::optional<int> end;
+    int reached = 0;  ///< the last frame known to be there, while `end` is not
 
     FigureState state;  ///< after frame `now`
     int now = 0, performing = 0, told = 0, calls = 0;
     bool idle = false;
     std::map<int, FigureState> kept;  ///< frame 0 always
     std::size_t kept_bytes = 0;
-    int interval = 8;
+    long long interval = 8;
+    std::map<int, FigureState> recent;  ///< some between two that are kept
     /// Passes messages on the first time that a frame is performed.
     std::function<void(const std::string&)> say = [this](const std::string& line) {
         if (options.message && performing > told) options.message(line);
@@ -238,8 +292,8 @@ int Performance::last_frame() {
     int last = m_impl->last();
     const auto& view = m_impl->program.view;
     if (view)
-        last =
-            static_cast<int>(std::min<long long>(last, static_cast<long long>((*view)[1]) * m_impl->speed));
+        last = static_cast<int>(
+            std::clamp<long long>(static_cast<long long>((*view)[1]) * m_impl->speed, 0, last));
     return std::max(last, 0) / frame_step() * frame_step();
 }
 
@@ -249,15 +303,17 @@ int Performance::frame_count() {
 }
 
 FigureFrame Performance::frame(int number) {
-    if (number < 0 || number > m_impl->last())
+    if (number < 0 || !m_impl->reaches(number))
         throw Error("frame", std::to_string(number), "allowed are 0 to " + std::to_string(m_impl->last()));
     m_impl->go_to(number);
     return frame_of(m_impl->state, m_impl->program, number);
 }
 
 void Performance::for_each_frame(const std::function<bool(const FigureFrame&)>& body) {
-    const int last = last_frame(), step = frame_step();
-    for (long long f = first_frame(); f <= last; f += step)
+    const long long step = frame_step();
+    const auto& view = m_impl->program.view;
+    const long long stop = view ? static_cast<long long>((*view)[1]) * m_impl->speed : kLargestFrame;
+    for (long long f = first_frame(); f <= stop && m_impl->reaches(static_cast<int>(f)); f += step)
         if (!body(frame(static_cast<int>(f)))) return;
 }
 

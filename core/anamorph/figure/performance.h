@@ -29,7 +29,7 @@ namespace anamorph {
 struct PerformanceOptions {
     /// What `print` says and warnings, one line each, once for each frame however often it is performed.
     std::function<void(const std::string& line)> message;
-    std::size_t memory = std::size_t{64} << 20;  ///< bytes of states kept
+    std::size_t memory = std::size_t{32} << 20;  ///< bytes of states kept
 };
 
 /// Not for use by two threads at once.

@@ -14,7 +14,7 @@ using script_table::Keyword;
 
 namespace {
 
-constexpr std::size_t kMostErrors = 100;
+constexpr int kMostMessages = 100;  // of errors, and of warnings
 constexpr std::size_t kDeepestInclude = 16;
 constexpr int kMostCount = 1 << 20;
 constexpr int kLargestFrame = 1000000000;
@@ -87,14 +87,17 @@ void ScriptParser::parse_included(const std::string& name, const ScriptPosition&
 
 void ScriptParser::report(Severity severity, const ScriptPosition& position, std::string found,
                           std::string expected, std::string message) {
+    const bool is_error = severity == Severity::error;
+    int& count = is_error ? m_errors : m_warnings;
+    if (!is_error && count == kMostMessages) return;
+    ++count;
     const auto file = static_cast<std::size_t>(position.file);
-    m_script.diagnostics.push_back(
-        {severity, file < m_program.files.size() ? m_program.files[file] : std::string(), position.line,
-         position.column, std::move(found), std::move(expected), std::move(message)});
-    if (m_script.diagnostics.size() < kMostErrors) return;
-    m_script.diagnostics.push_back(
-        {Severity::error, m_script.diagnostics.back().file, position.line, position.column, "", "",
-         "more than " + std::to_string(kMostErrors) + " messages: the rest is not read"});
+    const std::string name = file < m_program.files.size() ? m_program.files[file] : std::string();
+    m_script.diagnostics.push_back({severity, name, position.line, position.column, std::move(found),
+                                    std::move(expected), std::move(message)});
+    if (!is_error || count < kMostMessages) return;
+    m_script.diagnostics.push_back({Severity::error, name, position.line, position.column, "", "",
+                                    std::to_string(kMostMessages) + " errors: the rest is not read"});
     throw ScriptTooBad{};
 }
 
@@ -287,10 +290,10 @@ void ScriptParser::figure() {
 void ScriptParser::ellipsoid() {
     const ScriptToken token = peek();
     const int index = take_mention(OperandKind::ellipsoid);
+    if (index == 0 || !m_shaped.insert(index).second)
+        error(position_of(token), "the ellipsoid " + quoted(token.text) + " is declared twice");
     glm::dvec3 axes(0.0);
     for (int i = 0; i < 3; ++i) axes[i] = take_number("a number, half the length of an axis");
-    if (!m_shaped.insert(index).second)
-        error(position_of(token), "the ellipsoid " + quoted(token.text) + " is declared twice");
     if (axes.x < 0 || axes.y < 0 || axes.z < 0) fault(position_of(token), "an axis is negative");
     m_program.ellipsoids[static_cast<std::size_t>(index)].axes = axes;
 }

@@ -87,6 +87,7 @@ class ScriptParser {
     std::vector<std::string> m_including;
     std::size_t m_included_bytes = 0;
     std::vector<Pending> m_pending;
+    int m_errors = 0, m_warnings = 0;
 };
 
 /// Thrown out of the parser where it gives up: too many errors, or a text too large.
