@@ -7,8 +7,10 @@
 #include <vtkDataArray.h>
 #include <vtkExecutive.h>
 #include <vtkNew.h>
+#include <vtkObjectFactory.h>
 #include <vtkPointSet.h>
 #include <vtkPoints.h>
+#include <vtkVersion.h>
 
 #include <string>
 #include <vector>
@@ -65,3 +67,36 @@ inline std::vector<double> numbers(vtkDataArray* array) {
 inline std::vector<double> coordinates(vtkPointSet* points) {
     return points && points->GetPoints() ? numbers(points->GetPoints()->GetData()) : std::vector<double>();
 }
+
+#ifndef VTK_FUTURE_CONST  // before VTK 9.3
+#define VTK_FUTURE_CONST
+#endif
+
+/// While it lives, New() of the class `name` makes a Class.
+template <class Class>
+class OverrideFactory {
+  public:
+    explicit OverrideFactory(const char* name) {
+        m_factory->add(name);
+        vtkObjectFactory::RegisterFactory(m_factory);
+    }
+    ~OverrideFactory() { vtkObjectFactory::UnRegisterFactory(m_factory); }
+    OverrideFactory(const OverrideFactory&) = delete;
+    OverrideFactory& operator=(const OverrideFactory&) = delete;
+
+  private:
+    class Factory : public vtkObjectFactory {
+      public:
+        static Factory* New() {
+            auto* factory = new Factory;
+            factory->InitializeObjectBase();
+            return factory;
+        }
+        const char* GetVTKSourceVersion() VTK_FUTURE_CONST override { return VTK_SOURCE_VERSION; }
+        const char* GetDescription() VTK_FUTURE_CONST override { return "test"; }
+        void add(const char* name) {
+            this->RegisterOverride(name, "Override", "", 1, []() -> vtkObject* { return Class::New(); });
+        }
+    };
+    vtkNew<Factory> m_factory;
+};

@@ -36,13 +36,14 @@
 #include "vtkUnstructuredGrid.h"
 #include "vtkVersion.h"
 
-vtkStandardNewMacro(vtkAnamorphInbetween);
+vtkObjectFactoryNewMacro(vtkAnamorphInbetween);
 
 namespace {
 
 using anamorph::Error;
 using Executive = vtkStreamingDemandDrivenPipeline;
 
+constexpr int kMostEntries = 1 << 20;               ///< of weights, of masks and of keys
 constexpr vtkIdType kStretch = vtkIdType{1} << 18;  ///< points between two reports of progress
 
 std::string entry(const char* name, std::size_t i) {
@@ -480,7 +481,10 @@ namespace {
 /// Lists grow to the index that is set. True if something changed.
 template <class T>
 bool set_entry(std::vector<T>& list, int index, const T& value) {
-    if (index < 0) return false;
+    if (index < 0 || index >= kMostEntries) {
+        vtkGenericWarningMacro(<< "index=" << index << ": allowed are 0 to " << kMostEntries - 1);
+        return false;
+    }
     const auto i = static_cast<std::size_t>(index);
     if (i < list.size() && list[i] == value) return false;
     if (i >= list.size()) list.resize(i + 1);
@@ -490,9 +494,12 @@ bool set_entry(std::vector<T>& list, int index, const T& value) {
 
 template <class T>
 bool set_size(std::vector<T>& list, int count) {
-    const auto size = static_cast<std::size_t>(std::max(count, 0));
-    if (size == list.size()) return false;
-    list.resize(size);
+    if (count < 0 || count > kMostEntries) {
+        vtkGenericWarningMacro(<< "count=" << count << ": allowed are 0 to " << kMostEntries);
+        return false;
+    }
+    if (static_cast<std::size_t>(count) == list.size()) return false;
+    list.resize(static_cast<std::size_t>(count));
     return true;
 }
 

@@ -30,7 +30,7 @@
 #include "vtkStreamingDemandDrivenPipeline.h"
 #include "vtkStructuredGrid.h"
 
-vtkStandardNewMacro(vtkAnamorphReliefSource);
+vtkObjectFactoryNewMacro(vtkAnamorphReliefSource);
 
 namespace {
 
