@@ -371,6 +371,38 @@ TEST(DeformedSurface, PointsDoNotDependOnOrderThreadsAndPieces) {
 }
 
 /// Random edits of a list: whatever they were, the surface is that of the list at the end.
+TEST(DeformedSurface, GridsAndPointsAgreeToTheBit) {
+    for (unsigned seed = 1; seed <= 4; ++seed) {
+        SCOPED_TRACE("seed " + std::to_string(seed));
+        Random random(seed);
+        std::vector<Deformation> list = random.list(60, .02, .5);
+        for (std::size_t k = 0; k < list.size(); k += 2) list[k].kernel = DeformationKernel::wendland_c2;
+        const std::vector<double> u = even(131), v = even(77);
+        std::vector<glm::dvec2> points;
+        for (const double y : v)
+            for (const double x : u) points.push_back({x, y});
+        const std::vector<double> base = plane<double>(u, v);
+        std::vector<double> grid(base.size()), moved(base.size()), scattered(base.size()),
+            scattered_moved(base.size());
+        DeformedGrid on_grid(u, v);
+        DeformedPoints on_points(points);
+        on_grid.write(base.data(), grid.data(), serial_for, moved.data());
+        on_points.write(base.data(), scattered.data(), serial_for, scattered_moved.data());
+        EXPECT_EQ(grid, base);
+        for (const Deformation& d : list) {
+            const DeformationChange change{std::nullopt, d};
+            on_grid.apply(change);
+            on_points.apply(change);
+            on_grid.update(base.data(), grid.data(), threads(2), moved.data());
+            on_points.update(base.data(), scattered.data(), threads(3), scattered_moved.data());
+        }
+        EXPECT_EQ(grid, scattered);
+        EXPECT_EQ(moved, scattered_moved);
+        on_grid.write<double>(nullptr, grid.data());
+        EXPECT_EQ(grid, moved);
+    }
+}
+
 TEST(DeformedSurface, AHundredThousandEditsLeaveNoTrace) {
     const unsigned seed = 3;
     SCOPED_TRACE("seed " + std::to_string(seed));

@@ -237,7 +237,8 @@ void DeformedGrid::apply(std::span<const DeformationChange> changes) {
 }
 
 template <class T>
-GridPart DeformedGrid::draw(bool all, const T* base, T* out, const ParallelFor& parallel_for) {
+GridPart DeformedGrid::draw(bool all, const T* base, T* out, const ParallelFor& parallel_for,
+                            T* displacement) {
     const int columns = static_cast<int>(m_u.size()), rows = static_cast<int>(m_v.size());
     if (m_sums.empty() && (all || !m_pending.empty())) try {
             m_sums.resize(
@@ -258,17 +259,29 @@ GridPart DeformedGrid::draw(bool all, const T* base, T* out, const ParallelFor& 
         if (terms.empty()) break;
     }
     m_pending.clear();
+    if (displacement && (all || !part.empty())) {
+        // The sums stand: rows that were touched are written once more, without a base.
+        const int first = all ? 0 : round_down(part.row_begin, simd::kGridRows);
+        const int count = (all ? rows : part.row_end) - first;
+        constexpr int kRowsAtOnce = 16;
+        parallel_for((count + kRowsAtOnce - 1) / kRowsAtOnce, [&](std::int64_t i) {
+            const int begin = first + static_cast<int>(i) * kRowsAtOnce;
+            simd::deform_band(
+                simd::GridBand<T>{nullptr, 0, begin, std::min(begin + kRowsAtOnce, first + count), columns,
+                                  m_sums.data(), m_sum.options().resolution, nullptr, displacement, true});
+        });
+    }
     return part;
 }
 
 template <class T>
-GridPart DeformedGrid::update(const T* base, T* out, const ParallelFor& parallel_for) {
-    return draw(false, base, out, parallel_for);
+GridPart DeformedGrid::update(const T* base, T* out, const ParallelFor& parallel_for, T* displacement) {
+    return draw(false, base, out, parallel_for, displacement);
 }
 
 template <class T>
-void DeformedGrid::write(const T* base, T* out, const ParallelFor& parallel_for) {
-    draw(true, base, out, parallel_for);
+void DeformedGrid::write(const T* base, T* out, const ParallelFor& parallel_for, T* displacement) {
+    draw(true, base, out, parallel_for, displacement);
 }
 
 template <class T>
@@ -292,10 +305,10 @@ double deform_grid(const std::vector<Deformation>& list, std::span<const double>
     return sum.error_bound();
 }
 
-template GridPart DeformedGrid::update(const float*, float*, const ParallelFor&);
-template GridPart DeformedGrid::update(const double*, double*, const ParallelFor&);
-template void DeformedGrid::write(const float*, float*, const ParallelFor&);
-template void DeformedGrid::write(const double*, double*, const ParallelFor&);
+template GridPart DeformedGrid::update(const float*, float*, const ParallelFor&, float*);
+template GridPart DeformedGrid::update(const double*, double*, const ParallelFor&, double*);
+template void DeformedGrid::write(const float*, float*, const ParallelFor&, float*);
+template void DeformedGrid::write(const double*, double*, const ParallelFor&, double*);
 template double deform_grid(const std::vector<Deformation>&, std::span<const double>, std::span<const double>,
                             const DeformOptions&, const float*, float*, const ParallelFor&);
 template double deform_grid(const std::vector<Deformation>&, std::span<const double>, std::span<const double>,
@@ -388,7 +401,8 @@ void DeformedPoints::apply(std::span<const DeformationChange> changes) {
 }
 
 template <class T>
-std::int64_t DeformedPoints::draw(bool all, const T* base, T* out, const ParallelFor& parallel_for) {
+std::int64_t DeformedPoints::draw(bool all, const T* base, T* out, const ParallelFor& parallel_for,
+                                  T* displacement) {
     std::vector<simd::PointTerm> terms;
     for (const Term& from : terms_of(m_pending)) terms.push_back(point_term(from, m_sum));
     std::atomic<std::int64_t> written = 0;
@@ -409,7 +423,9 @@ std::int64_t DeformedPoints::draw(bool all, const T* base, T* out, const Paralle
             for (std::size_t c = 0; c < 3; ++c) {
                 const std::size_t k = 3 * static_cast<std::size_t>(m_point[slot]) + c;
                 const double start = base ? static_cast<double>(base[k]) : 0;
-                out[k] = static_cast<T>(static_cast<double>(m_sums[c][slot]) * resolution + start);
+                const double moved = static_cast<double>(m_sums[c][slot]) * resolution;
+                out[k] = static_cast<T>(moved + start);
+                if (displacement) displacement[k] = static_cast<T>(moved);
             }
         written += points;
     };
@@ -434,34 +450,29 @@ std::int64_t DeformedPoints::draw(bool all, const T* base, T* out, const Paralle
 }
 
 template <class T>
-std::int64_t DeformedPoints::update(const T* base, T* out, const ParallelFor& parallel_for) {
-    return draw(false, base, out, parallel_for);
+std::int64_t DeformedPoints::update(const T* base, T* out, const ParallelFor& parallel_for, T* displacement) {
+    return draw(false, base, out, parallel_for, displacement);
 }
 
 template <class T>
-void DeformedPoints::write(const T* base, T* out, const ParallelFor& parallel_for) {
-    draw(true, base, out, parallel_for);
+void DeformedPoints::write(const T* base, T* out, const ParallelFor& parallel_for, T* displacement) {
+    draw(true, base, out, parallel_for, displacement);
 }
 
-template std::int64_t DeformedPoints::update(const float*, float*, const ParallelFor&);
-template std::int64_t DeformedPoints::update(const double*, double*, const ParallelFor&);
-template void DeformedPoints::write(const float*, float*, const ParallelFor&);
-template void DeformedPoints::write(const double*, double*, const ParallelFor&);
+template std::int64_t DeformedPoints::update(const float*, float*, const ParallelFor&, float*);
+template std::int64_t DeformedPoints::update(const double*, double*, const ParallelFor&, double*);
+template void DeformedPoints::write(const float*, float*, const ParallelFor&, float*);
+template void DeformedPoints::write(const double*, double*, const ParallelFor&, double*);
 
 // --- Normals
 
-void deformed_normals(const std::vector<Deformation>& list, std::span<const glm::dvec2> points,
-                      std::span<const glm::dvec3> base_u, std::span<const glm::dvec3> base_v,
-                      const DeformOptions& options, glm::dvec3* out, const ParallelFor& parallel_for) {
+void displacement_jets(const std::vector<Deformation>& list, std::span<const glm::dvec2> points,
+                       const DeformOptions& options, DisplacementJet* out, const ParallelFor& parallel_for) {
     for (std::size_t i = 0; i < points.size(); ++i)
         for (int c = 0; c < 2; ++c)
             if (!std::isfinite(points[i][c]))
                 throw Error("points[" + std::to_string(i) + "]", shortest(points[i][c]),
                             "allowed are finite numbers");
-    for (const auto& [name, size] : {std::pair("base_u", base_u.size()), std::pair("base_v", base_v.size())})
-        if (size != 1 && size != points.size())
-            throw Error(name, std::to_string(size) + " vectors",
-                        "needed are one, or as many as points, " + std::to_string(points.size()));
     DisplacementSum sum(options);
     const std::vector<DeformationChange> changes = difference({}, list);
     sum.apply(changes);
@@ -484,14 +495,25 @@ void deformed_normals(const std::vector<Deformation>& list, std::span<const glm:
                 near.push_back(k);
         for (std::size_t i = begin; i < end; ++i) {
             const glm::dvec2 p = points[i];
-            DisplacementJet displacement;
+            out[i] = {};
             for (const std::size_t k : near)
                 if (reaches(terms[k], 0, p.x, p.x) && reaches(terms[k], 1, p.y, p.y))
-                    add_displacement(*all[k].deformation, p, displacement);
-            out[i] = normal_of(displacement, base_u[base_u.size() == 1 ? 0 : i],
-                               base_v[base_v.size() == 1 ? 0 : i]);
+                    add_displacement(*all[k].deformation, p, out[i]);
         }
     });
+}
+
+void deformed_normals(const std::vector<Deformation>& list, std::span<const glm::dvec2> points,
+                      std::span<const glm::dvec3> base_u, std::span<const glm::dvec3> base_v,
+                      const DeformOptions& options, glm::dvec3* out, const ParallelFor& parallel_for) {
+    for (const auto& [name, size] : {std::pair("base_u", base_u.size()), std::pair("base_v", base_v.size())})
+        if (size != 1 && size != points.size())
+            throw Error(name, std::to_string(size) + " vectors",
+                        "needed are one, or as many as points, " + std::to_string(points.size()));
+    std::vector<DisplacementJet> jets(points.size());
+    displacement_jets(list, points, options, jets.data(), parallel_for);
+    for (std::size_t i = 0; i < points.size(); ++i)
+        out[i] = normal_of(jets[i], base_u[base_u.size() == 1 ? 0 : i], base_v[base_v.size() == 1 ? 0 : i]);
 }
 
 }  // namespace anamorph

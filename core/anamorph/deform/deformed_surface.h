@@ -78,18 +78,20 @@ class DeformedGrid {
 
     /// Writes base + displacement where the changes since the last update() or write() have moved something,
     /// and returns that part; a little around it may be written too. `base` may be null: the displacement
-    /// alone. `out` is not `base`.
+    /// alone. `out` is not `base`. `displacement`, unless null, gets the displacement beside.
     template <class T>
-    GridPart update(const T* base, T* out, const ParallelFor& parallel_for = serial_for);
+    GridPart update(const T* base, T* out, const ParallelFor& parallel_for = serial_for,
+                    T* displacement = nullptr);
     /// Writes all points.
     template <class T>
-    void write(const T* base, T* out, const ParallelFor& parallel_for = serial_for);
+    void write(const T* base, T* out, const ParallelFor& parallel_for = serial_for,
+               T* displacement = nullptr);
 
     double error_bound() const { return m_sum.error_bound(); }
 
   private:
     template <class T>
-    GridPart draw(bool all, const T* base, T* out, const ParallelFor& parallel_for);
+    GridPart draw(bool all, const T* base, T* out, const ParallelFor& parallel_for, T* displacement);
 
     std::vector<double> m_u, m_v;
     DisplacementSum m_sum;
@@ -116,9 +118,11 @@ class DeformedPoints {
 
     /// As in DeformedGrid. Returns the number of points that were written.
     template <class T>
-    std::int64_t update(const T* base, T* out, const ParallelFor& parallel_for = serial_for);
+    std::int64_t update(const T* base, T* out, const ParallelFor& parallel_for = serial_for,
+                        T* displacement = nullptr);
     template <class T>
-    void write(const T* base, T* out, const ParallelFor& parallel_for = serial_for);
+    void write(const T* base, T* out, const ParallelFor& parallel_for = serial_for,
+               T* displacement = nullptr);
 
     double error_bound() const { return m_sum.error_bound(); }
 
@@ -128,7 +132,7 @@ class DeformedPoints {
         glm::dvec2 least, most;  ///< of its points
     };
     template <class T>
-    std::int64_t draw(bool all, const T* base, T* out, const ParallelFor& parallel_for);
+    std::int64_t draw(bool all, const T* base, T* out, const ParallelFor& parallel_for, T* displacement);
 
     DisplacementSum m_sum;
     std::vector<Cell> m_cells;
@@ -139,11 +143,17 @@ class DeformedPoints {
     std::vector<DeformationChange> m_pending;
 };
 
+/// The displacement and its derivatives at points of the texture plane, added in double in an order of its
+/// own: a point's numbers do not depend on the order of the list nor on the other points, which are best
+/// close together. A cut off Gaussian is missing up to 2 reach cutoff |V| / a of a derivative. out: as many
+/// as points. Throws Error on points that are not finite and lists that are refused.
+void displacement_jets(const std::vector<Deformation>& list, std::span<const glm::dvec2> points,
+                       const DeformOptions& options, DisplacementJet* out,
+                       const ParallelFor& parallel_for = serial_for);
+
 /// Unit normals of the deformed surface at points of the texture plane, from the kernels' exact derivatives.
-/// base_u and base_v: the undeformed surface's derivatives at every point, or one for all (a plane). A cut
-/// off Gaussian is missing up to 2 reach cutoff |V| / a of a derivative. A point's normal does not depend on
-/// the order of the list nor on the other points; points that follow each other are best close together.
-/// out: as many as points. Throws Error on sizes that do not fit.
+/// base_u and base_v: the undeformed surface's derivatives at every point, or one for all (a plane). As
+/// displacement_jets otherwise. Throws Error on sizes that do not fit.
 void deformed_normals(const std::vector<Deformation>& list, std::span<const glm::dvec2> points,
                       std::span<const glm::dvec3> base_u, std::span<const glm::dvec3> base_v,
                       const DeformOptions& options, glm::dvec3* out,

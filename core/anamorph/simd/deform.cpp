@@ -233,10 +233,13 @@ void DeformPoints(const PointTerm* const* terms, std::size_t term_count, const d
             const V reach = hn::Set(d, term.reach);
             const auto inside = hn::And(hn::Le(hn::Abs(x), reach), hn::Le(hn::Abs(y), reach));
             if (hn::AllFalse(d, inside)) continue;
-            const V squared = hn::MulAdd(x, x, hn::Mul(y, y));
-            const V f = hn::IfThenElseZero(inside, term.gaussian ? GaussianOf(squared) : WendlandOf(squared));
+            // Factors and products as on grids, so that a point gets the same bits there and here.
+            const V across2 = hn::Mul(x, x), down2 = hn::Mul(y, y);
+            const V across = term.gaussian ? GaussianOf(across2) : WendlandOf(hn::Add(across2, down2));
+            const V f = hn::IfThenElseZero(inside, across);
+            const V down = hn::IfThenElseZero(inside, term.gaussian ? GaussianOf(down2) : hn::Set(d, 1.0));
             for (int c = 0; c < 3; ++c)
-                sum[c] = WithoutRounders(AddRounded(sum[c], hn::Set(d, term.units[c]), f), 1);
+                sum[c] = WithoutRounders(AddRounded(sum[c], hn::Mul(hn::Set(d, term.units[c]), down), f), 1);
         }
         for (int c = 0; c < 3; ++c) hn::StoreU(sum[c], di, sums[c] + i);
     }
