@@ -1,17 +1,483 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "vtkAnamorphDeform.h"
 
-#include "vtkDataObject.h"
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "anamorph/error.h"
+#include "deform_overlay.h"
+#include "deformation_numbers.h"
+#include "deformed_mesh.h"
+#include "execution.h"
+#include "vtkAnamorphDeformationList.h"
+#include "vtkCommunicator.h"
+#include "vtkCompositeDataIterator.h"
+#include "vtkDataObjectTree.h"
+#include "vtkDoubleArray.h"
+#include "vtkFieldData.h"
+#include "vtkInformation.h"
+#include "vtkInformationVector.h"
+#include "vtkMultiProcessController.h"
+#include "vtkNew.h"
 #include "vtkObjectFactory.h"
+#include "vtkPointData.h"
+#include "vtkPointSet.h"
+#include "vtkPoints.h"
+#include "vtkPolyData.h"
+#include "vtkStreamingDemandDrivenPipeline.h"
+#include "vtkTable.h"
 
 vtkStandardNewMacro(vtkAnamorphDeform);
-vtkAnamorphDeform::vtkAnamorphDeform() = default;
-vtkAnamorphDeform::~vtkAnamorphDeform() = default;
-int vtkAnamorphDeform::RequestData(vtkInformation*, vtkInformationVector** inputs,
-                                   vtkInformationVector* outputs) {
-    vtkDataObject::GetData(outputs)->ShallowCopy(vtkDataObject::GetData(inputs[0]));
-    return 1;
+
+namespace {
+
+using anamorph::Deformation;
+using anamorph::Error;
+using anamorph_vtk::DeformedMesh;
+using anamorph_vtk::Numbers;
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+/// A leaf of the input and that of the output, a shallow copy of it.
+struct Leaf {
+    vtkPointSet *in, *out;
+};
+
+/// Least and most of finite points.
+struct Bounds {
+    double least[3] = {kInfinity, kInfinity, kInfinity}, most[3] = {-kInfinity, -kInfinity, -kInfinity};
+
+    void add(const Bounds& other) {
+        for (int c = 0; c < 3; ++c) {
+            least[c] = std::min(least[c], other.least[c]);
+            most[c] = std::max(most[c], other.most[c]);
+        }
+    }
+};
+
+Bounds bounds_of(vtkPointSet* mesh) {
+    Bounds bounds;
+    const vtkIdType count = mesh->GetNumberOfPoints();
+    for (vtkIdType i = 0; i < count; ++i) {
+        double p[3];
+        mesh->GetPoints()->GetPoint(i, p);
+        if (!std::isfinite(p[0]) || !std::isfinite(p[1]) || !std::isfinite(p[2])) continue;
+        for (int c = 0; c < 3; ++c) {
+            bounds.least[c] = std::min(bounds.least[c], p[c]);
+            bounds.most[c] = std::max(bounds.most[c], p[c]);
+        }
+    }
+    return bounds;
 }
+
+/// The plane of the two directions that are longest, in the order of x, y, z; its parameters are coordinates.
+anamorph::ParameterPlane plane_of(const Bounds& bounds) {
+    if (!(bounds.least[0] <= bounds.most[0])) return {};
+    const auto length = [&](int c) { return bounds.most[c] - bounds.least[c]; };
+    int across = 2;
+    for (const int c : {1, 0})
+        if (length(c) < length(across)) across = c;
+    glm::dvec3 origin(0.0), axes[2] = {glm::dvec3(0.0), glm::dvec3(0.0)};
+    origin[across] = bounds.least[across] / 2 + bounds.most[across] / 2;
+    int next = 0;
+    for (int c = 0; c < 3; ++c)
+        if (c != across) axes[next++][c] = 1;
+    return {origin, axes[0], axes[1]};
+}
+
+bool distributed(vtkMultiProcessController* controller) {
+    return controller && controller->GetNumberOfProcesses() > 1;
+}
+
+/// The deformations of the tables of all ranks: those of one if all that have any have the same.
+std::vector<Numbers> of_all_ranks(const std::vector<Numbers>& own, bool failed,
+                                  vtkMultiProcessController* controller) {
+    const auto ranks = static_cast<std::size_t>(controller->GetNumberOfProcesses());
+    const vtkIdType count = failed ? -1 : static_cast<vtkIdType>(9 * own.size());
+    std::vector<vtkIdType> counts(ranks), offsets(ranks);
+    controller->AllGather(&count, counts.data(), 1);
+    vtkIdType total = 0;
+    for (std::size_t r = 0; r < ranks; ++r) {
+        if (counts[r] < 0)
+            throw Error("the table of deformations of rank " + std::to_string(r) + " is refused");
+        offsets[r] = total;
+        total += counts[r];
+    }
+    std::vector<double> flat, all(static_cast<std::size_t>(total) + 1);
+    for (const Numbers& numbers : own) flat.insert(flat.end(), numbers.begin(), numbers.end());
+    flat.push_back(0);  // so that there is an address
+    controller->AllGatherV(flat.data(), all.data(), count, counts.data(), offsets.data());
+    std::vector<std::vector<Numbers>> lists;
+    for (std::size_t r = 0; r < ranks; ++r) {
+        std::vector<Numbers> list(static_cast<std::size_t>(counts[r]) / 9);
+        for (std::size_t i = 0; i < list.size(); ++i)
+            std::copy_n(all.begin() + offsets[r] + static_cast<std::ptrdiff_t>(9 * i), 9, list[i].begin());
+        if (!list.empty()) lists.push_back(std::move(list));
+    }
+    if (lists.empty()) return {};
+    if (std::all_of(lists.begin(), lists.end(), [&](const auto& list) { return list == lists[0]; }))
+        return lists[0];
+    std::vector<Numbers> joined;
+    for (const auto& list : lists) joined.insert(joined.end(), list.begin(), list.end());
+    return joined;
+}
+
+std::vector<Numbers> table_of(vtkTable* table, vtkMultiProcessController* controller) {
+    if (!distributed(controller)) return anamorph_vtk::numbers_in(table);
+    std::vector<Numbers> own;
+    std::string failure;
+    try {
+        own = anamorph_vtk::numbers_in(table);
+    } catch (const std::exception& error) {
+        failure = error.what();
+    }
+    try {
+        return of_all_ranks(own, !failure.empty(), controller);
+    } catch (const Error&) {
+        if (!failure.empty()) throw Error(failure);
+        throw;
+    }
+}
+
+/// The unit of fixed point for a list: fine enough that rounding is far below the cutoff, coarse enough for
+/// the list to stay in range, and one of few, so that an edit hardly ever changes it.
+double resolution_for(const std::vector<Deformation>& list) {
+    double most = 0;
+    std::size_t count = 0;
+    for (const Deformation& d : list) {
+        if (!d.enabled || d.vector == glm::dvec3(0.0)) continue;
+        ++count;
+        for (int c = 0; c < 3; ++c) most = std::max(most, std::fabs(d.vector[c]));
+    }
+    if (most == 0) return 0x1p-40;
+    // V <= 2^44 units, and 2^18 of them fit.
+    int exponent = 0, many = 0;
+    std::frexp(most, &exponent);
+    while ((count >> (18 + many)) > 0) ++many;
+    constexpr int kStep = 8;
+    const int steps = static_cast<int>(std::ceil((exponent + many) / static_cast<double>(kStep)));
+    return std::ldexp(1., std::clamp(kStep * steps - 44, -500, 500));
+}
+
+void add_field_value(vtkDataObject* object, const char* name, double value) {
+    // The container is shared with the input, the arrays stay so.
+    vtkNew<vtkFieldData> fields;
+    if (vtkFieldData* old = object->GetFieldData()) fields->PassData(old);
+    vtkNew<vtkDoubleArray> array;
+    array->SetName(name);
+    array->InsertNextValue(value);
+    fields->AddArray(array);
+    object->SetFieldData(fields);
+}
+
+}  // namespace
+
+struct vtkAnamorphDeform::Kept {
+    struct Mesh {
+        std::unique_ptr<DeformedMesh> deformed;
+        vtkMTimeType bounds_time = 0;
+        Bounds bounds;
+    };
+    std::vector<Mesh> meshes;  ///< by leaf
+
+    Bounds bounds(const std::vector<Leaf>& leaves) {
+        Bounds all;
+        for (std::size_t i = 0; i < leaves.size(); ++i) {
+            if (leaves[i].in->GetNumberOfPoints() == 0) continue;
+            const vtkMTimeType time = leaves[i].in->GetPoints()->GetMTime();
+            if (meshes[i].bounds_time != time) meshes[i].bounds = bounds_of(leaves[i].in);
+            meshes[i].bounds_time = time;
+            all.add(meshes[i].bounds);
+        }
+        return all;
+    }
+};
+
+vtkAnamorphDeform::vtkAnamorphDeform()
+    : DeformationList(vtkSmartPointer<vtkAnamorphDeformationList>::New()),
+      Controller(vtkMultiProcessController::GetGlobalController()),
+      Meshes(std::make_unique<Kept>()) {
+    this->SetNumberOfInputPorts(2);
+    this->SetNumberOfOutputPorts(2);
+    this->SetInputArrayToProcess(0, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS,
+                                 vtkDataSetAttributes::TCOORDS);
+}
+
+vtkAnamorphDeform::~vtkAnamorphDeform() {
+    this->SetFileName(nullptr);
+}
+
 void vtkAnamorphDeform::PrintSelf(ostream& os, vtkIndent indent) {
     this->Superclass::PrintSelf(os, indent);
+    const auto vector = [](const double* v) {
+        return std::to_string(v[0]) + " " + std::to_string(v[1]) + " " + std::to_string(v[2]);
+    };
+    os << indent << "FileName: " << (this->FileName ? this->FileName : "(none)") << "\n"
+       << indent << "ParameterMode: " << (this->ParameterMode == PLANE ? "Plane" : "Texture coordinates")
+       << "\n"
+       << indent << "AutomaticPlane: " << this->AutomaticPlane << "\n"
+       << indent << "Origin: " << vector(this->Origin) << "\n"
+       << indent << "Axis1: " << vector(this->Axis1) << "\n"
+       << indent << "Axis2: " << vector(this->Axis2) << "\n"
+       << indent << "UsedOrigin: " << vector(this->UsedOrigin) << "\n"
+       << indent << "UsedAxis1: " << vector(this->UsedAxis1) << "\n"
+       << indent << "UsedAxis2: " << vector(this->UsedAxis2) << "\n"
+       << indent << "Cutoff: " << this->Cutoff << "\n"
+       << indent << "ComputeNormals: " << this->ComputeNormals << "\n"
+       << indent << "ComputeDisplacement: " << this->ComputeDisplacement << "\n"
+       << indent << "GenerateOverlay: " << this->GenerateOverlay << "\n"
+       << indent << "OutputPointsPrecision: " << this->OutputPointsPrecision << "\n"
+       << indent << "ErrorBound: " << this->ErrorBound << "\n"
+       << indent << "NumberOfPointsComputed: " << this->NumberOfPointsComputed << "\n"
+       << indent << "Controller: " << this->Controller.Get() << "\n"
+       << indent << "DeformationList:\n";
+    this->DeformationList->PrintSelf(os, indent.GetNextIndent());
+}
+
+void vtkAnamorphDeform::SetDeformationList(vtkAnamorphDeformationList* list) {
+    if (!list || list == this->DeformationList) return;
+    this->DeformationList = list;
+    this->Modified();
+}
+
+vtkAnamorphDeformationList* vtkAnamorphDeform::GetDeformationList() {
+    return this->DeformationList;
+}
+void vtkAnamorphDeform::SetNumberOfDeformations(int number) {
+    this->DeformationList->SetNumberOfDeformations(number);
+}
+int vtkAnamorphDeform::GetNumberOfDeformations() {
+    return this->DeformationList->GetNumberOfDeformations();
+}
+int vtkAnamorphDeform::AddDeformation(double center_u, double center_v, double extent_u, double extent_v,
+                                      double x, double y, double z, double kernel, double enabled) {
+    return this->DeformationList->AddDeformation(center_u, center_v, extent_u, extent_v, x, y, z, kernel,
+                                                 enabled);
+}
+void vtkAnamorphDeform::InsertDeformation(int position, double center_u, double center_v, double extent_u,
+                                          double extent_v, double x, double y, double z, double kernel,
+                                          double enabled) {
+    this->DeformationList->InsertDeformation(position, center_u, center_v, extent_u, extent_v, x, y, z,
+                                             kernel, enabled);
+}
+void vtkAnamorphDeform::SetDeformation(int position, double center_u, double center_v, double extent_u,
+                                       double extent_v, double x, double y, double z, double kernel,
+                                       double enabled) {
+    this->DeformationList->SetDeformation(position, center_u, center_v, extent_u, extent_v, x, y, z, kernel,
+                                          enabled);
+}
+double* vtkAnamorphDeform::GetDeformation(int position) {
+    return this->DeformationList->GetDeformation(position);
+}
+void vtkAnamorphDeform::SetDeformationEnabled(int position, bool enabled) {
+    this->DeformationList->SetDeformationEnabled(position, enabled);
+}
+bool vtkAnamorphDeform::GetDeformationEnabled(int position) {
+    return this->DeformationList->GetDeformationEnabled(position);
+}
+void vtkAnamorphDeform::MoveDeformation(int from, int to) {
+    this->DeformationList->MoveDeformation(from, to);
+}
+void vtkAnamorphDeform::RemoveDeformation(int position) {
+    this->DeformationList->RemoveDeformation(position);
+}
+void vtkAnamorphDeform::RemoveAllDeformations() {
+    this->DeformationList->RemoveAllDeformations();
+}
+
+void vtkAnamorphDeform::SetController(vtkMultiProcessController* controller) {
+    if (controller == this->Controller) return;
+    this->Controller = controller;
+    this->Modified();
+}
+
+vtkMultiProcessController* vtkAnamorphDeform::GetController() {
+    return this->Controller;
+}
+
+vtkMTimeType vtkAnamorphDeform::GetMTime() {
+    return std::max(this->Superclass::GetMTime(), this->DeformationList->GetMTime());
+}
+
+vtkPolyData* vtkAnamorphDeform::GetOverlay() {
+    return vtkPolyData::SafeDownCast(this->GetOutputDataObject(1));
+}
+
+int vtkAnamorphDeform::FillInputPortInformation(int port, vtkInformation* info) {
+    if (port == 0) {
+        // Trees first: the pipeline then leaves the leaves to us, who have to see them all.
+        info->Remove(INPUT_REQUIRED_DATA_TYPE());
+        info->Append(INPUT_REQUIRED_DATA_TYPE(), "vtkDataObjectTree");
+        info->Append(INPUT_REQUIRED_DATA_TYPE(), "vtkPointSet");
+    } else {
+        info->Set(INPUT_REQUIRED_DATA_TYPE(), "vtkTable");
+        info->Set(INPUT_IS_OPTIONAL(), 1);
+    }
+    return 1;
+}
+
+int vtkAnamorphDeform::FillOutputPortInformation(int port, vtkInformation* info) {
+    info->Set(vtkDataObject::DATA_TYPE_NAME(), port == 0 ? "vtkDataObject" : "vtkPolyData");
+    return 1;
+}
+
+int vtkAnamorphDeform::RequestDataObject(vtkInformation*, vtkInformationVector** inputs,
+                                         vtkInformationVector* outputs) {
+    vtkDataObject* input = vtkDataObject::GetData(inputs[0]);
+    if (!input) return 0;
+    vtkInformation* info = outputs->GetInformationObject(0);
+    vtkDataObject* output = info->Get(vtkDataObject::DATA_OBJECT());
+    if (!output || std::string(output->GetClassName()) != input->GetClassName())
+        info->Set(vtkDataObject::DATA_OBJECT(), vtkSmartPointer<vtkDataObject>::Take(input->NewInstance()));
+    vtkInformation* overlay = outputs->GetInformationObject(1);
+    if (!vtkPolyData::SafeDownCast(overlay->Get(vtkDataObject::DATA_OBJECT())))
+        overlay->Set(vtkDataObject::DATA_OBJECT(), vtkNew<vtkPolyData>());
+    return 1;
+}
+
+int vtkAnamorphDeform::RequestUpdateExtent(vtkInformation*, vtkInformationVector** inputs,
+                                           vtkInformationVector*) {
+    using Pipeline = vtkStreamingDemandDrivenPipeline;
+    // Cells beyond a cut have corners at its points.
+    vtkInformation* input = inputs[0]->GetInformationObject(0);
+    if (this->ComputeNormals && input && input->Get(Pipeline::UPDATE_NUMBER_OF_PIECES()) > 1)
+        input->Set(Pipeline::UPDATE_NUMBER_OF_GHOST_LEVELS(),
+                   input->Get(Pipeline::UPDATE_NUMBER_OF_GHOST_LEVELS()) + 1);
+    // Deformations reach across pieces.
+    if (vtkInformation* table = inputs[1]->GetInformationObject(0)) {
+        table->Set(Pipeline::UPDATE_PIECE_NUMBER(), 0);
+        table->Set(Pipeline::UPDATE_NUMBER_OF_PIECES(), 1);
+        table->Set(Pipeline::UPDATE_NUMBER_OF_GHOST_LEVELS(), 0);
+    }
+    return 1;
+}
+
+int vtkAnamorphDeform::RequestData(vtkInformation*, vtkInformationVector** inputs,
+                                   vtkInformationVector* outputs) {
+    std::string failure;
+    bool aborted = false;
+    try {
+        this->Execute(inputs, outputs);
+        return 1;
+    } catch (const anamorph_vtk::Aborted&) {
+        aborted = true;
+    } catch (const std::bad_alloc&) {
+        failure = "there is not enough memory";
+    } catch (const std::exception& error) {
+        failure = error.what();
+    }
+    *this->Meshes = Kept();
+    for (int port = 0; port < 2; ++port)
+        if (vtkDataObject* output = vtkDataObject::GetData(outputs, port)) output->Initialize();
+    if (aborted) return 1;
+    vtkErrorMacro(<< failure);
+    return 0;
+}
+
+void vtkAnamorphDeform::Execute(vtkInformationVector** inputs, vtkInformationVector* outputs) {
+    vtkDataObject* input = vtkDataObject::GetData(inputs[0]);
+    vtkDataObject* output = vtkDataObject::GetData(outputs, 0);
+    this->NumberOfPointsComputed = 0;
+
+    std::vector<Leaf> leaves;
+    const auto add = [&](vtkPointSet* in, vtkPointSet* out) {
+        out->ShallowCopy(in);
+        leaves.push_back({in, out});
+    };
+    if (auto* tree = vtkDataObjectTree::SafeDownCast(input)) {
+        auto* copies = vtkDataObjectTree::SafeDownCast(output);
+        copies->CopyStructure(tree);
+        if (vtkFieldData* fields = tree->GetFieldData()) copies->GetFieldData()->PassData(fields);
+        const auto iterator = vtkSmartPointer<vtkCompositeDataIterator>::Take(tree->NewIterator());
+        for (iterator->InitTraversal(); !iterator->IsDoneWithTraversal(); iterator->GoToNextItem()) {
+            vtkDataObject* leaf = iterator->GetCurrentDataObject();
+            const auto copy = vtkSmartPointer<vtkDataObject>::Take(leaf->NewInstance());
+            if (auto* points = vtkPointSet::SafeDownCast(leaf))
+                add(points, vtkPointSet::SafeDownCast(copy));
+            else
+                copy->ShallowCopy(leaf);
+            copies->SetDataSet(iterator, copy);
+        }
+    } else {
+        add(vtkPointSet::SafeDownCast(input), vtkPointSet::SafeDownCast(output));
+    }
+    this->Meshes->meshes.resize(leaves.size());
+
+    // What all ranks do together comes first: one that then fails does not keep the others waiting.
+    std::vector<Numbers> more = table_of(vtkTable::GetData(inputs[1]), this->Controller);
+    anamorph_vtk::DeformSettings settings;
+    settings.on_plane = this->ParameterMode == PLANE;
+    if (settings.on_plane && this->AutomaticPlane) {
+        Bounds bounds = this->Meshes->bounds(leaves);
+        if (distributed(this->Controller)) {
+            Bounds all;
+            this->Controller->AllReduce(bounds.least, all.least, 3, vtkCommunicator::MIN_OP);
+            this->Controller->AllReduce(bounds.most, all.most, 3, vtkCommunicator::MAX_OP);
+            bounds = all;
+        } else if (vtkInformation* info = outputs->GetInformationObject(0);
+                   info->Get(vtkStreamingDemandDrivenPipeline::UPDATE_NUMBER_OF_PIECES()) > 1) {
+            throw Error(
+                "AutomaticPlane=1: one piece of the data does not tell the bounds of all; set Origin, "
+                "Axis1 and Axis2, or execute all pieces under a controller");
+        }
+        settings.plane = plane_of(bounds);
+    } else if (settings.on_plane) {
+        const auto vector = [](const double* v) { return glm::dvec3(v[0], v[1], v[2]); };
+        settings.plane = {vector(this->Origin), vector(this->Axis1), vector(this->Axis2)};
+    }
+    const auto report = [](glm::dvec3 v, double* to) {
+        for (int c = 0; c < 3; ++c) to[c] = v[c];
+    };
+    report(settings.plane.origin(), this->UsedOrigin);
+    report(settings.plane.axis_u(), this->UsedAxis1);
+    report(settings.plane.axis_v(), this->UsedAxis2);
+
+    std::vector<Numbers> numbers = this->DeformationList->GetAll();
+    if (this->FileName && *this->FileName) {
+        const std::vector<Numbers> file = anamorph_vtk::read_deformations(this->FileName);
+        numbers.insert(numbers.end(), file.begin(), file.end());
+    }
+    numbers.insert(numbers.end(), more.begin(), more.end());
+    const std::vector<Deformation> list = anamorph_vtk::checked_deformations(numbers);
+
+    settings.options.cutoff = this->Cutoff;
+    settings.options.resolution = resolution_for(list);
+    settings.precision = this->OutputPointsPrecision;
+    settings.displacement = this->ComputeDisplacement;
+    settings.normals = this->ComputeNormals;
+    anamorph::DisplacementSum sum(settings.options);
+    sum.apply(difference({}, list));
+    this->ErrorBound = sum.error_bound();
+
+    anamorph_vtk::Execution execution(this);
+    double total = 0, done = 0;
+    for (const Leaf& leaf : leaves) total += static_cast<double>(leaf.in->GetNumberOfPoints());
+    const double share = this->GenerateOverlay ? 0.9 : 1;
+    for (std::size_t i = 0; i < leaves.size(); ++i) {
+        auto& [in, out] = leaves[i];
+        add_field_value(out, "anamorph:error_bound", this->ErrorBound);
+        std::unique_ptr<DeformedMesh>& mesh = this->Meshes->meshes[i].deformed;
+        const double count = static_cast<double>(in->GetNumberOfPoints());
+        vtkDataArray* coordinates =
+            settings.on_plane || count == 0 ? nullptr : this->GetInputArrayToProcess(0, in);
+        if (count == 0 || (mesh && !mesh->fits(in, coordinates, settings))) mesh = nullptr;
+        if (!mesh) mesh = DeformedMesh::make(in, coordinates, settings);
+        if (!mesh) continue;
+        this->NumberOfPointsComputed +=
+            mesh->deform(list, in, out, execution, done / total * share, (done + count) / total * share);
+        done += count;
+    }
+
+    auto* overlay = vtkPolyData::GetData(outputs, 1);
+    overlay->Initialize();
+    if (!this->GenerateOverlay) return;
+    std::vector<anamorph_vtk::OverlayMesh> meshes;
+    for (std::size_t i = 0; i < leaves.size(); ++i)
+        if (this->Meshes->meshes[i].deformed)
+            meshes.push_back({leaves[i].in, &this->Meshes->meshes[i].deformed->parameters()});
+    const bool whole = settings.on_plane && !distributed(this->Controller);
+    draw_overlay(list, settings.options, meshes, whole ? &settings.plane : nullptr, overlay);
 }

@@ -1,9 +1,46 @@
 // SPDX-License-Identifier: Apache-2.0
+/**
+ * @class vtkAnamorphDeform
+ * @brief deform a surface by an editable list of bumps
+ *
+ * Free-form deformation of Oka 1987, section 4.1: the point of the surface that has the parameters (u, v)
+ * moves by sum_i V_i F((u, v), c_i, a_i) (eq. 4.1), F a Gaussian (eq. 4.2) or a compact kernel. The list is
+ * this filter's own (the methods below; vtkAnamorphDeformationList says what the nine numbers of a
+ * deformation are), and those of a file and of a table on the second input beside it.
+ *
+ * Parameters are texture coordinates (the point array chosen with SetInputArrayToProcess(0, 0, 0, 0, name),
+ * or the active ones), or those of a plane: p = Origin + u Axis1 + v Axis2 + a part across both. With
+ * AutomaticPlane, u and v are the two of x, y and z in which the whole data (all blocks, all ranks of the
+ * Controller) are largest: centres are then points of that plane, and extents lengths.
+ *
+ * Input: any vtkPointSet, or multiblock data and collections of partitioned data sets; leaves of other types
+ * are passed on. Points that have no finite parameters stay. What comes out shares all arrays but the points,
+ * their normals and the Displacement array. Cell normals are dropped, and point normals unless ComputeNormals
+ * is on. Normals are exact (from the kernels' derivatives) for a plane's parameters if the input has normals
+ * or lies in the plane; otherwise the surface's own tangents are those of its cells (and the displacement's
+ * derivatives exact), which needs ghost cells where a surface is cut into pieces: one level more is
+ * requested.
+ *
+ * Sums are in fixed point: the same bits for any order and history of the list, number of threads and cut
+ * into pieces. While input and settings stay, only what an edit of the list reaches is computed again.
+ * GetErrorBound() and the field array "anamorph:error_bound" say how far from eq. (4.1) a component of the
+ * displacement can be, before it is rounded to the type of the points.
+ *
+ * The second output, with GenerateOverlay, is the paper's Fig. 4.1: a + at each centre and the oval of its
+ * extent, on the deformed surface. Cell arrays: Deformation (position in the list), Enabled.
+ */
 #ifndef vtkAnamorphDeform_h
 #define vtkAnamorphDeform_h
 
-#include "AnamorphFiltersModule.h"
+#include <memory>  // for the implementation
+
+#include "AnamorphFiltersModule.h"  // for the export macro
 #include "vtkPassInputTypeAlgorithm.h"
+#include "vtkSmartPointer.h"  // for the members
+
+class vtkAnamorphDeformationList;
+class vtkMultiProcessController;
+class vtkPolyData;
 
 class ANAMORPHFILTERS_EXPORT vtkAnamorphDeform : public vtkPassInputTypeAlgorithm {
   public:
@@ -11,14 +48,183 @@ class ANAMORPHFILTERS_EXPORT vtkAnamorphDeform : public vtkPassInputTypeAlgorith
     vtkTypeMacro(vtkAnamorphDeform, vtkPassInputTypeAlgorithm);
     void PrintSelf(ostream& os, vtkIndent indent) override;
 
+    ///@{
+    /**
+     * The list, as vtkAnamorphDeformationList has it. Another object may be set, to be shared with another
+     * filter or a transform.
+     */
+    void SetDeformationList(vtkAnamorphDeformationList* list);
+    vtkAnamorphDeformationList* GetDeformationList();
+    void SetNumberOfDeformations(int number);
+    int GetNumberOfDeformations();
+    int AddDeformation(double center_u, double center_v, double extent_u, double extent_v, double x, double y,
+                       double z, double kernel = 0, double enabled = 1);
+    void InsertDeformation(int position, double center_u, double center_v, double extent_u, double extent_v,
+                           double x, double y, double z, double kernel = 0, double enabled = 1);
+    void SetDeformation(int position, double center_u, double center_v, double extent_u, double extent_v,
+                        double x, double y, double z, double kernel = 0, double enabled = 1);
+    double* GetDeformation(int position) VTK_SIZEHINT(9);
+    void SetDeformationEnabled(int position, bool enabled);
+    bool GetDeformationEnabled(int position);
+    void MoveDeformation(int from, int to);
+    void RemoveDeformation(int position);
+    void RemoveAllDeformations();
+    ///@}
+
+    ///@{
+    /**
+     * A file of deformations (JSON or CSV) that are added to the list. It is read when the filter executes.
+     * Default: none.
+     */
+    vtkSetStringMacro(FileName);
+    vtkGetStringMacro(FileName);
+    ///@}
+
+    /**
+     * A vtkTable of deformations that are added to the list, with columns as in
+     * vtkAnamorphDeformationList::ReadTable. Of several ranks, tables that are the same count once.
+     */
+    void SetTableConnection(vtkAlgorithmOutput* output) { this->SetInputConnection(1, output); }
+
+    enum ParameterModes { PLANE = 0, TEXTURE_COORDINATES = 1 };
+    ///@{
+    /**
+     * What the parameters of a point are. Default: PLANE.
+     */
+    vtkSetClampMacro(ParameterMode, int, PLANE, TEXTURE_COORDINATES);
+    vtkGetMacro(ParameterMode, int);
+    void SetParameterModeToPlane() { this->SetParameterMode(PLANE); }
+    void SetParameterModeToTextureCoordinates() { this->SetParameterMode(TEXTURE_COORDINATES); }
+    ///@}
+
+    ///@{
+    /**
+     * Whether the plane is taken from the bounds of the data. Default: on. It cannot be where pieces of the
+     * data are streamed through one process.
+     */
+    vtkSetMacro(AutomaticPlane, bool);
+    vtkGetMacro(AutomaticPlane, bool);
+    vtkBooleanMacro(AutomaticPlane, bool);
+    ///@}
+
+    ///@{
+    /**
+     * The plane, if it is not automatic. Axes are any two that are not parallel; one Axis1 is 1 in u, one
+     * Axis2 is 1 in v. Defaults: (0, 0, 0), (1, 0, 0), (0, 1, 0).
+     */
+    vtkSetVector3Macro(Origin, double);
+    vtkGetVector3Macro(Origin, double);
+    vtkSetVector3Macro(Axis1, double);
+    vtkGetVector3Macro(Axis1, double);
+    vtkSetVector3Macro(Axis2, double);
+    vtkGetVector3Macro(Axis2, double);
+    ///@}
+
+    ///@{
+    /**
+     * The plane of the last execution.
+     */
+    vtkGetVector3Macro(UsedOrigin, double);
+    vtkGetVector3Macro(UsedAxis1, double);
+    vtkGetVector3Macro(UsedAxis2, double);
+    ///@}
+
+    ///@{
+    /**
+     * Gaussians are cut off where they are below this, from 0 (nowhere) to 0.5. Default: 1e-7.
+     */
+    vtkSetMacro(Cutoff, double);
+    vtkGetMacro(Cutoff, double);
+    ///@}
+
+    ///@{
+    /**
+     * Whether the points get normals. Default: on.
+     */
+    vtkSetMacro(ComputeNormals, bool);
+    vtkGetMacro(ComputeNormals, bool);
+    vtkBooleanMacro(ComputeNormals, bool);
+    ///@}
+
+    ///@{
+    /**
+     * Whether the points get the array Displacement. Default: on.
+     */
+    vtkSetMacro(ComputeDisplacement, bool);
+    vtkGetMacro(ComputeDisplacement, bool);
+    vtkBooleanMacro(ComputeDisplacement, bool);
+    ///@}
+
+    ///@{
+    /**
+     * Whether the second output has the overlay. Default: off.
+     */
+    vtkSetMacro(GenerateOverlay, bool);
+    vtkGetMacro(GenerateOverlay, bool);
+    vtkBooleanMacro(GenerateOverlay, bool);
+    vtkPolyData* GetOverlay();
+    ///@}
+
+    ///@{
+    /**
+     * The type of points, normals and displacements: vtkAlgorithm::SINGLE_PRECISION, DOUBLE_PRECISION, or
+     * DEFAULT_PRECISION: that of the input's points, and double for whole numbers. Default: the last.
+     */
+    vtkSetClampMacro(OutputPointsPrecision, int, SINGLE_PRECISION, DEFAULT_PRECISION);
+    vtkGetMacro(OutputPointsPrecision, int);
+    ///@}
+
+    ///@{
+    /**
+     * Finds the automatic plane of all ranks and the tables of deformations they have. Every rank has to
+     * execute then. Default: the global controller; may be null.
+     */
+    void SetController(vtkMultiProcessController* controller);
+    vtkMultiProcessController* GetController();
+    ///@}
+
+    ///@{
+    /**
+     * Of the last execution: how far a component of the displacement can be from eq. (4.1), and how many
+     * points were computed.
+     */
+    vtkGetMacro(ErrorBound, double);
+    vtkGetMacro(NumberOfPointsComputed, vtkIdType);
+    ///@}
+
+    vtkMTimeType GetMTime() override;
+
   protected:
     vtkAnamorphDeform();
     ~vtkAnamorphDeform() override;
+
+    int FillInputPortInformation(int port, vtkInformation* info) override;
+    int FillOutputPortInformation(int port, vtkInformation* info) override;
+    int RequestDataObject(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
+    int RequestUpdateExtent(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
     int RequestData(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
 
   private:
     vtkAnamorphDeform(const vtkAnamorphDeform&) = delete;
     void operator=(const vtkAnamorphDeform&) = delete;
+
+    void Execute(vtkInformationVector** inputs, vtkInformationVector* outputs);
+
+    vtkSmartPointer<vtkAnamorphDeformationList> DeformationList;
+    vtkSmartPointer<vtkMultiProcessController> Controller;
+    char* FileName = nullptr;
+    int ParameterMode = PLANE;
+    bool AutomaticPlane = true;
+    double Origin[3] = {0, 0, 0}, Axis1[3] = {1, 0, 0}, Axis2[3] = {0, 1, 0};
+    double UsedOrigin[3] = {0, 0, 0}, UsedAxis1[3] = {1, 0, 0}, UsedAxis2[3] = {0, 1, 0};
+    double Cutoff = 1e-7;
+    bool ComputeNormals = true, ComputeDisplacement = true, GenerateOverlay = false;
+    int OutputPointsPrecision = DEFAULT_PRECISION;
+    double ErrorBound = 0;
+    vtkIdType NumberOfPointsComputed = 0;
+
+    struct Kept;
+    std::unique_ptr<Kept> Meshes;
 };
 
 #endif

@@ -1,0 +1,323 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "anamorph/deform/plane_warp.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <glm/matrix.hpp>
+#include <limits>
+#include <queue>
+
+#include "anamorph/error.h"
+#include "anamorph/parameter.h"
+
+namespace anamorph {
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+bool finite(glm::dvec3 p) {
+    return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z);
+}
+bool finite(glm::dvec2 s) {
+    return std::isfinite(s.x) && std::isfinite(s.y);
+}
+
+std::string written(glm::dvec3 p) {
+    return shortest(p.x) + "," + shortest(p.y) + "," + shortest(p.z);
+}
+
+/// In extents: beyond, a Gaussian is below 1e-18.
+double reach_of(DeformationKernel kernel) {
+    return kernel == DeformationKernel::gaussian ? 6.44 : 1;
+}
+
+// --- Bounds of det(I + G D') over a box
+
+struct Range {
+    double low, high;
+};
+Range operator+(Range a, Range b) {
+    return {a.low + b.low, a.high + b.high};
+}
+Range operator*(Range a, Range b) {
+    const auto [low, high] = std::minmax({a.low * b.low, a.low * b.high, a.high * b.low, a.high * b.high});
+    return {low, high};
+}
+Range operator*(double a, Range b) {
+    return Range{a, a} * b;
+}
+
+Range square_of(Range x) {
+    const double low = x.low > 0 ? x.low : x.high < 0 ? x.high : 0;
+    return {low * low, std::max(x.low * x.low, x.high * x.high)};
+}
+
+/// exp(-x^2) and its derivative -2 x exp(-x^2), which has its extrema at x = -+sqrt(1/2).
+Range bell(Range x) {
+    const Range s = square_of(x);
+    return {std::exp(-s.high), std::exp(-s.low)};
+}
+Range bell_slope(Range x) {
+    const auto slope = [](double t) { return -2 * t * std::exp(-t * t); };
+    const auto [low, high] = std::minmax(slope(x.low), slope(x.high));
+    Range range{low, high};
+    constexpr double kAt = 0.70710678118654752, kMost = 0.85776388496070680;
+    if (x.low < -kAt && -kAt < x.high) range.high = kMost;
+    if (x.low < kAt && kAt < x.high) range.low = -kMost;
+    return range;
+}
+
+/// The derivatives of F by u and v over a box.
+std::array<Range, 2> slopes(const Deformation& d, Range u, Range v) {
+    const double a = 1 / d.extent.x, b = 1 / d.extent.y;
+    const Range x{(u.low - d.center.x) * a, (u.high - d.center.x) * a};
+    const Range y{(v.low - d.center.y) * b, (v.high - d.center.y) * b};
+    if (d.kernel == DeformationKernel::gaussian)
+        return {a * (bell_slope(x) * bell(y)), b * (bell_slope(y) * bell(x))};
+    // dF/dx = -20 x (1 - r)^3
+    const Range squared = square_of(x) + square_of(y);
+    const auto cube = [](double r2) { return std::pow(std::max(0., 1 - std::sqrt(r2)), 3); };
+    const Range rest{cube(squared.high), cube(squared.low)};
+    const Range inside_x{std::max(x.low, -1.), std::min(x.high, 1.)},
+        inside_y{std::max(y.low, -1.), std::min(y.high, 1.)};
+    return {-20 * a * (inside_x * rest), -20 * b * (inside_y * rest)};
+}
+
+/// det(I + A).
+double determinant(glm::dvec2 by_u, glm::dvec2 by_v) {
+    return (1 + by_u.x) * (1 + by_v.y) - by_u.y * by_v.x;
+}
+
+}  // namespace
+
+ParameterPlane::ParameterPlane(glm::dvec3 origin, glm::dvec3 axis_u, glm::dvec3 axis_v)
+    : m_origin(origin), m_axis_u(axis_u), m_axis_v(axis_v) {
+    for (const auto& [name, vector] :
+         {std::pair("origin", origin), std::pair("axis_u", axis_u), std::pair("axis_v", axis_v)})
+        if (!finite(vector)) throw Error(name, written(vector), "allowed are finite numbers");
+    // In units of the axes' lengths, so that no product leaves the range of double.
+    const double length_u = glm::length(axis_u), length_v = glm::length(axis_v);
+    const glm::dvec3 u = axis_u / length_u, v = axis_v / length_v, across = glm::cross(u, v);
+    const double squared = glm::dot(across, across);
+    if (!(squared > 1e-20) || !finite(1 / length_u * u) || !finite(1 / length_v * v))
+        throw Error("axis_u and axis_v", written(axis_u) + " and " + written(axis_v),
+                    "needed are two directions that are not parallel");
+    m_gradient_u = glm::cross(v, across) / squared / length_u;
+    m_gradient_v = glm::cross(across, u) / squared / length_v;
+}
+
+glm::dvec2 ParameterPlane::parameters(glm::dvec3 p) const {
+    const glm::dvec3 from = p - m_origin;
+    return {glm::dot(m_gradient_u, from), glm::dot(m_gradient_v, from)};
+}
+
+PlaneWarp::PlaneWarp(const ParameterPlane& plane, const std::vector<Deformation>& list) : m_plane(plane) {
+    for (const Deformation& d : list) {
+        check_deformation(d);
+        if (!d.enabled || d.vector == glm::dvec3(0.0)) continue;
+        m_list.push_back(d);
+        if (glm::dot(plane.gradient_u(), d.vector) != 0 || glm::dot(plane.gradient_v(), d.vector) != 0)
+            m_across = false;
+    }
+    if (m_list.empty()) return;
+    m_least = glm::dvec2(kInfinity);
+    m_most = -m_least;
+    for (const Deformation& d : m_list) {
+        const glm::dvec2 reach = reach_of(d.kernel) * d.extent;
+        m_least =
+            glm::dvec2(std::min(m_least.x, d.center.x - reach.x), std::min(m_least.y, d.center.y - reach.y));
+        m_most =
+            glm::dvec2(std::max(m_most.x, d.center.x + reach.x), std::max(m_most.y, d.center.y + reach.y));
+    }
+    m_side = std::clamp(static_cast<int>(std::sqrt(static_cast<double>(m_list.size()))), 1, 256);
+    m_bins.resize(static_cast<std::size_t>(m_side) * static_cast<std::size_t>(m_side));
+    constexpr int kManyBins = 64;
+    const auto bin_of = [&](double value, int axis) {
+        const double at = (value / 2 - m_least[axis] / 2) / (m_most[axis] / 2 - m_least[axis] / 2) * m_side;
+        return std::clamp(static_cast<int>(std::clamp(at, 0., static_cast<double>(m_side))), 0, m_side - 1);
+    };
+    for (std::size_t k = 0; k < m_list.size(); ++k) {
+        const glm::dvec2 reach = reach_of(m_list[k].kernel) * m_list[k].extent;
+        const glm::dvec2 c = m_list[k].center;
+        // One bin more each way, whatever the rounding.
+        const int first_u = std::max(bin_of(c.x - reach.x, 0) - 1, 0),
+                  last_u = std::min(bin_of(c.x + reach.x, 0) + 1, m_side - 1),
+                  first_v = std::max(bin_of(c.y - reach.y, 1) - 1, 0),
+                  last_v = std::min(bin_of(c.y + reach.y, 1) + 1, m_side - 1);
+        if ((last_u - first_u + 1) * (last_v - first_v + 1) > kManyBins) {
+            m_wide.push_back(k);
+            continue;
+        }
+        for (int j = first_v; j <= last_v; ++j)
+            for (int i = first_u; i <= last_u; ++i)
+                m_bins[static_cast<std::size_t>(j * m_side + i)].entries.push_back(k);
+    }
+}
+
+DisplacementJet PlaneWarp::displacement(glm::dvec2 s) const {
+    DisplacementJet sum;
+    if (!(s.x >= m_least.x && s.x <= m_most.x && s.y >= m_least.y && s.y <= m_most.y)) return sum;
+    const auto add = [&](std::size_t k) {
+        const Deformation& d = m_list[k];
+        const double reach = reach_of(d.kernel);
+        if (std::fabs((s.x - d.center.x) / d.extent.x) <= reach &&
+            std::fabs((s.y - d.center.y) / d.extent.y) <= reach)
+            add_displacement(d, s, sum);
+    };
+    for (const std::size_t k : m_wide) add(k);
+    if (m_side == 0) return sum;
+    std::size_t bin = 0;
+    for (const int axis : {1, 0}) {
+        const double at = (s[axis] / 2 - m_least[axis] / 2) / (m_most[axis] / 2 - m_least[axis] / 2) * m_side;
+        bin = bin * static_cast<std::size_t>(m_side) +
+              static_cast<std::size_t>(std::clamp(static_cast<int>(at), 0, m_side - 1));
+    }
+    for (const std::size_t k : m_bins[bin].entries) add(k);
+    return sum;
+}
+
+glm::dvec3 PlaneWarp::forward(glm::dvec3 p) const {
+    return p + displacement(m_plane.parameters(p)).value;
+}
+
+glm::dmat3 PlaneWarp::jacobian(glm::dvec3 p) const {
+    const DisplacementJet d = displacement(m_plane.parameters(p));
+    return glm::dmat3(1.0) + glm::outerProduct(d.by_u, m_plane.gradient_u()) +
+           glm::outerProduct(d.by_v, m_plane.gradient_v());
+}
+
+glm::dvec2 PlaneWarp::residual(glm::dvec2 s, glm::dvec2 target, double share, DisplacementJet& jet) const {
+    jet = displacement(s);
+    return s - target +
+           share * glm::dvec2(glm::dot(m_plane.gradient_u(), jet.value),
+                              glm::dot(m_plane.gradient_v(), jet.value));
+}
+
+bool PlaneWarp::solve(glm::dvec2 target, double share, glm::dvec2& s) const {
+    const double unit_u = glm::length(m_plane.axis_u()), unit_v = glm::length(m_plane.axis_v());
+    const auto size = [&](glm::dvec2 r) { return std::hypot(r.x * unit_u, r.y * unit_v); };
+    const double scale = size(target) + size(s);
+    DisplacementJet jet;
+    glm::dvec2 rest = residual(s, target, share, jet);
+    for (int step = 0; step < 60 && size(rest) > 0; ++step) {
+        const auto in_plane = [&](glm::dvec3 d) {
+            return share * glm::dvec2(glm::dot(m_plane.gradient_u(), d), glm::dot(m_plane.gradient_v(), d));
+        };
+        const glm::dvec2 by_u = in_plane(jet.by_u), by_v = in_plane(jet.by_v);
+        const double det = determinant(by_u, by_v);
+        if (!(std::fabs(det) > 1e-14)) break;
+        const glm::dvec2 newton{((1 + by_v.y) * rest.x - by_v.x * rest.y) / det,
+                                ((1 + by_u.x) * rest.y - by_u.y * rest.x) / det};
+        // Halved until the residual falls.
+        bool fell = false;
+        for (double part = 1; part > 1e-6 && !fell; part /= 2) {
+            const glm::dvec2 next = s - part * newton;
+            DisplacementJet next_jet;
+            const glm::dvec2 next_rest = residual(next, target, share, next_jet);
+            if (size(next_rest) < size(rest)) {
+                s = next;
+                rest = next_rest;
+                jet = next_jet;
+                fell = true;
+            }
+        }
+        if (!fell) break;
+    }
+    // What rounding leaves: parameters of this size, and displacements.
+    const double rounding =
+        scale + size({glm::dot(m_plane.gradient_u(), jet.value), glm::dot(m_plane.gradient_v(), jet.value)});
+    return size(rest) <= 64 * 0x1p-53 * rounding;
+}
+
+PlaneWarp::Inverse PlaneWarp::inverse(glm::dvec3 q) const {
+    const glm::dvec2 target = m_plane.parameters(q);
+    if (!finite(target)) return {q, finite(q)};
+    glm::dvec2 s = target;
+    bool found = m_across || solve(target, 1, s);
+    if (!found) {
+        // Along the way from the identity.
+        constexpr int kSteps = 64;
+        glm::dvec2 along = target;
+        found = true;
+        for (int i = 1; i <= kSteps && found; ++i)
+            found = solve(target, static_cast<double>(i) / kSteps, along);
+        if (found) s = along;
+    }
+    return {q - displacement(s).value, found};
+}
+
+Fold PlaneWarp::find_fold(std::size_t most_boxes) const {
+    if (m_across) return {};
+    struct Box {
+        double low;  ///< the least the determinant can be
+        Range u, v;
+        std::vector<std::size_t> entries;
+        bool operator<(const Box& other) const { return low > other.low; }
+    };
+    const auto in_plane = [&](const Deformation& d) {
+        return glm::dvec2(glm::dot(m_plane.gradient_u(), d.vector), glm::dot(m_plane.gradient_v(), d.vector));
+    };
+    // The terms of a parent that reach into a box, and the bound they give.
+    std::size_t work = 0;
+    const auto box_of = [&](Range u, Range v, const std::vector<std::size_t>& parents) {
+        Box box{0, u, v, {}};
+        Range a[2][2] = {};
+        for (const std::size_t k : parents) {
+            const Deformation& d = m_list[k];
+            const glm::dvec2 reach = reach_of(d.kernel) * d.extent;
+            if (u.high < d.center.x - reach.x || u.low > d.center.x + reach.x ||
+                v.high < d.center.y - reach.y || v.low > d.center.y + reach.y)
+                continue;
+            box.entries.push_back(k);
+            const auto [by_u, by_v] = slopes(d, u, v);
+            const glm::dvec2 g = in_plane(d);
+            for (int row = 0; row < 2; ++row) {
+                a[row][0] = a[row][0] + g[row] * by_u;
+                a[row][1] = a[row][1] + g[row] * by_v;
+            }
+        }
+        work += parents.size();
+        const Range one{1, 1}, diagonal = (one + a[0][0]) * (one + a[1][1]), other = a[0][1] * a[1][0];
+        box.low = diagonal.low - other.high;
+        return box;
+    };
+    std::vector<std::size_t> all(m_list.size());
+    for (std::size_t k = 0; k < all.size(); ++k) all[k] = k;
+    std::priority_queue<Box> boxes;
+    const auto push = [&](Box box) {
+        if (!(box.low > 1e-12)) boxes.push(std::move(box));  // rounding
+    };
+    push(box_of({m_least.x, m_most.x}, {m_least.y, m_most.y}, all));
+    constexpr std::size_t kMostWork = 20'000'000;
+    for (std::size_t count = 0; !boxes.empty(); ++count) {
+        if (count >= most_boxes || work > kMostWork) return {FoldAnswer::undecided, {}};
+        const Box box = boxes.top();
+        boxes.pop();
+        const glm::dvec2 middle{box.u.low / 2 + box.u.high / 2, box.v.low / 2 + box.v.high / 2};
+        if (!finite(middle) || !std::isfinite(box.u.high - box.u.low) ||
+            !std::isfinite(box.v.high - box.v.low))
+            return {FoldAnswer::undecided, {}};
+        const DisplacementJet d = displacement(middle);
+        const auto on_plane = [&](glm::dvec3 by) {
+            return glm::dvec2(glm::dot(m_plane.gradient_u(), by), glm::dot(m_plane.gradient_v(), by));
+        };
+        if (!(determinant(on_plane(d.by_u), on_plane(d.by_v)) > 0)) return {FoldAnswer::found, middle};
+        // The longer side, measured in the extents of the finest deformation there, is halved.
+        glm::dvec2 extent(kInfinity);
+        for (const std::size_t k : box.entries)
+            extent =
+                glm::dvec2(std::min(extent.x, m_list[k].extent.x), std::min(extent.y, m_list[k].extent.y));
+        if ((box.u.high - box.u.low) / extent.x >= (box.v.high - box.v.low) / extent.y) {
+            push(box_of({box.u.low, middle.x}, box.v, box.entries));
+            push(box_of({middle.x, box.u.high}, box.v, box.entries));
+        } else {
+            push(box_of(box.u, {box.v.low, middle.y}, box.entries));
+            push(box_of(box.u, {middle.y, box.v.high}, box.entries));
+        }
+    }
+    return {};
+}
+
+}  // namespace anamorph

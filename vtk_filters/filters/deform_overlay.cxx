@@ -1,0 +1,168 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "deform_overlay.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <optional>
+
+#include "surface_normals.h"
+#include "vtkCellArray.h"
+#include "vtkCellData.h"
+#include "vtkIntArray.h"
+#include "vtkNew.h"
+#include "vtkPointSet.h"
+#include "vtkPoints.h"
+#include "vtkPolyData.h"
+
+namespace anamorph_vtk {
+namespace {
+
+using anamorph::Deformation;
+
+/// Where a surface is, by its parameters: triangles of the parameter plane in bins.
+class SurfaceOfParameters {
+  public:
+    explicit SurfaceOfParameters(const std::vector<OverlayMesh>& meshes) {
+        for (const OverlayMesh& m : meshes)
+            for_each_surface_cell(m.mesh, [&](vtkIdType count, const vtkIdType* p) {
+                for (vtkIdType i = 1; i + 1 < count; ++i) add(m, {p[0], p[i], p[i + 1]});
+            });
+        if (m_triangles.empty()) return;
+        m_side = std::clamp(static_cast<int>(std::sqrt(static_cast<double>(m_triangles.size()))), 1, 1024);
+        m_bins.resize(static_cast<std::size_t>(m_side) * static_cast<std::size_t>(m_side));
+        for (std::size_t k = 0; k < m_triangles.size(); ++k) {
+            const auto& s = m_triangles[k].parameters;
+            const auto [u0, u1] = std::minmax({s[0].x, s[1].x, s[2].x});
+            const auto [v0, v1] = std::minmax({s[0].y, s[1].y, s[2].y});
+            for (int j = bin(v0, 1); j <= bin(v1, 1); ++j)
+                for (int i = bin(u0, 0); i <= bin(u1, 0); ++i)
+                    m_bins[static_cast<std::size_t>(j * m_side + i)].push_back(k);
+        }
+    }
+
+    std::optional<glm::dvec3> at(glm::dvec2 s) const {
+        if (m_triangles.empty() ||
+            !(s.x >= m_least.x && s.x <= m_most.x && s.y >= m_least.y && s.y <= m_most.y))
+            return std::nullopt;
+        for (const std::size_t k : m_bins[static_cast<std::size_t>(bin(s.y, 1) * m_side + bin(s.x, 0))]) {
+            const Triangle& t = m_triangles[k];
+            // Barycentric coordinates.
+            const glm::dvec2 a = t.parameters[1] - t.parameters[0], b = t.parameters[2] - t.parameters[0],
+                             c = s - t.parameters[0];
+            const double area = a.x * b.y - a.y * b.x;
+            const double x = (c.x * b.y - c.y * b.x) / area, y = (a.x * c.y - a.y * c.x) / area;
+            constexpr double kRounding = 1e-9;
+            if (x >= -kRounding && y >= -kRounding && x + y <= 1 + kRounding)
+                return t.points[0] + x * (t.points[1] - t.points[0]) + y * (t.points[2] - t.points[0]);
+        }
+        return std::nullopt;
+    }
+
+  private:
+    struct Triangle {
+        std::array<glm::dvec2, 3> parameters;
+        std::array<glm::dvec3, 3> points;
+    };
+
+    void add(const OverlayMesh& m, const std::array<vtkIdType, 3>& ids) {
+        Triangle t;
+        for (std::size_t c = 0; c < 3; ++c) {
+            t.parameters[c] = (*m.parameters)[static_cast<std::size_t>(ids[c])];
+            double p[3];
+            m.mesh->GetPoint(ids[c], p);
+            t.points[c] = {p[0], p[1], p[2]};
+        }
+        m_triangles.push_back(t);
+        for (const glm::dvec2& s : t.parameters) {
+            m_least = glm::dvec2(std::min(m_least.x, s.x), std::min(m_least.y, s.y));
+            m_most = glm::dvec2(std::max(m_most.x, s.x), std::max(m_most.y, s.y));
+        }
+    }
+
+    int bin(double value, int axis) const {
+        const double width = m_most[axis] - m_least[axis];
+        return width > 0 && std::isfinite(width)
+                   ? std::clamp(static_cast<int>((value - m_least[axis]) / width * m_side), 0, m_side - 1)
+                   : 0;
+    }
+
+    std::vector<Triangle> m_triangles;
+    glm::dvec2 m_least{std::numeric_limits<double>::infinity()},
+        m_most{-std::numeric_limits<double>::infinity()};
+    int m_side = 0;
+    std::vector<std::vector<std::size_t>> m_bins;
+};
+
+/// The + and the oval, as paths in parameters.
+std::vector<std::vector<glm::dvec2>> paths_of(const Deformation& d) {
+    constexpr int kOval = 64, kArm = 4;
+    constexpr double kArmLength = 0.25;  // of the extent
+    std::vector<std::vector<glm::dvec2>> paths(3);
+    for (int i = -kArm; i <= kArm; ++i) {
+        const double t = kArmLength * i / kArm;
+        paths[0].push_back(d.center + glm::dvec2(t * d.extent.x, 0));
+        paths[1].push_back(d.center + glm::dvec2(0, t * d.extent.y));
+    }
+    for (int i = 0; i <= kOval; ++i) {
+        const double angle = 2 * 3.14159265358979323846 * (i % kOval) / kOval;
+        paths[2].push_back(d.center + glm::dvec2(std::cos(angle) * d.extent.x, std::sin(angle) * d.extent.y));
+    }
+    return paths;
+}
+
+}  // namespace
+
+void draw_overlay(const std::vector<Deformation>& list, const anamorph::DeformOptions& options,
+                  const std::vector<OverlayMesh>& meshes, const anamorph::ParameterPlane* plane,
+                  vtkPolyData* overlay) {
+    const SurfaceOfParameters surface(meshes);
+    vtkNew<vtkPoints> points;
+    points->SetDataTypeToDouble();
+    vtkNew<vtkCellArray> lines;
+    vtkNew<vtkIntArray> positions, enabled;
+    positions->SetName("Deformation");
+    enabled->SetName("Enabled");
+    std::vector<glm::dvec2> parameters;  // of `points`
+    for (std::size_t k = 0; k < list.size(); ++k)
+        for (const std::vector<glm::dvec2>& path : paths_of(list[k])) {
+            std::vector<vtkIdType> line;
+            const auto finish = [&] {
+                if (line.size() >= 2) {
+                    lines->InsertNextCell(static_cast<vtkIdType>(line.size()), line.data());
+                    positions->InsertNextValue(static_cast<int>(k));
+                    enabled->InsertNextValue(list[k].enabled ? 1 : 0);
+                }
+                line.clear();
+            };
+            for (const glm::dvec2& s : path) {
+                std::optional<glm::dvec3> p;
+                if (std::isfinite(s.x) && std::isfinite(s.y)) {
+                    p = surface.at(s);
+                    if (!p && plane) p = plane->point(s);
+                }
+                if (!p) {
+                    finish();
+                    continue;
+                }
+                line.push_back(points->InsertNextPoint(p->x, p->y, p->z));
+                parameters.push_back(s);
+            }
+            finish();
+        }
+    std::vector<anamorph::DisplacementJet> jets(parameters.size());
+    anamorph::displacement_jets(list, parameters, options, jets.data());
+    for (std::size_t i = 0; i < jets.size(); ++i) {
+        double p[3];
+        const auto id = static_cast<vtkIdType>(i);
+        points->GetPoint(id, p);
+        points->SetPoint(id, p[0] + jets[i].value.x, p[1] + jets[i].value.y, p[2] + jets[i].value.z);
+    }
+    overlay->SetPoints(points);
+    overlay->SetLines(lines);
+    overlay->GetCellData()->AddArray(positions);
+    overlay->GetCellData()->AddArray(enabled);
+}
+
+}  // namespace anamorph_vtk

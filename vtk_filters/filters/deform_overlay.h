@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: Apache-2.0
+// The + and the oval of each deformation, drawn on the deformed surface (Oka 1987, Fig. 4.1).
+#pragma once
+
+#include <glm/vec2.hpp>
+#include <vector>
+
+#include "anamorph/deform/deformed_surface.h"
+#include "anamorph/deform/plane_warp.h"
+
+class vtkPointSet;
+class vtkPolyData;
+
+namespace anamorph_vtk {
+
+/// An undeformed mesh and the parameters of its points.
+struct OverlayMesh {
+    vtkPointSet* mesh;
+    const std::vector<glm::dvec2>* parameters;
+};
+
+/// Draws all of `list`, those that are not enabled too. Lines end where the meshes do, unless there is a
+/// plane to go on.
+void draw_overlay(const std::vector<anamorph::Deformation>& list, const anamorph::DeformOptions& options,
+                  const std::vector<OverlayMesh>& meshes, const anamorph::ParameterPlane* plane,
+                  vtkPolyData* overlay);
+
+}  // namespace anamorph_vtk

@@ -1,0 +1,136 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "deformation_numbers.h"
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <sstream>
+
+#include "anamorph/deform/deformation_file.h"
+#include "anamorph/error.h"
+#include "anamorph/parameter.h"
+#include "vtkDoubleArray.h"
+#include "vtkNew.h"
+#include "vtkTable.h"
+#include "vtkVariant.h"
+
+namespace anamorph_vtk {
+namespace {
+
+using anamorph::Deformation;
+using anamorph::DeformationKernel;
+using anamorph::Error;
+
+constexpr const char* kColumns[9] = {"center_u", "center_v", "extent_u", "extent_v", "x",
+                                     "y",        "z",        "kernel",   "enabled"};
+constexpr int kNeededColumns = 7;
+
+Deformation deformation_of(const Numbers& n) {
+    if (n[7] != 0 && n[7] != 1)
+        throw Error("kernel", anamorph::shortest(n[7]), "allowed are 0 (gaussian) and 1 (wendland_c2)");
+    if (n[8] != 0 && n[8] != 1) throw Error("enabled", anamorph::shortest(n[8]), "allowed are 0 and 1");
+    const Deformation d{{n[4], n[5], n[6]},
+                        {n[0], n[1]},
+                        {n[2], n[3]},
+                        n[7] == 0 ? DeformationKernel::gaussian : DeformationKernel::wendland_c2,
+                        n[8] == 1};
+    check_deformation(d);
+    return d;
+}
+
+/// A cell of a table as a number.
+double number_in(const vtkVariant& cell, int column) {
+    if (column == 7 && cell.IsString() && !cell.ToString().empty() &&
+        std::isalpha(static_cast<unsigned char>(cell.ToString()[0])))
+        return anamorph::kernel_named(cell.ToString()) == DeformationKernel::gaussian ? 0 : 1;
+    bool valid = false;
+    const double number = cell.ToDouble(&valid);
+    if (!valid) throw Error("\"" + anamorph::printable(cell.ToString()) + "\" is not a number");
+    return number;
+}
+
+}  // namespace
+
+std::vector<Deformation> checked_deformations(const std::vector<Numbers>& list) {
+    std::vector<Deformation> deformations;
+    deformations.reserve(list.size());
+    for (std::size_t i = 0; i < list.size(); ++i) try {
+            deformations.push_back(deformation_of(list[i]));
+        } catch (const Error& error) {
+            throw Error("deformation " + std::to_string(i) + ": " + error.what());
+        }
+    return deformations;
+}
+
+Numbers numbers_of(const Deformation& d) {
+    return {d.center.x,         d.center.y, d.extent.x, d.extent.y,
+            d.vector.x,         d.vector.y, d.vector.z, d.kernel == DeformationKernel::gaussian ? 0. : 1.,
+            d.enabled ? 1. : 0.};
+}
+
+std::vector<Numbers> read_deformations(const std::string& file_name) {
+    std::ifstream file(file_name, std::ios::binary | std::ios::ate);
+    if (!file) throw Error(file_name + ": cannot be read");
+    const std::streamoff size = file.tellg();
+    if (size < 0 || static_cast<std::size_t>(size) > anamorph::kMaxDeformationText)
+        throw Error(file_name + ": allowed are files of up to " +
+                    std::to_string(anamorph::kMaxDeformationText) + " bytes");
+    std::string text(static_cast<std::size_t>(size), '\0');
+    file.seekg(0);
+    if (!file.read(text.data(), size)) throw Error(file_name + ": cannot be read");
+    std::vector<Numbers> list;
+    for (const Deformation& d : anamorph::parse_deformations_file(text, file_name))
+        list.push_back(numbers_of(d));
+    return list;
+}
+
+void write_deformations(const std::string& file_name, const std::vector<Numbers>& list) {
+    const std::vector<Deformation> deformations = checked_deformations(list);
+    const bool csv = file_name.size() >= 4 && file_name.substr(file_name.size() - 4) == ".csv";
+    std::ofstream file(file_name, std::ios::binary);
+    file << (csv ? deformations_csv(deformations) : deformations_json(deformations));
+    file.close();
+    if (!file) throw Error(file_name + ": cannot be written");
+}
+
+std::vector<Numbers> numbers_in(vtkTable* table) {
+    std::vector<Numbers> list;
+    if (!table || table->GetNumberOfColumns() == 0) return list;
+    vtkAbstractArray* columns[9];
+    for (int c = 0; c < 9; ++c) {
+        columns[c] = table->GetColumnByName(kColumns[c]);
+        if (!columns[c] && c < kNeededColumns)
+            throw Error(std::string("the table of deformations has no column ") + kColumns[c]);
+        if (columns[c] && columns[c]->GetNumberOfComponents() != 1)
+            throw Error(std::string("the table of deformations: column ") + kColumns[c] + " has " +
+                        std::to_string(columns[c]->GetNumberOfComponents()) + " components, needed is 1");
+    }
+    const vtkIdType rows = table->GetNumberOfRows();
+    if (rows > static_cast<vtkIdType>(anamorph::kMaxDeformations))
+        throw Error("the table of deformations has " + std::to_string(rows) + " rows, allowed are " +
+                    std::to_string(anamorph::kMaxDeformations));
+    for (vtkIdType row = 0; row < rows; ++row) {
+        Numbers numbers{0, 0, 1, 1, 0, 0, 0, 0, 1};
+        for (int c = 0; c < 9; ++c) try {
+                if (columns[c])
+                    numbers[static_cast<std::size_t>(c)] = number_in(columns[c]->GetVariantValue(row), c);
+            } catch (const Error& error) {
+                throw Error("the table of deformations: row " + std::to_string(row) + ", column " +
+                            kColumns[c] + ": " + error.what());
+            }
+        list.push_back(numbers);
+    }
+    return list;
+}
+
+void put_numbers(const std::vector<Numbers>& list, vtkTable* table) {
+    table->Initialize();
+    for (std::size_t c = 0; c < 9; ++c) {
+        vtkNew<vtkDoubleArray> column;
+        column->SetName(kColumns[c]);
+        for (const Numbers& numbers : list) column->InsertNextValue(numbers[c]);
+        table->AddColumn(column);
+    }
+}
+
+}  // namespace anamorph_vtk

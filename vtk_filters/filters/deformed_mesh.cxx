@@ -1,0 +1,323 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "deformed_mesh.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+#include <optional>
+#include <string>
+#include <type_traits>
+#include <variant>
+
+#include "surface_normals.h"
+#include "vtkAOSDataArrayTemplate.h"
+#include "vtkAlgorithm.h"
+#include "vtkCellData.h"
+#include "vtkDataArray.h"
+#include "vtkDoubleArray.h"
+#include "vtkFloatArray.h"
+#include "vtkNew.h"
+#include "vtkPointData.h"
+#include "vtkPointSet.h"
+#include "vtkPoints.h"
+#include "vtkSmartPointer.h"
+
+namespace anamorph_vtk {
+namespace {
+
+using anamorph::Deformation;
+using anamorph::DeformationChange;
+using anamorph::DeformedGrid;
+using anamorph::DeformedPoints;
+using anamorph::Error;
+using anamorph::ParallelFor;
+
+constexpr std::int64_t kChunk = 8192;
+
+std::int64_t chunks_of(std::int64_t count) {
+    return (count + kChunk - 1) / kChunk;
+}
+
+template <class Body>
+void for_each_point(std::int64_t count, const ParallelFor& parallel_for, const Body& body) {
+    parallel_for(chunks_of(count), [&](std::int64_t chunk) {
+        for (std::int64_t i = chunk * kChunk; i < std::min((chunk + 1) * kChunk, count); ++i) body(i);
+    });
+}
+
+/// An array and its time; holding it keeps its address from being used again.
+struct Version {
+    vtkSmartPointer<vtkDataArray> array;
+    vtkMTimeType time = 0;
+
+    static Version of(vtkDataArray* array) { return {array, array ? array->GetMTime() : 0}; }
+    bool operator==(const Version& other) const { return array == other.array && time == other.time; }
+};
+
+/// The values of the columns and rows if points are a grid: u depends on the column alone, v on the row
+/// alone.
+struct Axes {
+    std::vector<double> u, v;
+};
+std::optional<Axes> axes_of(const std::vector<glm::dvec2>& points) {
+    // Narrower ones are not worth it: sums are kept in blocks of 32 columns.
+    constexpr std::size_t kLeastColumns = 16;
+    std::size_t columns = 1;
+    while (columns < points.size() && points[columns].y == points[0].y) ++columns;
+    if (columns < kLeastColumns || points.size() % columns != 0) return std::nullopt;
+    for (std::size_t i = 0; i < points.size(); ++i)
+        if (points[i].x != points[i % columns].x || points[i].y != points[i - i % columns].y)
+            return std::nullopt;
+    Axes axes;
+    for (std::size_t i = 0; i < columns; ++i) axes.u.push_back(points[i].x);
+    for (std::size_t i = 0; i < points.size(); i += columns) axes.v.push_back(points[i].y);
+    return axes;
+}
+
+template <class T>
+class MeshOf final : public DeformedMesh {
+    using Array = std::conditional_t<std::is_same_v<T, float>, vtkFloatArray, vtkDoubleArray>;
+
+  public:
+    MeshOf(vtkPointSet* mesh, vtkDataArray* coordinates, const DeformSettings& settings)
+        : m_settings(settings),
+          m_source(Version::of(mesh->GetPoints()->GetData())),
+          m_coordinates(Version::of(coordinates)),
+          m_base(base_of(m_source.array)) {
+        read_parameters();
+        start();
+    }
+
+    bool fits(vtkPointSet* mesh, vtkDataArray* coordinates, const DeformSettings& settings) const override {
+        return settings == m_settings && Version::of(mesh->GetPoints()->GetData()) == m_source &&
+               Version::of(coordinates) == m_coordinates;
+    }
+
+    vtkIdType deform(const std::vector<Deformation>& list, vtkPointSet* mesh, vtkPointSet* out,
+                     Execution& execution, double begin, double end) override {
+        std::vector<DeformationChange> changes = difference(m_list, list);
+        if (changes.size() > list.size()) {
+            // From scratch is less work.
+            start();
+            changes = difference({}, list);
+        }
+        m_list = list;
+        const double middle = m_settings.normals ? begin + (end - begin) * 0.5 : end;
+        const vtkIdType written = move_points(changes, execution.stage(begin, middle));
+        if (m_settings.normals) update_normals(changes, mesh->GetMTime(), out, execution.stage(middle, end));
+        hand_out(out);
+        return written;
+    }
+
+    const std::vector<glm::dvec2>& parameters() const override { return m_parameters; }
+
+  private:
+    std::size_t size() const { return m_parameters.size(); }
+
+    static vtkSmartPointer<Array> new_array(std::size_t points) {
+        auto array = vtkSmartPointer<Array>::New();
+        array->SetNumberOfComponents(3);
+        array->SetNumberOfTuples(static_cast<vtkIdType>(points));
+        return array;
+    }
+
+    /// The points as T, without gaps.
+    static vtkSmartPointer<vtkAOSDataArrayTemplate<T>> base_of(vtkDataArray* source) {
+        if (auto* same = vtkAOSDataArrayTemplate<T>::FastDownCast(source)) return same;
+        vtkSmartPointer<Array> copy = new_array(static_cast<std::size_t>(source->GetNumberOfTuples()));
+        copy->DeepCopy(source);
+        return copy;
+    }
+
+    void read_parameters() {
+        vtkDataArray* source = m_settings.on_plane ? m_source.array : m_coordinates.array;
+        const vtkIdType count = source->GetNumberOfTuples();
+        m_parameters.resize(static_cast<std::size_t>(count));
+        double tuple[9];
+        for (vtkIdType i = 0; i < count; ++i) {
+            source->GetTuple(i, tuple);
+            glm::dvec2& p = m_parameters[static_cast<std::size_t>(i)];
+            p = m_settings.on_plane ? m_settings.plane.parameters({tuple[0], tuple[1], tuple[2]})
+                                    : glm::dvec2(tuple[0], tuple[1]);
+            if (!std::isfinite(p.x) || !std::isfinite(p.y)) m_unmoved.push_back(i);
+        }
+        // The core takes finite numbers only: those of another point do.
+        if (m_unmoved.size() == m_parameters.size())
+            std::fill(m_parameters.begin(), m_parameters.end(), glm::dvec2(0.0));
+        else if (!m_unmoved.empty()) {
+            std::size_t good = 0;
+            while (!std::isfinite(m_parameters[good].x) || !std::isfinite(m_parameters[good].y)) ++good;
+            for (const vtkIdType i : m_unmoved)
+                m_parameters[static_cast<std::size_t>(i)] = m_parameters[good];
+        }
+    }
+
+    /// The surface without deformations, of which nothing is written yet.
+    void start() {
+        if (std::optional<Axes> axes = axes_of(m_parameters))
+            m_surface.emplace<DeformedGrid>(std::move(axes->u), std::move(axes->v), m_settings.options);
+        else
+            m_surface.emplace<DeformedPoints>(m_parameters, m_settings.options);
+        m_list.clear();
+        m_points = m_displacement = m_normals = nullptr;
+    }
+
+    /// Makes an array ours alone, to be written.
+    void own(vtkSmartPointer<Array>& array) {
+        if (array->GetReferenceCount() > 1) {
+            vtkSmartPointer<Array> copy = vtkSmartPointer<Array>::New();
+            copy->DeepCopy(array);
+            array = copy;
+        }
+        array->Modified();
+    }
+
+    vtkIdType move_points(const std::vector<DeformationChange>& changes, const ParallelFor& parallel_for) {
+        const bool all = !m_points;
+        if (!all && changes.empty()) return 0;
+        if (all) {
+            m_points = new_array(size());
+            if (m_settings.displacement) m_displacement = new_array(size());
+        }
+        own(m_points);
+        if (m_displacement) own(m_displacement);
+        T* const points = m_points->GetPointer(0);
+        T* const displacement = m_displacement ? m_displacement->GetPointer(0) : nullptr;
+        const T* const base = m_base->GetPointer(0);
+        vtkIdType written = static_cast<vtkIdType>(size());
+        if (auto* grid = std::get_if<DeformedGrid>(&m_surface)) {
+            grid->apply(changes);
+            if (all) {
+                grid->write(base, points, parallel_for, displacement);
+            } else {
+                const anamorph::GridPart part = grid->update(base, points, parallel_for, displacement);
+                written = part.empty() ? 0
+                                       : vtkIdType{part.column_end - part.column_begin} *
+                                             (part.row_end - part.row_begin);
+            }
+        } else {
+            auto& cells = std::get<DeformedPoints>(m_surface);
+            cells.apply(changes);
+            if (all)
+                cells.write(base, points, parallel_for, displacement);
+            else
+                written = cells.update(base, points, parallel_for, displacement);
+        }
+        for (const vtkIdType i : m_unmoved) {
+            std::copy(base + 3 * i, base + 3 * i + 3, points + 3 * i);
+            if (displacement) std::fill(displacement + 3 * i, displacement + 3 * i + 3, T(0));
+        }
+        return written;
+    }
+
+    /// The points that changes reach.
+    std::vector<vtkIdType> reached(const std::vector<DeformationChange>& changes,
+                                   const ParallelFor& parallel_for) const {
+        const anamorph::DisplacementSum sum(m_settings.options);
+        std::vector<char> marked(size());
+        for_each_point(static_cast<std::int64_t>(size()), parallel_for, [&](std::int64_t i) {
+            const glm::dvec2 p = m_parameters[static_cast<std::size_t>(i)];
+            const auto reaches = [&](const std::optional<Deformation>& d) {
+                // A little more than the core, whatever the rounding.
+                const double reach = d ? sum.reach(d->kernel) * (1 + 1e-9) : 0;
+                return d && std::fabs(p.x - d->center.x) <= reach * d->extent.x &&
+                       std::fabs(p.y - d->center.y) <= reach * d->extent.y;
+            };
+            for (const DeformationChange& change : changes)
+                if (reaches(change.before) || reaches(change.after)) {
+                    marked[static_cast<std::size_t>(i)] = 1;
+                    break;
+                }
+        });
+        std::vector<vtkIdType> points;
+        for (std::size_t i = 0; i < marked.size(); ++i)
+            if (marked[i]) points.push_back(static_cast<vtkIdType>(i));
+        return points;
+    }
+
+    /// mesh: a shallow copy of the undeformed one, which was last changed at mesh_time.
+    void update_normals(const std::vector<DeformationChange>& changes, vtkMTimeType mesh_time,
+                        vtkPointSet* mesh, const ParallelFor& parallel_for) {
+        vtkDataArray* given = mesh->GetPointData()->GetNormals();
+        if (given && (given->GetNumberOfComponents() != 3 ||
+                      given->GetNumberOfTuples() != static_cast<vtkIdType>(size())))
+            given = nullptr;
+        const bool all = !m_normals || mesh_time != m_mesh_time;
+        std::vector<vtkIdType> points;
+        if (all) {
+            points.resize(size());
+            std::iota(points.begin(), points.end(), vtkIdType{0});
+            m_normals = new_array(size());
+            m_normals->SetName(given && given->GetName() ? given->GetName() : "Normals");
+        } else {
+            if (changes.empty()) return;
+            points = reached(changes, parallel_for);
+            if (points.empty()) return;
+        }
+        own(m_normals);
+        const NormalsOf of{mesh,  &m_parameters, m_settings.on_plane ? &m_settings.plane : nullptr,
+                           given, &m_list,       m_settings.options};
+        T* const normals = m_normals->GetPointer(0);
+        write_normals(of, points, normals, parallel_for);
+        for (const vtkIdType i : m_unmoved) {
+            double n[3] = {};
+            if (given) given->GetTuple(i, n);
+            for (int c = 0; c < 3; ++c) normals[3 * i + c] = static_cast<T>(n[c]);
+        }
+        m_mesh_time = mesh_time;
+    }
+
+    void hand_out(vtkPointSet* out) {
+        vtkNew<vtkPoints> points;
+        points->SetData(m_points);
+        out->SetPoints(points);
+        // The old ones do not fit the deformed mesh.
+        if (vtkDataArray* old = out->GetPointData()->GetNormals())
+            out->GetPointData()->RemoveArray(old->GetName());
+        if (vtkDataArray* old = out->GetCellData()->GetNormals())
+            out->GetCellData()->RemoveArray(old->GetName());
+        if (m_normals) out->GetPointData()->SetNormals(m_normals);
+        if (!m_displacement) return;
+        m_displacement->SetName("Displacement");
+        out->GetPointData()->AddArray(m_displacement);
+    }
+
+    DeformSettings m_settings;
+    Version m_source, m_coordinates;
+    vtkSmartPointer<vtkAOSDataArrayTemplate<T>> m_base;
+    std::vector<glm::dvec2> m_parameters;
+    std::vector<vtkIdType> m_unmoved;  ///< points whose parameters are not finite
+    std::variant<std::monostate, DeformedGrid, DeformedPoints> m_surface;
+    std::vector<Deformation> m_list;  ///< that the surface and the arrays are of
+    vtkSmartPointer<Array> m_points, m_displacement, m_normals;
+    vtkMTimeType m_mesh_time = 0;  ///< of m_normals
+};
+
+}  // namespace
+
+std::unique_ptr<DeformedMesh> DeformedMesh::make(vtkPointSet* mesh, vtkDataArray* coordinates,
+                                                 const DeformSettings& settings) {
+    const vtkIdType count = mesh->GetNumberOfPoints();
+    if (count == 0) return nullptr;
+    if (count > std::numeric_limits<std::int32_t>::max())
+        throw Error("the mesh has " + std::to_string(count) + " points, allowed are fewer than 2^31");
+    if (!settings.on_plane) {
+        if (!coordinates)
+            throw Error("there are no texture coordinates: choose a point array, or use the plane");
+        if (coordinates->GetNumberOfTuples() != count || coordinates->GetNumberOfComponents() < 2 ||
+            coordinates->GetNumberOfComponents() > 9)
+            throw Error(std::string("texture coordinates ") +
+                        (coordinates->GetName() ? coordinates->GetName() : "") +
+                        ": needed are 2 to 9 components at every point, not " +
+                        std::to_string(coordinates->GetNumberOfComponents()) + " at " +
+                        std::to_string(coordinates->GetNumberOfTuples()) + " of " + std::to_string(count));
+    }
+    const bool single = settings.precision == vtkAlgorithm::SINGLE_PRECISION ||
+                        (settings.precision == vtkAlgorithm::DEFAULT_PRECISION &&
+                         mesh->GetPoints()->GetDataType() == VTK_FLOAT);
+    if (single) return std::make_unique<MeshOf<float>>(mesh, coordinates, settings);
+    return std::make_unique<MeshOf<double>>(mesh, coordinates, settings);
+}
+
+}  // namespace anamorph_vtk

@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: Apache-2.0
+// A mesh that a list of deformations moves, kept from one execution of a filter to the next: while the mesh
+// and the settings stay, only what an edit of the list reaches is computed again.
+//
+// Arrays that were handed out are written again only if nobody else holds them, and copied before otherwise.
+#pragma once
+
+#include <glm/vec2.hpp>
+#include <memory>
+#include <vector>
+
+#include "anamorph/deform/deformed_surface.h"
+#include "anamorph/deform/plane_warp.h"
+#include "execution.h"
+#include "vtkType.h"
+
+class vtkDataArray;
+class vtkPointSet;
+
+namespace anamorph_vtk {
+
+struct DeformSettings {
+    bool on_plane = true;
+    anamorph::ParameterPlane plane;  ///< if on_plane
+    anamorph::DeformOptions options;
+    int precision = 0;  ///< vtkAlgorithm::DesiredOutputPrecision
+    bool displacement = true, normals = true;
+
+    bool operator==(const DeformSettings& other) const {
+        return on_plane == other.on_plane && plane == other.plane && options.cutoff == other.options.cutoff &&
+               options.resolution == other.options.resolution && precision == other.precision &&
+               displacement == other.displacement && normals == other.normals;
+    }
+};
+
+/// The mesh in one number type of its points.
+class DeformedMesh {
+  public:
+    virtual ~DeformedMesh() = default;
+
+    /// Null if the mesh has no points. Throws anamorph::Error.
+    static std::unique_ptr<DeformedMesh> make(vtkPointSet* mesh, vtkDataArray* coordinates,
+                                              const DeformSettings& settings);
+
+    /// Is this what make() would make?
+    virtual bool fits(vtkPointSet* mesh, vtkDataArray* coordinates, const DeformSettings& settings) const = 0;
+    /// Follows the list and gives `out`, a shallow copy of the mesh, its points and point arrays. Returns how
+    /// many points were written. After an exception the object is to be thrown away.
+    virtual vtkIdType deform(const std::vector<anamorph::Deformation>& list, vtkPointSet* mesh,
+                             vtkPointSet* out, Execution& execution, double progress_begin,
+                             double progress_end) = 0;
+
+    /// Of all points; those of points that are not moved are arbitrary.
+    virtual const std::vector<glm::dvec2>& parameters() const = 0;
+};
+
+}  // namespace anamorph_vtk

@@ -1,0 +1,182 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "vtkAnamorphDeformationList.h"
+
+#include <algorithm>
+#include <limits>
+
+#include "anamorph/deform/deformation_file.h"
+#include "anamorph/error.h"
+#include "deformation_numbers.h"
+#include "vtkObjectFactory.h"
+#include "vtkTable.h"
+
+vtkStandardNewMacro(vtkAnamorphDeformationList);
+
+namespace {
+
+using Numbers = vtkAnamorphDeformationList::Numbers;
+
+constexpr int kMost = static_cast<int>(anamorph::kMaxDeformations);
+constexpr Numbers kNothing = {0, 0, 1, 1, 0, 0, 0, 0, 1};
+
+/// As a comparison of bits, so that NaN equals itself and setting it again changes nothing.
+bool same(const Numbers& a, const Numbers& b) {
+    return std::equal(a.begin(), a.end(), b.begin(),
+                      [](double x, double y) { return x == y || (x != x && y != y); });
+}
+
+}  // namespace
+
+vtkAnamorphDeformationList::vtkAnamorphDeformationList() = default;
+vtkAnamorphDeformationList::~vtkAnamorphDeformationList() = default;
+
+void vtkAnamorphDeformationList::PrintSelf(ostream& os, vtkIndent indent) {
+    this->Superclass::PrintSelf(os, indent);
+    os << indent << "NumberOfDeformations: " << this->GetNumberOfDeformations() << "\n";
+    for (const Numbers& numbers : this->List) {
+        os << indent.GetNextIndent();
+        for (const double number : numbers) os << " " << number;
+        os << "\n";
+    }
+}
+
+bool vtkAnamorphDeformationList::IsPosition(int position, int end) {
+    if (position >= 0 && position < end) return true;
+    vtkErrorMacro(<< "position=" << position
+                  << (end > 0 ? ": allowed are whole numbers from 0 to " + std::to_string(end - 1)
+                              : std::string(": the list is empty")));
+    return false;
+}
+
+void vtkAnamorphDeformationList::SetNumberOfDeformations(int number) {
+    if (number < 0 || number > kMost) {
+        vtkErrorMacro(<< "NumberOfDeformations=" << number << ": allowed are whole numbers from 0 to "
+                      << kMost);
+        return;
+    }
+    if (number == this->GetNumberOfDeformations()) return;
+    this->List.resize(static_cast<std::size_t>(number), kNothing);
+    this->Modified();
+}
+
+int vtkAnamorphDeformationList::GetNumberOfDeformations() {
+    return static_cast<int>(this->List.size());
+}
+
+int vtkAnamorphDeformationList::AddDeformation(double center_u, double center_v, double extent_u,
+                                               double extent_v, double x, double y, double z, double kernel,
+                                               double enabled) {
+    this->InsertDeformation(this->GetNumberOfDeformations(), center_u, center_v, extent_u, extent_v, x, y, z,
+                            kernel, enabled);
+    return this->GetNumberOfDeformations() - 1;
+}
+
+void vtkAnamorphDeformationList::InsertDeformation(int position, double center_u, double center_v,
+                                                   double extent_u, double extent_v, double x, double y,
+                                                   double z, double kernel, double enabled) {
+    if (!this->IsPosition(position, std::min(this->GetNumberOfDeformations() + 1, kMost))) return;
+    this->List.insert(this->List.begin() + position,
+                      Numbers{center_u, center_v, extent_u, extent_v, x, y, z, kernel, enabled});
+    this->Modified();
+}
+
+void vtkAnamorphDeformationList::SetDeformation(int position, double center_u, double center_v,
+                                                double extent_u, double extent_v, double x, double y,
+                                                double z, double kernel, double enabled) {
+    if (!this->IsPosition(position, this->GetNumberOfDeformations())) return;
+    const Numbers numbers{center_u, center_v, extent_u, extent_v, x, y, z, kernel, enabled};
+    Numbers& place = this->List[static_cast<std::size_t>(position)];
+    if (same(place, numbers)) return;
+    place = numbers;
+    this->Modified();
+}
+
+void vtkAnamorphDeformationList::SetDeformationEnabled(int position, bool enabled) {
+    if (!this->IsPosition(position, this->GetNumberOfDeformations())) return;
+    double& place = this->List[static_cast<std::size_t>(position)][8];
+    if (place == (enabled ? 1 : 0)) return;
+    place = enabled ? 1 : 0;
+    this->Modified();
+}
+
+bool vtkAnamorphDeformationList::GetDeformationEnabled(int position) {
+    return this->IsPosition(position, this->GetNumberOfDeformations()) &&
+           this->List[static_cast<std::size_t>(position)][8] == 1;
+}
+
+void vtkAnamorphDeformationList::MoveDeformation(int from, int to) {
+    const int end = this->GetNumberOfDeformations();
+    if (!this->IsPosition(from, end) || !this->IsPosition(to, end) || from == to) return;
+    const auto begin = this->List.begin();
+    if (from < to)
+        std::rotate(begin + from, begin + from + 1, begin + to + 1);
+    else
+        std::rotate(begin + to, begin + from, begin + from + 1);
+    this->Modified();
+}
+
+void vtkAnamorphDeformationList::RemoveDeformation(int position) {
+    if (!this->IsPosition(position, this->GetNumberOfDeformations())) return;
+    this->List.erase(this->List.begin() + position);
+    this->Modified();
+}
+
+void vtkAnamorphDeformationList::RemoveAllDeformations() {
+    this->SetNumberOfDeformations(0);
+}
+
+void vtkAnamorphDeformationList::GetDeformation(int position, double numbers[9]) {
+    std::fill(numbers, numbers + 9, std::numeric_limits<double>::quiet_NaN());
+    if (!this->IsPosition(position, this->GetNumberOfDeformations())) return;
+    const Numbers& place = this->List[static_cast<std::size_t>(position)];
+    std::copy(place.begin(), place.end(), numbers);
+}
+
+double* vtkAnamorphDeformationList::GetDeformation(int position) {
+    this->GetDeformation(position, this->Answer);
+    return this->Answer;
+}
+
+int vtkAnamorphDeformationList::ReadFile(const char* name) {
+    try {
+        this->List = anamorph_vtk::read_deformations(name ? name : "");
+        this->Modified();
+        return 1;
+    } catch (const std::exception& error) {
+        vtkErrorMacro(<< error.what());
+        return 0;
+    }
+}
+
+int vtkAnamorphDeformationList::WriteFile(const char* name) {
+    try {
+        anamorph_vtk::write_deformations(name ? name : "", this->List);
+        return 1;
+    } catch (const std::exception& error) {
+        vtkErrorMacro(<< error.what());
+        return 0;
+    }
+}
+
+int vtkAnamorphDeformationList::ReadTable(vtkTable* table) {
+    try {
+        this->List = anamorph_vtk::numbers_in(table);
+        this->Modified();
+        return 1;
+    } catch (const std::exception& error) {
+        vtkErrorMacro(<< error.what());
+        return 0;
+    }
+}
+
+void vtkAnamorphDeformationList::WriteTable(vtkTable* table) {
+    anamorph_vtk::put_numbers(this->List, table);
+}
+
+void vtkAnamorphDeformationList::DeepCopy(vtkAnamorphDeformationList* other) {
+    if (!other ||
+        std::equal(this->List.begin(), this->List.end(), other->List.begin(), other->List.end(), same))
+        return;
+    this->List = other->List;
+    this->Modified();
+}

@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: Apache-2.0
+/**
+ * @class vtkAnamorphDeformationList
+ * @brief an editable list of bumps that deform a surface
+ *
+ * A deformation moves the point of a surface that has the parameters (u, v) by V F, where F is 1 at the
+ * centre and falls off with the extent (Oka 1987, eq. 4.1 and 4.2). It is nine numbers, in this order:
+ *
+ *     center_u center_v extent_u extent_v x y z kernel enabled
+ *
+ * Centre and extent are in the units of the parameters, V = (x, y, z) in those of the points. Kernel is 0
+ * (Gaussian: F = exp(-r^2)) or 1 (Wendland's C2 function: F = (1 - r)^4 (4 r + 1) up to r = 1, then 0), where
+ * r is 1 on the ellipse whose half axes are the extents. Enabled is 1 or 0.
+ *
+ * The order of the list does not matter to the surface. Numbers are taken as they are; what executes the list
+ * (vtkAnamorphDeform, vtkAnamorphDeformTransform) refuses those that make no sense: extents that are not
+ * positive, numbers that are not finite.
+ */
+#ifndef vtkAnamorphDeformationList_h
+#define vtkAnamorphDeformationList_h
+
+#include <array>   // for a deformation
+#include <vector>  // for the list
+
+#include "AnamorphFiltersModule.h"  // for the export macro
+#include "vtkObject.h"
+
+class vtkTable;
+
+class ANAMORPHFILTERS_EXPORT vtkAnamorphDeformationList : public vtkObject {
+  public:
+    static vtkAnamorphDeformationList* New();
+    vtkTypeMacro(vtkAnamorphDeformationList, vtkObject);
+    void PrintSelf(ostream& os, vtkIndent indent) override;
+
+    enum Kernels { GAUSSIAN = 0, WENDLAND_C2 = 1 };
+
+    ///@{
+    /**
+     * How many deformations there are: from 0 to 2^20. New ones move nothing.
+     */
+    void SetNumberOfDeformations(int number);
+    int GetNumberOfDeformations();
+    ///@}
+
+    ///@{
+    /**
+     * Edits. Positions count from 0; one that is not in the list is an error, and changes nothing.
+     * AddDeformation returns the position of the new one. After MoveDeformation what stood at `from` stands
+     * at `to`.
+     */
+    int AddDeformation(double center_u, double center_v, double extent_u, double extent_v, double x, double y,
+                       double z, double kernel = 0, double enabled = 1);
+    void InsertDeformation(int position, double center_u, double center_v, double extent_u, double extent_v,
+                           double x, double y, double z, double kernel = 0, double enabled = 1);
+    void SetDeformation(int position, double center_u, double center_v, double extent_u, double extent_v,
+                        double x, double y, double z, double kernel = 0, double enabled = 1);
+    void SetDeformationEnabled(int position, bool enabled);
+    bool GetDeformationEnabled(int position);
+    void MoveDeformation(int from, int to);
+    void RemoveDeformation(int position);
+    void RemoveAllDeformations();
+    ///@}
+
+    ///@{
+    /**
+     * The nine numbers of a deformation. The pointer holds until the next call.
+     */
+    void GetDeformation(int position, double numbers[9]);
+    double* GetDeformation(int position) VTK_SIZEHINT(9);
+    ///@}
+
+    ///@{
+    /**
+     * The list as a file, CSV if its name ends in .csv, else JSON. What is written reads back to the bit.
+     * Return 1, or 0 after an error; reading then leaves the list as it is.
+     */
+    int ReadFile(const char* name);
+    int WriteFile(const char* name);
+    ///@}
+
+    ///@{
+    /**
+     * The list as a table with the columns named above; kernel (a number, or gaussian or wendland_c2) and
+     * enabled may be missing. Return 1, or 0 after an error, which leaves the list as it is.
+     */
+    int ReadTable(vtkTable* table);
+    void WriteTable(vtkTable* table);
+    ///@}
+
+    void DeepCopy(vtkAnamorphDeformationList* other);
+
+#ifndef __VTK_WRAP__
+    using Numbers = std::array<double, 9>;
+    const std::vector<Numbers>& GetAll() const {
+        return this->List;
+    }
+#endif
+
+  protected:
+    vtkAnamorphDeformationList();
+    ~vtkAnamorphDeformationList() override;
+
+  private:
+    vtkAnamorphDeformationList(const vtkAnamorphDeformationList&) = delete;
+    void operator=(const vtkAnamorphDeformationList&) = delete;
+
+    bool IsPosition(int position, int end);
+
+    std::vector<std::array<double, 9>> List;
+    double Answer[9] = {};
+};
+
+#endif
