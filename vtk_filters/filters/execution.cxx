@@ -10,26 +10,13 @@
 #include "vtkAlgorithm.h"
 
 namespace anamorph_vtk {
-namespace {
-
-/// VTK 9.3 and newer ask the whole pipeline.
-template <class Algorithm>
-bool wants_to_stop(Algorithm* algorithm) {
-    if constexpr (requires { algorithm->CheckAbort(); }) {
-        return algorithm->CheckAbort();
-    } else {
-        return algorithm->GetAbortExecute() != 0;
-    }
-}
-
-}  // namespace
 
 void Execution::progress(double amount) {
     if (amount > m_progress) {
         m_progress = amount;
         m_algorithm->UpdateProgress(amount);
     }
-    if (wants_to_stop(m_algorithm)) throw Aborted();
+    if (anamorph::is_aborted(m_algorithm)) throw Aborted();
 }
 
 anamorph::ParallelFor Execution::stage(double begin, double end) {
