@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <functional>
 #include <glm/geometric.hpp>
 #include <glm/vec2.hpp>
@@ -18,10 +19,12 @@
 #include "vtkDataArrayRange.h"
 #include "vtkDataSetAttributes.h"
 #include "vtkErrorCode.h"
+#include "vtkExtentTranslator.h"
 #include "vtkImageData.h"
 #include "vtkImageReader2.h"
 #include "vtkImageReader2Factory.h"
 #include "vtkInformation.h"
+#include "vtkInformationIntegerRequestKey.h"
 #include "vtkInformationVector.h"
 #include "vtkNew.h"
 #include "vtkObjectFactory.h"
@@ -73,8 +76,8 @@ struct Axis {
 
 Axis axis_of(const int* extent, int resolution, int sample_rate) {
     const std::int64_t size = std::int64_t{extent[1]} - extent[0] + 1;
-    if (size < 1 || size > kMostPixels)
-        throw Error("the picture is " + std::to_string(size) + " pixels wide or high, allowed are 1 to " +
+    if (size > kMostPixels)
+        throw Error("the picture is " + std::to_string(size) + " pixels wide or high, allowed are up to " +
                     std::to_string(kMostPixels));
     const int pixels = static_cast<int>(size);
     if (resolution < 0 || resolution == 1)
@@ -86,7 +89,12 @@ struct Axes {
     Axis x, y;
 };
 
+bool is_empty(const int* extent) {
+    return extent[0] > extent[1] || extent[2] > extent[3] || extent[4] > extent[5];
+}
+
 Axes axes_of(const int* extent, const int* resolution, int sample_rate) {
+    if (is_empty(extent)) throw Error("the picture has no pixels");
     if (extent[4] != extent[5])
         throw Error("the picture has " + std::to_string(std::int64_t{extent[5]} - extent[4] + 1) +
                     " slices, needed is 1");
@@ -229,8 +237,19 @@ struct Piece {
           read_rows(pixel_rows.grown(radius, axes.y.pixels)) {}
 };
 
-bool is_empty(const int* extent) {
-    return extent[0] > extent[1] || extent[2] > extent[3] || extent[4] > extent[5];
+/// What RequestData will be asked for: the pipeline cuts structured outputs just before.
+void piece_extent(vtkInformation* output, int* extent) {
+    output->Get(Executive::UPDATE_EXTENT(), extent);
+    const int pieces = output->Get(Executive::UPDATE_NUMBER_OF_PIECES());
+    if (pieces <= 1) return;
+    const bool chosen = output->Has(vtkExtentTranslator::UPDATE_SPLIT_MODE());
+    int whole[6];
+    std::copy(extent, extent + 6, whole);
+    vtkNew<vtkExtentTranslator> translator;
+    translator->PieceToExtentThreadSafe(
+        output->Get(Executive::UPDATE_PIECE_NUMBER()), pieces,
+        output->Get(Executive::UPDATE_NUMBER_OF_GHOST_LEVELS()), whole, extent,
+        chosen ? output->Get(vtkExtentTranslator::UPDATE_SPLIT_MODE()) : vtkExtentTranslator::BLOCK_MODE, 0);
 }
 
 int smoothing_radius(double deviation) {
@@ -380,6 +399,9 @@ vtkInformation* vtkAnamorphReliefSource::PictureInformation(vtkInformationVector
     if (!info) {
         if (this->FileName.empty()) throw Error("there is no picture: neither an input nor FileName");
         if (!this->Reader) {
+            std::error_code ignored;
+            if (!std::filesystem::exists(this->FileName, ignored))
+                throw Error("FileName", this->FileName, "there is no such file");
             vtkImageReader2* reader = vtkImageReader2Factory::CreateImageReader2(this->FileName.c_str());
             if (!reader)
                 throw Error("FileName", this->FileName, "needed is a picture that VTK's image readers know");
@@ -435,7 +457,8 @@ int vtkAnamorphReliefSource::RequestUpdateExtent(vtkInformation*, vtkInformation
         int whole[6];
         picture->Get(Executive::WHOLE_EXTENT(), whole);
         const Axes axes = axes_of(whole, this->Resolution, this->SampleRate);
-        const int* asked = outputs->GetInformationObject(0)->Get(Executive::UPDATE_EXTENT());
+        int asked[6];
+        piece_extent(outputs->GetInformationObject(0), asked);
         int needed[6] = {whole[0], whole[0], whole[2], whole[2], whole[4], whole[4]};
         if (!is_empty(asked)) {
             const Piece piece(asked, axes, smoothing_radius(this->Smoothing));
@@ -444,6 +467,10 @@ int vtkAnamorphReliefSource::RequestUpdateExtent(vtkInformation*, vtkInformation
             needed[2] = whole[2] + piece.read_rows.begin;
             needed[3] = whole[2] + piece.read_rows.end - 1;
         }
+        // This part of the picture, which is no piece of it as the pipeline would cut it.
+        picture->Set(Executive::UPDATE_PIECE_NUMBER(), 0);
+        picture->Set(Executive::UPDATE_NUMBER_OF_PIECES(), 1);
+        picture->Set(Executive::UPDATE_NUMBER_OF_GHOST_LEVELS(), 0);
         picture->Set(Executive::UPDATE_EXTENT(), needed, 6);
     });
 }
