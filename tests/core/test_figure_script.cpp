@@ -5,34 +5,381 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <clocale>
+#include <map>
+#include <random>
 #include <string>
 
 #include "anamorph/error.h"
+#include "anamorph/figure/performance.h"
+#include "anamorph/figure/script_table.h"
 
 namespace anamorph {
 namespace {
 
+using testing::AllOf;
+using testing::ElementsAre;
 using testing::HasSubstr;
+using testing::IsEmpty;
 
 const std::string kFigure =
     "figure f 2 a b\n"
     "ellipsoid a 10 40 20\n"
     "ellipsoid b 10 40 20\n"
-    "joint j a 0 40 0 b 0 -40 0\n";
+    "joint j a 0 40 0 b 0 -40 0\n"
+    "variables 3 u v w\n";
 
-TEST(FigureScript, ReadsDeclarationsAndMovements) {
-    const Program p = parse_program(kFigure + "linear 0 4 moveto f a 100 -2.5 +3 stop", "own.n");
-    ASSERT_EQ(p.ellipsoids.size(), 3u);
+Script parse(const std::string& text, Dialect dialect = Dialect::classic) {
+    ScriptOptions options;
+    options.dialect = dialect;
+    return parse_script(text, "own.n", options);
+}
+
+std::vector<std::string> messages(const Script& script) {
+    std::vector<std::string> out;
+    for (const Diagnostic& d : script.diagnostics) out.push_back(d.text());
+    return out;
+}
+
+/// The movements of a script that must be right.
+std::vector<Movement> movements(const std::string& text, Dialect dialect = Dialect::classic) {
+    const Script script = parse(kFigure + text, dialect);
+    EXPECT_TRUE(script.ok()) << testing::PrintToString(messages(script));
+    return script.program.subroutines[0].movements;
+}
+
+// --- What is read
+
+TEST(FigureScript, DeclarationsAndMovements) {
+    const Program p =
+        parse_program(kFigure + "linear 0 4 moveto f a 100 -2.5 +3 stop what follows is not read", "own.n");
+    ASSERT_EQ(p.ellipsoids.size(), 3u);  // world is the first
     EXPECT_EQ(p.ellipsoids[2].name, "b");
     EXPECT_EQ(p.ellipsoids[2].axes, glm::dvec3(10, 40, 20));
     ASSERT_EQ(p.joints.size(), 1u);
+    EXPECT_EQ(p.joints[0].first, 1);
     EXPECT_EQ(p.joints[0].second_offset, glm::dvec3(0, -40, 0));
+    EXPECT_EQ(p.figures.at(2).ellipsoids, (std::vector<int>{1, 2}));
     ASSERT_EQ(p.subroutines[0].movements.size(), 1u);
     const Movement& m = p.subroutines[0].movements[0];
-    EXPECT_EQ(m.action, Action::moveto);
     EXPECT_EQ(m.distribution, Distribution::linear);
+    EXPECT_EQ(m.stop, (Operand{OperandKind::number, 4, 0}));
+    EXPECT_EQ(m.action, Action::moveto);
+    EXPECT_EQ(m.operands[0], (Operand{OperandKind::figure, 0, 2}));
     EXPECT_EQ(m.operands[3].number, -2.5);
-    EXPECT_EQ(p.where(m.position), "own.n:5:12");
+    EXPECT_EQ(p.where(m.position), "own.n:6:12");
+}
+
+TEST(FigureScript, OrderIsOfFirstMention) {
+    const Program p = parse_program(
+        "figure f 3 x1 y1 z1 ellipsoid y1 1 1 1 ellipsoid q 1 1 1 ellipsoid z1 1 1 1 "
+        "ellipsoid x1 2 2 2 stop",
+        "own.n");
+    std::vector<std::string> names;
+    for (const auto& e : p.ellipsoids) names.push_back(e.name);
+    EXPECT_THAT(names, ElementsAre("world", "x1", "y1", "z1", "q"));
+}
+
+// Comments end a line, wherever they begin, and so serve as a mark that a statement goes on.
+TEST(FigureScript, CommentsAndLines) {
+    const auto m = movements("linear*comment\n0 4 * it goes on\n\tmoveby f world*0 0 0\r\n 1 2\n\n 3 stop");
+    ASSERT_EQ(m.size(), 1u);
+    EXPECT_EQ(m[0].operands[2].number, 1);
+    EXPECT_EQ(m[0].operands[4].number, 3);
+    EXPECT_EQ(m[0].position.line, 8);
+}
+
+// Every keyword of the table, in full and as short as it can be: the first that begins so is meant.
+TEST(FigureScript, EveryActionAndItsShortForms) {
+    const std::map<char, std::string> samples = {{'n', "1.5"}, {'v', "v"},        {'e', "a"},    {'j', "j"},
+                                                 {'J', "new"}, {'f', "f"},        {'F', "part"}, {'a', "x"},
+                                                 {'s', "s"},   {'i', "wall.ppm"}, {'*', "b"}};
+    int actions = 0;
+    for (const auto& entry : script_table::entries()) {
+        if (entry.operands.empty()) continue;
+        ++actions;
+        std::string operands;
+        for (const char letter : entry.operands) operands += " " + samples.at(letter);
+        for (std::size_t length = 1; length <= entry.word.size(); ++length) {
+            const std::string word(entry.word.substr(0, length));
+            SCOPED_TRACE(word);
+            // The first of the table that begins so, by a look at the whole table.
+            const script_table::Entry* meant = nullptr;
+            for (const auto& other : script_table::entries())
+                if (!meant && !other.operands.empty() && other.word.starts_with(word)) meant = &other;
+            if (meant != &entry) continue;
+            const auto m = movements("repeat 0 1 " + word + operands + " subroutine s endsub s stop");
+            ASSERT_EQ(m.size(), 1u);
+            EXPECT_EQ(m[0].action, entry.action);
+            EXPECT_EQ(m[0].operands.size(), entry.operands.size());
+        }
+    }
+    EXPECT_EQ(actions, 42);  // 40 actions, two with a second spelling
+}
+
+TEST(FigureScript, ShortFormsOfScripts) {
+    const std::pair<const char*, Action> actions[] = {{"mov", Action::moveby},  {"link", Action::linkx},
+                                                      {"col", Action::colour},  {"sub", Action::subtract},
+                                                      {"bend", Action::bendby}, {"spin", Action::spinto},
+                                                      {"gro", Action::grofig},  {"obs", Action::observe}};
+    for (const auto& [word, action] : actions)
+        EXPECT_EQ(script_table::find_action(word)->action, action) << word;
+    const std::pair<const char*, Distribution> distributions[] = {
+        {"rep", Distribution::repeat},     {"lin", Distribution::linear},
+        {"quad", Distribution::quadratic}, {"acce", Distribution::accelerate},
+        {"dec", Distribution::decelerate}, {"cub", Distribution::cubic}};
+    for (const auto& [word, d] : distributions)
+        EXPECT_EQ(script_table::find_statement(word)->distribution, d) << word;
+    EXPECT_EQ(script_table::find_statement("end")->keyword, script_table::Keyword::endsub);
+    EXPECT_EQ(script_table::find_statement("sub")->keyword, script_table::Keyword::subroutine);
+    EXPECT_EQ(script_table::find_statement("ell")->keyword, script_table::Keyword::ellipsoid);
+    EXPECT_EQ(script_table::find_statement("moveby"), nullptr);
+}
+
+TEST(FigureScript, Numbers) {
+    const auto number = [](const std::string& token, Dialect dialect = Dialect::classic) {
+        const Script script = parse(kFigure + "repeat 0 1 set v " + token + " stop", dialect);
+        return script.ok() ? script.program.subroutines[0].movements.at(0).operands[1].number : NAN;
+    };
+    EXPECT_EQ(number("12"), 12);
+    EXPECT_EQ(number("+70.5"), 70.5);
+    EXPECT_EQ(number("-.25"), -0.25);
+    EXPECT_EQ(number("5."), 5);
+    EXPECT_EQ(number("0.1"), 0.1);
+    // Signs anywhere, each minus turning it: as the original reads.
+    EXPECT_EQ(number("5-"), -5);
+    EXPECT_EQ(number("--5"), 5);
+    EXPECT_EQ(number("1-2"), -12);
+    for (const char* const odd : {"5-", "--5", "1-2"})
+        EXPECT_TRUE(std::isnan(number(odd, Dialect::strict))) << odd;
+    // No exponents, no second point, nothing that is no number.
+    for (const char* const bad : {"1.2.3", "1e3", "0x10", ".", "1,5", "inf", "nan"})
+        EXPECT_TRUE(std::isnan(number(bad))) << bad;
+    EXPECT_TRUE(std::isnan(number(std::string(400, '9'))));
+}
+
+TEST(FigureScript, NumbersDoNotDependOnTheLocale) {
+    const std::string before = std::setlocale(LC_ALL, nullptr);
+    for (const char* const name : {"de_DE.UTF-8", "fr_FR.UTF-8", "C.UTF-8"})
+        if (std::setlocale(LC_ALL, name)) break;
+    EXPECT_EQ(movements("repeat 0 1 set v 1.5 stop").at(0).operands[1].number, 1.5);
+    std::setlocale(LC_ALL, before.c_str());
+}
+
+TEST(FigureScript, VariablesComeFirst) {
+    // `x` is an axis until a variable of that name is declared; names may be used ahead of that.
+    EXPECT_EQ(movements("repeat 0 1 spinby f a world 1 x stop").at(0).operands[4].kind, OperandKind::axis);
+    const auto m = movements("variable 1 x repeat 0 1 spinby f a world 1 x stop");
+    EXPECT_EQ(m.at(0).operands[4].kind, OperandKind::variable);
+}
+
+TEST(FigureScript, NamesAheadOfTheirDeclaration) {
+    const std::string script =
+        "call 0 4 turn linear 0 1 moveby g c n 0 0 variables 1 n figure g 1 c ellipsoid c 1 1 1\n"
+        "subroutine turn repeat 0 1 set v 1 endsub turn stop";
+    const auto m = movements(script);
+    ASSERT_EQ(m.size(), 2u);
+    EXPECT_EQ(m[0].operands[0], (Operand{OperandKind::subroutine, 0, 1}));
+    EXPECT_EQ(m[1].operands[0], (Operand{OperandKind::figure, 0, 3}));
+    EXPECT_EQ(m[1].operands[2].kind, OperandKind::variable);
+    // Strict: subroutines only.
+    EXPECT_THAT(messages(parse(kFigure + script, Dialect::strict)),
+                ElementsAre(HasSubstr("6:33: error: found \"g\", expected a figure"),
+                            HasSubstr("found \"c\", expected an ellipsoid"),
+                            HasSubstr("found \"n\", expected a number or a variable")));
+}
+
+TEST(FigureScript, SpeedViewDebugLimit) {
+    const Program p =
+        parse_program(kFigure + "speed -4 view 3 9 debug 0 limit j -1 1 -2 2 -3 3 stop", "own.n");
+    EXPECT_EQ(p.speed, -4);
+    EXPECT_EQ(p.view.value(), (std::array<int, 2>{3, 9}));
+    EXPECT_EQ(p.joints[0].limit.value(), (std::array<double, 6>{-1, 1, -2, 2, -3, 3}));
+}
+
+// --- Libraries
+
+TEST(FigureScript, LibrariesAndIncludes) {
+    const std::map<std::string, std::string> files = {
+        {"ball.n", "figure ball 1 e ellipsoid e 5 5 5\nrepeat 0 1 moveto ball e 7 0 0\n"},
+        {"twice.n", "include ball.n"},
+        {"bad.n", "figure b 1\n"},
+        {"self.n", "include self.n"},
+        {"stop.n", "variables 1 s stop variables 1 t"}};
+    const auto with = [&](const std::string& text, std::vector<std::string> libraries = {}) {
+        ScriptOptions options;
+        options.include = [&](const std::string& name) {
+            const auto file = files.find(name);
+            return file == files.end() ? std::nullopt : std::optional(file->second);
+        };
+        options.libraries = std::move(libraries);
+        return parse_script(text, "main.n", options);
+    };
+    const std::string dance = "repeat 1 2 moveby ball world 1 0 0 stop";
+    for (const Script& script :
+         {with(dance, {"ball.n"}), with("include ball.n " + dance), with("include twice.n " + dance)}) {
+        ASSERT_TRUE(script.ok()) << testing::PrintToString(messages(script));
+        Performance p(script.program);
+        EXPECT_EQ(p.frame(2).bodies.at(0).shape.center.x, 8);
+        const auto& m = script.program.subroutines[0].movements;
+        EXPECT_EQ(script.program.where(m[0].position), "ball.n:2:12");
+        EXPECT_THAT(script.program.where(m[1].position), HasSubstr("main.n:1:"));
+    }
+    // Messages name the file that is wrong.
+    EXPECT_THAT(messages(with("stop", {"bad.n"})),
+                ElementsAre("bad.n:2:1: error: found the end of the text, expected a name for an ellipsoid"));
+    EXPECT_THAT(messages(with("\n include none.n stop")),
+                ElementsAre("main.n:2:2: error: include none.n: there is no such file"));
+    EXPECT_THAT(messages(with("include self.n stop")),
+                ElementsAre(HasSubstr("self.n:1:1: error: include self.n")));
+    // A stop ends its own text.
+    EXPECT_THAT(messages(with("include stop.n stop")),
+                ElementsAre("stop.n:1:15: warning: a library has no stop"));
+}
+
+// --- What is said
+
+TEST(FigureScript, SeveralErrorsInOneRun) {
+    const Script script = parse(kFigure +
+                                "linear 0 1 moveby f hed 1 2 3\n"
+                                "linear 0 x jump f\n"
+                                "linear 0 1 moveto f a 1 2\n"
+                                "repeat 0 1 set 5 v\n"
+                                "repeat 0 1 flex b j 10 20\n"
+                                "ellipsoid a 1 2 3\n"
+                                "quadratic 0 1 moveby f a 1 2 3\n"
+                                "stop");
+    EXPECT_FALSE(script.ok());
+    EXPECT_THAT(messages(script),
+                ElementsAre("own.n:7:12: error: found \"jump\", expected an action",
+                            "own.n:9:1: error: found \"repeat\", expected a number or a variable",
+                            "own.n:9:16: error: found \"5\", expected a variable",
+                            "own.n:10:24: error: found \"20\", expected a declaration or a movement",
+                            "own.n:11:11: error: the ellipsoid \"a\" is declared twice",
+                            "own.n:6:21: error: found \"hed\", expected an ellipsoid"));
+    const Diagnostic& first = script.diagnostics[0];
+    EXPECT_EQ(first.found, "jump");
+    EXPECT_EQ(first.expected, "an action");
+    EXPECT_EQ(first.line, 7);
+    EXPECT_EQ(first.column, 12);
+}
+
+TEST(FigureScript, WhatEachDeclarationNeeds) {
+    const auto error = [](const std::string& text) {
+        const Script script = parse(kFigure + text + " stop");
+        std::string all;
+        for (const std::string& message : messages(script)) all += message + "\n";
+        return all;
+    };
+    EXPECT_THAT(error("figure h 0"), HasSubstr("expected a whole number of ellipsoids"));
+    EXPECT_THAT(error("figure h 2 p"), HasSubstr("found \"stop\", expected a name for an ellipsoid"));
+    EXPECT_THAT(error("figure f 1 p ellipsoid p 1 1 1"), HasSubstr("the figure \"f\" is declared twice"));
+    EXPECT_THAT(error("figure h 1 p"), HasSubstr("the ellipsoid \"p\" is declared nowhere"));
+    EXPECT_THAT(error("ellipsoid p 1 v 1"), HasSubstr("found \"v\", expected a number"));
+    EXPECT_THAT(error("joint j a 0 0 0 b 0 0 0"), HasSubstr("the joint \"j\" is declared twice"));
+    EXPECT_THAT(error("joint k a 0 0 0 b 0 0"), HasSubstr("expected a number, a coordinate"));
+    EXPECT_THAT(error("joint k world 0 0 0 b 0 0 0"), HasSubstr("does not connect world"));
+    EXPECT_THAT(error("limit k 0 0 0 0 0 0"), HasSubstr("found \"k\", expected a joint"));
+    EXPECT_THAT(error("limit j 1 0 0 0 0 0"), HasSubstr("smallest angle is above the largest"));
+    EXPECT_THAT(error("variables 2 q"), HasSubstr("found \"stop\", expected a name for a variable"));
+    EXPECT_THAT(error("variables 1 linear"), HasSubstr("found \"linear\", expected a name"));
+    EXPECT_THAT(error("speed 0"), HasSubstr("found \"0\", expected a whole number but 0"));
+    EXPECT_THAT(error("view 1 1.5"), HasSubstr("found \"1.5\", expected a frame"));
+    EXPECT_THAT(error("subroutine s endsub t"), HasSubstr("expected the end of \"s\""));
+    EXPECT_THAT(error("subroutine s"), HasSubstr("the subroutine s has no end"));
+    EXPECT_THAT(error("endsub s"), HasSubstr("a subroutine ends that has not begun"));
+    EXPECT_THAT(error("subroutine s subroutine t endsub t"), HasSubstr("inside of another"));
+    EXPECT_THAT(error("call 0 1 s"), HasSubstr("found \"s\", expected a subroutine"));
+    EXPECT_THAT(error("copy a"), HasSubstr("a word of the first versions"));
+    EXPECT_THAT(error("repeat 0 1 set v \x01"), HasSubstr("the character 1 is not allowed"));
+    EXPECT_EQ(messages(parse("")).at(0), "own.n:1:1: error: found the end of the text, expected stop");
+}
+
+TEST(FigureScript, StrictRefusesWhatClassicWarnsOf) {
+    const std::pair<const char*, const char*> cases[] = {
+        {"variables 1 a", "\"a\" is the name of an ellipsoid as well"},
+        {"ellipsoid p 1 -2 1", "an axis is negative"},
+        {"joint k a 0 0 0 b 0 0 0", "the joint \"k\" closes a ring"},
+        {"linear 5 3 moveby f a 1 2 3", "the frames run backwards"}};
+    for (const auto& [text, message] : cases) {
+        SCOPED_TRACE(text);
+        const std::string script = kFigure + text + " stop";
+        EXPECT_THAT(messages(parse(script)), ElementsAre(AllOf(HasSubstr("warning"), HasSubstr(message))));
+        EXPECT_THAT(messages(parse(script, Dialect::strict)),
+                    ElementsAre(AllOf(HasSubstr("error"), HasSubstr(message))));
+    }
+    const std::string itself =
+        kFigure + "subroutine s call 2 6 t endsub s subroutine t call 0 1 s endsub t stop";
+    EXPECT_THAT(messages(parse(itself)), IsEmpty());
+    EXPECT_THAT(messages(parse(itself, Dialect::strict)),
+                ElementsAre(HasSubstr("subroutines call themselves")));
+}
+
+TEST(FigureScript, PassesOver) {
+    const Script script = parse(kFigure + "repeat 0 1 opacty a 5\nrepeat 0 1 set v 3 stop");
+    EXPECT_TRUE(script.ok());
+    EXPECT_THAT(messages(script), ElementsAre("own.n:6:12: warning: \"opacty\" is passed over"));
+    EXPECT_EQ(script.program.subroutines[0].movements.size(), 1u);
+}
+
+TEST(FigureScript, StopsAfterManyErrors) {
+    std::string text;
+    for (int i = 0; i < 5000; ++i) text += "jump\n";
+    EXPECT_FALSE(parse(text + "stop").ok());
+    std::string errors = kFigure;
+    for (int i = 0; i < 5000; ++i) errors += "linear 0 1 moveby f 5 1 2 3\n";
+    const Script script = parse(errors + "stop");
+    EXPECT_EQ(script.diagnostics.size(), 101u);
+    EXPECT_THAT(script.diagnostics.back().message, HasSubstr("the rest is not read"));
+}
+
+// --- Any text
+
+const std::string kWhole =
+    kFigure +
+    "limit j -9 9 -9 9 -9 9 speed 1 view 0 9 * comment\n"
+    "figure g 1 c ellipsoid c 5 5 5\n"
+    "call 1 4 s repeat 0 1 attach a k c 1 2 3 repeat 1 2 detach c k h\n"
+    "linear 0 2 touch b c b world j z repeat 0 1 texture a w.ppm 1 2 repeat 0 1 set v -5.5\n"
+    "subroutine s quadratic 0 3 flex b j v repeat 0 1 set w 5 endsub s\nstop";
+
+TEST(FigureScript, TruncatedAtEveryByte) {
+    for (const Dialect dialect : {Dialect::classic, Dialect::strict})
+        for (std::size_t size = 0; size <= kWhole.size(); ++size) {
+            SCOPED_TRACE(kWhole.substr(0, size));
+            // Of the last word, "st" is enough.
+            EXPECT_EQ(parse(kWhole.substr(0, size), dialect).ok(), size + 2 >= kWhole.size());
+        }
+}
+
+// Bytes taken out, put in and exchanged: an answer or diagnostics, never more.
+TEST(FigureScript, DamagedAnywhere) {
+    constexpr unsigned kSeed = 1981;
+    SCOPED_TRACE("seed " + std::to_string(kSeed));
+    std::mt19937 random(kSeed);
+    int performed = 0;
+    for (int i = 0; i < 3000; ++i) {
+        std::string text = kWhole;
+        for (int k = 0; k < 1 + i % 3; ++k) {
+            const std::size_t at = random() % text.size(), from = random() % text.size();
+            if (random() % 2)
+                text.erase(at, 1 + random() % 3);
+            else
+                text[at] = text[from];
+        }
+        const Script script = parse(text, i % 2 ? Dialect::classic : Dialect::strict);
+        for (const std::string& message : messages(script)) EXPECT_EQ(message.find('\n'), std::string::npos);
+        if (!script.ok()) continue;
+        try {
+            Performance p(script.program);
+            int frames = 0;
+            p.for_each_frame([&](const FigureFrame&) { return ++frames < 20; });
+            ++performed;
+        } catch (const Error& error) {
+            EXPECT_STRNE(error.what(), "");
+        }
+    }
+    EXPECT_GT(performed, 100);
 }
 
 }  // namespace

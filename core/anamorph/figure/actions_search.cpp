@@ -34,11 +34,35 @@ double bisect(const Function& probe, double from, double to) {
     return 0.5 * (from + to);
 }
 
-/// The angle closest to 0 in [-pi, pi] where `probe` is zero, found by steps that no zero lies in, both ways
-/// in turn. Steps are kShortestStep at least, so two zeros closer than that may be missed. Without a zero,
-/// the angle where the value is closest to it.
+/// The angle where `probe` is closest to zero: the best of a round of samples, then golden section about it.
 template <class Function>
-double nearest_zero(const Function& probe) {
+double closest_to_zero(const Function& probe) {
+    constexpr int kSamples = 720;
+    constexpr double kStep = 2 * std::numbers::pi / kSamples, kGolden = 0.6180339887498949;
+    const auto distance = [&](double angle) { return std::abs(probe(angle).value); };
+    double best = 0, least = distance(0.0);
+    for (int i = 1; i <= kSamples; ++i) {
+        // Outwards from where it is: of equals, the closest is kept.
+        const double angle = (i % 2 ? 1 : -1) * ((i + 1) / 2) * kStep, there = distance(angle);
+        if (!(there < least)) continue;
+        best = angle;
+        least = there;
+    }
+    double from = best - kStep, to = best + kStep;
+    while (to - from > 1e-9) {
+        const double left = to - kGolden * (to - from), right = from + kGolden * (to - from);
+        if (distance(left) < distance(right))
+            to = right;
+        else
+            from = left;
+    }
+    return 0.5 * (from + to);
+}
+
+/// The angle closest to 0 in [-pi, pi] where `probe` is zero, found by steps that no zero lies in, both ways
+/// in turn. Steps are kShortestStep at least, so two zeros closer than that may be missed.
+template <class Function>
+std::optional<double> nearest_zero(const Function& probe) {
     struct Walker {
         double sign, angle;
         Probe at;
@@ -46,32 +70,22 @@ double nearest_zero(const Function& probe) {
     const Probe start = probe(0.0);
     if (start.value == 0) return 0;
     Walker walkers[2] = {{1, 0, start}, {-1, 0, start}};
-    double best = 0, best_value = std::abs(start.value);
     while (true) {
         Walker& w = walkers[walkers[0].angle <= walkers[1].angle ? 0 : 1];
-        if (!(w.angle < std::numbers::pi)) break;
+        if (!(w.angle < std::numbers::pi)) return std::nullopt;
         const double next = std::min(w.angle + std::max(w.at.safe, kShortestStep), std::numbers::pi);
         const Probe there = probe(w.sign * next);
         if (there.value == 0) return w.sign * next;
         if ((there.value > 0) != (w.at.value > 0)) return bisect(probe, w.sign * w.angle, w.sign * next);
-        if (std::abs(there.value) < best_value) {
-            best = w.sign * next;
-            best_value = std::abs(there.value);
-        }
         w.angle = next;
         w.at = there;
     }
-    // Golden section about the closest approach seen.
-    constexpr double kGolden = 0.6180339887498949;
-    double from = best - kShortestStep, to = best + kShortestStep;
-    while (to - from > 1e-9) {
-        const double left = to - kGolden * (to - from), right = from + kGolden * (to - from);
-        if (std::abs(probe(left).value) < std::abs(probe(right).value))
-            to = right;
-        else
-            from = left;
-    }
-    return 0.5 * (from + to);
+}
+
+template <class Function>
+double zero_or_closest(const Function& probe) {
+    const std::optional<double> zero = nearest_zero(probe);
+    return zero ? *zero : closest_to_zero(probe);
 }
 
 double longest(const glm::dvec3& v) {
@@ -116,7 +130,7 @@ void FigureAction::touch() const {
     const Ellipsoid still = shape_of(body(moves_first ? second : first));
     const double speed = std::max(farthest_from_line(moved, pivot, unit), 1e-300);
     const double inner = shortest_of(moved.axes) + shortest_of(still.axes);
-    const double angle = nearest_zero([&](double radians) {
+    const double angle = zero_or_closest([&](double radians) {
         const EllipsoidContact c = contact_of(turned(moved, pivot, unit, radians), still);
         // Apart: the gap has to be crossed. Overlapping: their Minkowski sum has to be left.
         const double way = c.ratio > 1 ? c.gap : (1 - c.ratio) * inner;
@@ -180,7 +194,7 @@ void FigureAction::drag_exactly(int dragged, int bent, int at, const glm::dvec3&
     const Ellipsoid shape = shape_of(body(dragged));
     const glm::dvec3 pivot = joint_position(at);
     const double speed = std::max(farthest_from_line(shape, pivot, unit), 1e-300);
-    const double angle = nearest_zero([&](double radians) {
+    const double angle = zero_or_closest([&](double radians) {
         const double low = lowest_of(turned(shape, pivot, unit, radians));
         return Probe{low, std::abs(low) / speed};
     });

@@ -77,6 +77,7 @@ std::optional<double> read_script_number(std::string_view token, Dialect dialect
         negative = token.front() == '-';
         digits = token.substr(token.front() == '-' || token.front() == '+' ? 1 : 0);
     }
+    if (digits.find_first_of("+-") != std::string::npos) return std::nullopt;
     double value = 0;
     const auto [end, error] =
         std::from_chars(digits.data(), digits.data() + digits.size(), value, std::chars_format::fixed);

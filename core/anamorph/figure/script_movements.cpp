@@ -89,7 +89,7 @@ Operand ScriptParser::take_value(char letter, Pending& pending, bool& waits, boo
     if (letter == 'F') return made(OperandKind::figure);
     if (letter == 'i')
         return {OperandKind::image, 0, m_symbols.make(OperandKind::image, token.text, position)};
-    if (letter != 's' && strict()) return refuse();
+    if (letter != 's' && letter != '*' && strict()) return refuse();
     pending.letter = letter;
     pending.name = token.text;
     pending.position = position;
