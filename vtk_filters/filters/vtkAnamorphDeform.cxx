@@ -288,6 +288,23 @@ void vtkAnamorphDeform::RemoveAllDeformations() {
     this->DeformationList->RemoveAllDeformations();
 }
 
+vtkDoubleArray* vtkAnamorphDeform::GetAllDeformations() {
+    this->AllDeformations = vtkSmartPointer<vtkDoubleArray>::New();
+    this->AllDeformations->SetNumberOfComponents(9);
+    for (const Numbers& numbers : this->DeformationList->GetAll())
+        this->AllDeformations->InsertNextTuple(numbers.data());
+    return this->AllDeformations;
+}
+
+int vtkAnamorphDeform::ReadDeformations(const char* name) {
+    return name && *name ? this->DeformationList->ReadFile(name) : 1;
+}
+
+int vtkAnamorphDeform::WriteDeformations(const char* name) {
+    const bool first = !this->Controller || this->Controller->GetLocalProcessId() == 0;
+    return first && name && *name ? this->DeformationList->WriteFile(name) : 1;
+}
+
 void vtkAnamorphDeform::SetController(vtkMultiProcessController* controller) {
     if (controller == this->Controller) return;
     this->Controller = controller;

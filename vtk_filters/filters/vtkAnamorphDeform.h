@@ -39,6 +39,7 @@
 #include "vtkSmartPointer.h"  // for the members
 
 class vtkAnamorphDeformationList;
+class vtkDoubleArray;
 class vtkMultiProcessController;
 class vtkPolyData;
 
@@ -69,6 +70,16 @@ class ANAMORPHFILTERS_EXPORT vtkAnamorphDeform : public vtkPassInputTypeAlgorith
     void MoveDeformation(int from, int to);
     void RemoveDeformation(int position);
     void RemoveAllDeformations();
+    ///@}
+
+    ///@{
+    /**
+     * For hosts of tables and files: the list's numbers, nine components each; the list taken from a file or
+     * written to one (by rank 0). No name, nothing. Return 1, or 0 after an error.
+     */
+    vtkDoubleArray* GetAllDeformations();
+    int ReadDeformations(const char* name);
+    int WriteDeformations(const char* name);
     ///@}
 
     ///@{
@@ -211,6 +222,7 @@ class ANAMORPHFILTERS_EXPORT vtkAnamorphDeform : public vtkPassInputTypeAlgorith
     void Execute(vtkInformationVector** inputs, vtkInformationVector* outputs);
 
     vtkSmartPointer<vtkAnamorphDeformationList> DeformationList;
+    vtkSmartPointer<vtkDoubleArray> AllDeformations;
     vtkSmartPointer<vtkMultiProcessController> Controller;
     char* FileName = nullptr;
     int ParameterMode = PLANE;

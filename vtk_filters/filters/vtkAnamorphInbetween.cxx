@@ -549,6 +549,11 @@ void vtkAnamorphInbetween::AddKey(double time, int input, double weight) {
     this->SetKey(this->GetNumberOfKeys(), time, input, weight);
 }
 
+void vtkAnamorphInbetween::SetKeyNumbers(int index, double time, double input, double weight) {
+    const bool whole = input >= 0 && input <= VTK_INT_MAX && input == std::floor(input);
+    this->SetKey(index, time, whole ? static_cast<int>(input) : -1, weight);
+}
+
 double vtkAnamorphInbetween::GetKeyTime(int index) {
     return get_entry(this->Keys, index).Time;
 }

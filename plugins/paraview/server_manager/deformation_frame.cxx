@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "deformation_frame.h"
+
+#include "vtkMath.h"
+#include "vtkMatrix3x3.h"
+#include "vtkPVDataInformation.h"
+#include "vtkSMOutputPort.h"
+#include "vtkSMPropertyHelper.h"
+#include "vtkSMProxy.h"
+#include "vtkSMVectorProperty.h"
+
+namespace anamorph_paraview {
+
+unsigned int columns_of(vtkSMProperty* deformations) {
+    auto* vector = vtkSMVectorProperty::SafeDownCast(deformations);
+    return vector ? static_cast<unsigned int>(vector->GetNumberOfElementsPerCommand()) : 0;
+}
+
+Point Frame::point(double u, double v, double t) const {
+    Point p;
+    for (unsigned int c = 0; c < 3; ++c) p[c] = origin[c] + u * axes[0][c] + v * axes[1][c] + t * axes[2][c];
+    return p;
+}
+
+Point Frame::parameters(const Point& p) const {
+    double columns[9], inverse[9];
+    for (unsigned int row = 0; row < 3; ++row)
+        for (unsigned int column = 0; column < 3; ++column) columns[3 * row + column] = axes[column][row];
+    vtkMatrix3x3::Invert(columns, inverse);
+    const double from_origin[3] = {p[0] - origin[0], p[1] - origin[1], p[2] - origin[2]};
+    Point parameters;
+    vtkMatrix3x3::MultiplyPoint(inverse, from_origin, parameters.data());
+    return parameters;
+}
+
+bool input_bounds(vtkSMProxy* deform, double bounds[6]) {
+    vtkSMOutputPort* port = vtkSMPropertyHelper(deform, "Input", true).GetAsOutputPort();
+    vtkPVDataInformation* information = port ? port->GetDataInformation() : nullptr;
+    if (information == nullptr) return false;
+    information->GetBounds(bounds);
+    return vtkMath::AreBoundsInitialized(bounds);
+}
+
+namespace {
+
+int toggle(vtkSMProxy* deform, const char* name) {
+    return vtkSMPropertyHelper(deform, name, true).GetAsInt();
+}
+
+/// Of the two directions that are longest.
+Frame automatic_frame(vtkSMProxy* deform) {
+    double bounds[6];
+    if (!input_bounds(deform, bounds)) return {};
+    const auto length = [&](unsigned int c) { return bounds[2 * c + 1] - bounds[2 * c]; };
+    unsigned int across = 2;
+    for (const unsigned int c : {1u, 0u})
+        if (length(c) < length(across)) across = c;
+    Frame frame;
+    frame.origin[across] = bounds[2 * across] / 2 + bounds[2 * across + 1] / 2;
+    unsigned int next = 0;
+    for (unsigned int c = 0; c < 3; ++c) {
+        Point& axis = frame.axes[c == across ? 2 : next++];
+        axis = {0, 0, 0};
+        axis[c] = 1;
+    }
+    return frame;
+}
+
+}  // namespace
+
+Frame frame_of(vtkSMProxy* deform) {
+    if (toggle(deform, "ParameterMode") != 0) return {};
+    if (toggle(deform, "AutomaticPlane") != 0) return automatic_frame(deform);
+    Frame frame;
+    vtkSMPropertyHelper(deform, "Origin").Get(frame.origin.data(), 3);
+    vtkSMPropertyHelper(deform, "Axis1").Get(frame.axes[0].data(), 3);
+    vtkSMPropertyHelper(deform, "Axis2").Get(frame.axes[1].data(), 3);
+    vtkMath::Cross(frame.axes[0].data(), frame.axes[1].data(), frame.axes[2].data());
+    return vtkMath::Normalize(frame.axes[2].data()) > 0 ? frame : Frame{};
+}
+
+}  // namespace anamorph_paraview

@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: Apache-2.0
+/**
+ * @class   vtkSMAnamorphDeformProxy
+ * @brief   A list of deformations as a panel, handles in a view, and files edit it.
+ *
+ * The list is the property Deformations, of a row of numbers for each deformation: c_u, c_v, a_u, a_v, V_x,
+ * V_y, V_z, kernel, enabled (Oka 1987, eq. 4.1). A table in a panel edits it, but a handle in a view wants
+ * properties of its own, in space: SelectedCenter, SelectedCorner (centre + extent) and SelectedVector show
+ * row SelectedDeformation. What is written to them is written to the row, and they follow the list, the
+ * selection and the plane of (u, v).
+ *
+ * Setting ImportFile takes the list from a file on the server, setting ExportFile writes it to one; both are
+ * empty again when that is done.
+ *
+ * The selected row and files are no part of a state: the list has it all.
+ */
+#ifndef vtkSMAnamorphDeformProxy_h
+#define vtkSMAnamorphDeformProxy_h
+
+#include "AnamorphServerManagerModule.h"  // for the export macro
+#include "vtkSMSourceProxy.h"
+
+class ANAMORPHSERVERMANAGER_EXPORT vtkSMAnamorphDeformProxy : public vtkSMSourceProxy {
+  public:
+    static vtkSMAnamorphDeformProxy* New();
+    vtkTypeMacro(vtkSMAnamorphDeformProxy, vtkSMSourceProxy);
+    void PrintSelf(ostream& os, vtkIndent indent) override;
+
+    void UpdateVTKObjects() override;
+
+  protected:
+    vtkSMAnamorphDeformProxy();
+    ~vtkSMAnamorphDeformProxy() override;
+
+    int ReadXMLAttributes(vtkSMSessionProxyManager* manager, vtkPVXMLElement* element) override;
+    void SetPropertyModifiedFlag(const char* name, int flag) override;
+
+  private:
+    vtkSMAnamorphDeformProxy(const vtkSMAnamorphDeformProxy&) = delete;
+    void operator=(const vtkSMAnamorphDeformProxy&) = delete;
+
+    void ShowRow();
+    void WriteCenter();
+    void WriteExtent();
+    void WriteVector();
+
+    bool InStep = true;         ///< while one side follows the other, and before there are all properties
+    bool FilesPending = false;  ///< ImportFile or ExportFile is set, and not yet sent
+};
+
+#endif

@@ -1,0 +1,98 @@
+# SPDX-License-Identifier: Apache-2.0
+# host: pvpython
+"""Every proxy of the plugin can be made; every property is documented and has the default of the C++ class; every
+parameter of a class is a property."""
+import glob
+import os
+import xml.etree.ElementTree as xml
+
+import anamorph
+from paraview import servermanager
+from paraview.simple import LoadPlugin
+
+LoadPlugin(os.environ["ANAMORPH_PLUGIN"], remote=False, ns=globals())
+PAPER = "Oka 1987"
+# What a panel has no use for: other ways to set the same, and what the host sets.
+NO_PROPERTY = {
+    "vtkAnamorphDeform": {"SetController", "SetDeformationList", "SetDeformationEnabled"},
+    "vtkAnamorphInbetween": {"SetKey"},
+    "vtkAnamorphReliefSource": {"SetSize"},
+}
+
+
+def proxies():
+    """(group, element) of every proxy in the plugin's XML."""
+    for path in sorted(glob.glob(os.environ["ANAMORPH_SOURCE_DIR"] + "/plugins/paraview/anamorph/*.xml")):
+        for group in xml.parse(path).getroot().iter("ProxyGroup"):
+            for element in group:
+                if element.tag.endswith("Proxy"):
+                    yield group.get("name"), element
+
+
+def properties(element):
+    return [child for child in element if child.tag.endswith("Property")]
+
+
+def numbers(value):
+    return [float(v) for v in value] if isinstance(value, (list, tuple)) else [float(value)]
+
+
+def check_documentation(element):
+    documentation = element.find("Documentation")
+    assert documentation.get("short_help") and PAPER in documentation.get("long_help"), element.get("name")
+    assert PAPER in documentation.text, element.get("name")
+    for p in properties(element):
+        text = p.findtext("Documentation") or ""
+        assert PAPER in text and len(text.split()) > 6, (element.get("name"), p.get("name"), text)
+
+
+def check_defaults(element):
+    """The XML's defaults are those of a new object. Returns how many were compared."""
+    name, new = element.get("name"), getattr(anamorph, element.get("class"))()
+    compared = 0
+    for p in properties(element):
+        command, default = p.get("command"), p.get("default_values")
+        if not (command or "").startswith("Set") or default is None:
+            continue
+        if p.get("repeat_command"):
+            assert default == "none", (name, p.get("name"))
+            assert getattr(new, "G" + p.get("set_number_command")[1:])() == 0, (name, p.get("name"))
+        elif p.tag == "StringVectorProperty":
+            assert (getattr(new, "G" + command[1:])() or "") == default, (name, p.get("name"))
+        else:
+            value = getattr(new, "G" + command[1:])()
+            assert numbers(value) == numbers(default.split()), (name, p.get("name"), value, default)
+        compared += 1
+    return compared
+
+
+def check_parameters(element):
+    """Every SetX of the class itself is the command of a property."""
+    cls = getattr(anamorph, element.get("class"))
+    inherited = {m for base in cls.__mro__[1:] for m in dir(base)}
+    own = {m for m in dir(cls) if m.startswith("Set") and m not in inherited and "To" not in m[3:]}
+    used = {p.get(key) for p in properties(element) for key in ("command", "set_number_command")}
+    missing = own - used - NO_PROPERTY.get(element.get("class"), set())
+    assert not missing, (element.get("name"), missing)
+    return len(own)
+
+
+found = list(proxies())
+assert len(found) >= 4, found
+manager = servermanager.ProxyManager()
+for group, element in found:
+    name = element.get("name")
+    proxy = manager.NewProxy(group, name)
+    assert proxy is not None, name
+    proxy.UpdateVTKObjects()
+    if element.get("class"):
+        assert proxy.GetClientSideObject().GetClassName() == element.get("class"), name
+    for p in properties(element):
+        assert proxy.GetProperty(p.get("name")) is not None, (name, p.get("name"))
+    check_documentation(element)
+    if element.get("base_proxyname") or not hasattr(anamorph, element.get("class") or ""):
+        continue
+    assert element.find("Hints/ShowInMenu").get("category") == "Anamorph", name
+    compared, own = check_defaults(element), check_parameters(element)
+    assert compared >= 5 and own >= 5, (name, compared, own)
+    print(name, ":", compared, "defaults,", own, "parameters")
