@@ -4,7 +4,9 @@
 # Logs are in build/log; the log of a step that fails is printed.
 set -euo pipefail
 cd "$(dirname "$0")/.."
-tests/install_packages.sh build hosts tests peers plots
+tests/install_packages.sh build hosts tests peers plots vtk paraview
+vtk_prefix="$PWD/build/vtk-9.1"
+tests/unpack_vtk.sh "$vtk_prefix"
 
 log_dir=build/log
 mkdir -p "$log_dir"
@@ -26,11 +28,12 @@ step() {
 }
 
 check_format() {
-    find core oiio_ops plugins tests -name '*.h' -o -name '*.cpp' | xargs clang-format --dry-run -Werror
+    find core oiio_ops plugins tests vtk_filters -name '*.h' -o -name '*.cpp' -o -name '*.cxx' | xargs clang-format --dry-run -Werror
 }
 
+# build PRESET [CMAKE ARGUMENT...]
 build() {
-    cmake --preset "$1" -DANAMORPH_WERROR=ON && cmake --build --preset "$1" -j "$jobs"
+    cmake --preset "$@" -DANAMORPH_WERROR=ON && cmake --build --preset "$1" -j "$jobs"
 }
 
 run_tests() {
@@ -53,4 +56,10 @@ step build-asan build asan
 step test-asan run_tests asan
 step build-release build release
 step test-release run_tests release
-sed -n '/tests passed/,$p' "$log_dir/test-release.txt"
+step build-vtk build vtk "-DVTK_ROOT=$vtk_prefix/usr" -DPython3_EXECUTABLE=/usr/bin/python3
+step test-vtk run_tests vtk
+step build-paraview build paraview -DPython3_EXECUTABLE=/usr/bin/python3
+step test-paraview run_tests paraview
+for preset in vtk paraview release; do
+    sed -n '/tests passed/,$p' "$log_dir/test-$preset.txt"
+done
