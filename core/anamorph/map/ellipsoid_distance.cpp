@@ -9,7 +9,7 @@
 namespace anamorph {
 namespace {
 
-constexpr double kThinnest = 1e-9;  // of the longest axis
+constexpr double kThinnest = 1e-18;  // of the longest axis
 
 double longest(const glm::dvec3& v) {
     return std::max({v.x, v.y, v.z});
@@ -81,7 +81,7 @@ EllipsoidContact contact_of(const Ellipsoid& first, const Ellipsoid& second) noe
     }
     const double s = std::exp(0.5 * (low + high));
     const glm::dvec3 w = q / (1.0 + s * b);
-    contact.ratio = std::sqrt(std::max(0.0, s / (1 + s) * glm::dot(q, w)));
+    contact.ratio = std::sqrt(s / (1 + s) * glm::dot(q, w));
     const glm::dvec3 normal = first.rotation * ((v * w) / a);
     const double length = glm::length(normal);
     contact.normal = length > 0 && std::isfinite(length) ? normal / length : r / distance;

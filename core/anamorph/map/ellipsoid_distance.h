@@ -21,7 +21,7 @@ struct EllipsoidContact {
     double gap = 0;
 };
 
-/// Relative error of `ratio` about 1e-12 for axes that differ by up to 1e6. An axis shorter than 1e-9 of the
+/// Relative error of `ratio` below 1e-12 for axes that differ by up to 1e8. An axis shorter than 1e-18 of the
 /// longest of both counts as that.
 EllipsoidContact contact_of(const Ellipsoid& first, const Ellipsoid& second) noexcept;
 
