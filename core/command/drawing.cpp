@@ -1,0 +1,204 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "drawing.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "anamorph/figure/level_of_detail.h"
+#include "anamorph/figure/outline.h"
+#include "anamorph/figure/skeleton.h"
+
+namespace anamorph::command {
+namespace {
+
+/// What is left for the rounding of numbers in a file.
+constexpr double kShareOfTol = 0.99;
+/// Longer arcs are closed.
+constexpr double kWholeTurn = 2 * std::numbers::pi - 1e-9;
+
+struct Box {
+    double low, high;  ///< both ways
+};
+
+/// Cuts the segment from a to b to the box; false where nothing is left (Liang and Barsky).
+bool clip(glm::dvec2& a, glm::dvec2& b, const Box& box) {
+    double from = 0, to = 1;
+    const glm::dvec2 d = b - a;
+    for (int k = 0; k < 2; ++k)
+        for (const double side : {1.0, -1.0}) {
+            // side (a + s d - edge) <= 0
+            const double edge = side > 0 ? box.high : box.low;
+            const double slope = side * d[k], room = side * (edge - a[k]);
+            if (slope == 0) {
+                if (!(room >= 0)) return false;
+            } else if (slope > 0) {
+                to = std::min(to, room / slope);
+            } else {
+                from = std::max(from, room / slope);
+            }
+        }
+    if (!(from <= to)) return false;
+    const glm::dvec2 start = a;
+    if (to < 1) b = start + to * d;
+    if (from > 0) a = start + from * d;
+    return true;
+}
+
+class Page {
+  public:
+    Page(const FigureFrame& frame, const DrawingOptions& options)
+        : m_frame(frame), m_options(options), m_view(view_of(frame, options.size / 1000)) {
+        if (options.perspective) m_view.eye_distance = *options.perspective;
+        const double margin = 2 * (options.line_width + options.halo) + 2;
+        m_box = {-margin, options.size + margin};
+        m_drawing.frame = frame.number;
+        m_drawing.size = options.size;
+        m_drawing.line_width = options.line_width;
+        m_drawing.halo = options.halo;
+        for (const Body& body : frame.bodies) m_shapes.push_back(body.shape);
+    }
+
+    Drawing take() {
+        std::stable_sort(
+            m_drawing.strokes.begin(), m_drawing.strokes.end(), [](const Stroke& a, const Stroke& b) {
+                const bool a_hidden = a.kind == StrokeKind::hidden, b_hidden = b.kind == StrokeKind::hidden;
+                return a_hidden != b_hidden ? a_hidden : a.depth > b.depth;
+            });
+        return std::move(m_drawing);
+    }
+
+    void draw_outlines(const ParallelFor& parallel_for) {
+        OutlineOptions options;
+        options.hide = m_options.hidden != Hidden::draw;
+        const std::vector<Outline> all = outlines(m_frame, m_view, options, parallel_for).bodies;
+        std::vector<Detail> details(all.size(), Detail::body);
+        if (m_options.lod > 0) details = levels_of_detail(m_shapes, m_view, {m_options.lod});
+        std::vector<int> lines;
+        for (std::size_t i = 0; i < all.size(); ++i) {
+            if (details[i] == Detail::dot)
+                draw_dot(i, all[i]);
+            else if (details[i] == Detail::line)
+                lines.push_back(static_cast<int>(i));
+            else
+                draw_outline(i, all[i]);
+        }
+        draw_lines(lines, all, parallel_for);
+    }
+
+    void draw_sticks() {
+        const std::vector<Stick> sticks =
+            m_options.sticks == Sticks::axes ? axis_sticks(m_frame) : joint_sticks(m_frame);
+        std::vector<SeenLine> lines;
+        for (const Stick& stick : sticks) lines.push_back({stick.from, stick.to, {}, {}});
+        hide_lines(lines, {}, m_view);  // what is before the observer
+        for (std::size_t i = 0; i < lines.size(); ++i)
+            for (const Arc& part : lines[i].visible)
+                add_line(StrokeKind::stick, static_cast<std::size_t>(sticks[i].body), lines[i], part);
+    }
+
+  private:
+    void draw_outline(std::size_t i, const Outline& outline) {
+        for (const Arc& arc : outline.visible) add_arc(StrokeKind::visible, i, outline, arc);
+        if (m_options.hidden == Hidden::dash)
+            for (const Arc& arc : outline.hidden) add_arc(StrokeKind::hidden, i, outline, arc);
+    }
+
+    void draw_dot(std::size_t i, const Outline& outline) {
+        if (outline.visible.empty()) return;
+        const glm::dvec2 at = on_page(outline.screen.center);
+        if (std::min(at.x, at.y) < m_box.low || std::max(at.x, at.y) > m_box.high) return;
+        Stroke stroke = stroke_of(StrokeKind::dot, i);
+        stroke.points = {at};
+        stroke.depth = outline.viewed.center.z;
+        m_drawing.strokes.push_back(std::move(stroke));
+    }
+
+    /// Bodies that are drawn as the longest axis of their limb.
+    void draw_lines(const std::vector<int>& bodies, const std::vector<Outline>& all,
+                    const ParallelFor& parallel_for) {
+        std::vector<SeenLine> lines;
+        std::vector<std::vector<int>> own;
+        for (const int i : bodies) {
+            const Outline& o = all[static_cast<std::size_t>(i)];
+            const double t =
+                principal_axes(
+                    Ellipse<glm::dvec2>{{0, 0}, glm::dvec2(o.viewed.cosine), glm::dvec2(o.viewed.sine)})
+                    .shift;
+            lines.push_back({o.limb(t), o.limb(t + std::numbers::pi), {}, {}});
+            own.push_back({i});
+        }
+        const bool hide = m_options.hidden != Hidden::draw;
+        hide_lines(lines, hide ? std::span<const Ellipsoid>(m_shapes) : std::span<const Ellipsoid>(), m_view,
+                   own, parallel_for);
+        for (std::size_t k = 0; k < lines.size(); ++k) {
+            const auto i = static_cast<std::size_t>(bodies[k]);
+            for (const Arc& part : lines[k].visible) add_line(StrokeKind::visible, i, lines[k], part);
+            if (m_options.hidden == Hidden::dash)
+                for (const Arc& part : lines[k].hidden) add_line(StrokeKind::hidden, i, lines[k], part);
+        }
+    }
+
+    void add_arc(StrokeKind kind, std::size_t i, const Outline& outline, const Arc& arc) {
+        std::vector<glm::dvec2> points;
+        double depth = 0;
+        for (const double angle : chord_angles(outline, arc, m_view, kShareOfTol * m_options.tol)) {
+            points.push_back(on_page(outline.on_screen(angle, m_view)));
+            depth += outline.viewed(angle).z;
+        }
+        if (arc.length() > kWholeTurn) points.back() = points.front();
+        add(kind, i, points, depth / static_cast<double>(points.size()));
+    }
+
+    void add_line(StrokeKind kind, std::size_t i, const SeenLine& line, const Arc& part) {
+        const glm::dvec3 from = m_view.to_view(line.from + part.begin * (line.to - line.from)),
+                         to = m_view.to_view(line.from + part.end * (line.to - line.from));
+        add(kind, i, {on_page(m_view.to_screen(from)), on_page(m_view.to_screen(to))}, 0.5 * (from.z + to.z));
+    }
+
+    /// Adds what of a polyline is on the page.
+    void add(StrokeKind kind, std::size_t i, const std::vector<glm::dvec2>& points, double depth) {
+        Stroke stroke = stroke_of(kind, i);
+        stroke.depth = depth;
+        for (std::size_t k = 0; k + 1 < points.size(); ++k) {
+            glm::dvec2 a = points[k], b = points[k + 1];
+            if (!clip(a, b, m_box)) continue;
+            if (stroke.points.empty() || stroke.points.back() != a) {
+                if (!stroke.points.empty()) m_drawing.strokes.push_back(stroke);
+                stroke.points = {a};
+            }
+            stroke.points.push_back(b);
+        }
+        if (!stroke.points.empty()) m_drawing.strokes.push_back(std::move(stroke));
+    }
+
+    Stroke stroke_of(StrokeKind kind, std::size_t i) const {
+        Stroke stroke;
+        stroke.kind = kind;
+        stroke.body = m_frame.bodies[i].name;
+        if (m_options.colors) stroke.color = glm::clamp(m_frame.bodies[i].color, 0.0, 255.0);
+        return stroke;
+    }
+
+    glm::dvec2 on_page(const glm::dvec2& screen) const { return {screen.x, m_options.size - screen.y}; }
+
+    const FigureFrame& m_frame;
+    const DrawingOptions& m_options;
+    View m_view;
+    Box m_box{};
+    std::vector<Ellipsoid> m_shapes;
+    Drawing m_drawing;
+};
+
+}  // namespace
+
+Drawing draw(const FigureFrame& frame, const DrawingOptions& options, const ParallelFor& parallel_for) {
+    Page page(frame, options);
+    if (options.sticks == Sticks::none)
+        page.draw_outlines(parallel_for);
+    else
+        page.draw_sticks();
+    return page.take();
+}
+
+}  // namespace anamorph::command

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: Apache-2.0
+// Which frames are asked for, and what the files of several are called.
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "anamorph/figure/performance.h"
+
+namespace anamorph::command {
+
+/// "7", "1-48", "1-48x4" (every fourth) or "all": those that the script shows.
+struct FrameRange {
+    bool all = false;
+    int first = 1, last = 1, step = 1;
+
+    bool several() const { return all || last > first; }
+    /// How many there are; of `all`, asks the performance.
+    int count(Performance& performance) const;
+    /// In order. Throws Error where one is not performed.
+    void for_each(Performance& performance, const std::function<void(const FigureFrame&)>& body) const;
+};
+
+std::optional<FrameRange> parse_frame_range(std::string_view text);
+
+/// `pattern` with the number in place of "%04d" (any width), or of "#" (each # is a digit); otherwise before
+/// the ending, in four digits.
+std::string numbered_name(const std::string& pattern, int number);
+
+}  // namespace anamorph::command

@@ -1,0 +1,361 @@
+// SPDX-License-Identifier: Apache-2.0
+// anamorph-figure: scripts of NUDES checked, performed and drawn.
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <charconv>
+#include <chrono>
+#include <cmath>
+#include <exception>
+#include <iostream>
+#include <map>
+#include <thread>
+
+#include "anamorph/figure/frame_file.h"
+#include "anamorph/parameter.h"
+#include "anamorph/version.h"
+#include "drawing.h"
+#include "frame_range.h"
+#include "progress.h"
+#include "script_source.h"
+#include "threads.h"
+#include "writers.h"
+
+namespace anamorph::command {
+namespace {
+
+/// What the command line says.
+struct Settings {
+    ScriptSource source;
+    std::string output = "-", frames;
+    DrawingOptions drawing;
+    double perspective = 0;
+    int threads = 0, columns = 80;
+    Characters characters = Characters::braille;
+};
+
+std::string one_line(std::string text) {
+    std::replace_if(
+        text.begin(), text.end(), [](char c) { return c >= 0 && c < ' '; }, ' ');
+    return text;
+}
+
+/// Numbers from `least` to `most`, and no others (CLI11's own check lets NaN pass).
+CLI::Validator number_from_to(double least, double most) {
+    return CLI::Validator(
+        [=](std::string& text) -> std::string {
+            double value = 0;
+            const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+            if (error == std::errc() && end == text.data() + text.size() && value >= least && value <= most)
+                return {};
+            return "\"" + text + "\": allowed is a number from " + shortest(least) + " to " + shortest(most);
+        },
+        "NUMBER");
+}
+
+CLI::Validator frame_range() {
+    return CLI::Validator(
+        [](std::string& text) -> std::string {
+            if (parse_frame_range(text)) return {};
+            return "\"" + text + "\": allowed are N, N-M, N-MxSTEP and all";
+        },
+        "");
+}
+
+class Command {
+  public:
+    Command() {
+        m_app.require_subcommand(1);
+        m_app.set_version_flag("--version", "anamorph-figure " + std::string(version()));
+        m_app.get_formatter()->column_width(34);
+        add_check();
+        add_frames();
+        add_picture("svg", "Draw outlines, hidden lines removed, as SVG");
+        add_picture("pdf", "Draw outlines as PDF, a page for each frame");
+        add_picture("png", "Draw outlines as PNG");
+        add_text();
+        add_stats();
+    }
+
+    int run(int argc, char** argv) {
+        try {
+            m_app.parse(argc, argv);
+            return m_run();
+        } catch (const CLI::ParseError& e) {
+            if (e.get_exit_code() == 0) return m_app.exit(e);  // --help and --version
+            return fail(e.what());
+        } catch (const std::bad_alloc&) {
+            return fail("not enough memory");
+        } catch (const std::exception& e) {
+            return fail(e.what());
+        }
+    }
+
+  private:
+    static int fail(const std::string& what) {
+        std::cerr << "anamorph-figure: " << one_line(what) << "\n";
+        return 1;
+    }
+
+    CLI::App* add_subcommand(const char* name, const char* what, std::function<int()> run) {
+        CLI::App* sub = m_app.add_subcommand(name, what);
+        sub->add_option("SCRIPT", m_settings.source.path, "The script; - is the standard input")->required();
+        static const std::map<std::string, Dialect> dialects{{"classic", Dialect::classic},
+                                                             {"strict", Dialect::strict}};
+        sub->add_option("--dialect", m_settings.source.dialect,
+                        "classic: as the programs of 2003 ran scripts; strict: as the language is documented")
+            ->transform(CLI::CheckedTransformer(dialects))
+            ->option_text("classic|strict [classic]");
+        sub->add_option("--library", m_settings.source.libraries,
+                        "A file of figures without stop, included ahead of the script; may be repeated")
+            ->option_text("FILE ...")
+            ->expected(1);
+        sub->callback([this, run = std::move(run)] { m_run = run; });
+        return sub;
+    }
+
+    void add_output(CLI::App* sub, const char* what) {
+        sub->add_option("-o,--output", m_settings.output, what)->option_text("FILE [-]");
+    }
+
+    void add_frame_range(CLI::App* sub, const char* standard) {
+        sub->add_option("--frame", m_settings.frames,
+                        std::string("Which: N, N-M, N-MxSTEP, or all that the script shows") + standard)
+            ->check(frame_range())
+            ->option_text("RANGE");
+    }
+
+    void add_number(CLI::App* sub, const char* name, double& value, double least, double most,
+                    const std::string& what) {
+        sub->add_option(name, value, what)
+            ->check(number_from_to(least, most))
+            ->option_text("NUMBER [" + shortest(value) + "]");
+    }
+
+    void add_check() {
+        add_subcommand("check", "Say what is wrong with a script; exit status 1 where there are errors",
+                       [this] { return check(); });
+    }
+
+    void add_frames() {
+        CLI::App* sub = add_subcommand("frames", "Perform, and write frames as the original programs do (.3)",
+                                       [this] { return write_frames(); });
+        add_output(sub, "Where to; - is the standard output");
+        add_frame_range(sub, " (the default)");
+    }
+
+    void add_picture(const std::string& format, const char* what) {
+        CLI::App* sub = add_subcommand(format.c_str(), what, [this, format] { return draw_as(format); });
+        if (format == "pdf")
+            add_output(sub, "Where to; - is the standard output");
+        else
+            add_output(sub,
+                       "Where to; - is the standard output. Of several frames: %04d or #### stands for the "
+                       "number, which else goes before the ending");
+        add_drawing(sub);
+        DrawingOptions& d = m_settings.drawing;
+        add_number(sub, "--size", d.size, 1, 32767,
+                   "Pixels (in PDF points) that the window of 1000 units is");
+        add_number(sub, "--tol", d.tol, 0.01, 1000, "Most that chords are off the curve, in pixels");
+        add_number(sub, "--line-width", d.line_width, 0.01, 1000, "In pixels");
+        add_number(sub, "--halo", d.halo, 0, 1000, "Gap on either side of a nearer line, in pixels");
+        sub->add_flag("--colors", d.colors, "Lines in the colors of the bodies");
+    }
+
+    void add_text() {
+        CLI::App* sub = add_subcommand("text", "Draw outlines with characters, for a terminal", [this] {
+            m_settings.drawing.size = text_size(m_settings.columns, m_settings.characters);
+            m_settings.drawing.tol = 0.25;
+            return draw_as("text");
+        });
+        add_output(sub, "Where to; - is the standard output");
+        add_drawing(sub);
+        sub->add_option("--width", m_settings.columns, "Characters across the picture")
+            ->check(number_from_to(1, 4096))
+            ->option_text("NUMBER [80]");
+        static const std::map<std::string, Characters> characters{{"braille", Characters::braille},
+                                                                  {"ascii", Characters::ascii}};
+        sub->add_option("--characters", m_settings.characters, "Braille are 2 x 4 dots each, ascii 1 x 2")
+            ->transform(CLI::CheckedTransformer(characters))
+            ->option_text("braille|ascii [braille]");
+    }
+
+    /// What all pictures have.
+    void add_drawing(CLI::App* sub) {
+        add_frame_range(sub, "; by default the first of those");
+        DrawingOptions& d = m_settings.drawing;
+        static const std::map<std::string, Hidden> hidden{
+            {"remove", Hidden::remove}, {"dash", Hidden::dash}, {"draw", Hidden::draw}};
+        sub->add_option("--hidden", d.hidden, "What becomes of hidden lines; draw: bodies are transparent")
+            ->transform(CLI::CheckedTransformer(hidden))
+            ->option_text("remove|dash|draw [remove]");
+        static const std::map<std::string, Sticks> sticks{
+            {"none", Sticks::none}, {"axes", Sticks::axes}, {"joints", Sticks::joints}};
+        sub->add_option("--sticks", d.sticks,
+                        "Instead of outlines: the longest axis of each body, or lines from joint to joint")
+            ->transform(CLI::CheckedTransformer(sticks))
+            ->option_text("none|axes|joints [none]");
+        add_number(sub, "--lod", d.lod, 0, 32767, "Bodies no wider, in pixels, are drawn as dots and lines");
+        sub->add_option("--perspective", m_settings.perspective,
+                        "In perspective, seen from so many units before the middle of the window")
+            ->check(number_from_to(1e-3, 1e9))
+            ->option_text("DISTANCE");
+        sub->add_option("--threads", m_settings.threads, "0: as many as there are processors")
+            ->check(number_from_to(0, 1024))
+            ->option_text("NUMBER [0]");
+    }
+
+    void add_stats() {
+        add_subcommand("stats", "Count what is in a script, and time its performance",
+                       [this] { return write_stats(); });
+    }
+
+    /// Prints what the script prints, out of the progress bar's way.
+    Performance perform(Progress& progress) const {
+        PerformanceOptions options;
+        options.message = [&progress](const std::string& line) {
+            progress.clear();
+            std::cerr << one_line(line) << "\n";
+        };
+        return Performance(read_program(m_settings.source), options);
+    }
+
+    FrameRange range_or(const char* standard) const {
+        return *parse_frame_range(m_settings.frames.empty() ? standard : m_settings.frames);
+    }
+
+    static int count_of(const FrameRange& range, Performance& performance) {
+        try {
+            return range.count(performance);
+        } catch (const std::exception&) {
+            return 0;  // what is wrong is told when the frame's turn comes
+        }
+    }
+
+    int check() const {
+        const Script script = read_script(m_settings.source);
+        for (const Diagnostic& d : script.diagnostics) std::cout << d.text() << "\n";
+        return script.ok() ? 0 : 1;
+    }
+
+    int write_frames() const {
+        const FrameRange range = range_or("all");
+        std::unique_ptr<Performance> performance;
+        Progress progress([&] { return count_of(range, *performance); });
+        performance = std::make_unique<Performance>(perform(progress));
+        OutputFile file(m_settings.output);
+        FigureFrame last;
+        range.for_each(*performance, [&](const FigureFrame& frame) {
+            file.write(frame_text(frame));
+            last = frame;
+            progress.advance();
+        });
+        file.write(frames_end_text(last));
+        file.close();
+        return 0;
+    }
+
+    std::unique_ptr<DrawingWriter> writer(const std::string& format, bool several) const {
+        if (format == "pdf") return pdf_writer(m_settings.output);
+        if (format == "text")
+            return text_writer(m_settings.output, m_settings.columns, m_settings.characters);
+        if (several && m_settings.output == "-")
+            throw Error("--output=-: several frames as " + format + " need the name of a file");
+        return format == "svg" ? svg_writer(m_settings.output, several)
+                               : png_writer(m_settings.output, several);
+    }
+
+    int draw_as(const std::string& format) {
+        if (m_settings.perspective > 0) m_settings.drawing.perspective = m_settings.perspective;
+        std::unique_ptr<Performance> performance;
+        FrameRange range;
+        Progress progress([&] { return count_of(range, *performance); });
+        performance = std::make_unique<Performance>(perform(progress));
+        range = range_or(std::to_string(performance->first_frame()).c_str());
+        const std::unique_ptr<DrawingWriter> out = writer(format, range.several());
+        const int threads = m_settings.threads > 0 ? m_settings.threads
+                                                   : std::max<int>(std::thread::hardware_concurrency(), 1);
+        const ParallelFor parallel_for = threads_for(threads);
+        std::vector<FigureFrame> batch;
+        const auto draw_batch = [&] {
+            std::vector<Drawing> drawings(batch.size());
+            if (batch.size() == 1)
+                drawings[0] = draw(batch[0], m_settings.drawing, parallel_for);
+            else
+                parallel_for(static_cast<std::int64_t>(batch.size()), [&](std::int64_t i) {
+                    const auto k = static_cast<std::size_t>(i);
+                    drawings[k] = draw(batch[k], m_settings.drawing, serial_for);
+                });
+            batch.clear();
+            for (const Drawing& drawing : drawings) {
+                out->add(drawing);
+                progress.advance();
+            }
+        };
+        bool any = false;
+        range.for_each(*performance, [&](const FigureFrame& frame) {
+            any = true;
+            batch.push_back(frame);
+            if (batch.size() == 4 * static_cast<std::size_t>(threads)) draw_batch();
+        });
+        draw_batch();
+        if (!any) throw Error(m_settings.source.path + " shows no frame");
+        out->finish();
+        return 0;
+    }
+
+    int write_stats() const {
+        using Clock = std::chrono::steady_clock;
+        const auto start = Clock::now();
+        std::unique_ptr<Performance> performance;
+        Progress progress([&] { return count_of(FrameRange{true}, *performance); });
+        performance = std::make_unique<Performance>(perform(progress));
+        const auto parsed = Clock::now();
+        int frames = 0;
+        performance->for_each_frame([&](const FigureFrame&) {
+            ++frames;
+            progress.advance();
+            return true;
+        });
+        const auto performed = Clock::now();
+        progress.clear();
+        const Program& p = performance->program();
+        std::size_t actions = 0;
+        for (const Subroutine& s : p.subroutines) actions += s.movements.size();
+        const auto say = [](const char* name, const std::string& value) {
+            std::cout << name << std::string(15 - std::string_view(name).size(), ' ') << value << "\n";
+        };
+        const auto milliseconds = [](Clock::duration d) {
+            return shortest(std::round(std::chrono::duration<double, std::micro>(d).count()) / 1000);
+        };
+        say("frames", std::to_string(frames));
+        say("figures", std::to_string(p.figures.size() - 2));  // without `every` and `world`
+        say("ellipsoids", std::to_string(p.ellipsoids.size() - 1));
+        say("joints", std::to_string(p.joints.size()));
+        say("subroutines", std::to_string(p.subroutines.size() - 1));
+        say("actions", std::to_string(actions));
+        say("parsed in", milliseconds(parsed - start) + " ms");
+        say("performed in", milliseconds(performed - parsed) + " ms");
+        return 0;
+    }
+
+    CLI::App m_app{"Scripts of NUDES, the animation language for figures of ellipsoids (Chapman 1986)",
+                   "anamorph-figure"};
+    Settings m_settings;
+    std::function<int()> m_run;
+};
+
+int run(int argc, char** argv) {
+    try {
+        return Command().run(argc, argv);
+    } catch (const std::exception& e) {
+        std::cerr << "anamorph-figure: " << e.what() << "\n";
+        return 1;
+    }
+}
+
+}  // namespace
+}  // namespace anamorph::command
+
+int main(int argc, char** argv) {
+    return anamorph::command::run(argc, argv);
+}

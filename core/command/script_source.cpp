@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "script_source.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <iostream>
+
+#include "anamorph/error.h"
+
+namespace anamorph::command {
+namespace {
+
+/// At most one byte more than a script may have: the parser says what is wrong with it.
+std::string read_all(std::istream& in, const std::string& name) {
+    std::string text;
+    char block[1 << 16];
+    while (text.size() <= kMaxScriptText && in.read(block, sizeof block).gcount() > 0)
+        text.append(block, static_cast<std::size_t>(in.gcount()));
+    if (in.bad()) throw Error("cannot read " + name);
+    return text;
+}
+
+std::optional<std::string> read_file(const std::string& path) {
+    std::error_code error;
+    if (std::filesystem::is_directory(path, error)) return std::nullopt;
+    std::ifstream in(path, std::ios::binary);
+    if (!in) return std::nullopt;
+    return read_all(in, path);
+}
+
+}  // namespace
+
+Script read_script(const ScriptSource& source) {
+    const bool standard = source.path == "-";
+    ScriptOptions options;
+    options.dialect = source.dialect;
+    options.libraries = source.libraries;
+    options.include = [&](const std::string& name) {
+        const auto& libraries = source.libraries;
+        if (std::find(libraries.begin(), libraries.end(), name) != libraries.end()) return read_file(name);
+        const std::filesystem::path folder =
+            standard ? std::filesystem::path() : std::filesystem::path(source.path).parent_path();
+        return read_file((folder / name).string());
+    };
+    if (standard) return parse_script(read_all(std::cin, "the standard input"), "stdin", options);
+    const std::optional<std::string> text = read_file(source.path);
+    if (!text) throw Error("cannot read " + source.path);
+    return parse_script(*text, source.path, options);
+}
+
+Program read_program(const ScriptSource& source) {
+    Script script = read_script(source);
+    for (const Diagnostic& d : script.diagnostics)
+        if (d.severity == Severity::error) throw Error(d.text());
+    return std::move(script.program);
+}
+
+}  // namespace anamorph::command

@@ -1,0 +1,384 @@
+# SPDX-License-Identifier: Apache-2.0
+"""anamorph-figure: what it writes is read back and compared with what the scripts mean, worked out by hand."""
+import math
+import os
+import random
+import re
+import struct
+import subprocess
+import tempfile
+import unittest
+import xml.etree.ElementTree as xml
+
+PROGRAM = os.environ["ANAMORPH_FIGURE"]
+CAIRO = os.environ["ANAMORPH_HAVE_CAIRO"] == "1"
+WALKER = os.environ["ANAMORPH_EXAMPLES"] + "/walker.nudes"
+SVG = "{http://www.w3.org/2000/svg}"
+
+
+def scene(*bodies, extra=""):
+    """A script of one frame: bodies are (name, half-axes, center), each a figure."""
+    text = ""
+    for name, axes, center in bodies:
+        text += "figure f%s 1 %s ellipsoid %s %s %s %s\n" % (name, name, name, *axes)
+        text += "repeat 0 1 moveto f%s %s %s %s %s\n" % (name, name, *center)
+    return text + extra + "stop\n"
+
+
+NEAR_AND_FAR = scene(("near", (100, 100, 100), (500, 500, 200)), ("far", (100, 100, 100), (600, 500, 800)))
+
+
+class Case(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.folder = folder.name
+
+    def path(self, name):
+        return os.path.join(self.folder, name)
+
+    def write(self, name, text):
+        with open(self.path(name), "wb") as file:
+            file.write(text if isinstance(text, bytes) else text.encode())
+        return self.path(name)
+
+    def read(self, name):
+        with open(self.path(name), "rb") as file:
+            return file.read()
+
+    def run_program(self, *arguments, text=None):
+        data = text.encode() if isinstance(text, str) else text
+        result = subprocess.run([PROGRAM, *arguments], input=data or b"", capture_output=True, timeout=100)
+        self.assertIn(result.returncode, (0, 1), (arguments, result.stderr))
+        return result
+
+    def output(self, *arguments, text=None):
+        result = self.run_program(*arguments, text=text)
+        self.assertEqual((result.returncode, result.stderr), (0, b""), arguments)
+        return result.stdout
+
+    def error(self, *arguments, text=None):
+        """Of a run that fails: its only line."""
+        result = self.run_program(*arguments, text=text)
+        self.assertEqual(result.returncode, 1, arguments)
+        lines = result.stderr.decode(errors="replace").splitlines()
+        self.assertEqual(len(lines), 1, (arguments, lines))
+        self.assertTrue(lines[0].startswith("anamorph-figure: "), lines)
+        return lines[0]
+
+    def svg(self, text, *options):
+        return xml.fromstring(self.output("svg", "-", *options, text=text))
+
+    def paths(self, text, *options, kind="visible"):
+        """(name, points, closed) of each path of a kind."""
+        found = []
+        for element in self.svg(text, *options).iter(SVG + "path"):
+            if element.get("class") == kind:
+                numbers = [float(n) for n in re.findall(r"-?[\d.]+", element.get("d"))]
+                points = list(zip(numbers[::2], numbers[1::2]))
+                closed = element.get("d").endswith("Z")
+                found.append((element.get("data-body"), points + points[:1] * closed, closed))
+        return found
+
+
+class Check(Case):
+    def test_silent_when_nothing_is_wrong(self):
+        for dialect in ("classic", "strict"):
+            self.assertEqual(self.output("check", WALKER, "--dialect", dialect), b"")
+
+    def test_several_errors_with_line_and_column(self):
+        path = self.write("bad.n", "figure f 1 a\nellipsoid a 1 2 x\nlinear 0 1\n  moveby f a 1 oops 3\nstop\n")
+        result = self.run_program("check", path)
+        self.assertEqual((result.returncode, result.stderr), (1, b""))
+        lines = result.stdout.decode().splitlines()
+        self.assertEqual(len(lines), 2, lines)
+        self.assertRegex(lines[0], r"bad\.n:2:17: error: found \"x\", expected ")
+        self.assertRegex(lines[1], r"bad\.n:4:16: error: found \"oops\", expected ")
+
+    def test_what_is_an_error_in_strict_is_none_in_classic(self):
+        text = "figure f 1 a ellipsoid a -1 2 3 linear 0 1 moveby f a 1 2 3 stop"
+        self.assertEqual(self.run_program("check", "-", text=text).returncode, 0)
+        result = self.run_program("check", "-", "--dialect=strict", text=text)
+        self.assertEqual(result.returncode, 1)
+        self.assertRegex(result.stdout.decode(), r"^stdin:1:\d+: error: ")
+
+    def test_libraries_and_includes(self):
+        library = self.write("lib.n", "figure f 1 a ellipsoid a 1 2 3\n")
+        text = "linear 0 1 moveby f a 1 2 3 stop"
+        self.assertEqual(self.run_program("check", "-", text=text).returncode, 1)
+        self.assertEqual(self.output("check", "-", "--library", library, text=text), b"")
+        # An include is looked for beside the script, wherever the program runs.
+        self.assertEqual(self.output("check", self.write("inc.n", "include lib.n " + text)), b"")
+        result = self.run_program("check", self.write("none.n", "include nowhere.n stop"))
+        self.assertEqual(result.returncode, 1)
+        self.assertIn(b"nowhere.n", result.stdout)
+
+
+class Frames(Case):
+    # Two bodies joined at (0, 40, 0) of the first and (0, -20, 0) of the second, which so is at y = 60.
+    SCRIPT = ("figure f 2 a b ellipsoid a 10 40 20 ellipsoid b 5 20 5 joint j a 0 40 0 b 0 -20 0\n"
+              "linear 0 2 moveby f a 100 10 -3 repeat 1 2 colour b 10 20 30 stop")
+
+    def test_the_originals_format(self):
+        lines = self.output("frames", "-", text=self.SCRIPT).decode().splitlines()
+        words = [line.split() for line in lines]
+        frame = ["2", "1", "5000", "5000", "5000", "0", "0", "0"]
+        self.assertEqual(words[0], frame)
+        self.assertEqual(words[1], "100 400 200 500 50 -15 0 0 0 255 128 64 a 1".split())
+        self.assertEqual(words[2], "50 200 50 500 650 -15 0 0 0 255 128 64 b 2".split())
+        self.assertEqual(words[3], ["-1", "1"])
+        self.assertEqual(words[4], "0 1 500 450 -15 j".split())
+        self.assertEqual(words[6][3:6] + words[6][9:12], "1000 100 -30 255 128 64".split())
+        self.assertEqual(words[7][3:6] + words[7][9:12], "1000 700 -30 10 20 30".split())
+        self.assertEqual(words[10], "0 3 5000 5000 5000 0 0 0".split())
+        self.assertEqual(len(words), 11)
+
+    def test_files_ranges_and_the_standard_streams(self):
+        path = self.write("s.n", self.SCRIPT)
+        whole = self.output("frames", "-", text=self.SCRIPT)
+        self.assertEqual(self.output("frames", path, "-o", self.path("out.3")), b"")
+        self.assertEqual(self.read("out.3"), whole)
+        second = self.output("frames", path, "--frame", "2").splitlines()
+        self.assertEqual(second, whole.splitlines()[5:])
+        self.assertIn("frame=3: allowed are 0 to 2", self.error("frames", path, "--frame", "3"))
+
+    def test_what_scripts_print_goes_to_the_standard_error(self):
+        result = self.run_program("frames", "-", text="variables 1 v repeat 0 1 set v 7 repeat 0 2 print v stop")
+        self.assertEqual(result.returncode, 0)
+        self.assertEqual(len(result.stderr.splitlines()), 2)
+        self.assertIn(b"7", result.stderr.splitlines()[0])
+
+
+class Pictures(Case):
+    def assert_on_circle(self, points, center, radius, tol):
+        """Points and the middles of chords."""
+        middles = [((a[0] + b[0]) / 2, (a[1] + b[1]) / 2) for a, b in zip(points, points[1:])]
+        for p in points + middles:
+            self.assertLessEqual(abs(math.dist(p, center) - radius), tol)
+
+    def test_a_nearer_sphere_hides_an_arc(self):
+        paths = self.paths(NEAR_AND_FAR)
+        self.assertEqual(sorted(name for name, _, _ in paths), ["far", "near"])
+        shapes = {name: (points, closed) for name, points, closed in paths}
+        points, closed = shapes["near"]
+        self.assertTrue(closed)
+        self.assert_on_circle(points, (250, 250), 50, 0.1)
+        # Circles of 50 pixels about (250, 250) and (300, 250) cross at x = 275, y = 250 -+ sqrt(50^2 - 25^2).
+        points, closed = shapes["far"]
+        self.assertFalse(closed)
+        self.assert_on_circle(points, (300, 250), 50, 0.1)
+        crossing = math.sqrt(50**2 - 25**2)
+        ends = sorted([points[0], points[-1]], key=lambda p: p[1])
+        for (x, y), expected in zip(ends, (250 - crossing, 250 + crossing)):
+            self.assertAlmostEqual(x, 275, delta=2e-4)
+            self.assertAlmostEqual(y, expected, delta=2e-4)
+        self.assertGreater(max(x for x, _ in points), 349.8)
+
+    def test_hidden_arcs_are_removed_dashed_or_drawn(self):
+        behind = scene(("big", (200, 200, 200), (500, 500, 300)), ("small", (50, 50, 50), (500, 500, 900)))
+        self.assertEqual([name for name, _, _ in self.paths(behind)], ["big"])
+        self.assertEqual(self.paths(behind, kind="hidden"), [])
+        dashed = self.paths(behind, "--hidden=dash", kind="hidden")
+        self.assertEqual([name for name, _, _ in dashed], ["small"])
+        self.assert_on_circle(dashed[0][1], (250, 250), 25, 0.1)
+        elements = list(self.svg(behind, "--hidden=dash").iter(SVG + "path"))
+        self.assertEqual([bool(e.get("stroke-dasharray")) for e in elements], [True, False])
+        drawn = self.paths(behind, "--hidden=draw")
+        self.assertEqual(sorted(name for name, _, closed in drawn if closed), ["big", "small"])
+
+    def test_the_tolerance_decides_the_chords(self):
+        counts = []
+        for tol in (0.01, 0.1, 1):
+            paths = self.paths(NEAR_AND_FAR, "--tol=%g" % tol)
+            for name, points, _ in paths:
+                self.assert_on_circle(points, (250 if name == "near" else 300, 250), 50, tol)
+            counts.append(sum(len(points) for _, points, _ in paths))
+        self.assertGreater(counts[0], 2 * counts[1])
+        self.assertGreater(counts[1], 2 * counts[2])
+
+    def test_halo_lines_lie_under_nearer_ones(self):
+        elements = list(self.svg(NEAR_AND_FAR, "--halo=3", "--line-width=2").iter(SVG + "path"))
+        self.assertEqual([e.get("class") for e in elements], ["halo", "visible", "halo", "visible"])
+        self.assertEqual([e.get("data-body") for e in elements], [None, "far", None, "near"])
+        self.assertEqual(elements[0].get("stroke-width"), "8")
+        self.assertEqual(elements[2].get("d"), elements[3].get("d"))
+
+    def test_perspective(self):
+        # Of a sphere of radius r about the middle of the window, the eye D before it: D r / sqrt(D^2 - r^2).
+        sphere = scene(("s", (200, 200, 200), (500, 500, 500)))
+        paths = self.paths(sphere, "--perspective=600", "--size=1000")
+        self.assertEqual(len(paths), 1)
+        self.assert_on_circle(paths[0][1], (500, 500), 600 * 200 / math.sqrt(600**2 - 200**2), 0.1)
+        # Around the eye nothing is drawn.
+        self.assertEqual(self.paths(sphere, "--perspective=100"), [])
+
+    def test_sticks(self):
+        bone = scene(("bone", (10, 100, 10), (500, 300, 500)))
+        [(name, points, _)] = self.paths(bone, "--sticks=axes", "--size=1000", kind="stick")
+        self.assertEqual((name, sorted(points)), ("bone", [(500, 600), (500, 800)]))
+        limbs = ("figure f 3 a b c ellipsoid a 1 9 1 ellipsoid b 1 9 1 ellipsoid c 1 9 1\n"
+                 "joint j a 0 100 0 b 0 -100 0 joint k b 0 100 0 c 0 -100 0\n"
+                 "repeat 0 1 moveto f b 500 500 500 stop")
+        paths = self.paths(limbs, "--sticks=joints", "--size=1000", kind="stick")
+        # a and c from their centres to their joints, b from joint to joint.
+        self.assertEqual({name: sorted(points) for name, points, _ in paths},
+                         {"a": [(500, 600), (500, 700)], "b": [(500, 400), (500, 600)],
+                          "c": [(500, 300), (500, 400)]})
+
+    def test_level_of_detail(self):
+        crowd = scene(("dot", (1, 1, 1), (100, 100, 100)), ("line", (1, 50, 1), (300, 500, 100)),
+                      ("body", (50, 60, 50), (600, 600, 100)))
+        root = self.svg(crowd, "--lod=4", "--size=1000")
+        [dot] = root.iter(SVG + "circle")
+        self.assertEqual((dot.get("data-body"), float(dot.get("cx")), float(dot.get("cy"))), ("dot", 100, 900))
+        shapes = {name: points for name, points, _ in self.paths(crowd, "--lod=4", "--size=1000")}
+        self.assertEqual(sorted(shapes), ["body", "line"])
+        self.assertEqual(sorted(shapes["line"]), [(300, 450), (300, 550)])
+        self.assertGreater(len(shapes["body"]), 8)
+
+    def test_colors_and_names(self):
+        text = scene(("a_b", (50, 60, 70), (500, 500, 500)), extra="repeat 0 1 colour a_b 10 20.6 300\n")
+        [path] = self.svg(text, "--dialect=strict", "--colors").iter(SVG + "path")
+        self.assertEqual((path.get("data-body"), path.get("stroke")), ("a_b", "rgb(10,21,255)"))
+        [path] = self.svg(text, "--dialect=strict").iter(SVG + "path")
+        self.assertEqual(path.get("stroke"), "rgb(0,0,0)")
+
+    def test_what_is_off_the_page_is_cut(self):
+        for body in (("huge", (1000000, 1000000, 1000000), (1000500, 500, 500)), ("away", (10, 10, 10), (-900, 0, 0)),
+                     ("far", (10, 10, 10), (1000000000, 1000000000, 0))):
+            for name, points, _ in self.paths(scene(body)):
+                self.assertEqual(name, "huge")
+                self.assertTrue(all(-10 < c < 510 for p in points for c in p), points)
+
+    def test_numbered_files(self):
+        for pattern, name in (("a.%03d.svg", "a.007.svg"), ("b##.svg", "b07.svg"), ("c.svg", "c.0007.svg")):
+            self.output("svg", WALKER, "--frame=7-11x4", "-o", self.path(pattern))
+            self.assertEqual(self.read(name), self.output("svg", WALKER, "--frame=7"))
+            self.assertTrue(os.path.exists(self.path(name.replace("07", "11"))))
+        self.assertEqual(len(os.listdir(self.folder)), 6)
+        self.assertIn("need the name of a file", self.error("svg", WALKER, "--frame=all"))
+
+    def test_the_first_frame_shown_is_the_default(self):
+        text = "view 2 4 " + NEAR_AND_FAR.replace("stop", "linear 0 4 moveby fnear near 1 1 1 stop")
+        self.assertIn("frame 3", self.svg(text).find(SVG + "title").text)
+
+    def test_the_same_for_any_number_of_threads(self):
+        for frames in ("24", "1-20"):
+            one = self.output("text", WALKER, "--frame", frames, "--threads=1")
+            for threads in ("2", "5"):
+                self.assertEqual(self.output("text", WALKER, "--frame", frames, "--threads", threads), one)
+
+    def test_pdf(self):
+        if not CAIRO:
+            return self.assertIn("cairo", self.error("pdf", WALKER, "-o", self.path("w.pdf")))
+        self.output("pdf", WALKER, "--frame=1-5x2", "-o", self.path("w.pdf"), "--hidden=dash", "--halo=2")
+        data = self.read("w.pdf")
+        self.assertTrue(data.startswith(b"%PDF-"))
+        self.assertEqual(len(re.findall(rb"/Type\s*/Page\b", data)), 3)
+        self.assertRegex(data, rb"/MediaBox \[ 0 0 500 500 \]")
+        self.assertTrue(data.rstrip().endswith(b"%%EOF"))
+        self.assertTrue(self.output("pdf", WALKER).startswith(b"%PDF-"))
+
+    def test_png(self):
+        if not CAIRO:
+            return self.assertIn("cairo", self.error("png", WALKER, "-o", self.path("w.png")))
+        self.output("png", WALKER, "--size=99.5", "-o", self.path("w.png"))
+        data = self.read("w.png")
+        self.assertEqual(data[:8], b"\x89PNG\r\n\x1a\n")
+        self.assertEqual(struct.unpack(">II", data[16:24]), (100, 100))
+
+
+class Text(Case):
+    SPHERE = scene(("s", (400, 400, 400), (500, 500, 500)))
+
+    def assert_circle(self, dots, size):
+        self.assertGreater(len(dots), 2 * size)
+        for x, y in dots:
+            distance = math.dist((x + 0.5, y + 0.5), (size / 2, size / 2))
+            self.assertLess(abs(distance - 0.4 * size), 1.2)
+
+    def test_braille(self):
+        lines = self.output("text", "-", "--width=30", text=self.SPHERE).decode().splitlines()
+        self.assertEqual(lines[0], "frame 1")
+        self.assertEqual(len(lines), 1 + 15)
+        # Unicode's numbering: dots 1 to 3 and 7 are the left column, 4 to 6 and 8 the right one.
+        place = [(0, 0), (0, 1), (0, 2), (1, 0), (1, 1), (1, 2), (0, 3), (1, 3)]
+        dots = []
+        for row, line in enumerate(lines[1:]):
+            self.assertLessEqual(len(line), 30)
+            for column, character in enumerate(line):
+                bits = 0 if character == " " else ord(character) - 0x2800
+                self.assertTrue(0 <= bits < 256)
+                dots += [(2 * column + x, 4 * row + y) for k, (x, y) in enumerate(place) if bits >> k & 1]
+        self.assert_circle(dots, 60)
+
+    def test_ascii(self):
+        lines = self.output("text", "-", "--characters=ascii", text=self.SPHERE).decode("ascii").splitlines()
+        self.assertEqual(len(lines), 1 + 40)
+        dots = []
+        for row, line in enumerate(lines[1:]):
+            for column, character in enumerate(line):
+                dots += [(column, 2 * row)] * (character in "':") + [(column, 2 * row + 1)] * (character in ".:")
+        self.assert_circle(dots, 80)
+
+
+class Stats(Case):
+    def test_counts(self):
+        lines = dict(re.split(r"  +", line) for line in self.output("stats", WALKER).decode().splitlines())
+        counts = {name: int(lines[name]) for name in ("frames", "figures", "ellipsoids", "joints", "subroutines")}
+        self.assertEqual(counts, {"frames": 49, "figures": 1, "ellipsoids": 17, "joints": 16, "subroutines": 3})
+        self.assertGreater(int(lines["actions"]), 40)
+        self.assertRegex(lines["performed in"], r"^[\d.e-]+ ms$")
+
+
+class BadInput(Case):
+    def test_options(self):
+        for options, said in (
+                ([], "subcommand"), (["draw", WALKER], "subcommand"), (["svg"], "SCRIPT"),
+                (["svg", WALKER, "--frame=0x"], "allowed are N"), (["svg", WALKER, "--frame=5-1"], "allowed are N"),
+                (["svg", WALKER, "--frame=-1"], "allowed are N"), (["svg", WALKER, "--frame=9999999999"], "allowed"),
+                (["svg", WALKER, "--frame=1-4x0"], "allowed are N"), (["svg", WALKER, "--frame=900"], "0 to 49"),
+                (["svg", WALKER, "--tol=0"], "--tol"), (["svg", WALKER, "--tol=nan"], "--tol"),
+                (["svg", WALKER, "--tol="], "--tol"), (["svg", WALKER, "--size=1e9"], "--size"),
+                (["svg", WALKER, "--size=inf"], "--size"), (["svg", WALKER, "--perspective=0"], "--perspective"),
+                (["svg", WALKER, "--threads=-1"], "--threads"), (["text", WALKER, "--width=0"], "--width"),
+                (["svg", WALKER, "--threads=1.5"], "--threads"),
+                (["svg", WALKER, "--hidden=maybe"], "--hidden"), (["check", WALKER, "--dialect=new"], "--dialect"),
+                (["svg", WALKER, "--nothing"], "--nothing")):
+            self.assertIn(said, self.error(*options), options)
+
+    def test_files(self):
+        self.assertIn("cannot read", self.error("check", self.path("none.n")))
+        self.assertIn("cannot read", self.error("svg", self.folder))
+        self.assertIn("none.n", self.error("svg", WALKER, "--library", self.path("none.n")))
+        for command in ("frames", "svg", "text") + (("pdf", "png") if CAIRO else ()):
+            self.assertIn("cannot write", self.error(command, WALKER, "-o", self.path("no/folder/out")))
+            if os.path.exists("/dev/full"):
+                self.assertRegex(self.error(command, WALKER, "-o", "/dev/full"), "cannot write|writing")
+
+    def test_scripts(self):
+        self.assertIn("shows no frame", self.error("text", "-", "--frame=all", text="stop"))
+        self.assertIn("stdin:1:1", self.error("frames", "-", text="nonsense stop"))
+        self.assertIn("divi", self.error("frames", "-", text="variables 1 v repeat 0 1 divide v 1 0 stop"))
+        line = "subroutine s repeat 0 1 call s endsub s call 0 1 s stop"
+        self.assertIn("call each other", self.error("frames", "-", text=line))
+        self.run_program("svg", "-", text=scene(("z", (0, 0, 0), (500, 500, 500))))
+        self.run_program("svg", "-", text=scene(("n", (1000000, "0.000001", 1), (500, 500, 500))))
+
+    def test_scripts_cut_short_and_spoiled(self):
+        with open(WALKER, "rb") as file:
+            script = file.read()
+        seed = 20260
+        chance = random.Random(seed)
+        for k in range(40):
+            spoiled = bytearray(script)
+            for _ in range(chance.randint(1, 4)):
+                spoiled[chance.randrange(len(spoiled))] = chance.randrange(256)
+            text = bytes(spoiled) if k % 2 else script[:chance.randrange(len(script))]
+            result = self.run_program("text", "-", "--frame=all", "--width=10", text=text)
+            if result.returncode:
+                self.assertTrue(result.stderr.splitlines()[-1].startswith(b"anamorph-figure: "), (seed, k))
+
+
+if __name__ == "__main__":
+    unittest.main(verbosity=1)
