@@ -273,7 +273,7 @@ TEST(FigureErrors, NameTheLine) {
     EXPECT_THAT(error("repeat 0 99 multiply v v v\nrepeat 0 1 set v 1000\nrepeat 1 9999 multiply v v 1000"),
                 HasSubstr("the variable v overflows"));
     EXPECT_THAT(error("repeat 0 2000 grofig f a 1000 1 1"),
-                HasSubstr("the ellipsoid a is out of all bounds"));
+                HasSubstr("own.n:3:15: grofig in frame 103: the ellipsoid a is out of all bounds"));
     EXPECT_THAT(error("repeat 0 1 detach a k h\nrepeat 1 2 attach a k a 0 0 0"),
                 HasSubstr("own.n:3:12: detach in frame 1: there is no joint k at this moment"));
     EXPECT_THAT(error("repeat 1 2 attach a k a 0 0 0\nrepeat 2 3 attach a k a 0 0 0"),

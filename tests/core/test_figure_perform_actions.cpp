@@ -293,6 +293,11 @@ TEST(FigureOwnScripts, ForbiddenEllipsoidsStop) {
     EXPECT_NEAR(center(p.frame(15), "a").x, 14, 1e-9);
     Performance allowed = perform(start + "repeat 0 1 forbid world world  repeat 0 1 allow b a" + run);
     EXPECT_NEAR(center(allowed.frame(31), "a").x, 30, 1e-9);
+    // The two parts of a figure overlap at their joint, which world does not mean; named, they are meant.
+    const std::string joined =
+        "figure f 2 a b  ellipsoid a 5 5 5  ellipsoid b 5 5 5  joint j a 0 4 0 b 0 -4 0\n";
+    EXPECT_NO_THROW(perform(joined + "repeat 0 1 forbid world world stop").frame(1));
+    EXPECT_THROW(perform(joined + "repeat 0 1 forbid a b stop").frame(1), Error);
 }
 
 }  // namespace

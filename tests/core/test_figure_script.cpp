@@ -308,6 +308,9 @@ TEST(FigureScript, StrictRefusesWhatClassicWarnsOf) {
         EXPECT_THAT(messages(parse(script, Dialect::strict)),
                     ElementsAre(AllOf(HasSubstr("error"), HasSubstr(message))));
     }
+    EXPECT_THAT(messages(parse(kFigure + "variables 1 u stop")), IsEmpty());
+    EXPECT_THAT(messages(parse(kFigure + "variables 1 u stop", Dialect::strict)),
+                ElementsAre(HasSubstr("the variable \"u\" is declared twice")));
     const std::string itself =
         kFigure + "subroutine s call 2 6 t endsub s subroutine t call 0 1 s endsub t stop";
     EXPECT_THAT(messages(parse(itself)), IsEmpty());

@@ -139,14 +139,46 @@ std::string FigureAction::joint_name(int j) const {
 
 // --- Figures
 
+void FigureAction::check(const glm::dvec3& v, const std::string& what) const {
+    if (!std::isfinite(v.x) || !std::isfinite(v.y) || !std::isfinite(v.z))
+        fail(what + " is out of all bounds");
+}
+
+void FigureAction::check(const FigurePart& part) const {
+    for (const int i : part.bodies) {
+        const auto& b = body(i);
+        const double sum = b.center.x + b.center.y + b.center.z + b.axes.x + b.axes.y + b.axes.z + b.turn.w +
+                           b.turn.x + b.turn.y + b.turn.z;
+        if (!std::isfinite(sum)) fail("the ellipsoid " + ellipsoid_name(i) + " is out of all bounds");
+    }
+    for (const int j : part.joints) check(joint_position(j), "the joint " + joint_name(j));
+}
+
+void FigureAction::move(const FigurePart& part, const glm::dvec3& by) const {
+    translate(m_state, part, by);
+    check(part);
+}
+
+void FigureAction::spin(const FigurePart& part, const glm::dquat& by, const glm::dvec3& about) const {
+    turn(m_state, part, by, about);
+    check(part);
+}
+
+glm::dvec3 FigureAction::towards(const glm::dvec3& now, const glm::dvec3& target,
+                                 const std::string& what) const {
+    const glm::dvec3 there = now + m_shares.prop * (target - now);
+    check(there, what);
+    return there;
+}
+
 void FigureAction::moveby() const {
     const FigurePart part = figure(0);
-    translate(m_state, part, m_shares.frac * (glm::mat3_cast(body(ellipsoid(1)).turn) * vector(2)));
+    move(part, m_shares.frac * (glm::mat3_cast(body(ellipsoid(1)).turn) * vector(2)));
 }
 
 void FigureAction::moveto() const {
     const FigurePart part = figure(0);
-    translate(m_state, part, m_shares.prop * (vector(2) - body(ellipsoid(1)).center));
+    move(part, m_shares.prop * (vector(2) - body(ellipsoid(1)).center));
 }
 
 void FigureAction::ground() const {
@@ -154,13 +186,13 @@ void FigureAction::ground() const {
     if (part.bodies.empty()) return;
     // The original takes its share of the whole out of what remains, and so does not arrive.
     const double share = strict() ? m_shares.prop : m_shares.frac;
-    translate(m_state, part, {0, -share * lowest(m_state, part.bodies), 0});
+    move(part, {0, -share * lowest(m_state, part.bodies), 0});
 }
 
 void FigureAction::spinby() const {
     const FigurePart part = figure(0);
     const glm::dvec3 axis_direction = direction(ellipsoid(2), axis(4));
-    turn(m_state, part, turn_about(axis_direction, number(3) * m_shares.frac), body(ellipsoid(1)).center);
+    spin(part, turn_about(axis_direction, number(3) * m_shares.frac), body(ellipsoid(1)).center);
 }
 
 namespace {
@@ -181,11 +213,11 @@ void FigureAction::spinto() const {
     const FigurePart part = figure(0);
     const auto& moved = body(ellipsoid(1));
     const glm::dquat target = body(ellipsoid(2)).turn * turn_of_angles(vector(3));
-    turn(m_state, part, part_of_turn(moved.turn, target, m_shares.prop), moved.center);
+    spin(part, part_of_turn(moved.turn, target, m_shares.prop), moved.center);
 }
 
 void FigureAction::bend(int ellipsoid, int joint, const glm::dquat& by) const {
-    turn(m_state, part_from(m_state, ellipsoid, joint), by, joint_position(joint));
+    spin(part_from(m_state, ellipsoid, joint), by, joint_position(joint));
     if (strict()) enforce_limit(ellipsoid, joint);
 }
 
@@ -242,7 +274,7 @@ void FigureAction::enforce_limit(int ellipsoid, int joint) const {
     const glm::dquat wanted = turn_xyz(kept);
     const glm::dquat back = moves_second ? first * wanted * glm::conjugate(second)
                                          : second * glm::conjugate(wanted) * glm::conjugate(first);
-    turn(m_state, part, back, joint_position(joint));
+    spin(part, back, joint_position(joint));
 }
 
 // --- Variables
@@ -280,9 +312,6 @@ void FigureAction::calculate() const {
 }
 
 void FigureAction::perform() {
-    const auto towards = [&](const glm::dvec3& now, const glm::dvec3& target) {
-        return now + m_shares.prop * (target - now);
-    };
     switch (m_movement.action) {
         case Action::moveby:
             return moveby();
@@ -342,7 +371,7 @@ void FigureAction::perform() {
         }
         case Action::colour: {
             auto& painted = body(ellipsoid(0));
-            painted.color = towards(painted.color, vector(1));
+            painted.color = towards(painted.color, vector(1), "the colour");
             painted.image = -1;
             return;
         }
@@ -353,10 +382,10 @@ void FigureAction::perform() {
             return;
         }
         case Action::observe:
-            m_state.observe = towards(m_state.observe, vector(0));
+            m_state.observe = towards(m_state.observe, vector(0), "the view");
             return;
         case Action::place:
-            m_state.place = towards(m_state.place, vector(0));
+            m_state.place = towards(m_state.place, vector(0), "the place");
             return;
         case Action::allow:
         case Action::forbid: {

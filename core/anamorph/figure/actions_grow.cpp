@@ -25,6 +25,7 @@ void FigureAction::scale(const FigurePart& part, const glm::dvec3& about, const 
         body(i).axes *= glm::abs(factors);
     }
     for (const int j : part.joints) joint_position(j) = about + factors * (joint_position(j) - about);
+    check(part);
 }
 
 void FigureAction::grofig() const {
@@ -34,7 +35,9 @@ void FigureAction::grofig() const {
 }
 
 void FigureAction::groell() const {
-    body(ellipsoid(0)).axes *= glm::abs(powers(vector(1), m_shares.frac));
+    const int grown = ellipsoid(0);
+    body(grown).axes *= glm::abs(powers(vector(1), m_shares.frac));
+    check(FigurePart{{grown}, {}});
 }
 
 void FigureAction::grojnt() const {
@@ -53,11 +56,13 @@ void FigureAction::grojnt() const {
         const int other = m_state.topology->other_end(j, grown);
         FigurePart limb = part_from(m_state, other, j);
         const bool ring = std::find(limb.bodies.begin(), limb.bodies.end(), grown) != limb.bodies.end();
-        if (!ring) translate(m_state, limb, by);
+        if (!ring) move(limb, by);
         joint_position(j) += by;
+        check(joint_position(j), "the joint " + joint_name(j));
     }
     body(grown).center = moved(body(grown).center);
     body(grown).axes *= glm::abs(factors);
+    check(FigurePart{{grown}, {}});
 }
 
 void FigureAction::growto() const {
@@ -83,8 +88,9 @@ void FigureAction::movjnt() const {
     const FigurePart part = part_from(m_state, other, moved);
     if (std::find(part.bodies.begin(), part.bodies.end(), held) != part.bodies.end())
         fail("the joint " + joint_name(moved) + " is part of a ring");
-    translate(m_state, part, by);
+    move(part, by);
     joint_position(moved) += by;
+    check(joint_position(moved), "the joint " + joint_name(moved));
 }
 
 void FigureAction::attach() const {
@@ -98,6 +104,7 @@ void FigureAction::attach() const {
             fail("the joint " + joint_name(made) + " closes a ring");
     }
     joint_position(made) = body(strict() ? second : first).center + vector(3);
+    check(joint_position(made), "the joint " + joint_name(made));
     auto topology = std::make_shared<Topology>(*m_state.topology);
     topology->joints[static_cast<std::size_t>(made)] = {first, second, true};
     topology->joint_order.push_back(made);

@@ -21,6 +21,7 @@ struct Probe {
 };
 
 constexpr double kShortestStep = 1e-3;
+constexpr double kTouching = 1e-12;  // less than that is rounding error: it is there
 
 /// The angle where `probe` has its sign change between two.
 template <class Function>
@@ -68,7 +69,7 @@ std::optional<double> nearest_zero(const Function& probe) {
         Probe at;
     };
     const Probe start = probe(0.0);
-    if (start.value == 0) return 0;
+    if (std::abs(start.value) < kTouching) return 0;
     Walker walkers[2] = {{1, 0, start}, {-1, 0, start}};
     while (true) {
         Walker& w = walkers[walkers[0].angle <= walkers[1].angle ? 0 : 1];
@@ -168,7 +169,7 @@ void FigureAction::abut() const {
         const double after = bisect(apart, way, nearest + reach + 1e-9 * std::abs(nearest));
         way = std::abs(before) < std::abs(after) ? before : after;
     }
-    translate(m_state, part, m_shares.prop * way * unit);
+    move(part, m_shares.prop * way * unit);
 }
 
 void FigureAction::drag() const {
@@ -180,7 +181,7 @@ void FigureAction::drag() const {
     if (!contains(part_from(m_state, bent, at).bodies, dragged))
         return say("frame " + std::to_string(m_frame) + ", drag: the joint " + joint_name(at) +
                    " does not move " + ellipsoid_name(dragged));
-    const auto ground_far_side = [&] { translate(m_state, whole, {0, -lowest(m_state, far.bodies), 0}); };
+    const auto ground_far_side = [&] { move(whole, {0, -lowest(m_state, far.bodies), 0}); };
     ground_far_side();
     // The original takes the axis of the other ellipsoid, whatever is asked for.
     if (strict())
@@ -258,12 +259,18 @@ void check_overlaps(const Program& program, const FigureState& state, int frame)
                     features_text::excerpt(program.ellipsoids[static_cast<std::size_t>(j)].name) +
                     " meet, which is forbidden");
     };
+    // Neighbours overlap at their joint: world, which stands for all, does not mean them.
+    const auto neighbours = [&](int i, int j) {
+        const auto& joints = state.topology->joints_of[static_cast<std::size_t>(i)];
+        return std::any_of(joints.begin(), joints.end(),
+                           [&](int joint) { return state.topology->is_end(joint, j); });
+    };
     const int count = static_cast<int>(state.bodies.size());
     for (const auto& rule : state.overlaps) {
         if (!rule.forbidden) continue;
         for (int i = rule.first ? rule.first : 1; i < (rule.first ? rule.first + 1 : count); ++i)
             for (int j = rule.second ? rule.second : 1; j < (rule.second ? rule.second + 1 : count); ++j)
-                check(i, j);
+                if ((rule.first && rule.second) || !neighbours(i, j)) check(i, j);
     }
 }
 

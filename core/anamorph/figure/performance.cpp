@@ -108,10 +108,6 @@ struct Performance::Impl {
     // --- Performing
 
     void perform_subroutine(int subroutine, double clock, int depth) {
-        if (depth > kDeepestCall || ++calls > kMostCalls)
-            throw Error("frame " + std::to_string(performing) +
-                        ": subroutines call each other without end, by way of " +
-                        program.subroutines[static_cast<std::size_t>(subroutine)].name);
         const auto s = static_cast<std::size_t>(subroutine);
         for (std::size_t i = 0; i < spans[s].size(); ++i) {
             const Span span = span_of(s, i);
@@ -121,6 +117,9 @@ struct Performance::Impl {
             if (m.action == Action::call) {
                 const int called =
                     FigureAction::index(program, state, m.operands[0], OperandKind::subroutine, m.position);
+                if (depth == kDeepestCall || ++calls > kMostCalls)
+                    throw Error(program.where(m.position) + ": call in frame " + std::to_string(performing) +
+                                ": subroutines call each other without end");
                 // A call runs on from frame to frame; as an action, `call` is the first frame each time.
                 const double since = m.distribution == Distribution::call ? clock - span.start : 1;
                 perform_subroutine(called, zero_of(called) + since, depth + 1);
@@ -131,24 +130,12 @@ struct Performance::Impl {
         }
     }
 
-    void check_state() const {
-        for (std::size_t i = 1; i < state.bodies.size(); ++i) {
-            const auto& b = state.bodies[i];
-            for (int k = 0; k < 3; ++k)
-                if (!std::isfinite(b.center[k]) || !std::isfinite(b.axes[k]) || !std::isfinite(b.color[k]) ||
-                    !std::isfinite(b.turn[k]))
-                    throw Error("frame " + std::to_string(performing) + ": the ellipsoid " +
-                                program.ellipsoids[i].name + " is out of all bounds");
-        }
-    }
-
     /// Performs the frame after the one that `state` is at.
     void perform_next() {
         performing = now + 1;
         calls = 0;
         idle = true;
         perform_subroutine(0, zero_of(0) + performing, 0);
-        check_state();
         check_overlaps(program, state, performing);
         now = performing;
         told = std::max(told, now);

@@ -334,7 +334,11 @@ void ScriptParser::variables() {
     const int count = take_integer("a whole number of variables from 1", 1, kMostCount);
     for (int i = 0; i < count; ++i) {
         const ScriptToken token = peek();
-        m_symbols.make(OperandKind::variable, take_name(OperandKind::variable), position_of(token));
+        const std::string name = take_name(OperandKind::variable);
+        // All are global: what looks like one of a subroutine's own is not.
+        if (strict() && m_symbols.find(OperandKind::variable, name))
+            error(position_of(token), "the variable " + quoted(name) + " is declared twice");
+        m_symbols.make(OperandKind::variable, name, position_of(token));
         check_size(m_program.variables.size(), position_of(token));
     }
 }
