@@ -1,0 +1,25 @@
+# SPDX-License-Identifier: Apache-2.0
+# The figure classes from Python: every property set and read, and a script from reader to lines.
+import os
+import tempfile
+
+import anamorph
+
+reader = anamorph.vtkAnamorphFigureReader()
+for name, value in [("FileName", "walk.n"), ("Dialect", reader.STRICT), ("NumberOfLibraries", 2), ("Joints", True),
+                    ("OutputPointsPrecision", reader.SINGLE_PRECISION)]:
+    getattr(reader, "Set" + name)(value)
+    assert getattr(reader, "Get" + name)() == value, name
+reader.SetLibrary(1, "fred.n")
+assert reader.GetLibrary(1) == "fred.n" and "fred.n" in str(reader)
+
+with tempfile.TemporaryDirectory() as folder:
+    path = os.path.join(folder, "one.nudes")
+    with open(path, "w") as file:
+        file.write("figure f 1 a ellipsoid a 10 20 30 linear 0 3 moveby f a 3 0 0 stop")
+    reader = anamorph.vtkAnamorphFigureReader()
+    assert reader.CanReadFile(path)
+    reader.SetFileName(path)
+    reader.UpdateTimeStep(2)
+    assert reader.GetOutput().GetPoint(0) == (2, 0, 0)
+    assert reader.GetOutput().GetPointData().GetAbstractArray("Name").GetValue(0) == "a"

@@ -1,0 +1,223 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "vtkAnamorphFigureReader.h"
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <new>
+#include <optional>
+
+#include "anamorph/error.h"
+#include "anamorph/figure/performance.h"
+#include "anamorph/figure/script.h"
+#include "figure_data.h"
+#include "vtkDataObject.h"
+#include "vtkInformation.h"
+#include "vtkInformationVector.h"
+#include "vtkObjectFactory.h"
+#include "vtkPolyData.h"
+#include "vtkStreamingDemandDrivenPipeline.h"
+
+vtkObjectFactoryNewMacro(vtkAnamorphFigureReader);
+
+namespace {
+
+using anamorph::Error;
+using anamorph::Performance;
+using Executive = vtkStreamingDemandDrivenPipeline;
+
+constexpr int kMostLibraries = 1 << 16;
+constexpr int kMostSteps = 1000000;  ///< that are listed one by one
+
+/// A text of up to the size that a script may have, and a byte: the parser says what is wrong with more.
+std::optional<std::string> read_text(const std::string& path) {
+    std::error_code ignored;
+    if (std::filesystem::is_directory(path, ignored)) return std::nullopt;
+    std::ifstream in(path, std::ios::binary);
+    if (!in) return std::nullopt;
+    std::string text;
+    char block[1 << 16];
+    while (text.size() <= anamorph::kMaxScriptText && in.read(block, sizeof block).gcount() > 0)
+        text.append(block, static_cast<std::size_t>(in.gcount()));
+    return text;
+}
+
+anamorph::Script read_script(const std::string& path, const std::vector<std::string>& libraries,
+                             anamorph::Dialect dialect) {
+    const std::optional<std::string> text = read_text(path);
+    if (!text) throw Error("FileName", path, "there is no such file that can be read");
+    anamorph::ScriptOptions options;
+    options.dialect = dialect;
+    options.libraries = libraries;
+    options.include = [&](const std::string& name) {
+        const bool library = std::find(libraries.begin(), libraries.end(), name) != libraries.end();
+        return read_text(library ? name : (std::filesystem::path(path).parent_path() / name).string());
+    };
+    return anamorph::parse_script(*text, path, options);
+}
+
+/// The first error, and how many there are.
+std::string errors_of(const anamorph::Script& script) {
+    std::string first;
+    int others = -1;
+    for (const anamorph::Diagnostic& d : script.diagnostics) {
+        if (d.severity != anamorph::Severity::error) continue;
+        if (first.empty()) first = d.text();
+        ++others;
+    }
+    return others > 0 ? first + " (and " + std::to_string(others) + " more)" : first;
+}
+
+}  // namespace
+
+struct vtkAnamorphFigureReader::Play {
+    explicit Play(anamorph::Program program) : performance(std::move(program)) {
+        first = performance.first_frame();
+        step = performance.frame_step();
+        count = performance.frame_count();
+    }
+
+    /// The last frame shown at or before a time; 0 where none is shown.
+    int frame_at(double time) const {
+        if (count == 0) return 0;
+        const double index = std::floor((time - first) / step);
+        return first + step * static_cast<int>(index > 0 ? std::min(index, count - 1.0) : 0.0);
+    }
+
+    Performance performance;
+    int first = 0, step = 1, count = 0;
+    vtkMTimeType since = 0;
+};
+
+vtkAnamorphFigureReader::vtkAnamorphFigureReader() {
+    this->SetNumberOfInputPorts(0);
+}
+vtkAnamorphFigureReader::~vtkAnamorphFigureReader() = default;
+
+void vtkAnamorphFigureReader::SetFileName(const char* name) {
+    const std::string wanted = name ? name : "";
+    if (wanted == this->FileName) return;
+    this->FileName = wanted;
+    this->Modified();
+}
+
+int vtkAnamorphFigureReader::CanReadFile(const char* name) {
+    try {
+        if (!name) return 0;
+        std::ifstream in(name, std::ios::binary);
+        char head[4096];
+        in.read(head, sizeof head);
+        if (std::find(head, head + in.gcount(), '\0') != head + in.gcount()) return 0;
+        const anamorph::Script script = read_script(name, {}, anamorph::Dialect::classic);
+        return script.ok() || script.program.ellipsoids.size() > 1;
+    } catch (const std::exception&) {
+        return 0;
+    }
+}
+
+void vtkAnamorphFigureReader::SetNumberOfLibraries(int count) {
+    const auto size = static_cast<std::size_t>(std::clamp(count, 0, kMostLibraries));
+    if (size == this->Libraries.size()) return;
+    this->Libraries.resize(size);
+    this->Modified();
+}
+
+void vtkAnamorphFigureReader::SetLibrary(int index, const char* name) {
+    if (index < 0 || index >= kMostLibraries) {
+        vtkErrorMacro(<< "Library index=" << index << ": allowed are 0 to " << kMostLibraries - 1);
+        return;
+    }
+    if (index >= this->GetNumberOfLibraries()) this->SetNumberOfLibraries(index + 1);
+    std::string& library = this->Libraries[static_cast<std::size_t>(index)];
+    const std::string wanted = name ? name : "";
+    if (library == wanted) return;
+    library = wanted;
+    this->Modified();
+}
+
+const char* vtkAnamorphFigureReader::GetLibrary(int index) {
+    if (index < 0 || index >= this->GetNumberOfLibraries()) return nullptr;
+    return this->Libraries[static_cast<std::size_t>(index)].c_str();
+}
+
+void vtkAnamorphFigureReader::AddLibrary(const char* name) {
+    this->SetLibrary(this->GetNumberOfLibraries(), name);
+}
+
+/// Reads the script if that has not been done since the last change. Throws Error.
+void vtkAnamorphFigureReader::Prepare() {
+    if (this->Current && this->Current->since == this->GetMTime()) return;
+    this->Current = nullptr;
+    if (this->FileName.empty()) throw Error("FileName", "", "needed is the name of a script");
+    std::vector<std::string> libraries;
+    for (const std::string& name : this->Libraries)
+        if (!name.empty()) libraries.push_back(name);
+    anamorph::Script script =
+        read_script(this->FileName, libraries,
+                    this->Dialect == STRICT ? anamorph::Dialect::strict : anamorph::Dialect::classic);
+    if (!script.ok()) throw Error(errors_of(script));
+    this->Current = std::make_unique<Play>(std::move(script.program));
+    this->Current->since = this->GetMTime();
+}
+
+int vtkAnamorphFigureReader::RequestInformation(vtkInformation*, vtkInformationVector**,
+                                                vtkInformationVector* outputs) {
+    vtkInformation* output = outputs->GetInformationObject(0);
+    output->Set(CAN_HANDLE_PIECE_REQUEST(), 1);
+    output->Remove(Executive::TIME_STEPS());
+    output->Remove(Executive::TIME_RANGE());
+    try {
+        this->Prepare();
+        const Play& play = *this->Current;
+        if (play.count == 0) return 1;
+        const double range[2] = {1.0 * play.first, play.first + (play.count - 1.0) * play.step};
+        output->Set(Executive::TIME_RANGE(), range, 2);
+        if (play.count > kMostSteps) return 1;
+        std::vector<double> steps;
+        for (int i = 0; i < play.count; ++i) steps.push_back(play.first + 1.0 * i * play.step);
+        output->Set(Executive::TIME_STEPS(), steps.data(), play.count);
+        return 1;
+    } catch (const std::bad_alloc&) {
+        vtkErrorMacro(<< "not enough memory");
+    } catch (const std::exception& error) {
+        vtkErrorMacro(<< error.what());
+    }
+    return 0;
+}
+
+int vtkAnamorphFigureReader::RequestData(vtkInformation*, vtkInformationVector**,
+                                         vtkInformationVector* outputs) {
+    vtkInformation* information = outputs->GetInformationObject(0);
+    vtkPolyData* output = vtkPolyData::GetData(outputs);
+    output->Initialize();
+    try {
+        this->Prepare();
+        Play& play = *this->Current;
+        const int frame = play.frame_at(information->Has(Executive::UPDATE_TIME_STEP())
+                                            ? information->Get(Executive::UPDATE_TIME_STEP())
+                                            : play.first);
+        if (information->Get(Executive::UPDATE_PIECE_NUMBER()) <= 0)
+            anamorph_vtk::write_figures(play.performance.frame(frame), this->Joints,
+                                        this->OutputPointsPrecision, output);
+        if (play.count > 0) output->GetInformation()->Set(vtkDataObject::DATA_TIME_STEP(), frame);
+        return 1;
+    } catch (const std::bad_alloc&) {
+        vtkErrorMacro(<< "not enough memory");
+    } catch (const std::exception& error) {
+        vtkErrorMacro(<< error.what());
+    }
+    output->Initialize();
+    return 0;
+}
+
+void vtkAnamorphFigureReader::PrintSelf(ostream& os, vtkIndent indent) {
+    this->Superclass::PrintSelf(os, indent);
+    os << indent << "FileName: " << this->FileName << "\n"
+       << indent << "Dialect: " << (this->Dialect == STRICT ? "strict" : "classic") << "\n"
+       << indent << "Libraries:";
+    for (const std::string& name : this->Libraries) os << " " << name;
+    os << "\n"
+       << indent << "Joints: " << this->Joints << "\n"
+       << indent << "OutputPointsPrecision: " << this->OutputPointsPrecision << "\n";
+}
