@@ -5,6 +5,6 @@ import sys
 import anamorph
 
 assert len(sys.argv) < 2 or anamorph.__file__.startswith(sys.argv[1]), anamorph.__file__
-for name in ["vtkAnamorphDeform", "vtkAnamorphDeformationList", "vtkAnamorphInbetween",
-             "vtkAnamorphReliefSource"]:
+for name in ["vtkAnamorphDeform", "vtkAnamorphDeformationList", "vtkAnamorphFigureReader",
+             "vtkAnamorphInbetween", "vtkAnamorphReliefSource"]:
     assert getattr(anamorph, name)().GetClassName() == name
