@@ -27,6 +27,7 @@
 
 #include "../core/feature_families.h"
 #include "anamorph/approx/near_far.h"
+#include "anamorph/approx/near_far_line.h"
 #include "anamorph/approx/near_far_mesh.h"
 #include "anamorph/image/morph.h"
 #include "anamorph/simd/near_far.h"
@@ -126,29 +127,9 @@ class SimdExact {
   public:
     explicit SimdExact(const Scene& scene) : m_scene(scene), m_middle(0.5 * scene.size()) {
         const FeatureMap& map = scene.map;
-        for (std::size_t i = 0; i < map.size(); ++i) {
-            const FeatureMap::TargetLine& l = map.line(i);
-            const double dx = m_middle - l.p.x, dy = m_middle - l.p.y;
-            const double along = dx * l.along.x + dy * l.along.y, beside = dy * l.along.x - dx * l.along.y;
-            simd::FieldLine line{};
-            line.before = static_cast<float>(-along);
-            line.behind = static_cast<float>(along - l.length);
-            line.beside = static_cast<float>(beside);
-            line.along_x = static_cast<float>(l.along.x);
-            line.along_y = static_cast<float>(l.along.y);
-            line.factor = static_cast<float>(l.factor);
-            for (int k = 0; k < 2; ++k) {
-                const FeatureMap::Displacement& d = map.displacement(i, k);
-                const auto set = [&](int c, double origin, double along_rate, double beside_rate) {
-                    line.at[c] = static_cast<float>(origin + along_rate * along + beside_rate * beside);
-                    line.right[c] = static_cast<float>(along_rate * l.along.x - beside_rate * l.along.y);
-                    line.down[c] = static_cast<float>(along_rate * l.along.y + beside_rate * l.along.x);
-                };
-                set(2 * k, d.origin.x, d.along_rate.x, d.beside_rate.x);
-                set(2 * k + 1, d.origin.y, d.along_rate.y, d.beside_rate.y);
-            }
-            m_lines.push_back(line);
-        }
+        const double origin[4] = {};
+        for (std::size_t i = 0; i < map.size(); ++i)
+            m_lines.push_back(seen_from(map, i, {0, 1}, m_middle, m_middle, origin, 1));
     }
 
     /// body(box, four rows of planes) for every block.

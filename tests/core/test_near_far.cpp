@@ -145,7 +145,7 @@ TEST(NearFar, InterpolationErrorsStayBelowTheirClosedForms) {
         // The cell stands at the origin of its region, the line anywhere around it and turned.
         const double away = half * (1 + 4 * unit(random)), turn = 6.2832 * unit(random);
         const double x0 = away * std::cos(turn) + 0.5 * length, y0 = away * std::sin(turn);
-        alignas(64) float data[23 * 16] = {};
+        alignas(64) float data[simd::LineTable::kFields * 16] = {}, factor[16] = {1};
         const auto put = [&](int field, double v) { data[field * 16] = static_cast<float>(v); };
         for (int i = 1; i < 16; ++i) data[i] = 1e6f;
         put(simd::LineTable::kBefore, -x0);
@@ -153,10 +153,8 @@ TEST(NearFar, InterpolationErrorsStayBelowTheirClosedForms) {
         put(simd::LineTable::kBeside, y0);
         put(simd::LineTable::kAlongX, c);
         put(simd::LineTable::kAlongY, s);
-        put(simd::LineTable::kFactor, 1);
         put(simd::LineTable::kSlope, 1 / half);
-        const simd::LineTable table{data, 16, data + simd::LineTable::kFields * 16,
-                                    data + (simd::LineTable::kFields + 4) * 16, 1};
+        const simd::LineTable table{data, 16, factor, 1};
         alignas(64) float out[9][16];
         simd::LineBounds bounds{out[0], out[1], out[2], out[3], out[4], {out[5], out[6], out[7], out[8]},
                                 {},     0};

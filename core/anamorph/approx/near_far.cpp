@@ -43,7 +43,6 @@
 
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <cmath>
 #include <cstdio>
 #include <limits>
@@ -51,6 +50,7 @@
 #include <numbers>
 #include <unordered_map>
 
+#include "anamorph/approx/near_far_line.h"
 #include "anamorph/error.h"
 #include "anamorph/simd/near_far.h"
 
@@ -157,83 +157,133 @@ struct Region {
 /// Lines and what is known of them over the cell at hand; one for each depth of the recursion.
 class Candidates {
   public:
-    void reset(std::size_t count) {
-        m_count = count;
-        m_stride = (count + 15) / 16 * 16;
-        const std::size_t fields = LineTable::kFields + 2 * kComponents;
-        if (m_table.size() < fields * m_stride) m_table.resize(fields * m_stride);
-        if (m_bounds.size() < kBounds * m_stride) m_bounds.resize(kBounds * m_stride);
-        ids.resize(count);
-        // Lines of factor 0 fill up the last vector, far from everything.
-        for (std::size_t f = 0; f < fields; ++f)
-            for (std::size_t i = count; i < m_stride; ++i)
-                m_table[f * m_stride + i] = f == LineTable::kBefore   ? 1e6f
-                                            : f == LineTable::kAlongX ? 1.0f
-                                                                      : 0.0f;
-    }
-    std::size_t count() const { return m_count; }
-
-    void set(std::size_t i, std::int32_t id, const FieldLine& l, float slope) {
-        ids[i] = id;
-        const auto put = [&](std::size_t f, float v) { m_table[f * m_stride + i] = v; };
-        put(LineTable::kBefore, l.before);
-        put(LineTable::kBehind, l.behind);
-        put(LineTable::kBeside, l.beside);
-        put(LineTable::kAlongX, l.along_x);
-        put(LineTable::kAlongY, l.along_y);
-        put(LineTable::kFactor, l.factor);
-        put(LineTable::kSlope, slope);
-        for (std::size_t c = 0; c < kComponents; ++c) {
-            put(LineTable::kAt + c, l.at[c]);
-            put(LineTable::kFields + c, l.right[c]);
-            put(LineTable::kFields + kComponents + c, l.down[c]);
+    /// All lines of a region.
+    void take(const std::vector<FieldLine>& all, const std::vector<float>& slopes) {
+        reset(all.size());
+        own_table();
+        for (std::size_t i = 0; i < all.size(); ++i) {
+            const FieldLine& l = all[i];
+            m_own_ids[i] = static_cast<std::int32_t>(i);
+            m_factor[i] = l.factor;
+            const auto put = [&](std::size_t f, float v) { m_own[f * m_stride + i] = v; };
+            put(LineTable::kBefore, l.before);
+            put(LineTable::kBehind, l.behind);
+            put(LineTable::kBeside, l.beside);
+            put(LineTable::kAlongX, l.along_x);
+            put(LineTable::kAlongY, l.along_y);
+            put(LineTable::kSlope, slopes[i]);
+            for (std::size_t c = 0; c < kComponents; ++c) {
+                put(LineTable::kAt + c, l.at[c]);
+                put(LineTable::kRight + c, l.right[c]);
+                put(LineTable::kDown + c, l.down[c]);
+            }
         }
     }
-    void copy(std::size_t i, const Candidates& from, std::size_t j) {
-        ids[i] = from.ids[j];
-        for (std::size_t f = 0; f < LineTable::kFields + 2 * kComponents; ++f)
-            m_table[f * m_stride + i] = from.m_table[f * from.m_stride + j];
+    /// The near lines of another: in its table, the others with factor 0, or in one of their own where that
+    /// is shorter.
+    void take_near(const Candidates& from) {
+        const auto count = static_cast<std::size_t>(from.near_count);
+        if (padded(count) == from.m_stride) {
+            reset(from.m_count);
+            m_table = from.m_table;
+            m_ids = from.m_ids;
+            for (std::size_t j = 0; j < count; ++j) {
+                const auto i = static_cast<std::size_t>(from.near[j]);
+                m_factor[i] = from.m_factor[i];
+            }
+            return;
+        }
+        reset(count);
+        own_table();
+        for (std::size_t f = 0; f < LineTable::kFields; ++f)
+            for (std::size_t j = 0; j < count; ++j)
+                m_own[f * m_stride + j] =
+                    from.m_table[f * from.m_stride + static_cast<std::size_t>(from.near[j])];
+        for (std::size_t j = 0; j < count; ++j) {
+            const auto i = static_cast<std::size_t>(from.near[j]);
+            m_factor[j] = from.m_factor[i];
+            m_own_ids[j] = from.m_ids[i];
+        }
     }
 
     LineTable table() const {
-        const auto stride = static_cast<std::ptrdiff_t>(m_stride);
-        return {m_table.data(), stride, m_table.data() + LineTable::kFields * stride,
-                m_table.data() + (LineTable::kFields + kComponents) * stride, static_cast<int>(m_count)};
+        return {m_table, static_cast<std::ptrdiff_t>(m_stride), m_factor.data(), static_cast<int>(m_count)};
     }
     float slope(std::size_t i) const { return m_table[LineTable::kSlope * m_stride + i]; }
+    /// A line's number in the region's list of all.
+    std::int32_t id(std::int32_t i) const { return m_ids[i]; }
 
     simd::LineBounds bounds() {
-        const auto array = [&](std::size_t k) { return m_bounds.data() + k * m_stride; };
         return {array(0), array(1), array(2), array(3), array(4), {array(5), array(6), array(7), array(8)},
                 {},       0};
     }
-    float* reach() { return m_bounds.data() + 9 * m_stride; }
-    float* error() { return m_bounds.data() + 10 * m_stride; }
+    float* reach() { return array(9); }
+    float* error() { return array(10); }
 
-    std::vector<std::int32_t> ids;  ///< in the region's list of all lines
-    std::vector<std::uint8_t> far;
+    /// Marks lines far, those of least error first, as long as their errors fit the budget.
+    simd::LineSums select(const simd::LineBounds& bounds, float spread, float unit) {
+        const simd::Selection s = simd::select_lines(table(), bounds, reach(), error(), spread, unit,
+                                                     array(11), near.data(), far.data());
+        near_count = s.near;
+        far_count = s.far;
+        return s.sums;
+    }
+    std::vector<std::int32_t> near, far;  ///< places in the table
+    int near_count = 0, far_count = 0;
+
     /// The polynomial that the cell has from the cells above it; lane 5 to 7 of each coefficient are 0.
-    alignas(64) double polynomial[kCoefficients] = {};
+    alignas(64) double polynomial[kCoefficients];
 
   private:
-    static constexpr std::size_t kBounds = 11;
+    static constexpr std::size_t kBounds = 12;
+    static std::size_t padded(std::size_t count) { return (count + 15) / 16 * 16; }
+
+    void reset(std::size_t count) {
+        m_count = count;
+        m_stride = padded(count);
+        if (m_bounds.size() < kBounds * m_stride) m_bounds.resize(kBounds * m_stride);
+        if (near.size() < m_stride + 16) {
+            near.resize(m_stride + 16);
+            far.resize(m_stride + 16);
+        }
+        m_factor.assign(m_stride, 0.0f);
+    }
+    void own_table() {
+        if (m_own.size() < LineTable::kFields * m_stride) m_own.resize(LineTable::kFields * m_stride);
+        m_own_ids.resize(m_count);
+        // Lines of factor 0 fill up the last vector, far from everything.
+        for (std::size_t f = 0; f < LineTable::kFields; ++f)
+            for (std::size_t i = m_count; i < m_stride; ++i)
+                m_own[f * m_stride + i] = f == LineTable::kBefore   ? 1e6f
+                                          : f == LineTable::kAlongX ? 1.0f
+                                                                    : 0.0f;
+        m_table = m_own.data();
+        m_ids = m_own_ids.data();
+    }
+    float* array(std::size_t k) { return m_bounds.data() + k * m_stride; }
+
     std::size_t m_count = 0, m_stride = 0;
-    std::vector<float> m_table, m_bounds;
+    const float* m_table = nullptr;
+    const std::int32_t* m_ids = nullptr;
+    std::vector<float> m_own, m_factor, m_bounds;
+    std::vector<std::int32_t> m_own_ids;
 };
 
-/// Sums over lines that are far, for all of them what Candidates knows of one. Relative to `center`.
-struct FarSums {
-    double value = 0;        ///< of the weights' errors
-    double error = 0;        ///< of the weighted displacements' errors
-    double most = 0;         ///< of the greatest weights
-    double reach = 0;        ///< of those times the greatest displacement
-    double slope = 0;        ///< of those times the displacement's change per pixel
-    double least = 0;        ///< of the least weights
-    double farthest = 0;     ///< the greatest displacement
-    double steep = 0;        ///< of the weights' greatest changes per pixel
-    double steep_reach = 0;  ///< and of those times the greatest displacement
-    double noise = 0;        ///< of the weights' rounding
-    double noise_reach = 0;  ///< and of that times the greatest displacement
+/// Adds sums over other lines, all with reaches from the same reference.
+void add(simd::LineSums& to, const simd::LineSums& more) {
+    to.value += more.value;
+    to.error += more.error;
+    to.least += more.least;
+    to.most += more.most;
+    to.reach += more.reach;
+    to.slope += more.slope;
+    to.near += more.near;
+    to.near_reach += more.near_reach;
+    to.farthest = std::max(to.farthest, more.farthest);
+}
+
+/// Sums over the lines that are far already, their reaches from `center`.
+struct FarSums : simd::LineSums {
     Vector center{};
 
     void move(const Vector& to) {
@@ -242,8 +292,7 @@ struct FarSums {
         const double shift = length_of(d);
         error += shift * value;
         reach += shift * most;
-        noise_reach += shift * noise;
-        steep_reach += shift * steep;
+        near_reach += shift * near;
         farthest += shift;
         center = to;
     }
@@ -259,16 +308,21 @@ class Planner {
           m_chebyshev(chebyshev),
           m_picture(picture),
           m_region(region),
-          m_weights{static_cast<float>(map.weights().a), static_cast<float>(map.weights().b)} {}
+          m_weights{static_cast<float>(map.weights().a), static_cast<float>(map.weights().b)} {
+        const double b = map.weights().b;
+        const bool fast = b == 0 || b == 0.5 || b == 1 || b == 2;
+        // a + dist lies between 1e-6 and 1e12.
+        constexpr double kMostLog = 28;
+        m_constant =
+            kUlp * (5 * b + simd::kWeightRounding + (fast ? 0 : simd::kPowerRounding * b * (1 + kMostLog)));
+        m_by_nearest = kUlp * 11 * b;
+    }
 
     void plan(int x0, int y0) {
         m_x = x0 + kHalfRegion;
         m_y = y0 + kHalfRegion;
         if (!gather()) return exact(x0, y0, kRegion);
-        Candidates& all = level(0);
-        all.reset(m_lines.size());
-        for (std::size_t i = 0; i < m_lines.size(); ++i)
-            all.set(i, static_cast<std::int32_t>(i), m_lines[i], m_slopes[i]);
+        level(0).take(m_lines, m_slopes);
         settle(x0, y0, kRegion, 0, FarSums{}, false);
     }
 
@@ -293,11 +347,7 @@ class Planner {
         double unit = HUGE_VAL;
         for (std::size_t i = 0; i < m_map.size(); ++i) {
             const FeatureMap::TargetLine& line = m_map.line(i);
-            const double dx = m_x - line.p.x, dy = m_y - line.p.y;
-            const double along = dx * line.along.x + dy * line.along.y;
-            const double beside = dy * line.along.x - dx * line.along.y;
-            unit = std::min(unit, m_map.weights().a + kHalfRegion +
-                                      feature_detail::distance_to_line(-along, along - line.length, beside));
+            unit = std::min(unit, kHalfRegion + m_map.distance(line, m_map.frame(line, m_x, m_y)));
         }
         m_unit = std::pow(unit, m_map.weights().b);
         m_lines.resize(m_map.size());
@@ -320,37 +370,10 @@ class Planner {
         return true;
     }
 
-    /// A line as seen from a point. False where floats cannot hold it.
+    /// A line as seen from a point, its displacement from the reference. False where floats cannot hold it.
     bool see(std::size_t i, double x, double y, FieldLine& to) const {
-        const FeatureMap::TargetLine& line = m_map.line(i);
-        const double dx = x - line.p.x, dy = y - line.p.y;
-        const double along = dx * line.along.x + dy * line.along.y;
-        const double beside = dy * line.along.x - dx * line.along.y;
-        to = {};
-        to.before = static_cast<float>(-along);
-        to.behind = static_cast<float>(along - line.length);
-        to.beside = static_cast<float>(beside);
-        to.along_x = static_cast<float>(line.along.x);
-        to.along_y = static_cast<float>(line.along.y);
-        const double factor = line.factor * m_unit;
-        to.factor = static_cast<float>(factor);
-        const std::vector<int>& shapes = m_options.shapes;
-        for (std::size_t n = 0; n < shapes.size(); ++n) {
-            const FeatureMap::Displacement& d = m_map.displacement(i, shapes[n]);
-            const Point<double> scale = m_map.scale(shapes[n]);
-            const auto set = [&](std::size_t c, double origin, double along_rate, double beside_rate,
-                                 double k) {
-                to.at[c] = static_cast<float>(
-                    feature_detail::displacement_by_line(origin, along_rate, along, beside_rate, beside) * k -
-                    m_reference[c]);
-                to.right[c] =
-                    static_cast<float>((along_rate * line.along.x - beside_rate * line.along.y) * k);
-                to.down[c] = static_cast<float>((along_rate * line.along.y + beside_rate * line.along.x) * k);
-            };
-            set(2 * n, d.origin.x, d.along_rate.x, d.beside_rate.x, scale.x);
-            set(2 * n + 1, d.origin.y, d.along_rate.y, d.beside_rate.y, scale.y);
-        }
-        return factor > 1e-25 && factor < 1e25 && std::fabs(along) < 1e12;
+        to = seen_from(m_map, i, m_options.shapes, x, y, m_reference.data(), m_unit);
+        return to.factor > 1e-25f && to.factor < 1e25f && std::fabs(to.before) < 1e12f;
     }
 
     // --- a cell ------------------------------------------------------------------------------------------
@@ -377,12 +400,11 @@ class Planner {
         const double budget =
             kInterpolationShare * m_options.tol - known.rounding - quotient_error(sums, known);
         if (known.finite && size <= Block::kMaxSide) {
-            const std::size_t near = select(lines, bounds, known, budget);
-            if (near <= most_near(size) || size <= kFloor) {
-                FarSums all = sums;
-                add_far(lines, bounds, all);
-                if (emit(box, lines, bounds, known, all, near, has_polynomial)) return;
-                if (base_rounding(known, near) > m_options.tol) return exact(x0, y0, size);
+            FarSums all = sums;
+            add(all, select(lines, bounds, known, budget));
+            if (lines.near_count <= most_near(size) || size <= kFloor) {
+                if (emit(box, lines, bounds, known, all, has_polynomial)) return;
+                if (base_rounding(known, lines.near_count) > m_options.tol) return exact(x0, y0, size);
             }
         }
         if (size <= kFloor) return exact(x0, y0, size);
@@ -419,18 +441,17 @@ class Planner {
         const double half = static_cast<double>(known.frame.half), b = m_map.weights().b;
         known.farthest = std::max(sums.farthest, over.farthest);
         const double change =
-            half * (std::numbers::sqrt2 * (sums.steep_reach + b * over.steep) + sums.slope + over.slope) /
+            half * (std::numbers::sqrt2 * b * (sums.near_reach + over.near_reach) + sums.slope + over.slope) /
             known.least;
         const double mean = std::min((sums.reach + over.light) / known.least + over.heavy, known.farthest);
         // The centre's displacement is itself a float's.
         known.spread = std::min(mean, change) * (1 + 1e-3) + 64 * kUlp * (mean + known.offset);
         // If all lines became far that may.
-        const double per_weight = weight_rounding(HUGE_VAL), per_near = kUlp * b * 11 * kHalfRegion;
-        const double noise = sums.noise + per_weight * over.most + per_near * over.near;
-        const double noise_reach = sums.noise_reach + per_weight * over.reach + per_near * over.near_reach;
+        simd::LineSums most = sums;
+        add(most, over.may_be_far);
         known.rounding = m_chebyshev.lebesgue * m_chebyshev.lebesgue *
-                         (noise_reach + known.spread * noise +
-                          16 * kUlp * (sums.reach + over.reach + known.spread * (sums.most + over.most))) /
+                         (noise(most.reach, most.near_reach) + known.spread * noise(most.most, most.near) +
+                          16 * kUlp * (most.reach + known.spread * most.most)) /
                          known.least;
         return known;
     }
@@ -439,71 +460,15 @@ class Planner {
         return (sums.error + known.spread * sums.value) / known.least;
     }
 
-    /// Marks lines far, those of least error first, as long as their errors fit the budget. Returns how many
-    /// stay near.
-    static std::size_t select(Candidates& lines, const simd::LineBounds& bounds, const Known& known,
-                              double budget) {
-        const std::size_t count = lines.count();
-        lines.far.assign(count, 0);
-        if (!(budget > 0)) return count;
-        const auto unit = static_cast<float>(1 / (known.least * budget)),
-                   spread = static_cast<float>(known.spread);
-        const float *error = lines.error(), *value = bounds.value;
-        // Parts of the budget, by their binary exponents.
-        constexpr int kBins = 40;
-        const auto part = [&](std::size_t i) { return (error[i] + spread * value[i]) * unit; };
-        const auto bin = [](float p) {
-            return std::clamp(static_cast<int>(std::bit_cast<std::uint32_t>(p) >> 23) - (127 - kBins + 2), 0,
-                              kBins - 1);
-        };
-        double sums[kBins] = {};
-        for (std::size_t i = 0; i < count; ++i) {
-            const float p = part(i);
-            sums[bin(p)] += static_cast<double>(p);
-        }
-        double used = 0;
-        int last = 0;
-        for (; last < kBins && used + sums[last] <= 1; ++last) used += sums[last];
-        std::size_t near = 0;
-        for (std::size_t i = 0; i < count; ++i) {
-            const float p = part(i);
-            const int b = bin(p);
-            if (b < last)
-                lines.far[i] = 1;
-            else if (b == last && used + static_cast<double>(p) <= 1) {
-                used += static_cast<double>(p);
-                lines.far[i] = 1;
-            } else
-                ++near;
-        }
-        return near;
-    }
-
-    void add_far(Candidates& lines, const simd::LineBounds& bounds, FarSums& sums) const {
-        const double b = m_map.weights().b;
-        for (std::size_t i = 0; i < lines.count(); ++i) {
-            if (!lines.far[i]) continue;
-            const double most = static_cast<double>(bounds.most[i]);
-            const double reach = static_cast<double>(lines.reach()[i]);
-            const double nearest = static_cast<double>(bounds.nearest[i]);
-            sums.value += static_cast<double>(bounds.value[i]);
-            sums.error += static_cast<double>(lines.error()[i]);
-            sums.most += most;
-            sums.reach += most * reach;
-            sums.slope += most * static_cast<double>(lines.slope(i));
-            sums.farthest = std::max(sums.farthest, reach);
-            const double steep = b * most / nearest;
-            sums.steep += steep;
-            sums.steep_reach += steep * reach;
-            const double noise = most * weight_rounding(nearest);
-            sums.noise += noise;
-            sums.noise_reach += noise * reach;
-            sums.least += static_cast<double>(bounds.least[i]) * (1 - 1e-4);
-        }
+    static simd::LineSums select(Candidates& lines, const simd::LineBounds& bounds, const Known& known,
+                                 double budget) {
+        const double unit = budget > 0 ? 1 / (known.least * budget) : HUGE_VAL;
+        return lines.select(bounds, static_cast<float>(known.spread),
+                            static_cast<float>(std::min(unit, 1e30)));
     }
 
     /// How many near lines a cell of this size may have before it is cut (measured).
-    static std::size_t most_near(int size) { return size >= 64 ? 3 : size >= 32 ? 6 : 12; }
+    static int most_near(int size) { return size >= 64 ? 3 : size >= 32 ? 6 : 12; }
 
     void divide(int x0, int y0, int size, std::size_t depth, const simd::LineBounds& bounds,
                 const Known& known, FarSums sums, double budget, bool has_polynomial) {
@@ -512,19 +477,13 @@ class Planner {
         Candidates& rest = level(depth + 1);
         alignas(64) double polynomial[kCoefficients];
         const double* whole = lines.polynomial;
-        std::size_t near = lines.count();
-        if (known.finite) near = select(lines, bounds, known, kParentShare * budget);
-        rest.reset(near);
-        const bool all_near = near == lines.count();
-        if (!all_near) {
-            add_far(lines, bounds, sums);
+        add(sums, select(lines, bounds, known, known.finite ? kParentShare * budget : 0));
+        if (lines.far_count > 0) {
             interpolate(lines, known.frame, has_polynomial, polynomial);
             whole = polynomial;
             has_polynomial = true;
         }
-        std::size_t to = 0;
-        for (std::size_t i = 0; i < lines.count(); ++i)
-            if (all_near || !lines.far[i]) rest.copy(to++, lines, i);
+        rest.take_near(lines);
 
         const int half = size / 2;
         for (int child = 0; child < 4; ++child) {
@@ -540,18 +499,17 @@ class Planner {
     void interpolate(const Candidates& lines, const CellFrame& frame, bool has_polynomial, double* to) {
         const int k = m_chebyshev.k;
         const auto size = static_cast<std::size_t>(k * k * 8);
-        m_far.clear();
-        for (std::size_t i = 0; i < lines.count(); ++i)
-            if (lines.far[i]) m_far.push_back(lines.ids[i]);
-        if (m_far.empty()) {
+        if (lines.far_count == 0) {
             std::copy_n(lines.polynomial, size, to);
             return;
         }
+        m_far.clear();
+        for (int j = 0; j < lines.far_count; ++j)
+            m_far.push_back(lines.id(lines.far[static_cast<std::size_t>(j)]));
         alignas(64) double sums[kCoefficients];
         std::fill_n(sums, size, 0.0);
-        simd::node_sums(m_lines.data(), m_far.data(), static_cast<int>(m_far.size()), frame, m_weights, k,
-                        m_chebyshev.nodes, sums);
-        std::fill_n(to, size, 0.0);
+        simd::node_sums(m_lines.data(), m_far.data(), lines.far_count, frame, m_weights, k, m_chebyshev.nodes,
+                        sums);
         simd::transform(m_chebyshev.powers, m_chebyshev.powers, k, sums, to);
         if (has_polynomial)
             for (std::size_t i = 0; i < size; ++i) to[i] += lines.polynomial[i];
@@ -561,12 +519,12 @@ class Planner {
 
     /// Relative rounding of a weight at a + dist >= nearest, of a line seen from a point at most `half` off
     /// along each axis.
-    double weight_rounding(double nearest, double half = kHalfRegion) const {
-        const double b = m_map.weights().b;
-        const bool fast = b == 0 || b == 0.5 || b == 1 || b == 2;
-        const double log = fast ? 0 : 1 + std::max(16.0, std::fabs(std::log(nearest)));
-        return kUlp * (b * (5 + 11 * half / nearest) + simd::kWeightRounding +
-                       (fast ? 0 : simd::kPowerRounding * b * log));
+    double weight_rounding(double nearest, double half) const {
+        return m_constant + m_by_nearest * half / nearest;
+    }
+    /// Of the weights of far lines, from their sum and their sum over a + dist.
+    double noise(double sum, double near_sum) const {
+        return m_constant * sum + m_by_nearest * kHalfRegion * near_sum;
     }
 
     double scale() const {
@@ -576,7 +534,7 @@ class Planner {
     }
 
     /// Of adding up, dividing and placing: what no cutting of cells reduces.
-    double base_rounding(const Known& known, std::size_t near) const {
+    double base_rounding(const Known& known, int near) const {
         const double value = known.spread + known.offset;
         return kUlp * (2 * (static_cast<double>(near) + m_chebyshev.k + 12) * value +
                        6 * (130 * scale() + 2 * value));
@@ -587,18 +545,18 @@ class Planner {
         const double offset = known.offset;
         const double reach = sums.reach + offset * sums.most;
         // Values at the nodes: weights, their sums over runs of lines, displacements.
-        const double noise = sums.noise_reach + known.spread * sums.noise +
-                             12 * kUlp * (reach + (known.spread + offset) * sums.most) +
+        const double nodes = noise(sums.reach, sums.near_reach) + known.spread * noise(sums.most, sums.near) +
+                             20 * kUlp * (reach + (known.spread + offset) * sums.most) +
                              kUlp * (4 * reach + 10 * kHalfRegion * sums.slope);
         // Horner's rule, and the coefficients themselves.
-        double size[kSums] = {};
+        float size[8] = {};
         const int k = m_chebyshev.k;
         for (int i = 0; i < k * k; ++i)
-            for (int c = 0; c < kSums; ++c)
-                size[c] += static_cast<double>(std::fabs(coefficients[i * 8 + c]));
-        const double moved = std::max(size[1] + size[2], size[3] + size[4]);
-        const double horner = kUlp * (2 * k + 2) * (moved + (known.spread + offset) * size[0]);
-        return (m_chebyshev.lebesgue * m_chebyshev.lebesgue * noise + horner) / known.least;
+            for (int c = 0; c < 8; ++c) size[c] += std::fabs(coefficients[i * 8 + c]);
+        const double moved = static_cast<double>(std::max(size[1] + size[2], size[3] + size[4]));
+        const double horner =
+            kUlp * (2 * k + 3) * (moved + (known.spread + offset) * static_cast<double>(size[0]));
+        return (m_chebyshev.lebesgue * m_chebyshev.lebesgue * nodes + horner) / known.least;
     }
 
     /// Of the near lines' weights and displacements. A weight off by a factor 1 + e moves D by e l |D_i - D|,
@@ -610,9 +568,9 @@ class Planner {
         // For the mean of the others: lines of little weight count by that, the two farthest of the rest.
         const double much = 0.25 * known.least;
         double all = far.most, light = far.reach, farthest = 0, second = 0;
-        std::size_t farthest_line = lines.count();
-        for (std::size_t i = 0; i < lines.count(); ++i) {
-            if (lines.far[i]) continue;
+        std::size_t farthest_line = lines.near.size();
+        for (std::size_t j = 0; j < static_cast<std::size_t>(lines.near_count); ++j) {
+            const auto i = static_cast<std::size_t>(lines.near[j]);
             const double most = static_cast<double>(bounds.most[i]),
                          reach = static_cast<double>(lines.reach()[i]);
             all += most;
@@ -625,8 +583,8 @@ class Planner {
             } else
                 second = std::max(second, reach);
         }
-        for (std::size_t i = 0; i < lines.count(); ++i) {
-            if (lines.far[i]) continue;
+        for (std::size_t j = 0; j < static_cast<std::size_t>(lines.near_count); ++j) {
+            const auto i = static_cast<std::size_t>(lines.near[j]);
             slope = std::max(slope, static_cast<double>(lines.slope(i)));
             const double reach = static_cast<double>(lines.reach()[i]);
             const double most = static_cast<double>(bounds.most[i]);
@@ -660,14 +618,15 @@ class Planner {
 
     /// Keeps the cell if its bound holds the tolerance.
     bool emit(const Box& box, Candidates& lines, const simd::LineBounds& bounds, const Known& known,
-              const FarSums& sums, std::size_t near, bool has_polynomial) {
+              const FarSums& sums, bool has_polynomial) {
+        const int near = lines.near_count;
         const double off = sums.value / known.least;
         if (!(off < 0.05)) return false;
         const double interpolation = quotient_error(sums, known);
         const double before = base_rounding(known, near) + near_rounding(lines, bounds, known, sums);
         if (!(interpolation + before <= m_options.tol)) return false;
 
-        const bool any = has_polynomial || near < lines.count();
+        const bool any = has_polynomial || lines.far_count > 0;
         const auto size = static_cast<std::size_t>(m_chebyshev.k * m_chebyshev.k * 8);
         float coefficients[kCoefficients];
         if (any) {
@@ -695,14 +654,13 @@ class Planner {
             m_region.coefficients.insert(m_region.coefficients.end(), coefficients, coefficients + size);
         else
             cell.coefficients = std::numeric_limits<std::size_t>::max();
-        for (std::size_t i = 0; i < lines.count(); ++i) {
-            if (lines.far[i]) continue;
+        for (int j = 0; j < near; ++j) {
             FieldLine seen;
-            see(static_cast<std::size_t>(lines.ids[i]), m_x + static_cast<double>(known.frame.x),
-                m_y + static_cast<double>(known.frame.y), seen);
+            see(static_cast<std::size_t>(lines.id(lines.near[static_cast<std::size_t>(j)])),
+                m_x + static_cast<double>(known.frame.x), m_y + static_cast<double>(known.frame.y), seen);
             m_region.lines.push_back(seen);
         }
-        cell.near_count = static_cast<int>(near);
+        cell.near_count = near;
         m_region.cells.push_back(cell);
         return true;
     }
@@ -723,9 +681,10 @@ class Planner {
     const Box m_picture;
     Region& m_region;
     simd::WeightParameters m_weights;
-    double m_x = 0, m_y = 0;  ///< the region's centre
-    double m_unit = 1;        ///< of weights
-    Vector m_reference{};     ///< displacements are relative to this
+    double m_x = 0, m_y = 0;                  ///< the region's centre
+    double m_unit = 1;                        ///< of weights
+    double m_constant = 0, m_by_nearest = 0;  ///< of the weights' rounding
+    Vector m_reference{};                     ///< displacements are relative to this
     std::vector<FieldLine> m_lines;
     std::vector<float> m_slopes;
     std::vector<std::int32_t> m_far;

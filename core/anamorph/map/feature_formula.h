@@ -9,6 +9,17 @@
 // A pixel X in the frame of a line from p to q: along = (X - p) . e / |e| = u |e| and beside = v, with
 // e = q - p.
 
+/// Along a line of unit direction (ux, uy), of X - p = (dx, dy).
+template <class T, class U>
+inline T along_line(const T& dx, const T& dy, const U& ux, const U& uy) {
+    return dx * ux + dy * uy;
+}
+/// And beside it.
+template <class T, class U>
+inline T beside_line(const T& dx, const T& dy, const U& ux, const U& uy) {
+    return dy * ux - dx * uy;
+}
+
 /// dist of eq. 5.11, from how far X lies before p (-along), behind q (along - |e|) and beside the line.
 template <class T>
 inline T distance_to_line(const T& before, const T& behind, const T& beside) {

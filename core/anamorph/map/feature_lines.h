@@ -160,7 +160,7 @@ class FeatureMap {
     template <class T>
     void all(const T& x, const T& y, Point<T>* points) const;
 
-  private:
+    /// Where a point lies in a line's frame.
     template <class T>
     struct Frame {
         T along, beside;
@@ -168,13 +168,17 @@ class FeatureMap {
     template <class T>
     Frame<T> frame(const TargetLine& line, const T& x, const T& y) const {
         const T dx = x - line.p.x, dy = y - line.p.y;
-        return {dx * line.along.x + dy * line.along.y, dy * line.along.x - dx * line.along.y};
+        return {feature_detail::along_line(dx, dy, line.along.x, line.along.y),
+                feature_detail::beside_line(dx, dy, line.along.x, line.along.y)};
     }
+    /// a + dist of eq. 5.11.
     template <class T>
     T distance(const TargetLine& line, const Frame<T>& at) const {
         return feature_detail::distance_to_line<T>(-at.along, at.along - line.length, at.beside) +
                m_weights.a;
     }
+
+  private:
     template <class T>
     void sum(const T& x, const T& y, int first, int last, Point<T>* points) const;
 

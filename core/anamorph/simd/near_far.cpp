@@ -3,6 +3,7 @@
 #define HWY_TARGET_INCLUDE "anamorph/simd/near_far.cpp"
 #include "anamorph/simd/near_far.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 
@@ -25,50 +26,83 @@ HWY_INLINE V Set(float x) {
     return hn::Set(Floats(), x);
 }
 
+// The processor's estimates are good on x86 only: 12 bits from SSE on, 14 in AVX-512.
+#if HWY_ARCH_X86 && HWY_TARGET <= HWY_SSSE3
+#if HWY_TARGET <= HWY_AVX3
+constexpr double kEstimateError = 0x1p-14;
+#else
+constexpr double kEstimateError = 0x1.8p-12;
+#endif
+#else
+constexpr double kEstimateError = HUGE_VAL;
+#endif
+double RoughError() {
+    return kEstimateError;
+}
+
+/// 1 / x to within 3 half-ULP, or as the processor estimates it.
+template <bool kRough = false>
+HWY_INLINE V Reciprocal(V x) {
+    if constexpr (kRough) return hn::ApproximateReciprocal(x);
+    return hn::Div(Set(1), x);
+}
+template <bool kRough>
+HWY_INLINE V Root(V square) {
+    // Not of 0, whose estimate is infinite.
+    if constexpr (kRough) return hn::Mul(square, hn::ApproximateReciprocalSqrt(hn::Max(square, Set(1e-30f))));
+    return hn::Sqrt(square);
+}
+
 // --- the formula, read with vectors ---------------------------------------------------------------------
 
-/// A vector as a number that the formula's templates can read.
+/// A vector as a number that the formula's templates can read; its root may be an estimate.
+template <bool kRough>
 struct Number {
     V v;
     Number() = default;
     HWY_INLINE Number(V vector) : v(vector) {}  // NOLINT: a vector is a number
     HWY_INLINE explicit Number(float x) : v(Set(x)) {}
 };
-HWY_INLINE Number operator*(const Number& a, const Number& b) {
+template <bool kRough>
+HWY_INLINE Number<kRough> operator*(const Number<kRough>& a, const Number<kRough>& b) {
     return hn::Mul(a.v, b.v);
 }
-HWY_INLINE Number operator+(const Number& a, const Number& b) {
+template <bool kRough>
+HWY_INLINE Number<kRough> operator+(const Number<kRough>& a, const Number<kRough>& b) {
     return hn::Add(a.v, b.v);
 }
-HWY_INLINE Number max(const Number& a, const Number& b) {
+template <bool kRough>
+HWY_INLINE Number<kRough> max(const Number<kRough>& a, const Number<kRough>& b) {
     return hn::Max(a.v, b.v);
 }
-HWY_INLINE Number root(const Number& a) {
-    return hn::Sqrt(a.v);
+template <bool kRough>
+HWY_INLINE Number<kRough> root(const Number<kRough>& a) {
+    return Root<kRough>(a.v);
 }
 
 #include "anamorph/map/feature_formula.h"
 
-/// 1 / x to within 3 half-ULP.
-HWY_INLINE V Reciprocal(V x) {
-    return hn::Div(Set(1), x);
+template <bool kRough = false>
+HWY_INLINE V Distance(V before, V behind, V beside) {
+    return distance_to_line<Number<kRough>>(before, behind, beside).v;
 }
 
 /// Which fast path an exponent takes.
 enum class Exponent { zero, half, one, two, other };
 
 /// (a + dist)^-b
-template <Exponent kExponent>
+template <Exponent kExponent, bool kRough = false>
 HWY_INLINE V Power(V x, V b) {
     switch (kExponent) {
         case Exponent::zero:
             return Set(1);
         case Exponent::half:
+            if constexpr (kRough) return hn::ApproximateReciprocalSqrt(x);
             return Reciprocal(hn::Sqrt(x));
         case Exponent::one:
-            return Reciprocal(x);
+            return Reciprocal<kRough>(x);
         case Exponent::two:
-            return Reciprocal(hn::Mul(x, x));
+            return Reciprocal<kRough>(hn::Mul(x, x));
         default:
             return hn::Exp(Floats(), hn::Neg(hn::Mul(b, hn::Log(Floats(), x))));
     }
@@ -83,23 +117,13 @@ HWY_INLINE void WithExponent(float b, const Body& body) {
     return body(std::integral_constant<Exponent, Exponent::other>{});
 }
 
-template <class Body>
-HWY_INLINE void WithDegree(int k, const Body& body) {
-    if (k == 4) return body(std::integral_constant<int, 4>{});
-    if (k == 6) return body(std::integral_constant<int, 6>{});
-    return body(std::integral_constant<int, 8>{});
-}
-
 // --- bounds
 // -------------------------------------------------------------------------------------------------
 
 /// x^-K for x = 1 / inverse.
-template <int K>
-HWY_INLINE V PowerOfInverse(V inverse) {
+HWY_INLINE V PowerOfInverse(int k, V inverse) {
     const V x2 = hn::Mul(inverse, inverse), x4 = hn::Mul(x2, x2);
-    if constexpr (K == 4) return x4;
-    if constexpr (K == 6) return hn::Mul(x4, x2);
-    return hn::Mul(x4, x4);
+    return k == 4 ? x4 : hn::Mul(x4, k == 6 ? x2 : x4);
 }
 
 struct AxisError {
@@ -108,34 +132,34 @@ struct AxisError {
 
 /// Relative interpolation error of (x0 + s)^-b, 0 < b <= 2, and of s times it, on [-1, 1]: near_far.cpp
 /// (approx) proves it.
-template <int K, bool kAboveOne>
-HWY_INLINE AxisError BesideError(V x) {
+template <bool kAboveOne>
+HWY_INLINE AxisError BesideError(int k, V x) {
     const V one = Set(1);
     const V root = hn::Sqrt(hn::Max(hn::MulSub(x, x, one), Set(0)));
-    const V y = PowerOfInverse<K>(hn::Div(one, hn::Add(x, root)));
+    const V y = PowerOfInverse(k, hn::Div(one, hn::Add(x, root)));
     const V g = hn::Div(hn::Add(y, y), hn::MulAdd(y, y, one));
     V e = g;
     if constexpr (kAboveOne)
-        e = hn::MulAdd(hn::Mul(g, Set(K)), hn::Sqrt(hn::Div(hn::Sub(x, one), hn::Add(x, one))), g);
+        e = hn::MulAdd(hn::Mul(g, Set(static_cast<float>(k))),
+                       hn::Sqrt(hn::Div(hn::Sub(x, one), hn::Add(x, one))), g);
     return {e, hn::Mul(x, hn::Add(g, e))};
 }
 
 /// The same of (a + |s - z|)^-b with z = sigma + i eta, the end of a line beside the cell.
-template <int K>
-HWY_INLINE AxisError EndError(V sigma, V eta) {
+HWY_INLINE AxisError EndError(int k, V sigma, V eta) {
     const V one = Set(1), zero = Set(0);
     const V eta2 = hn::Mul(eta, eta), minus = hn::Sub(sigma, one), plus = hn::Add(sigma, one);
     const V a = hn::Mul(
         Set(0.5f), hn::Add(hn::Sqrt(hn::MulAdd(minus, minus, eta2)), hn::Sqrt(hn::MulAdd(plus, plus, eta2))));
     const V a1 = hn::Max(a, one);
-    const V y = PowerOfInverse<K>(hn::Div(one, hn::Add(a1, hn::Sqrt(hn::MulSub(a1, a1, one)))));
+    const V y = PowerOfInverse(k, hn::Div(one, hn::Add(a1, hn::Sqrt(hn::MulSub(a1, a1, one)))));
     const V g = hn::Div(hn::Add(y, y), hn::NegMulAdd(y, y, one));
     // The slope of the linear factor: by its value over eta, or by the derivative on the real axis.
     const V s1 = hn::Max(sigma, one), sinh = hn::Sqrt(hn::Max(hn::MulSub(s1, s1, one), zero));
-    const V ys = PowerOfInverse<K>(hn::Div(one, hn::Add(s1, sinh))), ys2 = hn::Mul(ys, ys);
+    const V ys = PowerOfInverse(k, hn::Div(one, hn::Add(s1, sinh))), ys2 = hn::Mul(ys, ys);
     const V below = hn::Sub(one, ys2);
-    const V derivative =
-        hn::Div(hn::Mul(hn::Mul(Set(2 * K), ys), hn::Add(one, ys2)), hn::Mul(sinh, hn::Mul(below, below)));
+    const V derivative = hn::Div(hn::Mul(hn::Mul(Set(static_cast<float>(2 * k)), ys), hn::Add(one, ys2)),
+                                 hn::Mul(sinh, hn::Mul(below, below)));
     const V slope = hn::IfThenElse(hn::Ge(eta, one), hn::Div(g, hn::Max(eta, one)), derivative);
     const V most = hn::Max(eta, plus);
     const V value = hn::MulAdd(plus, slope, g);
@@ -153,18 +177,16 @@ HWY_INLINE AxisError Both(const AxisError& s, const AxisError& t, V lebesgue) {
 
 /// Interpolating functions whose second derivative jumps: the error per unit of the jump, and per unit of the
 /// third derivative on either side (suprema of Peano's kernel and of its integral, rounded up).
-template <int K>
-constexpr float kJumpError = K == 4   ? 0.0190f
-                             : K == 6 ? 0.00775f
-                                      : 0.00425f;
-template <int K>
-constexpr float kThirdError = K == 4   ? 0.0161f
-                              : K == 6 ? 0.0049f
-                                       : 0.0023f;
+constexpr float JumpError(int k) {
+    return k == 4 ? 0.0190f : k == 6 ? 0.00775f : 0.00425f;
+}
+constexpr float ThirdError(int k) {
+    return k == 4 ? 0.0161f : k == 6 ? 0.0049f : 0.0023f;
+}
 
-template <Exponent kExponent, int K>
+template <Exponent kExponent>
 HWY_INLINE void BoundLines(const LineTable& lines, const CellFrame& cell, const WeightParameters& weights,
-                           float lebesgue, LineBounds& out) {
+                           int k, float lebesgue, LineBounds& out) {
     const Floats d;
     const V x = Set(cell.x), y = Set(cell.y), half = Set(cell.half), zero = Set(0), one = Set(1);
     const V a = Set(weights.a), b = Set(weights.b), least_distance = Set(kLeastDistance);
@@ -173,7 +195,7 @@ HWY_INLINE void BoundLines(const LineTable& lines, const CellFrame& cell, const 
     // Bounds of the second and third derivatives of (a + r)^-b along a line, times (r / half side)^2 and ^3
     // over the function, times the interpolation's constant on both axes.
     const float b1 = weights.b < 1 ? HWY_MAX(weights.b + 1, 2 / std::sqrt(2 - weights.b)) : weights.b + 1;
-    const float axes = kThirdError<K> * (1 + lebesgue);
+    const float axes = ThirdError(k) * (1 + lebesgue);
     const float third_of_weight = axes * weights.b * (weights.b + 2) * b1;
     const float second_of_weight = axes * 3 * weights.b * (weights.b + 1);
     V sums[kSums], least_sum = zero;
@@ -181,12 +203,12 @@ HWY_INLINE void BoundLines(const LineTable& lines, const CellFrame& cell, const 
     for (int i = 0; i < lines.count; i += kLanes) {
         const auto field = [&](int f) HWY_ATTR { return hn::LoadU(d, lines.data + f * lines.stride + i); };
         const V ux = field(LineTable::kAlongX), uy = field(LineTable::kAlongY);
-        const V factor = field(LineTable::kFactor);
+        const V factor = hn::LoadU(d, lines.factor + i);
         const V along = hn::MulAdd(ux, x, hn::Mul(uy, y));
         const V before = hn::Sub(field(LineTable::kBefore), along);
         const V behind = hn::Add(field(LineTable::kBehind), along);
         const V beside = hn::Add(field(LineTable::kBeside), hn::MulSub(ux, y, hn::Mul(uy, x)));
-        const V far = distance_to_line<Number>(before, behind, beside).v;
+        const V far = Distance(before, behind, beside);
 
         // Distances change by no more than the way.
         const V rounding = hn::MulAdd(far, Set(1e-6f), Set(1e-3f));
@@ -202,9 +224,8 @@ HWY_INLINE void BoundLines(const LineTable& lines, const CellFrame& cell, const 
         least_sum = hn::Add(least_sum, least);
         sums[0] = hn::Add(sums[0], weight);
         for (int c = 0; c < kComponents; ++c) {
-            const V right = hn::LoadU(d, lines.right + c * lines.stride + i);
-            const V down = hn::LoadU(d, lines.down + c * lines.stride + i);
-            const V at = hn::MulAdd(right, x, hn::MulAdd(down, y, field(LineTable::kAt + c)));
+            const V at = hn::MulAdd(field(LineTable::kRight + c), x,
+                                    hn::MulAdd(field(LineTable::kDown + c), y, field(LineTable::kAt + c)));
             hn::StoreU(at, d, out.displacement[c] + i);
             sums[c + 1] = hn::MulAdd(weight, at, sums[c + 1]);
         }
@@ -223,7 +244,7 @@ HWY_INLINE void BoundLines(const LineTable& lines, const CellFrame& cell, const 
             const V jump = hn::Mul(hn::Mul(jumps, hn::Mul(size, hn::Div(half, nearest))),
                                    hn::MulAdd(larger, hn::Sub(one, constant), constant));
             const V third = hn::Mul(size2, hn::Mul(size, Set(third_of_weight)));
-            error.value = hn::MulAdd(jump, Set(kJumpError<K> * weights.b), third);
+            error.value = hn::MulAdd(jump, Set(JumpError(k) * weights.b), third);
             error.linear = hn::MulAdd(size2, Set(second_of_weight), error.value);
             const auto is_apart = hn::Gt(clear, Set(1e-3f));
             error.value = hn::IfThenElse(is_apart, error.value, infinite);
@@ -238,8 +259,8 @@ HWY_INLINE void BoundLines(const LineTable& lines, const CellFrame& cell, const 
                 const V xs = hn::Max(hn::Div(hn::Sub(distance, hx), hn::Max(hy, tiny)), one);
                 const V xt = hn::Max(hn::Div(hn::Sub(distance, hy), hn::Max(hx, tiny)), one);
                 const AxisError by_line =
-                    above_one ? Both(BesideError<K, true>(xs), BesideError<K, true>(xt), constant)
-                              : Both(BesideError<K, false>(xs), BesideError<K, false>(xt), constant);
+                    above_one ? Both(BesideError<true>(k, xs), BesideError<true>(k, xt), constant)
+                              : Both(BesideError<false>(k, xs), BesideError<false>(k, xt), constant);
                 // Beyond an end, seen from everywhere in the cell.
                 const V beyond = hn::Max(before, behind);
                 const auto is_beyond = hn::Gt(beyond, extent);
@@ -250,7 +271,7 @@ HWY_INLINE void BoundLines(const LineTable& lines, const CellFrame& cell, const 
                 const V py = hn::Max(
                     hn::Sub(hn::Mul(hn::Abs(hn::MulSub(z, uy, hn::Mul(beside, ux))), unit), room), zero);
                 const V ex = hn::Max(hn::Sub(px, one), zero), ey = hn::Max(hn::Sub(py, one), zero);
-                const AxisError by_end = Both(EndError<K>(px, ey), EndError<K>(py, ex), constant);
+                const AxisError by_end = Both(EndError(k, px, ey), EndError(k, py, ex), constant);
                 const auto outside = hn::And(is_beyond, hn::Gt(hn::Max(px, py), Set(1.05f)));
                 const auto better = [&](V general, V line, V end) HWY_ATTR {
                     const V closed = hn::IfThenElse(is_beside, line, hn::IfThenElse(outside, end, infinite));
@@ -275,19 +296,43 @@ HWY_INLINE void BoundLines(const LineTable& lines, const CellFrame& cell, const 
 void BoundLinesOf(const LineTable& lines, const CellFrame& cell, const WeightParameters& weights, int k,
                   float lebesgue, LineBounds& out) {
     WithExponent(weights.b, [&](auto exponent) HWY_ATTR {
-        WithDegree(k, [&](auto degree) HWY_ATTR {
-            BoundLines<decltype(exponent)::value, decltype(degree)::value>(lines, cell, weights, lebesgue,
-                                                                           out);
-        });
+        BoundLines<decltype(exponent)::value>(lines, cell, weights, k, lebesgue, out);
     });
 }
 
-SpreadSums BoundDisplacements(const LineTable& lines, const CellFrame& cell, const float* center, float much,
-                              const LineBounds& bounds, float* reach, float* error) {
+HWY_INLINE double SumOf(V v) {
+    return static_cast<double>(hn::GetLane(hn::SumOfLanes(Floats(), v)));
+}
+HWY_INLINE double MaxOf(V v) {
+    return static_cast<double>(hn::GetLane(hn::MaxOfLanes(Floats(), v)));
+}
+
+/// LineSums of a few lines, lane by lane.
+struct LaneSums {
+    V value, error, least, most, reach, slope, near, near_reach, farthest;
+
+    HWY_INLINE LaneSums() {
+        value = error = least = most = reach = slope = near = near_reach = farthest = Set(0);
+    }
+    HWY_INLINE void AddTo(LineSums& sums) const {
+        sums.value += SumOf(value);
+        sums.error += SumOf(error);
+        sums.least += SumOf(least);
+        sums.most += SumOf(most);
+        sums.reach += SumOf(reach);
+        sums.slope += SumOf(slope);
+        sums.near += SumOf(near);
+        sums.near_reach += SumOf(near_reach);
+        sums.farthest = HWY_MAX(sums.farthest, MaxOf(farthest));
+    }
+};
+
+void BoundDisplacements(const LineTable& lines, const CellFrame& cell, const float* center, float much,
+                        const LineBounds& bounds, float* reach, float* error, SpreadSums& sums) {
     const Floats d;
     const V zero = Set(0), infinite = Set(HUGE_VALF);
-    V farthest = zero, heavy = zero, light = zero, steep = zero, slope = zero;
-    V most_sum = zero, reach_sum = zero, near_sum = zero, near_reach = zero;
+    V heavy = zero, light = zero, farthest = zero, slope = zero, near_reach = zero;
+    LaneSums far;
     for (int i = 0; i < lines.count; i += kLanes) {
         V square = zero;
         for (int c = 0; c < kComponents; c += 2) {
@@ -295,79 +340,122 @@ SpreadSums BoundDisplacements(const LineTable& lines, const CellFrame& cell, con
             const V dy = hn::Sub(hn::LoadU(d, bounds.displacement[c + 1] + i), Set(center[c + 1]));
             square = hn::Max(square, hn::MulAdd(dx, dx, hn::Mul(dy, dy)));
         }
-        const auto real = hn::Gt(hn::LoadU(d, lines.data + LineTable::kFactor * lines.stride + i), zero);
-        const V distance = hn::IfThenElseZero(real, hn::Sqrt(square));
+        const V m = hn::LoadU(d, bounds.most + i);
+        const auto real = hn::Gt(hn::LoadU(d, lines.factor + i), zero);
+        const V distance = hn::Sqrt(square);
         const V change = hn::LoadU(d, lines.data + LineTable::kSlope * lines.stride + i);
-        const V r = hn::MulAdd(Set(cell.half), change, distance);
+        const V r = hn::IfThenElseZero(real, hn::MulAdd(Set(cell.half), change, distance));
         hn::StoreU(r, d, reach + i);
         const V value = hn::LoadU(d, bounds.value + i), linear = hn::LoadU(d, bounds.linear + i);
         // An unknown error stays so, whatever the displacement.
         const auto known = hn::Lt(value, infinite);
         hn::StoreU(hn::IfThenElse(known, hn::MulAdd(value, distance, linear), infinite), d, error + i);
 
-        const V m = hn::LoadU(d, bounds.most + i);
         const V near = hn::Div(m, hn::LoadU(d, bounds.nearest + i));
         const auto is_light = hn::Le(m, Set(much)), may_be_far = hn::And(is_light, known);
-        farthest = hn::Max(farthest, r);
+        const V moment = hn::Mul(m, r), near_moment = hn::Mul(near, r);
         heavy = hn::Max(heavy, hn::IfThenZeroElse(is_light, r));
-        light = hn::Add(light, hn::IfThenElseZero(is_light, hn::Mul(m, r)));
-        steep = hn::MulAdd(near, r, steep);
+        light = hn::Add(light, hn::IfThenElseZero(is_light, moment));
+        farthest = hn::Max(farthest, r);
+        near_reach = hn::Add(near_reach, near_moment);
         slope = hn::MulAdd(m, change, slope);
-        most_sum = hn::Add(most_sum, hn::IfThenElseZero(may_be_far, m));
-        reach_sum = hn::Add(reach_sum, hn::IfThenElseZero(may_be_far, hn::Mul(m, r)));
-        near_sum = hn::Add(near_sum, hn::IfThenElseZero(may_be_far, near));
-        near_reach = hn::Add(near_reach, hn::IfThenElseZero(may_be_far, hn::Mul(near, r)));
+        far.most = hn::Add(far.most, hn::IfThenElseZero(may_be_far, m));
+        far.reach = hn::Add(far.reach, hn::IfThenElseZero(may_be_far, moment));
+        far.near = hn::Add(far.near, hn::IfThenElseZero(may_be_far, near));
+        far.near_reach = hn::Add(far.near_reach, hn::IfThenElseZero(may_be_far, near_moment));
     }
-    const auto sum = [&](V v) HWY_ATTR { return static_cast<double>(hn::GetLane(hn::SumOfLanes(d, v))); };
-    const auto max_of = [&](V v) HWY_ATTR { return static_cast<double>(hn::GetLane(hn::MaxOfLanes(d, v))); };
-    return {max_of(farthest), max_of(heavy),  sum(light),    sum(steep),     sum(slope),
-            sum(most_sum),    sum(reach_sum), sum(near_sum), sum(near_reach)};
+    sums.heavy = HWY_MAX(sums.heavy, MaxOf(heavy));
+    sums.light += SumOf(light);
+    sums.farthest = HWY_MAX(sums.farthest, MaxOf(farthest));
+    sums.slope += SumOf(slope);
+    sums.near_reach += SumOf(near_reach);
+    far.AddTo(sums.may_be_far);
+}
+
+/// Marks the least parts, which add up to 1 at most: those are 0 afterwards, and the others above it.
+HWY_INLINE void MarkLeast(int count, float* part) {
+    const Floats d;
+    // All up to a power of two that fit together.
+    float most = 1, used = 0;
+    for (int cut = 0; cut < 40; ++cut, most *= 0.5f) {
+        V sum = Set(0);
+        for (int i = 0; i < count; i += kLanes) {
+            const V p = hn::LoadU(d, part + i);
+            sum = hn::Add(sum, hn::IfThenElseZero(hn::Le(p, Set(most)), p));
+        }
+        used = hn::GetLane(hn::SumOfLanes(d, sum));
+        if (used <= 1) break;
+    }
+    if (used > 1) return;
+    for (int i = 0; i < count; i += kLanes) {
+        const V p = hn::LoadU(d, part + i);
+        hn::StoreU(hn::IfThenZeroElse(hn::Le(p, Set(most)), p), d, part + i);
+        // And of the next ones what fits.
+        if (most < 1 && !hn::AllFalse(d, hn::And(hn::Gt(p, Set(most)), hn::Le(p, Set(2 * most)))))
+            for (int j = i; j < i + kLanes; ++j)
+                if (part[j] > most && used + part[j] <= 1) {
+                    used += part[j];
+                    part[j] = 0;
+                }
+    }
+}
+
+/// The chosen lines' places behind `first`; the rest of the vector is written over. Returns how many.
+template <class Chosen>
+HWY_INLINE int Places(Chosen chosen, int first, int32_t* to) {
+    const hn::RebindToSigned<Floats> di;
+    // Compressed in a register: storing compressed numbers is slow on some processors.
+    hn::StoreU(hn::Compress(hn::Iota(di, first), hn::RebindMask(di, chosen)), di, to);
+    return static_cast<int>(hn::CountTrue(Floats(), chosen));
+}
+
+Selection SelectLines(const LineTable& lines, const LineBounds& bounds, const float* reach,
+                      const float* error, float spread, float unit, float* part, int32_t* near,
+                      int32_t* far) {
+    const Floats d;
+    const V zero = Set(0);
+    for (int i = 0; i < lines.count; i += kLanes) {
+        const V whole = hn::MulAdd(Set(spread), hn::LoadU(d, bounds.value + i), hn::LoadU(d, error + i));
+        hn::StoreU(hn::Mul(Set(unit), whole), d, part + i);
+    }
+    MarkLeast(lines.count, part);
+    Selection out;
+    constexpr int kRun = 64 * kLanes;  // so that floats add up few numbers
+    for (int first = 0; first < lines.count; first += kRun) {
+        LaneSums sums;
+        for (int i = first; i < HWY_MIN(first + kRun, lines.count); i += kLanes) {
+            const V m = hn::LoadU(d, bounds.most + i);
+            const auto real = hn::Gt(hn::LoadU(d, lines.factor + i), zero);
+            const auto is_far = hn::And(real, hn::Eq(hn::LoadU(d, part + i), zero));
+            out.near += Places(hn::AndNot(is_far, real), i, near + out.near);
+            out.far += Places(is_far, i, far + out.far);
+            const auto add = [&](V& sum, V v) HWY_ATTR { sum = hn::Add(sum, hn::IfThenElseZero(is_far, v)); };
+            const V r = hn::LoadU(d, reach + i), m_near = hn::Div(m, hn::LoadU(d, bounds.nearest + i));
+            add(sums.value, hn::LoadU(d, bounds.value + i));
+            add(sums.error, hn::LoadU(d, error + i));
+            add(sums.least, hn::LoadU(d, bounds.least + i));
+            add(sums.most, m);
+            add(sums.reach, hn::Mul(m, r));
+            add(sums.slope, hn::Mul(m, hn::LoadU(d, lines.data + LineTable::kSlope * lines.stride + i)));
+            add(sums.near, m_near);
+            add(sums.near_reach, hn::Mul(m_near, r));
+            sums.farthest = hn::Max(sums.farthest, hn::IfThenElseZero(is_far, r));
+        }
+        sums.AddTo(out.sums);
+    }
+    return out;
 }
 
 // --- sums --------------------------------------------------------------------------------------------------
 
-/// A line on one row of pixels.
-struct LineOnRow {
-    float before, behind, beside, along_x, along_y, factor;
-    float at[kComponents], right[kComponents];
-
-    HWY_INLINE LineOnRow(const FieldLine& l, float y)
-        : before(l.before - l.along_y * y),
-          behind(l.behind + l.along_y * y),
-          beside(l.beside + l.along_x * y),
-          along_x(l.along_x),
-          along_y(l.along_y),
-          factor(l.factor) {
-        for (int c = 0; c < kComponents; ++c) {
-            at[c] = l.at[c] + l.down[c] * y;
-            right[c] = l.right[c];
-        }
-    }
-};
-
-/// Adds what one line says about the pixels at x.
-template <Exponent kExponent, int kCount>
-HWY_INLINE void AddLine(const LineOnRow& l, V x, V a, V b, V* HWY_RESTRICT sums) {
-    const V along = hn::Mul(Set(l.along_x), x);
-    const V before = hn::Sub(Set(l.before), along), behind = hn::Add(Set(l.behind), along);
-    const V beside = hn::NegMulAdd(Set(l.along_y), x, Set(l.beside));
-    const V far =
-        hn::Max(hn::Add(a, distance_to_line<Number>(before, behind, beside).v), Set(kLeastDistance));
-    const V weight = hn::Mul(Set(l.factor), Power<kExponent>(far, b));
-    sums[0] = hn::Add(sums[0], weight);
-    for (int c = 0; c < kCount; ++c)
-        sums[c + 1] = hn::MulAdd(weight, hn::MulAdd(Set(l.right[c]), x, Set(l.at[c])), sums[c + 1]);
-}
-
-/// The same for points each with a y of its own.
+/// Adds what one line says about points.
 template <Exponent kExponent>
 HWY_INLINE void AddLineAt(const FieldLine& l, V x, V y, V a, V b, V* HWY_RESTRICT sums) {
     const V ux = Set(l.along_x), uy = Set(l.along_y);
     const V along = hn::MulAdd(ux, x, hn::Mul(uy, y));
     const V before = hn::Sub(Set(l.before), along), behind = hn::Add(Set(l.behind), along);
     const V beside = hn::Add(Set(l.beside), hn::MulSub(ux, y, hn::Mul(uy, x)));
-    const V far =
-        hn::Max(hn::Add(a, distance_to_line<Number>(before, behind, beside).v), Set(kLeastDistance));
+    const V far = hn::Max(hn::Add(a, Distance(before, behind, beside)), Set(kLeastDistance));
     const V weight = hn::Mul(Set(l.factor), Power<kExponent>(far, b));
     sums[0] = hn::Add(sums[0], weight);
     for (int c = 0; c < kComponents; ++c)
@@ -375,28 +463,28 @@ HWY_INLINE void AddLineAt(const FieldLine& l, V x, V y, V a, V b, V* HWY_RESTRIC
             weight, hn::MulAdd(Set(l.right[c]), x, hn::MulAdd(Set(l.down[c]), y, Set(l.at[c]))), sums[c + 1]);
 }
 
-template <Exponent kExponent, int K>
+template <Exponent kExponent>
 HWY_INLINE void NodeSums(const FieldLine* lines, const int32_t* which, int count, const CellFrame& cell,
-                         const WeightParameters& weights, const float* nodes, double* sums) {
+                         const WeightParameters& weights, int k, const float* nodes, double* sums) {
     // Floats are added up over few lines only.
-    constexpr int kRun = 8;
-    constexpr int kNodes = (K * K + 15) / 16 * 16;
+    constexpr int kRun = 16;
     const Floats d;
-    HWY_ALIGN float x[kNodes], y[kNodes], part[kLanes];
-    for (int n = 0; n < kNodes; ++n) {
-        const int at = n < K * K ? n : 0;
-        x[n] = cell.x + cell.half * nodes[at % K];
-        y[n] = cell.y + cell.half * nodes[at / K];
+    const int points = k * k;
+    HWY_ALIGN float x[kMaxDegree * kMaxDegree], y[kMaxDegree * kMaxDegree], part[kLanes];
+    for (int n = 0; n < (points + 15) / 16 * 16; ++n) {
+        const int at = n < points ? n : 0;
+        x[n] = cell.x + cell.half * nodes[at % k];
+        y[n] = cell.y + cell.half * nodes[at / k];
     }
     const V a = Set(weights.a), b = Set(weights.b);
     for (int first = 0; first < count; first += kRun) {
         const int last = HWY_MIN(count, first + kRun);
-        for (int n = 0; n < K * K; n += kLanes) {
+        for (int n = 0; n < points; n += kLanes) {
             const V vx = hn::Load(d, x + n), vy = hn::Load(d, y + n);
             V s[kSums];
             for (V& v : s) v = Set(0);
             for (int i = first; i < last; ++i) AddLineAt<kExponent>(lines[which[i]], vx, vy, a, b, s);
-            const int lanes = HWY_MIN(kLanes, K * K - n);
+            const int lanes = HWY_MIN(kLanes, points - n);
             for (int c = 0; c < kSums; ++c) {
                 hn::Store(s[c], d, part);
                 for (int j = 0; j < lanes; ++j) sums[(n + j) * 8 + c] += static_cast<double>(part[j]);
@@ -408,10 +496,7 @@ HWY_INLINE void NodeSums(const FieldLine* lines, const int32_t* which, int count
 void NodeSumsOf(const FieldLine* lines, const int32_t* which, int count, const CellFrame& cell,
                 const WeightParameters& weights, int k, const float* nodes, double* sums) {
     WithExponent(weights.b, [&](auto exponent) HWY_ATTR {
-        WithDegree(k, [&](auto degree) HWY_ATTR {
-            NodeSums<decltype(exponent)::value, decltype(degree)::value>(lines, which, count, cell, weights,
-                                                                         nodes, sums);
-        });
+        NodeSums<decltype(exponent)::value>(lines, which, count, cell, weights, k, nodes, sums);
     });
 }
 
@@ -425,7 +510,7 @@ HWY_INLINE void TransformDegree(const double* left, const double* right, const d
 #endif
     constexpr int kStep = static_cast<int>(hn::MaxLanes(d));
     HWY_ALIGN double between[K * K * 8];
-    for (int lane = 0; lane < kSums; lane += kStep) {
+    for (int lane = 0; lane < 8; lane += kStep) {
         for (int i = 0; i < K; ++i) {
             hn::Vec<decltype(d)> column[K];
             HWY_UNROLL(8)
@@ -454,71 +539,200 @@ HWY_INLINE void TransformDegree(const double* left, const double* right, const d
 }
 
 void Transform(const double* left, const double* right, int k, const double* from, double* to) {
-    WithDegree(
-        k, [&](auto degree) HWY_ATTR { TransformDegree<decltype(degree)::value>(left, right, from, to); });
+    if (k == 4) return TransformDegree<4>(left, right, from, to);
+    if (k == 6) return TransformDegree<6>(left, right, from, to);
+    TransformDegree<8>(left, right, from, to);
 }
 
 // --- pixels ------------------------------------------------------------------------------------------------
 
-template <Exponent kExponent, int K, int kCount>
-HWY_INLINE void FieldPoints(const FieldCell& cell, const FieldOutput& out) {
-    const Floats d;
-    const V a = Set(cell.weights.a), b = Set(cell.weights.b);
-    const V lanes = hn::Iota(d, 0.0f);
-    const V unit = Set(1 / cell.frame.half), center = Set(cell.frame.x);
-    constexpr int kPairs = K ? K * 8 : 8;  // coefficients of one power of t
-    HWY_ALIGN float row[kPairs < 16 ? 16 : kPairs];
-    for (int j = 0; j < out.height; ++j) {
-        const float y = out.y + static_cast<float>(j);
-        if constexpr (K > 0) {
-            // The polynomial on this row.
-            const V t = Set((y - cell.frame.y) / cell.frame.half);
-            for (int m = 0; m < kPairs; m += kLanes) {
-                V s = hn::LoadU(d, cell.coefficients + (K - 1) * kPairs + m);
-                for (int n = K - 2; n >= 0; --n)
-                    s = hn::MulAdd(s, t, hn::LoadU(d, cell.coefficients + n * kPairs + m));
-                hn::Store(s, d, row + m);
+/// Near lines on rows of pixels: 16 numbers each, at y = 0 and per pixel down.
+class LineRows {
+  public:
+    enum At { kBefore, kBehind, kBeside, kAt, kAlongX = kAt + kComponents, kAlongY, kFactor, kRight };
+    // What a fine row has beside them.
+    enum AtFine { kBeforeRest, kBehindRest, kBesideRest, kAlongXRest, kAlongYRest };
+    static constexpr int kMost = 32;
+
+    HWY_INLINE void See(const FieldLine* lines, int count) {
+        m_lines = lines;
+        m_count = count;
+        for (int i = 0; i < count; ++i) {
+            const FieldLine& l = lines[i];
+            float *at = m_start + 16 * i, *down = m_down + 16 * i;
+            for (int j = 0; j < 16; ++j) at[j] = down[j] = 0;
+            at[kBefore] = l.before;
+            at[kBehind] = l.behind;
+            at[kBeside] = l.beside;
+            at[kAlongX] = l.along_x;
+            at[kAlongY] = l.along_y;
+            at[kFactor] = l.factor;
+            down[kBefore] = -l.along_y;
+            down[kBehind] = l.along_y;
+            down[kBeside] = l.along_x;
+            for (int c = 0; c < kComponents; ++c) {
+                at[kAt + c] = l.at[c];
+                at[kRight + c] = l.right[c];
+                down[kAt + c] = l.down[c];
             }
         }
-        for (int i = 0; i < out.width; i += kLanes) {
-            const V x = hn::Add(lanes, Set(out.x + static_cast<float>(i)));
-            V sums[kSums];
-            if constexpr (K > 0) {
-                const V s = hn::Mul(hn::Sub(x, center), unit);
-                for (int c = 0; c <= kCount; ++c) {
-                    V sum = Set(row[(K - 1) * 8 + c]);
-                    for (int m = K - 2; m >= 0; --m) sum = hn::MulAdd(sum, s, Set(row[m * 8 + c]));
-                    sums[c] = sum;
+    }
+
+    template <NearPrecision kPrecision>
+    HWY_INLINE void Move(float y) {
+        const Floats d;
+        for (int i = 0; i < 16 * m_count; i += kLanes)
+            hn::Store(hn::MulAdd(Set(y), hn::Load(d, m_down + i), hn::Load(d, m_start + i)), d, m_row + i);
+        if constexpr (kPrecision == NearPrecision::fine)
+            for (int i = 0; i < m_count; ++i) Split(i, y);
+    }
+    const float* Row(int i) const { return m_row + 16 * i; }
+    const float* Rest(int i) const { return m_rest + 8 * i; }
+
+  private:
+    /// Positions and direction as multiples of 2^-13, and the rest.
+    HWY_INLINE void Split(int i, float y) {
+        const FieldLine& l = m_lines[i];
+        float *row = m_row + 16 * i, *rest = m_rest + 8 * i;
+        const auto put = [&](int at, int at_rest, double value) HWY_ATTR {
+            constexpr double kGrid = 0x1p13;
+            row[at] = static_cast<float>(std::nearbyint(value * kGrid) / kGrid);
+            rest[at_rest] = static_cast<float>(value - static_cast<double>(row[at]));
+        };
+        const auto whole = [](float a, float b)
+                               HWY_ATTR { return static_cast<double>(a) + static_cast<double>(b); };
+        const double ux = whole(l.along_x, l.along_x_rest), uy = whole(l.along_y, l.along_y_rest);
+        const double dy = static_cast<double>(y);
+        put(kBefore, kBeforeRest, whole(l.before, l.before_rest) - uy * dy);
+        put(kBehind, kBehindRest, whole(l.behind, l.behind_rest) + uy * dy);
+        put(kBeside, kBesideRest, whole(l.beside, l.beside_rest) + ux * dy);
+        put(kAlongX, kAlongXRest, ux);
+        put(kAlongY, kAlongYRest, uy);
+    }
+
+    const FieldLine* m_lines = nullptr;
+    int m_count = 0;
+    HWY_ALIGN float m_start[16 * kMost], m_down[16 * kMost], m_row[16 * kMost], m_rest[8 * kMost];
+};
+
+/// Adds what one line says about the pixels at x of a row.
+template <Exponent kExponent, NearPrecision kPrecision, int kCount>
+HWY_INLINE void AddLine(const float* row, const float* rest, V x, V a, V b, V* HWY_RESTRICT sums) {
+    constexpr bool kRough = kPrecision == NearPrecision::rough;
+    const V along = hn::Mul(Set(row[LineRows::kAlongX]), x);
+    V before = hn::Sub(Set(row[LineRows::kBefore]), along);
+    V behind = hn::Add(Set(row[LineRows::kBehind]), along);
+    V beside = hn::NegMulAdd(Set(row[LineRows::kAlongY]), x, Set(row[LineRows::kBeside]));
+    if constexpr (kPrecision == NearPrecision::fine) {
+        const V along_rest = hn::Mul(Set(rest[LineRows::kAlongXRest]), x);
+        before = hn::Add(before, hn::Sub(Set(rest[LineRows::kBeforeRest]), along_rest));
+        behind = hn::Add(behind, hn::Add(Set(rest[LineRows::kBehindRest]), along_rest));
+        beside = hn::Add(
+            beside, hn::NegMulAdd(Set(rest[LineRows::kAlongYRest]), x, Set(rest[LineRows::kBesideRest])));
+    }
+    const V far = hn::Max(hn::Add(a, Distance<kRough>(before, behind, beside)), Set(kLeastDistance));
+    const V weight = hn::Mul(Set(row[LineRows::kFactor]), Power<kExponent, kRough>(far, b));
+    sums[0] = hn::Add(sums[0], weight);
+    for (int c = 0; c < kCount; ++c)
+        sums[c + 1] = hn::MulAdd(
+            weight, hn::MulAdd(Set(row[LineRows::kRight + c]), x, Set(row[LineRows::kAt + c])), sums[c + 1]);
+}
+
+/// The far lines' sums on one row of pixels at a time.
+class PolynomialRow {
+  public:
+    HWY_INLINE explicit PolynomialRow(const FieldCell& cell)
+        : m_cell(cell), m_unit(Set(1 / cell.frame.half)), m_center(Set(cell.frame.x)) {}
+
+    HWY_INLINE void Move(float y) {
+        const Floats d;
+        const int k = m_cell.k;
+        const V t = Set((y - m_cell.frame.y) / m_cell.frame.half);
+        for (int m = 0; m < 8 * k; m += kLanes) {
+            const float* at = m_cell.coefficients + (k - 1) * 8 * k + m;
+            V s = hn::LoadU(d, at);
+            for (int n = k - 2; n >= 0; --n) s = hn::MulAdd(s, t, hn::LoadU(d, at -= 8 * k));
+            hn::Store(s, d, m_row + m);
+        }
+    }
+    template <int kCount>
+    HWY_INLINE void At(V x, V* HWY_RESTRICT sums) const {
+        const V s = hn::Mul(hn::Sub(x, m_center), m_unit);
+        const float* at = m_row + 8 * (m_cell.k - 1);
+        for (int c = 0; c <= kCount; ++c) sums[c] = Set(at[c]);
+        for (int m = m_cell.k - 1; m > 0; --m) {
+            at -= 8;
+            for (int c = 0; c <= kCount; ++c) sums[c] = hn::MulAdd(sums[c], s, Set(at[c]));
+        }
+    }
+
+  private:
+    const FieldCell& m_cell;
+    V m_unit, m_center;
+    HWY_ALIGN float m_row[8 * kMaxDegree + 16];
+};
+
+template <Exponent kExponent, NearPrecision kPrecision, int kCount>
+void FieldPoints(const FieldCell& cell, const FieldOutput& out) {
+    constexpr int kWidth = 64;
+    const Floats d;
+    const V a = Set(cell.weights.a), b = Set(cell.weights.b), lanes = hn::Iota(d, 0.0f);
+    PolynomialRow polynomial(cell);
+    LineRows rows;
+    // Lines in parts of so many; sums wait here for the next part.
+    HWY_ALIGN float waiting[kSums][kWidth];
+    const int parts = HWY_MAX(1, (cell.near_count + LineRows::kMost - 1) / LineRows::kMost);
+    for (int j = 0; j < out.height; ++j) {
+        const float y = out.y + static_cast<float>(j);
+        if (cell.k > 0) polynomial.Move(y);
+        for (int part = 0; part < parts; ++part) {
+            const int first = part * LineRows::kMost;
+            const int count = HWY_MIN(LineRows::kMost, cell.near_count - first);
+            if (j == 0 || parts > 1) rows.See(cell.near_lines + first, count);
+            rows.Move<kPrecision>(y);
+            for (int i = 0; i < out.width; i += kLanes) {
+                const V x = hn::Add(lanes, Set(out.x + static_cast<float>(i)));
+                V sums[kSums];
+                for (V& s : sums) s = Set(0);
+                if (part > 0)
+                    for (int c = 0; c <= kCount; ++c) sums[c] = hn::Load(d, waiting[c] + i);
+                else if (cell.k > 0)
+                    polynomial.At<kCount>(x, sums);
+                for (int n = 0; n < count; ++n)
+                    AddLine<kExponent, kPrecision, kCount>(rows.Row(n), rows.Rest(n), x, a, b, sums);
+                if (part + 1 < parts) {
+                    for (int c = 0; c <= kCount; ++c) hn::Store(sums[c], d, waiting[c] + i);
+                    continue;
                 }
-            } else
-                for (int c = 0; c <= kCount; ++c) sums[c] = Set(0);
-            for (int n = 0; n < cell.near_count; ++n)
-                AddLine<kExponent, kCount>(LineOnRow(cell.near_lines[n], y), x, a, b, sums);
-            const V inverse = Reciprocal(sums[0]);
-            for (int c = 0; c < kCount; ++c) {
-                // x + its displacement, or y and its.
-                const V identity = c & 1 ? Set(out.offset[c] + out.slope[c] * y)
-                                         : hn::MulAdd(Set(out.slope[c]), x, Set(out.offset[c]));
-                hn::StoreU(hn::MulAdd(sums[c + 1], inverse, identity), d, out.to[c] + j * out.stride + i);
+                const V inverse = Reciprocal(sums[0]);
+                for (int c = 0; c < kCount; ++c) {
+                    // x + its displacement, or y and its.
+                    const V identity = c & 1 ? Set(out.offset[c] + out.slope[c] * y)
+                                             : hn::MulAdd(Set(out.slope[c]), x, Set(out.offset[c]));
+                    hn::StoreU(hn::MulAdd(sums[c + 1], inverse, identity), d, out.to[c] + j * out.stride + i);
+                }
             }
         }
     }
 }
 
+template <Exponent kExponent, int kCount>
+void FieldPointsWith(const FieldCell& cell, const FieldOutput& out) {
+    if (cell.precision == NearPrecision::fine)
+        return FieldPoints<kExponent, NearPrecision::fine, kCount>(cell, out);
+    if constexpr (kExponent != Exponent::zero && kExponent != Exponent::other)
+        if (cell.precision == NearPrecision::rough)
+            return FieldPoints<kExponent, NearPrecision::rough, kCount>(cell, out);
+    FieldPoints<kExponent, NearPrecision::plain, kCount>(cell, out);
+}
+
 void FieldPointsOf(const FieldCell& cell, const FieldOutput& out) {
     WithExponent(cell.weights.b, [&](auto exponent) HWY_ATTR {
         constexpr Exponent kExponent = decltype(exponent)::value;
-        const auto with_degree = [&](auto count) HWY_ATTR {
-            constexpr int kCount = decltype(count)::value;
-            if (cell.k == 0) return FieldPoints<kExponent, 0, kCount>(cell, out);
-            WithDegree(cell.k, [&](auto degree) HWY_ATTR {
-                FieldPoints<kExponent, decltype(degree)::value, kCount>(cell, out);
-            });
-        };
         if (out.components == 2)
-            with_degree(std::integral_constant<int, 2>{});
+            FieldPointsWith<kExponent, 2>(cell, out);
         else
-            with_degree(std::integral_constant<int, 4>{});
+            FieldPointsWith<kExponent, 4>(cell, out);
     });
 }
 
@@ -531,17 +745,53 @@ namespace anamorph::simd {
 
 HWY_EXPORT(BoundLinesOf);
 HWY_EXPORT(BoundDisplacements);
+HWY_EXPORT(SelectLines);
 HWY_EXPORT(NodeSumsOf);
 HWY_EXPORT(Transform);
 HWY_EXPORT(FieldPointsOf);
+HWY_EXPORT(RoughError);
+
+namespace {
+
+/// Calls body(table, bounds, first) for so many lines at a time that floats add up few numbers.
+template <class Body>
+void each_part(const LineTable& lines, const LineBounds& bounds, const Body& body) {
+    constexpr int kPart = 256;
+    for (int first = 0; first < lines.count; first += kPart) {
+        LineBounds b = bounds;
+        for (float** array : {&b.most, &b.least, &b.value, &b.linear, &b.nearest}) *array += first;
+        for (float*& array : b.displacement) array += first;
+        body(LineTable{lines.data + first, lines.stride, lines.factor + first,
+                       std::min(kPart, lines.count - first)},
+             b, first);
+    }
+}
+
+}  // namespace
 
 void bound_lines(const LineTable& lines, const CellFrame& cell, const WeightParameters& weights, int k,
                  float lebesgue, LineBounds& bounds) {
-    HWY_DYNAMIC_DISPATCH(BoundLinesOf)(lines, cell, weights, k, lebesgue, bounds);
+    bounds.least_sum = 0;
+    std::fill_n(bounds.center, kSums, 0.0);
+    each_part(lines, bounds, [&](const LineTable& table, LineBounds part, int) {
+        HWY_DYNAMIC_DISPATCH(BoundLinesOf)(table, cell, weights, k, lebesgue, part);
+        bounds.least_sum += part.least_sum;
+        for (int c = 0; c < kSums; ++c) bounds.center[c] += part.center[c];
+    });
 }
 SpreadSums bound_displacements(const LineTable& lines, const CellFrame& cell, const float* center, float much,
                                const LineBounds& bounds, float* reach, float* error) {
-    return HWY_DYNAMIC_DISPATCH(BoundDisplacements)(lines, cell, center, much, bounds, reach, error);
+    SpreadSums sums;
+    each_part(lines, bounds, [&](const LineTable& table, const LineBounds& part, int first) {
+        HWY_DYNAMIC_DISPATCH(BoundDisplacements)
+        (table, cell, center, much, part, reach + first, error + first, sums);
+    });
+    return sums;
+}
+Selection select_lines(const LineTable& lines, const LineBounds& bounds, const float* reach,
+                       const float* error, float spread, float unit, float* part, std::int32_t* near,
+                       std::int32_t* far) {
+    return HWY_DYNAMIC_DISPATCH(SelectLines)(lines, bounds, reach, error, spread, unit, part, near, far);
 }
 void node_sums(const FieldLine* lines, const std::int32_t* which, int count, const CellFrame& cell,
                const WeightParameters& weights, int k, const float* nodes, double* sums) {
@@ -552,6 +802,12 @@ void transform(const double* left, const double* right, int k, const double* fro
 }
 void field_points(const FieldCell& cell, const FieldOutput& output) {
     HWY_DYNAMIC_DISPATCH(FieldPointsOf)(cell, output);
+}
+bool has_rough(float b) {
+    return b == 0.5f || b == 1 || b == 2;
+}
+double rough_error() {
+    return HWY_DYNAMIC_DISPATCH(RoughError)();
 }
 
 }  // namespace anamorph::simd

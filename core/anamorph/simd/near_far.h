@@ -11,7 +11,13 @@
 // what is stored is rounded, as are x, y and their products with the direction; together, as a vector, by u
 // (2 r + 11 R). a + dist errs by u (5 (a + r) + 11 R), a weight relatively by b times that over a + r, plus
 // kWeightRounding u (for exponents other than 0, 1/2, 1 and 2: plus kPowerRounding u b (1 + |log(a + r)|)), a
-// displacement by u (4 |value| + 10 R slope). Sums run over at most 8 lines before they are added in double.
+// displacement by u (4 |value| + 10 R slope). Sums run over at most 16 lines before they are added in double.
+// field_points may take near lines with another precision:
+//   fine   positions are carried as two floats, on the grid of 2^-13 and the rest: the first part's products
+//          and differences are exact for |x| <= 32 (before, behind, beside as far as 2^11), so that they err
+//          by u (|value| + 1/64) and the 11 R above is kFineRounding.
+//   rough  square root and reciprocal are the processor's estimates, each off by rough_error() at most: r
+//          and with it (a + r)^b by b times that, its reciprocal by once more.
 #pragma once
 
 #include <cstdint>
@@ -32,10 +38,12 @@ inline constexpr float kLeastDistance = 1e-6f;
 struct FieldLine {
     float before, behind, beside, along_x, along_y, factor;
     float at[kComponents], right[kComponents], down[kComponents];
+    /// What the floats above leave of before, behind, beside and the direction.
+    float before_rest, behind_rest, beside_rest, along_x_rest, along_y_rest;
 };
 
 /// The same, number by number: field f of line i stands at data[f * stride + i]. count may be any; up to the
-/// next multiple of 16 there is room, and lines of factor 0.
+/// next multiple of 16 there is room, and lines of factor 0, as may be among the others.
 struct LineTable {
     enum Field {
         kBefore,
@@ -43,15 +51,15 @@ struct LineTable {
         kBeside,
         kAlongX,
         kAlongY,
-        kFactor,
         kSlope,  ///< the most that the displacement changes over a pixel right plus a pixel down
         kAt,
-        kFields = kAt + kComponents
+        kRight = kAt + kComponents,
+        kDown = kRight + kComponents,
+        kFields = kDown + kComponents
     };
     const float* data;
     std::ptrdiff_t stride;
-    const float* right;  ///< kComponents fields more each
-    const float* down;
+    const float* factor;
     int count;
 };
 
@@ -79,21 +87,43 @@ struct LineBounds {
 void bound_lines(const LineTable& lines, const CellFrame& cell, const WeightParameters& weights, int k,
                  float lebesgue, LineBounds& bounds);
 
-/// Sums and maxima over lines, of the greatest weight m, the reach r, a + dist d, and the displacement's
-/// change per pixel.
+/// Sums over lines of what is known of them: m the greatest weight, r the greatest distance of the
+/// displacement from a reference (the reach), d = a + dist.
+struct LineSums {
+    double value = 0;       ///< of the weights' errors
+    double error = 0;       ///< of the weighted displacements' errors
+    double least = 0;       ///< of the least weights
+    double most = 0;        ///< m
+    double reach = 0;       ///< m r
+    double slope = 0;       ///< m times the displacement's change per pixel
+    double near = 0;        ///< m / d
+    double near_reach = 0;  ///< m r / d
+    double farthest = 0;    ///< the greatest r
+};
+/// What bounds the spread of all lines' displacements, and sums over those that may be far (m <= much, error
+/// known).
 struct SpreadSums {
-    double farthest = 0;  ///< max r
-    double heavy = 0;     ///< max r of lines with m > much
-    double light = 0;     ///< sum m r of the others
-    double steep = 0;     ///< sum m r / d
-    double slope = 0;     ///< sum m * change
-    /// Sums of m, m r, m / d, m r / d over lines that may be far (not heavy, error known).
-    double most = 0, reach = 0, near = 0, near_reach = 0;
+    double heavy = 0;       ///< the greatest r of lines with m > much
+    double light = 0;       ///< sum m r of the others
+    double farthest = 0;    ///< the greatest r
+    double slope = 0;       ///< sum of m times the displacement's change per pixel
+    double near_reach = 0;  ///< sum m r / d
+    LineSums may_be_far;    ///< most, reach, near and near_reach
 };
 /// reach[i]: the greatest distance of a line's displacement from `center` (kComponents numbers) in the cell;
 /// error[i]: value * (the distance at the cell's centre) + linear.
 SpreadSums bound_displacements(const LineTable& lines, const CellFrame& cell, const float* center, float much,
                                const LineBounds& bounds, float* reach, float* error);
+
+/// Far: lines whose parts, unit * (error + spread * value), are the least and together at most 1.
+struct Selection {
+    int near = 0, far = 0;  ///< how many
+    LineSums sums;          ///< over the far lines
+};
+/// near, far: their places in the table, with room for 16 more; part: room for as many numbers as LineTable.
+Selection select_lines(const LineTable& lines, const LineBounds& bounds, const float* reach,
+                       const float* error, float spread, float unit, float* part, std::int32_t* near,
+                       std::int32_t* far);
 
 /// Adds the kSums sums over `count` lines at the K x K nodes of a cell: sums[(row * K + column) * 8 + c].
 void node_sums(const FieldLine* lines, const std::int32_t* which, int count, const CellFrame& cell,
@@ -104,6 +134,7 @@ void transform(const double* left, const double* right, int k, const double* fro
 
 /// The pixels of a cell of near lines and a polynomial in s, t in [-1, 1] (s = (x - cell.x) / cell.half):
 /// coefficient of t^n s^m for sum c at coefficients[(n * K + m) * 8 + c]; none with k = 0.
+enum class NearPrecision : std::uint8_t { plain, rough, fine };
 struct FieldCell {
     CellFrame frame;
     int k;
@@ -111,6 +142,7 @@ struct FieldCell {
     const FieldLine* near_lines;  ///< as seen from the origin of `frame`
     int near_count;
     WeightParameters weights;
+    NearPrecision precision = NearPrecision::plain;
 };
 /// Source points less the base, of `width` <= 64 pixels of `height` rows from (x, y) on (centres of pixels in
 /// the region's frame): offset[c] + slope[c] * (x or y) + displacement. Rows of each output are `stride` >=
@@ -124,5 +156,12 @@ struct FieldOutput {
     std::ptrdiff_t stride;
 };
 void field_points(const FieldCell& cell, const FieldOutput& output);
+
+/// Does an exponent of the weights have a rough form?
+bool has_rough(float b);
+/// The greatest relative error of the processor's estimates of 1 / x and 1 / sqrt(x); infinite where there
+/// are none.
+double rough_error();
+inline constexpr double kFineRounding = 0x1p-5;
 
 }  // namespace anamorph::simd
