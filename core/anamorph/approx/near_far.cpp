@@ -145,6 +145,7 @@ struct Cell {
     std::int32_t base[kComponents];
     std::size_t coefficients, near;  ///< where they begin in the region's lists
     int near_count;
+    bool fine;  ///< how near lines are placed
 };
 
 struct Region {
@@ -302,23 +303,19 @@ struct FarSums : simd::LineSums {
 class Planner {
   public:
     Planner(const FeatureMap& map, const NearFarOptions& options, const Chebyshev& chebyshev,
-            const Box& picture, Region& region)
+            const std::vector<float>& slopes, const Box& picture)
         : m_map(map),
           m_options(options),
           m_chebyshev(chebyshev),
+          m_slopes(slopes),
           m_picture(picture),
-          m_region(region),
-          m_weights{static_cast<float>(map.weights().a), static_cast<float>(map.weights().b)} {
-        const double b = map.weights().b;
-        const bool fast = b == 0 || b == 0.5 || b == 1 || b == 2;
-        // a + dist lies between 1e-6 and 1e12.
-        constexpr double kMostLog = 28;
-        m_constant =
-            kUlp * (5 * b + simd::kWeightRounding + (fast ? 0 : simd::kPowerRounding * b * (1 + kMostLog)));
-        m_by_nearest = kUlp * 11 * b;
-    }
+          m_weights{static_cast<float>(map.weights().a), static_cast<float>(map.weights().b)} {}
 
-    void plan(int x0, int y0) {
+    void plan(int x0, int y0, Region& region) {
+        m_region = &region;
+        region.cells.reserve(64);
+        region.lines.reserve(128);
+        region.coefficients.reserve(64 * 8 * static_cast<std::size_t>(m_chebyshev.k * m_chebyshev.k));
         m_x = x0 + kHalfRegion;
         m_y = y0 + kHalfRegion;
         if (!gather()) return exact(x0, y0, kRegion);
@@ -338,35 +335,29 @@ class Planner {
         const std::vector<int>& shapes = m_options.shapes;
         for (std::size_t n = 0; n < shapes.size(); ++n) {
             const Point<double> at = m_map(m_x, m_y, shapes[n]), scale = m_map.scale(shapes[n]);
-            m_region.origin[2 * n] = at.x;
-            m_region.origin[2 * n + 1] = at.y;
+            m_region->origin[2 * n] = at.x;
+            m_region->origin[2 * n + 1] = at.y;
             m_reference[2 * n] = at.x - m_x * scale.x;
             m_reference[2 * n + 1] = at.y - m_y * scale.y;
         }
         // Weights in units of what a line at this distance has, so that floats hold them.
-        double unit = HUGE_VAL;
+        double unit = HUGE_VAL, farthest = 1;
         for (std::size_t i = 0; i < m_map.size(); ++i) {
             const FeatureMap::TargetLine& line = m_map.line(i);
-            unit = std::min(unit, kHalfRegion + m_map.distance(line, m_map.frame(line, m_x, m_y)));
+            const double distance = kHalfRegion + m_map.distance(line, m_map.frame(line, m_x, m_y));
+            unit = std::min(unit, distance);
+            farthest = std::max(farthest, distance + kHalfRegion);
         }
-        m_unit = std::pow(unit, m_map.weights().b);
+        const double a = m_map.weights().a, b = m_map.weights().b;
+        m_unit = std::pow(unit, b);
+        const bool fast = b == 0 || b == 0.5 || b == 1 || b == 2;
+        const double log = std::max(std::log(farthest), -std::log(std::max<double>(a, simd::kLeastDistance)));
+        m_constant =
+            kUlp * (5 * b + simd::kWeightRounding + (fast ? 0 : simd::kPowerRounding * b * (1 + log)));
+        m_by_nearest = kUlp * b;
         m_lines.resize(m_map.size());
-        m_slopes.resize(m_map.size());
-        for (std::size_t i = 0; i < m_map.size(); ++i) {
-            FieldLine& l = m_lines[i];
-            if (!see(i, m_x, m_y, l)) return false;
-            double slope = 0;
-            for (int c = 0; c < kComponents; c += 2) {
-                const auto length = [](float x, float y) {
-                    return std::sqrt(static_cast<double>(x) * static_cast<double>(x) +
-                                     static_cast<double>(y) * static_cast<double>(y));
-                };
-                slope =
-                    std::max(slope, length(l.right[c], l.right[c + 1]) + length(l.down[c], l.down[c + 1]));
-            }
-            m_slopes[i] = static_cast<float>(slope * (1 + 1e-5) + 1e-12);
-            if (!(slope < 1e9)) return false;
-        }
+        for (std::size_t i = 0; i < m_map.size(); ++i)
+            if (!see(i, m_x, m_y, m_lines[i]) || !(m_slopes[i] < 1e9f)) return false;
         return true;
     }
 
@@ -489,8 +480,8 @@ class Planner {
         for (int child = 0; child < 4; ++child) {
             const int right = child & 1, below = child >> 1;
             if (has_polynomial)
-                simd::transform(m_chebyshev.halves[below], m_chebyshev.halves[right], m_chebyshev.k, whole,
-                                rest.polynomial);
+                simd::shift(m_chebyshev.halves[below], m_chebyshev.halves[right], m_chebyshev.k, whole,
+                            rest.polynomial);
             settle(x0 + right * half, y0 + below * half, half, depth + 1, sums, has_polynomial);
         }
     }
@@ -510,21 +501,15 @@ class Planner {
         std::fill_n(sums, size, 0.0);
         simd::node_sums(m_lines.data(), m_far.data(), lines.far_count, frame, m_weights, k, m_chebyshev.nodes,
                         sums);
-        simd::transform(m_chebyshev.powers, m_chebyshev.powers, k, sums, to);
-        if (has_polynomial)
-            for (std::size_t i = 0; i < size; ++i) to[i] += lines.polynomial[i];
+        simd::transform(m_chebyshev.powers, m_chebyshev.powers, k, sums,
+                        has_polynomial ? lines.polynomial : nullptr, to);
     }
 
     // --- rounding ----------------------------------------------------------------------------------------
 
-    /// Relative rounding of a weight at a + dist >= nearest, of a line seen from a point at most `half` off
-    /// along each axis.
-    double weight_rounding(double nearest, double half) const {
-        return m_constant + m_by_nearest * half / nearest;
-    }
     /// Of the weights of far lines, from their sum and their sum over a + dist.
     double noise(double sum, double near_sum) const {
-        return m_constant * sum + m_by_nearest * kHalfRegion * near_sum;
+        return m_constant * sum + m_by_nearest * 11 * kHalfRegion * near_sum;
     }
 
     double scale() const {
@@ -540,7 +525,7 @@ class Planner {
                        6 * (130 * scale() + 2 * value));
     }
 
-    double far_rounding(const Known& known, const FarSums& sums, const float* coefficients) const {
+    double far_rounding(const Known& known, const FarSums& sums, const float* size) const {
         if (sums.most == 0) return 0;
         const double offset = known.offset;
         const double reach = sums.reach + offset * sums.most;
@@ -549,22 +534,24 @@ class Planner {
                              20 * kUlp * (reach + (known.spread + offset) * sums.most) +
                              kUlp * (4 * reach + 10 * kHalfRegion * sums.slope);
         // Horner's rule, and the coefficients themselves.
-        float size[8] = {};
-        const int k = m_chebyshev.k;
-        for (int i = 0; i < k * k; ++i)
-            for (int c = 0; c < 8; ++c) size[c] += std::fabs(coefficients[i * 8 + c]);
         const double moved = static_cast<double>(std::max(size[1] + size[2], size[3] + size[4]));
         const double horner =
-            kUlp * (2 * k + 3) * (moved + (known.spread + offset) * static_cast<double>(size[0]));
+            kUlp * (2 * m_chebyshev.k + 3) * (moved + (known.spread + offset) * static_cast<double>(size[0]));
         return (m_chebyshev.lebesgue * m_chebyshev.lebesgue * nodes + horner) / known.least;
     }
 
-    /// Of the near lines' weights and displacements. A weight off by a factor 1 + e moves D by e l |D_i - D|,
-    /// l the weight's part of all, which is l (1 - l) times the distance of D_i from the mean of the others.
-    double near_rounding(Candidates& lines, const simd::LineBounds& bounds, const Known& known,
-                         const FarSums& far) const {
+    /// What the near lines' rounding is made of: sums of how far a unit of a weight's relative error moves D,
+    /// and one of its error by the place, per pixel; the least a + dist; and their displacements'.
+    struct NearRounding {
+        double moved = 0, moved_by_place = 0, nearest = HUGE_VAL, displacements = 0;
+    };
+    /// A weight off by a factor 1 + e moves D by e l |D_i - D|, l the weight's part of all, which is l (1 -
+    /// l) times the distance of D_i from the mean of the others.
+    NearRounding near_rounding(Candidates& lines, const simd::LineBounds& bounds, const Known& known,
+                               const FarSums& far) const {
         const double b = m_map.weights().b, half = static_cast<double>(known.frame.half);
-        double total = 0, slope = 0, worst = 0;
+        NearRounding out;
+        double slope = 0;
         // For the mean of the others: lines of little weight count by that, the two farthest of the rest.
         const double much = 0.25 * known.least;
         double all = far.most, light = far.reach, farthest = 0, second = 0;
@@ -594,24 +581,28 @@ class Planner {
                 (light - (most <= much ? most * reach : 0)) / rest + (i == farthest_line ? second : farthest);
             const double part = std::min(1.0, most / known.least);
             const double between = reach + (rest > 0 ? std::min(mean, known.farthest) : known.farthest);
-            double moved = std::min(part * (reach + known.spread), std::min(part, 0.25) * between);
-            // The weight is most (nearest / d)^b at distance d, and with it 1 - l at most others / weight.
-            // With b >= 1 the worst distance is where that is as good as `moved`, if there is one; else the
-            // nearest.
+            const double moved = std::min(part * (reach + known.spread), std::min(part, 0.25) * between);
+            // The weight is most (nearest / d)^b at distance d, and with it 1 - l at most others / weight. An
+            // error that falls with d is worst at the nearest distance, or with b >= 1 where that is as good
+            // as `moved`.
             const double others = std::max(all - most, 0.0) + 1e-6 * most;
-            const double ratio = most * moved / (others * between + 1e-300);
-            double from = nearest;
-            if (b >= 1 && ratio > 1)
-                from *= b == 2 ? std::sqrt(ratio) : b == 1 ? ratio : std::pow(ratio, 1 / b);
-            else if (ratio > 1)
-                moved /= ratio;
-            const double relative = weight_rounding(nearest, half);
-            worst = std::max(worst, relative);
-            total += std::min(weight_rounding(from, half), relative) * moved;
+            const double ratio = std::max(most * moved / (others * between + 1e-300), 1.0);
+            const double by = b == 2 ? std::sqrt(ratio) : b <= 1 ? ratio : std::pow(ratio, 1 / b);
+            out.moved += moved;
+            out.moved_by_place += moved / (nearest * by);
+            out.nearest = std::min(out.nearest, nearest);
         }
+        out.displacements = kUlp * (4 * (known.spread + known.offset) + 10 * half * slope);
+        return out;
+    }
+    double near_rounding(const NearRounding& near, bool fine, double half) const {
+        const double place = m_by_nearest * (fine ? simd::kFineRounding : 11 * half);
+        // Where distances are cut off, weights have no bound.
+        constexpr auto kLeast = static_cast<double>(simd::kLeastDistance);
+        if (near.nearest <= kLeast && m_map.weights().a < kLeast) return HUGE_VAL;
+        const double worst = m_constant + place / near.nearest;
         if (!(worst < 0.25)) return HUGE_VAL;
-        const double displacements = kUlp * (4 * (known.spread + known.offset) + 10 * half * slope);
-        return total / (1 - worst) + displacements;
+        return (m_constant * near.moved + place * near.moved_by_place) / (1 - worst) + near.displacements;
     }
 
     // --- results -----------------------------------------------------------------------------------------
@@ -622,46 +613,54 @@ class Planner {
         const int near = lines.near_count;
         const double off = sums.value / known.least;
         if (!(off < 0.05)) return false;
-        const double interpolation = quotient_error(sums, known);
-        const double before = base_rounding(known, near) + near_rounding(lines, bounds, known, sums);
-        if (!(interpolation + before <= m_options.tol)) return false;
+        const double half = static_cast<double>(known.frame.half);
+        const NearRounding rounding = near_rounding(lines, bounds, known, sums);
+        const double before = quotient_error(sums, known) + base_rounding(known, near);
+        if (!(before + near_rounding(rounding, true, half) <= m_options.tol)) return false;
 
         const bool any = has_polynomial || lines.far_count > 0;
-        const auto size = static_cast<std::size_t>(m_chebyshev.k * m_chebyshev.k * 8);
         float coefficients[kCoefficients];
+        double whole = before;
         if (any) {
             alignas(64) double polynomial[kCoefficients];
             interpolate(lines, known.frame, has_polynomial, polynomial);
-            for (std::size_t i = 0; i < size; ++i) coefficients[i] = static_cast<float>(polynomial[i]);
+            float sizes[8];
+            simd::round_coefficients(polynomial, m_chebyshev.k, coefficients, sizes);
+            whole += far_rounding(known, sums, sizes);
         }
-        const double bound = (interpolation + before + (any ? far_rounding(known, sums, coefficients) : 0)) /
-                             (1 - off) * (1 + 1e-3);
+        const auto bound_of = [&](bool fine) {
+            return (whole + near_rounding(rounding, fine, half)) / (1 - off) * (1 + 1e-3);
+        };
+        const bool fine = !(bound_of(false) <= m_options.tol);
+        const double bound = bound_of(fine);
         if (!(bound <= m_options.tol)) return false;
 
-        Cell cell{box, false, bound, known.frame, {}, m_region.coefficients.size(), m_region.lines.size(), 0};
+        Cell cell{box, false, bound, known.frame, {}, m_region->coefficients.size(), m_region->lines.size(),
+                  0,   fine};
         const std::vector<int>& shapes = m_options.shapes;
         for (std::size_t n = 0; n < shapes.size(); ++n) {
             const Point<double> s = m_map.scale(shapes[n]);
             const double x =
-                m_region.origin[2 * n] + s.x * static_cast<double>(known.frame.x) + known.center[2 * n];
-            const double y = m_region.origin[2 * n + 1] + s.y * static_cast<double>(known.frame.y) +
+                m_region->origin[2 * n] + s.x * static_cast<double>(known.frame.x) + known.center[2 * n];
+            const double y = m_region->origin[2 * n + 1] + s.y * static_cast<double>(known.frame.y) +
                              known.center[2 * n + 1];
             if (!(std::fabs(x) < 1 << 30 && std::fabs(y) < 1 << 30)) return false;
             cell.base[2 * n] = static_cast<std::int32_t>(std::floor(x));
             cell.base[2 * n + 1] = static_cast<std::int32_t>(std::floor(y));
         }
         if (any)
-            m_region.coefficients.insert(m_region.coefficients.end(), coefficients, coefficients + size);
+            m_region->coefficients.insert(m_region->coefficients.end(), coefficients,
+                                          coefficients + m_chebyshev.k * m_chebyshev.k * 8);
         else
             cell.coefficients = std::numeric_limits<std::size_t>::max();
         for (int j = 0; j < near; ++j) {
             FieldLine seen;
             see(static_cast<std::size_t>(lines.id(lines.near[static_cast<std::size_t>(j)])),
                 m_x + static_cast<double>(known.frame.x), m_y + static_cast<double>(known.frame.y), seen);
-            m_region.lines.push_back(seen);
+            m_region->lines.push_back(seen);
         }
         cell.near_count = near;
-        m_region.cells.push_back(cell);
+        m_region->cells.push_back(cell);
         return true;
     }
 
@@ -671,22 +670,23 @@ class Planner {
             for (int x = x0; x < x0 + size; x += Block::kMaxSide) {
                 const int side = std::min(size, Block::kMaxSide);
                 const Box box = intersection({x, y, x + side, y + side}, m_picture);
-                if (!box.empty()) m_region.cells.push_back({box, true, 0, {}, {}, 0, 0, 0});
+                if (!box.empty()) m_region->cells.push_back({box, true, 0, {}, {}, 0, 0, 0, false});
             }
     }
 
     const FeatureMap& m_map;
     const NearFarOptions& m_options;
     const Chebyshev& m_chebyshev;
+    const std::vector<float>& m_slopes;
     const Box m_picture;
-    Region& m_region;
+    Region* m_region = nullptr;
     simd::WeightParameters m_weights;
-    double m_x = 0, m_y = 0;                  ///< the region's centre
-    double m_unit = 1;                        ///< of weights
-    double m_constant = 0, m_by_nearest = 0;  ///< of the weights' rounding
-    Vector m_reference{};                     ///< displacements are relative to this
+    double m_x = 0, m_y = 0;  ///< the region's centre
+    double m_unit = 1;        ///< of weights
+    /// Relative errors of weights: by rounding, and by that of the place, per pixel and a + dist.
+    double m_constant = 0, m_by_nearest = 0;
+    Vector m_reference{};  ///< displacements are relative to this
     std::vector<FieldLine> m_lines;
-    std::vector<float> m_slopes;
     std::vector<std::int32_t> m_far;
     std::vector<std::unique_ptr<Candidates>> m_levels;
 };
@@ -707,8 +707,27 @@ struct NearFar::State {
     std::mutex mutex;
     std::unordered_map<std::int64_t, std::shared_ptr<Planned>> regions;
 
+    std::vector<float> slopes;  ///< line by line: the most that its displacement changes over a pixel
+    std::vector<std::unique_ptr<Planner>> idle;
+
     State(const FeatureMap& feature_map, const NearFarOptions& near_far)
-        : map(feature_map), options(near_far), chebyshev(degree_for(near_far.tol)) {}
+        : map(feature_map), options(near_far), chebyshev(degree_for(near_far.tol)) {
+        if (exact()) return;
+        constexpr double kNowhere[kComponents] = {};
+        for (std::size_t i = 0; i < map.size(); ++i) {
+            const FieldLine l = seen_from(map, i, options.shapes, 0, 0, kNowhere, 1);
+            double slope = 0;
+            for (int c = 0; c < kComponents; c += 2) {
+                const auto length = [](float x, float y) {
+                    return std::sqrt(static_cast<double>(x) * static_cast<double>(x) +
+                                     static_cast<double>(y) * static_cast<double>(y));
+                };
+                slope =
+                    std::max(slope, length(l.right[c], l.right[c + 1]) + length(l.down[c], l.down[c + 1]));
+            }
+            slopes.push_back(static_cast<float>(slope * (1 + 1e-5) + 1e-12));
+        }
+    }
 
     /// The plan of a region: made when first asked for, kept for a while.
     std::shared_ptr<const Region> region(const Box& box) {
@@ -722,9 +741,20 @@ struct NearFar::State {
             found = entry;
         }
         std::call_once(found->once, [&] {
+            // Planners keep their memory from region to region.
+            std::unique_ptr<Planner> planner;
+            {
+                const std::lock_guard lock(mutex);
+                if (!idle.empty()) {
+                    planner = std::move(idle.back());
+                    idle.pop_back();
+                }
+            }
             const Box picture{0, 0, map.target().width, map.target().height};
-            Planner planner(map, options, chebyshev, picture, found->region);
-            planner.plan(box.x0, box.y0);
+            if (!planner) planner = std::make_unique<Planner>(map, options, chebyshev, slopes, picture);
+            planner->plan(box.x0, box.y0, found->region);
+            const std::lock_guard lock(mutex);
+            idle.push_back(std::move(planner));
         });
         return {found, &found->region};
     }
@@ -753,7 +783,8 @@ void cell_points(const FeatureMap& map, const std::vector<int>& shapes, int degr
                           nullptr,
                           region.lines.data() + cell.near,
                           cell.near_count,
-                          {static_cast<float>(map.weights().a), static_cast<float>(map.weights().b)}};
+                          {static_cast<float>(map.weights().a), static_cast<float>(map.weights().b)},
+                          cell.fine};
     if (cell.coefficients != std::numeric_limits<std::size_t>::max()) {
         field.k = degree;
         field.coefficients = region.coefficients.data() + cell.coefficients;

@@ -26,83 +26,67 @@ HWY_INLINE V Set(float x) {
     return hn::Set(Floats(), x);
 }
 
-// The processor's estimates are good on x86 only: 12 bits from SSE on, 14 in AVX-512.
+// The processor's estimates of 1 / x and 1 / sqrt(x) are good on x86 only: 12 bits from SSE on, 14 in
+// AVX-512.
 #if HWY_ARCH_X86 && HWY_TARGET <= HWY_SSSE3
-#if HWY_TARGET <= HWY_AVX3
-constexpr double kEstimateError = 0x1p-14;
+constexpr bool kEstimates = true;
+constexpr float kEstimateError = HWY_TARGET <= HWY_AVX3 ? 0x1p-14f : 0x1.8p-12f;
 #else
-constexpr double kEstimateError = 0x1.8p-12;
+constexpr bool kEstimates = false;
+constexpr float kEstimateError = 0x1p-22f;
 #endif
-#else
-constexpr double kEstimateError = HUGE_VAL;
-#endif
-double RoughError() {
-    return kEstimateError;
-}
 
 /// 1 / x to within 3 half-ULP, or as the processor estimates it.
-template <bool kRough = false>
+template <bool kEstimate = false>
 HWY_INLINE V Reciprocal(V x) {
-    if constexpr (kRough) return hn::ApproximateReciprocal(x);
+    if constexpr (kEstimate) return hn::ApproximateReciprocal(x);
     return hn::Div(Set(1), x);
-}
-template <bool kRough>
-HWY_INLINE V Root(V square) {
-    // Not of 0, whose estimate is infinite.
-    if constexpr (kRough) return hn::Mul(square, hn::ApproximateReciprocalSqrt(hn::Max(square, Set(1e-30f))));
-    return hn::Sqrt(square);
 }
 
 // --- the formula, read with vectors ---------------------------------------------------------------------
 
-/// A vector as a number that the formula's templates can read; its root may be an estimate.
-template <bool kRough>
+/// A vector as a number that the formula's templates can read.
 struct Number {
     V v;
     Number() = default;
     HWY_INLINE Number(V vector) : v(vector) {}  // NOLINT: a vector is a number
     HWY_INLINE explicit Number(float x) : v(Set(x)) {}
 };
-template <bool kRough>
-HWY_INLINE Number<kRough> operator*(const Number<kRough>& a, const Number<kRough>& b) {
+HWY_INLINE Number operator*(const Number& a, const Number& b) {
     return hn::Mul(a.v, b.v);
 }
-template <bool kRough>
-HWY_INLINE Number<kRough> operator+(const Number<kRough>& a, const Number<kRough>& b) {
+HWY_INLINE Number operator+(const Number& a, const Number& b) {
     return hn::Add(a.v, b.v);
 }
-template <bool kRough>
-HWY_INLINE Number<kRough> max(const Number<kRough>& a, const Number<kRough>& b) {
+HWY_INLINE Number max(const Number& a, const Number& b) {
     return hn::Max(a.v, b.v);
 }
-template <bool kRough>
-HWY_INLINE Number<kRough> root(const Number<kRough>& a) {
-    return Root<kRough>(a.v);
+HWY_INLINE Number root(const Number& a) {
+    return hn::Sqrt(a.v);
 }
 
 #include "anamorph/map/feature_formula.h"
 
-template <bool kRough = false>
 HWY_INLINE V Distance(V before, V behind, V beside) {
-    return distance_to_line<Number<kRough>>(before, behind, beside).v;
+    return distance_to_line<Number>(before, behind, beside).v;
 }
 
 /// Which fast path an exponent takes.
 enum class Exponent { zero, half, one, two, other };
 
 /// (a + dist)^-b
-template <Exponent kExponent, bool kRough = false>
+template <Exponent kExponent, bool kEstimate = false>
 HWY_INLINE V Power(V x, V b) {
     switch (kExponent) {
         case Exponent::zero:
             return Set(1);
         case Exponent::half:
-            if constexpr (kRough) return hn::ApproximateReciprocalSqrt(x);
+            if constexpr (kEstimate) return hn::ApproximateReciprocalSqrt(x);
             return Reciprocal(hn::Sqrt(x));
         case Exponent::one:
-            return Reciprocal<kRough>(x);
+            return Reciprocal<kEstimate>(x);
         case Exponent::two:
-            return Reciprocal<kRough>(hn::Mul(x, x));
+            return Reciprocal<kEstimate>(hn::Mul(x, x));
         default:
             return hn::Exp(Floats(), hn::Neg(hn::Mul(b, hn::Log(Floats(), x))));
     }
@@ -126,6 +110,19 @@ HWY_INLINE V PowerOfInverse(int k, V inverse) {
     return k == 4 ? x4 : hn::Mul(x4, k == 6 ? x2 : x4);
 }
 
+// Bounds are made with estimates of roots and quotients: kLoose covers 40 of them, one after the other.
+constexpr float kLoose = 1 + 40 * kEstimateError, kTight = 1 - 40 * kEstimateError;
+HWY_INLINE V About(V numerator, V denominator) {
+    if constexpr (kEstimates) return hn::Mul(numerator, Reciprocal<true>(denominator));
+    return hn::Div(numerator, denominator);
+}
+HWY_INLINE V AboutRoot(V square) {
+    // Not of 0, whose estimate is infinite.
+    if constexpr (kEstimates)
+        return hn::Mul(square, hn::ApproximateReciprocalSqrt(hn::Max(square, Set(1e-30f))));
+    return hn::Sqrt(square);
+}
+
 struct AxisError {
     V value, linear;
 };
@@ -135,13 +132,13 @@ struct AxisError {
 template <bool kAboveOne>
 HWY_INLINE AxisError BesideError(int k, V x) {
     const V one = Set(1);
-    const V root = hn::Sqrt(hn::Max(hn::MulSub(x, x, one), Set(0)));
-    const V y = PowerOfInverse(k, hn::Div(one, hn::Add(x, root)));
-    const V g = hn::Div(hn::Add(y, y), hn::MulAdd(y, y, one));
+    const V root = AboutRoot(hn::Max(hn::MulSub(x, x, one), Set(0)));
+    const V y = PowerOfInverse(k, About(one, hn::Add(x, root)));
+    const V g = About(hn::Add(y, y), hn::MulAdd(y, y, one));
     V e = g;
     if constexpr (kAboveOne)
         e = hn::MulAdd(hn::Mul(g, Set(static_cast<float>(k))),
-                       hn::Sqrt(hn::Div(hn::Sub(x, one), hn::Add(x, one))), g);
+                       AboutRoot(About(hn::Sub(x, one), hn::Add(x, one))), g);
     return {e, hn::Mul(x, hn::Add(g, e))};
 }
 
@@ -149,18 +146,19 @@ HWY_INLINE AxisError BesideError(int k, V x) {
 HWY_INLINE AxisError EndError(int k, V sigma, V eta) {
     const V one = Set(1), zero = Set(0);
     const V eta2 = hn::Mul(eta, eta), minus = hn::Sub(sigma, one), plus = hn::Add(sigma, one);
-    const V a = hn::Mul(
-        Set(0.5f), hn::Add(hn::Sqrt(hn::MulAdd(minus, minus, eta2)), hn::Sqrt(hn::MulAdd(plus, plus, eta2))));
-    const V a1 = hn::Max(a, one);
-    const V y = PowerOfInverse(k, hn::Div(one, hn::Add(a1, hn::Sqrt(hn::MulSub(a1, a1, one)))));
-    const V g = hn::Div(hn::Add(y, y), hn::NegMulAdd(y, y, one));
+    const V a = hn::Mul(Set(0.5f), hn::Add(AboutRoot(hn::MulAdd(minus, minus, eta2)),
+                                           AboutRoot(hn::MulAdd(plus, plus, eta2))));
+    // Not farther off than it is.
+    const V a1 = hn::Max(hn::Mul(a, Set(kTight)), one);
+    const V y = PowerOfInverse(k, About(one, hn::Add(a1, AboutRoot(hn::MulSub(a1, a1, one)))));
+    const V g = About(hn::Add(y, y), hn::NegMulAdd(y, y, one));
     // The slope of the linear factor: by its value over eta, or by the derivative on the real axis.
-    const V s1 = hn::Max(sigma, one), sinh = hn::Sqrt(hn::Max(hn::MulSub(s1, s1, one), zero));
-    const V ys = PowerOfInverse(k, hn::Div(one, hn::Add(s1, sinh))), ys2 = hn::Mul(ys, ys);
+    const V s1 = hn::Max(sigma, one), sinh = AboutRoot(hn::Max(hn::MulSub(s1, s1, one), zero));
+    const V ys = PowerOfInverse(k, About(one, hn::Add(s1, sinh))), ys2 = hn::Mul(ys, ys);
     const V below = hn::Sub(one, ys2);
-    const V derivative = hn::Div(hn::Mul(hn::Mul(Set(static_cast<float>(2 * k)), ys), hn::Add(one, ys2)),
-                                 hn::Mul(sinh, hn::Mul(below, below)));
-    const V slope = hn::IfThenElse(hn::Ge(eta, one), hn::Div(g, hn::Max(eta, one)), derivative);
+    const V derivative = About(hn::Mul(hn::Mul(Set(static_cast<float>(2 * k)), ys), hn::Add(one, ys2)),
+                               hn::Mul(sinh, hn::Mul(below, below)));
+    const V slope = hn::IfThenElse(hn::Ge(eta, one), About(g, hn::Max(eta, one)), derivative);
     const V most = hn::Max(eta, plus);
     const V value = hn::MulAdd(plus, slope, g);
     return {value, hn::MulAdd(slope, hn::MulAdd(plus, plus, hn::Mul(most, most)), value)};
@@ -215,9 +213,10 @@ HWY_INLINE void BoundLines(const LineTable& lines, const CellFrame& cell, const 
         const V nearest =
             hn::Max(hn::Add(a, hn::Max(hn::Sub(hn::Sub(far, diagonal), rounding), zero)), least_distance);
         const V farthest = hn::Add(a, hn::Add(hn::Add(far, diagonal), rounding));
-        const V most = hn::Mul(factor, Power<kExponent>(nearest, b));
-        const V least = hn::Mul(factor, Power<kExponent>(farthest, b));
-        const V weight = hn::Mul(factor, Power<kExponent>(hn::Max(hn::Add(a, far), least_distance), b));
+        const auto power = [&](V distance) HWY_ATTR { return Power<kExponent, kEstimates>(distance, b); };
+        const V most = hn::Mul(hn::Mul(factor, Set(kLoose)), power(nearest));
+        const V least = hn::Mul(hn::Mul(factor, Set(kTight)), power(farthest));
+        const V weight = hn::Mul(factor, power(hn::Max(hn::Add(a, far), least_distance)));
         hn::StoreU(most, d, out.most + i);
         hn::StoreU(nearest, d, out.nearest + i);
         hn::StoreU(least, d, out.least + i);
@@ -236,12 +235,12 @@ HWY_INLINE void BoundLines(const LineTable& lines, const CellFrame& cell, const 
             const V hx = hn::Mul(half, hn::Abs(ux)), hy = hn::Mul(half, hn::Abs(uy));
             const V extent = hn::Add(hn::Add(hx, hy), rounding);
             const V clear = hn::Sub(hn::Sub(far, diagonal), rounding);
-            const V apart = hn::Max(clear, Set(1e-3f)), size = hn::Div(half, apart),
+            const V apart = hn::Max(clear, Set(1e-3f)), size = About(half, apart),
                     size2 = hn::Mul(size, size);
             const V larger = hn::Max(hn::Mul(ux, ux), hn::Mul(uy, uy));
             const V jumps = hn::Add(hn::IfThenElseZero(hn::Lt(hn::Abs(before), extent), one),
                                     hn::IfThenElseZero(hn::Lt(hn::Abs(behind), extent), one));
-            const V jump = hn::Mul(hn::Mul(jumps, hn::Mul(size, hn::Div(half, nearest))),
+            const V jump = hn::Mul(hn::Mul(jumps, hn::Mul(size, About(half, nearest))),
                                    hn::MulAdd(larger, hn::Sub(one, constant), constant));
             const V third = hn::Mul(size2, hn::Mul(size, Set(third_of_weight)));
             error.value = hn::MulAdd(jump, Set(JumpError(k) * weights.b), third);
@@ -256,8 +255,10 @@ HWY_INLINE void BoundLines(const LineTable& lines, const CellFrame& cell, const 
                     hn::And(hn::And(hn::Lt(before, hn::Neg(extent)), hn::Lt(behind, hn::Neg(extent))),
                             hn::Gt(hn::Abs(beside), extent));
                 const V tiny = Set(cell.half * 1e-6f);
-                const V xs = hn::Max(hn::Div(hn::Sub(distance, hx), hn::Max(hy, tiny)), one);
-                const V xt = hn::Max(hn::Div(hn::Sub(distance, hy), hn::Max(hx, tiny)), one);
+                const auto pole = [&](V apart_by, V by) HWY_ATTR {
+                    return hn::Max(hn::Mul(Set(kTight), About(apart_by, hn::Max(by, tiny))), one);
+                };
+                const V xs = pole(hn::Sub(distance, hx), hy), xt = pole(hn::Sub(distance, hy), hx);
                 const AxisError by_line =
                     above_one ? Both(BesideError<true>(k, xs), BesideError<true>(k, xt), constant)
                               : Both(BesideError<false>(k, xs), BesideError<false>(k, xt), constant);
@@ -281,10 +282,11 @@ HWY_INLINE void BoundLines(const LineTable& lines, const CellFrame& cell, const 
                 error.linear = better(error.linear, by_line.linear, by_end.linear);
             }
         }
-        const V change = hn::Mul(half, field(LineTable::kSlope));
+        const V change = hn::Mul(hn::Mul(half, Set(kLoose)), field(LineTable::kSlope));
         // Lines of factor 0 fill up the last vector.
         const auto real = hn::Gt(factor, zero);
-        hn::StoreU(hn::IfThenElse(real, hn::Mul(most, error.value), zero), d, out.value + i);
+        hn::StoreU(hn::IfThenElse(real, hn::Mul(hn::Mul(most, Set(kLoose)), error.value), zero), d,
+                   out.value + i);
         hn::StoreU(hn::IfThenElse(real, hn::Mul(hn::Mul(most, error.linear), change), zero), d,
                    out.linear + i);
     }
@@ -500,48 +502,67 @@ void NodeSumsOf(const FieldLine* lines, const int32_t* which, int count, const C
     });
 }
 
-template <int K>
-HWY_INLINE void TransformDegree(const double* left, const double* right, const double* HWY_RESTRICT from,
-                                double* HWY_RESTRICT to) {
 #if HWY_HAVE_FLOAT64 && HWY_TARGET != HWY_SCALAR
-    const hn::CappedTag<double, 8> d;
+using Doubles = hn::CappedTag<double, 8>;
 #else
-    const hn::CappedTag<double, 1> d;
+using Doubles = hn::CappedTag<double, 1>;
 #endif
+
+/// kUpper: left and right are 0 below the diagonal.
+template <int K, bool kUpper>
+HWY_INLINE void TransformDegree(const double* left, const double* right, const double* HWY_RESTRICT from,
+                                const double* HWY_RESTRICT more, double* HWY_RESTRICT to) {
+    const Doubles d;
     constexpr int kStep = static_cast<int>(hn::MaxLanes(d));
     HWY_ALIGN double between[K * K * 8];
     for (int lane = 0; lane < 8; lane += kStep) {
-        for (int i = 0; i < K; ++i) {
-            hn::Vec<decltype(d)> column[K];
-            HWY_UNROLL(8)
-            for (int j = 0; j < K; ++j) column[j] = hn::LoadU(d, from + (j * K + i) * 8 + lane);
-            HWY_UNROLL(8)
-            for (int m = 0; m < K; ++m) {
-                auto sum = hn::Mul(hn::Set(d, left[m * K]), column[0]);
-                HWY_UNROLL(8)
-                for (int j = 1; j < K; ++j) sum = hn::MulAdd(hn::Set(d, left[m * K + j]), column[j], sum);
+        for (int m = 0; m < K; ++m)
+            for (int i = 0; i < K; ++i) {
+                const int first = kUpper ? m : 0;
+                const double* at = from + i * 8 + lane;
+                auto sum = hn::Mul(hn::Set(d, left[m * K + first]), hn::LoadU(d, at + first * K * 8));
+                for (int j = first + 1; j < K; ++j)
+                    sum = hn::MulAdd(hn::Set(d, left[m * K + j]), hn::LoadU(d, at + j * K * 8), sum);
                 hn::Store(sum, d, between + (m * K + i) * 8 + lane);
             }
-        }
-        for (int m = 0; m < K; ++m) {
-            hn::Vec<decltype(d)> row[K];
-            HWY_UNROLL(8)
-            for (int i = 0; i < K; ++i) row[i] = hn::Load(d, between + (m * K + i) * 8 + lane);
-            HWY_UNROLL(8)
+        for (int m = 0; m < K; ++m)
             for (int n = 0; n < K; ++n) {
-                auto sum = hn::Mul(hn::Set(d, right[n * K]), row[0]);
-                HWY_UNROLL(8)
-                for (int i = 1; i < K; ++i) sum = hn::MulAdd(hn::Set(d, right[n * K + i]), row[i], sum);
+                const int first = kUpper ? n : 0;
+                const double* at = between + m * K * 8 + lane;
+                auto sum = hn::Mul(hn::Set(d, right[n * K + first]), hn::Load(d, at + first * 8));
+                if (more) sum = hn::Add(sum, hn::LoadU(d, more + (m * K + n) * 8 + lane));
+                for (int i = first + 1; i < K; ++i)
+                    sum = hn::MulAdd(hn::Set(d, right[n * K + i]), hn::Load(d, at + i * 8), sum);
                 hn::StoreU(sum, d, to + (m * K + n) * 8 + lane);
             }
-        }
     }
 }
 
-void Transform(const double* left, const double* right, int k, const double* from, double* to) {
-    if (k == 4) return TransformDegree<4>(left, right, from, to);
-    if (k == 6) return TransformDegree<6>(left, right, from, to);
-    TransformDegree<8>(left, right, from, to);
+void Transform(const double* left, const double* right, int k, const double* from, const double* more,
+               double* to) {
+    if (k == 4) return TransformDegree<4, false>(left, right, from, more, to);
+    if (k == 6) return TransformDegree<6, false>(left, right, from, more, to);
+    TransformDegree<8, false>(left, right, from, more, to);
+}
+void Shift(const double* left, const double* right, int k, const double* from, double* to) {
+    if (k == 4) return TransformDegree<4, true>(left, right, from, nullptr, to);
+    if (k == 6) return TransformDegree<6, true>(left, right, from, nullptr, to);
+    TransformDegree<8, true>(left, right, from, nullptr, to);
+}
+
+void RoundCoefficients(const double* from, int k, float* to, float* sizes) {
+    const Doubles d;
+    const hn::Rebind<float, Doubles> df;
+    constexpr int kStep = static_cast<int>(hn::MaxLanes(d));
+    for (int lane = 0; lane < 8; lane += kStep) {
+        auto size = hn::Zero(df);
+        for (int i = lane; i < 8 * k * k; i += 8) {
+            const auto v = hn::DemoteTo(df, hn::LoadU(d, from + i));
+            hn::StoreU(v, df, to + i);
+            size = hn::Add(size, hn::Abs(v));
+        }
+        hn::StoreU(size, df, sizes + lane);
+    }
 }
 
 // --- pixels ------------------------------------------------------------------------------------------------
@@ -578,12 +599,12 @@ class LineRows {
         }
     }
 
-    template <NearPrecision kPrecision>
+    template <bool kFine>
     HWY_INLINE void Move(float y) {
         const Floats d;
         for (int i = 0; i < 16 * m_count; i += kLanes)
             hn::Store(hn::MulAdd(Set(y), hn::Load(d, m_down + i), hn::Load(d, m_start + i)), d, m_row + i);
-        if constexpr (kPrecision == NearPrecision::fine)
+        if constexpr (kFine)
             for (int i = 0; i < m_count; ++i) Split(i, y);
     }
     const float* Row(int i) const { return m_row + 16 * i; }
@@ -616,80 +637,86 @@ class LineRows {
 };
 
 /// Adds what one line says about the pixels at x of a row.
-template <Exponent kExponent, NearPrecision kPrecision, int kCount>
+template <Exponent kExponent, bool kFine, int kCount>
 HWY_INLINE void AddLine(const float* row, const float* rest, V x, V a, V b, V* HWY_RESTRICT sums) {
-    constexpr bool kRough = kPrecision == NearPrecision::rough;
     const V along = hn::Mul(Set(row[LineRows::kAlongX]), x);
     V before = hn::Sub(Set(row[LineRows::kBefore]), along);
     V behind = hn::Add(Set(row[LineRows::kBehind]), along);
     V beside = hn::NegMulAdd(Set(row[LineRows::kAlongY]), x, Set(row[LineRows::kBeside]));
-    if constexpr (kPrecision == NearPrecision::fine) {
+    if constexpr (kFine) {
         const V along_rest = hn::Mul(Set(rest[LineRows::kAlongXRest]), x);
         before = hn::Add(before, hn::Sub(Set(rest[LineRows::kBeforeRest]), along_rest));
         behind = hn::Add(behind, hn::Add(Set(rest[LineRows::kBehindRest]), along_rest));
         beside = hn::Add(
             beside, hn::NegMulAdd(Set(rest[LineRows::kAlongYRest]), x, Set(rest[LineRows::kBesideRest])));
     }
-    const V far = hn::Max(hn::Add(a, Distance<kRough>(before, behind, beside)), Set(kLeastDistance));
-    const V weight = hn::Mul(Set(row[LineRows::kFactor]), Power<kExponent, kRough>(far, b));
+    const V far = hn::Max(hn::Add(a, Distance(before, behind, beside)), Set(kLeastDistance));
+    const V weight = hn::Mul(Set(row[LineRows::kFactor]), Power<kExponent>(far, b));
     sums[0] = hn::Add(sums[0], weight);
     for (int c = 0; c < kCount; ++c)
         sums[c + 1] = hn::MulAdd(
             weight, hn::MulAdd(Set(row[LineRows::kRight + c]), x, Set(row[LineRows::kAt + c])), sums[c + 1]);
 }
 
-/// The far lines' sums on one row of pixels at a time.
-class PolynomialRow {
+/// The far lines' sums on every row of a cell, as polynomials in s.
+class PolynomialRows {
   public:
-    HWY_INLINE explicit PolynomialRow(const FieldCell& cell)
-        : m_cell(cell), m_unit(Set(1 / cell.frame.half)), m_center(Set(cell.frame.x)) {}
+    static constexpr int kMostRows = 64;
 
-    HWY_INLINE void Move(float y) {
-        const Floats d;
-        const int k = m_cell.k;
-        const V t = Set((y - m_cell.frame.y) / m_cell.frame.half);
-        for (int m = 0; m < 8 * k; m += kLanes) {
-            const float* at = m_cell.coefficients + (k - 1) * 8 * k + m;
-            V s = hn::LoadU(d, at);
-            for (int n = k - 2; n >= 0; --n) s = hn::MulAdd(s, t, hn::LoadU(d, at -= 8 * k));
-            hn::Store(s, d, m_row + m);
-        }
+    HWY_INLINE PolynomialRows(const FieldCell& cell, float y, int height) : m_k(cell.k) {
+        if (m_k == 4) Fill<4>(cell, y, height);
+        if (m_k == 6) Fill<6>(cell, y, height);
+        if (m_k == 8) Fill<8>(cell, y, height);
     }
     template <int kCount>
-    HWY_INLINE void At(V x, V* HWY_RESTRICT sums) const {
-        const V s = hn::Mul(hn::Sub(x, m_center), m_unit);
-        const float* at = m_row + 8 * (m_cell.k - 1);
+    HWY_INLINE void At(int row, V s, V* HWY_RESTRICT sums) const {
+        const float* at = m_rows + (row + 1) * 8 * m_k - 8;
         for (int c = 0; c <= kCount; ++c) sums[c] = Set(at[c]);
-        for (int m = m_cell.k - 1; m > 0; --m) {
+        for (int m = m_k - 1; m > 0; --m) {
             at -= 8;
             for (int c = 0; c <= kCount; ++c) sums[c] = hn::MulAdd(sums[c], s, Set(at[c]));
         }
     }
 
   private:
-    const FieldCell& m_cell;
-    V m_unit, m_center;
-    HWY_ALIGN float m_row[8 * kMaxDegree + 16];
+    template <int K>
+    HWY_INLINE void Fill(const FieldCell& cell, float y, int height) {
+        const Floats d;
+        const float unit = 1 / cell.frame.half;
+        for (int m = 0; m < 8 * K; m += kLanes) {
+            V c[K];
+            for (int n = 0; n < K; ++n) c[n] = hn::LoadU(d, cell.coefficients + n * 8 * K + m);
+            for (int j = 0; j < height; ++j) {
+                const V t = Set((y + static_cast<float>(j) - cell.frame.y) * unit);
+                V sum = c[K - 1];
+                for (int n = K - 2; n >= 0; --n) sum = hn::MulAdd(sum, t, c[n]);
+                hn::Store(sum, d, m_rows + j * 8 * K + m);
+            }
+        }
+    }
+
+    int m_k;
+    HWY_ALIGN float m_rows[kMostRows * 8 * kMaxDegree];
 };
 
-template <Exponent kExponent, NearPrecision kPrecision, int kCount>
+template <Exponent kExponent, bool kFine, int kCount>
 void FieldPoints(const FieldCell& cell, const FieldOutput& out) {
     constexpr int kWidth = 64;
     const Floats d;
     const V a = Set(cell.weights.a), b = Set(cell.weights.b), lanes = hn::Iota(d, 0.0f);
-    PolynomialRow polynomial(cell);
+    const V unit = Set(1 / cell.frame.half), center = Set(cell.frame.x);
+    const PolynomialRows polynomial(cell, out.y, out.height);
     LineRows rows;
     // Lines in parts of so many; sums wait here for the next part.
     HWY_ALIGN float waiting[kSums][kWidth];
     const int parts = HWY_MAX(1, (cell.near_count + LineRows::kMost - 1) / LineRows::kMost);
     for (int j = 0; j < out.height; ++j) {
         const float y = out.y + static_cast<float>(j);
-        if (cell.k > 0) polynomial.Move(y);
         for (int part = 0; part < parts; ++part) {
             const int first = part * LineRows::kMost;
             const int count = HWY_MIN(LineRows::kMost, cell.near_count - first);
             if (j == 0 || parts > 1) rows.See(cell.near_lines + first, count);
-            rows.Move<kPrecision>(y);
+            rows.Move<kFine>(y);
             for (int i = 0; i < out.width; i += kLanes) {
                 const V x = hn::Add(lanes, Set(out.x + static_cast<float>(i)));
                 V sums[kSums];
@@ -697,9 +724,9 @@ void FieldPoints(const FieldCell& cell, const FieldOutput& out) {
                 if (part > 0)
                     for (int c = 0; c <= kCount; ++c) sums[c] = hn::Load(d, waiting[c] + i);
                 else if (cell.k > 0)
-                    polynomial.At<kCount>(x, sums);
+                    polynomial.At<kCount>(j, hn::Mul(hn::Sub(x, center), unit), sums);
                 for (int n = 0; n < count; ++n)
-                    AddLine<kExponent, kPrecision, kCount>(rows.Row(n), rows.Rest(n), x, a, b, sums);
+                    AddLine<kExponent, kFine, kCount>(rows.Row(n), rows.Rest(n), x, a, b, sums);
                 if (part + 1 < parts) {
                     for (int c = 0; c <= kCount; ++c) hn::Store(sums[c], d, waiting[c] + i);
                     continue;
@@ -716,23 +743,15 @@ void FieldPoints(const FieldCell& cell, const FieldOutput& out) {
     }
 }
 
-template <Exponent kExponent, int kCount>
-void FieldPointsWith(const FieldCell& cell, const FieldOutput& out) {
-    if (cell.precision == NearPrecision::fine)
-        return FieldPoints<kExponent, NearPrecision::fine, kCount>(cell, out);
-    if constexpr (kExponent != Exponent::zero && kExponent != Exponent::other)
-        if (cell.precision == NearPrecision::rough)
-            return FieldPoints<kExponent, NearPrecision::rough, kCount>(cell, out);
-    FieldPoints<kExponent, NearPrecision::plain, kCount>(cell, out);
-}
-
 void FieldPointsOf(const FieldCell& cell, const FieldOutput& out) {
     WithExponent(cell.weights.b, [&](auto exponent) HWY_ATTR {
         constexpr Exponent kExponent = decltype(exponent)::value;
         if (out.components == 2)
-            FieldPointsWith<kExponent, 2>(cell, out);
+            cell.fine ? FieldPoints<kExponent, true, 2>(cell, out)
+                      : FieldPoints<kExponent, false, 2>(cell, out);
         else
-            FieldPointsWith<kExponent, 4>(cell, out);
+            cell.fine ? FieldPoints<kExponent, true, 4>(cell, out)
+                      : FieldPoints<kExponent, false, 4>(cell, out);
     });
 }
 
@@ -748,8 +767,9 @@ HWY_EXPORT(BoundDisplacements);
 HWY_EXPORT(SelectLines);
 HWY_EXPORT(NodeSumsOf);
 HWY_EXPORT(Transform);
+HWY_EXPORT(Shift);
+HWY_EXPORT(RoundCoefficients);
 HWY_EXPORT(FieldPointsOf);
-HWY_EXPORT(RoughError);
 
 namespace {
 
@@ -797,17 +817,18 @@ void node_sums(const FieldLine* lines, const std::int32_t* which, int count, con
                const WeightParameters& weights, int k, const float* nodes, double* sums) {
     HWY_DYNAMIC_DISPATCH(NodeSumsOf)(lines, which, count, cell, weights, k, nodes, sums);
 }
-void transform(const double* left, const double* right, int k, const double* from, double* to) {
-    HWY_DYNAMIC_DISPATCH(Transform)(left, right, k, from, to);
+void transform(const double* left, const double* right, int k, const double* from, const double* more,
+               double* to) {
+    HWY_DYNAMIC_DISPATCH(Transform)(left, right, k, from, more, to);
+}
+void shift(const double* left, const double* right, int k, const double* from, double* to) {
+    HWY_DYNAMIC_DISPATCH(Shift)(left, right, k, from, to);
+}
+void round_coefficients(const double* from, int k, float* to, float* sizes) {
+    HWY_DYNAMIC_DISPATCH(RoundCoefficients)(from, k, to, sizes);
 }
 void field_points(const FieldCell& cell, const FieldOutput& output) {
     HWY_DYNAMIC_DISPATCH(FieldPointsOf)(cell, output);
-}
-bool has_rough(float b) {
-    return b == 0.5f || b == 1 || b == 2;
-}
-double rough_error() {
-    return HWY_DYNAMIC_DISPATCH(RoughError)();
 }
 
 }  // namespace anamorph::simd

@@ -12,12 +12,9 @@
 // (2 r + 11 R). a + dist errs by u (5 (a + r) + 11 R), a weight relatively by b times that over a + r, plus
 // kWeightRounding u (for exponents other than 0, 1/2, 1 and 2: plus kPowerRounding u b (1 + |log(a + r)|)), a
 // displacement by u (4 |value| + 10 R slope). Sums run over at most 16 lines before they are added in double.
-// field_points may take near lines with another precision:
-//   fine   positions are carried as two floats, on the grid of 2^-13 and the rest: the first part's products
-//          and differences are exact for |x| <= 32 (before, behind, beside as far as 2^11), so that they err
-//          by u (|value| + 1/64) and the 11 R above is kFineRounding.
-//   rough  square root and reciprocal are the processor's estimates, each off by rough_error() at most: r
-//          and with it (a + r)^b by b times that, its reciprocal by once more.
+// Near lines of a fine cell are carried as two floats, on the grid of 2^-13 and the rest: the first part's
+// products and differences are exact for |x| <= 32 (before, behind, beside as far as 2^11), so that they err
+// by u (|value| + 1/64) and the 11 R above is kFineRounding.
 #pragma once
 
 #include <cstdint>
@@ -30,6 +27,7 @@ inline constexpr int kMaxDegree = 8;           ///< K: coefficients each way
 
 inline constexpr double kWeightRounding = 6;
 inline constexpr double kPowerRounding = 12;
+inline constexpr double kFineRounding = 0x1p-5;
 /// a + dist is never taken below this.
 inline constexpr float kLeastDistance = 1e-6f;
 
@@ -129,12 +127,16 @@ Selection select_lines(const LineTable& lines, const LineBounds& bounds, const f
 void node_sums(const FieldLine* lines, const std::int32_t* which, int count, const CellFrame& cell,
                const WeightParameters& weights, int k, const float* nodes, double* sums);
 
-/// to = L from R^T for K x K matrices of kSums numbers (8 doubles apart).
-void transform(const double* left, const double* right, int k, const double* from, double* to);
+/// to = L from R^T for K x K matrices of kSums numbers (8 doubles apart), plus `more` where that is not null.
+void transform(const double* left, const double* right, int k, const double* from, const double* more,
+               double* to);
+/// The same for L and R that are 0 below the diagonal.
+void shift(const double* left, const double* right, int k, const double* from, double* to);
+/// Coefficients as floats, and the sums of their sizes (8 numbers).
+void round_coefficients(const double* from, int k, float* to, float* sizes);
 
 /// The pixels of a cell of near lines and a polynomial in s, t in [-1, 1] (s = (x - cell.x) / cell.half):
 /// coefficient of t^n s^m for sum c at coefficients[(n * K + m) * 8 + c]; none with k = 0.
-enum class NearPrecision : std::uint8_t { plain, rough, fine };
 struct FieldCell {
     CellFrame frame;
     int k;
@@ -142,7 +144,7 @@ struct FieldCell {
     const FieldLine* near_lines;  ///< as seen from the origin of `frame`
     int near_count;
     WeightParameters weights;
-    NearPrecision precision = NearPrecision::plain;
+    bool fine = false;
 };
 /// Source points less the base, of `width` <= 64 pixels of `height` rows from (x, y) on (centres of pixels in
 /// the region's frame): offset[c] + slope[c] * (x or y) + displacement. Rows of each output are `stride` >=
@@ -156,12 +158,5 @@ struct FieldOutput {
     std::ptrdiff_t stride;
 };
 void field_points(const FieldCell& cell, const FieldOutput& output);
-
-/// Does an exponent of the weights have a rough form?
-bool has_rough(float b);
-/// The greatest relative error of the processor's estimates of 1 / x and 1 / sqrt(x); infinite where there
-/// are none.
-double rough_error();
-inline constexpr double kFineRounding = 0x1p-5;
 
 }  // namespace anamorph::simd
