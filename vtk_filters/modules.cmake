@@ -11,6 +11,9 @@ endif()
 file(WRITE ${PROJECT_BINARY_DIR}/AnamorphToolkit.cmake "# SPDX-License-Identifier: Apache-2.0\n${find_toolkit}\n")
 include(${PROJECT_BINARY_DIR}/AnamorphToolkit.cmake)
 install(FILES ${PROJECT_BINARY_DIR}/AnamorphToolkit.cmake DESTINATION ${package_dir})
+if(ANAMORPH_TESTS AND ANAMORPH_TOOLKIT STREQUAL "VTK")
+    find_package(VTK 9.1 REQUIRED COMPONENTS InteractionStyle RenderingFreeType RenderingOpenGL2) # of the example
+endif()
 
 # One folder of libraries: a plugin then finds the modules from the build tree as from an installation.
 set(CMAKE_LIBRARY_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/${CMAKE_INSTALL_LIBDIR})
