@@ -232,6 +232,32 @@ TEST(Jet, IdentitiesHoldInEveryCoefficient) {
     }
 }
 
+TEST(Jet, OnAPartIsTheSamePolynomialInItsOffsets) {
+    SCOPED_TRACE("seed " + std::to_string(kSeed));
+    std::mt19937 random(kSeed);
+    std::uniform_real_distribution<double> value(-1, 1);
+    const auto at = [](const Jet<double, kDegree>& f, double s, double t) {
+        Real sum = 0;
+        for (int i = 0; i <= kDegree; ++i)
+            for (int j = 0; i + j <= kDegree; ++j)
+                sum += f.at(i, j) * std::pow(Real(s), i) * std::pow(Real(t), j);
+        return static_cast<double>(sum);
+    };
+    for (int round = 0; round < 50; ++round) {
+        Jet<double, kDegree> f;
+        for (double& c : f.c) c = value(random);
+        const double shift_s = value(random), shift_t = value(random);
+        const double scale_s = round % 3 ? value(random) : 1, scale_t = round % 4 ? value(random) : 1;
+        // A side that is not scaled is the whole side, and not moved either.
+        const double moved_s = scale_s == 1 ? 0 : shift_s, moved_t = scale_t == 1 ? 0 : shift_t;
+        const auto g = on_part(f, moved_s, scale_s, moved_t, scale_t);
+        for (int point = 0; point < 10; ++point) {
+            const double s = value(random), t = value(random);
+            EXPECT_NEAR(at(g, s, t), at(f, moved_s + scale_s * s, moved_t + scale_t * t), 1e-13);
+        }
+    }
+}
+
 TEST(Jet, CoefficientsStandWhereTheHeaderSays) {
     const J s = J::variable(0, 1, 0), t = J::variable(0, 0, 1);
     const J p = s * s * s * t * 7.0 + t * t * 5.0 + s * 2.0 + 11.0;

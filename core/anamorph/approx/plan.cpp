@@ -28,8 +28,10 @@ constexpr double kCredit = 1.0 / 16;
 constexpr double kDoubleRounding = 256 * 0x1p-53;
 
 // The part of the tolerance that a remainder may take up before a fresh one, over a smaller box, is worth its
-// cost; and before two blocks are better off with a Taylor polynomial each.
-constexpr double kTailShare = 0.25, kSharedTailShare = 0.2;
+// cost.
+constexpr double kTailShare = 0.25;
+// Blocks share a Taylor polynomial where its remainder leaves room for so many times the last block's error.
+constexpr double kFitMargin = 1.1;
 
 int pixels_of(const Box& box) {
     return box.width() * box.height();
@@ -195,24 +197,30 @@ class Planner {
         return {taylor_of(m_map, box, local), m_options.degree};
     }
 
-    /// All blocks of a box: two, one above the other, from one Taylor polynomial where it serves both.
+    /// All blocks of a box: up to four from one Taylor polynomial where it serves them all.
     void place_all(const Box& box, const Panorama::Local& local, const Tail& tx, const Tail& ty) {
-        for_boxes(box, kBlockWidth, 2 * kBlockHeight, [&](const Box& pair) {
-            const double tail = tail_over(pair, tx, ty);
-            if (pair.height() <= kBlockHeight || !(tail <= kSharedTailShare * m_options.tol)) {
-                for_blocks(pair, [&](const Box& b) { place(b, local, tx, ty); });
-                return;
-            }
-            const Point<Jet<double, 4>> taylor = taylor_of(m_map, pair, local);
-            for_blocks(pair, [&](const Box& b) {
-                // From the offsets of the pair to those of the block.
-                const double scale = half(b.height()) / half(pair.height());
-                const double shift = 0.5 * (b.y0 + b.y1 - pair.y0 - pair.y1) / half(pair.height());
-                const Fit fit({along_second(taylor.x, shift, scale), along_second(taylor.y, shift, scale)},
-                              m_options.degree);
-                if (!emit_polynomial(b, local.source.piece, fit.x.c, fit.y.c, fit.error + tail))
-                    place(b, local, tx, ty);
-            });
+        for_boxes(box, 2 * kBlockWidth, 2 * kBlockHeight, [&](const Box& b) { share(b, local, tx, ty); });
+    }
+    void share(const Box& box, const Panorama::Local& local, const Tail& tx, const Tail& ty) {
+        const bool wide = box.width() > kBlockWidth, high = box.height() > kBlockHeight;
+        if (!wide && !high) return place(box, local, tx, ty);
+        const double tail = tail_over(box, tx, ty);
+        if (!(tail + kFitMargin * m_fit <= m_options.tol)) {
+            for_boxes(box, kBlockWidth, wide ? box.height() : kBlockHeight,
+                      [&](const Box& b) { share(b, local, tx, ty); });
+            return;
+        }
+        const Point<Jet<double, 4>> taylor = taylor_of(m_map, box, local);
+        const double per_x = 1 / half(box.width()), per_y = 1 / half(box.height());
+        for_blocks(box, [&](const Box& b) {
+            const auto part = [&](const Jet<double, 4>& f) {
+                return on_part(f, 0.5 * (b.x0 + b.x1 - box.x0 - box.x1) * per_x, half(b.width()) * per_x,
+                               0.5 * (b.y0 + b.y1 - box.y0 - box.y1) * per_y, half(b.height()) * per_y);
+            };
+            const Fit fit({part(taylor.x), part(taylor.y)}, m_options.degree);
+            m_fit = fit.error;
+            if (!emit_polynomial(b, local.source.piece, fit.x.c, fit.y.c, fit.error + tail))
+                place(b, local, tx, ty);
         });
     }
 
@@ -220,6 +228,7 @@ class Planner {
     void place(const Box& box, const Panorama::Local& local, const Tail& tx, const Tail& ty) {
         const std::size_t first = m_blocks.size();
         const Fit fit = fit_of(box, local);
+        m_fit = fit.error;
         const double tail = tail_over(box, tx, ty);
         if (emit_polynomial(box, local.source.piece, fit.x.c, fit.y.c, fit.error + tail)) return;
         // Halve the side along which more was dropped, with a new remainder where that is to blame.
@@ -356,6 +365,7 @@ class Planner {
     const PlanOptions& m_options;
     int m_piece;
     Blocks& m_blocks;
+    double m_fit = 0;  ///< the error of the last block's fit: what the next one's will be like
     double m_balance;  ///< exact pixels saved less those that bounds would have paid for
     double m_extent;
     std::optional<LinearPart> m_linear;

@@ -31,23 +31,6 @@ struct Remainder {
     }
 };
 
-/// f(s, shift + scale t)
-template <int N>
-Jet<double, N> along_second(const Jet<double, N>& f, double shift, double scale) {
-    Jet<double, N> g;
-    for (int i = 0; i <= N; ++i) {
-        double c[N + 1];
-        for (int j = 0; j <= N - i; ++j) c[j] = f.at(i, j);
-        // Repeated division by (t - shift) leaves the coefficients about it.
-        double power = 1;
-        for (int j = 0; j <= N - i; ++j, power *= scale) {
-            for (int k = N - i; k-- > j;) c[k] += c[k + 1] * shift;
-            g.c[Jet<double, N>::part(i + j) + j] = c[j] * power;
-        }
-    }
-    return g;
-}
-
 /// The polynomial c[0] + c[1] s + c[2] t + c[3] s^2 + c[4] s t + c[5] t^2 nearest to a Taylor polynomial of
 /// degree 4 on [-1, 1]^2, found by dropping the products of Chebyshev polynomials above `degree`; `error`
 /// bounds what was dropped (each product is at most 1).

@@ -341,6 +341,36 @@ inline double lower_end(const Interval& a) {
     return a.lo;
 }
 
+/// The polynomial of `Degree` about 0 as one about `shift`, in units of `scale`, by repeated division;
+/// coefficient(j) refers to that of degree j.
+template <int Degree, class Coefficient>
+ANAMORPH_UNROLLED inline void taylor_shift(double shift, double scale, const Coefficient& coefficient) {
+    double power = 1;
+    jet_detail::unroll<Degree + 1>([&](auto j) ANAMORPH_UNROLLED {
+        jet_detail::unroll<Degree - j>([&](auto k) ANAMORPH_UNROLLED {
+            coefficient(Degree - 1 - k) += coefficient(Degree - k) * shift;
+        });
+        coefficient(j) *= power;
+        power *= scale;
+    });
+}
+
+/// f(shift_s + scale_s s, shift_t + scale_t t): from the offsets in a box to those in a part of it. A scale
+/// of 1 stands for the whole side, with no shift.
+template <int N>
+Jet<double, N> on_part(Jet<double, N> f, double shift_s, double scale_s, double shift_t, double scale_t) {
+    using J = Jet<double, N>;
+    if (scale_s != 1)
+        jet_detail::unroll<N + 1>([&](auto j) ANAMORPH_UNROLLED {
+            taylor_shift<N - j>(shift_s, scale_s, [&](int i) -> double& { return f.c[J::part(i + j) + j]; });
+        });
+    if (scale_t != 1)
+        jet_detail::unroll<N + 1>([&](auto i) ANAMORPH_UNROLLED {
+            taylor_shift<N - i>(shift_t, scale_t, [&](int j) -> double& { return f.c[J::part(i + j) + j]; });
+        });
+    return f;
+}
+
 #undef ANAMORPH_UNROLLED
 
 }  // namespace anamorph
