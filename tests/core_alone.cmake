@@ -34,5 +34,5 @@ foreach(list ${lists})
     endif()
 endforeach()
 
-run(${CTEST_COMMAND} --test-dir ${WORK_DIR} --output-on-failure --no-tests=error)
+run(${CTEST_COMMAND} --test-dir ${WORK_DIR} --output-on-failure --no-tests=error --parallel 2)
 message(STATUS "${text}")
