@@ -7,6 +7,7 @@
 
 #include "anamorph/figure/outline_arcs.h"
 #include "anamorph/figure/outline_body.h"
+#include "anamorph/figure/outline_crossing.h"
 #include "anamorph/figure/outline_hiding.h"
 #include "anamorph/parameter.h"
 
@@ -73,14 +74,6 @@ Outline outline_of(const SeenBody& body, std::size_t position, const std::vector
     return outline;
 }
 
-/// The part of a line that is nearer than `near`, from the depths of its ends.
-std::vector<Arc> nearer_part(double from, double to, double near) {
-    if (from >= near && to >= near) return {};
-    if (from < near && to < near) return {{0, 1}};
-    const double s = std::clamp((near - from) / (to - from), 0.0, 1.0);
-    return {from < near ? Arc{0, s} : Arc{s, 1}};
-}
-
 }  // namespace
 
 double Outline::screen_angle(double angle, const View& view) const {
@@ -93,6 +86,8 @@ double Outline::screen_angle(double angle, const View& view) const {
 
 Outlines outlines(std::span<const Ellipsoid> bodies, const View& view, const OutlineOptions& options,
                   const ParallelFor& parallel_for) {
+    if (options.crossings && !(options.tol > 0))
+        throw Error("tol", shortest(options.tol), "allowed is a positive number of pixels");
     const std::vector<SeenBody> seen = see_all(bodies, view, options.names, parallel_for);
     std::vector<ScreenBox> boxes;
     for (const SeenBody& body : seen)
@@ -108,6 +103,8 @@ Outlines outlines(std::span<const Ellipsoid> bodies, const View& view, const Out
         for (std::size_t i = first; i < std::min(first + batch, bodies.size()); ++i)
             result.bodies[i] = outline_of(seen[i], i, seen, near_by[i], view);
     });
+    if (options.crossings)
+        result.crossings = crossing_curves(bodies, seen, view, options.tol, options.hide, parallel_for);
     return result;
 }
 

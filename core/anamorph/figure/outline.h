@@ -51,14 +51,26 @@ struct Outline {
     double screen_angle(double angle, const View& view) const;
 };
 
+/// The curve in which the surfaces of two bodies meet, as a polyline: one closed loop of it.
+struct CrossingCurve {
+    int first = 0, second = 0;       ///< positions of the bodies
+    std::vector<glm::dvec3> points;  ///< in the scene, on both surfaces; the last is joined to the first
+    /// Parts of the polyline: 2.25 is the point a quarter of the way from points[2] to points[3]. As arcs,
+    /// with the number of points for 2 pi.
+    std::vector<Arc> visible, hidden;
+};
+
 struct OutlineOptions {
-    bool hide = true;  ///< false: bodies are transparent, as VISIB draws them
+    bool hide = true;        ///< false: bodies are transparent, as VISIB draws them
+    bool crossings = false;  ///< also the curves in which bodies pass through each other
+    double tol = 0.1;        ///< pixels that the chords of those curves may be off on the screen; positive
     /// Names of the bodies for messages; empty: their positions.
     std::vector<std::string> names;
 };
 
 struct Outlines {
     std::vector<Outline> bodies;  ///< one a body, in their order
+    std::vector<CrossingCurve> crossings;
 };
 
 /// Throws Error when a body has a value that is not finite or larger than 1e50, or axes of rotation that are

@@ -67,4 +67,11 @@ void split(std::vector<Arc> hidden_parts, const std::vector<Arc>& cut, double pe
     hidden = complement_of(union_of(std::move(not_hidden), period, closed), period, closed);
 }
 
+std::vector<Arc> nearer_part(double from, double to, double near) {
+    if (from >= near && to >= near) return {};
+    if (from < near && to < near) return {{0, 1}};
+    const double s = std::clamp((near - from) / (to - from), 0.0, 1.0);
+    return {from < near ? Arc{0, s} : Arc{s, 1}};
+}
+
 }  // namespace anamorph

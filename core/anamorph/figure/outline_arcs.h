@@ -19,4 +19,7 @@ std::vector<Arc> complement_of(const std::vector<Arc>& arcs, double period, bool
 void split(std::vector<Arc> hidden_parts, const std::vector<Arc>& cut, double period, bool closed,
            std::vector<Arc>& visible, std::vector<Arc>& hidden);
 
+/// The part of a line that is nearer than `near`, from the depths of its ends: 0 to 1, one arc or none.
+std::vector<Arc> nearer_part(double from, double to, double near);
+
 }  // namespace anamorph

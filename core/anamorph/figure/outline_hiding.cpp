@@ -58,10 +58,10 @@ struct Path {
 
 /// Hidden: inside the body, or behind it. Around the eye: outside it.
 bool is_hidden(const Path& path, const SeenBody& other, double t) {
-    const double c = std::cos(t), s = std::sin(t);
-    if (other.kind == OutlineKind::around_eye) return path.surface.at(c, s) > path.surface.noise;
-    if (other.solid && path.surface.at(c, s) < -path.surface.noise) return true;
-    return other.covers && path.beyond.at(c, s) > path.beyond_noise && path.cone.at(c, s) < -path.cone.noise;
+    const Direction d = direction(t);
+    if (other.kind == OutlineKind::around_eye) return path.surface.at(d) > path.surface.noise;
+    if (other.solid && path.surface.at(d) < -path.surface.noise) return true;
+    return other.covers && path.beyond.at(d) > path.beyond_noise && path.cone.at(d) < -path.cone.noise;
 }
 
 /// Is an arc hidden on which nothing changes? Bodies that touch from inside leave single points of it open,
@@ -92,7 +92,9 @@ void add_hidden(const SeenBody& body, const SeenBody& other, bool perspective, s
         add_roots(path.cone, roots);
         if (!other.solid) add_roots(path.beyond, roots);
     }
-    if (other.solid) add_roots(path.surface, roots);
+    // Beyond the limb's plane, what is inside is also behind.
+    const bool all_beyond = other.covers && path.beyond.k - path.beyond.amplitude() > path.beyond_noise;
+    if (other.solid && !all_beyond) add_roots(path.surface, roots);
     if (roots.count == 0) {
         if (is_hidden(path, other, Arc{0, kTurn})) hidden.push_back({0, kTurn});
         return;

@@ -9,41 +9,57 @@ namespace anamorph {
 namespace {
 
 constexpr double kTurn = 2 * std::numbers::pi;
-constexpr int kIntervals = 8;
-constexpr double kLeastRadius = 1e-13;
+constexpr int kIntervals = 8, kMostLevels = 40;
 
-struct Direction {
-    double cosine, sine;
-
-    explicit Direction(double t = 0) : cosine(std::cos(t)), sine(std::sin(t)) {}
-};
-
-/// Ends (even) and middles (odd) of the first intervals.
-std::array<Direction, 2 * kIntervals + 1> first_directions() {
-    std::array<Direction, 2 * kIntervals + 1> table;
-    for (std::size_t i = 0; i < table.size(); ++i)
-        table[i] = Direction(kTurn * static_cast<double>(i % (2 * kIntervals)) / (2 * kIntervals));
-    return table;
+/// cos and sin of an angle of at most pi / 16, to rounding: their series to t^10 and t^11.
+Direction small_angle(double t) {
+    const double q = t * t;
+    const double c =
+        1 + q * (-1. / 2 + q * (1. / 24 + q * (-1. / 720 + q * (1. / 40320 + q * (-1. / 3628800)))));
+    const double s =
+        t *
+        (1 + q * (-1. / 6 + q * (1. / 120 + q * (-1. / 5040 + q * (1. / 362880 + q * (-1. / 39916800))))));
+    return {c, s};
 }
-const std::array<Direction, 2 * kIntervals + 1> kFirst = first_directions();
 
+struct Tables {
+    /// Ends (even) and middles (odd) of the first intervals.
+    std::array<Direction, 2 * kIntervals + 1> first;
+    /// From the middle of an interval of a level to that of its second half.
+    std::array<Direction, kMostLevels> half;
+
+    Tables() {
+        for (std::size_t i = 0; i < first.size(); ++i) {
+            const double t = kTurn * static_cast<double>(i % (2 * kIntervals)) / (2 * kIntervals);
+            first[i] = {std::cos(t), std::sin(t)};
+        }
+        for (std::size_t i = 0; i < half.size(); ++i)
+            half[i] = small_angle(std::ldexp(kTurn / (4 * kIntervals), -static_cast<int>(i)));
+    }
+};
+const Tables kTables;
+
+/// kZ, kW: are z and the waves of w there?
+template <bool kZ, bool kW>
 class Search {
   public:
     Search(const WaveSquares& f, Roots& roots) : m_f(f), m_roots(roots) {
         expand(f.x, 1);
         expand(f.y, 1);
-        expand(f.z, 1);
+        if (kZ) expand(f.z, 1);
         expand(f.w, -1);
     }
 
     void run() {
-        const double first = std::hypot(m_c1, m_s1), second = std::hypot(m_c2, m_s2);
+        const double first = std::sqrt(m_c1 * m_c1 + m_s1 * m_s1),
+                     second = std::sqrt(m_c2 * m_c2 + m_s2 * m_s2);
         if (std::fabs(m_mean) > first + second + m_magnitude) return;
         // Bounds |f'''|.
         m_third = first + 8 * second;
         constexpr double radius = kTurn / (2 * kIntervals);
         for (int i = 0; i < kIntervals; ++i)
-            interval((2 * i + 1) * radius, radius, kFirst[2 * i + 1], kFirst[2 * i], kFirst[2 * i + 2]);
+            interval(0, (2 * i + 1) * radius, radius, kTables.first[2 * i + 1], kTables.first[2 * i],
+                     kTables.first[2 * i + 2]);
     }
 
   private:
@@ -58,10 +74,21 @@ class Search {
         m_magnitude += 0x1p-48 * (q.k * q.k + q.c * q.c + q.s * q.s);
     }
 
-    double value(const Direction& d) const { return m_f.at(d.cosine, d.sine); }
-    double slope(const Direction& d) const {
-        const auto half = [&](const Wave& q) { return q.at(d.cosine, d.sine) * q.slope(d.cosine, d.sine); };
-        return 2 * (half(m_f.x) + half(m_f.y) + half(m_f.z) - half(m_f.w));
+    struct Value {
+        double f, slope;
+    };
+    Value value(const Direction& d) const {
+        Value v{kW ? 0 : -m_f.w.k * m_f.w.k, 0};
+        const auto add = [&](const Wave& q, double sign) {
+            const double at = q.at(d);
+            v.f += sign * at * at;
+            v.slope += sign * 2 * at * q.slope(d);
+        };
+        add(m_f.x, 1);
+        add(m_f.y, 1);
+        if (kZ) add(m_f.z, 1);
+        if (kW) add(m_f.w, -1);
+        return v;
     }
     double second_derivative(const Direction& d) const {
         const double cosine2 = d.cosine * d.cosine - d.sine * d.sine, sine2 = 2 * d.cosine * d.sine;
@@ -69,36 +96,40 @@ class Search {
     }
 
     /// Finds the sign changes within `radius` of `middle`.
-    void interval(double middle, double radius, const Direction& at_middle, const Direction& at_begin,
-                  const Direction& at_end) {
-        const double f = value(at_middle), f1 = slope(at_middle);
+    void interval(int level, double middle, double radius, const Direction& at_middle,
+                  const Direction& at_begin, const Direction& at_end) {
+        const auto [f, slope] = value(at_middle);
         // Taylor's theorem about the middle bounds f and f'.
         const double bend = std::fabs(second_derivative(at_middle)) + m_third * radius + m_magnitude;
-        const double swing = std::fabs(f1) * radius + 0.5 * bend * radius * radius;
+        const double swing = std::fabs(slope) * radius + 0.5 * bend * radius * radius;
         if (std::fabs(f) > swing || std::fabs(f) + swing < m_f.noise) return;
-        if (std::fabs(f1) > bend * radius || radius < kLeastRadius) {
-            const double begin = value(at_begin), end = value(at_end);
-            if ((begin < 0) != (end < 0)) m_roots.add(polish(middle, radius, begin < 0, f, f1));
+        if (std::fabs(slope) > bend * radius || level == kMostLevels) {
+            const double begin = value(at_begin).f, end = value(at_end).f;
+            if ((begin < 0) != (end < 0)) m_roots.add(polish(middle, radius, begin < 0, {f, slope}, bend));
             return;
         }
         const double half = 0.5 * radius;
-        interval(middle - half, half, Direction(middle - half), at_begin, at_middle);
-        interval(middle + half, half, Direction(middle + half), at_middle, at_end);
+        const Direction step = kTables.half[static_cast<std::size_t>(level)];
+        interval(level + 1, middle - half, half, at_middle.turned({step.cosine, -step.sine}), at_begin,
+                 at_middle);
+        interval(level + 1, middle + half, half, at_middle.turned(step), at_middle, at_end);
     }
 
     /// Newton's method, kept inside a bracket in which f changes its sign once.
-    double polish(double t, double radius, bool rising, double f, double f1) const {
+    double polish(double t, double radius, bool rising, Value v, double bend) const {
         double low = t - radius, high = t + radius;
-        for (int step = 0; step < 100; ++step) {
-            ((f < 0) == rising ? low : high) = t;
-            double next = t - f / f1;
-            if (!(next > low && next < high)) next = 0.5 * (low + high);
-            const double moved = std::fabs(next - t);
+        for (int step = 0; step < 60; ++step) {
+            ((v.f < 0) == rising ? low : high) = t;
+            double next = t - v.f / v.slope;
+            const bool inside = next >= low && next <= high;
+            if (!inside) next = 0.5 * (low + high);
+            const double moved = next - t;
             t = next;
-            if (moved <= 0x1p-52 * (1 + t)) break;
-            const Direction d(t);
-            f = value(d);
-            f1 = slope(d);
+            // What a step leaves is its square times f'' / 2 f'.
+            const bool small = moved * moved * bend <= 0x1p-52 * std::fabs(v.slope);
+            if ((inside && small) || high - low < 0x1p-50) break;
+            v = value(direction(t));
+            if (std::fabs(v.f) <= m_f.noise * 0x1p-6) break;
         }
         return t;
     }
@@ -110,8 +141,22 @@ class Search {
 
 }  // namespace
 
+Direction direction(double t) {
+    const int steps = static_cast<int>(t * (2 * kIntervals / kTurn) + 0.5);
+    const Direction& nearest = kTables.first[static_cast<std::size_t>(steps % (2 * kIntervals))];
+    return nearest.turned(small_angle(t - steps * (kTurn / (2 * kIntervals))));
+}
+
 void add_roots(const WaveSquares& f, Roots& roots) {
-    Search(f, roots).run();
+    const bool has_z = f.z.k != 0 || f.z.c != 0 || f.z.s != 0, has_w = f.w.c != 0 || f.w.s != 0;
+    if (has_z && has_w)
+        Search<true, true>(f, roots).run();
+    else if (has_z)
+        Search<true, false>(f, roots).run();
+    else if (has_w)
+        Search<false, true>(f, roots).run();
+    else
+        Search<false, false>(f, roots).run();
 }
 
 void add_roots(const Wave& f, Roots& roots) {
