@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The curves in which bodies pass through each other: on both surfaces, within tol, complete, and hidden where
-// depth tests say so.
+// The curves in which bodies pass through each other: on both surfaces, within tol, complete, and hidden
+// where depth tests say so.
 #include <gtest/gtest.h>
 
 #include "figure_outline_cases.h"
@@ -31,8 +31,9 @@ double distance_to(const std::vector<CrossingCurve>& curves, int first, int seco
     for (const CrossingCurve& c : curves)
         if (c.first == first && c.second == second)
             for (std::size_t k = 0; k < c.points.size(); ++k)
-                least = std::min(least, distance_to_segment(view.project(p), view.project(c.points[k]),
-                                                            view.project(c.points[(k + 1) % c.points.size()])));
+                least =
+                    std::min(least, distance_to_segment(view.project(p), view.project(c.points[k]),
+                                                        view.project(c.points[(k + 1) % c.points.size()])));
     return least;
 }
 
@@ -51,7 +52,8 @@ std::vector<glm::dvec3> points_on_both(const Ellipsoid& a, const Ellipsoid& b, t
         };
         constexpr int steps = 64;
         for (int k = 0; k < steps; ++k) {
-            Real low = 2 * std::numbers::pi_v<Real> * k / steps, high = 2 * std::numbers::pi_v<Real> * (k + 1) / steps;
+            Real low = 2 * std::numbers::pi_v<Real> * k / steps,
+                 high = 2 * std::numbers::pi_v<Real> * (k + 1) / steps;
             const bool sign = level(b, at(low)) < 0;
             if (sign == (level(b, at(high)) < 0)) continue;
             for (int i = 0; i < 70; ++i) {
@@ -114,8 +116,9 @@ TEST(FigureOutlineCrossing, HoldsItsTolerance) {
                         // The distance from the surface, to first order.
                         const Vec u = test::to_unit(*e, p - Vec(e->center));
                         const Real slope = glm::length(u / Vec(e->axes)) / glm::length(u);
-                        worst_surface = std::max(worst_surface,
-                                                 static_cast<double>(std::fabs(level(*e, p)) / slope) / test::size_of(*e));
+                        worst_surface =
+                            std::max(worst_surface, static_cast<double>(std::fabs(level(*e, p)) / slope) /
+                                                        test::size_of(*e));
                     }
                     ++vertices;
                     bool truth = faces_away(a, scene.view, p) || faces_away(b, scene.view, p);
@@ -125,7 +128,9 @@ TEST(FigureOutlineCrossing, HoldsItsTolerance) {
                     const auto at = static_cast<double>(k), count = static_cast<double>(c.points.size());
                     const auto in = [&](const std::vector<Arc>& arcs) {
                         return std::any_of(arcs.begin(), arcs.end(), [&](const Arc& arc) {
-                            const auto inside = [&](double s) { return s > arc.begin + 1e-6 && s < arc.end - 1e-6; };
+                            const auto inside = [&](double s) {
+                                return s > arc.begin + 1e-6 && s < arc.end - 1e-6;
+                            };
                             return inside(at) || inside(at + count);
                         });
                     };
@@ -135,8 +140,9 @@ TEST(FigureOutlineCrossing, HoldsItsTolerance) {
             }
             for (int i = 0; i < static_cast<int>(scene.bodies.size()); ++i)
                 for (int j = i + 1; j < static_cast<int>(scene.bodies.size()); ++j)
-                    for (const glm::dvec3& p : points_on_both(scene.bodies[static_cast<std::size_t>(i)],
-                                                              scene.bodies[static_cast<std::size_t>(j)], random)) {
+                    for (const glm::dvec3& p :
+                         points_on_both(scene.bodies[static_cast<std::size_t>(i)],
+                                        scene.bodies[static_cast<std::size_t>(j)], random)) {
                         ++checked;
                         const double off = distance_to(found.crossings, i, j, scene.view, p);
                         // A loop that is as small as tol on the screen may be left out.

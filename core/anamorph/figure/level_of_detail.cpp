@@ -9,8 +9,15 @@
 namespace anamorph {
 namespace {
 
-Detail detail_of(const Outline& outline, const DetailOptions& options) {
-    if (outline.kind == OutlineKind::behind) return Detail::none;
+/// The depth of the body's farthest point.
+double farthest(const Ellipsoid& body, const View& view) {
+    const glm::dvec3 along = glm::transpose(view.rotation * body.rotation)[2];
+    return view.to_view(body.center).z + glm::length(body.axes * along);
+}
+
+Detail detail_of(const Ellipsoid& body, const Outline& outline, const View& view,
+                 const DetailOptions& options) {
+    if (view.perspective() && farthest(body, view) < view.near) return Detail::none;
     if (outline.kind != OutlineKind::whole) return Detail::body;
     const PrincipalAxes axes = principal_axes(outline.screen);
     const double longest = 2 * axes.major, widest = 2 * axes.minor;
@@ -29,8 +36,9 @@ std::vector<Detail> levels_of_detail(std::span<const Ellipsoid> bodies, const Vi
     OutlineOptions limbs;
     limbs.hide = false;
     std::vector<Detail> details;
-    for (const Outline& outline : outlines(bodies, view, limbs).bodies)
-        details.push_back(detail_of(outline, options));
+    const Outlines seen = outlines(bodies, view, limbs);
+    for (std::size_t i = 0; i < bodies.size(); ++i)
+        details.push_back(detail_of(bodies[i], seen.bodies[i], view, options));
     return details;
 }
 

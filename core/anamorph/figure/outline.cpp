@@ -29,6 +29,8 @@ struct Depth {
         : w(viewed.center.z),
           reach(std::hypot(viewed.cosine.z, viewed.sine.z)),
           peak(std::atan2(viewed.sine.z, viewed.cosine.z)) {}
+    /// Of the nearest and the farthest, geometric.
+    double mean() const { return std::sqrt((w - reach) * (w + reach)); }
 };
 
 /// The image of a limb before the eye. With s the angle on it and t that on the limb, both from the limb's
@@ -39,10 +41,10 @@ Ellipse<glm::dvec2> screen_of(const Ellipse<glm::dvec3>& viewed, const View& vie
         return {view.middle + view.scale * center, view.scale * cosine, view.scale * sine};
     const Depth depth(viewed);
     const double c = std::cos(depth.peak), s = std::sin(depth.peak), zoom = view.scale * view.eye_distance;
-    const double area = (depth.w - depth.reach) * (depth.w + depth.reach);
+    const double area = depth.mean() * depth.mean();
     const glm::dvec2 far = cosine * c + sine * s, side = sine * c - cosine * s;
     const glm::dvec2 p = (far * depth.w - center * depth.reach) * (zoom / area),
-                     q = side * (zoom / std::sqrt(area));
+                     q = side * (zoom / depth.mean());
     return {view.middle + (center * depth.w - far * depth.reach) * (zoom / area), p * c - q * s,
             p * s + q * c};
 }
@@ -80,8 +82,14 @@ double Outline::screen_angle(double angle, const View& view) const {
     if (!view.perspective()) return angle;
     const Depth depth(viewed);
     const double t = angle - depth.peak, turns = kTurn * std::round(t / kTurn);
-    const double side = std::sqrt((depth.w - depth.reach) * (depth.w + depth.reach)) * std::sin(t);
-    return depth.peak + turns + std::atan2(side, depth.w * std::cos(t) + depth.reach);
+    return depth.peak + turns + std::atan2(depth.mean() * std::sin(t), depth.w * std::cos(t) + depth.reach);
+}
+
+double Outline::limb_angle(double angle, const View& view) const {
+    if (!view.perspective()) return angle;
+    const Depth depth(viewed);
+    const double s = angle - depth.peak, turns = kTurn * std::round(s / kTurn);
+    return depth.peak + turns + std::atan2(depth.mean() * std::sin(s), depth.w * std::cos(s) - depth.reach);
 }
 
 Outlines outlines(std::span<const Ellipsoid> bodies, const View& view, const OutlineOptions& options,

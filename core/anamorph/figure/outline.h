@@ -49,6 +49,8 @@ struct Outline {
     glm::dvec2 on_screen(double angle, const View& view) const { return view.to_screen(viewed(angle)); }
     /// The angle on `screen` of the limb's point at `angle`.
     double screen_angle(double angle, const View& view) const;
+    /// And back.
+    double limb_angle(double screen_angle, const View& view) const;
 };
 
 /// The curve in which the surfaces of two bodies meet, as a polyline: one closed loop of it.
@@ -73,7 +75,7 @@ struct Outlines {
     std::vector<CrossingCurve> crossings;
 };
 
-/// Throws Error when a body has a value that is not finite or larger than 1e50, or axes of rotation that are
+/// Throws Error when a body has a value that is not finite or larger than 1e25, or axes of rotation that are
 /// not orthonormal to 1e-6 (naming the body), and when the view or an option is not as allowed.
 Outlines outlines(std::span<const Ellipsoid> bodies, const View& view, const OutlineOptions& options = {},
                   const ParallelFor& parallel_for = serial_for);
@@ -95,7 +97,7 @@ struct SeenLine {
 };
 
 /// Finds what the bodies hide of lines. `ignored[i]`, where given, lists bodies that do not hide line i.
-/// Throws Error as outlines does, and when an end of a line is not finite or larger than 1e50.
+/// Throws Error as outlines does, and when an end of a line is not finite or larger than 1e25.
 void hide_lines(std::span<SeenLine> lines, std::span<const Ellipsoid> bodies, const View& view,
                 const std::vector<std::vector<int>>& ignored = {},
                 const ParallelFor& parallel_for = serial_for);

@@ -14,9 +14,10 @@ using Real = long double;
 using Vector = glm::vec<3, Real>;
 using Matrix = glm::mat<3, 3, Real>;
 
-constexpr double kLargest = 1e50;
+// The squares of squares that the search for roots takes stay finite.
+constexpr double kLargest = 1e25;
 // Half-axes below are zero: nothing of a scene within kLargest shows them.
-constexpr double kLeastAxis = 1e-60;
+constexpr double kLeastAxis = 1e-30;
 // A limb that is so much narrower on the screen than long has no area.
 constexpr Real kFlat = 1e-13L;
 
@@ -156,8 +157,8 @@ void check(const View& view) {
         if (!holds) throw Error(name, value, std::string("allowed is ") + allowed);
     };
     demand(orthonormal(view.rotation), "rotation", columns_of(view.rotation), "an orthonormal matrix");
-    demand(within(view.center), "center", text_of(view.center), "numbers up to 1e50");
-    demand(within({view.middle, 0}), "middle", text_of({view.middle, 0}), "numbers up to 1e50");
+    demand(within(view.center), "center", text_of(view.center), "numbers up to 1e25");
+    demand(within({view.middle, 0}), "middle", text_of({view.middle, 0}), "numbers up to 1e25");
     demand(view.scale > 0 && view.scale <= kLargest, "scale", shortest(view.scale), "a positive number");
     demand(view.eye_distance > 0 && (view.eye_distance <= kLargest || !view.perspective()), "eye_distance",
            shortest(view.eye_distance), "a positive number, or infinity");
@@ -169,13 +170,13 @@ void check(const Ellipsoid& body, std::size_t position, const std::vector<std::s
         const std::string name = position < names.size() ? names[position] : std::to_string(position);
         throw Error("body " + printable(name) + " " + what, value, std::string("allowed is ") + allowed);
     };
-    if (!within(body.center)) fail("center", text_of(body.center), "finite numbers up to 1e50");
-    if (!within(body.axes)) fail("axes", text_of(body.axes), "finite numbers up to 1e50");
+    if (!within(body.center)) fail("center", text_of(body.center), "finite numbers up to 1e25");
+    if (!within(body.axes)) fail("axes", text_of(body.axes), "finite numbers up to 1e25");
     if (!orthonormal(body.rotation)) fail("rotation", columns_of(body.rotation), "an orthonormal matrix");
 }
 
 void check_point(const std::string& name, const glm::dvec3& point) {
-    if (!within(point)) throw Error(name, text_of(point), "allowed are finite numbers up to 1e50");
+    if (!within(point)) throw Error(name, text_of(point), "allowed are finite numbers up to 1e25");
 }
 
 SeenBody see(const Ellipsoid& shape, const View& view) {

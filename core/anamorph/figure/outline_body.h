@@ -40,7 +40,7 @@ struct SeenBody {
 /// Throws Error naming the body unless all its values are as `outlines` allows.
 void check(const Ellipsoid& body, std::size_t position, const std::vector<std::string>& names);
 
-/// Throws Error unless the point is finite and no larger than 1e50.
+/// Throws Error unless the point is finite and no larger than 1e25.
 void check_point(const std::string& name, const glm::dvec3& point);
 
 SeenBody see(const Ellipsoid& body, const View& view);

@@ -102,7 +102,7 @@ class Search {
         // Taylor's theorem about the middle bounds f and f'.
         const double bend = std::fabs(second_derivative(at_middle)) + m_third * radius + m_magnitude;
         const double swing = std::fabs(slope) * radius + 0.5 * bend * radius * radius;
-        if (std::fabs(f) > swing || std::fabs(f) + swing < m_f.noise) return;
+        if (!(std::fabs(f) <= swing) || std::fabs(f) + swing < m_f.noise) return;
         if (std::fabs(slope) > bend * radius || level == kMostLevels) {
             const double begin = value(at_begin).f, end = value(at_end).f;
             if ((begin < 0) != (end < 0)) m_roots.add(polish(middle, radius, begin < 0, {f, slope}, bend));

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: Apache-2.0
+// Bodies as spheres along their limbs, for renderers that know only spheres (Badler's bubbles).
+#pragma once
+
+#include <glm/vec3.hpp>
+#include <vector>
+
+#include "anamorph/map/ellipsoid.h"
+
+namespace anamorph {
+
+struct Sphere {
+    glm::dvec3 center{0.0};
+    double radius = 0;
+};
+
+struct SphereOptions {
+    double tol = 0.1;          ///< how far the body's surface may lie outside the spheres, units of the scene
+    int most_spheres = 10000;  ///< of one body; where tol needs more, `deviation` says what was reached
+};
+
+struct SphereFill {
+    std::vector<Sphere> spheres;  ///< the largest inside the body about their centres, all of which touch it
+    double deviation = 0;         ///< no point of the surface is farther than this from the nearest sphere
+};
+
+/// The spheres of a body with half-axes a >= b >= c have their centres on its medial surface, an ellipse with
+/// half-axes (a^2 - c^2) / a and (b^2 - c^2) / b: a line where b = c, a point where all are equal. Throws
+/// Error when a value is not finite or larger than 1e25, tol is not positive or most_spheres is less than 1.
+SphereFill fill_with_spheres(const Ellipsoid& body, const SphereOptions& options = {});
+
+}  // namespace anamorph
