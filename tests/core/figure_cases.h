@@ -20,6 +20,13 @@
 
 namespace anamorph::figure_cases {
 
+/// "s7"
+inline std::string numbered(const char* name, int i) {
+    std::string out(name);
+    out += std::to_string(i);
+    return out;
+}
+
 inline Program program_of(const std::string& text, Dialect dialect = Dialect::classic) {
     ScriptOptions options;
     options.dialect = dialect;

@@ -243,7 +243,7 @@ TEST(FigureFrames, FarApart) {
 
 TEST(FigureFrames, TenThousandEllipsoids) {
     std::string script = "figure chain 10000";
-    const auto name = [](int i) { return " e" + std::to_string(i); };
+    const auto name = [](int i) { return numbered(" e", i); };
     for (int i = 0; i < 10000; ++i) script += name(i);
     for (int i = 0; i < 10000; ++i) script += "\nellipsoid" + name(i) + " 1 2 1";
     for (int i = 1; i < 10000; ++i)
@@ -296,7 +296,7 @@ TEST(FigureErrors, SubroutinesThatCallThemselves) {
     // Twice each time: nothing deep, but very many.
     std::string many = kOne + "call 0 5 s0 ";
     for (int i = 0; i < 60; ++i) {
-        const std::string s = "s" + std::to_string(i), next = "s" + std::to_string(i + 1);
+        const std::string s = numbered("s", i), next = numbered("s", i + 1);
         many += "subroutine " + s + " call 0 5 " + next + " call 0 5 " + next + " endsub " + s + "\n";
     }
     many += "subroutine s60 repeat 0 1 moveby f a 1 0 0 endsub s60 stop";

@@ -48,7 +48,7 @@ TEST(FrameFile, ReadsAndWritesTheSameText) {
 TEST(FrameFile, RoundsToTheNearest) {
     FigureFrame frame;
     frame.bodies.resize(1);
-    frame.bodies[0].name = "e";
+    frame.bodies[0].name.assign(1, 'e');
     frame.bodies[0].shape = {{0.04, -0.06, 12.349}, {1.26, 1.24, 0}, glm::dmat3(1.0)};
     frame.bodies[0].color = {0.4, 254.6, -3};
     EXPECT_THAT(frame_text(frame), HasSubstr("\n13 12 0 0 -1 123 0 0 0   0 255  -3 e 1\n"));
@@ -64,7 +64,7 @@ TEST(FrameFile, TurnsComeBack) {
     for (int i = 0; i < 2000; ++i) {
         FigureFrame frame;
         frame.bodies.resize(1);
-        frame.bodies[0].name = "e";
+        frame.bodies[0].name.assign(1, 'e');
         frame.bodies[0].shape.rotation = glm::mat3_cast(glm::normalize(
             glm::dquat(normal(random), normal(random), normal(random), i % 2 ? 0 : normal(random))));
         const FigureFrame back = parse_frames(frame_text(frame), "own.3").at(0);

@@ -45,16 +45,16 @@ class Checker {
         for (const JointDeclaration& joint : m_program.joints)
             if (!joint.attached && !components.join(joint.first, joint.second))
                 report(m_program.dialect == Dialect::strict, joint.position,
-                       "the joint \"" + excerpt(joint.name) + "\" closes a ring");
+                       "the joint " + quoted(joint.name) + " closes a ring");
         for (const FigureDeclaration& figure : m_program.figures) {
             const auto apart = std::find_if(figure.ellipsoids.begin(), figure.ellipsoids.end(), [&](int e) {
                 return components.find(e) != components.find(figure.ellipsoids.front());
             });
             if (apart != figure.ellipsoids.end())
                 report(false, figure.position,
-                       "no joint connects \"" + excerpt(ellipsoid(*apart)) + "\" with \"" +
-                           excerpt(ellipsoid(figure.ellipsoids.front())) +
-                           "\": it will not move with the figure");
+                       "no joint connects " + quoted(ellipsoid(*apart)) + " with " +
+                           quoted(ellipsoid(figure.ellipsoids.front())) +
+                           ": it will not move with the figure");
         }
         if (m_program.dialect == Dialect::strict) check_calls();
     }
@@ -89,9 +89,9 @@ class Checker {
                 if (--calls[caller] == 0) leaves.push_back(caller);
         for (std::size_t i = 1; i < count; ++i)
             if (calls[i] > 0)
-                return report(true, m_program.subroutines[i].position,
-                              "subroutines call themselves, by way of \"" +
-                                  excerpt(m_program.subroutines[i].name) + "\"");
+                return report(
+                    true, m_program.subroutines[i].position,
+                    "subroutines call themselves, by way of " + quoted(m_program.subroutines[i].name));
     }
 
     Script& m_script;

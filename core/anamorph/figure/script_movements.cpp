@@ -7,8 +7,6 @@
 
 namespace anamorph {
 
-using features_text::excerpt;
-
 void ScriptParser::movement(Distribution distribution) {
     Movement m;
     m.distribution = distribution;
@@ -36,7 +34,7 @@ void ScriptParser::movement(Distribution distribution) {
         this->take();
         if (entry->keyword == script_table::Keyword::ignored) {
             report(Severity::warning, m.position, std::string(token.text), "",
-                   "\"" + excerpt(token.text) + "\" is passed over");
+                   quoted(token.text) + " is passed over");
             return skip_to_statement();
         }
     }
@@ -66,7 +64,7 @@ Operand ScriptParser::take_value(char letter, Pending& pending, bool& waits, boo
     const auto refuse = [&] {
         usable = false;
         report(Severity::error, position, std::string(token.text), expected,
-               "found \"" + excerpt(token.text) + "\", expected " + expected);
+               "found " + quoted(token.text) + ", expected " + expected);
         return Operand{};
     };
     if (looks_like_number(token.text)) {
@@ -81,8 +79,7 @@ Operand ScriptParser::take_value(char letter, Pending& pending, bool& waits, boo
     // Joints, figures and pictures may be new here.
     const auto made = [&](OperandKind kind) {
         if (const auto other = m_symbols.other_kind(kind, token.text))
-            fault(position,
-                  "\"" + excerpt(token.text) + "\" is the name of " + description_of(*other) + " as well");
+            fault(position, quoted(token.text) + " is the name of " + description_of(*other) + " as well");
         return Operand{kind, 0, m_symbols.make(kind, token.text, position)};
     };
     if (letter == 'J') return made(OperandKind::joint);
@@ -105,7 +102,7 @@ void ScriptParser::resolve_pending() {
             found && found->kind == OperandKind::subroutine && !m_defined_subroutines.contains(found->index);
         if (!found || wrong || undefined) {
             report(Severity::error, p.position, p.name, description_of(p.letter),
-                   "found \"" + excerpt(p.name) + "\", expected " + description_of(p.letter));
+                   "found " + quoted(p.name) + ", expected " + description_of(p.letter));
             continue;
         }
         Movement& m = m_program.subroutines[static_cast<std::size_t>(p.subroutine)].movements[p.movement];
@@ -115,7 +112,7 @@ void ScriptParser::resolve_pending() {
     for (std::size_t i = 1; i < m_program.ellipsoids.size(); ++i)
         if (!m_shaped.contains(static_cast<int>(i)))
             error(m_program.ellipsoids[i].position,
-                  "the ellipsoid \"" + excerpt(m_program.ellipsoids[i].name) + "\" is declared nowhere");
+                  "the ellipsoid " + quoted(m_program.ellipsoids[i].name) + " is declared nowhere");
 }
 
 }  // namespace anamorph

@@ -19,10 +19,6 @@ constexpr std::size_t kDeepestInclude = 16;
 constexpr int kMostCount = 1 << 20;
 constexpr int kLargestFrame = 1000000000;
 
-std::string quoted(std::string_view text) {
-    return "\"" + excerpt(text) + "\"";
-}
-
 }  // namespace
 
 ScriptParser::ScriptParser(Script& script, const ScriptOptions& options)

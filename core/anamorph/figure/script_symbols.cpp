@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include "anamorph/map/features_text.h"
+
 namespace anamorph {
 namespace {
 
@@ -98,6 +100,13 @@ const char* description_of(OperandKind kind) {
             return "a picture";
     }
     return "";
+}
+
+std::string quoted(std::string_view text) {
+    std::string out(1, '"');
+    out += features_text::excerpt(text);
+    out += '"';
+    return out;
 }
 
 ScriptSymbols::ScriptSymbols(Program& program) : m_program(program) {

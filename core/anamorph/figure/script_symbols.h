@@ -16,6 +16,9 @@ namespace anamorph {
 const char* description_of(char letter);
 const char* description_of(OperandKind kind);
 
+/// Fit for a message: in quotes, on one line, not endless.
+std::string quoted(std::string_view text);
+
 class ScriptSymbols {
   public:
     /// Declares the names that every script knows.
