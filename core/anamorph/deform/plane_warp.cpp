@@ -290,7 +290,7 @@ Fold PlaneWarp::find_fold(std::size_t most_boxes) const {
         if (!(box.low > 1e-12)) boxes.push(std::move(box));  // rounding
     };
     push(box_of({m_least.x, m_most.x}, {m_least.y, m_most.y}, all));
-    constexpr std::size_t kMostWork = 20'000'000;
+    constexpr std::size_t kMostWork = 3'000'000;
     for (std::size_t count = 0; !boxes.empty(); ++count) {
         if (count >= most_boxes || work > kMostWork) return {FoldAnswer::undecided, {}};
         const Box box = boxes.top();
