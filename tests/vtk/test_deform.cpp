@@ -1,8 +1,1182 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <vtkAnamorphDeform.h>  // first: it stands alone
+
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <vtkAnamorphDeform.h>
+#include <vtkAnamorphDeformationList.h>
+#include <vtkCellArray.h>
+#include <vtkCellData.h>
+#include <vtkDoubleArray.h>
+#include <vtkFieldData.h>
+#include <vtkFloatArray.h>
+#include <vtkInformation.h>
+#include <vtkInformationVector.h>
+#include <vtkIntArray.h>
+#include <vtkMultiBlockDataSet.h>
+#include <vtkMultiProcessController.h>
 #include <vtkNew.h>
-TEST(VtkDeform, New) {
-    vtkNew<vtkAnamorphDeform> f;
-    EXPECT_TRUE(f);
+#include <vtkObjectFactory.h>
+#include <vtkPartitionedDataSet.h>
+#include <vtkPartitionedDataSetCollection.h>
+#include <vtkPlaneSource.h>
+#include <vtkPointData.h>
+#include <vtkPolyData.h>
+#include <vtkPolyDataAlgorithm.h>
+#include <vtkSOADataArrayTemplate.h>
+#include <vtkSphereSource.h>
+#include <vtkStreamingDemandDrivenPipeline.h>
+#include <vtkStringArray.h>
+#include <vtkStructuredGrid.h>
+#include <vtkStructuredGridAlgorithm.h>
+#include <vtkTable.h>
+#include <vtkTriangle.h>
+#include <vtkUnsignedCharArray.h>
+#include <vtkUnstructuredGrid.h>
+#include <vtkVersion.h>
+
+#include <algorithm>
+#include <clocale>
+#include <cmath>
+#include <cstdio>
+#include <fstream>
+#include <glm/geometric.hpp>
+#include <limits>
+#include <random>
+#include <sstream>
+
+#include "anamorph/deform/deformation.h"
+#include "support.h"
+
+namespace {
+
+using anamorph::Deformation;
+using anamorph::DeformationKernel;
+using Executive = vtkStreamingDemandDrivenPipeline;
+using testing::HasSubstr;
+
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+constexpr double kInf = std::numeric_limits<double>::infinity();
+
+class Random {
+  public:
+    explicit Random(unsigned seed) : m_engine(seed) {}
+    double number(double low, double high) {
+        return std::uniform_real_distribution<double>(low, high)(m_engine);
+    }
+
+  private:
+    std::mt19937 m_engine;
+};
+
+/// Bumps with centres in [-1, 1]^2.
+std::vector<Deformation> bumps(int count, unsigned seed, double size = .2) {
+    Random random(seed);
+    std::vector<Deformation> list;
+    for (int k = 0; k < count; ++k) {
+        Deformation d;
+        d.vector = {random.number(-size, size), random.number(-size, size), random.number(-size, size)};
+        d.center = {random.number(-1, 1), random.number(-1, 1)};
+        d.extent = {random.number(.1, .5), random.number(.1, .5)};
+        if (k % 3 == 2) d.kernel = DeformationKernel::wendland_c2;
+        d.enabled = k % 5 != 4;
+        list.push_back(d);
+    }
+    return list;
+}
+
+void add(vtkAnamorphDeform* filter, const Deformation& d) {
+    filter->AddDeformation(d.center.x, d.center.y, d.extent.x, d.extent.y, d.vector.x, d.vector.y, d.vector.z,
+                           d.kernel == DeformationKernel::gaussian ? 0 : 1, d.enabled);
+}
+void add(vtkAnamorphDeform* filter, const std::vector<Deformation>& list) {
+    for (const Deformation& d : list) add(filter, d);
+}
+
+/// A square of n x n points of x and y in [-1, 1], raised at random if asked, with everything a mesh can
+/// carry.
+vtkSmartPointer<vtkPolyData> square(int n, int type = VTK_FLOAT, double relief = 0) {
+    Random random(7);
+    vtkNew<vtkPoints> points;
+    points->SetDataType(type);
+    vtkNew<vtkFloatArray> coordinates;
+    coordinates->SetName("uv");
+    coordinates->SetNumberOfComponents(2);
+    for (int j = 0; j < n; ++j)
+        for (int i = 0; i < n; ++i) {
+            const double u = 2. * i / (n - 1) - 1, v = 2. * j / (n - 1) - 1;
+            points->InsertNextPoint(u, v, relief * random.number(-1, 1));
+            coordinates->InsertNextTuple2(u, v);
+        }
+    vtkNew<vtkCellArray> cells;
+    for (int j = 0; j + 1 < n; ++j)
+        for (int i = 0; i + 1 < n; ++i) {
+            const vtkIdType at = j * n + i, quad[4] = {at, at + 1, at + n + 1, at + n};
+            cells->InsertNextCell(4, quad);
+        }
+    auto mesh = vtkSmartPointer<vtkPolyData>::New();
+    mesh->SetPoints(points);
+    mesh->SetPolys(cells);
+    mesh->GetPointData()->SetTCoords(coordinates);
+    vtkNew<vtkIntArray> ids, ghosts_of;
+    ids->SetName("ids");
+    for (vtkIdType i = 0; i < mesh->GetNumberOfCells(); ++i) ids->InsertNextValue(static_cast<int>(i));
+    mesh->GetCellData()->AddArray(ids);
+    mesh->AllocatePointGhostArray();
+    vtkNew<vtkStringArray> name;
+    name->SetName("name");
+    name->InsertNextValue("square");
+    mesh->GetFieldData()->AddArray(name);
+    return mesh;
+}
+
+/// The same points in the structured grid that they are.
+vtkSmartPointer<vtkStructuredGrid> structured(vtkPolyData* mesh) {
+    const int n = static_cast<int>(std::lround(std::sqrt(static_cast<double>(mesh->GetNumberOfPoints()))));
+    auto grid = vtkSmartPointer<vtkStructuredGrid>::New();
+    grid->SetDimensions(n, n, 1);
+    grid->SetPoints(mesh->GetPoints());
+    return grid;
+}
+
+vtkSmartPointer<vtkUnstructuredGrid> unstructured(vtkPolyData* mesh) {
+    auto grid = vtkSmartPointer<vtkUnstructuredGrid>::New();
+    grid->SetPoints(mesh->GetPoints());
+    grid->SetCells(VTK_QUAD, mesh->GetPolys());
+    return grid;
+}
+
+vtkPointSet* output(vtkAnamorphDeform* filter) {
+    return vtkPointSet::SafeDownCast(filter->GetOutputDataObject(0));
+}
+
+std::vector<double> deformed(vtkDataObject* input, const std::vector<Deformation>& list) {
+    vtkNew<vtkAnamorphDeform> filter;
+    filter->SetInputData(input);
+    add(filter, list);
+    filter->Update();
+    return coordinates(output(filter));
+}
+
+/// Every point is where eq. (4.1) has it, with the parameters x and y, within the bound and a rounding of T.
+template <class T>
+void expect_displaced(vtkPointSet* before, vtkPointSet* after, const std::vector<Deformation>& list,
+                      double bound) {
+    ASSERT_EQ(before->GetNumberOfPoints(), after->GetNumberOfPoints());
+    for (vtkIdType i = 0; i < before->GetNumberOfPoints(); ++i) {
+        double p[3], q[3];
+        before->GetPoint(i, p);
+        after->GetPoint(i, q);
+        const glm::dvec3 moved = displacement_at(list, {p[0], p[1]}).value;
+        for (int c = 0; c < 3; ++c)
+            ASSERT_NEAR(q[c], p[c] + moved[c],
+                        bound + std::numeric_limits<T>::epsilon() * (std::fabs(q[c]) + std::fabs(p[c])))
+                << "point " << i;
+    }
+}
+
+/// A surface that can be asked for pieces, for ghost levels and for times. Rows of quads are dealt out.
+class Source : public vtkPolyDataAlgorithm {
+  public:
+    static Source* New();
+    vtkTypeMacro(Source, vtkPolyDataAlgorithm);
+    int rows = 12;
+    bool ghosts = true;
+    double relief = 0;
+    std::vector<double> times;
+    int executions = 0;
+
+  protected:
+    Source() { this->SetNumberOfInputPorts(0); }
+    int RequestInformation(vtkInformation*, vtkInformationVector**, vtkInformationVector* outputs) override {
+        vtkInformation* info = outputs->GetInformationObject(0);
+        info->Set(CAN_HANDLE_PIECE_REQUEST(), 1);
+        if (times.empty()) return 1;
+        info->Set(Executive::TIME_STEPS(), times.data(), static_cast<int>(times.size()));
+        const double range[2] = {times.front(), times.back()};
+        info->Set(Executive::TIME_RANGE(), range, 2);
+        return 1;
+    }
+    int RequestData(vtkInformation*, vtkInformationVector**, vtkInformationVector* outputs) override {
+        ++executions;
+        vtkInformation* info = outputs->GetInformationObject(0);
+        auto* mesh = vtkPolyData::GetData(outputs);
+        const int count = std::max(info->Get(Executive::UPDATE_NUMBER_OF_PIECES()), 1),
+                  piece = info->Get(Executive::UPDATE_PIECE_NUMBER()),
+                  level = ghosts ? info->Get(Executive::UPDATE_NUMBER_OF_GHOST_LEVELS()) : 0;
+        // At a time step, as many rows more.
+        int n = rows;
+        if (info->Has(Executive::UPDATE_TIME_STEP())) {
+            const double time = info->Get(Executive::UPDATE_TIME_STEP());
+            n += static_cast<int>(time);
+            mesh->GetInformation()->Set(vtkDataObject::DATA_TIME_STEP(), time);
+        }
+        const auto whole = square(n, VTK_DOUBLE, relief);
+        const int first = piece * (n - 1) / count, last = (piece + 1) * (n - 1) / count;
+        const int begin = std::max(first - level, 0), end = std::min(last + level, n - 1);
+        vtkNew<vtkPoints> points;
+        points->SetDataTypeToDouble();
+        for (int k = begin * n; k < (end + 1) * n; ++k) points->InsertNextPoint(whole->GetPoint(k));
+        vtkNew<vtkCellArray> cells;
+        vtkNew<vtkUnsignedCharArray> marks;
+        marks->SetName(vtkDataSetAttributes::GhostArrayName());
+        for (int j = 0; j < end - begin; ++j)
+            for (int i = 0; i + 1 < n; ++i) {
+                const vtkIdType at = j * n + i, quad[4] = {at, at + 1, at + n + 1, at + n};
+                cells->InsertNextCell(4, quad);
+                const bool own = begin + j >= first && begin + j < last;
+                marks->InsertNextValue(own ? 0 : vtkDataSetAttributes::DUPLICATECELL);
+            }
+        mesh->SetPoints(points);
+        mesh->SetPolys(cells);
+        if (level > 0) mesh->GetCellData()->AddArray(marks);
+        return 1;
+    }
+};
+vtkStandardNewMacro(Source);
+
+}  // namespace
+
+TEST(VtkDeform, PrintsItself) {
+    vtkNew<vtkAnamorphDeform> filter;
+    filter->AddDeformation(1, 2, 3, 4, 5, 6, 7);
+    std::ostringstream text;
+    filter->Print(text);
+    for (const char* word : {"Cutoff", "Origin", "FileName", "ErrorBound", "NumberOfDeformations: 1"})
+        EXPECT_THAT(text.str(), HasSubstr(word));
+}
+
+TEST(VtkDeform, NoInputAndWrongInput) {
+    vtkNew<vtkAnamorphDeform> filter;
+    Errors errors(filter);
+    filter->Update();
+    EXPECT_NE(errors.text(), "");
+    errors.clear();
+    filter->SetInputData(vtkNew<vtkTable>());
+    filter->Update();
+    EXPECT_NE(errors.text(), "");
+}
+
+TEST(VtkDeform, EmptyMeshes) {
+    for (vtkPointSet* empty : {static_cast<vtkPointSet*>(vtkPolyData::New()),
+                               static_cast<vtkPointSet*>(vtkUnstructuredGrid::New()),
+                               static_cast<vtkPointSet*>(vtkStructuredGrid::New())}) {
+        vtkNew<vtkAnamorphDeform> filter;
+        Errors errors(filter);
+        filter->SetInputData(empty);
+        filter->GenerateOverlayOn();
+        add(filter, bumps(3, 1));
+        filter->Update();
+        EXPECT_EQ(errors.text(), "");
+        EXPECT_STREQ(filter->GetOutputDataObject(0)->GetClassName(), empty->GetClassName());
+        EXPECT_EQ(output(filter)->GetNumberOfPoints(), 0);
+        filter->SetParameterModeToTextureCoordinates();
+        filter->Update();
+        EXPECT_EQ(errors.text(), "");
+        empty->Delete();
+    }
+}
+
+TEST(VtkDeform, MovesPointsAsThePaperSays) {
+    const std::vector<Deformation> list = bumps(20, 1);
+    for (const int type : {VTK_FLOAT, VTK_DOUBLE}) {
+        const auto mesh = square(40, type, .1);
+        for (const bool single : {true, false}) {
+            vtkNew<vtkAnamorphDeform> filter;
+            filter->SetInputData(mesh);
+            filter->SetOutputPointsPrecision(single ? vtkAlgorithm::SINGLE_PRECISION
+                                                    : vtkAlgorithm::DOUBLE_PRECISION);
+            add(filter, list);
+            filter->Update();
+            vtkPointSet* out = output(filter);
+            EXPECT_EQ(out->GetPoints()->GetDataType(), single ? VTK_FLOAT : VTK_DOUBLE);
+            EXPECT_GT(filter->GetErrorBound(), 0);
+            EXPECT_LT(filter->GetErrorBound(), 1e-5);
+            if (single)
+                expect_displaced<float>(mesh, out, list, filter->GetErrorBound());
+            else
+                expect_displaced<double>(mesh, out, list, filter->GetErrorBound());
+            // The displacement beside is what the points moved by.
+            const std::vector<double> before = coordinates(mesh), after = coordinates(out),
+                                      moved = numbers(out->GetPointData()->GetArray("Displacement"));
+            ASSERT_EQ(moved.size(), after.size());
+            for (std::size_t k = 0; k < moved.size(); ++k)
+                ASSERT_NEAR(before[k] + moved[k], after[k], single ? 3e-7 : 1e-15);
+            vtkDataArray* bound =
+                vtkDataArray::SafeDownCast(out->GetFieldData()->GetAbstractArray("anamorph:error_bound"));
+            ASSERT_TRUE(bound);
+            EXPECT_EQ(bound->GetComponent(0, 0), filter->GetErrorBound());
+        }
+    }
+}
+
+TEST(VtkDeform, AllKindsOfMeshesAndArraysAgree) {
+    const std::vector<Deformation> list = bumps(10, 2);
+    const auto mesh = square(30, VTK_DOUBLE);
+    const std::vector<double> expected = deformed(mesh, list);
+    EXPECT_EQ(deformed(structured(mesh), list), expected);
+    EXPECT_EQ(deformed(unstructured(mesh), list), expected);
+    // Not a grid in memory: the same points in another order.
+    vtkNew<vtkPolyData> shuffled;
+    vtkNew<vtkPoints> points;
+    points->SetDataTypeToDouble();
+    for (int k = 0; k < 900; ++k) points->InsertNextPoint(mesh->GetPoint(k * 7 % 900));
+    shuffled->SetPoints(points);
+    const std::vector<double> moved = deformed(shuffled, list);
+    for (std::size_t k = 0; k < 900; ++k)
+        for (std::size_t c = 0; c < 3; ++c) ASSERT_EQ(moved[3 * k + c], expected[3 * (k * 7 % 900) + c]);
+    // Components apart in memory, and whole numbers.
+    vtkNew<vtkSOADataArrayTemplate<double>> apart;
+    apart->SetNumberOfComponents(3);
+    apart->SetNumberOfTuples(900);
+    vtkNew<vtkPoints> whole;
+    whole->SetDataTypeToInt();
+    vtkNew<vtkPoints> whole_double;
+    whole_double->SetDataTypeToDouble();
+    for (vtkIdType i = 0; i < 900; ++i) {
+        apart->SetTuple(i, mesh->GetPoint(i));
+        whole->InsertNextPoint(double(i % 30), double(i / 30), 3);
+        whole_double->InsertNextPoint(double(i % 30), double(i / 30), 3);
+    }
+    vtkNew<vtkPoints> apart_points;
+    apart_points->SetData(apart);
+    vtkNew<vtkPolyData> other;
+    other->SetPoints(apart_points);
+    EXPECT_EQ(deformed(other, list), expected);
+    other->SetPoints(whole_double);
+    const std::vector<double> of_whole = deformed(other, list);
+    other->SetPoints(whole);
+    EXPECT_EQ(deformed(other, list), of_whole);
+}
+
+TEST(VtkDeform, SharesWhatStaysAndLeavesTheInputAlone) {
+    const auto mesh = square(20);
+    vtkNew<vtkPolyData> before;
+    before->DeepCopy(mesh);
+    const vtkMTimeType points_time = mesh->GetPoints()->GetMTime();
+    vtkNew<vtkAnamorphDeform> filter;
+    filter->SetInputData(mesh);
+    add(filter, bumps(4, 3));
+    filter->Update();
+    auto* out = vtkPolyData::SafeDownCast(output(filter));
+    EXPECT_EQ(out->GetPolys()->GetConnectivityArray(), mesh->GetPolys()->GetConnectivityArray());
+    EXPECT_NE(out->GetPoints(), mesh->GetPoints());
+    EXPECT_EQ(out->GetPointData()->GetArray("uv"), mesh->GetPointData()->GetArray("uv"));
+    EXPECT_EQ(out->GetPointData()->GetTCoords(), mesh->GetPointData()->GetTCoords());
+    EXPECT_EQ(out->GetPointGhostArray(), mesh->GetPointGhostArray());
+    EXPECT_EQ(out->GetCellData()->GetArray("ids"), mesh->GetCellData()->GetArray("ids"));
+    EXPECT_EQ(out->GetFieldData()->GetAbstractArray("name"), mesh->GetFieldData()->GetAbstractArray("name"));
+    // Nothing of ours went into the input.
+    EXPECT_EQ(coordinates(mesh), coordinates(before));
+    EXPECT_EQ(mesh->GetPoints()->GetMTime(), points_time);
+    EXPECT_EQ(mesh->GetFieldData()->GetNumberOfArrays(), before->GetFieldData()->GetNumberOfArrays());
+    EXPECT_EQ(mesh->GetPointData()->GetNumberOfArrays(), before->GetPointData()->GetNumberOfArrays());
+}
+
+TEST(VtkDeform, ExecutesOnlyWhenSomethingChanged) {
+    vtkNew<Source> source;
+    vtkNew<vtkAnamorphDeform> filter;
+    filter->SetInputConnection(source->GetOutputPort());
+    add(filter, bumps(4, 3));
+    filter->Update();
+    const vtkMTimeType time = output(filter)->GetMTime(), own = filter->GetMTime();
+    filter->SetCutoff(filter->GetCutoff());
+    filter->SetOrigin(filter->GetOrigin());
+    filter->SetFileName(nullptr);
+    filter->SetDeformation(
+        1, filter->GetDeformation(1)[0], filter->GetDeformation(1)[1], filter->GetDeformation(1)[2],
+        filter->GetDeformation(1)[3], filter->GetDeformation(1)[4], filter->GetDeformation(1)[5],
+        filter->GetDeformation(1)[6], filter->GetDeformation(1)[7], filter->GetDeformation(1)[8]);
+    filter->SetDeformationEnabled(0, filter->GetDeformationEnabled(0));
+    filter->SetNumberOfDeformations(4);
+    filter->MoveDeformation(2, 2);
+    EXPECT_EQ(filter->GetMTime(), own);
+    filter->Update();
+    EXPECT_EQ(output(filter)->GetMTime(), time);
+    filter->SetDeformationEnabled(0, !filter->GetDeformationEnabled(0));
+    EXPECT_GT(filter->GetMTime(), own);
+    filter->Update();
+    EXPECT_GT(output(filter)->GetMTime(), time);
+    EXPECT_EQ(source->executions, 1);
+}
+
+TEST(VtkDeform, EditsComputeWhatTheyReachAndLeaveNoTrace) {
+    for (const double relief : {0., .1}) {
+        // A grid, and points that are none.
+        for (const bool grid : {true, false}) {
+            const auto mesh = square(60, VTK_DOUBLE, relief);
+            if (!grid) mesh->GetPoints()->SetPoint(5, .123, .456, 0);
+            vtkNew<vtkAnamorphDeform> filter;
+            filter->SetInputData(mesh);
+            std::vector<Deformation> list = bumps(12, 4);
+            add(filter, list);
+            filter->Update();
+            EXPECT_EQ(filter->GetNumberOfPointsComputed(), 3600);
+            const std::vector<double> first = coordinates(output(filter)),
+                                      normals = numbers(output(filter)->GetPointData()->GetNormals()),
+                                      moved =
+                                          numbers(output(filter)->GetPointData()->GetArray("Displacement"));
+            // Held by somebody: it must not change under them.
+            vtkNew<vtkPolyData> held;
+            held->ShallowCopy(output(filter));
+
+            filter->AddDeformation(.2, .3, .02, .02, .1, 0, .2);
+            filter->Update();
+            EXPECT_GT(filter->GetNumberOfPointsComputed(), 0);
+            EXPECT_LT(filter->GetNumberOfPointsComputed(), 1600);
+            EXPECT_EQ(coordinates(held), first);
+            EXPECT_EQ(numbers(held->GetPointData()->GetNormals()), normals);
+            const std::vector<double> second = coordinates(output(filter)),
+                                      second_normals = numbers(output(filter)->GetPointData()->GetNormals());
+            EXPECT_NE(second, first);
+            EXPECT_NE(second_normals, normals);
+            // The same as a filter that starts with this list, in another order.
+            vtkNew<vtkAnamorphDeform> fresh;
+            fresh->SetInputData(mesh);
+            fresh->AddDeformation(.2, .3, .02, .02, .1, 0, .2);
+            std::reverse(list.begin(), list.end());
+            add(fresh, list);
+            fresh->Update();
+            EXPECT_EQ(coordinates(output(fresh)), second);
+            EXPECT_EQ(numbers(output(fresh)->GetPointData()->GetNormals()), second_normals);
+            EXPECT_EQ(numbers(output(fresh)->GetPointData()->GetArray("Displacement")),
+                      numbers(output(filter)->GetPointData()->GetArray("Displacement")));
+
+            filter->RemoveDeformation(12);
+            filter->MoveDeformation(0, 11);
+            filter->Update();
+            EXPECT_EQ(coordinates(output(filter)), first);
+            EXPECT_EQ(numbers(output(filter)->GetPointData()->GetNormals()), normals);
+            EXPECT_EQ(numbers(output(filter)->GetPointData()->GetArray("Displacement")), moved);
+            filter->MoveDeformation(3, 7);
+            filter->Update();
+            EXPECT_EQ(filter->GetNumberOfPointsComputed(), 0);
+            EXPECT_EQ(coordinates(output(filter)), first);
+            filter->RemoveAllDeformations();
+            filter->Update();
+            EXPECT_EQ(coordinates(output(filter)), coordinates(mesh));
+        }
+    }
+}
+
+TEST(VtkDeform, ANewInputIsSeen) {
+    const auto mesh = square(20, VTK_DOUBLE);
+    const std::vector<Deformation> list = bumps(5, 5);
+    vtkNew<vtkAnamorphDeform> filter;
+    filter->SetInputData(mesh);
+    add(filter, list);
+    filter->Update();
+    mesh->GetPoints()->SetPoint(7, .11, .22, .33);
+    mesh->GetPoints()->Modified();
+    filter->Update();
+    EXPECT_EQ(coordinates(output(filter)), deformed(mesh, list));
+    const auto other = square(9, VTK_FLOAT);
+    filter->SetInputData(other);
+    filter->Update();
+    EXPECT_EQ(coordinates(output(filter)), deformed(other, list));
+}
+
+TEST(VtkDeform, SameBitsForAnyThreads) {
+    const std::vector<Deformation> list = bumps(30, 6);
+    for (const double relief : {0., .05}) {
+        const auto mesh = square(90, VTK_DOUBLE, relief);
+        mesh->GetPoints()->SetPoint(4, .3, .2, .1);
+        std::vector<double> points, normals;
+        for (const char* backend : {"Sequential", "STDThread", "TBB"})
+            for (const int threads : {1, 2, 4}) {
+                if (!use_threads(backend, threads)) continue;
+                vtkNew<vtkAnamorphDeform> filter;
+                filter->SetInputData(mesh);
+                add(filter, list);
+                filter->Update();
+                if (points.empty()) {
+                    points = coordinates(output(filter));
+                    normals = numbers(output(filter)->GetPointData()->GetNormals());
+                }
+                EXPECT_EQ(coordinates(output(filter)), points) << backend << " " << threads;
+                EXPECT_EQ(numbers(output(filter)->GetPointData()->GetNormals()), normals);
+            }
+        EXPECT_FALSE(points.empty());
+    }
+}
+
+TEST(VtkDeform, NotFiniteStaysInItsPoint) {
+    const std::vector<Deformation> list = bumps(8, 7);
+    const auto mesh = square(30, VTK_DOUBLE);
+    const std::vector<double> expected = deformed(mesh, list);
+    mesh->GetPoints()->SetPoint(0, kNan, 0, 0);
+    mesh->GetPoints()->SetPoint(100, 0, kInf, 0);
+    mesh->GetPoints()->SetPoint(200, 0, 0, -kInf);
+    vtkNew<vtkAnamorphDeform> filter;
+    filter->SetInputData(mesh);
+    add(filter, list);
+    filter->Update();
+    const std::vector<double> points = coordinates(output(filter)),
+                              moved = numbers(output(filter)->GetPointData()->GetArray("Displacement")),
+                              normals = numbers(output(filter)->GetPointData()->GetNormals());
+    for (std::size_t i = 0; i < 900; ++i)
+        for (std::size_t c = 0; c < 3; ++c) {
+            if (i == 0 || i == 100 || i == 200) {
+                double p[3];
+                mesh->GetPoint(static_cast<vtkIdType>(i), p);
+                EXPECT_TRUE(points[3 * i + c] == p[c] || std::isnan(p[c]));
+                EXPECT_EQ(moved[3 * i + c], 0);
+            } else {
+                ASSERT_EQ(points[3 * i + c], expected[3 * i + c]);
+            }
+            EXPECT_TRUE(std::isfinite(normals[3 * i + c]));
+        }
+    // Nothing but such points.
+    vtkNew<vtkPolyData> none;
+    vtkNew<vtkPoints> nans;
+    for (int i = 0; i < 40; ++i) nans->InsertNextPoint(kNan, kNan, kNan);
+    none->SetPoints(nans);
+    filter->SetInputData(none);
+    Errors errors(filter);
+    filter->Update();
+    EXPECT_EQ(errors.text(), "");
+    EXPECT_EQ(output(filter)->GetNumberOfPoints(), 40);
+}
+
+TEST(VtkDeform, WhatIsRefused) {
+    const auto mesh = square(6);
+    const auto failure = [&](auto&& change) {
+        vtkNew<vtkAnamorphDeform> filter;
+        filter->SetInputData(mesh);
+        add(filter, bumps(2, 8));
+        Errors errors(filter);
+        change(filter.Get());
+        filter->Update();
+        EXPECT_EQ(output(filter)->GetNumberOfPoints(), 0);
+        return errors.text();
+    };
+    using Filter = vtkAnamorphDeform*;
+    const auto with = [&](double extent, double x, double kernel = 0, double enabled = 1) {
+        return failure([=](Filter f) { f->SetDeformation(1, 0, 0, extent, 1, x, 0, 0, kernel, enabled); });
+    };
+    EXPECT_THAT(with(0, 1), HasSubstr("deformation 1: extent=0: allowed are"));
+    EXPECT_THAT(with(-1, 1), HasSubstr("extent=-1"));
+    EXPECT_THAT(with(kNan, 1), HasSubstr("extent=nan"));
+    EXPECT_THAT(with(1, kInf), HasSubstr("vector=inf"));
+    EXPECT_THAT(with(1, 1e300), HasSubstr("vector=1e+300"));
+    EXPECT_THAT(with(1, 1, 2), HasSubstr("kernel=2: allowed are 0 (gaussian) and 1"));
+    EXPECT_THAT(with(1, 1, 0, .5), HasSubstr("enabled=0.5"));
+    EXPECT_THAT(failure([](Filter f) { f->SetCutoff(.7); }), HasSubstr("cutoff=0.7"));
+    EXPECT_THAT(failure([](Filter f) { f->SetCutoff(kNan); }), HasSubstr("cutoff=nan"));
+    EXPECT_THAT(failure([](Filter f) {
+                    f->AutomaticPlaneOff();
+                    f->SetAxis2(3, 0, 0);
+                }),
+                HasSubstr("axis_u and axis_v"));
+    EXPECT_THAT(failure([](Filter f) { f->SetFileName("/no/such/file.json"); }),
+                HasSubstr("/no/such/file.json: cannot be read"));
+    mesh->GetPointData()->SetTCoords(nullptr);
+    EXPECT_THAT(failure([](Filter f) { f->SetParameterModeToTextureCoordinates(); }),
+                HasSubstr("no texture coordinates"));
+    // Positions that are not in the list are refused at once.
+    vtkNew<vtkAnamorphDeform> filter;
+    Errors errors(filter);
+    class Texts : public vtkCommand {
+      public:
+        static Texts* New() { return new Texts; }
+        void Execute(vtkObject*, unsigned long, void* data) override { text += static_cast<char*>(data); }
+        std::string text;
+    };
+    vtkNew<Texts> texts;
+    filter->GetDeformationList()->AddObserver(vtkCommand::ErrorEvent, texts);
+    filter->RemoveDeformation(0);
+    EXPECT_THAT(texts->text, HasSubstr("position=0: the list is empty"));
+    filter->AddDeformation(0, 0, 1, 1, 0, 0, 1);
+    filter->MoveDeformation(0, 1);
+    EXPECT_THAT(texts->text, HasSubstr("position=1: allowed are whole numbers from 0 to 0"));
+    filter->SetNumberOfDeformations(-1);
+    EXPECT_THAT(texts->text, HasSubstr("NumberOfDeformations=-1"));
+    filter->SetNumberOfDeformations(2000000000);
+    EXPECT_THAT(texts->text, HasSubstr("NumberOfDeformations=2000000000"));
+    EXPECT_TRUE(std::isnan(filter->GetDeformation(5)[0]));
+    EXPECT_EQ(filter->GetNumberOfDeformations(), 1);
+}
+
+TEST(VtkDeform, HugeMeshesAreRefused) {
+    // An array that says it has 2^31 points; nobody may read them.
+    float one[3] = {};
+    vtkNew<vtkFloatArray> array;
+    array->SetNumberOfComponents(3);
+    array->SetArray(one, vtkIdType{3} << 31, 1);
+    vtkNew<vtkPoints> points;
+    points->SetData(array);
+    vtkNew<vtkPolyData> mesh;
+    mesh->SetPoints(points);
+    vtkNew<vtkAnamorphDeform> filter;
+    filter->SetInputData(mesh);
+    filter->AutomaticPlaneOff();
+    add(filter, bumps(2, 8));
+    Errors errors(filter);
+    filter->Update();
+    EXPECT_THAT(errors.text(), HasSubstr("2147483648 points, allowed are fewer than 2^31"));
+    filter->AutomaticPlaneOn();
+    errors.clear();
+    filter->Update();
+    EXPECT_THAT(errors.text(), HasSubstr("2147483648 points"));
+}
+
+TEST(VtkDeform, HardDeformations) {
+    const auto mesh = square(40, VTK_DOUBLE);
+    std::vector<Deformation> list;
+    for (const double extent : {1e-30, 1e30, 1e-300, 1e300})
+        list.push_back({{.1, .2, .3}, {.1, .1}, {extent, extent}});
+    list.push_back({{1, 1, 1}, {1e6, -1e6}, {1, 1}});     // far outside
+    list.push_back({{1e-300, 0, 0}, {0, 0}, {1, 1}});     // nothing
+    list.push_back({{1e6, 1e5, 1e4}, {0, 0}, {.2, .2}});  // large
+    vtkNew<vtkAnamorphDeform> filter;
+    filter->SetInputData(mesh);
+    add(filter, list);
+    filter->Update();
+    EXPECT_LT(filter->GetErrorBound(), 1);  // 1e-7 of 1e6
+    expect_displaced<double>(mesh, output(filter), list, filter->GetErrorBound());
+    filter->SetCutoff(0);
+    filter->Update();
+    EXPECT_LT(filter->GetErrorBound(), 1e-4);
+    expect_displaced<double>(mesh, output(filter), list, filter->GetErrorBound());
+    // None.
+    filter->RemoveAllDeformations();
+    filter->Update();
+    EXPECT_EQ(coordinates(output(filter)), coordinates(mesh));
+    EXPECT_EQ(filter->GetErrorBound(), 0);
+}
+
+TEST(VtkDeform, AHundredThousandBumps) {
+    Random random(9);
+    std::vector<Deformation> list(100000);
+    for (Deformation& d : list)
+        d = {{0, 0, random.number(-.01, .01)},
+             {random.number(-1, 1), random.number(-1, 1)},
+             {random.number(.005, .01), random.number(.005, .01)}};
+    const auto mesh = square(50, VTK_DOUBLE);
+    vtkNew<vtkAnamorphDeform> filter;
+    filter->SetInputData(mesh);
+    filter->ComputeNormalsOff();
+    add(filter, list);
+    filter->Update();
+    for (const vtkIdType i : {vtkIdType{0}, vtkIdType{1234}, vtkIdType{2499}}) {
+        double p[3], q[3];
+        mesh->GetPoint(i, p);
+        output(filter)->GetPoint(i, q);
+        EXPECT_NEAR(q[2], p[2] + displacement_at(list, {p[0], p[1]}).value.z, filter->GetErrorBound());
+    }
+    const std::vector<double> all = coordinates(output(filter));
+    filter->SetDeformationEnabled(77777, false);
+    filter->Update();
+    EXPECT_LT(filter->GetNumberOfPointsComputed(), 1000);
+    filter->SetDeformationEnabled(77777, true);
+    filter->Update();
+    EXPECT_EQ(coordinates(output(filter)), all);
+}
+
+TEST(VtkDeform, NormalsOfAPlane) {
+    // Without normals of its own, from its corners; with them, by the Jacobian: both are those of the paper's
+    // surface, from exact derivatives.
+    const std::vector<Deformation> list = bumps(12, 10);
+    vtkNew<vtkPlaneSource> source;
+    source->SetOrigin(-1, -1, 0);
+    source->SetPoint1(1, -1, 0);
+    source->SetPoint2(-1, 1, 0);
+    source->SetResolution(25, 20);
+    source->SetOutputPointsPrecision(vtkAlgorithm::DOUBLE_PRECISION);
+    source->Update();
+    for (const bool given : {true, false}) {
+        vtkNew<vtkPolyData> plane;
+        plane->ShallowCopy(source->GetOutput());
+        if (!given) plane->GetPointData()->SetNormals(nullptr);
+        vtkNew<vtkAnamorphDeform> filter;
+        filter->SetInputData(plane);
+        add(filter, list);
+        filter->SetCutoff(1e-12);
+        filter->Update();
+        vtkDataArray* normals = output(filter)->GetPointData()->GetNormals();
+        ASSERT_TRUE(normals);
+        for (vtkIdType i = 0; i < plane->GetNumberOfPoints(); ++i) {
+            double p[3], n[3];
+            plane->GetPoint(i, p);
+            normals->GetTuple(i, n);
+            const glm::dvec3 expected = normal_of(displacement_at(list, {p[0], p[1]}), {1, 0, 0}, {0, 1, 0});
+            ASSERT_LE(glm::length(glm::dvec3(n[0], n[1], n[2]) - expected), 1e-9);
+        }
+    }
+}
+
+TEST(VtkDeform, NormalsOfACurvedSurface) {
+    // A sphere pushed along x: its normals against those of a much finer deformed mesh's cells.
+    vtkNew<vtkSphereSource> sphere;
+    sphere->SetRadius(1);
+    sphere->SetThetaResolution(200);
+    sphere->SetPhiResolution(200);
+    sphere->SetOutputPointsPrecision(vtkAlgorithm::DOUBLE_PRECISION);
+    sphere->Update();
+    const std::vector<Deformation> list = {{{.3, .2, .4}, {.3, .2}, {.8, .6}}};
+    std::vector<glm::dvec3> sums(static_cast<std::size_t>(sphere->GetOutput()->GetNumberOfPoints()));
+    for (const bool given : {true, false}) {
+        vtkNew<vtkPolyData> mesh;
+        mesh->ShallowCopy(sphere->GetOutput());
+        if (!given) mesh->GetPointData()->SetNormals(nullptr);
+        vtkNew<vtkAnamorphDeform> filter;
+        filter->SetInputData(mesh);
+        add(filter, list);
+        filter->Update();
+        auto* out = vtkPolyData::SafeDownCast(output(filter));
+        std::fill(sums.begin(), sums.end(), glm::dvec3(0.0));
+        vtkNew<vtkIdList> ids;
+        for (vtkIdType cell = 0; cell < out->GetNumberOfCells(); ++cell) {
+            out->GetCellPoints(cell, ids);
+            double a[3], b[3], c[3], n[3];
+            out->GetPoint(ids->GetId(0), a);
+            out->GetPoint(ids->GetId(1), b);
+            out->GetPoint(ids->GetId(2), c);
+            vtkTriangle::ComputeNormalDirection(a, b, c, n);
+            for (int k = 0; k < 3; ++k)
+                sums[static_cast<std::size_t>(ids->GetId(k))] += glm::dvec3(n[0], n[1], n[2]);
+        }
+        vtkDataArray* normals = out->GetPointData()->GetNormals();
+        double worst = 0;
+        for (std::size_t i = 0; i < sums.size(); ++i) {
+            double n[3];
+            normals->GetTuple(static_cast<vtkIdType>(i), n);
+            EXPECT_NEAR(glm::length(glm::dvec3(n[0], n[1], n[2])), 1, given ? 1e-6 : 1e-12);
+            worst = std::max(worst, glm::length(glm::dvec3(n[0], n[1], n[2]) - glm::normalize(sums[i])));
+        }
+        EXPECT_LT(worst, .03);  // a cell turns by 1/30
+    }
+}
+
+TEST(VtkDeform, NormalsAreDroppedOrMade) {
+    vtkNew<vtkSphereSource> sphere;
+    sphere->Update();
+    vtkNew<vtkPolyData> mesh;
+    mesh->ShallowCopy(sphere->GetOutput());
+    vtkNew<vtkFloatArray> of_cells;
+    of_cells->SetName("flat");
+    of_cells->SetNumberOfComponents(3);
+    of_cells->SetNumberOfTuples(mesh->GetNumberOfCells());
+    of_cells->Fill(0);
+    mesh->GetCellData()->SetNormals(of_cells);
+    vtkNew<vtkAnamorphDeform> filter;
+    filter->SetInputData(mesh);
+    filter->AddDeformation(0, 0, 1, 1, 0, 0, 1);
+    filter->Update();
+    EXPECT_TRUE(output(filter)->GetPointData()->GetNormals());
+    EXPECT_NE(output(filter)->GetPointData()->GetNormals(), mesh->GetPointData()->GetNormals());
+    EXPECT_FALSE(output(filter)->GetCellData()->GetArray("flat"));
+    filter->ComputeNormalsOff();
+    filter->ComputeDisplacementOff();
+    filter->Update();
+    EXPECT_FALSE(output(filter)->GetPointData()->GetNormals());
+    EXPECT_FALSE(output(filter)->GetPointData()->GetArray("Displacement"));
+    EXPECT_TRUE(mesh->GetPointData()->GetNormals());
+}
+
+TEST(VtkDeform, TextureCoordinates) {
+    // Of a square, they are x and y: the same surface and normals, up to the rounding of float.
+    const auto mesh = square(30, VTK_DOUBLE);
+    const std::vector<Deformation> list = bumps(8, 11);
+    vtkNew<vtkAnamorphDeform> on_plane, by_texture;
+    for (vtkAnamorphDeform* filter : {on_plane.Get(), by_texture.Get()}) {
+        filter->SetInputData(mesh);
+        add(filter, list);
+    }
+    by_texture->SetParameterModeToTextureCoordinates();
+    on_plane->Update();
+    by_texture->Update();
+    const auto near = [&](const std::vector<double>& a, const std::vector<double>& b, double error) {
+        ASSERT_EQ(a.size(), b.size());
+        for (std::size_t k = 0; k < a.size(); ++k) ASSERT_NEAR(a[k], b[k], error);
+    };
+    near(coordinates(output(by_texture)), coordinates(output(on_plane)), 1e-6);
+    near(numbers(output(by_texture)->GetPointData()->GetNormals()),
+         numbers(output(on_plane)->GetPointData()->GetNormals()), 1e-5);
+    // An array of any name; three components; the wrong ones.
+    vtkNew<vtkDoubleArray> other;
+    other->SetName("other");
+    other->SetNumberOfComponents(3);
+    for (vtkIdType i = 0; i < mesh->GetNumberOfPoints(); ++i) other->InsertNextTuple(mesh->GetPoint(i));
+    mesh->GetPointData()->AddArray(other);
+    by_texture->SetInputArrayToProcess(0, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, "other");
+    by_texture->Update();
+    EXPECT_EQ(coordinates(output(by_texture)), coordinates(output(on_plane)));
+    Errors errors(by_texture);
+    by_texture->SetInputArrayToProcess(0, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, "missing");
+    by_texture->Update();
+    EXPECT_THAT(errors.text(), HasSubstr("no texture coordinates"));
+    errors.clear();
+    other->SetNumberOfComponents(1);
+    by_texture->SetInputArrayToProcess(0, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, "other");
+    by_texture->Update();
+    EXPECT_THAT(errors.text(), HasSubstr("texture coordinates other: needed are 2 to 9 components"));
+}
+
+TEST(VtkDeform, PlanesFromBoundsAndFromAxes) {
+    vtkNew<vtkPlaneSource> source;  // in x and z, at y = 3
+    source->SetOrigin(0, 3, 0);
+    source->SetPoint1(4, 3, 0);
+    source->SetPoint2(0, 3, 9);
+    source->SetResolution(20, 20);
+    vtkNew<vtkAnamorphDeform> filter;
+    filter->SetInputConnection(source->GetOutputPort());
+    filter->AddDeformation(1, 6, .5, .5, 0, 2, 0);
+    filter->Update();
+    EXPECT_THAT(std::vector<double>(filter->GetUsedOrigin(), filter->GetUsedOrigin() + 3),
+                testing::ElementsAre(0, 3, 0));
+    EXPECT_THAT(std::vector<double>(filter->GetUsedAxis1(), filter->GetUsedAxis1() + 3),
+                testing::ElementsAre(1, 0, 0));
+    EXPECT_THAT(std::vector<double>(filter->GetUsedAxis2(), filter->GetUsedAxis2() + 3),
+                testing::ElementsAre(0, 0, 1));
+    double bounds[6];
+    output(filter)->GetBounds(bounds);
+    EXPECT_GT(bounds[3], 4.5);
+    // The same with axes of one's own, in units of their lengths.
+    const std::vector<double> expected = coordinates(output(filter));
+    filter->AutomaticPlaneOff();
+    filter->SetOrigin(1, 0, 6);
+    filter->SetAxis1(.5, 0, 0);
+    filter->SetAxis2(0, 0, .25);
+    filter->SetDeformation(0, 0, 0, 1, 2, 0, 2, 0);
+    filter->Update();
+    EXPECT_EQ(coordinates(output(filter)), expected);
+}
+
+TEST(VtkDeform, Composites) {
+    const auto mesh = square(12, VTK_DOUBLE), other = square(9, VTK_FLOAT);
+    for (vtkIdType i = 0; i < other->GetNumberOfPoints(); ++i) {
+        double p[3];
+        other->GetPoint(i, p);
+        other->GetPoints()->SetPoint(i, p[0], p[1], 5 * p[0]);  // for itself, u and v would be x and z
+    }
+    const std::vector<Deformation> list = bumps(6, 12);
+    vtkNew<vtkMultiBlockDataSet> blocks;
+    blocks->SetBlock(0, mesh);
+    blocks->SetNumberOfBlocks(5);
+    blocks->SetBlock(2, vtkNew<vtkPolyData>());
+    blocks->SetBlock(3, other);
+    vtkNew<vtkTable> table;
+    blocks->SetBlock(4, table);
+    vtkNew<vtkAnamorphDeform> filter;
+    filter->SetInputData(blocks);
+    filter->AutomaticPlaneOff();
+    add(filter, list);
+    Errors errors(filter);
+    filter->Update();
+    EXPECT_EQ(errors.text(), "");
+    auto* out = vtkMultiBlockDataSet::SafeDownCast(filter->GetOutputDataObject(0));
+    ASSERT_TRUE(out);
+    ASSERT_EQ(out->GetNumberOfBlocks(), 5u);
+    const auto leaf = [](vtkDataObject* object) { return coordinates(vtkPointSet::SafeDownCast(object)); };
+    EXPECT_EQ(leaf(out->GetBlock(0)), deformed(mesh, list));
+    EXPECT_FALSE(out->GetBlock(1));
+    EXPECT_TRUE(vtkPolyData::SafeDownCast(out->GetBlock(2)));
+    EXPECT_TRUE(vtkTable::SafeDownCast(out->GetBlock(4)));
+    expect_displaced<float>(other, vtkPointSet::SafeDownCast(out->GetBlock(3)), list,
+                            filter->GetErrorBound());
+    // The automatic plane is one for all: z is longest, then x or y.
+    filter->AutomaticPlaneOn();
+    filter->Update();
+    EXPECT_EQ(filter->GetUsedAxis2()[2], 1);
+    // Edits reach into every leaf, and compute little.
+    filter->AutomaticPlaneOff();
+    filter->Update();
+    filter->AddDeformation(.9, .9, .01, .01, 0, 0, 1);
+    filter->Update();
+    EXPECT_GT(filter->GetNumberOfPointsComputed(), 0);
+    EXPECT_LT(filter->GetNumberOfPointsComputed(), 144 + 81);
+    std::vector<Deformation> longer = list;
+    longer.push_back({{0, 0, 1}, {.9, .9}, {.01, .01}});
+    out = vtkMultiBlockDataSet::SafeDownCast(filter->GetOutputDataObject(0));
+    EXPECT_EQ(leaf(out->GetBlock(0)), deformed(mesh, longer));
+
+    vtkNew<vtkPartitionedDataSetCollection> collection;
+    vtkNew<vtkPartitionedDataSet> parts;
+    parts->SetNumberOfPartitions(3);
+    parts->SetPartition(1, mesh);
+    collection->SetPartitionedDataSet(1, parts);
+    vtkNew<vtkAnamorphDeform> second;
+    second->SetInputData(collection);
+    add(second, list);
+    second->Update();
+    auto* result = vtkPartitionedDataSetCollection::SafeDownCast(second->GetOutputDataObject(0));
+    ASSERT_TRUE(result);
+    ASSERT_EQ(result->GetNumberOfPartitionedDataSets(), 2u);
+    EXPECT_EQ(leaf(result->GetPartition(1, 1)), deformed(mesh, list));
+    EXPECT_FALSE(result->GetPartition(1, 0));
+    // Empty ones, and from a tree to a mesh and back.
+    second->SetInputData(vtkNew<vtkMultiBlockDataSet>());
+    second->Update();
+    second->SetInputData(mesh);
+    second->Update();
+    EXPECT_EQ(coordinates(output(second)), deformed(mesh, list));
+}
+
+TEST(VtkDeform, PiecesAreTheWhole) {
+    const std::vector<Deformation> list = bumps(10, 13);
+    for (const double relief : {0., .1}) {
+        vtkNew<Source> source;
+        source->relief = relief;
+        vtkNew<vtkAnamorphDeform> whole;
+        whole->SetInputConnection(source->GetOutputPort());
+        whole->AutomaticPlaneOff();
+        add(whole, list);
+        whole->Update();
+        vtkDataArray* expected_normals = output(whole)->GetPointData()->GetNormals();
+        for (const int pieces : {2, 3, 11}) {
+            vtkNew<Source> again;
+            again->relief = relief;
+            vtkNew<vtkAnamorphDeform> filter;
+            filter->SetInputConnection(again->GetOutputPort());
+            filter->AutomaticPlaneOff();
+            add(filter, list);
+            for (int piece = 0; piece < pieces; ++piece) {
+                filter->UpdatePiece(piece, pieces, 0);
+                vtkPointSet* out = output(filter);
+                // Which row of the whole this begins with: one of ghosts comes first, but at the start.
+                const int row = std::max(piece * 11 / pieces - 1, 0);
+                const vtkIdType first = 12 * row;
+                const auto cells = out->GetCellGhostArray();
+                ASSERT_TRUE(cells);  // they were asked for
+                for (vtkIdType i = 0; i < out->GetNumberOfPoints(); ++i) {
+                    double a[3], b[3];
+                    out->GetPoint(i, a);
+                    output(whole)->GetPoint(first + i, b);
+                    for (int c = 0; c < 3; ++c) ASSERT_EQ(a[c], b[c]);
+                    // Normals, at the points of the piece itself.
+                    const vtkIdType own_first = (piece * 11 / pieces) * 12,
+                                    own_last = ((piece + 1) * 11 / pieces + 1) * 12;
+                    if (first + i < own_first || first + i >= own_last) continue;
+                    out->GetPointData()->GetNormals()->GetTuple(i, a);
+                    expected_normals->GetTuple(first + i, b);
+                    for (int c = 0; c < 3; ++c) ASSERT_EQ(a[c], b[c]);
+                }
+            }
+        }
+    }
+}
+
+TEST(VtkDeform, OnePieceDoesNotTellThePlane) {
+    if (vtkMultiProcessController* controller = vtkMultiProcessController::GetGlobalController())
+        ASSERT_EQ(controller->GetNumberOfProcesses(), 1);
+    vtkNew<Source> source;
+    vtkNew<vtkAnamorphDeform> filter;
+    filter->SetInputConnection(source->GetOutputPort());
+    Errors errors(filter);
+    filter->UpdatePiece(0, 2, 0);
+    EXPECT_THAT(errors.text(), HasSubstr("AutomaticPlane=1: one piece of the data"));
+}
+
+TEST(VtkDeform, TimeAndChangingTopology) {
+    vtkNew<Source> source;
+    source->times = {0, 1, 2.5};
+    const std::vector<Deformation> list = bumps(6, 14);
+    vtkNew<vtkAnamorphDeform> filter;
+    filter->SetInputConnection(source->GetOutputPort());
+    add(filter, list);
+    filter->UpdateInformation();
+    vtkInformation* info = filter->GetOutputInformation(0);
+    ASSERT_EQ(info->Length(Executive::TIME_STEPS()), 3);
+    EXPECT_EQ(info->Get(Executive::TIME_RANGE())[1], 2.5);
+    for (const double time : {0., 2.5, 1., 0., -1., 7.}) {
+        filter->UpdateTimeStep(time);
+        const int n = 12 + static_cast<int>(time);
+        EXPECT_EQ(output(filter)->GetNumberOfPoints(), n * n);
+        EXPECT_EQ(output(filter)->GetInformation()->Get(vtkDataObject::DATA_TIME_STEP()), time);
+        EXPECT_EQ(coordinates(output(filter)), deformed(square(n, VTK_DOUBLE), list));
+    }
+}
+
+TEST(VtkDeform, ProgressAndAbort) {
+    const auto mesh = square(300, VTK_FLOAT, .1);
+    vtkNew<vtkMultiBlockDataSet> blocks;
+    blocks->SetBlock(0, mesh);
+    blocks->SetBlock(1, square(200));
+    vtkNew<vtkAnamorphDeform> filter;
+    filter->SetInputData(blocks);
+    add(filter, bumps(10, 15));
+    filter->GenerateOverlayOn();
+    vtkNew<ProgressObserver> progress;
+    progress->algorithm = filter;
+    filter->AddObserver(vtkCommand::ProgressEvent, progress);
+    filter->Update();
+    EXPECT_GT(progress->reports.size(), 8u);
+    EXPECT_TRUE(std::is_sorted(progress->reports.begin(), progress->reports.end()));
+    EXPECT_EQ(progress->reports.back(), 1);
+    // Stopped half way: nothing is left of it, and the next execution is whole.
+    const std::vector<double> whole = coordinates(
+        vtkPointSet::SafeDownCast(vtkMultiBlockDataSet::SafeDownCast(filter->GetOutput())->GetBlock(0)));
+    progress->abort_at = .4;
+    progress->reports.clear();
+    filter->Modified();
+    filter->SetCutoff(1e-6);
+    filter->Update();
+    EXPECT_LT(progress->reports.back(), 1);
+    EXPECT_EQ(vtkMultiBlockDataSet::SafeDownCast(filter->GetOutput())->GetNumberOfBlocks(), 0u);
+    progress->abort_at = -1;
+    filter->SetAbortExecute(0);
+    filter->SetCutoff(1e-7);
+    filter->Update();
+    EXPECT_EQ(coordinates(vtkPointSet::SafeDownCast(
+                  vtkMultiBlockDataSet::SafeDownCast(filter->GetOutput())->GetBlock(0))),
+              whole);
+}
+
+TEST(VtkDeform, TablesAndFiles) {
+    const auto mesh = square(20, VTK_DOUBLE);
+    const std::vector<Deformation> list = bumps(7, 16);
+    const std::vector<double> expected = deformed(mesh, list);
+    vtkNew<vtkAnamorphDeform> filter;
+    add(filter, list);
+    vtkNew<vtkTable> table;
+    filter->GetDeformationList()->WriteTable(table);
+    EXPECT_EQ(table->GetNumberOfRows(), 7);
+    filter->RemoveAllDeformations();
+    filter->SetInputData(mesh);
+    filter->SetInputData(1, table);
+    filter->Update();
+    EXPECT_EQ(coordinates(output(filter)), expected);
+    // Files, read and written whatever the locale's point is.
+    const char* const old = std::setlocale(LC_NUMERIC, nullptr);
+    const std::string kept = old ? old : "C";
+    std::setlocale(LC_NUMERIC, "de_DE.UTF-8");
+    for (const char* name : {"deform_list.json", "deform_list.csv"}) {
+        const std::string path = testing::TempDir() + name;
+        vtkNew<vtkAnamorphDeformationList> written, read;
+        ASSERT_EQ(written->ReadTable(table), 1);
+        ASSERT_EQ(written->WriteFile(path.c_str()), 1);
+        ASSERT_EQ(read->ReadFile(path.c_str()), 1);
+        EXPECT_EQ(read->GetAll(), written->GetAll());
+        vtkNew<vtkAnamorphDeform> other;
+        other->SetInputData(mesh);
+        other->SetFileName(path.c_str());
+        other->Update();
+        EXPECT_EQ(coordinates(output(other)), expected);
+        std::remove(path.c_str());
+    }
+    std::setlocale(LC_NUMERIC, kept.c_str());
+    // Names of kernels in a table; columns that are missing, and words.
+    vtkNew<vtkStringArray> kernels;
+    kernels->SetName("kernel");
+    for (const Deformation& d : list)
+        kernels->InsertNextValue(d.kernel == DeformationKernel::gaussian ? "gaussian" : "wendland_c2");
+    table->RemoveColumnByName("kernel");
+    table->AddColumn(kernels);
+    table->Modified();
+    filter->Modified();
+    filter->Update();
+    EXPECT_EQ(coordinates(output(filter)), expected);
+    Errors errors(filter);
+    kernels->SetValue(2, "triangle");
+    filter->Modified();
+    filter->Update();
+    EXPECT_THAT(errors.text(), HasSubstr("row 2, column kernel"));
+    errors.clear();
+    table->RemoveColumnByName("extent_u");
+    filter->Modified();
+    filter->Update();
+    EXPECT_THAT(errors.text(), HasSubstr("no column extent_u"));
+}
+
+TEST(VtkDeform, Overlay) {
+    const auto mesh = square(40, VTK_DOUBLE, 0);
+    vtkNew<vtkAnamorphDeform> filter;
+    filter->SetInputData(mesh);
+    filter->AddDeformation(.2, -.1, .3, .2, 0, 0, .5);
+    filter->AddDeformation(.9, .9, .3, .2, 0, 0, .5, 0, 0);  // disabled, and partly outside
+    filter->Update();
+    EXPECT_EQ(filter->GetOverlay()->GetNumberOfCells(), 0);
+    filter->GenerateOverlayOn();
+    filter->Update();
+    vtkPolyData* overlay = filter->GetOverlay();
+    ASSERT_EQ(overlay->GetNumberOfCells(), 6);
+    vtkDataArray* position = overlay->GetCellData()->GetArray("Deformation");
+    vtkDataArray* enabled = overlay->GetCellData()->GetArray("Enabled");
+    EXPECT_EQ(numbers(position), (std::vector<double>{0, 0, 0, 1, 1, 1}));
+    EXPECT_EQ(numbers(enabled), (std::vector<double>{1, 1, 1, 0, 0, 0}));
+    // The oval is where the kernel is 1/e, on the surface.
+    vtkNew<vtkIdList> ids;
+    overlay->GetCellPoints(2, ids);
+    EXPECT_GE(ids->GetNumberOfIds(), 33);
+    EXPECT_EQ(overlay->GetPoint(ids->GetId(0))[0],
+              overlay->GetPoint(ids->GetId(ids->GetNumberOfIds() - 1))[0]);
+    for (vtkIdType k = 0; k < ids->GetNumberOfIds(); ++k) {
+        double p[3];
+        overlay->GetPoint(ids->GetId(k), p);
+        EXPECT_NEAR(std::hypot((p[0] - .2) / .3, (p[1] + .1) / .2), 1, 1e-12);
+        EXPECT_NEAR(p[2], .5 * std::exp(-1), 1e-6);
+    }
+    overlay->GetCellPoints(0, ids);
+    double tip[3];
+    overlay->GetPoint(ids->GetId(ids->GetNumberOfIds() / 2), tip);
+    EXPECT_NEAR(tip[2], .5, 1e-12);
+    // By texture coordinates there is no plane to go on where the surface ends.
+    filter->SetParameterModeToTextureCoordinates();
+    filter->Update();
+    overlay = filter->GetOverlay();
+    double bounds[6];
+    overlay->GetBounds(bounds);
+    EXPECT_LE(bounds[1], 1 + 1e-6);
+    EXPECT_GE(overlay->GetNumberOfCells(), 5);
+}
+
+TEST(VtkDeform, ListEdits) {
+    vtkNew<vtkAnamorphDeformationList> list;
+    EXPECT_EQ(list->AddDeformation(0, 0, 1, 1, 0, 0, 0), 0);
+    EXPECT_EQ(list->AddDeformation(1, 0, 1, 1, 0, 0, 0), 1);
+    list->InsertDeformation(1, 2, 0, 1, 1, 0, 0, 0);
+    const auto order = [&] {
+        std::vector<double> centers;
+        for (const auto& numbers : list->GetAll()) centers.push_back(numbers[0]);
+        return centers;
+    };
+    EXPECT_EQ(order(), (std::vector<double>{0, 2, 1}));
+    list->MoveDeformation(0, 2);
+    EXPECT_EQ(order(), (std::vector<double>{2, 1, 0}));
+    list->MoveDeformation(2, 0);
+    EXPECT_EQ(order(), (std::vector<double>{0, 2, 1}));
+    list->RemoveDeformation(1);
+    EXPECT_EQ(order(), (std::vector<double>{0, 1}));
+    list->SetDeformationEnabled(1, false);
+    EXPECT_FALSE(list->GetDeformationEnabled(1));
+    double numbers[9];
+    list->GetDeformation(1, numbers);
+    EXPECT_EQ(numbers[8], 0);
+    vtkNew<vtkAnamorphDeformationList> copy;
+    copy->DeepCopy(list);
+    EXPECT_EQ(copy->GetAll(), list->GetAll());
+    list->SetNumberOfDeformations(3);
+    EXPECT_EQ(list->GetDeformation(2)[2], 1);  // moves nothing, with extents that are allowed
+    list->RemoveAllDeformations();
+    EXPECT_EQ(list->GetNumberOfDeformations(), 0);
+    EXPECT_EQ(copy->GetNumberOfDeformations(), 2);
+}
+
+TEST(VtkDeform, ASharedList) {
+    const auto mesh = square(10);
+    vtkNew<vtkAnamorphDeform> a, b;
+    a->SetInputData(mesh);
+    b->SetInputData(mesh);
+    b->SetDeformationList(a->GetDeformationList());
+    b->Update();
+    a->AddDeformation(0, 0, 1, 1, 0, 0, 1);
+    a->Update();
+    b->Update();
+    EXPECT_EQ(coordinates(output(b)), coordinates(output(a)));
+    EXPECT_NE(coordinates(output(b)), coordinates(mesh));
+}
+
+namespace {
+/// Another class in its place.
+class Special : public vtkAnamorphDeform {
+  public:
+    static Special* New() { return new Special; }
+    vtkTypeMacro(Special, vtkAnamorphDeform);
+};
+}  // namespace
+
+TEST(VtkDeform, FactoriesMayOverrideIt) {
+    const OverrideFactory<Special> factory("vtkAnamorphDeform");
+    vtkNew<vtkAnamorphDeform> filter;
+    EXPECT_STREQ(filter->GetClassName(), "Special");
 }

@@ -30,7 +30,7 @@
 #include "vtkStreamingDemandDrivenPipeline.h"
 #include "vtkTable.h"
 
-vtkStandardNewMacro(vtkAnamorphDeform);
+vtkObjectFactoryNewMacro(vtkAnamorphDeform);
 
 namespace {
 

@@ -11,7 +11,7 @@
 #include "vtkAnamorphDeformationList.h"
 #include "vtkObjectFactory.h"
 
-vtkStandardNewMacro(vtkAnamorphDeformTransform);
+vtkObjectFactoryNewMacro(vtkAnamorphDeformTransform);
 
 struct vtkAnamorphDeformTransform::Map {
     anamorph::PlaneWarp warp;

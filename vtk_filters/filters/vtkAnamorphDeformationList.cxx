@@ -10,7 +10,7 @@
 #include "vtkObjectFactory.h"
 #include "vtkTable.h"
 
-vtkStandardNewMacro(vtkAnamorphDeformationList);
+vtkObjectFactoryNewMacro(vtkAnamorphDeformationList);
 
 namespace {
 
