@@ -843,7 +843,7 @@ TEST(VtkDeform, PlanesFromBoundsAndFromAxes) {
 }
 
 TEST(VtkDeform, Composites) {
-    const auto mesh = square(12, VTK_DOUBLE), other = square(9, VTK_FLOAT);
+    const auto mesh = square(40, VTK_DOUBLE), other = square(9, VTK_FLOAT);
     for (vtkIdType i = 0; i < other->GetNumberOfPoints(); ++i) {
         double p[3];
         other->GetPoint(i, p);
@@ -884,7 +884,7 @@ TEST(VtkDeform, Composites) {
     filter->AddDeformation(.9, .9, .01, .01, 0, 0, 1);
     filter->Update();
     EXPECT_GT(filter->GetNumberOfPointsComputed(), 0);
-    EXPECT_LT(filter->GetNumberOfPointsComputed(), 144 + 81);
+    EXPECT_LT(filter->GetNumberOfPointsComputed(), 1600);
     std::vector<Deformation> longer = list;
     longer.push_back({{0, 0, 1}, {.9, .9}, {.01, .01}});
     out = vtkMultiBlockDataSet::SafeDownCast(filter->GetOutputDataObject(0));
@@ -957,8 +957,8 @@ TEST(VtkDeform, PiecesAreTheWhole) {
 }
 
 TEST(VtkDeform, OnePieceDoesNotTellThePlane) {
-    if (vtkMultiProcessController* controller = vtkMultiProcessController::GetGlobalController())
-        ASSERT_EQ(controller->GetNumberOfProcesses(), 1);
+    auto* const controller = vtkMultiProcessController::GetGlobalController();
+    ASSERT_TRUE(!controller || controller->GetNumberOfProcesses() == 1);
     vtkNew<Source> source;
     vtkNew<vtkAnamorphDeform> filter;
     filter->SetInputConnection(source->GetOutputPort());

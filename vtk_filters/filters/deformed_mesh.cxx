@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numeric>
 #include <optional>
 #include <string>
@@ -300,7 +299,7 @@ std::unique_ptr<DeformedMesh> DeformedMesh::make(vtkPointSet* mesh, vtkDataArray
                                                  const DeformSettings& settings) {
     const vtkIdType count = mesh->GetNumberOfPoints();
     if (count == 0) return nullptr;
-    if (count > std::numeric_limits<std::int32_t>::max())
+    if (count > kMostPoints)
         throw Error("the mesh has " + std::to_string(count) + " points, allowed are fewer than 2^31");
     if (!settings.on_plane) {
         if (!coordinates)

@@ -6,6 +6,7 @@
 #pragma once
 
 #include <glm/vec2.hpp>
+#include <limits>
 #include <memory>
 #include <vector>
 
@@ -36,6 +37,8 @@ struct DeformSettings {
 /// The mesh in one number type of its points.
 class DeformedMesh {
   public:
+    static constexpr vtkIdType kMostPoints = std::numeric_limits<std::int32_t>::max();
+
     virtual ~DeformedMesh() = default;
 
     /// Null if the mesh has no points. Throws anamorph::Error.

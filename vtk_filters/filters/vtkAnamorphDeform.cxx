@@ -46,7 +46,7 @@ struct Leaf {
     vtkPointSet *in, *out;
 };
 
-/// Least and most of finite points.
+/// Least and most of finite points; of none if there are more than DeformedMesh takes, which refuses them.
 struct Bounds {
     double least[3] = {kInfinity, kInfinity, kInfinity}, most[3] = {-kInfinity, -kInfinity, -kInfinity};
 
@@ -61,7 +61,7 @@ struct Bounds {
 Bounds bounds_of(vtkPointSet* mesh) {
     Bounds bounds;
     const vtkIdType count = mesh->GetNumberOfPoints();
-    for (vtkIdType i = 0; i < count; ++i) {
+    for (vtkIdType i = 0; i < count && count <= DeformedMesh::kMostPoints; ++i) {
         double p[3];
         mesh->GetPoints()->GetPoint(i, p);
         if (!std::isfinite(p[0]) || !std::isfinite(p[1]) || !std::isfinite(p[2])) continue;
@@ -153,13 +153,13 @@ double resolution_for(const std::vector<Deformation>& list) {
         for (int c = 0; c < 3; ++c) most = std::max(most, std::fabs(d.vector[c]));
     }
     if (most == 0) return 0x1p-40;
-    // V <= 2^44 units, and 2^18 of them fit.
+    // V <= 2^48 units, and 2^14 of them fit. From 1/256 to 256 it is 2^-40.
     int exponent = 0, many = 0;
     std::frexp(most, &exponent);
-    while ((count >> (18 + many)) > 0) ++many;
-    constexpr int kStep = 8;
-    const int steps = static_cast<int>(std::ceil((exponent + many) / static_cast<double>(kStep)));
-    return std::ldexp(1., std::clamp(kStep * steps - 44, -500, 500));
+    while ((count >> (14 + many)) > 0) ++many;
+    constexpr int kStep = 16, kUsual = 8;
+    const int steps = static_cast<int>(std::ceil((exponent + many - kUsual) / static_cast<double>(kStep)));
+    return std::ldexp(1., std::clamp(kStep * steps + kUsual - 48, -500, 500));
 }
 
 void add_field_value(vtkDataObject* object, const char* name, double value) {

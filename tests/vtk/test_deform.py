@@ -1,0 +1,118 @@
+# SPDX-License-Identifier: Apache-2.0
+# vtkAnamorphDeform and its list from Python: properties, edits, tables, files, the transform.
+import json
+import math
+import os
+import tempfile
+
+import anamorph
+from vtkmodules.vtkCommonDataModel import vtkPartitionedDataSetCollection, vtkTable
+from vtkmodules.vtkFiltersGeneral import vtkTransformFilter
+from vtkmodules.vtkFiltersSources import vtkPlaneSource
+
+
+def points_of(mesh):
+    return [mesh.GetPoint(i) for i in range(mesh.GetNumberOfPoints())]
+
+
+plane = vtkPlaneSource()
+plane.SetOrigin(-1, -1, 0)
+plane.SetPoint1(1, -1, 0)
+plane.SetPoint2(-1, 1, 0)
+plane.SetResolution(20, 20)
+plane.SetOutputPointsPrecision(1)
+
+deform = anamorph.vtkAnamorphDeform()
+deform.SetInputConnection(plane.GetOutputPort())
+assert "AutomaticPlane" in str(deform)
+
+# Every property: what is set is what is got; the same value again changes nothing.
+for name, value in {"Cutoff": 1e-5, "ParameterMode": 1, "AutomaticPlane": False, "Origin": (1.0, 2.0, 3.0),
+                    "Axis1": (0.0, 1.0, 0.0), "Axis2": (0.0, 0.0, 1.0), "ComputeNormals": False,
+                    "ComputeDisplacement": False, "GenerateOverlay": True, "OutputPointsPrecision": 1,
+                    "FileName": "list.json"}.items():
+    other = anamorph.vtkAnamorphDeform()
+    default = getattr(other, "Get" + name)()
+    assert default != value, name
+    getattr(other, "Set" + name)(value)
+    assert getattr(other, "Get" + name)() == value, name
+    time = other.GetMTime()
+    getattr(other, "Set" + name)(value)
+    assert other.GetMTime() == time, name
+
+# The list.
+assert deform.AddDeformation(0.25, 0, 0.3, 0.4, 0, 0, 1) == 0
+deform.InsertDeformation(0, -0.5, 0.5, 0.2, 0.2, 0.1, 0, -0.5, anamorph.vtkAnamorphDeformationList.WENDLAND_C2, 0)
+assert deform.GetNumberOfDeformations() == 2
+assert deform.GetDeformation(0) == (-0.5, 0.5, 0.2, 0.2, 0.1, 0, -0.5, 1, 0)
+assert not deform.GetDeformationEnabled(0)
+deform.MoveDeformation(0, 1)
+deform.Update()
+top = max(z for _, _, z in points_of(deform.GetOutput()))
+expected = max(math.exp(-((x - 0.25) / 0.3) ** 2 - (y / 0.4) ** 2) for x, y, _ in points_of(plane.GetOutput()))
+assert abs(top - expected) <= deform.GetErrorBound(), (top, expected)
+field = deform.GetOutput().GetFieldData().GetArray("anamorph:error_bound")
+assert field.GetValue(0) == deform.GetErrorBound() > 0
+once = points_of(deform.GetOutput())
+deform.SetDeformationEnabled(1, True)
+deform.Update()
+assert points_of(deform.GetOutput()) != once
+deform.RemoveDeformation(1)
+deform.Update()
+assert points_of(deform.GetOutput()) == once
+
+# Files and tables: the same surface.
+with tempfile.TemporaryDirectory() as folder:
+    path = os.path.join(folder, "list.json")
+    assert deform.GetDeformationList().WriteFile(path) == 1
+    with open(path) as file:
+        assert json.load(file)["deformations"][0]["extent"] == [0.3, 0.4]
+    from_file = anamorph.vtkAnamorphDeform()
+    from_file.SetInputConnection(plane.GetOutputPort())
+    from_file.SetFileName(path)
+    from_file.Update()
+    assert points_of(from_file.GetOutput()) == once
+
+table = vtkTable()
+deform.GetDeformationList().WriteTable(table)
+from_table = anamorph.vtkAnamorphDeform()
+from_table.SetInputConnection(plane.GetOutputPort())
+from_table.SetInputData(1, table)
+from_table.Update()
+assert points_of(from_table.GetOutput()) == once
+
+# A collection.
+collection = vtkPartitionedDataSetCollection()
+collection.SetPartition(0, 0, plane.GetOutput())
+collection.SetPartition(1, 1, plane.GetOutput())
+deform.SetInputDataObject(collection)
+deform.GenerateOverlayOn()
+deform.Update()
+assert points_of(deform.GetOutput().GetPartition(1, 1)) == once
+assert deform.GetOverlay().GetNumberOfCells() == 3
+
+# The transform, forth and back.
+transform = anamorph.vtkAnamorphDeformTransform()
+transform.SetDeformationList(deform.GetDeformationList())
+assert transform.GetFold() == transform.NO_FOLD
+there = vtkTransformFilter()
+there.SetInputConnection(plane.GetOutputPort())
+there.SetOutputPointsPrecision(1)
+there.SetTransform(transform)
+back = vtkTransformFilter()
+back.SetInputConnection(there.GetOutputPort())
+back.SetOutputPointsPrecision(1)
+back.SetTransform(transform.GetInverse())
+back.Update()
+for a, b in zip(points_of(there.GetOutput()), once):
+    assert max(abs(x - y) for x, y in zip(a, b)) < 1e-6
+for a, b in zip(points_of(back.GetOutput()), points_of(plane.GetOutput())):
+    assert max(abs(x - y) for x, y in zip(a, b)) < 1e-12
+
+# Errors reach Python as events.
+errors = []
+deform.AddObserver("ErrorEvent", lambda caller, event: errors.append(event))
+deform.GetExecutive().AddObserver("ErrorEvent", lambda caller, event: errors.append(event))
+deform.SetDeformation(0, 0, 0, -1, 1, 0, 0, 1)
+deform.Update()
+assert errors
