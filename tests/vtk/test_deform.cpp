@@ -1011,7 +1011,8 @@ TEST(VtkDeform, ProgressAndAbort) {
     filter->Modified();
     filter->SetCutoff(1e-6);
     filter->Update();
-    EXPECT_LT(progress->reports.back(), 1);
+    for (const double report : progress->reports)
+        EXPECT_TRUE(report < .6 || report == 1) << report;  // some versions end at 1 all the same
     EXPECT_EQ(vtkMultiBlockDataSet::SafeDownCast(filter->GetOutput())->GetNumberOfBlocks(), 0u);
     progress->abort_at = -1;
     filter->SetAbortExecute(0);
