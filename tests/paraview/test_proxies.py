@@ -14,7 +14,7 @@ LoadPlugin(os.environ["ANAMORPH_PLUGIN"], remote=False, ns=globals())
 PAPER = "Oka 1987"
 # What a panel has no use for: other ways to set the same, and what the host sets.
 NO_PROPERTY = {
-    "vtkAnamorphDeform": {"SetController", "SetDeformationList", "SetDeformationEnabled"},
+    "vtkAnamorphDeform": {"SetController", "SetDeformationList", "SetDeformationEnabled", "SetTableConnection"},
     "vtkAnamorphInbetween": {"SetKey"},
     "vtkAnamorphReliefSource": {"SetSize"},
 }

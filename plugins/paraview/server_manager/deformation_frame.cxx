@@ -48,9 +48,9 @@ int toggle(vtkSMProxy* deform, const char* name) {
 }
 
 /// Of the two directions that are longest.
-Frame automatic_frame(vtkSMProxy* deform) {
+std::optional<Frame> automatic_frame(vtkSMProxy* deform) {
     double bounds[6];
-    if (!input_bounds(deform, bounds)) return {};
+    if (!input_bounds(deform, bounds)) return std::nullopt;
     const auto length = [&](unsigned int c) { return bounds[2 * c + 1] - bounds[2 * c]; };
     unsigned int across = 2;
     for (const unsigned int c : {1u, 0u})
@@ -68,15 +68,16 @@ Frame automatic_frame(vtkSMProxy* deform) {
 
 }  // namespace
 
-Frame frame_of(vtkSMProxy* deform) {
-    if (toggle(deform, "ParameterMode") != 0) return {};
+std::optional<Frame> frame_of(vtkSMProxy* deform) {
+    if (toggle(deform, "ParameterMode") != 0) return Frame();
     if (toggle(deform, "AutomaticPlane") != 0) return automatic_frame(deform);
     Frame frame;
     vtkSMPropertyHelper(deform, "Origin").Get(frame.origin.data(), 3);
     vtkSMPropertyHelper(deform, "Axis1").Get(frame.axes[0].data(), 3);
     vtkSMPropertyHelper(deform, "Axis2").Get(frame.axes[1].data(), 3);
     vtkMath::Cross(frame.axes[0].data(), frame.axes[1].data(), frame.axes[2].data());
-    return vtkMath::Normalize(frame.axes[2].data()) > 0 ? frame : Frame{};
+    if (!(vtkMath::Normalize(frame.axes[2].data()) > 0)) return std::nullopt;
+    return frame;
 }
 
 }  // namespace anamorph_paraview

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <optional>
 
 class vtkSMProperty;
 class vtkSMProxy;
@@ -27,8 +28,9 @@ struct Frame {
 };
 
 /// That of a deform proxy: from its properties Origin, Axis1 and Axis2, or with AutomaticPlane as
-/// vtkAnamorphDeform takes it from bounds. Of texture coordinates, and before the bounds are known: x-y.
-Frame frame_of(vtkSMProxy* deform);
+/// vtkAnamorphDeform takes it from bounds. Of texture coordinates: x-y. None while bounds are not known, or
+/// axes are parallel.
+std::optional<Frame> frame_of(vtkSMProxy* deform);
 
 /// Those of its input; false if they are not known.
 bool input_bounds(vtkSMProxy* deform, double bounds[6]);

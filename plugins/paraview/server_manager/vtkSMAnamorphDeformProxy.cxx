@@ -14,6 +14,21 @@ using namespace anamorph_paraview;
 
 vtkStandardNewMacro(vtkSMAnamorphDeformProxy);
 
+namespace {
+
+/// Holds a flag up.
+struct WhileLoading {
+    explicit WhileLoading(bool& held) : flag(held), before(held) { flag = true; }
+    ~WhileLoading() { flag = before; }
+    WhileLoading(const WhileLoading&) = delete;
+    WhileLoading& operator=(const WhileLoading&) = delete;
+
+    bool& flag;
+    bool before;
+};
+
+}  // namespace
+
 vtkSMAnamorphDeformProxy::vtkSMAnamorphDeformProxy() = default;
 vtkSMAnamorphDeformProxy::~vtkSMAnamorphDeformProxy() = default;
 
@@ -42,6 +57,16 @@ void vtkSMAnamorphDeformProxy::SetPropertyModifiedFlag(const char* name, int fla
     if (changed == "ImportFile" || changed == "ExportFile") this->FilesPending = true;
 }
 
+int vtkSMAnamorphDeformProxy::LoadXMLState(vtkPVXMLElement* element, vtkSMProxyLocator* locator) {
+    const WhileLoading loading(this->InStep);
+    return this->Superclass::LoadXMLState(element, locator);
+}
+
+void vtkSMAnamorphDeformProxy::LoadState(const vtkSMMessage* message, vtkSMProxyLocator* locator) {
+    const WhileLoading loading(this->InStep);
+    this->Superclass::LoadState(message, locator);
+}
+
 void vtkSMAnamorphDeformProxy::UpdateVTKObjects() {
     this->Superclass::UpdateVTKObjects();
     if (!this->FilesPending) return;
@@ -61,17 +86,19 @@ void vtkSMAnamorphDeformProxy::UpdateVTKObjects() {
 
 namespace {
 
-/// The row that is selected; there is none where `complete` is false.
+/// The row that is selected, and the plane it is on. `complete` is false where there is none, or the plane is
+/// not known yet: then both sides stay as they are.
 struct Selection {
     explicit Selection(vtkSMProxy* proxy)
-        : frame(frame_of(proxy)),
-          deformations(proxy, "Deformations", true),
+        : deformations(proxy, "Deformations", true),
           center(proxy, "SelectedCenter", true),
           corner(proxy, "SelectedCorner", true),
           vector(proxy, "SelectedVector", true) {
         const unsigned int columns = columns_of(proxy->GetProperty("Deformations"));
         const int selected = vtkSMPropertyHelper(proxy, "SelectedDeformation", true).GetAsInt();
-        if (columns < kLeastColumns || selected < 0) return;
+        const std::optional<Frame> known = frame_of(proxy);
+        if (columns < kLeastColumns || selected < 0 || !known) return;
+        frame = *known;
         row = static_cast<unsigned int>(selected) * columns;
         complete = deformations.GetNumberOfElements() >= row + columns && center.GetNumberOfElements() == 3 &&
                    corner.GetNumberOfElements() == 3 && vector.GetNumberOfElements() == 3;
@@ -94,7 +121,8 @@ void vtkSMAnamorphDeformProxy::ShowRow() {
     Selection selection(this);
     if (!selection.complete) return;
     const double u = selection.value(kCenter), v = selection.value(kCenter + 1);
-    const double height = selection.parameters(selection.center)[2];  // handles stay where they have been put
+    // Handles are on the plane, or where they have been put across it.
+    const double height = this->HandlesPut ? selection.parameters(selection.center)[2] : 0;
     const Point center = selection.frame.point(u, v, height);
     const Point corner =
         selection.frame.point(u + selection.value(kExtent), v + selection.value(kExtent + 1), height);
@@ -106,6 +134,7 @@ void vtkSMAnamorphDeformProxy::ShowRow() {
 void vtkSMAnamorphDeformProxy::WriteCenter() {
     Selection selection(this);
     if (!selection.complete) return;
+    this->HandlesPut = true;
     const Point center = selection.parameters(selection.center);
     for (unsigned int i = 0; i < 2; ++i) selection.set_value(kCenter + i, center[i]);
 }

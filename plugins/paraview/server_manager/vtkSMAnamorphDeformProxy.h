@@ -12,7 +12,7 @@
  * Setting ImportFile takes the list from a file on the server, setting ExportFile writes it to one; both are
  * empty again when that is done.
  *
- * The selected row and files are no part of a state: the list has it all.
+ * States have all of this as it was, and are loaded without one side following the other.
  */
 #ifndef vtkSMAnamorphDeformProxy_h
 #define vtkSMAnamorphDeformProxy_h
@@ -27,6 +27,8 @@ class ANAMORPHSERVERMANAGER_EXPORT vtkSMAnamorphDeformProxy : public vtkSMSource
     void PrintSelf(ostream& os, vtkIndent indent) override;
 
     void UpdateVTKObjects() override;
+    int LoadXMLState(vtkPVXMLElement* element, vtkSMProxyLocator* locator) override;
+    void LoadState(const vtkSMMessage* message, vtkSMProxyLocator* locator) override;
 
   protected:
     vtkSMAnamorphDeformProxy();
@@ -45,6 +47,7 @@ class ANAMORPHSERVERMANAGER_EXPORT vtkSMAnamorphDeformProxy : public vtkSMSource
     void WriteVector();
 
     bool InStep = true;         ///< while one side follows the other, and before there are all properties
+    bool HandlesPut = false;    ///< SelectedCenter has been written to
     bool FilesPending = false;  ///< ImportFile or ExportFile is set, and not yet sent
 };
 

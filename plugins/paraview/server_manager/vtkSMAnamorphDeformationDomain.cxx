@@ -9,6 +9,7 @@
 #include "vtkObjectFactory.h"
 #include "vtkSMProperty.h"
 #include "vtkSMPropertyHelper.h"
+#include "vtkSMProxy.h"
 
 vtkStandardNewMacro(vtkSMAnamorphDeformationDomain);
 
@@ -21,9 +22,13 @@ void vtkSMAnamorphDeformationDomain::PrintSelf(ostream& os, vtkIndent indent) {
 
 int vtkSMAnamorphDeformationDomain::SetDefaultValues(vtkSMProperty* property, bool use_unchecked_values) {
     using namespace anamorph_paraview;
+    vtkSMProxy* deform = property->GetParent();
+    const char* file = vtkSMPropertyHelper(deform, "FileName", true).GetAsString();
+    if ((file && *file) || vtkSMPropertyHelper(deform, "Table", true).GetNumberOfElements() > 0) return 0;
     double bounds[6];
-    if (!input_bounds(property->GetParent(), bounds)) return 0;
-    const Frame frame = frame_of(property->GetParent());
+    const std::optional<Frame> known = frame_of(deform);
+    if (!input_bounds(deform, bounds) || !known) return 0;
+    const Frame& frame = *known;
     const Point corners[2] = {frame.parameters({bounds[0], bounds[2], bounds[4]}),
                               frame.parameters({bounds[1], bounds[3], bounds[5]})};
 

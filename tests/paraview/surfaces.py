@@ -1,0 +1,105 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Surfaces that the tests make in different hosts, and what is compared of them."""
+import hashlib
+import os
+
+import numpy as np
+from paraview import servermanager
+from paraview.simple import *
+from paraview.vtk.util.numpy_support import vtk_to_numpy
+
+if "ANAMORPH_SERVER" in os.environ:
+    host, port = os.environ["ANAMORPH_SERVER"].split(":")
+    Connect(host, int(port))
+    LoadPlugin(os.environ["ANAMORPH_PLUGIN"], remote=True)
+LoadPlugin(os.environ["ANAMORPH_PLUGIN"], remote=False, ns=globals())
+
+# Bumps that reach over most of a unit sphere: c_u, c_v, a_u, a_v, V_x, V_y, V_z, kernel, enabled.
+BUMPS = [0.1, 0.05, 0.3, 0.2, 0.05, -0.1, 0.4, 0, 1,
+         -0.3, 0.2, 0.5, 0.1, 0.2, 0.1, -0.3, 1, 1,
+         0.0, 0.0, 0.9, 0.9, 0.0, 0.1, 0.1, 0, 1,
+         0.2, 0.2, 0.9, 0.9, 0.0, 5.0, 0.1, 0, 0]
+TURN_BUMPS = [0.3, 0.5, 0.2, 0.3, 0.1, 0.2, 0.3, 0, 1, 0.7, 0.4, 0.1, 0.2, -0.1, 0.1, 0.2, 1, 1]
+
+
+def number_of_pieces():
+    return servermanager.ActiveConnection.GetNumberOfDataPartitions()
+
+
+def with_original(surface):
+    """The surface with its points as an array, which tell a point of the pieces from the others."""
+    original = Calculator(Input=surface, ResultArrayName="Original", Function="coords", ResultArrayType="Double")
+    original.UpdatePipeline()
+    return original
+
+
+def write_inputs(folder):
+    """Writes a sphere, and a picture of some hills."""
+    from paraview.vtk import vtkImageData
+    from paraview.vtk.util.numpy_support import numpy_to_vtk
+    from vtkmodules.vtkIOImage import vtkPNGWriter
+    SaveData(folder + "/sphere.vtp", proxy=Sphere(ThetaResolution=40, PhiResolution=40))
+    y, x = np.mgrid[0:41, 0:41] / 40
+    grey = np.round(255 * (0.5 + 0.3 * np.sin(7 * x) * np.cos(5 * y))).astype(np.uint8)
+    image = vtkImageData()
+    image.SetDimensions(41, 41, 1)
+    image.GetPointData().SetScalars(numpy_to_vtk(grey.ravel(), deep=1))
+    writer = vtkPNGWriter()
+    writer.SetFileName(folder + "/hills.png")
+    writer.SetInputDataObject(image)
+    writer.Write()
+
+
+def make(folder):
+    """Some surfaces, by name, of every filter of the plugin; in pieces, where there are several ranks."""
+    sphere = with_original(XMLPolyDataReader(FileName=[folder + "/sphere.vtp"]))
+    if number_of_pieces() > 1:
+        sphere = RedistributeDataSet(Input=sphere)
+    sphere.UpdatePipeline()
+    # The precision is said because pieces come out in another one than the whole.
+    deformed = AnamorphDeform(Input=sphere, Deformations=BUMPS, OutputPointsPrecision=0)
+    double = AnamorphDeform(Input=sphere, Deformations=BUMPS, OutputPointsPrecision=1, AutomaticPlane=0,
+                            Origin=[0.1, 0, 0], Axis1=[0, 1, 0.2], Axis2=[0, 0, 2])
+    # The tangents of a surface with texture coordinates are those of its cells, beyond a cut too.
+    turned = GhostCellsGenerator(Input=TextureMaptoSphere(Input=sphere, PreventSeam=0))
+    turned.UpdatePipeline()
+    turned = AnamorphDeform(Input=turned, Deformations=TURN_BUMPS, ParameterMode=1, OutputPointsPrecision=0)
+    relief = with_original(AnamorphReliefSource(FileName=folder + "/hills.png", GenerateNormals=1))
+    raised = AnamorphDeform(Input=relief, Deformations=BUMPS)
+    between = AnamorphInbetween(Input=[deformed, double, sphere], Weights=[0.75, 0.5, -0.25],
+                                OutputPointsPrecision=1)
+    return {"deformed": deformed, "double": double, "turned": turned, "relief": relief, "raised": raised,
+            "between": between}
+
+
+def gather(source):
+    """What is known of every point of a surface, by its place before: the same for all points at that place."""
+    polygons = ExtractSurface(Input=source)  # of grids too, only one piece of which would be fetched
+    polygons.UpdatePipeline()
+    data = servermanager.Fetch(polygons)
+    arrays = [np.ascontiguousarray(vtk_to_numpy(data.GetPoints().GetData()))]
+    points = data.GetPointData()
+    for name in ("Displacement", "Normals"):
+        array = points.GetArray(name) or (points.GetNormals() if name == "Normals" else None)
+        if array:
+            arrays.append(np.ascontiguousarray(vtk_to_numpy(array)))
+    ghosts = points.GetArray("vtkGhostType")
+    ghosts = vtk_to_numpy(ghosts) if ghosts else np.zeros(data.GetNumberOfPoints(), np.uint8)
+    original = np.ascontiguousarray(vtk_to_numpy(points.GetArray("Original")))
+    found = {}
+    for i in np.flatnonzero(ghosts == 0):
+        known = b"".join(array[i].tobytes() for array in arrays)
+        place = original[i].tobytes()
+        assert found.setdefault(place, known) == known, ("points at one place differ", original[i], i)
+    return found
+
+
+def digest(found):
+    """Of gather's answer: the same for any number of pieces and order of points."""
+    return hashlib.sha256(b"".join(place + known for place, known in sorted(found.items()))).hexdigest()
+
+
+def digests(folder):
+    """By name: how many points there are, and the digest."""
+    found = {name: gather(source) for name, source in make(folder).items()}
+    return {name: (len(f), digest(f)) for name, f in found.items()}

@@ -1,0 +1,119 @@
+# SPDX-License-Identifier: Apache-2.0
+# host: pvpython
+"""The list of deformations as a user edits it: defaults from the data, table, handles, files, a table as an input,
+texture coordinates, the overlay."""
+import csv
+
+import surfaces
+from paraview import servermanager
+from paraview.simple import *
+
+surfaces.LoadPlugin(surfaces.os.environ["ANAMORPH_PLUGIN"], remote=False, ns=globals())
+
+
+def close(found, wanted):
+    assert len(found) == len(wanted), (found, wanted)
+    assert all(abs(f - w) <= 1e-12 * (1 + abs(w)) for f, w in zip(found, wanted)), (list(found), wanted)
+
+
+def bounds(source, port=0):
+    source.UpdatePipeline()
+    return OutputPort(source, port).GetDataInformation().GetBounds()
+
+
+def check_default():
+    plane = Plane(Origin=[1, 2, 5], Point1=[4, 2, 5], Point2=[1, 8, 5], XResolution=30, YResolution=30)
+    plane.UpdatePipeline()
+    deform = AnamorphDeform(Input=plane)
+    close(deform.Deformations, [2.5, 5, 0.5, 1, 0, 0, 45 ** 0.5 / 10, 0, 1])
+    close(deform.SelectedCenter, [2.5, 5, 5])
+    found = bounds(deform)
+    assert 5 <= found[4] < 5.01 and abs(found[5] - 5 - 45 ** 0.5 / 10) < 1e-6, found
+
+
+def check_handles(plane, properties, centre, corner):
+    """A row of the list and the handles follow each other; (u, v) = (2, 3) is at `centre`, (2.5, 3.25) at `corner`."""
+    deform = AnamorphDeform(Input=plane, **properties)
+    rows = [[0, 0, 1, 1, 0, 0, 1, 0, 1], [2, 3, 0.5, 0.25, 1, 2, 3, 1, 1]]
+    deform.Deformations = sum(rows, [])
+    deform.SelectedDeformation = 1
+    close(deform.SelectedCenter, centre)
+    close(deform.SelectedCorner, corner)
+    close(deform.SelectedVector, [1, 2, 3])
+    moved = [2 * q - p for p, q in zip(centre, corner)]  # by an extent
+    deform.SelectedCenter = moved
+    close(deform.Deformations, rows[0] + [3, 3.5, 0.5, 0.25, 1, 2, 3, 1, 1])
+    close(deform.SelectedCorner, [p + q - c for p, q, c in zip(moved, corner, centre)])
+    deform.SelectedCorner = [p + 3 * (q - c) for p, q, c in zip(moved, corner, centre)]
+    close(deform.Deformations, rows[0] + [3, 3.5, 1.5, 0.75, 1, 2, 3, 1, 1])
+    deform.SelectedVector = [0, 0, -1]
+    close(deform.Deformations, rows[0] + [3, 3.5, 1.5, 0.75, 0, 0, -1, 1, 1])
+    server = deform.SMProxy
+    deform.UpdatePipeline()
+    server.UpdatePropertyInformation()
+    close(deform.GetPropertyValue("DeformationsInfo"), list(deform.Deformations))
+    deform.SelectedDeformation = 7  # none: handles stay, and move nothing
+    deform.SelectedCenter = [9, 9, 9]
+    close(deform.Deformations, rows[0] + [3, 3.5, 1.5, 0.75, 0, 0, -1, 1, 1])
+
+
+def check_files(plane):
+    deform = AnamorphDeform(Input=plane, Deformations=surfaces.BUMPS)
+    for name in ("list.json", "list.csv"):
+        deform.ExportFile = name
+        assert deform.ExportFile == "" and open(name).read().count("gaussian") == 3
+        other = AnamorphDeform(Input=plane)
+        other.ImportFile = name
+        assert list(other.Deformations) == surfaces.BUMPS and other.ImportFile == ""
+        assert bounds(other) == bounds(deform)
+        file = AnamorphDeform(Input=plane, FileName=name)
+        assert list(file.Deformations) == [] and bounds(file) == bounds(deform)
+    return deform
+
+
+def check_table(deform, plane):
+    table = CSVReader(FileName=["list.csv"])
+    table.UpdatePipeline()
+    with_table = AnamorphDeform(Input=plane, Table=table)
+    assert list(with_table.Deformations) == [] and bounds(with_table) == bounds(deform)
+
+
+def check_texture_coordinates(plane):
+    """The plane's texture coordinates run from 0 to 1: a bump at 0.25 is a quarter along it."""
+    deform = AnamorphDeform(Input=plane, Deformations=[0.25, 0.5, 0.01, 0.01, 0, 0, 1, 1, 1], ParameterMode=1,
+                            TextureCoordinates=["POINTS", "TextureCoordinates"])
+    deform.UpdatePipeline()
+    data = servermanager.Fetch(deform)
+    highest = max(range(data.GetNumberOfPoints()), key=lambda i: data.GetPoint(i)[2])
+    close(data.GetPoint(highest), [-0.25, 0, 1])
+
+
+def check_overlay(deform):
+    assert OutputPort(deform, 1).GetDataInformation().GetNumberOfCells() == 0
+    deform.GenerateOverlay = 1
+    deform.UpdatePipeline()
+    overlay = servermanager.Fetch(ExtractSurface(Input=OutputPort(deform, 1)))
+    cells = overlay.GetCellData()
+    positions = {int(cells.GetArray("Deformation").GetTuple1(i)) for i in range(overlay.GetNumberOfCells())}
+    assert positions == {0, 1, 2, 3}, positions
+
+
+def check_refusal(plane):
+    """An extent of 0 is an error, not a crash; the next edit mends it."""
+    deform = AnamorphDeform(Input=plane, Deformations=[0, 0, 0, 1, 0, 0, 1, 0, 1])
+    deform.UpdatePipeline()
+    assert deform.GetDataInformation().GetNumberOfPoints() == 0
+    deform.Deformations = [0, 0, 1, 1, 0, 0, 1, 0, 1]
+    assert bounds(deform)[5] == 1
+
+
+square = Plane(XResolution=100, YResolution=100)
+square.UpdatePipeline()
+check_default()
+check_handles(square, {}, [2, 3, 0], [2.5, 3.25, 0])
+check_handles(square, {"AutomaticPlane": 0, "Origin": [1, 0, 0], "Axis1": [0, 2, 0], "Axis2": [0, 0, -1]},
+              [1, 4, -3], [1, 5, -3.25])
+check_table(check_files(square), square)
+check_texture_coordinates(square)
+check_overlay(check_files(square))
+check_refusal(square)
