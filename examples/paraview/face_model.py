@@ -106,3 +106,9 @@ def picture(size=256):
     paint((0.75, 0.28, 0.27), 0, -0.195, 0.085, 0.032)
     paint((0.40, 0.12, 0.12), 0, -0.195, 0.080, 0.005)
     return np.round(np.clip(rgb, 0, 1) * 255).astype(np.uint8)
+
+
+def first_of(part):
+    """The position in the list of a part's first deformation."""
+    names = list(PARTS)
+    return sum(len(PARTS[name]) for name in names[:names.index(part)])
