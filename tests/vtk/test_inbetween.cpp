@@ -36,6 +36,7 @@
 #include <random>
 #include <sstream>
 
+#include "anamorph/deform/key_frames.h"
 #include "support.h"
 
 namespace {
@@ -219,6 +220,16 @@ TEST(VtkInbetween, EmptyInputsGiveEmptyOutputs) {
 
 // ---- Deltas and masks ----
 
+vtkSmartPointer<vtkDataArray> array_of(int type, const char* name, int components, vtkIdType tuples,
+                                       double value) {
+    const auto array = vtk::TakeSmartPointer(vtkDataArray::CreateDataArray(type));
+    array->SetName(name);
+    array->SetNumberOfComponents(components);
+    array->SetNumberOfTuples(tuples);
+    for (int c = 0; c < components; ++c) array->FillComponent(c, value + c);
+    return array;
+}
+
 /// A mask of one number for each point, in [-1, 2].
 vtkSmartPointer<vtkDataArray> add_mask(vtkPolyData* shape, const char* name, int type = VTK_FLOAT) {
     const auto mask = vtk::TakeSmartPointer(vtkDataArray::CreateDataArray(type));
@@ -257,6 +268,30 @@ TEST(VtkInbetween, DeltasAreSeenInTheirRegions) {
     filter->SetMaskArrayName(0, "");
     filter->Update();
     expect_near(coordinates(surface_of(filter)), expected(false, true), 3e-6);
+}
+
+TEST(VtkInbetween, MasksReachAllPointsOfLargeSurfaces) {
+    const Shape base = sphere(540);  // more than a stretch
+    const Shape shape = Shape::New();
+    shape->ShallowCopy(base);
+    vtkNew<vtkPoints> points;
+    points->DeepCopy(base->GetPoints());
+    for (vtkIdType i = 0; i < points->GetNumberOfPoints(); ++i) points->SetPoint(i, 7, 8, 9);
+    shape->SetPoints(points);
+    const auto mask = vtk::TakeSmartPointer(vtkDataArray::CreateDataArray(VTK_FLOAT));
+    mask->SetName("mask");
+    for (vtkIdType i = 0; i < base->GetNumberOfPoints(); ++i) mask->InsertNextTuple1(i % 4099 == 7);
+    base->GetPointData()->AddArray(mask);
+    vtkNew<vtkAnamorphInbetween> filter;
+    add_inputs(filter, {base, shape});
+    filter->SetModeToDeltas();
+    set_weights(filter, {0, 1});
+    filter->SetMaskArrayName(1, "mask");
+    filter->Update();
+    const std::vector<double> from = coordinates(base), got = coordinates(surface_of(filter));
+    ASSERT_GT(from.size(), std::size_t{3} << 18);
+    for (std::size_t i = 0; i < from.size(); ++i)
+        ASSERT_EQ(got[i], i / 3 % 4099 == 7 ? 7 + static_cast<double>(i % 3) : from[i]) << i;
 }
 
 TEST(VtkInbetween, MasksOfCellsAreMeansOfTheirPoints) {
@@ -354,6 +389,13 @@ TEST(VtkInbetween, TheInputThatDiffersIsNamedAndWhere) {
     lines->ShallowCopy(base);
     lines->SetLines(one);
     EXPECT_THAT(error_of({base, lines}), HasSubstr("input 1 has 1 lines, not 0"));
+    const Shape others = Shape::New();
+    others->ShallowCopy(base);
+    others->SetVerts(one);
+    EXPECT_THAT(error_of({base, others}), HasSubstr("input 1 has 1 vertices, not 0"));
+    others->SetVerts(nullptr);
+    others->SetStrips(one);
+    EXPECT_THAT(error_of({base, others}), HasSubstr("input 1 has 1 strips, not 0"));
 
     EXPECT_THAT(error_of({base, vtkSmartPointer<vtkUnstructuredGrid>::New()}),
                 HasSubstr("input 1 is a vtkUnstructuredGrid, not a vtkPolyData"));
@@ -527,16 +569,6 @@ TEST(VtkInbetween, TheSameBitsForAnyThreadsAndBackend) {
 
 // ---- Arrays ----
 
-vtkSmartPointer<vtkDataArray> array_of(int type, const char* name, int components, vtkIdType tuples,
-                                       double value) {
-    const auto array = vtk::TakeSmartPointer(vtkDataArray::CreateDataArray(type));
-    array->SetName(name);
-    array->SetNumberOfComponents(components);
-    array->SetNumberOfTuples(tuples);
-    for (int c = 0; c < components; ++c) array->FillComponent(c, value + c);
-    return array;
-}
-
 TEST(VtkInbetween, FloatingArraysThatAllHaveAreBlendedAndOthersPassedFromTheBase) {
     const Shape base = sphere();
     const Shape shape = moved(base, 1);
@@ -641,6 +673,7 @@ TEST(VtkInbetween, BlocksAreBlendedAndMissingAndEmptyOnesStay) {
         inputs[i]->SetBlock(2, vtkNew<vtkPolyData>());
         inputs[i]->SetBlock(3, nested);
         inputs[i]->GetMetaData(1u)->Set(vtkCompositeDataSet::NAME(), "face");
+        inputs[i]->GetFieldData()->AddArray(array_of(VTK_INT, "field", 1, 1, i));
     }
     vtkNew<vtkAnamorphInbetween> filter;
     Errors errors(filter);
@@ -654,6 +687,7 @@ TEST(VtkInbetween, BlocksAreBlendedAndMissingAndEmptyOnesStay) {
     ASSERT_EQ(output->GetNumberOfBlocks(), 4u);
     EXPECT_FALSE(output->GetBlock(0));
     EXPECT_STREQ(output->GetMetaData(1u)->Get(vtkCompositeDataSet::NAME()), "face");
+    EXPECT_EQ(output->GetFieldData()->GetArray("field"), inputs[0]->GetFieldData()->GetArray("field"));
     expect_near(coordinates(vtkPolyData::SafeDownCast(output->GetBlock(1))),
                 sum_of({shape, base}, {0.25, 0.75}), 1e-6);
     ASSERT_TRUE(output->GetBlock(2));
@@ -810,6 +844,32 @@ TEST(VtkInbetween, KeyFramesGiveTheWeightsOfAnyTime) {
     EXPECT_THAT(times_of(filter, Executive::TIME_RANGE()), testing::IsEmpty());
     filter->Update();
     EXPECT_EQ(coordinates(surface_of(filter)), coordinates(shapes[2]));
+}
+
+TEST(VtkInbetween, MonotoneInterpolationIsNormalizedBetweenTheKeys) {
+    const Shape base = sphere();
+    const std::vector<Shape> shapes{base, moved(base, 1), moved(base, 2)};
+    const std::vector<double> times{0, 1, 3, 4};
+    const std::vector<std::vector<double>> weights{{1, 0, 0}, {0.5, 0.5, 0}, {0.3, 0.1, 0.6}, {0.2, 0, 0.8}};
+    vtkNew<vtkAnamorphInbetween> filter;
+    Errors errors(filter);
+    add_inputs(filter, shapes);
+    filter->SetInterpolation(vtkAnamorphInbetween::MONOTONE_CUBIC);
+    for (std::size_t k = 0; k < times.size(); ++k)
+        for (int i = 0; i < 3; ++i) filter->AddKey(times[k], i, weights[k][static_cast<std::size_t>(i)]);
+    filter->UpdateTimeStep(2.2);
+    std::vector<double> expected =
+        anamorph::KeyFrames(times, weights, anamorph::KeyInterpolation::monotone_cubic).at(2.2);
+    const double sum = expected[0] + expected[1] + expected[2];
+    ASSERT_GT(std::fabs(sum - 1), 1e-3);
+    for (double& w : expected) w /= sum;
+    expect_near(coordinates(surface_of(filter)), sum_of(shapes, expected), 1e-6);
+    EXPECT_EQ(errors.text(), "");
+    filter->SetModeToDeltas();  // the base has the rest
+    filter->UpdateTimeStep(2.2);
+    for (double& w : expected) w *= sum;
+    expected[0] = 1 - expected[1] - expected[2];
+    expect_near(coordinates(surface_of(filter)), sum_of(shapes, expected), 1e-6);
 }
 
 TEST(VtkInbetween, KeysThatAreRefusedAreNamed) {

@@ -159,6 +159,8 @@ TEST_F(VtkEditor, TheViewRotatesWhileABumpIsDragged) {
     for (int k = 0; k < 4; ++k) this->press(k % 2 ? "Up" : "Left", {from[0] + 20, from[1]});
     EXPECT_NE(this->camera(), camera_before);
     EXPECT_EQ(m_editor->bump(0), dragged);  // turning alone moves nothing
+    this->event(vtkCommand::MouseMoveEvent, {from[0] + 20, from[1]});
+    for (std::size_t i = 0; i < dragged.size(); ++i) EXPECT_NEAR(m_editor->bump(0)[i], dragged[i], 1e-9) << i;
     this->event(vtkCommand::MouseMoveEvent, {from[0] + 50, from[1]});
     this->event(vtkCommand::LeftButtonReleaseEvent, {from[0] + 50, from[1]});
     EXPECT_GT(m_editor->bump(0)[0], dragged[0] + 0.05);
