@@ -697,6 +697,11 @@ TEST(VtkInbetween, BlocksAreBlendedAndMissingAndEmptyOnesStay) {
     expect_near(coordinates(vtkPolyData::SafeDownCast(nested->GetBlock(0))),
                 sum_of({base, shape}, {0.25, 0.75}), 1e-6);
 
+    filter->SetBaseIndex(1);
+    filter->Update();
+    EXPECT_EQ(output->GetFieldData()->GetArray("field"), inputs[1]->GetFieldData()->GetArray("field"));
+    filter->SetBaseIndex(0);
+
     inputs[1]->SetBlock(1, sphere(13));
     inputs[1]->Modified();
     filter->Update();
