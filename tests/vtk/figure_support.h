@@ -3,10 +3,19 @@
 #pragma once
 
 #include <unistd.h>
+#include <vtkDoubleArray.h>
+#include <vtkNew.h>
+#include <vtkPointData.h>
+#include <vtkPoints.h>
+#include <vtkPolyData.h>
+#include <vtkSmartPointer.h>
 
 #include <filesystem>
 #include <fstream>
+#include <glm/gtc/quaternion.hpp>
+#include <glm/vec3.hpp>
 #include <string>
+#include <vector>
 
 /// A folder that is removed with it.
 class Folder {
@@ -46,3 +55,33 @@ inline const std::string kTwoBodies =
     "repeat 0 1 bendby b j world 90 x\n"
     "linear 0 4 moveby f world 40 0 -8\n"
     "stop\n";
+
+/// An ellipsoid in VTK's space. The turn need not be of unit length.
+struct Ball {
+    glm::dvec3 center, axes;
+    glm::dquat turn;
+
+    glm::dvec3 turned(const glm::dvec3& v) const { return glm::normalize(turn) * v; }
+    glm::dvec3 turned_back(const glm::dvec3& v) const { return glm::inverse(glm::normalize(turn)) * v; }
+};
+
+/// As vtkAnamorphFigureReader writes them, with what the filters read.
+inline vtkSmartPointer<vtkPolyData> figures(const std::vector<Ball>& balls) {
+    vtkNew<vtkPoints> points;
+    points->SetDataType(VTK_DOUBLE);
+    vtkNew<vtkDoubleArray> axes, turns;
+    axes->SetName("Axes");
+    axes->SetNumberOfComponents(3);
+    turns->SetName("Orientation");
+    turns->SetNumberOfComponents(4);
+    for (const Ball& ball : balls) {
+        points->InsertNextPoint(ball.center.x, ball.center.y, ball.center.z);
+        axes->InsertNextTuple3(ball.axes.x, ball.axes.y, ball.axes.z);
+        turns->InsertNextTuple4(ball.turn.w, ball.turn.x, ball.turn.y, ball.turn.z);
+    }
+    auto data = vtkSmartPointer<vtkPolyData>::New();
+    data->SetPoints(points);
+    data->GetPointData()->AddArray(axes);
+    data->GetPointData()->AddArray(turns);
+    return data;
+}

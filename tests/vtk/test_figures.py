@@ -13,6 +13,15 @@ for name, value in [("FileName", "walk.n"), ("Dialect", reader.STRICT), ("Number
 reader.SetLibrary(1, "fred.n")
 assert reader.GetLibrary(1) == "fred.n" and "fred.n" in str(reader)
 
+view = [("ViewMode", 1), ("ViewSize", (300, 200)), ("CameraPosition", (1, 2, 3)), ("CameraFocalPoint", (4, 5, 6)),
+        ("CameraViewUp", (1, 0, 0)), ("CameraParallelProjection", True), ("CameraParallelScale", 7),
+        ("CameraViewAngle", 40)]
+geometry = anamorph.vtkAnamorphFigureGeometry()
+for name, value in view + [("ToleranceMode", geometry.PIXELS), ("Tolerance", 0.5),
+                           ("OutputPointsPrecision", geometry.DOUBLE_PRECISION)]:
+    getattr(geometry, "Set" + name)(value)
+    assert getattr(geometry, "Get" + name)() == value, name
+
 with tempfile.TemporaryDirectory() as folder:
     path = os.path.join(folder, "one.nudes")
     with open(path, "w") as file:
@@ -23,3 +32,8 @@ with tempfile.TemporaryDirectory() as folder:
     reader.UpdateTimeStep(2)
     assert reader.GetOutput().GetPoint(0) == (2, 0, 0)
     assert reader.GetOutput().GetPointData().GetAbstractArray("Name").GetValue(0) == "a"
+    geometry = anamorph.vtkAnamorphFigureGeometry()
+    geometry.SetInputConnection(reader.GetOutputPort())
+    geometry.Update()
+    bounds = geometry.GetOutput().GetBounds()
+    assert abs(bounds[3] - 20) < 1e-5 and bounds[1] > 10, bounds

@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "figure_lines.h"
+
+#include "vtkCellData.h"
+#include "vtkPointData.h"
+#include "vtkPolyData.h"
+#include "vtkStringArray.h"
+
+namespace anamorph_vtk {
+
+Bodies::Bodies(vtkPolyData* data) {
+    const FigureData figures(data);
+    auto* of_points = vtkStringArray::SafeDownCast(data->GetPointData()->GetAbstractArray("Name"));
+    for (vtkIdType i = 0; i < figures.size(); ++i)
+        if (const auto shape = figures.ellipsoid(i)) {
+            shapes.push_back(*shape);
+            ids.push_back(i);
+            names.push_back(of_points ? of_points->GetValue(i) : std::to_string(i));
+        }
+}
+
+LineWriter::LineWriter(vtkPolyData* input, int precision, const char* flag) : m_input(input), m_flag(flag) {
+    m_points->SetDataType(precision == 1 ? VTK_DOUBLE : VTK_FLOAT);
+}
+
+void LineWriter::add(const std::vector<glm::dvec3>& points, vtkIdType body, int flag) {
+    if (points.empty()) return;
+    const bool closed = points.size() > 3 && points.front() == points.back();
+    const vtkIdType first = m_points->GetNumberOfPoints(),
+                    count = static_cast<vtkIdType>(points.size()) - (closed ? 1 : 0);
+    for (vtkIdType i = 0; i < count; ++i) {
+        const glm::dvec3& p = points[static_cast<std::size_t>(i)];
+        m_points->InsertNextPoint(p.x, p.y, p.z);
+    }
+    Cells& cells = points.size() == 1 ? m_vertices : m_lines;
+    cells.cells->InsertNextCell(static_cast<int>(points.size()));
+    for (vtkIdType i = 0; i < count; ++i) cells.cells->InsertCellPoint(first + i);
+    if (closed) cells.cells->InsertCellPoint(first);
+    cells.bodies.push_back(body);
+    cells.flags.push_back(static_cast<unsigned char>(flag));
+}
+
+void LineWriter::write(vtkPolyData* output) {
+    output->SetPoints(m_points);
+    output->SetVerts(m_vertices.cells);
+    output->SetLines(m_lines.cells);
+    vtkCellData* data = output->GetCellData();
+    for (const char* name : {kAxes, kOrientation}) data->CopyFieldOff(name);
+    data->CopyAllocate(m_input->GetPointData(), output->GetNumberOfCells());
+    vtkNew<vtkIdTypeArray> bodies;
+    bodies->SetName("BodyId");
+    vtkNew<vtkUnsignedCharArray> flags;
+    flags->SetName(m_flag);
+    for (const Cells* cells : {&m_vertices, &m_lines})  // in the order of vtkPolyData's cells
+        for (std::size_t i = 0; i < cells->bodies.size(); ++i) {
+            data->CopyData(m_input->GetPointData(), cells->bodies[i], bodies->GetNumberOfTuples());
+            bodies->InsertNextValue(cells->bodies[i]);
+            flags->InsertNextValue(cells->flags[i]);
+        }
+    data->AddArray(bodies);
+    data->AddArray(flags);
+}
+
+}  // namespace anamorph_vtk

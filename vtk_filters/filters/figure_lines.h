@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: Apache-2.0
+// Ellipsoids read for drawing, and lines that stand for them.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "figure_data.h"
+#include "vtkCellArray.h"
+#include "vtkIdTypeArray.h"
+#include "vtkNew.h"
+#include "vtkPoints.h"
+#include "vtkUnsignedCharArray.h"
+
+class vtkPolyData;
+
+namespace anamorph_vtk {
+
+/// Those ellipsoids of a data set whose numbers are finite, with the points that they are. Throws Error as
+/// FigureData does.
+struct Bodies {
+    explicit Bodies(vtkPolyData* data);
+
+    std::vector<anamorph::Ellipsoid> shapes;
+    std::vector<vtkIdType> ids;
+    std::vector<std::string> names;  ///< for messages
+};
+
+/// Collects polylines and vertices. Each has the arrays of the point of the input that it stands for but Axes
+/// and Orientation, BodyId, and a number of its own in the array `flag`.
+class LineWriter {
+  public:
+    LineWriter(vtkPolyData* input, int precision, const char* flag);
+
+    /// A single point is a vertex. A last point equal to the first closes the line.
+    void add(const std::vector<glm::dvec3>& points, vtkIdType body, int flag);
+    void write(vtkPolyData* output);
+
+  private:
+    struct Cells {
+        vtkNew<vtkCellArray> cells;
+        std::vector<vtkIdType> bodies;
+        std::vector<unsigned char> flags;
+    };
+
+    vtkPolyData* m_input;
+    const char* m_flag;
+    vtkNew<vtkPoints> m_points;
+    Cells m_vertices, m_lines;
+};
+
+}  // namespace anamorph_vtk

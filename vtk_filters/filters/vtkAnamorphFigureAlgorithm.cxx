@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "vtkAnamorphFigureAlgorithm.h"
+
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <new>
+
+#include "anamorph/error.h"
+#include "anamorph/figure/outline_view.h"
+#include "anamorph/figure/rotation.h"
+#include "anamorph/parameter.h"
+#include "execution.h"
+#include "figure_data.h"
+#include "vtkPolyData.h"
+
+namespace {
+
+using anamorph::Error;
+
+/// Nothing is drawn that is nearer to the eye than this, as a share of the distance to the focal point.
+constexpr double kNear = 1e-3;
+
+glm::dvec3 point(const char* name, const double* v) {
+    for (int k = 0; k < 3; ++k)
+        if (!std::isfinite(v[k])) throw Error(name, anamorph::shortest(v[k]), "allowed are finite numbers");
+    return {v[0], v[1], v[2]};
+}
+
+double between(const char* name, double value, double least, double most) {
+    if (!(value > least && value < most))
+        throw Error(
+            name, anamorph::shortest(value),
+            "allowed are numbers between " + anamorph::shortest(least) + " and " + anamorph::shortest(most));
+    return value;
+}
+
+}  // namespace
+
+vtkAnamorphFigureAlgorithm::vtkAnamorphFigureAlgorithm() = default;
+vtkAnamorphFigureAlgorithm::~vtkAnamorphFigureAlgorithm() = default;
+
+anamorph::View vtkAnamorphFigureAlgorithm::ViewOf(vtkPolyData* figures) const {
+    for (const int size : this->ViewSize)
+        if (size < 1) throw Error("ViewSize", std::to_string(size), "allowed are numbers from 1");
+    const double height = this->ViewSize[1];
+    if (this->ViewMode == SCRIPT) return anamorph_vtk::script_view(figures, height);
+    const glm::dvec3 eye = point("CameraPosition", this->CameraPosition),
+                     focus = point("CameraFocalPoint", this->CameraFocalPoint),
+                     up = point("CameraViewUp", this->CameraViewUp);
+    const double distance = glm::length(focus - eye);
+    const glm::dvec3 away = (focus - eye) / distance, across = glm::cross(away, up);
+    const glm::dvec3 right = across / glm::length(across);
+    if (!std::isfinite(right.x + right.y + right.z))
+        throw Error("the camera's position and focal point, and its view up, span no plane");
+    anamorph::View view;
+    view.center = focus;
+    // Rows: what becomes x, y and z.
+    view.rotation = glm::transpose(glm::dmat3(right, glm::cross(right, away), away));
+    if (this->CameraParallelProjection) {
+        view.scale = height / (2 * between("CameraParallelScale", this->CameraParallelScale, 0, 1e50));
+    } else {
+        const double angle = between("CameraViewAngle", this->CameraViewAngle, 0, 180);
+        view.eye_distance = distance;
+        view.near = kNear * distance;
+        view.scale = height / (2 * std::tan(0.5 * angle * anamorph::kDegree) * distance);
+    }
+    return view;
+}
+
+int vtkAnamorphFigureAlgorithm::Guarded(vtkPolyData* output, const std::function<void()>& body) {
+    try {
+        body();
+        return 1;
+    } catch (const anamorph_vtk::Aborted&) {
+        output->Initialize();
+        return 1;
+    } catch (const std::bad_alloc&) {
+        vtkErrorMacro(<< "not enough memory");
+    } catch (const std::exception& error) {
+        vtkErrorMacro(<< error.what());
+    }
+    output->Initialize();
+    return 0;
+}
+
+void vtkAnamorphFigureAlgorithm::PrintSelf(ostream& os, vtkIndent indent) {
+    this->Superclass::PrintSelf(os, indent);
+    const auto print = [&](const char* name, const double* v) {
+        os << indent << name << ": " << v[0] << " " << v[1] << " " << v[2] << "\n";
+    };
+    os << indent << "ViewMode: " << (this->ViewMode == SCRIPT ? "script" : "camera") << "\n"
+       << indent << "ViewSize: " << this->ViewSize[0] << " " << this->ViewSize[1] << "\n";
+    print("CameraPosition", this->CameraPosition);
+    print("CameraFocalPoint", this->CameraFocalPoint);
+    print("CameraViewUp", this->CameraViewUp);
+    os << indent << "CameraParallelProjection: " << this->CameraParallelProjection << "\n"
+       << indent << "CameraParallelScale: " << this->CameraParallelScale << "\n"
+       << indent << "CameraViewAngle: " << this->CameraViewAngle << "\n";
+}

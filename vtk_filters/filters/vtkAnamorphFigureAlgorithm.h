@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: Apache-2.0
+/**
+ * @class   vtkAnamorphFigureAlgorithm
+ * @brief   What filters of figures that depend on a view have in common: the view.
+ *
+ * The input is that of vtkAnamorphFigureReader, or any vtkPolyData with the arrays Axes and Orientation. A
+ * point with a number that is not finite makes nothing.
+ */
+#ifndef vtkAnamorphFigureAlgorithm_h
+#define vtkAnamorphFigureAlgorithm_h
+
+#include "AnamorphFiltersModule.h"  // for the export macro
+#include "vtkPolyDataAlgorithm.h"
+
+#include <functional>  // for what may fail
+
+namespace anamorph {
+struct View;
+}
+
+class ANAMORPHFILTERS_EXPORT vtkAnamorphFigureAlgorithm : public vtkPolyDataAlgorithm {
+  public:
+    vtkAbstractTypeMacro(vtkAnamorphFigureAlgorithm, vtkPolyDataAlgorithm);
+    void PrintSelf(ostream& os, vtkIndent indent) override;
+
+    /** For ViewMode. */
+    enum { SCRIPT, CAMERA };
+
+    ///@{
+    /**
+     * SCRIPT, the default: as NUDES shows the figures, orthographically, a window of 1000 units that is as
+     * high as ViewSize; the input's field data says where it is. CAMERA: as the camera below.
+     */
+    vtkSetClampMacro(ViewMode, int, SCRIPT, CAMERA);
+    vtkGetMacro(ViewMode, int);
+    ///@}
+
+    ///@{
+    /** Width and height of the picture in pixels. The default is 500 x 500. */
+    vtkSetVector2Macro(ViewSize, int);
+    vtkGetVector2Macro(ViewSize, int);
+    ///@}
+
+    ///@{
+    /** As in vtkCamera. The default looks along -z at the middle of NUDES' window, which fills the view. */
+    vtkSetVector3Macro(CameraPosition, double);
+    vtkGetVector3Macro(CameraPosition, double);
+    vtkSetVector3Macro(CameraFocalPoint, double);
+    vtkGetVector3Macro(CameraFocalPoint, double);
+    vtkSetVector3Macro(CameraViewUp, double);
+    vtkGetVector3Macro(CameraViewUp, double);
+    vtkSetMacro(CameraParallelProjection, bool);
+    vtkGetMacro(CameraParallelProjection, bool);
+    vtkBooleanMacro(CameraParallelProjection, bool);
+    /** Half the height of the view, in units; of parallel projection. */
+    vtkSetMacro(CameraParallelScale, double);
+    vtkGetMacro(CameraParallelScale, double);
+    /** The angle of the view from its bottom to its top, degrees; of perspective. */
+    vtkSetMacro(CameraViewAngle, double);
+    vtkGetMacro(CameraViewAngle, double);
+    ///@}
+
+  protected:
+    vtkAnamorphFigureAlgorithm();
+    ~vtkAnamorphFigureAlgorithm() override;
+
+    /// Of these ellipsoids. Throws anamorph::Error naming the property that is not as allowed.
+    anamorph::View ViewOf(vtkPolyData* figures) const;
+    /// Runs `body`; what it throws becomes an error message and an empty output.
+    int Guarded(vtkPolyData* output, const std::function<void()>& body);
+
+    int ViewMode = SCRIPT;
+    int ViewSize[2] = {500, 500};
+    double CameraPosition[3] = {500, 500, 1500};
+    double CameraFocalPoint[3] = {500, 500, -500};
+    double CameraViewUp[3] = {0, 1, 0};
+    bool CameraParallelProjection = false;
+    double CameraParallelScale = 500;
+    double CameraViewAngle = 30;
+
+  private:
+    vtkAnamorphFigureAlgorithm(const vtkAnamorphFigureAlgorithm&) = delete;
+    void operator=(const vtkAnamorphFigureAlgorithm&) = delete;
+};
+
+#endif

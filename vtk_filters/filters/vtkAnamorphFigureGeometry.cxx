@@ -1,0 +1,239 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "vtkAnamorphFigureGeometry.h"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <glm/vec2.hpp>
+#include <numbers>
+#include <vector>
+
+#include "anamorph/error.h"
+#include "anamorph/parameter.h"
+#include "execution.h"
+#include "figure_data.h"
+#include "vtkAOSDataArrayTemplate.h"
+#include "vtkCellArray.h"
+#include "vtkCellData.h"
+#include "vtkDoubleArray.h"
+#include "vtkFloatArray.h"
+#include "vtkIdTypeArray.h"
+#include "vtkInformation.h"
+#include "vtkInformationVector.h"
+#include "vtkNew.h"
+#include "vtkObjectFactory.h"
+#include "vtkPointData.h"
+#include "vtkPoints.h"
+#include "vtkPolyData.h"
+
+vtkObjectFactoryNewMacro(vtkAnamorphFigureGeometry);
+
+namespace {
+
+using anamorph::Ellipsoid;
+using anamorph::Error;
+using anamorph::View;
+
+constexpr double kPi = std::numbers::pi;
+constexpr double kMostSteps = 1 << 12;  ///< either way
+constexpr vtkIdType kMostPoints = VTK_INT_MAX;
+constexpr int kLeastRows = 4, kLeastColumns = 6;
+
+/// A grid over an ellipsoid. Its poles are a point for each column, between the grid's lines.
+struct Grid {
+    vtkIdType body = 0;
+    Ellipsoid shape;
+    int rows = 0, columns = 0;  ///< cells from the bottom up, and around
+    double bound = 0;
+    vtkIdType first_point = 0, first_triangle = 0;
+
+    vtkIdType points() const { return vtkIdType{rows - 1} * (columns + 1) + 2 * columns; }
+    vtkIdType triangles() const { return vtkIdType{rows - 1} * columns * 2; }
+};
+
+/// The steps that hold a tolerance. The mixed term 2 n h k is at most n h^2 + n k^2; h and k take half each.
+Grid grid_of(vtkIdType body, const Ellipsoid& shape, double tolerance) {
+    const double n = std::max(shape.axes.x, shape.axes.z), m = std::max(n, shape.axes.y);
+    const double most_h = std::sqrt(4 * tolerance / (m + n)), most_k = std::sqrt(2 * tolerance / n);
+    const double rows = std::max(std::ceil(kPi / most_h), 1.0 * kLeastRows),
+                 columns = std::max(std::ceil(2 * kPi / most_k), 1.0 * kLeastColumns);
+    if (!(rows <= kMostSteps && columns <= kMostSteps))
+        throw Error("Tolerance", anamorph::shortest(tolerance),
+                    "is too small for ellipsoid " + std::to_string(body) + ", allowed are at most " +
+                        anamorph::shortest(kMostSteps) + " steps around it");
+    Grid grid{body, shape, static_cast<int>(rows), static_cast<int>(columns)};
+    const double h = kPi / rows, k = 2 * kPi / columns;
+    grid.bound = (m * h * h + 2 * n * h * k + n * k * k) / 8;
+    return grid;
+}
+
+/// Most that a point of a body may move for the picture to move by `pixels`. In perspective the image of q +
+/// d is zoom (d.xy - q.xy / q.z d.z) / (q.z + d.z) from that of q, and on the screen |q.xy| / q.z <= slope.
+double tolerance_in_units(double pixels, const Ellipsoid& shape, const View& view, double half_diagonal) {
+    if (!view.perspective()) return pixels / view.scale;
+    const double zoom = view.scale * view.eye_distance, slope = half_diagonal / zoom;
+    const glm::dvec3 away(view.rotation[0][2], view.rotation[1][2], view.rotation[2][2]);
+    const double reach = glm::length(shape.axes * (away * shape.rotation));
+    const double nearest = std::max(view.to_view(shape.center).z - reach, view.near);
+    return pixels * nearest / (zoom * std::hypot(1, slope) + pixels);
+}
+
+/// Writes a grid's points and triangles where they belong. Real: of the points.
+template <class Real>
+struct Surface {
+    Real* points;
+    float *normals, *texture;
+    vtkIdType* triangles;
+
+    void write(const Grid& grid) const {
+        vtkIdType i = grid.first_point;
+        const auto vertex = [&](int row, double column) {
+            const double v = 1.0 * row / grid.rows, u = column / grid.columns;
+            const double t = kPi * (v - 0.5), p = kPi * (1 - 2 * u);
+            const double c = row == 0 || row == grid.rows ? 0 : std::cos(t);
+            // Of the unit sphere; -cos p, because z is negated.
+            const glm::dvec3 s(c * std::sin(p), std::sin(t), -c * std::cos(p));
+            put(points, i, grid.shape.center + grid.shape.rotation * (grid.shape.axes * s));
+            put(normals, i, grid.shape.rotation * normal(grid.shape.axes, s));
+            texture[2 * i] = static_cast<float>(u);
+            texture[2 * i + 1] = static_cast<float>(v);
+            ++i;
+        };
+        for (int column = 0; column < grid.columns; ++column) vertex(0, column + 0.5);
+        for (int row = 1; row < grid.rows; ++row)
+            for (int column = 0; column <= grid.columns; ++column) vertex(row, column);
+        for (int column = 0; column < grid.columns; ++column) vertex(grid.rows, column + 0.5);
+        write_triangles(grid);
+    }
+
+    void write_triangles(const Grid& grid) const {
+        vtkIdType* to = triangles + 3 * grid.first_triangle;
+        const auto triangle = [&](vtkIdType a, vtkIdType b, vtkIdType c) {
+            for (const vtkIdType corner : {a, b, c}) *to++ = grid.first_point + corner;
+        };
+        const vtkIdType wide = grid.columns + 1, top = grid.columns + (grid.rows - 1) * wide;
+        for (int column = 0; column < grid.columns; ++column) {
+            vtkIdType below = grid.columns + column;
+            triangle(column, below + 1, below);
+            for (int row = 1; row < grid.rows - 1; ++row, below += wide) {
+                triangle(below, below + 1, below + wide + 1);
+                triangle(below, below + wide + 1, below + wide);
+            }
+            triangle(below, below + 1, top + column);
+        }
+    }
+
+    /// Along s / a, times the product of the axes: so bodies without volume have normals where they can.
+    static glm::dvec3 normal(const glm::dvec3& a, const glm::dvec3& s) {
+        const glm::dvec3 unit = a / std::max({a.x, a.y, a.z, 1e-300});
+        const glm::dvec3 n(s.x * unit.y * unit.z, s.y * unit.z * unit.x, s.z * unit.x * unit.y);
+        const double length = glm::length(n);
+        return length > 0 ? n / length : s;
+    }
+
+    template <class T>
+    static void put(T* to, vtkIdType i, const glm::dvec3& v) {
+        for (int k = 0; k < 3; ++k) to[3 * i + k] = static_cast<T>(v[k]);
+    }
+};
+
+template <class Array>
+vtkSmartPointer<Array> new_array(const char* name, int components, vtkIdType tuples) {
+    auto array = vtkSmartPointer<Array>::New();
+    array->SetName(name);
+    array->SetNumberOfComponents(components);
+    array->SetNumberOfTuples(tuples);
+    return array;
+}
+
+template <class Real>
+void tessellate(const std::vector<Grid>& grids, vtkIdType points, vtkIdType triangles, vtkPolyData* output,
+                const anamorph::ParallelFor& parallel_for) {
+    const auto positions = new_array<vtkAOSDataArrayTemplate<Real>>("Points", 3, points);
+    const auto normals = new_array<vtkFloatArray>("Normals", 3, points);
+    const auto texture = new_array<vtkFloatArray>("TextureCoordinates", 2, points);
+    const auto corners = new_array<vtkIdTypeArray>("", 1, 3 * triangles);
+    const auto offsets = new_array<vtkIdTypeArray>("", 1, triangles + 1);
+    for (vtkIdType k = 0; k <= triangles; ++k) offsets->SetValue(k, 3 * k);
+    const Surface<Real> surface{positions->GetPointer(0), normals->GetPointer(0), texture->GetPointer(0),
+                                corners->GetPointer(0)};
+    parallel_for(static_cast<std::int64_t>(grids.size()),
+                 [&](std::int64_t i) { surface.write(grids[static_cast<std::size_t>(i)]); });
+    vtkNew<vtkPoints> holder;
+    holder->SetData(positions);
+    output->SetPoints(holder);
+    vtkNew<vtkCellArray> cells;
+    cells->SetData(offsets, corners);
+    output->SetPolys(cells);
+    output->GetPointData()->SetNormals(normals);
+    output->GetPointData()->SetTCoords(texture);
+}
+
+/// The arrays of the bodies, for each triangle.
+void write_cell_data(const std::vector<Grid>& grids, vtkIdType triangles, vtkPolyData* input,
+                     vtkPolyData* output) {
+    vtkCellData* data = output->GetCellData();
+    for (const char* name : {anamorph_vtk::kAxes, anamorph_vtk::kOrientation}) data->CopyFieldOff(name);
+    data->CopyAllocate(input->GetPointData(), triangles);
+    const auto bodies = new_array<vtkIdTypeArray>("BodyId", 1, triangles);
+    const auto bounds = new_array<vtkDoubleArray>("ChordalBound", 1, triangles);
+    for (const Grid& grid : grids)
+        for (vtkIdType k = 0; k < grid.triangles(); ++k) {
+            const vtkIdType cell = grid.first_triangle + k;
+            data->CopyData(input->GetPointData(), grid.body, cell);
+            bodies->SetValue(cell, grid.body);
+            bounds->SetValue(cell, grid.bound);
+        }
+    data->AddArray(bodies);
+    data->AddArray(bounds);
+}
+
+}  // namespace
+
+vtkAnamorphFigureGeometry::vtkAnamorphFigureGeometry() = default;
+vtkAnamorphFigureGeometry::~vtkAnamorphFigureGeometry() = default;
+
+int vtkAnamorphFigureGeometry::RequestData(vtkInformation*, vtkInformationVector** inputs,
+                                           vtkInformationVector* outputs) {
+    vtkPolyData *input = vtkPolyData::GetData(inputs[0]), *output = vtkPolyData::GetData(outputs);
+    return this->Guarded(output, [&] {
+        anamorph_vtk::Execution execution(this);
+        if (!(this->Tolerance > 0))
+            throw Error("Tolerance", anamorph::shortest(this->Tolerance), "allowed is a positive number");
+        const anamorph_vtk::FigureData figures(input);
+        const View view = this->ToleranceMode == PIXELS ? this->ViewOf(input) : View();
+        const double half_diagonal = 0.5 * std::hypot(this->ViewSize[0], this->ViewSize[1]);
+        std::vector<Grid> grids;
+        vtkIdType points = 0, triangles = 0;
+        for (vtkIdType i = 0; i < figures.size(); ++i) {
+            const auto shape = figures.ellipsoid(i);
+            if (!shape) continue;
+            const double tolerance = this->ToleranceMode == PIXELS
+                                         ? tolerance_in_units(this->Tolerance, *shape, view, half_diagonal)
+                                         : this->Tolerance;
+            Grid grid = grid_of(i, *shape, tolerance);
+            grid.first_point = points;
+            grid.first_triangle = triangles;
+            points += grid.points();
+            triangles += grid.triangles();
+            if (points > kMostPoints)
+                throw Error("Tolerance", anamorph::shortest(this->Tolerance),
+                            "allowed are at most " + std::to_string(kMostPoints) + " points");
+            grids.push_back(grid);
+        }
+        execution.progress(0.1);
+        const auto parallel_for = execution.stage(0.1, 0.9);
+        if (this->OutputPointsPrecision == DOUBLE_PRECISION)
+            tessellate<double>(grids, points, triangles, output, parallel_for);
+        else
+            tessellate<float>(grids, points, triangles, output, parallel_for);
+        write_cell_data(grids, triangles, input, output);
+    });
+}
+
+void vtkAnamorphFigureGeometry::PrintSelf(ostream& os, vtkIndent indent) {
+    this->Superclass::PrintSelf(os, indent);
+    os << indent << "ToleranceMode: " << (this->ToleranceMode == UNITS ? "units" : "pixels") << "\n"
+       << indent << "Tolerance: " << this->Tolerance << "\n"
+       << indent << "OutputPointsPrecision: " << this->OutputPointsPrecision << "\n";
+}
