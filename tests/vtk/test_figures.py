@@ -21,6 +21,16 @@ for name, value in view + [("ToleranceMode", geometry.PIXELS), ("Tolerance", 0.5
                            ("OutputPointsPrecision", geometry.DOUBLE_PRECISION)]:
     getattr(geometry, "Set" + name)(value)
     assert getattr(geometry, "Get" + name)() == value, name
+outline = anamorph.vtkAnamorphFigureOutline()
+for name, value in view + [("Hidden", outline.KEPT), ("Crossings", True), ("Connected", True), ("Tolerance", 0.5),
+                           ("OutputPointsPrecision", outline.SINGLE_PRECISION)]:
+    getattr(outline, "Set" + name)(value)
+    assert getattr(outline, "Get" + name)() == value, name
+skeleton = anamorph.vtkAnamorphFigureSkeleton()
+for name, value in view + [("Mode", skeleton.SPHERES), ("LevelOfDetail", 3), ("Tolerance", 0.5),
+                           ("OutputPointsPrecision", skeleton.SINGLE_PRECISION)]:
+    getattr(skeleton, "Set" + name)(value)
+    assert getattr(skeleton, "Get" + name)() == value, name
 
 with tempfile.TemporaryDirectory() as folder:
     path = os.path.join(folder, "one.nudes")
@@ -37,3 +47,9 @@ with tempfile.TemporaryDirectory() as folder:
     geometry.Update()
     bounds = geometry.GetOutput().GetBounds()
     assert abs(bounds[3] - 20) < 1e-5 and bounds[1] > 10, bounds
+    for cls in (anamorph.vtkAnamorphFigureOutline, anamorph.vtkAnamorphFigureSkeleton):
+        lines = cls()
+        lines.SetInputConnection(reader.GetOutputPort())
+        lines.Update()
+        assert lines.GetOutput().GetNumberOfLines() == 1
+        assert lines.GetOutput().GetCellData().GetAbstractArray("Name").GetValue(0) == "a"

@@ -10,7 +10,6 @@
 #include "vtkIdTypeArray.h"
 #include "vtkNew.h"
 #include "vtkPoints.h"
-#include "vtkUnsignedCharArray.h"
 
 class vtkPolyData;
 
@@ -23,28 +22,29 @@ struct Bodies {
 
     std::vector<anamorph::Ellipsoid> shapes;
     std::vector<vtkIdType> ids;
-    std::vector<std::string> names;  ///< for messages
+    std::vector<std::string> names;       ///< for messages
+    std::vector<anamorph::Joint> joints;  ///< between positions in `shapes`
 };
 
 /// Collects polylines and vertices. Each has the arrays of the point of the input that it stands for but Axes
-/// and Orientation, BodyId, and a number of its own in the array `flag`.
+/// and Orientation, BodyId, and numbers of its own.
 class LineWriter {
   public:
-    LineWriter(vtkPolyData* input, int precision, const char* flag);
+    LineWriter(vtkPolyData* input, int precision, std::vector<const char*> names);
 
     /// A single point is a vertex. A last point equal to the first closes the line.
-    void add(const std::vector<glm::dvec3>& points, vtkIdType body, int flag);
+    void add(const std::vector<glm::dvec3>& points, vtkIdType body, const std::vector<double>& numbers);
     void write(vtkPolyData* output);
 
   private:
     struct Cells {
         vtkNew<vtkCellArray> cells;
         std::vector<vtkIdType> bodies;
-        std::vector<unsigned char> flags;
+        std::vector<std::vector<double>> numbers;
     };
 
     vtkPolyData* m_input;
-    const char* m_flag;
+    std::vector<const char*> m_names;
     vtkNew<vtkPoints> m_points;
     Cells m_vertices, m_lines;
 };

@@ -1,11 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "vtkAnamorphFigureOutline.h"
 
+#include <cmath>
+#include <glm/common.hpp>
 #include <numbers>
 #include <vector>
 
 #include "anamorph/error.h"
+#include "anamorph/figure/connected.h"
 #include "anamorph/figure/outline.h"
+#include "anamorph/figure/outline_arcs.h"
 #include "anamorph/parameter.h"
 #include "execution.h"
 #include "figure_data.h"
@@ -26,12 +30,43 @@ using anamorph::Outline;
 /// Longer arcs are closed.
 constexpr double kWholeTurn = 2 * std::numbers::pi - 1e-9;
 
-/// An arc as points in space.
-struct Polyline {
-    vtkIdType body;
-    bool visible;
-    std::vector<glm::dvec3> points;
-};
+/// An arc of a curve, which may go over its end.
+std::vector<glm::dvec3> part_of(const anamorph::CrossingCurve& curve, const Arc& arc) {
+    const auto& points = curve.points;
+    const auto at = [&](double t) {
+        const double below = std::floor(t);
+        const auto k = static_cast<std::size_t>(below);
+        return glm::mix(points[k % points.size()], points[(k + 1) % points.size()], t - below);
+    };
+    std::vector<glm::dvec3> part{at(arc.begin)};
+    for (double t = std::floor(arc.begin) + 1; t < arc.end; ++t) part.push_back(at(t));
+    part.push_back(at(arc.end));
+    if (arc.length() >= static_cast<double>(points.size())) part.back() = part.front();
+    return part;
+}
+
+/// Takes away what of outlines is inside of connections.
+void cut_out(const std::vector<anamorph::Connection>& connections, std::vector<Outline>& outlines) {
+    constexpr double turn = 2 * std::numbers::pi;
+    std::vector<std::vector<Arc>> inside(outlines.size());
+    for (const anamorph::Connection& c : connections) {
+        auto &first = inside[static_cast<std::size_t>(c.first)],
+             &second = inside[static_cast<std::size_t>(c.second)];
+        first.insert(first.end(), c.first_inside.begin(), c.first_inside.end());
+        second.insert(second.end(), c.second_inside.begin(), c.second_inside.end());
+    }
+    for (std::size_t i = 0; i < outlines.size(); ++i) {
+        if (inside[i].empty()) continue;
+        const auto without_inside = [&](const std::vector<Arc>& others) {
+            std::vector<Arc> taken = inside[i];
+            taken.insert(taken.end(), others.begin(), others.end());
+            return anamorph::complement_of(anamorph::union_of(taken, turn), turn);
+        };
+        const std::vector<Arc> visible = without_inside(outlines[i].hidden);
+        outlines[i].hidden = without_inside(outlines[i].visible);
+        outlines[i].visible = visible;
+    }
+}
 
 }  // namespace
 
@@ -49,29 +84,48 @@ int vtkAnamorphFigureOutline::RequestData(vtkInformation*, vtkInformationVector*
         const anamorph::View view = this->ViewOf(input);
         anamorph::OutlineOptions options;
         options.hide = this->Hidden != TRANSPARENT;
+        options.crossings = this->Crossings;
+        options.tol = this->Tolerance;
         options.names = bodies.names;
         execution.progress(0.05);
-        const std::vector<Outline> outlines =
-            anamorph::outlines(bodies.shapes, view, options, execution.stage(0.1, 0.7)).bodies;
+        anamorph::Outlines all = anamorph::outlines(bodies.shapes, view, options, execution.stage(0.1, 0.6));
+        std::vector<anamorph::Connection> connections;
+        if (this->Connected) {
+            connections =
+                anamorph::connections(bodies.joints, bodies.shapes, all, view, execution.stage(0.6, 0.7));
+            cut_out(connections, all.bodies);
+        }
 
-        std::vector<std::vector<Polyline>> polylines(outlines.size());
-        execution.stage(0.7, 0.9)(static_cast<std::int64_t>(outlines.size()), [&](std::int64_t k) {
-            const auto i = static_cast<std::size_t>(k);
-            const auto add = [&](const Arc& arc, bool visible) {
-                Polyline line{bodies.ids[i], visible, {}};
-                for (const double angle : anamorph::chord_angles(outlines[i], arc, view, this->Tolerance))
-                    line.points.push_back(outlines[i].limb(angle));
-                if (arc.length() > kWholeTurn) line.points.back() = line.points.front();
-                polylines[i].push_back(std::move(line));
-            };
-            for (const Arc& arc : outlines[i].visible) add(arc, true);
-            if (this->Hidden == KEPT)
-                for (const Arc& arc : outlines[i].hidden) add(arc, false);
-        });
-
-        anamorph_vtk::LineWriter writer(input, this->OutputPointsPrecision, "Visible");
-        for (const std::vector<Polyline>& of_body : polylines)
-            for (const Polyline& line : of_body) writer.add(line.points, line.body, line.visible);
+        anamorph_vtk::LineWriter writer(input, this->OutputPointsPrecision, {"Visible", "OtherBodyId"});
+        const auto id = [&](int body) { return body < 0 ? -1 : bodies.ids[static_cast<std::size_t>(body)]; };
+        // Adds the parts of something that has visible and hidden ones.
+        const auto add = [&](const auto& line, int body, int other, const auto& part) {
+            const auto other_id = static_cast<double>(id(other));
+            for (const Arc& arc : line.visible) writer.add(part(arc), id(body), {1, other_id});
+            if (this->Hidden != KEPT) return;
+            for (const Arc& arc : line.hidden) writer.add(part(arc), id(body), {0, other_id});
+        };
+        for (std::size_t i = 0; i < all.bodies.size(); ++i) {
+            const Outline& outline = all.bodies[i];
+            add(outline, static_cast<int>(i), -1, [&](const Arc& arc) {
+                std::vector<glm::dvec3> points;
+                for (const double angle : anamorph::chord_angles(outline, arc, view, this->Tolerance))
+                    points.push_back(outline.limb(angle));
+                if (arc.length() > kWholeTurn) points.back() = points.front();
+                return points;
+            });
+            if (i % 64 == 63)
+                execution.progress(0.7 +
+                                   0.2 * static_cast<double>(i) / static_cast<double>(all.bodies.size()));
+        }
+        for (const anamorph::CrossingCurve& curve : all.crossings)
+            add(curve, curve.first, curve.second, [&](const Arc& arc) { return part_of(curve, arc); });
+        for (const anamorph::Connection& c : connections)
+            for (const anamorph::ConnectingStroke& stroke : c.strokes)
+                add(stroke.line, c.first, c.second, [&](const Arc& arc) {
+                    return std::vector<glm::dvec3>{glm::mix(stroke.line.from, stroke.line.to, arc.begin),
+                                                   glm::mix(stroke.line.from, stroke.line.to, arc.end)};
+                });
         writer.write(output);
     });
 }
@@ -80,6 +134,8 @@ void vtkAnamorphFigureOutline::PrintSelf(ostream& os, vtkIndent indent) {
     this->Superclass::PrintSelf(os, indent);
     static const char* const hidden[] = {"removed", "kept", "transparent"};
     os << indent << "Hidden: " << hidden[this->Hidden] << "\n"
+       << indent << "Crossings: " << this->Crossings << "\n"
+       << indent << "Connected: " << this->Connected << "\n"
        << indent << "Tolerance: " << this->Tolerance << "\n"
        << indent << "OutputPointsPrecision: " << this->OutputPointsPrecision << "\n";
 }

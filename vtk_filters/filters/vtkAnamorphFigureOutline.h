@@ -35,7 +35,24 @@ class ANAMORPHFILTERS_EXPORT vtkAnamorphFigureOutline : public vtkAnamorphFigure
     ///@}
 
     ///@{
-    /** Most that chords may be off the limb, in pixels of the view; positive. The default is 0.1. */
+    /** Also the curves in which bodies pass through each other. Off by default. */
+    vtkSetMacro(Crossings, bool);
+    vtkGetMacro(Crossings, bool);
+    vtkBooleanMacro(Crossings, bool);
+    ///@}
+
+    ///@{
+    /**
+     * Lead the outline of a body over to that of its neighbour at a joint along their common tangents, and
+     * leave out what of both is between these. Joints are those of the field data. Off by default.
+     */
+    vtkSetMacro(Connected, bool);
+    vtkGetMacro(Connected, bool);
+    vtkBooleanMacro(Connected, bool);
+    ///@}
+
+    ///@{
+    /** Most that chords may be off the curve, in pixels of the view; positive. The default is 0.1. */
     vtkSetMacro(Tolerance, double);
     vtkGetMacro(Tolerance, double);
     ///@}
@@ -57,6 +74,7 @@ class ANAMORPHFILTERS_EXPORT vtkAnamorphFigureOutline : public vtkAnamorphFigure
     void operator=(const vtkAnamorphFigureOutline&) = delete;
 
     int Hidden = REMOVED;
+    bool Crossings = false, Connected = false;
     double Tolerance = 0.1;
     int OutputPointsPrecision = DOUBLE_PRECISION;
 };
