@@ -7,7 +7,7 @@ import anamorph
 
 assert len(sys.argv) < 2 or anamorph.__file__.startswith(sys.argv[1]), anamorph.__file__
 headers = pathlib.Path(__file__).parents[2].glob("vtk_filters/**/vtkAnamorph*.h")
-names = [header.stem for header in headers]
+names = [header.stem for header in headers if "vtkAbstractTypeMacro" not in header.read_text()]
 assert "vtkAnamorphDeform" in names
 for name in names:
     assert getattr(anamorph, name)().GetClassName() == name, name
