@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <glm/common.hpp>
 
 #include "anamorph/figure/outline_arcs.h"
 #include "anamorph/figure/outline_hiding.h"
@@ -71,8 +72,7 @@ class Pair {
                 zoom *=
                     m_view.eye_distance / depth * (1 + (glm::length(glm::dvec2(p)) + size * radius) / depth);
             }
-            // Half: the curve may leave a cell and come back over the same edge.
-            return zoom * size * deviation <= 0.5 * tol;
+            return zoom * size * deviation <= tol;
         };
         std::vector<CrossingCurve> all;
         for (const std::vector<glm::dvec3>& loop : loops_of(m_curve, holds)) {
@@ -88,6 +88,7 @@ class Pair {
     /// Finds what is seen of a curve whose points are in view.
     void hide(CrossingCurve& curve, const std::vector<int>& near_by, bool by_bodies) const {
         const std::size_t count = curve.points.size();
+        const std::vector<int> others = by_bodies ? before(curve, near_by) : std::vector<int>();
         std::vector<Arc> hidden, cut;
         const auto append = [](std::vector<Arc>& to, const std::vector<Arc>& parts, std::size_t chord) {
             const auto base = static_cast<double>(chord);
@@ -99,9 +100,7 @@ class Pair {
             if (!by_bodies) continue;
             std::vector<Arc> parts;
             for (const int body : {m_first, m_second}) add_far_side(from, to, seen(body), parts);
-            for (const int body : near_by)
-                if (body != m_first && body != m_second)
-                    add_hidden(from, to, seen(body), m_view.perspective(), parts);
+            for (const int body : others) add_hidden(from, to, seen(body), m_view.perspective(), parts);
             append(hidden, parts, k);
         }
         const auto period = static_cast<double>(count);
@@ -109,6 +108,27 @@ class Pair {
     }
 
   private:
+    /// Those other bodies that may lie before the curve.
+    std::vector<int> before(const CrossingCurve& curve, const std::vector<int>& near_by) const {
+        ScreenBox box{glm::dvec2(HUGE_VAL), glm::dvec2(-HUGE_VAL), -HUGE_VAL};
+        for (const glm::dvec3& p : curve.points) {
+            const glm::dvec2 at = m_view.perspective() ? glm::dvec2(p) / p.z : glm::dvec2(p);
+            // Behind the eye there is no image: everything may be before it.
+            if (m_view.perspective() && p.z <= 0) return others_of(near_by, nullptr);
+            box.low = glm::min(box.low, at);
+            box.high = glm::max(box.high, at);
+            box.farthest = std::max(box.farthest, p.z);
+        }
+        return others_of(near_by, &box);
+    }
+    std::vector<int> others_of(const std::vector<int>& near_by, const ScreenBox* box) const {
+        std::vector<int> others;
+        for (const int body : near_by)
+            if (body != m_first && body != m_second && (!box || may_hide(seen(body), *box)))
+                others.push_back(body);
+        return others;
+    }
+
     const SeenBody& seen(int body) const { return m_seen[static_cast<std::size_t>(body)]; }
 
     const std::vector<SeenBody>& m_seen;

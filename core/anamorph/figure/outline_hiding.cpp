@@ -169,6 +169,11 @@ void add_hidden(const glm::dvec3& from, const glm::dvec3& to, const SeenBody& ot
             hidden.push_back({cuts[k], cuts[k + 1]});
 }
 
+bool may_hide(const SeenBody& body, const ScreenBox& box) {
+    return box.low.x <= body.high.x && body.low.x <= box.high.x && box.low.y <= body.high.y &&
+           body.low.y <= box.high.y && body.nearest <= box.farthest;
+}
+
 std::vector<std::vector<int>> overlapping(const std::vector<ScreenBox>& boxes,
                                           const std::vector<SeenBody>& bodies) {
     // A sweep in x over the left ends of both: each meets those of the other kind that are still open.
@@ -186,9 +191,7 @@ std::vector<std::vector<int>> overlapping(const std::vector<ScreenBox>& boxes,
     std::vector<std::vector<int>> found(boxes.size());
     std::vector<int> open_boxes, open_bodies;
     const auto meet = [&](int i, int j) {
-        const ScreenBox& box = boxes[static_cast<std::size_t>(i)];
-        const SeenBody& body = bodies[static_cast<std::size_t>(j)];
-        if (box.low.y <= body.high.y && body.low.y <= box.high.y && body.nearest <= box.farthest)
+        if (may_hide(bodies[static_cast<std::size_t>(j)], boxes[static_cast<std::size_t>(i)]))
             found[static_cast<std::size_t>(i)].push_back(j);
     };
     for (const Entry& e : entries) {

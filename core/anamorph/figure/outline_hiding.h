@@ -21,7 +21,10 @@ struct ScreenBox {
     double farthest = 0;
 };
 
-/// For each box, the bodies whose limbs' boxes overlap it and that do not lie wholly beyond it.
+/// Does the box of the body's limb overlap, and not all of the body lie beyond?
+bool may_hide(const SeenBody& body, const ScreenBox& box);
+
+/// For each box, the bodies that may hide what is in it.
 std::vector<std::vector<int>> overlapping(const std::vector<ScreenBox>& boxes,
                                           const std::vector<SeenBody>& bodies);
 

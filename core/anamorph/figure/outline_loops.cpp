@@ -163,15 +163,23 @@ class Cells {
                along * r + (0.5 * across + m_square_norm) * r * r + 2 * m_curve.noise;
     }
 
-    /// How far the curve may be from its chord across a cell: its tangent turns by at most the angle whose
-    /// sine is (how much the gradient changes) / (the gradient).
+    /// How far the curve may be from its chord across a cell: k l^2 / 8 for a curve whose curvature is at
+    /// most k, between points l apart. Its curvature in the sphere is |t.H t| / |grad f| along its tangent t,
+    /// with H = 2 B^T B - (u.grad f), and the sphere's own is 1.
     double deviation(const Cell& cell) const {
-        const auto [along, across] = slope(cell.middle);
-        const double r = cell.radius;
-        const double change = (2 * m_square_norm * (1 + r) + across + along * r) * r;
+        const glm::dvec3 &u = cell.middle, v = m_curve.matrix * u + m_curve.offset;
+        const glm::dvec3 gradient = 2.0 * (v * m_curve.matrix);
+        const double across = glm::dot(gradient, u), r = cell.radius;
+        const glm::dvec3 in_sphere = gradient - u * across;
+        const double along = glm::length(in_sphere);
+        // What changes over the cell: the gradient, the tangent's direction, H.
+        const double change = (2 * m_square_norm * (1 + r) + std::fabs(across) + along * r) * r;
         if (!(change <= 0.5 * along)) return r;
-        const double sine = change / along, tangent = sine / std::sqrt(1 - sine * sine);
-        return std::min(r, 2 * r * tangent + 0.5 * r * r);
+        const glm::dvec3 t = glm::cross(u, in_sphere) / along, bent = m_curve.matrix * t;
+        const double curvature = std::fabs(2 * glm::dot(bent, bent) - across) +
+                                 2 * (change / along) * (2 * m_square_norm + std::fabs(across)) + change;
+        // 1.2: from arc to chord, whose tangent turns by less than 60 degrees.
+        return std::min(r, 1.2 * 0.5 * std::hypot(curvature / (along - change), 1.0) * r * r);
     }
 
     /// The root on the great circle from corner a to corner b, whose signs differ.
@@ -179,14 +187,15 @@ class Cells {
         int a = static_cast<int>(edge & 0xffffffffu), b = static_cast<int>(edge >> 32);
         if (inside(b)) std::swap(a, b);
         const glm::dvec3 p = corner(a), step = corner(b) - p;
+        const double enough = 0x1p-50 / glm::length(step);
         double low = 0, high = 1, s = 0.5;
-        for (int k = 0; k < 160 && high - low > 0x1p-52; ++k) {
+        for (int k = 0; k < 160 && high - low > enough; ++k) {
             const glm::dvec3 q = p + step * s, u = glm::normalize(q), v = m_curve.matrix * u + m_curve.offset;
             const double f = glm::dot(v, v) - 1;
             (f < -m_curve.noise ? low : high) = s;
             const glm::dvec3 turn = (step - u * glm::dot(u, step)) / glm::length(q);
             const double next = s - f / (2 * glm::dot(v, m_curve.matrix * turn));
-            if (std::fabs(next - s) < 0x1p-50) break;
+            if (std::fabs(next - s) < enough) break;
             // Far from the root Newton's method creeps: every third step halves.
             s = k % 3 < 2 && next > low && next < high ? next : 0.5 * (low + high);
         }
