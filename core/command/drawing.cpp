@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <glm/common.hpp>
 #include <numbers>
 
 #include "anamorph/figure/level_of_detail.h"
@@ -71,7 +72,10 @@ class Page {
     void draw_outlines(const ParallelFor& parallel_for) {
         OutlineOptions options;
         options.hide = m_options.hidden != Hidden::draw;
-        const std::vector<Outline> all = outlines(m_frame, m_view, options, parallel_for).bodies;
+        options.crossings = m_options.crossings;
+        options.tol = kShareOfTol * m_options.tol;
+        const Outlines found = outlines(m_frame, m_view, options, parallel_for);
+        const std::vector<Outline>& all = found.bodies;
         std::vector<Detail> details(all.size(), Detail::body);
         if (m_options.lod > 0) details = levels_of_detail(m_shapes, m_view, {m_options.lod});
         std::vector<int> lines;
@@ -84,6 +88,9 @@ class Page {
                 draw_outline(i, all[i]);
         }
         draw_lines(lines, all, parallel_for);
+        const auto drawn = [&](int i) { return details[static_cast<std::size_t>(i)] > Detail::line; };
+        for (const CrossingCurve& curve : found.crossings)
+            if (drawn(curve.first) && drawn(curve.second)) draw_crossing(curve);
     }
 
     void draw_sticks() {
@@ -102,6 +109,13 @@ class Page {
         for (const Arc& arc : outline.visible) add_arc(StrokeKind::visible, i, outline, arc);
         if (m_options.hidden == Hidden::dash)
             for (const Arc& arc : outline.hidden) add_arc(StrokeKind::hidden, i, outline, arc);
+    }
+
+    void draw_crossing(const CrossingCurve& curve) {
+        const auto i = static_cast<std::size_t>(curve.first);
+        for (const Arc& arc : curve.visible) add_part(StrokeKind::visible, i, curve, arc);
+        if (m_options.hidden == Hidden::dash)
+            for (const Arc& arc : curve.hidden) add_part(StrokeKind::hidden, i, curve, arc);
     }
 
     void draw_dot(std::size_t i, const Outline& outline) {
@@ -147,6 +161,24 @@ class Page {
             depth += outline.viewed(angle).z;
         }
         if (arc.length() > kWholeTurn) points.back() = points.front();
+        add(kind, i, points, depth / static_cast<double>(points.size()));
+    }
+
+    /// A part of a closed polyline; it may go over its end.
+    void add_part(StrokeKind kind, std::size_t i, const CrossingCurve& curve, const Arc& arc) {
+        std::vector<glm::dvec2> points;
+        double depth = 0;
+        const auto add_point = [&](double t) {
+            const auto k = static_cast<std::size_t>(t), count = curve.points.size();
+            const glm::dvec3 p = m_view.to_view(
+                glm::mix(curve.points[k % count], curve.points[(k + 1) % count], t - std::floor(t)));
+            points.push_back(on_page(m_view.to_screen(p)));
+            depth += p.z;
+        };
+        add_point(arc.begin);
+        for (double t = std::floor(arc.begin) + 1; t < arc.end; ++t) add_point(t);
+        add_point(arc.end);
+        if (arc.length() >= static_cast<double>(curve.points.size())) points.back() = points.front();
         add(kind, i, points, depth / static_cast<double>(points.size()));
     }
 

@@ -22,6 +22,7 @@ struct DrawingOptions {
         perspective;  ///< from the eye to the middle of the window, units; orthographic without
     Hidden hidden = Hidden::remove;   ///< what becomes of hidden arcs; draw: bodies are transparent
     Sticks sticks = Sticks::none;     ///< instead of outlines
+    bool crossings = false;           ///< also the curves in which bodies pass through each other
     double lod = 0;                   ///< bodies no wider are dots and lines; pixels
     double tol = 0.1;                 ///< most that chords are off the curve; pixels
     double line_width = 1, halo = 0;  ///< pixels; the halo is the gap on either side of a nearer line

@@ -194,6 +194,8 @@ class Command {
                         "Instead of outlines: the longest axis of each body, or lines from joint to joint")
             ->transform(CLI::CheckedTransformer(sticks))
             ->option_text("none|axes|joints [none]");
+        sub->add_flag("--crossings", d.crossings,
+                      "Draw the curves, too, in which bodies pass through each other");
         add_number(sub, "--lod", d.lod, 0, 32767, "Bodies no wider, in pixels, are drawn as dots and lines");
         sub->add_option("--perspective", m_settings.perspective,
                         "In perspective, seen from so many units before the middle of the window")

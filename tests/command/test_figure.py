@@ -212,6 +212,15 @@ class Pictures(Case):
         # Around the eye nothing is drawn.
         self.assertEqual(self.paths(sphere, "--perspective=100"), [])
 
+    def test_curves_where_bodies_meet(self):
+        # Spheres of radius 100 about x = 440 and 560 meet at x = 500 in a circle of radius 80, seen from its side.
+        pair = scene(("a", (100, 100, 100), (440, 500, 500)), ("b", (100, 100, 100), (560, 500, 500)))
+        without, crossed = self.paths(pair, "--size=1000"), self.paths(pair, "--size=1000", "--crossings")
+        self.assertEqual(len(crossed), len(without) + 1)
+        [curve] = [points for name, points, _ in crossed if all(abs(x - 500) < 0.1 for x, _ in points)]
+        self.assertAlmostEqual(min(y for _, y in curve), 420, delta=0.1)
+        self.assertAlmostEqual(max(y for _, y in curve), 580, delta=0.1)
+
     def test_sticks(self):
         bone = scene(("bone", (10, 100, 10), (500, 300, 500)))
         [(name, points, _)] = self.paths(bone, "--sticks=axes", "--size=1000", kind="stick")
