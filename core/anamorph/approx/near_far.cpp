@@ -134,7 +134,7 @@ struct Chebyshev {
 
 /// Coefficients each way that make a tolerance cheapest (measured).
 int degree_for(double tol) {
-    return tol >= 0.03 ? 4 : tol >= 2e-4 ? 6 : 8;
+    return tol >= 0.03 ? 4 : tol >= 2e-3 ? 5 : tol >= 2e-4 ? 6 : 8;
 }
 
 struct Cell {
@@ -459,7 +459,7 @@ class Planner {
     }
 
     /// How many near lines a cell of this size may have before it is cut (measured).
-    static int most_near(int size) { return size >= 64 ? 3 : size >= 32 ? 6 : 12; }
+    static int most_near(int size) { return size >= 64 ? 3 : size >= 32 ? 10 : 16; }
 
     void divide(int x0, int y0, int size, std::size_t depth, const simd::LineBounds& bounds,
                 const Known& known, FarSums sums, double budget, bool has_polynomial) {

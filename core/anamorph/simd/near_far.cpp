@@ -107,7 +107,7 @@ HWY_INLINE void WithExponent(float b, const Body& body) {
 /// x^-K for x = 1 / inverse.
 HWY_INLINE V PowerOfInverse(int k, V inverse) {
     const V x2 = hn::Mul(inverse, inverse), x4 = hn::Mul(x2, x2);
-    return k == 4 ? x4 : hn::Mul(x4, k == 6 ? x2 : x4);
+    return k == 4 ? x4 : hn::Mul(x4, k == 5 ? inverse : k == 6 ? x2 : x4);
 }
 
 // Bounds are made with estimates of roots and quotients: kLoose covers 40 of them, one after the other.
@@ -173,15 +173,6 @@ HWY_INLINE AxisError Both(const AxisError& s, const AxisError& t, V lebesgue) {
     return {value, linear};
 }
 
-/// Interpolating functions whose second derivative jumps: the error per unit of the jump, and per unit of the
-/// third derivative on either side (suprema of Peano's kernel and of its integral, rounded up).
-constexpr float JumpError(int k) {
-    return k == 4 ? 0.0190f : k == 6 ? 0.00775f : 0.00425f;
-}
-constexpr float ThirdError(int k) {
-    return k == 4 ? 0.0161f : k == 6 ? 0.0049f : 0.0023f;
-}
-
 template <Exponent kExponent>
 HWY_INLINE void BoundLines(const LineTable& lines, const CellFrame& cell, const WeightParameters& weights,
                            int k, float lebesgue, LineBounds& out) {
@@ -193,7 +184,7 @@ HWY_INLINE void BoundLines(const LineTable& lines, const CellFrame& cell, const 
     // Bounds of the second and third derivatives of (a + r)^-b along a line, times (r / half side)^2 and ^3
     // over the function, times the interpolation's constant on both axes.
     const float b1 = weights.b < 1 ? HWY_MAX(weights.b + 1, 2 / std::sqrt(2 - weights.b)) : weights.b + 1;
-    const float axes = ThirdError(k) * (1 + lebesgue);
+    const float axes = third_error(k) * (1 + lebesgue);
     const float third_of_weight = axes * weights.b * (weights.b + 2) * b1;
     const float second_of_weight = axes * 3 * weights.b * (weights.b + 1);
     V sums[kSums], least_sum = zero;
@@ -243,7 +234,7 @@ HWY_INLINE void BoundLines(const LineTable& lines, const CellFrame& cell, const 
             const V jump = hn::Mul(hn::Mul(jumps, hn::Mul(size, About(half, nearest))),
                                    hn::MulAdd(larger, hn::Sub(one, constant), constant));
             const V third = hn::Mul(size2, hn::Mul(size, Set(third_of_weight)));
-            error.value = hn::MulAdd(jump, Set(JumpError(k) * weights.b), third);
+            error.value = hn::MulAdd(jump, Set(jump_error(k) * weights.b), third);
             error.linear = hn::MulAdd(size2, Set(second_of_weight), error.value);
             const auto is_apart = hn::Gt(clear, Set(1e-3f));
             error.value = hn::IfThenElse(is_apart, error.value, infinite);
@@ -541,11 +532,13 @@ HWY_INLINE void TransformDegree(const double* left, const double* right, const d
 void Transform(const double* left, const double* right, int k, const double* from, const double* more,
                double* to) {
     if (k == 4) return TransformDegree<4, false>(left, right, from, more, to);
+    if (k == 5) return TransformDegree<5, false>(left, right, from, more, to);
     if (k == 6) return TransformDegree<6, false>(left, right, from, more, to);
     TransformDegree<8, false>(left, right, from, more, to);
 }
 void Shift(const double* left, const double* right, int k, const double* from, double* to) {
     if (k == 4) return TransformDegree<4, true>(left, right, from, nullptr, to);
+    if (k == 5) return TransformDegree<5, true>(left, right, from, nullptr, to);
     if (k == 6) return TransformDegree<6, true>(left, right, from, nullptr, to);
     TransformDegree<8, true>(left, right, from, nullptr, to);
 }
@@ -665,6 +658,7 @@ class PolynomialRows {
 
     HWY_INLINE PolynomialRows(const FieldCell& cell, float y, int height) : m_k(cell.k) {
         if (m_k == 4) Fill<4>(cell, y, height);
+        if (m_k == 5) Fill<5>(cell, y, height);
         if (m_k == 6) Fill<6>(cell, y, height);
         if (m_k == 8) Fill<8>(cell, y, height);
     }
@@ -681,16 +675,16 @@ class PolynomialRows {
   private:
     template <int K>
     HWY_INLINE void Fill(const FieldCell& cell, float y, int height) {
-        const Floats d;
+        const hn::CappedTag<float, 8 * K % 16 ? 8 : 16> d;
         const float unit = 1 / cell.frame.half;
-        for (int m = 0; m < 8 * K; m += kLanes) {
-            V c[K];
+        for (int m = 0; m < 8 * K; m += static_cast<int>(hn::MaxLanes(d))) {
+            hn::Vec<decltype(d)> c[K];
             for (int n = 0; n < K; ++n) c[n] = hn::LoadU(d, cell.coefficients + n * 8 * K + m);
             for (int j = 0; j < height; ++j) {
-                const V t = Set((y + static_cast<float>(j) - cell.frame.y) * unit);
-                V sum = c[K - 1];
+                const auto t = hn::Set(d, (y + static_cast<float>(j) - cell.frame.y) * unit);
+                auto sum = c[K - 1];
                 for (int n = K - 2; n >= 0; --n) sum = hn::MulAdd(sum, t, c[n]);
-                hn::Store(sum, d, m_rows + j * 8 * K + m);
+                hn::StoreU(sum, d, m_rows + j * 8 * K + m);
             }
         }
     }
