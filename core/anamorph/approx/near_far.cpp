@@ -30,7 +30,7 @@
 //     -3 cosine sine^2 / r^2. Any b.
 //
 // simd/near_far.cpp evaluates these (BesideError, EndError, BoundLines); tests/core holds them against errors
-// of interpolants. Lines that the cell touches are near.
+// of interpolants, and proves the kernel's supremum and integral. Lines that the cell touches are near.
 //
 // The displacement is S / W. With a sum off by dS and dW the quotient is off by (dS - D dW) / (W + dW). The
 // interpolant is linear in f, so dS - D dW is what it makes of the sum of w_i (D_i - D): each line counts
@@ -38,7 +38,9 @@
 //
 // Rounding: simd/near_far.h says what floats cost a line's sums. Near lines are seen from the cell's centre,
 // so that numbers are small. A relative error e_i of a near line's weight moves the quotient by e_i w_i |D_i
-// - D| / W, which stays small on the line itself: there D is D_i.
+// - D| / W, which stays small on the line itself: there D is D_i. Where a line's place, as a float, is too
+// coarse for its a + r, the cell is fine: places are two floats (simd/near_far.h). Distances below 1e-6 are
+// cut off, so where a is less than that, cells that a line touches are exact.
 #include "anamorph/approx/near_far.h"
 
 #include <algorithm>
@@ -428,12 +430,14 @@ class Planner {
 
         // D is a mean of the D_i: no farther off than the farthest, and lines of little weight count by that.
         // And D - center is the mean of (w_i - w_i at the centre) (D_i - center) and of w_i at the centre
-        // times the change of D_i, since the sum of w_i (D_i - center) is 0 there.
+        // times the change of D_i, since the sum of w_i (D_i - center) is 0 there but for the polynomial's
+        // errors.
         const double half = static_cast<double>(known.frame.half), b = m_map.weights().b;
         known.farthest = std::max(sums.farthest, over.farthest);
-        const double change =
-            half * (std::numbers::sqrt2 * b * (sums.near_reach + over.near_reach) + sums.slope + over.slope) /
-            known.least;
+        const double change = (half * (std::numbers::sqrt2 * b * (sums.near_reach + over.near_reach) +
+                                       sums.slope + over.slope) +
+                               sums.error) /
+                              known.least;
         const double mean = std::min((sums.reach + over.light) / known.least + over.heavy, known.farthest);
         // The centre's displacement is itself a float's.
         known.spread = std::min(mean, change) * (1 + 1e-3) + 64 * kUlp * (mean + known.offset);

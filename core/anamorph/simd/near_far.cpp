@@ -207,7 +207,7 @@ HWY_INLINE void BoundLines(const LineTable& lines, const CellFrame& cell, const 
         const auto power = [&](V distance) HWY_ATTR { return Power<kExponent, kEstimates>(distance, b); };
         const V most = hn::Mul(hn::Mul(factor, Set(kLoose)), power(nearest));
         const V least = hn::Mul(hn::Mul(factor, Set(kTight)), power(farthest));
-        const V weight = hn::Mul(factor, power(hn::Max(hn::Add(a, far), least_distance)));
+        const V weight = hn::Mul(factor, Power<kExponent>(hn::Max(hn::Add(a, far), least_distance), b));
         hn::StoreU(most, d, out.most + i);
         hn::StoreU(nearest, d, out.nearest + i);
         hn::StoreU(least, d, out.least + i);
@@ -770,7 +770,7 @@ namespace {
 /// Calls body(table, bounds, first) for so many lines at a time that floats add up few numbers.
 template <class Body>
 void each_part(const LineTable& lines, const LineBounds& bounds, const Body& body) {
-    constexpr int kPart = 256;
+    constexpr int kPart = 128;
     for (int first = 0; first < lines.count; first += kPart) {
         LineBounds b = bounds;
         for (float** array : {&b.most, &b.least, &b.value, &b.linear, &b.nearest}) *array += first;
