@@ -50,7 +50,8 @@ def difference(a, b):
 
 
 def check_face(folder):
-    printed = run("xvfb-run", "-a", "pvbatch", SOURCE + "/examples/paraview/face.py", folder, "--frames", "4", "--points", "97")
+    printed = run("xvfb-run", "-a", "pvbatch", SOURCE + "/examples/paraview/face.py", folder, "--frames", "4",
+                  "--points", "97")
     assert "50 deformations, 9 faces, 3 expressions, 4 frames" in printed, printed
     run("xvfb-run", "-a", "pvbatch", script(folder, "again.py", AGAIN.format(folder=folder)))
     paths = sorted(glob.glob(folder + "/*.png"))
