@@ -15,12 +15,65 @@ using Triangle = std::array<int, 3>;
 
 // Near-coincident bodies meet everywhere: what is then left of the curve is cut short.
 constexpr std::size_t kMostCells = 40000;
-constexpr int kMostLevels = 40;
+constexpr int kMostLevels = 40, kMostHalvings = 16;
 
 std::uint64_t edge_key(int a, int b) {
     const auto low = static_cast<std::uint64_t>(std::min(a, b)),
                high = static_cast<std::uint64_t>(std::max(a, b));
     return high << 32 | low;
+}
+
+using Tolerance = std::function<bool(const glm::dvec3&, double, double)>;
+
+/// A bound of the curve's curvature within `radius` of u. In the sphere it is |t.H t| / |grad f| along the
+/// curve's tangent t, with f = |B u + b|^2 - 1 and H = 2 B^T B - (u.grad f); the sphere's own is 1.
+struct Bend {
+    bool known = false;  ///< the curve's direction changes by less than 30 degrees
+    double curvature = 0;
+
+    Bend(const SphereCurve& curve, const glm::dvec3& u, double radius) {
+        double square_norm = 0;
+        for (int k = 0; k < 3; ++k) square_norm += glm::dot(curve.matrix[k], curve.matrix[k]);
+        const glm::dvec3 gradient = 2.0 * ((curve.matrix * u + curve.offset) * curve.matrix);
+        const double across = glm::dot(gradient, u);
+        const glm::dvec3 in_sphere = gradient - u * across;
+        const double along = glm::length(in_sphere);
+        // How much the gradient, the tangent's direction and H change over the radius.
+        const double change = (2 * square_norm * (1 + radius) + std::fabs(across) + along * radius) * radius;
+        known = change <= 0.5 * along;
+        if (!known) return;
+        const glm::dvec3 bent = curve.matrix * (glm::cross(u, in_sphere) / along);
+        const double in_cell = std::fabs(2 * glm::dot(bent, bent) - across) +
+                               2 * (change / along) * (2 * square_norm + std::fabs(across)) + change;
+        curvature = std::hypot(in_cell / (along - change), 1.0);
+    }
+};
+
+/// Adds points between p and q, on the curve and not q, until its chords hold. Between them the curve is at
+/// most twice as long as the chord, as its direction changes by less than 60 degrees; a curve with curvature
+/// k is at most k l^2 / 8 from a chord of length l, 1.2 times that where its direction changes so much.
+void add_between(const SphereCurve& curve, const glm::dvec3& p, const glm::dvec3& q, const Tolerance& holds,
+                 int depth, std::vector<glm::dvec3>& points) {
+    const double length = glm::distance(p, q);
+    const glm::dvec3 middle = glm::normalize(p + q);
+    const Bend bend(curve, middle, 1.5 * length);
+    const double deviation = bend.known ? 1.2 * bend.curvature * length * length / 8 : length;
+    if (depth == 0 || !(length > 0) || holds(middle, length, deviation)) return;
+    // Across the chord, in the sphere, to the curve.
+    const glm::dvec3 across = glm::cross(middle, (q - p) / length);
+    glm::dvec3 u = middle;
+    double moved = 0;
+    for (int k = 0; k < 12; ++k) {
+        const glm::dvec3 v = curve.matrix * u + curve.offset;
+        const double step = -(glm::dot(v, v) - 1) / (2 * glm::dot(v, curve.matrix * across));
+        if (!(std::fabs(moved + step) < length)) return;
+        moved += step;
+        u = glm::normalize(middle + across * moved);
+        if (std::fabs(step) < 0x1p-50) break;
+    }
+    add_between(curve, p, u, holds, depth - 1, points);
+    points.push_back(u);
+    add_between(curve, u, q, holds, depth - 1, points);
 }
 
 /// Cells on the sphere, all of one size, that the curve may pass through: refined together, so that
@@ -69,11 +122,12 @@ class Cells {
         m_cells = std::move(finer);
     }
 
-    /// Do chords across the cells hold?
-    bool hold(const std::function<bool(const glm::dvec3&, double, double)>& holds) const {
+    /// Does the curve cross each cell in one direction, or is the cell so small that it does not matter?
+    bool clear(const Tolerance& holds) const {
         return std::all_of(m_cells.begin(), m_cells.end(), [&](const Triangle& t) {
             const Cell cell(*this, t);
-            return holds(cell.middle, cell.radius, deviation(cell));
+            return Bend(m_curve, cell.middle, cell.radius).known ||
+                   holds(cell.middle, cell.radius, cell.radius);
         });
     }
 
@@ -163,25 +217,6 @@ class Cells {
                along * r + (0.5 * across + m_square_norm) * r * r + 2 * m_curve.noise;
     }
 
-    /// How far the curve may be from its chord across a cell: k l^2 / 8 for a curve whose curvature is at
-    /// most k, between points l apart. Its curvature in the sphere is |t.H t| / |grad f| along its tangent t,
-    /// with H = 2 B^T B - (u.grad f), and the sphere's own is 1.
-    double deviation(const Cell& cell) const {
-        const glm::dvec3 &u = cell.middle, v = m_curve.matrix * u + m_curve.offset;
-        const glm::dvec3 gradient = 2.0 * (v * m_curve.matrix);
-        const double across = glm::dot(gradient, u), r = cell.radius;
-        const glm::dvec3 in_sphere = gradient - u * across;
-        const double along = glm::length(in_sphere);
-        // What changes over the cell: the gradient, the tangent's direction, H.
-        const double change = (2 * m_square_norm * (1 + r) + std::fabs(across) + along * r) * r;
-        if (!(change <= 0.5 * along)) return r;
-        const glm::dvec3 t = glm::cross(u, in_sphere) / along, bent = m_curve.matrix * t;
-        const double curvature = std::fabs(2 * glm::dot(bent, bent) - across) +
-                                 2 * (change / along) * (2 * m_square_norm + std::fabs(across)) + change;
-        // 1.2: from arc to chord, whose tangent turns by less than 60 degrees.
-        return std::min(r, 1.2 * 0.5 * std::hypot(curvature / (along - change), 1.0) * r * r);
-    }
-
     /// The root on the great circle from corner a to corner b, whose signs differ.
     glm::dvec3 crossing(std::uint64_t edge) const {
         int a = static_cast<int>(edge & 0xffffffffu), b = static_cast<int>(edge >> 32);
@@ -212,16 +247,23 @@ class Cells {
 
 }  // namespace
 
-std::vector<std::vector<glm::dvec3>> loops_of(
-    const SphereCurve& curve, const std::function<bool(const glm::dvec3&, double, double)>& holds) {
+std::vector<std::vector<glm::dvec3>> loops_of(const SphereCurve& curve, const Tolerance& holds) {
     Cells cells(curve);
     if (cells.coincides()) return {};
     cells.refine();
     for (int level = 1; level < kMostLevels && cells.count() > 0 && cells.count() < kMostCells; ++level) {
-        if (cells.hold(holds)) break;
+        if (cells.clear(holds)) break;
         cells.refine();
     }
-    return cells.loops();
+    std::vector<std::vector<glm::dvec3>> loops;
+    for (const std::vector<glm::dvec3>& coarse : cells.loops()) {
+        std::vector<glm::dvec3>& loop = loops.emplace_back();
+        for (std::size_t k = 0; k < coarse.size(); ++k) {
+            loop.push_back(coarse[k]);
+            add_between(curve, coarse[k], coarse[(k + 1) % coarse.size()], holds, kMostHalvings, loop);
+        }
+    }
+    return loops;
 }
 
 }  // namespace anamorph

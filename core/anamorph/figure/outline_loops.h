@@ -21,12 +21,11 @@ struct SphereCurve {
     }
 };
 
-/// The curve as closed polylines, their points on it. `holds(middle, radius, deviation)` says whether chords
-/// near the direction `middle` may be `deviation` off (in the sphere's units; at most `radius`, the size of
-/// the cell). Loops may be left out, or joined where they come near each other, in cells that hold their
-/// radius.
+/// The curve as closed polylines, their points on it. `holds(u, radius, deviation)` says whether a chord may
+/// be that far off (in the sphere's units), all within `radius` of u. Loops may be left out, or joined where
+/// they come near each other, within a distance that holds.
 std::vector<std::vector<glm::dvec3>> loops_of(
     const SphereCurve& curve,
-    const std::function<bool(const glm::dvec3&, double radius, double deviation)>& holds);
+    const std::function<bool(const glm::dvec3& u, double radius, double deviation)>& holds);
 
 }  // namespace anamorph
