@@ -227,6 +227,7 @@ class Cells {
         for (int k = 0; k < 160 && high - low > enough; ++k) {
             const glm::dvec3 q = p + step * s, u = glm::normalize(q), v = m_curve.matrix * u + m_curve.offset;
             const double f = glm::dot(v, v) - 1;
+            if (std::fabs(f) <= m_curve.noise * 0x1p-5) break;
             (f < -m_curve.noise ? low : high) = s;
             const glm::dvec3 turn = (step - u * glm::dot(u, step)) / glm::length(q);
             const double next = s - f / (2 * glm::dot(v, m_curve.matrix * turn));
