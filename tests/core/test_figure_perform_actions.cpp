@@ -6,6 +6,7 @@
 
 #include <cmath>
 #include <numbers>
+#include <random>
 
 #include "anamorph/map/ellipsoid_distance.h"
 #include "figure_cases.h"
@@ -240,6 +241,47 @@ TEST(FigureOwnScripts, TouchFromInsideAndOutOfReach) {
     EXPECT_LT(center(frame, "b").x, 0);  // the shorter way out
     Performance far = perform(arm + "repeat 0 1 moveto g c 300 0 0 repeat 0 1 touch b c b world j z stop");
     expect_near(center(far.frame(1), "b"), {40, 0, 0}, 1e-5);
+}
+
+// Ellipsoids of any shape: they touch where they end up, and by a scan of everything nearer, nowhere before.
+TEST(FigureOwnScripts, TouchIsTheNearest) {
+    constexpr unsigned kSeed = 2003;
+    SCOPED_TRACE("seed " + std::to_string(kSeed));
+    std::mt19937 random(kSeed);
+    std::uniform_real_distribution<double> unit(0, 1);
+    const auto numbers = [&](double low, double high) {
+        std::string text;
+        for (int k = 0; k < 3; ++k) {
+            text += ' ';
+            text += std::to_string(low + (high - low) * unit(random));
+        }
+        return text;
+    };
+    int touching = 0;
+    for (int i = 0; i < 80; ++i) {
+        SCOPED_TRACE(i);
+        Performance p = perform("figure f 2 a b  ellipsoid a 3 3 3  ellipsoid b" + numbers(2, 40) +
+                                "  joint j a 0 0 0 b" + numbers(-40, 40) + "  figure g 1 c  ellipsoid c" +
+                                numbers(2, 20) + "  repeat 0 1 moveto g c" + numbers(-45, 45) +
+                                "  repeat 0 1 spinto g c world" + numbers(0, 180) +
+                                "\nrepeat 1 2 touch b c b world j z stop");
+        const FigureFrame before = p.frame(1), after = p.frame(2);
+        const Ellipsoid from = body_named(before, "b").shape, still = body_named(before, "c").shape;
+        const auto apart = [&](double angle) {
+            const glm::dmat3 turn = glm::mat3_cast(turn_about({0, 0, 1}, angle));
+            return contact_of({turn * from.center, from.axes, turn * from.rotation}, still).ratio > 1;
+        };
+        // The joint is in the origin, about which the centre turned; b was not turned before.
+        const glm::dvec3 x = body_named(after, "b").shape.rotation[0];
+        const double angle = std::atan2(x.y, x.x) / kDegree;
+        const bool touches =
+            std::abs(contact_of(body_named(after, "b").shape, body_named(after, "c").shape).ratio - 1) < 1e-9;
+        touching += touches;
+        const double scanned = touches ? std::abs(angle) - 1e-6 : 180;
+        for (double t = 0; t < scanned; t += 0.5)
+            ASSERT_TRUE(apart(t) == apart(0) && apart(-t) == apart(0)) << t << " before " << angle;
+    }
+    EXPECT_GT(touching, 20);
 }
 
 // --- grojnt, movjnt, growto
