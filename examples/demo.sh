@@ -115,7 +115,8 @@ for op in pano warp morph; do
         size=600 cases=(--cases smooth_a1_b2,face_a1_b2,random_a1_b2,crossing_a1_b2,short_a1_b2,outside_a1_b2,paper)
     fi
     echo "$table.csv, .png, .svg"
-    ../../release/tests/bench/speed_vs_error --op "$op" --size "$size" --csv "$table.csv" >"$table.txt"
+    LD_LIBRARY_PATH="$demo/../vtk-9.1/lib" ../../release/tests/bench/speed_vs_error \
+        --op "$op" --size "$size" --csv "$table.csv" >"$table.txt"
     /usr/bin/python3 ../../../examples/plot_speed_vs_error.py "${cases[@]}" "$table.csv" "$table.png" "$table.svg"
 done
 

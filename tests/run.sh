@@ -36,6 +36,11 @@ build() {
     cmake --preset "$@" -DANAMORPH_WERROR=ON && cmake --build --preset "$1" -j "$jobs"
 }
 
+# with_vtk COMMAND...: where the libraries and tools of plain VTK find each other.
+with_vtk() {
+    LD_LIBRARY_PATH="$vtk_prefix/lib" "$@"
+}
+
 run_tests() {
     ctest --preset "$1" -j "$jobs" --no-tests=error --no-label-summary
 }
@@ -56,8 +61,8 @@ step build-asan build asan
 step test-asan run_tests asan
 step build-release build release
 step test-release run_tests release
-step build-vtk build vtk "-DVTK_ROOT=$vtk_prefix/usr" -DPython3_EXECUTABLE=/usr/bin/python3
-step test-vtk run_tests vtk
+step build-vtk with_vtk build vtk "-DVTK_ROOT=$vtk_prefix/usr" -DPython3_EXECUTABLE=/usr/bin/python3
+step test-vtk with_vtk run_tests vtk
 step build-paraview build paraview -DPython3_EXECUTABLE=/usr/bin/python3
 step test-paraview run_tests paraview
 for preset in vtk paraview release; do

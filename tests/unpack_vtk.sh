@@ -3,8 +3,9 @@
 # Usage: tests/unpack_vtk.sh PREFIX
 # Puts Debian's plain VTK 9.1 into PREFIX (200 MB), since its packages conflict with ParaView's. Needs no root;
 # says and does nothing when it is there already. What VTK itself needs is in section [vtk] of packages.txt.
-# For CMake:  -DVTK_ROOT=PREFIX/usr -DPython3_EXECUTABLE=/usr/bin/python3
-# For Python: PYTHONPATH=PREFIX/usr/lib/python3/dist-packages /usr/bin/python3
+# To build and to run: export LD_LIBRARY_PATH=PREFIX/lib, where its libraries and tools find each other.
+# For CMake:           -DVTK_ROOT=PREFIX/usr -DPython3_EXECUTABLE=/usr/bin/python3
+# For Python:          PYTHONPATH=PREFIX/usr/lib/python3/dist-packages /usr/bin/python3
 set -euo pipefail
 if [ $# -ne 1 ]; then
     echo "usage: unpack_vtk.sh PREFIX" >&2
@@ -33,6 +34,7 @@ unpack() {
     for package in *.deb; do
         dpkg-deb -x "$package" root || return 1
     done
+    ln -sfn "$(cd root && echo usr/lib/*-linux-gnu)" "$prefix/lib"
     mv root/usr "$prefix/usr"
 }
 
