@@ -466,7 +466,7 @@ TEST(VtkDeform, ANewInputIsSeen) {
     add(filter, list);
     filter->Update();
     mesh->GetPoints()->SetPoint(7, .11, .22, .33);
-    mesh->GetPoints()->Modified();
+    mesh->Modified();  // of the mesh alone, as from Python
     filter->Update();
     EXPECT_EQ(coordinates(output(filter)), deformed(mesh, list));
     const auto other = square(9, VTK_FLOAT);

@@ -45,15 +45,6 @@ void for_each_point(std::int64_t count, const ParallelFor& parallel_for, const B
     });
 }
 
-/// An array and its time; holding it keeps its address from being used again.
-struct Version {
-    vtkSmartPointer<vtkDataArray> array;
-    vtkMTimeType time = 0;
-
-    static Version of(vtkDataArray* array) { return {array, array ? array->GetMTime() : 0}; }
-    bool operator==(const Version& other) const { return array == other.array && time == other.time; }
-};
-
 /// The values of the columns and rows if points are a grid: u depends on the column alone, v on the row
 /// alone.
 struct Axes {
@@ -81,20 +72,21 @@ class MeshOf final : public DeformedMesh {
   public:
     MeshOf(vtkPointSet* mesh, vtkDataArray* coordinates, const DeformSettings& settings)
         : m_settings(settings),
-          m_source(Version::of(mesh->GetPoints()->GetData())),
-          m_coordinates(Version::of(coordinates)),
-          m_base(base_of(m_source.array)) {
+          m_mesh_time(mesh->GetMTime()),
+          m_source(mesh->GetPoints()->GetData()),
+          m_coordinates(coordinates),
+          m_base(base_of(m_source)) {
         read_parameters();
         start();
     }
 
+    /// Times are given once only, so that of the mesh tells it from others too.
     bool fits(vtkPointSet* mesh, vtkDataArray* coordinates, const DeformSettings& settings) const override {
-        return settings == m_settings && Version::of(mesh->GetPoints()->GetData()) == m_source &&
-               Version::of(coordinates) == m_coordinates;
+        return settings == m_settings && mesh->GetMTime() == m_mesh_time && coordinates == m_coordinates;
     }
 
-    vtkIdType deform(const std::vector<Deformation>& list, vtkPointSet* mesh, vtkPointSet* out,
-                     Execution& execution, double begin, double end) override {
+    vtkIdType deform(const std::vector<Deformation>& list, vtkPointSet* out, Execution& execution,
+                     double begin, double end) override {
         std::vector<DeformationChange> changes = difference(m_list, list);
         if (changes.size() > list.size()) {
             // From scratch is less work.
@@ -104,7 +96,7 @@ class MeshOf final : public DeformedMesh {
         m_list = list;
         const double middle = m_settings.normals ? begin + (end - begin) * 0.5 : end;
         const vtkIdType written = move_points(changes, execution.stage(begin, middle));
-        if (m_settings.normals) update_normals(changes, mesh->GetMTime(), out, execution.stage(middle, end));
+        if (m_settings.normals) update_normals(changes, out, execution.stage(middle, end));
         hand_out(out);
         return written;
     }
@@ -130,7 +122,7 @@ class MeshOf final : public DeformedMesh {
     }
 
     void read_parameters() {
-        vtkDataArray* source = m_settings.on_plane ? m_source.array : m_coordinates.array;
+        vtkDataArray* source = m_settings.on_plane ? m_source : m_coordinates;
         const vtkIdType count = source->GetNumberOfTuples();
         m_parameters.resize(static_cast<std::size_t>(count));
         double tuple[9];
@@ -235,16 +227,15 @@ class MeshOf final : public DeformedMesh {
         return points;
     }
 
-    /// mesh: a shallow copy of the undeformed one, which was last changed at mesh_time.
-    void update_normals(const std::vector<DeformationChange>& changes, vtkMTimeType mesh_time,
-                        vtkPointSet* mesh, const ParallelFor& parallel_for) {
+    /// mesh: a shallow copy of the undeformed one.
+    void update_normals(const std::vector<DeformationChange>& changes, vtkPointSet* mesh,
+                        const ParallelFor& parallel_for) {
         vtkDataArray* given = mesh->GetPointData()->GetNormals();
         if (given && (given->GetNumberOfComponents() != 3 ||
                       given->GetNumberOfTuples() != static_cast<vtkIdType>(size())))
             given = nullptr;
-        const bool all = !m_normals || mesh_time != m_mesh_time;
         std::vector<vtkIdType> points;
-        if (all) {
+        if (!m_normals) {
             points.resize(size());
             std::iota(points.begin(), points.end(), vtkIdType{0});
             m_normals = new_array(size());
@@ -264,7 +255,6 @@ class MeshOf final : public DeformedMesh {
             if (given) given->GetTuple(i, n);
             for (int c = 0; c < 3; ++c) normals[3 * i + c] = static_cast<T>(n[c]);
         }
-        m_mesh_time = mesh_time;
     }
 
     void hand_out(vtkPointSet* out) {
@@ -283,14 +273,14 @@ class MeshOf final : public DeformedMesh {
     }
 
     DeformSettings m_settings;
-    Version m_source, m_coordinates;
+    vtkMTimeType m_mesh_time;  ///< when the mesh was last changed
+    vtkSmartPointer<vtkDataArray> m_source, m_coordinates;
     vtkSmartPointer<vtkAOSDataArrayTemplate<T>> m_base;
     std::vector<glm::dvec2> m_parameters;
     std::vector<vtkIdType> m_unmoved;  ///< points whose parameters are not finite
     std::variant<std::monostate, DeformedGrid, DeformedPoints> m_surface;
     std::vector<Deformation> m_list;  ///< that the surface and the arrays are of
     vtkSmartPointer<Array> m_points, m_displacement, m_normals;
-    vtkMTimeType m_mesh_time = 0;  ///< of m_normals
 };
 
 }  // namespace

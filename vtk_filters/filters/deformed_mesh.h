@@ -49,9 +49,8 @@ class DeformedMesh {
     virtual bool fits(vtkPointSet* mesh, vtkDataArray* coordinates, const DeformSettings& settings) const = 0;
     /// Follows the list and gives `out`, a shallow copy of the mesh, its points and point arrays. Returns how
     /// many points were written. After an exception the object is to be thrown away.
-    virtual vtkIdType deform(const std::vector<anamorph::Deformation>& list, vtkPointSet* mesh,
-                             vtkPointSet* out, Execution& execution, double progress_begin,
-                             double progress_end) = 0;
+    virtual vtkIdType deform(const std::vector<anamorph::Deformation>& list, vtkPointSet* out,
+                             Execution& execution, double progress_begin, double progress_end) = 0;
 
     /// Of all points; those of points that are not moved are arbitrary.
     virtual const std::vector<glm::dvec2>& parameters() const = 0;

@@ -187,7 +187,7 @@ struct vtkAnamorphDeform::Kept {
         Bounds all;
         for (std::size_t i = 0; i < leaves.size(); ++i) {
             if (leaves[i].in->GetNumberOfPoints() == 0) continue;
-            const vtkMTimeType time = leaves[i].in->GetPoints()->GetMTime();
+            const vtkMTimeType time = leaves[i].in->GetMTime();
             if (meshes[i].bounds_time != time) meshes[i].bounds = bounds_of(leaves[i].in);
             meshes[i].bounds_time = time;
             all.add(meshes[i].bounds);
@@ -484,7 +484,7 @@ void vtkAnamorphDeform::Execute(vtkInformationVector** inputs, vtkInformationVec
         if (!mesh) mesh = DeformedMesh::make(in, coordinates, settings);
         if (!mesh) continue;
         this->NumberOfPointsComputed +=
-            mesh->deform(list, in, out, execution, done / total * share, (done + count) / total * share);
+            mesh->deform(list, out, execution, done / total * share, (done + count) / total * share);
         done += count;
     }
 

@@ -134,10 +134,6 @@ PlaneWarp::PlaneWarp(const ParameterPlane& plane, const std::vector<Deformation>
     m_side = std::clamp(static_cast<int>(std::sqrt(static_cast<double>(m_list.size()))), 1, 256);
     m_bins.resize(static_cast<std::size_t>(m_side) * static_cast<std::size_t>(m_side));
     constexpr int kManyBins = 64;
-    const auto bin_of = [&](double value, int axis) {
-        const double at = (value / 2 - m_least[axis] / 2) / (m_most[axis] / 2 - m_least[axis] / 2) * m_side;
-        return std::clamp(static_cast<int>(std::clamp(at, 0., static_cast<double>(m_side))), 0, m_side - 1);
-    };
     for (std::size_t k = 0; k < m_list.size(); ++k) {
         const glm::dvec2 reach = reach_of(m_list[k].kernel) * m_list[k].extent;
         const glm::dvec2 c = m_list[k].center;
@@ -156,6 +152,12 @@ PlaneWarp::PlaneWarp(const ParameterPlane& plane, const std::vector<Deformation>
     }
 }
 
+int PlaneWarp::bin_of(double value, int axis) const {
+    // Halves, so that the width stays in the range of double.
+    const double at = (value / 2 - m_least[axis] / 2) / (m_most[axis] / 2 - m_least[axis] / 2) * m_side;
+    return at > 0 ? static_cast<int>(std::min(at, m_side - 1.)) : 0;  // 0 also where there is no width
+}
+
 DisplacementJet PlaneWarp::displacement(glm::dvec2 s) const {
     DisplacementJet sum;
     if (!(s.x >= m_least.x && s.x <= m_most.x && s.y >= m_least.y && s.y <= m_most.y)) return sum;
@@ -168,12 +170,7 @@ DisplacementJet PlaneWarp::displacement(glm::dvec2 s) const {
     };
     for (const std::size_t k : m_wide) add(k);
     if (m_side == 0) return sum;
-    std::size_t bin = 0;
-    for (const int axis : {1, 0}) {
-        const double at = (s[axis] / 2 - m_least[axis] / 2) / (m_most[axis] / 2 - m_least[axis] / 2) * m_side;
-        bin = bin * static_cast<std::size_t>(m_side) +
-              static_cast<std::size_t>(std::clamp(static_cast<int>(at), 0, m_side - 1));
-    }
+    const auto bin = static_cast<std::size_t>(bin_of(s.y, 1) * m_side + bin_of(s.x, 0));
     for (const std::size_t k : m_bins[bin].entries) add(k);
     return sum;
 }

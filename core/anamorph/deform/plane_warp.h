@@ -84,6 +84,7 @@ class PlaneWarp {
     struct Bin {
         std::vector<std::size_t> entries;
     };
+    int bin_of(double value, int axis) const;
     DisplacementJet displacement(glm::dvec2 s) const;
     glm::dvec2 residual(glm::dvec2 s, glm::dvec2 target, double share, DisplacementJet& jet) const;
     bool solve(glm::dvec2 target, double share, glm::dvec2& s) const;

@@ -8,6 +8,7 @@ int main() {
     vtkNew<vtkPlaneSource> plane;
     vtkNew<vtkAnamorphDeform> deform;
     deform->SetInputConnection(plane->GetOutputPort());
+    deform->AddDeformation(-0.5, -0.5, 0.1, 0.1, 0, 0, 2);  // on a corner
     deform->Update();
-    return deform->GetPolyDataOutput()->GetNumberOfPoints() == 4 ? 0 : 1;
+    return deform->GetPolyDataOutput()->GetPoint(0)[2] == 2 ? 0 : 1;
 }

@@ -1,0 +1,89 @@
+# SPDX-License-Identifier: Apache-2.0
+# Run by mpiexec: every rank deforms a part of a surface, and has the bits that the whole has.
+# Argument: how many ranks there have to be.
+import os
+import sys
+import traceback
+
+import anamorph
+from vtkmodules.vtkCommonCore import vtkDoubleArray, vtkIdList, vtkPoints
+from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkPolyData, vtkTable
+from vtkmodules.vtkFiltersSources import vtkSphereSource
+from vtkmodules.vtkParallelCore import vtkMultiProcessController
+
+BUMPS = [(0.1 * k - 0.5, 0.3 - 0.05 * k, 0.2, 0.3, 0.05 * k, 0.1, 0.2, k % 2) for k in range(10)]
+
+
+def part_of(mesh, begin, end):
+    """Some cells of a mesh, and their points with normals."""
+    points, normals, cells, places = vtkPoints(), vtkDoubleArray(), vtkCellArray(), {}
+    points.SetDataTypeToDouble()
+    normals.SetNumberOfComponents(3)
+    normals.SetName("Normals")
+    for cell in range(begin, end):
+        ids = vtkIdList()
+        mesh.GetCellPoints(cell, ids)
+        for k in range(ids.GetNumberOfIds()):
+            point = ids.GetId(k)
+            if point not in places:
+                places[point] = points.InsertNextPoint(mesh.GetPoint(point))
+                normals.InsertNextTuple(mesh.GetPointData().GetNormals().GetTuple(point))
+            ids.SetId(k, places[point])
+        cells.InsertNextCell(ids)
+    part = vtkPolyData()
+    part.SetPoints(points)
+    part.SetPolys(cells)
+    part.GetPointData().SetNormals(normals)
+    return part
+
+
+def deformed(mesh, with_controller, has_table):
+    deform = anamorph.vtkAnamorphDeform()
+    deform.SetInputData(mesh)
+    if not with_controller:
+        deform.SetController(None)
+    table = vtkTable()
+    if has_table:
+        bumps = anamorph.vtkAnamorphDeformationList()
+        for bump in BUMPS:
+            bumps.AddDeformation(*bump)
+        bumps.WriteTable(table)
+    deform.SetInputData(1, table)
+    deform.Update()
+    after = deform.GetOutput()
+    normals = after.GetPointData().GetNormals()
+    return {mesh.GetPoint(i): (after.GetPoint(i), normals.GetTuple(i))
+            for i in range(after.GetNumberOfPoints())}, deform
+
+
+def main():
+    controller = vtkMultiProcessController.GetGlobalController()
+    rank, ranks = controller.GetLocalProcessId(), controller.GetNumberOfProcesses()
+    assert ranks == int(sys.argv[1]), ranks
+    source = vtkSphereSource()
+    source.SetThetaResolution(40)
+    source.SetPhiResolution(30)
+    source.SetOutputPointsPrecision(1)
+    source.Update()
+    mesh = source.GetOutput()
+    count = mesh.GetNumberOfCells()
+    whole, serial = deformed(mesh, False, True)
+    assert serial.GetErrorBound() > 0
+    part = part_of(mesh, rank * count // ranks, (rank + 1) * count // ranks)
+    for table_on in [range(ranks), (0,), (ranks - 1,)]:
+        points, deform = deformed(part, True, rank in table_on)
+        assert 0 < len(points) < len(whole), len(points)
+        # The plane is that of all, whichever part is here.
+        for name in ["GetUsedOrigin", "GetUsedAxis1", "GetUsedAxis2", "GetErrorBound"]:
+            assert getattr(deform, name)() == getattr(serial, name)(), name
+        for point, moved in points.items():
+            assert moved == whole[point], (point, moved, whole[point])
+    print("rank", rank, "of", ranks, "agrees at", len(points), "points", flush=True)
+
+
+try:
+    main()
+except BaseException:
+    # The other ranks may wait for this one: mpiexec then ends them.
+    traceback.print_exc()
+    os._exit(1)
