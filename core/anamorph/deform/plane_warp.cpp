@@ -61,7 +61,7 @@ Range bell(Range x) {
 }
 Range bell_slope(Range x) {
     const auto slope = [](double t) { return -2 * t * std::exp(-t * t); };
-    const auto [low, high] = std::minmax(slope(x.low), slope(x.high));
+    const auto [low, high] = std::minmax({slope(x.low), slope(x.high)});
     Range range{low, high};
     constexpr double kAt = 0.70710678118654752, kMost = 0.85776388496070680;
     if (x.low < -kAt && -kAt < x.high) range.high = kMost;
