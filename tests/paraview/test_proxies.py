@@ -4,6 +4,7 @@
 parameter of a class is a property."""
 import glob
 import os
+import re
 import xml.etree.ElementTree as xml
 
 import anamorph
@@ -11,7 +12,7 @@ from paraview import servermanager
 from paraview.simple import LoadPlugin
 
 LoadPlugin(os.environ["ANAMORPH_PLUGIN"], remote=False, ns=globals())
-PAPER = "Oka 1987"
+PAPERS = ("Oka 1987", "Chapman 1986")
 # What a panel has no use for: other ways to set the same, and what the host sets.
 NO_PROPERTY = {
     "vtkAnamorphDeform": {"SetController", "SetDeformationList", "SetDeformationEnabled", "SetTableConnection"},
@@ -37,13 +38,17 @@ def numbers(value):
     return [float(v) for v in value] if isinstance(value, (list, tuple)) else [float(value)]
 
 
+def cites(text):
+    return any(paper in " ".join(text.split()) for paper in PAPERS)
+
+
 def check_documentation(element):
     documentation = element.find("Documentation")
-    assert documentation.get("short_help") and PAPER in documentation.get("long_help"), element.get("name")
-    assert PAPER in documentation.text, element.get("name")
+    assert documentation.get("short_help") and cites(documentation.get("long_help")), element.get("name")
+    assert cites(documentation.text), element.get("name")
     for p in properties(element):
         text = p.findtext("Documentation") or ""
-        assert PAPER in text and len(text.split()) > 6, (element.get("name"), p.get("name"), text)
+        assert cites(text) and len(text.split()) > 6, (element.get("name"), p.get("name"), text)
 
 
 def check_defaults(element):
@@ -67,10 +72,10 @@ def check_defaults(element):
 
 
 def check_parameters(element):
-    """Every SetX of the class itself is the command of a property."""
+    """Every SetX of the class itself, and of its bases here, is the command of a property."""
     cls = getattr(anamorph, element.get("class"))
-    inherited = {m for base in cls.__mro__[1:] for m in dir(base)}
-    own = {m for m in dir(cls) if m.startswith("Set") and m not in inherited and "To" not in m[3:]}
+    inherited = {m for base in cls.__mro__[1:] if not base.__name__.startswith("vtkAnamorph") for m in dir(base)}
+    own = {m for m in dir(cls) if m.startswith("Set") and m not in inherited and not re.search("To[A-Z]", m[3:])}
     used = {p.get(key) for p in properties(element) for key in ("command", "set_number_command")}
     missing = own - used - NO_PROPERTY.get(element.get("class"), set())
     assert not missing, (element.get("name"), missing)
@@ -94,5 +99,5 @@ for group, element in found:
         continue
     assert element.find("Hints/ShowInMenu").get("category") == "Anamorph", name
     compared, own = check_defaults(element), check_parameters(element)
-    assert compared >= 5 and own >= 5, (name, compared, own)
+    assert compared >= 4 and own >= 4, (name, compared, own)
     print(name, ":", compared, "defaults,", own, "parameters")
