@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """A script of NUDES in ParaView: surfaces in their colors, with outlines over them, as an animation.
 
-    pvpython figures.py [SCRIPT [FOLDER]]
+    pvbatch figures.py [SCRIPT [FOLDER]]
 
 Writes FOLDER/figures.png (a frame from the middle) and FOLDER/figures.pvsm (the state, for ParaView's File > Load
 State). SCRIPT is the walker beside this example by default, FOLDER the working folder. The plugin is found by
