@@ -2,6 +2,7 @@
 #include "anamorph/figure/outline.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 
@@ -133,16 +134,23 @@ void hide_lines(std::span<SeenLine> lines, std::span<const Ellipsoid> bodies, co
     for (std::size_t i = 0; i < lines.size(); ++i)
         for (const glm::dvec3& end : {lines[i].from, lines[i].to})
             check_point("line " + std::to_string(i), end);
+    std::vector<std::array<glm::dvec3, 2>> ends;
+    std::vector<ScreenBox> boxes;
+    for (const SeenLine& line : lines) {
+        ends.push_back({view.to_view(line.from), view.to_view(line.to)});
+        boxes.push_back(box_of(ends.back(), view.perspective()));
+    }
+    const std::vector<std::vector<int>> near_by = overlapping(boxes, seen);
     parallel_for(static_cast<std::int64_t>(lines.size()), [&](std::int64_t k) {
         const auto i = static_cast<std::size_t>(k);
         SeenLine& line = lines[i];
-        const glm::dvec3 from = view.to_view(line.from), to = view.to_view(line.to);
+        const auto& [from, to] = ends[i];
         std::vector<Arc> hidden, cut;
         if (view.perspective()) cut = nearer_part(from.z, to.z, view.near);
-        for (std::size_t j = 0; j < seen.size(); ++j) {
-            const bool skip = i < ignored.size() && std::find(ignored[i].begin(), ignored[i].end(),
-                                                              static_cast<int>(j)) != ignored[i].end();
-            if (!skip) add_hidden(from, to, seen[j], view.perspective(), hidden);
+        for (const int j : near_by[i]) {
+            const bool skip =
+                i < ignored.size() && std::find(ignored[i].begin(), ignored[i].end(), j) != ignored[i].end();
+            if (!skip) add_hidden(from, to, seen[static_cast<std::size_t>(j)], view.perspective(), hidden);
         }
         split(union_of(std::move(hidden), 1, false), cut, 1, false, line.visible, line.hidden);
     });

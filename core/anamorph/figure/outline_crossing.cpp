@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <glm/common.hpp>
 
 #include "anamorph/figure/outline_arcs.h"
 #include "anamorph/figure/outline_hiding.h"
@@ -110,22 +109,10 @@ class Pair {
   private:
     /// Those other bodies that may lie before the curve.
     std::vector<int> before(const CrossingCurve& curve, const std::vector<int>& near_by) const {
-        ScreenBox box{glm::dvec2(HUGE_VAL), glm::dvec2(-HUGE_VAL), -HUGE_VAL};
-        for (const glm::dvec3& p : curve.points) {
-            const glm::dvec2 at = m_view.perspective() ? glm::dvec2(p) / p.z : glm::dvec2(p);
-            // Behind the eye there is no image: everything may be before it.
-            if (m_view.perspective() && p.z <= 0) return others_of(near_by, nullptr);
-            box.low = glm::min(box.low, at);
-            box.high = glm::max(box.high, at);
-            box.farthest = std::max(box.farthest, p.z);
-        }
-        return others_of(near_by, &box);
-    }
-    std::vector<int> others_of(const std::vector<int>& near_by, const ScreenBox* box) const {
+        const ScreenBox box = box_of(curve.points, m_view.perspective());
         std::vector<int> others;
         for (const int body : near_by)
-            if (body != m_first && body != m_second && (!box || may_hide(seen(body), *box)))
-                others.push_back(body);
+            if (body != m_first && body != m_second && may_hide(seen(body), box)) others.push_back(body);
         return others;
     }
 

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <glm/common.hpp>
 #include <numbers>
 #include <numeric>
 
@@ -167,6 +168,20 @@ void add_hidden(const glm::dvec3& from, const glm::dvec3& to, const SeenBody& ot
     for (std::size_t k = 0; k + 1 < cuts.size(); ++k)
         if (cuts[k + 1] > cuts[k] && is_hidden(0.5 * (cuts[k] + cuts[k + 1])))
             hidden.push_back({cuts[k], cuts[k + 1]});
+}
+
+ScreenBox box_of(std::span<const glm::dvec3> points, bool perspective) {
+    const glm::dvec2 all(HUGE_VAL);
+    ScreenBox box{all, -all, -HUGE_VAL};
+    for (const glm::dvec3& p : points) {
+        box.farthest = std::max(box.farthest, p.z);
+        const bool before = !perspective || p.z > 0;
+        const glm::dvec2 at = perspective ? glm::dvec2(p) / p.z : glm::dvec2(p);
+        box.low = before ? glm::min(box.low, at) : -all;
+        box.high = before ? glm::max(box.high, at) : all;
+        if (!before) box.farthest = HUGE_VAL;
+    }
+    return box;
 }
 
 bool may_hide(const SeenBody& body, const ScreenBox& box) {

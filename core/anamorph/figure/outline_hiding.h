@@ -2,6 +2,7 @@
 // What one body hides of a limb, or of a line; and which bodies may hide what.
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include "anamorph/figure/outline_body.h"
@@ -20,6 +21,9 @@ struct ScreenBox {
     glm::dvec2 low{0.0}, high{0.0};
     double farthest = 0;
 };
+
+/// Of points as View::to_view gives them; in perspective, everything if one is not before the eye.
+ScreenBox box_of(std::span<const glm::dvec3> points, bool perspective);
 
 /// Does the box of the body's limb overlap, and not all of the body lie beyond?
 bool may_hide(const SeenBody& body, const ScreenBox& box);
