@@ -10,16 +10,16 @@
 // frame costs one interval at most; frames asked in order cost themselves alone. A frame is the same, to the
 // bit, in whatever order it is asked for.
 //
-// Where the original searches: `touch` and `abut` find exact contact in both dialects (the contact function of
-// map/ellipsoid_distance.h is 1), the one closest to where the ellipsoids are, or where there is none the place
-// where that function is closest to 1. Contacts of `touch` that come and go within 0.06 degrees may be missed.
-// `drag` takes, in the classic dialect, the original's three rounds of samples, 0.01 degrees apart in the end
-// and 11.1 degrees a frame at most. `movjnt`, which stops the original, works in both.
+// Where the original searches: `touch` and `abut` find exact contact in both dialects (the contact function
+// of map/ellipsoid_distance.h is 1), the one closest to where the ellipsoids are, or where there is none the
+// place where that function is closest to 1. Contacts of `touch` that come and go within 0.06 degrees may be
+// missed. `drag` takes, in the classic dialect, the original's three rounds of samples, 0.01 degrees apart in
+// the end and 11.1 degrees a frame at most. `movjnt`, which stops the original, works in both.
 //
-// The strict dialect differs so: `ground` ends grounded; `drag` finds the exact angle, about the axis asked for;
-// `attach` counts its offset from the second ellipsoid; variables must have been set, and hold what is asked
-// for; `limit` holds: the turn of a joint's second ellipsoid as seen from its first, as Rx Ry Rz, has each angle
-// kept within its bounds whenever something bends at that joint.
+// The strict dialect differs so: `ground` ends grounded; `drag` finds the exact angle, about the axis asked
+// for; `attach` counts its offset from the second ellipsoid; variables must have been set, and hold what is
+// asked for; `limit` holds: the turn of a joint's second ellipsoid as seen from its first, as Rx Ry Rz, has
+// each angle kept within its bounds whenever something bends at that joint.
 #pragma once
 
 #include <cstddef>
