@@ -153,7 +153,7 @@ class Command {
                        "number, which else goes before the ending");
         add_drawing(sub);
         DrawingOptions& d = m_settings.drawing;
-        add_number(sub, "--size", d.size, 1, 32767,
+        add_number(sub, "--size", d.size, 1, 16384,
                    "Pixels (in PDF points) that the window of 1000 units is");
         add_number(sub, "--tol", d.tol, 0.01, 1000, "Most that chords are off the curve, in pixels");
         add_number(sub, "--line-width", d.line_width, 0.01, 1000, "In pixels");

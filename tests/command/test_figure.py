@@ -348,7 +348,7 @@ class BadInput(Case):
                 (["svg", WALKER, "--frame=-1"], "allowed are N"), (["svg", WALKER, "--frame=9999999999"], "allowed"),
                 (["svg", WALKER, "--frame=1-4x0"], "allowed are N"), (["svg", WALKER, "--frame=900"], "0 to 49"),
                 (["svg", WALKER, "--tol=0"], "--tol"), (["svg", WALKER, "--tol=nan"], "--tol"),
-                (["svg", WALKER, "--tol="], "--tol"), (["svg", WALKER, "--size=1e9"], "--size"),
+                (["svg", WALKER, "--tol="], "--tol"), (["svg", WALKER, "--size=20000"], "--size"),
                 (["svg", WALKER, "--size=inf"], "--size"), (["svg", WALKER, "--perspective=0"], "--perspective"),
                 (["svg", WALKER, "--threads=-1"], "--threads"), (["text", WALKER, "--width=0"], "--width"),
                 (["svg", WALKER, "--threads=1.5"], "--threads"),
