@@ -14,7 +14,7 @@ if "ANAMORPH_SERVER" in os.environ:
     LoadPlugin(os.environ["ANAMORPH_PLUGIN"], remote=True)
 LoadPlugin(os.environ["ANAMORPH_PLUGIN"], remote=False, ns=globals())
 
-# Bumps that reach over most of a unit sphere: c_u, c_v, a_u, a_v, V_x, V_y, V_z, kernel, enabled.
+# Bumps that reach over most of a unit square: c_u, c_v, a_u, a_v, V_x, V_y, V_z, kernel, enabled.
 BUMPS = [0.1, 0.05, 0.3, 0.2, 0.05, -0.1, 0.4, 0, 1,
          -0.3, 0.2, 0.5, 0.1, 0.2, 0.1, -0.3, 1, 1,
          0.0, 0.0, 0.9, 0.9, 0.0, 0.1, 0.1, 0, 1,
@@ -34,11 +34,10 @@ def with_original(surface):
 
 
 def write_inputs(folder):
-    """Writes a sphere, and a picture of some hills."""
+    """Writes a picture of some hills."""
     from paraview.vtk import vtkImageData
     from paraview.vtk.util.numpy_support import numpy_to_vtk
     from vtkmodules.vtkIOImage import vtkPNGWriter
-    SaveData(folder + "/sphere.vtp", proxy=Sphere(ThetaResolution=40, PhiResolution=40))
     y, x = np.mgrid[0:41, 0:41] / 40
     grey = np.round(255 * (0.5 + 0.3 * np.sin(7 * x) * np.cos(5 * y))).astype(np.uint8)
     image = vtkImageData()
@@ -52,22 +51,15 @@ def write_inputs(folder):
 
 def make(folder):
     """Some surfaces, by name, of every filter of the plugin; in pieces, where there are several ranks."""
-    sphere = with_original(XMLPolyDataReader(FileName=[folder + "/sphere.vtp"]))
-    if number_of_pieces() > 1:
-        sphere = RedistributeDataSet(Input=sphere)
-    sphere.UpdatePipeline()
-    # The precision is said because pieces come out in another one than the whole.
-    deformed = AnamorphDeform(Input=sphere, Deformations=BUMPS, OutputPointsPrecision=0)
-    double = AnamorphDeform(Input=sphere, Deformations=BUMPS, OutputPointsPrecision=1, AutomaticPlane=0,
+    relief = with_original(AnamorphReliefSource(FileName=folder + "/hills.png", HeightScale=0.5, GenerateNormals=1))
+    polygons = ExtractSurface(Input=relief)
+    polygons.UpdatePipeline()
+    deformed = AnamorphDeform(Input=polygons, Deformations=BUMPS)
+    double = AnamorphDeform(Input=polygons, Deformations=BUMPS, OutputPointsPrecision=1, AutomaticPlane=0,
                             Origin=[0.1, 0, 0], Axis1=[0, 1, 0.2], Axis2=[0, 0, 2])
-    # The tangents of a surface with texture coordinates are those of its cells, beyond a cut too.
-    turned = GhostCellsGenerator(Input=TextureMaptoSphere(Input=sphere, PreventSeam=0))
-    turned.UpdatePipeline()
-    turned = AnamorphDeform(Input=turned, Deformations=TURN_BUMPS, ParameterMode=1, OutputPointsPrecision=0)
-    relief = with_original(AnamorphReliefSource(FileName=folder + "/hills.png", GenerateNormals=1))
+    turned = AnamorphDeform(Input=relief, Deformations=TURN_BUMPS, ParameterMode=1)
     raised = AnamorphDeform(Input=relief, Deformations=BUMPS)
-    between = AnamorphInbetween(Input=[deformed, double, sphere], Weights=[0.75, 0.5, -0.25],
-                                OutputPointsPrecision=1)
+    between = AnamorphInbetween(Input=[deformed, double], Weights=[1.5, -0.5])
     return {"deformed": deformed, "double": double, "turned": turned, "relief": relief, "raised": raised,
             "between": between}
 

@@ -32,7 +32,7 @@ def on_server(folder, ranks):
         else:
             raise AssertionError("pvserver takes no connections")
         port = line.strip().rsplit(":", 1)[1]
-        return digests(["pvpython"], folder, ranks, ANAMORPH_SERVER="localhost:" + port)
+        return digests(["pvpython"], folder, ranks, ANAMORPH_SERVER="127.0.0.1:" + port)
     finally:
         server.terminate()  # mpiexec passes it on
         server.wait(timeout=60)

@@ -29,7 +29,7 @@ def check_states(folder):
     made["deformed"].SelectedDeformation = 1
     names = names_of(made)
     wanted = digests(names)
-    assert len(set(wanted.values())) == 6
+    assert len(set(wanted.values())) == 5  # two of them are the same surface
     SaveState("session.pvsm")
     session = smstate.get_state()
     start_again()
