@@ -1,7 +1,7 @@
 #!/bin/bash
 # SPDX-License-Identifier: Apache-2.0
 # Shows what Anamorph does, on Debian 12 from a fresh machine on: builds it, and lets the stock oiiotool draw views of an
-# HDR panorama, warp a picture and film a morph of two. Everything it makes is in build/demo/out.
+# HDR panorama, warp a picture, film a morph of two and draw a figure. Everything it makes is in build/demo/out.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 tests/install_packages.sh build hosts tests plots vtk
@@ -14,7 +14,7 @@ mkdir -p "$out"
 echo "building"
 {
     cmake --preset release -DVTK_ROOT="$PWD/build/vtk-9.1/usr" &&
-        cmake --build --preset release --target anamorph.imageio speed_vs_error
+        cmake --build --preset release --target anamorph.imageio anamorph_figure speed_vs_error
 } >"$demo/build.txt" 2>&1 || { cat "$demo/build.txt" >&2; exit 1; }
 export OIIO_LIBRARY_PATH="$PWD/build/release/plugins/imageio"
 
@@ -106,6 +106,12 @@ else
     echo "(no film.mp4: ffmpeg is not installed)"
 fi
 
+# Ellipsoids that walk by a script of NUDES: outlines with hidden lines removed.
+cp ../../../examples/figures/walker.nudes .
+echo "walker.png, walker.pdf: walker.nudes"
+../../release/core/command/anamorph-figure png walker.nudes --frame 24 -o walker.png
+../../release/core/command/anamorph-figure pdf walker.nudes --frame all -o walker.pdf
+
 # Speed against error of all operations: one table and one plot each.
 for op in pano warp morph; do
     table="speed_vs_error_$op"
@@ -122,5 +128,5 @@ done
 
 /usr/bin/python3 ../../../examples/contact_sheet.py contact_sheet.png panorama.png rectilinear.png rolled.png fisheye.png \
     little_planet.png cylindrical.png mercator.png cube_faces.png error.png round.png warp.jpg \
-    warp_error.png "$a" lines.jpg film.0024.jpg
+    warp_error.png "$a" lines.jpg film.0024.jpg walker.png
 echo "done: $out"
