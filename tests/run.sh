@@ -11,7 +11,7 @@ tests/unpack_vtk.sh "$vtk_prefix"
 log_dir=build/log
 mkdir -p "$log_dir"
 jobs="$(nproc)"
-fuzz_seconds=6
+fuzz_seconds=5
 export CMAKE_CXX_COMPILER_LAUNCHER=ccache  # the core is built twice: with its hosts, and alone
 
 # step NAME COMMAND...: quiet when it succeeds; prints its log and ends the run when it fails.
