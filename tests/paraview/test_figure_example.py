@@ -34,8 +34,8 @@ def run(*command):
 
 with tempfile.TemporaryDirectory() as folder:
     walker = SOURCE + "/examples/figures/walker.nudes"
-    printed = run("xvfb-run", "-a", "pvbatch", SOURCE + "/examples/paraview/figures.py", walker, folder)
+    printed = run("xvfb-run", "-a", "-n", "311", "pvbatch", SOURCE + "/examples/paraview/figures.py", walker, folder)
     assert "49 frames" in printed, printed
     with open(folder + "/again.py", "w") as file:
         file.write(AGAIN)
-    run("xvfb-run", "-a", "pvbatch", folder + "/again.py", folder)
+    run("xvfb-run", "-a", "-n", "312", "pvbatch", folder + "/again.py", folder)
