@@ -7,6 +7,7 @@ import sys
 import tempfile
 
 import numpy as np
+from display import xvfb_run
 
 SOURCE = os.environ["ANAMORPH_SOURCE_DIR"]
 ENVIRONMENT = {**os.environ, "PV_PLUGIN_PATH": os.path.dirname(os.environ["ANAMORPH_PLUGIN"]),
@@ -50,10 +51,10 @@ def difference(a, b):
 
 
 def check_face(folder):
-    printed = run("xvfb-run", "-a", "-n", "301", "pvbatch", SOURCE + "/examples/paraview/face.py", folder, "--frames", "4",
+    printed = run(*xvfb_run(301), "pvbatch", SOURCE + "/examples/paraview/face.py", folder, "--frames", "4",
                   "--points", "97")
     assert "50 deformations, 9 faces, 3 expressions, 4 frames" in printed, printed
-    run("xvfb-run", "-a", "-n", "302", "pvbatch", script(folder, "again.py", AGAIN.format(folder=folder)))
+    run(*xvfb_run(302), "pvbatch", script(folder, "again.py", AGAIN.format(folder=folder)))
     paths = sorted(glob.glob(folder + "/*.png"))
     assert len(paths) == 4 + 4 + 1, paths
     run("pvpython", script(folder, "read.py", READ), *paths)

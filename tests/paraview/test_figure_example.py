@@ -12,6 +12,8 @@ import numpy as np
 from paraview import simple
 from paraview.simple import *
 from paraview.vtk.util.numpy_support import vtk_to_numpy
+
+from display import xvfb_run
 from vtkmodules.vtkIOImage import vtkPNGReader
 reader = vtkPNGReader()
 reader.SetFileName(sys.argv[1] + "/figures.png")
@@ -34,8 +36,8 @@ def run(*command):
 
 with tempfile.TemporaryDirectory() as folder:
     walker = SOURCE + "/examples/figures/walker.nudes"
-    printed = run("xvfb-run", "-a", "-n", "311", "pvbatch", SOURCE + "/examples/paraview/figures.py", walker, folder)
+    printed = run(*xvfb_run(311), "pvbatch", SOURCE + "/examples/paraview/figures.py", walker, folder)
     assert "49 frames" in printed, printed
     with open(folder + "/again.py", "w") as file:
         file.write(AGAIN)
-    run("xvfb-run", "-a", "-n", "312", "pvbatch", folder + "/again.py", folder)
+    run(*xvfb_run(312), "pvbatch", folder + "/again.py", folder)

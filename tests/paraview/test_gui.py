@@ -6,6 +6,8 @@ import subprocess
 import tempfile
 import time
 
+from display import xvfb_run
+
 SCRIPT = """
 import os
 from paraview.simple import *
@@ -34,7 +36,7 @@ with tempfile.TemporaryDirectory() as folder:
     environment = {**os.environ, "HOME": folder, "XDG_CONFIG_HOME": folder + "/.config", "XDG_RUNTIME_DIR": folder}
     with open(folder + "/log", "w+") as log:
         # A process group of its own, so that the screen goes with the program.
-        shown = subprocess.Popen(["xvfb-run", "-a", "-n", "321", "paraview", "--script=" + folder + "/script.py"], env=environment,
+        shown = subprocess.Popen([*xvfb_run(321), "paraview", "--script=" + folder + "/script.py"], env=environment,
                                  stdout=log, stderr=log, start_new_session=True)
         try:
             deadline = time.monotonic() + 120
