@@ -4,6 +4,8 @@ import os
 import subprocess
 import tempfile
 
+from display import xvfb_run
+
 SOURCE = os.environ["ANAMORPH_SOURCE_DIR"]
 ENVIRONMENT = {**os.environ, "LIBGL_ALWAYS_SOFTWARE": "1"}
 AGAIN = """
@@ -12,8 +14,6 @@ import numpy as np
 from paraview import simple
 from paraview.simple import *
 from paraview.vtk.util.numpy_support import vtk_to_numpy
-
-from display import xvfb_run
 from vtkmodules.vtkIOImage import vtkPNGReader
 reader = vtkPNGReader()
 reader.SetFileName(sys.argv[1] + "/figures.png")
