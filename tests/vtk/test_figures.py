@@ -53,3 +53,22 @@ with tempfile.TemporaryDirectory() as folder:
         lines.Update()
         assert lines.GetOutput().GetNumberOfLines() == 1
         assert lines.GetOutput().GetCellData().GetAbstractArray("Name").GetValue(0) == "a"
+
+    # Written to a file and read back, a frame is drawn the same.
+    from vtkmodules.vtkIOLegacy import vtkPolyDataReader, vtkPolyDataWriter
+    writer = vtkPolyDataWriter()
+    writer.SetInputConnection(reader.GetOutputPort())
+    writer.SetFileName(os.path.join(folder, "frame.vtk"))
+    writer.SetFileTypeToBinary()
+    writer.Write()
+    back = vtkPolyDataReader()
+    back.SetFileName(writer.GetFileName())
+    for cls in (anamorph.vtkAnamorphFigureGeometry, anamorph.vtkAnamorphFigureOutline, anamorph.vtkAnamorphFigureSkeleton):
+        drawn = []
+        for source in (reader, back):
+            lines = cls()
+            lines.SetInputConnection(source.GetOutputPort())
+            lines.Update()
+            output = lines.GetOutput()
+            drawn.append([output.GetPoint(i) for i in range(output.GetNumberOfPoints())])
+        assert drawn[0] == drawn[1] and len(drawn[0]) > 1, cls
