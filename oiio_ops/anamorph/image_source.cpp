@@ -79,6 +79,15 @@ void clear_around(const Box& box, const Box& data, std::ptrdiff_t pixel, std::by
     }
 }
 
+/// A file opened with the cache's own wish for alpha.
+std::unique_ptr<OIIO::ImageInput> open_as_cache_does(ImageCache& cache, const std::string& name) {
+    int unassociated = 0;
+    cache.getattribute("unassociatedalpha", unassociated);
+    ImageSpec config;
+    config.attribute("oiio:UnassociatedAlpha", unassociated);
+    return OIIO::ImageInput::open(name, &config);
+}
+
 std::string first_line(std::string message) {
     message.resize(std::min(message.size(), message.find('\n')));
     return message;
@@ -135,42 +144,51 @@ void check_flat(const ImageSpec& spec, const std::string& name) {
 
 // --- CacheSource -------------------------------------------------------------------------------------------
 
-CacheSource::CacheSource(ImageCacheRef cache, const std::string& name, int subimage, int first_level)
+CacheSource::CacheSource(ImageCacheRef cache, const std::string& name, int subimage, int first_level,
+                         Facts facts)
     : m_cache(std::move(cache)), m_name(name), m_subimage(subimage), m_first_level(first_level) {
-    const CacheThread thread(m_cache);
-    ImageCache::ImageHandle* image = m_cache->get_image_handle(m_name, thread);
-    const auto get_level = [&](int level) {
-        Level l;
-        if (!image ||
-            !m_cache->get_imagespec(image, thread, l.spec, m_subimage, m_first_level + level, true)) {
-            std::string why = first_line(m_cache->geterror());
-            throw Error("source \"" + printable(name) + "\": " + (why.empty() ? "cannot be read" : why));
-        }
-        l.frame = frame_of(l.spec);
-        m_levels.push_back(l);
+    const auto file = facts == Facts::from_file ? open_as_cache_does(*m_cache, name) : nullptr;
+    const auto spec_of = [&](int level) {
+        ImageSpec spec;
+        if (facts == Facts::from_cache)
+            m_cache->get_imagespec(m_name, spec, m_subimage, m_first_level + level, true);
+        else if (file)
+            spec = file->spec(m_subimage, m_first_level + level);
+        return spec;
     };
-    get_level(0);
-    check_flat(spec(), name);
-    m_type = pixel_type(spec().format);
-    m_alpha = unassociated_alpha_of(spec());
+    const auto why_not = [&] {
+        return first_line(facts == Facts::from_cache ? m_cache->geterror()
+                          : file                     ? file->geterror()
+                                                     : OIIO::geterror());
+    };
 
-    int count = 1;
-    m_cache->get_image_info(image, thread, m_subimage, 0, OIIO::ustring("miplevels"), OIIO::TypeInt, &count);
+    const ImageSpec base = spec_of(0);
+    if (base.format == OIIO::TypeUnknown) {
+        const std::string why = why_not();
+        throw Error("source \"" + printable(name) + "\": " + (why.empty() ? "cannot be read" : why));
+    }
+    check_flat(base, name);
+    m_levels.push_back({base, frame_of(base)});
+    m_type = pixel_type(base.format);
+    m_alpha = unassociated_alpha_of(base);
+
     const auto full = [](const Level& l) {
         return l.frame.data == Box{0, 0, l.frame.width, l.frame.height} && l.spec.width > 0 &&
                l.spec.height > 0;
     };
     // Levels serve while each is half of the one before and has all its pixels.
-    for (int level = 1; level < count - m_first_level && full(m_levels.back()); ++level) {
-        const Frame before = m_levels.back().frame;
-        get_level(level);
-        const Frame& now = m_levels.back().frame;
-        const bool half =
-            now.width == std::max(1, before.width / 2) && now.height == std::max(1, before.height / 2);
-        if (half && full(m_levels.back()) && m_levels.back().spec.nchannels == spec().nchannels) continue;
-        m_levels.pop_back();
-        break;
+    for (int level = 1; full(m_levels.back()); ++level) {
+        const Frame& before = m_levels.back().frame;
+        if (before.width == 1 && before.height == 1) break;
+        const ImageSpec spec = spec_of(level);
+        const Level next = {spec, frame_of(spec)};
+        const bool half = next.frame.width == std::max(1, before.width / 2) &&
+                          next.frame.height == std::max(1, before.height / 2);
+        if (spec.format == OIIO::TypeUnknown || !half || !full(next) || spec.nchannels != base.nchannels)
+            break;
+        m_levels.push_back(next);
     }
+    why_not();  // a level that is not there is no error
 }
 
 Source::Size CacheSource::size(int level) const noexcept {

@@ -49,7 +49,11 @@ void check_flat(const OIIO::ImageSpec& spec, const std::string& name);
 /// opened.
 class CacheSource final : public Source {
   public:
-    CacheSource(ImageCacheRef cache, const std::string& name, int subimage = 0, int first_level = 0);
+    /// Where sizes and metadata are read. `from_file` touches no lock of the cache: a cache that is opening
+    /// one of its files would otherwise wait for another, which may wait for the first to be closed.
+    enum class Facts { from_cache, from_file };
+    CacheSource(ImageCacheRef cache, const std::string& name, int subimage = 0, int first_level = 0,
+                Facts facts = Facts::from_cache);
 
     const OIIO::ImageSpec& spec() const { return m_levels.front().spec; }
     const Frame& frame() const { return m_levels.front().frame; }

@@ -90,7 +90,8 @@ class RecipeContent final : public Content {
         std::vector<ImageSpec> specs;
         std::string identity;
         for (const SideFile& file : sources_of(recipe)) {
-            auto image = std::make_unique<CacheSource>(shared_cache(), cached_name(file.name, file.identity));
+            auto image = std::make_unique<CacheSource>(shared_cache(), cached_name(file.name, file.identity),
+                                                       0, 0, CacheSource::Facts::from_file);
             specs.push_back(image->spec());
             images.push_back(std::move(image));
             identity += file.identity;
