@@ -5,18 +5,32 @@
 #include <atomic>
 #include <exception>
 #include <mutex>
+#include <new>
 
-#include "host.h"
+#include "smp_for.h"
 #include "vtkAlgorithm.h"
+#include "vtkDataObject.h"
 
 namespace anamorph_vtk {
+namespace {
+
+/// vtkAlgorithm::CheckAbort, or what there is of it in older versions.
+template <class Algorithm>
+bool is_aborted(Algorithm* algorithm) {
+    if constexpr (requires { algorithm->CheckAbort(); })
+        return algorithm->CheckAbort();
+    else
+        return algorithm->GetAbortExecute() != 0;
+}
+
+}  // namespace
 
 void Execution::progress(double amount) {
     if (amount > m_progress) {
         m_progress = amount;
         m_algorithm->UpdateProgress(amount);
     }
-    if (anamorph::is_aborted(m_algorithm)) throw Aborted();
+    if (is_aborted(m_algorithm)) throw Aborted();
 }
 
 anamorph::ParallelFor Execution::stage(double begin, double end) {
@@ -43,6 +57,24 @@ anamorph::ParallelFor Execution::stage(double begin, double end) {
             progress(begin + (end - begin) * static_cast<double>(last) / static_cast<double>(count));
         }
     };
+}
+
+int guarded(vtkObject* object, const std::function<void()>& body,
+            std::initializer_list<vtkDataObject*> outputs) {
+    bool failed = true;
+    try {
+        body();
+        return 1;
+    } catch (const Aborted&) {
+        failed = false;
+    } catch (const std::bad_alloc&) {
+        vtkErrorWithObjectMacro(object, << "not enough memory");
+    } catch (const std::exception& error) {
+        vtkErrorWithObjectMacro(object, << error.what());
+    }
+    for (vtkDataObject* output : outputs)
+        if (output) output->Initialize();
+    return failed ? 0 : 1;
 }
 
 }  // namespace anamorph_vtk

@@ -1,10 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a filter lends to the core while it executes: VTK's threads, its progress, and the wish to stop.
+// What a filter lends to the core while it executes: VTK's threads, its progress, and the wish to stop; and
+// what becomes of what the core throws.
 #pragma once
+
+#include <functional>
+#include <initializer_list>
 
 #include "anamorph/error.h"
 
 class vtkAlgorithm;
+class vtkDataObject;
+class vtkObject;
 
 namespace anamorph_vtk {
 
@@ -26,5 +32,10 @@ class Execution {
     vtkAlgorithm* m_algorithm;
     double m_progress = 0;
 };
+
+/// Runs `body` and returns 1. What it throws empties the outputs; it becomes an error of `object` and 0, but
+/// for Aborted, which is none.
+int guarded(vtkObject* object, const std::function<void()>& body,
+            std::initializer_list<vtkDataObject*> outputs = {});
 
 }  // namespace anamorph_vtk

@@ -374,24 +374,16 @@ int vtkAnamorphDeform::RequestUpdateExtent(vtkInformation*, vtkInformationVector
 
 int vtkAnamorphDeform::RequestData(vtkInformation*, vtkInformationVector** inputs,
                                    vtkInformationVector* outputs) {
-    std::string failure;
-    bool aborted = false;
-    try {
-        this->Execute(inputs, outputs);
-        return 1;
-    } catch (const anamorph_vtk::Aborted&) {
-        aborted = true;
-    } catch (const std::bad_alloc&) {
-        failure = "there is not enough memory";
-    } catch (const std::exception& error) {
-        failure = error.what();
-    }
-    *this->Meshes = Kept();
-    for (int port = 0; port < 2; ++port)
-        if (vtkDataObject* output = vtkDataObject::GetData(outputs, port)) output->Initialize();
-    if (aborted) return 1;
-    vtkErrorMacro(<< failure);
-    return 0;
+    const auto execute = [&] {
+        try {
+            this->Execute(inputs, outputs);
+        } catch (...) {
+            *this->Meshes = Kept();
+            throw;
+        }
+    };
+    return anamorph_vtk::guarded(this, execute,
+                                 {vtkDataObject::GetData(outputs, 0), vtkDataObject::GetData(outputs, 1)});
 }
 
 void vtkAnamorphDeform::Execute(vtkInformationVector** inputs, vtkInformationVector* outputs) {

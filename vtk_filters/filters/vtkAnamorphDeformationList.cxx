@@ -7,6 +7,7 @@
 #include "anamorph/deform/deformation_file.h"
 #include "anamorph/error.h"
 #include "deformation_numbers.h"
+#include "execution.h"
 #include "vtkObjectFactory.h"
 #include "vtkTable.h"
 
@@ -138,35 +139,22 @@ double* vtkAnamorphDeformationList::GetDeformation(int position) {
 }
 
 int vtkAnamorphDeformationList::ReadFile(const char* name) {
-    try {
+    return anamorph_vtk::guarded(this, [&] {
         this->List = anamorph_vtk::read_deformations(name ? name : "");
         this->Modified();
-        return 1;
-    } catch (const std::exception& error) {
-        vtkErrorMacro(<< error.what());
-        return 0;
-    }
+    });
 }
 
 int vtkAnamorphDeformationList::WriteFile(const char* name) {
-    try {
-        anamorph_vtk::write_deformations(name ? name : "", this->List);
-        return 1;
-    } catch (const std::exception& error) {
-        vtkErrorMacro(<< error.what());
-        return 0;
-    }
+    return anamorph_vtk::guarded(this,
+                                 [&] { anamorph_vtk::write_deformations(name ? name : "", this->List); });
 }
 
 int vtkAnamorphDeformationList::ReadTable(vtkTable* table) {
-    try {
+    return anamorph_vtk::guarded(this, [&] {
         this->List = anamorph_vtk::numbers_in(table);
         this->Modified();
-        return 1;
-    } catch (const std::exception& error) {
-        vtkErrorMacro(<< error.what());
-        return 0;
-    }
+    });
 }
 
 void vtkAnamorphDeformationList::WriteTable(vtkTable* table) {

@@ -3,7 +3,6 @@
 
 #include <cmath>
 #include <glm/geometric.hpp>
-#include <new>
 
 #include "anamorph/error.h"
 #include "anamorph/figure/outline_view.h"
@@ -11,6 +10,8 @@
 #include "anamorph/parameter.h"
 #include "execution.h"
 #include "figure_data.h"
+#include "vtkInformation.h"
+#include "vtkInformationVector.h"
 #include "vtkPolyData.h"
 
 namespace {
@@ -67,20 +68,18 @@ anamorph::View vtkAnamorphFigureAlgorithm::ViewOf(vtkPolyData* figures) const {
     return view;
 }
 
-int vtkAnamorphFigureAlgorithm::Guarded(vtkPolyData* output, const std::function<void()>& body) {
-    try {
-        body();
-        return 1;
-    } catch (const anamorph_vtk::Aborted&) {
-        output->Initialize();
-        return 1;
-    } catch (const std::bad_alloc&) {
-        vtkErrorMacro(<< "not enough memory");
-    } catch (const std::exception& error) {
-        vtkErrorMacro(<< error.what());
-    }
-    output->Initialize();
-    return 0;
+void vtkAnamorphFigureAlgorithm::CheckPositive(const char* name, double value) {
+    if (!(value > 0)) throw Error(name, anamorph::shortest(value), "allowed is a positive number");
+}
+
+int vtkAnamorphFigureAlgorithm::RequestData(vtkInformation*, vtkInformationVector** inputs,
+                                            vtkInformationVector* outputs) {
+    vtkPolyData *input = vtkPolyData::GetData(inputs[0]), *output = vtkPolyData::GetData(outputs);
+    const auto draw = [&] {
+        anamorph_vtk::Execution execution(this);
+        this->Draw(input, output, execution);
+    };
+    return anamorph_vtk::guarded(this, draw, {output});
 }
 
 void vtkAnamorphFigureAlgorithm::PrintSelf(ostream& os, vtkIndent indent) {

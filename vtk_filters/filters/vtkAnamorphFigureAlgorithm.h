@@ -12,10 +12,11 @@
 #include "AnamorphFiltersModule.h"  // for the export macro
 #include "vtkPolyDataAlgorithm.h"
 
-#include <functional>  // for what may fail
-
 namespace anamorph {
 struct View;
+}
+namespace anamorph_vtk {
+class Execution;
 }
 
 class ANAMORPHFILTERS_EXPORT vtkAnamorphFigureAlgorithm : public vtkPolyDataAlgorithm {
@@ -66,8 +67,12 @@ class ANAMORPHFILTERS_EXPORT vtkAnamorphFigureAlgorithm : public vtkPolyDataAlgo
 
     /// Of these ellipsoids. Throws anamorph::Error naming the property that is not as allowed.
     anamorph::View ViewOf(vtkPolyData* figures) const;
-    /// Runs `body`; what it throws becomes an error message and an empty output.
-    int Guarded(vtkPolyData* output, const std::function<void()>& body);
+    /// Throws anamorph::Error.
+    static void CheckPositive(const char* name, double value);
+    /// Writes the output. What it throws becomes an error message and an empty output.
+    virtual void Draw(vtkPolyData* input, vtkPolyData* output, anamorph_vtk::Execution& execution) = 0;
+
+    int RequestData(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
 
     int ViewMode = SCRIPT;
     int ViewSize[2] = {500, 500};

@@ -18,8 +18,6 @@
 #include "vtkDoubleArray.h"
 #include "vtkFloatArray.h"
 #include "vtkIdTypeArray.h"
-#include "vtkInformation.h"
-#include "vtkInformationVector.h"
 #include "vtkNew.h"
 #include "vtkObjectFactory.h"
 #include "vtkPointData.h"
@@ -193,42 +191,37 @@ void write_cell_data(const std::vector<Grid>& grids, vtkIdType triangles, vtkPol
 vtkAnamorphFigureGeometry::vtkAnamorphFigureGeometry() = default;
 vtkAnamorphFigureGeometry::~vtkAnamorphFigureGeometry() = default;
 
-int vtkAnamorphFigureGeometry::RequestData(vtkInformation*, vtkInformationVector** inputs,
-                                           vtkInformationVector* outputs) {
-    vtkPolyData *input = vtkPolyData::GetData(inputs[0]), *output = vtkPolyData::GetData(outputs);
-    return this->Guarded(output, [&] {
-        anamorph_vtk::Execution execution(this);
-        if (!(this->Tolerance > 0))
-            throw Error("Tolerance", anamorph::shortest(this->Tolerance), "allowed is a positive number");
-        const anamorph_vtk::FigureData figures(input);
-        const View view = this->ToleranceMode == PIXELS ? this->ViewOf(input) : View();
-        const double half_diagonal = 0.5 * std::hypot(this->ViewSize[0], this->ViewSize[1]);
-        std::vector<Grid> grids;
-        vtkIdType points = 0, triangles = 0;
-        for (vtkIdType i = 0; i < figures.size(); ++i) {
-            const auto shape = figures.ellipsoid(i);
-            if (!shape) continue;
-            const double tolerance = this->ToleranceMode == PIXELS
-                                         ? tolerance_in_units(this->Tolerance, *shape, view, half_diagonal)
-                                         : this->Tolerance;
-            Grid grid = grid_of(i, *shape, tolerance);
-            grid.first_point = points;
-            grid.first_triangle = triangles;
-            points += grid.points();
-            triangles += grid.triangles();
-            if (points > kMostPoints)
-                throw Error("Tolerance", anamorph::shortest(this->Tolerance),
-                            "allowed are at most " + std::to_string(kMostPoints) + " points");
-            grids.push_back(grid);
-        }
-        execution.progress(0.1);
-        const auto parallel_for = execution.stage(0.1, 0.9);
-        if (this->OutputPointsPrecision == DOUBLE_PRECISION)
-            tessellate<double>(grids, points, triangles, output, parallel_for);
-        else
-            tessellate<float>(grids, points, triangles, output, parallel_for);
-        write_cell_data(grids, triangles, input, output);
-    });
+void vtkAnamorphFigureGeometry::Draw(vtkPolyData* input, vtkPolyData* output,
+                                     anamorph_vtk::Execution& execution) {
+    CheckPositive("Tolerance", this->Tolerance);
+    const anamorph_vtk::FigureData figures(input);
+    const View view = this->ToleranceMode == PIXELS ? this->ViewOf(input) : View();
+    const double half_diagonal = 0.5 * std::hypot(this->ViewSize[0], this->ViewSize[1]);
+    std::vector<Grid> grids;
+    vtkIdType points = 0, triangles = 0;
+    for (vtkIdType i = 0; i < figures.size(); ++i) {
+        const auto shape = figures.ellipsoid(i);
+        if (!shape) continue;
+        const double tolerance = this->ToleranceMode == PIXELS
+                                     ? tolerance_in_units(this->Tolerance, *shape, view, half_diagonal)
+                                     : this->Tolerance;
+        Grid grid = grid_of(i, *shape, tolerance);
+        grid.first_point = points;
+        grid.first_triangle = triangles;
+        points += grid.points();
+        triangles += grid.triangles();
+        if (points > kMostPoints)
+            throw Error("Tolerance", anamorph::shortest(this->Tolerance),
+                        "allowed are at most " + std::to_string(kMostPoints) + " points");
+        grids.push_back(grid);
+    }
+    execution.progress(0.1);
+    const auto parallel_for = execution.stage(0.1, 0.9);
+    if (this->OutputPointsPrecision == DOUBLE_PRECISION)
+        tessellate<double>(grids, points, triangles, output, parallel_for);
+    else
+        tessellate<float>(grids, points, triangles, output, parallel_for);
+    write_cell_data(grids, triangles, input, output);
 }
 
 void vtkAnamorphFigureGeometry::PrintSelf(ostream& os, vtkIndent indent) {

@@ -58,7 +58,7 @@ class ANAMORPHFILTERS_EXPORT vtkAnamorphFigureGeometry : public vtkAnamorphFigur
     vtkAnamorphFigureGeometry();
     ~vtkAnamorphFigureGeometry() override;
 
-    int RequestData(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
+    void Draw(vtkPolyData* input, vtkPolyData* output, anamorph_vtk::Execution& execution) override;
 
   private:
     vtkAnamorphFigureGeometry(const vtkAnamorphFigureGeometry&) = delete;

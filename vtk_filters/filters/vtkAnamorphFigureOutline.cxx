@@ -14,8 +14,6 @@
 #include "execution.h"
 #include "figure_data.h"
 #include "figure_lines.h"
-#include "vtkInformation.h"
-#include "vtkInformationVector.h"
 #include "vtkObjectFactory.h"
 #include "vtkPolyData.h"
 
@@ -73,61 +71,55 @@ void cut_out(const std::vector<anamorph::Connection>& connections, std::vector<O
 vtkAnamorphFigureOutline::vtkAnamorphFigureOutline() = default;
 vtkAnamorphFigureOutline::~vtkAnamorphFigureOutline() = default;
 
-int vtkAnamorphFigureOutline::RequestData(vtkInformation*, vtkInformationVector** inputs,
-                                          vtkInformationVector* outputs) {
-    vtkPolyData *input = vtkPolyData::GetData(inputs[0]), *output = vtkPolyData::GetData(outputs);
-    return this->Guarded(output, [&] {
-        anamorph_vtk::Execution execution(this);
-        if (!(this->Tolerance > 0))
-            throw Error("Tolerance", anamorph::shortest(this->Tolerance), "allowed is a positive number");
-        const anamorph_vtk::Bodies bodies(input);
-        const anamorph::View view = this->ViewOf(input);
-        anamorph::OutlineOptions options;
-        options.hide = this->Hidden != TRANSPARENT;
-        options.crossings = this->Crossings;
-        options.tol = this->Tolerance;
-        options.names = bodies.names;
-        execution.progress(0.05);
-        anamorph::Outlines all = anamorph::outlines(bodies.shapes, view, options, execution.stage(0.1, 0.6));
-        std::vector<anamorph::Connection> connections;
-        if (this->Connected) {
-            connections =
-                anamorph::connections(bodies.joints, bodies.shapes, all, view, execution.stage(0.6, 0.7));
-            cut_out(connections, all.bodies);
-        }
+void vtkAnamorphFigureOutline::Draw(vtkPolyData* input, vtkPolyData* output,
+                                    anamorph_vtk::Execution& execution) {
+    CheckPositive("Tolerance", this->Tolerance);
+    const anamorph_vtk::Bodies bodies(input);
+    const anamorph::View view = this->ViewOf(input);
+    anamorph::OutlineOptions options;
+    options.hide = this->Hidden != TRANSPARENT;
+    options.crossings = this->Crossings;
+    options.tol = this->Tolerance;
+    options.names = bodies.names;
+    execution.progress(0.05);
+    anamorph::Outlines all = anamorph::outlines(bodies.shapes, view, options, execution.stage(0.1, 0.6));
+    std::vector<anamorph::Connection> connections;
+    if (this->Connected) {
+        connections =
+            anamorph::connections(bodies.joints, bodies.shapes, all, view, execution.stage(0.6, 0.7));
+        cut_out(connections, all.bodies);
+    }
 
-        anamorph_vtk::LineWriter writer(input, this->OutputPointsPrecision, {"Visible", "OtherBodyId"});
-        const auto id = [&](int body) { return body < 0 ? -1 : bodies.ids[static_cast<std::size_t>(body)]; };
-        // Adds the parts of something that has visible and hidden ones.
-        const auto add = [&](const auto& line, int body, int other, const auto& part) {
-            const auto other_id = static_cast<double>(id(other));
-            for (const Arc& arc : line.visible) writer.add(part(arc), id(body), {1, other_id});
-            if (this->Hidden != KEPT) return;
-            for (const Arc& arc : line.hidden) writer.add(part(arc), id(body), {0, other_id});
-        };
-        for (std::size_t i = 0; i < all.bodies.size(); ++i) {
-            const Outline& outline = all.bodies[i];
-            add(outline, static_cast<int>(i), -1, [&](const Arc& arc) {
-                std::vector<glm::dvec3> points;
-                for (const double angle : anamorph::chord_angles(outline, arc, view, this->Tolerance))
-                    points.push_back(outline.limb(angle));
-                if (arc.length() > kWholeTurn) points.back() = points.front();
-                return points;
+    anamorph_vtk::LineWriter writer(input, this->OutputPointsPrecision, {"Visible", "OtherBodyId"});
+    const auto id = [&](int body) { return body < 0 ? -1 : bodies.ids[static_cast<std::size_t>(body)]; };
+    // Adds the parts of something that has visible and hidden ones.
+    const auto add = [&](const auto& line, int body, int other, const auto& part) {
+        const auto other_id = static_cast<double>(id(other));
+        for (const Arc& arc : line.visible) writer.add(part(arc), id(body), {1, other_id});
+        if (this->Hidden != KEPT) return;
+        for (const Arc& arc : line.hidden) writer.add(part(arc), id(body), {0, other_id});
+    };
+    for (std::size_t i = 0; i < all.bodies.size(); ++i) {
+        const Outline& outline = all.bodies[i];
+        add(outline, static_cast<int>(i), -1, [&](const Arc& arc) {
+            std::vector<glm::dvec3> points;
+            for (const double angle : anamorph::chord_angles(outline, arc, view, this->Tolerance))
+                points.push_back(outline.limb(angle));
+            if (arc.length() > kWholeTurn) points.back() = points.front();
+            return points;
+        });
+        if (i % 64 == 63)
+            execution.progress(0.7 + 0.2 * static_cast<double>(i) / static_cast<double>(all.bodies.size()));
+    }
+    for (const anamorph::CrossingCurve& curve : all.crossings)
+        add(curve, curve.first, curve.second, [&](const Arc& arc) { return part_of(curve, arc); });
+    for (const anamorph::Connection& c : connections)
+        for (const anamorph::ConnectingStroke& stroke : c.strokes)
+            add(stroke.line, c.first, c.second, [&](const Arc& arc) {
+                return std::vector<glm::dvec3>{glm::mix(stroke.line.from, stroke.line.to, arc.begin),
+                                               glm::mix(stroke.line.from, stroke.line.to, arc.end)};
             });
-            if (i % 64 == 63)
-                execution.progress(0.7 +
-                                   0.2 * static_cast<double>(i) / static_cast<double>(all.bodies.size()));
-        }
-        for (const anamorph::CrossingCurve& curve : all.crossings)
-            add(curve, curve.first, curve.second, [&](const Arc& arc) { return part_of(curve, arc); });
-        for (const anamorph::Connection& c : connections)
-            for (const anamorph::ConnectingStroke& stroke : c.strokes)
-                add(stroke.line, c.first, c.second, [&](const Arc& arc) {
-                    return std::vector<glm::dvec3>{glm::mix(stroke.line.from, stroke.line.to, arc.begin),
-                                                   glm::mix(stroke.line.from, stroke.line.to, arc.end)};
-                });
-        writer.write(output);
-    });
+    writer.write(output);
 }
 
 void vtkAnamorphFigureOutline::PrintSelf(ostream& os, vtkIndent indent) {

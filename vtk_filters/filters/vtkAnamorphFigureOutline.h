@@ -67,7 +67,7 @@ class ANAMORPHFILTERS_EXPORT vtkAnamorphFigureOutline : public vtkAnamorphFigure
     vtkAnamorphFigureOutline();
     ~vtkAnamorphFigureOutline() override;
 
-    int RequestData(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
+    void Draw(vtkPolyData* input, vtkPolyData* output, anamorph_vtk::Execution& execution) override;
 
   private:
     vtkAnamorphFigureOutline(const vtkAnamorphFigureOutline&) = delete;

@@ -5,12 +5,12 @@
 #include <cmath>
 #include <filesystem>
 #include <fstream>
-#include <new>
 #include <optional>
 
 #include "anamorph/error.h"
 #include "anamorph/figure/performance.h"
 #include "anamorph/figure/script.h"
+#include "execution.h"
 #include "figure_data.h"
 #include "vtkDataObject.h"
 #include "vtkInformation.h"
@@ -167,23 +167,17 @@ int vtkAnamorphFigureReader::RequestInformation(vtkInformation*, vtkInformationV
     output->Set(CAN_HANDLE_PIECE_REQUEST(), 1);
     output->Remove(Executive::TIME_STEPS());
     output->Remove(Executive::TIME_RANGE());
-    try {
+    return anamorph_vtk::guarded(this, [&] {
         this->Prepare();
         const Play& play = *this->Current;
-        if (play.count == 0) return 1;
+        if (play.count == 0) return;
         const double range[2] = {1.0 * play.first, play.first + (play.count - 1.0) * play.step};
         output->Set(Executive::TIME_RANGE(), range, 2);
-        if (play.count > kMostSteps) return 1;
+        if (play.count > kMostSteps) return;
         std::vector<double> steps;
         for (int i = 0; i < play.count; ++i) steps.push_back(play.first + 1.0 * i * play.step);
         output->Set(Executive::TIME_STEPS(), steps.data(), play.count);
-        return 1;
-    } catch (const std::bad_alloc&) {
-        vtkErrorMacro(<< "not enough memory");
-    } catch (const std::exception& error) {
-        vtkErrorMacro(<< error.what());
-    }
-    return 0;
+    });
 }
 
 int vtkAnamorphFigureReader::RequestData(vtkInformation*, vtkInformationVector**,
@@ -191,7 +185,7 @@ int vtkAnamorphFigureReader::RequestData(vtkInformation*, vtkInformationVector**
     vtkInformation* information = outputs->GetInformationObject(0);
     vtkPolyData* output = vtkPolyData::GetData(outputs);
     output->Initialize();
-    try {
+    const auto perform = [&] {
         this->Prepare();
         Play& play = *this->Current;
         const int frame = play.frame_at(information->Has(Executive::UPDATE_TIME_STEP())
@@ -201,14 +195,8 @@ int vtkAnamorphFigureReader::RequestData(vtkInformation*, vtkInformationVector**
             anamorph_vtk::write_figures(play.performance.frame(frame), this->Joints,
                                         this->OutputPointsPrecision, output);
         if (play.count > 0) output->GetInformation()->Set(vtkDataObject::DATA_TIME_STEP(), frame);
-        return 1;
-    } catch (const std::bad_alloc&) {
-        vtkErrorMacro(<< "not enough memory");
-    } catch (const std::exception& error) {
-        vtkErrorMacro(<< error.what());
-    }
-    output->Initialize();
-    return 0;
+    };
+    return anamorph_vtk::guarded(this, perform, {output});
 }
 
 void vtkAnamorphFigureReader::PrintSelf(ostream& os, vtkIndent indent) {

@@ -11,8 +11,6 @@
 #include "execution.h"
 #include "figure_data.h"
 #include "figure_lines.h"
-#include "vtkInformation.h"
-#include "vtkInformationVector.h"
 #include "vtkObjectFactory.h"
 #include "vtkPolyData.h"
 
@@ -40,49 +38,43 @@ std::vector<Stick> sticks_from_joint_to_joint(const Bodies& bodies) {
 vtkAnamorphFigureSkeleton::vtkAnamorphFigureSkeleton() = default;
 vtkAnamorphFigureSkeleton::~vtkAnamorphFigureSkeleton() = default;
 
-int vtkAnamorphFigureSkeleton::RequestData(vtkInformation*, vtkInformationVector** inputs,
-                                           vtkInformationVector* outputs) {
-    vtkPolyData *input = vtkPolyData::GetData(inputs[0]), *output = vtkPolyData::GetData(outputs);
-    return this->Guarded(output, [&] {
-        anamorph_vtk::Execution execution(this);
-        if (!(this->LevelOfDetail >= 0))
-            throw Error("LevelOfDetail", anamorph::shortest(this->LevelOfDetail),
-                        "allowed are numbers from 0");
-        if (!(this->Tolerance > 0))
-            throw Error("Tolerance", anamorph::shortest(this->Tolerance), "allowed is a positive number");
-        const Bodies bodies(input);
-        const std::vector<Detail> details =
-            anamorph::levels_of_detail(bodies.shapes, this->ViewOf(input), {this->LevelOfDetail});
-        execution.progress(0.3);
+void vtkAnamorphFigureSkeleton::Draw(vtkPolyData* input, vtkPolyData* output,
+                                     anamorph_vtk::Execution& execution) {
+    if (!(this->LevelOfDetail >= 0))
+        throw Error("LevelOfDetail", anamorph::shortest(this->LevelOfDetail), "allowed are numbers from 0");
+    CheckPositive("Tolerance", this->Tolerance);
+    const Bodies bodies(input);
+    const std::vector<Detail> details =
+        anamorph::levels_of_detail(bodies.shapes, this->ViewOf(input), {this->LevelOfDetail});
+    execution.progress(0.3);
 
-        anamorph_vtk::LineWriter writer(input, this->OutputPointsPrecision, {"Detail", "Radius"});
-        const auto add = [&](const std::vector<glm::dvec3>& points, std::size_t body, double radius) {
-            writer.add(points, bodies.ids[body], {static_cast<double>(details[body]), radius});
-        };
-        for (std::size_t i = 0; i < details.size(); ++i)
-            if (details[i] == Detail::dot) add({bodies.shapes[i].center}, i, 0);
-        const auto is_more_than_a_dot = [&](std::size_t i) { return details[i] > Detail::dot; };
-        if (this->Mode == SPHERES) {
-            for (std::size_t i = 0; i < details.size(); ++i) {
-                execution.progress(0.3 + 0.6 * static_cast<double>(i) / static_cast<double>(details.size()));
-                if (!is_more_than_a_dot(i)) continue;
-                const anamorph::SphereFill fill =
-                    anamorph::fill_with_spheres(bodies.shapes[i], {this->Tolerance, 10000});
-                if (!(fill.deviation <= this->Tolerance))
-                    throw Error("Tolerance", anamorph::shortest(this->Tolerance),
-                                "needs more than 10000 spheres for " + bodies.names[i]);
-                for (const anamorph::Sphere& sphere : fill.spheres) add({sphere.center}, i, sphere.radius);
-            }
-        } else {
-            const std::vector<Stick> sticks = this->Mode == AXES ? anamorph::axis_sticks(bodies.shapes)
-                                                                 : sticks_from_joint_to_joint(bodies);
-            for (const Stick& stick : sticks) {
-                const auto body = static_cast<std::size_t>(stick.body);
-                if (is_more_than_a_dot(body)) add({stick.from, stick.to}, body, 0);
-            }
+    anamorph_vtk::LineWriter writer(input, this->OutputPointsPrecision, {"Detail", "Radius"});
+    const auto add = [&](const std::vector<glm::dvec3>& points, std::size_t body, double radius) {
+        writer.add(points, bodies.ids[body], {static_cast<double>(details[body]), radius});
+    };
+    for (std::size_t i = 0; i < details.size(); ++i)
+        if (details[i] == Detail::dot) add({bodies.shapes[i].center}, i, 0);
+    const auto is_more_than_a_dot = [&](std::size_t i) { return details[i] > Detail::dot; };
+    if (this->Mode == SPHERES) {
+        for (std::size_t i = 0; i < details.size(); ++i) {
+            execution.progress(0.3 + 0.6 * static_cast<double>(i) / static_cast<double>(details.size()));
+            if (!is_more_than_a_dot(i)) continue;
+            const anamorph::SphereFill fill =
+                anamorph::fill_with_spheres(bodies.shapes[i], {this->Tolerance, 10000});
+            if (!(fill.deviation <= this->Tolerance))
+                throw Error("Tolerance", anamorph::shortest(this->Tolerance),
+                            "needs more than 10000 spheres for " + bodies.names[i]);
+            for (const anamorph::Sphere& sphere : fill.spheres) add({sphere.center}, i, sphere.radius);
         }
-        writer.write(output);
-    });
+    } else {
+        const std::vector<Stick> sticks =
+            this->Mode == AXES ? anamorph::axis_sticks(bodies.shapes) : sticks_from_joint_to_joint(bodies);
+        for (const Stick& stick : sticks) {
+            const auto body = static_cast<std::size_t>(stick.body);
+            if (is_more_than_a_dot(body)) add({stick.from, stick.to}, body, 0);
+        }
+    }
+    writer.write(output);
 }
 
 void vtkAnamorphFigureSkeleton::PrintSelf(ostream& os, vtkIndent indent) {

@@ -6,13 +6,13 @@
 #include <limits>
 #include <map>
 #include <memory>
-#include <new>
 #include <optional>
 
 #include "anamorph/deform/inbetween.h"
 #include "anamorph/deform/key_frames.h"
 #include "anamorph/parameter.h"
-#include "host.h"
+#include "execution.h"
+#include "smp_for.h"
 #include "vtkAOSDataArrayTemplate.h"
 #include "vtkCellArray.h"
 #include "vtkCellArrayIterator.h"
@@ -234,20 +234,20 @@ class Blend {
         add_arrays(cell_data, output->GetCellData(), cell_masks);
     }
 
-    /// False if `go_on`, told how much is done, has said so.
-    bool run(const std::function<bool(double)>& go_on) {
+    void run(anamorph_vtk::Execution& execution) {
         double total = 0, done = 0;
         for (const Job& job : m_jobs) total += static_cast<double>(job.to->GetNumberOfValues());
         for (const Job& job : m_jobs) {
             const auto advance = [&](vtkIdType values) {
                 done += static_cast<double>(values);
-                return go_on(done / total);
+                execution.progress(done / total);
             };
-            if (!(job.to->GetDataType() == VTK_FLOAT ? run_job<float>(job, advance)
-                                                     : run_job<double>(job, advance)))
-                return false;
+            if (job.to->GetDataType() == VTK_FLOAT)
+                run_job<float>(job, advance);
+            else
+                run_job<double>(job, advance);
         }
-        return m_jobs.empty() ? go_on(1) : true;
+        execution.progress(1);
     }
 
   private:
@@ -352,7 +352,7 @@ class Blend {
     }
 
     template <class T>
-    bool run_job(const Job& job, const std::function<bool(vtkIdType)>& advance) const {
+    void run_job(const Job& job, const std::function<void(vtkIdType)>& advance) const {
         const int components = job.to->GetNumberOfComponents();
         const vtkIdType points = job.to->GetNumberOfTuples();
         std::vector<Values<T>> from;
@@ -366,9 +366,8 @@ class Blend {
             else
                 run_sum(from, first, count, components, out);
             if (job.unit) renormalize(out, count, components);
-            if (!advance(count * components)) return false;
+            advance(count * components);
         }
-        return true;
     }
 
     template <class T>
@@ -697,7 +696,7 @@ int vtkAnamorphInbetween::RequestData(vtkInformation*, vtkInformationVector** in
     const int count = input_vector[0]->GetNumberOfInformationObjects();
     if (!output || count == 0) return 1;
     output->Initialize();
-    try {
+    const auto execute = [&] {
         if (this->BaseIndex < 0 || this->BaseIndex >= count)
             throw Error("BaseIndex", std::to_string(this->BaseIndex),
                         "allowed are the inputs 0 to " + std::to_string(count - 1));
@@ -739,22 +738,11 @@ int vtkAnamorphInbetween::RequestData(vtkInformation*, vtkInformationVector** in
             if (composite) at->GoToNextItem();
         }
         this->SameTopology = std::move(same_topology);
-        const bool finished = blend.run([this](double progress) {
-            this->UpdateProgress(progress);
-            return !anamorph::is_aborted(this);
-        });
-        if (!finished) output->Initialize();
+        anamorph_vtk::Execution execution(this);
+        blend.run(execution);
         if (!this->Keys.empty()) output->GetInformation()->Set(vtkDataObject::DATA_TIME_STEP(), time);
-    } catch (const std::bad_alloc&) {
-        output->Initialize();
-        vtkErrorMacro(<< "not enough memory");
-        return 0;
-    } catch (const std::exception& error) {
-        output->Initialize();
-        vtkErrorMacro(<< error.what());
-        return 0;
-    }
-    return 1;
+    };
+    return anamorph_vtk::guarded(this, execute, {output});
 }
 
 void vtkAnamorphInbetween::PrintSelf(ostream& os, vtkIndent indent) {

@@ -4,16 +4,15 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
-#include <functional>
 #include <glm/geometric.hpp>
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
-#include <new>
 #include <vector>
 
 #include "anamorph/error.h"
 #include "anamorph/parameter.h"
-#include "host.h"
+#include "execution.h"
+#include "smp_for.h"
 #include "vtkAOSDataArrayTemplate.h"
 #include "vtkArrayDispatch.h"
 #include "vtkDataArrayRange.h"
@@ -311,10 +310,9 @@ struct Relief {
     const Plane& plane;
     const Field& heights;
 
-    /// False if `go_on`, told which share is done, has said so.
     template <class T>
-    bool write(const Piece& piece, bool with_normals, vtkStructuredGrid* output,
-               const std::function<bool(double)>& go_on) const {
+    void write(const Piece& piece, bool with_normals, vtkStructuredGrid* output,
+               anamorph_vtk::Execution& execution) const {
         const vtkIdType count = vtkIdType{piece.columns.size()} * piece.rows.size();
         vtkNew<vtkPoints> points;
         points->SetDataType(vtkTypeTraits<T>::VTK_TYPE_ID);
@@ -340,9 +338,8 @@ struct Relief {
                     if (normals) set_tuple(normals, i, normal(column, row));
                 }
             });
-            if (!go_on(static_cast<double>(end - piece.rows.begin) / piece.rows.size())) return false;
+            execution.progress(0.5 + 0.5 * (end - piece.rows.begin) / piece.rows.size());
         }
-        return true;
     }
 
     glm::dvec3 point(int column, int row) const {
@@ -415,19 +412,6 @@ vtkInformation* vtkAnamorphReliefSource::PictureInformation(vtkInformationVector
     return info;
 }
 
-/// Runs `body`; what it throws becomes an error message, and 0.
-int vtkAnamorphReliefSource::Guarded(const std::function<void()>& body) {
-    try {
-        body();
-        return 1;
-    } catch (const std::bad_alloc&) {
-        vtkErrorMacro(<< "not enough memory");
-    } catch (const std::exception& error) {
-        vtkErrorMacro(<< error.what());
-    }
-    return 0;
-}
-
 /// The input or what is in the file, with the extent that RequestUpdateExtent has asked for.
 vtkImageData* vtkAnamorphReliefSource::Picture(vtkInformationVector** inputs) {
     if (inputs[0]->GetNumberOfInformationObjects() > 0) return vtkImageData::GetData(inputs[0]);
@@ -440,7 +424,7 @@ vtkImageData* vtkAnamorphReliefSource::Picture(vtkInformationVector** inputs) {
 
 int vtkAnamorphReliefSource::RequestInformation(vtkInformation*, vtkInformationVector** inputs,
                                                 vtkInformationVector* outputs) {
-    return this->Guarded([&] {
+    return anamorph_vtk::guarded(this, [&] {
         vtkInformation* picture = this->PictureInformation(inputs);
         const Axes axes =
             axes_of(picture->Get(Executive::WHOLE_EXTENT()), this->Resolution, this->SampleRate);
@@ -452,7 +436,7 @@ int vtkAnamorphReliefSource::RequestInformation(vtkInformation*, vtkInformationV
 
 int vtkAnamorphReliefSource::RequestUpdateExtent(vtkInformation*, vtkInformationVector** inputs,
                                                  vtkInformationVector* outputs) {
-    return this->Guarded([&] {
+    return anamorph_vtk::guarded(this, [&] {
         vtkInformation* picture = this->PictureInformation(inputs);
         int whole[6];
         picture->Get(Executive::WHOLE_EXTENT(), whole);
@@ -479,7 +463,7 @@ int vtkAnamorphReliefSource::RequestData(vtkInformation*, vtkInformationVector**
                                          vtkInformationVector* outputs) {
     auto* output = vtkStructuredGrid::GetData(outputs);
     output->Initialize();
-    const int status = this->Guarded([&] {
+    const auto raise = [&] {
         int asked[6];
         outputs->GetInformationObject(0)->Get(Executive::UPDATE_EXTENT(), asked);
         if (is_empty(asked)) return;
@@ -505,20 +489,16 @@ int vtkAnamorphReliefSource::RequestData(vtkInformation*, vtkInformationVector**
             });
             return this->HeightScale * h + this->HeightOffset;
         });
-        const auto go_on = [this](double share) {
-            this->UpdateProgress(0.5 + 0.5 * share);
-            return !anamorph::is_aborted(this);
-        };
-        if (!go_on(0)) return;
+        anamorph_vtk::Execution execution(this);
+        execution.progress(0.5);
         output->SetExtent(asked);
         const Relief relief{axes, plane, heights};
-        const bool finished = this->OutputPointsPrecision == DOUBLE_PRECISION
-                                  ? relief.write<double>(piece, this->GenerateNormals, output, go_on)
-                                  : relief.write<float>(piece, this->GenerateNormals, output, go_on);
-        if (!finished) output->Initialize();
-    });
-    if (!status) output->Initialize();
-    return status;
+        if (this->OutputPointsPrecision == DOUBLE_PRECISION)
+            relief.write<double>(piece, this->GenerateNormals, output, execution);
+        else
+            relief.write<float>(piece, this->GenerateNormals, output, execution);
+    };
+    return anamorph_vtk::guarded(this, raise, {output});
 }
 
 void vtkAnamorphReliefSource::PrintSelf(ostream& os, vtkIndent indent) {

@@ -27,8 +27,7 @@
 #include "vtkSmartPointer.h"        // for the same
 #include "vtkStructuredGridAlgorithm.h"
 
-#include <functional>  // for what may fail
-#include <string>      // for the name of the file
+#include <string>  // for the name of the file
 
 class ANAMORPHFILTERS_EXPORT vtkAnamorphReliefSource : public vtkStructuredGridAlgorithm {
   public:
@@ -137,7 +136,6 @@ class ANAMORPHFILTERS_EXPORT vtkAnamorphReliefSource : public vtkStructuredGridA
     vtkAnamorphReliefSource(const vtkAnamorphReliefSource&) = delete;
     void operator=(const vtkAnamorphReliefSource&) = delete;
 
-    int Guarded(const std::function<void()>& body);
     vtkInformation* PictureInformation(vtkInformationVector** inputs);
     vtkImageData* Picture(vtkInformationVector** inputs);
 
