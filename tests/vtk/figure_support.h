@@ -3,6 +3,7 @@
 #pragma once
 
 #include <unistd.h>
+#include <vtkCellData.h>
 #include <vtkDoubleArray.h>
 #include <vtkNew.h>
 #include <vtkPointData.h>
@@ -12,10 +13,13 @@
 
 #include <filesystem>
 #include <fstream>
+#include <functional>
 #include <glm/gtc/quaternion.hpp>
 #include <glm/vec3.hpp>
 #include <string>
 #include <vector>
+
+#include "support.h"
 
 /// A folder that is removed with it.
 class Folder {
@@ -84,4 +88,18 @@ inline vtkSmartPointer<vtkPolyData> figures(const std::vector<Ball>& balls) {
     data->GetPointData()->AddArray(axes);
     data->GetPointData()->AddArray(turns);
     return data;
+}
+
+/// What a filter makes of figures.
+template <class Filter>
+vtkSmartPointer<vtkPolyData> drawn(vtkPolyData* input, const std::function<void(Filter*)>& set = {}) {
+    vtkNew<Filter> filter;
+    filter->SetInputData(input);
+    if (set) set(filter);
+    filter->Update();
+    return vtkPolyData::SafeDownCast(filter->GetOutputDataObject(0));
+}
+
+inline std::vector<double> cell_numbers(vtkPolyData* data, const char* name) {
+    return numbers(data->GetCellData()->GetArray(name));
 }

@@ -2,9 +2,12 @@
 // What the tests of all filters share.
 #pragma once
 
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
 #include <vtkAlgorithm.h>
 #include <vtkCommand.h>
 #include <vtkDataArray.h>
+#include <vtkDataObject.h>
 #include <vtkExecutive.h>
 #include <vtkNew.h>
 #include <vtkObjectFactory.h>
@@ -12,20 +15,42 @@
 #include <vtkPoints.h>
 #include <vtkVersion.h>
 
+#include <functional>
+#include <limits>
+#include <sstream>
 #include <string>
 #include <vector>
+
+inline constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+inline constexpr double kInf = std::numeric_limits<double>::infinity();
 
 /// vtkSMPTools with a backend ("Sequential", "STDThread", "TBB" or, null, the one in use) and some threads.
 /// False if there is no such backend.
 bool use_threads(const char* backend, int threads);
 
-/// Collects the errors of an algorithm and of its executive, and keeps them from the screen.
+/// Calls `body` with every backend that there is and 1, 2 and 4 threads.
+inline void for_any_threads(const std::function<void()>& body) {
+    int runs = 0;
+    for (const char* backend : {"Sequential", "STDThread", "TBB"})
+        for (const int threads : {1, 2, 4}) {
+            if (!use_threads(backend, threads)) continue;
+            SCOPED_TRACE(backend + std::to_string(threads));
+            body();
+            ++runs;
+        }
+    EXPECT_GE(runs, 6);
+    use_threads("Sequential", 0);
+}
+
+/// Collects the errors (or warnings) of an object, of an algorithm's executive too, and keeps them from the
+/// screen.
 class Errors {
   public:
-    explicit Errors(vtkAlgorithm* algorithm) {
+    explicit Errors(vtkObject* object, unsigned long event = vtkCommand::ErrorEvent) {
         m_observer->text = &m_text;
-        algorithm->AddObserver(vtkCommand::ErrorEvent, m_observer);
-        algorithm->GetExecutive()->AddObserver(vtkCommand::ErrorEvent, m_observer);
+        object->AddObserver(event, m_observer);
+        if (auto* algorithm = vtkAlgorithm::SafeDownCast(object))
+            algorithm->GetExecutive()->AddObserver(event, m_observer);
     }
     const std::string& text() const { return m_text; }
     void clear() { m_text.clear(); }
@@ -100,3 +125,57 @@ class OverrideFactory {
     };
     vtkNew<Factory> m_factory;
 };
+
+/// The errors of a filter with an input (none, if null) and settings. After one the output has no points.
+template <class Filter>
+std::string errors_of(vtkDataObject* input, const std::function<void(Filter*)>& set = {}) {
+    vtkNew<Filter> filter;
+    Errors errors(filter);
+    if (input) filter->SetInputDataObject(input);
+    if (set) set(filter);
+    filter->Update();
+    EXPECT_TRUE(errors.text().empty() || filter->GetOutput()->GetNumberOfPoints() == 0);
+    return errors.text();
+}
+
+/// Each of the changes counts as a modification, and none when it is made again.
+template <class Object>
+void expect_modified_by(Object* object, const std::vector<std::function<void(Object*)>>& changes) {
+    for (std::size_t i = 0; i < changes.size(); ++i) {
+        SCOPED_TRACE(i);
+        const vtkMTimeType before = object->GetMTime();
+        changes[i](object);
+        const vtkMTimeType after = object->GetMTime();
+        EXPECT_GT(after, before);
+        changes[i](object);
+        EXPECT_EQ(object->GetMTime(), after);
+    }
+}
+
+/// A second Update() does nothing.
+inline void expect_executed_once(vtkAlgorithm* algorithm) {
+    algorithm->Update();
+    const vtkMTimeType made = algorithm->GetOutputDataObject(0)->GetMTime();
+    algorithm->Update();
+    EXPECT_EQ(algorithm->GetOutputDataObject(0)->GetMTime(), made);
+}
+
+inline void expect_printed(vtkObject* object, const std::vector<std::string>& parts) {
+    std::ostringstream text;
+    object->Print(text);
+    for (const std::string& part : parts) EXPECT_THAT(text.str(), testing::HasSubstr(part));
+}
+
+/// Another class in its place.
+template <class Class>
+class Override : public Class {
+  public:
+    static Override* New() { return new Override; }
+    vtkTypeMacro(Override, Class);
+};
+
+template <class Class>
+void expect_overridden(const char* name) {
+    const OverrideFactory<Override<Class>> factory(name);
+    EXPECT_STREQ(vtkNew<Class>()->GetClassName(), "Override");
+}

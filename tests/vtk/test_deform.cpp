@@ -42,7 +42,6 @@
 #include <glm/geometric.hpp>
 #include <limits>
 #include <random>
-#include <sstream>
 
 #include "anamorph/deform/deformation.h"
 #include "support.h"
@@ -53,9 +52,6 @@ using anamorph::Deformation;
 using anamorph::DeformationKernel;
 using Executive = vtkStreamingDemandDrivenPipeline;
 using testing::HasSubstr;
-
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-constexpr double kInf = std::numeric_limits<double>::infinity();
 
 class Random {
   public:
@@ -239,10 +235,7 @@ vtkStandardNewMacro(Source);
 TEST(VtkDeform, PrintsItself) {
     vtkNew<vtkAnamorphDeform> filter;
     filter->AddDeformation(1, 2, 3, 4, 5, 6, 7);
-    std::ostringstream text;
-    filter->Print(text);
-    for (const char* word : {"Cutoff", "Origin", "FileName", "ErrorBound", "NumberOfDeformations: 1"})
-        EXPECT_THAT(text.str(), HasSubstr(word));
+    expect_printed(filter, {"Cutoff", "Origin", "FileName", "ErrorBound", "NumberOfDeformations: 1"});
 }
 
 TEST(VtkDeform, NoInputAndWrongInput) {
@@ -481,20 +474,18 @@ TEST(VtkDeform, SameBitsForAnyThreads) {
         const auto mesh = square(90, VTK_DOUBLE, relief);
         mesh->GetPoints()->SetPoint(4, .3, .2, .1);
         std::vector<double> points, normals;
-        for (const char* backend : {"Sequential", "STDThread", "TBB"})
-            for (const int threads : {1, 2, 4}) {
-                if (!use_threads(backend, threads)) continue;
-                vtkNew<vtkAnamorphDeform> filter;
-                filter->SetInputData(mesh);
-                add(filter, list);
-                filter->Update();
-                if (points.empty()) {
-                    points = coordinates(output(filter));
-                    normals = numbers(output(filter)->GetPointData()->GetNormals());
-                }
-                EXPECT_EQ(coordinates(output(filter)), points) << backend << " " << threads;
-                EXPECT_EQ(numbers(output(filter)->GetPointData()->GetNormals()), normals);
+        for_any_threads([&] {
+            vtkNew<vtkAnamorphDeform> filter;
+            filter->SetInputData(mesh);
+            add(filter, list);
+            filter->Update();
+            if (points.empty()) {
+                points = coordinates(output(filter));
+                normals = numbers(output(filter)->GetPointData()->GetNormals());
             }
+            EXPECT_EQ(coordinates(output(filter)), points);
+            EXPECT_EQ(numbers(output(filter)->GetPointData()->GetNormals()), normals);
+        });
         EXPECT_FALSE(points.empty());
     }
 }
@@ -574,24 +565,16 @@ TEST(VtkDeform, WhatIsRefused) {
                 HasSubstr("no texture coordinates"));
     // Positions that are not in the list are refused at once.
     vtkNew<vtkAnamorphDeform> filter;
-    Errors errors(filter);
-    class Texts : public vtkCommand {
-      public:
-        static Texts* New() { return new Texts; }
-        void Execute(vtkObject*, unsigned long, void* data) override { text += static_cast<char*>(data); }
-        std::string text;
-    };
-    vtkNew<Texts> texts;
-    filter->GetDeformationList()->AddObserver(vtkCommand::ErrorEvent, texts);
+    const Errors errors(filter->GetDeformationList());
     filter->RemoveDeformation(0);
-    EXPECT_THAT(texts->text, HasSubstr("position=0: the list is empty"));
+    EXPECT_THAT(errors.text(), HasSubstr("position=0: the list is empty"));
     filter->AddDeformation(0, 0, 1, 1, 0, 0, 1);
     filter->MoveDeformation(0, 1);
-    EXPECT_THAT(texts->text, HasSubstr("position=1: allowed are whole numbers from 0 to 0"));
+    EXPECT_THAT(errors.text(), HasSubstr("position=1: allowed are whole numbers from 0 to 0"));
     filter->SetNumberOfDeformations(-1);
-    EXPECT_THAT(texts->text, HasSubstr("NumberOfDeformations=-1"));
+    EXPECT_THAT(errors.text(), HasSubstr("NumberOfDeformations=-1"));
     filter->SetNumberOfDeformations(2000000000);
-    EXPECT_THAT(texts->text, HasSubstr("NumberOfDeformations=2000000000"));
+    EXPECT_THAT(errors.text(), HasSubstr("NumberOfDeformations=2000000000"));
     EXPECT_TRUE(std::isnan(filter->GetDeformation(5)[0]));
     EXPECT_EQ(filter->GetNumberOfDeformations(), 1);
 }
@@ -1167,17 +1150,6 @@ TEST(VtkDeform, ASharedList) {
     EXPECT_NE(coordinates(output(b)), coordinates(mesh));
 }
 
-namespace {
-/// Another class in its place.
-class Special : public vtkAnamorphDeform {
-  public:
-    static Special* New() { return new Special; }
-    vtkTypeMacro(Special, vtkAnamorphDeform);
-};
-}  // namespace
-
 TEST(VtkDeform, FactoriesMayOverrideIt) {
-    const OverrideFactory<Special> factory("vtkAnamorphDeform");
-    vtkNew<vtkAnamorphDeform> filter;
-    EXPECT_STREQ(filter->GetClassName(), "Special");
+    expect_overridden<vtkAnamorphDeform>("vtkAnamorphDeform");
 }

@@ -16,7 +16,6 @@
 
 #include <cmath>
 #include <random>
-#include <sstream>
 #include <string>
 
 #include "support.h"
@@ -24,14 +23,6 @@
 namespace {
 
 using testing::HasSubstr;
-
-/// Collects warnings or errors of an object.
-class Texts : public vtkCommand {
-  public:
-    static Texts* New() { return new Texts; }
-    void Execute(vtkObject*, unsigned long, void* data) override { text += static_cast<char*>(data); }
-    std::string text;
-};
 
 /// Bumps that do not fold.
 void add_bumps(vtkAnamorphDeformationList* list, unsigned seed, double size) {
@@ -141,11 +132,10 @@ TEST(VtkDeformTransform, FoldsAreReported) {
     transform->GetDeformationList()->AddDeformation(.5, .25, 1, 1, 3, 0, 0);
     EXPECT_EQ(transform->GetFold(), vtkAnamorphDeformTransform::FOLD);
     EXPECT_NE(transform->GetFoldParameters()[0], 0);
-    vtkNew<Texts> warnings;
-    transform->AddObserver(vtkCommand::WarningEvent, warnings);
+    const Errors warnings(transform, vtkCommand::WarningEvent);
     transform->Inverse();
     transform->Update();
-    EXPECT_THAT(warnings->text, HasSubstr("fold the plane at u="));
+    EXPECT_THAT(warnings.text(), HasSubstr("fold the plane at u="));
     for (double x = -3; x < 6; x += .01) {
         const double p[3] = {x, .3, 0};
         double q[3];
@@ -197,24 +187,21 @@ TEST(VtkDeformTransform, CopiesAndConcatenates) {
 
 TEST(VtkDeformTransform, ErrorsMoveNothing) {
     vtkNew<vtkAnamorphDeformTransform> transform;
-    vtkNew<Texts> errors;
-    transform->AddObserver(vtkCommand::ErrorEvent, errors);
+    const Errors errors(transform);
     transform->GetDeformationList()->AddDeformation(0, 0, 0, 1, 1, 1, 1);
     const double p[3] = {0, 0, 0};
     double q[3];
     transform->TransformPoint(p, q);
-    EXPECT_THAT(errors->text, HasSubstr("deformation 0: extent=0"));
+    EXPECT_THAT(errors.text(), HasSubstr("deformation 0: extent=0"));
     EXPECT_EQ(q[0], 0);
     transform->GetDeformationList()->RemoveAllDeformations();
     transform->SetAxis1(0, 2, 0);
     transform->TransformPoint(p, q);
-    EXPECT_THAT(errors->text, HasSubstr("axis_u and axis_v"));
+    EXPECT_THAT(errors.text(), HasSubstr("axis_u and axis_v"));
     const vtkMTimeType time = transform->GetMTime();
     transform->SetAxis1(transform->GetAxis1());
     EXPECT_EQ(transform->GetMTime(), time);
-    std::ostringstream text;
-    transform->Print(text);
-    EXPECT_THAT(text.str(), HasSubstr("Axis1: 0 2 0"));
+    expect_printed(transform, {"Axis1: 0 2 0"});
 }
 
 TEST(VtkDeformTransform, ReslicesImages) {

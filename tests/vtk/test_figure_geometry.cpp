@@ -7,7 +7,6 @@
 #include <vtkDoubleArray.h>
 #include <vtkIdList.h>
 #include <vtkNew.h>
-#include <vtkObjectFactory.h>
 #include <vtkPointData.h>
 #include <vtkPolyData.h>
 #include <vtkStringArray.h>
@@ -16,11 +15,9 @@
 #include <functional>
 #include <glm/geometric.hpp>
 #include <glm/vec2.hpp>
-#include <limits>
 #include <numbers>
 #include <random>
 #include <set>
-#include <sstream>
 
 #include "figure_support.h"
 #include "support.h"
@@ -31,9 +28,6 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 
 constexpr double kPi = std::numbers::pi;
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-constexpr double kInf = std::numeric_limits<double>::infinity();
-
 /// X(t, p) of the header, at the texture coordinates (u, v).
 glm::dvec3 at(const Ball& ball, double u, double v) {
     const double t = kPi * (v - 0.5), p = 2 * kPi * (0.5 - u);
@@ -43,12 +37,10 @@ glm::dvec3 at(const Ball& ball, double u, double v) {
 
 vtkSmartPointer<vtkPolyData> surface(vtkPolyData* input,
                                      const std::function<void(vtkAnamorphFigureGeometry*)>& set = {}) {
-    vtkNew<vtkAnamorphFigureGeometry> geometry;
-    geometry->SetInputData(input);
-    geometry->SetOutputPointsPrecision(vtkAlgorithm::DOUBLE_PRECISION);
-    if (set) set(geometry);
-    geometry->Update();
-    return geometry->GetOutput();
+    return drawn<vtkAnamorphFigureGeometry>(input, [&](auto* geometry) {
+        geometry->SetOutputPointsPrecision(vtkAlgorithm::DOUBLE_PRECISION);
+        if (set) set(geometry);
+    });
 }
 
 glm::dvec3 tuple3(vtkDataArray* array, vtkIdType i) {
@@ -268,34 +260,26 @@ TEST(VtkFigureGeometry, NanAndInfAreLeftOut) {
     EXPECT_EQ(surface(figures({unturned}))->GetNumberOfPoints(), 0);
 }
 
-std::string error_of(vtkPolyData* input, const std::function<void(vtkAnamorphFigureGeometry*)>& set = {}) {
-    vtkNew<vtkAnamorphFigureGeometry> geometry;
-    Errors errors(geometry);
-    if (input) geometry->SetInputData(input);
-    if (set) set(geometry);
-    geometry->Update();
-    EXPECT_TRUE(errors.text().empty() || geometry->GetOutput()->GetNumberOfPoints() == 0);
-    return errors.text();
-}
-
 TEST(VtkFigureGeometry, WhatCannotBeDoneIsAnError) {
-    EXPECT_NE(error_of(nullptr), "");
-    EXPECT_EQ(error_of(vtkNew<vtkPolyData>()), "");
+    EXPECT_NE(errors_of<vtkAnamorphFigureGeometry>(nullptr), "");
+    EXPECT_EQ(errors_of<vtkAnamorphFigureGeometry>(vtkNew<vtkPolyData>()), "");
     const auto bare = figures({kLimb});
     bare->GetPointData()->RemoveArray("Axes");
-    EXPECT_THAT(error_of(bare), HasSubstr("the input has no array \"Axes\""));
+    EXPECT_THAT(errors_of<vtkAnamorphFigureGeometry>(bare), HasSubstr("the input has no array \"Axes\""));
     vtkNew<vtkDoubleArray> narrow;
     narrow->SetName("Axes");
     narrow->SetNumberOfTuples(1);
     bare->GetPointData()->AddArray(narrow);
-    EXPECT_THAT(error_of(bare), HasSubstr("the array \"Axes\" has 1 components, needed are 3"));
+    EXPECT_THAT(errors_of<vtkAnamorphFigureGeometry>(bare),
+                HasSubstr("the array \"Axes\" has 1 components, needed are 3"));
     const auto figure = figures({kLimb});
     for (const double bad : {0.0, -1.0, kNan})
-        EXPECT_THAT(error_of(figure, [&](auto* g) { g->SetTolerance(bad); }),
+        EXPECT_THAT(errors_of<vtkAnamorphFigureGeometry>(figure, [&](auto* g) { g->SetTolerance(bad); }),
                     HasSubstr("allowed is a positive number"));
-    EXPECT_THAT(error_of(figure, [](auto* g) { g->SetTolerance(1e-9); }), HasSubstr("is too small"));
+    EXPECT_THAT(errors_of<vtkAnamorphFigureGeometry>(figure, [](auto* g) { g->SetTolerance(1e-9); }),
+                HasSubstr("is too small"));
     const auto camera = [&](const std::function<void(vtkAnamorphFigureGeometry*)>& set) {
-        return error_of(figure, [&](auto* g) {
+        return errors_of<vtkAnamorphFigureGeometry>(figure, [&](auto* g) {
             g->SetToleranceMode(vtkAnamorphFigureGeometry::PIXELS);
             g->SetViewMode(vtkAnamorphFigureGeometry::CAMERA);
             set(g);
@@ -327,14 +311,11 @@ TEST(VtkFigureGeometry, TheSameBitsForAnyThreadsAndTheInputIsLeftAlone) {
     geometry->SetInputData(input);
     geometry->Update();
     const std::vector<double> points = coordinates(geometry->GetOutput());
-    for (const char* backend : {"Sequential", "STDThread", "TBB"})
-        for (const int threads : {1, 2, 4}) {
-            if (!use_threads(backend, threads)) continue;
-            geometry->Modified();
-            geometry->Update();
-            ASSERT_EQ(coordinates(geometry->GetOutput()), points) << backend << threads;
-        }
-    use_threads("Sequential", 0);
+    for_any_threads([&] {
+        geometry->Modified();
+        geometry->Update();
+        ASSERT_EQ(coordinates(geometry->GetOutput()), points);
+    });
     EXPECT_EQ(coordinates(input), before);
     EXPECT_EQ(numbers(input->GetPointData()->GetArray("Axes")), axes);
 }
@@ -360,51 +341,27 @@ TEST(VtkFigureGeometry, ProgressRisesTo1AndAbortLeavesNothing) {
 TEST(VtkFigureGeometry, UpdatesOnlyAfterAChangeOfAValue) {
     vtkNew<vtkAnamorphFigureGeometry> geometry;
     using Geometry = vtkAnamorphFigureGeometry;
-    const std::function<void(Geometry*)> changes[] = {
-        [](Geometry* g) { g->SetToleranceMode(Geometry::PIXELS); },
-        [](Geometry* g) { g->SetTolerance(2); },
-        [](Geometry* g) { g->SetOutputPointsPrecision(vtkAlgorithm::DOUBLE_PRECISION); },
-        [](Geometry* g) { g->SetViewMode(Geometry::CAMERA); },
-        [](Geometry* g) { g->SetViewSize(3, 4); },
-        [](Geometry* g) { g->SetCameraPosition(1, 2, 3); },
-        [](Geometry* g) { g->SetCameraFocalPoint(1, 2, -3); },
-        [](Geometry* g) { g->SetCameraViewUp(1, 0, 0); },
-        [](Geometry* g) { g->CameraParallelProjectionOn(); },
-        [](Geometry* g) { g->SetCameraParallelScale(7); },
-        [](Geometry* g) { g->SetCameraViewAngle(50); }};
-    for (const auto& change : changes) {
-        const vtkMTimeType before = geometry->GetMTime();
-        change(geometry);
-        const vtkMTimeType after = geometry->GetMTime();
-        EXPECT_GT(after, before);
-        change(geometry);
-        EXPECT_EQ(geometry->GetMTime(), after);
-    }
+    expect_modified_by<Geometry>(
+        geometry,
+        {[](Geometry* g) { g->SetToleranceMode(Geometry::PIXELS); }, [](Geometry* g) { g->SetTolerance(2); },
+         [](Geometry* g) { g->SetOutputPointsPrecision(vtkAlgorithm::DOUBLE_PRECISION); },
+         [](Geometry* g) { g->SetViewMode(Geometry::CAMERA); }, [](Geometry* g) { g->SetViewSize(3, 4); },
+         [](Geometry* g) { g->SetCameraPosition(1, 2, 3); },
+         [](Geometry* g) { g->SetCameraFocalPoint(1, 2, -3); },
+         [](Geometry* g) { g->SetCameraViewUp(1, 0, 0); },
+         [](Geometry* g) { g->CameraParallelProjectionOn(); },
+         [](Geometry* g) { g->SetCameraParallelScale(7); }, [](Geometry* g) { g->SetCameraViewAngle(50); }});
     geometry->SetInputData(figures({kLimb}));
-    geometry->Update();
-    const vtkMTimeType made = geometry->GetOutput()->GetMTime();
-    geometry->Update();
-    EXPECT_EQ(geometry->GetOutput()->GetMTime(), made);
+    expect_executed_once(geometry);
 }
 
 TEST(VtkFigureGeometry, PrintsItsState) {
-    std::ostringstream text;
-    vtkNew<vtkAnamorphFigureGeometry>()->Print(text);
-    for (const char* part :
-         {"Tolerance: 0.25", "ToleranceMode: units", "ViewSize: 500 500", "CameraViewAngle: 30"})
-        EXPECT_THAT(text.str(), HasSubstr(part));
+    expect_printed(vtkNew<vtkAnamorphFigureGeometry>(),
+                   {"Tolerance: 0.25", "ToleranceMode: units", "ViewSize: 500 500", "CameraViewAngle: 30"});
 }
 
-class Override : public vtkAnamorphFigureGeometry {
-  public:
-    static Override* New() { return new Override; }
-    vtkTypeMacro(Override, vtkAnamorphFigureGeometry);
-};
-
 TEST(VtkFigureGeometry, FactoriesMayOverrideIt) {
-    const OverrideFactory<Override> factory("vtkAnamorphFigureGeometry");
-    vtkNew<vtkAnamorphFigureGeometry> geometry;
-    EXPECT_STREQ(geometry->GetClassName(), "Override");
+    expect_overridden<vtkAnamorphFigureGeometry>("vtkAnamorphFigureGeometry");
 }
 
 }  // namespace

@@ -25,14 +25,6 @@ TYPED_TEST_SUITE(VtkFigureInput, Filters);
 const std::vector<Ball> kBalls = {{{510, 500, 20}, {21, 64, 24}, {0.5, -0.1, 0.7, 0.3}},
                                   {{540, 510, -80}, {9, 30, 12}, {1, 0.2, 0, 0.4}}};
 
-template <class Filter>
-vtkSmartPointer<vtkPolyData> shown(vtkPolyData* input) {
-    vtkNew<Filter> filter;
-    filter->SetInputData(input);
-    filter->Update();
-    return vtkPolyData::SafeDownCast(filter->GetOutputDataObject(0));
-}
-
 TYPED_TEST(VtkFigureInput, CollectionsWithNoneAndEmptyParts) {
     vtkNew<vtkPartitionedDataSetCollection> collection;
     collection->SetNumberOfPartitionedDataSets(3);
@@ -47,7 +39,7 @@ TYPED_TEST(VtkFigureInput, CollectionsWithNoneAndEmptyParts) {
     EXPECT_EQ(errors.text(), "");
     auto* first = vtkPolyData::SafeDownCast(output->GetPartition(0, 0));
     ASSERT_TRUE(first);
-    const std::vector<double> alone = coordinates(shown<TypeParam>(figures(kBalls)));
+    const std::vector<double> alone = coordinates(drawn<TypeParam>(figures(kBalls)));
     EXPECT_GT(alone.size(), 6u);
     EXPECT_EQ(coordinates(first), alone);
 }
@@ -68,16 +60,16 @@ TYPED_TEST(VtkFigureInput, ArraysStoredByComponent) {
     other->GetPoints()->SetData(by_component(input->GetPoints()->GetData()));
     for (const char* name : {"Axes", "Orientation"})
         other->GetPointData()->AddArray(by_component(input->GetPointData()->GetArray(name)));
-    const std::vector<double> wanted = coordinates(shown<TypeParam>(input));
+    const std::vector<double> wanted = coordinates(drawn<TypeParam>(input));
     EXPECT_GT(wanted.size(), 6u);
-    EXPECT_EQ(coordinates(shown<TypeParam>(other)), wanted);
+    EXPECT_EQ(coordinates(drawn<TypeParam>(other)), wanted);
 }
 
 TYPED_TEST(VtkFigureInput, TheInputIsLeftAsItIs) {
     const auto input = figures(kBalls);
     vtkNew<vtkPolyData> before;
     before->DeepCopy(input);
-    shown<TypeParam>(input);
+    drawn<TypeParam>(input);
     EXPECT_EQ(coordinates(input), coordinates(before));
     ASSERT_EQ(input->GetPointData()->GetNumberOfArrays(), before->GetPointData()->GetNumberOfArrays());
     for (int k = 0; k < before->GetPointData()->GetNumberOfArrays(); ++k)

@@ -3,19 +3,14 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <vtkCellData.h>
 #include <vtkFieldData.h>
 #include <vtkIdList.h>
 #include <vtkMultiBlockDataSet.h>
 #include <vtkNew.h>
-#include <vtkObjectFactory.h>
 #include <vtkPolyData.h>
 
 #include <cmath>
-#include <functional>
 #include <glm/geometric.hpp>
-#include <limits>
-#include <sstream>
 
 #include "figure_support.h"
 #include "support.h"
@@ -30,14 +25,6 @@ const Ball kNear{{500, 500, -200}, {100, 100, 100}, {1, 0, 0, 0}},
     kFar{{600, 500, -800}, {100, 100, 100}, {1, 0, 0, 0}},
     kInside{{500, 500, -210}, {50, 60, 50}, {1, 0, 0, 0}};
 
-vtkSmartPointer<vtkPolyData> outline(vtkPolyData* input, const std::function<void(Outline*)>& set = {}) {
-    vtkNew<Outline> filter;
-    filter->SetInputData(input);
-    if (set) set(filter);
-    filter->Update();
-    return filter->GetOutput();
-}
-
 std::vector<glm::dvec3> points_of(vtkPolyData* data, vtkIdType cell) {
     vtkNew<vtkIdList> ids;
     data->GetCellPoints(cell, ids);
@@ -50,12 +37,8 @@ std::vector<glm::dvec3> points_of(vtkPolyData* data, vtkIdType cell) {
     return points;
 }
 
-std::vector<double> cell_numbers(vtkPolyData* data, const char* name) {
-    return numbers(data->GetCellData()->GetArray(name));
-}
-
 TEST(VtkFigureOutline, ANearerSphereHidesAnArc) {
-    const auto data = outline(figures({kNear, kFar}));
+    const auto data = drawn<Outline>(figures({kNear, kFar}));
     ASSERT_EQ(data->GetNumberOfLines(), 2);
     EXPECT_THAT(cell_numbers(data, "BodyId"), ElementsAre(0, 1));
     EXPECT_THAT(cell_numbers(data, "Visible"), ElementsAre(1, 1));
@@ -77,19 +60,19 @@ TEST(VtkFigureOutline, ANearerSphereHidesAnArc) {
 
 TEST(VtkFigureOutline, HiddenArcsAreRemovedKeptOrNone) {
     const auto input = figures({kNear, kFar, kInside});
-    EXPECT_THAT(cell_numbers(outline(input), "BodyId"), ElementsAre(0, 1));
-    const auto kept = outline(input, [](auto* f) { f->SetHidden(Outline::KEPT); });
+    EXPECT_THAT(cell_numbers(drawn<Outline>(input), "BodyId"), ElementsAre(0, 1));
+    const auto kept = drawn<Outline>(input, [](auto* f) { f->SetHidden(Outline::KEPT); });
     EXPECT_THAT(cell_numbers(kept, "BodyId"), ElementsAre(0, 1, 1, 2));
     EXPECT_THAT(cell_numbers(kept, "Visible"), ElementsAre(1, 1, 0, 0));
     for (const glm::dvec3& p : points_of(kept, 2)) ASSERT_LE(p.x, 550 + 1e-9);
-    const auto all = outline(input, [](auto* f) { f->SetHidden(Outline::TRANSPARENT); });
+    const auto all = drawn<Outline>(input, [](auto* f) { f->SetHidden(Outline::TRANSPARENT); });
     EXPECT_THAT(cell_numbers(all, "BodyId"), ElementsAre(0, 1, 2));
     EXPECT_THAT(cell_numbers(all, "Visible"), ElementsAre(1, 1, 1));
 }
 
 TEST(VtkFigureOutline, ChordsHoldTheTolerance) {
     for (const double tolerance : {0.01, 0.1, 2.0}) {
-        const auto data = outline(figures({kNear}), [&](auto* f) { f->SetTolerance(tolerance); });
+        const auto data = drawn<Outline>(figures({kNear}), [&](auto* f) { f->SetTolerance(tolerance); });
         const std::vector<glm::dvec3> p = points_of(data, 0);
         double most = 0;
         for (std::size_t i = 0; i + 1 < p.size(); ++i)
@@ -113,7 +96,7 @@ TEST(VtkFigureOutline, TheScriptsViewIsFollowed) {
     rotation->InsertNextTuple(rows);
     input->GetFieldData()->AddArray(center);
     input->GetFieldData()->AddArray(rotation);
-    const auto data = outline(input);
+    const auto data = drawn<Outline>(input);
     ASSERT_EQ(data->GetNumberOfLines(), 2);
     for (vtkIdType cell = 0; cell < 2; ++cell) {
         EXPECT_EQ(points_of(data, cell).front(), points_of(data, cell).back());
@@ -123,7 +106,7 @@ TEST(VtkFigureOutline, TheScriptsViewIsFollowed) {
 }
 
 TEST(VtkFigureOutline, ACameraInPerspectiveSeesTheNearerSide) {
-    const auto data = outline(figures({kNear}), [](auto* f) {
+    const auto data = drawn<Outline>(figures({kNear}), [](auto* f) {
         f->SetViewMode(Outline::CAMERA);
         f->SetCameraPosition(500, 500, 0);
         f->SetCameraFocalPoint(500, 500, -200);
@@ -140,7 +123,7 @@ TEST(VtkFigureOutline, CurvesWhereBodiesMeet) {
     // Spheres of radius 100 whose centres are 120 apart along x meet where x is halfway, in a circle of
     // radius 80, half of which is before the other.
     const Ball other{{620, 500, -200}, {100, 100, 100}, {1, 0, 0, 0}};
-    const auto data = outline(figures({kNear, other}), [](auto* f) {
+    const auto data = drawn<Outline>(figures({kNear, other}), [](auto* f) {
         f->CrossingsOn();
         f->SetTolerance(0.01);
         f->SetHidden(Outline::KEPT);
@@ -163,7 +146,7 @@ TEST(VtkFigureOutline, CurvesWhereBodiesMeet) {
         }
     }
     EXPECT_EQ(curves, 11);
-    EXPECT_THAT(cell_numbers(outline(figures({kNear, other})), "OtherBodyId"), testing::Each(-1));
+    EXPECT_THAT(cell_numbers(drawn<Outline>(figures({kNear, other})), "OtherBodyId"), testing::Each(-1));
 }
 
 TEST(VtkFigureOutline, NeighboursAreConnectedAlongTheirTangents) {
@@ -178,7 +161,7 @@ TEST(VtkFigureOutline, NeighboursAreConnectedAlongTheirTangents) {
     positions->InsertNextTuple3(500, 600, -200);
     input->GetFieldData()->AddArray(bodies);
     input->GetFieldData()->AddArray(positions);
-    const auto data = outline(input, [](auto* f) { f->ConnectedOn(); });
+    const auto data = drawn<Outline>(input, [](auto* f) { f->ConnectedOn(); });
     const std::vector<double> others = cell_numbers(data, "OtherBodyId"), ids = cell_numbers(data, "BodyId");
     int strokes = 0;
     for (vtkIdType cell = 0; cell < data->GetNumberOfCells(); ++cell) {
@@ -200,35 +183,25 @@ TEST(VtkFigureOutline, NeighboursAreConnectedAlongTheirTangents) {
 
 // ---- Input ----
 
-std::string error_of(vtkPolyData* input, const std::function<void(Outline*)>& set = {}) {
-    vtkNew<Outline> filter;
-    Errors errors(filter);
-    if (input) filter->SetInputData(input);
-    if (set) set(filter);
-    filter->Update();
-    EXPECT_TRUE(errors.text().empty() || filter->GetOutput()->GetNumberOfPoints() == 0);
-    return errors.text();
-}
-
 TEST(VtkFigureOutline, WhatCannotBeDoneIsAnError) {
-    EXPECT_NE(error_of(nullptr), "");
-    EXPECT_EQ(error_of(vtkNew<vtkPolyData>()), "");
+    EXPECT_NE(errors_of<Outline>(nullptr), "");
+    EXPECT_EQ(errors_of<Outline>(vtkNew<vtkPolyData>()), "");
     const auto bare = figures({kNear});
     bare->GetPointData()->RemoveArray("Orientation");
-    EXPECT_THAT(error_of(bare), HasSubstr("the input has no array \"Orientation\""));
-    for (const double bad : {0.0, std::numeric_limits<double>::quiet_NaN()})
-        EXPECT_THAT(error_of(figures({kNear}), [&](auto* f) { f->SetTolerance(bad); }),
+    EXPECT_THAT(errors_of<Outline>(bare), HasSubstr("the input has no array \"Orientation\""));
+    for (const double bad : {0.0, kNan})
+        EXPECT_THAT(errors_of<Outline>(figures({kNear}), [&](auto* f) { f->SetTolerance(bad); }),
                     HasSubstr("allowed is a positive number"));
     Ball vast = kNear;
     vast.axes.x = 1e60;
-    EXPECT_NE(error_of(figures({vast})), "");
+    EXPECT_NE(errors_of<Outline>(figures({vast})), "");
 }
 
 TEST(VtkFigureOutline, NanIsLeftOut) {
     Ball spoiled = kNear;
-    spoiled.axes.y = std::numeric_limits<double>::quiet_NaN();
-    const auto data = outline(figures({spoiled, kFar}));
-    EXPECT_EQ(coordinates(data), coordinates(outline(figures({kFar}))));
+    spoiled.axes.y = kNan;
+    const auto data = drawn<Outline>(figures({spoiled, kFar}));
+    EXPECT_EQ(coordinates(data), coordinates(drawn<Outline>(figures({kFar}))));
     EXPECT_THAT(cell_numbers(data, "BodyId"), ElementsAre(1));
 }
 
@@ -261,14 +234,11 @@ TEST(VtkFigureOutline, TheSameBitsForAnyThreads) {
     filter->Update();
     const std::vector<double> points = coordinates(filter->GetOutput());
     EXPECT_GT(points.size(), 3000u);
-    for (const char* backend : {"Sequential", "STDThread", "TBB"})
-        for (const int threads : {1, 2, 4}) {
-            if (!use_threads(backend, threads)) continue;
-            filter->Modified();
-            filter->Update();
-            ASSERT_EQ(coordinates(filter->GetOutput()), points) << backend << threads;
-        }
-    use_threads("Sequential", 0);
+    for_any_threads([&] {
+        filter->Modified();
+        filter->Update();
+        ASSERT_EQ(coordinates(filter->GetOutput()), points);
+    });
 }
 
 TEST(VtkFigureOutline, ProgressRisesTo1AndAbortLeavesNothing) {
@@ -289,18 +259,10 @@ TEST(VtkFigureOutline, ProgressRisesTo1AndAbortLeavesNothing) {
 
 TEST(VtkFigureOutline, UpdatesOnlyAfterAChangeOfAValue) {
     vtkNew<Outline> filter;
-    const std::function<void(Outline*)> changes[] = {
-        [](Outline* f) { f->SetHidden(Outline::KEPT); }, [](Outline* f) { f->CrossingsOn(); },
-        [](Outline* f) { f->ConnectedOn(); }, [](Outline* f) { f->SetTolerance(3); },
-        [](Outline* f) { f->SetOutputPointsPrecision(vtkAlgorithm::SINGLE_PRECISION); }};
-    for (const auto& change : changes) {
-        const vtkMTimeType before = filter->GetMTime();
-        change(filter);
-        const vtkMTimeType after = filter->GetMTime();
-        EXPECT_GT(after, before);
-        change(filter);
-        EXPECT_EQ(filter->GetMTime(), after);
-    }
+    expect_modified_by<Outline>(
+        filter, {[](Outline* f) { f->SetHidden(Outline::KEPT); }, [](Outline* f) { f->CrossingsOn(); },
+                 [](Outline* f) { f->ConnectedOn(); }, [](Outline* f) { f->SetTolerance(3); },
+                 [](Outline* f) { f->SetOutputPointsPrecision(vtkAlgorithm::SINGLE_PRECISION); }});
     filter->SetInputData(figures({kNear}));
     filter->Update();
     EXPECT_EQ(filter->GetOutput()->GetPoints()->GetDataType(), VTK_FLOAT);
@@ -310,21 +272,12 @@ TEST(VtkFigureOutline, UpdatesOnlyAfterAChangeOfAValue) {
 }
 
 TEST(VtkFigureOutline, PrintsItsState) {
-    std::ostringstream text;
-    vtkNew<Outline>()->Print(text);
-    for (const char* part : {"Hidden: removed", "Crossings: 0", "Tolerance: 0.1", "ViewMode: script"})
-        EXPECT_THAT(text.str(), HasSubstr(part));
+    expect_printed(vtkNew<Outline>(),
+                   {"Hidden: removed", "Crossings: 0", "Tolerance: 0.1", "ViewMode: script"});
 }
 
-class Override : public Outline {
-  public:
-    static Override* New() { return new Override; }
-    vtkTypeMacro(Override, Outline);
-};
-
 TEST(VtkFigureOutline, FactoriesMayOverrideIt) {
-    const OverrideFactory<Override> factory("vtkAnamorphFigureOutline");
-    EXPECT_STREQ(vtkNew<Outline>()->GetClassName(), "Override");
+    expect_overridden<vtkAnamorphFigureOutline>("vtkAnamorphFigureOutline");
 }
 
 }  // namespace

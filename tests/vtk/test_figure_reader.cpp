@@ -7,7 +7,6 @@
 #include <vtkFieldData.h>
 #include <vtkInformation.h>
 #include <vtkNew.h>
-#include <vtkObjectFactory.h>
 #include <vtkPointData.h>
 #include <vtkPolyData.h>
 #include <vtkStreamingDemandDrivenPipeline.h>
@@ -16,8 +15,6 @@
 
 #include <cmath>
 #include <functional>
-#include <limits>
-#include <sstream>
 
 #include "figure_support.h"
 #include "support.h"
@@ -120,7 +117,6 @@ TEST(VtkFigureReader, TimesAreTheFramesShown) {
     EXPECT_THAT(steps_of(reader), ElementsAre(1, 2, 3, 4));
     const double* range = reader->GetOutputInformation(0)->Get(Executive::TIME_RANGE());
     EXPECT_THAT(std::vector<double>(range, range + 2), ElementsAre(1, 4));
-    const double nan = std::numeric_limits<double>::quiet_NaN();
     for (const auto& [asked, frame] : {std::pair{-5.0, 1.0},
                                        {1, 1},
                                        {1.9, 1},
@@ -129,7 +125,7 @@ TEST(VtkFigureReader, TimesAreTheFramesShown) {
                                        {4, 4},
                                        {99, 4},
                                        {1e300, 4},
-                                       {nan, 1},
+                                       {kNan, 1},
                                        {2, 2}}) {
         reader->UpdateTimeStep(asked);
         EXPECT_EQ(time_of(reader), frame) << asked;
@@ -184,13 +180,10 @@ TEST(VtkFigureReader, AFrameIsTheSameInAnyOrder) {
 // ---- Files ----
 
 std::string error_of(const std::string& path, const std::function<void(vtkAnamorphFigureReader*)>& set = {}) {
-    vtkNew<vtkAnamorphFigureReader> reader;
-    Errors errors(reader);
-    reader->SetFileName(path.c_str());
-    if (set) set(reader);
-    reader->Update();
-    EXPECT_TRUE(errors.text().empty() || reader->GetOutput()->GetNumberOfPoints() == 0);
-    return errors.text();
+    return errors_of<vtkAnamorphFigureReader>(nullptr, [&](auto* reader) {
+        reader->SetFileName(path.c_str());
+        if (set) set(reader);
+    });
 }
 
 TEST(VtkFigureReader, WhatCannotBeReadIsAnError) {
@@ -299,50 +292,25 @@ TEST(VtkFigureReader, UpdatesOnlyAfterAChangeOfAValue) {
     const Folder folder;
     vtkNew<vtkAnamorphFigureReader> reader;
     using Reader = vtkAnamorphFigureReader;
-    const std::function<void(Reader*)> changes[] = {
-        [](Reader* r) { r->SetFileName("name"); },
-        [](Reader* r) { r->SetFileName(nullptr); },
-        [](Reader* r) { r->SetDialect(Reader::STRICT); },
-        [](Reader* r) { r->SetNumberOfLibraries(1); },
-        [](Reader* r) { r->SetLibrary(0, "a"); },
-        [](Reader* r) { r->ClearLibraries(); },
-        [](Reader* r) { r->JointsOn(); },
-        [](Reader* r) { r->SetOutputPointsPrecision(vtkAlgorithm::SINGLE_PRECISION); }};
-    for (const auto& change : changes) {
-        const vtkMTimeType before = reader->GetMTime();
-        change(reader);
-        const vtkMTimeType after = reader->GetMTime();
-        EXPECT_GT(after, before);
-        change(reader);
-        EXPECT_EQ(reader->GetMTime(), after);
-    }
+    expect_modified_by<Reader>(
+        reader, {[](Reader* r) { r->SetFileName("name"); }, [](Reader* r) { r->SetFileName(nullptr); },
+                 [](Reader* r) { r->SetDialect(Reader::STRICT); },
+                 [](Reader* r) { r->SetNumberOfLibraries(1); }, [](Reader* r) { r->SetLibrary(0, "a"); },
+                 [](Reader* r) { r->ClearLibraries(); }, [](Reader* r) { r->JointsOn(); },
+                 [](Reader* r) { r->SetOutputPointsPrecision(vtkAlgorithm::SINGLE_PRECISION); }});
     reader->SetFileName(folder.write("two.n", kTwoBodies).c_str());
-    reader->Update();
-    const vtkMTimeType made = reader->GetOutput()->GetMTime();
-    reader->Update();
-    EXPECT_EQ(reader->GetOutput()->GetMTime(), made);
+    expect_executed_once(reader);
 }
 
 TEST(VtkFigureReader, PrintsItsState) {
     vtkNew<vtkAnamorphFigureReader> reader;
     reader->SetFileName("walk.n");
     reader->AddLibrary("fred.n");
-    std::ostringstream text;
-    reader->Print(text);
-    for (const char* part : {"FileName: walk.n", "Dialect: classic", "Libraries: fred.n", "Joints: 0"})
-        EXPECT_THAT(text.str(), HasSubstr(part));
+    expect_printed(reader, {"FileName: walk.n", "Dialect: classic", "Libraries: fred.n", "Joints: 0"});
 }
 
-class Override : public vtkAnamorphFigureReader {
-  public:
-    static Override* New() { return new Override; }
-    vtkTypeMacro(Override, vtkAnamorphFigureReader);
-};
-
 TEST(VtkFigureReader, FactoriesMayOverrideIt) {
-    const OverrideFactory<Override> factory("vtkAnamorphFigureReader");
-    vtkNew<vtkAnamorphFigureReader> reader;
-    EXPECT_STREQ(reader->GetClassName(), "Override");
+    expect_overridden<vtkAnamorphFigureReader>("vtkAnamorphFigureReader");
 }
 
 }  // namespace

@@ -6,15 +6,11 @@
 #include <vtkAnamorphFigureReader.h>
 #include <vtkCellData.h>
 #include <vtkNew.h>
-#include <vtkObjectFactory.h>
 #include <vtkPolyData.h>
 #include <vtkStringArray.h>
 
 #include <cmath>
-#include <functional>
 #include <glm/geometric.hpp>
-#include <limits>
-#include <sstream>
 
 #include "figure_support.h"
 #include "support.h"
@@ -28,20 +24,8 @@ using Skeleton = vtkAnamorphFigureSkeleton;
 const Ball kBone{{500, 300, -500}, {10, 100, 20}, {1, 0, 0, 0}},
     kDot{{100, 100, -100}, {1, 1, 1}, {1, 0, 0, 0}}, kNeedle{{300, 500, -100}, {50, 1, 1}, {1, 0, 0, 0}};
 
-vtkSmartPointer<vtkPolyData> skeleton(vtkPolyData* input, const std::function<void(Skeleton*)>& set = {}) {
-    vtkNew<Skeleton> filter;
-    filter->SetInputData(input);
-    if (set) set(filter);
-    filter->Update();
-    return filter->GetOutput();
-}
-
-std::vector<double> cell_numbers(vtkPolyData* data, const char* name) {
-    return numbers(data->GetCellData()->GetArray(name));
-}
-
 TEST(VtkFigureSkeleton, TheLongestAxisOfEachBody) {
-    const auto data = skeleton(figures({kBone, kNeedle}));
+    const auto data = drawn<Skeleton>(figures({kBone, kNeedle}));
     EXPECT_EQ(data->GetNumberOfLines(), 2);
     EXPECT_THAT(coordinates(data),
                 ElementsAre(500, 200, -500, 500, 400, -500, 250, 500, -100, 350, 500, -100));
@@ -71,12 +55,13 @@ TEST(VtkFigureSkeleton, FromJointToJoint) {
     ASSERT_TRUE(names);
     EXPECT_EQ(names->GetValue(2), "c");
     // Without joints there is nothing to draw.
-    EXPECT_EQ(skeleton(figures({kBone}), [](auto* f) { f->SetMode(Skeleton::JOINTS); })->GetNumberOfCells(),
-              0);
+    EXPECT_EQ(
+        drawn<Skeleton>(figures({kBone}), [](auto* f) { f->SetMode(Skeleton::JOINTS); })->GetNumberOfCells(),
+        0);
 }
 
 TEST(VtkFigureSkeleton, SpheresLieInsideAndComeNearTheSurface) {
-    const auto data = skeleton(figures({kBone}), [](auto* f) {
+    const auto data = drawn<Skeleton>(figures({kBone}), [](auto* f) {
         f->SetMode(Skeleton::SPHERES);
         f->SetTolerance(2);
     });
@@ -102,7 +87,8 @@ TEST(VtkFigureSkeleton, SpheresLieInsideAndComeNearTheSurface) {
 }
 
 TEST(VtkFigureSkeleton, LevelOfDetail) {
-    const auto data = skeleton(figures({kBone, kDot, kNeedle}), [](auto* f) { f->SetLevelOfDetail(3); });
+    const auto data =
+        drawn<Skeleton>(figures({kBone, kDot, kNeedle}), [](auto* f) { f->SetLevelOfDetail(3); });
     // 500 pixels for 1000 units: the dot is a pixel wide, the needle 50 by 1, the bone 100 by 10.
     EXPECT_EQ(data->GetNumberOfVerts(), 1);
     EXPECT_EQ(data->GetNumberOfLines(), 2);
@@ -113,7 +99,7 @@ TEST(VtkFigureSkeleton, LevelOfDetail) {
     data->GetPoint(0, at);
     EXPECT_THAT(at, ElementsAre(100, 100, -100));
     // Behind the observer there is nothing.
-    const auto behind = skeleton(figures({kBone}), [](auto* f) {
+    const auto behind = drawn<Skeleton>(figures({kBone}), [](auto* f) {
         f->SetViewMode(Skeleton::CAMERA);
         f->SetCameraPosition(500, 300, -900);
         f->SetCameraFocalPoint(500, 300, -1900);
@@ -121,59 +107,40 @@ TEST(VtkFigureSkeleton, LevelOfDetail) {
     EXPECT_EQ(behind->GetNumberOfCells(), 0);
 }
 
-std::string error_of(vtkPolyData* input, const std::function<void(Skeleton*)>& set = {}) {
-    vtkNew<Skeleton> filter;
-    Errors errors(filter);
-    if (input) filter->SetInputData(input);
-    if (set) set(filter);
-    filter->Update();
-    EXPECT_TRUE(errors.text().empty() || filter->GetOutput()->GetNumberOfPoints() == 0);
-    return errors.text();
-}
-
 TEST(VtkFigureSkeleton, WhatCannotBeDoneIsAnError) {
-    const double nan = std::numeric_limits<double>::quiet_NaN();
-    EXPECT_NE(error_of(nullptr), "");
-    EXPECT_EQ(error_of(vtkNew<vtkPolyData>()), "");
+    EXPECT_NE(errors_of<Skeleton>(nullptr), "");
+    EXPECT_EQ(errors_of<Skeleton>(vtkNew<vtkPolyData>()), "");
     const auto bare = figures({kBone});
     bare->GetPointData()->RemoveArray("Axes");
-    EXPECT_THAT(error_of(bare), HasSubstr("the input has no array \"Axes\""));
-    for (const double bad : {-1.0, nan})
-        EXPECT_THAT(error_of(figures({kBone}), [&](auto* f) { f->SetLevelOfDetail(bad); }),
+    EXPECT_THAT(errors_of<Skeleton>(bare), HasSubstr("the input has no array \"Axes\""));
+    for (const double bad : {-1.0, kNan})
+        EXPECT_THAT(errors_of<Skeleton>(figures({kBone}), [&](auto* f) { f->SetLevelOfDetail(bad); }),
                     HasSubstr("allowed are numbers from 0"));
-    for (const double bad : {0.0, nan})
-        EXPECT_THAT(error_of(figures({kBone}), [&](auto* f) { f->SetTolerance(bad); }),
+    for (const double bad : {0.0, kNan})
+        EXPECT_THAT(errors_of<Skeleton>(figures({kBone}), [&](auto* f) { f->SetTolerance(bad); }),
                     HasSubstr("allowed is a positive number"));
-    EXPECT_THAT(error_of(figures({kBone}),
-                         [](auto* f) {
-                             f->SetMode(Skeleton::SPHERES);
-                             f->SetTolerance(1e-9);
-                         }),
+    EXPECT_THAT(errors_of<Skeleton>(figures({kBone}),
+                                    [](auto* f) {
+                                        f->SetMode(Skeleton::SPHERES);
+                                        f->SetTolerance(1e-9);
+                                    }),
                 HasSubstr("needs more than 10000 spheres"));
 }
 
 TEST(VtkFigureSkeleton, NanIsLeftOut) {
     Ball spoiled = kBone;
-    spoiled.center.x = std::numeric_limits<double>::infinity();
-    const auto data = skeleton(figures({spoiled, kNeedle}));
-    EXPECT_EQ(coordinates(data), coordinates(skeleton(figures({kNeedle}))));
+    spoiled.center.x = kInf;
+    const auto data = drawn<Skeleton>(figures({spoiled, kNeedle}));
+    EXPECT_EQ(coordinates(data), coordinates(drawn<Skeleton>(figures({kNeedle}))));
     EXPECT_THAT(cell_numbers(data, "BodyId"), ElementsAre(1));
 }
 
 TEST(VtkFigureSkeleton, UpdatesOnlyAfterAChangeOfAValue) {
     vtkNew<Skeleton> filter;
-    const std::function<void(Skeleton*)> changes[] = {
-        [](Skeleton* f) { f->SetMode(Skeleton::SPHERES); }, [](Skeleton* f) { f->SetLevelOfDetail(2); },
-        [](Skeleton* f) { f->SetTolerance(3); },
-        [](Skeleton* f) { f->SetOutputPointsPrecision(vtkAlgorithm::SINGLE_PRECISION); }};
-    for (const auto& change : changes) {
-        const vtkMTimeType before = filter->GetMTime();
-        change(filter);
-        const vtkMTimeType after = filter->GetMTime();
-        EXPECT_GT(after, before);
-        change(filter);
-        EXPECT_EQ(filter->GetMTime(), after);
-    }
+    expect_modified_by<Skeleton>(
+        filter, {[](Skeleton* f) { f->SetMode(Skeleton::SPHERES); },
+                 [](Skeleton* f) { f->SetLevelOfDetail(2); }, [](Skeleton* f) { f->SetTolerance(3); },
+                 [](Skeleton* f) { f->SetOutputPointsPrecision(vtkAlgorithm::SINGLE_PRECISION); }});
     filter->SetInputData(figures({kBone}));
     vtkNew<ProgressObserver> progress;
     filter->AddObserver(vtkCommand::ProgressEvent, progress);
@@ -186,21 +153,11 @@ TEST(VtkFigureSkeleton, UpdatesOnlyAfterAChangeOfAValue) {
 }
 
 TEST(VtkFigureSkeleton, PrintsItsState) {
-    std::ostringstream text;
-    vtkNew<Skeleton>()->Print(text);
-    for (const char* part : {"Mode: axes", "LevelOfDetail: 0", "Tolerance: 1"})
-        EXPECT_THAT(text.str(), HasSubstr(part));
+    expect_printed(vtkNew<Skeleton>(), {"Mode: axes", "LevelOfDetail: 0", "Tolerance: 1"});
 }
 
-class Override : public Skeleton {
-  public:
-    static Override* New() { return new Override; }
-    vtkTypeMacro(Override, Skeleton);
-};
-
 TEST(VtkFigureSkeleton, FactoriesMayOverrideIt) {
-    const OverrideFactory<Override> factory("vtkAnamorphFigureSkeleton");
-    EXPECT_STREQ(vtkNew<Skeleton>()->GetClassName(), "Override");
+    expect_overridden<vtkAnamorphFigureSkeleton>("vtkAnamorphFigureSkeleton");
 }
 
 }  // namespace

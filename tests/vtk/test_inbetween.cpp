@@ -30,11 +30,8 @@
 #include <vtkUnstructuredGrid.h>
 
 #include <cmath>
-#include <functional>
 #include <initializer_list>
-#include <limits>
 #include <random>
-#include <sstream>
 
 #include "anamorph/deform/key_frames.h"
 #include "support.h"
@@ -44,9 +41,6 @@ namespace {
 using Executive = vtkStreamingDemandDrivenPipeline;
 using testing::HasSubstr;
 using Shape = vtkSmartPointer<vtkPolyData>;
-
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-constexpr double kInf = std::numeric_limits<double>::infinity();
 
 Shape sphere(int resolution = 12) {
     vtkNew<vtkSphereSource> source;
@@ -552,19 +546,12 @@ TEST(VtkInbetween, TheSameBitsForAnyThreadsAndBackend) {
     const std::vector<double> points = coordinates(surface_of(filter)),
                               normals = numbers(surface_of(filter)->GetPointData()->GetNormals());
     ASSERT_FALSE(normals.empty());
-    int backends = 0;
-    for (const char* backend : {"Sequential", "STDThread", "TBB"})
-        for (const int threads : {1, 2, 4}) {
-            if (!use_threads(backend, threads)) continue;
-            ++backends;
-            filter->Modified();
-            filter->Update();
-            ASSERT_EQ(coordinates(surface_of(filter)), points) << backend << threads;
-            ASSERT_EQ(numbers(surface_of(filter)->GetPointData()->GetNormals()), normals)
-                << backend << threads;
-        }
-    EXPECT_GE(backends, 6);
-    use_threads("Sequential", 0);
+    for_any_threads([&] {
+        filter->Modified();
+        filter->Update();
+        ASSERT_EQ(coordinates(surface_of(filter)), points);
+        ASSERT_EQ(numbers(surface_of(filter)->GetPointData()->GetNormals()), normals);
+    });
 }
 
 // ---- Arrays ----
@@ -1038,42 +1025,25 @@ TEST(VtkInbetween, ProgressRisesTo1AndAbortLeavesNothing) {
 TEST(VtkInbetween, UpdatesOnlyAfterAChangeOfAValue) {
     const Shape base = sphere();
     vtkNew<vtkAnamorphInbetween> filter;
-    vtkNew<ProgressObserver> progress;
-    filter->AddObserver(vtkCommand::ProgressEvent, progress);
     add_inputs(filter, {base, moved(base, 1)});
     using Filter = vtkAnamorphInbetween;
-    const std::function<void(Filter*)> changes[] = {
-        [](Filter* f) { f->SetNumberOfWeights(2); },
-        [](Filter* f) { f->SetWeight(0, 0.25), f->SetWeight(1, 0.75); },
-        [](Filter* f) { f->SetBaseIndex(1); },
-        [](Filter* f) { f->NormalizeWeightsOn(); },
-        [](Filter* f) { f->SetNumberOfMasks(2); },
-        [](Filter* f) { f->SetMaskArrayName(0, "mask"); },
-        [](Filter* f) { f->SetNumberOfKeys(1); },
-        [](Filter* f) { f->SetKey(0, 1, 1, 1); },
-        [](Filter* f) { f->SetInterpolation(Filter::CATMULL_ROM); },
-        [](Filter* f) { f->SetNormals(Filter::DROP_NORMALS); },
-        [](Filter* f) { f->SetOutputPointsPrecision(vtkAlgorithm::DOUBLE_PRECISION); },
-        [](Filter* f) { f->ClearKeys(); },
-        [](Filter* f) { f->SetMaskArrayName(0, nullptr); },
-        [](Filter* f) { f->SetModeToDeltas(); }};
-    for (const auto& change : changes) {
-        const vtkMTimeType before = filter->GetMTime();
-        change(filter);
-        const vtkMTimeType after = filter->GetMTime();
-        EXPECT_GT(after, before);
-        change(filter);
-        EXPECT_EQ(filter->GetMTime(), after);
-    }
+    expect_modified_by<Filter>(
+        filter, {[](Filter* f) { f->SetNumberOfWeights(2); },
+                 [](Filter* f) { f->SetWeight(0, 0.25), f->SetWeight(1, 0.75); },
+                 [](Filter* f) { f->SetBaseIndex(1); }, [](Filter* f) { f->NormalizeWeightsOn(); },
+                 [](Filter* f) { f->SetNumberOfMasks(2); }, [](Filter* f) { f->SetMaskArrayName(0, "mask"); },
+                 [](Filter* f) { f->SetNumberOfKeys(1); }, [](Filter* f) { f->SetKey(0, 1, 1, 1); },
+                 [](Filter* f) { f->SetInterpolation(Filter::CATMULL_ROM); },
+                 [](Filter* f) { f->SetNormals(Filter::DROP_NORMALS); },
+                 [](Filter* f) { f->SetOutputPointsPrecision(vtkAlgorithm::DOUBLE_PRECISION); },
+                 [](Filter* f) { f->ClearKeys(); }, [](Filter* f) { f->SetMaskArrayName(0, nullptr); },
+                 [](Filter* f) { f->SetModeToDeltas(); }});
     EXPECT_EQ(filter->GetWeight(1), 0.75);
     EXPECT_EQ(filter->GetWeight(2), 0);
     EXPECT_EQ(filter->GetWeight(-1), 0);
     EXPECT_STREQ(filter->GetMaskArrayName(5), "");
     EXPECT_EQ(filter->GetKeyTime(0), 0);
-    filter->Update();
-    const std::size_t reports = progress->reports.size();
-    filter->Update();
-    EXPECT_EQ(progress->reports.size(), reports);
+    expect_executed_once(filter);
 }
 
 TEST(VtkInbetween, PrintsItsState) {
@@ -1081,23 +1051,11 @@ TEST(VtkInbetween, PrintsItsState) {
     filter->SetWeight(1, 2.5);
     filter->SetMaskArrayName(0, "mouth");
     filter->AddKey(1, 2, 3);
-    std::ostringstream text;
-    filter->Print(text);
-    for (const char* part : {"Mode: weighted sum", "Weights: 0 2.5", "Masks: \"mouth\"", "(1, 2, 3)"})
-        EXPECT_THAT(text.str(), HasSubstr(part));
+    expect_printed(filter, {"Mode: weighted sum", "Weights: 0 2.5", "Masks: \"mouth\"", "(1, 2, 3)"});
 }
 
-/// Another class in its place.
-class Override : public vtkAnamorphInbetween {
-  public:
-    static Override* New() { return new Override; }
-    vtkTypeMacro(Override, vtkAnamorphInbetween);
-};
-
 TEST(VtkInbetween, FactoriesMayOverrideIt) {
-    const OverrideFactory<Override> factory("vtkAnamorphInbetween");
-    vtkNew<vtkAnamorphInbetween> filter;
-    EXPECT_STREQ(filter->GetClassName(), "Override");
+    expect_overridden<vtkAnamorphInbetween>("vtkAnamorphInbetween");
 }
 
 }  // namespace

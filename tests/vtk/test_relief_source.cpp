@@ -24,9 +24,7 @@
 #include <filesystem>
 #include <fstream>
 #include <functional>
-#include <limits>
 #include <random>
-#include <sstream>
 
 #include "support.h"
 
@@ -35,9 +33,6 @@ namespace {
 using Executive = vtkStreamingDemandDrivenPipeline;
 using testing::HasSubstr;
 using Picture = vtkSmartPointer<vtkImageData>;
-
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-constexpr double kInf = std::numeric_limits<double>::infinity();
 
 /// Random numbers of a type: all of an integer's range, or -1 to 1.
 Picture picture(int width, int height, int type = VTK_FLOAT, int components = 1, int left = 0,
@@ -109,13 +104,7 @@ std::vector<double> heights_of(vtkImageData* image,
 }
 
 std::string error_of(vtkImageData* image, const std::function<void(vtkAnamorphReliefSource*)>& set = {}) {
-    vtkNew<vtkAnamorphReliefSource> source;
-    Errors errors(source);
-    if (image) source->SetInputData(image);
-    if (set) set(source);
-    source->Update();
-    EXPECT_TRUE(errors.text().empty() || grid_of(source)->GetNumberOfPoints() == 0);
-    return errors.text();
+    return errors_of(image, set);
 }
 
 void expect_near(const std::vector<double>& got, const std::vector<double>& wanted, double most) {
@@ -440,15 +429,12 @@ TEST(VtkRelief, TheSameBitsForAnyThreadsAndBackend) {
     source->Update();
     const std::vector<double> points = coordinates(grid_of(source)),
                               normals = numbers(grid_of(source)->GetPointData()->GetNormals());
-    for (const char* backend : {"Sequential", "STDThread", "TBB"})
-        for (const int threads : {1, 2, 4}) {
-            if (!use_threads(backend, threads)) continue;
-            source->Modified();
-            source->Update();
-            ASSERT_EQ(coordinates(grid_of(source)), points) << backend << threads;
-            ASSERT_EQ(numbers(grid_of(source)->GetPointData()->GetNormals()), normals) << backend << threads;
-        }
-    use_threads("Sequential", 0);
+    for_any_threads([&] {
+        source->Modified();
+        source->Update();
+        ASSERT_EQ(coordinates(grid_of(source)), points);
+        ASSERT_EQ(numbers(grid_of(source)->GetPointData()->GetNormals()), normals);
+    });
     EXPECT_EQ(numbers(image->GetPointData()->GetScalars()), before);
 }
 
@@ -475,63 +461,32 @@ TEST(VtkRelief, ProgressRisesTo1AndAbortLeavesNothing) {
 
 TEST(VtkRelief, UpdatesOnlyAfterAChangeOfAValue) {
     vtkNew<vtkAnamorphReliefSource> source;
-    vtkNew<ProgressObserver> progress;
-    source->AddObserver(vtkCommand::ProgressEvent, progress);
     source->SetInputData(picture(4, 4));
     using Source = vtkAnamorphReliefSource;
-    const std::function<void(Source*)> changes[] = {
-        [](Source* s) { s->SetFileName("name"); },
-        [](Source* s) { s->SetFileName(nullptr); },
-        [](Source* s) { s->SetOrigin(-1, 0, 0); },
-        [](Source* s) { s->SetPoint1(1, 0, 0); },
-        [](Source* s) { s->SetPoint2(0, 1, 0); },
-        [](Source* s) { s->KeepAspectOff(); },
-        [](Source* s) { s->SetHeightScale(3); },
-        [](Source* s) { s->SetHeightOffset(3); },
-        [](Source* s) { s->SetComponent(0); },
-        [](Source* s) { s->SetSampleRate(2); },
-        [](Source* s) { s->SetResolution(5, 6); },
-        [](Source* s) { s->SetSmoothing(1); },
-        [](Source* s) { s->GenerateNormalsOn(); },
-        [](Source* s) { s->SetSize(3, 4); },
-        [](Source* s) { s->SetOutputPointsPrecision(vtkAlgorithm::DOUBLE_PRECISION); }};
-    for (const auto& change : changes) {
-        const vtkMTimeType before = source->GetMTime();
-        change(source);
-        const vtkMTimeType after = source->GetMTime();
-        EXPECT_GT(after, before);
-        change(source);
-        EXPECT_EQ(source->GetMTime(), after);
-    }
+    expect_modified_by<Source>(
+        source, {[](Source* s) { s->SetFileName("name"); }, [](Source* s) { s->SetFileName(nullptr); },
+                 [](Source* s) { s->SetOrigin(-1, 0, 0); }, [](Source* s) { s->SetPoint1(1, 0, 0); },
+                 [](Source* s) { s->SetPoint2(0, 1, 0); }, [](Source* s) { s->KeepAspectOff(); },
+                 [](Source* s) { s->SetHeightScale(3); }, [](Source* s) { s->SetHeightOffset(3); },
+                 [](Source* s) { s->SetComponent(0); }, [](Source* s) { s->SetSampleRate(2); },
+                 [](Source* s) { s->SetResolution(5, 6); }, [](Source* s) { s->SetSmoothing(1); },
+                 [](Source* s) { s->GenerateNormalsOn(); }, [](Source* s) { s->SetSize(3, 4); },
+                 [](Source* s) { s->SetOutputPointsPrecision(vtkAlgorithm::DOUBLE_PRECISION); }});
     source->SetSampleRate(0);
     EXPECT_EQ(source->GetSampleRate(), 1);
-    source->Update();
-    const std::size_t reports = progress->reports.size();
-    source->Update();
-    EXPECT_EQ(progress->reports.size(), reports);
+    expect_executed_once(source);
 }
 
 TEST(VtkRelief, PrintsItsState) {
     vtkNew<vtkAnamorphReliefSource> source;
     source->SetSize(3, 4);
     source->SetFileName("face.png");
-    std::ostringstream text;
-    source->Print(text);
-    for (const char* part :
-         {"FileName: face.png", "Origin: -1.5 -2 0", "HeightScale: 0.1", "Resolution: 0 0"})
-        EXPECT_THAT(text.str(), HasSubstr(part));
+    expect_printed(source,
+                   {"FileName: face.png", "Origin: -1.5 -2 0", "HeightScale: 0.1", "Resolution: 0 0"});
 }
 
-class Override : public vtkAnamorphReliefSource {
-  public:
-    static Override* New() { return new Override; }
-    vtkTypeMacro(Override, vtkAnamorphReliefSource);
-};
-
 TEST(VtkRelief, FactoriesMayOverrideIt) {
-    const OverrideFactory<Override> factory("vtkAnamorphReliefSource");
-    vtkNew<vtkAnamorphReliefSource> source;
-    EXPECT_STREQ(source->GetClassName(), "Override");
+    expect_overridden<vtkAnamorphReliefSource>("vtkAnamorphReliefSource");
 }
 
 }  // namespace
