@@ -2,14 +2,7 @@
 # The core configures, builds and passes its tests with no host library to be found, and reads no host header.
 # Needs: SOURCE_DIR, WORK_DIR (emptied), CXX_COMPILER, WERROR, CTEST_COMMAND.
 
-function(run)
-    execute_process(COMMAND ${ARGV} RESULT_VARIABLE status OUTPUT_VARIABLE text ERROR_VARIABLE text)
-    if(status)
-        list(JOIN ARGV " " command)
-        message(FATAL_ERROR "${command}\nfailed (${status}):\n${text}")
-    endif()
-    set(text "${text}" PARENT_SCOPE)
-endfunction()
+include(${CMAKE_CURRENT_LIST_DIR}/run_command.cmake)
 
 set(hidden "")
 foreach(package OpenImageIO OpenColorIO Imath OpenEXR VTK ParaView)

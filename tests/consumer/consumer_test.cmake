@@ -1,21 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-# Installs a finished build into an empty folder, builds the consumer project against that and runs it.
+# Installs a finished build, builds the consumer project against that and runs it.
 # Needs: SOURCE_DIR, BUILD_DIR, WORK_DIR (emptied), CXX_COMPILER, CTEST_COMMAND.
-
-function(run)
-    execute_process(COMMAND ${ARGV} RESULT_VARIABLE status OUTPUT_VARIABLE text ERROR_VARIABLE text)
-    if(status)
-        list(JOIN ARGV " " command)
-        message(FATAL_ERROR "${command}\nfailed (${status}):\n${text}")
-    endif()
-endfunction()
-
-file(REMOVE_RECURSE ${WORK_DIR})
-run(${CMAKE_COMMAND} --install ${BUILD_DIR} --prefix ${WORK_DIR}/prefix)
-run(${CMAKE_COMMAND} -S ${SOURCE_DIR} -B ${WORK_DIR}/build -DCMAKE_BUILD_TYPE=Release
-    -DCMAKE_CXX_COMPILER=${CXX_COMPILER} -DCMAKE_PREFIX_PATH=${WORK_DIR}/prefix)
-run(${CMAKE_COMMAND} --build ${WORK_DIR}/build)
-run(${CTEST_COMMAND} --test-dir ${WORK_DIR}/build --output-on-failure --no-tests=error)
+include(${CMAKE_CURRENT_LIST_DIR}/install_and_test.cmake)
+install_and_test()
 
 # A stock host loads the installed plugin.
 file(GLOB_RECURSE plugin ${WORK_DIR}/prefix/anamorph.imageio.so)
