@@ -12,6 +12,7 @@
 #include "anamorph/map/features_file.h"
 #include "anamorph/map/mesh_file.h"
 #include "anamorph/memo.h"
+#include "anamorph/text_file.h"
 
 namespace anamorph {
 namespace {
@@ -82,19 +83,20 @@ std::shared_ptr<const WarpMap> read_warp_map(const SideFile& file, int step) {
     const bool text = Strutil::iends_with(file.name, ".json");
     if (text && step != 1) throw Error("step", std::to_string(step), "allowed for ST-maps only");
     return keep<WarpMap>(file, "mesh " + std::to_string(step), [&] {
-        return text ? parse_warp_file(read_text(file.name, kMaxMeshText), file.name)
+        return text ? parse_warp_file(read_text(file.name, text_file::kMostBytes), file.name)
                     : read_stmap(file.name, step);
     });
 }
 
 std::shared_ptr<const WarpMap> read_points(const SideFile& file) {
-    return keep<WarpMap>(file, "points",
-                         [&] { return parse_warp_file(read_text(file.name, kMaxMeshText), file.name); });
+    return keep<WarpMap>(file, "points", [&] {
+        return parse_warp_file(read_text(file.name, text_file::kMostBytes), file.name);
+    });
 }
 
 std::shared_ptr<const Features> read_features(const SideFile& file) {
     return keep<Features>(file, "features", [&] {
-        return parse_features_file(read_text(file.name, kMaxFeaturesText), file.name);
+        return parse_features_file(read_text(file.name, text_file::kMostBytes), file.name);
     });
 }
 

@@ -9,6 +9,7 @@
 
 #include "anamorph/deform/deformation_file.h"
 #include "anamorph/error.h"
+#include "anamorph/text_file.h"
 
 namespace anamorph {
 namespace {
@@ -121,7 +122,7 @@ TEST(DeformationFile, FaultsNameFileAndEntry) {
     csv("1,2,3,-4,5,6,7", "extent=-4");
     csv("1,2,3,4,5,6,7,round", "kernel=round");
     csv("1,2,3,4,5,6,7,gaussian,yes", "enabled=yes");
-    expect(std::string(kMaxDeformationText + 1, ' '), "long.csv", "", "64 MB");
+    expect(std::string(text_file::kMostBytes + 1, ' '), "long.csv", "", "64 MB");
     std::string many;
     for (std::size_t i = 0; i <= kMaxDeformations; ++i) many += "1,1,1,1,1,1,1\n";
     expect(many, "many.csv", "row 1048577", "up to 1048576 deformations");

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "anamorph/error.h"
+#include "anamorph/text_file.h"
 
 namespace anamorph {
 namespace {
@@ -64,6 +65,7 @@ TEST(FeaturesJson, ThreeShapes) {
 TEST(FeaturesJson, BadFilesAreNamed) {
     const auto bad = [](const std::string& text) { return message(parse_features_json, text); };
     EXPECT_THAT(bad(""), HasSubstr("no JSON"));
+    EXPECT_THAT(bad(std::string(100000, '[')), HasSubstr("deep"));
     EXPECT_THAT(bad(R"x({"features": [{"line": [[0,0,1,0], [0)x"), HasSubstr("no JSON"));
     EXPECT_THAT(bad("[]"), HasSubstr("needed is an object"));
     EXPECT_THAT(bad(R"x({"features": []})x"), HasSubstr("features: needed is a list of one or more"));
@@ -216,7 +218,7 @@ TEST(FeaturesFile, TheNamesEndChoosesTheReader) {
 }
 
 TEST(FeaturesFile, EndlessFilesAreRefused) {
-    const std::string big(kMaxFeaturesText + 1, ' ');
+    const std::string big(text_file::kMostBytes + 1, ' ');
     for (const char* name : {"a.csv", "a.svg", "a.json"}) {
         try {
             parse_features_file(big, name);

@@ -97,17 +97,17 @@ TEST(MeshFile, FaultsNameFileAndEntry) {
     expect(std::string(100000, '['), "deep");
     expect(R"({"points": [[1, 2, 3]]})", "points[0]");
     expect(R"({"points": 3})", "points=3: a list is needed");
-    expect("1,2,3,4\n5,6,7\n", "line 2", "p.csv");
-    expect("1,2,3,4\n5,6,x,8\n", "line 2=x", "p.csv");
-    expect("1,2,3,4\n5,6,,8\n", "line 2", "p.csv");
-    expect("1,2,3,4,5\n", "line 1", "p.csv");
-    expect("1,2,3,\n", "line 1", "p.csv");
+    expect("1,2,3,4\n5,6,7\n", "row 2", "p.csv");
+    expect("1,2,3,4\n5,6,x,8\n", "row 2: needed is a number, not \"x\"", "p.csv");
+    expect("1,2,3,4\n5,6,,8\n", "row 2", "p.csv");
+    expect("1,2,3,4,5\n", "row 1", "p.csv");
+    expect("1,2,3,\n", "row 1", "p.csv");
 }
 
 TEST(MeshFile, RefusesHugeText) {
     const std::string huge(std::size_t{100} << 20, ' ');
-    EXPECT_THAT(fault_of(huge), AllOf(HasSubstr("grid.json"), HasSubstr("67108864")));
-    EXPECT_THAT(fault_of(huge, "p.csv"), AllOf(HasSubstr("p.csv"), HasSubstr("67108864")));
+    EXPECT_THAT(fault_of(huge), AllOf(HasSubstr("grid.json"), HasSubstr("64 MB")));
+    EXPECT_THAT(fault_of(huge, "p.csv"), AllOf(HasSubstr("p.csv"), HasSubstr("64 MB")));
 }
 
 TEST(MeshFile, TakesEveryNthPixelOfAnStMap) {

@@ -9,6 +9,7 @@
 #include "anamorph/deform/deformation_file.h"
 #include "anamorph/error.h"
 #include "anamorph/parameter.h"
+#include "anamorph/text_file.h"
 #include "vtkDoubleArray.h"
 #include "vtkNew.h"
 #include "vtkTable.h"
@@ -72,9 +73,9 @@ std::vector<Numbers> read_deformations(const std::string& file_name) {
     std::ifstream file(file_name, std::ios::binary | std::ios::ate);
     if (!file) throw Error(file_name + ": cannot be read");
     const std::streamoff size = file.tellg();
-    if (size < 0 || static_cast<std::size_t>(size) > anamorph::kMaxDeformationText)
+    if (size < 0 || static_cast<std::size_t>(size) > anamorph::text_file::kMostBytes)
         throw Error(file_name + ": allowed are files of up to " +
-                    std::to_string(anamorph::kMaxDeformationText) + " bytes");
+                    std::to_string(anamorph::text_file::kMostBytes) + " bytes");
     std::string text(static_cast<std::size_t>(size), '\0');
     file.seekg(0);
     if (!file.read(text.data(), size)) throw Error(file_name + ": cannot be read");

@@ -4,26 +4,19 @@
 #include <algorithm>
 #include <cctype>
 #include <cmath>
-#include <nlohmann/json.hpp>
 
-#include "anamorph/error.h"
-#include "anamorph/map/features_text.h"
+#include "anamorph/json_file.h"
 #include "anamorph/parameter.h"
 
 namespace anamorph {
 namespace {
 
-using features_text::excerpt;
-using features_text::fail;
-using features_text::in_entry;
-using Json = nlohmann::json;
+using text_file::excerpt;
+using text_file::fail;
+using text_file::in_entry;
+using text_file::Json;
 
 constexpr char kColumns[] = "center_u,center_v,extent_u,extent_v,x,y,z,kernel,enabled";
-
-void check_size(std::string_view text, std::string_view name) {
-    if (text.size() > kMaxDeformationText)
-        fail(name, "", "allowed are files up to " + std::to_string(kMaxDeformationText >> 20) + " MB");
-}
 
 void check_count(const std::vector<Deformation>& list, std::string_view name, const std::string& label) {
     if (list.size() > kMaxDeformations)
@@ -66,36 +59,15 @@ Deformation read_deformation(const Json& entry) {
 
 // --- CSV
 
-std::string_view trimmed(std::string_view text) {
-    const auto blank = [](char c) { return c == ' ' || c == '\t' || c == '\r'; };
-    while (!text.empty() && blank(text.front())) text.remove_prefix(1);
-    while (!text.empty() && blank(text.back())) text.remove_suffix(1);
-    return text;
-}
-
-std::vector<std::string_view> fields_of(std::string_view row) {
-    std::vector<std::string_view> fields;
-    for (;;) {
-        const std::size_t comma = row.find(',');
-        fields.push_back(trimmed(row.substr(0, comma)));
-        if (comma == std::string_view::npos) return fields;
-        row.remove_prefix(comma + 1);
-    }
-}
-
 Deformation read_row(std::string_view row) {
-    const std::vector<std::string_view> fields = fields_of(row);
+    const std::vector<std::string_view> fields = text_file::fields_of(row);
     if (fields.size() < 7 || fields.size() > 9)
         throw Error("needed are " + std::string(kColumns) + " (the last two if wanted), not " +
                     std::to_string(fields.size()) + " fields");
     Deformation d;
     double* const numbers[7] = {&d.center.x, &d.center.y, &d.extent.x, &d.extent.y,
                                 &d.vector.x, &d.vector.y, &d.vector.z};
-    for (std::size_t i = 0; i < 7; ++i) {
-        std::string_view rest = fields[i];
-        if (!features_text::take_number(rest, *numbers[i]) || !rest.empty())
-            throw Error("needed is a number, not \"" + excerpt(fields[i]) + "\"");
-    }
+    for (std::size_t i = 0; i < 7; ++i) *numbers[i] = text_file::number(fields[i]);
     if (fields.size() > 7) d.kernel = kernel_named(fields[7]);
     if (fields.size() > 8) {
         if (fields[8] != "0" && fields[8] != "1")
@@ -129,18 +101,8 @@ DeformationKernel kernel_named(std::string_view name) {
 }
 
 std::vector<Deformation> parse_deformations_json(std::string_view text, std::string_view name) {
-    check_size(text, name);
-    Json json;
-    try {
-        // A file that is nothing but brackets must not fill the memory.
-        constexpr int kDepth = 8;
-        json = Json::parse(text, [&](int depth, Json::parse_event_t, const Json&) {
-            if (depth > kDepth) fail(name, "", "brackets stand more than 8 deep");
-            return true;
-        });
-    } catch (const Json::exception& error) {
-        fail(name, "", "no JSON: " + excerpt(error.what()));
-    }
+    text_file::check_size(text, name);
+    const Json json = text_file::parse_json(text, name);
     if (!json.is_object() || json.size() != 1 || !json.contains("deformations") ||
         !json["deformations"].is_array())
         fail(name, "", "needed is an object with nothing but a list, deformations");
@@ -154,32 +116,22 @@ std::vector<Deformation> parse_deformations_json(std::string_view text, std::str
 }
 
 std::vector<Deformation> parse_deformations_csv(std::string_view text, std::string_view name) {
-    check_size(text, name);
-    if (text.starts_with("\xef\xbb\xbf")) text.remove_prefix(3);
+    text_file::check_size(text, name);
     std::vector<Deformation> list;
     bool first = true;
-    for (std::size_t number = 1; !text.empty(); ++number) {
-        const std::size_t end = text.find('\n');
-        const std::string_view row = trimmed(text.substr(0, end));
-        text.remove_prefix(end == std::string_view::npos ? text.size() : end + 1);
-        if (row.empty() || row.front() == '#') continue;
+    text_file::each_row(text, [&](std::string_view row, const std::string& label) {
         const bool head = first && row.starts_with("center_u");
         first = false;
-        if (head) continue;
-        const std::string label = "row " + std::to_string(number);
+        if (head) return;
         in_entry(name, label, [&] { list.push_back(read_row(row)); });
         check_count(list, name, label);
-    }
+    });
     return list;
 }
 
 std::vector<Deformation> parse_deformations_file(std::string_view text, std::string_view name) {
-    constexpr std::string_view kEnd = ".csv";
-    const std::string_view end = name.substr(name.size() - std::min(name.size(), kEnd.size()));
-    const bool csv = std::equal(end.begin(), end.end(), kEnd.begin(), kEnd.end(), [](char a, char b) {
-        return std::tolower(static_cast<unsigned char>(a)) == b;
-    });
-    return csv ? parse_deformations_csv(text, name) : parse_deformations_json(text, name);
+    return text_file::ends_with(name, ".csv") ? parse_deformations_csv(text, name)
+                                              : parse_deformations_json(text, name);
 }
 
 std::string deformations_json(const std::vector<Deformation>& list) {

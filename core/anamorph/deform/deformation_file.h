@@ -23,8 +23,7 @@
 
 namespace anamorph {
 
-/// Longer texts and lists are refused.
-inline constexpr std::size_t kMaxDeformationText = std::size_t{64} << 20;
+/// Longer lists are refused.
 inline constexpr std::size_t kMaxDeformations = std::size_t{1} << 20;
 
 std::vector<Deformation> parse_deformations_json(std::string_view text, std::string_view name);

@@ -8,12 +8,12 @@
 #include "anamorph/error.h"
 #include "anamorph/figure/rotation.h"
 #include "anamorph/figure/script_symbols.h"
-#include "anamorph/map/features_text.h"
 #include "anamorph/parameter.h"
+#include "anamorph/text_file.h"
 
 namespace anamorph {
 
-using features_text::excerpt;
+using text_file::excerpt;
 
 namespace {
 

@@ -5,7 +5,7 @@
 #include <limits>
 
 #include "anamorph/figure/actions.h"
-#include "anamorph/map/features_text.h"
+#include "anamorph/text_file.h"
 
 namespace anamorph {
 

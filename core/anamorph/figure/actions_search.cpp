@@ -9,7 +9,7 @@
 #include "anamorph/figure/actions.h"
 #include "anamorph/figure/rotation.h"
 #include "anamorph/map/ellipsoid_distance.h"
-#include "anamorph/map/features_text.h"
+#include "anamorph/text_file.h"
 
 namespace anamorph {
 namespace {
@@ -255,8 +255,8 @@ void check_overlaps(const Program& program, const FigureState& state, int frame)
     const auto check = [&](int i, int j) {
         if (i == j || !forbidden(i, j) || !meet(i, j)) return;
         throw Error("frame " + std::to_string(frame) + ": the ellipsoids " +
-                    features_text::excerpt(program.ellipsoids[static_cast<std::size_t>(i)].name) + " and " +
-                    features_text::excerpt(program.ellipsoids[static_cast<std::size_t>(j)].name) +
+                    text_file::excerpt(program.ellipsoids[static_cast<std::size_t>(i)].name) + " and " +
+                    text_file::excerpt(program.ellipsoids[static_cast<std::size_t>(j)].name) +
                     " meet, which is forbidden");
     };
     // Neighbours overlap at their joint: world, which stands for all, does not mean them.

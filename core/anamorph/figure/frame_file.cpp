@@ -10,13 +10,13 @@
 
 #include "anamorph/error.h"
 #include "anamorph/figure/rotation.h"
-#include "anamorph/map/features_text.h"
 #include "anamorph/parameter.h"
+#include "anamorph/text_file.h"
 
 namespace anamorph {
 namespace {
 
-using features_text::excerpt;
+using text_file::excerpt;
 
 constexpr double kTenths = 10;
 

@@ -6,12 +6,12 @@
 
 #include "anamorph/error.h"
 #include "anamorph/figure/script_parser.h"
-#include "anamorph/map/features_text.h"
+#include "anamorph/text_file.h"
 
 namespace anamorph {
 namespace {
 
-using features_text::excerpt;
+using text_file::excerpt;
 
 /// Sets of ellipsoids that joints connect.
 class Components {

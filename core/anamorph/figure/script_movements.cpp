@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "anamorph/figure/script_parser.h"
-#include "anamorph/map/features_text.h"
+#include "anamorph/text_file.h"
 
 namespace anamorph {
 

@@ -5,12 +5,12 @@
 #include <algorithm>
 #include <cmath>
 
-#include "anamorph/map/features_text.h"
+#include "anamorph/text_file.h"
 
 namespace anamorph {
 
-using features_text::excerpt;
 using script_table::Keyword;
+using text_file::excerpt;
 
 namespace {
 

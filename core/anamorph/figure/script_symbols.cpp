@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "anamorph/map/features_text.h"
+#include "anamorph/text_file.h"
 
 namespace anamorph {
 namespace {
@@ -104,7 +104,7 @@ const char* description_of(OperandKind kind) {
 
 std::string quoted(std::string_view text) {
     std::string out(1, '"');
-    out += features_text::excerpt(text);
+    out += text_file::excerpt(text);
     out += '"';
     return out;
 }

@@ -2,18 +2,17 @@
 #include "anamorph/map/features_file.h"
 
 #include <cctype>
-#include <nlohmann/json.hpp>
 #include <optional>
 
-#include "anamorph/map/features_text.h"
+#include "anamorph/json_file.h"
 
 namespace anamorph {
 namespace {
 
-using features_text::excerpt;
-using features_text::fail;
-using features_text::in_entry;
-using Json = nlohmann::json;
+using text_file::excerpt;
+using text_file::fail;
+using text_file::in_entry;
+using text_file::Json;
 
 // --- JSON
 // ---------------------------------------------------------------------------------------------------
@@ -97,46 +96,21 @@ double border_weight(const Json& value) {
 // --- CSV
 // ----------------------------------------------------------------------------------------------------
 
-std::string_view trimmed(std::string_view text) {
-    const auto blank = [](char c) { return c == ' ' || c == '\t' || c == '\r'; };
-    while (!text.empty() && blank(text.front())) text.remove_prefix(1);
-    while (!text.empty() && blank(text.back())) text.remove_suffix(1);
-    return text;
-}
-
 std::vector<double> read_row(std::string_view row) {
+    const std::vector<std::string_view> fields = text_file::fields_of(row);
+    if (fields.size() < 8 || fields.size() > 9)
+        throw Error("needed are 8 numbers, ax0,ay0,ax1,ay1,bx0,by0,bx1,by1, and perhaps a weight, not " +
+                    std::to_string(fields.size()));
     std::vector<double> values;
-    for (;;) {
-        const std::size_t comma = row.find(',');
-        const std::string_view field = trimmed(row.substr(0, comma));
-        std::string_view rest = field;
-        double value;
-        if (!features_text::take_number(rest, value) || !rest.empty())
-            throw Error("needed is a number, not \"" + excerpt(field) + "\"");
-        values.push_back(value);
-        if (values.size() > 9) throw Error("needed are 8 numbers and perhaps a weight, not more");
-        if (comma == std::string_view::npos) return values;
-        row.remove_prefix(comma + 1);
-    }
-}
-
-bool ends_with(std::string_view name, std::string_view ending) {
-    if (name.size() < ending.size()) return false;
-    const std::string_view tail = name.substr(name.size() - ending.size());
-    return std::equal(tail.begin(), tail.end(), ending.begin(),
-                      [](char a, char b) { return std::tolower(static_cast<unsigned char>(a)) == b; });
+    for (const std::string_view field : fields) values.push_back(text_file::number(field));
+    return values;
 }
 
 }  // namespace
 
 Features parse_features_json(std::string_view text, std::string_view name) {
-    features_text::check_size(text, name);
-    Json json;
-    try {
-        json = Json::parse(text);
-    } catch (const Json::exception& error) {
-        fail(name, "", "no JSON: " + excerpt(error.what()));
-    }
+    text_file::check_size(text, name);
+    const Json json = text_file::parse_json(text, name);
     if (!json.is_object()) fail(name, "", "needed is an object with features");
     for (const auto& [key, value] : json.items())
         if (key != "features" && key != "sizes" && key != "pin_border")
@@ -149,7 +123,7 @@ Features parse_features_json(std::string_view text, std::string_view name) {
     for (const Json& entry : json["features"]) {
         const std::string label = "features[" + std::to_string(i++) + "]";
         in_entry(name, label, [&] { add_feature(entry, features); });
-        features_text::check_count(*features, name, label);
+        check_feature_count(*features, name, label);
     }
     if (json.contains("sizes")) in_entry(name, "sizes", [&] { read_sizes(json["sizes"], *features); });
     if (json.contains("pin_border"))
@@ -158,36 +132,32 @@ Features parse_features_json(std::string_view text, std::string_view name) {
 }
 
 Features parse_features_csv(std::string_view text, std::string_view name) {
-    features_text::check_size(text, name);
-    if (text.starts_with("\xef\xbb\xbf")) text.remove_prefix(3);
+    text_file::check_size(text, name);
     Features features(2);
     bool first = true;
-    for (std::size_t number = 1; !text.empty(); ++number) {
-        const std::size_t end = text.find('\n');
-        const std::string_view row = trimmed(text.substr(0, end));
-        text.remove_prefix(end == std::string_view::npos ? text.size() : end + 1);
-        if (row.empty() || row.front() == '#') continue;
+    text_file::each_row(text, [&](std::string_view row, const std::string& label) {
         const bool head = first && row.starts_with("ax0");
         first = false;
-        if (head) continue;
-        const std::string label = "row " + std::to_string(number);
+        if (head) return;
         in_entry(name, label, [&] {
             const std::vector<double> v = read_row(row);
-            if (v.size() < 8)
-                throw Error("needed are 8 numbers, ax0,ay0,ax1,ay1,bx0,by0,bx1,by1, not " +
-                            std::to_string(v.size()));
             features.add_line({{{v[0], v[1]}, {v[2], v[3]}}, {{v[4], v[5]}, {v[6], v[7]}}},
                               v.size() > 8 ? v[8] : 1);
         });
-        features_text::check_count(features, name, label);
-    }
+        check_feature_count(features, name, label);
+    });
     if (features.size() == 0) fail(name, "", "needed is one pair of lines or more");
     return features;
 }
 
+void check_feature_count(const Features& features, std::string_view file, const std::string& entry) {
+    if (features.size() > kMaxFeatures)
+        fail(file, entry, "allowed are up to " + std::to_string(kMaxFeatures) + " lines");
+}
+
 Features parse_features_file(std::string_view text, std::string_view name) {
-    if (ends_with(name, ".csv")) return parse_features_csv(text, name);
-    if (ends_with(name, ".svg")) return parse_features_svg(text, name);
+    if (text_file::ends_with(name, ".csv")) return parse_features_csv(text, name);
+    if (text_file::ends_with(name, ".svg")) return parse_features_svg(text, name);
     return parse_features_json(text, name);
 }
 

@@ -32,14 +32,13 @@
 #pragma once
 
 #include <cstddef>
+#include <string>
 #include <string_view>
 
 #include "anamorph/map/feature_lines.h"
 
 namespace anamorph {
 
-/// Texts longer than this are refused; hosts need not read more.
-inline constexpr std::size_t kMaxFeaturesText = std::size_t{64} << 20;
 /// More lines than this are refused.
 inline constexpr std::size_t kMaxFeatures = 1000000;
 
@@ -48,5 +47,8 @@ Features parse_features_csv(std::string_view text, std::string_view name);
 Features parse_features_svg(std::string_view text, std::string_view name);
 /// Chooses by the end of the name: .csv, .svg, else JSON.
 Features parse_features_file(std::string_view text, std::string_view name);
+
+/// Throws Error naming the entry of the file that is one line too many.
+void check_feature_count(const Features& features, std::string_view file, const std::string& entry);
 
 }  // namespace anamorph

@@ -6,15 +6,15 @@
 #include <pugixml.hpp>
 
 #include "anamorph/map/features_file.h"
-#include "anamorph/map/features_text.h"
+#include "anamorph/text_file.h"
 
 namespace anamorph {
 namespace {
 
-using features_text::excerpt;
-using features_text::fail;
-using features_text::in_entry;
-using features_text::take_number;
+using text_file::excerpt;
+using text_file::fail;
+using text_file::in_entry;
+using text_file::take_number;
 using Vertex = Point<double>;
 
 // --- the lists of numbers in attributes
@@ -468,7 +468,7 @@ void add_drawing(Features& features, const std::vector<const Drawing*>& shapes) 
 }  // namespace
 
 Features parse_features_svg(std::string_view text, std::string_view name) {
-    features_text::check_size(text, name);
+    text_file::check_size(text, name);
     pugi::xml_document document;
     const pugi::xml_parse_result parsed =
         document.load_buffer(text.data(), text.size(), pugi::parse_default, pugi::encoding_auto);
@@ -483,7 +483,7 @@ Features parse_features_svg(std::string_view text, std::string_view name) {
     for (const std::vector<const Drawing*>& shapes : partners(layers, name)) {
         const std::string entry = excerpt(shapes[0]->name());
         in_entry(name, entry, [&] { add_drawing(features, shapes); });
-        features_text::check_count(features, name, entry);
+        check_feature_count(features, name, entry);
     }
     for (std::size_t k = 0; k < layers.size(); ++k)
         if (layers[k].to_picture) features.set_frame(static_cast<int>(k), layers[k].frame);

@@ -2,17 +2,17 @@
 #include "anamorph/map/mesh_file.h"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
-#include <nlohmann/json.hpp>
 #include <string>
 
-#include "anamorph/error.h"
+#include "anamorph/json_file.h"
 
 namespace anamorph {
 namespace {
 
-using Json = nlohmann::json;
+using text_file::excerpt;
+using text_file::fail;
+using text_file::Json;
 
 /// A value as it stands in a message: its beginning, on one line.
 std::string shown(const Json& value) {
@@ -25,14 +25,6 @@ std::string shown(const Json& value) {
         text = value.dump(-1, ' ', true, Json::error_handler_t::replace);
     if (text.size() > 40) text = text.substr(0, 40) + "...";
     return text;
-}
-
-/// Text from outside, on one line of a message.
-std::string plain(std::string_view text) {
-    std::string line(text.substr(0, 100));
-    for (char& c : line)
-        if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) c = ' ';
-    return line;
 }
 
 /// An entry of the file: its value and its path from the top, for messages.
@@ -61,7 +53,7 @@ class Entry {
             if (std::any_of(keys.begin(), keys.end(), [&](const char* k) { return key == k; })) continue;
             std::string known;
             for (const char* k : keys) known += (known.empty() ? "" : ", ") + std::string(k);
-            throw Error(m_path + "\"" + plain(key) + "\": no such key, known are " + known);
+            throw Error(m_path + "\"" + excerpt(key) + "\": no such key, known are " + known);
         }
     }
     std::size_t expect_list(std::size_t most) const {
@@ -183,100 +175,47 @@ ControlPoints control_points(const Entry& top) {
     return points;
 }
 
-void check_length(std::string_view text, std::string_view name) {
-    if (text.size() > kMaxMeshText)
-        throw Error(plain(name), std::to_string(text.size()) + " bytes",
-                    "allowed are at most " + std::to_string(kMaxMeshText));
-}
-
-/// What the JSON reader complains about, without its own prefix.
-std::string complaint(const Json::exception& error) {
-    const std::string text = error.what();
-    const std::size_t end = text.find("] ");
-    return plain(end == std::string::npos ? text : text.substr(end + 2));
-}
-
-std::string_view trimmed(std::string_view text) {
-    const auto space = [](char c) { return c == ' ' || c == '\t' || c == '\r'; };
-    while (!text.empty() && space(text.front())) text.remove_prefix(1);
-    while (!text.empty() && space(text.back())) text.remove_suffix(1);
-    return text;
-}
-
-/// Four numbers between commas; the entry at fault is returned, or nothing.
-std::string_view four_numbers(std::string_view line, double (&numbers)[4]) {
-    for (int i = 0; i < 4; ++i) {
-        const std::size_t comma = i < 3 ? line.find(',') : line.size();
-        if (comma == std::string_view::npos) return line.empty() ? "an end" : line;
-        std::string_view field = trimmed(line.substr(0, comma));
-        if (field.starts_with('+')) field.remove_prefix(1);
-        const auto [end, error] = std::from_chars(field.data(), field.data() + field.size(), numbers[i]);
-        if (error != std::errc() || end != field.data() + field.size())
-            return field.empty() ? "nothing" : field;
-        line.remove_prefix(std::min(comma + 1, line.size()));
-    }
-    return {};
-}
-
 }  // namespace
 
 WarpMap parse_mesh_json(std::string_view text, std::string_view name) {
-    check_length(text, name);
-    Json json;
-    try {
-        // A file that is nothing but brackets must not fill the memory.
-        constexpr int kDepth = 8;
-        json = Json::parse(text, [&](int depth, Json::parse_event_t, const Json&) {
-            if (depth > kDepth) throw Error(plain(name) + ": brackets stand more than 8 deep");
-            return true;
-        });
-    } catch (const Json::exception& error) {
-        throw Error(plain(name) + ": is no JSON: " + complaint(error));
-    }
-    const Entry top(json, plain(name) + ": ");
-    if (!json.is_object()) throw Error(plain(name) + ": an object with \"vertices\" or \"points\" is needed");
-    if (top.has("points")) return {plain(name), control_points(top)};
-    return {plain(name), control_mesh(top)};
+    text_file::check_size(text, name);
+    const Json json = text_file::parse_json(text, name);
+    const Entry top(json, excerpt(name) + ": ");
+    if (!json.is_object()) fail(name, "", "an object with \"vertices\" or \"points\" is needed");
+    if (top.has("points")) return {excerpt(name), control_points(top)};
+    return {excerpt(name), control_mesh(top)};
 }
 
 WarpMap parse_points_csv(std::string_view text, std::string_view name) {
-    check_length(text, name);
+    text_file::check_size(text, name);
     ControlPoints points;
-    if (text.starts_with("\xef\xbb\xbf")) text.remove_prefix(3);
     bool first = true;
-    for (int number = 1; !text.empty(); ++number) {
-        const std::size_t end = std::min(text.find('\n'), text.size());
-        const std::string_view line = trimmed(text.substr(0, end));
-        text.remove_prefix(std::min(end + 1, text.size()));
-        if (line.empty() || line.starts_with('#')) continue;
-        double v[4];
-        const std::string_view fault = four_numbers(line, v);
-        const bool title = first && line.find_first_of("0123456789") == std::string_view::npos;
+    text_file::each_row(text, [&](std::string_view row, const std::string& label) {
+        const bool title = first && row.find_first_of("0123456789") == std::string_view::npos;
         first = false;
-        if (!fault.empty()) {
-            if (title) continue;
-            throw Error(plain(name) + ": line " + std::to_string(number), plain(fault),
-                        "four numbers x,y,u,v are needed");
-        }
-        if (points.pairs.size() == ControlPoints::kMaxPoints)
-            throw Error(plain(name) + ": line " + std::to_string(number) + ": allowed are at most " +
-                        std::to_string(ControlPoints::kMaxPoints) + " points");
-        points.pairs.push_back({v[0], v[1], v[2], v[3]});
-    }
-    return {plain(name), std::move(points)};
+        if (title) return;
+        text_file::in_entry(name, label, [&] {
+            const std::vector<std::string_view> fields = text_file::fields_of(row);
+            if (fields.size() != 4)
+                throw Error("needed are four numbers x,y,u,v, not " + std::to_string(fields.size()));
+            double v[4];
+            for (std::size_t i = 0; i < 4; ++i) v[i] = text_file::number(fields[i]);
+            points.pairs.push_back({v[0], v[1], v[2], v[3]});
+        });
+        if (points.pairs.size() > ControlPoints::kMaxPoints)
+            fail(name, label, "allowed are at most " + std::to_string(ControlPoints::kMaxPoints) + " points");
+    });
+    return {excerpt(name), std::move(points)};
 }
 
 WarpMap parse_warp_file(std::string_view text, std::string_view name) {
-    std::string end(name.substr(name.size() < 4 ? 0 : name.size() - 4));
-    std::transform(end.begin(), end.end(), end.begin(),
-                   [](char c) { return c >= 'A' && c <= 'Z' ? char(c + 32) : c; });
-    return end == ".csv" ? parse_points_csv(text, name) : parse_mesh_json(text, name);
+    return text_file::ends_with(name, ".csv") ? parse_points_csv(text, name) : parse_mesh_json(text, name);
 }
 
 WarpMap mesh_from_stmap(const float* uv, int width, int height, std::ptrdiff_t pixel_stride,
                         std::ptrdiff_t row_stride, int step, std::string_view name) {
     if (width < 2 || height < 2)
-        throw Error(plain(name), std::to_string(width) + "x" + std::to_string(height),
+        throw Error(excerpt(name), std::to_string(width) + "x" + std::to_string(height),
                     "an ST-map has at least 2 pixels either way");
     if (step < 1) throw Error("step", std::to_string(step), "allowed are whole numbers from 1");
     // Every step-th pixel, and the last.
@@ -293,7 +232,7 @@ WarpMap mesh_from_stmap(const float* uv, int width, int height, std::ptrdiff_t p
     mesh.rows = static_cast<int>(rows.size()) - 1;
     if (mesh.columns > ControlMesh::kMaxCells || mesh.rows > ControlMesh::kMaxCells ||
         columns.size() * rows.size() > ControlMesh::kMaxVertices)
-        throw Error(plain(name),
+        throw Error(excerpt(name),
                     std::to_string(columns.size()) + "x" + std::to_string(rows.size()) + " vertices",
                     "allowed are at most " + std::to_string(ControlMesh::kMaxVertices) + ", and " +
                         std::to_string(ControlMesh::kMaxCells) + " cells either way: take a larger step");
@@ -304,11 +243,11 @@ WarpMap mesh_from_stmap(const float* uv, int width, int height, std::ptrdiff_t p
         for (const int x : columns) {
             const float* at = uv + y * row_stride + x * pixel_stride;
             if (!std::isfinite(at[0]) || !std::isfinite(at[1]))
-                throw Error(plain(name) + ": pixel [" + std::to_string(x) + ", " + std::to_string(y) + "]",
+                throw Error(excerpt(name) + ": pixel [" + std::to_string(x) + ", " + std::to_string(y) + "]",
                             std::to_string(at[0]) + "," + std::to_string(at[1]), "allowed are numbers");
             mesh.vertices.push_back({at[0], at[1]});
         }
-    return {plain(name), std::move(mesh)};
+    return {excerpt(name), std::move(mesh)};
 }
 
 }  // namespace anamorph

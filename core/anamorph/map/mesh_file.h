@@ -33,9 +33,6 @@
 
 namespace anamorph {
 
-/// Texts longer than this are refused; hosts need not read more.
-inline constexpr std::size_t kMaxMeshText = std::size_t{64} << 20;
-
 /// A mesh or pairs of points, whichever the JSON text holds ("vertices" or "points").
 WarpMap parse_mesh_json(std::string_view text, std::string_view name);
 WarpMap parse_points_csv(std::string_view text, std::string_view name);

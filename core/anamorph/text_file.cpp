@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "anamorph/text_file.h"
+
+#include <algorithm>
+#include <cctype>
+#include <charconv>
+
+namespace anamorph::text_file {
+
+std::string excerpt(std::string_view text) {
+    constexpr std::size_t kMost = 60;
+    std::string out(text.substr(0, kMost));
+    for (char& c : out)
+        if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) c = '?';
+    return text.size() > kMost ? out + "..." : out;
+}
+
+void fail(std::string_view file, const std::string& entry, const std::string& what) {
+    throw Error(excerpt(file) + ": " + (entry.empty() ? "" : entry + ": ") + what);
+}
+
+void check_size(std::string_view text, std::string_view file) {
+    if (text.size() > kMostBytes)
+        fail(file, "", "allowed are files up to " + std::to_string(kMostBytes >> 20) + " MB");
+}
+
+bool take_number(std::string_view& text, double& value) {
+    const char* from = text.data();
+    const char* end = from + text.size();
+    if (from != end && *from == '+') ++from;
+    const auto [to, error] = std::from_chars(from, end, value);
+    if (error != std::errc()) return false;
+    text.remove_prefix(static_cast<std::size_t>(to - text.data()));
+    return true;
+}
+
+double number(std::string_view field) {
+    double value;
+    std::string_view rest = field;
+    if (!take_number(rest, value) || !rest.empty())
+        throw Error("needed is a number, not \"" + excerpt(field) + "\"");
+    return value;
+}
+
+std::string_view trimmed(std::string_view text) {
+    const auto blank = [](char c) { return c == ' ' || c == '\t' || c == '\r'; };
+    while (!text.empty() && blank(text.front())) text.remove_prefix(1);
+    while (!text.empty() && blank(text.back())) text.remove_suffix(1);
+    return text;
+}
+
+std::vector<std::string_view> fields_of(std::string_view row) {
+    std::vector<std::string_view> fields;
+    for (;;) {
+        const std::size_t comma = row.find(',');
+        fields.push_back(trimmed(row.substr(0, comma)));
+        if (comma == std::string_view::npos) return fields;
+        row.remove_prefix(comma + 1);
+    }
+}
+
+bool ends_with(std::string_view name, std::string_view lower_case_ending) {
+    if (name.size() < lower_case_ending.size()) return false;
+    const std::string_view tail = name.substr(name.size() - lower_case_ending.size());
+    return std::equal(tail.begin(), tail.end(), lower_case_ending.begin(),
+                      [](char a, char b) { return std::tolower(static_cast<unsigned char>(a)) == b; });
+}
+
+}  // namespace anamorph::text_file
