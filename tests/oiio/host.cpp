@@ -7,10 +7,14 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <cmath>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <iterator>
+#include <random>
+#include <thread>
 
 namespace anamorph::testing_oiio {
 
@@ -138,6 +142,90 @@ double largest_difference(const std::vector<float>& a, const std::vector<float>&
     for (std::size_t i = 0; i < std::min(a.size(), b.size()); ++i)
         largest = std::max(largest, std::fabs(double(a[i]) - double(b[i])));
     return largest;
+}
+
+std::unique_ptr<OIIO::ImageInput> open(const std::string& name) {
+    auto input = OIIO::ImageInput::open(name);
+    EXPECT_TRUE(input) << name << ": " << OIIO::geterror();
+    return input;
+}
+
+OIIO::ParamValueList options(std::initializer_list<std::pair<const char*, const char*>> list) {
+    OIIO::ParamValueList out;
+    for (const auto& [key, value] : list) out.attribute(key, value);
+    return out;
+}
+
+std::vector<std::byte> bytes(const OIIO::ImageBuf& image) {
+    EXPECT_FALSE(image.has_error()) << image.geterror();
+    std::vector<std::byte> out(image.spec().image_bytes());
+    EXPECT_TRUE(image.get_pixels(image.roi(), image.spec().format, out.data())) << image.geterror();
+    return out;
+}
+
+void expect_one_picture(const std::string& name, int x, int y) {
+    SCOPED_TRACE(name);
+    OIIO::attribute("threads", 1);
+    const Pixels expected = read_pixels(name + "&tile=0");
+    for (const char* tile : {"16", "17x31", "64", "512", "0"})
+        for (const int threads : {1, 3}) {
+            OIIO::attribute("threads", threads);
+            EXPECT_EQ(read_pixels(name + "&tile=" + tile), expected) << tile << " " << threads;
+        }
+    OIIO::attribute("threads", 0);
+    const std::string cut = "' --cut 40x30+" + std::to_string(x) + "+" + std::to_string(y) + " -o ";
+    const Ran ran = run("oiiotool '" + name + "&tile=32" + cut + "cut.exr && oiiotool '" + name +
+                        "' -o whole.exr && oiiotool 'whole.exr" + cut + "cut_of_whole.exr");
+    ASSERT_EQ(ran.status, 0) << ran.text;
+    EXPECT_EQ(read_pixels("cut.exr").bytes, read_pixels("cut_of_whole.exr").bytes);
+}
+
+void expect_nothing_left_behind(const std::function<void(int, int)>& body, double megabytes) {
+    const auto handles = [] {
+        const fs::directory_iterator all("/proc/self/fd");
+        return std::distance(begin(all), end(all));
+    };
+    const auto resident = [] {
+        std::ifstream file("/proc/self/statm");
+        long total = 0, pages = 0;
+        file >> total >> pages;
+        return double(pages) * 4096 / (1 << 20);
+    };
+    body(0, 200);
+    const auto handles_before = handles();
+    const double memory_before = resident();
+    body(200, 1200);
+    EXPECT_LE(handles(), handles_before + 2);
+#if defined(__SANITIZE_ADDRESS__)
+    // Freed memory is kept from use.
+    megabytes = HUGE_VAL;
+#endif
+    EXPECT_LE(resident(), memory_before + megabytes);
+}
+
+void read_from_threads(OIIO::ImageCache& cache, const std::vector<std::string>& names,
+                       const std::vector<std::vector<float>>& expected, int width, int height) {
+    std::atomic<int> wrong{0}, failed{0};
+    std::vector<std::thread> threads;
+    for (unsigned t = 0; t < 6; ++t)
+        threads.emplace_back([&, t] {
+            std::mt19937 random(t + 1);
+            for (int i = 0; i < 1000; ++i) {
+                const std::size_t n = random() % names.size();
+                const int x = static_cast<int>(random() % unsigned(width)),
+                          y = static_cast<int>(random() % unsigned(height));
+                float pixel[3] = {};
+                if (!cache.get_pixels(OIIO::ustring(names[n]), 0, 0, x, x + 1, y, y + 1, 0, 1,
+                                      OIIO::TypeFloat, pixel))
+                    ++failed;
+                else if (!std::equal(pixel, pixel + 3,
+                                     &expected[n][static_cast<std::size_t>((y * width + x) * 3)]))
+                    ++wrong;
+            }
+        });
+    for (std::thread& thread : threads) thread.join();
+    EXPECT_EQ(wrong, 0);
+    EXPECT_EQ(failed, 0) << cache.geterror();
 }
 
 }  // namespace anamorph::testing_oiio

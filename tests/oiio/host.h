@@ -4,12 +4,17 @@
 #pragma once
 
 #include <OpenImageIO/imagebuf.h>
+#include <OpenImageIO/imagecache.h>
 #include <OpenImageIO/imageio.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cstddef>
+#include <functional>
+#include <initializer_list>
+#include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace anamorph::testing_oiio {
@@ -57,6 +62,26 @@ std::vector<float> read_floats(const std::string& name, int miplevel = 0);
 std::string open_error(const std::string& name);
 
 void write_text(const std::string& name, const std::string& text);
+
+/// The plugin's input of this name; the test fails where it cannot be opened.
+std::unique_ptr<OIIO::ImageInput> open(const std::string& name);
+
+/// Options of an operation.
+OIIO::ParamValueList options(std::initializer_list<std::pair<const char*, const char*>> list);
+/// The pixels of an image in memory, in its own format; the test fails where it has an error.
+std::vector<std::byte> bytes(const OIIO::ImageBuf& image);
+
+/// Tile sizes, threads, and a cut of 40 x 30 pixels at (x, y) never change a recipe's pixels.
+void expect_one_picture(const std::string& name, int x, int y);
+
+/// Calls body(first, last) for 200 rounds, then for 1000 more: these leave no handles open, and at most so
+/// many megabytes behind.
+void expect_nothing_left_behind(const std::function<void(int, int)>& body, double megabytes);
+
+/// Random pixels of all these names through a cache, from several threads, each against the picture of
+/// width x height read whole.
+void read_from_threads(OIIO::ImageCache& cache, const std::vector<std::string>& names,
+                       const std::vector<std::vector<float>>& expected, int width, int height);
 
 /// The largest difference of any channel.
 double largest_difference(const std::vector<float>& a, const std::vector<float>& b);

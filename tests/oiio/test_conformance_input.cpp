@@ -30,12 +30,6 @@ class InputConformance : public InFolder {
 
 const std::string kView = "city.exr.pano?yaw=30&pitch=10&size=150x100";
 
-std::unique_ptr<ImageInput> open(const std::string& name) {
-    auto input = ImageInput::open(name);
-    EXPECT_TRUE(input) << name << ": " << OIIO::geterror();
-    return input;
-}
-
 TEST_F(InputConformance, conformance_02_version_and_extensions_are_listed) {
     EXPECT_THAT(OIIO::get_string_attribute("extension_list"), HasSubstr("anamorph:pano,warp,morph,anabuf"));
     EXPECT_THAT(OIIO::get_string_attribute("library_list"), HasSubstr("anamorph:Anamorph "));

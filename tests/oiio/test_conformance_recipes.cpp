@@ -6,7 +6,6 @@
 
 #include <atomic>
 #include <filesystem>
-#include <fstream>
 #include <random>
 #include <thread>
 
@@ -51,12 +50,6 @@ INSTANTIATE_TEST_SUITE_P(Kinds, RecipeConformance,
                                          "city.exr.morph?b=town.exr&features=lines.csv&t=0.3",
                                          "city.exr.morph?b=town.exr&features=lines.csv&frames=3"),
                          kind_name);
-
-std::unique_ptr<ImageInput> open(const std::string& name) {
-    auto input = ImageInput::open(name);
-    EXPECT_TRUE(input) << name << ": " << OIIO::geterror();
-    return input;
-}
 
 std::vector<float> read_subimage(ImageInput& input, int subimage, int level = 0) {
     const ImageSpec spec = input.spec(subimage, level);
@@ -239,24 +232,7 @@ TEST_P(RecipeConformance, conformance_15_19_behind_a_cache_with_little_memory) {
         cache->invalidate_all(true);
         cache->attribute("max_memory_MB", megabytes);
         cache->attribute("max_open_files", files);
-        std::atomic<int> wrong{0};
-        std::vector<std::thread> threads;
-        for (unsigned t = 0; t < 5; ++t)
-            threads.emplace_back([&, t] {
-                std::mt19937 random(t + 1);
-                for (int i = 0; i < 400; ++i) {
-                    const std::size_t n = random() % names.size();
-                    const int x = static_cast<int>(random() % 150), y = static_cast<int>(random() % 100);
-                    float pixel[3] = {};
-                    const bool read = cache->get_pixels(ustring(names[n]), 0, 0, x, x + 1, y, y + 1, 0, 1,
-                                                        OIIO::TypeFloat, pixel);
-                    if (!read || !std::equal(pixel, pixel + 3,
-                                             &expected[n][static_cast<std::size_t>((y * 150 + x) * 3)]))
-                        ++wrong;
-                }
-            });
-        for (std::thread& thread : threads) thread.join();
-        EXPECT_EQ(wrong, 0) << cache->geterror();
+        read_from_threads(*cache, names, expected, 150, 100);
     }
     EXPECT_THAT(cache->getstats(5), HasSubstr("ImageCache statistics"));
     cache->attribute("max_memory_MB", 256.0f);
@@ -322,17 +298,6 @@ TEST_P(RecipeConformance, conformance_29_a_crop_reads_only_what_it_needs) {
 }
 
 TEST_P(RecipeConformance, conformance_31_a_thousand_opens) {
-    const auto handles = [] {
-        int n = 0;
-        for ([[maybe_unused]] const auto& entry : fs::directory_iterator("/proc/self/fd")) ++n;
-        return n;
-    };
-    const auto resident = [] {
-        std::ifstream file("/proc/self/statm");
-        long total = 0, pages = 0;
-        file >> total >> pages;
-        return double(pages) * 4096 / (1 << 20);
-    };
     const auto open_many = [&](int from, int to) {
         for (int i = from; i < to; ++i) {
             auto input = ImageInput::open(
@@ -342,14 +307,7 @@ TEST_P(RecipeConformance, conformance_31_a_thousand_opens) {
             if (i % 3) input->close();
         }
     };
-    open_many(0, 200);
-    const int handles_before = handles();
-    [[maybe_unused]] const double memory_before = resident();
-    open_many(200, 1200);
-    EXPECT_LE(handles(), handles_before + 2);
-#if !defined(__SANITIZE_ADDRESS__)
-    EXPECT_LE(resident(), memory_before + 30);
-#endif
+    expect_nothing_left_behind(open_many, 30);
 }
 
 TEST_P(RecipeConformance, conformance_21_32_random_names_and_recipes) {

@@ -24,18 +24,6 @@ using testing::Not;
 
 class Ops : public InFolder {};
 
-ParamValueList options(std::initializer_list<std::pair<const char*, const char*>> list) {
-    ParamValueList out;
-    for (const auto& [key, value] : list) out.attribute(key, value);
-    return out;
-}
-
-std::vector<std::byte> bytes(const ImageBuf& image) {
-    std::vector<std::byte> out(image.spec().image_bytes());
-    EXPECT_TRUE(image.get_pixels(image.roi(), image.spec().format, out.data())) << image.geterror();
-    return out;
-}
-
 TEST_F(Ops, ReturnsWhatItFills) {
     const ImageBuf source = panorama(256, 128);
     const ParamValueList o = options({{"yaw", "30"}, {"size", "100x80"}});

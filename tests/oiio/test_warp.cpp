@@ -46,19 +46,6 @@ class Warp : public InFolder {
     }
 };
 
-ParamValueList options(std::initializer_list<std::pair<const char*, const char*>> list) {
-    ParamValueList out;
-    for (const auto& [key, value] : list) out.attribute(key, value);
-    return out;
-}
-
-std::vector<std::byte> bytes(const ImageBuf& image) {
-    EXPECT_FALSE(image.has_error()) << image.geterror();
-    std::vector<std::byte> out(image.spec().image_bytes());
-    EXPECT_TRUE(image.get_pixels(image.roi(), image.spec().format, out.data())) << image.geterror();
-    return out;
-}
-
 ImageBuf read(const std::string& name) {
     ImageBuf image(name);
     EXPECT_TRUE(image.read(0, 0, true)) << image.geterror();
@@ -102,23 +89,8 @@ TEST_F(Warp, TilesThreadsAndCropsNeverChangePixels) {
     for (const char* arguments :
          {"mesh=grid.json&size=300x200", "mesh=grid.json&direction=push", "points=points.csv&size=150x200",
           "mesh=folded.json&filter=bicubic&scheme=hermite", "mesh=grid.json&scheme=residual",
-          "mesh=grid.json&tol=0", "mesh=folded.json&direction=push&output=folds"}) {
-        SCOPED_TRACE(arguments);
-        const std::string name = std::string("city.exr.warp?") + arguments;
-        OIIO::attribute("threads", 1);
-        const Pixels expected = read_pixels(name + "&tile=0");
-        for (const char* tile : {"16", "17x31", "64", "512", "0"})
-            for (const int threads : {1, 3}) {
-                OIIO::attribute("threads", threads);
-                EXPECT_EQ(read_pixels(name + "&tile=" + tile), expected) << tile << " " << threads;
-            }
-        // A crop of it alone.
-        const Ran cut = run("oiiotool '" + name + "&tile=32' --cut 40x30+70+50 -o cut.exr '" + name +
-                            "' -o whole.exr --cut 40x30+70+50 -o cut2.exr");
-        ASSERT_EQ(cut.status, 0) << cut.text;
-        EXPECT_EQ(read_pixels("cut.exr").bytes, read_pixels("cut2.exr").bytes);
-    }
-    OIIO::attribute("threads", 0);
+          "mesh=grid.json&tol=0", "mesh=folded.json&direction=push&output=folds"})
+        expect_one_picture(std::string("city.exr.warp?") + arguments, 70, 50);
 }
 
 TEST_F(Warp, WhatWasReachedIsTold) {

@@ -21,10 +21,6 @@ double curvature_of(const std::size_t (&element)[2]) {
     return curve(element[0]) * reach(element[1]) + reach(element[0]) * curve(element[1]);
 }
 
-Point<double> operator-(const Point<double>& a, const Point<double>& b) {
-    return {a.x - b.x, a.y - b.y};
-}
-
 }  // namespace
 
 ResidualPatch::ResidualPatch(const Patch& patch) {

@@ -76,6 +76,15 @@ template <class T>
 struct Point {
     T x, y;
 };
+inline Point<double> operator+(const Point<double>& a, const Point<double>& b) {
+    return {a.x + b.x, a.y + b.y};
+}
+inline Point<double> operator-(const Point<double>& a, const Point<double>& b) {
+    return {a.x - b.x, a.y - b.y};
+}
+inline Point<double> operator*(const Point<double>& a, double k) {
+    return {a.x * k, a.y * k};
+}
 
 /// Source pixels (level 0) that the source point moves per target pixel: right, (x_i, y_i), and down, (x_j,
 /// y_j).

@@ -67,16 +67,6 @@ std::vector<double> lines_of(const std::vector<double>& given, int cells, int si
     return lines;
 }
 
-Point<double> operator+(const Point<double>& a, const Point<double>& b) {
-    return {a.x + b.x, a.y + b.y};
-}
-Point<double> operator-(const Point<double>& a, const Point<double>& b) {
-    return {a.x - b.x, a.y - b.y};
-}
-Point<double> operator*(const Point<double>& a, double b) {
-    return {a.x * b, a.y * b};
-}
-
 /// Catmull-Rom, eq. 5.8: the secant through the two neighbours.
 Point<double> secant(const Point<double>& before, const Point<double>& after, double distance) {
     return (after - before) * (1 / distance);

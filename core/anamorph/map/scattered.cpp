@@ -21,16 +21,6 @@ struct Node {
 
 using Corners = std::array<std::size_t, 3>;
 
-Point<double> operator+(const Point<double>& a, const Point<double>& b) {
-    return {a.x + b.x, a.y + b.y};
-}
-Point<double> operator-(const Point<double>& a, const Point<double>& b) {
-    return {a.x - b.x, a.y - b.y};
-}
-Point<double> operator*(const Point<double>& a, double k) {
-    return {a.x * k, a.y * k};
-}
-
 std::string text_of(double value) {
     char text[32];
     std::snprintf(text, sizeof text, "%g", value);
