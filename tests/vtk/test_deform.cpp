@@ -528,6 +528,47 @@ TEST(VtkDeform, NotFiniteStaysInItsPoint) {
     EXPECT_EQ(output(filter)->GetNumberOfPoints(), 40);
 }
 
+TEST(VtkDeform, TextureCoordinatesThatAreNotFiniteStayInTheirPoint) {
+    const auto mesh = square(30, VTK_DOUBLE);
+    vtkNew<vtkCellArray> reversed;  // the overlay takes the first cell that it finds
+    vtkNew<vtkIdList> ids;
+    for (vtkIdType cell = mesh->GetNumberOfCells() - 1; cell >= 0; --cell) {
+        mesh->GetCellPoints(cell, ids);
+        reversed->InsertNextCell(ids);
+    }
+    mesh->SetPolys(reversed);
+    vtkNew<vtkAnamorphDeform> filter;
+    filter->SetInputData(mesh);
+    filter->SetParameterModeToTextureCoordinates();
+    filter->GenerateOverlayOn();
+    filter->AddDeformation(-.6, -.98, .01, .01, 0, 0, 0);
+    add(filter, bumps(8, 7));
+    filter->Update();
+    const std::vector<double> points = coordinates(output(filter)),
+                              normals = numbers(output(filter)->GetPointData()->GetNormals());
+    const auto is_spoiled = [](std::size_t i) { return i == 40 || i == 500; };
+    mesh->GetPointData()->GetTCoords()->SetTuple2(40, kNan, 0);
+    mesh->GetPointData()->GetTCoords()->SetTuple2(500, 0, kInf);
+    mesh->Modified();
+    filter->Update();
+    const std::vector<double> new_points = coordinates(output(filter)),
+                              new_normals = numbers(output(filter)->GetPointData()->GetNormals());
+    for (std::size_t k = 0; k < points.size(); ++k) {
+        const std::size_t i = k / 3;
+        ASSERT_EQ(new_points[k],
+                  is_spoiled(i) ? mesh->GetPoint(static_cast<vtkIdType>(i))[k % 3] : points[k]);
+        // On a plane each corner of a cell gives the same normal, whether or not there are others.
+        ASSERT_NEAR(new_normals[k], is_spoiled(i) ? 0 : normals[k], 1e-5) << i;
+    }
+    filter->SetNumberOfDeformations(1);
+    filter->Update();
+    for (vtkIdType k = 0; k < filter->GetOverlay()->GetNumberOfPoints(); ++k) {
+        const double* p = filter->GetOverlay()->GetPoint(k);
+        EXPECT_LT(std::hypot(p[0] + .6, p[1] + .98), .011);
+    }
+    EXPECT_GT(filter->GetOverlay()->GetNumberOfPoints(), 60);
+}
+
 TEST(VtkDeform, WhatIsRefused) {
     const auto mesh = square(6);
     const auto failure = [&](auto&& change) {
@@ -754,6 +795,14 @@ TEST(VtkDeform, NormalsAreDroppedOrMade) {
     EXPECT_FALSE(output(filter)->GetPointData()->GetNormals());
     EXPECT_FALSE(output(filter)->GetPointData()->GetArray("Displacement"));
     EXPECT_TRUE(mesh->GetPointData()->GetNormals());
+    // Those without a name, as from NumPy.
+    for (vtkDataSetAttributes* data : {static_cast<vtkDataSetAttributes*>(mesh->GetPointData()),
+                                       static_cast<vtkDataSetAttributes*>(mesh->GetCellData())})
+        data->GetNormals()->SetName(nullptr);
+    mesh->Modified();
+    filter->Update();
+    EXPECT_FALSE(output(filter)->GetPointData()->GetNormals());
+    EXPECT_FALSE(output(filter)->GetCellData()->GetNormals());
 }
 
 TEST(VtkDeform, TextureCoordinates) {
@@ -1134,6 +1183,13 @@ TEST(VtkDeform, ListEdits) {
     list->RemoveAllDeformations();
     EXPECT_EQ(list->GetNumberOfDeformations(), 0);
     EXPECT_EQ(copy->GetNumberOfDeformations(), 2);
+    // No table is an error, and changes nothing.
+    const Errors errors(copy);
+    EXPECT_EQ(copy->ReadTable(nullptr), 0);
+    EXPECT_EQ(copy->GetNumberOfDeformations(), 2);
+    EXPECT_EQ(copy->ReadTable(vtkNew<vtkTable>()), 1);
+    copy->WriteTable(nullptr);
+    EXPECT_THAT(errors.text(), HasSubstr("there is no table"));
 }
 
 TEST(VtkDeform, ASharedList) {

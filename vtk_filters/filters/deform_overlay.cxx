@@ -70,6 +70,7 @@ class SurfaceOfParameters {
         Triangle t;
         for (std::size_t c = 0; c < 3; ++c) {
             t.parameters[c] = (*m.parameters)[static_cast<std::size_t>(ids[c])];
+            if (!is_finite(t.parameters[c])) return;
             double p[3];
             m.mesh->GetPoint(ids[c], p);
             t.points[c] = {p[0], p[1], p[2]};
@@ -138,7 +139,7 @@ void draw_overlay(const std::vector<Deformation>& list, const anamorph::DeformOp
             };
             for (const glm::dvec2& s : path) {
                 std::optional<glm::dvec3> p;
-                if (std::isfinite(s.x) && std::isfinite(s.y)) {
+                if (is_finite(s)) {
                     p = surface.at(s);
                     if (!p && plane) p = plane->point(s);
                 }

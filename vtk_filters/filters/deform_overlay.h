@@ -13,7 +13,7 @@ class vtkPolyData;
 
 namespace anamorph_vtk {
 
-/// An undeformed mesh and the parameters of its points.
+/// An undeformed mesh and the parameters of its points. Triangles with one that is not finite are left out.
 struct OverlayMesh {
     vtkPointSet* mesh;
     const std::vector<glm::dvec2>* parameters;

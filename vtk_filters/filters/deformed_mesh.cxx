@@ -131,25 +131,17 @@ class MeshOf final : public DeformedMesh {
             glm::dvec2& p = m_parameters[static_cast<std::size_t>(i)];
             p = m_settings.on_plane ? m_settings.plane.parameters({tuple[0], tuple[1], tuple[2]})
                                     : glm::dvec2(tuple[0], tuple[1]);
-            if (!std::isfinite(p.x) || !std::isfinite(p.y)) m_unmoved.push_back(i);
-        }
-        // The core takes finite numbers only: those of another point do.
-        if (m_unmoved.size() == m_parameters.size())
-            std::fill(m_parameters.begin(), m_parameters.end(), glm::dvec2(0.0));
-        else if (!m_unmoved.empty()) {
-            std::size_t good = 0;
-            while (!std::isfinite(m_parameters[good].x) || !std::isfinite(m_parameters[good].y)) ++good;
-            for (const vtkIdType i : m_unmoved)
-                m_parameters[static_cast<std::size_t>(i)] = m_parameters[good];
+            if (!is_finite(p)) m_unmoved.push_back(i);
         }
     }
 
     /// The surface without deformations, of which nothing is written yet.
     void start() {
-        if (std::optional<Axes> axes = axes_of(m_parameters))
+        const std::vector<glm::dvec2> parameters = with_finite_parameters(m_parameters);
+        if (std::optional<Axes> axes = axes_of(parameters))
             m_surface.emplace<DeformedGrid>(std::move(axes->u), std::move(axes->v), m_settings.options);
         else
-            m_surface.emplace<DeformedPoints>(m_parameters, m_settings.options);
+            m_surface.emplace<DeformedPoints>(parameters, m_settings.options);
         m_list.clear();
         m_points = m_displacement = m_normals = nullptr;
     }
@@ -262,11 +254,8 @@ class MeshOf final : public DeformedMesh {
         points->SetData(m_points);
         out->SetPoints(points);
         // The old ones do not fit the deformed mesh.
-        if (vtkDataArray* old = out->GetPointData()->GetNormals())
-            out->GetPointData()->RemoveArray(old->GetName());
-        if (vtkDataArray* old = out->GetCellData()->GetNormals())
-            out->GetCellData()->RemoveArray(old->GetName());
-        if (m_normals) out->GetPointData()->SetNormals(m_normals);
+        out->GetPointData()->SetNormals(m_normals);
+        out->GetCellData()->SetNormals(nullptr);
         if (!m_displacement) return;
         m_displacement->SetName("Displacement");
         out->GetPointData()->AddArray(m_displacement);

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "surface_normals.h"
 
+#include <algorithm>
 #include <array>
 #include <atomic>
 #include <cmath>
+#include <functional>
 #include <glm/geometric.hpp>
 #include <limits>
 
@@ -117,11 +119,18 @@ class CornerSums {
     }
 
     void add_cell(vtkIdType count, const vtkIdType* points) {
+        // The neighbour of a corner, one way around or the other.
+        const auto neighbour = [&](vtkIdType i, vtkIdType step) {
+            vtkIdType k = (i + step) % count;
+            while (k != i && !is_finite((*m_of.parameters)[static_cast<std::size_t>(points[k])]))
+                k = (k + step) % count;
+            return points[k];
+        };
         for (vtkIdType i = 0; i < count; ++i) {
             const std::int64_t slot = m_slot[static_cast<std::size_t>(points[i])];
             if (slot >= 0)
-                add_corner(static_cast<std::size_t>(slot), points[i], points[(i + 1) % count],
-                           points[(i + count - 1) % count]);
+                add_corner(static_cast<std::size_t>(slot), points[i], neighbour(i, 1),
+                           neighbour(i, count - 1));
         }
     }
 
@@ -161,6 +170,17 @@ std::int64_t chunks_of(std::int64_t count) {
 
 }  // namespace
 
+bool is_finite(glm::dvec2 parameters) {
+    return std::isfinite(parameters.x) && std::isfinite(parameters.y);
+}
+
+std::vector<glm::dvec2> with_finite_parameters(std::vector<glm::dvec2> parameters) {
+    const auto good = std::find_if(parameters.begin(), parameters.end(), is_finite);
+    const glm::dvec2 other = good == parameters.end() ? glm::dvec2(0.0) : *good;
+    std::replace_if(parameters.begin(), parameters.end(), std::not_fn(is_finite), other);
+    return parameters;
+}
+
 void for_each_surface_cell(vtkPointSet* mesh,
                            const std::function<void(vtkIdType count, const vtkIdType* points)>& body) {
     CellReader reader;
@@ -176,6 +196,7 @@ void write_normals(const NormalsOf& of, const std::vector<vtkIdType>& points, T*
     std::vector<glm::dvec2> parameters(points.size());
     for (std::size_t k = 0; k < points.size(); ++k)
         parameters[k] = (*of.parameters)[static_cast<std::size_t>(points[k])];
+    parameters = with_finite_parameters(std::move(parameters));
     std::vector<DisplacementJet> jets(points.size());
     anamorph::displacement_jets(*of.list, parameters, of.options, jets.data(), parallel_for);
 

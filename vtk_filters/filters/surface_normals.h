@@ -28,12 +28,17 @@ namespace anamorph_vtk {
 
 struct NormalsOf {
     vtkPointSet* mesh;                          ///< undeformed
-    const std::vector<glm::dvec2>* parameters;  ///< of all its points
+    const std::vector<glm::dvec2>* parameters;  ///< of all its points; cells leave out those not finite
     const anamorph::ParameterPlane* plane;      ///< null: texture coordinates
     vtkDataArray* normals;                      ///< of the undeformed mesh, or null
     const std::vector<anamorph::Deformation>* list;
     anamorph::DeformOptions options;
 };
+
+bool is_finite(glm::dvec2 parameters);
+
+/// Those that are not finite replaced by those of another point: the core takes no others.
+std::vector<glm::dvec2> with_finite_parameters(std::vector<glm::dvec2> parameters);
 
 /// Writes the normals of `points` to out, three numbers a point of the mesh. May build the mesh's cells.
 template <class T>

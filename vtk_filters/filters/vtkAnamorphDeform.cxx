@@ -212,20 +212,20 @@ vtkAnamorphDeform::~vtkAnamorphDeform() {
 
 void vtkAnamorphDeform::PrintSelf(ostream& os, vtkIndent indent) {
     this->Superclass::PrintSelf(os, indent);
-    const auto vector = [](const double* v) {
-        return std::to_string(v[0]) + " " + std::to_string(v[1]) + " " + std::to_string(v[2]);
+    const auto write = [&](const char* name, const double* v) {
+        os << indent << name << ": " << v[0] << " " << v[1] << " " << v[2] << "\n";
     };
     os << indent << "FileName: " << (this->FileName ? this->FileName : "(none)") << "\n"
        << indent << "ParameterMode: " << (this->ParameterMode == PLANE ? "Plane" : "Texture coordinates")
        << "\n"
-       << indent << "AutomaticPlane: " << this->AutomaticPlane << "\n"
-       << indent << "Origin: " << vector(this->Origin) << "\n"
-       << indent << "Axis1: " << vector(this->Axis1) << "\n"
-       << indent << "Axis2: " << vector(this->Axis2) << "\n"
-       << indent << "UsedOrigin: " << vector(this->UsedOrigin) << "\n"
-       << indent << "UsedAxis1: " << vector(this->UsedAxis1) << "\n"
-       << indent << "UsedAxis2: " << vector(this->UsedAxis2) << "\n"
-       << indent << "Cutoff: " << this->Cutoff << "\n"
+       << indent << "AutomaticPlane: " << this->AutomaticPlane << "\n";
+    write("Origin", this->Origin);
+    write("Axis1", this->Axis1);
+    write("Axis2", this->Axis2);
+    write("UsedOrigin", this->UsedOrigin);
+    write("UsedAxis1", this->UsedAxis1);
+    write("UsedAxis2", this->UsedAxis2);
+    os << indent << "Cutoff: " << this->Cutoff << "\n"
        << indent << "ComputeNormals: " << this->ComputeNormals << "\n"
        << indent << "ComputeDisplacement: " << this->ComputeDisplacement << "\n"
        << indent << "GenerateOverlay: " << this->GenerateOverlay << "\n"

@@ -152,13 +152,17 @@ int vtkAnamorphDeformationList::WriteFile(const char* name) {
 
 int vtkAnamorphDeformationList::ReadTable(vtkTable* table) {
     return anamorph_vtk::guarded(this, [&] {
+        if (!table) throw anamorph::Error("there is no table");
         this->List = anamorph_vtk::numbers_in(table);
         this->Modified();
     });
 }
 
 void vtkAnamorphDeformationList::WriteTable(vtkTable* table) {
-    anamorph_vtk::put_numbers(this->List, table);
+    anamorph_vtk::guarded(this, [&] {
+        if (!table) throw anamorph::Error("there is no table");
+        anamorph_vtk::put_numbers(this->List, table);
+    });
 }
 
 void vtkAnamorphDeformationList::DeepCopy(vtkAnamorphDeformationList* other) {
