@@ -962,11 +962,12 @@ TEST(VtkDeform, PiecesAreTheWhole) {
             filter->SetInputConnection(again->GetOutputPort());
             filter->AutomaticPlaneOff();
             add(filter, list);
-            for (int piece = 0; piece < pieces; ++piece) {
-                filter->UpdatePiece(piece, pieces, 0);
+            for (int k = 0; k < 3 * pieces; ++k) {
+                const int piece = k / 3, ghosts = k % 3;
+                filter->UpdatePiece(piece, pieces, ghosts);
                 vtkPointSet* out = output(filter);
-                // Which row of the whole this begins with: one of ghosts comes first, but at the start.
-                const int row = std::max(piece * 11 / pieces - 1, 0);
+                // Which row of the whole this begins with: one of ghosts more comes first, but at the start.
+                const int row = std::max(piece * 11 / pieces - 1 - ghosts, 0);
                 const vtkIdType first = 12 * row;
                 const auto cells = out->GetCellGhostArray();
                 ASSERT_TRUE(cells);  // they were asked for
@@ -975,10 +976,10 @@ TEST(VtkDeform, PiecesAreTheWhole) {
                     out->GetPoint(i, a);
                     output(whole)->GetPoint(first + i, b);
                     for (int c = 0; c < 3; ++c) ASSERT_EQ(a[c], b[c]);
-                    // Normals, at the points of the piece itself.
-                    const vtkIdType own_first = (piece * 11 / pieces) * 12,
-                                    own_last = ((piece + 1) * 11 / pieces + 1) * 12;
-                    if (first + i < own_first || first + i >= own_last) continue;
+                    // Normals, at the points of the piece and of the ghosts that were asked for.
+                    const vtkIdType asked_first = (piece * 11 / pieces - ghosts) * 12,
+                                    asked_last = ((piece + 1) * 11 / pieces + ghosts + 1) * 12;
+                    if (first + i < asked_first || first + i >= asked_last) continue;
                     out->GetPointData()->GetNormals()->GetTuple(i, a);
                     expected_normals->GetTuple(first + i, b);
                     for (int c = 0; c < 3; ++c) ASSERT_EQ(a[c], b[c]);

@@ -10,6 +10,7 @@
 #include <vtkPointData.h>
 #include <vtkPolyData.h>
 #include <vtkSOADataArrayTemplate.h>
+#include <vtkUnsignedCharArray.h>
 
 #include "figure_support.h"
 #include "support.h"
@@ -63,6 +64,21 @@ TYPED_TEST(VtkFigureInput, ArraysStoredByComponent) {
     const std::vector<double> wanted = coordinates(drawn<TypeParam>(input));
     EXPECT_GT(wanted.size(), 6u);
     EXPECT_EQ(coordinates(drawn<TypeParam>(other)), wanted);
+}
+
+TYPED_TEST(VtkFigureInput, GhostsStayGhostsAndHiddenBodiesAreNotThere) {
+    const auto input = figures({kBalls[0], kBalls[1], kBalls[1]});
+    vtkUnsignedCharArray* ghosts = input->AllocatePointGhostArray();
+    ghosts->SetValue(1, vtkDataSetAttributes::DUPLICATEPOINT);
+    ghosts->SetValue(2, vtkDataSetAttributes::HIDDENPOINT);
+    const auto data = drawn<TypeParam>(input);
+    EXPECT_EQ(coordinates(data), coordinates(drawn<TypeParam>(figures(kBalls))));
+    const std::vector<double> bodies = cell_numbers(data, "BodyId"),
+                              marks = numbers(data->GetCellGhostArray());
+    ASSERT_GT(bodies.size(), 1u);
+    ASSERT_EQ(marks.size(), bodies.size());
+    for (std::size_t k = 0; k < bodies.size(); ++k)
+        ASSERT_EQ(marks[k], bodies[k] == 1 ? vtkDataSetAttributes::DUPLICATECELL : 0);
 }
 
 TYPED_TEST(VtkFigureInput, TheInputIsLeftAsItIs) {

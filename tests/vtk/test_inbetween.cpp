@@ -645,6 +645,12 @@ TEST(VtkInbetween, NormalsAreMadeUnitLengthOrDropped) {
     shape->Modified();
     filter->Update();
     EXPECT_FALSE(surface_of(filter)->GetPointData()->GetArray("Normals"));
+    // Neither are those that have no name to be found by, as from NumPy.
+    base->GetPointData()->GetNormals()->SetName(nullptr);
+    base->Modified();
+    filter->Update();
+    EXPECT_FALSE(surface_of(filter)->GetPointData()->GetNormals());
+    EXPECT_TRUE(base->GetPointData()->GetNormals());
 }
 
 // ---- Composites ----

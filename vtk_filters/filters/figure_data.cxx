@@ -142,9 +142,11 @@ FigureData::FigureData(vtkPolyData* data) : m_data(data), m_size(data->GetNumber
     if (m_size == 0) return;
     m_axes = point_array(data, kAxes, 3);
     m_orientation = point_array(data, kOrientation, 4);
+    m_ghosts = data->GetPointGhostArray();
 }
 
 std::optional<anamorph::Ellipsoid> FigureData::ellipsoid(vtkIdType i) const {
+    if (m_ghosts && (m_ghosts->GetValue(i) & vtkDataSetAttributes::HIDDENPOINT) != 0) return std::nullopt;
     anamorph::Ellipsoid shape;
     double center[3], q[4];
     m_data->GetPoint(i, center);

@@ -25,6 +25,7 @@
 
 class vtkDataArray;
 class vtkPolyData;
+class vtkUnsignedCharArray;
 
 namespace anamorph_vtk {
 
@@ -42,13 +43,15 @@ class FigureData {
     explicit FigureData(vtkPolyData* data);
 
     vtkIdType size() const { return m_size; }
-    /// The axes are not negative, the rotation is orthonormal. Not a number anywhere: nothing.
+    /// The axes are not negative, the rotation is orthonormal. Not a number anywhere, or the point is hidden
+    /// (blanked): nothing.
     std::optional<anamorph::Ellipsoid> ellipsoid(vtkIdType i) const;
 
   private:
     vtkPolyData* m_data;
     vtkIdType m_size = 0;
     vtkDataArray *m_axes = nullptr, *m_orientation = nullptr;
+    vtkUnsignedCharArray* m_ghosts = nullptr;  ///< may be null
 };
 
 /// Joints as the field data has them, between points; those of points that are not there are left out.

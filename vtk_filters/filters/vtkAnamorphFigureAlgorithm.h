@@ -4,7 +4,8 @@
  * @brief   What filters of figures that depend on a view have in common: the view.
  *
  * The input is that of vtkAnamorphFigureReader, or any vtkPolyData with the arrays Axes and Orientation. A
- * point with a number that is not finite makes nothing.
+ * point with a number that is not finite, or that is hidden (blanked), makes nothing; cells of a ghost point
+ * are ghost cells.
  */
 #ifndef vtkAnamorphFigureAlgorithm_h
 #define vtkAnamorphFigureAlgorithm_h

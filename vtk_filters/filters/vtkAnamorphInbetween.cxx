@@ -278,11 +278,11 @@ class Blend {
         vtkDataSetAttributes* base = inputs[m_options.base];
         for (int i = 0; i < base->GetNumberOfArrays(); ++i) {
             vtkDataArray* array = base->GetArray(i);
-            if (!array || !array->GetName()) continue;
+            if (!array) continue;
             const bool normals = array == base->GetNormals();
             std::optional<Job> job = common_arrays(inputs, array);
             if (normals && (m_options.drop_normals || !job))
-                output->RemoveArray(array->GetName());
+                output->SetNormals(nullptr);
             else if (job && !is_shared(*job)) {
                 job->masks = masks;
                 job->unit = normals;
@@ -295,6 +295,7 @@ class Blend {
     /// The arrays of all inputs that are to be blended with one of the base; none if one is missing.
     static std::optional<Job> common_arrays(const std::vector<vtkDataSetAttributes*>& inputs,
                                             vtkDataArray* base) {
+        if (!base->GetName()) return std::nullopt;
         Job job;
         bool all_float = true;
         for (vtkDataSetAttributes* input : inputs) {
