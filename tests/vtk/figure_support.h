@@ -2,7 +2,6 @@
 // What the tests of the figure classes share.
 #pragma once
 
-#include <unistd.h>
 #include <vtkCellData.h>
 #include <vtkDoubleArray.h>
 #include <vtkNew.h>
@@ -11,8 +10,6 @@
 #include <vtkPolyData.h>
 #include <vtkSmartPointer.h>
 
-#include <filesystem>
-#include <fstream>
 #include <functional>
 #include <glm/gtc/quaternion.hpp>
 #include <glm/vec3.hpp>
@@ -20,32 +17,6 @@
 #include <vector>
 
 #include "support.h"
-
-/// A folder that is removed with it.
-class Folder {
-  public:
-    Folder() {
-        static int count = 0;
-        m_path = std::filesystem::temp_directory_path() /
-                 ("anamorph_figures_" + std::to_string(getpid()) + "_" + std::to_string(++count));
-        std::filesystem::create_directories(m_path);
-    }
-    ~Folder() {
-        std::error_code ignored;
-        std::filesystem::remove_all(m_path, ignored);
-    }
-    Folder(const Folder&) = delete;
-    Folder& operator=(const Folder&) = delete;
-
-    std::string path(const std::string& name) const { return (m_path / name).string(); }
-    std::string write(const std::string& name, const std::string& text) const {
-        std::ofstream(path(name), std::ios::binary) << text;
-        return path(name);
-    }
-
-  private:
-    std::filesystem::path m_path;
-};
 
 /// Two bodies, joined, that move for four frames.
 inline const std::string kTwoBodies =

@@ -4,6 +4,7 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <unistd.h>
 #include <vtkAlgorithm.h>
 #include <vtkCommand.h>
 #include <vtkDataArray.h>
@@ -15,6 +16,8 @@
 #include <vtkPoints.h>
 #include <vtkVersion.h>
 
+#include <filesystem>
+#include <fstream>
 #include <functional>
 #include <limits>
 #include <sstream>
@@ -41,6 +44,32 @@ inline void for_any_threads(const std::function<void()>& body) {
     EXPECT_GE(runs, 6);
     use_threads("Sequential", 0);
 }
+
+/// A folder that is removed with it.
+class Folder {
+  public:
+    Folder() {
+        static int count = 0;
+        m_path = std::filesystem::temp_directory_path() /
+                 ("anamorph_vtk_" + std::to_string(getpid()) + "_" + std::to_string(++count));
+        std::filesystem::create_directories(m_path);
+    }
+    ~Folder() {
+        std::error_code ignored;
+        std::filesystem::remove_all(m_path, ignored);
+    }
+    Folder(const Folder&) = delete;
+    Folder& operator=(const Folder&) = delete;
+
+    std::string path(const std::string& name) const { return (m_path / name).string(); }
+    std::string write(const std::string& name, const std::string& text) const {
+        std::ofstream(path(name), std::ios::binary) << text;
+        return path(name);
+    }
+
+  private:
+    std::filesystem::path m_path;
+};
 
 /// Collects the errors (or warnings) of an object, of an algorithm's executive too, and keeps them from the
 /// screen.

@@ -3,6 +3,7 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <vtkBMPWriter.h>
 #include <vtkDoubleArray.h>
 #include <vtkFloatArray.h>
 #include <vtkImageAlgorithm.h>
@@ -22,7 +23,6 @@
 
 #include <cmath>
 #include <filesystem>
-#include <fstream>
 #include <functional>
 #include <random>
 
@@ -287,9 +287,8 @@ TEST(VtkRelief, NanAndInfStayInTheirPoints) {
 // ---- Files ----
 
 TEST(VtkRelief, PicturesAreReadFromFiles) {
-    const auto folder = std::filesystem::temp_directory_path() / "anamorph_test_relief";
-    std::filesystem::create_directories(folder);
-    const std::string name = (folder / "picture.png").string();
+    const Folder folder;
+    const std::string name = folder.path("picture.png");
     const Picture image = picture(6, 5, VTK_UNSIGNED_CHAR, 3), other = picture(6, 5);
     vtkNew<vtkPNGWriter> writer;
     writer->SetFileName(name.c_str());
@@ -311,15 +310,33 @@ TEST(VtkRelief, PicturesAreReadFromFiles) {
     EXPECT_EQ(heights(grid_of(source)), heights_of(other));
     EXPECT_EQ(errors.text(), "");
     source->SetInputConnection(nullptr);
-    source->SetFileName((folder / "missing.png").string().c_str());
+    source->SetFileName(folder.path("missing.png").c_str());
     source->Update();
     EXPECT_THAT(errors.text(), HasSubstr("missing.png: there is no such file"));
     errors.clear();
-    std::ofstream(folder / "text.png") << "no picture";
-    source->SetFileName((folder / "text.png").string().c_str());
+    source->SetFileName(folder.write("text.png", "no picture").c_str());
     source->Update();
     EXPECT_THAT(errors.text(), HasSubstr("text.png: needed is a picture that VTK's image readers know"));
-    std::filesystem::remove_all(folder);
+    // Half of a picture, of which the reader itself makes an error but no error code.
+    const std::string half = folder.path("half.bmp");
+    vtkNew<vtkBMPWriter> bmp_writer;
+    bmp_writer->SetFileName(half.c_str());
+    bmp_writer->SetInputData(image);
+    bmp_writer->Write();
+    const auto size = std::filesystem::file_size(half);
+    std::filesystem::resize_file(half, size / 2);
+    source->SetFileName(half.c_str());
+    for (int again = 0; again < 2; ++again) {
+        errors.clear();
+        source->Update();
+        EXPECT_THAT(errors.text(), HasSubstr("half.bmp: it cannot be read"));
+        EXPECT_EQ(grid_of(source)->GetNumberOfPoints(), 0);
+    }
+    errors.clear();
+    bmp_writer->Write();
+    source->Update();
+    EXPECT_EQ(errors.text(), "");
+    EXPECT_EQ(heights(grid_of(source)), heights_of(image));
 }
 
 // ---- The pipeline ----

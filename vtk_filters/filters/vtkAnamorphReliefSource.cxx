@@ -15,6 +15,7 @@
 #include "smp_for.h"
 #include "vtkAOSDataArrayTemplate.h"
 #include "vtkArrayDispatch.h"
+#include "vtkCommand.h"
 #include "vtkDataArrayRange.h"
 #include "vtkDataSetAttributes.h"
 #include "vtkErrorCode.h"
@@ -403,22 +404,37 @@ vtkInformation* vtkAnamorphReliefSource::PictureInformation(vtkInformationVector
             if (!reader)
                 throw Error("FileName", this->FileName, "needed is a picture that VTK's image readers know");
             reader->SetFileName(this->FileName.c_str());
+            reader->AddObserver(vtkCommand::ErrorEvent, this, &vtkAnamorphReliefSource::ReaderFails);
             this->Reader = vtk::TakeSmartPointer<vtkAlgorithm>(reader);
+            this->ReaderFailed = false;
         }
         this->Reader->UpdateInformation();
+        this->CheckReader();
         info = this->Reader->GetOutputInformation(0);
     }
     if (!info->Has(Executive::WHOLE_EXTENT())) throw Error("the picture has no extent");
     return info;
 }
 
+void vtkAnamorphReliefSource::ReaderFails() {
+    this->ReaderFailed = true;
+}
+
+/// Throws Error if the reader has failed, and lets it go: the file is read again next time.
+void vtkAnamorphReliefSource::CheckReader() {
+    const unsigned long code = this->Reader->GetErrorCode();
+    if (code == vtkErrorCode::NoError && !this->ReaderFailed) return;
+    this->Reader = nullptr;
+    throw Error(
+        "FileName", this->FileName,
+        code == vtkErrorCode::NoError ? "it cannot be read" : vtkErrorCode::GetStringFromErrorCode(code));
+}
+
 /// The input or what is in the file, with the extent that RequestUpdateExtent has asked for.
 vtkImageData* vtkAnamorphReliefSource::Picture(vtkInformationVector** inputs) {
     if (inputs[0]->GetNumberOfInformationObjects() > 0) return vtkImageData::GetData(inputs[0]);
     this->Reader->UpdateExtent(this->Reader->GetOutputInformation(0)->Get(Executive::UPDATE_EXTENT()));
-    if (this->Reader->GetErrorCode() != vtkErrorCode::NoError)
-        throw Error("FileName", this->FileName,
-                    vtkErrorCode::GetStringFromErrorCode(this->Reader->GetErrorCode()));
+    this->CheckReader();
     return vtkImageData::SafeDownCast(this->Reader->GetOutputDataObject(0));
 }
 

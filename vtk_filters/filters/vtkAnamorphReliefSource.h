@@ -138,6 +138,8 @@ class ANAMORPHFILTERS_EXPORT vtkAnamorphReliefSource : public vtkStructuredGridA
 
     vtkInformation* PictureInformation(vtkInformationVector** inputs);
     vtkImageData* Picture(vtkInformationVector** inputs);
+    void ReaderFails();
+    void CheckReader();
 
     std::string FileName;
     double Origin[3] = {-0.5, -0.5, 0};
@@ -153,6 +155,7 @@ class ANAMORPHFILTERS_EXPORT vtkAnamorphReliefSource : public vtkStructuredGridA
     bool GenerateNormals = false;
     int OutputPointsPrecision = SINGLE_PRECISION;
     vtkSmartPointer<vtkAlgorithm> Reader;  ///< of FileName
+    bool ReaderFailed = false;             ///< it made an error; not all of them set an error code
 };
 
 #endif
