@@ -43,6 +43,23 @@ def check_states(folder):
     assert digests(names) == wanted
 
 
+def check_height_array():
+    """Which array of a picture is the height is chosen, and kept."""
+    start_again()
+    picture = Calculator(Input=Wavelet(WholeExtent=[0, 10, 0, 10, 0, 0]), ResultArrayName="flat", Function="0.25")
+    picture.UpdatePipeline()
+    relief = AnamorphRelief(registrationName="relief", Input=picture, HeightArray=["POINTS", "flat"], HeightScale=2)
+    relief.UpdatePipeline()
+    assert relief.GetDataInformation().GetBounds()[4:] == (0.5, 0.5)
+    relief.HeightArray = ["POINTS", "RTData"]
+    SaveState("relief.pvsm")
+    start_again()
+    LoadState("relief.pvsm")
+    relief = FindSource("relief")
+    relief.UpdatePipeline()
+    assert relief.GetDataInformation().GetBounds()[5] > 2 * 200
+
+
 def check_trace():
     start_again()
     smtrace.start_trace()
@@ -91,5 +108,6 @@ def check_animation():
 
 surfaces.write_inputs(os.getcwd())
 check_states(os.getcwd())
+check_height_array()
 check_trace()
 check_animation()
