@@ -10,6 +10,7 @@
 #include <vtkPointData.h>
 #include <vtkPolyData.h>
 #include <vtkSOADataArrayTemplate.h>
+#include <vtkStringArray.h>
 #include <vtkUnsignedCharArray.h>
 
 #include "figure_support.h"
@@ -79,6 +80,23 @@ TYPED_TEST(VtkFigureInput, GhostsStayGhostsAndHiddenBodiesAreNotThere) {
     ASSERT_EQ(marks.size(), bodies.size());
     for (std::size_t k = 0; k < bodies.size(); ++k)
         ASSERT_EQ(marks[k], bodies[k] == 1 ? vtkDataSetAttributes::DUPLICATECELL : 0);
+}
+
+TYPED_TEST(VtkFigureInput, ArraysThatAreTooShortAreNotRead) {
+    for (const char* name : {"Axes", "Orientation"}) {
+        const auto input = figures(kBalls);
+        input->GetPointData()->GetArray(name)->SetNumberOfTuples(1);
+        EXPECT_THAT(errors_of<TypeParam>(input), testing::HasSubstr("1 tuples, needed are 2"));
+    }
+    const auto input = figures(kBalls);
+    vtkNew<vtkStringArray> names;
+    names->SetName("Name");
+    names->InsertNextValue("alone");
+    input->GetPointData()->AddArray(names);
+    input->AllocatePointGhostArray()->SetNumberOfTuples(0);
+    const auto data = drawn<TypeParam>(input);
+    EXPECT_EQ(coordinates(data), coordinates(drawn<TypeParam>(figures(kBalls))));
+    EXPECT_FALSE(data->GetCellData()->HasArray("Name"));
 }
 
 TYPED_TEST(VtkFigureInput, TheInputIsLeftAsItIs) {

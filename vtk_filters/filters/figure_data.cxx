@@ -7,6 +7,8 @@
 
 #include "anamorph/error.h"
 #include "vtkCellArray.h"
+#include "vtkCellData.h"
+#include "vtkDataSetAttributes.h"
 #include "vtkDoubleArray.h"
 #include "vtkFieldData.h"
 #include "vtkIdTypeArray.h"
@@ -23,6 +25,8 @@ namespace {
 using anamorph::Body;
 using anamorph::Error;
 using anamorph::FigureFrame;
+
+constexpr const char *kAxes = "Axes", *kOrientation = "Orientation";
 
 glm::dvec3 flipped(const glm::dvec3& p) {
     return {p.x, p.y, -p.z};
@@ -85,6 +89,10 @@ vtkDataArray* point_array(vtkPolyData* data, const char* name, int components) {
         throw Error(std::string("the array \"") + name + "\" has " +
                     std::to_string(array->GetNumberOfComponents()) + " components, needed are " +
                     std::to_string(components));
+    if (array->GetNumberOfTuples() != data->GetNumberOfPoints())
+        throw Error(std::string("the array \"") + name + "\" has " +
+                    std::to_string(array->GetNumberOfTuples()) + " tuples, needed are " +
+                    std::to_string(data->GetNumberOfPoints()));
     return array;
 }
 
@@ -143,6 +151,7 @@ FigureData::FigureData(vtkPolyData* data) : m_data(data), m_size(data->GetNumber
     m_axes = point_array(data, kAxes, 3);
     m_orientation = point_array(data, kOrientation, 4);
     m_ghosts = data->GetPointGhostArray();
+    if (m_ghosts && m_ghosts->GetNumberOfTuples() != m_size) m_ghosts = nullptr;
 }
 
 std::optional<anamorph::Ellipsoid> FigureData::ellipsoid(vtkIdType i) const {
@@ -160,6 +169,17 @@ std::optional<anamorph::Ellipsoid> FigureData::ellipsoid(vtkIdType i) const {
         return std::nullopt;
     shape.rotation = glm::mat3_cast(turn / length);
     return shape;
+}
+
+void allocate_cell_data(vtkPolyData* input, vtkIdType cells, vtkCellData* data) {
+    vtkPointData* points = input->GetPointData();
+    for (int i = 0; i < points->GetNumberOfArrays(); ++i) {
+        const char* name = points->GetArrayName(i);
+        if (name && points->GetAbstractArray(i)->GetNumberOfTuples() != input->GetNumberOfPoints())
+            data->CopyFieldOff(name);
+    }
+    for (const char* name : {kAxes, kOrientation}) data->CopyFieldOff(name);
+    data->CopyAllocate(points, cells);
 }
 
 std::vector<anamorph::Joint> joints_of(vtkPolyData* data) {

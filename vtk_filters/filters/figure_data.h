@@ -23,14 +23,12 @@
 #include "anamorph/figure/outline_view.h"
 #include "vtkType.h"
 
+class vtkCellData;
 class vtkDataArray;
 class vtkPolyData;
 class vtkUnsignedCharArray;
 
 namespace anamorph_vtk {
-
-/// The filters' arrays, for those that read them.
-inline constexpr const char *kAxes = "Axes", *kOrientation = "Orientation";
 
 /// Points and arrays as above. The cells are a vertex for each ellipsoid and, with `joints`, a line for each
 /// joint, between the ellipsoids that it connects. `precision` is that of the points, as in vtkAlgorithm.
@@ -53,6 +51,10 @@ class FigureData {
     vtkDataArray *m_axes = nullptr, *m_orientation = nullptr;
     vtkUnsignedCharArray* m_ghosts = nullptr;  ///< may be null
 };
+
+/// Makes room for what stands for the points: their arrays but Axes and Orientation, and but those that are
+/// too short, to be copied by CopyData.
+void allocate_cell_data(vtkPolyData* input, vtkIdType cells, vtkCellData* data);
 
 /// Joints as the field data has them, between points; those of points that are not there are left out.
 std::vector<anamorph::Joint> joints_of(vtkPolyData* data);

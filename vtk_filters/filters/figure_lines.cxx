@@ -12,6 +12,7 @@ namespace anamorph_vtk {
 Bodies::Bodies(vtkPolyData* data) {
     const FigureData figures(data);
     auto* of_points = vtkStringArray::SafeDownCast(data->GetPointData()->GetAbstractArray("Name"));
+    if (of_points && of_points->GetNumberOfValues() < figures.size()) of_points = nullptr;
     for (vtkIdType i = 0; i < figures.size(); ++i)
         if (const auto shape = figures.ellipsoid(i)) {
             shapes.push_back(*shape);
@@ -56,8 +57,7 @@ void LineWriter::write(vtkPolyData* output) {
     output->SetVerts(m_vertices.cells);
     output->SetLines(m_lines.cells);
     vtkCellData* data = output->GetCellData();
-    for (const char* name : {kAxes, kOrientation}) data->CopyFieldOff(name);
-    data->CopyAllocate(m_input->GetPointData(), output->GetNumberOfCells());
+    allocate_cell_data(m_input, output->GetNumberOfCells(), data);
     vtkNew<vtkIdTypeArray> bodies;
     bodies->SetName("BodyId");
     std::vector<vtkNew<vtkDoubleArray>> numbers(m_names.size());

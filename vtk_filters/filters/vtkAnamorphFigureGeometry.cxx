@@ -171,8 +171,7 @@ void tessellate(const std::vector<Grid>& grids, vtkIdType points, vtkIdType tria
 void write_cell_data(const std::vector<Grid>& grids, vtkIdType triangles, vtkPolyData* input,
                      vtkPolyData* output) {
     vtkCellData* data = output->GetCellData();
-    for (const char* name : {anamorph_vtk::kAxes, anamorph_vtk::kOrientation}) data->CopyFieldOff(name);
-    data->CopyAllocate(input->GetPointData(), triangles);
+    anamorph_vtk::allocate_cell_data(input, triangles, data);
     const auto bodies = new_array<vtkIdTypeArray>("BodyId", 1, triangles);
     const auto bounds = new_array<vtkDoubleArray>("ChordalBound", 1, triangles);
     for (const Grid& grid : grids)
