@@ -573,6 +573,8 @@ TEST(VtkInbetween, FloatingArraysThatAllHaveAreBlendedAndOthersPassedFromTheBase
     b->AddArray(array_of(VTK_FLOAT, "shape only", 1, points, 1));
     a->AddArray(array_of(VTK_FLOAT, "other size", 1, points, 1));
     b->AddArray(array_of(VTK_FLOAT, "other size", 2, points, 5));
+    a->AddArray(array_of(VTK_FLOAT, "too long", 1, points + 1, 1));
+    b->AddArray(array_of(VTK_FLOAT, "too long", 1, points + 1, 5));
     a->AddArray(array_of(VTK_UNSIGNED_CHAR, "vtkGhostType", 1, points, 0));
     a->SetGlobalIds(array_of(VTK_ID_TYPE, "ids", 1, points, 3));
     base->GetCellData()->AddArray(array_of(VTK_DOUBLE, "cells", 1, cells, 1));
@@ -599,7 +601,7 @@ TEST(VtkInbetween, FloatingArraysThatAllHaveAreBlendedAndOthersPassedFromTheBase
     EXPECT_EQ(out->GetScalars(), out->GetArray("float"));
     EXPECT_EQ(out->GetArray("mixed")->GetTuple1(3), 4);
     EXPECT_EQ(out->GetArray("mixed")->GetDataType(), VTK_DOUBLE);
-    for (const char* name : {"whole", "base only", "other size", "names", "ids", "vtkGhostType"})
+    for (const char* name : {"whole", "base only", "other size", "too long", "names", "ids", "vtkGhostType"})
         EXPECT_EQ(out->GetAbstractArray(name), a->GetAbstractArray(name)) << name;
     EXPECT_EQ(out->GetGlobalIds(), a->GetGlobalIds());
     EXPECT_FALSE(out->GetArray("shape only"));

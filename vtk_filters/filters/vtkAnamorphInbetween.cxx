@@ -226,12 +226,12 @@ class Blend {
             point_data.push_back(input->GetPointData());
             cell_data.push_back(input->GetCellData());
         }
-        add_arrays(point_data, output->GetPointData(), point_masks);
+        add_arrays(point_data, output->GetNumberOfPoints(), output->GetPointData(), point_masks);
         const auto cell_masks = std::make_shared<Masks>();
         if (cell_data[m_options.base]->GetNumberOfArrays() > 0)
             for (const std::vector<float>& mask : *point_masks)
                 cell_masks->push_back(cell_mask(inputs[m_options.base], mask));
-        add_arrays(cell_data, output->GetCellData(), cell_masks);
+        add_arrays(cell_data, output->GetNumberOfCells(), output->GetCellData(), cell_masks);
     }
 
     void run(anamorph_vtk::Execution& execution) {
@@ -273,14 +273,14 @@ class Blend {
         m_jobs.push_back(job);
     }
 
-    void add_arrays(const std::vector<vtkDataSetAttributes*>& inputs, vtkDataSetAttributes* output,
-                    const std::shared_ptr<const Masks>& masks) {
+    void add_arrays(const std::vector<vtkDataSetAttributes*>& inputs, vtkIdType tuples,
+                    vtkDataSetAttributes* output, const std::shared_ptr<const Masks>& masks) {
         vtkDataSetAttributes* base = inputs[m_options.base];
         for (int i = 0; i < base->GetNumberOfArrays(); ++i) {
             vtkDataArray* array = base->GetArray(i);
             if (!array) continue;
             const bool normals = array == base->GetNormals();
-            std::optional<Job> job = common_arrays(inputs, array);
+            std::optional<Job> job = common_arrays(inputs, array, tuples);
             if (normals && (m_options.drop_normals || !job))
                 output->SetNormals(nullptr);
             else if (job && !is_shared(*job)) {
@@ -294,15 +294,15 @@ class Blend {
 
     /// The arrays of all inputs that are to be blended with one of the base; none if one is missing.
     static std::optional<Job> common_arrays(const std::vector<vtkDataSetAttributes*>& inputs,
-                                            vtkDataArray* base) {
-        if (!base->GetName()) return std::nullopt;
+                                            vtkDataArray* base, vtkIdType tuples) {
+        if (!base->GetName() || base->GetNumberOfTuples() != tuples) return std::nullopt;
         Job job;
         bool all_float = true;
         for (vtkDataSetAttributes* input : inputs) {
             vtkDataArray* array = input->GetArray(base->GetName());
             if (!array || !is_floating(array) ||
                 array->GetNumberOfComponents() != base->GetNumberOfComponents() ||
-                array->GetNumberOfTuples() != base->GetNumberOfTuples())
+                array->GetNumberOfTuples() != tuples)
                 return std::nullopt;
             job.from.push_back(array);
             all_float = all_float && array->GetDataType() == VTK_FLOAT;
