@@ -728,6 +728,34 @@ TEST(VtkDeform, NormalsOfAPlane) {
     }
 }
 
+TEST(VtkDeform, NormalsOfPolygonsThatAreNotConvex) {
+    // An L and an arrow head; a corner that goes inwards has the normal of the others.
+    vtkNew<vtkPoints> points;
+    points->SetDataTypeToDouble();
+    for (const glm::dvec2 p :
+         {glm::dvec2(-1, -1), {1, -1}, {1, 0}, {0, 0}, {0, 1}, {-1, 1}, {2, -1}, {4, 0}, {2, 1}, {3, 0}})
+        points->InsertNextPoint(p.x, p.y, 0);
+    vtkNew<vtkCellArray> cells;
+    cells->InsertNextCell({0, 1, 2, 3, 4, 5});
+    cells->InsertNextCell({6, 7, 8, 9});
+    vtkNew<vtkPolyData> mesh;
+    mesh->SetPoints(points);
+    mesh->SetPolys(cells);
+    const std::vector<Deformation> list = bumps(12, 10);
+    vtkNew<vtkAnamorphDeform> filter;
+    filter->SetInputData(mesh);
+    filter->SetCutoff(1e-12);
+    add(filter, list);
+    filter->Update();
+    for (vtkIdType i = 0; i < mesh->GetNumberOfPoints(); ++i) {
+        double p[3], n[3];
+        mesh->GetPoint(i, p);
+        output(filter)->GetPointData()->GetNormals()->GetTuple(i, n);
+        const glm::dvec3 expected = normal_of(displacement_at(list, {p[0], p[1]}), {1, 0, 0}, {0, 1, 0});
+        EXPECT_LE(glm::length(glm::dvec3(n[0], n[1], n[2]) - expected), 1e-9) << i;
+    }
+}
+
 TEST(VtkDeform, NormalsOfACurvedSurface) {
     // A sphere pushed along x: its normals against those of a much finer deformed mesh's cells.
     vtkNew<vtkSphereSource> sphere;

@@ -8,6 +8,7 @@
 #include <functional>
 #include <glm/geometric.hpp>
 #include <limits>
+#include <numbers>
 
 #include "vtkCell.h"
 #include "vtkCellData.h"
@@ -102,7 +103,7 @@ glm::dvec3 moved_normal(glm::dvec3 n, const anamorph::ParameterPlane& plane, con
     return unit(glm::cross(moved(a), moved(b)));
 }
 
-/// Fixed point for sums of unit vectors times angles up to pi: 2^17 corners at a point.
+/// Fixed point for sums of unit vectors times angles up to 2 pi: 2^16 corners at a point.
 constexpr double kCornerUnit = 0x1p-44;
 
 /// The corners of cells at some points.
@@ -126,11 +127,12 @@ class CornerSums {
                 k = (k + step) % count;
             return points[k];
         };
+        const glm::dvec3 area = count > 3 ? area_of(count, points) : glm::dvec3(0.0);
         for (vtkIdType i = 0; i < count; ++i) {
             const std::int64_t slot = m_slot[static_cast<std::size_t>(points[i])];
             if (slot >= 0)
                 add_corner(static_cast<std::size_t>(slot), points[i], neighbour(i, 1),
-                           neighbour(i, count - 1));
+                           neighbour(i, count - 1), area);
         }
     }
 
@@ -139,18 +141,37 @@ class CornerSums {
     }
 
   private:
-    void add_corner(std::size_t slot, vtkIdType at, vtkIdType next, vtkIdType previous) {
+    /// Twice the area of a polygon along its normal, undeformed.
+    glm::dvec3 area_of(vtkIdType count, const vtkIdType* points) const {
+        const glm::dvec3 first = point_of(m_of.mesh, points[0]);
+        glm::dvec3 area(0.0), edge = point_of(m_of.mesh, points[1]) - first;
+        for (vtkIdType i = 2; i < count; ++i) {
+            const glm::dvec3 next = point_of(m_of.mesh, points[i]) - first;
+            area += glm::cross(edge, next);
+            edge = next;
+        }
+        return area;
+    }
+
+    /// area: of the polygon, undeformed, if its corner may go inwards.
+    void add_corner(std::size_t slot, vtkIdType at, vtkIdType next, vtkIdType previous,
+                    const glm::dvec3& area) {
         const DisplacementJet& jet = m_jets[slot];
         const glm::dvec3 p = point_of(m_of.mesh, at);
         const glm::dvec2 s = (*m_of.parameters)[static_cast<std::size_t>(at)];
-        const auto edge = [&](vtkIdType to) {
+        const glm::dvec3 to_next = point_of(m_of.mesh, next) - p,
+                         to_previous = point_of(m_of.mesh, previous) - p;
+        const auto edge = [&](vtkIdType to, const glm::dvec3& undeformed) {
             const glm::dvec2 ds = (*m_of.parameters)[static_cast<std::size_t>(to)] - s;
-            return unit(point_of(m_of.mesh, to) - p + ds.x * jet.by_u + ds.y * jet.by_v);
+            return unit(undeformed + ds.x * jet.by_u + ds.y * jet.by_v);
         };
-        const glm::dvec3 a = edge(next), b = edge(previous), across = glm::cross(a, b);
+        const glm::dvec3 a = edge(next, to_next), b = edge(previous, to_previous), across = glm::cross(a, b);
         const double sine = glm::length(across);
         if (!(sine > 0)) return;
-        const glm::dvec3 weighted = across * (std::atan2(sine, glm::dot(a, b)) / sine);
+        double angle = std::atan2(sine, glm::dot(a, b));
+        // A corner that goes inwards: the polygon has the rest of the turn, on the other side.
+        if (glm::dot(glm::cross(to_next, to_previous), area) < 0) angle -= 2 * std::numbers::pi;
+        const glm::dvec3 weighted = across * (angle / sine);
         for (int c = 0; c < 3; ++c)
             std::atomic_ref<std::int64_t>(m_sums[slot][static_cast<std::size_t>(c)])
                 .fetch_add(std::llround(weighted[c] / kCornerUnit), std::memory_order_relaxed);
