@@ -11,6 +11,7 @@
 #include <vtkCamera.h>
 #include <vtkDataSetMapper.h>
 #include <vtkImageData.h>
+#include <vtkPointSet.h>
 #include <vtkPolyDataMapper.h>
 #include <vtkProperty.h>
 #include <vtkRenderWindow.h>
@@ -49,6 +50,12 @@ int main(int argc, char** argv) {
     } else {
         deform->AddDeformation(-0.4, 0.1, 0.2, 0.3, 0, 0, 0.3);
         deform->AddDeformation(0.4, 0.1, 0.3, 0.2, 0, 0, -0.2);
+    }
+
+    deform->Update();
+    if (vtkPointSet::SafeDownCast(deform->GetOutputDataObject(0))->GetNumberOfPoints() == 0) {
+        std::cerr << "edit_bumps: there is no surface\n";
+        return EXIT_FAILURE;
     }
 
     vtkNew<vtkDataSetMapper> surface_mapper;

@@ -213,6 +213,11 @@ TEST(VtkFigureReader, AnErrorIsOverWhenItsCauseIs) {
     reader->Update();
     EXPECT_EQ(errors.text(), "");
     EXPECT_EQ(reader->GetOutput()->GetNumberOfPoints(), 2);
+    folder.write("two.n", "figure");
+    reader->Modified();
+    reader->Update();
+    EXPECT_NE(errors.text(), "");
+    EXPECT_EQ(reader->GetOutput()->GetNumberOfPoints(), 0);  // not what was there before
     folder.write("two.n", "stop");
     reader->Modified();
     reader->Update();

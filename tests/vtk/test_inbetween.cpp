@@ -435,6 +435,19 @@ TEST(VtkInbetween, GridsAreComparedByTypeOfCellPointsAndFaces) {
     EXPECT_EQ(error_of({wide.Get(), wide.Get()}), "");
     EXPECT_THAT(error_of({wide.Get(), high.Get()}),
                 HasSubstr("input 1 is a grid of another extent than input 0"));
+    vtkNew<vtkAnamorphInbetween> filter;
+    Errors errors(filter);
+    filter->AddInputData(wide);
+    filter->Update();
+    EXPECT_EQ(errors.text(), "");
+    filter->AddInputData(high);
+    filter->Update();
+    EXPECT_NE(errors.text(), "");
+    auto* grid = vtkStructuredGrid::SafeDownCast(filter->GetOutputDataObject(0));
+    EXPECT_EQ(grid->GetNumberOfPoints(), 0);  // not what was there before
+    filter->RemoveInputConnection(0, 1);
+    filter->Update();
+    EXPECT_EQ(grid->GetNumberOfPoints(), 6);
 }
 
 TEST(VtkInbetween, WhatWasComparedIsComparedAgainAfterAChange) {

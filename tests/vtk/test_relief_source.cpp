@@ -313,6 +313,7 @@ TEST(VtkRelief, PicturesAreReadFromFiles) {
     source->SetFileName(folder.path("missing.png").c_str());
     source->Update();
     EXPECT_THAT(errors.text(), HasSubstr("missing.png: there is no such file"));
+    EXPECT_EQ(grid_of(source)->GetNumberOfPoints(), 0);  // not what was there before
     errors.clear();
     source->SetFileName(folder.write("text.png", "no picture").c_str());
     source->Update();

@@ -167,7 +167,7 @@ int vtkAnamorphFigureReader::RequestInformation(vtkInformation*, vtkInformationV
     output->Set(CAN_HANDLE_PIECE_REQUEST(), 1);
     output->Remove(Executive::TIME_STEPS());
     output->Remove(Executive::TIME_RANGE());
-    return anamorph_vtk::guarded(this, [&] {
+    const auto list_times = [&] {
         this->Prepare();
         const Play& play = *this->Current;
         if (play.count == 0) return;
@@ -177,7 +177,8 @@ int vtkAnamorphFigureReader::RequestInformation(vtkInformation*, vtkInformationV
         std::vector<double> steps;
         for (int i = 0; i < play.count; ++i) steps.push_back(play.first + 1.0 * i * play.step);
         output->Set(Executive::TIME_STEPS(), steps.data(), play.count);
-    });
+    };
+    return anamorph_vtk::guarded(this, list_times, {vtkDataObject::GetData(output)});
 }
 
 int vtkAnamorphFigureReader::RequestData(vtkInformation*, vtkInformationVector**,

@@ -645,7 +645,13 @@ int vtkAnamorphInbetween::FillInputPortInformation(int, vtkInformation* info) {
 
 int vtkAnamorphInbetween::RequestInformation(vtkInformation*, vtkInformationVector** inputs,
                                              vtkInformationVector* outputs) {
-    const int count = inputs[0]->GetNumberOfInformationObjects();
+    const auto inform = [&] { this->Inform(inputs[0], outputs->GetInformationObject(0)); };
+    return anamorph_vtk::guarded(this, inform, {vtkDataObject::GetData(outputs)});
+}
+
+/// The times of the output. Throws Error.
+void vtkAnamorphInbetween::Inform(vtkInformationVector* inputs, vtkInformation* output) const {
+    const int count = inputs->GetNumberOfInformationObjects();
     const int base = std::clamp(this->BaseIndex, 0, std::max(count - 1, 0));
     std::set<double> steps;
     double range[2] = {std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()};
@@ -656,7 +662,7 @@ int vtkAnamorphInbetween::RequestInformation(vtkInformation*, vtkInformationVect
     for (const Key& key : this->Keys)
         if (std::isfinite(key.Time)) steps.insert(key.Time);
     for (int i = 0; i < count; ++i) {
-        vtkInformation* info = inputs[0]->GetInformationObject(i);
+        vtkInformation* info = inputs->GetInformationObject(i);
         const double* input_steps = info->Get(Executive::TIME_STEPS());
         for (int k = 0; k < info->Length(Executive::TIME_STEPS()); ++k) steps.insert(input_steps[k]);
         if (const double* input_range = info->Get(Executive::TIME_RANGE())) {
@@ -665,21 +671,18 @@ int vtkAnamorphInbetween::RequestInformation(vtkInformation*, vtkInformationVect
         }
         // Pieces of structured inputs are extents, so the whole has to agree before they are asked for.
         const int *extent = info->Get(Executive::WHOLE_EXTENT()),
-                  *base_extent = inputs[0]->GetInformationObject(base)->Get(Executive::WHOLE_EXTENT());
-        if (extent && base_extent && !std::equal(extent, extent + 6, base_extent)) {
-            vtkErrorMacro(<< "input " << i << " is a grid of another extent than input " << base);
-            return 0;
-        }
+                  *base_extent = inputs->GetInformationObject(base)->Get(Executive::WHOLE_EXTENT());
+        if (extent && base_extent && !std::equal(extent, extent + 6, base_extent))
+            throw Error("input " + std::to_string(i) + " is a grid of another extent than input " +
+                        std::to_string(base));
     }
     for (const double step : steps) widen(step);
 
-    vtkInformation* output = outputs->GetInformationObject(0);
     output->Remove(Executive::TIME_STEPS());
     output->Remove(Executive::TIME_RANGE());
     const std::vector<double> list(steps.begin(), steps.end());
     if (!list.empty()) output->Set(Executive::TIME_STEPS(), list.data(), static_cast<int>(list.size()));
     if (range[0] <= range[1]) output->Set(Executive::TIME_RANGE(), range, 2);
-    return 1;
 }
 
 int vtkAnamorphInbetween::RequestUpdateExtent(vtkInformation*, vtkInformationVector** inputs,

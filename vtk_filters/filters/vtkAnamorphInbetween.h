@@ -156,6 +156,7 @@ class ANAMORPHFILTERS_EXPORT vtkAnamorphInbetween : public vtkPassInputTypeAlgor
         bool operator==(const Key&) const = default;
     };
 
+    void Inform(vtkInformationVector* inputs, vtkInformation* output) const;
     std::vector<double> WeightsAt(int inputs, double time) const;
     std::vector<double> WeightsOfKeysAt(int inputs, double time) const;
     std::vector<double> CheckedSum(const std::vector<double>& weights) const;

@@ -440,19 +440,20 @@ vtkImageData* vtkAnamorphReliefSource::Picture(vtkInformationVector** inputs) {
 
 int vtkAnamorphReliefSource::RequestInformation(vtkInformation*, vtkInformationVector** inputs,
                                                 vtkInformationVector* outputs) {
-    return anamorph_vtk::guarded(this, [&] {
+    const auto tell_extent = [&] {
         vtkInformation* picture = this->PictureInformation(inputs);
         const Axes axes =
             axes_of(picture->Get(Executive::WHOLE_EXTENT()), this->Resolution, this->SampleRate);
         vtkInformation* output = outputs->GetInformationObject(0);
         output->Set(Executive::WHOLE_EXTENT(), 0, axes.x.points - 1, 0, axes.y.points - 1, 0, 0);
         output->Set(CAN_PRODUCE_SUB_EXTENT(), 1);
-    });
+    };
+    return anamorph_vtk::guarded(this, tell_extent, {vtkDataObject::GetData(outputs)});
 }
 
 int vtkAnamorphReliefSource::RequestUpdateExtent(vtkInformation*, vtkInformationVector** inputs,
                                                  vtkInformationVector* outputs) {
-    return anamorph_vtk::guarded(this, [&] {
+    const auto ask = [&] {
         vtkInformation* picture = this->PictureInformation(inputs);
         int whole[6];
         picture->Get(Executive::WHOLE_EXTENT(), whole);
@@ -472,7 +473,8 @@ int vtkAnamorphReliefSource::RequestUpdateExtent(vtkInformation*, vtkInformation
         picture->Set(Executive::UPDATE_NUMBER_OF_PIECES(), 1);
         picture->Set(Executive::UPDATE_NUMBER_OF_GHOST_LEVELS(), 0);
         picture->Set(Executive::UPDATE_EXTENT(), needed, 6);
-    });
+    };
+    return anamorph_vtk::guarded(this, ask, {vtkDataObject::GetData(outputs)});
 }
 
 int vtkAnamorphReliefSource::RequestData(vtkInformation*, vtkInformationVector** inputs,
