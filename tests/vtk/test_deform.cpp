@@ -3,9 +3,11 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/resource.h>
 #include <vtkAnamorphDeformationList.h>
 #include <vtkCellArray.h>
 #include <vtkCellData.h>
+#include <vtkDiskSource.h>
 #include <vtkDoubleArray.h>
 #include <vtkFieldData.h>
 #include <vtkFloatArray.h>
@@ -1180,6 +1182,40 @@ TEST(VtkDeform, Overlay) {
     overlay->GetBounds(bounds);
     EXPECT_LE(bounds[1], 1 + 1e-6);
     EXPECT_GE(overlay->GetNumberOfCells(), 5);
+}
+
+/// The most memory that the process has had, in MB.
+double peak_memory() {
+    rusage usage{};
+    getrusage(RUSAGE_SELF, &usage);
+    return static_cast<double>(usage.ru_maxrss) / 1024;
+}
+
+TEST(VtkDeform, OverlayOfManyLongTrianglesTakesLittleMemory) {
+    vtkNew<vtkDiskSource> disk;  // a fan
+    disk->SetInnerRadius(0);
+    disk->SetOuterRadius(1);
+    disk->SetRadialResolution(1);
+    disk->SetCircumferentialResolution(20000);
+    disk->Update();
+    vtkNew<vtkAnamorphDeform> filter;
+    filter->SetInputData(disk->GetOutput());
+    filter->ComputeNormalsOff();
+    filter->AddDeformation(.1, .2, .3, .3, 0, 0, .5);
+    filter->Update();
+    const double before = peak_memory();
+    filter->GenerateOverlayOn();
+    filter->Update();
+    EXPECT_LT(peak_memory() - before, 200);
+    vtkNew<vtkIdList> ids;
+    filter->GetOverlay()->GetCellPoints(2, ids);
+    EXPECT_EQ(ids->GetNumberOfIds(), 65);
+    for (const vtkIdType id : *ids) {
+        double p[3];
+        filter->GetOverlay()->GetPoint(id, p);
+        EXPECT_NEAR(std::hypot(p[0] - .1, p[1] - .2), .3, 1e-6);
+        EXPECT_NEAR(p[2], .5 * std::exp(-1), 1e-6);
+    }
 }
 
 TEST(VtkDeform, ListEdits) {

@@ -30,14 +30,16 @@ class SurfaceOfParameters {
                 for (vtkIdType i = 1; i + 1 < count; ++i) add(m, {p[0], p[i], p[i + 1]});
             });
         if (m_triangles.empty()) return;
-        m_side = std::clamp(static_cast<int>(std::sqrt(static_cast<double>(m_triangles.size()))), 1, 1024);
+        // About a triangle a bin; coarser bins where triangles reach over many.
+        constexpr double kMostBins = 16;  // of a triangle, in the mean
+        const auto count = static_cast<double>(m_triangles.size());
+        m_side = std::clamp(static_cast<int>(std::sqrt(count)), 1, 1024);
+        while (m_side > 1 && bins_of_all() > kMostBins * count) m_side /= 2;
         m_bins.resize(static_cast<std::size_t>(m_side) * static_cast<std::size_t>(m_side));
         for (std::size_t k = 0; k < m_triangles.size(); ++k) {
-            const auto& s = m_triangles[k].parameters;
-            const auto [u0, u1] = std::minmax({s[0].x, s[1].x, s[2].x});
-            const auto [v0, v1] = std::minmax({s[0].y, s[1].y, s[2].y});
-            for (int j = bin(v0, 1); j <= bin(v1, 1); ++j)
-                for (int i = bin(u0, 0); i <= bin(u1, 0); ++i)
+            const Box box = box_of(m_triangles[k]);
+            for (int j = box.least[1]; j <= box.most[1]; ++j)
+                for (int i = box.least[0]; i <= box.most[0]; ++i)
                     m_bins[static_cast<std::size_t>(j * m_side + i)].push_back(k);
         }
     }
@@ -65,6 +67,29 @@ class SurfaceOfParameters {
         std::array<glm::dvec2, 3> parameters;
         std::array<glm::dvec3, 3> points;
     };
+
+    /// The bins around a triangle.
+    struct Box {
+        int least[2], most[2];
+    };
+    Box box_of(const Triangle& triangle) const {
+        const auto& s = triangle.parameters;
+        Box box;
+        for (int axis = 0; axis < 2; ++axis) {
+            const auto [least, most] = std::minmax({s[0][axis], s[1][axis], s[2][axis]});
+            box.least[axis] = bin(least, axis);
+            box.most[axis] = bin(most, axis);
+        }
+        return box;
+    }
+    double bins_of_all() const {
+        double bins = 0;
+        for (const Triangle& triangle : m_triangles) {
+            const Box box = box_of(triangle);
+            bins += (box.most[0] - box.least[0] + 1.0) * (box.most[1] - box.least[1] + 1.0);
+        }
+        return bins;
+    }
 
     void add(const OverlayMesh& m, const std::array<vtkIdType, 3>& ids) {
         Triangle t;
