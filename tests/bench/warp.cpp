@@ -15,6 +15,7 @@
 #include <mutex>
 #include <random>
 
+#include "anamorph/image/block_reader.h"
 #include "anamorph/image/mesh_warp.h"
 #include "anamorph/map/scattered.h"
 #include "anamorph/simd/block_sampler.h"
@@ -167,11 +168,8 @@ Points points_of(const MeshWarp& warp, const ParallelFor& parallel_for) {
         for (const Block& b : *map.blocks(region))
             for (int y = b.box.y0; y < b.box.y1; ++y) {
                 alignas(64) float px[simd::kRowRoom], py[simd::kRowRoom];
-                const int width = b.box.width();
-                if (b.kind == Block::Kind::polynomial)
-                    simd::block_points({b.x, b.y, width, b.box.height()}, y - b.box.y0, 0, width, px, py);
-                if (b.kind == Block::Kind::computed) map.computed_row(b, y - b.box.y0, 0, width, px, py);
-                for (int i = 0; i < width && b.kind != Block::Kind::outside; ++i) {
+                block_row(map, b, b.box, y, px, py);
+                for (int i = 0; i < b.box.width() && b.kind != Block::Kind::outside; ++i) {
                     Point<double>& p = points[index_of(b.box.x0 + i, y, map.width())];
                     int piece = 0;
                     if (b.kind == Block::Kind::exact)

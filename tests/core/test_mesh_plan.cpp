@@ -98,12 +98,46 @@ TEST(MeshPlan, BoundsAreNotFarAboveTheError) {
     test::Random random(5305);
     const Extent target{512, 512}, source{512, 512};
     const ControlMesh mesh = test::random_mesh(random, target, source, 5, 5, 0.3, false, 0);
-    const MeshPlan plan(Mesh(mesh, target, source, 1), WarpScheme::automatic, 1.0 / 16);
-    test::Findings found = test::examine(plan, [&](double x, double y) { return truth(plan.mesh(), x, y); });
-    ASSERT_FALSE(found.ratios.empty());
-    std::nth_element(found.ratios.begin(), found.ratios.begin() + long(found.ratios.size() / 2),
-                     found.ratios.end());
-    EXPECT_LT(found.ratios[found.ratios.size() / 2], 2);
+    const auto median_ratio = [&](WarpScheme scheme, double tol) {
+        const MeshPlan plan(Mesh(mesh, target, source, 1), scheme, tol);
+        std::vector<double> ratios =
+            test::examine(plan, [&](double x, double y) { return truth(plan.mesh(), x, y); }).ratios;
+        EXPECT_FALSE(ratios.empty());
+        std::nth_element(ratios.begin(), ratios.begin() + long(ratios.size() / 2), ratios.end());
+        return ratios[ratios.size() / 2];
+    };
+    // Quadratics err by what they leave out, whole patches by rounding only, whose worst case is rare.
+    EXPECT_LT(median_ratio(WarpScheme::automatic, 1), 2);
+    EXPECT_LT(median_ratio(WarpScheme::hermite, 1), 8);
+}
+
+TEST(MeshPlan, EveryInstructionSetKeepsTheBound) {
+    constexpr unsigned kSeed = 5307;
+    SCOPED_TRACE(::testing::Message() << "seed " << kSeed);
+    test::Random random(kSeed);
+    const Extent target{300, 200}, source{65536, 200};
+    const ControlMesh mesh = test::random_mesh(random, target, source, 3, 3, 0.3, false, 1);
+    for (const char* const* set = simd::instruction_sets(); *set; ++set) {
+        SCOPED_TRACE(*set);
+        ASSERT_TRUE(simd::use_instruction_set(*set));
+        for (const double tol : {1.0, 1.0 / 64})
+            expect_promise(mesh, target, source, WarpScheme::automatic, tol);
+    }
+    simd::use_instruction_set("");
+}
+
+// Whole patches need not be cut: a tolerance a thousand times smaller costs no more blocks.
+TEST(MeshPlan, SmallTolerancesNeedNoSmallBlocks) {
+    test::Random random(5306);
+    const Extent size{512, 512};
+    const ControlMesh mesh = test::random_mesh(random, size, size, 5, 5, 0.3, false, 0);
+    const auto blocks = [&](double tol) {
+        const MeshPlan plan(Mesh(mesh, size, size, 1), WarpScheme::automatic, tol);
+        std::size_t count = 0;
+        for (std::int64_t r = 0; r < plan.regions(); ++r) count += plan.blocks(r)->size();
+        return count;
+    };
+    EXPECT_EQ(blocks(1), blocks(1e-3));
 }
 
 TEST(MeshPlan, RefusesATolerance) {

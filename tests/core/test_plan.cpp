@@ -7,6 +7,7 @@
 #include <random>
 
 #include "anamorph/approx/plan.h"
+#include "anamorph/image/block_reader.h"
 #include "anamorph/simd/block_sampler.h"
 
 namespace anamorph {
@@ -64,9 +65,7 @@ Findings examine(const Panorama& map, const PlanOptions& options) {
             float px[simd::kRowRoom], py[simd::kRowRoom];
             for (int j = block.box.y0; j < block.box.y1; ++j) {
                 const bool polynomial = block.kind == Block::Kind::polynomial;
-                if (polynomial)
-                    simd::block_points({block.x, block.y, block.box.width(), block.box.height()},
-                                       j - block.box.y0, 0, block.box.width(), px, py);
+                block_row(plan, block, block.box, j, px, py);
                 for (int i = block.box.x0; i < block.box.x1; ++i) {
                     ++covered[static_cast<std::size_t>(j) * static_cast<std::size_t>(map.target().width()) +
                               static_cast<std::size_t>(i)];

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "anamorph/approx/block.h"
+#include "anamorph/image/block_reader.h"
 #include "anamorph/simd/block_sampler.h"
 
 namespace anamorph::test {
@@ -30,11 +31,7 @@ Findings examine(const BlockMap& map, const Truth& truth) {
             double largest = 0;
             for (int y = block.box.y0; y < block.box.y1; ++y) {
                 alignas(64) float px[simd::kRowRoom], py[simd::kRowRoom];
-                if (block.kind == Block::Kind::polynomial)
-                    simd::block_points({block.x, block.y, width, block.box.height()}, y - block.box.y0, 0,
-                                       width, px, py);
-                else if (block.kind == Block::Kind::computed)
-                    map.computed_row(block, y - block.box.y0, 0, width, px, py);
+                block_row(map, block, block.box, y, px, py);
                 for (int i = 0; i < width; ++i) {
                     char& seen = covered[static_cast<std::size_t>(y) * static_cast<std::size_t>(map.width()) +
                                          static_cast<std::size_t>(block.box.x0 + i)];

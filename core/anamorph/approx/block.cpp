@@ -8,6 +8,21 @@
 
 namespace anamorph {
 
+BlockPolynomial quadratic_of(const Block& block) {
+    BlockPolynomial p;
+    const auto put = [&](const float* from, int first) {
+        p.c[0][first] = from[0];
+        p.c[0][first + 1] = from[1];
+        p.c[1][first] = from[2];
+        p.c[0][first + 2] = from[3];
+        p.c[1][first + 1] = from[4];
+        p.c[2][first] = from[5];
+    };
+    put(block.x, 0);
+    put(block.y, 4);
+    return p;
+}
+
 struct BlockMap::Cache {
     static constexpr std::size_t kMost = 2048;
 
@@ -101,6 +116,10 @@ Reached BlockMap::reached(const ParallelFor& parallel_for) const {
     const std::lock_guard lock(m_cache->mutex);
     m_cache->reached = reached;
     return reached;
+}
+
+BlockPolynomial BlockMap::bicubic(const Block& block) const noexcept {
+    return quadratic_of(block);
 }
 
 void BlockMap::computed_row(const Block&, int, int begin, int end, float* x, float* y) const noexcept {

@@ -20,23 +20,32 @@ namespace anamorph {
 ///
 /// For a polynomial block, with s and t in [-1, 1] running over the pixel centres of the block (s right, t
 /// down), the source point is base + (x or y)[0] + [1] s + [2] t + [3] s^2 + [4] s t + [5] t^2, in source
-/// pixels, the sum evaluated in float by Block-wide loops as ((([5] t + [2]) t + [0]) + s (([4] t + [1]) + s
-/// [3])).
+/// pixels.
 struct Block {
+    /// bicubic: the map gives the polynomial (BlockMap::bicubic); x and y hold a quadratic near it.
     /// computed: the map gives the points as offsets from the base, row by row (BlockMap::computed_row).
     /// exact: point by point in double. outside: there are none.
-    enum class Kind : std::uint8_t { polynomial, computed, exact, outside };
+    enum class Kind : std::uint8_t { polynomial, bicubic, computed, exact, outside };
     static constexpr int kMaxSide = 64;
 
     Box box;
     Kind kind = Kind::exact;
     int piece = 0;         ///< of the target
-    int source_piece = 0;  ///< polynomial and computed blocks only
+    int source_piece = 0;  ///< not for exact blocks, nor outside
     std::int32_t base_x = 0, base_y = 0;
     float x[6] = {}, y[6] = {};
-    std::int64_t data = 0;  ///< the map's own, for computed blocks
-    double bound = 0;       ///< of the distance to the exact source point, in source pixels
+    double bound = 0;  ///< of the distance to the exact source point, in source pixels
 };
+
+/// The source points of a block less its base, evaluated in float by Block-wide loops: the sums of c[j][i]
+/// s^i t^j (x) and c[j][4 + i] s^i t^j (y), by Horner's rule for t, then for s.
+struct BlockPolynomial {
+    int degree = 2;  ///< or 3, in s and in t
+    float c[4][8] = {};
+};
+
+/// A block's x and y in that form.
+BlockPolynomial quadratic_of(const Block& block);
 
 /// What a picture reached: the largest proven bound in use and the fraction of pixels evaluated exactly.
 struct Reached {
@@ -80,6 +89,8 @@ class BlockMap {
                        int& source_piece) const noexcept = 0;
     /// Source pixels per target pixel at a target point.
     virtual Jacobian jacobian(double x, double y, int piece) const noexcept = 0;
+    /// The polynomial of a bicubic block.
+    virtual BlockPolynomial bicubic(const Block& block) const noexcept;
     /// Pixels [begin, end) of row `row` (0 is the block's first) of a computed block: source points less the
     /// block's base. There is room for 16 more floats.
     virtual void computed_row(const Block& block, int row, int begin, int end, float* x,

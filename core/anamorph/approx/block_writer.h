@@ -12,10 +12,12 @@ namespace anamorph {
 /// Source points farther away than this are none.
 inline constexpr double kFarthest = 1 << 30;
 
-// Rounding of a point's coordinates to float and of their evaluation: the coefficients, s and t are each
-// rounded once, and at most five operations are rounded on the way from the smallest term to the sum, so that
-// each term errs by less than 8 half-ULP of its size. So for a cubic in s alone.
-inline constexpr double kFloatRounding = 8 * 0x1p-24;
+/// What rounding to float may cost a term of power n, in s and t together, of a block's polynomial, over its
+/// size: the coefficient is rounded once, s and t twice for each power, Horner's rule rounds a term of s^i
+/// t^j 2 i + 1 + 2 j + 1 times, and the sampler moves the sum by half a texel.
+constexpr double term_rounding(int n) {
+    return 4 * (n + 1) * (1.01 * 0x1p-24);
+}
 
 /// Half the distance between the first and the last of a row of pixel centres.
 inline double half(int pixels) {
@@ -36,20 +38,21 @@ class BlockWriter {
     void exact(const Box& box) { add(box, Block::Kind::exact); }
     void outside(const Box& box) { add(box, Block::Kind::outside); }
 
-    /// A quadratic block, coefficients as in Block less the base. True when it keeps the tolerance in float,
+    /// A quadratic block, coefficients as in Block with the base. True when it keeps the tolerance in float,
     /// `error` apart: then it is written.
     bool polynomial(const Box& box, const double* x, const double* y, double error) {
-        if (!(std::fabs(x[0]) < kFarthest && std::fabs(y[0]) < kFarthest)) return false;
         Block block;
-        block.box = box;
-        block.kind = Block::Kind::polynomial;
-        block.base_x = static_cast<std::int32_t>(std::floor(x[0]));
-        block.base_y = static_cast<std::int32_t>(std::floor(y[0]));
-        const double ex = store(x, block.base_x, block.x), ey = store(y, block.base_y, block.y);
-        block.bound = error + std::sqrt(ex * ex + ey * ey);
-        if (!(block.bound <= m_tol)) return false;
-        m_blocks.push_back(block);
-        return true;
+        if (!start(box, Block::Kind::polynomial, x, y, block)) return false;
+        return finish(block, rounding(x, block.base_x), rounding(y, block.base_y), error);
+    }
+
+    /// A bicubic block: coefficients of s^i t^j as the map will give them, with the base, and the quadratic
+    /// near it.
+    bool bicubic(const Box& box, const double (&x)[4][4], const double (&y)[4][4], const double* near_x,
+                 const double* near_y, double error) {
+        Block block;
+        if (!start(box, Block::Kind::bicubic, near_x, near_y, block)) return false;
+        return finish(block, rounding(x, block.base_x), rounding(y, block.base_y), error);
     }
 
     /// A computed block whose base is `middle` rounded down. True when it keeps the tolerance.
@@ -101,15 +104,40 @@ class BlockWriter {
         m_blocks.push_back(block);
     }
 
-    /// Coefficients in float, and what rounding may cost.
-    static double store(const double* c, std::int32_t base, float* to) {
-        to[0] = static_cast<float>(c[0] - base);
-        double sum = std::fabs(c[0] - base);
-        for (int i = 1; i < 6; ++i) {
-            to[i] = static_cast<float>(c[i]);
-            sum += std::fabs(c[i]);
+    /// Base and quadratic. False where they are too far away.
+    static bool start(const Box& box, Block::Kind kind, const double* x, const double* y, Block& block) {
+        if (!(std::fabs(x[0]) < kFarthest && std::fabs(y[0]) < kFarthest)) return false;
+        block.box = box;
+        block.kind = kind;
+        block.base_x = static_cast<std::int32_t>(std::floor(x[0]));
+        block.base_y = static_cast<std::int32_t>(std::floor(y[0]));
+        for (int i = 0; i < 6; ++i) {
+            block.x[i] = static_cast<float>(i ? x[i] : x[0] - block.base_x);
+            block.y[i] = static_cast<float>(i ? y[i] : y[0] - block.base_y);
         }
-        return sum * kFloatRounding;
+        return true;
+    }
+    bool finish(Block& block, double rounding_x, double rounding_y, double error) {
+        block.bound = error + std::sqrt(rounding_x * rounding_x + rounding_y * rounding_y);
+        if (!(block.bound <= m_tol)) return false;
+        m_blocks.push_back(block);
+        return true;
+    }
+
+    /// What rounding to float may cost: of a quadratic,
+    static double rounding(const double* c, std::int32_t base) {
+        constexpr int kPower[6] = {0, 1, 1, 2, 2, 2};
+        double sum = 0;
+        for (int i = 0; i < 6; ++i) sum += std::fabs(i ? c[i] : c[0] - base) * term_rounding(kPower[i]);
+        return sum;
+    }
+    /// and of a bicubic.
+    static double rounding(const double (&c)[4][4], std::int32_t base) {
+        double sum = 0;
+        for (int i = 0; i < 4; ++i)
+            for (int j = 0; j < 4; ++j)
+                sum += std::fabs(i + j ? c[i][j] : c[0][0] - base) * term_rounding(i + j);
+        return sum;
     }
 
     double m_tol;

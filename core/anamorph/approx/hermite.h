@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 
+#include "anamorph/approx/block.h"
 #include "anamorph/map/mesh.h"
 
 namespace anamorph {
@@ -77,6 +78,17 @@ inline void add_identity(Bicubic& f, const Mesh& mesh, const Part& x, const Part
     f.x[1][0] += x.half * mesh.scale().x;
     f.y[0][0] += y.middle * mesh.scale().y;
     f.y[0][1] += y.half * mesh.scale().y;
+}
+
+/// A map in powers of a block's parameters as its polynomial in float.
+inline BlockPolynomial float_form(const Bicubic& f, const Block& block) {
+    BlockPolynomial p{3, {}};
+    for (std::size_t i = 0; i < 4; ++i)
+        for (std::size_t j = 0; j < 4; ++j) {
+            p.c[j][i] = static_cast<float>(f.x[i][j] - (i + j ? 0 : block.base_x));
+            p.c[j][4 + i] = static_cast<float>(f.y[i][j] - (i + j ? 0 : block.base_y));
+        }
+    return p;
 }
 
 /// Bounds the rounding in double of the map on a cell, of its other forms and of their restriction: sums of

@@ -127,11 +127,8 @@ class Planner {
     void settle(const CellForm& form, const Box& box) {
         switch (m_scheme) {
             case WarpScheme::automatic:
-                return BlockWriter::for_blocks(box, [&](const Box& b) { place(form, b); });
             case WarpScheme::hermite:
-                return BlockWriter::for_blocks(box, [&](const Box& b) {
-                    if (!place_rows(form, b, form.on(b))) m_writer.exact(b);
-                });
+                return BlockWriter::for_blocks(box, [&](const Box& b) { place(form, b); });
             case WarpScheme::residual:
                 return place_residual(form, box);
             case WarpScheme::exact:
@@ -139,37 +136,16 @@ class Planner {
         }
     }
 
-    /// One quadratic block, or its halves.
+    /// One block, a quadratic where that will do, or its halves.
     void place(const CellForm& form, const Box& box) {
         if (BlockWriter::below_floor(box)) return m_writer.exact(box);
         const Bicubic f = form.on(box);
         const EconomizedBicubic x(f.x), y(f.y);
-        if (m_writer.polynomial(box, x.c, y.c, std::hypot(x.dropped, y.dropped) + form.rounding)) return;
-        if (needs_small_pieces(box, x.dropped_s + y.dropped_s, x.dropped_t + y.dropped_t) &&
-            place_rows(form, box, f))
+        if (m_scheme == WarpScheme::automatic &&
+            m_writer.polynomial(box, x.c, y.c, std::hypot(x.dropped, y.dropped) + form.rounding))
             return;
-        m_writer.halve(box, x.dropped_s + y.dropped_s >= x.dropped_t + y.dropped_t,
-                       [&](const Box& b) { place(form, b); });
-    }
-
-    /// Would quadratic blocks be so small that the whole patch costs less? What is dropped is mostly cubic.
-    bool needs_small_pieces(const Box& box, double dropped_s, double dropped_t) const {
-        constexpr double kFewPixels = 96;
-        const auto pieces = [&](double dropped) { return std::max(1.0, std::cbrt(2 * dropped / m_tol)); };
-        return double(box.width()) * box.height() < kFewPixels * pieces(dropped_s) * pieces(dropped_t);
-    }
-
-    /// A computed block whose base is the map at its middle. False where `error` exceeds the tolerance.
-    bool emit_computed(const CellForm& form, const Box& box, double error) {
-        return m_writer.computed(
-            box, form.mesh.at(form.patch, 0.5 * (box.x0 + box.x1), 0.5 * (box.y0 + box.y1)), error);
-    }
-
-    /// The full patch (5.3.5): a row is a cubic in float, each term of which errs as kFloatRounding says.
-    bool place_rows(const CellForm& form, const Box& box, const Bicubic& f) {
-        const auto sum = [](const double(&c)[4][4]) { return sum_of_magnitudes(c) - std::fabs(c[0][0]) + 1; };
-        // The base is the middle rounded down: what is left of the constant term is below 1.
-        return emit_computed(form, box, kFloatRounding * std::hypot(sum(f.x), sum(f.y)) + form.rounding);
+        if (m_writer.bicubic(box, f.x, f.y, x.c, y.c, form.rounding)) return;
+        m_writer.halve(box, box.width() >= box.height(), [&](const Box& b) { place(form, b); });
     }
 
     void place_residual(const CellForm& form, const Box& box) {
@@ -177,7 +153,8 @@ class Planner {
         BlockWriter::for_blocks(box, [&](const Box& b) {
             const double error =
                 m_tables->bound(residual) + residual.float_rounding(form.on(b)) + form.rounding;
-            if (!emit_computed(form, b, error)) m_writer.exact(b);
+            const Point<double> middle = form.mesh.at(form.patch, 0.5 * (b.x0 + b.x1), 0.5 * (b.y0 + b.y1));
+            if (!m_writer.computed(b, middle, error)) m_writer.exact(b);
         });
     }
 
@@ -239,38 +216,22 @@ float MeshPlan::folds(double x, double y) const noexcept {
     return (j.x_i * j.y_j - j.x_j * j.y_i) * m_mesh.orientation() < 0 ? 1.0f : 0.0f;
 }
 
+BlockPolynomial MeshPlan::bicubic(const Block& block) const noexcept {
+    const CellForm form(m_mesh, m_mesh.leaf_at(block.box.x0 + 0.5, block.box.y0 + 0.5));
+    return float_form(form.on(block.box), block);
+}
+
+/// A row of a block of the residual scheme.
 void MeshPlan::computed_row(const Block& block, int row, int begin, int end, float* x,
                             float* y) const noexcept {
     const Box& b = block.box;
     const CellForm form(m_mesh, m_mesh.leaf_at(b.x0 + 0.5, b.y0 + 0.5));
-    if (m_scheme == WarpScheme::residual) {
-        const double step = 1 / (form.cell.x1 - form.cell.x0);
-        const double first = (b.x0 + 0.5 - form.cell.x0) * step;
-        const double at_t = (b.y0 + row + 0.5 - form.cell.y0) / (form.cell.y1 - form.cell.y0);
-        const double px = (b.x0 + 0.5) * m_mesh.scale().x - block.base_x,
-                     py = (b.y0 + row + 0.5) * m_mesh.scale().y - block.base_y;
-        return m_tables->row(ResidualPatch(form.patch), {px, py, m_mesh.scale().x}, first, step, at_t, begin,
-                             end, x, y);
-    }
-    // The row's cubic in powers of a parameter in [-1, 1].
-    const Box line{b.x0, b.y0 + row, b.x1, b.y0 + row + 1};
-    Part t = form.down(line);
-    t.half = 0;
-    Bicubic f = restricted(form.powers, form.across(line), t);
-    f.x[0][0] += 0.5 * (b.x0 + b.x1) * m_mesh.scale().x - block.base_x;
-    f.x[1][0] += half(b.width()) * m_mesh.scale().x;
-    f.y[0][0] += (b.y0 + row + 0.5) * m_mesh.scale().y - block.base_y;
-    float cx[4], cy[4];
-    for (int i = 0; i < 4; ++i) {
-        cx[i] = static_cast<float>(f.x[i][0]);
-        cy[i] = static_cast<float>(f.y[i][0]);
-    }
-    const float step = b.width() > 1 ? 1.0f / static_cast<float>(b.width() - 1) : 0;
-    for (int i = begin; i < end; ++i) {
-        const float s = static_cast<float>(2 * i - (b.width() - 1)) * step;
-        x[i - begin] = ((cx[3] * s + cx[2]) * s + cx[1]) * s + cx[0];
-        y[i - begin] = ((cy[3] * s + cy[2]) * s + cy[1]) * s + cy[0];
-    }
+    const double step = 1 / (form.cell.x1 - form.cell.x0);
+    const double first = (b.x0 + 0.5 - form.cell.x0) * step;
+    const double at_t = (b.y0 + row + 0.5 - form.cell.y0) / (form.cell.y1 - form.cell.y0);
+    const double px = (b.x0 + 0.5) * m_mesh.scale().x - block.base_x,
+                 py = (b.y0 + row + 0.5) * m_mesh.scale().y - block.base_y;
+    m_tables->row(ResidualPatch(form.patch), {px, py, m_mesh.scale().x}, first, step, at_t, begin, end, x, y);
 }
 
 std::int64_t MeshPlan::folded_pixels(const Box& box) const {

@@ -2,9 +2,8 @@
 // The blocks of a mesh warp. A block lies in one cell of the mesh, where the map is one bicubic patch, so
 // that every bound is in closed form from the patch's own coefficients:
 //
-// - automatic: the patch restricted to the block, economised to a quadratic (hermite.h), split while too
-//   coarse; as hermite where the pieces would be small.
-// - hermite: the whole patch (Kim 2003, 5.3.5), a cubic in x for every row, evaluated in float.
+// - hermite: the patch (Kim 2003, 5.3.5) restricted to the block, in float.
+// - automatic: so, or economised to a quadratic (hermite.h) where that holds the tolerance.
 // - residual: the plane through three vertices for each of a cell's two triangles, in double, plus the
 //   thirteen non-linear products of eq. 5.5 and 5.7 from tables read bilinearly (5.4).
 //
@@ -20,8 +19,8 @@ namespace anamorph {
 
 /// exact: every pixel in double. hermite: the bicubic patch in full at every pixel (5.3.5), in float.
 /// residual: a linear map for each of a cell's two triangles plus thirteen tabulated products (5.4 to 5.7).
-/// automatic: the patch as a quadratic on blocks, the fastest. Maps that are no bicubic patches (pairs of
-/// points, and meshes that push) know exact and automatic, and take the latter for the other two.
+/// automatic: quadratics in its place where they will do, the fastest. Maps that are no bicubic patches
+/// (pairs of points, and meshes that push) know exact and automatic, and take the latter for the other two.
 enum class WarpScheme { automatic, exact, hermite, residual };
 
 /// The source points of a warp, in blocks, and where it folds.
@@ -47,6 +46,7 @@ class MeshPlan final : public WarpPlan {
     bool exact(double x, double y, int piece, Point<double>& source_point,
                int& source_piece) const noexcept override;
     Jacobian jacobian(double x, double y, int piece) const noexcept override;
+    BlockPolynomial bicubic(const Block& block) const noexcept override;
     void computed_row(const Block& block, int row, int begin, int end, float* x,
                       float* y) const noexcept override;
     float folds(double x, double y) const noexcept override;

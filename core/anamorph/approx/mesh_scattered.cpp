@@ -7,6 +7,29 @@
 namespace anamorph {
 namespace {
 
+/// The pixel centres of a block.
+struct Centres {
+    Part across, down;
+
+    explicit Centres(const Box& box)
+        : across{0.5 * (box.x0 + box.x1), half(box.width())},
+          down{0.5 * (box.y0 + box.y1), half(box.height())} {}
+};
+
+/// A cubic's map in powers of a block's parameters.
+Bicubic on(const Scattered& map, const CubicTriangle& triangle, const Centres& at) {
+    using J = Jet<double, 3>;
+    const Point<J> p = map.at(triangle, J::variable(at.across.middle, at.across.half, 0),
+                              J::variable(at.down.middle, 0, at.down.half));
+    Bicubic f{};
+    for (int i = 0; i < 4; ++i)
+        for (int j = 0; i + j < 4; ++j) {
+            f.x[i][j] = p.x.at(i, j);
+            f.y[i][j] = p.y.at(i, j);
+        }
+    return f;
+}
+
 /// Plans one region.
 class Planner {
   public:
@@ -22,10 +45,10 @@ class Planner {
   private:
     void place(const Box& box) {
         if (BlockWriter::below_floor(box)) return m_writer.exact(box);
-        const Part across{0.5 * (box.x0 + box.x1), half(box.width())},
-            down{0.5 * (box.y0 + box.y1), half(box.height())};
+        const Centres at(box);
+        const auto& [across, down] = at;
         const CubicTriangle& middle = m_map.triangle_at(across.middle, down.middle);
-        const Bicubic f = on(middle, across, down);
+        const Bicubic f = on(m_map, middle, at);
         const EconomizedBicubic x(f.x), y(f.y);
         double step = 0, rounding = rounding_of(middle, across, down);
         int count = 0;
@@ -35,7 +58,7 @@ class Planner {
             const CubicTriangle& other = m_map.triangles()[static_cast<std::size_t>(i)];
             if (&other == &middle || count > kMost || !other.meets(place_)) return;
             ++count;
-            Bicubic g = on(other, across, down);
+            Bicubic g = on(m_map, other, at);
             for (int r = 0; r < 4; ++r)
                 for (int c = 0; c < 4; ++c) {
                     g.x[r][c] -= f.x[r][c];
@@ -48,27 +71,10 @@ class Planner {
         });
         // Beyond this many the block is better halved.
         if (count <= kMost &&
-            m_writer.polynomial(box, x.c, y.c, std::hypot(x.dropped, y.dropped) + step + rounding))
+            (m_writer.polynomial(box, x.c, y.c, std::hypot(x.dropped, y.dropped) + step + rounding) ||
+             m_writer.bicubic(box, f.x, f.y, x.c, y.c, step + rounding)))
             return;
-        const bool by_size = count > kMost || step > x.dropped + y.dropped;
-        m_writer.halve(
-            box,
-            by_size ? box.width() >= box.height() : x.dropped_s + y.dropped_s >= x.dropped_t + y.dropped_t,
-            [&](const Box& b) { place(b); });
-    }
-
-    /// A cubic's map in powers of the block's parameters.
-    Bicubic on(const CubicTriangle& triangle, const Part& across, const Part& down) const {
-        using J = Jet<double, 3>;
-        const Point<J> p = m_map.at(triangle, J::variable(across.middle, across.half, 0),
-                                    J::variable(down.middle, 0, down.half));
-        Bicubic f{};
-        for (int i = 0; i < 4; ++i)
-            for (int j = 0; i + j < 4; ++j) {
-                f.x[i][j] = p.x.at(i, j);
-                f.y[i][j] = p.y.at(i, j);
-            }
-        return f;
+        m_writer.halve(box, box.width() >= box.height(), [&](const Box& b) { place(b); });
     }
 
     /// In double, of the cubic and its Taylor coefficients: barycentric coordinates grow with the distance
@@ -121,6 +127,11 @@ bool ScatteredPlan::exact(double x, double y, int, Point<double>& source_point,
     source_point = m_map.at(x, y);
     source_piece = 0;
     return std::fabs(source_point.x) < kFarthest && std::fabs(source_point.y) < kFarthest;
+}
+
+BlockPolynomial ScatteredPlan::bicubic(const Block& block) const noexcept {
+    const Centres at(block.box);
+    return float_form(on(m_map, m_map.triangle_at(at.across.middle, at.down.middle), at), block);
 }
 
 Jacobian ScatteredPlan::jacobian(double x, double y, int) const noexcept {

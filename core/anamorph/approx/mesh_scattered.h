@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The blocks of a warp through pairs of points: the cubic at a block's middle economised to a quadratic; the
+// The blocks of a warp through pairs of points: the cubic at a block's middle, or a quadratic near it; the
 // other cubics that the block meets enter with their difference from that one, bounded on what they share.
 #pragma once
 
@@ -17,6 +17,7 @@ class ScatteredPlan final : public WarpPlan {
 
     bool exact(double x, double y, int piece, Point<double>& source_point,
                int& source_piece) const noexcept override;
+    BlockPolynomial bicubic(const Block& block) const noexcept override;
     Jacobian jacobian(double x, double y, int piece) const noexcept override;
     float folds(double x, double y) const noexcept override;
 

@@ -13,6 +13,18 @@ namespace {
 
 constexpr int kMaxRow = simd::kMaxRow;
 
+bool is_polynomial(const Block& block) {
+    return block.kind == Block::Kind::polynomial || block.kind == Block::Kind::bicubic;
+}
+
+BlockPolynomial polynomial_of(const BlockMap& map, const Block& block) {
+    return block.kind == Block::Kind::bicubic ? map.bicubic(block) : quadratic_of(block);
+}
+
+simd::Polynomials on_block(const BlockPolynomial& p, const Block& block) {
+    return {p.c, p.degree, block.box.width(), block.box.height()};
+}
+
 /// From the coefficients of a polynomial block.
 Jacobian jacobian_of(const Block& block) {
     const double hx = 0.5 * std::max(1, block.box.width() - 1),
@@ -45,29 +57,44 @@ void range_over(const float* at, std::ptrdiff_t stride, int width, int height, d
 
 void block_row(const BlockMap& map, const Block& block, const Box& part, int j, float* x, float* y) {
     const int row = j - block.box.y0, begin = part.x0 - block.box.x0, end = part.x1 - block.box.x0;
-    if (block.kind == Block::Kind::polynomial)
-        simd::block_points({block.x, block.y, block.box.width(), block.box.height()}, row, begin, end, x, y);
+    if (is_polynomial(block)) {
+        const BlockPolynomial p = polynomial_of(map, block);
+        simd::block_points(on_block(p, block), row, begin, end, x, y);
+    }
     if (block.kind == Block::Kind::computed) map.computed_row(block, row, begin, end, x, y);
 }
 
-/// A polynomial block's polynomial for one coordinate in texels of a level: base + c, and the range of c.
+/// A block's polynomial in texels of a level: less a base of its own, with the ranges of x and y.
 struct BlockReader::LevelPolynomial {
-    float c[6];
-    std::int32_t base;
-    Range range;
+    BlockPolynomial p;
+    std::int32_t base_x, base_y;
+    Range x, y;
 
-    LevelPolynomial(const float* from, std::int32_t from_base, double scale) {
-        const double origin = (from_base + static_cast<double>(from[0])) * scale;
-        base = scale == 1 ? from_base : static_cast<std::int32_t>(std::floor(origin));
-        c[0] = scale == 1 ? from[0] : static_cast<float>(origin - base);
+    LevelPolynomial(const BlockPolynomial& of_source, const Block& block, double scale_x, double scale_y)
+        : p(of_source), base_x(block.base_x), base_y(block.base_y) {
+        x = take(0, base_x, scale_x);
+        y = take(4, base_y, scale_y);
+    }
+
+  private:
+    /// One coordinate: coefficients and base to the level, and the range.
+    Range take(int first, std::int32_t& base, double scale) {
         double spread = 0;
-        for (int i = 1; i < 6; ++i) {
-            c[i] = static_cast<float>(from[i] * scale);
-            spread += std::fabs(c[i]);
+        for (int j = 0; j <= p.degree; ++j)
+            for (int i = first; i <= first + p.degree; ++i) {
+                if (j == 0 && i == first) continue;
+                if (scale != 1) p.c[j][i] = static_cast<float>(p.c[j][i] * scale);
+                spread += std::fabs(p.c[j][i]);
+            }
+        float& middle = p.c[0][first];
+        if (scale != 1) {
+            const double origin = (base + static_cast<double>(middle)) * scale;
+            base = static_cast<std::int32_t>(std::floor(origin));
+            middle = static_cast<float>(origin - base);
         }
         // With room for the rounding of the sum.
         spread = spread * (1 + 1e-5) + 1e-3;
-        range = {c[0] - spread, c[0] + spread};
+        return {middle - spread, middle + spread};
     }
 };
 
@@ -127,6 +154,7 @@ bool BlockReader::rows(const Block& block, const Box& part, const Row& row) {
                     row(x, j, std::min(kMaxRow, part.x1 - x), m_values.data(), 1);
             return true;
         case Block::Kind::polynomial:
+        case Block::Kind::bicubic:
             return polynomial_rows(block, part, row);
         case Block::Kind::computed:
             return rows(block, computed_points(block), part, row);
@@ -137,16 +165,16 @@ bool BlockReader::rows(const Block& block, const Box& part, const Row& row) {
 }
 
 bool BlockReader::draw(const Block& block, const Box& part, const Canvas& canvas, const Block* next) {
-    if (block.kind == Block::Kind::polynomial && canvas.packed() && m_source.unassociated_alpha() < 0) {
+    if (is_polynomial(block) && canvas.packed() && m_source.unassociated_alpha() < 0) {
         const Filtering f = filtering(jacobian_of(block));
-        const LevelPolynomial x(block.x, block.base_x, f.scale_x), y(block.y, block.base_y, f.scale_y);
+        const LevelPolynomial polynomial(polynomial_of(m_map, block), block, f.scale_x, f.scale_y);
         Window window;
-        const Got got = polynomial_window(f, block, x, y, window);
+        const Got got = polynomial_window(f, block, polynomial, window);
         if (got == Got::failed) return false;
         if (got == Got::window) {
-            simd::draw_block(texels_of(f, window, x.base, y.base),
-                             {x.c, y.c, block.box.width(), block.box.height()}, part.x0 - block.box.x0,
-                             part.x1 - block.box.x0, part.y0 - block.box.y0, part.y1 - block.box.y0,
+            simd::draw_block(texels_of(f, window, polynomial.base_x, polynomial.base_y),
+                             on_block(polynomial.p, block), part.x0 - block.box.x0, part.x1 - block.box.x0,
+                             part.y0 - block.box.y0, part.y1 - block.box.y0,
                              canvas.scale_from(one_of(window.type)), canvas.type(),
                              canvas.at(part.x0, part.y0), canvas.row_stride(), upcoming(next, f));
             return true;
@@ -162,16 +190,16 @@ bool BlockReader::draw(const Block& block, const Box& part, const Canvas& canvas
 
 bool BlockReader::polynomial_rows(const Block& block, const Box& part, const Row& row) {
     const Filtering f = filtering(jacobian_of(block));
-    const LevelPolynomial x(block.x, block.base_x, f.scale_x), y(block.y, block.base_y, f.scale_y);
+    const LevelPolynomial polynomial(polynomial_of(m_map, block), block, f.scale_x, f.scale_y);
     Window window;
-    const Got got = polynomial_window(f, block, x, y, window);
+    const Got got = polynomial_window(f, block, polynomial, window);
     if (got == Got::failed) return false;
     if (got == Got::too_large) return rows_one_by_one(block, {}, part, row);
-    const simd::Texels texels = texels_of(f, window, x.base, y.base);
+    const simd::Texels texels = texels_of(f, window, polynomial.base_x, polynomial.base_y);
     alignas(64) float px[simd::kRowRoom], py[simd::kRowRoom];
     for (int j = part.y0; j < part.y1; ++j) {
-        simd::block_points({x.c, y.c, block.box.width(), block.box.height()}, j - block.box.y0,
-                           part.x0 - block.box.x0, part.x1 - block.box.x0, px, py);
+        simd::block_points(on_block(polynomial.p, block), j - block.box.y0, part.x0 - block.box.x0,
+                           part.x1 - block.box.x0, px, py);
         sample(texels, {px, py, part.width()}, window.type, part.x0, j, row);
     }
     return true;
@@ -320,9 +348,8 @@ void BlockReader::finish(int x, int y, int count, float one, const Row& row) {
 // -------------------------------------------------------------------------------------
 
 BlockReader::Got BlockReader::polynomial_window(const Filtering& f, const Block& block,
-                                                const LevelPolynomial& x, const LevelPolynomial& y,
-                                                Window& window) {
-    return window_of(f, block.source_piece, x.base, x.range, y.base, y.range, block.box, window);
+                                                const LevelPolynomial& p, Window& window) {
+    return window_of(f, block.source_piece, p.base_x, p.x, p.base_y, p.y, block.box, window);
 }
 
 BlockReader::Got BlockReader::window_of(const Filtering& f, int piece, std::int32_t base_x,
@@ -345,9 +372,9 @@ BlockReader::Got BlockReader::window_of(const Filtering& f, int piece, std::int3
 /// Where the next block's texels stand in memory, if they do; filtered like this one's.
 simd::Upcoming BlockReader::upcoming(const Block* next, const Filtering& f) const {
     const ConstImageView* view = m_source.view(f.level);
-    if (!next || !view || next->kind != Block::Kind::polynomial) return {};
-    const LevelPolynomial px(next->x, next->base_x, f.scale_x), py(next->y, next->base_y, f.scale_y);
-    const Span x(f, f.reach_x, px.base, px.range), y(f, f.reach_y, py.base, py.range);
+    if (!next || !view || !is_polynomial(*next)) return {};
+    const LevelPolynomial p(quadratic_of(*next), *next, f.scale_x, f.scale_y);
+    const Span x(f, f.reach_x, p.base_x, p.x), y(f, f.reach_y, p.base_y, p.y);
     if (!(x.first >= 0 && y.first >= 0 && x.last <= view->width && y.last <= view->height)) return {};
     return {view->at(static_cast<std::ptrdiff_t>(x.first), static_cast<std::ptrdiff_t>(y.first)),
             view->row_stride, static_cast<int>(y.last - y.first),

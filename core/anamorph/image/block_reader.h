@@ -21,7 +21,7 @@ struct BlockPoints {
     std::ptrdiff_t row_stride = 0;  ///< floats; behind every row at least 16 more may be read
 };
 
-/// The offsets from the base of a polynomial or computed block for row j of `part` of it; room for
+/// The offsets from the base of a polynomial, bicubic or computed block for row j of `part` of it; room for
 /// simd::kRowRoom floats each. Nothing is written for other kinds.
 void block_row(const BlockMap& map, const Block& block, const Box& part, int j, float* x, float* y);
 
@@ -78,8 +78,8 @@ class BlockReader {
 
     BlockPoints computed_points(const Block& block);
     Filtering filtering(const Jacobian& jacobian) const;
-    Got polynomial_window(const Filtering& f, const Block& block, const LevelPolynomial& x,
-                          const LevelPolynomial& y, Window& window);
+    Got polynomial_window(const Filtering& f, const Block& block, const LevelPolynomial& polynomial,
+                          Window& window);
     Got window_of(const Filtering& f, int piece, std::int32_t base_x, const Range& range_x,
                   std::int32_t base_y, const Range& range_y, const Box& block, Window& window);
     static simd::Texels texels_of(const Filtering& f, const Window& window, std::int32_t base_x,

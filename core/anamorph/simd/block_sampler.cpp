@@ -29,23 +29,35 @@ HWY_INLINE float step_of(int count) {
     return count > 1 ? 1.0f / static_cast<float>(count - 1) : 0.0f;
 }
 
-/// The polynomials on one row, as polynomials in s: a + s (b + s c).
+/// The polynomials on one row, as polynomials in s.
 struct RowPolynomial {
-    hn::Vec<Floats> ax, bx, qx, ay, by, qy, step;
+    hn::Vec<Floats> x0, x1, x2, x3, y0, y1, y2, y3, step;
     float first;
+    bool cubic;
 
     HWY_INLINE RowPolynomial(const Polynomials& block, int row) {
+        // Horner's rule for t, for all eight coefficients at once.
+        const hn::CappedTag<float, 8> d8;
+        const auto t = hn::Set(d8, static_cast<float>(2 * row - (block.height - 1)) * step_of(block.height));
+        HWY_ALIGN float c[8];
+        for (int lane = 0; lane < 8; lane += static_cast<int>(hn::MaxLanes(d8))) {
+            auto sum = hn::LoadU(d8, block.c[block.degree] + lane);
+            for (int j = block.degree - 1; j >= 0; --j)
+                sum = hn::MulAdd(sum, t, hn::LoadU(d8, block.c[j] + lane));
+            hn::Store(sum, d8, c + lane);
+        }
         const Floats d;
-        const float *x = block.x, *y = block.y;
-        const float t = static_cast<float>(2 * row - (block.height - 1)) * step_of(block.height);
-        ax = hn::Set(d, (x[5] * t + x[2]) * t + x[0]);
-        bx = hn::Set(d, x[4] * t + x[1]);
-        qx = hn::Set(d, x[3]);
-        ay = hn::Set(d, (y[5] * t + y[2]) * t + y[0]);
-        by = hn::Set(d, y[4] * t + y[1]);
-        qy = hn::Set(d, y[3]);
+        x0 = hn::Set(d, c[0]);
+        x1 = hn::Set(d, c[1]);
+        x2 = hn::Set(d, c[2]);
+        x3 = hn::Set(d, c[3]);
+        y0 = hn::Set(d, c[4]);
+        y1 = hn::Set(d, c[5]);
+        y2 = hn::Set(d, c[6]);
+        y3 = hn::Set(d, c[7]);
         step = hn::Set(d, step_of(block.width));
         first = static_cast<float>(1 - block.width);
+        cubic = block.degree == 3;
     }
     /// The points of pixels i, i + 1, ...: pixel i stands 2 i - (width - 1) half steps from the middle.
     HWY_INLINE void At(int i, hn::Vec<Floats>& x, hn::Vec<Floats>& y) const {
@@ -53,8 +65,9 @@ struct RowPolynomial {
         const auto lanes = hn::Iota(d, 0.0f);
         const auto s =
             hn::Mul(hn::Add(hn::Add(lanes, lanes), hn::Set(d, first + static_cast<float>(2 * i))), step);
-        x = hn::MulAdd(s, hn::MulAdd(s, qx, bx), ax);
-        y = hn::MulAdd(s, hn::MulAdd(s, qy, by), ay);
+        const auto qx = cubic ? hn::MulAdd(s, x3, x2) : x2, qy = cubic ? hn::MulAdd(s, y3, y2) : y2;
+        x = hn::MulAdd(s, hn::MulAdd(s, qx, x1), x0);
+        y = hn::MulAdd(s, hn::MulAdd(s, qy, y1), y0);
     }
 };
 

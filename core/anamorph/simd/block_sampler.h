@@ -2,7 +2,7 @@
 // The hot loops: from the polynomials of a block to its filtered pixels. Compiled for every instruction set
 // Highway knows and chosen once per call; tests run each against the scalar path.
 //
-// Errors. Coordinates are evaluated in float as plan.h states (fused where the machine fuses), within the
+// Errors. Coordinates are evaluated in float as block.h states (fused where the machine fuses), within the
 // rounding term of the block's bound. A filtered value differs from the scalar path's by float rounding: at
 // most 16 half-ULP of the largest texel read.
 #pragma once
@@ -14,9 +14,11 @@
 
 namespace anamorph::simd {
 
-/// The polynomials of a block for the source points of its pixels, as Block::x and y, and its size.
+/// The polynomials of a block for the source points of its pixels: [j][i] of s^i t^j for x, [j][4 + i] for y,
+/// s and t in [-1, 1] over the pixel centres; of a degree up to 3 in s and in t; and the block's size.
 struct Polynomials {
-    const float *x, *y;
+    const float (*c)[8];
+    int degree;
     int width, height;
 };
 
