@@ -1,6 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "anamorph/approx/mesh_scattered.h"
 
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <vector>
+
 #include "anamorph/approx/block_writer.h"
 #include "anamorph/approx/hermite.h"
 
@@ -30,6 +35,90 @@ Bicubic on(const Scattered& map, const CubicTriangle& triangle, const Centres& a
     return f;
 }
 
+/// Values at four places of a row at once: the number a triangle is read with there.
+struct RowValues {
+    std::array<double, 4> v{};
+
+    RowValues() = default;
+    RowValues(double constant) { v.fill(constant); }  // NOLINT: a number is a constant row
+};
+template <class Body>
+RowValues each_value(const RowValues& a, const RowValues& b, const Body& body) {
+    RowValues r;
+    for (std::size_t i = 0; i < 4; ++i) r.v[i] = body(a.v[i], b.v[i]);
+    return r;
+}
+RowValues operator+(const RowValues& a, const RowValues& b) {
+    return each_value(a, b, [](double x, double y) { return x + y; });
+}
+RowValues operator-(const RowValues& a, const RowValues& b) {
+    return each_value(a, b, [](double x, double y) { return x - y; });
+}
+RowValues operator*(const RowValues& a, const RowValues& b) {
+    return each_value(a, b, [](double x, double y) { return x * y; });
+}
+RowValues square(const RowValues& a) {
+    return a * a;
+}
+
+/// A cubic on a row, from its values at 0, h, 2 h and 3 h (Newton's form).
+class RowCubic {
+  public:
+    RowCubic(const RowValues& values, double h) : m_h(h), m_d0(values.v[0]) {
+        const auto& v = values.v;
+        const double once[3] = {v[1] - v[0], v[2] - v[1], v[3] - v[2]};
+        const double twice[2] = {once[1] - once[0], once[2] - once[1]};
+        m_d1 = once[0] / h;
+        m_d2 = twice[0] / (2 * h * h);
+        m_d3 = (twice[1] - twice[0]) / (6 * h * h * h);
+    }
+    double operator()(double x) const {
+        return m_d0 + x * (m_d1 + (x - m_h) * (m_d2 + (x - 2 * m_h) * m_d3));
+    }
+
+  private:
+    double m_h, m_d0, m_d1, m_d2, m_d3;
+};
+
+/// The pixels [begin, end) of a row whose centres certainly lie in a triangle, and those that may.
+struct Run {
+    int begin, end, outer_begin, outer_end;
+
+    /// The row's first centre is (x, y).
+    Run(const CubicTriangle& t, double x, double y, int count) : begin(0), end(count) {
+        outer_begin = begin;
+        outer_end = end;
+        const double dx = x - t.corner[2].x, dy = y - t.corner[2].y;
+        // Barycentric coordinates err by less than this on the row, crossings by less than their share of it.
+        const double place =
+            std::fabs(x) + std::fabs(y) + std::fabs(t.corner[2].x) + std::fabs(t.corner[2].y) + count;
+        const double slopes = std::fabs(t.a[0]) + std::fabs(t.a[1]) + std::fabs(t.b[0]) + std::fabs(t.b[1]);
+        const double margin = 1e-14 * (1 + slopes * place);
+        const auto cut = [&](double value, double slope) {
+            narrow(value - margin, slope, count, begin, end);
+            narrow(value + margin, slope, count, outer_begin, outer_end);
+        };
+        const double u = dx * t.a[0] + dy * t.b[0], v = dx * t.a[1] + dy * t.b[1];
+        cut(u, t.a[0]);
+        cut(v, t.a[1]);
+        cut(1 - u - v, -t.a[0] - t.a[1]);
+    }
+
+  private:
+    /// Keeps the i of [begin, end) with value + slope i >= 0.
+    static void narrow(double value, double slope, int count, int& begin, int& end) {
+        if (slope == 0) {
+            if (value < 0) end = begin;
+            return;
+        }
+        const double at = std::clamp(-value / slope, -1.0, double(count));
+        if (slope > 0)
+            begin = std::max(begin, static_cast<int>(std::ceil(at)));
+        else
+            end = std::min(end, static_cast<int>(std::floor(at)) + 1);
+    }
+};
+
 /// Plans one region.
 class Planner {
   public:
@@ -43,38 +132,78 @@ class Planner {
     }
 
   private:
+    /// A cubic that a block meets: on the block, where on it, and how double rounds it.
+    struct Met {
+        Bicubic f;
+        Part s, t;
+        double rounding;
+    };
+
     void place(const Box& box) {
         if (BlockWriter::below_floor(box)) return m_writer.exact(box);
-        const Centres at(box);
-        const auto& [across, down] = at;
-        const CubicTriangle& middle = m_map.triangle_at(across.middle, down.middle);
-        const Bicubic f = on(m_map, middle, at);
-        const EconomizedBicubic x(f.x), y(f.y);
-        double step = 0, rounding = rounding_of(middle, across, down);
-        int count = 0;
-        const Bounds place_{across.middle - across.half, down.middle - down.half, across.middle + across.half,
-                            down.middle + down.half};
-        m_map.tree().each(place_, [&](std::int32_t i) {
-            const CubicTriangle& other = m_map.triangles()[static_cast<std::size_t>(i)];
-            if (&other == &middle || count > kMost || !other.meets(place_)) return;
-            ++count;
-            Bicubic g = on(m_map, other, at);
-            for (int r = 0; r < 4; ++r)
-                for (int c = 0; c < 4; ++c) {
-                    g.x[r][c] -= f.x[r][c];
-                    g.y[r][c] -= f.y[r][c];
-                }
-            const Bounds b = other.bounds();
-            const Bicubic there = restricted(g, common(across, b.x0, b.x1), common(down, b.y0, b.y1));
-            step = std::max(step, std::hypot(sum_of_magnitudes(there.x), sum_of_magnitudes(there.y)));
-            rounding = std::max(rounding, rounding_of(other, across, down));
-        });
-        // Beyond this many the block is better halved.
-        if (count <= kMost &&
-            (m_writer.polynomial(box, x.c, y.c, std::hypot(x.dropped, y.dropped) + step + rounding) ||
-             m_writer.bicubic(box, f.x, f.y, x.c, y.c, step + rounding)))
-            return;
+        if (gather(Centres(box)) && (smooth(box) || pieces(box))) return;
         m_writer.halve(box, box.width() >= box.height(), [&](const Box& b) { place(b); });
+    }
+
+    /// Finds the cubics that a block meets, the one at its middle first. False where there are too many.
+    bool gather(const Centres& at) {
+        m_met.clear();
+        const auto& [across, down] = at;
+        const auto take = [&](const CubicTriangle& triangle) {
+            const Bounds b = triangle.bounds();
+            m_met.push_back({on(m_map, triangle, at), common(across, b.x0, b.x1), common(down, b.y0, b.y1),
+                             rounding_of(triangle, across, down)});
+        };
+        const CubicTriangle& middle = m_map.triangle_at(across.middle, down.middle);
+        take(middle);
+        const Bounds all{across.middle - across.half, down.middle - down.half, across.middle + across.half,
+                         down.middle + down.half};
+        m_map.tree().each(all, [&](std::int32_t i) {
+            const CubicTriangle& other = m_map.triangles()[static_cast<std::size_t>(i)];
+            if (m_met.size() <= kMost && &other != &middle && other.meets(all)) take(other);
+        });
+        return m_met.size() <= kMost;
+    }
+
+    /// One polynomial, from which the other cubics differ little.
+    bool smooth(const Box& box) {
+        const Bicubic& f = m_met[0].f;
+        double step = 0, rounding = 0;
+        for (const Met& other : m_met) {
+            const Bicubic there = restricted(difference(other.f, f), other.s, other.t);
+            step = std::max(step, std::hypot(sum_of_magnitudes(there.x), sum_of_magnitudes(there.y)));
+            rounding = std::max(rounding, other.rounding);
+        }
+        const EconomizedBicubic x(f.x), y(f.y);
+        return m_writer.polynomial(box, x.c, y.c, std::hypot(x.dropped, y.dropped) + step + rounding) ||
+               m_writer.bicubic(box, f.x, f.y, x.c, y.c, step + rounding);
+    }
+
+    /// Each pixel by the cubic it lies in, in double: the offset from the base is rounded to float, and twice
+    /// more where it is read.
+    bool pieces(const Box& box) {
+        const Point<double> middle = m_map.at(0.5 * (box.x0 + box.x1), 0.5 * (box.y0 + box.y1));
+        double error = 0;
+        for (const Met& met : m_met) {
+            Bicubic f = met.f;
+            f.x[0][0] -= std::floor(middle.x);
+            f.y[0][0] -= std::floor(middle.y);
+            const Bicubic there = restricted(f, met.s, met.t);
+            error = std::max(
+                error, std::hypot(sum_of_magnitudes(there.x), sum_of_magnitudes(there.y)) * (3.03 * 0x1p-24) +
+                           met.rounding);
+        }
+        return m_writer.computed(box, middle, error);
+    }
+
+    static Bicubic difference(const Bicubic& a, const Bicubic& b) {
+        Bicubic d;
+        for (int i = 0; i < 4; ++i)
+            for (int j = 0; j < 4; ++j) {
+                d.x[i][j] = a.x[i][j] - b.x[i][j];
+                d.y[i][j] = a.y[i][j] - b.y[i][j];
+            }
+        return d;
     }
 
     /// In double, of the cubic and its Taylor coefficients: barycentric coordinates grow with the distance
@@ -98,10 +227,11 @@ class Planner {
         return {0.5 * (from + to), 0.5 * (to - from) + 1e-9};
     }
 
-    static constexpr int kMost = 12;
+    static constexpr std::size_t kMost = 64;
 
     const Scattered& m_map;
     BlockWriter m_writer;
+    std::vector<Met> m_met;
 };
 
 }  // namespace
@@ -132,6 +262,38 @@ bool ScatteredPlan::exact(double x, double y, int, Point<double>& source_point,
 BlockPolynomial ScatteredPlan::bicubic(const Block& block) const noexcept {
     const Centres at(block.box);
     return float_form(on(m_map, m_map.triangle_at(at.across.middle, at.down.middle), at), block);
+}
+
+void ScatteredPlan::computed_row(const Block& block, int row, int begin, int end, float* x,
+                                 float* y) const noexcept {
+    const int count = end - begin;
+    const double first = block.box.x0 + begin + 0.5, down = block.box.y0 + row + 0.5;
+    const auto put = [&](int i, const Point<double>& p) {
+        x[i] = static_cast<float>(p.x - block.base_x);
+        y[i] = static_cast<float>(p.y - block.base_y);
+    };
+    // How many triangles may hold a pixel, and whether one certainly does.
+    std::array<int, Block::kMaxSide> claims{};
+    std::array<bool, Block::kMaxSide> held{};
+    m_map.tree().each({first, down, first + count - 1, down}, [&](std::int32_t n) {
+        const CubicTriangle& triangle = m_map.triangles()[static_cast<std::size_t>(n)];
+        const Run run(triangle, first, down, count);
+        for (int i = run.outer_begin; i < run.outer_end; ++i) ++claims[static_cast<std::size_t>(i)];
+        if (run.begin >= run.end) return;
+        const double h = std::max(run.end - run.begin - 1, 1) / 3.0;
+        RowValues places;
+        for (std::size_t k = 0; k < 4; ++k) places.v[k] = first + run.begin + h * double(k);
+        const Point<RowValues> f = m_map.at(triangle, places, RowValues(down));
+        const RowCubic at_x(f.x, h), at_y(f.y, h);
+        for (int i = run.begin; i < run.end; ++i) {
+            held[static_cast<std::size_t>(i)] = true;
+            put(i, {at_x(i - run.begin), at_y(i - run.begin)});
+        }
+    });
+    // On edges, by the rule for single points.
+    for (int i = 0; i < count; ++i)
+        if (claims[static_cast<std::size_t>(i)] != 1 || !held[static_cast<std::size_t>(i)])
+            put(i, m_map.at(first + i, down));
 }
 
 Jacobian ScatteredPlan::jacobian(double x, double y, int) const noexcept {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The blocks of a warp through pairs of points: the cubic at a block's middle, or a quadratic near it; the
-// other cubics that the block meets enter with their difference from that one, bounded on what they share.
+// The blocks of a warp through pairs of points: the cubic at a block's middle, or a quadratic near it, where
+// the other cubics that the block meets differ little from it, bounded on what they share; else every pixel
+// by the cubic it lies in.
 #pragma once
 
 #include "anamorph/approx/mesh_plan.h"
@@ -18,6 +19,8 @@ class ScatteredPlan final : public WarpPlan {
     bool exact(double x, double y, int piece, Point<double>& source_point,
                int& source_piece) const noexcept override;
     BlockPolynomial bicubic(const Block& block) const noexcept override;
+    void computed_row(const Block& block, int row, int begin, int end, float* x,
+                      float* y) const noexcept override;
     Jacobian jacobian(double x, double y, int piece) const noexcept override;
     float folds(double x, double y) const noexcept override;
 
