@@ -192,6 +192,16 @@ TEST(VtkFigureOutline, WhatCannotBeDoneIsAnError) {
     for (const double bad : {0.0, kNan})
         EXPECT_THAT(errors_of<Outline>(figures({kNear}), [&](auto* f) { f->SetTolerance(bad); }),
                     HasSubstr("allowed is a positive number"));
+    // A tolerance that cannot be held is found before curves are followed, which takes long.
+    vtkNew<ProgressObserver> progress;
+    EXPECT_THAT(errors_of<Outline>(figures({kNear, kInside}),
+                                   [&](auto* f) {
+                                       f->CrossingsOn();
+                                       f->SetTolerance(1e-300);
+                                       f->AddObserver(vtkCommand::ProgressEvent, progress);
+                                   }),
+                HasSubstr("allowed are tolerances that a million chords can hold"));
+    for (const double report : progress->reports) EXPECT_TRUE(report <= 0.1 || report == 1) << report;
     Ball vast = kNear;
     vast.axes.x = 1e60;
     EXPECT_NE(errors_of<Outline>(figures({vast})), "");

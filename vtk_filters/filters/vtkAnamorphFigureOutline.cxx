@@ -77,10 +77,16 @@ void vtkAnamorphFigureOutline::Draw(vtkPolyData* input, vtkPolyData* output,
     const anamorph_vtk::Bodies bodies(input);
     const anamorph::View view = this->ViewOf(input);
     anamorph::OutlineOptions options;
+    options.hide = false;
+    options.names = bodies.names;
+    // Limbs tell at once that there are too many chords, crossings late.
+    if (this->Crossings)
+        for (const Outline& outline : anamorph::outlines(bodies.shapes, view, options).bodies)
+            for (const Arc& arc : outline.visible)
+                anamorph::chord_angles(outline, arc, view, this->Tolerance);
     options.hide = this->Hidden != TRANSPARENT;
     options.crossings = this->Crossings;
     options.tol = this->Tolerance;
-    options.names = bodies.names;
     execution.progress(0.05);
     anamorph::Outlines all = anamorph::outlines(bodies.shapes, view, options, execution.stage(0.1, 0.6));
     std::vector<anamorph::Connection> connections;
