@@ -21,6 +21,7 @@
 #include <vtkUnsignedCharArray.h>
 #include <vtkUnsignedShortArray.h>
 
+#include <chrono>
 #include <cmath>
 #include <filesystem>
 #include <functional>
@@ -300,6 +301,19 @@ TEST(VtkRelief, PicturesAreReadFromFiles) {
     source->SetFileName(name.c_str());
     source->SetHeightScale(1);
     source->SetOutputPointsPrecision(vtkAlgorithm::DOUBLE_PRECISION);
+    source->Update();
+    EXPECT_EQ(heights(grid_of(source)), heights_of(image));
+    // The file is read again when it is another.
+    const Picture changed = picture(3, 4, VTK_UNSIGNED_CHAR, 3);
+    writer->SetInputData(changed);
+    writer->Write();
+    std::filesystem::last_write_time(name, std::filesystem::last_write_time(name) + std::chrono::seconds(1));
+    source->Modified();
+    source->Update();
+    EXPECT_EQ(heights(grid_of(source)), heights_of(changed));
+    writer->SetInputData(image);
+    writer->Write();
+    source->Modified();
     source->Update();
     EXPECT_EQ(heights(grid_of(source)), heights_of(image));
     source->UpdatePiece(1, 2, 0);

@@ -441,6 +441,11 @@ vtkImageData* vtkAnamorphReliefSource::Picture(vtkInformationVector** inputs) {
 int vtkAnamorphReliefSource::RequestInformation(vtkInformation*, vtkInformationVector** inputs,
                                                 vtkInformationVector* outputs) {
     const auto tell_extent = [&] {
+        std::error_code ignored;
+        const auto written = std::filesystem::last_write_time(this->FileName, ignored);
+        const auto file_time = static_cast<long long>(written.time_since_epoch().count());
+        if (file_time != this->FileTime) this->Reader = nullptr;
+        this->FileTime = file_time;
         vtkInformation* picture = this->PictureInformation(inputs);
         const Axes axes =
             axes_of(picture->Get(Executive::WHOLE_EXTENT()), this->Resolution, this->SampleRate);

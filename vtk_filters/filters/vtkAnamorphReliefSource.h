@@ -39,7 +39,10 @@ class ANAMORPHFILTERS_EXPORT vtkAnamorphReliefSource : public vtkStructuredGridA
     enum { LUMINANCE = -1 };
 
     ///@{
-    /** The picture, in any format that VTK's image readers know. Not read if there is an input. */
+    /**
+     * The picture, in any format that VTK's image readers know. Not read if there is an input. A file that
+     * was written anew is read again after Modified().
+     */
     void SetFileName(const char* name);
     const char* GetFileName() { return this->FileName.c_str(); }
     ///@}
@@ -155,6 +158,7 @@ class ANAMORPHFILTERS_EXPORT vtkAnamorphReliefSource : public vtkStructuredGridA
     bool GenerateNormals = false;
     int OutputPointsPrecision = SINGLE_PRECISION;
     vtkSmartPointer<vtkAlgorithm> Reader;  ///< of FileName
+    long long FileTime = 0;                ///< when the file was written that it reads
     bool ReaderFailed = false;             ///< it made an error; not all of them set an error code
 };
 
