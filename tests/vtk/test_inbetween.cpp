@@ -1059,6 +1059,13 @@ TEST(VtkInbetween, UpdatesOnlyAfterAChangeOfAValue) {
                  [](Filter* f) { f->SetOutputPointsPrecision(vtkAlgorithm::DOUBLE_PRECISION); },
                  [](Filter* f) { f->ClearKeys(); }, [](Filter* f) { f->SetMaskArrayName(0, nullptr); },
                  [](Filter* f) { f->SetModeToDeltas(); }});
+    const Errors errors(filter);
+    const vtkMTimeType time = filter->GetMTime();
+    filter->SetWeight(-1, 1);
+    EXPECT_THAT(errors.text(), HasSubstr("index=-1: allowed are 0 to 1048575"));
+    filter->SetNumberOfKeys(VTK_INT_MAX);
+    EXPECT_THAT(errors.text(), HasSubstr("count=2147483647: allowed are 0 to 1048576"));
+    EXPECT_EQ(filter->GetMTime(), time);
     EXPECT_EQ(filter->GetWeight(1), 0.75);
     EXPECT_EQ(filter->GetWeight(2), 0);
     EXPECT_EQ(filter->GetWeight(-1), 0);

@@ -480,9 +480,9 @@ namespace {
 
 /// Lists grow to the index that is set. True if something changed.
 template <class T>
-bool set_entry(std::vector<T>& list, int index, const T& value) {
+bool set_entry(vtkObject* object, std::vector<T>& list, int index, const T& value) {
     if (index < 0 || index >= kMostEntries) {
-        vtkGenericWarningMacro(<< "index=" << index << ": allowed are 0 to " << kMostEntries - 1);
+        vtkErrorWithObjectMacro(object, << "index=" << index << ": allowed are 0 to " << kMostEntries - 1);
         return false;
     }
     const auto i = static_cast<std::size_t>(index);
@@ -493,9 +493,9 @@ bool set_entry(std::vector<T>& list, int index, const T& value) {
 }
 
 template <class T>
-bool set_size(std::vector<T>& list, int count) {
+bool set_size(vtkObject* object, std::vector<T>& list, int count) {
     if (count < 0 || count > kMostEntries) {
-        vtkGenericWarningMacro(<< "count=" << count << ": allowed are 0 to " << kMostEntries);
+        vtkErrorWithObjectMacro(object, << "count=" << count << ": allowed are 0 to " << kMostEntries);
         return false;
     }
     if (static_cast<std::size_t>(count) == list.size()) return false;
@@ -512,11 +512,11 @@ T get_entry(const std::vector<T>& list, int index) {
 }  // namespace
 
 void vtkAnamorphInbetween::SetNumberOfWeights(int count) {
-    if (set_size(this->Weights, count)) this->Modified();
+    if (set_size(this, this->Weights, count)) this->Modified();
 }
 
 void vtkAnamorphInbetween::SetWeight(int index, double weight) {
-    if (set_entry(this->Weights, index, weight)) this->Modified();
+    if (set_entry(this, this->Weights, index, weight)) this->Modified();
 }
 
 double vtkAnamorphInbetween::GetWeight(int index) {
@@ -524,11 +524,11 @@ double vtkAnamorphInbetween::GetWeight(int index) {
 }
 
 void vtkAnamorphInbetween::SetNumberOfMasks(int count) {
-    if (set_size(this->Masks, count)) this->Modified();
+    if (set_size(this, this->Masks, count)) this->Modified();
 }
 
 void vtkAnamorphInbetween::SetMaskArrayName(int index, const char* name) {
-    if (set_entry(this->Masks, index, std::string(name ? name : ""))) this->Modified();
+    if (set_entry(this, this->Masks, index, std::string(name ? name : ""))) this->Modified();
 }
 
 const char* vtkAnamorphInbetween::GetMaskArrayName(int index) {
@@ -538,11 +538,11 @@ const char* vtkAnamorphInbetween::GetMaskArrayName(int index) {
 }
 
 void vtkAnamorphInbetween::SetNumberOfKeys(int count) {
-    if (set_size(this->Keys, count)) this->Modified();
+    if (set_size(this, this->Keys, count)) this->Modified();
 }
 
 void vtkAnamorphInbetween::SetKey(int index, double time, int input, double weight) {
-    if (set_entry(this->Keys, index, Key{time, input, weight})) this->Modified();
+    if (set_entry(this, this->Keys, index, Key{time, input, weight})) this->Modified();
 }
 
 void vtkAnamorphInbetween::AddKey(double time, int input, double weight) {
