@@ -101,7 +101,6 @@ void add_hidden(const SeenBody& body, const SeenBody& other, bool perspective, s
         return;
     }
     // Between two roots nothing changes: the middle decides.
-    std::sort(roots.angle, roots.angle + roots.count);
     for (int k = 0; k < roots.count; ++k) {
         const bool last = k + 1 == roots.count;
         const Arc arc{roots.angle[k], last ? roots.angle[0] + kTurn : roots.angle[k + 1]};

@@ -40,15 +40,18 @@ struct WaveSquares {
     }
 };
 
-/// The sign changes of f on the circle, in [0, 2 pi), ascending; at most as many as the array holds. Changes
-/// within the noise may be left out, in pairs.
+/// The sign changes of one or more f on the circle, in [0, 2 pi), ascending; at most as many as the array
+/// holds. Changes within the noise may be left out, in pairs.
 struct Roots {
     static constexpr int kMost = 16;
     double angle[kMost];
     int count = 0;
 
     void add(double t) {
-        if (count < kMost) angle[count++] = t;
+        if (count == kMost) return;
+        int k = count++;
+        for (; k > 0 && angle[k - 1] > t; --k) angle[k] = angle[k - 1];
+        angle[k] = t;
     }
 };
 
