@@ -123,7 +123,7 @@ class Page {
         const glm::dvec2 at = on_page(outline.screen.center);
         if (std::min(at.x, at.y) < m_box.low || std::max(at.x, at.y) > m_box.high) return;
         Stroke stroke = stroke_of(StrokeKind::dot, i);
-        stroke.points = {at};
+        stroke.points.assign(1, at);
         stroke.depth = outline.viewed.center.z;
         m_drawing.strokes.push_back(std::move(stroke));
     }
