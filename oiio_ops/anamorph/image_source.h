@@ -20,11 +20,8 @@
 
 namespace anamorph {
 
-#if OIIO_VERSION >= 30000
-using ImageCacheRef = std::shared_ptr<OIIO::ImageCache>;
-#else
-using ImageCacheRef = OIIO::ImageCache*;
-#endif
+/// A plain pointer before OpenImageIO 3.0, a shared one since.
+using ImageCacheRef = decltype(OIIO::ImageCache::create(true));
 
 /// The core's type for an OpenImageIO type: itself, or float.
 PixelType pixel_type(OIIO::TypeDesc type);

@@ -11,6 +11,7 @@
 #include <set>
 #include <thread>
 
+#include "anamorph/image_source.h"
 #include "anamorph/map/panorama.h"
 #include "host.h"
 
@@ -53,11 +54,7 @@ class CacheConformance : public InFolder {
                                    OIIO::TypeFloat, pixels.data());
     }
 
-#if OIIO_VERSION >= 30000
-    std::shared_ptr<ImageCache> m_cache;
-#else
-    ImageCache* m_cache = nullptr;
-#endif
+    ImageCacheRef m_cache{};
 };
 
 TEST_F(CacheConformance, conformance_15_threads_nesting_little_memory_few_files) {

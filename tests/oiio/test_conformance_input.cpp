@@ -332,7 +332,7 @@ TEST_F(InputConformance, conformance_14_tiles_and_threads_never_change_pixels) {
         OIIO::ImageBuf all(name + "&tile=16");
         ASSERT_TRUE(all.read(0, 0, true));
         std::mt19937 random(11);
-        const auto cache = OIIO::ImageCache::create(false);
+        auto cache = OIIO::ImageCache::create(false);
         for (int i = 0; i < 300; ++i) {
             const int x = static_cast<int>(random() % unsigned(all.spec().width)),
                       y = static_cast<int>(random() % unsigned(all.spec().height));

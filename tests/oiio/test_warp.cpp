@@ -188,6 +188,23 @@ TEST_F(Warp, AnEditedMeshIsSeen) {
     EXPECT_EQ(read_pixels("city.exr.warp?mesh=st.exr"), one);
 }
 
+/// The mean of each block of `size` x `size` pixels.
+std::vector<float> block_means(const ImageBuf& image, int size) {
+    const int width = image.spec().width / size, height = image.spec().height / size,
+              channels = image.nchannels();
+    std::vector<float> means;
+    for (int y = 0; y < height; ++y)
+        for (int x = 0; x < width; ++x)
+            for (int c = 0; c < channels; ++c) {
+                double sum = 0;
+                for (int j = 0; j < size; ++j)
+                    for (int i = 0; i < size; ++i)
+                        sum += double(image.getchannel(x * size + i, y * size + j, 0, c));
+                means.push_back(static_cast<float>(sum / (size * size)));
+            }
+    return means;
+}
+
 TEST_F(Warp, Levels) {
     // Positions in pixels are those of the finest level.
     for (const char* shape : {"mesh=grid.json", "mesh=grid.json&direction=push", "points=points.csv"}) {
@@ -198,10 +215,7 @@ TEST_F(Warp, Levels) {
             const Pixels pixels = read_pixels(name, level);
             EXPECT_EQ(pixels.spec.width, 192 >> level);
             EXPECT_EQ(pixels.spec.height, 128 >> level);
-            const OIIO::ROI roi(0, 192 >> level, 0, 128 >> level, 0, 1, 0, 3);
-            const ImageBuf small = OIIO::ImageBufAlgo::resize(whole, "box", 0, roi);
-            std::vector<float> expected(static_cast<std::size_t>(roi.npixels()) * 3);
-            ASSERT_TRUE(small.get_pixels(small.roi(), OIIO::TypeFloat, expected.data()));
+            const std::vector<float> expected = block_means(whole, 1 << level);
             const std::vector<float> own = read_floats(name, level);
             ASSERT_EQ(own.size(), expected.size());
             double sum = 0;
