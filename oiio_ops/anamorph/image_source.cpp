@@ -88,6 +88,24 @@ std::unique_ptr<OIIO::ImageInput> open_as_cache_does(ImageCache& cache, const st
     return OIIO::ImageInput::open(name, &config);
 }
 
+/// What a cache tells of a MIP level; no format where it cannot. OpenImageIO 3 has the spec of level 0 only,
+/// so the windows are asked for: x and y of their first and of their last pixels.
+ImageSpec spec_in_cache(ImageCache& cache, OIIO::ustring name, int subimage, int level) {
+    static const OIIO::ustring data_window("datawindow"), display_window("displaywindow");
+    const TypeDesc corners(TypeDesc::INT, 4);
+    ImageSpec spec;
+    int data[4], display[4];
+    if (!cache.get_imagespec(name, spec, subimage, 0, true) ||
+        !cache.get_image_info(name, subimage, level, data_window, corners, data) ||
+        !cache.get_image_info(name, subimage, level, display_window, corners, display))
+        return {};
+    spec.x = data[0], spec.y = data[1];
+    spec.width = data[2] - data[0] + 1, spec.height = data[3] - data[1] + 1;
+    spec.full_x = display[0], spec.full_y = display[1];
+    spec.full_width = display[2] - display[0] + 1, spec.full_height = display[3] - display[1] + 1;
+    return spec;
+}
+
 std::string first_line(std::string message) {
     message.resize(std::min(message.size(), message.find('\n')));
     return message;
@@ -149,12 +167,9 @@ CacheSource::CacheSource(ImageCacheRef cache, const std::string& name, int subim
     : m_cache(std::move(cache)), m_name(name), m_subimage(subimage), m_first_level(first_level) {
     const auto file = facts == Facts::from_file ? open_as_cache_does(*m_cache, name) : nullptr;
     const auto spec_of = [&](int level) {
-        ImageSpec spec;
         if (facts == Facts::from_cache)
-            m_cache->get_imagespec(m_name, spec, m_subimage, m_first_level + level, true);
-        else if (file)
-            spec = file->spec(m_subimage, m_first_level + level);
-        return spec;
+            return spec_in_cache(*m_cache, m_name, m_subimage, m_first_level + level);
+        return file ? file->spec(m_subimage, m_first_level + level) : ImageSpec();
     };
     const auto why_not = [&] {
         return first_line(facts == Facts::from_cache ? m_cache->geterror()
@@ -228,9 +243,14 @@ bool CacheSource::copy_tiles(int level, const Box& box, std::byte* texels, std::
     const int file_level = m_first_level + level;
     const CacheThread thread(m_cache);
     ImageCache::ImageHandle* image = m_cache->get_image_handle(m_name, thread);
-    const ImageSpec* now = image ? m_cache->imagespec(image, thread, m_subimage, file_level) : nullptr;
-    if (!now) return fail(first_line(m_cache->geterror()));
-    if (now->width != l.spec.width || now->height != l.spec.height || now->nchannels != l.spec.nchannels)
+    static const OIIO::ustring resolution("resolution"), channel_count("channels");
+    int size[2], count = 0;
+    if (!image ||
+        !m_cache->get_image_info(image, thread, m_subimage, file_level, resolution,
+                                 TypeDesc(TypeDesc::INT, 2), size) ||
+        !m_cache->get_image_info(image, thread, m_subimage, file_level, channel_count, OIIO::TypeInt, &count))
+        return fail(first_line(m_cache->geterror()));
+    if (size[0] != l.spec.width || size[1] != l.spec.height || count != l.spec.nchannels)
         return fail("has changed since it was opened");
 
     // From the panorama's corner to the file's coordinates.

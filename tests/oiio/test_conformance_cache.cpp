@@ -242,7 +242,7 @@ TEST_F(CacheConformance, conformance_29_a_crop_reads_only_the_tiles_it_needs) {
 }
 
 TEST_F(CacheConformance, conformance_29_a_narrow_view_reads_its_footprint) {
-    const std::string source = "big.null?RES=65536x32768&TILE=64x64&CHANNELS=3";
+    const std::string source = "big.null?RES=65536x32768&TILE=64x64&CHANNELS=3&TYPE=uint8";
     const std::string name = "v.pano?from=equirectangular&fov=5&size=1024x1024&yaw=33&pitch=11&src=" + source;
     const Panorama map(Chart(Projection::equirectangular, 65536, 32768),
                        Chart(Projection::rectilinear, 1024, 1024, 5), {33, 11, 0});

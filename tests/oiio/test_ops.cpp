@@ -74,6 +74,36 @@ TEST_F(Ops, ReadsAnImageBehindACache) {
     EXPECT_THAT(missing.geterror(), HasSubstr("none.exr"));
 }
 
+TEST_F(Ops, ReadsTheLevelsOfAnImageBehindACache) {
+    ASSERT_TRUE(
+        OIIO::ImageBufAlgo::make_texture(OIIO::ImageBufAlgo::MakeTxTexture, panorama(512, 256), "s.tx"));
+    const auto cache = OIIO::ImageCache::create(true);
+    // Pixels of a level that is a source by itself: magnified, none but its own serve.
+    const ParamValueList near = options({{"yaw", "175"}, {"fov", "40"}, {"size", "90x70"}});
+    for (const int level : {0, 1, 2}) {
+        ImageBuf local("s.tx", 0, level), cached("s.tx", 0, level, cache);
+        ASSERT_TRUE(local.read(0, level, true));
+        ASSERT_TRUE(cached.read(0, level, false));
+        ASSERT_EQ(cached.storage(), ImageBuf::IMAGECACHE);
+        EXPECT_EQ(local.spec().width, 512 >> level);
+        EXPECT_EQ(bytes(reproject(cached, near)), bytes(reproject(local, near))) << level;
+    }
+    // Made much smaller, the file's own coarse levels serve: far fewer tiles than the 32 of level 0 are read.
+    cache->invalidate_all(true);
+    ImageBuf cached("s.tx", 0, 0, cache);
+    ASSERT_TRUE(cached.read(0, 0, false));
+    const auto tiles_read = [&] {
+        long long n = -1;
+        EXPECT_TRUE(cache->get_image_info(OIIO::ustring("s.tx"), 0, 0, OIIO::ustring("stat:tilesread"),
+                                          TypeDesc::INT64, &n));
+        return n;
+    };
+    const long long before = tiles_read();
+    const ImageBuf small = reproject(cached, options({{"to", "equirectangular"}, {"size", "32x16"}}));
+    ASSERT_FALSE(small.has_error()) << small.geterror();
+    EXPECT_LE(tiles_read() - before, 8);
+}
+
 TEST_F(Ops, AnInitialisedImageKeepsItsSpec) {
     const ImageBuf source = panorama(256, 128);
     const ImageBuf whole = reproject(source, options({{"size", "100x80"}}));
