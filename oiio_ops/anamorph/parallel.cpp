@@ -7,6 +7,7 @@
 #include <exception>
 #include <memory>
 #include <mutex>
+#include <thread>
 
 namespace anamorph {
 namespace {
@@ -22,7 +23,10 @@ class Loop {
             if (m_over) return;
             ++m_helpers;
         }
-        work();
+        {
+            const PoolWorker worker;
+            work();
+        }
         std::lock_guard lock(m_mutex);
         if (--m_helpers == 0) m_left.notify_all();
     }
@@ -57,6 +61,14 @@ class Loop {
 };
 
 }  // namespace
+
+PoolWorker::PoolWorker() {
+    OIIO::default_thread_pool()->register_worker(std::this_thread::get_id());
+}
+
+PoolWorker::~PoolWorker() {
+    OIIO::default_thread_pool()->deregister_worker(std::this_thread::get_id());
+}
 
 ParallelFor parallel_for_on(OIIO::thread_pool& pool, int threads) {
     return [&pool, threads](std::int64_t count, const std::function<void(std::int64_t)>& body) {

@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "anamorph/metadata.h"
+#include "anamorph/parallel.h"
 #include "anamorph/version.h"
 #include "buffer_store.h"
 #include "content.h"
@@ -75,6 +76,7 @@ class FileInput final : public ImageInput {
         // The extension first: OpenImageIO offers names of all kinds.
         if (!valid_file(name)) return failed("not a .pano, .warp, .morph or .anabuf name");
         try {
+            const PoolWorker worker;
             close();
             const OperationKind* kind = kind_of(name);
             std::shared_ptr<const Content> content =
@@ -215,6 +217,7 @@ class FileInput final : public ImageInput {
     template <class Body>
     bool guarded(const Body& body) {
         try {
+            const PoolWorker worker;
             body();
             return true;
         } catch (const std::exception& e) {

@@ -5,6 +5,11 @@
 #include <OpenImageIO/color.h>
 #include <OpenImageIO/imagebufalgo.h>
 #include <OpenImageIO/imagecache.h>
+#include <OpenImageIO/parallel.h>
+
+#include <atomic>
+#include <chrono>
+#include <thread>
 
 #include "anamorph/parallel.h"
 #include "host.h"
@@ -288,6 +293,42 @@ TEST_F(Ops, FiltersInTheColorSpaceAskedFor) {
     untagged.specmod().erase_attribute("oiio:ColorSpace");
     EXPECT_THAT(reproject(untagged, linear).geterror(),
                 HasSubstr("colorspace=scene_linear: the source does not say"));
+}
+
+TEST(PoolWorker, WhatOpenImageIOSharesOutStaysOnItsThread) {
+    const auto me = std::this_thread::get_id();
+    std::atomic<int> elsewhere{0}, not_counted{0};
+    const auto share_out = [&] {
+        OIIO::parallel_for(0, 64, [&, thread = std::this_thread::get_id()](std::int64_t) {
+            std::this_thread::sleep_for(std::chrono::microseconds(200));
+            if (std::this_thread::get_id() != thread) ++elsewhere;
+        });
+    };
+    const int before = OIIO::get_int_attribute("threads");
+    OIIO::attribute("threads", 4);
+    share_out();
+    EXPECT_GT(elsewhere, 0) << "OpenImageIO's pool has no threads";
+    elsewhere = 0;
+    {
+        const PoolWorker worker;
+        share_out();
+    }
+    EXPECT_EQ(elsewhere, 0);
+    EXPECT_FALSE(OIIO::default_thread_pool()->is_worker());
+    // The threads that help are workers too.
+    OIIO::thread_pool own(3);
+    std::atomic<int> helped{0};
+    parallel_for_on(own, 4)(16, [&](std::int64_t) {
+        std::this_thread::sleep_for(std::chrono::milliseconds(1));
+        if (std::this_thread::get_id() == me) return;
+        ++helped;
+        if (!OIIO::default_thread_pool()->is_worker(std::this_thread::get_id())) ++not_counted;
+        share_out();
+    });
+    EXPECT_GT(helped, 0);
+    EXPECT_EQ(not_counted, 0);
+    EXPECT_EQ(elsewhere, 0);
+    OIIO::attribute("threads", before);
 }
 
 TEST(ParallelFor, RunsEachIndexOnceAndNests) {
