@@ -80,8 +80,8 @@ TEST_F(Ops, ReadsAnImageBehindACache) {
 }
 
 TEST_F(Ops, ReadsTheLevelsOfAnImageBehindACache) {
-    ASSERT_TRUE(
-        OIIO::ImageBufAlgo::make_texture(OIIO::ImageBufAlgo::MakeTxTexture, panorama(512, 256), "s.tx"));
+    ASSERT_TRUE(OIIO::ImageBufAlgo::make_texture(OIIO::ImageBufAlgo::MakeTxTexture, panorama(512, 256),
+                                                 "s.tx", ImageSpec()));
     const auto cache = OIIO::ImageCache::create(true);
     // Pixels of a level that is a source by itself: magnified, none but its own serve.
     const ParamValueList near = options({{"yaw", "175"}, {"fov", "40"}, {"size", "90x70"}});

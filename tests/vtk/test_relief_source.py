@@ -21,5 +21,7 @@ assert relief.GetComponent() == relief.LUMINANCE
 relief.SetInputData(image)
 relief.SetHeightScale(3)
 relief.Update()
-assert relief.GetOutput().GetDimensions() == (5, 4, 1)
+dimensions = [0, 0, 0]
+relief.GetOutput().GetDimensions(dimensions)
+assert dimensions == [5, 4, 1]
 assert relief.GetOutput().GetBounds()[4:] == (1.5, 1.5)
