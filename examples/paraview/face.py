@@ -64,6 +64,12 @@ def new_view(width, height, half_height, centre=(0, 0)):
     return view
 
 
+def move(shown, orientation, position):
+    """ParaView 6 calls a representation's position its translation."""
+    shown.Orientation = orientation
+    setattr(shown, "Translation" if "Translation" in shown.ListProperties() else "Position", position)
+
+
 def show(source, view, place=(0, 0), turn=28):
     """Lays the picture on a surface and shows it from a little aside, as a portrait is."""
     shown = Show(source, view)
@@ -73,8 +79,7 @@ def show(source, view, place=(0, 0), turn=28):
     shown.Texture = texture
     shown.Interpolation = "Gouraud"
     shown.Ambient, shown.Diffuse, shown.Specular = 0.25, 0.85, 0.1
-    shown.Orientation = [-8, turn, 0]
-    shown.Position = [*place, 0]
+    move(shown, [-8, turn, 0], [*place, 0])
     return shown
 
 
@@ -97,7 +102,7 @@ show(relief, view, (0, 0))
 show(face, view, (1, 0))
 show(face, view, (1, 0))
 bumps = Show(OutputPort(face, 1), view)
-bumps.Orientation, bumps.Position = [-8, 28, 0], [2, 0, 0]
+move(bumps, [-8, 28, 0], [2, 0, 0])
 bumps.DiffuseColor = bumps.AmbientColor = [1, 0.6, 0.2]
 SaveScreenshot(out + "/raised.png", view, ImageResolution=view.ViewSize)
 Delete(view)

@@ -42,7 +42,8 @@ lines = Show(outlines, view)
 ColorBy(lines, None)
 lines.AmbientColor = lines.DiffuseColor = [0, 0, 0]
 lines.LineWidth = 2
-lines.Position = [0, 0, 1000]
+# ParaView 6 calls it the translation.
+setattr(lines, "Translation" if "Translation" in lines.ListProperties() else "Position", [0, 0, 1000])
 
 scene = GetAnimationScene()
 scene.UpdateAnimationUsingDataTimeSteps()
