@@ -39,6 +39,7 @@ def write_picture(rgb, path):
 
 write_picture(model.picture(), out + "/face.png")
 texture = CreateTexture(out + "/face.png")
+texture.UpdateVTKObjects()  # ParaView 5.13 does not do so itself
 
 # Brightness is the first guess of height; the deformations do the rest.
 relief = AnamorphReliefSource(registrationName="relief", FileName=out + "/face.png", HeightScale=0.02, Smoothing=2,
