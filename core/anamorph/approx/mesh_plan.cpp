@@ -111,7 +111,7 @@ int sign_of_determinant(const Bicubic& f, double rounding) {
 class Planner {
   public:
     Planner(const Mesh& mesh, WarpScheme scheme, double tol, const ResidualTables* tables, Blocks& blocks)
-        : m_mesh(mesh), m_scheme(scheme), m_tol(tol), m_tables(tables), m_writer(tol, blocks) {}
+        : m_mesh(mesh), m_scheme(scheme), m_tables(tables), m_writer(tol, blocks) {}
 
     void exact(const Box& box) {
         BlockWriter::for_blocks(box, [&](const Box& b) { m_writer.exact(b); });
@@ -160,7 +160,6 @@ class Planner {
 
     const Mesh& m_mesh;
     WarpScheme m_scheme;
-    double m_tol;
     const ResidualTables* m_tables;
     BlockWriter m_writer;
 };

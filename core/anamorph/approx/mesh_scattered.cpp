@@ -148,7 +148,7 @@ class Planner {
     /// Finds the cubics that a block meets, the one at its middle first. False where there are too many.
     bool gather(const Centres& at) {
         m_met.clear();
-        const auto& [across, down] = at;
+        const Part &across = at.across, &down = at.down;
         const auto take = [&](const CubicTriangle& triangle) {
             const Bounds b = triangle.bounds();
             m_met.push_back({on(m_map, triangle, at), common(across, b.x0, b.x1), common(down, b.y0, b.y1),
