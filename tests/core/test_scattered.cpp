@@ -115,6 +115,30 @@ TEST(Scattered, HoldsTheTolerance) {
         }
 }
 
+// Points within hairs of lines: triangles so thin that rounding decides on which side their corners lie.
+TEST(Scattered, ThinTrianglesKeepTheTolerance) {
+    constexpr unsigned kSeed = 565;
+    SCOPED_TRACE(::testing::Message() << "seed " << kSeed);
+    test::Random random(kSeed);
+    for (const double hair : {1e-4, 1e-8, 1e-11, 1e-13}) {
+        SCOPED_TRACE(hair);
+        ControlPoints points;
+        for (int i = 0; i < 12; ++i) {
+            const double x = random.between(0, 300), y = 100 + 0.25 * x + random.between(-hair, hair);
+            points.pairs.push_back({x, y, x + random.between(-2, 2), y + random.between(-2, 2)});
+        }
+        for (const double tol : {1.0, 1.0 / 64}) {
+            const ScatteredPlan plan(Scattered(points, kTarget, kSource, 1), WarpScheme::automatic, tol);
+            const test::Findings found = test::examine(plan, [&](double x, double y) {
+                const CubicTriangle& t = plan.map().triangle_at(x, y);
+                return plan.map().at(t, static_cast<long double>(x), static_cast<long double>(y));
+            });
+            EXPECT_LE(found.worst_excess, 0);
+            EXPECT_EQ(found.overlaps, 0);
+        }
+    }
+}
+
 TEST(Scattered, PointsOnALineOrAGridAreNoTrouble) {
     for (const bool grid : {false, true}) {
         ControlPoints points;

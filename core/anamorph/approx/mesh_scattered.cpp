@@ -94,6 +94,11 @@ struct Run {
             std::fabs(x) + std::fabs(y) + std::fabs(t.corner[2].x) + std::fabs(t.corner[2].y) + count;
         const double slopes = std::fabs(t.a[0]) + std::fabs(t.a[1]) + std::fabs(t.b[0]) + std::fabs(t.b[1]);
         const double margin = 1e-14 * (1 + slopes * place);
+        // A triangle without an inside holds nothing for certain.
+        if (!std::isfinite(margin)) {
+            end = begin;
+            return;
+        }
         const auto cut = [&](double value, double slope) {
             narrow(value - margin, slope, count, begin, end);
             narrow(value + margin, slope, count, outer_begin, outer_end);
@@ -171,8 +176,8 @@ class Planner {
         double step = 0, rounding = 0;
         for (const Met& other : m_met) {
             const Bicubic there = restricted(difference(other.f, f), other.s, other.t);
-            step = std::max(step, std::hypot(sum_of_magnitudes(there.x), sum_of_magnitudes(there.y)));
-            rounding = std::max(rounding, other.rounding);
+            raise(step, std::hypot(sum_of_magnitudes(there.x), sum_of_magnitudes(there.y)));
+            raise(rounding, other.rounding);
         }
         const EconomizedBicubic x(f.x), y(f.y);
         return m_writer.polynomial(box, x.c, y.c, std::hypot(x.dropped, y.dropped) + step + rounding) ||
@@ -189,11 +194,16 @@ class Planner {
             f.x[0][0] -= std::floor(middle.x);
             f.y[0][0] -= std::floor(middle.y);
             const Bicubic there = restricted(f, met.s, met.t);
-            error = std::max(
-                error, std::hypot(sum_of_magnitudes(there.x), sum_of_magnitudes(there.y)) * (3.03 * 0x1p-24) +
-                           met.rounding);
+            raise(error,
+                  std::hypot(sum_of_magnitudes(there.x), sum_of_magnitudes(there.y)) * (3.03 * 0x1p-24) +
+                      met.rounding);
         }
         return m_writer.computed(box, middle, error);
+    }
+
+    /// Makes `most` the greater of both, or NaN where one of them is.
+    static void raise(double& most, double value) {
+        if (!std::isnan(most) && !(value <= most)) most = value;
     }
 
     static Bicubic difference(const Bicubic& a, const Bicubic& b) {
