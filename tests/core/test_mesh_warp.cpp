@@ -2,10 +2,12 @@
 // Mesh warps as they are drawn: the same bits however they are cut, and what the other outputs say.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <thread>
 
 #include "anamorph/image/mesh_warp.h"
+#include "anamorph/image/pyramid.h"
 #include "mesh_cases.h"
 
 namespace anamorph {
@@ -103,6 +105,42 @@ TEST(MeshWarp, SameBitsForAnyCutAndThreads) {
         options.output = output;
         for (const WarpMap* map : {&pull, &push, &points}) expect_same_bits(*map, options, target, texels);
     }
+}
+
+// Where a warp makes smaller, whole patches are read from coarse levels: the mean of a ramp about a point is
+// its value there.
+TEST(MeshWarp, AntialiasedPatchesStandWhereTheyBelong) {
+    test::Random random(544);
+    const Extent target{128, 96}, size{2048, 1536};
+    const WarpMap map{"grid", test::random_mesh(random, target, size, 2, 2, 0.5, false, 0)};
+    Picture ramp(size.width, size.height, 3);
+    for (int y = 0; y < size.height; ++y)
+        for (int x = 0; x < size.width; ++x) {
+            float* at = &ramp.values[static_cast<std::size_t>(y * size.width + x) * 3];
+            at[0] = static_cast<float>(x) + 0.5f;
+            at[1] = static_cast<float>(y) + 0.5f;
+        }
+    const MemorySource base(ramp.source());
+    const Pyramid source(base);
+    MeshWarpOptions options;
+    options.tol = 1.0 / 64;
+    options.filter = Filter::antialias;
+    const MeshWarp warp(map, size.width, size.height, target.width, target.height, options);
+    Picture drawn(target.width, target.height, 3);
+    ASSERT_TRUE(warp.draw(&source, {0, 0, target.width, target.height}, drawn.view()));
+    int checked = 0;
+    for (int y = 0; y < target.height; ++y)
+        for (int x = 0; x < target.width; ++x) {
+            Point<double> p{};
+            int piece = 0;
+            ASSERT_TRUE(warp.blocks().exact(x + 0.5, y + 0.5, 0, p, piece));
+            constexpr double kEdge = 200;  // more than a footprint
+            if (std::min({p.x, p.y, size.width - p.x, size.height - p.y}) < kEdge) continue;
+            ++checked;
+            ASSERT_NEAR(static_cast<double>(drawn.at(x, y, 0)), p.x, 0.1) << x << " " << y;
+            ASSERT_NEAR(static_cast<double>(drawn.at(x, y, 1)), p.y, 0.1) << x << " " << y;
+        }
+    EXPECT_GT(checked, 3000);
 }
 
 TEST(MeshWarp, AmountZeroIsTheSourceToTheBit) {
