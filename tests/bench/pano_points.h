@@ -15,8 +15,9 @@ using Points = std::vector<Point<double>>;
 /// Panorama::exact read with long double.
 Points true_points(const Panorama& map, const ParallelFor& parallel_for);
 
-/// Calls `body(i, j, point)` for the pixels of a block. Polynomials are evaluated here as block.h states them,
-/// in plain float arithmetic, apart from the product's own loops; exact pixels by Panorama::exact<double>.
+/// Calls `body(i, j, point)` for the pixels of a block. Polynomials are evaluated here as block.h states
+/// them, in plain float arithmetic, apart from the product's own loops; exact pixels by
+/// Panorama::exact<double>.
 template <class Body>
 void for_points(const Panorama& map, const Block& block, const Body& body) {
     const Box& box = block.box;
