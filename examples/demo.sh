@@ -2,8 +2,15 @@
 # SPDX-License-Identifier: Apache-2.0
 # Shows what Anamorph does, on Debian 12 from a fresh machine on: builds it, and lets the stock oiiotool draw views of an
 # HDR panorama, warp a picture, film a morph of two and draw a figure. Everything it makes is in build/demo/out.
+# With --quick, the tables of speed against error are made of small pictures.
 set -euo pipefail
 cd "$(dirname "$0")/.."
+quick=""
+case "${1:-}" in
+    "") ;;
+    --quick) quick=1 ;;
+    *) echo "demo.sh: $1: the only option is --quick" >&2; exit 1 ;;
+esac
 tests/install_packages.sh build hosts tests plots vtk
 tests/unpack_vtk.sh build/vtk-9.1 # a rival in the table of speed against error
 
@@ -118,11 +125,12 @@ for op in pano warp morph; do
     size=1024 cases=()
     if [ "$op" = morph ]; then
         # The table has four weights a and three b of each family of lines; the plot has the usual ones.
-        size=600 cases=(--cases smooth_a1_b2,face_a1_b2,random_a1_b2,crossing_a1_b2,short_a1_b2,outside_a1_b2,paper)
+        size=600
+        cases=(--cases smooth_a1_b2,face_a1_b2,random_a1_b2,crossing_a1_b2,short_a1_b2,outside_a1_b2,paper)
     fi
+    [ -z "$quick" ] || size=128
     echo "$table.csv, .png, .svg"
-    LD_LIBRARY_PATH="$demo/../vtk-9.1/lib" ../../release/tests/bench/speed_vs_error \
-        --op "$op" --size "$size" --csv "$table.csv" >"$table.txt"
+    ../../release/tests/bench/speed_vs_error --op "$op" --size "$size" --csv "$table.csv" >"$table.txt"
     /usr/bin/python3 ../../../examples/plot_speed_vs_error.py "${cases[@]}" "$table.csv" "$table.png" "$table.svg"
 done
 

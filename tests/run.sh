@@ -59,8 +59,13 @@ step build-fuzz build fuzz
 step fuzz run_fuzz_targets
 step build-asan build asan
 step test-asan run_tests asan
+step build-tsan build tsan
+step test-tsan run_tests tsan
+# The demo uses the same folder: whichever of the two comes first, the other must do.
+step demo-before-tests examples/demo.sh --quick
 step build-release build release
 step test-release run_tests release
+step demo-after-tests examples/demo.sh --quick
 step build-vtk with_vtk build vtk "-DVTK_ROOT=$vtk_prefix/usr" -DPython3_EXECUTABLE=/usr/bin/python3
 step test-vtk with_vtk run_tests vtk
 step build-paraview build paraview -DPython3_EXECUTABLE=/usr/bin/python3

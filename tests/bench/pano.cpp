@@ -609,7 +609,7 @@ double report_blocks(const std::string& view, const Plan& plan, const char* sche
     int broken = 0;
     const int width = plan.map().target().width();
     parallel_for(plan.regions(), [&](std::int64_t region) {
-        for (const Block& block : *plan.blocks(region)) {
+        for (const Block& block : plan.blocks(region)) {
             if (block.kind != Block::Kind::polynomial) continue;
             double worst = 0;
             for_points(plan.map(), block, [&](int i, int j, const Point<double>& p) {

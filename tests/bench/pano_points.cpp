@@ -37,7 +37,7 @@ Points true_points(const Panorama& map, const ParallelFor& parallel_for) {
 Points plan_points(const Plan& plan, const ParallelFor& parallel_for) {
     Points points(pixels(plan.map()), {std::nan(""), std::nan("")});
     parallel_for(plan.regions(), [&](std::int64_t region) {
-        for (const Block& block : *plan.blocks(region))
+        for (const Block& block : plan.blocks(region))
             for_points(plan.map(), block,
                        [&](int i, int j, const Point<double>& p) { at(plan.map(), points, i, j) = p; });
     });

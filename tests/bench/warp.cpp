@@ -165,7 +165,7 @@ Points points_of(const MeshWarp& warp, const ParallelFor& parallel_for) {
     const BlockMap& map = warp.blocks();
     Points points(index_of(0, map.height(), map.width()), {std::nan(""), std::nan("")});
     parallel_for(map.regions(), [&](std::int64_t region) {
-        for (const Block& b : *map.blocks(region))
+        for (const Block& b : map.blocks(region))
             for (int y = b.box.y0; y < b.box.y1; ++y) {
                 alignas(64) float px[simd::kRowRoom], py[simd::kRowRoom];
                 block_row(map, b, b.box, y, px, py);

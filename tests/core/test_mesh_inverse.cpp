@@ -35,7 +35,7 @@ test::Findings expect_promise(const ControlMesh& given, const Extent& source, co
     EXPECT_EQ(found.pixels, std::int64_t{target.width} * target.height);
     // What is proven to be one to one, or nothing, is.
     for (std::int64_t r = 0; r < plan.regions(); ++r)
-        for (const Block& block : *plan.blocks(r))
+        for (const Block& block : plan.blocks(r))
             for (int y = block.box.y0; y < block.box.y1; ++y)
                 for (int x = block.box.x0; x < block.box.x1; ++x) {
                     if (block.kind == Block::Kind::exact) continue;

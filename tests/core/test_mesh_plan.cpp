@@ -134,7 +134,7 @@ TEST(MeshPlan, SmallTolerancesNeedNoSmallBlocks) {
     const auto blocks = [&](double tol) {
         const MeshPlan plan(Mesh(mesh, size, size, 1), WarpScheme::automatic, tol);
         std::size_t count = 0;
-        for (std::int64_t r = 0; r < plan.regions(); ++r) count += plan.blocks(r)->size();
+        for (std::int64_t r = 0; r < plan.regions(); ++r) count += plan.blocks(r).size();
         return count;
     };
     EXPECT_EQ(blocks(1), blocks(1e-3));

@@ -58,7 +58,7 @@ Findings examine(const Panorama& map, const PlanOptions& options) {
     std::vector<int> covered(static_cast<std::size_t>(map.target().width()) *
                              static_cast<std::size_t>(map.target().height()));
     for (std::int64_t r = 0; r < plan.regions(); ++r)
-        for (const Block& block : *plan.blocks(r)) {
+        for (const Block& block : plan.blocks(r)) {
             EXPECT_TRUE(block.kind == Block::Kind::outside ||
                         (block.box.width() <= simd::kMaxRow && block.box.height() <= 32));
             double largest = 0;
@@ -223,7 +223,7 @@ TEST(Plan, ReachedIsTheLargestBoundAndTheExactShare) {
     double bound = 0;
     std::int64_t exact = 0;
     for (std::int64_t r = 0; r < plan.regions(); ++r)
-        for (const Block& b : *plan.blocks(r)) {
+        for (const Block& b : plan.blocks(r)) {
             bound = std::max(bound, b.bound);
             if (b.kind == Block::Kind::exact) exact += std::int64_t{b.box.width()} * b.box.height();
         }

@@ -26,7 +26,7 @@ Findings examine(const BlockMap& map, const Truth& truth) {
     Findings found;
     std::vector<char> covered(static_cast<std::size_t>(map.width()) * static_cast<std::size_t>(map.height()));
     for (std::int64_t r = 0; r < map.regions(); ++r)
-        for (const Block& block : *map.blocks(r)) {
+        for (const Block& block : map.blocks(r)) {
             const int width = block.box.width();
             double largest = 0;
             for (int y = block.box.y0; y < block.box.y1; ++y) {

@@ -24,19 +24,20 @@ BlockPolynomial quadratic_of(const Block& block) {
 }
 
 struct BlockMap::Cache {
-    static constexpr std::size_t kMost = 2048;
+    explicit Cache(std::size_t most_regions) : most(most_regions) {}
 
     struct Region {
         std::once_flag once;
         Blocks blocks;
     };
+    const std::size_t most;
     std::mutex mutex;
     std::unordered_map<std::int64_t, std::shared_ptr<Region>> regions;
     std::optional<Reached> reached;
 };
 
-BlockMap::BlockMap(int width, int height, const std::vector<Box>& pieces)
-    : m_width(width), m_height(height), m_cache(std::make_shared<Cache>()) {
+BlockMap::BlockMap(int width, int height, const std::vector<Box>& pieces, std::size_t kept_regions)
+    : m_width(width), m_height(height), m_cache(std::make_shared<Cache>(kept_regions)) {
     for (const Box& box : pieces) {
         const int columns = (box.width() + kRegion - 1) / kRegion,
                   rows = (box.height() + kRegion - 1) / kRegion;
@@ -77,11 +78,11 @@ bool BlockMap::covers(const Box& box) const {
     return pixels == std::int64_t{box.width()} * box.height();
 }
 
-std::shared_ptr<const Blocks> BlockMap::blocks(std::int64_t region) const {
+SharedBlocks BlockMap::blocks(std::int64_t region) const {
     std::shared_ptr<Cache::Region> found;
     {
         const std::lock_guard lock(m_cache->mutex);
-        if (m_cache->regions.size() >= Cache::kMost) m_cache->regions.clear();
+        if (m_cache->regions.size() >= m_cache->most) m_cache->regions.clear();
         std::shared_ptr<Cache::Region>& entry = m_cache->regions[region];
         if (!entry) entry = std::make_shared<Cache::Region>();
         found = entry;
@@ -90,7 +91,7 @@ std::shared_ptr<const Blocks> BlockMap::blocks(std::int64_t region) const {
         const Place place = place_of(region);
         plan(place.box, place.piece, found->blocks);
     });
-    return {found, &found->blocks};
+    return SharedBlocks({found, &found->blocks});
 }
 
 Reached BlockMap::reached(const ParallelFor& parallel_for) const {
@@ -104,7 +105,7 @@ Reached BlockMap::reached(const ParallelFor& parallel_for) const {
     parallel_for(regions(), [&](std::int64_t region) {
         double bound = 0;
         std::int64_t pixels = 0;
-        for (const Block& b : *blocks(region)) {
+        for (const Block& b : blocks(region)) {
             bound = std::max(bound, b.bound);
             if (b.kind == Block::Kind::exact) pixels += std::int64_t{b.box.width()} * b.box.height();
         }

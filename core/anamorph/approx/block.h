@@ -8,6 +8,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <utility>
 #include <vector>
 
 #include "anamorph/error.h"
@@ -56,14 +57,31 @@ struct Reached {
 /// The blocks of a region of the picture.
 using Blocks = std::vector<Block>;
 
+/// Blocks that stay as long as this does, whatever the map they came from has let go since. A range, and no
+/// pointer: `for (const Block& b : map.blocks(region))` keeps them for the whole loop.
+class SharedBlocks {
+  public:
+    explicit SharedBlocks(std::shared_ptr<const Blocks> blocks) : m_blocks(std::move(blocks)) {}
+
+    auto begin() const { return m_blocks->begin(); }
+    auto end() const { return m_blocks->end(); }
+    std::size_t size() const { return m_blocks->size(); }
+    const Block& operator[](std::size_t i) const { return (*m_blocks)[i]; }
+
+  private:
+    std::shared_ptr<const Blocks> m_blocks;
+};
+
 /// A pull map cut into blocks. The target consists of pieces, each cut into regions of at most kRegion pixels
 /// square from its corner on; the blocks of a region cover it without overlap.
 class BlockMap {
   public:
     static constexpr int kRegion = 512;
+    /// Plans of so many regions are kept; then all of them are let go.
+    static constexpr std::size_t kKeptRegions = 2048;
 
     /// `pieces`: boxes of a target of width x height pixels.
-    BlockMap(int width, int height, const std::vector<Box>& pieces);
+    BlockMap(int width, int height, const std::vector<Box>& pieces, std::size_t kept_regions = kKeptRegions);
     virtual ~BlockMap() = default;
 
     int width() const { return m_width; }
@@ -79,7 +97,7 @@ class BlockMap {
 
     /// The blocks of a region: planned when first asked for and kept for a while. Thread safe; several
     /// threads that ask for the same region plan it once.
-    std::shared_ptr<const Blocks> blocks(std::int64_t region) const;
+    SharedBlocks blocks(std::int64_t region) const;
 
     /// Over the whole picture.
     Reached reached(const ParallelFor& parallel_for) const;

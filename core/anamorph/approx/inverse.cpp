@@ -613,7 +613,7 @@ std::int64_t InversePlan::folded_pixels(const Box& box) const {
     // Polynomial blocks are proven to be one to one.
     std::int64_t count = 0;
     for (const std::int64_t region : regions_in(box))
-        for (const Block& block : *blocks(region)) {
+        for (const Block& block : blocks(region)) {
             const Box part = intersection(block.box, box);
             if (block.kind == Block::Kind::exact && !part.empty()) count += WarpPlan::folded_pixels(part);
         }

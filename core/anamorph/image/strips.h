@@ -14,7 +14,7 @@ class Strip {
   public:
     static constexpr int kHeight = 64;
 
-    Strip(const Blocks& blocks, int y0, const Box& box)
+    Strip(const SharedBlocks& blocks, int y0, const Box& box)
         : m_blocks(blocks), m_y0(y0), m_y1(y0 + kHeight), m_box(box) {}
 
     /// body(block, part, next) for every block that meets the box: `part` of it lies there; `next` is the
@@ -35,7 +35,7 @@ class Strip {
     }
 
   private:
-    const Blocks& m_blocks;
+    const SharedBlocks& m_blocks;
     int m_y0, m_y1;
     Box m_box;
 };
@@ -66,8 +66,8 @@ void for_each_strip(const BlockMap& map, const Box& box, const ParallelFor& para
                 return;
             }
             const auto [region, y0] = strips[i - count];
-            const std::shared_ptr<const Blocks> blocks = map.blocks(region);
-            body(Strip(*blocks, y0, box));
+            const SharedBlocks blocks = map.blocks(region);
+            body(Strip(blocks, y0, box));
         });
     }
 }
