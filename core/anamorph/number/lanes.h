@@ -1,0 +1,232 @@
+// SPDX-License-Identifier: Apache-2.0
+// Several numbers at a time: a vector of double or float (Highway's) as a number that formulas are read with.
+//
+// Compiled for each instruction set, so there is no include guard and no namespace: a source file of simd/
+// includes this inside its HWY_NAMESPACE, after highway.h, with hn for hwy::HWY_NAMESPACE.
+//
+// Every result is made of sums, products, quotients and roots that are rounded once, each on its own (no
+// fused multiply-add, no estimate): all instruction sets give the same bits. Errors, in units of 2^-53 for
+// double and 2^-24 for float, with m for the magnitude of the exact value (tests/core/test_lanes.cpp holds
+// them):
+//
+//   + - * / sqrt square             1 m
+//   sin_cos(a)  |a| <= 1e4          2 + |a| 2^-11      (absolute)
+//   atan2                           5 m
+//   exp                             3 m                over the whole range, gradual underflow apart
+//   log                             3 m + 1
+//   sinh(a)                         4 cosh(a)
+//   asinh(a)                        4 (1 + m)
+//
+// NaN and infinities come out as IEEE has them for + - * / sqrt; the functions give NaN for NaN.
+
+template <class Tag>
+struct Lanes {
+    using D = Tag;
+    using Scalar = hn::TFromD<D>;
+    using V = hn::Vec<D>;
+    using M = hn::Mask<D>;
+    static constexpr int kCount = static_cast<int>(hn::MaxLanes(D()));
+
+    V v;
+
+    Lanes() = default;
+    HWY_INLINE Lanes(double k) : v(hn::Set(D(), static_cast<Scalar>(k))) {}  // NOLINT: a number is many
+    HWY_INLINE explicit Lanes(V values) : v(values) {}
+
+    static HWY_INLINE Lanes load(const Scalar* from) { return Lanes(hn::LoadU(D(), from)); }
+    HWY_INLINE void store(Scalar* to) const { hn::StoreU(v, D(), to); }
+
+    friend HWY_INLINE Lanes operator-(const Lanes& a) { return Lanes(hn::Neg(a.v)); }
+    friend HWY_INLINE Lanes operator+(const Lanes& a, const Lanes& b) { return Lanes(hn::Add(a.v, b.v)); }
+    friend HWY_INLINE Lanes operator-(const Lanes& a, const Lanes& b) { return Lanes(hn::Sub(a.v, b.v)); }
+    friend HWY_INLINE Lanes operator*(const Lanes& a, const Lanes& b) { return Lanes(hn::Mul(a.v, b.v)); }
+    friend HWY_INLINE Lanes operator/(const Lanes& a, const Lanes& b) { return Lanes(hn::Div(a.v, b.v)); }
+
+    friend HWY_INLINE Lanes square(const Lanes& a) { return a * a; }
+    friend HWY_INLINE Lanes sqrt(const Lanes& a) { return Lanes(hn::Sqrt(a.v)); }
+    friend HWY_INLINE Lanes abs(const Lanes& a) { return Lanes(hn::Abs(a.v)); }
+    // As std::min and std::max: the first where the two do not compare.
+    friend HWY_INLINE Lanes min(const Lanes& a, const Lanes& b) { return select(b < a, b, a); }
+    friend HWY_INLINE Lanes max(const Lanes& a, const Lanes& b) { return select(a < b, b, a); }
+
+    friend HWY_INLINE M operator<(const Lanes& a, const Lanes& b) { return hn::Lt(a.v, b.v); }
+    friend HWY_INLINE M is_zero(const Lanes& a) { return hn::Eq(a.v, hn::Zero(D())); }
+    friend HWY_INLINE M is_negative(const Lanes& a) { return hn::Lt(a.v, hn::Zero(D())); }
+    friend HWY_INLINE Lanes select(M where, const Lanes& a, const Lanes& b) {
+        return Lanes(hn::IfThenElse(where, a.v, b.v));
+    }
+};
+
+/// c[0] + c[1] x + ..., by Horner's rule.
+template <class D, std::size_t N>
+HWY_INLINE Lanes<D> polynomial(const Lanes<D>& x, const double (&c)[N]) {
+    Lanes<D> sum(c[N - 1]);
+    for (std::size_t i = N - 1; i > 0; --i) sum = sum * x + Lanes<D>(c[i - 1]);
+    return sum;
+}
+
+/// The sine and cosine of a quarter of a turn around 0: minimax polynomials of degree 13 and 14 in double
+/// (the coefficients are those of fdlibm's kernels), 7 and 8 in float (Cephes').
+template <class D>
+HWY_INLINE void sin_cos_of_eighths(const Lanes<D>& r, Lanes<D>& s, Lanes<D>& c) {
+    const Lanes<D> z = r * r;
+    if constexpr (sizeof(hn::TFromD<D>) == 8) {
+        constexpr double kSine[] = {-1.66666666666666324348e-01, 8.33333333332248946124e-03,
+                                    -1.98412698298579493134e-04, 2.75573137070700676789e-06,
+                                    -2.50507602534068634195e-08, 1.58969099521155010221e-10};
+        constexpr double kCosine[] = {4.16666666666666019037e-02, -1.38888888888741095749e-03,
+                                      2.48015872894767294178e-05, -2.75573143513906633035e-07,
+                                      2.08757232129817482790e-09, -1.13596475577881948265e-11};
+        s = r + r * z * polynomial(z, kSine);
+        c = Lanes<D>(1) - (z * 0.5 - z * z * polynomial(z, kCosine));
+    } else {
+        constexpr double kSine[] = {-1.6666654611e-1, 8.3321608736e-3, -1.9515295891e-4};
+        constexpr double kCosine[] = {4.166664568298827e-2, -1.388731625493765e-3, 2.443315711809948e-5};
+        s = r + r * z * polynomial(z, kSine);
+        c = Lanes<D>(1) - (z * 0.5 - z * z * polynomial(z, kCosine));
+    }
+}
+
+/// Takes off quarters of a turn, in parts of pi / 2 that have as many bits less as the count of quarters may
+/// have; then by quadrant.
+template <class D>
+HWY_INLINE void sin_cos(const Lanes<D>& a, Lanes<D>& sine, Lanes<D>& cosine) {
+    const D d;
+    const hn::RebindToSigned<D> di;
+    const Lanes<D> quarters(hn::Round((a * 0.63661977236758134308).v));
+    Lanes<D> r;
+    if constexpr (sizeof(hn::TFromD<D>) == 8)
+        r = ((a - quarters * 1.57079632673412561417e+00) - quarters * 6.07710050630396597660e-11) -
+            quarters * 2.02226624879595063154e-21;
+    else
+        r = ((a - quarters * 1.5703125) - quarters * 4.837512969970703125e-4) -
+            quarters * 7.549789948768648e-8;
+    Lanes<D> s, c;
+    sin_cos_of_eighths(r, s, c);
+    const auto n = hn::ConvertTo(di, quarters.v);
+    const auto one = hn::Set(di, 1), two = hn::Set(di, 2);
+    const auto odd = hn::MaskFromVec(hn::BitCast(d, hn::VecFromMask(di, hn::Eq(hn::And(n, one), one))));
+    const auto bit = [&](auto count) HWY_ATTR {
+        return hn::MaskFromVec(hn::BitCast(d, hn::VecFromMask(di, hn::Eq(hn::And(count, two), two))));
+    };
+    const Lanes<D> plain_sine = select(odd, c, s), plain_cosine = select(odd, s, c);
+    sine = select(bit(n), -plain_sine, plain_sine);
+    cosine = select(bit(hn::Add(n, one)), -plain_cosine, plain_cosine);
+}
+
+/// The angle of (x, y). With p <= q the two magnitudes: atan(p / q), or beyond tan(pi / 8)
+/// pi / 4 + atan((p - q) / (p + q)); then by octant. The polynomials are fdlibm's and Cephes'.
+template <class D>
+HWY_INLINE Lanes<D> atan2(const Lanes<D>& y, const Lanes<D>& x) {
+    using L = Lanes<D>;
+    const L ax = abs(x), ay = abs(y);
+    const auto steep = ax < ay;
+    const L p = select(steep, ax, ay), q = select(steep, ay, ax);
+    const auto beyond = q * 0.41421356237309503 < p;
+    const L over = select(beyond, p + q, q);
+    // 0 / 0 is the angle 0.
+    const L t = select(is_zero(over), L(0), select(beyond, p - q, p) / over), z = t * t;
+    L angle;
+    if constexpr (sizeof(hn::TFromD<D>) == 8) {
+        constexpr double kArc[] = {
+            3.33333333333329318027e-01,  -1.99999999998764832476e-01, 1.42857142725034663711e-01,
+            -1.11111104054623557880e-01, 9.09088713343650656196e-02,  -7.69187620504482999495e-02,
+            6.66107313738753120669e-02,  -5.83357013379057348645e-02, 4.97687799461593236017e-02,
+            -3.65315727442169155270e-02, 1.62858201153657823623e-02};
+        angle = t - t * z * polynomial(z, kArc);
+    } else {
+        constexpr double kArc[] = {3.33329491539e-1, -1.99777106478e-1, 1.38776856032e-1, -8.05374449538e-2};
+        angle = t - t * z * polynomial(z, kArc);
+    }
+    constexpr double kHalfTurn = 3.14159265358979311600, kRest = 1.22464679914735317636e-16;
+    // Multiples of pi / 4 in two parts: what double (or float) leaves out of the first comes with the angle.
+    const double rest = sizeof(hn::TFromD<D>) == 8 ? kRest : kHalfTurn - static_cast<float>(kHalfTurn);
+    const L eighth = select(beyond, L(kHalfTurn / 4), L(0)), eighth_rest = select(beyond, L(rest / 4), L(0));
+    angle = eighth + (angle + eighth_rest);
+    angle = select(steep, L(kHalfTurn / 2) - (angle - L(rest / 2)), angle);
+    angle = select(is_negative(x), L(kHalfTurn) - (angle - L(rest)), angle);
+    return L(hn::CopySign(angle.v, y.v));
+}
+
+/// 2^n for whole n from -1022 to 1023 (double), -126 to 127 (float).
+template <class D>
+HWY_INLINE Lanes<D> power_of_two(const Lanes<D>& n) {
+    const hn::RebindToSigned<D> di;
+    constexpr int kBits = sizeof(hn::TFromD<D>) == 8 ? 52 : 23,
+                  kBias = sizeof(hn::TFromD<D>) == 8 ? 1023 : 127;
+    const auto exponent = hn::Add(hn::ConvertTo(di, n.v), hn::Set(di, kBias));
+    return Lanes<D>(hn::BitCast(D(), hn::ShiftLeft<kBits>(exponent)));
+}
+
+/// With a = n log 2 + r: e^r = 1 + r + r c / (2 - c), c = r - r^2 P(r^2) (fdlibm's e_exp), times 2^n in two
+/// steps, so that neither leaves the range.
+template <class D>
+HWY_INLINE Lanes<D> exp(const Lanes<D>& a) {
+    using L = Lanes<D>;
+    constexpr bool kDouble = sizeof(hn::TFromD<D>) == 8;
+    constexpr double kMost = kDouble ? 710 : 89, kLeast = kDouble ? -746 : -104;
+    const L x = select(a < L(kLeast), L(kLeast), select(L(kMost) < a, L(kMost), a));
+    const L n(hn::Round((x * 1.44269504088896338700).v));
+    const L high = x - n * (kDouble ? 6.93147180369123816490e-01 : 0.693359375);
+    const L low = n * (kDouble ? 1.90821492927058770002e-10 : -2.12194440e-4);
+    const L r = high - low, z = r * r;
+    constexpr double kP[] = {1.66666666666666019037e-01, -2.77777777770155933842e-03,
+                             6.61375632143793436117e-05, -1.65339022054652515390e-06,
+                             4.13813679705723846039e-08};
+    const L c = r - z * polynomial(z, kP);
+    const L value = L(1) - ((low - r * c / (L(2) - c)) - high);
+    const L half(hn::Floor((n * 0.5).v));
+    return value * power_of_two(half) * power_of_two(n - half);
+}
+
+/// With a = 2^n m, m around 1, f = m - 1 and s = f / (2 + f): log m = f - s (f - R(s^2)) and so on (fdlibm's
+/// e_log). -inf at 0, NaN below.
+template <class D>
+HWY_INLINE Lanes<D> log(const Lanes<D>& a) {
+    using L = Lanes<D>;
+    const D d;
+    const hn::RebindToSigned<D> di;
+    constexpr bool kDouble = sizeof(hn::TFromD<D>) == 8;
+    constexpr int kBits = kDouble ? 52 : 23, kBias = kDouble ? 1023 : 127;
+    // What is less than normal is made larger first.
+    const auto tiny = a < L(kDouble ? 0x1p-1022 : 0x1p-126);
+    const L x = select(tiny, a * (kDouble ? 0x1p54 : 0x1p25), a);
+    // The exponent for which the mantissa lies in [sqrt(1/2), sqrt 2).
+    using Int = hn::TFromD<hn::RebindToSigned<D>>;
+    const auto bits = hn::BitCast(di, x.v);
+    const auto offset =
+        hn::Set(di, kDouble ? static_cast<Int>(0x3fe6a09e667f3bcc) : static_cast<Int>(0x3f3504f3));
+    const auto n = hn::ShiftRight<kBits>(hn::Sub(bits, offset));
+    const L m(hn::BitCast(d, hn::Sub(bits, hn::ShiftLeft<kBits>(n))));
+    const L exponent = L(hn::ConvertTo(d, n)) - select(tiny, L(kDouble ? 54 : 25), L(0));
+    static_cast<void>(kBias);
+    constexpr double kR[] = {6.666666666666735130e-01, 3.999999999940941908e-01, 2.857142874366239149e-01,
+                             2.222219843214978396e-01, 1.818357216161805012e-01, 1.531383769920937332e-01,
+                             1.479819860511658591e-01};
+    const L f = m - L(1), s = f / (f + L(2)), z = s * s, half = f * f * 0.5;
+    const L r = z * polynomial(z, kR);
+    const double high = kDouble ? 6.93147180369123816490e-01 : 0.693359375;
+    const double low = kDouble ? 1.90821492927058770002e-10 : -2.12194440e-4;
+    const L value = exponent * high - ((half - (s * (half + r) + exponent * low)) - f);
+    const L infinite(HUGE_VAL);
+    const L ended = select(is_zero(a), -infinite, select(is_negative(a), L(NAN), value));
+    // Infinity, and NaN, which compares with nothing.
+    return select(a < infinite, ended, a);
+}
+
+template <class D>
+HWY_INLINE Lanes<D> sinh(const Lanes<D>& a) {
+    const Lanes<D> e = exp(abs(a) * 0.5);
+    // e^|a| as a square, so that it overflows no sooner than the result.
+    return Lanes<D>(hn::CopySign(((e * 0.5) * e - Lanes<D>(0.5) / e / e).v, a.v));
+}
+template <class D>
+HWY_INLINE Lanes<D> asinh(const Lanes<D>& a) {
+    const Lanes<D> b = abs(a);
+    // Beyond 2^30 the 1 is lost, and squares would overflow.
+    const auto large = Lanes<D>(0x1p30) < b;
+    const Lanes<D> c = select(large, Lanes<D>(0), b);
+    const Lanes<D> value =
+        select(large, log(b) + Lanes<D>(0.69314718055994530942), log(c + sqrt(c * c + Lanes<D>(1))));
+    return Lanes<D>(hn::CopySign(value.v, a.v));
+}

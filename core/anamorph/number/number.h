@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a number offers, so that the formulas of map/ and deform/ can be read with it.
+//
+// A formula is a template over its scalar T and is written once. With a, b of type T and k a double it uses
+//
+//   T(k)  a + b  a - b  a * b  a / b  -a  a + k  k + a  a - k  k - a  a * k  k * a
+//   square(a)  sqrt(a)  sin_cos(a, s, c)  atan2(b, a)  exp(a)  log(a)  sinh(a)  asinh(a)  min(a, b)  max(a,
+//   b) is_zero(a)  is_negative(a)         conditions select(condition, a, b)            a where it holds,
+//   else b; both have been computed
+//
+// and names no scalar type. A condition is a bool, or what the number needs in its place: a mask of a
+// vector's lanes, a Certainty of an interval. A branch that would save time is no use to a vector, so there
+// is none.
+//
+// Numbers: double and long double (here), Interval (interval.h), Jet (jet.h), Lanes (lanes.h). A new one,
+// such as the float of a piece of hardware, gives the list above in its own namespace and works at once in
+// every formula; tests/core/test_numbers.cpp has a float of 24 bits as an example.
+#pragma once
+
+#include <cmath>
+#include <concepts>
+
+namespace anamorph {
+
+using std::asinh;
+using std::atan2;
+using std::exp;
+using std::log;
+using std::sinh;
+using std::sqrt;
+
+template <std::floating_point T>
+T square(T a) {
+    return a * a;
+}
+template <std::floating_point T>
+void sin_cos(T a, T& s, T& c) {
+    s = std::sin(a);
+    c = std::cos(a);
+}
+template <std::floating_point T>
+T min(T a, T b) {
+    return b < a ? b : a;
+}
+template <std::floating_point T>
+T max(T a, T b) {
+    return a < b ? b : a;
+}
+template <std::floating_point T>
+bool is_zero(T a) {
+    return a == 0;
+}
+template <std::floating_point T>
+bool is_negative(T a) {
+    return a < 0;
+}
+template <class T>
+T select(bool condition, const T& a, const T& b) {
+    return condition ? a : b;
+}
+
+/// The list above.
+template <class T>
+concept Number = requires(const T& a, const T& b, T& to, double k) {
+    T(k);
+    { T(a + b) } -> std::same_as<T>;
+    { T(a - b) } -> std::same_as<T>;
+    { T(a * b) } -> std::same_as<T>;
+    { T(a / b) } -> std::same_as<T>;
+    { T(-a) } -> std::same_as<T>;
+    { T(a + k) } -> std::same_as<T>;
+    { T(k + a) } -> std::same_as<T>;
+    { T(a - k) } -> std::same_as<T>;
+    { T(k - a) } -> std::same_as<T>;
+    { T(a * k) } -> std::same_as<T>;
+    { T(k * a) } -> std::same_as<T>;
+    { T(square(a)) } -> std::same_as<T>;
+    { T(sqrt(a)) } -> std::same_as<T>;
+    sin_cos(a, to, to);
+    { T(atan2(b, a)) } -> std::same_as<T>;
+    { T(exp(a)) } -> std::same_as<T>;
+    { T(log(a)) } -> std::same_as<T>;
+    { T(sinh(a)) } -> std::same_as<T>;
+    { T(asinh(a)) } -> std::same_as<T>;
+    { T(min(a, b)) } -> std::same_as<T>;
+    { T(max(a, b)) } -> std::same_as<T>;
+    { T(select(is_zero(a), a, b)) } -> std::same_as<T>;
+    { T(select(is_negative(a), a, b)) } -> std::same_as<T>;
+};
+
+}  // namespace anamorph

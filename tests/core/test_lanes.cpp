@@ -1,0 +1,271 @@
+// SPDX-License-Identifier: Apache-2.0
+// Vectors as numbers, on every instruction set that this machine has: the errors that lanes.h states, held
+// against long double, and the same bits on all of them.
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <cstring>
+#include <functional>
+#include <limits>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "anamorph/number/number.h"
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "test_lanes.cpp"
+#include "hwy/foreach_target.h"  // before highway.h
+#include "hwy/highway.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace anamorph::test::HWY_NAMESPACE {
+namespace hn = hwy::HWY_NAMESPACE;
+
+#include "anamorph/number/lanes.h"
+
+static_assert(Number<Lanes<hn::ScalableTag<double>>> && Number<Lanes<hn::ScalableTag<float>>>);
+
+/// out[i] = function `which` of (a[i], b[i]), in the order of kNames.
+template <class S>
+void Evaluate(int which, const S* a, const S* b, std::size_t count, S* out) {
+    using L = Lanes<hn::ScalableTag<S>>;
+    const std::size_t lanes = hn::Lanes(typename L::D());
+    for (std::size_t i = 0; i < count; i += lanes) {
+        const L x = L::load(a + i), y = L::load(b + i);
+        L s, c, r;
+        switch (which) {
+            case 0:
+                sin_cos(x, r, c);
+                break;
+            case 1:
+                sin_cos(x, s, r);
+                break;
+            case 2:
+                r = atan2(x, y);
+                break;
+            case 3:
+                r = exp(x);
+                break;
+            case 4:
+                r = log(x);
+                break;
+            case 5:
+                r = sinh(x);
+                break;
+            case 6:
+                r = asinh(x);
+                break;
+            case 7:
+                r = sqrt(L(square(x) + square(y)));
+                break;
+            default:
+                r = x / y;
+        }
+        r.store(out + i);
+    }
+}
+void EvaluateDouble(int which, const double* a, const double* b, std::size_t count, double* out) {
+    Evaluate(which, a, b, count, out);
+}
+void EvaluateFloat(int which, const float* a, const float* b, std::size_t count, float* out) {
+    Evaluate(which, a, b, count, out);
+}
+
+}  // namespace anamorph::test::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace anamorph::test {
+HWY_EXPORT(EvaluateDouble);
+HWY_EXPORT(EvaluateFloat);
+
+namespace {
+
+constexpr int kFunctions = 9;
+const char* const kNames[kFunctions] = {"sin",  "cos",   "atan2", "exp",     "log",
+                                        "sinh", "asinh", "hypot", "quotient"};
+constexpr unsigned kSeed = 4711;
+constexpr std::size_t kCount = 1 << 16;  // a multiple of any number of lanes
+
+void evaluate(int which, const std::vector<double>& a, const std::vector<double>& b,
+              std::vector<double>& out) {
+    HWY_DYNAMIC_DISPATCH(EvaluateDouble)(which, a.data(), b.data(), a.size(), out.data());
+}
+void evaluate(int which, const std::vector<float>& a, const std::vector<float>& b, std::vector<float>& out) {
+    HWY_DYNAMIC_DISPATCH(EvaluateFloat)(which, a.data(), b.data(), a.size(), out.data());
+}
+
+long double truth(int which, long double a, long double b) {
+    switch (which) {
+        case 0:
+            return std::sin(a);
+        case 1:
+            return std::cos(a);
+        case 2:
+            return std::atan2(a, b);
+        case 3:
+            return std::exp(a);
+        case 4:
+            return std::log(a);
+        case 5:
+            return std::sinh(a);
+        case 6:
+            return std::asinh(a);
+        case 7:
+            return std::sqrt(a * a + b * b);
+        default:
+            return a / b;
+    }
+}
+
+/// What lanes.h states, in units of half the spacing at 1.
+long double stated(int which, long double a, long double value) {
+    const long double m = std::fabs(value);
+    switch (which) {
+        case 0:
+        case 1:
+            return 2 + std::fabs(a) / 2048;
+        case 2:
+            return 5 * m;
+        case 3:
+            return 3 * m;
+        case 4:
+            return 3 * m + 1;
+        case 5:
+            return 4 * std::cosh(a);
+        case 6:
+            return 4 * (1 + m);
+        case 7:
+            return 3 * m;
+        default:
+            return m;
+    }
+}
+
+/// Arguments of both signs over many magnitudes, as far as the function takes them.
+template <class S>
+void arguments(int which, std::mt19937& random, std::vector<S>& a, std::vector<S>& b) {
+    std::uniform_real_distribution<double> uniform(-1, 1);
+    const bool precise = sizeof(S) == 8;
+    for (std::size_t i = 0; i < kCount; ++i) {
+        const double u = uniform(random), wide = uniform(random) * (precise ? 200 : 25);
+        const double spread = std::copysign(std::exp2(wide), uniform(random));
+        b[i] = static_cast<S>(i % 3 ? uniform(random)
+                                    : std::copysign(std::exp2(uniform(random) * 20), uniform(random)));
+        switch (which) {
+            case 0:
+            case 1:
+                a[i] = static_cast<S>(i % 2 ? 7 * u : 1e4 * u);
+                break;
+            case 2:
+            case 7:
+            case 8:
+                a[i] = static_cast<S>(i % 3 == 1 ? u : std::copysign(std::exp2(uniform(random) * 20), u));
+                break;
+            case 3:
+                a[i] = static_cast<S>(i % 2 ? u : u * (precise ? 700 : 85));
+                break;
+            case 4:
+                a[i] = static_cast<S>(i % 2 ? 1 + 0.5 * u : std::fabs(spread));
+                break;
+            case 5:
+                a[i] = static_cast<S>(i % 2 ? u : u * (precise ? 700 : 85));
+                break;
+            default:
+                a[i] = static_cast<S>(i % 2 ? u : spread);
+        }
+    }
+}
+
+/// body() once for every instruction set that this machine has, with its name traced.
+void on_every_target(const std::function<void()>& body) {
+    for (const std::int64_t target : hwy::SupportedAndGeneratedTargets()) {
+        SCOPED_TRACE(hwy::TargetName(target));
+        hwy::SetSupportedTargetsForTest(target);
+        body();
+    }
+    hwy::SetSupportedTargetsForTest(0);
+}
+
+template <class S>
+void expect_stated_errors_and_the_same_bits() {
+    SCOPED_TRACE(testing::Message() << "seed " << kSeed);
+    std::mt19937 random(kSeed);
+    constexpr long double kUnit = std::numeric_limits<S>::epsilon() / 2.0L;
+    for (int f = 0; f < kFunctions; ++f) {
+        SCOPED_TRACE(kNames[f]);
+        std::vector<S> a(kCount), b(kCount), first, out(kCount);
+        arguments(f, random, a, b);
+        on_every_target([&] {
+            evaluate(f, a, b, out);
+            if (first.empty()) first = out;
+            EXPECT_EQ(std::memcmp(first.data(), out.data(), kCount * sizeof(S)), 0);
+        });
+        long double worst = 0, at = 0;
+        for (std::size_t i = 0; i < kCount; ++i) {
+            const long double value = truth(f, a[i], b[i]);
+            const long double error = std::fabs(out[i] - value) / (kUnit * stated(f, a[i], value));
+            if (!(error <= worst)) worst = error, at = a[i];
+        }
+        EXPECT_LE(worst, 1) << "of what is stated, at " << static_cast<double>(at);
+        EXPECT_GT(worst, 0.1L) << "stated far too large";
+    }
+}
+
+TEST(Lanes, DoubleHoldsItsErrorsWithTheSameBitsEverywhere) {
+    expect_stated_errors_and_the_same_bits<double>();
+}
+TEST(Lanes, FloatHoldsItsErrorsWithTheSameBitsEverywhere) {
+    expect_stated_errors_and_the_same_bits<float>();
+}
+
+TEST(Lanes, SpecialValues) {
+    constexpr double kInf = HUGE_VAL, kNan = NAN;
+    struct Case {
+        int which;
+        double a, b, expected;
+    };
+    const Case cases[] = {{2, 0, 0, 0},
+                          {2, 0, -1, M_PI},
+                          {2, -0.0, -1, -M_PI},
+                          {2, 1, 0, M_PI_2},
+                          {2, -1, 0, -M_PI_2},
+                          {2, 0, 1, 0},
+                          {3, 0, 0, 1},
+                          {3, -800, 0, 0},
+                          {3, 800, 0, kInf},
+                          {3, kNan, 0, kNan},
+                          {4, 1, 0, 0},
+                          {4, 0, 0, -kInf},
+                          {4, -1, 0, kNan},
+                          {4, kInf, 0, kInf},
+                          {4, kNan, 0, kNan},
+                          {4, 5e-324, 0, std::log(5e-324)},
+                          {5, 0, 0, 0},
+                          {6, 0, 0, 0},
+                          {0, kNan, 0, kNan},
+                          {2, kNan, 1, kNan},
+                          {6, 1e300, 0, std::asinh(1e300)},
+                          {5, 710, 0, std::sinh(710.0)}};
+    on_every_target([&] {
+        for (const Case& c : cases) {
+            const std::vector<double> a(16, c.a), b(16, c.b);
+            std::vector<double> out(16);
+            evaluate(c.which, a, b, out);
+            const std::string what = std::string(kNames[c.which]) + " of " + std::to_string(c.a);
+            if (std::isnan(c.expected))
+                EXPECT_TRUE(std::isnan(out[3])) << what;
+            else if (std::isinf(c.expected))
+                EXPECT_EQ(out[3], c.expected) << what;
+            else
+                EXPECT_NEAR(out[3], c.expected, 1e-14 * std::fabs(c.expected)) << what;
+            EXPECT_TRUE(std::isnan(c.expected) || std::signbit(out[3]) == std::signbit(c.expected)) << what;
+        }
+    });
+}
+
+}  // namespace
+}  // namespace anamorph::test
+#endif
