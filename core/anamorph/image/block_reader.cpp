@@ -5,7 +5,9 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <numeric>
 
+#include "anamorph/approx/block_writer.h"
 #include "anamorph/image/pixel.h"
 
 namespace anamorph {
@@ -27,21 +29,102 @@ simd::Polynomials on_block(const BlockPolynomial& p, const Block& block) {
 
 /// From the coefficients of a polynomial block.
 Jacobian jacobian_of(const Block& block) {
-    const double hx = 0.5 * std::max(1, block.box.width() - 1),
-                 hy = 0.5 * std::max(1, block.box.height() - 1);
+    const double hx = half(block.box.width()), hy = half(block.box.height());
     return {block.x[1] / hx, block.y[1] / hx, block.x[2] / hy, block.y[2] / hy};
 }
 
-/// The least and the greatest of the points of a block in one coordinate.
+// Pixels share a footprint whose axes are off by at most this part of their lengths; a source pixel where
+// they are shorter.
+constexpr double kFootprintShare = 1.0 / 8;
+
+/// May (step_x, step_y) stand in for an axis (x, y) of a footprint? All may where the map does not minify.
+inline bool alike(double x, double y, double step_x, double step_y) {
+    const double length = x * x + y * y, step = step_x * step_x + step_y * step_y;
+    const double off = square(step_x - x) + square(step_y - y);
+    // Written so that what is no number is like nothing.
+    return off <= square(kFootprintShare) * std::max(1.0, length) || (length <= 1 && step <= 1);
+}
+
+/// Is the footprint in the middle of a polynomial block right for all its pixels? The derivative along s is
+/// the sum of i c[j][i] s^(i - 1) t^j, and differs from c[0][1] by at most the magnitudes of its other terms.
+bool shares_footprint(const BlockPolynomial& p, const Block& block) {
+    double along_s[2] = {}, along_t[2] = {};
+    for (int k = 0; k < 2; ++k)
+        for (int j = 0; j <= p.degree; ++j)
+            for (int i = 0; i <= p.degree; ++i) {
+                const double c = std::fabs(double{p.c[j][4 * k + i]});
+                if (i > 1 || j > 0) along_s[k] += i * c;
+                if (j > 1 || i > 0) along_t[k] += j * c;
+            }
+    const double hx = half(block.box.width()), hy = half(block.box.height());
+    const auto steady = [](double x, double y, double off_x, double off_y) {
+        const double length = std::hypot(x, y), off = std::hypot(off_x, off_y);
+        return off <= kFootprintShare * std::max(1.0, length) || length + off <= 1;
+    };
+    return steady(p.c[0][1] / hx, p.c[0][5] / hx, along_s[0] / hx, along_s[1] / hx) &&
+           steady(p.c[1][0] / hy, p.c[1][4] / hy, along_t[0] / hy, along_t[1] / hy);
+}
+
+/// The source points of a block's pixels, counted from its corner, and the steps from one to the next.
+template <class At>
+class Steps {
+  public:
+    Steps(const At& at, const Block& block) : m_at(at), m_size{0, 0, block.box.width(), block.box.height()} {}
+
+    /// The mean of the steps across the middle of the block, if it has any either way.
+    bool go_both_ways() const { return m_size.x1 > 1 && m_size.y1 > 1; }
+    Jacobian mean() const {
+        const int right = m_size.x1 - 1, bottom = m_size.y1 - 1;
+        const Point<double> i = (m_at(right, bottom / 2) - m_at(0, bottom / 2)) * (1.0 / right);
+        const Point<double> j = (m_at(right / 2, bottom) - m_at(right / 2, 0)) * (1.0 / bottom);
+        return {i.x, i.y, j.x, j.y};
+    }
+    /// Is every step of a cell like the axes of a footprint?
+    bool alike(const Box& cell, const Jacobian& to) const {
+        const Box a = across(cell), b = down(cell);
+        bool all = true;
+        for (int j = a.y0; j < a.y1 && all; ++j)
+            for (int i = a.x0; i < a.x1; ++i) {
+                const Point<double> step = m_at(i + 1, j) - m_at(i, j);
+                all &= anamorph::alike(to.x_i, to.y_i, step.x, step.y);
+            }
+        for (int j = b.y0; j < b.y1 && all; ++j)
+            for (int i = b.x0; i < b.x1; ++i) {
+                const Point<double> step = m_at(i, j + 1) - m_at(i, j);
+                all &= anamorph::alike(to.x_j, to.y_j, step.x, step.y);
+            }
+        return all;
+    }
+
+  private:
+    /// Where steps to the right, or down, begin; those of a single column or row go to a neighbour of the
+    /// block, if it has one.
+    Box across(const Box& cell) const {
+        if (cell.width() > 1) return {cell.x0, cell.y0, cell.x1 - 1, cell.y1};
+        const int x = std::max(0, std::min(cell.x0, m_size.x1 - 2));
+        return {x, cell.y0, std::min(x + 1, m_size.x1 - 1), cell.y1};
+    }
+    Box down(const Box& cell) const {
+        if (cell.height() > 1) return {cell.x0, cell.y0, cell.x1, cell.y1 - 1};
+        const int y = std::max(0, std::min(cell.y0, m_size.y1 - 2));
+        return {cell.x0, y, cell.x1, std::min(y + 1, m_size.y1 - 1)};
+    }
+
+    const At& m_at;
+    Box m_size;
+};
+
+/// The least and the greatest of the points of a cell in one coordinate; NaN where one is not finite.
 void range_over(const float* at, std::ptrdiff_t stride, int width, int height, double& low, double& high) {
     // In lanes, so that the compiler need not keep the order of comparisons.
     constexpr int kLanes = 16;
-    float least[kLanes], greatest[kLanes];
+    float least[kLanes], greatest[kLanes], nothing[kLanes] = {};
     std::fill_n(least, kLanes, HUGE_VALF);
     std::fill_n(greatest, kLanes, -HUGE_VALF);
     const auto take = [&](float v, int lane) {
         least[lane] = v < least[lane] ? v : least[lane];
         greatest[lane] = v > greatest[lane] ? v : greatest[lane];
+        nothing[lane] += v - v;
     };
     for (int j = 0; j < height; ++j, at += stride) {
         int i = 0;
@@ -49,8 +132,39 @@ void range_over(const float* at, std::ptrdiff_t stride, int width, int height, d
             for (int lane = 0; lane < kLanes; ++lane) take(at[i + lane], lane);
         for (; i < width; ++i) take(at[i], 0);
     }
-    low = *std::min_element(least, least + kLanes);
-    high = *std::max_element(greatest, greatest + kLanes);
+    const double zero = double{std::accumulate(nothing, nothing + kLanes, 0.0f)};
+    low = *std::min_element(least, least + kLanes) + zero;
+    high = *std::max_element(greatest, greatest + kLanes) + zero;
+}
+
+/// body(cell, jacobian) for the largest cells of a block, counted from its corner, that share a footprint:
+/// those in whose middle the map's derivative is like all their steps, and single pixels. False when any
+/// body was.
+template <class Derivative, class Alike, class Body>
+bool for_each_cell(const Box& cell, const Derivative& derivative, const Alike& alike, const Body& body) {
+    const Jacobian jacobian = derivative(cell);
+    if ((cell.width() == 1 && cell.height() == 1) || alike(cell, jacobian)) return body(cell, jacobian);
+    Box first = cell, second = cell;
+    if (cell.width() >= cell.height())
+        first.x1 = second.x0 = (cell.x0 + cell.x1) / 2;
+    else
+        first.y1 = second.y0 = (cell.y0 + cell.y1) / 2;
+    const bool done = for_each_cell(first, derivative, alike, body);
+    return for_each_cell(second, derivative, alike, body) && done;
+}
+
+bool is_near(double at) {
+    return std::fabs(at) < kFarthest;
+}
+
+Box whole(const Block& block) {
+    return {0, 0, block.box.width(), block.box.height()};
+}
+
+/// The part of a block's cell that lies in a box of the picture.
+Box part_of(const Box& cell, const Block& block, const Box& part) {
+    const int x = block.box.x0, y = block.box.y0;
+    return intersection({cell.x0 + x, cell.y0 + y, cell.x1 + x, cell.y1 + y}, part);
 }
 
 }  // namespace
@@ -92,8 +206,9 @@ struct BlockReader::LevelPolynomial {
             base = static_cast<std::int32_t>(std::floor(origin));
             middle = static_cast<float>(origin - base);
         }
-        // With room for the rounding of the sum.
-        spread = spread * (1 + 1e-5) + 1e-3;
+        // s and t are at most 1 in float too, so that no term is larger than its coefficient; and rounding
+        // moves the sum by at most that much.
+        spread += (spread + std::fabs(middle)) * term_rounding(2 * p.degree);
         return {middle - spread, middle + spread};
     }
 };
@@ -113,26 +228,24 @@ struct BlockReader::Span {
     bool fits() const { return std::max(std::fabs(first), std::fabs(last)) < (1 << 30); }
 };
 
-/// A computed block's offsets in one coordinate, in texels of a level.
-struct BlockReader::LevelOffsets {
+/// One coordinate of points in double, in texels of a level: `base` is the texel that the least one falls
+/// into, the range counts from there.
+struct BlockReader::LevelPoints {
+    double scale;
     std::int32_t base;
-    float origin, scale;
     Range range;
 
-    LevelOffsets(const float* at, std::ptrdiff_t stride, int width, int height, std::int32_t from_base,
-                 double level_scale)
-        : scale(static_cast<float>(level_scale)) {
-        const double exact_origin = from_base * level_scale;
-        base = static_cast<std::int32_t>(std::floor(exact_origin));
-        origin = static_cast<float>(exact_origin - base);
-        range_over(at, stride, width, height, range.low, range.high);
-        // With room for the rounding of origin + offset * scale.
-        const auto at_level = [&](double offset) { return origin + offset * level_scale; };
-        const double room = scale == 1 ? 0 : 1e-3 + 1e-6 * (std::fabs(range.low) + std::fabs(range.high));
-        range = {at_level(range.low) - room, at_level(range.high) + room};
-    }
-    void row(const float* at, int count, float* to) const {
-        for (int i = 0; i < count; ++i) to[i] = origin + at[i] * scale;
+    LevelPoints(double least, double greatest, double level_scale)
+        : scale(level_scale),
+          base(static_cast<std::int32_t>(std::floor(least * scale))),
+          range{0, greatest * scale - base} {}
+
+    /// The texel a point falls into, less the base, and how far into it. Whole texels apart: the rest loses
+    /// at most half of 2^-24 texels in float, all of it where float would round it to the next texel.
+    void split(double point, std::int32_t& texel, float& rest) const {
+        const double at = point * scale, floor = std::floor(at);
+        texel = static_cast<std::int32_t>(floor) - base;
+        rest = std::min(static_cast<float>(at - floor), 0x1.fffffep-1f);
     }
 };
 
@@ -157,7 +270,7 @@ bool BlockReader::rows(const Block& block, const Box& part, const Row& row) {
         case Block::Kind::bicubic:
             return polynomial_rows(block, part, row);
         case Block::Kind::computed:
-            return rows(block, computed_points(block), part, row);
+            return rows(block, points_of(block), part, row);
         case Block::Kind::exact:
             break;
     }
@@ -167,9 +280,11 @@ bool BlockReader::rows(const Block& block, const Box& part, const Row& row) {
 bool BlockReader::draw(const Block& block, const Box& part, const Canvas& canvas, const Block* next) {
     if (is_polynomial(block) && canvas.packed() && m_source.unassociated_alpha() < 0) {
         const Filtering f = filtering(jacobian_of(block));
-        const LevelPolynomial polynomial(polynomial_of(m_map, block), block, f.scale_x, f.scale_y);
+        const BlockPolynomial of_source = polynomial_of(m_map, block);
+        const LevelPolynomial polynomial(of_source, block, f.scale_x, f.scale_y);
         Window window;
-        const Got got = polynomial_window(f, block, polynomial, window);
+        const Got got = shares_filter(of_source, block) ? polynomial_window(f, block, polynomial, window)
+                                                        : Got::too_large;
         if (got == Got::failed) return false;
         if (got == Got::window) {
             simd::draw_block(texels_of(f, window, polynomial.base_x, polynomial.base_y),
@@ -188,9 +303,16 @@ bool BlockReader::draw(const Block& block, const Box& part, const Canvas& canvas
 // --- blocks by kind
 // ------------------------------------------------------------------------------------------
 
+/// Do all pixels of a polynomial block share the filter that serves its middle?
+bool BlockReader::shares_filter(const BlockPolynomial& polynomial, const Block& block) const {
+    return m_filter != Filter::antialias || shares_footprint(polynomial, block);
+}
+
 bool BlockReader::polynomial_rows(const Block& block, const Box& part, const Row& row) {
+    const BlockPolynomial of_source = polynomial_of(m_map, block);
+    if (!shares_filter(of_source, block)) return rows(block, points_of(block), part, row);
     const Filtering f = filtering(jacobian_of(block));
-    const LevelPolynomial polynomial(polynomial_of(m_map, block), block, f.scale_x, f.scale_y);
+    const LevelPolynomial polynomial(of_source, block, f.scale_x, f.scale_y);
     Window window;
     const Got got = polynomial_window(f, block, polynomial, window);
     if (got == Got::failed) return false;
@@ -206,44 +328,97 @@ bool BlockReader::polynomial_rows(const Block& block, const Box& part, const Row
 }
 
 bool BlockReader::rows(const Block& block, const BlockPoints& points, const Box& part, const Row& row) {
-    const int w = block.box.width(), h = block.box.height();
-    // The map's derivative from the outermost points.
-    const auto between = [&](const float* at, std::ptrdiff_t to, int steps) {
-        return steps > 0 ? (double{at[to]} - double{at[0]}) / steps : 0.0;
+    const auto at = [&](int i, int j) {
+        const std::ptrdiff_t k = j * points.row_stride + i;
+        return Point<double>{points.x[k], points.y[k]};
     };
-    const Jacobian jacobian{between(points.x, w - 1, w - 1), between(points.y, w - 1, w - 1),
-                            between(points.x, (h - 1) * points.row_stride, h - 1),
-                            between(points.y, (h - 1) * points.row_stride, h - 1)};
-    const Filtering f = filtering(jacobian);
-    const LevelOffsets lx(points.x, points.row_stride, w, h, block.base_x, f.scale_x),
-        ly(points.y, points.row_stride, w, h, block.base_y, f.scale_y);
-    Window window;
-    switch (window_of(f, block.source_piece, lx.base, lx.range, ly.base, ly.range, block.box, window)) {
-        case Got::failed:
-            return false;
-        case Got::too_large:
-            return rows_one_by_one(block, points, part, row);
-        case Got::window:
-            break;
+    const auto body = [&](const Box& cell, const Filtering& f) {
+        return points_cell(f, block, points, cell, part, row);
+    };
+    return for_each_footprint(block, at, false, body);
+}
+
+/// body(cell, filtering) for the cells of a block that share a footprint; `at` gives the source points of its
+/// pixels, counted from its corner. That of a whole block may come from them unless `truth` is asked for.
+template <class At, class Body>
+bool BlockReader::for_each_footprint(const Block& block, const At& at, bool truth, const Body& body) const {
+    if (m_filter != Filter::antialias) return body(whole(block), filtering({}));
+    const Steps<At> steps(at, block);
+    const auto derivative = [&](const Box& cell) {
+        if (!truth && cell == whole(block) && steps.go_both_ways()) return steps.mean();
+        return m_map.jacobian(block.box.x0 + 0.5 * (cell.x0 + cell.x1),
+                              block.box.y0 + 0.5 * (cell.y0 + cell.y1), block.piece);
+    };
+    const auto alike = [&](const Box& cell, const Jacobian& jacobian) { return steps.alike(cell, jacobian); };
+    return for_each_cell(whole(block), derivative, alike,
+                         [&](const Box& cell, const Jacobian& j) { return body(cell, filtering(j)); });
+}
+
+bool BlockReader::points_cell(const Filtering& f, const Block& block, const BlockPoints& points,
+                              const Box& cell, const Box& part, const Row& row) {
+    const Box own = part_of(cell, block, part);
+    if (own.empty()) return true;
+    Range x, y;
+    const std::ptrdiff_t first = cell.y0 * points.row_stride + cell.x0;
+    range_over(points.x + first, points.row_stride, cell.width(), cell.height(), x.low, x.high);
+    range_over(points.y + first, points.row_stride, cell.width(), cell.height(), y.low, y.high);
+    if (!(is_near(x.low) && is_near(x.high) && is_near(y.low) && is_near(y.high)))
+        return rows_one_by_one(block, points, own, row);
+    if (f.level > 0) {
+        const auto at = [&](int i, int j) {
+            const std::ptrdiff_t k = (j - block.box.y0) * points.row_stride + i - block.box.x0;
+            return Point<double>{block.base_x + double{points.x[k]}, block.base_y + double{points.y[k]}};
+        };
+        const LevelPoints lx(block.base_x + x.low, block.base_x + x.high, f.scale_x),
+            ly(block.base_y + y.low, block.base_y + y.high, f.scale_y);
+        const Got got = split_rows(f, block.source_piece, at, lx, ly, cell, own, row);
+        return got == Got::too_large ? rows_one_by_one(block, points, own, row) : got == Got::window;
     }
-    const simd::Texels texels = texels_of(f, window, lx.base, ly.base);
-    alignas(64) float px[simd::kRowRoom], py[simd::kRowRoom];
-    for (int j = part.y0; j < part.y1; ++j) {
-        const std::ptrdiff_t at = (j - block.box.y0) * points.row_stride + part.x0 - block.box.x0;
-        lx.row(points.x + at, part.width(), px);
-        ly.row(points.y + at, part.width(), py);
-        sample(texels, {px, py, part.width()}, window.type, part.x0, j, row);
+    Window window;
+    const Got got = window_of(f, block.source_piece, block.base_x, x, block.base_y, y, cell, window);
+    if (got == Got::too_large) return rows_one_by_one(block, points, own, row);
+    if (got == Got::failed) return false;
+    const simd::Texels texels = texels_of(f, window, block.base_x, block.base_y);
+    for (int j = own.y0; j < own.y1; ++j) {
+        const std::ptrdiff_t at = (j - block.box.y0) * points.row_stride + own.x0 - block.box.x0;
+        sample(texels, {points.x + at, points.y + at, own.width()}, window.type, own.x0, j, row);
     }
     return true;
 }
 
-BlockPoints BlockReader::computed_points(const Block& block) {
+/// The pixels of `own`, a part of a cell whose points lie in the given ranges; `at` gives their source
+/// points.
+template <class At>
+BlockReader::Got BlockReader::split_rows(const Filtering& f, int piece, const At& at, const LevelPoints& x,
+                                         const LevelPoints& y, const Box& cell, const Box& own,
+                                         const Row& row) {
+    Window window;
+    const Got got = window_of(f, piece, x.base, x.range, y.base, y.range, cell, window);
+    if (got != Got::window) return got;
+    const simd::Texels texels = texels_of(f, window, x.base, y.base);
+    alignas(64) float fx[simd::kRowRoom] = {}, fy[simd::kRowRoom] = {};
+    alignas(64) std::int32_t ix[simd::kRowRoom] = {}, iy[simd::kRowRoom] = {};
+    for (int j = own.y0; j < own.y1; ++j) {
+        for (int i = own.x0; i < own.x1; ++i) {
+            const Point<double> p = at(i, j);
+            const int k = i - own.x0;
+            x.split(p.x, ix[k], fx[k]);
+            y.split(p.y, iy[k], fy[k]);
+        }
+        sample(texels, {fx, fy, own.width(), ix, iy}, window.type, own.x0, j, row);
+    }
+    return Got::window;
+}
+
+/// The source points of all pixels of a block.
+BlockPoints BlockReader::points_of(const Block& block) {
     constexpr std::size_t kPlane = std::size_t{simd::kRowRoom} * Block::kMaxSide;
     m_computed.resize(2 * kPlane);
     const BlockPoints points{m_computed.data(), m_computed.data() + kPlane, simd::kRowRoom};
-    for (int j = 0; j < block.box.height(); ++j)
-        m_map.computed_row(block, j, 0, block.box.width(), m_computed.data() + j * points.row_stride,
-                           m_computed.data() + kPlane + j * points.row_stride);
+    for (int j = 0; j < block.box.height(); ++j) {
+        float* row = m_computed.data() + j * points.row_stride;
+        block_row(m_map, block, block.box, block.box.y0 + j, row, row + kPlane);
+    }
     return points;
 }
 
@@ -251,49 +426,40 @@ bool BlockReader::exact_rows(const Block& block, const Box& part, const Row& row
     // Positions of the whole block decide how it is read, whatever part of it is asked for.
     const int w = block.box.width();
     m_exact.resize(static_cast<std::size_t>(w) * static_cast<std::size_t>(block.box.height()));
-    double x0 = HUGE_VAL, y0 = HUGE_VAL, x1 = -HUGE_VAL, y1 = -HUGE_VAL;
     bool together = true;
     for (int j = block.box.y0; j < block.box.y1; ++j)
         for (int i = block.box.x0; i < block.box.x1; ++i) {
             Exact& e = m_exact.data()[(j - block.box.y0) * w + i - block.box.x0];
             e.seen = m_map.exact(i + 0.5, j + 0.5, block.piece, e.at, e.piece);
-            together = together && e.seen && e.piece == m_exact[0].piece;
-            x0 = std::min(x0, e.at.x);
-            x1 = std::max(x1, e.at.x);
-            y0 = std::min(y0, e.at.y);
-            y1 = std::max(y1, e.at.y);
+            together =
+                together && e.seen && e.piece == m_exact[0].piece && is_near(e.at.x) && is_near(e.at.y);
         }
     if (!together) return rows_one_by_one(block, {}, part, row);
-    const Filtering f = filtering(m_map.jacobian(0.5 * (block.box.x0 + block.box.x1),
-                                                 0.5 * (block.box.y0 + block.box.y1), block.piece));
-    const auto base_x = static_cast<std::int32_t>(std::floor(x0 * f.scale_x));
-    const auto base_y = static_cast<std::int32_t>(std::floor(y0 * f.scale_y));
-    Window window;
-    switch (window_of(f, m_exact[0].piece, base_x, {0, x1 * f.scale_x - base_x}, base_y,
-                      {0, y1 * f.scale_y - base_y}, block.box, window)) {
-        case Got::failed:
-            return false;
-        case Got::too_large:
-            return rows_one_by_one(block, {}, part, row);
-        case Got::window:
-            break;
-    }
-    const simd::Texels texels = texels_of(f, window, base_x, base_y);
-    alignas(64) float fx[simd::kRowRoom], fy[simd::kRowRoom];
-    alignas(64) std::int32_t ix[simd::kRowRoom], iy[simd::kRowRoom];
-    for (int j = part.y0; j < part.y1; ++j) {
-        const Exact* e = m_exact.data() + (j - block.box.y0) * w + part.x0 - block.box.x0;
-        for (int i = 0; i < part.width(); ++i) {
-            // Whole texels apart: a fraction loses nothing in float.
-            const double x = e[i].at.x * f.scale_x, y = e[i].at.y * f.scale_y;
-            ix[i] = static_cast<std::int32_t>(std::floor(x)) - base_x;
-            iy[i] = static_cast<std::int32_t>(std::floor(y)) - base_y;
-            fx[i] = static_cast<float>(x - std::floor(x));
-            fy[i] = static_cast<float>(y - std::floor(y));
+    const auto at = [&](int i, int j) -> const Point<double>& { return m_exact.data()[j * w + i].at; };
+    return for_each_footprint(block, at, true, [&](const Box& cell, const Filtering& f) {
+        return exact_cell(f, block, cell, part, row);
+    });
+}
+
+bool BlockReader::exact_cell(const Filtering& f, const Block& block, const Box& cell, const Box& part,
+                             const Row& row) {
+    const Box own = part_of(cell, block, part);
+    if (own.empty()) return true;
+    const Exact* points = m_exact.data();
+    const int w = block.box.width();
+    double x0 = HUGE_VAL, y0 = HUGE_VAL, x1 = -HUGE_VAL, y1 = -HUGE_VAL;
+    for (int j = cell.y0; j < cell.y1; ++j)
+        for (int i = cell.x0; i < cell.x1; ++i) {
+            const Point<double>& p = points[j * w + i].at;
+            x0 = std::min(x0, p.x);
+            x1 = std::max(x1, p.x);
+            y0 = std::min(y0, p.y);
+            y1 = std::max(y1, p.y);
         }
-        sample(texels, {fx, fy, part.width(), ix, iy}, window.type, part.x0, j, row);
-    }
-    return true;
+    const auto at = [&](int i, int j) { return points[(j - block.box.y0) * w + i - block.box.x0].at; };
+    const Got got = split_rows(f, points[0].piece, at, LevelPoints(x0, x1, f.scale_x),
+                               LevelPoints(y0, y1, f.scale_y), cell, own, row);
+    return got == Got::too_large ? rows_one_by_one(block, {}, own, row) : got == Got::window;
 }
 
 /// Each pixel with a window of its own: where a block's texels lie far apart.

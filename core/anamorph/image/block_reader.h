@@ -46,7 +46,7 @@ class BlockReader {
     bool draw(const Block& block, const Box& part, const Canvas& canvas, const Block* next = nullptr);
 
   private:
-    /// The level and taps that all pixels of a block share.
+    /// The level and taps that all pixels of a cell share.
     struct Filtering {
         int level = 0;
         double scale_x = 1, scale_y = 1;  ///< level texels per source pixel
@@ -64,7 +64,7 @@ class BlockReader {
         bool seen;
     };
     struct LevelPolynomial;
-    struct LevelOffsets;
+    struct LevelPoints;
     struct Span;
     enum class Got { window, too_large, failed };
 
@@ -76,7 +76,17 @@ class BlockReader {
                 const Row& row);
     void finish(int x, int y, int count, float one, const Row& row);
 
-    BlockPoints computed_points(const Block& block);
+    template <class At, class Body>
+    bool for_each_footprint(const Block& block, const At& at, bool truth, const Body& body) const;
+    bool points_cell(const Filtering& f, const Block& block, const BlockPoints& points, const Box& cell,
+                     const Box& part, const Row& row);
+    bool exact_cell(const Filtering& f, const Block& block, const Box& cell, const Box& part, const Row& row);
+    template <class At>
+    Got split_rows(const Filtering& f, int piece, const At& at, const LevelPoints& x, const LevelPoints& y,
+                   const Box& cell, const Box& own, const Row& row);
+
+    bool shares_filter(const BlockPolynomial& polynomial, const Block& block) const;
+    BlockPoints points_of(const Block& block);
     Filtering filtering(const Jacobian& jacobian) const;
     Got polynomial_window(const Filtering& f, const Block& block, const LevelPolynomial& polynomial,
                           Window& window);

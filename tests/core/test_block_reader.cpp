@@ -1,0 +1,185 @@
+// SPDX-License-Identifier: Apache-2.0
+// Blocks of every kind read the texels that their points name, and no byte that is not the source's.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstring>
+#include <numbers>
+#include <random>
+
+#include "anamorph/image/draw.h"
+#include "anamorph/image/pyramid.h"
+#include "function_map.h"
+#include "guarded_memory.h"
+
+namespace anamorph {
+namespace {
+
+using test::FunctionMap;
+using Kind = Block::Kind;
+
+/// Packed float pixels.
+struct Picture {
+    int width, height, channels;
+    std::vector<float> values;
+
+    Picture(int w, int h, int c)
+        : width(w),
+          height(h),
+          channels(c),
+          values(static_cast<std::size_t>(w) * static_cast<std::size_t>(h) * static_cast<std::size_t>(c)) {}
+    ImageView view() {
+        return packed_view(reinterpret_cast<std::byte*>(values.data()), PixelType::float32, width, height,
+                           channels);
+    }
+    ConstImageView read() const {
+        return packed_view(reinterpret_cast<const std::byte*>(values.data()), PixelType::float32, width,
+                           height, channels);
+    }
+    float& at(int x, int y, int c = 0) {
+        return values[static_cast<std::size_t>((y * width + x) * channels + c)];
+    }
+};
+
+Border border_of(const Source& source, Wrap wrap) {
+    const Source::Size size = source.size(0);
+    return Border(Chart(Projection::rectilinear, size.width, size.height, 90), wrap);
+}
+
+Picture draw(const BlockMap& map, const Source& source, Filter filter, Wrap wrap = Wrap::clamp) {
+    Picture picture(map.width(), map.height(), source.channels());
+    EXPECT_TRUE(draw_blocks(map, border_of(source, wrap), filter, Output::color, &source,
+                            {0, 0, map.width(), map.height()}, picture.view(), serial_for));
+    return picture;
+}
+
+/// Every texel another value.
+Picture numbered(int width, int height) {
+    Picture picture(width, height, 1);
+    for (std::size_t i = 0; i < picture.values.size(); ++i) picture.values[i] = static_cast<float>(i + 1);
+    return picture;
+}
+
+TEST(BlockReader, NearestTakesTheTexelUnderAnExactPoint) {
+    Picture texels = numbered(160, 110);
+    const MemorySource source(texels.read());
+    // How far below (or above) whole numbers the points lie.
+    for (const double below : {0x1p-24, 0x1p-25, 0x1p-26, 1e-9, 1e-12, 1e-18, 0.0, -1e-12, -1e-9, -0x1p-25}) {
+        SCOPED_TRACE(below);
+        const auto at = [&](double x, double y) {
+            return Point<double>{std::floor(x) + 5 - below, std::floor(y) + 4 - below};
+        };
+        const FunctionMap map(150, 100, Kind::exact, at);
+        Picture picture = draw(map, source, Filter::nearest);
+        int wrong = 0;
+        for (int y = 0; y < 100; ++y)
+            for (int x = 0; x < 150; ++x) {
+                const Point<double> p = at(x + 0.5, y + 0.5);
+                wrong += picture.at(x, y) !=
+                         texels.at(static_cast<int>(std::floor(p.x)), static_cast<int>(std::floor(p.y)));
+            }
+        EXPECT_EQ(wrong, 0);
+        EXPECT_EQ(picture.values, draw(map, source, Filter::nearest).values);
+    }
+}
+
+TEST(BlockReader, ReadsNoByteThatIsNotTheSources) {
+    // 128 columns of which the first ones are read, so that texels are read where they stand.
+    constexpr int kWidth = 128, kHeight = 32;
+    const test::GuardedMemory memory(kWidth * kHeight * sizeof(float));
+    auto* texels = reinterpret_cast<float*>(memory.last(kWidth * kHeight * sizeof(float)));
+    std::fill_n(texels, kWidth * kHeight, 1.0f);
+    const MemorySource source(
+        packed_view(reinterpret_cast<const std::byte*>(texels), PixelType::float32, kWidth, kHeight, 1));
+    for (const Kind kind : {Kind::exact, Kind::polynomial, Kind::computed})
+        for (const double below : {1e-9, 1e-6, 1e-3, 0.4999, 0.5, 0.9999999}) {
+            // The last row of points lies just above the lower edge, or as far from it as the filter reaches.
+            for (const Filter filter : {Filter::nearest, Filter::bilinear, Filter::bicubic}) {
+                const double reach = filter == Filter::nearest ? 0 : filter == Filter::bilinear ? 0.5 : 1.5;
+                const FunctionMap map(64, 28, kind, [&](double x, double y) {
+                    return Point<double>{x + 8, y + 4.5 - reach - below};
+                });
+                Picture picture = draw(map, source, filter);
+                for (const float v : picture.values) ASSERT_NEAR(v, 1, 1e-6);
+                const FunctionMap up(64, 28, kind, [&](double x, double y) {
+                    return Point<double>{x + 8, y - 0.5 + reach + below};
+                });
+                picture = draw(up, source, filter);
+                for (const float v : picture.values) ASSERT_NEAR(v, 1, 1e-6);
+            }
+        }
+}
+
+/// How far an antialiased picture of stripes, `wave` source pixels wide, is from the average of 16 x 16
+/// points a pixel.
+struct Off {
+    double worst = 0, mean_square = 0;
+};
+template <class Ignore>
+Off off_stripes(int width, int height, double wave, const FunctionMap& map, const Ignore& ignore) {
+    const auto stripes = [&](double x) { return 0.5 + 0.5 * std::cos(2 * std::numbers::pi / wave * x); };
+    Picture texels(width, height, 1);
+    for (int y = 0; y < height; ++y)
+        for (int x = 0; x < width; ++x) texels.at(x, y) = static_cast<float>(stripes(x + 0.5));
+    const MemorySource base(texels.read());
+    Picture picture = draw(map, Pyramid(base), Filter::antialias, Wrap::periodic);
+    Off off;
+    int count = 0;
+    for (int y = 0; y < map.height(); ++y)
+        for (int x = 0; x < map.width(); ++x) {
+            if (ignore(x + 0.5, y + 0.5)) continue;
+            double mean = 0;
+            for (int k = 0; k < 256; ++k) {
+                Point<double> p{};
+                int piece = 0;
+                map.exact(x + (k % 16 + 0.5) / 16, y + (k / 16 + 0.5) / 16, 0, p, piece);
+                mean += stripes(p.x) / 256;
+            }
+            const double error = std::fabs(double{picture.at(x, y)} - mean);
+            off.worst = std::max(off.worst, error);
+            off.mean_square += error * error;
+            ++count;
+        }
+    off.mean_square /= count;
+    return off;
+}
+
+TEST(BlockReader, FootprintsFollowTheMapAroundAPole) {
+    // A pixel at a distance r from the pole is 1 / r of a turn wide; one footprint for a block of them is far
+    // too wide for most.
+    constexpr int kWidth = 4096, kHeight = 256;
+    const auto from_pole = [](double x, double y) { return Point<double>{x - 20.3, y - 33.1}; };
+    const auto at = [&](double x, double y) {
+        const Point<double> p = from_pole(x, y);
+        return Point<double>{kWidth * (0.5 + std::atan2(p.y, p.x) / (2 * std::numbers::pi)),
+                             2 * std::hypot(p.x, p.y) + 40};
+    };
+    for (const Kind kind : {Kind::exact, Kind::computed}) {
+        SCOPED_TRACE(static_cast<int>(kind));
+        const Off off = off_stripes(kWidth, kHeight, kWidth / 6.0, FunctionMap(64, 64, kind, at),
+                                    [&](double x, double y) {
+                                        const Point<double> p = from_pole(x, y);
+                                        return std::hypot(p.x, p.y) < 3;
+                                    });
+        // The filter is no box: a footprint of its own for every pixel leaves as much.
+        EXPECT_LT(off.worst, 0.035);
+        EXPECT_LT(std::sqrt(off.mean_square), 0.002);
+    }
+}
+
+TEST(BlockReader, FootprintsFollowTheMapWithinLargePolynomials) {
+    // From .4 to 19.6 source pixels a pixel within a block.
+    const auto at = [](double x, double y) {
+        return Point<double>{10 * x + 0.15 * (x - 32) * (x - 32) + 300, y + 100};
+    };
+    for (const Kind kind : {Kind::exact, Kind::computed, Kind::polynomial}) {
+        SCOPED_TRACE(static_cast<int>(kind));
+        const Off off =
+            off_stripes(1200, 256, 24, FunctionMap(64, 32, kind, at), [](double, double) { return false; });
+        EXPECT_LT(off.worst, 0.13);
+        EXPECT_LT(std::sqrt(off.mean_square), 0.045);
+    }
+}
+
+}  // namespace
+}  // namespace anamorph
