@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "anamorph/image/draw.h"
 
+#include <algorithm>
 #include <atomic>
 #include <cmath>
 #include <optional>
@@ -45,13 +46,25 @@ class MapPainter {
   private:
     void put(int i, bool seen, const Point<double>& exact, const Point<double>& used) {
         if (m_output == Output::stmap) {
-            m_values.data()[2 * i] = seen ? static_cast<float>(used.x / m_source.width()) : -1;
-            m_values.data()[2 * i + 1] = seen ? static_cast<float>(used.y / m_source.height()) : -1;
+            const Point<double> at = in_image(used);
+            m_values.data()[2 * i] = seen ? static_cast<float>(at.x / m_source.width()) : -1;
+            m_values.data()[2 * i + 1] = seen ? static_cast<float>(at.y / m_source.height()) : -1;
             return;
         }
         double dx = seen ? used.x - exact.x : 0;
         if (m_source.closed()) dx -= std::round(dx / m_source.period()) * m_source.period();
         m_values.data()[i] = static_cast<float>(std::hypot(dx, seen ? used.y - exact.y : 0));
+    }
+
+    /// The same point of a source that goes on past its edges: around the seam by full turns; at poles and
+    /// cube edges, which exact points do not cross, on the edge, which is nearer to them.
+    Point<double> in_image(Point<double> p) const {
+        const double w = m_source.width(), h = m_source.height(), period = m_source.period();
+        const bool cube = is_cube(m_source.projection());
+        if (m_source.closed() && (p.x < 0 || p.x > w)) p.x -= std::floor(p.x / period) * period;
+        if (cube) p.x = std::clamp(p.x, 0.0, w);
+        if (cube || m_source.reaches_poles()) p.y = std::clamp(p.y, 0.0, h);
+        return p;
     }
 
     const BlockMap& m_map;

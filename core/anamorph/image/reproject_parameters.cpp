@@ -59,9 +59,9 @@ ParameterTable make_table() {
         choice("scheme", "auto", kSchemes, "how source points are found within tol"),
         colorspace("color space to filter in; by default the source's own"),
         choice("output", "color", kOutputs,
-               "color, or per pixel: stmap, the source point (u, v) in 0 to 1 with v down; error, its "
-               "distance from "
-               "the exact one in source pixels; bound, the proven bound of that"),
+               "color, or per pixel: stmap, the source point (u, v) with v down, in 0 to 1 on the source, "
+               "beyond that beyond its edges, (-1, -1) where there is none; error, its distance from the "
+               "exact one in source pixels; bound, the proven bound of that"),
     };
 }
 

@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: Apache-2.0
+// What pictures of the map itself say.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "anamorph/image/reproject.h"
+
+namespace anamorph {
+namespace {
+
+std::vector<float> stmap_of(const Panorama& map, double tol) {
+    ReprojectOptions options;
+    options.tol = tol;
+    options.output = Output::stmap;
+    const int w = map.target().width(), h = map.target().height();
+    std::vector<float> uv(static_cast<std::size_t>(w * h * 2));
+    const ImageView view = packed_view(reinterpret_cast<std::byte*>(uv.data()), PixelType::float32, w, h, 2);
+    EXPECT_TRUE(Reprojection(map, options).draw(nullptr, {0, 0, w, h}, view));
+    return uv;
+}
+
+TEST(Draw, StmapsStayOnASourceThatCloses) {
+    using enum Projection;
+    const Chart sources[] = {
+        {equirectangular, 512, 256}, {equirectangular, 513, 257, 0, PixelSpacing::centers},
+        {cylindrical, 512, 4000},    {mercator, 512, 4000},
+        {cubemap, 128, 768},         {cubemap3x2, 384, 256}};
+    const Chart to(rectilinear, 200, 150, 100);
+    for (const Chart& from : sources)
+        for (const double tol : {0.0, 0.01, 2.0})
+            for (const double pitch : {0.0, 88.0, -75.0}) {
+                if (std::fabs(pitch) > 30 && !from.reaches_poles() && !is_cube(from.projection())) continue;
+                SCOPED_TRACE(::testing::Message() << name_of(from.projection()) << " tol " << tol << " pitch "
+                                                  << pitch << " of " << from.width());
+                const Panorama map(from, to, {177, pitch, 12});
+                const std::vector<float> uv = stmap_of(map, tol);
+                int outside = 0;
+                double worst = 0;
+                for (int y = 0; y < to.height(); ++y)
+                    for (int x = 0; x < to.width(); ++x) {
+                        const float* at = &uv[static_cast<std::size_t>((y * to.width() + x) * 2)];
+                        outside += !(at[0] >= 0 && at[0] <= 1 && at[1] >= 0 && at[1] <= 1);
+                        Point<double> p{};
+                        int piece = 0;
+                        ASSERT_TRUE(map.exact(x + 0.5, y + 0.5, 0, p, piece));
+                        double dx = at[0] * double(from.width()) - p.x;
+                        if (from.closed()) dx -= std::round(dx / from.period()) * from.period();
+                        worst = std::max(worst, std::hypot(dx, at[1] * double(from.height()) - p.y));
+                    }
+                EXPECT_EQ(outside, 0);
+                // u and v are floats.
+                EXPECT_LE(worst, tol + 0x1p-23 * (from.width() + from.height()));
+            }
+}
+
+TEST(Draw, StmapsGoOnBeyondASourceThatDoesNotClose) {
+    using enum Projection;
+    const Panorama map({rectilinear, 300, 200, 60}, {rectilinear, 200, 150, 100}, {});
+    const std::vector<float> uv = stmap_of(map, 0.01);
+    EXPECT_LT(uv.front(), -0.1f);
+    EXPECT_GT(uv.back(), 1.1f);
+}
+
+}  // namespace
+}  // namespace anamorph
