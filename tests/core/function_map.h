@@ -12,7 +12,8 @@ class FunctionMap final : public BlockMap {
   public:
     using Function = std::function<Point<double>(double, double)>;
 
-    /// A polynomial block is the function's where that is a quadratic.
+    /// A polynomial block is the function's where that is a quadratic; exact ones stand where none is
+    /// possible.
     FunctionMap(int width, int height, Block::Kind kind, Function function)
         : BlockMap(width, height, {Box{0, 0, width, height}}),
           m_kind(kind),
@@ -42,12 +43,10 @@ class FunctionMap final : public BlockMap {
     void plan(const Box& box, int, Blocks& blocks) const override {
         BlockWriter writer(1e9, blocks);
         BlockWriter::for_blocks(box, [&](const Box& b) {
-            if (m_kind == Block::Kind::polynomial)
-                polynomial(b, writer);
-            else if (m_kind == Block::Kind::computed)
-                writer.computed(b, at(b, 0, 0), 0);
-            else
-                writer.exact(b);
+            const bool done = m_kind == Block::Kind::polynomial ? polynomial(b, writer)
+                              : m_kind == Block::Kind::computed ? writer.computed(b, at(b, 0, 0), 0)
+                                                                : false;
+            if (!done) writer.exact(b);
         });
     }
 
@@ -56,7 +55,7 @@ class FunctionMap final : public BlockMap {
         return m_function(0.5 * (b.x0 + b.x1) + s * half(b.width()),
                           0.5 * (b.y0 + b.y1) + t * half(b.height()));
     }
-    void polynomial(const Box& b, BlockWriter& writer) const {
+    bool polynomial(const Box& b, BlockWriter& writer) const {
         const Point<double> c[6] = {
             at(b, 0, 0),
             (at(b, 1, 0) - at(b, -1, 0)) * 0.5,
@@ -70,7 +69,7 @@ class FunctionMap final : public BlockMap {
             x[k] = c[k].x;
             y[k] = c[k].y;
         }
-        writer.polynomial(b, x, y, 0);
+        return writer.polynomial(b, x, y, 0);
     }
 
     Block::Kind m_kind;

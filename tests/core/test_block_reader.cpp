@@ -7,6 +7,7 @@
 #include <numbers>
 #include <random>
 
+#include "anamorph/image/block_reader.h"
 #include "anamorph/image/draw.h"
 #include "anamorph/image/pyramid.h"
 #include "function_map.h"
@@ -179,6 +180,116 @@ TEST(BlockReader, FootprintsFollowTheMapWithinLargePolynomials) {
         EXPECT_LT(off.worst, 0.13);
         EXPECT_LT(std::sqrt(off.mean_square), 0.045);
     }
+}
+
+TEST(BlockPoints, RoundNoMoreThanTheirTermsMay) {
+    std::mt19937 random(31);
+    std::uniform_real_distribution<double> unit(-1, 1);
+    for (const char* const* set = simd::instruction_sets(); *set; ++set) {
+        SCOPED_TRACE(*set);
+        ASSERT_TRUE(simd::use_instruction_set(*set));
+        double worst = 0;
+        for (int trial = 0; trial < 2000; ++trial) {
+            const int degree = 2 + trial % 2, width = 1 + static_cast<int>(random() % 64),
+                      height = 1 + static_cast<int>(random() % 64),
+                      row = static_cast<int>(random() % static_cast<unsigned>(height));
+            float c[4][8] = {};
+            double allowed[2] = {};
+            for (int j = 0; j <= degree; ++j)
+                for (int k = 0; k < 8; ++k) {
+                    const int i = k % 4;
+                    if (i > degree) continue;
+                    c[j][k] = static_cast<float>(unit(random) * std::pow(10, 3 * unit(random)));
+                    allowed[k / 4] += std::fabs(double{c[j][k]}) * term_rounding(i + j);
+                }
+            float x[simd::kRowRoom], y[simd::kRowRoom];
+            simd::block_points({c, degree, width, height}, row, 0, width, x, y);
+            const long double t = height > 1 ? 2.0L * row / (height - 1) - 1 : 0;
+            for (int i = 0; i < width; ++i) {
+                const long double s = width > 1 ? 2.0L * i / (width - 1) - 1 : 0;
+                for (int k = 0; k < 2; ++k) {
+                    long double sum = 0;
+                    for (int b = 0; b <= degree; ++b)
+                        for (int a = 0; a <= degree; ++a)
+                            sum += c[b][4 * k + a] * std::pow(s, a) * std::pow(t, b);
+                    const long double off = std::fabs((k ? y : x)[i] - sum);
+                    worst = std::max(worst, static_cast<double>(off / allowed[k]));
+                }
+            }
+        }
+        EXPECT_LE(worst, 1);
+        EXPECT_GT(worst, 0.05);
+    }
+    simd::use_instruction_set("");
+}
+
+/// Levels of a size that no power of two divides, so that coordinates are rounded anew on each; texels are 0
+/// and 1 by turns, so that a value tells where between two of them it was read: channel 0 across, 1 down.
+class Parity final : public Source {
+  public:
+    PixelType type() const noexcept override { return PixelType::float32; }
+    int channels() const noexcept override { return 2; }
+    int levels() const noexcept override { return 3; }
+    Size size(int level) const noexcept override {
+        return level == 0 ? Size{40009, 40013} : level == 1 ? Size{9781, 9787} : Size{2311, 2309};
+    }
+    bool read(int, const Box& box, std::byte* texels, std::ptrdiff_t row_stride) const noexcept override {
+        for (int y = box.y0; y < box.y1; ++y)
+            for (int x = box.x0; x < box.x1; ++x) {
+                const float pixel[2] = {static_cast<float>(x & 1), static_cast<float>(y & 1)};
+                std::memcpy(texels + (y - box.y0) * row_stride +
+                                (x - box.x0) * static_cast<std::ptrdiff_t>(sizeof pixel),
+                            pixel, sizeof pixel);
+            }
+        return true;
+    }
+};
+
+/// What a bilinear filter reads of texels 0, 1, 0, 1, ... at a place.
+long double parity_at(long double at) {
+    const long double below = std::floor(at - 0.5L), rest = at - 0.5L - below;
+    return std::fmod(below, 2.0L) == 0 ? rest : 1 - rest;
+}
+
+TEST(BlockReader, StaysWithinTheBoundOnEveryLevel) {
+    const Parity source;
+    for (const char* const* set = simd::instruction_sets(); *set; ++set)
+        // Minified so that one tap on a level stands for the footprint.
+        for (const int level : {0, 1, 2}) {
+            ASSERT_TRUE(simd::use_instruction_set(*set));
+            const long double scale_x =
+                                  static_cast<long double>(source.size(level).width) / source.size(0).width,
+                              scale_y =
+                                  static_cast<long double>(source.size(level).height) / source.size(0).height;
+            const double step = level == 0 ? 0.93 : level == 1 ? 4.7 : 19.9;
+            const auto at = [&](double x, double y) {
+                return Point<double>{31234.377 + step * x + 0.0007 * step * x * x - 0.0004 * step * x * y,
+                                     17.6180339 + step * y - 0.0005 * step * x * y};
+            };
+            for (const Kind kind : {Kind::exact, Kind::polynomial, Kind::computed}) {
+                SCOPED_TRACE(::testing::Message()
+                             << *set << " level " << level << " kind " << static_cast<int>(kind));
+                const FunctionMap map(64, 32, kind, at);
+                Picture picture = draw(map, source, Filter::antialias);
+                const Block block = map.blocks(0)->front();
+                // Offsets of a computed block, which the map rounds, and the sampler; and the value's
+                // rounding.
+                const double bound =
+                    kind == Kind::computed ? block.bound + 2 * 0x1p-24 * 64 * step * 2 : block.bound;
+                double worst = 0;
+                for (int y = 0; y < 32; ++y)
+                    for (int x = 0; x < 64; ++x) {
+                        const Point<double> p = at(x + 0.5, y + 0.5);
+                        const long double u = parity_at(p.x * scale_x), v = parity_at(p.y * scale_y);
+                        const long double off = std::hypot(picture.at(x, y, 0) - u, picture.at(x, y, 1) - v);
+                        const long double allowed = bound * std::max(scale_x, scale_y) +
+                                                    std::numbers::sqrt2 * (kLevelRounding + 2 * 0x1p-24);
+                        worst = std::max(worst, static_cast<double>(off / allowed));
+                    }
+                EXPECT_LE(worst, 1);
+            }
+        }
+    simd::use_instruction_set("");
 }
 
 }  // namespace

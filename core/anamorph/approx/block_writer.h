@@ -6,17 +6,35 @@
 #include <cmath>
 
 #include "anamorph/approx/block.h"
+#include "anamorph/simd/block_sampler.h"
 
 namespace anamorph {
 
 /// Source points farther away than this are none.
 inline constexpr double kFarthest = 1 << 30;
 
-/// What rounding to float may cost a term of power n, in s and t together, of a block's polynomial, over its
-/// size: the coefficient is rounded once, s and t twice for each power, Horner's rule rounds a term of s^i
-/// t^j 2 i + 1 + 2 j + 1 times, and the sampler moves the sum by half a texel.
+/// What rounding to float may cost a term of power n = i + j, of s^i t^j in a block's polynomial, over its
+/// size. Every rounding is a factor within 1 -+ u, u = 2^-24. simd/block_sampler.cpp rounds so often, where
+/// multiplication and addition round apart (fused, it does so less):
+///
+/// - 2 times the coefficient: as it is stored, and again in texels of a pyramid's level;
+///
+/// - 2 n times the powers of s and t, each a whole number (exact) times a rounded reciprocal;
+///
+/// - 2 n + 2 times in Horner's rule, which multiplies j times by t and adds at most j + 1 times, then i times
+/// by s and at most i + 1 times;
+///
+/// - once as the sampler moves the sum by half a texel.
+///
+/// The product of these m = 4 n + 5 <= 29 factors is within 1 -+ 1.01 m u: (1 + u)^m <= 1 + x + x^2 with
+/// x = m u <= 1. What else is lost does not grow with the block: simd::kSamplerRounding.
 constexpr double term_rounding(int n) {
-    return 4 * (n + 1) * (1.01 * 0x1p-24);
+    return (4 * n + 5) * (1.01 * 0x1p-24);
+}
+
+/// And the whole of it for a point: that of a polynomial's terms in x and in y with the sampler's own.
+inline double point_rounding(double terms_x, double terms_y) {
+    return std::hypot(terms_x + simd::kSamplerRounding, terms_y + simd::kSamplerRounding);
 }
 
 /// Half the distance between the first and the last of a row of pixel centres.
@@ -55,8 +73,10 @@ class BlockWriter {
         return finish(block, rounding(x, block.base_x), rounding(y, block.base_y), error);
     }
 
-    /// A computed block whose base is `middle` rounded down. True when it keeps the tolerance.
+    /// A computed block whose base is `middle` rounded down. True when it keeps the tolerance: `error` holds
+    /// the rounding of offsets from the base, when they are stored and when the sampler moves them.
     bool computed(const Box& box, const Point<double>& middle, double error) {
+        error += point_rounding(0, 0);
         if (!(error <= m_tol && std::fabs(middle.x) < kFarthest && std::fabs(middle.y) < kFarthest))
             return false;
         Block block;
@@ -118,7 +138,7 @@ class BlockWriter {
         return true;
     }
     bool finish(Block& block, double rounding_x, double rounding_y, double error) {
-        block.bound = error + std::sqrt(rounding_x * rounding_x + rounding_y * rounding_y);
+        block.bound = error + point_rounding(rounding_x, rounding_y);
         if (!(block.bound <= m_tol)) return false;
         m_blocks.push_back(block);
         return true;

@@ -21,12 +21,27 @@ struct BlockPoints {
     std::ptrdiff_t row_stride = 0;  ///< floats; behind every row at least 16 more may be read
 };
 
+/// How far, in a coarse level's texels and along each axis, the point sampled there may be from the one that
+/// a block's bound holds for: in units of 2^-24, 1/2 for the place of the polynomial's origin past a whole
+/// texel of the level, 3 for the additions it goes through (two of Horner's rule, one of the sampler), and 1
+/// of kSamplerRounding; points from a table or in double lose less. The next power of two.
+inline constexpr double kLevelRounding = 0x1p-21;
+
 /// The offsets from the base of a polynomial, bicubic or computed block for row j of `part` of it; room for
 /// simd::kRowRoom floats each. Nothing is written for other kinds.
 void block_row(const BlockMap& map, const Block& block, const Box& part, int j, float* x, float* y);
 
 /// Reads one source through one map; one per thread. The bits of a pixel depend on its block and the source,
 /// not on the part of the block that is asked for.
+///
+/// Where it reads. On the source itself the point sampled is within the block's bound of the exact one; that
+/// of an exact pixel is within 2^-23 texels of the point in double (its rest past a whole texel is rounded,
+/// and kSamplerRounding). On a coarser level of a pyramid kLevelRounding of that level's texels are added:
+/// what is left of a point past a whole texel is a float there too.
+///
+/// What it averages. An antialiased pixel takes a footprint whose axes are within an eighth of the map's own
+/// (of a source pixel, where they are shorter), by blocks where that serves all of their pixels, else by
+/// parts of them, down to single pixels.
 class BlockReader {
   public:
     /// The arguments outlive the reader.

@@ -11,9 +11,9 @@
 namespace anamorph {
 
 /// What is drawn: colour; the source point as (u, v), v down, (-1, -1) where there is none; the distance of
-/// the source point used from the exact one; its proven bound. Distances in source pixels. u and v are in 0..1
-/// on the source: across the seam of one that closes they start anew. Points beyond the edges of any other
-/// have values beyond; what is read there is the border's affair.
+/// the source point used from the exact one; its proven bound. Distances in source pixels. u and v are in
+/// 0..1 on the source: across the seam of one that closes they start anew. Points beyond the edges of any
+/// other have values beyond; what is read there is the border's affair.
 enum class Output { color, stmap, error, bound };
 
 /// Channels of a picture: the source's for color, 2 for stmap, 1 for error and bound.

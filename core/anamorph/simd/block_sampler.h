@@ -3,8 +3,10 @@
 // Highway knows and chosen once per call; tests run each against the scalar path.
 //
 // Errors. Coordinates are evaluated in float as block.h states (fused where the machine fuses), within the
-// rounding term of the block's bound. A filtered value differs from the scalar path's by float rounding: at
-// most 16 half-ULP of the largest texel read.
+// rounding term of the block's bound (term_rounding in approx/block_writer.h). A point given as Offsets is
+// moved by half a texel, which rounds the sum once, by at most 2^-24 |x|, and by kSamplerRounding besides.
+// Where taps make up a pixel their places are the filter's, rounded to float. A filtered value differs from
+// the scalar path's by float rounding: at most 16 half-ULP of the largest texel read.
 #pragma once
 
 #include <cstddef>
@@ -25,6 +27,11 @@ struct Polynomials {
 /// The source points of pixels [begin, end) of row `row`: offsets from the block's base in texels. There is
 /// room for kRowRoom floats in each array.
 void block_points(const Polynomials& block, int row, int begin, int end, float* out_x, float* out_y);
+
+/// How far, in texels of one coordinate, the point that is sampled may be from the one given, less 2^-24 of
+/// the offset: x - 1/2 is rounded by at most 2^-24 (|x| + 1/2), and what is left of it past a whole number by
+/// 2^-25 just below one, else not at all. Nearest texels are those of the points given.
+inline constexpr double kSamplerRounding = 0x1p-24;
 
 enum class Kernel : std::uint8_t { nearest, bilinear, bicubic };
 
