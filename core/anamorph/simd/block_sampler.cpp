@@ -85,13 +85,69 @@ void BlockPoints(const Polynomials& block, int row, int begin, int end, float* H
 
 constexpr bool kHasPair = hn::MaxLanes(Pair()) == 8;  // two texels of up to four channels in one vector
 
+// Highway's own conversions of half where the processor has none cut off, and know no infinity.
+#if HWY_ARCH_X86 && HWY_TARGET <= HWY_AVX2
+constexpr bool kHasHalf = true;
+#else
+constexpr bool kHasHalf = false;
+#endif
+
+/// float_from_half (number/half.h) for as many halves from `p` as D has lanes.
+template <class D>
+HWY_INLINE hn::Vec<D> LoadHalves(D d, const hwy::float16_t* p) {
+    if constexpr (kHasHalf) {
+        return hn::PromoteTo(d, hn::LoadU(hn::Rebind<hwy::float16_t, D>(), p));
+    } else {
+        const hn::RebindToSigned<D> di;
+        const auto half =
+            hn::PromoteTo(di, hn::LoadU(hn::Rebind<uint16_t, D>(), reinterpret_cast<const uint16_t*>(p)));
+        const auto magnitude = hn::And(half, hn::Set(di, 0x7fff));
+        const auto sign = hn::ShiftLeft<16>(hn::Sub(half, magnitude));
+        const auto wide = hn::ShiftLeft<13>(magnitude);
+        const auto denormal = hn::BitCast(di, hn::Mul(hn::ConvertTo(d, magnitude), hn::Set(d, 0x1p-24f)));
+        const auto normal = hn::Add(wide, hn::Set(di, (127 - 15) << 23));
+        const auto special = hn::Or(wide, hn::Set(di, 0x7f800000));
+        const auto value =
+            hn::IfThenElse(hn::Lt(magnitude, hn::Set(di, 0x0400)), denormal,
+                           hn::IfThenElse(hn::Lt(magnitude, hn::Set(di, 0x7c00)), normal, special));
+        return hn::BitCast(d, hn::Or(sign, value));
+    }
+}
+
+/// half_from_float (number/half.h) of a vector, to `to`.
+template <class D>
+HWY_INLINE void StoreHalves(hn::Vec<D> v, D d, hwy::float16_t* to) {
+    if constexpr (kHasHalf) {
+        const hn::Rebind<hwy::float16_t, D> dh;
+        hn::StoreU(hn::DemoteTo(dh, v), dh, to);
+    } else {
+        const hn::RebindToSigned<D> di;
+        const hn::Rebind<uint16_t, D> dh;
+        const auto bits = hn::BitCast(di, v), magnitude = hn::And(bits, hn::Set(di, 0x7fffffff));
+        const auto sign = hn::And(hn::ShiftRight<16>(bits), hn::Set(di, 0x8000));
+        const auto short_bits = hn::ShiftRight<13>(magnitude);
+        const auto nan = hn::Or(hn::Set(di, 0x7e00), hn::And(short_bits, hn::Set(di, 0x3ff)));
+        const auto large =
+            hn::IfThenElse(hn::Gt(magnitude, hn::Set(di, 0x7f800000)), nan, hn::Set(di, 0x7c00));
+        const auto small = hn::Sub(hn::BitCast(di, hn::Add(hn::BitCast(d, magnitude), hn::Set(d, 0.5f))),
+                                   hn::Set(di, 0x3f000000));
+        const auto odd = hn::And(short_bits, hn::Set(di, 1));
+        const auto normal =
+            hn::ShiftRight<13>(hn::Add(hn::Add(magnitude, hn::Set(di, 0xfff - ((127 - 15) << 23))), odd));
+        const auto half =
+            hn::IfThenElse(hn::Lt(magnitude, hn::Set(di, 0x38800000)), small,
+                           hn::IfThenElse(hn::Lt(magnitude, hn::Set(di, 0x47800000)), normal, large));
+        hn::StoreU(hn::DemoteTo(dh, hn::Or(sign, half)), dh, reinterpret_cast<uint16_t*>(to));
+    }
+}
+
 /// As many channels from `p` as D has lanes, as floats.
 template <class D, class T>
 HWY_INLINE hn::Vec<D> LoadFloats(D d, const T* p) {
     if constexpr (std::is_same_v<T, float>) {
         return hn::LoadU(d, p);
     } else if constexpr (std::is_same_v<T, hwy::float16_t>) {
-        return hn::PromoteTo(d, hn::LoadU(hn::Rebind<hwy::float16_t, D>(), p));
+        return LoadHalves(d, p);
     } else {
         return hn::ConvertTo(d, hn::PromoteTo(hn::RebindToSigned<D>(), hn::LoadU(hn::Rebind<T, D>(), p)));
     }
@@ -347,17 +403,18 @@ void StoreIntegers(const float* HWY_RESTRICT values, int count, float scale, T* 
 
 void StoreHalf(const float* HWY_RESTRICT values, int count, float scale, hwy::float16_t* HWY_RESTRICT to) {
     const Floats d;
-    const hn::Rebind<hwy::float16_t, Floats> dh;
     const auto v = hn::Set(d, scale);
     HWY_ALIGN hwy::float16_t tail[kLanes];
     HWY_ALIGN float padded[kLanes] = {};
     for (int i = 0; i < count; i += static_cast<int>(kLanes)) {
-        const auto n =
-            hn::DemoteTo(dh, hn::Mul(v, hn::LoadU(d, whole_vector(values + i, count - i, padded))));
-        hn::StoreU(n, dh, tail);
-        std::memcpy(
-            to + i, tail,
-            sizeof(hwy::float16_t) * static_cast<size_t>(HWY_MIN(static_cast<int>(kLanes), count - i)));
+        const int rest = count - i;
+        const auto x = hn::Mul(v, hn::LoadU(d, whole_vector(values + i, rest, padded)));
+        if (rest >= static_cast<int>(kLanes)) {
+            StoreHalves(x, d, to + i);
+        } else {
+            StoreHalves(x, d, tail);
+            std::memcpy(to + i, tail, sizeof(hwy::float16_t) * static_cast<size_t>(rest));
+        }
     }
 }
 
