@@ -111,6 +111,60 @@ TEST(BlockReader, ReadsNoByteThatIsNotTheSources) {
         }
 }
 
+TEST(BlockReader, RowsMayStandAnyNumberOfBytesApart) {
+    // 130 columns of which the last ones are not read, so that texels could be read where they stand.
+    constexpr int kWidth = 130, kHeight = 40, kGap = 3;
+    std::vector<std::byte> packed(kWidth * kHeight * 2), apart((kWidth * 2 + kGap) * kHeight);
+    for (std::size_t i = 0; i < packed.size(); ++i) packed[i] = static_cast<std::byte>(i * 7919 >> 3);
+    ConstImageView view =
+        packed_view(static_cast<const std::byte*>(packed.data()), PixelType::uint16, kWidth, kHeight, 1);
+    const MemorySource source(view);
+    for (int y = 0; y < kHeight; ++y)
+        std::memcpy(&apart[static_cast<std::size_t>(y * (kWidth * 2 + kGap))], view.at(0, y), kWidth * 2);
+    view.data = apart.data();
+    view.row_stride += kGap;
+    const MemorySource other(view);
+    for (const Kind kind : {Kind::exact, Kind::polynomial, Kind::computed}) {
+        const FunctionMap map(64, 30, kind, [](double x, double y) {
+            return Point<double>{x + 3.3, y + 4.4};
+        });
+        EXPECT_EQ(draw(map, source, Filter::bilinear).values, draw(map, other, Filter::bilinear).values);
+    }
+}
+
+TEST(BlockReader, PointsThatAreNoneOrFarAwayHarmNoOthers) {
+    Picture texels = numbered(90, 50);
+    const MemorySource base(texels.read());
+    const Pyramid source(base);
+    const double far[] = {std::nan(""), HUGE_VAL, -HUGE_VAL, 1e9, -1e9, 1e300, -1e300};
+    for (const Kind kind : {Kind::exact, Kind::computed})
+        for (const Filter filter : {Filter::nearest, Filter::bilinear, Filter::bicubic, Filter::antialias})
+            for (const double bad : far) {
+                SCOPED_TRACE(::testing::Message() << "kind " << static_cast<int>(kind) << " filter "
+                                                  << static_cast<int>(filter) << " at " << bad);
+                const auto good = [](double x, double y) { return Point<double>{x + 8.25, y + 4.5}; };
+                const FunctionMap map(64, 32, kind, [&](double x, double y) {
+                    const bool off = std::floor(x) == 20 && std::floor(y) < 32 && std::floor(y) != 16;
+                    Point<double> p = good(x, y);
+                    if (off) (std::fmod(std::floor(y), 2) == 0 ? p.x : p.y) = bad;
+                    return p;
+                });
+                Picture picture = draw(map, source, filter, Wrap::black);
+                Picture alone = draw(FunctionMap(64, 32, kind, good), source, filter, Wrap::black);
+                int wrong = 0, lit = 0;
+                for (int y = 0; y < 32; ++y)
+                    for (int x = 0; x < 64; ++x) {
+                        const bool off = x == 20 && y != 16;
+                        lit += off && picture.at(x, y) != 0;
+                        // Next to it a footprint may be another; else only the order of sums is.
+                        if (off || (filter == Filter::antialias && std::abs(x - 20) < 2)) continue;
+                        wrong += !(std::fabs(picture.at(x, y) - alone.at(x, y)) <= 1e-6f * 4500);
+                    }
+                EXPECT_EQ(wrong, 0);
+                EXPECT_EQ(lit, 0);
+            }
+}
+
 /// How far an antialiased picture of stripes, `wave` source pixels wide, is from the average of 16 x 16
 /// points a pixel.
 struct Off {

@@ -140,6 +140,12 @@ TEST(Footprint, UsesTheRealSizesOfLevels) {
     EXPECT_NEAR(tap_energy(f.taps_b, static_cast<double>(f.spacing_b)), box_energy(5) / 0.332, 1e-4);
 }
 
+TEST(Footprint, LevelsEndWhereOneIsLargerThanTheImage) {
+    const FootprintChooser chooser(Sizes({{1000, 500}, {500, 250}, {30, 501}, {10, 5}}));
+    EXPECT_EQ(chooser.levels(), 2);
+    EXPECT_EQ(chooser(scaled(100, 100)).level, 1);
+}
+
 TEST(Footprint, ManyTapsMoveToACoarserLevelAndThenAreCapped) {
     const FootprintChooser deep(kPyramid), flat(kOne);
     const Footprint far = deep(scaled(1000, 2));

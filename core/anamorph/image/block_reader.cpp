@@ -226,6 +226,9 @@ struct BlockReader::Span {
         last = base + std::floor(range.high + tap_reach) + support + 1;
     }
     bool fits() const { return std::max(std::fabs(first), std::fabs(last)) < (1 << 30); }
+    double farthest_from(std::int32_t base) const {
+        return std::max(std::fabs(first - base), std::fabs(last - base));
+    }
 };
 
 /// One coordinate of points in double, in texels of a level: `base` is the texel that the least one falls
@@ -362,9 +365,11 @@ bool BlockReader::points_cell(const Filtering& f, const Block& block, const Bloc
     const std::ptrdiff_t first = cell.y0 * points.row_stride + cell.x0;
     range_over(points.x + first, points.row_stride, cell.width(), cell.height(), x.low, x.high);
     range_over(points.y + first, points.row_stride, cell.width(), cell.height(), y.low, y.high);
-    if (!(is_near(x.low) && is_near(x.high) && is_near(y.low) && is_near(y.high)))
-        return rows_one_by_one(block, points, own, row);
-    if (f.level > 0) {
+    const bool near = is_near(block.base_x + x.low) && is_near(block.base_x + x.high) &&
+                      is_near(block.base_y + y.low) && is_near(block.base_y + y.high);
+    if (!near) return rows_one_by_one(block, points, own, row);
+    // On the source itself the block's offsets serve as they are, unless a cell lies apart from its base.
+    if (f.level > 0 || !(cell == whole(block))) {
         const auto at = [&](int i, int j) {
             const std::ptrdiff_t k = (j - block.box.y0) * points.row_stride + i - block.box.x0;
             return Point<double>{block.base_x + double{points.x[k]}, block.base_y + double{points.y[k]}};
@@ -527,12 +532,16 @@ BlockReader::Got BlockReader::window_of(const Filtering& f, int piece, std::int3
     const double texels = (x.last - x.first) * (y.last - y.first);
     const double pixels = double(block.width()) * block.height();
     if (!(texels <= kMost * pixels + 4096) || !x.fits() || !y.fits()) return Got::too_large;
+    // Offsets are floats, which move half a texel without losing it, and count elements in 32 bits.
+    constexpr double kMostOffset = 1 << 20;
+    const double most_x = x.farthest_from(base_x), most_y = y.farthest_from(base_y);
+    if (!(most_x <= kMostOffset && most_y <= kMostOffset)) return Got::too_large;
     const Box box{static_cast<int>(x.first), static_cast<int>(y.first), static_cast<int>(x.last),
                   static_cast<int>(y.last)};
     if (!m_reader.get(f.level, piece, box, window)) return Got::failed;
-    // Offsets inside a window are counted in 32 bits.
-    const double span = double(window.row_stride) * (box.height() + 1);
-    return std::fabs(span) < std::numeric_limits<std::int32_t>::max() ? Got::window : Got::too_large;
+    const double pixel = double(window.channels) * size_of(window.type);
+    const double span = std::fabs(double(window.row_stride)) * most_y + pixel * most_x;
+    return span < std::numeric_limits<std::int32_t>::max() ? Got::window : Got::too_large;
 }
 
 /// Where the next block's texels stand in memory, if they do; filtered like this one's.

@@ -88,6 +88,11 @@ FootprintChooser::FootprintChooser(const Source& source)
     const Source::Size full = source.size(0);
     for (int level = 0; level < m_levels; ++level) {
         const Source::Size size = source.size(level);
+        // No coarser copy: it and those behind it are left alone.
+        if (size.width > full.width || size.height > full.height) {
+            m_levels = level;
+            break;
+        }
         m_scale[static_cast<std::size_t>(level)] = {static_cast<double>(size.width) / full.width,
                                                     static_cast<double>(size.height) / full.height};
     }

@@ -21,6 +21,11 @@ bool has_slack(const ConstImageView& image, const Box& box) {
     return rows * stride + (image.width - box.x1) * image.pixel_stride >= Window::kSlack;
 }
 
+/// May the loops read the image where it stands: packed pixels, rows whole channels apart?
+bool is_readable(const ConstImageView& image) {
+    return image.packed() && image.row_stride % size_of(image.type) == 0;
+}
+
 /// A rectangle of texels of the source and the place it is copied to, relative to the window's corner.
 struct Patch {
     Box texels;
@@ -154,7 +159,7 @@ bool WindowReader::get(int level, int piece, const Box& box, Window& window) noe
 
     const bool inside = holds(m_border.interior(piece, m_source.size(level)), box);
     const ConstImageView* image = alpha < 0 && inside ? m_source.view(level) : nullptr;
-    if (image && image->packed() && has_slack(*image, box)) {
+    if (image && is_readable(*image) && has_slack(*image, box)) {
         if (!m_source.prepare(level, box)) return false;
         window = {image->at(box.x0, box.y0), type, channels, image->row_stride, box};
         return true;
