@@ -216,8 +216,8 @@ TEST(BlockReader, FootprintsFollowTheMapAroundAPole) {
                                         const Point<double> p = from_pole(x, y);
                                         return std::hypot(p.x, p.y) < 3;
                                     });
-        // The filter is no box: a footprint of its own for every pixel leaves as much.
-        EXPECT_LT(off.worst, 0.035);
+        // The filter is no box, and footprints are shared: one for every block was off by .066 and .0043.
+        EXPECT_LT(off.worst, 0.05);
         EXPECT_LT(std::sqrt(off.mean_square), 0.002);
     }
 }
@@ -325,7 +325,8 @@ TEST(BlockReader, StaysWithinTheBoundOnEveryLevel) {
                              << *set << " level " << level << " kind " << static_cast<int>(kind));
                 const FunctionMap map(64, 32, kind, at);
                 Picture picture = draw(map, source, Filter::antialias);
-                const Block block = map.blocks(0)->front();
+                const SharedBlocks blocks = map.blocks(0);
+                const Block& block = *blocks.begin();
                 // Offsets of a computed block, which the map rounds, and the sampler; and the value's
                 // rounding.
                 const double bound =

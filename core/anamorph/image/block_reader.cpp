@@ -33,16 +33,17 @@ Jacobian jacobian_of(const Block& block) {
     return {block.x[1] / hx, block.y[1] / hx, block.x[2] / hy, block.y[2] / hy};
 }
 
-// Pixels share a footprint whose axes are off by at most this part of their lengths; a source pixel where
-// they are shorter.
-constexpr double kFootprintShare = 1.0 / 8;
+// Pixels share a footprint whose axes are off by at most this part of their lengths, or by half a source
+// pixel.
+constexpr double kFootprintShare = 1.0 / 4, kFootprintOff = 0.5;
 
 /// May (step_x, step_y) stand in for an axis (x, y) of a footprint? All may where the map does not minify.
 inline bool alike(double x, double y, double step_x, double step_y) {
     const double length = x * x + y * y, step = step_x * step_x + step_y * step_y;
     const double off = square(step_x - x) + square(step_y - y);
     // Written so that what is no number is like nothing.
-    return off <= square(kFootprintShare) * std::max(1.0, length) || (length <= 1 && step <= 1);
+    return off <= std::max(square(kFootprintOff), square(kFootprintShare) * length) ||
+           (length <= 1 && step <= 1);
 }
 
 /// Is the footprint in the middle of a polynomial block right for all its pixels? The derivative along s is
@@ -59,7 +60,7 @@ bool shares_footprint(const BlockPolynomial& p, const Block& block) {
     const double hx = half(block.box.width()), hy = half(block.box.height());
     const auto steady = [](double x, double y, double off_x, double off_y) {
         const double length = std::hypot(x, y), off = std::hypot(off_x, off_y);
-        return off <= kFootprintShare * std::max(1.0, length) || length + off <= 1;
+        return off <= std::max(kFootprintOff, kFootprintShare * length) || length + off <= 1;
     };
     return steady(p.c[0][1] / hx, p.c[0][5] / hx, along_s[0] / hx, along_s[1] / hx) &&
            steady(p.c[1][0] / hy, p.c[1][4] / hy, along_t[0] / hy, along_t[1] / hy);
@@ -71,13 +72,15 @@ class Steps {
   public:
     Steps(const At& at, const Block& block) : m_at(at), m_size{0, 0, block.box.width(), block.box.height()} {}
 
-    /// The mean of the steps across the middle of the block, if it has any either way.
     bool go_both_ways() const { return m_size.x1 > 1 && m_size.y1 > 1; }
-    Jacobian mean() const {
-        const int right = m_size.x1 - 1, bottom = m_size.y1 - 1;
-        const Point<double> i = (m_at(right, bottom / 2) - m_at(0, bottom / 2)) * (1.0 / right);
-        const Point<double> j = (m_at(right / 2, bottom) - m_at(right / 2, 0)) * (1.0 / bottom);
-        return {i.x, i.y, j.x, j.y};
+    /// The map's derivative in the middle of a cell: of the two nearest steps within the block, either way,
+    /// the shorter one, which does not cross a seam.
+    Jacobian jacobian(const Box& cell) const {
+        const int i = (cell.x0 + cell.x1) / 2, j = (cell.y0 + cell.y1) / 2;
+        const Point<double> across =
+            shorter(i, m_size.x1, [&](int k) { return m_at(k + 1, j) - m_at(k, j); });
+        const Point<double> down = shorter(j, m_size.y1, [&](int k) { return m_at(i, k + 1) - m_at(i, k); });
+        return {across.x, across.y, down.x, down.y};
     }
     /// Is every step of a cell like the axes of a footprint?
     bool alike(const Box& cell, const Jacobian& to) const {
@@ -97,6 +100,14 @@ class Steps {
     }
 
   private:
+    /// The shorter of the two steps, of a row of `count` pixels, next to pixel k.
+    template <class Step>
+    static Point<double> shorter(int k, int count, const Step& step) {
+        const int first = std::clamp(k - 1, 0, std::max(0, count - 3)), last = std::min(first + 1, count - 2);
+        const Point<double> a = step(first), b = step(last);
+        return square(a.x) + square(a.y) < square(b.x) + square(b.y) ? a : b;
+    }
+
     /// Where steps to the right, or down, begin; those of a single column or row go to a neighbour of the
     /// block, if it has one.
     Box across(const Box& cell) const {
@@ -338,17 +349,17 @@ bool BlockReader::rows(const Block& block, const BlockPoints& points, const Box&
     const auto body = [&](const Box& cell, const Filtering& f) {
         return points_cell(f, block, points, cell, part, row);
     };
-    return for_each_footprint(block, at, false, body);
+    return for_each_footprint(block, at, body);
 }
 
 /// body(cell, filtering) for the cells of a block that share a footprint; `at` gives the source points of its
-/// pixels, counted from its corner. That of a whole block may come from them unless `truth` is asked for.
+/// pixels, counted from its corner.
 template <class At, class Body>
-bool BlockReader::for_each_footprint(const Block& block, const At& at, bool truth, const Body& body) const {
+bool BlockReader::for_each_footprint(const Block& block, const At& at, const Body& body) const {
     if (m_filter != Filter::antialias) return body(whole(block), filtering({}));
     const Steps<At> steps(at, block);
     const auto derivative = [&](const Box& cell) {
-        if (!truth && cell == whole(block) && steps.go_both_ways()) return steps.mean();
+        if (steps.go_both_ways()) return steps.jacobian(cell);
         return m_map.jacobian(block.box.x0 + 0.5 * (cell.x0 + cell.x1),
                               block.box.y0 + 0.5 * (cell.y0 + cell.y1), block.piece);
     };
@@ -441,7 +452,7 @@ bool BlockReader::exact_rows(const Block& block, const Box& part, const Row& row
         }
     if (!together) return rows_one_by_one(block, {}, part, row);
     const auto at = [&](int i, int j) -> const Point<double>& { return m_exact.data()[j * w + i].at; };
-    return for_each_footprint(block, at, true, [&](const Box& cell, const Filtering& f) {
+    return for_each_footprint(block, at, [&](const Box& cell, const Filtering& f) {
         return exact_cell(f, block, cell, part, row);
     });
 }

@@ -39,9 +39,9 @@ void block_row(const BlockMap& map, const Block& block, const Box& part, int j, 
 /// and kSamplerRounding). On a coarser level of a pyramid kLevelRounding of that level's texels are added:
 /// what is left of a point past a whole texel is a float there too.
 ///
-/// What it averages. An antialiased pixel takes a footprint whose axes are within an eighth of the map's own
-/// (of a source pixel, where they are shorter), by blocks where that serves all of their pixels, else by
-/// parts of them, down to single pixels.
+/// What it averages. An antialiased pixel takes a footprint whose axes are the map's own, its steps from
+/// pixel to pixel, to within a quarter of their lengths or half a source pixel: by blocks where one serves
+/// all of their pixels, else by parts of them, down to single pixels.
 class BlockReader {
   public:
     /// The arguments outlive the reader.
@@ -92,7 +92,7 @@ class BlockReader {
     void finish(int x, int y, int count, float one, const Row& row);
 
     template <class At, class Body>
-    bool for_each_footprint(const Block& block, const At& at, bool truth, const Body& body) const;
+    bool for_each_footprint(const Block& block, const At& at, const Body& body) const;
     bool points_cell(const Filtering& f, const Block& block, const BlockPoints& points, const Box& cell,
                      const Box& part, const Row& row);
     bool exact_cell(const Filtering& f, const Block& block, const Box& cell, const Box& part, const Row& row);
