@@ -375,6 +375,54 @@ TEST(NearFar, EveryInstructionSetHolds) {
     simd::use_instruction_set("");
 }
 
+/// All that a plan says and places: blocks, bounds and points, byte by byte.
+std::vector<std::uint8_t> bytes_of(const FeatureMap& map, double tol) {
+    const NearFar field(map, {tol, {0, 1}});
+    const FeatureMap::Size size = map.target();
+    std::vector<std::uint8_t> bytes;
+    const auto put = [&](const auto& value) {
+        const auto* at = reinterpret_cast<const std::uint8_t*>(&value);
+        bytes.insert(bytes.end(), at, at + sizeof value);
+    };
+    for (int y = 0; y < size.height; y += CellField::kRegion)
+        for (int x = 0; x < size.width; x += CellField::kRegion) {
+            const Box region = intersection({x, y, x + CellField::kRegion, y + CellField::kRegion},
+                                            {0, 0, size.width, size.height});
+            field.each_block(region, region, [&](int k, const Block& block, const CellPoints& points) {
+                for (const int n : {k, block.box.x0, block.box.y0, block.box.x1, block.box.y1,
+                                    static_cast<int>(block.kind), int{block.base_x}, int{block.base_y}})
+                    put(n);
+                put(block.bound);
+                if (!points.x) return;
+                for (int j = 0; j < block.box.height(); ++j)
+                    for (int i = 0; i < block.box.width(); ++i) {
+                        put(points.x[j * points.row_stride + i]);
+                        put(points.y[j * points.row_stride + i]);
+                    }
+            });
+        }
+    return bytes;
+}
+
+TEST(NearFar, EveryInstructionSetGivesTheSameBits) {
+    for (const std::string& family : families::names())
+        for (const LineWeights& w : {LineWeights{1, 2, 0.5}, LineWeights{0.01, 1, 0.5},
+                                     LineWeights{0.1, 0.5, 1}, LineWeights{0.1, 1.3, 0.5}}) {
+            const auto features = families::Maker(200, 22).make(family, 40);
+            const FeatureMap map = map_of(*features, {200, 150}, w, 0.3);
+            for (const double tol : {0.25, 0.01}) {
+                simd::use_instruction_set("");
+                const std::vector<std::uint8_t> best = bytes_of(map, tol);
+                for (const char* const* set = simd::instruction_sets(); *set; ++set) {
+                    ASSERT_TRUE(simd::use_instruction_set(*set));
+                    EXPECT_TRUE(bytes_of(map, tol) == best)
+                        << *set << " " << family << " a " << w.a << " b " << w.b << " tol " << tol;
+                }
+            }
+        }
+    simd::use_instruction_set("");
+}
+
 TEST(NearFar, OneShapeAlone) {
     const auto features = families::Maker(150, 9).make("face", 32);
     const FeatureMap map = map_of(*features, {150, 150}, {1, 2, 0.5});

@@ -68,9 +68,13 @@ using simd::LineTable;
 
 constexpr int kRegion = CellField::kRegion;
 constexpr double kHalfRegion = kRegion / 2;
+static_assert(kHalfRegion == double(simd::kRegionHalf));
 // Cells are not cut below this.
 constexpr int kFloor = 4;
-constexpr double kUlp = 0x1p-24;
+constexpr auto kFloatUlp = static_cast<double>(simd::kFloatRounding);
+// A bound is made of sums over lines (off by kSumRounding each, in numerator and denominator) and of fewer
+// than 100 more operations on floats, products of four at most of such sums: 8 (24) + 100 < 512 units.
+constexpr double kBoundRounding = 512 * kFloatUlp;
 // The part of the tolerance that interpolation may use; the rest is for rounding.
 constexpr double kInterpolationShare = 0.9;
 // And the part of what is left of it that a cell uses up for lines that are far already from a cell to be
@@ -105,8 +109,9 @@ struct Chebyshev {
             node[i] = nodes[i];
             lebesgue += 1 / std::tan(angle / 2) / k;
         }
-        // With room for nodes that are rounded, and for the rounding of what is evaluated there.
-        lebesgue *= 1 + 1e-5;
+        // Nodes are rounded by u / 2 each, and Lagrange's polynomials have slopes below K^2 Lebesgue_K
+        // (Markov): the sum of K of them moves by K^3 u / 2 of itself, at most 256 u.
+        lebesgue *= 1 + 512 * kFloatUlp;
         // Lagrange's polynomials, multiplied out.
         for (int i = 0; i < k; ++i) {
             double c[kMaxDegree] = {1};
@@ -352,11 +357,13 @@ class Planner {
         }
         const double a = m_map.weights().a, b = m_map.weights().b;
         m_unit = std::pow(unit, b);
-        const bool fast = b == 0 || b == 0.5 || b == 1 || b == 2;
+        // Where a power is less than floats hold, they have no bound in proportion. What else comes out too
+        // small, a product with a factor, is off by less than 2^-126, a million lines by 1e-32: nothing
+        // beside a sum above 1e-20.
+        if (!(std::pow(farthest, -b) > 1e-36)) return false;
         const double log = std::max(std::log(farthest), -std::log(std::max<double>(a, simd::kLeastDistance)));
-        m_constant =
-            kUlp * (5 * b + simd::kWeightRounding + (fast ? 0 : simd::kPowerRounding * b * (1 + log)));
-        m_by_nearest = kUlp * b;
+        m_constant = kFloatUlp * simd::weight_rounding(b, log);
+        m_by_nearest = kFloatUlp * b;
         m_lines.resize(m_map.size());
         for (std::size_t i = 0; i < m_map.size(); ++i)
             if (!see(i, m_x, m_y, m_lines[i]) || !(m_slopes[i] < 1e9f)) return false;
@@ -376,7 +383,8 @@ class Planner {
         CellFrame frame;
         Vector center;    ///< displacement at the centre
         double least;     ///< sum of weights, at least
-        double spread;    ///< the mean of |D_i - center|, at most
+        double mean;      ///< the mean of |D_i - center|, at most
+        double spread;    ///< |D - center|, at most
         double offset;    ///< length of `center`
         double farthest;  ///< the greatest of them
         double rounding;  ///< of polynomials, about
@@ -422,8 +430,8 @@ class Planner {
         }
         sums.move(known.center);
         known.offset = length_of(known.center);
-        known.least = (bounds.least_sum + sums.least) * (1 - 1e-4);
-        known.finite = known.least > 0 && known.least < HUGE_VAL && known.offset < HUGE_VAL;
+        known.least = (bounds.least_sum + sums.least) * (1 - 2 * simd::kSumRounding);
+        known.finite = known.least > 1e-20 && known.least < HUGE_VAL && known.offset < HUGE_VAL;
         const simd::SpreadSums over = simd::bound_displacements(lines.table(), known.frame, center,
                                                                 static_cast<float>(0.25 * known.least),
                                                                 bounds, lines.reach(), lines.error());
@@ -431,22 +439,24 @@ class Planner {
         // D is a mean of the D_i: no farther off than the farthest, and lines of little weight count by that.
         // And D - center is the mean of (w_i - w_i at the centre) (D_i - center) and of w_i at the centre
         // times the change of D_i, since the sum of w_i (D_i - center) is 0 there but for the polynomial's
-        // errors.
+        // errors and the rounding of what `center` was made of: weights, sums and the quotient.
         const double half = static_cast<double>(known.frame.half), b = m_map.weights().b;
         known.farthest = std::max(sums.farthest, over.farthest);
+        const double rounding = node_rounding(sums.reach + over.reach, sums.near_reach + over.near_reach,
+                                              sums.most + over.most, sums.slope + over.slope, known.offset);
         const double change = (half * (std::numbers::sqrt2 * b * (sums.near_reach + over.near_reach) +
                                        sums.slope + over.slope) +
-                               sums.error) /
+                               sums.error + rounding) /
                               known.least;
         const double mean = std::min((sums.reach + over.light) / known.least + over.heavy, known.farthest);
-        // The centre's displacement is itself a float's.
-        known.spread = std::min(mean, change) * (1 + 1e-3) + 64 * kUlp * (mean + known.offset);
-        // If all lines became far that may.
+        known.mean = mean * (1 + kBoundRounding);
+        known.spread = std::min(mean, change) * (1 + kBoundRounding);
+        // Only what the tolerance is shared out by, if all lines became far that may: far_rounding is the
+        // bound.
         simd::LineSums most = sums;
         add(most, over.may_be_far);
-        known.rounding = m_chebyshev.lebesgue * m_chebyshev.lebesgue *
-                         (noise(most.reach, most.near_reach) + known.spread * noise(most.most, most.near) +
-                          16 * kUlp * (most.reach + known.spread * most.most)) /
+        known.rounding = (node_rounding(most.reach, most.near_reach, most.most, most.slope, 0) +
+                          known.spread * node_rounding(most.most, most.near, most.most, 0, 0)) /
                          known.least;
         return known;
     }
@@ -522,26 +532,45 @@ class Planner {
         return most;
     }
 
+    /// Of the sums of weights times displacements that a polynomial is made of, from sums over the lines: m
+    /// r, m r / d, m, m times the displacement's change per pixel. `offset`: length of what the r are
+    /// reckoned from.
+    double node_rounding(double reach, double near_reach, double most, double slope, double offset) const {
+        // Weights; sums over 16 or kSumLanes lines and their products; displacements. Interpolation makes
+        // that Lebesgue_K^2 times as much.
+        const double moved = reach + offset * most;
+        return m_chebyshev.lebesgue * m_chebyshev.lebesgue *
+               (noise(reach, near_reach) + (simd::kSumRounding + 4 * kFloatUlp) * moved +
+                10 * kFloatUlp * kHalfRegion * slope);
+    }
+
     /// Of adding up, dividing and placing: what no cutting of cells reduces.
     double base_rounding(const Known& known, int near) const {
-        const double value = known.spread + known.offset;
-        return kUlp * (2 * (static_cast<double>(near) + m_chebyshev.k + 12) * value +
-                       6 * (130 * scale() + 2 * value));
+        // The near lines' sums and the quotient: in numerator and denominator a product and a sum for each
+        // line, 3 more for the polynomial and the quotient.
+        const double value = known.mean + known.offset;
+        const double sums = (2 * static_cast<double>(near) + 6) * value;
+        // offset + slope x, x up to half the cell, and the quotient added to it, on each axis: the offset is
+        // below 1 + |center| and rounded 3 times, slope x 4 times, the displacement once.
+        const double placed =
+            3 * (1 + known.offset) + 4 * scale() * static_cast<double>(known.frame.half) + value;
+        return kFloatUlp * (sums + std::numbers::sqrt2 * placed);
     }
 
     double far_rounding(const Known& known, const FarSums& sums, const float* size) const {
         if (sums.most == 0) return 0;
         const double offset = known.offset;
-        const double reach = sums.reach + offset * sums.most;
-        // Values at the nodes: weights, their sums over runs of lines, displacements.
-        const double nodes = noise(sums.reach, sums.near_reach) + known.spread * noise(sums.most, sums.near) +
-                             20 * kUlp * (reach + (known.spread + offset) * sums.most) +
-                             kUlp * (4 * reach + 10 * kHalfRegion * sums.slope);
+        // Values at the nodes: what the numerator is off by, and the displacement times what the denominator
+        // is.
+        const double nodes =
+            node_rounding(sums.reach, sums.near_reach, sums.most, sums.slope, offset) +
+            known.spread * node_rounding(sums.most, sums.near, sums.most, 0, 0) +
+            offset * m_chebyshev.lebesgue * m_chebyshev.lebesgue * simd::kSumRounding * sums.most;
         // Horner's rule, and the coefficients themselves.
         const double moved = static_cast<double>(std::max(size[1] + size[2], size[3] + size[4]));
-        const double horner =
-            kUlp * (2 * m_chebyshev.k + 3) * (moved + (known.spread + offset) * static_cast<double>(size[0]));
-        return (m_chebyshev.lebesgue * m_chebyshev.lebesgue * nodes + horner) / known.least;
+        const double horner = kFloatUlp * (4 * m_chebyshev.k + 4) *
+                              (moved + (known.spread + offset) * static_cast<double>(size[0]));
+        return (nodes + horner) / known.least;
     }
 
     /// What the near lines' rounding is made of: sums of how far a unit of a weight's relative error moves D,
@@ -588,7 +617,8 @@ class Planner {
             const double moved = std::min(part * (reach + known.spread), std::min(part, 0.25) * between);
             // The weight is most (nearest / d)^b at distance d, and with it 1 - l at most others / weight. An
             // error that falls with d is worst at the nearest distance, or with b >= 1 where that is as good
-            // as `moved`.
+            // as `moved`. The millionth keeps the difference from being nothing but rounding: `all` is off by
+            // less than that of the sum.
             const double others = std::max(all - most, 0.0) + 1e-6 * most;
             const double ratio = std::max(most * moved / (others * between + 1e-300), 1.0);
             const double by = b == 2 ? std::sqrt(ratio) : b <= 1 ? ratio : std::pow(ratio, 1 / b);
@@ -596,7 +626,7 @@ class Planner {
             out.moved_by_place += moved / (nearest * by);
             out.nearest = std::min(out.nearest, nearest);
         }
-        out.displacements = kUlp * (4 * (known.spread + known.offset) + 10 * half * slope);
+        out.displacements = kFloatUlp * (4 * (known.mean + known.offset) + 10 * half * slope);
         return out;
     }
     double near_rounding(const NearRounding& near, bool fine, double half) const {
@@ -633,7 +663,7 @@ class Planner {
             whole += far_rounding(known, sums, sizes);
         }
         const auto bound_of = [&](bool fine) {
-            return (whole + near_rounding(rounding, fine, half)) / (1 - off) * (1 + 1e-3);
+            return (whole + near_rounding(rounding, fine, half)) / (1 - off) * (1 + kBoundRounding);
         };
         const bool fine = !(bound_of(false) <= m_options.tol);
         const double bound = bound_of(fine);

@@ -9,8 +9,6 @@
 
 #include "hwy/foreach_target.h"  // must come before highway.h
 
-// And this one after it.
-#include "hwy/contrib/math/math-inl.h"
 #include "hwy/highway.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -26,22 +24,48 @@ HWY_INLINE V Set(float x) {
     return hn::Set(Floats(), x);
 }
 
-// The processor's estimates of 1 / x and 1 / sqrt(x) are good on x86 only: 12 bits from SSE on, 14 in
-// AVX-512.
-#if HWY_ARCH_X86 && HWY_TARGET <= HWY_SSSE3
-constexpr bool kEstimates = true;
-constexpr float kEstimateError = HWY_TARGET <= HWY_AVX3 ? 0x1p-14f : 0x1.8p-12f;
-#else
-constexpr bool kEstimates = false;
-constexpr float kEstimateError = 0x1p-22f;
-#endif
+// The same bits whatever the processor: no fused multiply-adds, which some have, and no estimates of
+// quotients and roots, which differ; sums run over kWide lanes, in as many vectors as that takes.
+constexpr int kWide = 16;
+constexpr int kParts = kWide / kLanes;
 
-/// 1 / x to within 3 half-ULP, or as the processor estimates it.
-template <bool kEstimate = false>
+/// a b + c, rounded twice.
+template <class T>
+HWY_INLINE T TimesPlus(T a, T b, T c) {
+    return hn::Add(hn::Mul(a, b), c);
+}
+/// a b - c, rounded twice.
+HWY_INLINE V TimesMinus(V a, V b, V c) {
+    return hn::Sub(hn::Mul(a, b), c);
+}
 HWY_INLINE V Reciprocal(V x) {
-    if constexpr (kEstimate) return hn::ApproximateReciprocal(x);
     return hn::Div(Set(1), x);
 }
+
+/// kWide lanes of sums or maxima, and all of them together in an order of their own.
+struct Wide {
+    V part[kParts];
+
+    HWY_INLINE Wide() {
+        for (V& v : part) v = Set(0);
+    }
+    /// The part for the lines from i on.
+    HWY_INLINE V& At(int i) { return part[i / kLanes % kParts]; }
+    template <class Join>
+    HWY_INLINE float Folded(const Join& join) const {
+        HWY_ALIGN float all[kWide];
+        for (int n = 0; n < kParts; ++n) hn::Store(part[n], Floats(), all + n * kLanes);
+        for (int n = kWide / 2; n > 0; n /= 2)
+            for (int j = 0; j < n; ++j) all[j] = join(all[j], all[j + n]);
+        return all[0];
+    }
+    HWY_INLINE float Sum() const {
+        return Folded([](float x, float y) { return x + y; });
+    }
+    HWY_INLINE float Max() const {
+        return Folded([](float x, float y) { return HWY_MAX(x, y); });
+    }
+};
 
 // --- the formula, read with vectors ---------------------------------------------------------------------
 
@@ -74,21 +98,53 @@ HWY_INLINE V Distance(V before, V behind, V beside) {
 /// Which fast path an exponent takes.
 enum class Exponent { zero, half, one, two, other };
 
-/// (a + dist)^-b
-template <Exponent kExponent, bool kEstimate = false>
+/// log2(x) for x > 0, normal and finite; off by at most u (|log2(x)| + 2.4).
+HWY_INLINE V Log2(V x) {
+    const hn::RebindToSigned<Floats> di;
+    // x = m 2^e with m in [sqrt(1/2), sqrt(2)), and log2(m) = 2 / ln(2) artanh((m - 1) / (m + 1)): with |s| <
+    // 0.172 what is left out is below 1e-9 s. s is off by 2 u, the sum of the series by 1.6 u, their product
+    // by 4.7 u of at most 1/2; m - 1 is exact, and so is e.
+    const auto bits = hn::Sub(hn::BitCast(di, x), hn::Set(di, 0x3f3504f3));
+    const auto e = hn::ShiftRight<23>(bits);
+    const V m = hn::BitCast(Floats(), hn::Sub(hn::BitCast(di, x), hn::ShiftLeft<23>(e)));
+    const V s = hn::Div(hn::Sub(m, Set(1)), hn::Add(m, Set(1))), z = hn::Mul(s, s);
+    V sum = Set(0.320598898f);
+    for (const float c : {0.412198583f, 0.577078016f, 0.961796694f, 2.88539008f})
+        sum = TimesPlus(sum, z, Set(c));
+    return hn::Add(hn::ConvertTo(Floats(), e), hn::Mul(s, sum));
+}
+
+/// 2^t to within 3 u of it; from about 2^-126 down to 0, from 2^128 up infinite.
+HWY_INLINE V Exp2(V t) {
+    const hn::RebindToSigned<Floats> di;
+    t = hn::Min(hn::Max(t, Set(-252)), Set(252));
+    // 2^t = 2^n e^g, |g| < 0.3466: t - n is exact, g off by 0.52 u; Taylor's polynomial leaves out 0.1 u, and
+    // Horner's rule adds 1 u at its last step and 1.3 u before.
+    const V n = hn::Round(t), g = hn::Mul(hn::Sub(t, n), Set(0.693147181f));
+    V e = Set(1.0f / 5040);
+    for (const float c : {1.0f / 720, 1.0f / 120, 1.0f / 24, 1.0f / 6, 0.5f, 1.0f, 1.0f})
+        e = TimesPlus(e, g, Set(c));
+    const auto exponent = hn::ConvertTo(di, n), half = hn::ShiftRight<1>(exponent);
+    const auto power = [&](auto k) HWY_ATTR {
+        return hn::BitCast(Floats(), hn::ShiftLeft<23>(hn::Add(k, hn::Set(di, 127))));
+    };
+    return hn::Mul(hn::Mul(e, power(half)), power(hn::Sub(exponent, half)));
+}
+
+/// x^-b; near_far.h says how well.
+template <Exponent kExponent>
 HWY_INLINE V Power(V x, V b) {
     switch (kExponent) {
         case Exponent::zero:
             return Set(1);
         case Exponent::half:
-            if constexpr (kEstimate) return hn::ApproximateReciprocalSqrt(x);
             return Reciprocal(hn::Sqrt(x));
         case Exponent::one:
-            return Reciprocal<kEstimate>(x);
+            return Reciprocal(x);
         case Exponent::two:
-            return Reciprocal<kEstimate>(hn::Mul(x, x));
+            return Reciprocal(hn::Mul(x, x));
         default:
-            return hn::Exp(Floats(), hn::Neg(hn::Mul(b, hn::Log(Floats(), x))));
+            return Exp2(hn::Neg(hn::Mul(b, Log2(x))));
     }
 }
 
@@ -101,26 +157,29 @@ HWY_INLINE void WithExponent(float b, const Body& body) {
     return body(std::integral_constant<Exponent, Exponent::other>{});
 }
 
-// --- bounds
-// -------------------------------------------------------------------------------------------------
+// --- bounds ------------------------------------------------------------------------------------------------
+//
+// Every bound below is a monotone function of bounds, taken on the safe side: distances are not greater than
+// they are, by `rounding` and kTight. From there on a bound is made of products, quotients, roots and sums of
+// positive numbers, and of differences from numbers without an error: each step adds at most u to the
+// relative error, or multiplies what there is by at most 2 (a square) before that. kLoose covers 128 u: the
+// longest chain, to the eighth power in a closed form, is 1 + 8 (5.5) + 7 steps long, and its upper bound
+// enters the rest, of 20 steps, which the factor at the end covers.
+constexpr float kLoose = 1 + 128 * kFloatRounding, kTight = 1 - 128 * kFloatRounding;
 
-/// x^-K for x = 1 / inverse.
+/// At least x^-K, for x = 1 / inverse >= 1, and at most 1.
 HWY_INLINE V PowerOfInverse(int k, V inverse) {
     const V x2 = hn::Mul(inverse, inverse), x4 = hn::Mul(x2, x2);
-    return k == 4 ? x4 : hn::Mul(x4, k == 5 ? inverse : k == 6 ? x2 : x4);
+    const V power = k == 4 ? x4 : hn::Mul(x4, k == 5 ? inverse : k == 6 ? x2 : x4);
+    return hn::Min(hn::Mul(power, Set(kLoose)), Set(1));
 }
-
-// Bounds are made with estimates of roots and quotients: kLoose covers 40 of them, one after the other.
-constexpr float kLoose = 1 + 40 * kEstimateError, kTight = 1 - 40 * kEstimateError;
-HWY_INLINE V About(V numerator, V denominator) {
-    if constexpr (kEstimates) return hn::Mul(numerator, Reciprocal<true>(denominator));
-    return hn::Div(numerator, denominator);
+/// sqrt(x^2 - 1), without a difference of rounded numbers.
+HWY_INLINE V Sinh(V x) {
+    return hn::Sqrt(hn::Mul(hn::Sub(x, Set(1)), hn::Add(x, Set(1))));
 }
-HWY_INLINE V AboutRoot(V square) {
-    // Not of 0, whose estimate is infinite.
-    if constexpr (kEstimates)
-        return hn::Mul(square, hn::ApproximateReciprocalSqrt(hn::Max(square, Set(1e-30f))));
-    return hn::Sqrt(square);
+/// At least e^(-K m), for x = cosh(m).
+HWY_INLINE V Decay(int k, V x) {
+    return PowerOfInverse(k, Reciprocal(hn::Add(x, Sinh(x))));
 }
 
 struct AxisError {
@@ -132,44 +191,48 @@ struct AxisError {
 template <bool kAboveOne>
 HWY_INLINE AxisError BesideError(int k, V x) {
     const V one = Set(1);
-    const V root = AboutRoot(hn::Max(hn::MulSub(x, x, one), Set(0)));
-    const V y = PowerOfInverse(k, About(one, hn::Add(x, root)));
-    const V g = About(hn::Add(y, y), hn::MulAdd(y, y, one));
+    const V y = Decay(k, x);
+    const V g = hn::Div(hn::Add(y, y), TimesPlus(y, y, one));
     V e = g;
-    if constexpr (kAboveOne)
-        e = hn::MulAdd(hn::Mul(g, Set(static_cast<float>(k))),
-                       AboutRoot(About(hn::Sub(x, one), hn::Add(x, one))), g);
+    if constexpr (kAboveOne) {
+        // (1 + K tanh(m / 2)) / cosh(K m), which falls from K m = 1/2 on (its logarithm's slope is at most K
+        // / 2 / (1 + K tanh(m / 2)) - K tanh(K m)), and so does x times it. Before that it is below 1.12, and
+        // x below 1.01: 1.3 stands for both.
+        e = TimesPlus(hn::Mul(g, Set(static_cast<float>(k))),
+                      hn::Sqrt(hn::Div(hn::Sub(x, one), hn::Add(x, one))), g);
+        e = hn::IfThenElse(hn::Gt(y, Set(0.6f)), Set(1.3f), e);
+    }
     return {e, hn::Mul(x, hn::Add(g, e))};
 }
 
-/// The same of (a + |s - z|)^-b with z = sigma + i eta, the end of a line beside the cell.
-HWY_INLINE AxisError EndError(int k, V sigma, V eta) {
-    const V one = Set(1), zero = Set(0);
+/// The same of (a + |s - z|)^-b with z = sigma + i eta, the end of a line beside the cell. sigma and eta are
+/// at most `more` below what they are.
+HWY_INLINE AxisError EndError(int k, V sigma, V eta, V more) {
+    const V one = Set(1);
     const V eta2 = hn::Mul(eta, eta), minus = hn::Sub(sigma, one), plus = hn::Add(sigma, one);
-    const V a = hn::Mul(Set(0.5f), hn::Add(AboutRoot(hn::MulAdd(minus, minus, eta2)),
-                                           AboutRoot(hn::MulAdd(plus, plus, eta2))));
+    const V a = hn::Mul(
+        Set(0.5f), hn::Add(hn::Sqrt(TimesPlus(minus, minus, eta2)), hn::Sqrt(TimesPlus(plus, plus, eta2))));
     // Not farther off than it is.
-    const V a1 = hn::Max(hn::Mul(a, Set(kTight)), one);
-    const V y = PowerOfInverse(k, About(one, hn::Add(a1, AboutRoot(hn::MulSub(a1, a1, one)))));
-    const V g = About(hn::Add(y, y), hn::NegMulAdd(y, y, one));
+    const V y = Decay(k, hn::Max(hn::Mul(a, Set(kTight)), one));
+    const V g = hn::Div(hn::Add(y, y), hn::Mul(hn::Sub(one, y), hn::Add(one, y)));
     // The slope of the linear factor: by its value over eta, or by the derivative on the real axis.
-    const V s1 = hn::Max(sigma, one), sinh = AboutRoot(hn::Max(hn::MulSub(s1, s1, one), zero));
-    const V ys = PowerOfInverse(k, About(one, hn::Add(s1, sinh))), ys2 = hn::Mul(ys, ys);
-    const V below = hn::Sub(one, ys2);
-    const V derivative = About(hn::Mul(hn::Mul(Set(static_cast<float>(2 * k)), ys), hn::Add(one, ys2)),
-                               hn::Mul(sinh, hn::Mul(below, below)));
-    const V slope = hn::IfThenElse(hn::Ge(eta, one), About(g, hn::Max(eta, one)), derivative);
-    const V most = hn::Max(eta, plus);
-    const V value = hn::MulAdd(plus, slope, g);
-    return {value, hn::MulAdd(slope, hn::MulAdd(plus, plus, hn::Mul(most, most)), value)};
+    const V s1 = hn::Max(sigma, one), ys = Decay(k, s1), ys2 = hn::Mul(ys, ys);
+    const V below = hn::Mul(hn::Sub(one, ys), hn::Add(one, ys));
+    const V derivative = hn::Div(hn::Mul(hn::Mul(Set(static_cast<float>(2 * k)), ys), hn::Add(one, ys2)),
+                                 hn::Mul(Sinh(s1), hn::Mul(below, below)));
+    const V slope = hn::IfThenElse(hn::Ge(eta, one), hn::Div(g, hn::Max(eta, one)), derivative);
+    // What grows with sigma and eta.
+    const V reach = hn::Add(plus, more), most = hn::Max(hn::Add(eta, more), reach);
+    const V value = TimesPlus(reach, slope, g);
+    return {value, TimesPlus(slope, TimesPlus(reach, reach, hn::Mul(most, most)), value)};
 }
 
 /// Both axes together, interpolating along the worse one last.
 HWY_INLINE AxisError Both(const AxisError& s, const AxisError& t, V lebesgue) {
     const auto swap = hn::Lt(s.value, t.value);
-    const V value = hn::MulAdd(lebesgue, hn::Min(s.value, t.value), hn::Max(s.value, t.value));
-    const V linear = hn::IfThenElse(swap, hn::MulAdd(lebesgue, s.linear, t.linear),
-                                    hn::MulAdd(lebesgue, t.linear, s.linear));
+    const V value = TimesPlus(lebesgue, hn::Min(s.value, t.value), hn::Max(s.value, t.value));
+    const V linear = hn::IfThenElse(swap, TimesPlus(lebesgue, s.linear, t.linear),
+                                    TimesPlus(lebesgue, t.linear, s.linear));
     return {value, linear};
 }
 
@@ -187,37 +250,37 @@ HWY_INLINE void BoundLines(const LineTable& lines, const CellFrame& cell, const 
     const float axes = third_error(k) * (1 + lebesgue);
     const float third_of_weight = axes * weights.b * (weights.b + 2) * b1;
     const float second_of_weight = axes * 3 * weights.b * (weights.b + 1);
-    V sums[kSums], least_sum = zero;
-    for (V& s : sums) s = zero;
+    const auto weight_margin = static_cast<float>(2 * kFloatRounding * weight_rounding(weights.b, kMostLog));
+    const V loose = Set(1 + weight_margin), tight = Set(1 - weight_margin), closed_form = Set(kLoose);
+    Wide sums[kSums], least_sum;
     for (int i = 0; i < lines.count; i += kLanes) {
         const auto field = [&](int f) HWY_ATTR { return hn::LoadU(d, lines.data + f * lines.stride + i); };
         const V ux = field(LineTable::kAlongX), uy = field(LineTable::kAlongY);
         const V factor = hn::LoadU(d, lines.factor + i);
-        const V along = hn::MulAdd(ux, x, hn::Mul(uy, y));
+        const V along = TimesPlus(ux, x, hn::Mul(uy, y));
         const V before = hn::Sub(field(LineTable::kBefore), along);
         const V behind = hn::Add(field(LineTable::kBehind), along);
-        const V beside = hn::Add(field(LineTable::kBeside), hn::MulSub(ux, y, hn::Mul(uy, x)));
+        const V beside = hn::Add(field(LineTable::kBeside), TimesMinus(ux, y, hn::Mul(uy, x)));
         const V far = Distance(before, behind, beside);
 
         // Distances change by no more than the way.
-        const V rounding = hn::MulAdd(far, Set(1e-6f), Set(1e-3f));
+        const V rounding = TimesPlus(far, Set(kPlaceRelative), Set(kPlaceApart));
         const V nearest =
             hn::Max(hn::Add(a, hn::Max(hn::Sub(hn::Sub(far, diagonal), rounding), zero)), least_distance);
         const V farthest = hn::Add(a, hn::Add(hn::Add(far, diagonal), rounding));
-        const auto power = [&](V distance) HWY_ATTR { return Power<kExponent, kEstimates>(distance, b); };
-        const V most = hn::Mul(hn::Mul(factor, Set(kLoose)), power(nearest));
-        const V least = hn::Mul(hn::Mul(factor, Set(kTight)), power(farthest));
+        const V most = hn::Mul(hn::Mul(factor, loose), Power<kExponent>(nearest, b));
+        const V least = hn::Mul(hn::Mul(factor, tight), Power<kExponent>(farthest, b));
         const V weight = hn::Mul(factor, Power<kExponent>(hn::Max(hn::Add(a, far), least_distance), b));
         hn::StoreU(most, d, out.most + i);
         hn::StoreU(nearest, d, out.nearest + i);
         hn::StoreU(least, d, out.least + i);
-        least_sum = hn::Add(least_sum, least);
-        sums[0] = hn::Add(sums[0], weight);
+        least_sum.At(i) = hn::Add(least_sum.At(i), least);
+        sums[0].At(i) = hn::Add(sums[0].At(i), weight);
         for (int c = 0; c < kComponents; ++c) {
-            const V at = hn::MulAdd(field(LineTable::kRight + c), x,
-                                    hn::MulAdd(field(LineTable::kDown + c), y, field(LineTable::kAt + c)));
+            const V at = TimesPlus(field(LineTable::kRight + c), x,
+                                   TimesPlus(field(LineTable::kDown + c), y, field(LineTable::kAt + c)));
             hn::StoreU(at, d, out.displacement[c] + i);
-            sums[c + 1] = hn::MulAdd(weight, at, sums[c + 1]);
+            sums[c + 1].At(i) = TimesPlus(weight, at, sums[c + 1].At(i));
         }
 
         AxisError error{zero, zero};
@@ -226,17 +289,17 @@ HWY_INLINE void BoundLines(const LineTable& lines, const CellFrame& cell, const 
             const V hx = hn::Mul(half, hn::Abs(ux)), hy = hn::Mul(half, hn::Abs(uy));
             const V extent = hn::Add(hn::Add(hx, hy), rounding);
             const V clear = hn::Sub(hn::Sub(far, diagonal), rounding);
-            const V apart = hn::Max(clear, Set(1e-3f)), size = About(half, apart),
+            const V apart = hn::Max(clear, Set(kPlaceApart)), size = hn::Div(half, apart),
                     size2 = hn::Mul(size, size);
             const V larger = hn::Max(hn::Mul(ux, ux), hn::Mul(uy, uy));
             const V jumps = hn::Add(hn::IfThenElseZero(hn::Lt(hn::Abs(before), extent), one),
                                     hn::IfThenElseZero(hn::Lt(hn::Abs(behind), extent), one));
-            const V jump = hn::Mul(hn::Mul(jumps, hn::Mul(size, About(half, nearest))),
-                                   hn::MulAdd(larger, hn::Sub(one, constant), constant));
+            const V jump = hn::Mul(hn::Mul(jumps, hn::Mul(size, hn::Div(half, nearest))),
+                                   TimesPlus(larger, hn::Sub(one, constant), constant));
             const V third = hn::Mul(size2, hn::Mul(size, Set(third_of_weight)));
-            error.value = hn::MulAdd(jump, Set(jump_error(k) * weights.b), third);
-            error.linear = hn::MulAdd(size2, Set(second_of_weight), error.value);
-            const auto is_apart = hn::Gt(clear, Set(1e-3f));
+            error.value = TimesPlus(jump, Set(jump_error(k) * weights.b), third);
+            error.linear = TimesPlus(size2, Set(second_of_weight), error.value);
+            const auto is_apart = hn::Gt(clear, Set(kPlaceApart));
             error.value = hn::IfThenElse(is_apart, error.value, infinite);
             error.linear = hn::IfThenElse(is_apart, error.linear, infinite);
             if (smooth) {
@@ -247,7 +310,7 @@ HWY_INLINE void BoundLines(const LineTable& lines, const CellFrame& cell, const 
                             hn::Gt(hn::Abs(beside), extent));
                 const V tiny = Set(cell.half * 1e-6f);
                 const auto pole = [&](V apart_by, V by) HWY_ATTR {
-                    return hn::Max(hn::Mul(Set(kTight), About(apart_by, hn::Max(by, tiny))), one);
+                    return hn::Max(hn::Mul(Set(kTight), hn::Div(apart_by, hn::Max(by, tiny))), one);
                 };
                 const V xs = pole(hn::Sub(distance, hx), hy), xt = pole(hn::Sub(distance, hy), hx);
                 const AxisError by_line =
@@ -257,13 +320,13 @@ HWY_INLINE void BoundLines(const LineTable& lines, const CellFrame& cell, const 
                 const V beyond = hn::Max(before, behind);
                 const auto is_beyond = hn::Gt(beyond, extent);
                 const V z = hn::IfThenElse(hn::Gt(before, behind), before, hn::Neg(behind));
-                const V unit = Set(1 / cell.half), room = hn::Mul(rounding, unit);
+                const V unit = Set(1 / cell.half), room = hn::Mul(rounding, unit), more = hn::Add(room, room);
                 const V px = hn::Max(
-                    hn::Sub(hn::Mul(hn::Abs(hn::MulAdd(z, ux, hn::Mul(beside, uy))), unit), room), zero);
+                    hn::Sub(hn::Mul(hn::Abs(TimesPlus(z, ux, hn::Mul(beside, uy))), unit), room), zero);
                 const V py = hn::Max(
-                    hn::Sub(hn::Mul(hn::Abs(hn::MulSub(z, uy, hn::Mul(beside, ux))), unit), room), zero);
+                    hn::Sub(hn::Mul(hn::Abs(TimesMinus(z, uy, hn::Mul(beside, ux))), unit), room), zero);
                 const V ex = hn::Max(hn::Sub(px, one), zero), ey = hn::Max(hn::Sub(py, one), zero);
-                const AxisError by_end = Both(EndError(k, px, ey), EndError(k, py, ex), constant);
+                const AxisError by_end = Both(EndError(k, px, ey, more), EndError(k, py, ex, more), constant);
                 const auto outside = hn::And(is_beyond, hn::Gt(hn::Max(px, py), Set(1.05f)));
                 const auto better = [&](V general, V line, V end) HWY_ATTR {
                     const V closed = hn::IfThenElse(is_beside, line, hn::IfThenElse(outside, end, infinite));
@@ -273,17 +336,16 @@ HWY_INLINE void BoundLines(const LineTable& lines, const CellFrame& cell, const 
                 error.linear = better(error.linear, by_line.linear, by_end.linear);
             }
         }
-        const V change = hn::Mul(hn::Mul(half, Set(kLoose)), field(LineTable::kSlope));
+        const V change = hn::Mul(hn::Mul(half, closed_form), field(LineTable::kSlope));
         // Lines of factor 0 fill up the last vector.
         const auto real = hn::Gt(factor, zero);
-        hn::StoreU(hn::IfThenElse(real, hn::Mul(hn::Mul(most, Set(kLoose)), error.value), zero), d,
+        hn::StoreU(hn::IfThenElse(real, hn::Mul(hn::Mul(most, closed_form), error.value), zero), d,
                    out.value + i);
         hn::StoreU(hn::IfThenElse(real, hn::Mul(hn::Mul(most, error.linear), change), zero), d,
                    out.linear + i);
     }
-    for (int c = 0; c < kSums; ++c)
-        out.center[c] = static_cast<double>(hn::GetLane(hn::SumOfLanes(d, sums[c])));
-    out.least_sum = static_cast<double>(hn::GetLane(hn::SumOfLanes(d, least_sum)));
+    for (int c = 0; c < kSums; ++c) out.center[c] = static_cast<double>(sums[c].Sum());
+    out.least_sum = static_cast<double>(least_sum.Sum());
 }
 
 void BoundLinesOf(const LineTable& lines, const CellFrame& cell, const WeightParameters& weights, int k,
@@ -293,30 +355,23 @@ void BoundLinesOf(const LineTable& lines, const CellFrame& cell, const WeightPar
     });
 }
 
-HWY_INLINE double SumOf(V v) {
-    return static_cast<double>(hn::GetLane(hn::SumOfLanes(Floats(), v)));
-}
-HWY_INLINE double MaxOf(V v) {
-    return static_cast<double>(hn::GetLane(hn::MaxOfLanes(Floats(), v)));
-}
-
 /// LineSums of a few lines, lane by lane.
 struct LaneSums {
-    V value, error, least, most, reach, slope, near, near_reach, farthest;
+    Wide value, error, least, most, reach, slope, near, near_reach, farthest;
 
-    HWY_INLINE LaneSums() {
-        value = error = least = most = reach = slope = near = near_reach = farthest = Set(0);
-    }
+    // Written out, so that it is compiled for the instruction set.
+    HWY_INLINE LaneSums() {}  // NOLINT
     HWY_INLINE void AddTo(LineSums& sums) const {
-        sums.value += SumOf(value);
-        sums.error += SumOf(error);
-        sums.least += SumOf(least);
-        sums.most += SumOf(most);
-        sums.reach += SumOf(reach);
-        sums.slope += SumOf(slope);
-        sums.near += SumOf(near);
-        sums.near_reach += SumOf(near_reach);
-        sums.farthest = HWY_MAX(sums.farthest, MaxOf(farthest));
+        const auto add = [](double& to, const Wide& from) { to += static_cast<double>(from.Sum()); };
+        add(sums.value, value);
+        add(sums.error, error);
+        add(sums.least, least);
+        add(sums.most, most);
+        add(sums.reach, reach);
+        add(sums.slope, slope);
+        add(sums.near, near);
+        add(sums.near_reach, near_reach);
+        sums.farthest = HWY_MAX(sums.farthest, static_cast<double>(farthest.Max()));
     }
 };
 
@@ -324,44 +379,56 @@ void BoundDisplacements(const LineTable& lines, const CellFrame& cell, const flo
                         const LineBounds& bounds, float* reach, float* error, SpreadSums& sums) {
     const Floats d;
     const V zero = Set(0), infinite = Set(HUGE_VALF);
-    V heavy = zero, light = zero, farthest = zero, slope = zero, near_reach = zero;
+    // Displacements err by u (4 |value| + 10 kRegionHalf slope): in proportion, by the reference and by the
+    // slope.
+    float reference = 0;
+    for (int c = 0; c < kComponents; ++c) reference = HWY_MAX(reference, std::fabs(center[c]));
+    const V by_reference = Set(8 * kFloatRounding * reference);
+    const V by_slope = Set(cell.half + 12 * kFloatRounding * kRegionHalf);
+    Wide heavy, light, farthest, all_most, all_reach, slope, near_reach;
     LaneSums far;
     for (int i = 0; i < lines.count; i += kLanes) {
         V square = zero;
         for (int c = 0; c < kComponents; c += 2) {
             const V dx = hn::Sub(hn::LoadU(d, bounds.displacement[c] + i), Set(center[c]));
             const V dy = hn::Sub(hn::LoadU(d, bounds.displacement[c + 1] + i), Set(center[c + 1]));
-            square = hn::Max(square, hn::MulAdd(dx, dx, hn::Mul(dy, dy)));
+            square = hn::Max(square, TimesPlus(dx, dx, hn::Mul(dy, dy)));
         }
         const V m = hn::LoadU(d, bounds.most + i);
         const auto real = hn::Gt(hn::LoadU(d, lines.factor + i), zero);
-        const V distance = hn::Sqrt(square);
+        const V distance = TimesPlus(hn::Sqrt(square), Set(kLoose), by_reference);
         const V change = hn::LoadU(d, lines.data + LineTable::kSlope * lines.stride + i);
-        const V r = hn::IfThenElseZero(real, hn::MulAdd(Set(cell.half), change, distance));
+        const V r = hn::IfThenElseZero(real, hn::Mul(TimesPlus(by_slope, change, distance), Set(kLoose)));
         hn::StoreU(r, d, reach + i);
         const V value = hn::LoadU(d, bounds.value + i), linear = hn::LoadU(d, bounds.linear + i);
         // An unknown error stays so, whatever the displacement.
         const auto known = hn::Lt(value, infinite);
-        hn::StoreU(hn::IfThenElse(known, hn::MulAdd(value, distance, linear), infinite), d, error + i);
+        hn::StoreU(hn::IfThenElse(known, TimesPlus(value, distance, linear), infinite), d, error + i);
 
         const V near = hn::Div(m, hn::LoadU(d, bounds.nearest + i));
         const auto is_light = hn::Le(m, Set(much)), may_be_far = hn::And(is_light, known);
         const V moment = hn::Mul(m, r), near_moment = hn::Mul(near, r);
-        heavy = hn::Max(heavy, hn::IfThenZeroElse(is_light, r));
-        light = hn::Add(light, hn::IfThenElseZero(is_light, moment));
-        farthest = hn::Max(farthest, r);
-        near_reach = hn::Add(near_reach, near_moment);
-        slope = hn::MulAdd(m, change, slope);
-        far.most = hn::Add(far.most, hn::IfThenElseZero(may_be_far, m));
-        far.reach = hn::Add(far.reach, hn::IfThenElseZero(may_be_far, moment));
-        far.near = hn::Add(far.near, hn::IfThenElseZero(may_be_far, near));
-        far.near_reach = hn::Add(far.near_reach, hn::IfThenElseZero(may_be_far, near_moment));
+        const auto add = [&](Wide& sum, V v) HWY_ATTR { sum.At(i) = hn::Add(sum.At(i), v); };
+        const auto most = [&](Wide& sum, V v) HWY_ATTR { sum.At(i) = hn::Max(sum.At(i), v); };
+        most(heavy, hn::IfThenZeroElse(is_light, r));
+        add(light, hn::IfThenElseZero(is_light, moment));
+        most(farthest, r);
+        add(all_most, m);
+        add(all_reach, moment);
+        add(near_reach, near_moment);
+        add(slope, hn::Mul(m, change));
+        add(far.most, hn::IfThenElseZero(may_be_far, m));
+        add(far.reach, hn::IfThenElseZero(may_be_far, moment));
+        add(far.near, hn::IfThenElseZero(may_be_far, near));
+        add(far.near_reach, hn::IfThenElseZero(may_be_far, near_moment));
     }
-    sums.heavy = HWY_MAX(sums.heavy, MaxOf(heavy));
-    sums.light += SumOf(light);
-    sums.farthest = HWY_MAX(sums.farthest, MaxOf(farthest));
-    sums.slope += SumOf(slope);
-    sums.near_reach += SumOf(near_reach);
+    sums.heavy = HWY_MAX(sums.heavy, static_cast<double>(heavy.Max()));
+    sums.light += static_cast<double>(light.Sum());
+    sums.farthest = HWY_MAX(sums.farthest, static_cast<double>(farthest.Max()));
+    sums.most += static_cast<double>(all_most.Sum());
+    sums.reach += static_cast<double>(all_reach.Sum());
+    sums.slope += static_cast<double>(slope.Sum());
+    sums.near_reach += static_cast<double>(near_reach.Sum());
     far.AddTo(sums.may_be_far);
 }
 
@@ -371,12 +438,12 @@ HWY_INLINE void MarkLeast(int count, float* part) {
     // All up to a power of two that fit together.
     float most = 1, used = 0;
     for (int cut = 0; cut < 40; ++cut, most *= 0.5f) {
-        V sum = Set(0);
+        Wide sum;
         for (int i = 0; i < count; i += kLanes) {
             const V p = hn::LoadU(d, part + i);
-            sum = hn::Add(sum, hn::IfThenElseZero(hn::Le(p, Set(most)), p));
+            sum.At(i) = hn::Add(sum.At(i), hn::IfThenElseZero(hn::Le(p, Set(most)), p));
         }
-        used = hn::GetLane(hn::SumOfLanes(d, sum));
+        used = sum.Sum();
         if (used <= 1) break;
     }
     if (used > 1) return;
@@ -386,7 +453,7 @@ HWY_INLINE void MarkLeast(int count, float* part) {
         // And of the next ones what fits.
         if (most < 1 && !hn::AllFalse(d, hn::And(hn::Gt(p, Set(most)), hn::Le(p, Set(2 * most)))))
             for (int j = i; j < i + kLanes; ++j)
-                if (part[j] > most && used + part[j] <= 1) {
+                if (part[j] > most && part[j] <= 2 * most && used + part[j] <= 1) {
                     used += part[j];
                     part[j] = 0;
                 }
@@ -408,12 +475,12 @@ Selection SelectLines(const LineTable& lines, const LineBounds& bounds, const fl
     const Floats d;
     const V zero = Set(0);
     for (int i = 0; i < lines.count; i += kLanes) {
-        const V whole = hn::MulAdd(Set(spread), hn::LoadU(d, bounds.value + i), hn::LoadU(d, error + i));
+        const V whole = TimesPlus(Set(spread), hn::LoadU(d, bounds.value + i), hn::LoadU(d, error + i));
         hn::StoreU(hn::Mul(Set(unit), whole), d, part + i);
     }
     MarkLeast(lines.count, part);
     Selection out;
-    constexpr int kRun = 64 * kLanes;  // so that floats add up few numbers
+    constexpr int kRun = kSumLanes * kWide;  // so that floats add up few numbers
     for (int first = 0; first < lines.count; first += kRun) {
         LaneSums sums;
         for (int i = first; i < HWY_MIN(first + kRun, lines.count); i += kLanes) {
@@ -422,7 +489,8 @@ Selection SelectLines(const LineTable& lines, const LineBounds& bounds, const fl
             const auto is_far = hn::And(real, hn::Eq(hn::LoadU(d, part + i), zero));
             out.near += Places(hn::AndNot(is_far, real), i, near + out.near);
             out.far += Places(is_far, i, far + out.far);
-            const auto add = [&](V& sum, V v) HWY_ATTR { sum = hn::Add(sum, hn::IfThenElseZero(is_far, v)); };
+            const auto add = [&](Wide& sum, V v)
+                                 HWY_ATTR { sum.At(i) = hn::Add(sum.At(i), hn::IfThenElseZero(is_far, v)); };
             const V r = hn::LoadU(d, reach + i), m_near = hn::Div(m, hn::LoadU(d, bounds.nearest + i));
             add(sums.value, hn::LoadU(d, bounds.value + i));
             add(sums.error, hn::LoadU(d, error + i));
@@ -432,7 +500,7 @@ Selection SelectLines(const LineTable& lines, const LineBounds& bounds, const fl
             add(sums.slope, hn::Mul(m, hn::LoadU(d, lines.data + LineTable::kSlope * lines.stride + i)));
             add(sums.near, m_near);
             add(sums.near_reach, hn::Mul(m_near, r));
-            sums.farthest = hn::Max(sums.farthest, hn::IfThenElseZero(is_far, r));
+            sums.farthest.At(i) = hn::Max(sums.farthest.At(i), hn::IfThenElseZero(is_far, r));
         }
         sums.AddTo(out.sums);
     }
@@ -445,15 +513,15 @@ Selection SelectLines(const LineTable& lines, const LineBounds& bounds, const fl
 template <Exponent kExponent>
 HWY_INLINE void AddLineAt(const FieldLine& l, V x, V y, V a, V b, V* HWY_RESTRICT sums) {
     const V ux = Set(l.along_x), uy = Set(l.along_y);
-    const V along = hn::MulAdd(ux, x, hn::Mul(uy, y));
+    const V along = TimesPlus(ux, x, hn::Mul(uy, y));
     const V before = hn::Sub(Set(l.before), along), behind = hn::Add(Set(l.behind), along);
-    const V beside = hn::Add(Set(l.beside), hn::MulSub(ux, y, hn::Mul(uy, x)));
+    const V beside = hn::Add(Set(l.beside), TimesMinus(ux, y, hn::Mul(uy, x)));
     const V far = hn::Max(hn::Add(a, Distance(before, behind, beside)), Set(kLeastDistance));
     const V weight = hn::Mul(Set(l.factor), Power<kExponent>(far, b));
     sums[0] = hn::Add(sums[0], weight);
     for (int c = 0; c < kComponents; ++c)
-        sums[c + 1] = hn::MulAdd(
-            weight, hn::MulAdd(Set(l.right[c]), x, hn::MulAdd(Set(l.down[c]), y, Set(l.at[c]))), sums[c + 1]);
+        sums[c + 1] = TimesPlus(
+            weight, TimesPlus(Set(l.right[c]), x, TimesPlus(Set(l.down[c]), y, Set(l.at[c]))), sums[c + 1]);
 }
 
 template <Exponent kExponent>
@@ -513,7 +581,7 @@ HWY_INLINE void TransformDegree(const double* left, const double* right, const d
                 const double* at = from + i * 8 + lane;
                 auto sum = hn::Mul(hn::Set(d, left[m * K + first]), hn::LoadU(d, at + first * K * 8));
                 for (int j = first + 1; j < K; ++j)
-                    sum = hn::MulAdd(hn::Set(d, left[m * K + j]), hn::LoadU(d, at + j * K * 8), sum);
+                    sum = TimesPlus(hn::Set(d, left[m * K + j]), hn::LoadU(d, at + j * K * 8), sum);
                 hn::Store(sum, d, between + (m * K + i) * 8 + lane);
             }
         for (int m = 0; m < K; ++m)
@@ -523,7 +591,7 @@ HWY_INLINE void TransformDegree(const double* left, const double* right, const d
                 auto sum = hn::Mul(hn::Set(d, right[n * K + first]), hn::Load(d, at + first * 8));
                 if (more) sum = hn::Add(sum, hn::LoadU(d, more + (m * K + n) * 8 + lane));
                 for (int i = first + 1; i < K; ++i)
-                    sum = hn::MulAdd(hn::Set(d, right[n * K + i]), hn::Load(d, at + i * 8), sum);
+                    sum = TimesPlus(hn::Set(d, right[n * K + i]), hn::Load(d, at + i * 8), sum);
                 hn::StoreU(sum, d, to + (m * K + n) * 8 + lane);
             }
     }
@@ -596,7 +664,7 @@ class LineRows {
     HWY_INLINE void Move(float y) {
         const Floats d;
         for (int i = 0; i < 16 * m_count; i += kLanes)
-            hn::Store(hn::MulAdd(Set(y), hn::Load(d, m_down + i), hn::Load(d, m_start + i)), d, m_row + i);
+            hn::Store(TimesPlus(Set(y), hn::Load(d, m_down + i), hn::Load(d, m_start + i)), d, m_row + i);
         if constexpr (kFine)
             for (int i = 0; i < m_count; ++i) Split(i, y);
     }
@@ -635,20 +703,20 @@ HWY_INLINE void AddLine(const float* row, const float* rest, V x, V a, V b, V* H
     const V along = hn::Mul(Set(row[LineRows::kAlongX]), x);
     V before = hn::Sub(Set(row[LineRows::kBefore]), along);
     V behind = hn::Add(Set(row[LineRows::kBehind]), along);
-    V beside = hn::NegMulAdd(Set(row[LineRows::kAlongY]), x, Set(row[LineRows::kBeside]));
+    V beside = hn::Sub(Set(row[LineRows::kBeside]), hn::Mul(Set(row[LineRows::kAlongY]), x));
     if constexpr (kFine) {
         const V along_rest = hn::Mul(Set(rest[LineRows::kAlongXRest]), x);
         before = hn::Add(before, hn::Sub(Set(rest[LineRows::kBeforeRest]), along_rest));
         behind = hn::Add(behind, hn::Add(Set(rest[LineRows::kBehindRest]), along_rest));
         beside = hn::Add(
-            beside, hn::NegMulAdd(Set(rest[LineRows::kAlongYRest]), x, Set(rest[LineRows::kBesideRest])));
+            beside, hn::Sub(Set(rest[LineRows::kBesideRest]), hn::Mul(Set(rest[LineRows::kAlongYRest]), x)));
     }
     const V far = hn::Max(hn::Add(a, Distance(before, behind, beside)), Set(kLeastDistance));
     const V weight = hn::Mul(Set(row[LineRows::kFactor]), Power<kExponent>(far, b));
     sums[0] = hn::Add(sums[0], weight);
     for (int c = 0; c < kCount; ++c)
-        sums[c + 1] = hn::MulAdd(
-            weight, hn::MulAdd(Set(row[LineRows::kRight + c]), x, Set(row[LineRows::kAt + c])), sums[c + 1]);
+        sums[c + 1] = TimesPlus(
+            weight, TimesPlus(Set(row[LineRows::kRight + c]), x, Set(row[LineRows::kAt + c])), sums[c + 1]);
 }
 
 /// The far lines' sums on every row of a cell, as polynomials in s.
@@ -668,7 +736,7 @@ class PolynomialRows {
         for (int c = 0; c <= kCount; ++c) sums[c] = Set(at[c]);
         for (int m = m_k - 1; m > 0; --m) {
             at -= 8;
-            for (int c = 0; c <= kCount; ++c) sums[c] = hn::MulAdd(sums[c], s, Set(at[c]));
+            for (int c = 0; c <= kCount; ++c) sums[c] = TimesPlus(sums[c], s, Set(at[c]));
         }
     }
 
@@ -683,7 +751,7 @@ class PolynomialRows {
             for (int j = 0; j < height; ++j) {
                 const auto t = hn::Set(d, (y + static_cast<float>(j) - cell.frame.y) * unit);
                 auto sum = c[K - 1];
-                for (int n = K - 2; n >= 0; --n) sum = hn::MulAdd(sum, t, c[n]);
+                for (int n = K - 2; n >= 0; --n) sum = TimesPlus(sum, t, c[n]);
                 hn::StoreU(sum, d, m_rows + j * 8 * K + m);
             }
         }
@@ -729,8 +797,8 @@ void FieldPoints(const FieldCell& cell, const FieldOutput& out) {
                 for (int c = 0; c < kCount; ++c) {
                     // x + its displacement, or y and its.
                     const V identity = c & 1 ? Set(out.offset[c] + out.slope[c] * y)
-                                             : hn::MulAdd(Set(out.slope[c]), x, Set(out.offset[c]));
-                    hn::StoreU(hn::MulAdd(sums[c + 1], inverse, identity), d, out.to[c] + j * out.stride + i);
+                                             : TimesPlus(Set(out.slope[c]), x, Set(out.offset[c]));
+                    hn::StoreU(TimesPlus(sums[c + 1], inverse, identity), d, out.to[c] + j * out.stride + i);
                 }
             }
         }
@@ -770,7 +838,7 @@ namespace {
 /// Calls body(table, bounds, first) for so many lines at a time that floats add up few numbers.
 template <class Body>
 void each_part(const LineTable& lines, const LineBounds& bounds, const Body& body) {
-    constexpr int kPart = 128;
+    constexpr int kPart = kSumLanes * 16;
     for (int first = 0; first < lines.count; first += kPart) {
         LineBounds b = bounds;
         for (float** array : {&b.most, &b.least, &b.value, &b.linear, &b.nearest}) *array += first;

@@ -7,14 +7,16 @@
 // pixels of the shapes' pictures, less a reference that all lines of the region share. Up to two shapes: x
 // and y of the first, x and y of the second.
 //
-// Errors, with u = 2^-24, R the region's half side. before, behind and beside err by u (2 |value| + 7.8 R):
-// what is stored is rounded, as are x, y and their products with the direction; together, as a vector, by u
-// (2 r + 11 R). a + dist errs by u (5 (a + r) + 11 R), a weight relatively by b times that over a + r, plus
-// kWeightRounding u (for exponents other than 0, 1/2, 1 and 2: plus kPowerRounding u b (1 + |log(a + r)|)), a
-// displacement by u (4 |value| + 10 R slope). Sums run over at most 16 lines before they are added in double.
-// Near lines of a fine cell are carried as two floats, on the grid of 2^-13 and the rest: the first part's
-// products and differences are exact for |x| <= 32 (before, behind, beside as far as 2^11), so that they err
-// by u (|value| + 1/64) and the 11 R above is kFineRounding.
+// Every processor gives the same bits.
+//
+// Errors, with u = 2^-24, R the region's half side, products and sums rounded apart. before, behind and
+// beside err by u (2 |value| + 7.8 R): what is stored is rounded, as are x, y and their products with the
+// direction; together, as a vector, by u (2 r + 11 R). a + dist errs by u (5 (a + r) + 11 R), a weight
+// relatively by b times that over a + r, plus kWeightRounding u (for exponents other than 0, 1/2, 1 and 2:
+// plus kPowerRounding u b (1 + |log(a + r)|)), a displacement by u (4 |value| + 10 R slope). Sums run over at
+// most 16 lines before they are added in double. Near lines of a fine cell are carried as two floats, on the
+// grid of 2^-13 and the rest: the first part's products and differences are exact for |x| <= 32 (before,
+// behind, beside as far as 2^11), so that they err by u (|value| + 1/64) and the 11 R above is kFineRounding.
 #pragma once
 
 #include <cstdint>
@@ -25,11 +27,39 @@ inline constexpr int kComponents = 4;
 inline constexpr int kSums = 1 + kComponents;  ///< of weights, and of weighted displacements
 inline constexpr int kMaxDegree = 8;           ///< K: coefficients each way
 
+/// u: what rounding to float changes, in proportion, at most.
+inline constexpr float kFloatRounding = 0x1p-24f;
+/// R, in pixels.
+inline constexpr float kRegionHalf = 64;
+/// Of a weight, in units of u: its factor is stored and multiplied by, 2; x^-b of a float is off by 3 (1 /
+/// x^2 and 1 / sqrt(x) by 2; 2^t by 3), and through t = -b log2(x) by b (1.7 + 3 |log(x)|): log2(x) is off by
+/// |log2(x)| + 2.4 units, b and the product are rounded. tests/core measures it against long double.
 inline constexpr double kWeightRounding = 6;
-inline constexpr double kPowerRounding = 12;
+inline constexpr double kPowerRounding = 3;
 inline constexpr double kFineRounding = 0x1p-5;
 /// a + dist is never taken below this.
 inline constexpr float kLeastDistance = 1e-6f;
+/// Nor is its logarithm's size above this: distances end at 1e12 pixels.
+inline constexpr double kMostLog = 29;
+
+/// In units of u: the error of a weight in proportion, but for that of the line's place. `log`: at least
+/// |log(a + dist)|.
+constexpr double weight_rounding(double b, double log) {
+    const bool fast = b == 0 || b == 0.5 || b == 1 || b == 2;
+    return 5 * b + kWeightRounding + (fast ? 0 : kPowerRounding * b * (1 + log));
+}
+
+/// What bounds allow for the rounding of a line's place, in pixels: kPlaceRelative a pixel of distance, and
+/// kPlaceApart. A distance r and its sums and differences with a cell's diagonal (at most 1.5 R) err by u (6
+/// r + 11 R + 5 R) < 16 u r + 7e-5: more than 9e-4 is left.
+inline constexpr float kPlaceRelative = 16 * kFloatRounding, kPlaceApart = 1e-3f;
+
+/// Sums of floats over lines: so many are added up in each of 16 lanes, those in four steps, and the rest in
+/// double.
+inline constexpr int kSumLanes = 16;
+/// In proportion, the most by which such a sum of positive numbers is off: 20 additions, and 4 steps to make
+/// each of them.
+inline constexpr double kSumRounding = 24 * 0x1p-24;
 
 /// A line as seen from the region's centre: how far the centre lies before p, behind q and beside the line;
 /// its direction; its factor; and its displacement there and per pixel right and down.
@@ -115,6 +145,8 @@ struct SpreadSums {
     double heavy = 0;       ///< the greatest r of lines with m > much
     double light = 0;       ///< sum m r of the others
     double farthest = 0;    ///< the greatest r
+    double most = 0;        ///< sum m
+    double reach = 0;       ///< sum m r
     double slope = 0;       ///< sum of m times the displacement's change per pixel
     double near_reach = 0;  ///< sum m r / d
     LineSums may_be_far;    ///< most, reach, near and near_reach
