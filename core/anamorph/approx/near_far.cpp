@@ -77,6 +77,8 @@ constexpr auto kFloatUlp = static_cast<double>(simd::kFloatRounding);
 constexpr double kBoundRounding = 512 * kFloatUlp;
 // The part of the tolerance that interpolation may use; the rest is for rounding.
 constexpr double kInterpolationShare = 0.9;
+// Of the smallest cells where that leaves too little for the near lines' rounding.
+constexpr double kSmallestShare = 0.45;
 // And the part of what is left of it that a cell uses up for lines that are far already from a cell to be
 // cut.
 constexpr double kParentShare = 0.25;
@@ -364,6 +366,7 @@ class Planner {
         const double log = std::max(std::log(farthest), -std::log(std::max<double>(a, simd::kLeastDistance)));
         m_constant = kFloatUlp * simd::weight_rounding(b, log);
         m_by_nearest = kFloatUlp * b;
+        m_weights.log = static_cast<float>(log * (1 + kBoundRounding));
         m_lines.resize(m_map.size());
         for (std::size_t i = 0; i < m_map.size(); ++i)
             if (!see(i, m_x, m_y, m_lines[i]) || !(m_slopes[i] < 1e9f)) return false;
@@ -387,7 +390,6 @@ class Planner {
         double spread;    ///< |D - center|, at most
         double offset;    ///< length of `center`
         double farthest;  ///< the greatest of them
-        double rounding;  ///< of polynomials, about
         bool finite;
     };
 
@@ -398,18 +400,24 @@ class Planner {
         Candidates& lines = level(depth);
         simd::LineBounds bounds = lines.bounds();
         const Known known = look(x0, y0, size, lines, bounds, sums, has_polynomial);
-        const double budget =
-            kInterpolationShare * m_options.tol - known.rounding - quotient_error(sums, known);
-        if (known.finite && size <= Block::kMaxSide) {
+        const auto budget = [&](double share) { return share * m_options.tol - quotient_error(sums, known); };
+        const auto fits = [&](double share) {
             FarSums all = sums;
-            add(all, select(lines, bounds, known, budget));
-            if (lines.near_count <= most_near(size) || size <= kFloor) {
-                if (emit(box, lines, bounds, known, all, has_polynomial)) return;
-                if (base_rounding(known, lines.near_count) > m_options.tol) return exact(x0, y0, size);
-            }
+            add(all, select(lines, bounds, known, budget(share)));
+            return (lines.near_count <= most_near(size) || size <= kFloor) &&
+                   emit(box, lines, bounds, known, all, has_polynomial);
+        };
+        if (known.finite && size <= Block::kMaxSide) {
+            if (fits(kInterpolationShare)) return;
+            if (lines.near_count <= most_near(size) && base_rounding(known, lines.near_count) > m_options.tol)
+                return exact(x0, y0, size);
         }
-        if (size <= kFloor) return exact(x0, y0, size);
-        divide(x0, y0, size, depth, bounds, known, sums, budget, has_polynomial);
+        if (size <= kFloor) {
+            if (!known.finite || !fits(kSmallestShare)) exact(x0, y0, size);
+            return;
+        }
+        divide(x0, y0, size, depth, bounds, known, sums, kParentShare * budget(kInterpolationShare),
+               has_polynomial);
     }
 
     Known look(int x0, int y0, int size, Candidates& lines, simd::LineBounds& bounds, FarSums& sums,
@@ -432,9 +440,9 @@ class Planner {
         known.offset = length_of(known.center);
         known.least = (bounds.least_sum + sums.least) * (1 - 2 * simd::kSumRounding);
         known.finite = known.least > 1e-20 && known.least < HUGE_VAL && known.offset < HUGE_VAL;
-        const simd::SpreadSums over = simd::bound_displacements(lines.table(), known.frame, center,
-                                                                static_cast<float>(0.25 * known.least),
-                                                                bounds, lines.reach(), lines.error());
+        const simd::SpreadSums over = simd::bound_displacements(
+            lines.table(), known.frame, center, static_cast<float>(0.25 * known.least),
+            static_cast<float>(known.offset * node_sum_rounding()), bounds, lines.reach(), lines.error());
 
         // D is a mean of the D_i: no farther off than the farthest, and lines of little weight count by that.
         // And D - center is the mean of (w_i - w_i at the centre) (D_i - center) and of w_i at the centre
@@ -442,8 +450,8 @@ class Planner {
         // errors and the rounding of what `center` was made of: weights, sums and the quotient.
         const double half = static_cast<double>(known.frame.half), b = m_map.weights().b;
         known.farthest = std::max(sums.farthest, over.farthest);
-        const double rounding = node_rounding(sums.reach + over.reach, sums.near_reach + over.near_reach,
-                                              sums.most + over.most, sums.slope + over.slope, known.offset);
+        const double rounding = center_rounding(sums.reach + over.reach, sums.near_reach + over.near_reach,
+                                                sums.most + over.most, sums.slope + over.slope, known.offset);
         const double change = (half * (std::numbers::sqrt2 * b * (sums.near_reach + over.near_reach) +
                                        sums.slope + over.slope) +
                                sums.error + rounding) /
@@ -451,18 +459,17 @@ class Planner {
         const double mean = std::min((sums.reach + over.light) / known.least + over.heavy, known.farthest);
         known.mean = mean * (1 + kBoundRounding);
         known.spread = std::min(mean, change) * (1 + kBoundRounding);
-        // Only what the tolerance is shared out by, if all lines became far that may: far_rounding is the
-        // bound.
-        simd::LineSums most = sums;
-        add(most, over.may_be_far);
-        known.rounding = (node_rounding(most.reach, most.near_reach, most.most, most.slope, 0) +
-                          known.spread * node_rounding(most.most, most.near, most.most, 0, 0)) /
-                         known.least;
         return known;
     }
 
-    static double quotient_error(const FarSums& sums, const Known& known) {
-        return (sums.error + known.spread * sums.value) / known.least;
+    /// Of the quotient, by interpolation and by rounding at the nodes.
+    double quotient_error(const FarSums& sums, const Known& known) const {
+        return (sums.error + known.spread * sums.value + known.offset * node_sum_rounding() * sums.most) /
+               known.least;
+    }
+    /// What adding up in floats at the nodes does to an interpolant.
+    double node_sum_rounding() const {
+        return m_chebyshev.lebesgue * m_chebyshev.lebesgue * simd::kNodeRounding;
     }
 
     static simd::LineSums select(Candidates& lines, const simd::LineBounds& bounds, const Known& known,
@@ -482,7 +489,7 @@ class Planner {
         Candidates& rest = level(depth + 1);
         alignas(64) double polynomial[kCoefficients];
         const double* whole = lines.polynomial;
-        add(sums, select(lines, bounds, known, known.finite ? kParentShare * budget : 0));
+        add(sums, select(lines, bounds, known, known.finite ? budget : 0));
         if (lines.far_count > 0) {
             interpolate(lines, known.frame, has_polynomial, polynomial);
             whole = polynomial;
@@ -521,9 +528,14 @@ class Planner {
 
     // --- rounding ----------------------------------------------------------------------------------------
 
-    /// Of the weights of far lines, from their sum and their sum over a + dist.
-    double noise(double sum, double near_sum) const {
-        return m_constant * sum + m_by_nearest * 11 * kHalfRegion * near_sum;
+    /// Of the displacement at the centre times the sum of weights, from sums over all lines: m r, m r / d, m,
+    /// m times the displacement's change per pixel. Of what a polynomial adds up, interpolation makes
+    /// Lebesgue_K^2 as much.
+    double center_rounding(double reach, double near_reach, double most, double slope, double offset) const {
+        const double sums = (2 * simd::kSumRounding + 4 * kFloatUlp) * (reach + offset * most);
+        return m_chebyshev.lebesgue * m_chebyshev.lebesgue *
+               (m_constant * reach + m_by_nearest * 11 * kHalfRegion * near_reach + sums +
+                10 * kFloatUlp * kHalfRegion * slope);
     }
 
     double scale() const {
@@ -532,24 +544,12 @@ class Planner {
         return most;
     }
 
-    /// Of the sums of weights times displacements that a polynomial is made of, from sums over the lines: m
-    /// r, m r / d, m, m times the displacement's change per pixel. `offset`: length of what the r are
-    /// reckoned from.
-    double node_rounding(double reach, double near_reach, double most, double slope, double offset) const {
-        // Weights; sums over 16 or kSumLanes lines and their products; displacements. Interpolation makes
-        // that Lebesgue_K^2 times as much.
-        const double moved = reach + offset * most;
-        return m_chebyshev.lebesgue * m_chebyshev.lebesgue *
-               (noise(reach, near_reach) + (simd::kSumRounding + 4 * kFloatUlp) * moved +
-                10 * kFloatUlp * kHalfRegion * slope);
-    }
-
     /// Of adding up, dividing and placing: what no cutting of cells reduces.
     double base_rounding(const Known& known, int near) const {
         // The near lines' sums and the quotient: in numerator and denominator a product and a sum for each
         // line, 3 more for the polynomial and the quotient.
         const double value = known.mean + known.offset;
-        const double sums = (2 * static_cast<double>(near) + 6) * value;
+        const double sums = (2 * static_cast<double>(simd::near_additions(near)) + 6) * value;
         // offset + slope x, x up to half the cell, and the quotient added to it, on each axis: the offset is
         // below 1 + |center| and rounded 3 times, slope x 4 times, the displacement once.
         const double placed =
@@ -557,20 +557,11 @@ class Planner {
         return kFloatUlp * (sums + std::numbers::sqrt2 * placed);
     }
 
-    double far_rounding(const Known& known, const FarSums& sums, const float* size) const {
-        if (sums.most == 0) return 0;
-        const double offset = known.offset;
-        // Values at the nodes: what the numerator is off by, and the displacement times what the denominator
-        // is.
-        const double nodes =
-            node_rounding(sums.reach, sums.near_reach, sums.most, sums.slope, offset) +
-            known.spread * node_rounding(sums.most, sums.near, sums.most, 0, 0) +
-            offset * m_chebyshev.lebesgue * m_chebyshev.lebesgue * simd::kSumRounding * sums.most;
-        // Horner's rule, and the coefficients themselves.
+    /// Of a polynomial's coefficients and of Horner's rule: `size`, the sums of the coefficients' sizes.
+    double far_rounding(const Known& known, const float* size) const {
         const double moved = static_cast<double>(std::max(size[1] + size[2], size[3] + size[4]));
-        const double horner = kFloatUlp * (4 * m_chebyshev.k + 4) *
-                              (moved + (known.spread + offset) * static_cast<double>(size[0]));
-        return (nodes + horner) / known.least;
+        return kFloatUlp * (4 * m_chebyshev.k + 4) *
+               (moved + (known.spread + known.offset) * static_cast<double>(size[0])) / known.least;
     }
 
     /// What the near lines' rounding is made of: sums of how far a unit of a weight's relative error moves D,
@@ -660,7 +651,7 @@ class Planner {
             interpolate(lines, known.frame, has_polynomial, polynomial);
             float sizes[8];
             simd::round_coefficients(polynomial, m_chebyshev.k, coefficients, sizes);
-            whole += far_rounding(known, sums, sizes);
+            whole += far_rounding(known, sizes);
         }
         const auto bound_of = [&](bool fine) {
             return (whole + near_rounding(rounding, fine, half)) / (1 - off) * (1 + kBoundRounding);

@@ -152,7 +152,7 @@ Features parse_features_csv(std::string_view text, std::string_view name) {
 
 void check_feature_count(const Features& features, std::string_view file, const std::string& entry) {
     if (features.size() > kMaxFeatures)
-        fail(file, entry, "allowed are up to " + std::to_string(kMaxFeatures) + " lines");
+        fail(file, entry, "allowed are at most " + std::to_string(kMaxFeatures) + " lines");
 }
 
 Features parse_features_file(std::string_view text, std::string_view name) {

@@ -40,7 +40,7 @@
 namespace anamorph {
 
 /// More lines than this are refused.
-inline constexpr std::size_t kMaxFeatures = 1000000;
+inline constexpr std::size_t kMaxFeatures = std::size_t{1} << 17;
 
 Features parse_features_json(std::string_view text, std::string_view name);
 Features parse_features_csv(std::string_view text, std::string_view name);

@@ -250,8 +250,17 @@ HWY_INLINE void BoundLines(const LineTable& lines, const CellFrame& cell, const 
     const float axes = third_error(k) * (1 + lebesgue);
     const float third_of_weight = axes * weights.b * (weights.b + 2) * b1;
     const float second_of_weight = axes * 3 * weights.b * (weights.b + 1);
-    const auto weight_margin = static_cast<float>(2 * kFloatRounding * weight_rounding(weights.b, kMostLog));
+    const auto weight_margin =
+        static_cast<float>(2 * kFloatRounding * weight_rounding(weights.b, weights.log));
     const V loose = Set(1 + weight_margin), tight = Set(1 - weight_margin), closed_form = Set(kLoose);
+    // What rounding at the nodes does to a weight, in proportion (that of its place: over a + dist), and to a
+    // displacement per pixel of its change; the interpolant has Lebesgue_K^2 of it.
+    const float amplified = lebesgue * lebesgue * kLoose;
+    const V rounded =
+        Set(amplified *
+            static_cast<float>(kNodeRounding + kFloatRounding * weight_rounding(weights.b, weights.log)));
+    const V misplaced = Set(amplified * 11 * kRegionHalf * kFloatRounding * weights.b);
+    const V displaced = Set(amplified * 10 * kRegionHalf * kFloatRounding);
     Wide sums[kSums], least_sum;
     for (int i = 0; i < lines.count; i += kLanes) {
         const auto field = [&](int f) HWY_ATTR { return hn::LoadU(d, lines.data + f * lines.stride + i); };
@@ -336,13 +345,13 @@ HWY_INLINE void BoundLines(const LineTable& lines, const CellFrame& cell, const 
                 error.linear = better(error.linear, by_line.linear, by_end.linear);
             }
         }
-        const V change = hn::Mul(hn::Mul(half, closed_form), field(LineTable::kSlope));
+        error.value = hn::Add(error.value, hn::Add(rounded, hn::Div(misplaced, nearest)));
+        const V change = hn::Mul(TimesPlus(half, error.linear, displaced), field(LineTable::kSlope));
         // Lines of factor 0 fill up the last vector.
         const auto real = hn::Gt(factor, zero);
-        hn::StoreU(hn::IfThenElse(real, hn::Mul(hn::Mul(most, closed_form), error.value), zero), d,
-                   out.value + i);
-        hn::StoreU(hn::IfThenElse(real, hn::Mul(hn::Mul(most, error.linear), change), zero), d,
-                   out.linear + i);
+        const V whole = hn::Mul(most, closed_form);
+        hn::StoreU(hn::IfThenElse(real, hn::Mul(whole, error.value), zero), d, out.value + i);
+        hn::StoreU(hn::IfThenElse(real, hn::Mul(whole, change), zero), d, out.linear + i);
     }
     for (int c = 0; c < kSums; ++c) out.center[c] = static_cast<double>(sums[c].Sum());
     out.least_sum = static_cast<double>(least_sum.Sum());
@@ -376,7 +385,8 @@ struct LaneSums {
 };
 
 void BoundDisplacements(const LineTable& lines, const CellFrame& cell, const float* center, float much,
-                        const LineBounds& bounds, float* reach, float* error, SpreadSums& sums) {
+                        float offset, const LineBounds& bounds, float* reach, float* error,
+                        SpreadSums& sums) {
     const Floats d;
     const V zero = Set(0), infinite = Set(HUGE_VALF);
     // Displacements err by u (4 |value| + 10 kRegionHalf slope): in proportion, by the reference and by the
@@ -386,7 +396,6 @@ void BoundDisplacements(const LineTable& lines, const CellFrame& cell, const flo
     const V by_reference = Set(8 * kFloatRounding * reference);
     const V by_slope = Set(cell.half + 12 * kFloatRounding * kRegionHalf);
     Wide heavy, light, farthest, all_most, all_reach, slope, near_reach;
-    LaneSums far;
     for (int i = 0; i < lines.count; i += kLanes) {
         V square = zero;
         for (int c = 0; c < kComponents; c += 2) {
@@ -403,10 +412,12 @@ void BoundDisplacements(const LineTable& lines, const CellFrame& cell, const flo
         const V value = hn::LoadU(d, bounds.value + i), linear = hn::LoadU(d, bounds.linear + i);
         // An unknown error stays so, whatever the displacement.
         const auto known = hn::Lt(value, infinite);
-        hn::StoreU(hn::IfThenElse(known, TimesPlus(value, distance, linear), infinite), d, error + i);
+        hn::StoreU(
+            hn::IfThenElse(known, TimesPlus(value, distance, TimesPlus(m, Set(offset), linear)), infinite), d,
+            error + i);
 
         const V near = hn::Div(m, hn::LoadU(d, bounds.nearest + i));
-        const auto is_light = hn::Le(m, Set(much)), may_be_far = hn::And(is_light, known);
+        const auto is_light = hn::Le(m, Set(much));
         const V moment = hn::Mul(m, r), near_moment = hn::Mul(near, r);
         const auto add = [&](Wide& sum, V v) HWY_ATTR { sum.At(i) = hn::Add(sum.At(i), v); };
         const auto most = [&](Wide& sum, V v) HWY_ATTR { sum.At(i) = hn::Max(sum.At(i), v); };
@@ -417,10 +428,6 @@ void BoundDisplacements(const LineTable& lines, const CellFrame& cell, const flo
         add(all_reach, moment);
         add(near_reach, near_moment);
         add(slope, hn::Mul(m, change));
-        add(far.most, hn::IfThenElseZero(may_be_far, m));
-        add(far.reach, hn::IfThenElseZero(may_be_far, moment));
-        add(far.near, hn::IfThenElseZero(may_be_far, near));
-        add(far.near_reach, hn::IfThenElseZero(may_be_far, near_moment));
     }
     sums.heavy = HWY_MAX(sums.heavy, static_cast<double>(heavy.Max()));
     sums.light += static_cast<double>(light.Sum());
@@ -429,7 +436,6 @@ void BoundDisplacements(const LineTable& lines, const CellFrame& cell, const flo
     sums.reach += static_cast<double>(all_reach.Sum());
     sums.slope += static_cast<double>(slope.Sum());
     sums.near_reach += static_cast<double>(near_reach.Sum());
-    far.AddTo(sums.may_be_far);
 }
 
 /// Marks the least parts, which add up to 1 at most: those are 0 afterwards, and the others above it.
@@ -528,7 +534,7 @@ template <Exponent kExponent>
 HWY_INLINE void NodeSums(const FieldLine* lines, const int32_t* which, int count, const CellFrame& cell,
                          const WeightParameters& weights, int k, const float* nodes, double* sums) {
     // Floats are added up over few lines only.
-    constexpr int kRun = 16;
+    constexpr int kRun = kNodeRun;
     const Floats d;
     const int points = k * k;
     HWY_ALIGN float x[kMaxDegree * kMaxDegree], y[kMaxDegree * kMaxDegree], part[kLanes];
@@ -634,7 +640,7 @@ class LineRows {
     enum At { kBefore, kBehind, kBeside, kAt, kAlongX = kAt + kComponents, kAlongY, kFactor, kRight };
     // What a fine row has beside them.
     enum AtFine { kBeforeRest, kBehindRest, kBesideRest, kAlongXRest, kAlongYRest };
-    static constexpr int kMost = 32;
+    static constexpr int kMost = kNearRun;
 
     HWY_INLINE void See(const FieldLine* lines, int count) {
         m_lines = lines;
@@ -783,12 +789,12 @@ void FieldPoints(const FieldCell& cell, const FieldOutput& out) {
                 const V x = hn::Add(lanes, Set(out.x + static_cast<float>(i)));
                 V sums[kSums];
                 for (V& s : sums) s = Set(0);
-                if (part > 0)
-                    for (int c = 0; c <= kCount; ++c) sums[c] = hn::Load(d, waiting[c] + i);
-                else if (cell.k > 0)
+                if (part == 0 && cell.k > 0)
                     polynomial.At<kCount>(j, hn::Mul(hn::Sub(x, center), unit), sums);
                 for (int n = 0; n < count; ++n)
                     AddLine<kExponent, kFine, kCount>(rows.Row(n), rows.Rest(n), x, a, b, sums);
+                if (part > 0)
+                    for (int c = 0; c <= kCount; ++c) sums[c] = hn::Add(sums[c], hn::Load(d, waiting[c] + i));
                 if (part + 1 < parts) {
                     for (int c = 0; c <= kCount; ++c) hn::Store(sums[c], d, waiting[c] + i);
                     continue;
@@ -862,11 +868,11 @@ void bound_lines(const LineTable& lines, const CellFrame& cell, const WeightPara
     });
 }
 SpreadSums bound_displacements(const LineTable& lines, const CellFrame& cell, const float* center, float much,
-                               const LineBounds& bounds, float* reach, float* error) {
+                               float offset, const LineBounds& bounds, float* reach, float* error) {
     SpreadSums sums;
     each_part(lines, bounds, [&](const LineTable& table, const LineBounds& part, int first) {
         HWY_DYNAMIC_DISPATCH(BoundDisplacements)
-        (table, cell, center, much, part, reach + first, error + first, sums);
+        (table, cell, center, much, offset, part, reach + first, error + first, sums);
     });
     return sums;
 }

@@ -40,7 +40,7 @@ inline constexpr double kFineRounding = 0x1p-5;
 /// a + dist is never taken below this.
 inline constexpr float kLeastDistance = 1e-6f;
 /// Nor is its logarithm's size above this: distances end at 1e12 pixels.
-inline constexpr double kMostLog = 29;
+inline constexpr float kMostLog = 29;
 
 /// In units of u: the error of a weight in proportion, but for that of the line's place. `log`: at least
 /// |log(a + dist)|.
@@ -53,6 +53,18 @@ constexpr double weight_rounding(double b, double log) {
 /// kPlaceApart. A distance r and its sums and differences with a cell's diagonal (at most 1.5 R) err by u (6
 /// r + 11 R + 5 R) < 16 u r + 7e-5: more than 9e-4 is left.
 inline constexpr float kPlaceRelative = 16 * kFloatRounding, kPlaceApart = 1e-3f;
+
+/// In proportion, by how much sums over the kNodeRun lines that node_sums adds up in floats are off, and the
+/// products in them.
+inline constexpr int kNodeRun = 16;
+inline constexpr double kNodeRounding = (kNodeRun + 2) * 0x1p-24;
+
+/// Near lines are added up in runs of so many, and then the runs: the additions that a line's term goes
+/// through, at most.
+inline constexpr int kNearRun = 32;
+constexpr int near_additions(int lines) {
+    return lines <= kNearRun ? lines : kNearRun + (lines + kNearRun - 1) / kNearRun;
+}
 
 /// Sums of floats over lines: so many are added up in each of 16 lanes, those in four steps, and the rest in
 /// double.
@@ -93,6 +105,7 @@ struct LineTable {
 
 struct WeightParameters {
     float a, b;
+    float log = kMostLog;  ///< at least |log(a + dist)|
 };
 
 /// A square cell: its centre and half side.
@@ -113,9 +126,10 @@ constexpr float third_error(int k) {
 
 /// What is known of lines over a cell: arrays of as many numbers as LineTable has room for.
 struct LineBounds {
-    float* most;     ///< the greatest weight in the cell
-    float* least;    ///< the least
-    float* value;    ///< most times the interpolation's relative error of the weight; infinite where unknown
+    float* most;   ///< the greatest weight in the cell
+    float* least;  ///< the least
+    float* value;  ///< most times the error of the weight in proportion, of its interpolation and by rounding
+                   ///< at the nodes; infinite where unknown
     float* linear;   ///< the same of the weight times an offset in the cell, times the displacement's change
     float* nearest;  ///< a + dist, the least in the cell
     float* displacement[kComponents];  ///< at the centre
@@ -139,8 +153,7 @@ struct LineSums {
     double near_reach = 0;  ///< m r / d
     double farthest = 0;    ///< the greatest r
 };
-/// What bounds the spread of all lines' displacements, and sums over those that may be far (m <= much, error
-/// known).
+/// What bounds the spread of all lines' displacements.
 struct SpreadSums {
     double heavy = 0;       ///< the greatest r of lines with m > much
     double light = 0;       ///< sum m r of the others
@@ -149,12 +162,11 @@ struct SpreadSums {
     double reach = 0;       ///< sum m r
     double slope = 0;       ///< sum of m times the displacement's change per pixel
     double near_reach = 0;  ///< sum m r / d
-    LineSums may_be_far;    ///< most, reach, near and near_reach
 };
 /// reach[i]: the greatest distance of a line's displacement from `center` (kComponents numbers) in the cell;
-/// error[i]: value * (the distance at the cell's centre) + linear.
+/// error[i]: value * (the distance at the cell's centre) + linear + offset * most.
 SpreadSums bound_displacements(const LineTable& lines, const CellFrame& cell, const float* center, float much,
-                               const LineBounds& bounds, float* reach, float* error);
+                               float offset, const LineBounds& bounds, float* reach, float* error);
 
 /// Far: lines whose parts, unit * (error + spread * value), are the least and together at most 1.
 struct Selection {
