@@ -187,6 +187,9 @@ std::string Parameter::allowed() const {
             return "allowed is N or NxM, whole numbers from " + shortest(minimum) + " to " +
                    shortest(maximum);
         case ParameterType::numbers:
+            if (std::isfinite(minimum) && std::isfinite(maximum))
+                return "allowed are numbers from " + shortest(minimum) + " to " + shortest(maximum) +
+                       ", separated by commas";
             return std::isfinite(minimum)
                        ? "allowed are numbers from " + shortest(minimum) + ", separated by commas"
                        : "allowed are finite numbers, separated by commas";

@@ -217,6 +217,14 @@ TEST(FeaturesFile, TheNamesEndChoosesTheReader) {
     EXPECT_EQ(parse_features_file(R"x({"features": [{"line": [[0,0,1,0], [0,0,1,0]]}]})x", "a").size(), 1u);
 }
 
+TEST(FeaturesFile, MoreLinesThanAllowedAreRefused) {
+    std::string csv;
+    for (std::size_t i = 0; i < kMaxFeatures; ++i) csv += "1,2,3,4,5,6,7,8\n";
+    EXPECT_EQ(parse_features_file(csv, "a.csv").size(), kMaxFeatures);
+    csv += "1,2,3,4,5,6,7,8\n";
+    EXPECT_THAT(message(parse_features_csv, csv), HasSubstr("131073: allowed are at most 131072 lines"));
+}
+
 TEST(FeaturesFile, EndlessFilesAreRefused) {
     const std::string big(text_file::kMostBytes + 1, ' ');
     for (const char* name : {"a.csv", "a.svg", "a.json"}) {

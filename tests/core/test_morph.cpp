@@ -8,6 +8,8 @@
 #include <random>
 #include <thread>
 
+#include "anamorph/parameter.h"
+
 namespace anamorph {
 namespace {
 
@@ -262,7 +264,9 @@ TEST(Morph, BadParametersAreNamed) {
     EXPECT_NE(message(options), "no error");
     options = {};
     options.t = NAN;
-    EXPECT_EQ(message(options), "t=nan: allowed is a finite number");
+    EXPECT_EQ(message(options), "t=nan: allowed is a number from -1e+06 to 1e+06");
+    options.t = 1e7;
+    EXPECT_EQ(message(options), "t=1e+07: allowed is a number from -1e+06 to 1e+06");
     options = {};
     options.weight_b = NAN;
     EXPECT_EQ(message(options), "weight_b=nan: allowed is a number from 0 to 16");
@@ -270,7 +274,20 @@ TEST(Morph, BadParametersAreNamed) {
     EXPECT_NE(message(options, {0, 5}), "no error");
     options.scheme = MorphScheme::mesh;
     options.mesh_cells = 0;
-    EXPECT_EQ(message(options), "mesh_cells=0: allowed is 1 to 1024");
+    EXPECT_EQ(message(options), "mesh_cells=0: allowed is a whole number from 1 to 1024");
+    options = {};
+    for (const std::vector<double>& weights :
+         {std::vector<double>{1.5, 1.5}, {0.25, 0.25, 0.5}, {1}, {NAN, 1}, {-1e7, 1e7 + 1}}) {
+        options.shape_weights = weights;
+        std::string text;
+        for (const double w : weights) text += (text.empty() ? "" : ",") + shortest(w);
+        EXPECT_EQ(message(options),
+                  "shape_weights=" + text +
+                      ": allowed are 2 numbers from -1e+06 to 1e+06, one for each picture, with sum 1");
+    }
+    options = {};
+    options.weight_b = std::nextafter(16.0, 17.0);
+    EXPECT_EQ(message(options), "weight_b=16.000000000000004: allowed is a number from 0 to 16");
 }
 
 }  // namespace

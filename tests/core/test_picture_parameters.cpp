@@ -3,6 +3,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "anamorph/image/morph_parameters.h"
 #include "anamorph/image/warp_parameters.h"
 
@@ -125,6 +127,53 @@ TEST(MorphRequest, ReadsItsValues) {
                     morph({{"t", "1"}, {"shape_weights", "0,1,0"}}, three);
                 }),
                 HasSubstr("t=1: allowed without shape_weights"));
+}
+
+/// Makes the morph that a table's values ask for.
+void make_morph(const std::vector<Assignment>& assignments) {
+    const MorphRequest r = morph(assignments);
+    auto features = std::make_shared<Features>();
+    features->add_line({{{40, 40}, {80, 38}}, {{4, 5}, {8, 7}}});
+    features->pin_border(r.pin_border.value_or(0));
+    const Morph made(features, r.pictures, r.width, r.height, r.frame_options(r.frames - 1));
+}
+
+TEST(MorphRequest, WhatARowAllowsIsWhatTheMorphTakes) {
+    int ends = 0;
+    for (const Parameter& p : morph_parameters()) {
+        const bool number = p.type == ParameterType::number, whole = p.type == ParameterType::whole;
+        if (!number && !whole) continue;
+        SCOPED_TRACE(p.name);
+        const auto ask = [&](double value) {
+            std::vector<Assignment> all{{p.name, shortest(value)}};
+            if (p.name.starts_with("mesh_")) all.push_back({"scheme", "mesh"});
+            return error_of([&] { make_morph(all); });
+        };
+        for (const double end : {p.minimum, p.maximum}) {
+            // Where there is no end, a number as large as any.
+            const double beyond = end == p.minimum ? -HUGE_VAL : HUGE_VAL;
+            EXPECT_EQ(ask(std::isfinite(end) ? end : std::copysign(1e300, end)), "no error");
+            if (!std::isfinite(end)) continue;
+            const double step = whole ? end + std::copysign(1.0, beyond) : std::nextafter(end, beyond);
+            EXPECT_EQ(ask(step), p.name + "=" + shortest(step) + ": " + p.allowed());
+            ++ends;
+        }
+    }
+    EXPECT_EQ(ends, 18);
+}
+
+TEST(MorphRequest, WeightsAreNamedAsTheyWereGiven) {
+    const std::string allowed =
+        ": allowed are 2 numbers from -1e+06 to 1e+06, one for each picture, with sum 1";
+    for (const std::string name : {"shape_weights", "color_weights"}) {
+        for (const std::string value : {"1.50, 1.5", "0.5", "0.2,0.2,0.6", "0.5,0.499"})
+            EXPECT_EQ(error_of([&] { morph({{name, value}}); }), name + "=" + value + allowed);
+        EXPECT_EQ(error_of([&] { make_morph({{name, "1e6,-999999"}}); }), "no error");
+        EXPECT_EQ(error_of([&] {
+                      morph({{name, "1000001,-1000000"}});
+                  }),
+                  name + "=1000001,-1000000: allowed are numbers from -1e+06 to 1e+06, separated by commas");
+    }
 }
 
 TEST(MorphRequest, AFilmRunsOverT) {

@@ -46,7 +46,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdio>
 #include <limits>
 #include <mutex>
 #include <numbers>
@@ -54,6 +53,7 @@
 
 #include "anamorph/approx/near_far_line.h"
 #include "anamorph/error.h"
+#include "anamorph/parameter.h"
 #include "anamorph/simd/near_far.h"
 
 namespace anamorph {
@@ -789,9 +789,8 @@ struct NearFar::State {
 
 NearFar::NearFar(const FeatureMap& map, const NearFarOptions& options) {
     if (!(options.tol >= 0 && options.tol < HUGE_VAL)) {
-        char text[32];
-        std::snprintf(text, sizeof text, "%g", options.tol);
-        throw Error("tol", text, "allowed is 0 (exact) or a finite number of source pixels above it");
+        throw Error("tol", shortest(options.tol),
+                    "allowed is 0 (exact) or a finite number of source pixels above it");
     }
     m_state = std::make_unique<State>(map, options);
 }

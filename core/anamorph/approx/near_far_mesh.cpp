@@ -160,8 +160,14 @@ struct FeatureMesh::State {
 };
 
 FeatureMesh::FeatureMesh(const FeatureMap& map, int cells, int levels, const std::vector<int>& shapes) {
-    if (cells < 1 || cells > 1024) throw Error("mesh_cells", std::to_string(cells), "allowed is 1 to 1024");
-    if (levels < 0 || levels > 4) throw Error("mesh_levels", std::to_string(levels), "allowed is 0 to 4");
+    const auto check = [](const char* name, int value, int least, int most) {
+        if (value < least || value > most)
+            throw Error(
+                name, std::to_string(value),
+                "allowed is a whole number from " + std::to_string(least) + " to " + std::to_string(most));
+    };
+    check("mesh_cells", cells, 1, kMostCells);
+    check("mesh_levels", levels, 0, kMostLevels);
     m_state = std::make_unique<State>(map, cells, levels, shapes);
 }
 FeatureMesh::~FeatureMesh() = default;

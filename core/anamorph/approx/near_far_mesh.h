@@ -10,7 +10,10 @@ namespace anamorph {
 
 class FeatureMesh final : public CellField {
   public:
-    /// `cells` each way, those near a line cut `levels` times into four. The map outlives this.
+    static constexpr int kMostCells = 1024, kMostLevels = 4;
+
+    /// `cells` each way, those near a line cut `levels` times into four. The map outlives this. Throws Error
+    /// when there are more than allowed, or less than one cell.
     FeatureMesh(const FeatureMap& map, int cells, int levels, const std::vector<int>& shapes);
     ~FeatureMesh() override;
 

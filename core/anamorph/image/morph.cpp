@@ -4,15 +4,16 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
-#include <cstdio>
 #include <limits>
 #include <mutex>
+#include <numeric>
 #include <string>
 
 #include "anamorph/approx/near_far.h"
 #include "anamorph/approx/near_far_mesh.h"
 #include "anamorph/image/block_reader.h"
 #include "anamorph/image/pixel.h"
+#include "anamorph/parameter.h"
 
 namespace anamorph {
 namespace {
@@ -55,31 +56,23 @@ class ShapeMap final : public BlockMap {
     int m_shape;
 };
 
-std::string text_of(double value) {
-    char text[32];
-    std::snprintf(text, sizeof text, "%g", value);
-    return text;
-}
-
 /// One weight a key shape: what was given, else those of t.
 std::vector<double> mixture(const std::vector<double>& given, double t, int shapes, const char* name,
                             const char* t_name) {
     if (!given.empty()) {
-        if (given.size() != static_cast<std::size_t>(shapes))
-            throw Error(name, std::to_string(given.size()) + " numbers",
-                        "the features have " + std::to_string(shapes) + " shapes");
-        double sum = 0;
-        for (const double w : given) {
-            if (!std::isfinite(w)) throw Error(name, text_of(w), "allowed are finite numbers");
-            sum += w;
-        }
-        if (!(std::fabs(sum - 1) <= 1e-6)) throw Error(name, "sum " + text_of(sum), "the sum is to be 1");
+        std::string text;
+        for (const double w : given) text += (text.empty() ? "" : ",") + shortest(w);
+        check_mixture(name, text, given, shapes);
         return given;
     }
     if (shapes != 2)
-        throw Error(t_name, text_of(t),
-                    std::string("for more than two shapes ") + name + " is needed, one weight each");
-    if (!(std::fabs(t) <= 1e6)) throw Error(t_name, text_of(t), "allowed is a finite number");
+        throw Error(
+            t_name, shortest(t),
+            std::string("allowed with two pictures only; for more, ") + name + " takes a number for each");
+    if (!(std::fabs(t) <= MorphOptions::kMostT))
+        throw Error(t_name, shortest(t),
+                    "allowed is a number from " + shortest(-MorphOptions::kMostT) + " to " +
+                        shortest(MorphOptions::kMostT));
     return {1 - t, t};
 }
 
@@ -169,9 +162,9 @@ struct Morph::State {
         if (o == MorphOutput::warp_a || o == MorphOutput::stmap_a) one[0] = 1;
         if (o == MorphOutput::warp_b || o == MorphOutput::stmap_b) one[1] = 1;
         if (one[0] + one[1] > 0) return one;
-        const std::vector<double>& given =
-            options.color_weights.empty() && !options.t_color ? shape : options.color_weights;
-        return mixture(given, options.t_color.value_or(options.t), map.shapes(), "color_weights", "t_color");
+        if (options.color_weights.empty() && !options.t_color) return shape;
+        return mixture(options.color_weights, options.t_color.value_or(options.t), map.shapes(),
+                       "color_weights", "t_color");
     }
 
     void make_fields() {
@@ -304,6 +297,18 @@ std::vector<Box> regions_of(const Box& box, const Box& whole) {
 }
 
 }  // namespace
+
+void check_mixture(const std::string& name, const std::string& text, const std::vector<double>& weights,
+                   int shapes) {
+    constexpr double kMost = MorphOptions::kMostT;
+    const double sum = std::accumulate(weights.begin(), weights.end(), 0.0);
+    const bool in_range =
+        std::all_of(weights.begin(), weights.end(), [](double w) { return std::fabs(w) <= kMost; });
+    if (weights.size() != static_cast<std::size_t>(shapes) || !in_range || !(std::fabs(sum - 1) <= 1e-6))
+        throw Error(name, printable(text),
+                    "allowed are " + std::to_string(shapes) + " numbers from " + shortest(-kMost) + " to " +
+                        shortest(kMost) + ", one for each picture, with sum 1");
+}
 
 Morph::Morph(std::shared_ptr<const Features> features, const std::vector<Source::Size>& pictures, int width,
              int height, const MorphOptions& options) {

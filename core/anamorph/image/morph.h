@@ -5,6 +5,7 @@
 
 #include <memory>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "anamorph/approx/block.h"
@@ -33,9 +34,11 @@ struct MorphOptions {
     Wrap wrap = Wrap::automatic;  ///< automatic is clamp: a morph has no edges of its own
     MorphOutput output = MorphOutput::color;
 
-    double t = 0.5;                 ///< of the shape: 0 is A's, 1 is B's; finite
+    static constexpr double kMostT = 1e6;
+    double t = 0.5;                 ///< of the shape: 0 is A's, 1 is B's; kMostT at most, either way
     std::optional<double> t_color;  ///< of the colours; as t unless given
-    /// One weight a key shape, with sum 1: in place of t and t_color, of which there are but two.
+    /// One weight a key shape, kMostT at most, with sum 1: in place of t and t_color, of which there are but
+    /// two.
     std::vector<double> shape_weights, color_weights;
 
     double weight_a = 1, weight_b = 2, weight_p = 0.5;  ///< a, b and p of eq. 5.11
@@ -43,6 +46,11 @@ struct MorphOptions {
     int mesh_cells = 12;  ///< of scheme mesh, each way
     int mesh_levels = 1;  ///< times that its cells near a line are cut into four
 };
+
+/// Are these weights of the key shapes? Throws Error: `name`, the value as it was written and what is
+/// allowed.
+void check_mixture(const std::string& name, const std::string& text, const std::vector<double>& weights,
+                   int shapes);
 
 /// One morph, ready to draw any box of the picture in any order from any number of threads: the bits of a
 /// pixel depend on nothing but the features, the options, the sizes and the pictures.

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "anamorph/image/morph_parameters.h"
 
+#include "anamorph/approx/near_far_mesh.h"
 #include "anamorph/image/picture_parameters.h"
 
 namespace anamorph {
@@ -13,7 +14,14 @@ const std::vector<std::string> kWraps = {"automatic", "black", "clamp", "periodi
 const std::vector<std::string> kSchemes = {"auto", "exact", "mesh"};
 const std::vector<std::string> kOutputs = {"color",   "warp_a", "warp_b", "stmap_a",
                                            "stmap_b", "lines",  "error",  "bound"};
-constexpr int kMaxFrames = 9999, kMaxMeshCells = 1024, kMaxMeshLevels = 8;
+constexpr int kMaxFrames = 9999;
+
+/// Weights of the pictures.
+Parameter weights(const char* name, const char* doc) {
+    Parameter row = rows::numbers(name, -MorphOptions::kMostT, doc);
+    row.maximum = MorphOptions::kMostT;
+    return row;
+}
 
 ParameterTable make_table() {
     using namespace rows;
@@ -25,18 +33,19 @@ ParameterTable make_table() {
         table.push_back(image(morph_pictures()[i].c_str(), "one more picture, with shape_weights"));
     const ParameterTable others = {
         file("features", "lines that correspond to each other in the pictures: .json, .csv or .svg"),
-        number("t", "", "0.5", -kInfinity, kInfinity, "of the shape: 0 is that of a, 1 that of b"),
-        number("t_color", "", "", -kInfinity, kInfinity,
+        number("t", "", "0.5", -MorphOptions::kMostT, MorphOptions::kMostT,
+               "of the shape: 0 is that of a, 1 that of b"),
+        number("t_color", "", "", -MorphOptions::kMostT, MorphOptions::kMostT,
                "of the color: 0 is that of a, 1 that of b; by default t"),
-        numbers("shape_weights", -kInfinity, "of the shape, in place of t: one for each picture, with sum 1"),
-        numbers("color_weights", -kInfinity, "of the color, in place of t_color; by default shape_weights"),
+        weights("shape_weights", "of the shape, in place of t: one for each picture, with sum 1"),
+        weights("color_weights", "of the color, in place of t_color; by default shape_weights"),
         whole("frames", "", "1", 1, kMaxFrames,
               "more than 1: as many subimages, t running evenly from 0 in the first to 1 in the last"),
         number(
-            "weight_a", "", "1", 0, kInfinity,
+            "weight_a", "", "1", 0, LineWeights::kMostA,
             "a of a line's weight (length^p / (a + distance))^b: the smaller, the closer lines are followed"),
-        number("weight_b", "", "2", 0, kInfinity, "b of it: how fast a line's influence falls off"),
-        number("weight_p", "", "0.5", 0, kInfinity, "p of it: how much more long lines count"),
+        number("weight_b", "", "2", 0, LineWeights::kMostB, "b of it: how fast a line's influence falls off"),
+        number("weight_p", "", "0.5", 0, LineWeights::kMostP, "p of it: how much more long lines count"),
         number(
             "pin_border", "", "", 0, kInfinity,
             "holds the picture's border with lines of this weight; 0: not; by default as the features say"),
@@ -49,8 +58,8 @@ ParameterTable make_table() {
         choice("scheme", "auto", kSchemes,
                "how source points are found within tol; mesh, on a grid with cells cut near the lines, holds "
                "none"),
-        whole("mesh_cells", "", "12", 1, kMaxMeshCells, "of scheme mesh: cells each way"),
-        whole("mesh_levels", "", "1", 0, kMaxMeshLevels,
+        whole("mesh_cells", "", "12", 1, FeatureMesh::kMostCells, "of scheme mesh: cells each way"),
+        whole("mesh_levels", "", "1", 0, FeatureMesh::kMostLevels,
               "of scheme mesh: how often cells near a line are cut into four"),
         colorspace("color space to filter and blend in; by default that of the pictures"),
         choice("output", "color", kOutputs,
@@ -104,6 +113,10 @@ MorphRequest read_morph_request(const ParameterValues& values, const std::vector
     options.mesh_cells = values.whole("mesh_cells");
     options.mesh_levels = values.whole("mesh_levels");
     if (values.given("pin_border")) request.pin_border = values.number("pin_border");
+
+    for (const char* name : {"shape_weights", "color_weights"})
+        if (values.given(name))
+            check_mixture(name, values.text(name), values.numbers(name), static_cast<int>(pictures.size()));
 
     request.frames = values.whole("frames");
     // What says the same as another key, where both are given.

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "anamorph/map/feature_lines.h"
 
-#include <cstdio>
-
 #include "anamorph/error.h"
+#include "anamorph/parameter.h"
 
 namespace anamorph {
 namespace {
@@ -13,14 +12,9 @@ constexpr double kMostCoordinate = 1e9;
 // Relative to the greatest: so that no sum of weights is 0.
 constexpr double kLeastFactor = 1e-250;
 
-std::string number(double value) {
-    char text[32];
-    std::snprintf(text, sizeof text, "%g", value);
-    return text;
-}
-
 std::string written(const Line& line) {
-    return number(line.p.x) + "," + number(line.p.y) + "," + number(line.q.x) + "," + number(line.q.y);
+    return shortest(line.p.x) + "," + shortest(line.p.y) + "," + shortest(line.q.x) + "," +
+           shortest(line.q.y);
 }
 
 bool fits(const Point<double>& p) {
@@ -78,7 +72,7 @@ void Features::add_line(const std::vector<Line>& line, double weight, const std:
         if (l.p.x == l.q.x && l.p.y == l.q.y) throw Error(what, written(l), "a line needs a length");
     }
     if (!(weight >= 0 && std::isfinite(weight)))
-        throw Error(what + " weight", number(weight), "allowed is 0 or a finite number above it");
+        throw Error(what + " weight", shortest(weight), "allowed is 0 or a finite number above it");
     m_lines.insert(m_lines.end(), line.begin(), line.end());
     m_weights.push_back(weight);
     m_names.push_back(name);
@@ -118,7 +112,7 @@ void Features::add_curve(const std::vector<std::vector<Point<double>>>& control_
                         "the first shape has " + std::to_string(count));
         for (const Point<double>& p : points)
             if (!fits(p))
-                throw Error(what, number(p.x) + "," + number(p.y),
+                throw Error(what, shortest(p.x) + "," + shortest(p.y),
                             "allowed are coordinates up to 1e9 pixels");
     }
     std::vector<std::vector<Point<double>>> chain(control_points.size());
@@ -135,14 +129,14 @@ void Features::add_curve(const std::vector<std::vector<Point<double>>>& control_
 
 void Features::pin_border(double weight) {
     if (!(weight >= 0 && std::isfinite(weight)))
-        throw Error("pin_border", number(weight), "allowed is 0 or a finite weight above it");
+        throw Error("pin_border", shortest(weight), "allowed is 0 or a finite weight above it");
     m_border = weight;
 }
 
 void Features::set_frame(int shape, const Frame& frame) {
     if (!(frame.width > 0 && frame.height > 0 && frame.width <= kMostCoordinate &&
           frame.height <= kMostCoordinate))
-        throw Error("size", number(frame.width) + "x" + number(frame.height),
+        throw Error("size", shortest(frame.width) + "x" + shortest(frame.height),
                     "allowed are sizes above 0 up to 1e9 pixels");
     m_frames[static_cast<std::size_t>(shape)] = frame;
 }
@@ -162,11 +156,11 @@ FeatureMap::FeatureMap(const Features& features, const std::vector<Size>& pictur
                     "the features have " + std::to_string(m_shapes) + " shapes");
     const auto check = [](const char* name, double value, double most) {
         if (!(value >= 0 && value <= most))
-            throw Error(name, number(value), "allowed is a number from 0 to " + number(most));
+            throw Error(name, shortest(value), "allowed is a number from 0 to " + shortest(most));
     };
-    check("weight_a", weights.a, 1e6);
-    check("weight_b", weights.b, 16);
-    check("weight_p", weights.p, 16);
+    check("weight_a", weights.a, LineWeights::kMostA);
+    check("weight_b", weights.b, LineWeights::kMostB);
+    check("weight_p", weights.p, LineWeights::kMostP);
     for (const Size& picture : pictures)
         m_scales.push_back({double(picture.width) / target.width, double(picture.height) / target.height});
 

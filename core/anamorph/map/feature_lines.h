@@ -80,7 +80,8 @@ class Features {
 
 /// The weights of eq. 5.11 between lines: weight = (length^p / (a + dist))^b.
 struct LineWeights {
-    double a = 1, b = 2, p = 0.5;
+    static constexpr double kMostA = 1e6, kMostB = 16, kMostP = 16;
+    double a = 1, b = 2, p = 0.5;  ///< 0 or more
 };
 
 namespace feature_detail {
