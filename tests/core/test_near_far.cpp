@@ -423,6 +423,124 @@ TEST(NearFar, EveryInstructionSetGivesTheSameBits) {
     simd::use_instruction_set("");
 }
 
+/// Beier and Neely's map in long double, written out: the source point of (x, y) in shape `k`, from the
+/// features alone.
+class Oracle {
+  public:
+    Oracle(const Features& features, double size_x, double size_y, double t, const LineWeights& w)
+        : m_weights(w) {
+        for (std::size_t i = 0; i < features.size(); ++i)
+            add(features.line(i, 0), features.line(i, 1), static_cast<long double>(features.weight(i)), t);
+        if (features.border_weight() > 0) {
+            const Line edges[] = {{{0, 0}, {size_x, 0}},
+                                  {{size_x, 0}, {size_x, size_y}},
+                                  {{size_x, size_y}, {0, size_y}},
+                                  {{0, size_y}, {0, 0}}};
+            for (const Line& e : edges) add(e, e, static_cast<long double>(features.border_weight()), t);
+        }
+    }
+    void at(double px, double py, int k, long double& sx, long double& sy) const {
+        const auto a = static_cast<long double>(m_weights.a), b = static_cast<long double>(m_weights.b);
+        const auto p = static_cast<long double>(m_weights.p);
+        long double sum = 0, dx = 0, dy = 0;
+        for (const Pair& l : m_pairs) {
+            const long double ex = l.qx - l.px, ey = l.qy - l.py, xx = px - l.px, yy = py - l.py;
+            const long double square = ex * ex + ey * ey, length = std::sqrt(square);
+            const long double u = (xx * ex + yy * ey) / square, v = (yy * ex - xx * ey) / length;
+            const long double qx = px - l.qx, qy = py - l.qy;
+            const long double distance = u < 0   ? std::sqrt(xx * xx + yy * yy)
+                                         : u > 1 ? std::sqrt(qx * qx + qy * qy)
+                                                 : std::fabs(v);
+            const long double* s = l.shape[k];
+            const long double fx = s[2] - s[0], fy = s[3] - s[1], own = std::sqrt(fx * fx + fy * fy);
+            const long double weight = l.weight * std::pow(std::pow(length, p) / (a + distance), b);
+            sum += weight;
+            dx += weight * (s[0] + u * fx - v * fy / own - px);
+            dy += weight * (s[1] + u * fy + v * fx / own - py);
+        }
+        sx = px + dx / sum;
+        sy = py + dy / sum;
+    }
+
+  private:
+    struct Pair {
+        long double px, py, qx, qy, shape[2][4], weight;
+    };
+    void add(const Line& from, const Line& to, long double weight, double t) {
+        const long double s = t, r = 1 - s;
+        const auto mix = [&](double x, double y) { return r * x + s * y; };
+        m_pairs.push_back({mix(from.p.x, to.p.x),
+                           mix(from.p.y, to.p.y),
+                           mix(from.q.x, to.q.x),
+                           mix(from.q.y, to.q.y),
+                           {{from.p.x, from.p.y, from.q.x, from.q.y}, {to.p.x, to.p.y, to.q.x, to.q.y}},
+                           weight});
+    }
+    LineWeights m_weights;
+    std::vector<Pair> m_pairs;
+};
+
+/// Every pixel of a plan against the oracle: the largest error, error less bound, and bound.
+Outcome against_oracle(const Features& features, FeatureMap::Size size, const LineWeights& w, double t,
+                       double tol) {
+    const FeatureMap map = map_of(features, size, w, t);
+    const Oracle oracle(features, size.width, size.height, t, w);
+    const NearFar field(map, {tol, {0, 1}});
+    Outcome out;
+    out.over = -HUGE_VAL;
+    const Box whole{0, 0, size.width, size.height};
+    for (int y = 0; y < size.height; y += CellField::kRegion)
+        for (int x = 0; x < size.width; x += CellField::kRegion) {
+            const Box region = intersection({x, y, x + CellField::kRegion, y + CellField::kRegion}, whole);
+            out.bound = std::max(out.bound, field.tally(region).bound);
+            field.each_block(region, region, [&](int k, const Block& block, const CellPoints& points) {
+                for (int j = block.box.y0; j < block.box.y1; ++j)
+                    for (int i = block.box.x0; i < block.box.x1; ++i) {
+                        const std::ptrdiff_t at = (j - block.box.y0) * points.row_stride + i - block.box.x0;
+                        const Point<double> used = points.x
+                                                       ? Point<double>{block.base_x + double(points.x[at]),
+                                                                       block.base_y + double(points.y[at])}
+                                                       : map(i + 0.5, j + 0.5, k);
+                        long double sx, sy;
+                        oracle.at(i + 0.5, j + 0.5, k, sx, sy);
+                        const auto error = static_cast<double>(std::hypot(used.x - sx, used.y - sy));
+                        out.error = std::isnan(error) ? HUGE_VAL : std::max(out.error, error);
+                        out.over = std::isnan(error) ? HUGE_VAL : std::max(out.over, error - block.bound);
+                        ++out.pixels;
+                    }
+            });
+        }
+    return out;
+}
+
+TEST(NearFar, NoPixelIsOverToleranceOrBoundByAnOracleOnAnyInstructionSet) {
+    constexpr unsigned kSeed = 41;
+    SCOPED_TRACE(testing::Message() << "seed " << kSeed);
+    const FeatureMap::Size size{150, 60};
+    int n = 0;
+    for (const char* const* set = simd::instruction_sets(); *set; ++set) {
+        ASSERT_TRUE(simd::use_instruction_set(*set));
+        for (const std::string& family : families::names())
+            for (const LineWeights& w :
+                 {LineWeights{1, 2, 0.5}, LineWeights{0.1, 0.5, 1}, LineWeights{0.01, 1, 0},
+                  LineWeights{0.3, 1.3, 0.5}, LineWeights{0, 2, 0.5}, LineWeights{0, 0.5, 0}}) {
+                Features features = *families::Maker(150, kSeed).make(family, 24);
+                if (n++ % 2) features.pin_border(1);
+                for (const double tol : {1.0, 0.1, 0.01, 1e-3, 1e-6, 0.0}) {
+                    SCOPED_TRACE(testing::Message() << *set << " " << family << " a " << w.a << " b " << w.b
+                                                    << " p " << w.p << " tol " << tol);
+                    const Outcome o = against_oracle(features, size, w, 0.3, tol);
+                    EXPECT_LE(o.over, 0) << "error " << o.error;
+                    EXPECT_LE(o.error, tol > 0 ? tol : 1e-9);
+                    EXPECT_LE(o.bound, tol > 0 ? tol : 1e-5);
+                    EXPECT_GT(o.bound, 0);
+                    EXPECT_EQ(o.pixels, std::int64_t{2} * size.width * size.height);
+                }
+            }
+    }
+    simd::use_instruction_set("");
+}
+
 TEST(NearFar, OneShapeAlone) {
     const auto features = families::Maker(150, 9).make("face", 32);
     const FeatureMap map = map_of(*features, {150, 150}, {1, 2, 0.5});

@@ -51,6 +51,7 @@
 #include <numbers>
 #include <unordered_map>
 
+#include "anamorph/approx/near_far_exact.h"
 #include "anamorph/approx/near_far_line.h"
 #include "anamorph/error.h"
 #include "anamorph/parameter.h"
@@ -695,7 +696,9 @@ class Planner {
             for (int x = x0; x < x0 + size; x += Block::kMaxSide) {
                 const int side = std::min(size, Block::kMaxSide);
                 const Box box = intersection({x, y, x + side, y + side}, m_picture);
-                if (!box.empty()) m_region->cells.push_back({box, true, 0, {}, {}, 0, 0, 0, false});
+                if (!box.empty())
+                    m_region->cells.push_back(
+                        {box, true, exact_bound(m_map, m_options.shapes, box), {}, {}, 0, 0, 0, false});
             }
     }
 
@@ -838,18 +841,26 @@ void cell_points(const FeatureMap& map, const std::vector<int>& shapes, int degr
     simd::field_points(field, out);
 }
 
+/// Calls body(box) for the squares of a region that blocks of an exact plan are.
+template <class Body>
+void each_square(const Box& region, const Body& body) {
+    for (int y = region.y0; y < region.y1; y += Block::kMaxSide)
+        for (int x = region.x0; x < region.x1; x += Block::kMaxSide)
+            body(intersection({x, y, x + Block::kMaxSide, y + Block::kMaxSide}, region));
+}
+
 }  // namespace
 
 void NearFar::each_block(const Box& region, const Box& part, const Visit& visit) const {
     const std::vector<int>& shapes = m_state->options.shapes;
     Block block;
     if (m_state->exact()) {
-        for (int y = region.y0; y < region.y1; y += Block::kMaxSide)
-            for (int x = region.x0; x < region.x1; x += Block::kMaxSide) {
-                block.box = intersection({x, y, x + Block::kMaxSide, y + Block::kMaxSide}, region);
-                if (intersection(block.box, part).empty()) continue;
-                for (const int k : shapes) visit(k, block, {});
-            }
+        each_square(region, [&](const Box& box) {
+            if (intersection(box, part).empty()) return;
+            block.box = box;
+            block.bound = exact_bound(m_state->map, shapes, box);
+            for (const int k : shapes) visit(k, block, {});
+        });
         return;
     }
     const std::shared_ptr<const Region> planned = m_state->region(region);
@@ -874,8 +885,14 @@ void NearFar::each_block(const Box& region, const Box& part, const Visit& visit)
 }
 
 CellField::Tally NearFar::tally(const Box& region) const {
-    if (m_state->exact()) return {0, std::int64_t{region.width()} * region.height()};
     Tally tally;
+    if (m_state->exact()) {
+        tally.exact_pixels = std::int64_t{region.width()} * region.height();
+        each_square(region, [&](const Box& box) {
+            tally.bound = std::max(tally.bound, exact_bound(m_state->map, m_state->options.shapes, box));
+        });
+        return tally;
+    }
     for (const Cell& cell : m_state->region(region)->cells) {
         tally.bound = std::max(tally.bound, cell.bound);
         if (cell.exact) tally.exact_pixels += std::int64_t{cell.box.width()} * cell.box.height();

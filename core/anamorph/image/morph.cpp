@@ -456,40 +456,37 @@ bool Morph::draw(const std::vector<const Source*>& sources, const Box& box, cons
 
     const auto draw_map = [&](RegionPainter& painter, const Box& region) {
         for (const auto& field : state.fields)
-            field->each_block(region, painter.part(),
-                              [&](int k, const Block& block, const CellPoints& points) {
-                                  const Box part = intersection(block.box, painter.part());
-                                  const bool first = k == state.drawn.front();
-                                  const FeatureMap::Size size = state.map.picture(k);
-                                  for (int y = part.y0; y < part.y1; ++y)
-                                      for (int x = part.x0; x < part.x1; ++x) {
-                                          float* to = painter.pixel(x, y);
-                                          const std::ptrdiff_t at =
-                                              (y - block.box.y0) * points.row_stride + x - block.box.x0;
-                                          const auto keep = [&](double value) {
-                                              to[0] = first ? static_cast<float>(value)
-                                                            : std::max(to[0], static_cast<float>(value));
-                                          };
-                                          if (output == MorphOutput::bound) {
-                                              keep(block.bound);
-                                              continue;
-                                          }
-                                          const bool exact = !points.x;
-                                          const Point<double> truth = exact || output == MorphOutput::error
-                                                                          ? state.map(x + 0.5, y + 0.5, k)
-                                                                          : Point<double>{};
-                                          const Point<double> used =
-                                              exact ? truth
-                                                    : Point<double>{block.base_x + double{points.x[at]},
-                                                                    block.base_y + double{points.y[at]}};
-                                          if (output == MorphOutput::error) {
-                                              keep(std::hypot(used.x - truth.x, used.y - truth.y));
-                                              continue;
-                                          }
-                                          to[0] = static_cast<float>(used.x / size.width);
-                                          to[1] = static_cast<float>(used.y / size.height);
-                                      }
-                              });
+            field->each_block(
+                region, painter.part(), [&](int k, const Block& block, const CellPoints& points) {
+                    const Box part = intersection(block.box, painter.part());
+                    const bool first = k == state.drawn.front();
+                    const FeatureMap::Size size = state.map.picture(k);
+                    for (int y = part.y0; y < part.y1; ++y)
+                        for (int x = part.x0; x < part.x1; ++x) {
+                            float* to = painter.pixel(x, y);
+                            const std::ptrdiff_t at =
+                                (y - block.box.y0) * points.row_stride + x - block.box.x0;
+                            const auto keep = [&](double value) {
+                                to[0] = first ? static_cast<float>(value)
+                                              : std::max(to[0], static_cast<float>(value));
+                            };
+                            if (output == MorphOutput::bound) {
+                                keep(block.bound);
+                                continue;
+                            }
+                            const Point<double> used =
+                                !points.x ? state.map(x + 0.5, y + 0.5, k)
+                                          : Point<double>{block.base_x + double{points.x[at]},
+                                                          block.base_y + double{points.y[at]}};
+                            if (output == MorphOutput::error) {
+                                const Point<long double> truth = state.map(x + 0.5L, y + 0.5L, k);
+                                keep(static_cast<double>(std::hypot(used.x - truth.x, used.y - truth.y)));
+                                continue;
+                            }
+                            to[0] = static_cast<float>(used.x / size.width);
+                            to[1] = static_cast<float>(used.y / size.height);
+                        }
+                });
     };
 
     parallel_for(static_cast<std::int64_t>(regions.size()), [&](std::int64_t i) {

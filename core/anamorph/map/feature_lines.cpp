@@ -9,6 +9,7 @@ namespace {
 
 // Farther out, and longer, than any picture; products of two of them stay far from overflow.
 constexpr double kMostCoordinate = 1e9;
+constexpr double kHalfUlp = 0x1p-53;
 // Relative to the greatest: so that no sum of weights is 0.
 constexpr double kLeastFactor = 1e-250;
 
@@ -28,6 +29,26 @@ std::string name_of(const std::string& name, std::size_t index) {
 
 double length_of(const Point<double>& v) {
     return std::sqrt(v.x * v.x + v.y * v.y);
+}
+
+/// What rounding does to a line of the target of this length, and to what it says: FeatureMap::Rounding but
+/// for the weight. Ends are made of two products for each coordinate and shape and their sum; a direction is
+/// the difference of two ends over a length that is off as they are.
+FeatureMap::Rounding rounding_of(const std::vector<Line>& shapes, const std::vector<double>& mixture,
+                                 double length) {
+    double mixed = 0, largest = 0, shortest_length = length, longest = length;
+    for (std::size_t k = 0; k < shapes.size(); ++k) {
+        const Line& l = shapes[k];
+        const double size = std::fabs(l.p.x) + std::fabs(l.p.y) + std::fabs(l.q.x) + std::fabs(l.q.y);
+        mixed += std::fabs(mixture[k]) * size;
+        largest = std::max(largest, size);
+        const double own = length_of({l.q.x - l.p.x, l.q.y - l.p.y});
+        shortest_length = std::min(shortest_length, own);
+        longest = std::max(longest, own);
+    }
+    const double place = (static_cast<double>(shapes.size()) + 8) * kHalfUlp * (mixed + largest);
+    const double stretch = longest / length;
+    return {place, 8 * place * (1 + stretch) / shortest_length, 0, stretch};
 }
 
 /// Lines that keep the chain within kCurveDeviation of a cubic: between two points at a step h of its
@@ -194,6 +215,7 @@ FeatureMap::FeatureMap(const Features& features, const std::vector<Size>& pictur
                 moves = moves || v.x != 0 || v.y != 0;
         }
         m_lines.push_back({line.p, along, length, weight, moves});
+        m_roundings.push_back(rounding_of(shape_lines, mixture, length));
     };
 
     std::vector<Line> scaled(shapes);
@@ -223,9 +245,19 @@ FeatureMap::FeatureMap(const Features& features, const std::vector<Size>& pictur
         longest = std::max(longest, line.length);
         heaviest = std::max(heaviest, line.factor);
     }
-    for (TargetLine& line : m_lines)
-        line.factor = std::max(
-            line.factor / heaviest * std::pow(line.length / longest, weights.p * weights.b), kLeastFactor);
+    const double exponent = weights.p * weights.b;
+    for (std::size_t i = 0; i < m_lines.size(); ++i) {
+        TargetLine& line = m_lines[i];
+        // Of the length, the exponent, the two powers (of the distance too), quotients and products; nothing
+        // is known of a factor that is raised.
+        m_roundings[i].weight =
+            exponent * 4 * m_roundings[i].place / line.length +
+            kHalfUlp * (16 + 4 * weights.b + 2 * exponent * (1 + std::fabs(std::log(line.length / longest))));
+        line.factor = line.factor / heaviest * std::pow(line.length / longest, exponent);
+        if (line.factor >= kLeastFactor) continue;
+        line.factor = kLeastFactor;
+        m_roundings[i].weight = 1;
+    }
 }
 
 }  // namespace anamorph

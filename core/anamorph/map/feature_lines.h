@@ -133,6 +133,13 @@ class FeatureMap {
     struct Displacement {
         Point<double> origin, along_rate, beside_rate;
     };
+    /// By how much the numbers of a line are off, which are doubles made of others.
+    struct Rounding {
+        double place;    ///< its ends, in the target's pixels
+        double turn;     ///< its direction, and the rates of its displacements
+        double weight;   ///< its weight in proportion, but for the distance
+        double stretch;  ///< no rounding: the greatest length in a shape over that in the target
+    };
     struct Size {
         int width, height;
     };
@@ -151,6 +158,7 @@ class FeatureMap {
     const Displacement& displacement(std::size_t i, int shape) const {
         return m_displacements[i * static_cast<std::size_t>(m_shapes) + static_cast<std::size_t>(shape)];
     }
+    const Rounding& rounding(std::size_t i) const { return m_roundings[i]; }
     /// Pixels of a shape's picture per pixel of the target.
     Point<double> scale(int shape) const { return m_scales[static_cast<std::size_t>(shape)]; }
 
@@ -190,6 +198,7 @@ class FeatureMap {
     LineWeights m_weights;
     std::vector<TargetLine> m_lines;
     std::vector<Displacement> m_displacements;  ///< line by line, shape by shape
+    std::vector<Rounding> m_roundings;          ///< line by line
 };
 
 template <class T>

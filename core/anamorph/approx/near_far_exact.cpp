@@ -1,0 +1,171 @@
+// SPDX-License-Identifier: Apache-2.0
+// With u = 2^-53, w_i the weights, l_i = w_i / sum of w, D_i what the lines say and D their mean.
+//
+// (1) A line's place and what it says: FeatureMap::Rounding holds what its numbers are off by. At a distance
+// rho from p
+//     the place in its frame is off by turn rho + place, its displacement by as much and (1 + stretch) times
+//     that, and a + dist by h.
+// (2) Its weight is off, in proportion, by b h / (a + dist) and a constant. A weight off by a factor 1 + e
+// moves D by
+//     e l_i |D_i - D| = e l_i (1 - l_i) |D_i - (mean of the others)|, where 1 - l_i <= (others' weights) /
+//     w_i falls with the distance as it ought to: near the line D is D_i, however badly its distance is
+//     known. Where 2 (1 + b) h is more than a + dist, the weight counts as unknown: D moves by (1 - l_i) of
+//     that at most.
+// (3) Sums of n terms, the quotient and the product with the scale.
+//
+// All are bounded over a box from distances at its centre, twice as large as first order says; a box on which
+// (2) is much is cut in two.
+#include "anamorph/approx/near_far_exact.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace anamorph {
+namespace {
+
+constexpr double kHalfUlp = 0x1p-53;
+// Boxes are not cut for less than this, in pixels.
+constexpr double kFineEnough = 1e-6;
+
+/// What is known of a line over a box.
+struct LineOnBox {
+    double off;            ///< h
+    double displaced;      ///< by how much its displacement is off
+    double nearest, most;  ///< a + dist and the weight, at the box's nearest point
+    double reach;          ///< the greatest distance of its displacement from the reference
+};
+
+class BoxBound {
+  public:
+    BoxBound(const FeatureMap& map, const std::vector<int>& shapes) : m_map(map), m_shapes(shapes) {
+        m_lines.resize(map.size());
+    }
+
+    double of(const Box& box) {
+        const Parts parts = bound(box);
+        const bool cut = parts.weights > std::max(kFineEnough, parts.places);
+        if (!cut || (box.width() == 1 && box.height() == 1)) return parts.places + parts.weights;
+        Box first = box, second = box;
+        if (box.width() >= box.height())
+            first.x1 = second.x0 = box.x0 + box.width() / 2;
+        else
+            first.y1 = second.y0 = box.y0 + box.height() / 2;
+        return std::max(of(first), of(second));
+    }
+
+  private:
+    struct Parts {
+        double places = 0, weights = 0;
+    };
+
+    double power(double distance, double unit) const { return std::pow(distance / unit, -m_map.weights().b); }
+
+    Parts bound(const Box& box) {
+        Parts worst;
+        for (const int shape : m_shapes) {
+            const Parts p = bound(box, shape);
+            worst.places = std::max(worst.places, p.places);
+            worst.weights = std::max(worst.weights, p.weights);
+        }
+        return worst;
+    }
+
+    Parts bound(const Box& box, int shape) {
+        const double x = 0.5 * (box.x0 + box.x1), y = 0.5 * (box.y0 + box.y1);
+        // Of the pixels' centres.
+        const double radius = 0.5 * std::hypot(box.width() - 1, box.height() - 1);
+        const Point<double> at = m_map(x, y, shape), scale = m_map.scale(shape);
+        const Point<double> reference{at.x / scale.x - x, at.y / scale.y - y};
+        double unit = HUGE_VAL;
+        for (std::size_t i = 0; i < m_lines.size(); ++i)
+            unit = std::min(unit, look(i, shape, x, y, radius, reference));
+
+        double least = 0, all = 0, farthest = 0, displaced = 0;
+        int boundless = 0;
+        for (std::size_t i = 0; i < m_lines.size(); ++i) {
+            LineOnBox& l = m_lines[i];
+            const double factor = m_map.line(i).factor;
+            l.most = factor * power(l.nearest, unit);
+            least += factor * power(l.nearest + 2 * radius + 4 * l.off, unit);
+            if (std::isfinite(l.most))
+                all += l.most;
+            else
+                ++boundless;
+            farthest = std::max(farthest, l.reach);
+            displaced = std::max(displaced, l.displaced);
+        }
+        double weights = 0, mean_displaced = 0, mean = 0;
+        for (std::size_t i = 0; i < m_lines.size(); ++i) {
+            const LineOnBox& l = m_lines[i];
+            const double part = std::min(1.0, l.most / least);
+            mean += part * l.reach;
+            mean_displaced += part * l.displaced;
+            const bool finite = std::isfinite(l.most);
+            const double others = boundless > (finite ? 0 : 1) ? HUGE_VAL : finite ? all - l.most : all;
+            weights +=
+                part * std::min(l.reach + farthest, 2 * farthest) * moved(i, std::max(others, 0.0), unit);
+        }
+        const double to_source = std::max(scale.x, scale.y);
+        const double size = std::hypot(reference.x, reference.y) + std::min(mean, farthest);
+        const double sums = 4 * kHalfUlp * (static_cast<double>(m_lines.size()) + 4) * size +
+                            8 * kHalfUlp * (std::fabs(x) + std::fabs(y) + 2 * radius);
+        return {2 * to_source * (std::min(displaced, mean_displaced) + sums), 2 * to_source * weights};
+    }
+
+    /// Fills in a line but for its weight. Returns a + dist, the most in the box.
+    double look(std::size_t i, int shape, double x, double y, double radius, const Point<double>& reference) {
+        const FeatureMap::TargetLine& line = m_map.line(i);
+        const FeatureMap::Rounding& rounding = m_map.rounding(i);
+        const FeatureMap::Frame<double> at = m_map.frame(line, x, y);
+        const double distance = m_map.distance(line, at);
+        const double rho = std::hypot(at.along, at.beside) + radius;
+        LineOnBox& to = m_lines[i];
+        to.off = 4 * (rounding.turn * rho + rounding.place +
+                      2 * kHalfUlp * (rho + std::fabs(x) + std::fabs(y) + 2 * radius + m_map.weights().a));
+        to.displaced = (3 + 2 * rounding.stretch) * to.off + 8 * rounding.place;
+        // By definition on the pixel (near_far_exact.h).
+        if (radius == 0 && distance == 0) to.off = 0;
+        to.nearest = std::max(distance - radius - 2 * to.off, m_map.weights().a);
+        const FeatureMap::Displacement& d = m_map.displacement(i, shape);
+        const auto moved = [&](double origin, double along_rate, double beside_rate) {
+            return feature_detail::displacement_by_line(origin, along_rate, at.along, beside_rate, at.beside);
+        };
+        const double dx = moved(d.origin.x, d.along_rate.x, d.beside_rate.x) - reference.x;
+        const double dy = moved(d.origin.y, d.along_rate.y, d.beside_rate.y) - reference.y;
+        to.reach = std::hypot(dx, dy) + 2 * (1 + rounding.stretch) * radius + to.displaced;
+        return distance + radius + 2 * to.off;
+    }
+
+    /// The greatest product of a weight's error in proportion and of 1 - l over the box, as (2) says.
+    double moved(std::size_t i, double others, double unit) const {
+        const LineOnBox& l = m_lines[i];
+        const double b = m_map.weights().b, factor = m_map.line(i).factor;
+        const double constant = 2 * m_map.rounding(i).weight;
+        if (b == 0 || (l.nearest == 0 && l.off == 0)) return std::min(1.0, constant);
+        const double unknown = 2 * (1 + b) * l.off;
+        const auto rest = [&](double distance) {
+            return std::min(1.0, others / factor / power(distance, unit));
+        };
+        // unknown / d falls and 1 - l grows until it may be 1, at `turn`: as a product the greatest at one of
+        // the ends.
+        const double from = std::max(l.nearest, unknown);
+        const double turn = others > 0 ? unit * std::pow(others / factor, -1 / b) : HUGE_VAL;
+        double worst = from < turn ? unknown / from * rest(from) : unknown / from;
+        if (b >= 1 && from < turn) worst = unknown / turn;
+        // Nearer than `unknown`, 1 - l is at most what it is there, with the error of the distance.
+        if (l.nearest < unknown) worst = std::max(worst, rest(2 * unknown));
+        return std::min(1.0, worst + constant);
+    }
+
+    const FeatureMap& m_map;
+    const std::vector<int>& m_shapes;
+    std::vector<LineOnBox> m_lines;
+};
+
+}  // namespace
+
+double exact_bound(const FeatureMap& map, const std::vector<int>& shapes, const Box& box) {
+    return BoxBound(map, shapes).of(box);
+}
+
+}  // namespace anamorph
