@@ -80,21 +80,30 @@ class BoxBound {
         for (std::size_t i = 0; i < m_lines.size(); ++i)
             unit = std::min(unit, look(i, shape, x, y, radius, reference));
 
-        double least = 0, all = 0, farthest = 0, displaced = 0;
+        double least = 0, all = 0, moment = 0, farthest = 0, displaced = 0;
         int boundless = 0;
         for (std::size_t i = 0; i < m_lines.size(); ++i) {
             LineOnBox& l = m_lines[i];
             const double factor = m_map.line(i).factor;
             l.most = factor * power(l.nearest, unit);
             least += factor * power(l.nearest + 2 * radius + 4 * l.off, unit);
-            if (std::isfinite(l.most))
+            if (std::isfinite(l.most)) {
                 all += l.most;
-            else
+                moment += l.most * l.reach;
+            } else
                 ++boundless;
             farthest = std::max(farthest, l.reach);
             displaced = std::max(displaced, l.displaced);
         }
         double weights = 0, mean_displaced = 0, mean = 0;
+        // By how much weights differ over the box.
+        double spread = 1;
+        for (std::size_t i = 0; i < m_lines.size(); ++i)
+            if (std::isfinite(m_lines[i].most))
+                spread =
+                    std::max(spread, m_lines[i].most /
+                                         (m_map.line(i).factor *
+                                          power(m_lines[i].nearest + 2 * radius + 4 * m_lines[i].off, unit)));
         for (std::size_t i = 0; i < m_lines.size(); ++i) {
             const LineOnBox& l = m_lines[i];
             const double part = std::min(1.0, l.most / least);
@@ -102,8 +111,11 @@ class BoxBound {
             mean_displaced += part * l.displaced;
             const bool finite = std::isfinite(l.most);
             const double others = boundless > (finite ? 0 : 1) ? HUGE_VAL : finite ? all - l.most : all;
-            weights +=
-                part * std::min(l.reach + farthest, 2 * farthest) * moved(i, std::max(others, 0.0), unit);
+            // The mean of the others: where no weight is boundless and the least are near the most.
+            const double between = l.reach + (others < HUGE_VAL && others > 0 && !finite
+                                                  ? std::min(farthest, spread * moment / others)
+                                                  : farthest);
+            weights += part * between * moved(i, std::max(others, 0.0), unit);
         }
         const double to_source = std::max(scale.x, scale.y);
         const double size = std::hypot(reference.x, reference.y) + std::min(mean, farthest);
@@ -153,7 +165,7 @@ class BoxBound {
         double worst = from < turn ? unknown / from * rest(from) : unknown / from;
         if (b >= 1 && from < turn) worst = unknown / turn;
         // Nearer than `unknown`, 1 - l is at most what it is there, with the error of the distance.
-        if (l.nearest < unknown) worst = std::max(worst, rest(2 * unknown));
+        if (l.nearest < unknown) worst = std::max(worst, rest(1.5 * unknown));
         return std::min(1.0, worst + constant);
     }
 

@@ -9,8 +9,9 @@
 namespace anamorph {
 
 /// The most by which FeatureMap, in double, is off from the lines' exact formula at the pixels of a box, for
-/// any of `shapes`, in pixels of their pictures. Not infinite: where a = 0 and lines cross on a pixel, the
-/// bound is as large as what they say differs.
+/// any of `shapes`, in pixels of their pictures. With a = 0 the map jumps where lines cross: those whose
+/// distance from a pixel's centre, in double, is exactly 0 count as passing through it, and where that of
+/// several is nothing but rounding the bound is as large as what they say differs.
 double exact_bound(const FeatureMap& map, const std::vector<int>& shapes, const Box& box);
 
 }  // namespace anamorph

@@ -32,21 +32,22 @@ double length_of(const Point<double>& v) {
 }
 
 /// What rounding does to a line of the target of this length, and to what it says: FeatureMap::Rounding but
-/// for the weight. Ends are made of two products for each coordinate and shape and their sum; a direction is
-/// the difference of two ends over a length that is off as they are.
+/// for the weight. Ends are made of a quotient and two products for each coordinate and shape and their sum;
+/// a direction is the difference of two ends over a length that is off as they are.
 FeatureMap::Rounding rounding_of(const std::vector<Line>& shapes, const std::vector<double>& mixture,
                                  double length) {
     double mixed = 0, largest = 0, shortest_length = length, longest = length;
     for (std::size_t k = 0; k < shapes.size(); ++k) {
         const Line& l = shapes[k];
-        const double size = std::fabs(l.p.x) + std::fabs(l.p.y) + std::fabs(l.q.x) + std::fabs(l.q.y);
+        const double size =
+            std::max({std::fabs(l.p.x), std::fabs(l.p.y), std::fabs(l.q.x), std::fabs(l.q.y)});
         mixed += std::fabs(mixture[k]) * size;
         largest = std::max(largest, size);
         const double own = length_of({l.q.x - l.p.x, l.q.y - l.p.y});
         shortest_length = std::min(shortest_length, own);
         longest = std::max(longest, own);
     }
-    const double place = (static_cast<double>(shapes.size()) + 8) * kHalfUlp * (mixed + largest);
+    const double place = (static_cast<double>(shapes.size()) + 3) * kHalfUlp * std::max(mixed, largest);
     const double stretch = longest / length;
     return {place, 8 * place * (1 + stretch) / shortest_length, 0, stretch};
 }
