@@ -360,6 +360,27 @@ TEST(NearFar, AHundredThousandLinesHold) {
     EXPECT_LE(bound, 1.0 / 16);
 }
 
+TEST(NearFar, PowersAreAsGoodAsStated) {
+    // A line that ends at the node, seen from x away with a = 0: its weight is x^-b, x as it is.
+    const float nodes[4] = {0, 0, 0, 0};
+    const std::int32_t first = 0;
+    for (const float b : {0.0f, 0.1f, 0.5f, 1.0f, 1.3f, 2.0f, 3.0f, 7.5f})
+        for (double log = std::log(1e-6); log < std::log(1e12); log += 0.00731) {
+            simd::FieldLine line{};
+            line.before = static_cast<float>(std::exp(log));
+            if (line.before < simd::kLeastDistance || b * std::fabs(log) > 80) continue;
+            line.behind = -1;
+            line.factor = 1;
+            double sums[16 * 8] = {};
+            simd::node_sums(&line, &first, 1, {0, 0, 0}, {0, b}, 4, nodes, sums);
+            const long double truth =
+                std::pow(static_cast<long double>(line.before), -static_cast<long double>(b));
+            const double u = std::fabs(static_cast<double>(sums[0] / truth - 1)) / 0x1p-24;
+            ASSERT_LE(u, simd::weight_rounding(double(b), std::fabs(log)) - 5 * double(b))
+                << line.before << " to the power of " << -b;
+        }
+}
+
 TEST(NearFar, EveryInstructionSetHolds) {
     const auto features = families::Maker(160, 21).make("crossing", 24);
     const FeatureMap map = map_of(*features, {160, 130}, {0.1, 2, 0.5});
