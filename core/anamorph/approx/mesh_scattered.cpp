@@ -130,7 +130,7 @@ class Planner {
     Planner(const Scattered& map, double tol, Blocks& blocks) : m_map(map), m_writer(tol, blocks) {}
 
     void exact(const Box& box) {
-        BlockWriter::for_blocks(box, [&](const Box& b) { m_writer.exact(b); });
+        BlockWriter::for_blocks(box, [&](const Box& b) { m_writer.exact(b, 0); });
     }
     void region(const Box& box) {
         BlockWriter::for_blocks(box, [&](const Box& b) { place(b); });
@@ -145,7 +145,7 @@ class Planner {
     };
 
     void place(const Box& box) {
-        if (BlockWriter::below_floor(box)) return m_writer.exact(box);
+        if (BlockWriter::below_floor(box)) return m_writer.exact(box, 0);
         if (gather(Centres(box)) && (smooth(box) || pieces(box))) return;
         m_writer.halve(box, box.width() >= box.height(), [&](const Box& b) { place(b); });
     }
