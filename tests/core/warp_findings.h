@@ -50,8 +50,8 @@ Findings examine(const BlockMap& map, const Truth& truth) {
                         int piece = 0;
                         if (!map.exact(x, y + 0.5, block.piece, at, piece)) continue;
                         const auto error = static_cast<double>(std::hypot(at.x - p.x, at.y - p.y));
-                        found.worst_exact = std::max(
-                            found.worst_exact, error / static_cast<double>(1 + std::hypot(p.x, p.y)));
+                        found.worst_exact = std::max(found.worst_exact,
+                                                     error / static_cast<double>(1 + std::hypot(p.x, p.y)));
                         largest = std::max(largest, error);
                         continue;
                     }

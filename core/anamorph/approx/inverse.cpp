@@ -25,9 +25,7 @@ struct Matrix {
     double determinant() const { return a11 * a22 - a12 * a21; }
     Point<double> operator()(double x, double y) const { return {a11 * x + a12 * y, a21 * x + a22 * y}; }
     /// The largest sum of a row's magnitudes.
-    double norm() const {
-        return std::max(std::fabs(a11) + std::fabs(a12), std::fabs(a21) + std::fabs(a22));
-    }
+    double norm() const { return std::max(std::fabs(a11) + std::fabs(a12), std::fabs(a21) + std::fabs(a22)); }
     /// Of magnitudes: what a box of half sizes (x, y) spans.
     Point<double> span(double x, double y) const {
         return {std::fabs(a11) * x + std::fabs(a12) * y, std::fabs(a21) * x + std::fabs(a22) * y};
@@ -54,7 +52,11 @@ Bicubic map_on(const Mesh& mesh, const MeshCell& cell, const Bicubic& powers, co
 class CellParts {
   public:
     CellParts(const Mesh& mesh, const MeshCell& cell, int number)
-        : m_mesh(mesh), m_cell(cell), m_number(number), m_patch(mesh.patch(cell)), m_powers(power_form(m_patch)) {
+        : m_mesh(mesh),
+          m_cell(cell),
+          m_number(number),
+          m_patch(mesh.patch(cell)),
+          m_powers(power_form(m_patch)) {
         m_rounding = double_rounding(mesh, cell, m_patch);
         m_exact = exact_rounding(mesh, cell, m_patch);
     }
@@ -182,7 +184,8 @@ class CellParts {
 template <class Body>
 void each_half(const Part& s, const Part& t, bool cut_s, const Body& body) {
     for (const double side : {-0.5, 0.5}) {
-        const Part half_s{s.middle + side * s.half, 0.5 * s.half}, half_t{t.middle + side * t.half, 0.5 * t.half};
+        const Part half_s{s.middle + side * s.half, 0.5 * s.half},
+            half_t{t.middle + side * t.half, 0.5 * t.half};
         cut_s ? body(half_s, t) : body(s, half_t);
     }
 }
@@ -204,8 +207,7 @@ class Cutter {
         if (seen.sheet) return add(*seen.sheet, seen.bounds);
         if (seen.size <= 0.5 * InversePlan::kFoldSize || depth == kMostCuts)
             return add(cell.fold(s, t), seen.bounds);
-        each_half(s, t, seen.cut_s,
-                  [&](const Part& a, const Part& b) { cut(cell, a, b, depth + 1); });
+        each_half(s, t, seen.cut_s, [&](const Part& a, const Part& b) { cut(cell, a, b, depth + 1); });
     }
 
     void add(const Sheet& sheet, const Bounds& bounds) {
@@ -679,7 +681,8 @@ class InversePlan::Search {
     /// A part that may hold a source point or none.
     void give_up(const Sheet& part, const CellParts& cell) {
         m_all.on_fold = true;
-        const Point<double> at{cell.cell().x0 + part.s * cell.width(), cell.cell().y0 + part.t * cell.height()};
+        const Point<double> at{cell.cell().x0 + part.s * cell.width(),
+                               cell.cell().y0 + part.t * cell.height()};
         const double size = 2 * std::hypot(part.hs * cell.width(), part.ht * cell.height());
         take({at, part.cell, false, size, 2 * size});
     }
@@ -716,8 +719,7 @@ class InversePlan::Search {
 
 InversePlan::Preimages InversePlan::preimages(double x, double y) const noexcept {
     Search search(*this, x, y);
-    m_tree.each({x, y, x, y},
-                [&](std::int32_t i) { search.look(m_sheets[static_cast<std::size_t>(i)]); });
+    m_tree.each({x, y, x, y}, [&](std::int32_t i) { search.look(m_sheets[static_cast<std::size_t>(i)]); });
     return search.result();
 }
 

@@ -8,14 +8,14 @@
 //     which this iteration (the chord form of Newton's, with Krawczyk's bound) converges;
 //   - it has none where |w| > 1 + max |N|.
 // Where no such part can be had (the derivative is singular: a fold), cutting ends at parts smaller than
-// kFoldSize target pixels. Pixels on such parts are computed one by one, and the parts cut on for each of them
-// as far as it takes to tell its source points apart: down to kUndecided source pixels, or kMostVisits parts.
-// What then is left (a pixel within rounding of a fold's edge, or a mesh squeezed to a line) counts as a
-// source point and as a fold, with a bound that spans all that it may be.
+// kFoldSize target pixels. Pixels on such parts are computed one by one, and the parts cut on for each of
+// them as far as it takes to tell its source points apart: down to kUndecided source pixels, or kMostVisits
+// parts. What then is left (a pixel within rounding of a fold's edge, or a mesh squeezed to a line) counts as
+// a source point and as a fold, with a bound that spans all that it may be.
 //
-// Rounding. The map in double errs by e (exact_rounding of hermite.h), so that the iteration ends within |Y| e
-// / (1 - rho) of the exact source point, in z; parts overlap by more than that, and points found on the edges
-// of two parts are compared.
+// Rounding. The map in double errs by e (exact_rounding of hermite.h), so that the iteration ends within |Y|
+// e / (1 - rho) of the exact source point, in z; parts overlap by more than that, and points found on the
+// edges of two parts are compared.
 //
 // Blocks. Around the preimage of a block's middle, in parameters z of the block, the map is z + Q(z) + C(z) +
 // higher terms, so that its inverse is z - Q(z) + 2 Q(z, Q(z)) - C(z) + remainder; norms of the coefficients

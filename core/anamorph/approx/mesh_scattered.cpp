@@ -233,32 +233,28 @@ class Planner {
                         std::max(std::fabs(box.y0), std::fabs(box.y1)) * m_map.scale().y);
     }
 
-    /// How far Scattered::at is from the map of the given points, on a triangle's share of a box. Inside,
-    /// weights are not negative and sum to 1; a weight takes 5 roundings, their sum with the Bezier points
-    /// 11. Where barycentric coordinates err, the cubic moves by 3 times that of its Bezier points'
-    /// differences at most; a point that they put into the neighbour's cubic, by the square of it.
+    /// How far Scattered::at is from the map of the given points, on a triangle's share of a box. There
+    /// barycentric coordinates are at most 1; a weight takes 5 roundings, their sum with the Bezier points
+    /// 11. Where coordinates err, the cubic moves by its derivatives; a point that they put into the
+    /// neighbour's cubic moves by the square of that.
     double exact_rounding(const CubicTriangle& t, const Bounds& box) const {
-        const double either = 1.01 * (t.bezier_error + 4 * t.spread() * t.place_error(box)) +
-                              24 * 0x1p-53 * t.size() + identity_rounding(box);
+        const CubicTriangle::Reach reach = t.reach(box);
+        const auto inside = [](double most) { return std::min(most, 1.0); };
+        const CubicTriangle::Terms terms = t.terms({inside(reach.u), inside(reach.v), inside(reach.w)});
+        const double either = 1.01 * (terms.error + 2 * terms.slope * t.place_error(box)) +
+                              24 * 0x1p-53 * terms.value + identity_rounding(box);
         return 1.4143 * either;
     }
 
-    /// The same of a cubic as a polynomial on all of a box, which may reach beyond its triangle. Barycentric
-    /// coordinates u, v and w = 1 - u - v are at most `reach` = 1 + |u| + |v| there, and their magnitudes sum
-    /// to less than 2 reach, those of the weights to less than its cube. A Taylor coefficient of a weight
-    /// takes less than 40 roundings, sums with the Bezier points 11; those of what is made of it
-    /// (restrictions, differences, Chebyshev's form; rows from four values, whose weights sum to 1.7) less
-    /// than 200.
+    /// The same of a cubic as a polynomial on all of a box, which may reach beyond its triangle. A Taylor
+    /// coefficient of a weight takes less than 40 roundings, sums with the Bezier points 11; those of what is
+    /// made of it (restrictions, differences, Chebyshev's form; rows from four values, whose weights sum to
+    /// 1.7) less than 200.
     double form_rounding(const CubicTriangle& t, const Centres& at) const {
-        double reach = 1;
-        for (std::size_t n = 0; n < 2; ++n)
-            reach += std::fabs(t.c[n] + t.a[n] * (at.across.middle - t.base.x) +
-                               t.b[n] * (at.down.middle - t.base.y)) +
-                     std::fabs(t.a[n]) * at.across.half + std::fabs(t.b[n]) * at.down.half;
         const Bounds box = bounds_of(at);
-        const double place = t.place_error(box), weights = 8 * reach * reach * reach;
-        const double either = 1.01 * (t.bezier_error * weights + 12 * reach * reach * t.spread() * place) +
-                              256 * 0x1p-53 * t.size() * weights + 64 * identity_rounding(box);
+        const CubicTriangle::Terms terms = t.terms(t.reach(box));
+        const double either = 1.01 * (terms.error + 2 * terms.slope * t.place_error(box)) +
+                              256 * 0x1p-53 * terms.value + 64 * identity_rounding(box);
         return 1.4143 * either;
     }
 

@@ -69,17 +69,18 @@ std::vector<double> lines_of(const std::vector<double>& given, int cells, int si
 
 using Number = Rounded<double>;
 
-/// Are even or given lines what was asked for, without rounding, and with room for all their halves?
+/// Are even or given lines what was asked for, without rounding, and, if need be, with room for all their
+/// halves?
 bool exact_lines(const std::vector<double>& lines, const std::vector<double>& given, int cells, int size,
-                 Units units, int before) {
+                 Units units, int before, bool halves) {
     for (int i = 0; i <= cells; ++i) {
         const double line = lines[static_cast<std::size_t>(i + before)];
         const double unit = units == Units::pixels ? 1 : size;
-        const double left = given.empty()
-                                ? std::fma(line, cells, -static_cast<double>(size) * i)
-                                : std::fma(given[static_cast<std::size_t>(i)], unit, -line);
+        const double left = given.empty() ? std::fma(line, cells, -static_cast<double>(size) * i)
+                                          : std::fma(given[static_cast<std::size_t>(i)], unit, -line);
         constexpr double kRoom = 1 << (52 - 20 - ControlMesh::kMaxLevels);
-        if (left != 0 || line * kRoom != std::floor(line * kRoom) || !(std::fabs(line) < 0x1p20)) return false;
+        const bool room = line * kRoom == std::floor(line * kRoom) && std::fabs(line) < 0x1p20;
+        if (left != 0 || (halves && !room)) return false;
     }
     return true;
 }
@@ -306,8 +307,9 @@ Mesh::Mesh(const ControlMesh& mesh, const Extent& from, const Extent& to, double
     int before_x = 0, before_y = 0;
     m_x = lines_of(mesh.x_lines, mesh.columns, from.width, mesh.units, name, "x", before_x);
     m_y = lines_of(mesh.y_lines, mesh.rows, from.height, mesh.units, name, "y", before_y);
-    if (exact_lines(m_x, mesh.x_lines, mesh.columns, from.width, mesh.units, before_x) &&
-        exact_lines(m_y, mesh.y_lines, mesh.rows, from.height, mesh.units, before_y))
+    const bool halves = !mesh.levels.empty();
+    if (exact_lines(m_x, mesh.x_lines, mesh.columns, from.width, mesh.units, before_x, halves) &&
+        exact_lines(m_y, mesh.y_lines, mesh.rows, from.height, mesh.units, before_y, halves))
         m_line_rounding = 0;
 
     // Displacements at the given vertices, then at the lines added around them.
@@ -316,11 +318,10 @@ Mesh::Mesh(const ControlMesh& mesh, const Extent& from, const Extent& to, double
     auto given = mesh.vertices.begin();
     for (int r = before_y; r < before_y + down; ++r)
         for (int c = before_x; c < before_x + across; ++c)
-            set_value(
-                c, r,
-                displacement(
-                    *given++, mesh.units, m_x[static_cast<std::size_t>(c)], m_y[static_cast<std::size_t>(r)],
-                    amount, [&] { return name + ": vertex " + text_of(c - before_x, r - before_y); }));
+            set_value(c, r,
+                      displacement(*given++, mesh.units, m_x[static_cast<std::size_t>(c)],
+                                   m_y[static_cast<std::size_t>(r)], amount,
+                                   [&] { return name + ": vertex " + text_of(c - before_x, r - before_y); }));
     extend(before_x, before_y, across, down);
     if (m_values.size() <= kKeptKnots) {
         m_base_knots.reserve(m_values.size());
@@ -365,7 +366,7 @@ void Mesh::set_value(int column, int row, const Uncertain& value) {
 /// Linear extrapolation to the lines that were added around the given ones.
 void Mesh::extend(int before_x, int before_y, int across, int down) {
     const auto beyond = [&](const Uncertain& edge, const Uncertain& inner, double at_edge, double at_inner,
-                           double at) {
+                            double at) {
         const Number k = (place(at) - place(at_edge)) / (place(at_inner) - place(at_edge));
         return Uncertain{edge.x + (inner.x - edge.x) * k, edge.y + (inner.y - edge.y) * k};
     };

@@ -181,10 +181,10 @@ class Mesh {
     Point<double> m_scale;
     std::vector<double> m_x, m_y;
     double m_line_rounding = 4 * 0x1p-53;  ///< of a line's magnitude; 0 where all are exact
-    std::vector<Point<double>> m_values;  ///< displacements at the vertices of level 0
-    std::vector<float> m_value_errors;    ///< of either coordinate
-    std::vector<Knot> m_base_knots;       ///< of level 0, unless there are very many
-    std::vector<int> m_base_child;        ///< of the cells of level 0, where there are more levels
+    std::vector<Point<double>> m_values;   ///< displacements at the vertices of level 0
+    std::vector<float> m_value_errors;     ///< of either coordinate
+    std::vector<Knot> m_base_knots;        ///< of level 0, unless there are very many
+    std::vector<int> m_base_child;         ///< of the cells of level 0, where there are more levels
     std::vector<Node> m_nodes;
     std::vector<Knot> m_knots;  ///< of the nodes
     double m_orientation = 1;

@@ -53,8 +53,8 @@ std::string text_of(double value) {
 }
 
 /// The points in pixels with their displacements.
-std::vector<Node> nodes_of(const ControlPoints& points, const Extent& from, const Extent& to,
-                           double amount, const std::string& name) {
+std::vector<Node> nodes_of(const ControlPoints& points, const Extent& from, const Extent& to, double amount,
+                           const std::string& name) {
     if (points.pairs.empty()) throw Error(name + ": there are no points");
     if (points.pairs.size() > ControlPoints::kMaxPoints)
         throw Error(name + ": points", std::to_string(points.pairs.size()),
@@ -62,9 +62,7 @@ std::vector<Node> nodes_of(const ControlPoints& points, const Extent& from, cons
     const bool pixels = points.units == Units::pixels;
     std::vector<Node> nodes;
     nodes.reserve(points.pairs.size() + 4);
-    const auto in_pixels = [&](double v, int size) {
-        return pixels ? Number(v) : Number(v) * Number(size);
-    };
+    const auto in_pixels = [&](double v, int size) { return pixels ? Number(v) : Number(v) * Number(size); };
     const auto moved = [&](const Number& to_place, const Number& at, int to_size, int from_size) {
         return (to_place - at * Number(to_size) / Number(from_size)) * Number(amount);
     };
@@ -101,15 +99,18 @@ void fit_slopes(Affine& plane, const std::vector<Node>& nodes, const std::vector
                 const Weight& weight) {
     // Along the longest difference and across it: near a line, moments of x and y would cancel.
     Vector along{};
+    std::size_t farthest = nodes.size();
     for (const std::size_t i : which) {
         const Vector p = nodes[i].at - plane.middle;
-        if (dot(p, p).value > dot(along, along).value) along = p;
+        if (!(dot(p, p).value > dot(along, along).value)) continue;
+        along = p;
+        farthest = i;
     }
     Number aa, ab, bb;
     Vector ad{}, bd{};
     for (const std::size_t i : which) {
         const Vector p = nodes[i].at - plane.middle, d = nodes[i].d - plane.origin;
-        const Number w = weight(p), a = dot(along, p), b = cross(along, p);
+        const Number w = weight(p), a = dot(along, p), b = i == farthest ? Number(0) : cross(along, p);
         aa += w * a * a;
         ab += w * a * b;
         bb += w * b * b;
@@ -235,13 +236,29 @@ CubicTriangle frame_of(const Element& e, std::size_t i, std::size_t j, const Vec
     p.corner[2] = {rounded(middle.x), rounded(middle.y)};
     p.base = {std::floor(std::clamp(p.corner[2].x, 0.0, double(image.width))),
               std::floor(std::clamp(p.corner[2].y, 0.0, double(image.height)))};
-    // At the base, counted from corner i, where the coordinates are 1 and 0.
-    const Vector from_i = Vector{Number(p.base.x), Number(p.base.y)} - e.v[i]->at;
+    // At the base, counted from the nearest corner of the triangle, where the coordinates are (1, 0), (0, 1),
+    // or at the one across, (-1, -1).
+    const std::size_t k = 3 - i - j;
+    const Vector base{Number(p.base.x), Number(p.base.y)};
+    const auto distance = [&](std::size_t n) {
+        const Vector way = base - e.v[n]->at;
+        return dot(way, way).value;
+    };
+    std::size_t nearest = i;
+    for (const std::size_t n : {j, k})
+        if (distance(n) < distance(nearest)) nearest = n;
+    const Vector way = base - e.v[nearest]->at;
+    const Number there[2] = {Number(nearest == i   ? 1
+                                    : nearest == k ? -1
+                                                   : 0),
+                             Number(nearest == j   ? 1
+                                    : nearest == k ? -1
+                                                   : 0)};
     const Vector slope[2] = {{a.x, b.x}, {a.y, b.y}};
     for (std::size_t n = 0; n < 2; ++n) {
         p.a[n] = kept(slope[n].x, p.slope_error);
         p.b[n] = kept(slope[n].y, p.slope_error);
-        p.c[n] = kept(Number(n == 0 ? 1 : 0) + dot(slope[n], from_i), p.c_error);
+        p.c[n] = kept(there[n] + dot(slope[n], way), p.c_error);
     }
     return p;
 }
@@ -288,8 +305,8 @@ void add_cubics(const std::vector<Node>& nodes, const Corners& corners, const Ex
         bezier[k][7] = inner[(k + 1) % 3];
         bezier[k][8] = inner[(k + 2) % 3];
         for (std::size_t n = 0; n < 10; ++n)
-            parts[k].bezier[n] = {kept(bezier[k][n].x, parts[k].bezier_error),
-                                  kept(bezier[k][n].y, parts[k].bezier_error)};
+            parts[k].bezier[n] = {kept(bezier[k][n].x, parts[k].bezier_error[n]),
+                                  kept(bezier[k][n].y, parts[k].bezier_error[n])};
         cubics.push_back(parts[k]);
     }
 }
@@ -307,17 +324,42 @@ double CubicTriangle::place_error(const Bounds& box) const {
     return sum;
 }
 
-double CubicTriangle::spread() const {
-    double most = 0;
-    for (const Point<double>& p : bezier)
-        most = std::max({most, std::fabs(p.x - bezier[9].x), std::fabs(p.y - bezier[9].y)});
-    return 2 * most;
+CubicTriangle::Reach CubicTriangle::reach(const Bounds& box) const {
+    const double x = 0.5 * (box.x0 + box.x1) - base.x, y = 0.5 * (box.y0 + box.y1) - base.y;
+    const double hx = 0.5 * (box.x1 - box.x0), hy = 0.5 * (box.y1 - box.y0);
+    const auto most = [&](double constant, double p, double q) {
+        return std::fabs(constant + p * x + q * y) + std::fabs(p) * hx + std::fabs(q) * hy;
+    };
+    const double error = place_error(box);
+    return {most(c[0], a[0], b[0]) + error, most(c[1], a[1], b[1]) + error,
+            most(1 - c[0] - c[1], -a[0] - a[1], -b[0] - b[1]) + 2 * error};
 }
 
-double CubicTriangle::size() const {
-    double most = 0;
-    for (const Point<double>& p : bezier) most = std::max({most, std::fabs(p.x), std::fabs(p.y)});
-    return most;
+CubicTriangle::Terms CubicTriangle::terms(const Reach& reach) const {
+    const auto& [u, v, w] = reach;
+    const double weight[10] = {u * u * u,     v * v * v,     w * w * w,     3 * u * u * v, 3 * u * v * v,
+                               3 * u * u * w, 3 * v * v * w, 3 * u * w * w, 3 * v * w * w, 6 * u * v * w};
+    Terms terms{0, 0, 0};
+    double x = 0, y = 0;
+    for (std::size_t i = 0; i < 10; ++i) {
+        x += weight[i] * std::fabs(bezier[i].x);
+        y += weight[i] * std::fabs(bezier[i].y);
+        terms.error += weight[i] * bezier_error[i];
+    }
+    terms.value = std::max(x, y);
+    // A derivative is three times the quadratic of differences of Bezier points.
+    const double quadratic[6] = {u * u, v * v, w * w, 2 * u * v, 2 * u * w, 2 * v * w};
+    constexpr std::size_t kFirst[6] = {0, 4, 7, 3, 5, 9}, kSecond[6] = {3, 1, 8, 4, 9, 6},
+                          kThird[6] = {5, 6, 2, 9, 7, 8};
+    const auto slope = [&](const std::size_t(&of)[6], double Point<double>::*part) {
+        double sum = 0;
+        for (std::size_t i = 0; i < 6; ++i)
+            sum += 3 * quadratic[i] * std::fabs(bezier[of[i]].*part - bezier[kThird[i]].*part);
+        return sum;
+    };
+    for (const auto part : {&Point<double>::x, &Point<double>::y})
+        terms.slope = std::max({terms.slope, slope(kFirst, part), slope(kSecond, part)});
+    return terms;
 }
 
 double CubicTriangle::inside(double x, double y) const {

@@ -27,7 +27,7 @@ struct CubicTriangle {
     /// Bezier points of the displacement: 300, 030, 003, 210, 120, 201, 021, 102, 012, 111.
     Point<double> bezier[10];
     /// How far c, a and b, and any coordinate of the Bezier points are from what the given points define.
-    double c_error, slope_error, bezier_error;
+    double c_error, slope_error, bezier_error[10];
 
     template <class T>
     Point<T> operator()(const T& x, const T& y) const {
@@ -47,9 +47,18 @@ struct CubicTriangle {
 
     /// What both barycentric coordinates together err by at most in a rectangle, as computed in double.
     double place_error(const Bounds& box) const;
-    /// The largest difference between two Bezier points in either coordinate, or more; and the largest.
-    double spread() const;
-    double size() const;
+    /// The largest magnitudes of the three barycentric coordinates in a rectangle.
+    struct Reach {
+        double u, v, w;
+    };
+    Reach reach(const Bounds& box) const;
+    /// With coordinates of at most these magnitudes: the sum of the magnitudes of all terms of a coordinate
+    /// of the displacement, of the errors of its Bezier points, and of its derivatives by the first two
+    /// coordinates.
+    struct Terms {
+        double value, error, slope;
+    };
+    Terms terms(const Reach& reach) const;
 
     /// The least barycentric coordinate: not negative inside.
     double inside(double x, double y) const;
