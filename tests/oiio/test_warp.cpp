@@ -142,6 +142,21 @@ TEST_F(Warp, AnStMapIsAMesh) {
     EXPECT_EQ(read_floats("out.exr"), read_floats(warp + "mesh=st.exr"));
 }
 
+TEST_F(Warp, AnStMapSaysHowLargeThePictureIs) {
+    const Ran map = run("oiiotool 'city.exr.warp?mesh=grid.json&size=80x50&output=stmap' -o st.exr");
+    ASSERT_EQ(map.status, 0) << map.text;
+    const auto size_of = [](const std::string& name) {
+        const ImageSpec spec = read(name).spec();
+        return std::pair(spec.width, spec.height);
+    };
+    EXPECT_EQ(size_of("city.exr.warp?mesh=st.exr"), std::pair(80, 50));
+    EXPECT_EQ(size_of("city.exr.warp?mesh=st.exr&size=40"), std::pair(40, 25));
+    EXPECT_EQ(size_of("city.exr.warp?mesh=st.exr&size=30x7"), std::pair(30, 7));
+    // What pushes lies in the source.
+    EXPECT_EQ(size_of("city.exr.warp?mesh=st.exr&direction=push"), std::pair(192, 128));
+    EXPECT_EQ(size_of("city.exr.warp?mesh=grid.json"), std::pair(192, 128));
+}
+
 TEST_F(Warp, FilesStandWhereTheRecipeStands) {
     const Pixels expected = read_pixels("city.exr.warp?mesh=grid.json");
     fs::create_directories("shots/meshes");

@@ -329,7 +329,7 @@ Mesh::Mesh(const ControlMesh& mesh, const Extent& from, const Extent& to, double
             for (int c = 0; c <= columns(); ++c) m_base_knots.push_back(compute_knot(c, r));
     }
     if (!mesh.levels.empty()) Refiner(*this, mesh, amount, name, before_x, before_y).build();
-    m_orientation = outline_area() < 0 ? -1 : 1;
+    m_orientation = turned_area() > 0 ? -1 : 1;
 }
 
 /// Of a vertex at (x, y); `entry()` names it.
@@ -389,23 +389,23 @@ void Mesh::extend(int before_x, int before_y, int across, int down) {
     if (bottom <= rows()) rows_from(bottom - 1, bottom - 2, bottom);
 }
 
-/// Twice the area that the outline of the mesh surrounds in "to": positive where it runs as in "from".
-double Mesh::outline_area() const {
-    double area = 0;
+/// The area in "from" of the cells of level 0 that are turned over, less that of those that are not.
+double Mesh::turned_area() const {
     const auto position = [&](int c, int r) {
         return m_values[index(c, r)] +
                Point<double>{line(m_x, 0, c) * m_scale.x, line(m_y, 0, r) * m_scale.y};
     };
-    Point<double> last = position(0, 0);
-    const auto go = [&](int c, int r) {
-        const Point<double> next = position(c, r);
-        area += last.x * next.y - last.y * next.x;
-        last = next;
-    };
-    for (int c = 1; c <= columns(); ++c) go(c, 0);
-    for (int r = 1; r <= rows(); ++r) go(columns(), r);
-    for (int c = columns() - 1; c >= 0; --c) go(c, rows());
-    for (int r = rows() - 1; r >= 0; --r) go(0, r);
+    double area = 0;
+    for (int r = 0; r < rows(); ++r)
+        for (int c = 0; c < columns(); ++c) {
+            // Of a quadrilateral: the product of its diagonals.
+            const Point<double> p = position(c + 1, r + 1) - position(c, r),
+                                q = position(c, r + 1) - position(c + 1, r);
+            const double turn = p.x * q.y - p.y * q.x;
+            const MeshCell cell = base_cell(c, r);
+            area -= (turn > 0) * ((cell.x1 - cell.x0) * (cell.y1 - cell.y0));
+            area += (turn < 0) * ((cell.x1 - cell.x0) * (cell.y1 - cell.y0));
+        }
     return area;
 }
 

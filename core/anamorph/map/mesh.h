@@ -122,7 +122,7 @@ class Mesh {
     /// The map.
     Point<double> at(double x, double y) const { return at(patch(cell_at(x, y)), x, y); }
 
-    /// +1, or -1 where the outline of the mesh runs the other way round than the image's.
+    /// +1, or -1 where most of the mesh (of the area that its cells take in "from") is turned over.
     double orientation() const { return m_orientation; }
 
   private:
@@ -168,7 +168,7 @@ class Mesh {
     Uncertain displacement(const Point<double>& to, Units units, double x, double y, double amount,
                            const Entry& entry) const;
     void extend(int before_x, int before_y, int across, int down);
-    double outline_area() const;
+    double turned_area() const;
 
     template <class Body>
     void each_part(const MeshCell& cell, const Body& body) const {
