@@ -114,6 +114,15 @@ TEST(WarpExact, MeshesOfAnyLinesAndAmounts) {
     for (const double tol : kTols) examine_mesh(thin, WarpScheme::automatic, tol, 1);
 }
 
+// Cells smaller than pixels share a bound of their vertices.
+TEST(WarpExact, MoreCellsThanPixels) {
+    test::Random random(577);
+    for (const bool uneven : {false, true}) {
+        const ControlMesh mesh = test::random_mesh(random, kTarget, kSource, 300, 200, 0.4, uneven, 0);
+        EXPECT_LE(examine_mesh(mesh, WarpScheme::automatic, 0.01, 1).exact_bound, 1e-9);
+    }
+}
+
 TEST(WarpExact, HardMeshes) {
     for (const auto& [name, mesh] : test::hard_meshes(kTarget, kSource))
         for (const double tol : kTols) {

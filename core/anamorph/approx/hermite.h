@@ -8,6 +8,7 @@
 
 #include "anamorph/approx/block.h"
 #include "anamorph/map/mesh.h"
+#include "anamorph/map/mesh_tree.h"
 
 namespace anamorph {
 
@@ -102,13 +103,16 @@ inline double size_of(const Patch& patch) {
     return std::max(x, y);
 }
 
-/// What a computation rounds to double adds to a map's own error (Mesh::data_error), as a distance: `terms`
-/// roundings of a patch's elements, 16 of the identity's part.
+/// What a computation's rounding to double adds to a map's own error, as a distance: `terms` roundings of a
+/// patch's elements, 16 of the identity's part.
+inline double with_rounding(const Mesh& mesh, const Mesh::Rough& rough, const Bounds& box, double terms) {
+    const double place = std::max(std::max(std::fabs(box.x0), std::fabs(box.x1)) * mesh.scale().x,
+                                  std::max(std::fabs(box.y0), std::fabs(box.y1)) * mesh.scale().y);
+    return 1.4143 * (rough.data_error + 0x1p-53 * (terms * rough.size + 16 * place));
+}
 inline double rounding_of(const Mesh& mesh, const MeshCell& cell, const Patch& patch, double terms) {
-    const double place = std::max(std::max(std::fabs(patch.x0), std::fabs(patch.x1)) * mesh.scale().x,
-                                  std::max(std::fabs(patch.y0), std::fabs(patch.y1)) * mesh.scale().y);
-    const double either = mesh.data_error(cell, patch) + 0x1p-53 * (terms * size_of(patch) + 16 * place);
-    return 1.4143 * either;
+    return with_rounding(mesh, {mesh.data_error(cell, patch), size_of(patch)},
+                         {patch.x0, patch.y0, patch.x1, patch.y1}, terms);
 }
 
 /// How far Mesh::at is from the map of the given numbers on a cell, in pixels of "to". With u = 2^-53: the
@@ -117,8 +121,13 @@ inline double rounding_of(const Mesh& mesh, const MeshCell& cell, const Patch& p
 /// at most 3, two products, a sum); products and sums of the rows and of the whole 4 u each. So less than 9 +
 /// 20 + 8 + 2 u, once each, of the elements' magnitudes; and of the identity's part the scale, the product
 /// and the sum.
+inline constexpr double kExactTerms = 40;
 inline double exact_rounding(const Mesh& mesh, const MeshCell& cell, const Patch& patch) {
-    return rounding_of(mesh, cell, patch, 40);
+    return rounding_of(mesh, cell, patch, kExactTerms);
+}
+/// The same in all cells of a box, where there is one level.
+inline double exact_rounding(const Mesh& mesh, const Bounds& box) {
+    return with_rounding(mesh, mesh.rough(box.x0, box.y0, box.x1, box.y1), box, kExactTerms);
 }
 
 /// The same of the forms of this file. Powers: a coefficient along one parameter rounds 5 u of at most

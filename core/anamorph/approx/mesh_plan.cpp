@@ -115,16 +115,7 @@ class Planner {
 
     /// Point by point, in whichever cells.
     void exact(const Box& box) {
-        BlockWriter::for_blocks(box, [&](const Box& b) {
-            double bound = 0;
-            // A hair more: points on an edge may be evaluated in the neighbour.
-            constexpr double kHair = 1e-9;
-            m_mesh.each_cell(b.x0 + 0.5 - kHair, b.y0 + 0.5 - kHair, b.x1 - 0.5 + kHair, b.y1 - 0.5 + kHair,
-                             [&](const MeshCell& cell) {
-                                 bound = std::max(bound, exact_rounding(m_mesh, cell, m_mesh.patch(cell)));
-                             });
-            m_writer.exact(b, bound);
-        });
+        BlockWriter::for_blocks(box, [&](const Box& b) { m_writer.exact(b, exact_bound(b)); });
     }
 
     void region(const Box& box) {
@@ -134,6 +125,19 @@ class Planner {
     }
 
   private:
+    double exact_bound(const Box& box) const {
+        // A hair more: points on an edge may be evaluated in the neighbour.
+        constexpr double kHair = 1e-9;
+        const Bounds all{box.x0 + 0.5 - kHair, box.y0 + 0.5 - kHair, box.x1 - 0.5 + kHair,
+                         box.y1 - 0.5 + kHair};
+        if (!m_mesh.has_levels() && has_small_cells(m_mesh, box)) return exact_rounding(m_mesh, all);
+        double bound = 0;
+        m_mesh.each_cell(all.x0, all.y0, all.x1, all.y1, [&](const MeshCell& cell) {
+            bound = std::max(bound, exact_rounding(m_mesh, cell, m_mesh.patch(cell)));
+        });
+        return bound;
+    }
+
     void settle(const CellForm& form, const Box& box) {
         switch (m_scheme) {
             case WarpScheme::automatic:

@@ -561,4 +561,30 @@ double Mesh::data_error(const MeshCell& cell, const Patch& patch) const {
     return (most_value + others + steep * (shift(patch.x0, patch.x1) + shift(patch.y0, patch.y1))) * kSlack;
 }
 
+// With d and e the largest displacement of a vertex around and its error: a slope spans the cell, so that it
+// is at most 2 d in units of it, and a twist 4 d; together with the four values 36 d, and 36 e. A slope's own
+// rounding is that of both its spans, at most 12 lines' rounding over the cell's, and 8 u; twists twice that.
+Mesh::Rough Mesh::rough(double x0, double y0, double x1, double y1) const {
+    const int c0 = std::max(line_below(m_x, x0) - 1, 0), c1 = std::min(line_below(m_x, x1) + 2, columns());
+    const int r0 = std::max(line_below(m_y, y0) - 1, 0), r1 = std::min(line_below(m_y, y1) + 2, rows());
+    double d = 0, e = 0;
+    for (int r = r0; r <= r1; ++r)
+        for (int c = c0; c <= c1; ++c) {
+            d = std::max(d, largest(m_values[index(c, r)]));
+            e = std::max(e, double{m_value_errors[index(c, r)]});
+        }
+    double shift = 0;
+    const auto look = [&](const std::vector<double>& lines, int first, int last) {
+        for (auto i = static_cast<std::size_t>(first); i < static_cast<std::size_t>(last); ++i) {
+            const double of_line = std::max(place(lines[i]).error, place(lines[i + 1]).error);
+            const double room = lines[i + 1] - lines[i] - 2 * of_line;
+            shift = std::max(shift, room > 0 ? of_line / room : HUGE_VAL);
+        }
+    };
+    look(m_x, c0, c1);
+    look(m_y, r0, r1);
+    const double size = 36 * d, slopes = 24 * shift + 16 * 0x1p-53, parameters = 2 * 1.5 * 3 * shift;
+    return {(36 * e + size * (slopes + parameters)) * kSlack, size};
+}
+
 }  // namespace anamorph
