@@ -145,7 +145,7 @@ int examine_push(const ControlMesh& mesh, test::Random& random, double tol, int 
             std::any_of(roots.begin(), roots.end(), [](const auto& r) { return std::fabs(r.slope) < 1e-3L; });
         if (near_fold) continue;
         folded += roots.size() > 1;
-        for (const Block& block : *plan.blocks(0)) {
+        for (const Block& block : plan.blocks(0)) {
             if (i < block.box.x0 || i >= block.box.x1 || j < block.box.y0 || j >= block.box.y1) continue;
             Point<double> at{};
             int piece = 0;
