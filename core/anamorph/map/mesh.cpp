@@ -67,7 +67,7 @@ std::vector<double> lines_of(const std::vector<double>& given, int cells, int si
     return lines;
 }
 
-using Number = Rounded<double>;
+using Number = Tracked<double>;
 
 /// Are even or given lines what was asked for, without rounding, and, if need be, with room for all their
 /// halves?

@@ -18,7 +18,7 @@
 
 #include "anamorph/map/mesh_data.h"
 #include "anamorph/number/jet.h"
-#include "anamorph/number/rounded.h"
+#include "anamorph/number/tracked.h"
 
 namespace anamorph {
 
@@ -140,7 +140,7 @@ class Mesh {
         Point<double> f, fx, fy, fxy;
         double f_error = 0, fx_error = 0, fy_error = 0, fxy_error = 0;
     };
-    using Uncertain = Point<Rounded<double>>;
+    using Uncertain = Point<Tracked<double>>;
     /// A cell of level 1 or more.
     struct Node {
         int level, column, row;
@@ -166,7 +166,7 @@ class Mesh {
     Knot compute_knot(int column, int row) const;
     Knot knot(int column, int row) const;
     /// A line's position with its rounding, whatever its level.
-    Rounded<double> place(double line) const { return {line, m_line_rounding * std::fabs(line)}; }
+    Tracked<double> place(double line) const { return {line, m_line_rounding * std::fabs(line)}; }
     Knot knot_at(const MeshCell& cell, int corner) const;
     /// Of each element of a patch's geometry, in either coordinate: how far it is from what the given numbers
     /// define.

@@ -13,7 +13,7 @@ namespace anamorph {
 namespace {
 
 // What is made of the points once is made in long double, with a bound of its rounding.
-using Number = Rounded<long double>;
+using Number = Tracked<long double>;
 using Vector = Point<Number>;
 
 Vector operator+(const Vector& a, const Vector& b) {
@@ -203,7 +203,7 @@ void set_gradients(std::vector<Node>& nodes, std::size_t given, const std::vecto
 
 /// A number of a cubic as it is kept: in double, and its error goes to the largest.
 double kept(const Number& a, double& largest_error) {
-    const Rounded<double> r = a.in_double();
+    const Tracked<double> r = a.in_double();
     largest_error = std::max(largest_error, r.error);
     return r.value;
 }
