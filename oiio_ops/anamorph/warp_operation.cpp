@@ -109,9 +109,13 @@ const OperationKind& warp_kind() {
         1,
         [](const ParameterValues& values, const std::vector<OIIO::ImageSpec>& specs, const SideFiles& files) {
             const Frame frame = frame_of(specs[0]);
-            const WarpRequest request = read_warp_request(values, {frame.width, frame.height});
-            return std::unique_ptr<const Operation>(
-                std::make_unique<WarpOperation>(request, read_map(request, files)));
+            WarpRequest request = read_warp_request(values, {frame.width, frame.height});
+            const GivenMap given = read_map(request, files);
+            // An ST-map is as large as its picture.
+            const auto* mesh = std::get_if<ControlMesh>(&given.map->shape);
+            if (mesh && mesh->width > 0 && mesh->direction == Direction::pull)
+                request.target = warp_target(values, {mesh->width, mesh->height});
+            return std::unique_ptr<const Operation>(std::make_unique<WarpOperation>(request, given));
         }};
     return kind;
 }

@@ -3,10 +3,12 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <random>
 #include <vector>
 
 #include "anamorph/image/mesh_warp.h"
+#include "anamorph/map/mesh_file.h"
 
 namespace anamorph {
 namespace {
@@ -46,6 +48,26 @@ TEST(MeshFolds, TheFractionIsThatOfThePixels) {
     }
     EXPECT_GT(folded_maps, 10);
     EXPECT_LT(folded_maps, 40);
+}
+
+// A panorama turned by a fifth, as an ST-map: u jumps from 1 to 0 at the seam, and only there the map runs
+// backwards.
+TEST(MeshFolds, AMapAcrossTheSeamIsNotTurnedOver) {
+    constexpr int kWidth = 200, kHeight = 100;
+    for (const bool mirrored : {false, true}) {
+        std::vector<float> uv;
+        for (int y = 0; y < kHeight; ++y)
+            for (int x = 0; x < kWidth; ++x) {
+                const double u = (x + 0.5) / kWidth + 0.2;
+                uv.push_back(static_cast<float>(mirrored ? 1 - (u - std::floor(u)) : u - std::floor(u)));
+                uv.push_back(static_cast<float>((y + 0.5) / kHeight));
+            }
+        const WarpMap map = mesh_from_stmap(uv.data(), kWidth, kHeight, 2, 2 * kWidth, 1, "st");
+        const MeshWarp warp(map, 400, 200, kWidth, kHeight, {});
+        // The seam's cell, and half of those beside it.
+        EXPECT_GT(warp.folded_fraction(), 0);
+        EXPECT_LE(warp.folded_fraction(), 3.0 / kWidth);
+    }
 }
 
 }  // namespace

@@ -159,6 +159,29 @@ TEST(PlaneWarp, Folds) {
     EXPECT_EQ(PlaneWarp({}, {along_u(5)}).find_fold(0).answer, FoldAnswer::undecided);
 }
 
+// Heights to either side of where the determinant is 0, down to the last digits of double: an answer is true,
+// or none is given.
+TEST(PlaneWarp, FoldsAtTheLastDigits) {
+    const long double steepest = sqrtl(2 / expl(1));
+    int none = 0, found = 0;
+    for (int step = -4000; step <= 4000; ++step) {
+        const double height = static_cast<double>(1 / steepest) * (1 + step * 0x1p-52);
+        const Fold fold = PlaneWarp({}, {along_u(height)}).find_fold(300);
+        const long double least = 1 - height * steepest;
+        none += fold.answer == FoldAnswer::none;
+        found += fold.answer == FoldAnswer::found;
+        if (fold.answer == FoldAnswer::none) {
+            EXPECT_GT(least, 0) << step;
+        }
+        if (fold.answer == FoldAnswer::found) {
+            EXPECT_LE(least, 0) << step;
+        }
+    }
+    EXPECT_LT(none, 4001);
+    EXPECT_LT(found, 4001);
+    EXPECT_EQ(PlaneWarp({}, {along_u(1.16)}).find_fold().answer, FoldAnswer::none);
+}
+
 TEST(PlaneWarp, HardCases) {
     const double nan = std::numeric_limits<double>::quiet_NaN(),
                  inf = std::numeric_limits<double>::infinity();

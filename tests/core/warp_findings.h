@@ -13,8 +13,9 @@
 namespace anamorph::test {
 
 struct Findings {
-    double worst_excess = -HUGE_VAL;  ///< error - bound of polynomial and computed blocks
-    double worst_bound = 0;
+    double worst_excess = -HUGE_VAL;  ///< error - bound
+    double worst_bound = 0;           ///< of polynomial and computed blocks
+    double worst_exact_bound = 0;
     double worst_exact = 0;  ///< error of exact points, over the size of their coordinates
     std::int64_t pixels = 0, exact_pixels = 0, outside_pixels = 0, overlaps = 0;
     std::vector<double> ratios;  ///< bound over largest error, a block
@@ -47,10 +48,11 @@ Findings examine(const BlockMap& map, const Truth& truth) {
                         ++found.exact_pixels;
                         Point<double> at{};
                         int piece = 0;
-                        if (map.exact(x, y + 0.5, block.piece, at, piece))
-                            found.worst_exact = std::max(
-                                found.worst_exact, static_cast<double>(std::hypot(at.x - p.x, at.y - p.y) /
-                                                                       (1 + std::hypot(p.x, p.y))));
+                        if (!map.exact(x, y + 0.5, block.piece, at, piece)) continue;
+                        const auto error = static_cast<double>(std::hypot(at.x - p.x, at.y - p.y));
+                        found.worst_exact = std::max(found.worst_exact,
+                                                     error / static_cast<double>(1 + std::hypot(p.x, p.y)));
+                        largest = std::max(largest, error);
                         continue;
                     }
                     largest = std::max(largest,
@@ -58,12 +60,14 @@ Findings examine(const BlockMap& map, const Truth& truth) {
                                                                       block.base_y + double(py[i]) - p.y)));
                 }
             }
-            found.worst_bound = std::max(found.worst_bound, block.bound);
-            if (block.kind == Block::Kind::exact || block.kind == Block::Kind::outside) continue;
+            const bool exact = block.kind == Block::Kind::exact;
+            double& worst = exact ? found.worst_exact_bound : found.worst_bound;
+            worst = std::max(worst, block.bound);
+            if (block.kind == Block::Kind::outside) continue;
             // A NaN exceeds too.
             found.worst_excess = std::max(found.worst_excess, largest - block.bound);
             if (!(largest <= block.bound)) found.worst_excess = std::max(found.worst_excess, HUGE_VAL);
-            if (largest > 0) found.ratios.push_back(block.bound / largest);
+            if (largest > 0 && !exact) found.ratios.push_back(block.bound / largest);
         }
     return found;
 }

@@ -53,8 +53,9 @@ class BlockWriter {
 
     static bool below_floor(const Box& box) { return box.width() * box.height() < kFloorPixels; }
 
-    void exact(const Box& box) { add(box, Block::Kind::exact); }
-    void outside(const Box& box) { add(box, Block::Kind::outside); }
+    /// `bound`: of the rounding in double.
+    void exact(const Box& box, double bound) { add(box, Block::Kind::exact, bound); }
+    void outside(const Box& box) { add(box, Block::Kind::outside, 0); }
 
     /// A quadratic block, coefficients as in Block with the base. True when it keeps the tolerance in float,
     /// `error` apart: then it is written.
@@ -102,10 +103,12 @@ class BlockWriter {
         body(a);
         body(b);
         const auto is_exact = [](const Block& block) { return block.kind == Block::Kind::exact; };
-        if (!std::all_of(m_blocks.begin() + static_cast<std::ptrdiff_t>(first), m_blocks.end(), is_exact))
-            return;
+        const auto from = m_blocks.begin() + static_cast<std::ptrdiff_t>(first);
+        if (!std::all_of(from, m_blocks.end(), is_exact)) return;
+        double bound = 0;
+        std::for_each(from, m_blocks.end(), [&](const Block& part) { bound = std::max(bound, part.bound); });
         m_blocks.resize(first);
-        exact(box);
+        exact(box, bound);
     }
 
     /// body(block) for boxes of at most kWidth x kHeight pixels.
@@ -117,10 +120,11 @@ class BlockWriter {
     }
 
   private:
-    void add(const Box& box, Block::Kind kind) {
+    void add(const Box& box, Block::Kind kind, double bound) {
         Block block;
         block.box = box;
         block.kind = kind;
+        block.bound = bound;
         m_blocks.push_back(block);
     }
 

@@ -8,6 +8,7 @@
 
 #include "anamorph/approx/block.h"
 #include "anamorph/map/mesh.h"
+#include "anamorph/map/mesh_tree.h"
 
 namespace anamorph {
 
@@ -91,15 +92,53 @@ inline BlockPolynomial float_form(const Bicubic& f, const Block& block) {
     return p;
 }
 
-/// Bounds the rounding in double of the map on a cell, of its other forms and of their restriction: sums of
-/// at most some dozen products, of terms that the conversion to powers makes at most 36 times larger together
-/// than the Hermite data (the columns of M in eq. 5.2 sum to at most 6).
-inline double double_rounding(const Mesh& mesh, const Patch& patch) {
-    double size = (std::fabs(patch.x0) + std::fabs(patch.x1)) * mesh.scale().x +
-                  (std::fabs(patch.y0) + std::fabs(patch.y1)) * mesh.scale().y;
+/// Sum of the magnitudes of a patch's elements, the larger of both coordinates'.
+inline double size_of(const Patch& patch) {
+    double x = 0, y = 0;
     for (const auto& row : patch.g)
-        for (const Point<double>& g : row) size += std::fabs(g.x) + std::fabs(g.y);
-    return 1024 * 0x1p-53 * size;
+        for (const Point<double>& g : row) {
+            x += std::fabs(g.x);
+            y += std::fabs(g.y);
+        }
+    return std::max(x, y);
+}
+
+/// What a computation's rounding to double adds to a map's own error, as a distance: `terms` roundings of a
+/// patch's elements, 16 of the identity's part.
+inline double with_rounding(const Mesh& mesh, const Mesh::Rough& rough, const Bounds& box, double terms) {
+    const double place = std::max(std::max(std::fabs(box.x0), std::fabs(box.x1)) * mesh.scale().x,
+                                  std::max(std::fabs(box.y0), std::fabs(box.y1)) * mesh.scale().y);
+    return 1.4143 * (rough.data_error + 0x1p-53 * (terms * rough.size + 16 * place));
+}
+inline double rounding_of(const Mesh& mesh, const MeshCell& cell, const Patch& patch, double terms) {
+    return with_rounding(mesh, {mesh.data_error(cell, patch), size_of(patch)},
+                         {patch.x0, patch.y0, patch.x1, patch.y1}, terms);
+}
+
+/// How far Mesh::at is from the map of the given numbers on a cell, in pixels of "to". With u = 2^-53: the
+/// parameters round 3 u, which moves a value by 3 u of at most 3/2 of each element, both ways; a basis
+/// function of parameters in [0, 1] is at most 1 and rounds 10 u at most (s^2 (2 s - 3) + 1: a subtraction of
+/// at most 3, two products, a sum); products and sums of the rows and of the whole 4 u each. So less than 9 +
+/// 20 + 8 + 2 u, once each, of the elements' magnitudes; and of the identity's part the scale, the product
+/// and the sum.
+inline constexpr double kExactTerms = 40;
+inline double exact_rounding(const Mesh& mesh, const MeshCell& cell, const Patch& patch) {
+    return rounding_of(mesh, cell, patch, kExactTerms);
+}
+/// The same in all cells of a box, where there is one level.
+inline double exact_rounding(const Mesh& mesh, const Bounds& box) {
+    return with_rounding(mesh, mesh.rough(box.x0, box.y0, box.x1, box.y1), box, kExactTerms);
+}
+
+/// The same of the forms of this file. Powers: a coefficient along one parameter rounds 5 u of at most
+/// 3, 3, 2, 1 (or 2, 2, 1, 1) times the elements; the columns of M in eq. 5.2 sum to at most 6, so that all
+/// coefficients together are at most 36 times the elements' magnitudes, and both passes round 10 u of that.
+/// A restriction to a part of [0, 1] evaluates Taylor coefficients, whose magnitudes sum to no more than the
+/// coefficients' own: 8 u a pass; its middle and half, 3 u and 2 u, move a value by at most 3 of all
+/// coefficients, both ways: 30 u. Chebyshev's form and what is left of it: 10 u. In all 66 u of 36 times the
+/// elements, of which the identity's part needs the restriction's and Chebyshev's share.
+inline double double_rounding(const Mesh& mesh, const MeshCell& cell, const Patch& patch) {
+    return rounding_of(mesh, cell, patch, 66 * 36);
 }
 
 /// The polynomial c[0] + c[1] s + c[2] t + c[3] s^2 + c[4] s t + c[5] t^2 that is left of a bicubic on [-1,

@@ -16,16 +16,16 @@ using Sheet = InversePlan::Sheet;
 // Parts of a mesh that turns over nearly everywhere need never end.
 constexpr std::size_t kMostSheets = std::size_t{1} << 21;
 constexpr int kMostCuts = 80;
-// Parameters of a part run a hair beyond it, so that no point on an edge is lost between two parts.
-constexpr double kHair = 1e-9;
-// Source points nearer than this are one, found from two parts.
-constexpr double kSame = 1e-6;
+// Parameters of a part run a hair beyond it, at least.
+constexpr double kHair = 1e-9, kMostHair = 1.0 / 16;
 
 struct Matrix {
     double a11, a12, a21, a22;
 
     double determinant() const { return a11 * a22 - a12 * a21; }
     Point<double> operator()(double x, double y) const { return {a11 * x + a12 * y, a21 * x + a22 * y}; }
+    /// The largest sum of a row's magnitudes.
+    double norm() const { return std::max(std::fabs(a11) + std::fabs(a12), std::fabs(a21) + std::fabs(a22)); }
     /// Of magnitudes: what a box of half sizes (x, y) spans.
     Point<double> span(double x, double y) const {
         return {std::fabs(a11) * x + std::fabs(a12) * y, std::fabs(a21) * x + std::fabs(a22) * y};
@@ -48,72 +48,54 @@ Bicubic map_on(const Mesh& mesh, const MeshCell& cell, const Bicubic& powers, co
     return f;
 }
 
-/// Cuts one patch into sheets; those that do not meet the target are left out.
-class Cutter {
+/// One cell, and what is known of its parts.
+class CellParts {
   public:
-    Cutter(const Mesh& mesh, const std::string& name, std::vector<Sheet>& sheets, std::vector<Bounds>& bounds)
-        : m_mesh(mesh), m_name(name), m_sheets(sheets), m_bounds(bounds) {}
-
-    void cut(const MeshCell& cell, int number) {
-        m_cell = cell;
-        m_number = number;
-        const Patch patch = m_mesh.patch(cell);
-        m_powers = power_form(patch);
-        m_rounding = double_rounding(m_mesh, patch);
-        cut({0.5, 0.5}, {0.5, 0.5}, 0);
+    CellParts(const Mesh& mesh, const MeshCell& cell, int number)
+        : m_mesh(mesh),
+          m_cell(cell),
+          m_number(number),
+          m_patch(mesh.patch(cell)),
+          m_powers(power_form(m_patch)) {
+        m_rounding = double_rounding(mesh, cell, m_patch);
+        m_exact = exact_rounding(mesh, cell, m_patch);
     }
 
-  private:
-    void cut(const Part& s, const Part& t, int depth) {
+    struct Seen {
+        Bounds bounds;
+        double size;  ///< half of it
+        std::optional<Sheet> sheet;
+        bool cut_s;  ///< which way to cut if there is no sheet
+    };
+
+    const MeshCell& cell() const { return m_cell; }
+    const Patch& patch() const { return m_patch; }
+    double width() const { return m_cell.x1 - m_cell.x0; }
+    double height() const { return m_cell.y1 - m_cell.y0; }
+
+    Seen see(const Part& s, const Part& t) const {
         const Bicubic f = map_on(m_mesh, m_cell, m_powers, s, t);
         const double rx = sum_of_magnitudes(f.x) - std::fabs(f.x[0][0]) + m_rounding,
                      ry = sum_of_magnitudes(f.y) - std::fabs(f.y[0][0]) + m_rounding;
-        const Bounds bounds{f.x[0][0] - rx, f.y[0][0] - ry, f.x[0][0] + rx, f.y[0][0] + ry};
-        if (!bounds.meets({0, 0, double(m_mesh.to().width), double(m_mesh.to().height)})) return;
+        Seen seen{{f.x[0][0] - rx, f.y[0][0] - ry, f.x[0][0] + rx, f.y[0][0] + ry},
+                  std::max(rx, ry),
+                  std::nullopt,
+                  true};
         const Matrix a{f.x[1][0], f.x[0][1], f.y[1][0], f.y[0][1]};
         const double size = std::max(largest({a.a11, a.a12}), largest({a.a21, a.a22}));
         const bool regular = std::fabs(a.determinant()) > 1e-9 * size * size;
-        // The Lipschitz constant of N in both coordinates: as it is, and about what it is after a cut.
-        double now[2] = {}, after_s[2] = {}, after_t[2] = {}, reach = 0;
+        const Bend bend = regular ? bend_of(f, a.inverse()) : Bend{};
         if (regular) {
-            const Matrix y = a.inverse();
-            for (int i = 0; i < 4; ++i)
-                for (int j = 0; j < 4; ++j) {
-                    if (i + j < 2) continue;
-                    const Point<double> v = y(f.x[i][j], f.y[i][j]);
-                    reach += largest(v);
-                    // Half a parameter's range divides a term by 2 for each of its powers, and that parameter
-                    // is then counted in halves.
-                    const double size_s = (i + j) * std::fabs(v.x), size_t = (i + j) * std::fabs(v.y);
-                    now[0] += size_s;
-                    now[1] += size_t;
-                    after_s[0] += std::ldexp(size_s, 1 - i);
-                    after_s[1] += std::ldexp(size_t, -i);
-                    after_t[0] += std::ldexp(size_s, -j);
-                    after_t[1] += std::ldexp(size_t, 1 - j);
-                }
-            if (std::max(now[0], now[1]) <= InversePlan::kContraction)
-                return add({m_number,
-                            false,
-                            s.middle,
-                            t.middle,
-                            s.half,
-                            t.half,
-                            {f.x[0][0], f.y[0][0]},
-                            y.a11,
-                            y.a12,
-                            y.a21,
-                            y.a22,
-                            reach + kHair},
-                           bounds);
+            const Sheet sheet = sheet_of(a.inverse(), s, t, bend.reach);
+            if (bend.now + slope_rounding(a.inverse(), s, t) <= InversePlan::kContraction &&
+                sheet.hair <= kMostHair) {
+                seen.sheet = sheet;
+                return seen;
+            }
         }
-        if (std::max(rx, ry) <= 0.5 * InversePlan::kFoldSize || depth == kMostCuts)
-            return add(
-                {m_number, true, s.middle, t.middle, s.half, t.half, {f.x[0][0], f.y[0][0]}, 0, 0, 0, 0, 0},
-                bounds);
-        bool cut_s = std::max(after_s[0], after_s[1]) <= std::max(after_t[0], after_t[1]);
+        seen.cut_s = bend.after_s <= bend.after_t;
         // Near a fold Y says little: cut what is longer in the target.
-        if (!regular || !(std::max(now[0], now[1]) < 4)) {
+        if (!regular || !(bend.now < 4)) {
             double along_s = 0, along_t = 0;
             for (int i = 0; i < 4; ++i)
                 for (int j = 0; j < 4; ++j) {
@@ -121,13 +103,111 @@ class Cutter {
                     along_s += i * v;
                     along_t += j * v;
                 }
-            cut_s = along_s >= along_t;
+            seen.cut_s = along_s >= along_t;
         }
-        for (const double side : {-0.5, 0.5}) {
-            const Part half_s{s.middle + side * s.half, 0.5 * s.half},
-                half_t{t.middle + side * t.half, 0.5 * t.half};
-            cut_s ? cut(half_s, t, depth + 1) : cut(s, half_t, depth + 1);
-        }
+        return seen;
+    }
+
+    /// A part that is left as a fold.
+    Sheet fold(const Part& s, const Part& t) const {
+        const Point<double> at = m_mesh.inside(m_patch, s.middle, t.middle);
+        return {m_number, true, s.middle, t.middle, s.half, t.half, at, 0, 0, 0, 0, 0, 0, 0, 0, 0};
+    }
+
+  private:
+    /// The Lipschitz constant of N: as it is, and about what it is after a cut; and how far N reaches.
+    struct Bend {
+        double now = 0, after_s = 0, after_t = 0, reach = 0;
+    };
+    static Bend bend_of(const Bicubic& f, const Matrix& y) {
+        double now[2] = {}, after_s[2] = {}, after_t[2] = {};
+        Bend bend;
+        for (int i = 0; i < 4; ++i)
+            for (int j = 0; j < 4; ++j) {
+                if (i + j < 2) continue;
+                const Point<double> v = y(f.x[i][j], f.y[i][j]);
+                bend.reach += largest(v);
+                // Half a parameter's range divides a term by 2 for each of its powers, and that parameter is
+                // then counted in halves.
+                const double size[2] = {(i + j) * std::fabs(v.x), (i + j) * std::fabs(v.y)};
+                for (int k = 0; k < 2; ++k) {
+                    now[k] += size[k];
+                    after_s[k] += std::ldexp(size[k], k == 0 ? 1 - i : -i);
+                    after_t[k] += std::ldexp(size[k], k == 0 ? -j : 1 - j);
+                }
+            }
+        bend.now = std::max(now[0], now[1]);
+        bend.after_s = std::max(after_s[0], after_s[1]);
+        bend.after_t = std::max(after_t[0], after_t[1]);
+        return bend;
+    }
+
+    /// Of N's slope. The rounding of all coefficients together is at most m_rounding; on a part of half sizes
+    /// h and k they are shifted and scaled, so that a slope has h (1 + h)^2 (1 + k)^3 times 3 of it and the
+    /// same the other way round, with h and k of at most 1/2.
+    double slope_rounding(const Matrix& y, const Part& s, const Part& t) const {
+        return 8 * (s.half + t.half) * y.norm() * m_rounding;
+    }
+
+    Sheet sheet_of(const Matrix& y, const Part& s, const Part& t, double reach) const {
+        // Of z: the parameters s and t round, and the map in double errs; the iteration is a contraction.
+        const double noise = (y.norm() * m_exact + 0x1p-51 * (1 + 1 / std::min(s.half, t.half))) /
+                             (1 - InversePlan::kContraction);
+        const double hair = std::max(kHair, 4 * noise);
+        const double diameter = 2 * std::hypot(s.half * width(), t.half * height());
+        const double place = std::max(std::fabs(m_cell.x0), std::fabs(m_cell.x1)) +
+                             std::max(std::fabs(m_cell.y0), std::fabs(m_cell.y1));
+        Sheet sheet = fold(s, t);
+        sheet.fold = false;
+        sheet.y11 = y.a11;
+        sheet.y12 = y.a12;
+        sheet.y21 = y.a21;
+        sheet.y22 = y.a22;
+        sheet.reach = reach + slope_rounding(y, s, t) + hair;
+        sheet.hair = hair;
+        sheet.noise = noise;
+        // The stop at a step of `noise`, and the rounding of the position and of lines.
+        sheet.error = diameter * 1.5 * noise + 8 * 0x1p-53 * place;
+        sheet.edge = diameter * 2 * hair;
+        return sheet;
+    }
+
+    const Mesh& m_mesh;
+    MeshCell m_cell;
+    int m_number;
+    Patch m_patch;
+    Bicubic m_powers;
+    double m_rounding, m_exact;  ///< of the forms and of Mesh::inside, target pixels
+};
+
+/// body(half of s, t) or body(s, half of t) for both halves.
+template <class Body>
+void each_half(const Part& s, const Part& t, bool cut_s, const Body& body) {
+    for (const double side : {-0.5, 0.5}) {
+        const Part half_s{s.middle + side * s.half, 0.5 * s.half},
+            half_t{t.middle + side * t.half, 0.5 * t.half};
+        cut_s ? body(half_s, t) : body(s, half_t);
+    }
+}
+
+/// Cuts one patch into sheets; those that do not meet the target are left out.
+class Cutter {
+  public:
+    Cutter(const Mesh& mesh, const std::string& name, std::vector<Sheet>& sheets, std::vector<Bounds>& bounds)
+        : m_mesh(mesh), m_name(name), m_sheets(sheets), m_bounds(bounds) {}
+
+    void cut(const MeshCell& cell, int number) {
+        cut(CellParts(m_mesh, cell, number), {0.5, 0.5}, {0.5, 0.5}, 0);
+    }
+
+  private:
+    void cut(const CellParts& cell, const Part& s, const Part& t, int depth) {
+        const CellParts::Seen seen = cell.see(s, t);
+        if (!seen.bounds.meets({0, 0, double(m_mesh.to().width), double(m_mesh.to().height)})) return;
+        if (seen.sheet) return add(*seen.sheet, seen.bounds);
+        if (seen.size <= 0.5 * InversePlan::kFoldSize || depth == kMostCuts)
+            return add(cell.fold(s, t), seen.bounds);
+        each_half(s, t, seen.cut_s, [&](const Part& a, const Part& b) { cut(cell, a, b, depth + 1); });
     }
 
     void add(const Sheet& sheet, const Bounds& bounds) {
@@ -141,10 +221,6 @@ class Cutter {
     const std::string& m_name;
     std::vector<Sheet>& m_sheets;
     std::vector<Bounds>& m_bounds;
-    MeshCell m_cell{};
-    int m_number = 0;
-    Bicubic m_powers{};
-    double m_rounding = 0;
 };
 
 // ----------------------------------------------------------------------------------------------------------
@@ -200,7 +276,11 @@ class Planner {
         : m_plan(plan), m_mesh(plan.mesh()), m_writer(tol, blocks) {}
 
     void exact(const Box& box) {
-        BlockWriter::for_blocks(box, [&](const Box& b) { m_writer.exact(b); });
+        BlockWriter::for_blocks(box, [&](const Box& b) {
+            aim(b);
+            const bool on_fold = gather();
+            write_exact(b, on_fold);
+        });
     }
 
     void region(const Box& box) {
@@ -208,14 +288,18 @@ class Planner {
     }
 
   private:
-    void place(const Box& box) {
+    void aim(const Box& box) {
         m_x = 0.5 * (box.x0 + box.x1);
         m_y = 0.5 * (box.y0 + box.y1);
         m_hx = half(box.width());
         m_hy = half(box.height());
+    }
+
+    void place(const Box& box) {
+        aim(box);
         const bool on_fold = gather();
         if (m_near.empty() && !on_fold) return m_writer.outside(box);
-        if (BlockWriter::below_floor(box)) return m_writer.exact(box);
+        if (BlockWriter::below_floor(box)) return write_exact(box, on_fold);
         bool vertical_cut = box.width() >= box.height();
         if (!on_fold) {
             const LocalInverse inverse = invert();
@@ -227,6 +311,16 @@ class Planner {
             }
         }
         m_writer.halve(box, vertical_cut, [&](const Box& b) { place(b); });
+    }
+
+    /// The bound of exact pixels: that of the sheets near; on folds, of each pixel.
+    void write_exact(const Box& box, bool on_fold) {
+        double bound = 0;
+        for (const Near& near : m_near) bound = std::max(bound, near.sheet->error);
+        for (int y = box.y0; on_fold && y < box.y1; ++y)
+            for (int x = box.x0; x < box.x1; ++x)
+                bound = std::max(bound, m_plan.preimages(x + 0.5, y + 0.5).error);
+        m_writer.exact(box, bound);
     }
 
     /// A sheet, and the box in its parameters where source points of the block's pixels may be.
@@ -254,9 +348,9 @@ class Planner {
     std::optional<Near> narrowed(const Sheet& sheet) const {
         const Matrix y{sheet.y11, sheet.y12, sheet.y21, sheet.y22};
         const Point<double> w = y(m_x - sheet.at.x, m_y - sheet.at.y), span = y.span(m_hx, m_hy);
-        const auto cut = [](double middle, double half_size) {
-            const double low = std::max(middle - half_size, -1 - kHair),
-                         high = std::min(middle + half_size, 1 + kHair);
+        const auto cut = [&](double middle, double half_size) {
+            const double low = std::max(middle - half_size, -1 - sheet.hair),
+                         high = std::min(middle + half_size, 1 + sheet.hair);
             return Part{0.5 * (low + high), 0.5 * (high - low)};
         };
         Near near{&sheet, cut(w.x, span.x + sheet.reach), cut(w.y, span.y + sheet.reach)};
@@ -267,7 +361,7 @@ class Planner {
             if (half_size < 1.5 * std::max(span.x, span.y)) break;
             const Point<double> c{near.s.middle, near.t.middle}, f = m_plan.on_sheet(sheet, c);
             const Point<double> off = y(f.x - m_x, f.y - m_y);
-            const double slack = InversePlan::kContraction * half_size + kHair;
+            const double slack = InversePlan::kContraction * half_size + sheet.hair;
             near.s = cut(c.x - off.x, span.x + slack);
             near.t = cut(c.y - off.y, span.y + slack);
             if (near.s.half < 0 || near.t.half < 0) return std::nullopt;
@@ -306,7 +400,8 @@ class Planner {
             for (std::size_t i = 0; i < 4; ++i)
                 c[k][i] = (g[3][0] * aaa[i] + g[2][1] * aab[i] + g[1][2] * abb[i] + g[0][3] * bbb[i]) * unit;
         }
-        Sizes sizes = sizes_of(f, span);
+        const Sizes full = sizes_of(f, span);
+        Sizes sizes = full;
         sizes[0] = sizes[1] = 0;
         sizes[2] = norm(q[0], q[1]);
         sizes[3] = norm(c[0], c[1]);
@@ -325,13 +420,14 @@ class Planner {
                                 sizes[3] * (3 * d + 3 * d * d + d * d * d) + value_at(sizes, 4, 1 + d);
 
         // The middle's own error, and rounding.
-        const double start = middle_error(patch, m, f);
+        const auto start_in = [&](double r) { return middle_error(cell, patch, m, f, span, r, full); };
         // A ball that holds block, approximation and every source point that a sheet may have.
         double radius = 1 + d;
         for (int i = 0; i < 3; ++i)
-            radius = std::max(radius, 1 + 1.05 * (value_at(sizes, 2, radius) + start));
+            radius = std::max(radius, 1 + 1.05 * (value_at(sizes, 2, radius) + start_in(radius)));
         radius = std::max(radius, reach_of_sheets(m, to_source.inverse()));
         if (!(radius < 8)) return result;
+        const double start = start_in(radius);
         const std::optional<Step> step = step_to_neighbours(cell, f, m, span, radius, 1 + d);
         if (!step) return result;
         const double outside = value_at(step->sizes, 0, radius);
@@ -344,7 +440,9 @@ class Planner {
             return result;
 
         const double error = (residual + step->most + start) / (1 - contraction);
-        result.error = std::hypot(span.x, span.y) * error;
+        // And of what follows, to a quadratic: 16 roundings of point and spans.
+        result.error = std::hypot(span.x, span.y) * error +
+                       16 * 0x1p-53 * (std::fabs(m.x) + std::fabs(m.y) + 4 * (span.x + span.y));
         // z - Q + T, through M to source pixels.
         for (int k = 0; k < 2; ++k) {
             auto& to = k ? result.y : result.x;
@@ -377,12 +475,27 @@ class Planner {
         return sizes;
     }
 
+    /// How a cell's map rounds about a point, in units of the block: `radius` spans from it, powers of
+    /// parameters beyond [0, 1] grow by their cubes, and so does their rounding.
+    double rounding_about(const MeshCell& cell, const Patch& patch, const Point<double>& m,
+                          const Point<double>& span, double radius) const {
+        const auto growth = [](double from, double to, double at, double reach) {
+            const double r = (std::max(std::fabs(at - from), std::fabs(to - at)) + reach) / (to - from);
+            return std::max(1.0, r * r * r);
+        };
+        return double_rounding(m_mesh, cell, patch) * growth(patch.x0, patch.x1, m.x, radius * span.x) *
+               growth(patch.y0, patch.y1, m.y, radius * span.y) / std::min(m_hx, m_hy);
+    }
+
     /// How far f(m) is from the block's middle, with the rounding of everything here, in units of the block.
-    double middle_error(const Patch& patch, const Point<double>& m, const Bicubic& f) const {
-        const Point<double> off{f.x[0][0] - m_x, f.y[0][0] - m_y};
-        const double rounding = 16 * double_rounding(m_mesh, patch) +
-                                0x1p-44 * (std::fabs(m.x) + std::fabs(m.y) + std::fabs(m_x) + std::fabs(m_y));
-        return std::max((std::fabs(off.x) + rounding) / m_hx, (std::fabs(off.y) + rounding) / m_hy);
+    /// M's rounding leaves J M - 1 below 8 u |J| |M|, and `sizes` says |J| |M| at degree 1; Q and C are sums
+    /// of at most 12 products of 5 factors, and the terms of 2 Q(z, Q(z)) of twice as many: less than 64 u of
+    /// what they sum, or of its square.
+    double middle_error(const MeshCell& cell, const Patch& patch, const Point<double>& m, const Bicubic& f,
+                        const Point<double>& span, double radius, const Sizes& sizes) const {
+        const double off = std::max(std::fabs(f.x[0][0] - m_x) / m_hx, std::fabs(f.y[0][0] - m_y) / m_hy);
+        const double sum = value_at(sizes, 1, radius);
+        return off + rounding_about(cell, patch, m, span, radius) + 64 * 0x1p-53 * sum * (1 + sum);
     }
 
     /// How far from the block's middle, in its units, the sheets' source points can be.
@@ -421,20 +534,23 @@ class Planner {
         int count = 0;
         m_mesh.each_cell(m.x - rx, m.y - ry, m.x + rx, m.y + ry, [&](const MeshCell& other) {
             if (++count > kMost) return;
-            Bicubic g = about(m_mesh.patch(other), m);
+            const Patch patch = m_mesh.patch(other);
+            Bicubic g = about(patch, m);
             for (int i = 0; i < 4; ++i)
                 for (int k = 0; k < 4; ++k) {
                     g.x[i][k] -= f.x[i][k];
                     g.y[i][k] -= f.y[i][k];
                 }
-            const Sizes sizes = sizes_of(g, span);
+            Sizes sizes = sizes_of(g, span);
+            const double rounding = rounding_about(other, patch, m, span, radius);
+            sizes[0] += rounding;
             for (std::size_t i = 0; i < sizes.size(); ++i) step.sizes[i] = std::max(step.sizes[i], sizes[i]);
             const Part x = common(m.x, span.x * smaller, other.x0, other.x1),
                        y = common(m.y, span.y * smaller, other.y0, other.y1);
             if (x.half < 0 || y.half < 0) return;
             const Bicubic there = restricted(g, x, y);
-            step.most =
-                std::max({step.most, sum_of_magnitudes(there.x) / m_hx, sum_of_magnitudes(there.y) / m_hy});
+            step.most = std::max({step.most, sum_of_magnitudes(there.x) / m_hx + rounding,
+                                  sum_of_magnitudes(there.y) / m_hy + rounding});
         });
         if (count > kMost) return std::nullopt;
         return step;
@@ -478,76 +594,40 @@ void InversePlan::plan(const Box& box, int, Blocks& blocks) const {
 }
 
 Point<double> InversePlan::on_sheet(const Sheet& sheet, const Point<double>& z) const noexcept {
-    const MeshCell& cell = m_cells[static_cast<std::size_t>(sheet.cell)];
-    const Patch patch = m_mesh.patch(cell);
-    return m_mesh.at(patch, cell.x0 + (sheet.s + sheet.hs * z.x) * (cell.x1 - cell.x0),
-                     cell.y0 + (sheet.t + sheet.ht * z.y) * (cell.y1 - cell.y0));
+    return m_mesh.inside(m_mesh.patch(m_cells[static_cast<std::size_t>(sheet.cell)]),
+                         sheet.s + sheet.hs * z.x, sheet.t + sheet.ht * z.y);
 }
 
-/// The source point on a sheet, if there is one.
-bool InversePlan::find(const Sheet& sheet, double x, double y, Preimage& found) const noexcept {
-    const MeshCell& cell = m_cells[static_cast<std::size_t>(sheet.cell)];
-    const double w = cell.x1 - cell.x0, h = cell.y1 - cell.y0;
-    const auto position = [&](const Point<double>& z) {
-        return Point<double>{cell.x0 + (sheet.s + sheet.hs * z.x) * w,
-                             cell.y0 + (sheet.t + sheet.ht * z.y) * h};
+/// The source point on a sheet that is no fold, if there is one.
+bool InversePlan::find(const Sheet& sheet, const Patch& patch, double x, double y,
+                       Preimage& found) const noexcept {
+    const Matrix to_sheet{sheet.y11, sheet.y12, sheet.y21, sheet.y22};
+    const Point<double> first = to_sheet(x - sheet.at.x, y - sheet.at.y);
+    if (!(largest(first) <= 1 + sheet.reach)) return false;
+    // Beyond the part by more than what is accepted, so that no end is taken for a solution.
+    const double end = 1 + 2 * sheet.hair;
+    const auto clamped = [&](double a, double b) {
+        return Point<double>{std::clamp(a, -end, end), std::clamp(b, -end, end)};
     };
-    const auto clamped = [](const Point<double>& z) {
-        constexpr double kEnd = 1 + kHair;
-        return Point<double>{std::clamp(z.x, -kEnd, kEnd), std::clamp(z.y, -kEnd, kEnd)};
-    };
-    if (!sheet.fold) {
-        const Matrix to_sheet{sheet.y11, sheet.y12, sheet.y21, sheet.y22};
-        const Point<double> first = to_sheet(x - sheet.at.x, y - sheet.at.y);
-        if (!(largest(first) <= 1 + sheet.reach + kHair)) return false;
-        const Patch patch = m_mesh.patch(cell);
-        Point<double> z = clamped(first);
-        double off = HUGE_VAL;
-        // Each step gains two bits or more.
-        for (int n = 0; n < 32; ++n) {
-            const Point<double> at = position(z), f = m_mesh.at(patch, at.x, at.y);
-            const Point<double> step = to_sheet(f.x - x, f.y - y);
-            const Point<double> next = clamped({z.x - step.x, z.y - step.y});
-            off = largest(step);
-            const double moved = largest({next.x - z.x, next.y - z.y});
-            z = next;
-            if (moved <= 1e-15) break;
-        }
-        if (!(off <= kHair)) return false;
-        found = {position(z), sheet.cell, to_sheet.determinant() * m_mesh.orientation() < 0};
-        return true;
+    Point<double> z = clamped(first.x, first.y);
+    double moved = HUGE_VAL;
+    // Each step gains two bits, or at least one beyond the part's edges.
+    for (int n = 0; n < 64 && !(moved <= sheet.noise); ++n) {
+        const Point<double> f = m_mesh.inside(patch, sheet.s + sheet.hs * z.x, sheet.t + sheet.ht * z.y);
+        const Point<double> step = to_sheet(f.x - x, f.y - y);
+        const Point<double> next = clamped(z.x - step.x, z.y - step.y);
+        moved = largest(next - z);
+        z = next;
     }
-    // Levenberg and Marquardt's damped Newton steps: on a fold the derivative is singular.
-    using J = Jet1<double>;
-    const Patch patch = m_mesh.patch(cell);
-    Point<double> z{0, 0};
-    double damping = 1e-3, last = HUGE_VAL;
-    Point<double> tried = z;
-    for (int n = 0; n < 60; ++n) {
-        const Point<double> at = position(tried);
-        const Point<J> f =
-            m_mesh.at(patch, J::variable(at.x, sheet.hs * w, 0), J::variable(at.y, 0, sheet.ht * h));
-        const double ex = f.x.c[0] - x, ey = f.y.c[0] - y, size = std::hypot(ex, ey);
-        if (size < last) {
-            z = tried;
-            last = size;
-            damping *= 0.2;
-            found = {at, sheet.cell, (f.x.c[1] * f.y.c[2] - f.x.c[2] * f.y.c[1]) * m_mesh.orientation() < 0};
-        } else {
-            damping *= 8;
-        }
-        const double d =
-            damping * (square(f.x.c[1]) + square(f.x.c[2]) + square(f.y.c[1]) + square(f.y.c[2]));
-        const Matrix normal{
-            square(f.x.c[1]) + square(f.y.c[1]) + d, f.x.c[1] * f.x.c[2] + f.y.c[1] * f.y.c[2],
-            f.x.c[1] * f.x.c[2] + f.y.c[1] * f.y.c[2], square(f.x.c[2]) + square(f.y.c[2]) + d};
-        if (!(normal.determinant() > 0)) break;
-        const Point<double> step =
-            normal.inverse()(f.x.c[1] * ex + f.y.c[1] * ey, f.x.c[2] * ex + f.y.c[2] * ey);
-        tried = clamped({z.x - step.x, z.y - step.y});
-        if (last < 1e-12) break;
-    }
-    return last <= 1e-7;
+    if (!(moved <= sheet.noise && largest(z) <= 1 + sheet.hair)) return false;
+    const bool at_edge = largest(z) >= 1 - 2 * sheet.hair;
+    found = {{patch.x0 + (sheet.s + sheet.hs * z.x) * (patch.x1 - patch.x0),
+              patch.y0 + (sheet.t + sheet.ht * z.y) * (patch.y1 - patch.y0)},
+             sheet.cell,
+             to_sheet.determinant() * m_mesh.orientation() < 0,
+             sheet.error,
+             at_edge ? sheet.edge : 0};
+    return true;
 }
 
 bool InversePlan::before(const Preimage& a, const Preimage& b) const noexcept {
@@ -561,27 +641,86 @@ bool InversePlan::before(const Preimage& a, const Preimage& b) const noexcept {
     return a.at.y != b.at.y ? a.at.y > b.at.y : a.at.x > b.at.x;
 }
 
-InversePlan::Preimages InversePlan::preimages(double x, double y) const noexcept {
-    // More than this many source points of one pixel are not told apart.
-    constexpr int kMost = 64;
-    Preimage distinct[kMost];
-    Preimages all;
-    m_tree.each({x, y, x, y}, [&](std::int32_t i) {
-        const Sheet& sheet = m_sheets[static_cast<std::size_t>(i)];
-        all.on_fold = all.on_fold || sheet.fold;
+/// Collects the source points of one pixel.
+class InversePlan::Search {
+  public:
+    Search(const InversePlan& plan, double x, double y) : m_plan(plan), m_x(x), m_y(y) {}
+
+    void look(const Sheet& sheet) {
+        const MeshCell& cell = m_plan.m_cells[static_cast<std::size_t>(sheet.cell)];
+        if (sheet.fold)
+            return look(CellParts(m_plan.m_mesh, cell, sheet.cell), {sheet.s, sheet.hs}, {sheet.t, sheet.ht});
         Preimage found{};
-        if (!find(sheet, x, y, found)) return;
-        for (int k = 0; k < all.count; ++k)
-            if (largest({distinct[k].at.x - found.at.x, distinct[k].at.y - found.at.y}) <= kSame) {
-                // The same, from two parts that share an edge.
-                if (before(found, distinct[k])) distinct[k] = found;
-                return;
-            }
-        if (all.count < kMost) distinct[all.count++] = found;
-    });
-    for (int k = 0; k < all.count; ++k)
-        if (k == 0 || before(distinct[k], all.best)) all.best = distinct[k];
-    return all;
+        if (m_plan.find(sheet, m_plan.m_mesh.patch(cell), m_x, m_y, found)) take(found);
+    }
+
+    Preimages result() {
+        for (int k = 0; k < m_edges; ++k) compare(m_on_edge[k]);
+        // What cannot be told apart may be any of them.
+        m_all.error = m_all.on_fold ? std::hypot(m_places.x1 - m_places.x0, m_places.y1 - m_places.y0)
+                                    : m_all.best.error;
+        return m_all;
+    }
+
+  private:
+    /// Cuts a fold on, as far as it takes.
+    void look(const CellParts& cell, const Part& s, const Part& t) {
+        const CellParts::Seen seen = cell.see(s, t);
+        if (!seen.bounds.meets({m_x, m_y, m_x, m_y})) return;
+        ++m_visits;
+        if (seen.sheet) {
+            Preimage found{};
+            if (m_plan.find(*seen.sheet, cell.patch(), m_x, m_y, found)) take(found);
+            return;
+        }
+        const double size = std::max(s.half * cell.width(), t.half * cell.height());
+        if (size <= kUndecided || m_visits >= kMostVisits) return give_up(cell.fold(s, t), cell);
+        each_half(s, t, seen.cut_s, [&](const Part& a, const Part& b) { look(cell, a, b); });
+    }
+
+    /// A part that may hold a source point or none.
+    void give_up(const Sheet& part, const CellParts& cell) {
+        m_all.on_fold = true;
+        const Point<double> at{cell.cell().x0 + part.s * cell.width(),
+                               cell.cell().y0 + part.t * cell.height()};
+        const double size = 2 * std::hypot(part.hs * cell.width(), part.ht * cell.height());
+        take({at, part.cell, false, size, 2 * size});
+    }
+
+    void take(const Preimage& found) {
+        const double e = found.error;
+        const Bounds place{found.at.x - e, found.at.y - e, found.at.x + e, found.at.y + e};
+        m_all.count == 0 && m_edges == 0 ? m_places = place : (m_places.add(place), m_places);
+        if (found.edge == 0) return compare(found);
+        for (int k = 0; k < m_edges; ++k) {
+            Preimage& other = m_on_edge[k];
+            if (largest(other.at - found.at) > other.edge + found.edge) continue;
+            // The same, from two parts that share an edge.
+            if (m_plan.before(found, other)) other = found;
+            return;
+        }
+        // No room to compare: counted, and maybe again.
+        if (m_edges == kMostEdges) m_all.on_fold = true;
+        m_edges < kMostEdges ? void(m_on_edge[m_edges++] = found) : compare(found);
+    }
+    void compare(const Preimage& found) {
+        if (m_all.count++ == 0 || m_plan.before(found, m_all.best)) m_all.best = found;
+    }
+
+    static constexpr int kMostEdges = 64;
+
+    const InversePlan& m_plan;
+    double m_x, m_y;
+    Preimages m_all{};
+    Bounds m_places{};
+    Preimage m_on_edge[kMostEdges];
+    int m_edges = 0, m_visits = 0;
+};
+
+InversePlan::Preimages InversePlan::preimages(double x, double y) const noexcept {
+    Search search(*this, x, y);
+    m_tree.each({x, y, x, y}, [&](std::int32_t i) { search.look(m_sheets[static_cast<std::size_t>(i)]); });
+    return search.result();
 }
 
 bool InversePlan::exact(double x, double y, int, Point<double>& source_point,

@@ -8,7 +8,14 @@
 //     which this iteration (the chord form of Newton's, with Krawczyk's bound) converges;
 //   - it has none where |w| > 1 + max |N|.
 // Where no such part can be had (the derivative is singular: a fold), cutting ends at parts smaller than
-// kFoldSize target pixels. Pixels on such parts count as folded, and are looked for by damped Newton steps.
+// kFoldSize target pixels. Pixels on such parts are computed one by one, and the parts cut on for each of
+// them as far as it takes to tell its source points apart: down to kUndecided source pixels, or kMostVisits
+// parts. What then is left (a pixel within rounding of a fold's edge, or a mesh squeezed to a line) counts as
+// a source point and as a fold, with a bound that spans all that it may be.
+//
+// Rounding. The map in double errs by e (exact_rounding of hermite.h), so that the iteration ends within |Y|
+// e / (1 - rho) of the exact source point, in z; parts overlap by more than that, and points found on the
+// edges of two parts are compared.
 //
 // Blocks. Around the preimage of a block's middle, in parameters z of the block, the map is z + Q(z) + C(z) +
 // higher terms, so that its inverse is z - Q(z) + 2 Q(z, Q(z)) - C(z) + remainder; norms of the coefficients
@@ -35,12 +42,14 @@ class InversePlan final : public WarpPlan {
     bool exact(double x, double y, int piece, Point<double>& source_point,
                int& source_piece) const noexcept override;
     Jacobian jacobian(double x, double y, int piece) const noexcept override;
-    /// The number of source points less one; at least 1 on a fold.
+    /// The number of source points less one; at least 1 where they cannot be told apart.
     float folds(double x, double y) const noexcept override;
     std::int64_t folded_pixels(const Box& box) const override;
 
     static constexpr double kContraction = 1.0 / 4;
     static constexpr double kFoldSize = 1.0 / 4;
+    static constexpr double kUndecided = 0x1p-20;
+    static constexpr int kMostVisits = 1024;
 
     /// A part of a cell that is one to one, or a fold.
     struct Sheet {
@@ -50,6 +59,10 @@ class InversePlan final : public WarpPlan {
         Point<double> at;           ///< f(0), target pixels
         double y11, y12, y21, y22;  ///< Y, per target pixel
         double reach;               ///< of N
+        double hair;                ///< how far z runs beyond 1, so that no point on an edge is lost
+        double noise;               ///< what rounding makes of z
+        double error;               ///< of a source point found here, source pixels
+        double edge;                ///< as far apart, source points on two parts' edges may be the same
     };
     /// The target point of parameters z of a sheet.
     Point<double> on_sheet(const Sheet& sheet, const Point<double>& z) const noexcept;
@@ -60,13 +73,16 @@ class InversePlan final : public WarpPlan {
     /// One source point of a target point.
     struct Preimage {
         Point<double> at;
-        int cell;     ///< in cells()
-        bool turned;  ///< is the mesh turned over there?
+        int cell;      ///< in cells()
+        bool turned;   ///< is the mesh turned over there?
+        double error;  ///< of the point
+        double edge;   ///< above 0: on the edge of its part, as far as others may be the same point
     };
     struct Preimages {
         Preimage best;
         int count = 0;
-        bool on_fold = false;
+        bool on_fold = false;  ///< some could not be told apart
+        double error = 0;      ///< of the distance from the best to the exact one
     };
     Preimages preimages(double x, double y) const noexcept;
 
@@ -74,7 +90,8 @@ class InversePlan final : public WarpPlan {
     void plan(const Box& box, int piece, Blocks& blocks) const override;
 
   private:
-    bool find(const Sheet& sheet, double x, double y, Preimage& found) const noexcept;
+    class Search;
+    bool find(const Sheet& sheet, const Patch& patch, double x, double y, Preimage& found) const noexcept;
     bool before(const Preimage& a, const Preimage& b) const noexcept;
 
     Mesh m_mesh;

@@ -36,7 +36,7 @@ struct CellForm {
           cell(c),
           patch(m.patch(c)),
           powers(power_form(patch)),
-          rounding(double_rounding(m, patch)) {}
+          rounding(double_rounding(m, c, patch)) {}
 
     /// The parameters of a row or column of pixel centres.
     Part across(const Box& b) const {
@@ -113,8 +113,9 @@ class Planner {
     Planner(const Mesh& mesh, WarpScheme scheme, double tol, const ResidualTables* tables, Blocks& blocks)
         : m_mesh(mesh), m_scheme(scheme), m_tables(tables), m_writer(tol, blocks) {}
 
+    /// Point by point, in whichever cells.
     void exact(const Box& box) {
-        BlockWriter::for_blocks(box, [&](const Box& b) { m_writer.exact(b); });
+        BlockWriter::for_blocks(box, [&](const Box& b) { m_writer.exact(b, exact_bound(b)); });
     }
 
     void region(const Box& box) {
@@ -124,6 +125,19 @@ class Planner {
     }
 
   private:
+    double exact_bound(const Box& box) const {
+        // A hair more: points on an edge may be evaluated in the neighbour.
+        constexpr double kHair = 1e-9;
+        const Bounds all{box.x0 + 0.5 - kHair, box.y0 + 0.5 - kHair, box.x1 - 0.5 + kHair,
+                         box.y1 - 0.5 + kHair};
+        if (!m_mesh.has_levels() && has_small_cells(m_mesh, box)) return exact_rounding(m_mesh, all);
+        double bound = 0;
+        m_mesh.each_cell(all.x0, all.y0, all.x1, all.y1, [&](const MeshCell& cell) {
+            bound = std::max(bound, exact_rounding(m_mesh, cell, m_mesh.patch(cell)));
+        });
+        return bound;
+    }
+
     void settle(const CellForm& form, const Box& box) {
         switch (m_scheme) {
             case WarpScheme::automatic:
@@ -138,7 +152,7 @@ class Planner {
 
     /// One block, a quadratic where that will do, or its halves.
     void place(const CellForm& form, const Box& box) {
-        if (BlockWriter::below_floor(box)) return m_writer.exact(box);
+        if (BlockWriter::below_floor(box)) return exact(box);
         const Bicubic f = form.on(box);
         const EconomizedBicubic x(f.x), y(f.y);
         if (m_scheme == WarpScheme::automatic &&
@@ -154,7 +168,7 @@ class Planner {
             const double error =
                 m_tables->bound(residual) + residual.float_rounding(form.on(b)) + form.rounding;
             const Point<double> middle = form.mesh.at(form.patch, 0.5 * (b.x0 + b.x1), 0.5 * (b.y0 + b.y1));
-            if (!m_writer.computed(b, middle, error)) m_writer.exact(b);
+            if (!m_writer.computed(b, middle, error)) exact(b);
         });
     }
 

@@ -88,12 +88,9 @@ struct Run {
     Run(const CubicTriangle& t, double x, double y, int count) : begin(0), end(count) {
         outer_begin = begin;
         outer_end = end;
-        const double dx = x - t.corner[2].x, dy = y - t.corner[2].y;
+        const double dx = x - t.base.x, dy = y - t.base.y;
         // Barycentric coordinates err by less than this on the row, crossings by less than their share of it.
-        const double place =
-            std::fabs(x) + std::fabs(y) + std::fabs(t.corner[2].x) + std::fabs(t.corner[2].y) + count;
-        const double slopes = std::fabs(t.a[0]) + std::fabs(t.a[1]) + std::fabs(t.b[0]) + std::fabs(t.b[1]);
-        const double margin = 1e-14 * (1 + slopes * place);
+        const double margin = 4 * t.place_error({x, y, x + count, y});
         // A triangle without an inside holds nothing for certain.
         if (!std::isfinite(margin)) {
             end = begin;
@@ -103,7 +100,7 @@ struct Run {
             narrow(value - margin, slope, count, begin, end);
             narrow(value + margin, slope, count, outer_begin, outer_end);
         };
-        const double u = dx * t.a[0] + dy * t.b[0], v = dx * t.a[1] + dy * t.b[1];
+        const double u = dx * t.a[0] + dy * t.b[0] + t.c[0], v = dx * t.a[1] + dy * t.b[1] + t.c[1];
         cut(u, t.a[0]);
         cut(v, t.a[1]);
         cut(1 - u - v, -t.a[0] - t.a[1]);
@@ -130,7 +127,15 @@ class Planner {
     Planner(const Scattered& map, double tol, Blocks& blocks) : m_map(map), m_writer(tol, blocks) {}
 
     void exact(const Box& box) {
-        BlockWriter::for_blocks(box, [&](const Box& b) { m_writer.exact(b); });
+        BlockWriter::for_blocks(box, [&](const Box& b) {
+            const Bounds all = bounds_of(Centres(b));
+            double bound = 0;
+            m_map.tree().each(all, [&](std::int32_t i) {
+                const CubicTriangle& triangle = m_map.triangles()[static_cast<std::size_t>(i)];
+                if (triangle.meets(all)) raise(bound, exact_rounding(triangle, all));
+            });
+            m_writer.exact(b, bound);
+        });
     }
     void region(const Box& box) {
         BlockWriter::for_blocks(box, [&](const Box& b) { place(b); });
@@ -145,7 +150,7 @@ class Planner {
     };
 
     void place(const Box& box) {
-        if (BlockWriter::below_floor(box)) return m_writer.exact(box);
+        if (BlockWriter::below_floor(box)) return exact(box);
         if (gather(Centres(box)) && (smooth(box) || pieces(box))) return;
         m_writer.halve(box, box.width() >= box.height(), [&](const Box& b) { place(b); });
     }
@@ -157,12 +162,11 @@ class Planner {
         const auto take = [&](const CubicTriangle& triangle) {
             const Bounds b = triangle.bounds();
             m_met.push_back({on(m_map, triangle, at), common(across, b.x0, b.x1), common(down, b.y0, b.y1),
-                             rounding_of(triangle, across, down)});
+                             form_rounding(triangle, at)});
         };
         const CubicTriangle& middle = m_map.triangle_at(across.middle, down.middle);
         take(middle);
-        const Bounds all{across.middle - across.half, down.middle - down.half, across.middle + across.half,
-                         down.middle + down.half};
+        const Bounds all = bounds_of(at);
         m_map.tree().each(all, [&](std::int32_t i) {
             const CubicTriangle& other = m_map.triangles()[static_cast<std::size_t>(i)];
             if (m_met.size() <= kMost && &other != &middle && other.meets(all)) take(other);
@@ -180,6 +184,8 @@ class Planner {
             raise(rounding, other.rounding);
         }
         const EconomizedBicubic x(f.x), y(f.y);
+        // The polynomial's own rounding, and that of what it stands for elsewhere.
+        rounding += m_met[0].rounding;
         return m_writer.polynomial(box, x.c, y.c, std::hypot(x.dropped, y.dropped) + step + rounding) ||
                m_writer.bicubic(box, f.x, f.y, x.c, y.c, step + rounding);
     }
@@ -216,18 +222,40 @@ class Planner {
         return d;
     }
 
-    /// In double, of the cubic and its Taylor coefficients: barycentric coordinates grow with the distance
-    /// from the triangle, and weights with their cubes.
-    double rounding_of(const CubicTriangle& t, const Part& across, const Part& down) const {
-        const double dx = std::fabs(across.middle - t.corner[2].x) + across.half,
-                     dy = std::fabs(down.middle - t.corner[2].y) + down.half;
-        const double reach =
-            1 + (std::fabs(t.a[0]) + std::fabs(t.a[1])) * dx + (std::fabs(t.b[0]) + std::fabs(t.b[1])) * dy;
-        double size = 0;
-        for (const Point<double>& p : t.bezier) size = std::max({size, std::fabs(p.x), std::fabs(p.y)});
-        const double place =
-            std::fabs(across.middle) * m_map.scale().x + std::fabs(down.middle) * m_map.scale().y;
-        return 0x1p-53 * 256 * (size * 8 * reach * reach * reach + place);
+    static Bounds bounds_of(const Centres& at) {
+        return {at.across.middle - at.across.half, at.down.middle - at.down.half,
+                at.across.middle + at.across.half, at.down.middle + at.down.half};
+    }
+    /// Of the identity's part: the scale, a product and a sum.
+    double identity_rounding(const Bounds& box) const {
+        return 4 * 0x1p-53 *
+               std::max(std::max(std::fabs(box.x0), std::fabs(box.x1)) * m_map.scale().x,
+                        std::max(std::fabs(box.y0), std::fabs(box.y1)) * m_map.scale().y);
+    }
+
+    /// How far Scattered::at is from the map of the given points, on a triangle's share of a box. There
+    /// barycentric coordinates are at most 1; a weight takes 5 roundings, their sum with the Bezier points
+    /// 11. Where coordinates err, the cubic moves by its derivatives; a point that they put into the
+    /// neighbour's cubic moves by the square of that.
+    double exact_rounding(const CubicTriangle& t, const Bounds& box) const {
+        const CubicTriangle::Reach reach = t.reach(box);
+        const auto inside = [](double most) { return std::min(most, 1.0); };
+        const CubicTriangle::Terms terms = t.terms({inside(reach.u), inside(reach.v), inside(reach.w)});
+        const double either = 1.01 * (terms.error + 2 * terms.slope * t.place_error(box)) +
+                              24 * 0x1p-53 * terms.value + identity_rounding(box);
+        return 1.4143 * either;
+    }
+
+    /// The same of a cubic as a polynomial on all of a box, which may reach beyond its triangle. A Taylor
+    /// coefficient of a weight takes less than 40 roundings, sums with the Bezier points 11; those of what is
+    /// made of it (restrictions, differences, Chebyshev's form; rows from four values, whose weights sum to
+    /// 1.7) less than 200.
+    double form_rounding(const CubicTriangle& t, const Centres& at) const {
+        const Bounds box = bounds_of(at);
+        const CubicTriangle::Terms terms = t.terms(t.reach(box));
+        const double either = 1.01 * (terms.error + 2 * terms.slope * t.place_error(box)) +
+                              256 * 0x1p-53 * terms.value + 64 * identity_rounding(box);
+        return 1.4143 * either;
     }
 
     /// The part of [-1, 1] that [low, high] takes of a row of pixels; a hair more.

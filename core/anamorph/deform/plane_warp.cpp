@@ -10,6 +10,7 @@
 #include <queue>
 
 #include "anamorph/error.h"
+#include "anamorph/number/interval.h"
 #include "anamorph/parameter.h"
 
 namespace anamorph {
@@ -35,54 +36,50 @@ double reach_of(DeformationKernel kernel) {
 
 // --- Bounds of det(I + G D') over a box
 
-struct Range {
-    double low, high;
-};
-Range operator+(Range a, Range b) {
-    return {a.low + b.low, a.high + b.high};
-}
-Range operator*(Range a, Range b) {
-    const auto [low, high] = std::minmax({a.low * b.low, a.low * b.high, a.high * b.low, a.high * b.high});
-    return {low, high};
-}
-Range operator*(double a, Range b) {
-    return Range{a, a} * b;
-}
-
-Range square_of(Range x) {
-    const double low = x.low > 0 ? x.low : x.high < 0 ? x.high : 0;
-    return {low * low, std::max(x.low * x.low, x.high * x.high)};
-}
-
 /// exp(-x^2) and its derivative -2 x exp(-x^2), which has its extrema at x = -+sqrt(1/2).
-Range bell(Range x) {
-    const Range s = square_of(x);
-    return {std::exp(-s.high), std::exp(-s.low)};
+Interval bell(const Interval& x) {
+    const Interval s = square(x);
+    return interval_detail::widen(std::exp(-s.hi), std::exp(-s.lo), interval_detail::kLibmMargin);
 }
-Range bell_slope(Range x) {
-    const auto slope = [](double t) { return -2 * t * std::exp(-t * t); };
-    const auto [low, high] = std::minmax({slope(x.low), slope(x.high)});
-    Range range{low, high};
-    constexpr double kAt = 0.70710678118654752, kMost = 0.85776388496070680;
-    if (x.low < -kAt && -kAt < x.high) range.high = kMost;
-    if (x.low < kAt && kAt < x.high) range.low = -kMost;
-    return range;
+Interval bell_slope(const Interval& x) {
+    const auto slope = [](double t) { return Interval(-2) * Interval(t) * bell(t); };
+    const Interval a = slope(x.lo), b = slope(x.hi);
+    Interval range{std::min(a.lo, b.lo), std::max(a.hi, b.hi)};
+    // Outwards: sqrt(2 / e) = 0.85776388496070679648...
+    constexpr double kAt = 0.70710678118654752, kMost = 0.8577638849607069;
+    if (x.lo <= -kAt && -kAt <= x.hi) range.hi = std::max(range.hi, kMost);
+    if (x.lo <= kAt && kAt <= x.hi) range.lo = std::min(range.lo, -kMost);
+    return std::isnan(magnitude(a)) || std::isnan(magnitude(b)) ? Interval::all() : range;
+}
+
+Interval clamped(const Interval& x, double low, double high) {
+    return {std::clamp(x.lo, low, high), std::clamp(x.hi, low, high)};
 }
 
 /// The derivatives of F by u and v over a box.
-std::array<Range, 2> slopes(const Deformation& d, Range u, Range v) {
-    const double a = 1 / d.extent.x, b = 1 / d.extent.y;
-    const Range x{(u.low - d.center.x) * a, (u.high - d.center.x) * a};
-    const Range y{(v.low - d.center.y) * b, (v.high - d.center.y) * b};
+std::array<Interval, 2> slopes(const Deformation& d, const Interval& u, const Interval& v) {
+    const Interval x = (u - d.center.x) / Interval(d.extent.x), y = (v - d.center.y) / Interval(d.extent.y);
+    if (std::isnan(magnitude(x)) || std::isnan(magnitude(y))) return {Interval::all(), Interval::all()};
     if (d.kernel == DeformationKernel::gaussian)
-        return {a * (bell_slope(x) * bell(y)), b * (bell_slope(y) * bell(x))};
-    // dF/dx = -20 x (1 - r)^3
-    const Range squared = square_of(x) + square_of(y);
-    const auto cube = [](double r2) { return std::pow(std::max(0., 1 - std::sqrt(r2)), 3); };
-    const Range rest{cube(squared.high), cube(squared.low)};
-    const Range inside_x{std::max(x.low, -1.), std::min(x.high, 1.)},
-        inside_y{std::max(y.low, -1.), std::min(y.high, 1.)};
-    return {-20 * a * (inside_x * rest), -20 * b * (inside_y * rest)};
+        return {bell_slope(x) * bell(y) / Interval(d.extent.x),
+                bell_slope(y) * bell(x) / Interval(d.extent.y)};
+    // dF/dx = -20 x (1 - r)^3 for r < 1
+    const Interval rest = clamped(Interval(1) - sqrt(square(x) + square(y)), 0, 1);
+    const Interval cube = rest * rest * rest * Interval(-20);
+    return {clamped(x, -1, 1) * cube / Interval(d.extent.x), clamped(y, -1, 1) * cube / Interval(d.extent.y)};
+}
+
+Interval dot(const glm::dvec3& a, const glm::dvec3& b) {
+    return Interval(a.x) * Interval(b.x) + Interval(a.y) * Interval(b.y) + Interval(a.z) * Interval(b.z);
+}
+
+/// Does a deformation reach into a box?
+bool reaches(const Deformation& d, const Interval& u, const Interval& v) {
+    const auto meets = [&](const Interval& s, double center, double extent) {
+        const Interval reach = Interval(reach_of(d.kernel)) * Interval(extent);
+        return !(s.hi < (Interval(center) - reach).lo || s.lo > (Interval(center) + reach).hi);
+    };
+    return meets(u, d.center.x, d.extent.x) && meets(v, d.center.y, d.extent.y);
 }
 
 /// det(I + A).
@@ -245,73 +242,65 @@ PlaneWarp::Inverse PlaneWarp::inverse(glm::dvec3 q) const {
     return {q - displacement(s).value, found};
 }
 
+/// A box of the plane, the deformations that reach into it, and what the determinant is there.
+struct PlaneWarp::FoldBox {
+    Interval determinant, u, v;
+    std::vector<std::size_t> entries;
+
+    bool operator<(const FoldBox& other) const { return determinant.lo > other.determinant.lo; }
+    bool finite() const { return std::isfinite(u.hi - u.lo) && std::isfinite(v.hi - v.lo); }
+};
+
+PlaneWarp::FoldBox PlaneWarp::fold_box(const Interval& u, const Interval& v,
+                                       const std::vector<std::size_t>& parents) const {
+    FoldBox box{{}, u, v, {}};
+    Interval a[2][2] = {};
+    for (const std::size_t k : parents) {
+        const Deformation& d = m_list[k];
+        if (!reaches(d, u, v)) continue;
+        box.entries.push_back(k);
+        const auto by = slopes(d, u, v);
+        const Interval g[2] = {dot(m_plane.gradient_u(), d.vector), dot(m_plane.gradient_v(), d.vector)};
+        for (int row = 0; row < 2; ++row)
+            for (std::size_t column = 0; column < 2; ++column) a[row][column] += g[row] * by[column];
+    }
+    const Interval one(1);
+    box.determinant = (one + a[0][0]) * (one + a[1][1]) - a[0][1] * a[1][0];
+    if (std::isnan(magnitude(box.determinant))) box.determinant = Interval::all();
+    return box;
+}
+
 Fold PlaneWarp::find_fold(std::size_t most_boxes) const {
     if (m_across) return {};
-    struct Box {
-        double low;  ///< the least the determinant can be
-        Range u, v;
-        std::vector<std::size_t> entries;
-        bool operator<(const Box& other) const { return low > other.low; }
-    };
-    const auto in_plane = [&](const Deformation& d) {
-        return glm::dvec2(glm::dot(m_plane.gradient_u(), d.vector), glm::dot(m_plane.gradient_v(), d.vector));
-    };
-    // The terms of a parent that reach into a box, and the bound they give.
-    std::size_t work = 0;
-    const auto box_of = [&](Range u, Range v, const std::vector<std::size_t>& parents) {
-        Box box{0, u, v, {}};
-        Range a[2][2] = {};
-        for (const std::size_t k : parents) {
-            const Deformation& d = m_list[k];
-            const glm::dvec2 reach = reach_of(d.kernel) * d.extent;
-            if (u.high < d.center.x - reach.x || u.low > d.center.x + reach.x ||
-                v.high < d.center.y - reach.y || v.low > d.center.y + reach.y)
-                continue;
-            box.entries.push_back(k);
-            const auto [by_u, by_v] = slopes(d, u, v);
-            const glm::dvec2 g = in_plane(d);
-            for (int row = 0; row < 2; ++row) {
-                a[row][0] = a[row][0] + g[row] * by_u;
-                a[row][1] = a[row][1] + g[row] * by_v;
-            }
-        }
-        work += parents.size();
-        const Range one{1, 1}, diagonal = (one + a[0][0]) * (one + a[1][1]), other = a[0][1] * a[1][0];
-        box.low = diagonal.low - other.high;
-        return box;
-    };
     std::vector<std::size_t> all(m_list.size());
     for (std::size_t k = 0; k < all.size(); ++k) all[k] = k;
-    std::priority_queue<Box> boxes;
-    const auto push = [&](Box box) {
-        if (!(box.low > 1e-12)) boxes.push(std::move(box));  // rounding
+    std::priority_queue<FoldBox> boxes;
+    std::size_t work = 0;
+    const auto push = [&](const Interval& u, const Interval& v, const std::vector<std::size_t>& parents) {
+        work += parents.size();
+        FoldBox box = fold_box(u, v, parents);
+        if (!(box.determinant.lo > 0)) boxes.push(std::move(box));
     };
-    push(box_of({m_least.x, m_most.x}, {m_least.y, m_most.y}, all));
+    push({m_least.x, m_most.x}, {m_least.y, m_most.y}, all);
     constexpr std::size_t kMostWork = 3'000'000;
     for (std::size_t count = 0; !boxes.empty(); ++count) {
         if (count >= most_boxes || work > kMostWork) return {FoldAnswer::undecided, {}};
-        const Box box = boxes.top();
+        const FoldBox box = boxes.top();
         boxes.pop();
-        const glm::dvec2 middle{box.u.low / 2 + box.u.high / 2, box.v.low / 2 + box.v.high / 2};
-        if (!finite(middle) || !std::isfinite(box.u.high - box.u.low) ||
-            !std::isfinite(box.v.high - box.v.low))
-            return {FoldAnswer::undecided, {}};
-        const DisplacementJet d = displacement(middle);
-        const auto on_plane = [&](glm::dvec3 by) {
-            return glm::dvec2(glm::dot(m_plane.gradient_u(), by), glm::dot(m_plane.gradient_v(), by));
-        };
-        if (!(determinant(on_plane(d.by_u), on_plane(d.by_v)) > 0)) return {FoldAnswer::found, middle};
+        const glm::dvec2 middle{box.u.lo / 2 + box.u.hi / 2, box.v.lo / 2 + box.v.hi / 2};
+        if (!finite(middle) || !box.finite()) return {FoldAnswer::undecided, {}};
+        if (fold_box(middle.x, middle.y, box.entries).determinant.hi <= 0) return {FoldAnswer::found, middle};
         // The longer side, measured in the extents of the finest deformation there, is halved.
         glm::dvec2 extent(kInfinity);
         for (const std::size_t k : box.entries)
             extent =
                 glm::dvec2(std::min(extent.x, m_list[k].extent.x), std::min(extent.y, m_list[k].extent.y));
-        if ((box.u.high - box.u.low) / extent.x >= (box.v.high - box.v.low) / extent.y) {
-            push(box_of({box.u.low, middle.x}, box.v, box.entries));
-            push(box_of({middle.x, box.u.high}, box.v, box.entries));
+        if ((box.u.hi - box.u.lo) / extent.x >= (box.v.hi - box.v.lo) / extent.y) {
+            push({box.u.lo, middle.x}, box.v, box.entries);
+            push({middle.x, box.u.hi}, box.v, box.entries);
         } else {
-            push(box_of(box.u, {box.v.low, middle.y}, box.entries));
-            push(box_of(box.u, {middle.y, box.v.high}, box.entries));
+            push(box.u, {box.v.lo, middle.y}, box.entries);
+            push(box.u, {middle.y, box.v.hi}, box.entries);
         }
     }
     return {};

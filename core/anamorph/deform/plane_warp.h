@@ -17,6 +17,7 @@
 #include <vector>
 
 #include "anamorph/deform/deformation.h"
+#include "anamorph/number/interval.h"
 
 namespace anamorph {
 
@@ -47,8 +48,8 @@ class ParameterPlane {
 };
 
 enum class FoldAnswer {
-    none,      ///< proved: det(I + G D') > 0 everywhere
-    found,     ///< at `parameters`, where it is not
+    none,      ///< proved, with outward rounding: det(I + G D') > 0 everywhere
+    found,     ///< at `parameters`, where it is certainly not
     undecided  ///< it comes too close to 0 somewhere, or there are too many deformations to tell
 };
 struct Fold {
@@ -84,6 +85,8 @@ class PlaneWarp {
     struct Bin {
         std::vector<std::size_t> entries;
     };
+    struct FoldBox;
+    FoldBox fold_box(const Interval& u, const Interval& v, const std::vector<std::size_t>& parents) const;
     int bin_of(double value, int axis) const;
     DisplacementJet displacement(glm::dvec2 s) const;
     glm::dvec2 residual(glm::dvec2 s, glm::dvec2 target, double share, DisplacementJet& jet) const;

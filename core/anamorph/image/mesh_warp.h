@@ -15,13 +15,13 @@ namespace anamorph {
 /// color; stmap: the source point as (u, v) in 0..1, v down, (-1, -1) where there is none; error: its
 /// distance from the exact one, and bound: what is proven of that, in source pixels; folds: 0 where the map
 /// is one to one, else for a map that pulls 1 where it shows the source turned over (its Jacobian's
-/// determinant has the other sign than that of the whole mesh), and for a mesh that pushes the number of
+/// determinant has the other sign than that of most of the mesh), and for a mesh that pushes the number of
 /// further source points that land on the pixel.
 enum class WarpOutput { color, stmap, error, bound, folds };
 
 struct MeshWarpOptions {
     WarpScheme scheme = WarpScheme::automatic;
-    double tol = 0.01;  ///< source pixels; 0: every pixel exactly in double
+    double tol = 0.01;  ///< source pixels; 0: every pixel in double, whose rounding is the bound
     Filter filter = Filter::antialias;
     Wrap wrap = Wrap::automatic;  ///< automatic is black
     WarpOutput output = WarpOutput::color;
@@ -33,9 +33,10 @@ struct MeshWarpOptions {
 ///
 /// The identity maps the source image onto the whole target image. Where several source points land on a
 /// pixel (a mesh that pushes, folded), those come first where the mesh is not turned over, of these the one
-/// in the cell with the largest number, row by row; where none lands, the picture is black. A fold counts as
-/// up to a quarter of a pixel wide. Between the outermost lines of a mesh and the edges of the image it lies
-/// in, and beyond given points, the map goes on (mesh_data.h, scattered.h).
+/// in the cell with the largest number, row by row; where none lands, the picture is black. Where a pixel
+/// lies so near a fold's edge that double does not tell two source points apart, the fold counts as one, and
+/// the bound spans them. Between the outermost lines of a mesh and the edges of the image it lies in, and
+/// beyond given points, the map goes on (mesh_data.h, scattered.h).
 class MeshWarp {
   public:
     /// Throws Error: a vertex that is not a number, a tolerance below 0, an amount that is not finite, sizes

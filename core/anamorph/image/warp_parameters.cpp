@@ -32,7 +32,9 @@ ParameterTable make_table() {
             "in the source, its vertices say where they go; by default what the file says, else pull"),
         number("amount", "", "1", -kInfinity, kInfinity,
                "how far every vertex is moved: 0 not at all, 1 as given, any other as far in proportion"),
-        size("width and height of the picture, or its width alone; by default the source's"),
+        size(
+            "width and height of the picture, or its width alone; by default the source's, of an ST-map that "
+            "pulls its own"),
         tile(),
         mip(),
         filter(),
@@ -60,11 +62,15 @@ const ParameterTable& warp_parameters() {
     return table;
 }
 
+Source::Size warp_target(const ParameterValues& values, const Source::Size& natural) {
+    const SizeValue size = rows::size_of(values, {natural.width, natural.height});
+    return {size.width, size.height};
+}
+
 WarpRequest read_warp_request(const ParameterValues& values, const Source::Size& source) {
     WarpRequest request;
     request.source = source;
-    const SizeValue size = rows::size_of(values, {source.width, source.height});
-    request.target = {size.width, size.height};
+    request.target = warp_target(values, source);
     MeshWarpOptions& options = request.options;
     options.scheme = chosen<WarpScheme>(values, "scheme", kSchemes);
     options.tol = values.number("tol");

@@ -24,6 +24,9 @@ struct WarpRequest {
 /// Throws Error.
 WarpRequest read_warp_request(const ParameterValues& values, const Source::Size& source);
 
+/// The picture's size, as read_warp_request has it, where `natural` stands in for the source's.
+Source::Size warp_target(const ParameterValues& values, const Source::Size& natural);
+
 /// The same warp with every position in fractions of its image: for pictures of another size than the one
 /// that positions in pixels are given for.
 WarpMap in_fractions(const WarpMap& map, const Source::Size& source, const Source::Size& target);

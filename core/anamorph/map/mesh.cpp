@@ -67,10 +67,45 @@ std::vector<double> lines_of(const std::vector<double>& given, int cells, int si
     return lines;
 }
 
-/// Catmull-Rom, eq. 5.8: the secant through the two neighbours.
-Point<double> secant(const Point<double>& before, const Point<double>& after, double distance) {
-    return (after - before) * (1 / distance);
+using Number = Tracked<double>;
+
+/// Are even or given lines what was asked for, without rounding, and, if need be, with room for all their
+/// halves?
+bool exact_lines(const std::vector<double>& lines, const std::vector<double>& given, int cells, int size,
+                 Units units, int before, bool halves) {
+    for (int i = 0; i <= cells; ++i) {
+        const double line = lines[static_cast<std::size_t>(i + before)];
+        const double unit = units == Units::pixels ? 1 : size;
+        const double left = given.empty() ? std::fma(line, cells, -static_cast<double>(size) * i)
+                                          : std::fma(given[static_cast<std::size_t>(i)], unit, -line);
+        constexpr double kRoom = 1 << (52 - 20 - ControlMesh::kMaxLevels);
+        const bool room = line * kRoom == std::floor(line * kRoom) && std::fabs(line) < 0x1p20;
+        if (left != 0 || (halves && !room)) return false;
+    }
+    return true;
 }
+
+/// Catmull-Rom, eq. 5.8: the secant through the two neighbours.
+Point<Number> secant(const Point<Number>& before, const Point<Number>& after, const Number& distance) {
+    const Number k = Number(1) / distance;
+    return {(after.x - before.x) * k, (after.y - before.y) * k};
+}
+
+Point<double> value_of(const Point<Number>& p) {
+    return {p.x.value, p.y.value};
+}
+double error_of(const Point<Number>& p) {
+    return std::max(p.x.error, p.y.error);
+}
+Point<Number> with_error(const Point<double>& p, double error) {
+    return {{p.x, error}, {p.y, error}};
+}
+double largest(const Point<double>& p) {
+    return std::max(std::fabs(p.x), std::fabs(p.y));
+}
+
+// For the rounding of bounds that are sums themselves.
+constexpr double kSlack = 1 + 0x1p-40;
 
 }  // namespace
 
@@ -145,27 +180,37 @@ class Mesh::Refiner {
     MeshCell coarse_cell(const Place& p, int level) const {
         return level == 1 ? m_mesh.base_cell(p.second, p.first) : m_mesh.cell_of(m_node_at.at(p));
     }
-    Knot coarse_knot(const MeshCell& cell, int corner) const {
-        if (cell.level == 0) return m_mesh.knot(cell.column + (corner & 1), cell.row + (corner >> 1));
-        return m_mesh.m_knots[static_cast<std::size_t>(
-            m_mesh.m_nodes[static_cast<std::size_t>(cell.node)].corner[corner])];
-    }
-
     /// The coarser model at vertex (i, j) of the 3 x 3 in a cell.
     Knot model(const MeshCell& cell, int i, int j) const {
-        if (i != 1 && j != 1) return coarse_knot(cell, i / 2 + j / 2 * 2);
-        using J = Jet2<double>;
-        const Point<J> f = m_mesh.patch(cell)(J::variable(0.5 * i, 1, 0), J::variable(0.5 * j, 0, 1));
-        const double kx = 1 / (cell.x1 - cell.x0), ky = 1 / (cell.y1 - cell.y0);
-        return {{f.x.c[0], f.y.c[0]},
-                {f.x.at(1, 0) * kx, f.y.at(1, 0) * kx},
-                {f.x.at(0, 1) * ky, f.y.at(0, 1) * ky},
-                {f.x.at(1, 1) * kx * ky, f.y.at(1, 1) * kx * ky}};
+        if (i != 1 && j != 1) return m_mesh.knot_at(cell, i / 2 + j / 2 * 2);
+        using J = Jet2<Number>;
+        const J s = J::variable(0.5 * i, 1, 0), t = J::variable(0.5 * j, 0, 1);
+        const Point<J> f = m_mesh.patch(cell)(s, t);
+        const ElementErrors errors = m_mesh.element_errors(cell);
+        const std::array<J, 4> a = hermite_basis(s), b = hermite_basis(t);
+        // A derivative, p times along s and q times along t, with what the elements' errors make of it.
+        const auto derivative = [&](int p, int q) {
+            double carried = 0;
+            for (std::size_t m = 0; m < 4; ++m)
+                for (std::size_t n = 0; n < 4; ++n)
+                    carried += a[m].at(p, 0).size() * b[n].at(0, q).size() * errors[m][n];
+            const auto of = [&](const J& c) {
+                return Number(c.at(p, q).value, (c.at(p, q).error + carried) * kSlack);
+            };
+            return Uncertain{of(f.x), of(f.y)};
+        };
+        const Number kx = Number(1) / (m_mesh.place(cell.x1) - m_mesh.place(cell.x0)),
+                     ky = Number(1) / (m_mesh.place(cell.y1) - m_mesh.place(cell.y0));
+        const auto times = [](const Uncertain& p, const Number& by) { return Uncertain{p.x * by, p.y * by}; };
+        const Uncertain value = derivative(0, 0), fx = times(derivative(1, 0), kx),
+                        fy = times(derivative(0, 1), ky), fxy = times(times(derivative(1, 1), kx), ky);
+        return {value_of(value), value_of(fx), value_of(fy), value_of(fxy),
+                error_of(value), error_of(fx), error_of(fy), error_of(fxy)};
     }
 
     /// Values given for a level, as displacements.
-    std::map<Place, Point<double>> given_values(int level) const {
-        std::map<Place, Point<double>> values;
+    std::map<Place, Uncertain> given_values(int level) const {
+        std::map<Place, Uncertain> values;
         const ControlMesh::Level& given = m_given.levels[static_cast<std::size_t>(level - 1)];
         for (std::size_t n = 0; n < given.vertices.size(); ++n) {
             const ControlMesh::Vertex& v = given.vertices[n];
@@ -185,7 +230,7 @@ class Mesh::Refiner {
     }
 
     void build_level(int level) {
-        const std::map<Place, Point<double>> given = given_values(level);
+        const std::map<Place, Uncertain> given = given_values(level);
         const std::set<Place>& cut = m_cut[static_cast<std::size_t>(level - 1)];
         std::map<Place, int> knots;
         // Values first: the derivatives of a vertex need its neighbours'.
@@ -198,16 +243,19 @@ class Mesh::Refiner {
                     if (!is_new) continue;
                     Knot knot = model(cell, i, j);
                     const auto own = given.find(v);
-                    if (own != given.end() && is_real(v, level)) knot.f = own->second;
+                    if (own != given.end() && is_real(v, level)) {
+                        knot.f = value_of(own->second);
+                        knot.f_error = error_of(own->second);
+                    }
                     m_mesh.m_knots.push_back(knot);
                 }
         }
         for (const auto& [v, knot] : knots)
             if (is_real(v, level))
                 m_mesh.set_derivatives(m_mesh.m_knots[static_cast<std::size_t>(knot)], level, v.second,
-                                       v.first, [&](int column, int row) -> const Point<double>& {
-                                           const int k = knots.at({row, column});
-                                           return m_mesh.m_knots[static_cast<std::size_t>(k)].f;
+                                       v.first, [&](int column, int row) {
+                                           const auto k = static_cast<std::size_t>(knots.at({row, column}));
+                                           return with_error(m_mesh.m_knots[k].f, m_mesh.m_knots[k].f_error);
                                        });
 
         // Then the cells.
@@ -259,15 +307,21 @@ Mesh::Mesh(const ControlMesh& mesh, const Extent& from, const Extent& to, double
     int before_x = 0, before_y = 0;
     m_x = lines_of(mesh.x_lines, mesh.columns, from.width, mesh.units, name, "x", before_x);
     m_y = lines_of(mesh.y_lines, mesh.rows, from.height, mesh.units, name, "y", before_y);
+    const bool halves = !mesh.levels.empty();
+    if (exact_lines(m_x, mesh.x_lines, mesh.columns, from.width, mesh.units, before_x, halves) &&
+        exact_lines(m_y, mesh.y_lines, mesh.rows, from.height, mesh.units, before_y, halves))
+        m_line_rounding = 0;
 
     // Displacements at the given vertices, then at the lines added around them.
     m_values.resize(m_x.size() * m_y.size());
+    m_value_errors.resize(m_values.size());
     auto given = mesh.vertices.begin();
     for (int r = before_y; r < before_y + down; ++r)
         for (int c = before_x; c < before_x + across; ++c)
-            value(c, r) = displacement(
-                *given++, mesh.units, m_x[static_cast<std::size_t>(c)], m_y[static_cast<std::size_t>(r)],
-                amount, [&] { return name + ": vertex " + text_of(c - before_x, r - before_y); });
+            set_value(c, r,
+                      displacement(*given++, mesh.units, m_x[static_cast<std::size_t>(c)],
+                                   m_y[static_cast<std::size_t>(r)], amount,
+                                   [&] { return name + ": vertex " + text_of(c - before_x, r - before_y); }));
     extend(before_x, before_y, across, down);
     if (m_values.size() <= kKeptKnots) {
         m_base_knots.reserve(m_values.size());
@@ -275,40 +329,58 @@ Mesh::Mesh(const ControlMesh& mesh, const Extent& from, const Extent& to, double
             for (int c = 0; c <= columns(); ++c) m_base_knots.push_back(compute_knot(c, r));
     }
     if (!mesh.levels.empty()) Refiner(*this, mesh, amount, name, before_x, before_y).build();
-    m_orientation = outline_area() < 0 ? -1 : 1;
+    m_orientation = turned_area() > 0 ? -1 : 1;
 }
 
 /// Of a vertex at (x, y); `entry()` names it.
 template <class Entry>
-Point<double> Mesh::displacement(const Point<double>& to, Units units, double x, double y, double amount,
-                                 const Entry& entry) const {
+Mesh::Uncertain Mesh::displacement(const Point<double>& to, Units units, double x, double y, double amount,
+                                   const Entry& entry) const {
     const bool pixels = units == Units::pixels;
-    const Point<double> at{pixels ? to.x : to.x * m_to.width, pixels ? to.y : to.y * m_to.height};
-    if (!(std::fabs(at.x) <= ControlMesh::kMaxPosition && std::fabs(at.y) <= ControlMesh::kMaxPosition))
+    const Uncertain at{pixels ? Number(to.x) : Number(to.x) * Number(m_to.width),
+                       pixels ? Number(to.y) : Number(to.y) * Number(m_to.height)};
+    if (!(at.x.size() <= ControlMesh::kMaxPosition && at.y.size() <= ControlMesh::kMaxPosition))
         throw Error(entry(), "[" + text_of(to.x) + ", " + text_of(to.y) + "]",
                     "allowed are numbers that stand for at most 1e8 pixels");
-    const Point<double> d = (at - Point<double>{x * m_scale.x, y * m_scale.y}) * amount;
-    if (!(std::fabs(d.x) <= 1e3 * ControlMesh::kMaxPosition &&
-          std::fabs(d.y) <= 1e3 * ControlMesh::kMaxPosition))
+    const auto moved = [&](const Number& there, double line, int to_size, int from_size) {
+        return (there - place(line) * (Number(to_size) / Number(from_size))) * Number(amount);
+    };
+    const Uncertain d{moved(at.x, x, m_to.width, m_from.width), moved(at.y, y, m_to.height, m_from.height)};
+    if (!(d.x.size() <= 1e3 * ControlMesh::kMaxPosition && d.y.size() <= 1e3 * ControlMesh::kMaxPosition))
         throw Error("amount", text_of(amount), "it moves a vertex by more than 1e11 pixels");
     return d;
 }
 
+Mesh::Uncertain Mesh::value(int column, int row) const {
+    const std::size_t i = index(column, row);
+    return with_error(m_values[i], double{m_value_errors[i]});
+}
+
+void Mesh::set_value(int column, int row, const Uncertain& value) {
+    const std::size_t i = index(column, row);
+    m_values[i] = value_of(value);
+    // Upwards, also where float has no number so small.
+    m_value_errors[i] = static_cast<float>(error_of(value) * (1 + 0x1p-22) + 1e-37);
+}
+
 /// Linear extrapolation to the lines that were added around the given ones.
 void Mesh::extend(int before_x, int before_y, int across, int down) {
-    const auto beyond = [](const Point<double>& edge, const Point<double>& inner, double at_edge,
-                           double at_inner, double at) {
-        return edge + (inner - edge) * ((at - at_edge) / (at_inner - at_edge));
+    const auto beyond = [&](const Uncertain& edge, const Uncertain& inner, double at_edge, double at_inner,
+                            double at) {
+        const Number k = (place(at) - place(at_edge)) / (place(at_inner) - place(at_edge));
+        return Uncertain{edge.x + (inner.x - edge.x) * k, edge.y + (inner.y - edge.y) * k};
     };
     const auto columns_from = [&](int edge, int inner, int to) {
         for (int r = before_y; r < before_y + down; ++r)
-            value(to, r) = beyond(value(edge, r), value(inner, r), line(m_x, 0, edge), line(m_x, 0, inner),
-                                  line(m_x, 0, to));
+            set_value(to, r,
+                      beyond(value(edge, r), value(inner, r), line(m_x, 0, edge), line(m_x, 0, inner),
+                             line(m_x, 0, to)));
     };
     const auto rows_from = [&](int edge, int inner, int to) {
         for (int c = 0; c <= columns(); ++c)
-            value(c, to) = beyond(value(c, edge), value(c, inner), line(m_y, 0, edge), line(m_y, 0, inner),
-                                  line(m_y, 0, to));
+            set_value(c, to,
+                      beyond(value(c, edge), value(c, inner), line(m_y, 0, edge), line(m_y, 0, inner),
+                             line(m_y, 0, to)));
     };
     const int right = before_x + across, bottom = before_y + down;
     if (before_x) columns_from(1, 2, 0);
@@ -317,22 +389,23 @@ void Mesh::extend(int before_x, int before_y, int across, int down) {
     if (bottom <= rows()) rows_from(bottom - 1, bottom - 2, bottom);
 }
 
-/// Twice the area that the outline of the mesh surrounds in "to": positive where it runs as in "from".
-double Mesh::outline_area() const {
-    double area = 0;
+/// The area in "from" of the cells of level 0 that are turned over, less that of those that are not.
+double Mesh::turned_area() const {
     const auto position = [&](int c, int r) {
-        return value(c, r) + Point<double>{line(m_x, 0, c) * m_scale.x, line(m_y, 0, r) * m_scale.y};
+        return m_values[index(c, r)] +
+               Point<double>{line(m_x, 0, c) * m_scale.x, line(m_y, 0, r) * m_scale.y};
     };
-    Point<double> last = position(0, 0);
-    const auto go = [&](int c, int r) {
-        const Point<double> next = position(c, r);
-        area += last.x * next.y - last.y * next.x;
-        last = next;
-    };
-    for (int c = 1; c <= columns(); ++c) go(c, 0);
-    for (int r = 1; r <= rows(); ++r) go(columns(), r);
-    for (int c = columns() - 1; c >= 0; --c) go(c, rows());
-    for (int r = rows() - 1; r >= 0; --r) go(0, r);
+    double area = 0;
+    for (int r = 0; r < rows(); ++r)
+        for (int c = 0; c < columns(); ++c) {
+            // Of a quadrilateral: the product of its diagonals.
+            const Point<double> p = position(c + 1, r + 1) - position(c, r),
+                                q = position(c, r + 1) - position(c + 1, r);
+            const double turn = p.x * q.y - p.y * q.x;
+            const MeshCell cell = base_cell(c, r);
+            area -= (turn > 0) * ((cell.x1 - cell.x0) * (cell.y1 - cell.y0));
+            area += (turn < 0) * ((cell.x1 - cell.x0) * (cell.y1 - cell.y0));
+        }
     return area;
 }
 
@@ -403,24 +476,34 @@ template <class Value>
 void Mesh::set_derivatives(Knot& knot, int level, int column, int row, const Value& value_at) const {
     const int left = std::max(column - 1, 0), right = std::min(column + 1, columns() << level);
     const int up = std::max(row - 1, 0), down = std::min(row + 1, rows() << level);
-    const double dx = line(m_x, level, right) - line(m_x, level, left);
-    const double dy = line(m_y, level, down) - line(m_y, level, up);
-    knot.fx = secant(value_at(left, row), value_at(right, row), dx);
-    knot.fy = secant(value_at(column, up), value_at(column, down), dy);
-    knot.fxy = secant(secant(value_at(left, up), value_at(right, up), dx),
-                      secant(value_at(left, down), value_at(right, down), dx), dy);
+    const Number dx = place(line(m_x, level, right)) - place(line(m_x, level, left));
+    const Number dy = place(line(m_y, level, down)) - place(line(m_y, level, up));
+    const Uncertain fx = secant(value_at(left, row), value_at(right, row), dx);
+    const Uncertain fy = secant(value_at(column, up), value_at(column, down), dy);
+    const Uncertain fxy = secant(secant(value_at(left, up), value_at(right, up), dx),
+                                 secant(value_at(left, down), value_at(right, down), dx), dy);
+    knot.fx = value_of(fx);
+    knot.fy = value_of(fy);
+    knot.fxy = value_of(fxy);
+    knot.fx_error = error_of(fx);
+    knot.fy_error = error_of(fy);
+    knot.fxy_error = error_of(fxy);
 }
 
 Mesh::Knot Mesh::compute_knot(int column, int row) const {
-    Knot knot{value(column, row), {}, {}, {}};
-    set_derivatives(knot, 0, column, row, [&](int c, int r) -> const Point<double>& { return value(c, r); });
+    const std::size_t i = index(column, row);
+    Knot knot{m_values[i], {}, {}, {}, double{m_value_errors[i]}};
+    set_derivatives(knot, 0, column, row, [&](int c, int r) { return value(c, r); });
     return knot;
 }
 
 Mesh::Knot Mesh::knot(int column, int row) const {
-    return m_base_knots.empty()
-               ? compute_knot(column, row)
-               : m_base_knots[static_cast<std::size_t>(row) * m_x.size() + static_cast<std::size_t>(column)];
+    return m_base_knots.empty() ? compute_knot(column, row) : m_base_knots[index(column, row)];
+}
+
+Mesh::Knot Mesh::knot_at(const MeshCell& cell, int corner) const {
+    if (cell.node < 0) return knot(cell.column + (corner & 1), cell.row + (corner >> 1));
+    return m_knots[static_cast<std::size_t>(m_nodes[static_cast<std::size_t>(cell.node)].corner[corner])];
 }
 
 Patch Mesh::patch(const MeshCell& cell) const {
@@ -428,15 +511,80 @@ Patch Mesh::patch(const MeshCell& cell) const {
     const double w = cell.x1 - cell.x0, h = cell.y1 - cell.y0;
     for (std::size_t corner = 0; corner < 4; ++corner) {
         const std::size_t i = corner & 1, j = corner >> 1;
-        const Knot k = cell.node < 0 ? knot(cell.column + static_cast<int>(i), cell.row + static_cast<int>(j))
-                                     : m_knots[static_cast<std::size_t>(
-                                           m_nodes[static_cast<std::size_t>(cell.node)].corner[corner])];
+        const Knot k = knot_at(cell, static_cast<int>(corner));
         p.g[i][j] = k.f;
         p.g[i + 2][j] = k.fx * w;
         p.g[i][j + 2] = k.fy * h;
         p.g[i + 2][j + 2] = k.fxy * (w * h);
     }
     return p;
+}
+
+Mesh::ElementErrors Mesh::element_errors(const MeshCell& cell) const {
+    const Number w = place(cell.x1) - place(cell.x0), h = place(cell.y1) - place(cell.y0);
+    const auto error_times = [](const Point<double>& slope, double error, const Number& by) {
+        return (Number(largest(slope), error) * by).error;
+    };
+    ElementErrors errors{};
+    for (std::size_t corner = 0; corner < 4; ++corner) {
+        const std::size_t i = corner & 1, j = corner >> 1;
+        const Knot k = knot_at(cell, static_cast<int>(corner));
+        errors[i][j] = k.f_error;
+        errors[i + 2][j] = error_times(k.fx, k.fx_error, w);
+        errors[i][j + 2] = error_times(k.fy, k.fy_error, h);
+        errors[i + 2][j + 2] = error_times(k.fxy, k.fxy_error, w * h);
+    }
+    return errors;
+}
+
+// Two causes. The elements' own errors: on [0, 1] the basis functions of values sum to 1 and those of slopes
+// reach 4/27. And the lines': (x - x0) / (x1 - x0) errs by at most 3 e / (w - 2 e) where a line errs by e,
+// which moves a value by that times its derivative; as basis functions of values sum to 1, values count in it
+// by their difference from one of them, 3/2 each, and slopes by 1 (the twists by less).
+double Mesh::data_error(const MeshCell& cell, const Patch& patch) const {
+    const ElementErrors errors = element_errors(cell);
+    double most_value = 0, others = 0, steep = 0;
+    for (std::size_t i = 0; i < 4; ++i)
+        for (std::size_t j = 0; j < 4; ++j) {
+            const bool value = i < 2 && j < 2;
+            const Point<double> g = value ? patch.g[i][j] - patch.g[0][0] : patch.g[i][j];
+            steep += (value ? 1.5 : 1) * largest(g);
+            if (value)
+                most_value = std::max(most_value, errors[i][j]);
+            else
+                others += errors[i][j] * (4.0 / 27);
+        }
+    const auto shift = [&](double from, double to) {
+        const double e = std::max(place(from).error, place(to).error), room = to - from - 2 * e;
+        return room > 0 ? 3 * e / room : HUGE_VAL;
+    };
+    return (most_value + others + steep * (shift(patch.x0, patch.x1) + shift(patch.y0, patch.y1))) * kSlack;
+}
+
+// With d and e the largest displacement of a vertex around and its error: a slope spans the cell, so that it
+// is at most 2 d in units of it, and a twist 4 d; together with the four values 36 d, and 36 e. A slope's own
+// rounding is that of both its spans, at most 12 lines' rounding over the cell's, and 8 u; twists twice that.
+Mesh::Rough Mesh::rough(double x0, double y0, double x1, double y1) const {
+    const int c0 = std::max(line_below(m_x, x0) - 1, 0), c1 = std::min(line_below(m_x, x1) + 2, columns());
+    const int r0 = std::max(line_below(m_y, y0) - 1, 0), r1 = std::min(line_below(m_y, y1) + 2, rows());
+    double d = 0, e = 0;
+    for (int r = r0; r <= r1; ++r)
+        for (int c = c0; c <= c1; ++c) {
+            d = std::max(d, largest(m_values[index(c, r)]));
+            e = std::max(e, double{m_value_errors[index(c, r)]});
+        }
+    double shift = 0;
+    const auto look = [&](const std::vector<double>& lines, int first, int last) {
+        for (auto i = static_cast<std::size_t>(first); i < static_cast<std::size_t>(last); ++i) {
+            const double of_line = std::max(place(lines[i]).error, place(lines[i + 1]).error);
+            const double room = lines[i + 1] - lines[i] - 2 * of_line;
+            shift = std::max(shift, room > 0 ? of_line / room : HUGE_VAL);
+        }
+    };
+    look(m_x, c0, c1);
+    look(m_y, r0, r1);
+    const double size = 36 * d, slopes = 24 * shift + 16 * 0x1p-53, parameters = 2 * 1.5 * 3 * shift;
+    return {(36 * e + size * (slopes + parameters)) * kSlack, size};
 }
 
 }  // namespace anamorph

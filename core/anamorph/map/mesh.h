@@ -18,6 +18,7 @@
 
 #include "anamorph/map/mesh_data.h"
 #include "anamorph/number/jet.h"
+#include "anamorph/number/tracked.h"
 
 namespace anamorph {
 
@@ -88,6 +89,17 @@ class Mesh {
     /// its left (top) edge belongs to the neighbour instead.
     MeshCell leaf_at(double x, double y, bool left = false, bool above = false) const;
     Patch patch(const MeshCell& cell) const;
+    /// How far the map that a cell's patch stands for is, anywhere in the cell and in either coordinate, from
+    /// the one that the given numbers define: the rounding of lines, displacements and derivatives.
+    double data_error(const MeshCell& cell, const Patch& patch) const;
+
+    /// The same over all cells of level 0 that meet a rectangle, from their vertices alone, and how large the
+    /// elements of each are together: cheaper than cell by cell, and more.
+    struct Rough {
+        double data_error, size;
+    };
+    Rough rough(double x0, double y0, double x1, double y1) const;
+    bool has_levels() const { return !m_nodes.empty(); }
 
     /// Calls body(cell) for the cells that meet [x0, x1] x [y0, y1], in rows of level 0.
     template <class Body>
@@ -108,17 +120,27 @@ class Mesh {
             patch((x - patch.x0) / T(patch.x1 - patch.x0), (y - patch.y0) / T(patch.y1 - patch.y0));
         return {x * m_scale.x + d.x, y * m_scale.y + d.y};
     }
+    /// The same of the cell's own parameters, 0 to 1: nothing is lost where a cell is thin.
+    template <class T>
+    Point<T> inside(const Patch& patch, const T& s, const T& t) const {
+        const Point<T> d = patch(s, t);
+        return {(s * (patch.x1 - patch.x0) + patch.x0) * m_scale.x + d.x,
+                (t * (patch.y1 - patch.y0) + patch.y0) * m_scale.y + d.y};
+    }
     /// The map.
     Point<double> at(double x, double y) const { return at(patch(cell_at(x, y)), x, y); }
 
-    /// +1, or -1 where the outline of the mesh runs the other way round than the image's.
+    /// +1, or -1 where most of the mesh (of the area that its cells take in "from") is turned over.
     double orientation() const { return m_orientation; }
 
   private:
-    /// What is known at a vertex: displacement and derivatives per pixel.
+    /// What is known at a vertex: displacement and derivatives per pixel; and how far each is from what the
+    /// given numbers define, in either coordinate.
     struct Knot {
         Point<double> f, fx, fy, fxy;
+        double f_error = 0, fx_error = 0, fy_error = 0, fxy_error = 0;
     };
+    using Uncertain = Point<Tracked<double>>;
     /// A cell of level 1 or more.
     struct Node {
         int level, column, row;
@@ -134,21 +156,27 @@ class Mesh {
     MeshCell base_cell(int column, int row) const;
     MeshCell cell_of(int node) const;
     int child_of(const MeshCell& cell) const;
-    Point<double>& value(int column, int row) {
-        return m_values[static_cast<std::size_t>(row) * m_x.size() + static_cast<std::size_t>(column)];
+    std::size_t index(int column, int row) const {
+        return static_cast<std::size_t>(row) * m_x.size() + static_cast<std::size_t>(column);
     }
-    const Point<double>& value(int column, int row) const {
-        return const_cast<Mesh*>(this)->value(column, row);
-    }
+    Uncertain value(int column, int row) const;
+    void set_value(int column, int row, const Uncertain& value);
     template <class Value>
     void set_derivatives(Knot& knot, int level, int column, int row, const Value& value) const;
     Knot compute_knot(int column, int row) const;
     Knot knot(int column, int row) const;
+    /// A line's position with its rounding, whatever its level.
+    Tracked<double> place(double line) const { return {line, m_line_rounding * std::fabs(line)}; }
+    Knot knot_at(const MeshCell& cell, int corner) const;
+    /// Of each element of a patch's geometry, in either coordinate: how far it is from what the given numbers
+    /// define.
+    using ElementErrors = std::array<std::array<double, 4>, 4>;
+    ElementErrors element_errors(const MeshCell& cell) const;
     template <class Entry>
-    Point<double> displacement(const Point<double>& to, Units units, double x, double y, double amount,
-                               const Entry& entry) const;
+    Uncertain displacement(const Point<double>& to, Units units, double x, double y, double amount,
+                           const Entry& entry) const;
     void extend(int before_x, int before_y, int across, int down);
-    double outline_area() const;
+    double turned_area() const;
 
     template <class Body>
     void each_part(const MeshCell& cell, const Body& body) const {
@@ -160,9 +188,11 @@ class Mesh {
     Extent m_from, m_to;
     Point<double> m_scale;
     std::vector<double> m_x, m_y;
-    std::vector<Point<double>> m_values;  ///< displacements at the vertices of level 0
-    std::vector<Knot> m_base_knots;       ///< of level 0, unless there are very many
-    std::vector<int> m_base_child;        ///< of the cells of level 0, where there are more levels
+    double m_line_rounding = 4 * 0x1p-53;  ///< of a line's magnitude; 0 where all are exact
+    std::vector<Point<double>> m_values;   ///< displacements at the vertices of level 0
+    std::vector<float> m_value_errors;     ///< of either coordinate
+    std::vector<Knot> m_base_knots;        ///< of level 0, unless there are very many
+    std::vector<int> m_base_child;         ///< of the cells of level 0, where there are more levels
     std::vector<Node> m_nodes;
     std::vector<Knot> m_knots;  ///< of the nodes
     double m_orientation = 1;

@@ -31,6 +31,8 @@ struct ControlMesh {
 
     Units units = Units::pixels;
     Direction direction = Direction::pull;
+    /// Of the image that the mesh was made of, an ST-map; 0: of none.
+    int width = 0, height = 0;
     int columns = 1, rows = 1;
     /// (columns + 1) (rows + 1) of them, row by row from the top left.
     std::vector<Point<double>> vertices;

@@ -228,6 +228,8 @@ WarpMap mesh_from_stmap(const float* uv, int width, int height, std::ptrdiff_t p
     const std::vector<int> columns = taken(width), rows = taken(height);
     ControlMesh mesh;
     mesh.units = Units::fractions;
+    mesh.width = width;
+    mesh.height = height;
     mesh.columns = static_cast<int>(columns.size()) - 1;
     mesh.rows = static_cast<int>(rows.size()) - 1;
     if (mesh.columns > ControlMesh::kMaxCells || mesh.rows > ControlMesh::kMaxCells ||

@@ -20,15 +20,19 @@ namespace anamorph {
 /// One cubic: a triangle with an edge of the triangulation and the middle of its triangle as corners.
 struct CubicTriangle {
     Point<double> corner[3];
-    /// Barycentric coordinates are a (x - corner[2].x) + b (y - corner[2].y), for corners 0 and 1.
-    double a[2], b[2];
+    /// Barycentric coordinates for corners 0 and 1 are c + a (x - base.x) + b (y - base.y). The base is a
+    /// whole pixel of the image, so that differences lose nothing.
+    Point<double> base;
+    double a[2], b[2], c[2];
     /// Bezier points of the displacement: 300, 030, 003, 210, 120, 201, 021, 102, 012, 111.
     Point<double> bezier[10];
+    /// How far c, a and b, and any coordinate of the Bezier points are from what the given points define.
+    double c_error, slope_error, bezier_error[10];
 
     template <class T>
     Point<T> operator()(const T& x, const T& y) const {
-        const T dx = x - corner[2].x, dy = y - corner[2].y;
-        const T u = dx * a[0] + dy * b[0], v = dx * a[1] + dy * b[1], w = 1.0 - u - v;
+        const T dx = x - base.x, dy = y - base.y;
+        const T u = dx * a[0] + dy * b[0] + c[0], v = dx * a[1] + dy * b[1] + c[1], w = 1.0 - u - v;
         const T uu = square(u), vv = square(v), ww = square(w);
         const std::array<T, 10> weight{uu * u,       vv * v,         ww * w,       uu * v * 3.0,
                                        vv * u * 3.0, uu * w * 3.0,   vv * w * 3.0, ww * u * 3.0,
@@ -40,6 +44,21 @@ struct CubicTriangle {
         }
         return sum;
     }
+
+    /// What both barycentric coordinates together err by at most in a rectangle, as computed in double.
+    double place_error(const Bounds& box) const;
+    /// The largest magnitudes of the three barycentric coordinates in a rectangle.
+    struct Reach {
+        double u, v, w;
+    };
+    Reach reach(const Bounds& box) const;
+    /// With coordinates of at most these magnitudes: the sum of the magnitudes of all terms of a coordinate
+    /// of the displacement, of the errors of its Bezier points, and of its derivatives by the first two
+    /// coordinates.
+    struct Terms {
+        double value, error, slope;
+    };
+    Terms terms(const Reach& reach) const;
 
     /// The least barycentric coordinate: not negative inside.
     double inside(double x, double y) const;
