@@ -190,6 +190,12 @@ inline Jet<T, N> operator*(const Jet<T, N>& a, double b) {
     return r;
 }
 template <class T, int N>
+requires(!std::is_arithmetic_v<T>) inline Jet<T, N> operator*(const Jet<T, N>& a, const T& b) {
+    Jet<T, N> r;
+    for (int i = 0; i < Jet<T, N>::kSize; ++i) r.c[i] = a.c[i] * b;
+    return r;
+}
+template <class T, int N>
 inline Jet<T, N> operator*(double a, const Jet<T, N>& b) {
     return b * a;
 }
@@ -297,6 +303,25 @@ inline Jet<T, N> sinh(const Jet<T, N>& a) {
     return s;
 }
 
+/// sinh(a) and 1, both over cosh of a's constant part: no a overflows them.
+template <class T, int N>
+inline void scaled_sinh(const Jet<T, N>& a, Jet<T, N>& s, T& one) {
+    using std::cosh;
+    using std::tanh;
+    Jet<T, N> c(T(1));
+    s = Jet<T, N>(tanh(a.c[0]));
+    one = T(1) / cosh(a.c[0]);
+    jet_detail::oscillate<1>(s, c, a);
+}
+template <class T>
+requires(std::is_floating_point_v<T> || std::is_same_v<T, Interval>) inline void scaled_sinh(const T& a, T& s,
+                                                                                             T& one) {
+    using std::cosh;
+    using std::tanh;
+    s = tanh(a);
+    one = T(1) / cosh(a);
+}
+
 /// E g sqrt(1 + a^2) = E a
 template <class T, int N>
 inline Jet<T, N> asinh(const Jet<T, N>& a) {
@@ -339,6 +364,58 @@ inline long double lower_end(long double a) {
 }
 inline double lower_end(const Interval& a) {
     return a.lo;
+}
+
+/// The largest magnitude of the constant part.
+inline double upper_magnitude(double a) {
+    return std::fabs(a);
+}
+inline double upper_magnitude(long double a) {
+    return static_cast<double>(std::fabs(a));
+}
+inline double upper_magnitude(const Interval& a) {
+    return magnitude(a);
+}
+template <class T, int N>
+double upper_magnitude(const Jet<T, N>& a) {
+    return upper_magnitude(a.c[0]);
+}
+
+/// 1 or -1: the sign of the constant part, 0 counted positive; 0 where members differ.
+inline int sign(double a) {
+    return a < 0 ? -1 : 1;
+}
+inline int sign(long double a) {
+    return a < 0 ? -1 : 1;
+}
+inline int sign(const Interval& a) {
+    return a.lo >= 0 ? 1 : a.hi < 0 ? -1 : 0;
+}
+template <class T, int N>
+int sign(const Jet<T, N>& a) {
+    return sign(a.c[0]);
+}
+
+/// What is at least 0 but for rounding.
+inline double positive_part(double a) {
+    return a < 0 ? 0 : a;
+}
+inline long double positive_part(long double a) {
+    return a < 0 ? 0 : a;
+}
+inline Interval positive_part(const Interval& a) {
+    return {a.lo < 0 ? 0 : a.lo, a.hi < 0 ? 0 : a.hi};
+}
+template <class T, int N>
+Jet<T, N> positive_part(Jet<T, N> a) {
+    a.c[0] = positive_part(a.c[0]);
+    return a;
+}
+
+/// Two forms of one value, where members are to be computed by either.
+template <class T>
+const T& either(const T& a, const T&) {
+    return a;
 }
 
 /// The polynomial of `Degree` about 0 as one about `shift`, in units of `scale`, by repeated division;
