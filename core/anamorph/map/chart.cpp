@@ -11,7 +11,7 @@ namespace {
 
 constexpr long double kDegree = std::numbers::pi_v<long double> / 180;
 // How much farther out than an image, or than 45 degrees, the points of its lens may lie.
-constexpr double kFarOut = 1 << 20;
+constexpr double kFarOut = 1024;
 constexpr int kMaxSize = 1 << 24;
 
 constexpr std::pair<std::string_view, Projection> kNames[] = {

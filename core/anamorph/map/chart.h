@@ -171,7 +171,9 @@ class Chart {
     double scale_y() const { return m_sy.value(); }
     /// Source points of one ray lie so many pixels apart, or any multiple: a full turn, infinite for lenses
     /// without azimuth.
-    double turn() const { return has_azimuth() ? 2 * std::numbers::pi * scale_x() : HUGE_VAL; }
+    double turn() const {
+        return m_closed ? period() : has_azimuth() ? 2 * std::numbers::pi * scale_x() : HUGE_VAL;
+    }
 
     /// The local ray through an image point. Meaningful where inside() >= 0.
     template <class T>
@@ -186,7 +188,8 @@ class Chart {
     Point<T> local_point(const Ray<T>& local, const Branch& branch) const;
 
     /// > 0 where a local ray is seen by the lens and lies on the branch's piece. A lens that cannot see all
-    /// directions ends where their tangents are a million times those of its image's edges, and of 45 degrees.
+    /// directions ends where their tangents are 1024 times those of its image's edges, and of 45
+    /// degrees.
     template <class T>
     T sees(const Ray<T>& local) const;
     /// Do all directions have a point, and on one piece?
@@ -280,7 +283,8 @@ Ray<T> Chart::local_ray(const T& x, const T& y, const Branch& branch) const {
         }
         case Projection::fisheye: {
             // sin t along the radius, cos t along the axis
-            const auto cos = measured<T>(around.cos, around.error), sin = measured<T>(around.sin, around.error);
+            const auto cos = measured<T>(around.cos, around.error),
+                       sin = measured<T>(around.sin, around.error);
             const T u = p.x * cos + p.y * sin, v = p.y * cos - p.x * sin;
             const T r = sqrt(square(u) + square(v));
             if (is_zero(constant_part(r))) return {u, v, T(1)};
@@ -291,7 +295,7 @@ Ray<T> Chart::local_ray(const T& x, const T& y, const Branch& branch) const {
         case Projection::equisolid: {
             // sin t = r sqrt(1 - r^2 / 4), cos t = 1 - r^2 / 2
             const T r2 = square(p.x) + square(p.y);
-            const T k = sqrt(positive_part(T(1.0 - r2 * 0.25)));
+            const T k = sqrt(without_hair(T(1.0 - r2 * 0.25)));
             return {p.x * k, p.y * k, 1.0 - r2 * 0.5};
         }
         case Projection::stereographic: {
@@ -369,7 +373,8 @@ Point<T> Chart::local_point(const Ray<T>& local, const Branch& branch) const {
             if (axis && sign(local.z) < 0)
                 return image(Constant(std::numbers::pi_v<long double>).as<T>(), T(0));
             const T k = axis ? T(T(1) / local.z) : T(tilt(rho, local.z) / rho);
-            const auto cos = measured<T>(around.cos, around.error), sin = measured<T>(around.sin, around.error);
+            const auto cos = measured<T>(around.cos, around.error),
+                       sin = measured<T>(around.sin, around.error);
             return image((local.x * cos - local.y * sin) * k, (local.y * cos + local.x * sin) * k);
         }
         case Projection::equisolid: {

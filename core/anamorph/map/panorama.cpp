@@ -8,8 +8,8 @@ namespace {
 
 using Turn = std::array<std::array<Constant, 3>, 3>;
 
-/// Sine and cosine of an angle in degrees. A turn is taken off, then right angles, all of them exactly: no angle
-/// is too large, and multiples of 90 degrees give 0 and 1.
+/// Sine and cosine of an angle in degrees. A turn is taken off, then right angles, all of them exactly: no
+/// angle is too large, and multiples of 90 degrees give 0 and 1.
 struct Angle {
     long double sin, cos;
 
@@ -40,8 +40,8 @@ Turn turn_of(const Orientation& orientation) {
     // A sine or cosine is off by its argument's rounding and libm's, two products and a sum by a unit each:
     // 32 units of each term.
     const auto sum = [](long double a, long double b) {
-        return Constant(a + b, static_cast<double>(std::fabs(a) + std::fabs(b)) * 32 *
-                                   Rounded<long double>::kUnit);
+        return Constant(a + b,
+                        static_cast<double>(std::fabs(a) + std::fabs(b)) * 32 * Rounded<long double>::kUnit);
     };
     const auto product = [](long double a) { return Constant(a); };
     return {{{sum(y.cos * r.cos, y.sin * p.sin * r.sin), product(p.cos * r.sin),
@@ -110,7 +110,10 @@ double Panorama::exact_error(const Interval& x, const Interval& y, int piece) co
     for (std::size_t i = 0; i < pieces; ++i) {
         if (pieces > 1 && along[i].range.hi + along[i].error < most) continue;
         const Point<R> p = m_source.point(ray, static_cast<int>(i));
-        const double distance = std::sqrt(p.x.error * p.x.error + p.y.error * p.y.error);
+        // The result is kept in double.
+        const double unit = std::is_same_v<Real, double> ? 0 : 0x1p-53;
+        const double distance =
+            std::hypot(p.x.error + unit * p.x.computed_size(), p.y.error + unit * p.y.computed_size());
         if (!(distance <= error)) error = distance * rounded_detail::kUp;
     }
     return error;

@@ -59,10 +59,10 @@ class Panorama {
         return std::isfinite(source_point.x) && std::isfinite(source_point.y);
     }
 
-    /// Bounds the rounding of exact<Real> over a box of target points: the distance from the truth in source
-    /// pixels. Around a source with azimuths, points a full turn apart count as one; on a cube, so do those of
-    /// one ray on two faces. 0 where no point has a source point; infinite where it is not certain that there
-    /// is one.
+    /// Bounds the rounding of exact<Real>, its result kept in double, over a box of target points: the
+    /// distance from the truth in source pixels. Around a source with azimuths, points a full turn apart
+    /// count as one; on a cube, so do those of one ray on two faces. 0 where no point has a source point;
+    /// infinite where it is not certain that there is one.
     template <class Real>
     double exact_error(const Interval& x, const Interval& y, int piece) const;
 

@@ -396,19 +396,20 @@ int sign(const Jet<T, N>& a) {
     return sign(a.c[0]);
 }
 
-/// What is at least 0 but for rounding.
-inline double positive_part(double a) {
-    return a < 0 ? 0 : a;
+/// What is at least 0 but for a hair: that is taken off; what is less stays negative.
+inline double without_hair(double a) {
+    return a < 0 && a > -0x1p-38 ? 0 : a;
 }
-inline long double positive_part(long double a) {
-    return a < 0 ? 0 : a;
+inline long double without_hair(long double a) {
+    return a < 0 && a > -0x1p-38L ? 0 : a;
 }
-inline Interval positive_part(const Interval& a) {
+/// Of members that are not less.
+inline Interval without_hair(const Interval& a) {
     return {a.lo < 0 ? 0 : a.lo, a.hi < 0 ? 0 : a.hi};
 }
 template <class T, int N>
-Jet<T, N> positive_part(Jet<T, N> a) {
-    a.c[0] = positive_part(a.c[0]);
+Jet<T, N> without_hair(Jet<T, N> a) {
+    a.c[0] = without_hair(a.c[0]);
     return a;
 }
 

@@ -7,10 +7,10 @@
 //
 // With a radius it stands for jets too. Jet<Real, N> at a point of the box has the exact coefficients a_ij
 // and computed ones; a_00 lies in `range`, the sum of the other |a_ij| is at most `radius`, and the sum of
-// all |computed - exact| at most `error`. With |a| the sum of all |a_ij|, |a b| <= |a| |b|, so that jets can be
-// bounded like numbers: a power series of a_00 + n has no larger norm than the series of magnitudes at
-// |n| <= radius. What a recurrence of number/jet.h computes solves its equation up to a residual, which is
-// kSum times what was summed up; the error is the residual times the inverse of what it is divided by.
+// all |computed - exact| at most `error`. With |a| the sum of all |a_ij|, |a b| <= |a| |b|, so that jets can
+// be bounded like numbers: a power series of a_00 + n has no larger norm than the series of magnitudes at |n|
+// <= radius. What a recurrence of number/jet.h computes solves its equation up to a residual, which is kSum
+// times what was summed up; the error is the residual times the inverse of what it is divided by.
 //
 // Angles are meant modulo a turn: where atan2 jumps by one, no error is counted.
 //
@@ -65,7 +65,8 @@ struct Rounded {
 
     /// A constant that was rounded: `value` is off by at most `bound`.
     static Rounded near(double value, double bound) {
-        return bound == 0 ? Rounded(value) : Rounded(Interval(value - 2 * bound, value + 2 * bound), 0, bound);
+        return bound == 0 ? Rounded(value)
+                          : Rounded(Interval(value - 2 * bound, value + 2 * bound), 0, bound);
     }
 
     /// Largest norm of the exact jets, and of the computed ones.
@@ -103,8 +104,8 @@ inline double least_magnitude(const Interval& a) {
 
 /// What recurrences add to functions that solve E u = v E a, E v = -+ u E a, E the operator that multiplies
 /// degree k by k: u and v are sums of exp(+-c a), c = 1 or i, each of norm at most exp(r) relative to its
-/// constant part; the residual of the equations is kSum kDegree r exp(r) for each, and it is divided by u + c v
-/// and multiplied by it again.
+/// constant part; the residual of the equations is kSum kDegree r exp(r) for each, and it is divided by u + c
+/// v and multiplied by it again.
 template <class Real>
 double oscillation_error(double r) {
     using R = Rounded<Real>;
@@ -194,10 +195,10 @@ void scaled_sinh(const Rounded<Real>& a, Rounded<Real>& s, Rounded<Real>& one) {
     using R = Rounded<Real>;
     const double grown = std::exp(a.radius), moved = a.error * grown * std::exp(a.error);
     const Interval t = tanh(a.range), sech = Interval(1) / cosh(a.range);
-    s = rounded_detail::result<Real>(
-        t, grown - 1,
-        moved + rounded_detail::oscillation_error<Real>(a.radius) + R::kLibm * (a.is_jet() ? grown : magnitude(t)),
-        0);
+    s = rounded_detail::result<Real>(t, grown - 1,
+                                     moved + rounded_detail::oscillation_error<Real>(a.radius) +
+                                         R::kLibm * (a.is_jet() ? grown : magnitude(t)),
+                                     0);
     if (a.is_zero()) s = a;
     // |sech'| <= sech
     one = rounded_detail::result<Real>(sech, 0, magnitude(sech) * (moved + R::kLibm), 2 * R::kUnit);
@@ -234,7 +235,8 @@ Rounded<Real> atan2(const Rounded<Real>& y, const Rounded<Real>& x) {
     // Along the positive x axis, exactly.
     if (y.is_zero() && x.range.lo - x.error >= 0) return R(0);
     const double rest = x.radius + y.radius, moved = x.error + y.error;
-    const double low = rounded_detail::least_magnitude(x.range), high = rounded_detail::least_magnitude(y.range);
+    const double low = rounded_detail::least_magnitude(x.range),
+                 high = rounded_detail::least_magnitude(y.range);
     // |log(z + d) - log z| <= |d| / (|z| - |d|)
     const double distance = std::hypot(low, high) * (1 - 4 * interval_detail::kUlp) - rest;
     const double turned = moved / (distance - moved);
@@ -278,10 +280,10 @@ int sign(const Rounded<Real>& a) {
     const double off = a.radius + a.error;
     return a.range.lo - off >= 0 ? 1 : a.range.hi + off < 0 ? -1 : 0;
 }
-/// A value that is not negative, computed as such.
+/// Of values that are not less.
 template <class Real>
-Rounded<Real> positive_part(const Rounded<Real>& a) {
-    return {positive_part(a.range), a.radius, a.error};
+Rounded<Real> without_hair(const Rounded<Real>& a) {
+    return {without_hair(a.range), a.radius, a.error};
 }
 /// Computed in one of two ways of the same value.
 template <class Real>
