@@ -33,7 +33,7 @@ constexpr double kRearranged = (2 * (2 * 25 + 2 * 4) + 2 * 6 + 8 + 24) * 0x1p-53
 constexpr double kSharedRounding = 1.0 / 64;
 
 // Where any pixel is exact, what rounding costs it need not be known better than this (source pixels).
-constexpr double kExactGoal = 1e-5;
+constexpr double kExactGoal = 1e-4;
 // Boxes of up to so many exact pixels are read in long double where that keeps the tolerance, larger ones are
 // halved first.
 constexpr int kPrecisePixels = 64;

@@ -9,7 +9,9 @@
 // E = s d/ds + t d/dt multiplies f_k by k, so the classic one-variable recurrences hold part by part.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
 #include <type_traits>
 #include <utility>
 
@@ -303,23 +305,35 @@ inline Jet<T, N> sinh(const Jet<T, N>& a) {
     return s;
 }
 
+/// 1 / cosh(a), or where that is next to nothing the least of which products do not underflow: what it scales
+/// keeps its direction.
+inline double scaled_one(double a) {
+    return std::max(1 / std::cosh(a), 0x1p-960);
+}
+inline long double scaled_one(long double a) {
+    return std::max(1 / std::cosh(a),
+                    std::numeric_limits<long double>::min_exponent < -16000 ? 0x1p-16000L : 0x1p-960L);
+}
+inline Interval scaled_one(const Interval& a) {
+    const Interval r = Interval(1) / cosh(a);
+    return {r.lo < 0x1p-960 ? 0x1p-960 : r.lo, r.hi < 0x1p-960 ? 0x1p-960 : r.hi};
+}
+
 /// sinh(a) and 1, both over cosh of a's constant part: no a overflows them.
 template <class T, int N>
 inline void scaled_sinh(const Jet<T, N>& a, Jet<T, N>& s, T& one) {
-    using std::cosh;
     using std::tanh;
     Jet<T, N> c(T(1));
     s = Jet<T, N>(tanh(a.c[0]));
-    one = T(1) / cosh(a.c[0]);
+    one = scaled_one(a.c[0]);
     jet_detail::oscillate<1>(s, c, a);
 }
 template <class T>
 requires(std::is_floating_point_v<T> || std::is_same_v<T, Interval>) inline void scaled_sinh(const T& a, T& s,
                                                                                              T& one) {
-    using std::cosh;
     using std::tanh;
     s = tanh(a);
-    one = T(1) / cosh(a);
+    one = scaled_one(a);
 }
 
 /// E g sqrt(1 + a^2) = E a

@@ -195,13 +195,15 @@ void scaled_sinh(const Rounded<Real>& a, Rounded<Real>& s, Rounded<Real>& one) {
     using R = Rounded<Real>;
     const double grown = std::exp(a.radius), moved = a.error * grown * std::exp(a.error);
     const Interval t = tanh(a.range), sech = Interval(1) / cosh(a.range);
+    // Below this a number is computed that is as large instead.
+    const double least = sech.lo < 0x1p-959 ? 0x1p-959 : 0;
     s = rounded_detail::result<Real>(t, grown - 1,
                                      moved + rounded_detail::oscillation_error<Real>(a.radius) +
                                          R::kLibm * (a.is_jet() ? grown : magnitude(t)),
                                      0);
     if (a.is_zero()) s = a;
     // |sech'| <= sech
-    one = rounded_detail::result<Real>(sech, 0, magnitude(sech) * (moved + R::kLibm), 2 * R::kUnit);
+    one = rounded_detail::result<Real>(sech, 0, magnitude(sech) * (moved + R::kLibm) + least, 2 * R::kUnit);
 }
 /// sqrt(1 + a^2) E g = E a
 template <class Real>
