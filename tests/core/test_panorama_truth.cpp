@@ -9,6 +9,7 @@
 #include "anamorph/approx/plan.h"
 #include "anamorph/image/block_reader.h"
 #include "anamorph/image/draw.h"
+#include "anamorph/image/footprint.h"
 #include "anamorph/simd/block_sampler.h"
 #include "panorama_oracle.h"
 
@@ -127,7 +128,10 @@ Findings examine(const Scene& scene) {
                     const double error = static_cast<double>(error_of(scene, on, ray, used));
                     found.worst_bound = std::max(found.worst_bound, block.bound);
                     if (!(error <= block.bound)) ++found.over_bound;
-                    if (scene.tol > 0 && !(error <= scene.tol)) ++found.over_tol;
+                    // Nothing holds a tolerance where doubles are wider apart, far from the image, or at a
+                    // pole.
+                    const bool held = block.bound <= scene.tol || block.kind == Block::Kind::polynomial;
+                    if (scene.tol > 0 && held && !(error <= scene.tol)) ++found.over_tol;
                     if (!(error - block.bound <= found.worst_excess)) {
                         found.worst_excess = error - block.bound;
                         found.worst_x = i, found.worst_y = j;
@@ -175,7 +179,7 @@ class Random {
         const int size = static_cast<int>(large ? std::pow(2, between(3, 22)) : between(20, 90));
         v.width = size;
         v.height = std::max(1, static_cast<int>(size * between(0.3, 1.2)));
-        const double widest = projection == rectilinear ? 179.99 : projection == stereographic ? 359.5 : 360;
+        const double widest = projection == rectilinear ? 179 : projection == stereographic ? 359.5 : 360;
         v.fov = chance(0.4)   ? Chart::default_fov(projection)
                 : chance(0.3) ? widest
                 : chance(0.3) ? std::pow(10, between(-4, 2))
@@ -246,7 +250,7 @@ TEST(PanoramaTruth, HardViewsAreUnderTheirBounds) {
     };
     for (const Scene& scene : scenes) {
         const Findings found = expect_truth(scene);
-        EXPECT_LT(found.worst_bound, std::max(scene.tol, 1e-4)) << words(scene);
+        EXPECT_LE(found.worst_bound, std::max(scene.tol, 1e-4)) << words(scene);
     }
 }
 
@@ -312,29 +316,137 @@ TEST(PanoramaTruth, TallMercatorPicturesReachTheirPoles) {
 TEST(PanoramaTruth, TheErrorPictureIsAgainstLongDouble) {
     const View source{equirectangular, 65536, 32768, 360}, target{rectilinear, 96, 64, 90};
     const Scene scene{source, target, {33, 44, 55}, 0};
-    const Plan plan(scene.map(), scene.options());
+    const Panorama map = scene.map();
+    const Plan plan(map, scene.options());
     std::vector<float> pixels(96 * 64);
     const ImageView picture =
         packed_view(reinterpret_cast<std::byte*>(pixels.data()), PixelType::float32, 96, 64, 1);
-    ASSERT_TRUE(draw_blocks(plan, Border(scene.map().source(), Wrap::automatic), Filter::bilinear,
-                            Output::error, nullptr, {0, 0, 96, 64}, picture, serial_for));
+    ASSERT_TRUE(draw_blocks(plan, Border(map.source(), Wrap::automatic), Filter::bilinear, Output::error,
+                            nullptr, {0, 0, 96, 64}, picture, serial_for));
     float most = 0;
     for (int j = 0; j < 64; ++j)
         for (int i = 0; i < 96; ++i) {
             Vector ray;
-            const Piece& piece = scene.map().target().pieces()[0];
+            const Piece& piece = map.target().pieces()[0];
             ASSERT_TRUE(oracle::ray_of(target, piece, i + 0.5L, j + 0.5L, ray));
             const Point<long double> truth =
-                oracle::point_of(source, scene.map().source().pieces()[0], oracle::rotated(ray, scene.look));
+                oracle::point_of(source, map.source().pieces()[0], oracle::rotated(ray, scene.look));
             Point<double> used{};
             int on = 0;
             ASSERT_TRUE(plan.exact(i + 0.5, j + 0.5, 0, used, on));
             const float error = pixels[static_cast<std::size_t>(j * 96 + i)];
-            ASSERT_NEAR(error, static_cast<double>(distance(source, used, truth)), 1e-13);
+            ASSERT_NEAR(error, static_cast<double>(distance(source, used, truth)), 1e-12);
             most = std::max(most, error);
         }
-    EXPECT_GT(most, 0);
+    EXPECT_GT(most, 1e-11);
     EXPECT_LT(most, 1e-9);
+}
+
+// Rounding of Taylor polynomials, in all their coefficients together, is below its bound.
+TEST(PanoramaTruth, TaylorPolynomialsRoundLessThanTheirBound) {
+    Random random(5);
+    int finite = 0, tried = 0;
+    double most = 0;
+    for (int round = 0; round < 20; ++round)
+        for (const Projection from : kAll)
+            for (const Projection to : kAll) {
+                const Panorama map(chart_of(random.view(from, true)), chart_of(random.view(to, false)),
+                                   {random.angle(), random.angle(), random.angle()});
+                const int piece = random.integer(0, static_cast<int>(map.target().pieces().size()) - 1);
+                const Box& box = map.target().pieces()[static_cast<std::size_t>(piece)].box;
+                const double x = random.between(box.x0, box.x1), y = random.between(box.y0, box.y1);
+                const double hx = random.between(0.1, 8), hy = random.between(0.1, 8),
+                             d = random.between(0, 3);
+                const Panorama::Local local = map.local_around(x, y, piece);
+                const auto bound = map.taylor_rounding({x - d, x + d}, {y - d, y + d}, hx, hy, local);
+                ++tried;
+                if (!(bound.error.x < 1 && bound.error.y < 1)) continue;
+                ++finite;
+                const double px = x + random.between(-d, d), py = y + random.between(-d, d);
+                using J = Jet<double, 4>;
+                using K = Jet<long double, 4>;
+                const Point<J> p = map(J::variable(px, hx, 0), J::variable(py, 0, hy), local);
+                const Point<K> q = map(K::variable(px, hx, 0), K::variable(py, 0, hy), local);
+                const auto check = [&](const J& a, const K& b, double error, double size) {
+                    Real off = 0, sum = 0;
+                    for (int i = 0; i < J::kSize; ++i) {
+                        off += std::fabs(a.c[i] - b.c[i]);
+                        sum += std::fabs(b.c[i]);
+                    }
+                    EXPECT_LE(off, error) << name_of(from) << ' ' << name_of(to);
+                    EXPECT_LE(sum, size) << name_of(from) << ' ' << name_of(to);
+                    most = std::max(most, static_cast<double>(off / error));
+                };
+                check(p.x, q.x, bound.error.x, bound.size.x);
+                check(p.y, q.y, bound.error.y, bound.size.y);
+            }
+    EXPECT_GT(finite, tried / 4);
+    EXPECT_GT(most, 1e-4);
+}
+
+/// A source of given level sizes and nothing else.
+class Sizes final : public Source {
+  public:
+    Sizes(int width, int height) {
+        for (;; width = std::max(1, width / 2), height = std::max(1, height / 2)) {
+            m_sizes.push_back({width, height});
+            if (width == 1 && height == 1) break;
+        }
+    }
+    PixelType type() const noexcept override { return PixelType::float32; }
+    int channels() const noexcept override { return 1; }
+    int levels() const noexcept override { return static_cast<int>(m_sizes.size()); }
+    Size size(int level) const noexcept override { return m_sizes[static_cast<std::size_t>(level)]; }
+    bool read(int, const Box&, std::byte*, std::ptrdiff_t) const noexcept override { return false; }
+
+  private:
+    std::vector<Size> m_sizes;
+};
+
+// Whatever is left out has no texel of the source in any tap, with the steepest footprints too.
+TEST(PanoramaTruth, WhatIsCulledHasNoTexels) {
+    const Scene scenes[] = {
+        // Far more minified one way than the other.
+        {{cylindrical, 4095, 4095, 60}, {equirectangular, 400, 200, 360}, {20, 10, 0}, 0.5},
+        {{rectilinear, 3000, 3000, 20}, {equirectangular, 600, 300, 360}, {20, 30, 0}, 0.5},
+        {{rectilinear, 30000, 7, 20}, {equirectangular, 600, 300, 360}, {20, 30, 0}, 0.5},
+        {{mercator, 20000, 2000, 90}, {equirectangular, 300, 150, 360}, {0, 20, 40}, 0.5},
+        {{stereographic, 9000, 9000, 100}, {fisheye, 300, 300, 360}, {0, 20, 40}, 0.5},
+        {{fisheye, 9000, 9000, 30}, {equirectangular, 300, 150, 360}, {0, 20, 40}, 0.5},
+    };
+    for (const Scene& scene : scenes) {
+        const Panorama map = scene.map();
+        const Plan plan(map, scene.options());
+        const Sizes source(scene.source.width, scene.source.height);
+        const FootprintChooser chooser(source);
+        std::int64_t culled = 0, hit = 0;
+        double widest = 0;
+        for (std::int64_t region = 0; region < plan.regions(); ++region)
+            for (const Block& block : plan.blocks(region)) {
+                if (block.kind != Block::Kind::outside) continue;
+                for (int j = block.box.y0; j < block.box.y1; ++j)
+                    for (int i = block.box.x0; i < block.box.x1; ++i) {
+                        Point<double> p{};
+                        int piece = 0;
+                        if (!map.exact(i + 0.5, j + 0.5, block.piece, p, piece)) continue;
+                        ++culled;
+                        const Jacobian jacobian = plan.jacobian(i + 0.5, j + 0.5, block.piece);
+                        const Footprint f = chooser(jacobian);
+                        const auto& scale = chooser.scale(f.level);
+                        const Source::Size size = source.size(f.level);
+                        widest = std::max(widest, 1 / scale[0]);
+                        for (int a = 0; a < f.taps_a; ++a)
+                            for (int b = 0; b < f.taps_b; ++b) {
+                                const Point<double> o = tap_offset(f, jacobian, scale, a, b);
+                                const double u = p.x * scale[0] + o.x, v = p.y * scale[1] + o.y;
+                                hit += u > -0.5 && u < size.width + 0.5 && v > -0.5 && v < size.height + 0.5;
+                            }
+                    }
+            }
+        EXPECT_GT(culled, 100) << words(scene);
+        EXPECT_GT(widest, 1) << words(scene);
+        EXPECT_EQ(hit, 0) << words(scene);
+    }
 }
 
 TEST(Rotation, AnglesAreReducedExactly) {

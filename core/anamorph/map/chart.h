@@ -175,6 +175,15 @@ class Chart {
         return m_closed ? period() : has_azimuth() ? 2 * std::numbers::pi * scale_x() : HUGE_VAL;
     }
 
+    /// No two points of rays lie farther apart, a hair aside: the diameter of a lens that shows all
+    /// directions.
+    double widest() const {
+        const double diameter = m_projection == Projection::fisheye     ? 2 * std::numbers::pi
+                                : m_projection == Projection::equisolid ? 4
+                                                                        : HUGE_VAL;
+        return diameter * std::max(scale_x(), scale_y()) * (1 + 1e-9);
+    }
+
     /// The local ray through an image point. Meaningful where inside() >= 0.
     template <class T>
     Ray<T> local_ray(const T& x, const T& y, const Branch& branch) const;

@@ -116,7 +116,9 @@ double Panorama::exact_error(const Interval& x, const Interval& y, int piece) co
             std::hypot(p.x.error + unit * p.x.computed_size(), p.y.error + unit * p.y.computed_size());
         if (!(distance <= error)) error = distance * rounded_detail::kUp;
     }
-    return error;
+    // Straight behind a lens that shows it all around its rim, nothing is known but that.
+    const double widest = m_source.widest();
+    return error <= widest ? error : widest;
 }
 template double Panorama::exact_error<double>(const Interval&, const Interval&, int) const;
 template double Panorama::exact_error<long double>(const Interval&, const Interval&, int) const;

@@ -207,9 +207,8 @@ inline Interval asinh(const Interval& a) {
     return interval_detail::libm(std::asinh(a.lo), std::asinh(a.hi));
 }
 inline Interval exp(const Interval& a) {
-    Interval r = interval_detail::libm(std::exp(a.lo), std::exp(a.hi));
     // Unlike the others it is never 0, and finite where it overflows.
-    r.lo = r.lo > interval_detail::kLargest ? interval_detail::kLargest : r.lo;
+    Interval r = interval_detail::libm(std::min(std::exp(a.lo), interval_detail::kLargest), std::exp(a.hi));
     r.hi += r.hi == 0 ? interval_detail::kSmallest : 0;
     r.lo = r.lo < 0 ? 0 : r.lo;
     return r;
