@@ -94,6 +94,12 @@ const std::vector<Unary>& unary_functions() {
          [](double a) { return std::cosh(a); }, 8, false},
         {"asinh", [](const Interval& a) { return asinh(a); }, [](Real a) { return std::asinh(a); },
          [](double a) { return std::asinh(a); }, 300, false},
+        {"tanh", [](const Interval& a) { return tanh(a); }, [](Real a) { return std::tanh(a); },
+         [](double a) { return std::tanh(a); }, 300, false},
+        {"exp", [](const Interval& a) { return exp(a); }, [](Real a) { return std::exp(a); },
+         [](double a) { return std::exp(a); }, 8, false},
+        {"log", [](const Interval& a) { return log(a); }, [](Real a) { return std::log(a); },
+         [](double a) { return std::log(a); }, 300, true},
         {"sqrt", [](const Interval& a) { return sqrt(a); }, [](Real a) { return std::sqrt(a); },
          [](double a) { return std::sqrt(a); }, 400, true},
         {"square", [](const Interval& a) { return square(a); }, [](Real a) { return a * a; },
@@ -143,6 +149,59 @@ TEST(Interval, OperationsEncloseTheirValues) {
             }
         }
     }
+}
+
+TEST(Interval, PowersEncloseTheirValues) {
+    SCOPED_TRACE(testing::Message() << "seed " << kSeed);
+    Random random(kSeed);
+    for (int i = 0; i < 100000; ++i) {
+        Interval a = random.interval(20), b = random.interval(4);
+        a = {std::min(std::fabs(a.lo), std::fabs(a.hi)), std::max(std::fabs(a.lo), std::fabs(a.hi))};
+        if (i % 10 == 0) a.lo = 0;
+        const Interval r = pow(a, b);
+        for (int k = 0; k < 4; ++k) {
+            const Real x = random.member(a), y = random.member(b);
+            if (x == 0 && y < 0) continue;
+            ASSERT_TRUE(encloses(r, std::pow(x, y)))
+                << testing::PrintToString(a) << ' ' << testing::PrintToString(b);
+        }
+    }
+    EXPECT_EQ(pow(Interval(-1, 1), Interval(2)), Interval::all());
+}
+
+TEST(Interval, UnderflowIsEnclosed) {
+    Random random(kSeed);
+    for (int i = 0; i < 100000; ++i) {
+        const auto tiny = [&] {
+            const double v = random.number(1) * std::ldexp(1.0, random.integer(-600, -480));
+            return random.integer(0, 1) ? Interval(v) : Interval(std::min(v, -v / 3), std::max(v, -v / 3));
+        };
+        const Interval a = tiny(), b = tiny(), large = random.number(1) * std::ldexp(1.0, 540);
+        const Real x = random.member(a), y = random.member(b), z = large.lo;
+        ASSERT_TRUE(encloses(a * b, x * y)) << testing::PrintToString(a) << ' ' << testing::PrintToString(b);
+        ASSERT_TRUE(encloses(square(a), x * x)) << testing::PrintToString(a);
+        ASSERT_TRUE(encloses(a / large, x / z)) << testing::PrintToString(a);
+        ASSERT_TRUE(encloses(Interval(1) / (large * large), 1 / (z * z)));
+        ASSERT_TRUE(encloses(atan2(a, Interval(std::fabs(large.lo))), std::atan2(x, std::fabs(z))));
+    }
+    for (const double x : {-740.0, -745.0, -750.0, -1e4, 709.0, 710.0, 1e4})
+        ASSERT_TRUE(encloses(exp(Interval(x)), std::exp(static_cast<Real>(x)))) << x;
+    // Nothing times nothing stays nothing.
+    EXPECT_EQ(Interval(0) * Interval(-3, 5), Interval(0));
+    EXPECT_EQ(Interval(0, 2) * Interval(3, 4) >= Interval(-1e-300), true);
+}
+
+TEST(Interval, ComparisonsHoldForAllMembers) {
+    EXPECT_TRUE(Interval(1, 2) < Interval(3, 4));
+    EXPECT_FALSE(Interval(1, 3) < Interval(3, 4));
+    EXPECT_TRUE(Interval(1, 3) <= Interval(3, 4));
+    EXPECT_FALSE(Interval(1, 5) < Interval(3, 4));
+    EXPECT_FALSE(Interval(1, 5) >= Interval(3, 4));
+    EXPECT_TRUE(Interval(5, 6) > Interval(3, 4));
+    EXPECT_TRUE(Interval(1, 2) == Interval(1, 2));
+    EXPECT_FALSE(Interval(1, 2) == Interval(1, 3));
+    EXPECT_FALSE(Interval(kNan) < Interval(1));
+    EXPECT_FALSE(Interval(kNan) == Interval(kNan));
 }
 
 TEST(Interval, AnglesEncloseTheirValues) {

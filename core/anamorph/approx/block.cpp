@@ -119,6 +119,23 @@ Reached BlockMap::reached(const ParallelFor& parallel_for) const {
     return reached;
 }
 
+bool BlockMap::truth(double x, double y, int piece, Point<long double>& source_point,
+                     int& source_piece) const noexcept {
+    Point<double> p{};
+    const bool seen = exact(x, y, piece, p, source_piece);
+    source_point = {p.x, p.y};
+    return seen;
+}
+
+bool BlockMap::exact(const Block& block, double x, double y, Point<double>& source_point,
+                     int& source_piece) const noexcept {
+    if (!block.precise) return exact(x, y, block.piece, source_point, source_piece);
+    Point<long double> p{};
+    const bool seen = truth(x, y, block.piece, p, source_piece);
+    source_point = {static_cast<double>(p.x), static_cast<double>(p.y)};
+    return seen;
+}
+
 BlockPolynomial BlockMap::bicubic(const Block& block) const noexcept {
     return quadratic_of(block);
 }

@@ -25,12 +25,13 @@ namespace anamorph {
 struct Block {
     /// bicubic: the map gives the polynomial (BlockMap::bicubic); x and y hold a quadratic near it.
     /// computed: the map gives the points as offsets from the base, row by row (BlockMap::computed_row).
-    /// exact: point by point in double. outside: there are none.
+    /// exact: point by point by the formula. outside: there are none.
     enum class Kind : std::uint8_t { polynomial, bicubic, computed, exact, outside };
     static constexpr int kMaxSide = 64;
 
     Box box;
     Kind kind = Kind::exact;
+    bool precise = false;  ///< exact blocks: in long double
     int piece = 0;         ///< of the target
     int source_piece = 0;  ///< not for exact blocks, nor outside
     std::int32_t base_x = 0, base_y = 0;
@@ -102,9 +103,15 @@ class BlockMap {
     /// Over the whole picture.
     Reached reached(const ParallelFor& parallel_for) const;
 
-    /// The truth in double: the source point of a target point. False where there is none.
+    /// The formula in double: the source point of a target point. False where there is none.
     virtual bool exact(double x, double y, int piece, Point<double>& source_point,
                        int& source_piece) const noexcept = 0;
+    /// The same as exactly as is known: what errors are measured against. In double if nothing better is.
+    virtual bool truth(double x, double y, int piece, Point<long double>& source_point,
+                       int& source_piece) const noexcept;
+    /// The source point of a target point of an exact block.
+    bool exact(const Block& block, double x, double y, Point<double>& source_point,
+               int& source_piece) const noexcept;
     /// Source pixels per target pixel at a target point.
     virtual Jacobian jacobian(double x, double y, int piece) const noexcept = 0;
     /// The polynomial of a bicubic block.

@@ -23,9 +23,22 @@ constexpr int kBoundCost = 170, kBoundPixels = 512;
 // the region's pixels.
 constexpr double kCredit = 1.0 / 16;
 
-// Rounding of the formula itself in double, relative to the extent of the source: some hundred operations,
-// each well conditioned wherever the bound is finite (tests/core holds it against long double).
-constexpr double kDoubleRounding = 256 * 0x1p-53;
+// What a Taylor polynomial goes through once its coefficients are known, in units of rounding of their sum:
+// moved and scaled to a part of its box, 25 operations for each variable, of which the shift's own rounding
+// counts four times more, on magnitudes that a part's outermost pixel may double; rearranged in Chebyshev
+// polynomials, 6 operations on twice the sum; less a base, as four corners' mean and as linear part and
+// residual of a table, 8.
+constexpr double kRearranged = (2 * (2 * 25 + 2 * 4) + 2 * 6 + 8 + 24) * 0x1p-53;
+// Blocks of a box share a bound of rounding up to this part of the tolerance; above, each has its own.
+constexpr double kSharedRounding = 1.0 / 64;
+
+// Where any pixel is exact, what rounding costs it need not be known better than this (source pixels).
+constexpr double kExactGoal = 1e-4;
+// Boxes of up to so many exact pixels are read in long double where that keeps the tolerance, larger ones are
+// halved first.
+constexpr int kPrecisePixels = 64;
+// Long double is at most so many times more precise: 11 bits less those by which constants are known worse.
+constexpr double kPreciseGain = 512;
 
 // The part of the tolerance that a remainder may take up before a fresh one, over a smaller box, is worth its
 // cost.
@@ -61,10 +74,8 @@ class Planner {
           m_options(options),
           m_piece(piece),
           m_blocks(blocks),
-          m_balance(kCredit * pixels_of(region)) {
-        const Chart& source = map.source();
-        m_extent = source.width() + source.height() + source.scale_x() + source.scale_y();
-    }
+          m_balance(kCredit * pixels_of(region)),
+          m_margin(options.scheme == Scheme::residual ? 0 : 0.5) {}
 
     void exact(const Box& box) {
         for_blocks(box, [&](const Box& b) { emit(b, Block::Kind::exact); });
@@ -106,13 +117,15 @@ class Planner {
     template <int N>
     Point<Jet<Interval, N>> enclose(const Box& box, const Panorama::Local& local) const {
         using J = Jet<Interval, N>;
-        return m_map(J::variable({box.x0 + 0.5, box.x1 - 0.5}, 1, 0),
-                     J::variable({box.y0 + 0.5, box.y1 - 0.5}, 0, 1), local);
+        return m_map(J::variable(across(box), 1, 0), J::variable(down(box), 0, 1), local);
     }
+    /// Its pixel centres, or all of it where blocks are made of values at its corners.
+    Interval across(const Box& box) const { return {box.x0 + m_margin, box.x1 - m_margin}; }
+    Interval down(const Box& box) const { return {box.y0 + m_margin, box.y1 - m_margin}; }
 
-    /// Does every pixel of the box have a source point on one smooth branch of the map?
+    /// Does every point of the box have a source point on one smooth branch of the map?
     Cover cover(const Box& box, const Panorama::Local& local) const {
-        const Interval x{box.x0 + 0.5, box.x1 - 0.5}, y{box.y0 + 0.5, box.y1 - 0.5};
+        const Interval x = across(box), y = down(box);
         const Interval in = m_map.target().inside(x, y, m_piece);
         if (in.hi < 0) return Cover::outside;
         if (!(in.lo >= 0)) return Cover::mixed;
@@ -137,36 +150,82 @@ class Planner {
     Cover culled(const Box& box, const Panorama::Local& local) const {
         const Chart& source = m_map.source();
         const auto p = enclose<1>(box, local);
+        const double margin = footprint_reach(p, source);
         const auto beyond = [&](const Jet<Interval, 1>& f, int size) {
-            // Half the footprint on each side, and the support of the widest filter.
-            const double margin = magnitude(f.c[1]) + magnitude(f.c[2]) + 4;
             return f.c[0].hi < -margin || f.c[0].lo > size + margin;
         };
         const bool out = (!source.closed() && beyond(p.x, source.width())) || beyond(p.y, source.height());
         return out && !is_cube(source.projection()) ? Cover::outside : Cover::inside;
     }
 
+    /// How far from its source point a pixel's texels lie at most, in source pixels (image/footprint.h).
+    ///
+    /// Taps: a side of the footprint that is n texels of its level long has at most n + 1 taps, since the
+    /// energy of w texels is at least 2 / (3 w), and two texels between them at most: they reach n texels
+    /// either way, the side's own length. `length`: of all sides, in both coordinates.
+    ///
+    /// Texels: bilinear taps read one texel around them. A level is chosen only where on the one before, at
+    /// most 4 times finer each way, the narrow side w had too many taps, or all had: there texels were
+    /// smaller than half of max(w, 1) (their mean over both ways), or than 1 / 3.5 of a side in one way.
+    /// While neither way of the level has come down to one texel, texels are at most 4 times longer one way
+    /// than the other: all are shorter than 4 * 4 * length. A level that is one texel high or wide has texels
+    /// as large as the image at most.
+    ///
+    /// Other filters and rounding: 4 pixels.
+    static double footprint_reach(const Point<Jet<Interval, 1>>& p, const Chart& source) {
+        const double length =
+            magnitude(p.x.c[1]) + magnitude(p.x.c[2]) + magnitude(p.y.c[1]) + magnitude(p.y.c[2]);
+        const double texel = 16 * std::max(1.0, length);
+        const double narrow = std::min(source.width(), source.height());
+        return length + (texel < narrow ? texel : std::max(source.width(), source.height())) + 4;
+    }
+
+    /// What a bound over a box gives the blocks in it.
+    struct Bound {
+        Tail x, y;
+        double rounding;  ///< infinite where each has its own
+    };
+
+    /// What rounding costs the blocks in a box, of up to a given size; or values, for a size of 0.
+    double rounding_over(const Box& box, double half_width, double half_height,
+                         const Panorama::Local& local) const {
+        const auto t = m_map.taylor_rounding(across(box), down(box), half_width, half_height, local);
+        return length(t.error.x + kRearranged * t.size.x, t.error.y + kRearranged * t.size.y);
+    }
+    /// One for all blocks of a box where it is small.
+    double shared_rounding(const Box& box, const Panorama::Local& local) const {
+        const double rounding = rounding_over(box, half(std::min(2 * kBlockWidth, box.width())),
+                                              half(std::min(2 * kBlockHeight, box.height())), local);
+        return rounding <= kSharedRounding * m_options.tol ? rounding : HUGE_VAL;
+    }
+    double rounding_of(const Box& block, const Bound& bound, const Panorama::Local& local) const {
+        return bound.rounding < HUGE_VAL
+                   ? bound.rounding
+                   : rounding_over(block, half(block.width()), half(block.height()), local);
+    }
+
     void settle_blocks(const Box& box, const Panorama::Local& local, std::size_t first) {
         m_balance -= kBoundCost;
         const auto p = enclose<5>(box, local);
-        const Tail tx(p.x), ty(p.y);
+        Bound bound{Tail(p.x), Tail(p.y), HUGE_VAL};
         const bool is_block = box.width() <= kBlockWidth && box.height() <= kBlockHeight;
-        if (is_block ? tail_over(box, tx, ty) < HUGE_VAL : serves(box, local, tx, ty))
-            place_all(box, local, tx, ty);
-        else
+        if (is_block ? tail_over(box, bound) < HUGE_VAL : serves(box, local, bound)) {
+            bound.rounding = shared_rounding(box, local);
+            place_all(box, local, bound);
+        } else
             split(box, first);
     }
 
-    static double tail_over(const Box& box, const Tail& tx, const Tail& ty) {
+    static double tail_over(const Box& box, const Bound& bound) {
         const double hx = half(box.width()), hy = half(box.height());
-        return length(tx.over(hx, hy), ty.over(hx, hy));
+        return length(bound.x.over(hx, hy), bound.y.over(hx, hy));
     }
 
     /// Is a remainder small enough for the blocks of a box? Tried on the one in its middle.
-    bool serves(const Box& box, const Panorama::Local& local, const Tail& tx, const Tail& ty) const {
+    bool serves(const Box& box, const Panorama::Local& local, const Bound& bound) const {
         const int x0 = (box.x0 + box.x1) / 2, y0 = (box.y0 + box.y1) / 2;
         const Box middle{x0, y0, std::min(x0 + kBlockWidth, box.x1), std::min(y0 + kBlockHeight, box.y1)};
-        const double tail = tail_over(middle, tx, ty);
+        const double tail = tail_over(middle, bound);
         return tail < HUGE_VAL && small_tail(tail, fit_of(middle, local).error);
     }
 
@@ -198,16 +257,16 @@ class Planner {
     }
 
     /// All blocks of a box: up to four from one Taylor polynomial where it serves them all.
-    void place_all(const Box& box, const Panorama::Local& local, const Tail& tx, const Tail& ty) {
-        for_boxes(box, 2 * kBlockWidth, 2 * kBlockHeight, [&](const Box& b) { share(b, local, tx, ty); });
+    void place_all(const Box& box, const Panorama::Local& local, const Bound& bound) {
+        for_boxes(box, 2 * kBlockWidth, 2 * kBlockHeight, [&](const Box& b) { share(b, local, bound); });
     }
-    void share(const Box& box, const Panorama::Local& local, const Tail& tx, const Tail& ty) {
+    void share(const Box& box, const Panorama::Local& local, const Bound& bound) {
         const bool wide = box.width() > kBlockWidth, high = box.height() > kBlockHeight;
-        if (!wide && !high) return place(box, local, tx, ty);
-        const double tail = tail_over(box, tx, ty);
+        if (!wide && !high) return place(box, local, bound);
+        const double tail = tail_over(box, bound);
         if (!(tail + kFitMargin * m_fit <= m_options.tol)) {
             for_boxes(box, kBlockWidth, wide ? box.height() : kBlockHeight,
-                      [&](const Box& b) { share(b, local, tx, ty); });
+                      [&](const Box& b) { share(b, local, bound); });
             return;
         }
         const Point<Jet<double, 4>> taylor = taylor_of(m_map, box, local);
@@ -219,18 +278,21 @@ class Planner {
             };
             const Fit fit({part(taylor.x), part(taylor.y)}, m_options.degree);
             m_fit = fit.error;
-            if (!emit_polynomial(b, local.source.piece, fit.x.c, fit.y.c, fit.error + tail))
-                place(b, local, tx, ty);
+            if (!emit_polynomial(b, local.source.piece, fit.x.c, fit.y.c,
+                                 fit.error + tail + rounding_of(b, bound, local)))
+                place(b, local, bound);
         });
     }
 
     /// Emits the box as one polynomial block if that holds the tolerance, else halves it.
-    void place(const Box& box, const Panorama::Local& local, const Tail& tx, const Tail& ty) {
+    void place(const Box& box, const Panorama::Local& local, const Bound& bound) {
         const std::size_t first = m_blocks.size();
         const Fit fit = fit_of(box, local);
         m_fit = fit.error;
-        const double tail = tail_over(box, tx, ty);
-        if (emit_polynomial(box, local.source.piece, fit.x.c, fit.y.c, fit.error + tail)) return;
+        const double tail = tail_over(box, bound);
+        if (emit_polynomial(box, local.source.piece, fit.x.c, fit.y.c,
+                            fit.error + tail + rounding_of(box, bound, local)))
+            return;
         // Halve the side along which more was dropped, with a new remainder where that is to blame.
         const int k = m_options.degree + 1;
         const auto dropped = [&](int i, int j) {
@@ -242,7 +304,7 @@ class Planner {
             if (renew && worth_a_bound(b))
                 settle(b);
             else
-                place(b, local, tx, ty);
+                place(b, local, bound);
         });
     }
 
@@ -297,14 +359,17 @@ class Planner {
         bilinear(x, cx);
         bilinear(y, cy);
         const std::size_t first = m_blocks.size();
-        if (emit_polynomial(box, local.source.piece, cx, cy, interpolation_error + stored * 0x1p-24)) return;
+        const double rounding = rounding_over(box, 0, 0, local);
+        if (emit_polynomial(box, local.source.piece, cx, cy,
+                            interpolation_error + stored * 0x1p-24 + rounding))
+            return;
         halve(box, box.width() > box.height(), kResidualFloor, first, [&](const Box& b) { settle(b); });
     }
 
-    /// True when the polynomial, evaluated in float, keeps the tolerance: then the block is appended.
-    bool emit_polynomial(const Box& box, int source_piece, const double* cx, const double* cy, double fit) {
-        if (!BlockWriter(m_options.tol, m_blocks).polynomial(box, cx, cy, fit + kDoubleRounding * m_extent))
-            return false;
+    /// True when the polynomial, off by `error` in double and evaluated in float, keeps the tolerance: then
+    /// the block is appended.
+    bool emit_polynomial(const Box& box, int source_piece, const double* cx, const double* cy, double error) {
+        if (!BlockWriter(m_options.tol, m_blocks).polynomial(box, cx, cy, error)) return false;
         m_balance += pixels_of(box);
         Block& block = m_blocks.back();
         block.piece = m_piece;
@@ -367,8 +432,55 @@ class Planner {
     Blocks& m_blocks;
     double m_fit = 0;  ///< the error of the last block's fit: what the next one's will be like
     double m_balance;  ///< exact pixels saved less those that bounds would have paid for
-    double m_extent;
+    double m_margin;   ///< of what is enclosed of a box: from its edges to the nodes that blocks are made of
     std::optional<LinearPart> m_linear;
+};
+
+/// Gives exact blocks the bound of their rounding, and cuts out of them the pixels that need long double.
+class ExactBounds {
+  public:
+    ExactBounds(const Panorama& map, double tol, Blocks& blocks)
+        : m_map(map), m_goal(tol > 0 ? tol : kExactGoal), m_blocks(blocks) {}
+
+    /// Appends the blocks of an exact block.
+    void place(Block block) {
+        const Interval x{block.box.x0 + 0.5, block.box.x1 - 0.5}, y{block.box.y0 + 0.5, block.box.y1 - 0.5};
+        block.bound = m_map.exact_error<double>(x, y, block.piece);
+        const int pixels = pixels_of(block.box);
+        const bool may_help =
+            pixels == 1 || (pixels <= kPrecisePixels && block.bound <= kPreciseGain * m_goal);
+        if (!(block.bound <= m_goal) && may_help) {
+            block.precise = true;
+            block.bound = m_map.exact_error<long double>(x, y, block.piece);
+        }
+        if (block.bound <= m_goal || pixels == 1)
+            m_blocks.push_back(block);
+        else
+            halve(block);
+    }
+
+  private:
+    /// Halves that came out alike are one block again.
+    void halve(const Block& block) {
+        const std::size_t first = m_blocks.size();
+        const bool vertical_cut = block.box.width() >= block.box.height();
+        for (const bool second : {false, true}) {
+            Block part = block;
+            part.precise = false;
+            part.box = sub_box(block.box, vertical_cut, second);
+            place(part);
+        }
+        if (m_blocks.size() != first + 2 || m_blocks[first].precise != m_blocks[first + 1].precise) return;
+        const double bound = larger(m_blocks[first].bound, m_blocks[first + 1].bound);
+        m_blocks.resize(first + 1);
+        m_blocks[first].box = block.box;
+        m_blocks[first].bound = bound;
+    }
+    static double larger(double a, double b) { return a >= b || std::isnan(a) ? a : b; }
+
+    const Panorama& m_map;
+    double m_goal;
+    Blocks& m_blocks;
 };
 
 std::vector<Box> boxes_of(const Chart& chart) {
@@ -391,17 +503,30 @@ Plan::Plan(const Panorama& map, const PlanOptions& options)
 }
 
 void Plan::plan(const Box& box, int piece, Blocks& blocks) const {
-    blocks.reserve(2 * kRegion * kRegion / (kBlockWidth * kBlockHeight));
-    Planner planner(m_map, m_options, box, piece, blocks);
+    Blocks planned;
+    planned.reserve(2 * kRegion * kRegion / (kBlockWidth * kBlockHeight));
+    Planner planner(m_map, m_options, box, piece, planned);
     if (m_options.scheme == Scheme::exact || m_options.tol == 0)
         planner.exact(box);
     else
         planner.settle(box);
+    blocks.reserve(planned.size());
+    ExactBounds exact(m_map, m_options.tol, blocks);
+    for (const Block& block : planned)
+        if (block.kind == Block::Kind::exact)
+            exact.place(block);
+        else
+            blocks.push_back(block);
 }
 
 bool Plan::exact(double x, double y, int piece, Point<double>& source_point,
                  int& source_piece) const noexcept {
     return m_map.exact(x, y, piece, source_point, source_piece);
+}
+
+bool Plan::truth(double x, double y, int piece, Point<long double>& source_point,
+                 int& source_piece) const noexcept {
+    return m_map.exact<long double>(x, y, piece, source_point, source_piece);
 }
 
 Jacobian Plan::jacobian(double x, double y, int piece) const noexcept {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The blocks of a panorama's pull map: polynomials for the source point with a proven bound of their error,
-// split where the bound exceeds the tolerance, exact where no block holds it.
+// split where the bound exceeds the tolerance, exact where no block holds it. Exact pixels have a bound too:
+// that of their rounding, in double, or where that is not enough in long double.
 #pragma once
 
 #include "anamorph/approx/block.h"
@@ -8,7 +9,7 @@
 
 namespace anamorph {
 
-/// exact: every pixel in double. blocks: quadratic polynomials on blocks. residual: Kim's decomposition
+/// exact: every pixel by the formula. blocks: quadratic polynomials on blocks. residual: Kim's decomposition
 /// (3.1), one linear map and a bilinear table of residuals (4.3, 4.4). automatic: the fastest that holds.
 enum class Scheme { automatic, exact, blocks, residual };
 
@@ -31,6 +32,8 @@ class Plan final : public BlockMap {
     const PlanOptions& options() const { return m_options; }
 
     bool exact(double x, double y, int piece, Point<double>& source_point,
+               int& source_piece) const noexcept override;
+    bool truth(double x, double y, int piece, Point<long double>& source_point,
                int& source_piece) const noexcept override;
     Jacobian jacobian(double x, double y, int piece) const noexcept override;
 

@@ -446,7 +446,7 @@ bool BlockReader::exact_rows(const Block& block, const Box& part, const Row& row
     for (int j = block.box.y0; j < block.box.y1; ++j)
         for (int i = block.box.x0; i < block.box.x1; ++i) {
             Exact& e = m_exact.data()[(j - block.box.y0) * w + i - block.box.x0];
-            e.seen = m_map.exact(i + 0.5, j + 0.5, block.piece, e.at, e.piece);
+            e.seen = m_map.exact(block, i + 0.5, j + 0.5, e.at, e.piece);
             together =
                 together && e.seen && e.piece == m_exact[0].piece && is_near(e.at.x) && is_near(e.at.y);
         }
@@ -495,7 +495,7 @@ bool BlockReader::rows_one_by_one(const Block& block, const BlockPoints& points,
             float* pixel = m_values.data() + (i - part.x0) * channels;
             Point<double> p{block.base_x + double(px[i - part.x0]), block.base_y + double(py[i - part.x0])};
             int piece = block.source_piece;
-            if (block.kind == Block::Kind::exact && !m_map.exact(i + 0.5, j + 0.5, block.piece, p, piece))
+            if (block.kind == Block::Kind::exact && !m_map.exact(block, i + 0.5, j + 0.5, p, piece))
                 std::fill_n(pixel, channels, 0.0f);
             else
                 ok = sample_point(i, j, block.piece, p, piece, pixel) && ok;

@@ -31,29 +31,46 @@ class MapPainter {
         for (int j = part.y0; j < part.y1; ++j) {
             block_row(m_map, block, part, j, px, py);
             for (int i = 0; i < part.width(); ++i) {
-                Point<double> exact{};
-                int piece = 0;
-                const bool seen = m_map.exact(part.x0 + i + 0.5, j + 0.5, block.piece, exact, piece);
-                const bool stated = block.kind != Block::Kind::exact;
-                put(i, seen, exact,
-                    stated ? Point<double>{block.base_x + double{px[i]}, block.base_y + double{py[i]}}
-                           : exact);
+                const double x = part.x0 + i + 0.5, y = j + 0.5;
+                Found used{{}, block.source_piece, false};
+                used.seen = m_map.exact(block, x, y, used.at, used.piece);
+                if (block.kind != Block::Kind::exact)
+                    used = {{block.base_x + double{px[i]}, block.base_y + double{py[i]}},
+                            block.source_piece,
+                            used.seen};
+                if (m_output == Output::stmap)
+                    put_point(i, used);
+                else
+                    m_values.data()[i] = static_cast<float>(error(x, y, block, used));
             }
             m_canvas.store(part.x0, j, part.width(), m_values.data());
         }
     }
 
   private:
-    void put(int i, bool seen, const Point<double>& exact, const Point<double>& used) {
-        if (m_output == Output::stmap) {
-            const Point<double> at = in_image(used);
-            m_values.data()[2 * i] = seen ? static_cast<float>(at.x / m_source.width()) : -1;
-            m_values.data()[2 * i + 1] = seen ? static_cast<float>(at.y / m_source.height()) : -1;
-            return;
-        }
-        double dx = seen ? used.x - exact.x : 0;
-        if (m_source.closed()) dx -= std::round(dx / m_source.period()) * m_source.period();
-        m_values.data()[i] = static_cast<float>(std::hypot(dx, seen ? used.y - exact.y : 0));
+    struct Found {
+        Point<double> at;
+        int piece;
+        bool seen;
+    };
+
+    void put_point(int i, const Found& used) {
+        const Point<double> at = in_image(used.at);
+        m_values.data()[2 * i] = used.seen ? static_cast<float>(at.x / m_source.width()) : -1;
+        m_values.data()[2 * i + 1] = used.seen ? static_cast<float>(at.y / m_source.height()) : -1;
+    }
+
+    /// The distance from the truth; x is counted around a source with azimuths.
+    double error(double x, double y, const Block& block, const Found& used) const {
+        Point<long double> truth{}, at{used.at.x, used.at.y};
+        int piece = 0;
+        if (!m_map.truth(x, y, block.piece, truth, piece)) return 0;
+        if (!used.seen) return HUGE_VAL;
+        // On the edge between two faces of a cube.
+        if (piece != used.piece) at = m_source.point(m_source.ray(at.x, at.y, used.piece), piece);
+        long double dx = at.x - truth.x;
+        if (const double turn = m_source.turn(); turn < HUGE_VAL) dx -= std::round(dx / turn) * turn;
+        return static_cast<double>(std::hypot(dx, at.y - truth.y));
     }
 
     /// The same point of a source that goes on past its edges: around the seam by full turns; at poles and

@@ -86,13 +86,19 @@ double tap_energy(int taps, double spacing) {
 FootprintChooser::FootprintChooser(const Source& source)
     : m_levels(std::clamp(source.levels(), 1, kMaxLevels)) {
     const Source::Size full = source.size(0);
+    Source::Size finer = full;
     for (int level = 0; level < m_levels; ++level) {
         const Source::Size size = source.size(level);
-        // No coarser copy: it and those behind it are left alone.
-        if (size.width > full.width || size.height > full.height) {
+        // No coarser copy, or one more than four times coarser either way than the one before, which what is
+        // culled relies on: it and those behind it are left alone.
+        const bool larger = size.width > full.width || size.height > full.height;
+        const bool far_coarser =
+            std::int64_t{4} * size.width < finer.width || std::int64_t{4} * size.height < finer.height;
+        if (larger || far_coarser) {
             m_levels = level;
             break;
         }
+        finer = size;
         m_scale[static_cast<std::size_t>(level)] = {static_cast<double>(size.width) / full.width,
                                                     static_cast<double>(size.height) / full.height};
     }

@@ -47,7 +47,8 @@ class FootprintChooser {
     /// a coarser level is taken instead, and on the coarsest the average is thinner than the footprint.
     Footprint operator()(const Jacobian& jacobian) const noexcept;
 
-    /// Those of the source as far as none is larger than level 0.
+    /// Those of the source as far as none is larger than level 0, nor more than four times coarser, either
+    /// way, than the one before.
     int levels() const noexcept { return m_levels; }
     /// Texels of a level per texel of level 0, across and down.
     const std::array<double, 2>& scale(int level) const noexcept {

@@ -9,7 +9,9 @@
 namespace anamorph {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
+constexpr long double kDegree = std::numbers::pi_v<long double> / 180;
+// How much farther out than an image, or than 45 degrees, the points of its lens may lie.
+constexpr double kFarOut = 1024;
 constexpr int kMaxSize = 1 << 24;
 
 constexpr std::pair<std::string_view, Projection> kNames[] = {
@@ -43,18 +45,23 @@ std::pair<double, bool> fov_limit(Projection projection) {
     }
 }
 
+/// tan of an angle of 0 to 90 degrees; the nearer to 90, the more the angle's distance from it matters, which
+/// is exact.
+long double tan_of(long double degrees) {
+    return degrees > 45 ? 1 / std::tan((90 - degrees) * kDegree) : std::tan(degrees * kDegree);
+}
+
 /// The width of the chart plane that a horizontal field of view covers.
-double plane_width(Projection projection, double fov) {
-    const double half = fov * kPi / 360;
+long double plane_width(Projection projection, long double fov) {
     switch (projection) {
         case Projection::rectilinear:
-            return 2 * std::tan(half);
+            return 2 * tan_of(fov / 2);
         case Projection::equisolid:
-            return 4 * std::sin(half / 2);
+            return 4 * std::sin(fov / 4 * kDegree);
         case Projection::stereographic:
-            return 4 * std::tan(half / 2);
+            return 4 * tan_of(fov / 4);
         default:
-            return 2 * half;
+            return fov * kDegree;
     }
 }
 
@@ -143,6 +150,7 @@ Heading::Heading(double y, double x) {
     angle = std::atan2(y, x);
     cos = x / r;
     sin = y / r;
+    error = kError;
 }
 
 Chart::Chart(Projection projection, int width, int height, double fov, PixelSpacing spacing,
@@ -161,26 +169,40 @@ Chart::Chart(Projection projection, int width, int height, double fov, PixelSpac
                         (inclusive ? "up to " : "below ") + print(limit) + " degrees");
 
     int columns = width;
-    double plane = plane_width(is_cube(projection) ? Projection::rectilinear : projection, m_fov);
+    long double plane = plane_width(is_cube(projection) ? Projection::rectilinear : projection, m_fov);
     if (is_cube(projection)) {
-        const auto [across, rows] = cube_grid(projection);
-        if (width % across != 0 || height % rows != 0 || width / across != height / rows)
+        const auto [faces_across, faces_down] = cube_grid(projection);
+        if (width % faces_across != 0 || height % faces_down != 0 ||
+            width / faces_across != height / faces_down)
             throw Error(prefix + "size", size,
-                        std::string(name_of(projection)) + " needs square faces, " + std::to_string(across) +
-                            " across and " + std::to_string(rows) + " down");
-        columns = width / across;
+                        std::string(name_of(projection)) + " needs square faces, " +
+                            std::to_string(faces_across) + " across and " + std::to_string(faces_down) +
+                            " down");
+        columns = width / faces_across;
         plane = 2;
         m_pieces = cube_pieces(projection, columns);
     } else
         m_pieces = {Piece{{0, 0, width, height}}};
 
     const int rows = is_cube(projection) ? columns : height;
-    m_sx = m_sy = columns / plane;
+    long double across = columns / plane, down = across;
     if (spacing == PixelSpacing::centers) {
         if (columns < 2 || rows < 2)
             throw Error(prefix + "size", size, "pixels=centers needs at least 2 pixels each way");
-        m_sx = (columns - 1) / plane;
-        m_sy = (rows - 1) / (plane * rows / columns);
+        across = (columns - 1) / plane;
+        down = (rows - 1) / (plane * rows / columns);
+    }
+    m_sx = Constant(across);
+    m_sy = Constant(down);
+    m_per_x = Constant(1 / across);
+    m_per_y = Constant(1 / down);
+    if (!is_cube(projection)) {
+        // Of the corners' tangents, all in the plane of a rectilinear lens.
+        const double wide = 0.5 * width / scale_x(), high = 0.5 * height / scale_y();
+        const double tangent = projection == Projection::mercator      ? std::sinh(std::min(high, 600.0))
+                               : projection == Projection::cylindrical ? high
+                                                                       : std::max(wide, high);
+        m_reach = kFarOut * std::max(1.0, tangent);
     }
     for (std::size_t i = 0; i < m_pieces.size(); ++i)
         m_branches.push_back({static_cast<int>(i), {}, {}, m_pieces[i].axes});

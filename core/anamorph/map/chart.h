@@ -27,6 +27,7 @@
 #include <vector>
 
 #include "anamorph/number/jet.h"
+#include "anamorph/number/rounded.h"
 
 namespace anamorph {
 
@@ -92,13 +93,18 @@ struct Jacobian {
     double x_i = 1, y_i = 0, x_j = 0, y_j = 1;
 };
 
-/// matrix * ray
-template <class T>
-Ray<T> transform(const glm::dmat3& matrix, const Ray<T>& ray) {
-    const auto row = [&](int i) {
-        return ray.x * matrix[0][i] + ray.y * matrix[1][i] + ray.z * matrix[2][i];
+/// matrix * ray, with entry(column, row) of the matrix.
+template <class T, class Entry>
+requires(std::is_invocable_v<Entry, int, int>) Ray<T> transform(const Entry& entry, const Ray<T>& ray) {
+    const auto row = [&](int i) -> T {
+        return ray.x * entry(0, i) + ray.y * entry(1, i) + ray.z * entry(2, i);
     };
     return {row(0), row(1), row(2)};
+}
+/// Of a matrix whose entries are off by `error` at most.
+template <class T>
+Ray<T> transform(const glm::dmat3& matrix, const Ray<T>& ray, double error = 0) {
+    return transform([&](int column, int row) { return measured<T>(matrix[column][row], error); }, ray);
 }
 
 /// One smooth piece of a chart: where it stands in the image, and its axes (right, down, forward) as columns
@@ -108,9 +114,13 @@ struct Piece {
     glm::dmat3 axes{1};
 };
 
-/// An angle from which others are counted.
+/// An angle from which others are counted. The angle is the truth; cos and sin are off by `error` at most.
 struct Heading {
-    double angle = 0, cos = 1, sin = 0;
+    double angle = 0, cos = 1, sin = 0, error = 0;
+
+    /// atan2 is off by its error in libm, of pi at most, and so is the direction that it stands for; hypot by
+    /// as much again at most and a quotient by half a ULP, of 1 at most.
+    static constexpr double kError = 6 * interval_detail::kLibmError;
 
     Heading() = default;
     /// The angle of (x, y); 0 for the origin.
@@ -157,8 +167,22 @@ class Chart {
     /// Do the first and last rows touch the poles (equirectangular over the full 180 degrees)?
     bool reaches_poles() const { return m_poles; }
     /// Pixels per unit of the chart plane at pieces()[0].
-    double scale_x() const { return m_sx; }
-    double scale_y() const { return m_sy; }
+    double scale_x() const { return m_sx.value(); }
+    double scale_y() const { return m_sy.value(); }
+    /// Source points of one ray lie so many pixels apart, or any multiple: a full turn, infinite for lenses
+    /// without azimuth.
+    double turn() const {
+        return m_closed ? period() : has_azimuth() ? 2 * std::numbers::pi * scale_x() : HUGE_VAL;
+    }
+
+    /// No two points of rays lie farther apart, a hair aside: the diameter of a lens that shows all
+    /// directions.
+    double widest() const {
+        const double diameter = m_projection == Projection::fisheye     ? 2 * std::numbers::pi
+                                : m_projection == Projection::equisolid ? 4
+                                                                        : HUGE_VAL;
+        return diameter * std::max(scale_x(), scale_y()) * (1 + 1e-9);
+    }
 
     /// The local ray through an image point. Meaningful where inside() >= 0.
     template <class T>
@@ -172,9 +196,16 @@ class Chart {
     template <class T>
     Point<T> local_point(const Ray<T>& local, const Branch& branch) const;
 
-    /// >= 0 where a local ray is seen by the lens and lies on the branch's piece.
+    /// > 0 where a local ray is seen by the lens and lies on the branch's piece. A lens that cannot see all
+    /// directions ends where their tangents are 1024 times those of its image's edges, and of 45
+    /// degrees.
     template <class T>
     T sees(const Ray<T>& local) const;
+    /// Do all directions have a point, and on one piece?
+    bool sees_all() const {
+        return !is_cube(m_projection) && m_projection != Projection::rectilinear &&
+               m_projection != Projection::cylindrical && m_projection != Projection::mercator;
+    }
 
     /// The branch for single points of a piece: azimuths counted from straight ahead, in [-180, 180].
     const Branch& branch(int piece = 0) const { return m_branches[static_cast<std::size_t>(piece)]; }
@@ -204,7 +235,9 @@ class Chart {
     int m_width, m_height;
     double m_fov;
     PixelSpacing m_spacing;
-    double m_sx = 0, m_sy = 0;
+    /// Pixels per unit of the plane, and units per pixel.
+    Constant m_sx, m_sy, m_per_x, m_per_y;
+    double m_reach = 1;  ///< of sees(): the largest tangent seen
     bool m_closed = false, m_poles = false;
     std::vector<Piece> m_pieces;
     std::vector<Branch> m_branches;
@@ -215,7 +248,7 @@ class Chart {
 template <class T>
 Point<T> Chart::to_plane(const T& x, const T& y, const Piece& piece) const {
     const double cx = 0.5 * (piece.box.x0 + piece.box.x1), cy = 0.5 * (piece.box.y0 + piece.box.y1);
-    return {(x - cx) * (1 / m_sx), (y - cy) * (1 / m_sy)};
+    return {(x - cx) * m_per_x.as<T>(), (y - cy) * m_per_y.as<T>()};
 }
 
 template <class T>
@@ -238,7 +271,6 @@ T Chart::inside(const T& x, const T& y, int piece) const {
 
 template <class T>
 Ray<T> Chart::local_ray(const T& x, const T& y, const Branch& branch) const {
-    using std::sinh;
     using std::sqrt;
     const Point<T> p = to_plane(x, y, m_pieces[static_cast<std::size_t>(branch.piece)]);
     const Heading& around = branch.around;
@@ -251,13 +283,18 @@ Ray<T> Chart::local_ray(const T& x, const T& y, const Branch& branch) const {
         case Projection::cylindrical:
             sin_cos(T(p.x - around.angle), sa, ca);
             return {sa, p.y, ca};
-        case Projection::mercator:
-            // tan e = sinh Y
+        case Projection::mercator: {
+            // tan e = sinh Y; divided by cosh Y, which never overflows.
             sin_cos(T(p.x - around.angle), sa, ca);
-            return {sa, sinh(p.y), ca};
+            std::remove_cvref_t<decltype(constant_part(se))> one;
+            scaled_sinh(p.y, se, one);
+            return {sa * one, se, ca * one};
+        }
         case Projection::fisheye: {
             // sin t along the radius, cos t along the axis
-            const T u = p.x * around.cos + p.y * around.sin, v = p.y * around.cos - p.x * around.sin;
+            const auto cos = measured<T>(around.cos, around.error),
+                       sin = measured<T>(around.sin, around.error);
+            const T u = p.x * cos + p.y * sin, v = p.y * cos - p.x * sin;
             const T r = sqrt(square(u) + square(v));
             if (is_zero(constant_part(r))) return {u, v, T(1)};
             sin_cos(r, sa, ca);
@@ -267,7 +304,7 @@ Ray<T> Chart::local_ray(const T& x, const T& y, const Branch& branch) const {
         case Projection::equisolid: {
             // sin t = r sqrt(1 - r^2 / 4), cos t = 1 - r^2 / 2
             const T r2 = square(p.x) + square(p.y);
-            const T k = sqrt(1.0 - r2 * 0.25);
+            const T k = sqrt(without_hair(T(1.0 - r2 * 0.25)));
             return {p.x * k, p.y * k, 1.0 - r2 * 0.5};
         }
         case Projection::stereographic: {
@@ -282,13 +319,30 @@ Ray<T> Chart::local_ray(const T& x, const T& y, const Branch& branch) const {
 
 template <class T>
 T Chart::sees(const Ray<T>& local) const {
-    if (m_projection == Projection::rectilinear) return local.z;
-    if (!is_cube(m_projection)) return T(1);
+    using std::sqrt;
+    if (sees_all()) return T(1);
+    const auto least_of = [](std::initializer_list<T> values) {
+        T least = *values.begin();
+        for (const T& other : values)
+            if (lower_end(other) < lower_end(least)) least = other;
+        return least;
+    };
+    if (has_azimuth()) {
+        const T far = sqrt(square(local.x) + square(local.z)) * m_reach;
+        return least_of({far - local.y, far + local.y});
+    }
     // On a face the forward component is the largest.
-    T least = local.z - local.x;
-    for (const T& other : {local.z + local.x, local.z - local.y, local.z + local.y})
-        if (lower_end(other) < lower_end(least)) least = other;
-    return least;
+    const T far = local.z * m_reach;
+    return least_of({far - local.x, far + local.x, far - local.y, far + local.y});
+}
+
+/// n + z for n^2 = rho^2 + z^2, without cancelling where z is negative.
+template <class T>
+T add_to_length(const T& n, const T& z, const T& rho_squared) {
+    const int side = sign(z);
+    if (side > 0) return n + z;
+    const T other = rho_squared / (n - z);
+    return side < 0 ? other : either(T(n + z), other);
 }
 
 template <class T>
@@ -299,38 +353,51 @@ Point<T> Chart::local_point(const Ray<T>& local, const Branch& branch) const {
     const Box& box = m_pieces[static_cast<std::size_t>(branch.piece)].box;
     const Heading &around = branch.around, &along = branch.along;
     const double cx = 0.5 * (box.x0 + box.x1), cy = 0.5 * (box.y0 + box.y1);
-    const auto image = [&](const T& px, const T& py) { return Point<T>{px * m_sx + cx, py * m_sy + cy}; };
+    const auto image = [&](const T& px, const T& py) {
+        return Point<T>{px * m_sx.as<T>() + cx, py * m_sy.as<T>() + cy};
+    };
     // The angle of (across, ahead), counted from `along`.
-    const auto tilt = [&](const T& across, const T& ahead) {
-        return atan2(across * along.cos - ahead * along.sin, ahead * along.cos + across * along.sin) +
-               along.angle;
+    const auto tilt = [&](const T& across, const T& ahead) -> T {
+        const auto cos = measured<T>(along.cos, along.error), sin = measured<T>(along.sin, along.error);
+        return atan2(T(across * cos - ahead * sin), T(ahead * cos + across * sin)) + along.angle;
     };
     switch (m_projection) {
         case Projection::equirectangular:
         case Projection::cylindrical:
         case Projection::mercator: {
             const T azimuth = atan2(local.x, local.z) + around.angle;
-            const T rho = sqrt(square(local.x) + square(local.z));
-            if (m_projection == Projection::equirectangular) return image(azimuth, tilt(local.y, rho));
-            const T slope = local.y / rho;
+            // Squares of what is next to nothing underflow.
+            const bool tiny = upper_magnitude(local.x) < 0x1p-400 && upper_magnitude(local.z) < 0x1p-400;
+            const double larger = tiny ? 0x1p500 : 1;
+            const T rho = sqrt(square(T(local.x * larger)) + square(T(local.z * larger)));
+            if (m_projection == Projection::equirectangular)
+                return image(azimuth, tilt(T(local.y * larger), rho));
+            const T slope = local.y * larger / rho;
             return image(azimuth, m_projection == Projection::cylindrical ? slope : T(asinh(slope)));
         }
         case Projection::fisheye: {
             const T rho = sqrt(square(local.x) + square(local.y));
-            if (is_zero(constant_part(rho))) return image(local.x, local.y);
-            const T k = tilt(rho, local.z) / rho;
-            return image((local.x * around.cos - local.y * around.sin) * k,
-                         (local.y * around.cos + local.x * around.sin) * k);
+            const bool axis = is_zero(constant_part(rho));
+            // All of the rim looks straight back.
+            if (axis && sign(local.z) < 0)
+                return image(Constant(std::numbers::pi_v<long double>).as<T>(), T(0));
+            const T k = axis ? T(T(1) / local.z) : T(tilt(rho, local.z) / rho);
+            const auto cos = measured<T>(around.cos, around.error),
+                       sin = measured<T>(around.sin, around.error);
+            return image((local.x * cos - local.y * sin) * k, (local.y * cos + local.x * sin) * k);
         }
         case Projection::equisolid: {
             // For a unit ray X = x / cos(t / 2) = x sqrt(2 / (1 + z)).
-            const T n = sqrt(square(local.x) + square(local.y) + square(local.z));
-            const T k = sqrt(T(2) / (n * (n + local.z)));
+            const T rho_squared = square(local.x) + square(local.y);
+            if (is_zero(constant_part(rho_squared)) && sign(local.z) < 0) return image(T(2), T(0));
+            const T n = sqrt(rho_squared + square(local.z));
+            const T k = sqrt(T(2) / (n * add_to_length(n, local.z, rho_squared)));
             return image(local.x * k, local.y * k);
         }
         case Projection::stereographic: {
-            const T n = sqrt(square(local.x) + square(local.y) + square(local.z));
-            const T k = T(2) / (n + local.z);
+            const T rho_squared = square(local.x) + square(local.y);
+            const T n = sqrt(rho_squared + square(local.z));
+            const T k = T(2) / add_to_length(n, local.z, rho_squared);
             return image(local.x * k, local.y * k);
         }
         default:

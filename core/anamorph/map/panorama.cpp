@@ -1,20 +1,69 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "anamorph/map/panorama.h"
 
-#include <glm/trigonometric.hpp>
-
 #include "anamorph/error.h"
 
 namespace anamorph {
+namespace {
+
+using Turn = std::array<std::array<Constant, 3>, 3>;
+
+/// Sine and cosine of an angle in degrees. A turn is taken off, then right angles, all of them exactly: no
+/// angle is too large, and multiples of 90 degrees give 0 and 1.
+struct Angle {
+    long double sin, cos;
+
+    explicit Angle(double degrees) {
+        const long double angle = std::fmod(degrees, 360.0);
+        const long double quarters = std::round(angle / 90);
+        const long double rest = (angle - 90 * quarters) * (std::numbers::pi_v<long double> / 180);
+        const long double s = std::sin(rest), c = std::cos(rest);
+        switch (static_cast<int>(quarters) & 3) {
+            case 0:
+                sin = s, cos = c;
+                break;
+            case 1:
+                sin = c, cos = -s;
+                break;
+            case 2:
+                sin = -s, cos = -c;
+                break;
+            default:
+                sin = -c, cos = s;
+        }
+    }
+};
+
+/// yaw * pitch * roll, by columns.
+Turn turn_of(const Orientation& orientation) {
+    const Angle y(orientation.yaw), p(orientation.pitch), r(orientation.roll);
+    // A sine or cosine is off by its argument's rounding and libm's, two products and a sum by a unit each:
+    // 32 units of each term.
+    const auto sum = [](long double a, long double b) {
+        return Constant(a + b,
+                        static_cast<double>(std::fabs(a) + std::fabs(b)) * 32 * Rounded<long double>::kUnit);
+    };
+    const auto product = [](long double a) { return Constant(a); };
+    return {{{sum(y.cos * r.cos, y.sin * p.sin * r.sin), product(p.cos * r.sin),
+              sum(-y.sin * r.cos, y.cos * p.sin * r.sin)},
+             {sum(-y.cos * r.sin, y.sin * p.sin * r.cos), product(p.cos * r.cos),
+              sum(y.sin * r.sin, y.cos * p.sin * r.cos)},
+             {product(y.sin * p.cos), product(-p.sin), product(y.cos * p.cos)}}};
+}
+
+glm::dmat3 matrix_of(const Turn& turn) {
+    glm::dmat3 matrix;
+    for (int column = 0; column < 3; ++column)
+        for (int row = 0; row < 3; ++row)
+            matrix[column][row] =
+                turn[static_cast<std::size_t>(column)][static_cast<std::size_t>(row)].value();
+    return matrix;
+}
+
+}  // namespace
 
 glm::dmat3 rotation(const Orientation& orientation) {
-    const double y = glm::radians(orientation.yaw), p = glm::radians(orientation.pitch),
-                 r = glm::radians(orientation.roll);
-    // glm's matrices are written column by column.
-    const glm::dmat3 roll(std::cos(r), std::sin(r), 0, -std::sin(r), std::cos(r), 0, 0, 0, 1);
-    const glm::dmat3 pitch(1, 0, 0, 0, std::cos(p), std::sin(p), 0, -std::sin(p), std::cos(p));
-    const glm::dmat3 yaw(std::cos(y), 0, -std::sin(y), 0, 1, 0, std::sin(y), 0, std::cos(y));
-    return yaw * pitch * roll;
+    return matrix_of(turn_of(orientation));
 }
 
 Panorama::Panorama(const Chart& source, const Chart& target, const Orientation& orientation)
@@ -24,7 +73,8 @@ Panorama::Panorama(const Chart& source, const Chart& target, const Orientation& 
     for (const auto& [name, value] : angles)
         if (!std::isfinite(value))
             throw Error(name, std::to_string(value), "allowed are finite angles in degrees");
-    m_rotation = rotation(orientation);
+    m_turn = turn_of(orientation);
+    m_rotation = matrix_of(m_turn);
 }
 
 Panorama::Local Panorama::local_around(double x, double y, int piece) const {
@@ -35,6 +85,49 @@ Panorama::Local Panorama::local_around(double x, double y, int piece) const {
     local.source = m_source.branch_around(transform(m_rotation, m_target.ray(x, y, piece)));
     local.rotation = glm::transpose(local.source.axes) * m_rotation * local.target.axes;
     return local;
+}
+
+template <class Real>
+double Panorama::exact_error(const Interval& x, const Interval& y, int piece) const {
+    using R = Rounded<Real>;
+    if (!(m_target.inside(x, y, piece).hi >= 0)) return 0;
+    const Ray<R> ray = source_ray(R(x, 0, 0), R(y, 0, 0), piece);
+    const std::size_t pieces = m_source.pieces().size();
+    if (pieces == 1) {
+        const R seen = m_source.sees(ray);
+        if (seen.range.hi + seen.error <= 0) return 0;
+        if (!(lower_end(seen) > 0)) return HUGE_VAL;
+    }
+    // Whichever piece may come out as the one that looks most along the ray.
+    std::array<R, 6> along;
+    double most = -HUGE_VAL;
+    for (std::size_t i = 0; i < pieces && pieces > 1; ++i) {
+        const auto& f = m_source.pieces()[i].axes[2];
+        along[i] = ray.x * f[0] + ray.y * f[1] + ray.z * f[2];
+        most = std::max(most, lower_end(along[i]));
+    }
+    double error = 0;
+    for (std::size_t i = 0; i < pieces; ++i) {
+        if (pieces > 1 && along[i].range.hi + along[i].error < most) continue;
+        const Point<R> p = m_source.point(ray, static_cast<int>(i));
+        // The result is kept in double.
+        const double unit = std::is_same_v<Real, double> ? 0 : 0x1p-53;
+        const double distance =
+            std::hypot(p.x.error + unit * p.x.computed_size(), p.y.error + unit * p.y.computed_size());
+        if (!(distance <= error)) error = distance * rounded_detail::kUp;
+    }
+    // Straight behind a lens that shows it all around its rim, nothing is known but that.
+    const double widest = m_source.widest();
+    return error <= widest ? error : widest;
+}
+template double Panorama::exact_error<double>(const Interval&, const Interval&, int) const;
+template double Panorama::exact_error<long double>(const Interval&, const Interval&, int) const;
+
+Panorama::TaylorRounding Panorama::taylor_rounding(const Interval& x, const Interval& y, double half_width,
+                                                   double half_height, const Local& local) const {
+    using R = Rounded<double>;
+    const Point<R> p = (*this)(R(x, half_width, 0), R(y, half_height, 0), local);
+    return {{p.x.error, p.y.error}, {p.x.computed_size(), p.y.computed_size()}};
 }
 
 }  // namespace anamorph

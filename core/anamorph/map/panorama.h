@@ -3,6 +3,7 @@
 // the source's lens to a point of the source image. Pixels, x right, y down, pixel centres at + 0.5.
 #pragma once
 
+#include <array>
 #include <glm/mat3x3.hpp>
 
 #include "anamorph/map/chart.h"
@@ -37,7 +38,7 @@ class Panorama {
     /// The source's local ray of a target point.
     template <class T>
     Ray<T> local_ray(const T& x, const T& y, const Local& local) const {
-        return transform(local.rotation, m_target.local_ray(x, y, local.target));
+        return transform(local.rotation, m_target.local_ray(x, y, local.target), kLocalError);
     }
 
     /// The source point of a target point.
@@ -51,15 +52,46 @@ class Panorama {
     template <class T>
     bool exact(const T& x, const T& y, int piece, Point<T>& source_point, int& source_piece) const {
         if (!(m_target.inside(x, y, piece) >= 0)) return false;
-        const Ray<T> r = transform(m_rotation, m_target.ray(x, y, piece));
-        if (m_source.projection() == Projection::rectilinear && !(r.z > 0)) return false;
+        const Ray<T> r = source_ray(x, y, piece);
         source_piece = m_source.piece_of(r);
+        if (m_source.pieces().size() == 1 && !(m_source.sees(r) > 0)) return false;
         source_point = m_source.point(r, source_piece);
         return std::isfinite(source_point.x) && std::isfinite(source_point.y);
     }
 
+    /// Bounds the rounding of exact<Real>, its result kept in double, over a box of target points: the
+    /// distance from the truth in source pixels. Around a source with azimuths, points a full turn apart
+    /// count as one; on a cube, so do those of one ray on two faces. 0 where no point has a source point;
+    /// infinite where it is not certain that there is one.
+    template <class Real>
+    double exact_error(const Interval& x, const Interval& y, int piece) const;
+
+    /// Bounds what rounding to double does to the map's Taylor polynomials about the points of a box, of
+    /// degree 4 at most, in all their coefficients together, on neighbourhoods of up to the given size; and
+    /// their values.
+    struct TaylorRounding {
+        Point<double> error, size;
+    };
+    TaylorRounding taylor_rounding(const Interval& x, const Interval& y, double half_width,
+                                   double half_height, const Local& local) const;
+
   private:
+    /// The entries of a product of rotations to and from a local frame: each of its two angles may be off
+    /// by Heading::kError, which turns a ray by as much; the frames' entries may be off by that again, in two
+    /// places of a row or column each; and the products of unit rows, 12 of them and as many sums, by less
+    /// than 64 units.
+    static constexpr double kLocalError = 6 * Heading::kError + 64 * 0x1p-53;
+
+    /// The source's ray of a target point.
+    template <class T>
+    Ray<T> source_ray(const T& x, const T& y, int piece) const {
+        return transform([&](int column, int row) { return m_turn[column][row].template as<T>(); },
+                         m_target.ray(x, y, piece));
+    }
+
     Chart m_source, m_target;
+    /// The rotation by columns, known better than double holds it, and in double.
+    std::array<std::array<Constant, 3>, 3> m_turn;
     glm::dmat3 m_rotation;
 };
 

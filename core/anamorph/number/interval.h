@@ -1,12 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
 // Interval arithmetic over double: every operation encloses the exact result of its operands' members.
 //
-// Rounding: the four operations and sqrt are rounded to nearest by the hardware and then widened by one ULP
-// or more on each side; sin, cos, sinh, cosh, atan2, asin and log are taken from libm and widened by
-// kLibmMargin, a relative margin of 8 ULP (glibc states at most 2 for these; tests/core checks the margin
-// against long double). An operation without a bounded result (division by an interval that holds zero, the
-// root of a negative number) gives [-inf, inf] or NaN ends; every test on a bound is written !(bound <= tol).
-// Underflow is not enclosed: an exact zero stays one, and a result below 1e-300 may be lost.
+// Rounding: the hardware rounds the four operations and sqrt to nearest, half a ULP off at most. A ULP of v
+// is at most kUlp |v|, so that an end moved by kUlp of its own magnitude, itself rounded, lies at least one
+// ULP further out: beyond the exact value. Other functions are libm's, taken to be within kLibmError of the
+// value (glibc states 2 ULP for the worst of them; tests/core holds it against long double) and widened by
+// twice that, which covers the rounding of the widening. Monotone functions of libm are read at both ends;
+// what libm may lack in monotony is less than its error.
+//
+// Underflow: a product, a quotient or a function below kSmallest is off by kSmallest at most, also where the
+// processor takes what is smaller for zero, and is widened by as much. Sums do not underflow, and an exact
+// zero stays one.
+//
+// An operation without a bounded result (division by an interval that holds zero, the root or the logarithm
+// of a negative number) gives [-inf, inf] or NaN ends; every test on a bound is written !(bound <= tol).
 #pragma once
 
 #include <algorithm>
@@ -29,14 +36,52 @@ struct Interval {
     constexpr bool contains(double value) const { return lo <= value && value <= hi; }
 };
 
+inline bool operator==(const Interval& a, const Interval& b) {
+    return a.lo == b.lo && a.hi == b.hi;
+}
+/// For all members of both: neither a < b nor b <= a need hold.
+inline bool operator<(const Interval& a, const Interval& b) {
+    return a.hi < b.lo;
+}
+inline bool operator<=(const Interval& a, const Interval& b) {
+    return a.hi <= b.lo;
+}
+inline bool operator>(const Interval& a, const Interval& b) {
+    return b < a;
+}
+inline bool operator>=(const Interval& a, const Interval& b) {
+    return b <= a;
+}
+
 namespace interval_detail {
 
-inline constexpr double kUlp = 0x1p-52;
-inline constexpr double kLibmMargin = 8 * 0x1p-52;
+/// The spacing of doubles, relative to their magnitude: at most this, at least half of it.
+inline constexpr double kUlp = std::numeric_limits<double>::epsilon();
+/// What libm's functions may be off, relative to the value.
+inline constexpr double kLibmError = 4 * kUlp;
+inline constexpr double kLibmMargin = 2 * kLibmError;
+/// The smallest normal number.
+inline constexpr double kSmallest = std::numeric_limits<double>::min();
+inline constexpr double kLargest = std::numeric_limits<double>::max();
 
 /// [lo, hi] widened by `relative` of each end's magnitude. An end of exactly 0 stays.
 inline Interval widen(double lo, double hi, double relative = kUlp) {
     return {lo - std::fabs(lo) * relative, hi + std::fabs(hi) * relative};
+}
+
+/// Has an end lost digits to underflow?
+inline bool underflows(const Interval& a) {
+    return std::fabs(a.lo) < 4 * kSmallest || std::fabs(a.hi) < 4 * kSmallest;
+}
+
+/// The values of a function of libm that is 0 only where its argument is.
+inline Interval libm(double lo, double hi) {
+    Interval r = widen(lo, hi, kLibmMargin);
+    if (underflows(r)) {
+        if (r.lo != 0) r.lo -= kSmallest;
+        if (r.hi != 0) r.hi += kSmallest;
+    }
+    return r;
 }
 
 }  // namespace interval_detail
@@ -50,16 +95,39 @@ inline Interval operator+(const Interval& a, const Interval& b) {
 inline Interval operator-(const Interval& a, const Interval& b) {
     return interval_detail::widen(a.lo - b.hi, a.hi - b.lo);
 }
+namespace interval_detail {
+
+/// a b where one of the four products of ends is 0 or nearly so: each with its own margin.
+inline Interval small_product(const Interval& a, const Interval& b) {
+    Interval r{kLargest, -kLargest};
+    for (const double x : {a.lo, a.hi})
+        for (const double y : {b.lo, b.hi}) {
+            const bool lost = x != 0 && y != 0 && std::fabs(x * y) < 4 * kSmallest;
+            const Interval p = widen(x * y, x * y);
+            r.lo = std::min(r.lo, lost ? p.lo - kSmallest : p.lo);
+            r.hi = std::max(r.hi, lost ? p.hi + kSmallest : p.hi);
+        }
+    return r;
+}
+
+}  // namespace interval_detail
+
 inline Interval operator*(const Interval& a, const Interval& b) {
     const double p = a.lo * b.lo, q = a.lo * b.hi, r = a.hi * b.lo, s = a.hi * b.hi;
     // 0 * inf is NaN and must not be lost by min and max.
     if (std::isnan(p + q + r + s)) return Interval::all();
-    return interval_detail::widen(std::min(std::min(p, q), std::min(r, s)),
-                                  std::max(std::max(p, q), std::max(r, s)));
+    const Interval product = interval_detail::widen(std::min(std::min(p, q), std::min(r, s)),
+                                                    std::max(std::max(p, q), std::max(r, s)));
+    return interval_detail::underflows(product) ? interval_detail::small_product(a, b) : product;
 }
 inline Interval operator/(const Interval& a, const Interval& b) {
     if (!(b.lo > 0 || b.hi < 0)) return Interval::all();
-    return a * interval_detail::widen(1 / b.hi, 1 / b.lo);
+    Interval inverse = interval_detail::widen(1 / b.hi, 1 / b.lo);
+    if (interval_detail::underflows(inverse)) {
+        inverse.lo -= interval_detail::kSmallest;
+        inverse.hi += interval_detail::kSmallest;
+    }
+    return a * inverse;
 }
 inline Interval& operator+=(Interval& a, const Interval& b) {
     return a = a + b;
@@ -83,6 +151,10 @@ inline Interval square(const Interval& a) {
     if (std::isnan(p + q)) return Interval::all();
     const bool zero = a.contains(0);
     Interval r = interval_detail::widen(zero ? 0 : std::min(p, q), std::max(p, q));
+    if (interval_detail::underflows(r)) {
+        r.lo -= interval_detail::kSmallest;
+        if (a.lo != 0 || a.hi != 0) r.hi += interval_detail::kSmallest;
+    }
     r.lo = std::max(r.lo, 0.0);
     return r;
 }
@@ -118,28 +190,62 @@ inline Interval cos(const Interval& a) {
     return interval_detail::wave(std::cos(a.lo), std::cos(a.hi), a, 0);
 }
 inline Interval sinh(const Interval& a) {
-    return interval_detail::widen(std::sinh(a.lo), std::sinh(a.hi), interval_detail::kLibmMargin);
+    return interval_detail::libm(std::sinh(a.lo), std::sinh(a.hi));
 }
 inline Interval cosh(const Interval& a) {
     const double p = std::cosh(a.lo), q = std::cosh(a.hi);
     if (std::isnan(p + q)) return Interval::all();
-    return interval_detail::widen(a.contains(0) ? 1 : std::min(p, q), std::max(p, q),
-                                  interval_detail::kLibmMargin);
+    // A value that overflows is known to be larger than kLargest, no more.
+    const double least = a.contains(0) ? 1 : std::min({p, q, interval_detail::kLargest});
+    return interval_detail::widen(least, std::max(p, q), interval_detail::kLibmMargin);
+}
+inline Interval tanh(const Interval& a) {
+    const Interval r = interval_detail::libm(std::tanh(a.lo), std::tanh(a.hi));
+    return {r.lo < -1 ? -1 : r.lo, r.hi > 1 ? 1 : r.hi};
 }
 inline Interval asinh(const Interval& a) {
-    return interval_detail::widen(std::asinh(a.lo), std::asinh(a.hi), interval_detail::kLibmMargin);
+    return interval_detail::libm(std::asinh(a.lo), std::asinh(a.hi));
+}
+inline Interval exp(const Interval& a) {
+    // Unlike the others it is never 0, and finite where it overflows.
+    Interval r = interval_detail::libm(std::min(std::exp(a.lo), interval_detail::kLargest), std::exp(a.hi));
+    r.hi += r.hi == 0 ? interval_detail::kSmallest : 0;
+    r.lo = r.lo < 0 ? 0 : r.lo;
+    return r;
+}
+/// -inf at 0.
+inline Interval log(const Interval& a) {
+    return interval_detail::libm(std::log(a.lo), std::log(a.hi));
+}
+/// For bases that are not negative: the extreme powers stand at corners.
+inline Interval pow(const Interval& a, const Interval& b) {
+    if (!(a.lo >= 0)) return Interval::all();
+    const double p = std::pow(a.lo, b.lo), q = std::pow(a.lo, b.hi);
+    const double r = std::pow(a.hi, b.lo), s = std::pow(a.hi, b.hi);
+    if (std::isnan(p + q + r + s) || std::isnan(b.lo + b.hi)) return Interval::all();
+    Interval power =
+        interval_detail::libm(std::min({p, q, r, s, interval_detail::kLargest}), std::max({p, q, r, s}));
+    power.hi += power.hi == 0 && a.hi > 0 ? interval_detail::kSmallest : 0;
+    // Whatever the exponent, 0^0 = 1 stands beside 0^b.
+    if (a.lo == 0 && b.contains(0)) power = {std::min(power.lo, 0.0), std::max(power.hi, 1.0)};
+    power.lo = std::max(power.lo, 0.0);
+    return power;
 }
 /// The angle of (x, y); the whole circle when the box meets the negative x axis or the origin.
 inline Interval atan2(const Interval& y, const Interval& x) {
-    using interval_detail::kLibmMargin;
     constexpr double kPi = 3.141592653589793;
-    if (!(x.lo > 0 || y.lo > 0 || y.hi < 0)) return interval_detail::widen(-kPi, kPi, kLibmMargin);
+    if (!(x.lo > 0 || y.lo > 0 || y.hi < 0))
+        return interval_detail::widen(-kPi, kPi, interval_detail::kLibmMargin);
     // The extreme angles of a box that the angle's cut does not cross are at corners.
     const double p = std::atan2(y.lo, x.lo), q = std::atan2(y.lo, x.hi);
     const double r = std::atan2(y.hi, x.lo), s = std::atan2(y.hi, x.hi);
     if (std::isnan(p + q + r + s)) return Interval::all();
-    return interval_detail::widen(std::min(std::min(p, q), std::min(r, s)),
-                                  std::max(std::max(p, q), std::max(r, s)), kLibmMargin);
+    Interval angle = interval_detail::libm(std::min(std::min(p, q), std::min(r, s)),
+                                           std::max(std::max(p, q), std::max(r, s)));
+    // An angle that underflows to 0.
+    if (angle.lo == 0 && y.lo != 0) angle.lo -= interval_detail::kSmallest;
+    if (angle.hi == 0 && y.hi != 0) angle.hi += interval_detail::kSmallest;
+    return angle;
 }
 
 }  // namespace anamorph

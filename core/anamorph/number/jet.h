@@ -9,7 +9,9 @@
 // E = s d/ds + t d/dt multiplies f_k by k, so the classic one-variable recurrences hold part by part.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
 #include <type_traits>
 #include <utility>
 
@@ -190,6 +192,12 @@ inline Jet<T, N> operator*(const Jet<T, N>& a, double b) {
     return r;
 }
 template <class T, int N>
+requires(!std::is_arithmetic_v<T>) inline Jet<T, N> operator*(const Jet<T, N>& a, const T& b) {
+    Jet<T, N> r;
+    for (int i = 0; i < Jet<T, N>::kSize; ++i) r.c[i] = a.c[i] * b;
+    return r;
+}
+template <class T, int N>
 inline Jet<T, N> operator*(double a, const Jet<T, N>& b) {
     return b * a;
 }
@@ -297,6 +305,37 @@ inline Jet<T, N> sinh(const Jet<T, N>& a) {
     return s;
 }
 
+/// 1 / cosh(a), or where that is next to nothing the least of which products do not underflow: what it scales
+/// keeps its direction.
+inline double scaled_one(double a) {
+    return std::max(1 / std::cosh(a), 0x1p-960);
+}
+inline long double scaled_one(long double a) {
+    return std::max(1 / std::cosh(a),
+                    std::numeric_limits<long double>::min_exponent < -16000 ? 0x1p-16000L : 0x1p-960L);
+}
+inline Interval scaled_one(const Interval& a) {
+    const Interval r = Interval(1) / cosh(a);
+    return {r.lo < 0x1p-960 ? 0x1p-960 : r.lo, r.hi < 0x1p-960 ? 0x1p-960 : r.hi};
+}
+
+/// sinh(a) and 1, both over cosh of a's constant part: no a overflows them.
+template <class T, int N>
+inline void scaled_sinh(const Jet<T, N>& a, Jet<T, N>& s, T& one) {
+    using std::tanh;
+    Jet<T, N> c(T(1));
+    s = Jet<T, N>(tanh(a.c[0]));
+    one = scaled_one(a.c[0]);
+    jet_detail::oscillate<1>(s, c, a);
+}
+template <class T>
+requires(std::is_floating_point_v<T> || std::is_same_v<T, Interval>) inline void scaled_sinh(const T& a, T& s,
+                                                                                             T& one) {
+    using std::tanh;
+    s = tanh(a);
+    one = scaled_one(a);
+}
+
 /// E g sqrt(1 + a^2) = E a
 template <class T, int N>
 inline Jet<T, N> asinh(const Jet<T, N>& a) {
@@ -339,6 +378,59 @@ inline long double lower_end(long double a) {
 }
 inline double lower_end(const Interval& a) {
     return a.lo;
+}
+
+/// The largest magnitude of the constant part.
+inline double upper_magnitude(double a) {
+    return std::fabs(a);
+}
+inline double upper_magnitude(long double a) {
+    return static_cast<double>(std::fabs(a));
+}
+inline double upper_magnitude(const Interval& a) {
+    return magnitude(a);
+}
+template <class T, int N>
+double upper_magnitude(const Jet<T, N>& a) {
+    return upper_magnitude(a.c[0]);
+}
+
+/// 1 or -1: the sign of the constant part, 0 counted positive; 0 where members differ.
+inline int sign(double a) {
+    return a < 0 ? -1 : 1;
+}
+inline int sign(long double a) {
+    return a < 0 ? -1 : 1;
+}
+inline int sign(const Interval& a) {
+    return a.lo >= 0 ? 1 : a.hi < 0 ? -1 : 0;
+}
+template <class T, int N>
+int sign(const Jet<T, N>& a) {
+    return sign(a.c[0]);
+}
+
+/// What is at least 0 but for a hair: that is taken off; what is less stays negative.
+inline double without_hair(double a) {
+    return a < 0 && a > -0x1p-38 ? 0 : a;
+}
+inline long double without_hair(long double a) {
+    return a < 0 && a > -0x1p-38L ? 0 : a;
+}
+/// Of members that are not less.
+inline Interval without_hair(const Interval& a) {
+    return {a.lo < 0 ? 0 : a.lo, a.hi < 0 ? 0 : a.hi};
+}
+template <class T, int N>
+Jet<T, N> without_hair(Jet<T, N> a) {
+    a.c[0] = without_hair(a.c[0]);
+    return a;
+}
+
+/// Two forms of one value, where members are to be computed by either.
+template <class T>
+const T& either(const T& a, const T&) {
+    return a;
 }
 
 /// The polynomial of `Degree` about 0 as one about `shift`, in units of `scale`, by repeated division;

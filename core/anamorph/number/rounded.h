@@ -1,0 +1,345 @@
+// SPDX-License-Identifier: Apache-2.0
+// The number a formula is read with to learn what rounding does to it.
+//
+// Rounded<Real> stands for all evaluations of a formula in Real (double or long double) over a box: `range`
+// encloses the exact values there, `error` bounds |computed - exact|. Each operation passes on its operands'
+// errors by its own derivative, largest over the box, and adds its own rounding.
+//
+// With a radius it stands for jets too. Jet<Real, N> at a point of the box has the exact coefficients a_ij
+// and computed ones; a_00 lies in `range`, the sum of the other |a_ij| is at most `radius`, and the sum of
+// all |computed - exact| at most `error`. With |a| the sum of all |a_ij|, |a b| <= |a| |b|, so that jets can
+// be bounded like numbers: a power series of a_00 + n has no larger norm than the series of magnitudes at |n|
+// <= radius. What a recurrence of number/jet.h computes solves its equation up to a residual, which is kSum
+// times what was summed up; the error is the residual times the inverse of what it is divided by.
+//
+// Angles are meant modulo a turn: where atan2 jumps by one, no error is counted.
+//
+// A bound that cannot be had is infinite or NaN: test !(error <= tol). What is exactly zero stays free of
+// errors: zero times anything, and sums with it.
+#pragma once
+
+#include <cmath>
+#include <limits>
+#include <type_traits>
+
+#include "anamorph/number/interval.h"
+
+namespace anamorph {
+
+template <class Real>
+struct Rounded;
+
+namespace rounded_detail {
+
+template <class Real>
+Rounded<Real> sum(const Rounded<Real>& a, const Rounded<Real>& b);
+template <class Real>
+Rounded<Real> product(const Rounded<Real>& a, const Rounded<Real>& b);
+template <class Real>
+Rounded<Real> quotient(const Rounded<Real>& f, const Rounded<Real>& g);
+
+}  // namespace rounded_detail
+
+template <class Real>
+struct Rounded {
+    /// Half the spacing of Real's numbers, relative.
+    static constexpr double kUnit = static_cast<double>(std::numeric_limits<Real>::epsilon() / 2);
+    /// What libm's functions may be off, relative to the value, as in number/interval.h.
+    static constexpr double kLibm = 8 * kUnit;
+    /// The largest underflow. (A double's is above long double's.)
+    static constexpr double kLeast = interval_detail::kSmallest;
+    /// Jets have degree 4 at most. The longest sum in a coefficient, that of s^2 t^2, has 9 products; on its
+    /// way each meets a product's rounding, at most 4 sums in its part, a weight's and 5 sums of parts. Then
+    /// follow a difference and two products at most.
+    static constexpr double kSum = 16 * kUnit;
+    static constexpr double kDegree = 4;
+
+    Interval range;
+    double radius = 0;
+    double error = 0;
+
+    Rounded() = default;
+    Rounded(double value) : range(value) {}  // NOLINT: a number is one without error
+    Rounded(const Interval& values, double spread, double bound)
+        : range(values), radius(spread), error(bound) {}
+
+    /// A constant that was rounded: `value` is off by at most `bound`.
+    static Rounded near(double value, double bound) {
+        return bound == 0 ? Rounded(value)
+                          : Rounded(Interval(value - 2 * bound, value + 2 * bound), 0, bound);
+    }
+
+    /// Largest norm of the exact jets, and of the computed ones.
+    double size() const { return magnitude(range) + radius; }
+    double computed_size() const { return size() + error; }
+    bool is_jet() const { return radius != 0; }
+    bool is_zero() const { return range.lo == 0 && range.hi == 0 && radius == 0 && error == 0; }
+
+    friend Rounded operator-(const Rounded& a) { return {-a.range, a.radius, a.error}; }
+    friend Rounded operator+(const Rounded& a, const Rounded& b) { return rounded_detail::sum(a, b); }
+    friend Rounded operator-(const Rounded& a, const Rounded& b) { return rounded_detail::sum(a, -b); }
+    friend Rounded operator*(const Rounded& a, const Rounded& b) { return rounded_detail::product(a, b); }
+    friend Rounded operator/(const Rounded& a, const Rounded& b) { return rounded_detail::quotient(a, b); }
+};
+
+namespace rounded_detail {
+
+/// The sums and products that make up a bound are themselves rounded, fewer than 32 times, all of one sign.
+inline constexpr double kUp = 1 + 64 * 0x1p-53;
+
+/// A result of the given exact values that was off by `error` before it was rounded by `unit` of its size.
+template <class Real>
+Rounded<Real> result(const Interval& range, double radius, double error, double unit) {
+    using R = Rounded<Real>;
+    R r(range, radius * kUp, 0);
+    const double rounding = unit * (r.size() + error);
+    r.error = error + rounding > 0 || std::isnan(error + rounding) ? (error + rounding) * kUp + R::kLeast : 0;
+    return r;
+}
+
+/// The least magnitude of a member.
+inline double least_magnitude(const Interval& a) {
+    return a.lo > 0 ? a.lo : a.hi < 0 ? -a.hi : 0;
+}
+
+/// What recurrences add to functions that solve E u = v E a, E v = -+ u E a, E the operator that multiplies
+/// degree k by k: u and v are sums of exp(+-c a), c = 1 or i, each of norm at most exp(r) relative to its
+/// constant part; the residual of the equations is kSum kDegree r exp(r) for each, and it is divided by u + c
+/// v and multiplied by it again.
+template <class Real>
+double oscillation_error(double r) {
+    using R = Rounded<Real>;
+    const double grown = std::exp(r);
+    return 2 * R::kSum * R::kDegree * r * grown * grown * grown;
+}
+
+template <class Real>
+Rounded<Real> sum(const Rounded<Real>& a, const Rounded<Real>& b) {
+    if (a.is_zero()) return b;
+    if (b.is_zero()) return a;
+    return result<Real>(a.range + b.range, a.radius + b.radius, a.error + b.error, Rounded<Real>::kUnit);
+}
+template <class Real>
+Rounded<Real> product(const Rounded<Real>& a, const Rounded<Real>& b) {
+    using R = Rounded<Real>;
+    if (a.is_zero() || b.is_zero()) return R(0);
+    const double in_a = magnitude(a.range), in_b = magnitude(b.range);
+    // What is summed up are the products of magnitudes.
+    const double unit = a.is_jet() && b.is_jet() ? R::kSum : R::kUnit;
+    return result<Real>(a.range * b.range, a.radius * in_b + in_a * b.radius + a.radius * b.radius,
+                        a.error * b.size() + b.error * a.size() + a.error * b.error +
+                            unit * a.computed_size() * b.computed_size(),
+                        0);
+}
+/// f = q g + residual
+template <class Real>
+Rounded<Real> quotient(const Rounded<Real>& f, const Rounded<Real>& g) {
+    using R = Rounded<Real>;
+    // The norm of 1 / g.
+    const double inverse = 1 / (least_magnitude(g.range) - g.radius);
+    const double unit = f.is_jet() || g.is_jet() ? R::kSum : 2 * R::kUnit;
+    const double feedback = inverse * (g.error + unit * g.computed_size());
+    if (!(inverse > 0 && feedback < 0.5)) return R(Interval::all(), 0, HUGE_VAL);
+    if (f.is_zero()) return f;
+    const Interval range = f.range / g.range;
+    const double radius = (f.radius + magnitude(range) * g.radius) * inverse;
+    const double q = magnitude(range) + radius;
+    const double error = (inverse * (f.error + unit * f.computed_size()) + feedback * q) / (1 - feedback);
+    return result<Real>(range, radius, error, 0);
+}
+
+}  // namespace rounded_detail
+
+template <class Real>
+Rounded<Real> square(const Rounded<Real>& a) {
+    Rounded<Real> r = a * a;
+    r.range = square(a.range);
+    return r;
+}
+/// r r = f + residual
+template <class Real>
+Rounded<Real> sqrt(const Rounded<Real>& f) {
+    using R = Rounded<Real>;
+    if (f.is_zero()) return f;
+    const Interval range = sqrt(f.range);
+    if (!f.is_jet()) {
+        // |sqrt a - sqrt b| <= |a - b| / sqrt a and <= sqrt |a - b|. Where nothing is negative a root of what
+        // rounding made so is not asked for.
+        const double by_slope = f.error / range.lo, by_root = std::sqrt(f.error);
+        return rounded_detail::result<Real>(range, 0, by_slope < by_root ? by_slope : by_root, R::kUnit);
+    }
+    // sqrt(f_0 + n) is nearest to 0 where n = -radius: the constant part less the norm of the rest.
+    const double least = std::sqrt(f.range.lo - f.radius) * (1 - 4 * interval_detail::kUlp);
+    const double radius = range.lo - least + 4 * interval_detail::kUlp * range.hi;
+    // |r|^2 <= 4 |f|, and two roots differ by the difference of their squares over their sum, which is at
+    // least 1.5 `least` while that difference is below least^2 / 2.
+    const double squares = f.error + 5 * R::kSum * f.computed_size();
+    if (!(squares <= 0.5 * least * least)) return R(Interval::all(), 0, HUGE_VAL);
+    return rounded_detail::result<Real>(range, radius, squares / (1.5 * least), 0);
+}
+template <class Real>
+void sin_cos(const Rounded<Real>& a, Rounded<Real>& s, Rounded<Real>& c) {
+    using R = Rounded<Real>;
+    const double grown = std::exp(a.radius), moved = a.error * grown * std::exp(a.error);
+    const double rest = grown - 1, recurrence = rounded_detail::oscillation_error<Real>(a.radius);
+    const auto wave = [&](const Interval& values) {
+        return rounded_detail::result<Real>(
+            values, rest, moved + recurrence + R::kLibm * (a.is_jet() ? grown : magnitude(values)), 0);
+    };
+    s = a.is_zero() ? a : wave(sin(a.range));
+    c = wave(cos(a.range));
+}
+/// As for Jet: sinh(a) and 1, both over cosh of a's constant part.
+template <class Real>
+void scaled_sinh(const Rounded<Real>& a, Rounded<Real>& s, Rounded<Real>& one) {
+    using R = Rounded<Real>;
+    const double grown = std::exp(a.radius), moved = a.error * grown * std::exp(a.error);
+    const Interval t = tanh(a.range), sech = Interval(1) / cosh(a.range);
+    // Below this a number is computed that is as large instead.
+    const double least = sech.lo < 0x1p-959 ? 0x1p-959 : 0;
+    s = rounded_detail::result<Real>(t, grown - 1,
+                                     moved + rounded_detail::oscillation_error<Real>(a.radius) +
+                                         R::kLibm * (a.is_jet() ? grown : magnitude(t)),
+                                     0);
+    if (a.is_zero()) s = a;
+    // |sech'| <= sech
+    one = rounded_detail::result<Real>(sech, 0, magnitude(sech) * (moved + R::kLibm) + least, 2 * R::kUnit);
+}
+/// sqrt(1 + a^2) E g = E a
+template <class Real>
+Rounded<Real> asinh(const Rounded<Real>& a) {
+    using R = Rounded<Real>;
+    if (a.is_zero()) return a;
+    // The largest norm of the derivative 1 / sqrt((1 + a_0^2) + (2 a_0 n + n^2)), errors and all.
+    const double r = a.radius + a.error, most = magnitude(a.range);
+    const double low = rounded_detail::least_magnitude(a.range);
+    const double nearest = low > r ? low : most < r ? most : r;
+    const double square_of_root = 1 + (nearest - r) * (nearest - r) - 2 * r * r;
+    const Interval range = asinh(a.range);
+    if (!(square_of_root > 0)) return R(range, HUGE_VAL, HUGE_VAL);
+    const double slope = 1 / std::sqrt(square_of_root);
+    double error = slope * a.error + R::kLibm * magnitude(range);
+    if (a.is_jet()) {
+        // E a is off by kDegree a.error, the root by its own error; the residual is that of the division.
+        const R root = sqrt(square(a) + R(1));
+        const double steps = R::kDegree * (a.radius + a.error);
+        error += slope * (R::kDegree * a.error +
+                          (R::kSum * (1 + slope * root.computed_size()) + slope * root.error) * steps);
+    }
+    return rounded_detail::result<Real>(range, slope * a.radius, error, 0);
+}
+/// With z = x + i y: the angle is Im log z, and z conj(z) E g = x E y - y E x.
+template <class Real>
+Rounded<Real> atan2(const Rounded<Real>& y, const Rounded<Real>& x) {
+    using R = Rounded<Real>;
+    constexpr double kHalfTurn = 3.1415926535897936;
+    const Interval range = atan2(y.range, x.range);
+    // Along the positive x axis, exactly.
+    if (y.is_zero() && x.range.lo - x.error >= 0) return R(0);
+    const double rest = x.radius + y.radius, moved = x.error + y.error;
+    const double low = rounded_detail::least_magnitude(x.range),
+                 high = rounded_detail::least_magnitude(y.range);
+    // |log(z + d) - log z| <= |d| / (|z| - |d|)
+    const double distance = std::hypot(low, high) * (1 - 4 * interval_detail::kUlp) - rest;
+    const double turned = moved / (distance - moved);
+    if (!(distance > moved)) {
+        // No two angles are more than half a turn apart.
+        return R(range, rest > 0 ? HUGE_VAL : 0, rest > 0 ? HUGE_VAL : kHalfTurn);
+    }
+    double error = turned + R::kLibm * magnitude(range);
+    if (rest > 0) {
+        // |1 / z| <= 1 / distance; |E g| <= kDegree rest / distance. The right side is summed up of 2 kDegree
+        // |z| rest; |z|^2, from two squares, and its product with E g of as much times |z| / distance.
+        const double ratio = (x.computed_size() + y.computed_size()) / (distance - moved);
+        error += R::kDegree * (rest + moved) / (distance - moved) * 5 * R::kSum * ratio * ratio +
+                 R::kDegree * turned * ratio;
+    }
+    // No more than half a turn, without derivatives.
+    if (rest == 0 && error > kHalfTurn) error = kHalfTurn;
+    return rounded_detail::result<Real>(range, rest / distance, error, 0);
+}
+
+template <class Real>
+bool is_zero(const Rounded<Real>& a) {
+    return a.is_zero();
+}
+template <class Real>
+const Rounded<Real>& constant_part(const Rounded<Real>& a) {
+    return a;
+}
+template <class Real>
+double upper_magnitude(const Rounded<Real>& a) {
+    return a.computed_size();
+}
+/// The least of all exact and all computed values.
+template <class Real>
+double lower_end(const Rounded<Real>& a) {
+    return a.range.lo - a.radius - a.error;
+}
+/// The sign of all exact and all computed values; 0 where they differ.
+template <class Real>
+int sign(const Rounded<Real>& a) {
+    const double off = a.radius + a.error;
+    return a.range.lo - off >= 0 ? 1 : a.range.hi + off < 0 ? -1 : 0;
+}
+/// Of values that are not less.
+template <class Real>
+Rounded<Real> without_hair(const Rounded<Real>& a) {
+    return {without_hair(a.range), a.radius, a.error};
+}
+/// Computed in one of two ways of the same value.
+template <class Real>
+Rounded<Real> either(const Rounded<Real>& a, const Rounded<Real>& b) {
+    const auto larger = [](double p, double q) { return p >= q || std::isnan(p) ? p : q; };
+    return {a.range, larger(a.radius, b.radius), larger(a.error, b.error)};
+}
+
+/// A constant of a formula: a number known better than double holds it, for every number that formulas are
+/// read with.
+class Constant {
+  public:
+    Constant() = default;
+    /// `value` is off by `error` at most; 0 is taken to be exact.
+    Constant(long double value, double error)
+        : m_precise(value),
+          m_value(static_cast<double>(value)),
+          m_precise_error(value == 0 ? 0 : error),
+          m_error(value == 0 ? 0 : (error + 0x1p-53 * std::fabs(m_value)) * rounded_detail::kUp) {}
+    /// From a few operations and one function of libm in long double: off by 32 units at most.
+    explicit Constant(long double value)
+        : Constant(value, std::fabs(static_cast<double>(value)) * 32 * Rounded<long double>::kUnit) {}
+
+    double value() const { return m_value; }
+    long double precise() const { return m_precise; }
+
+    /// What a formula that is read with T computes with.
+    template <class T>
+    auto as() const {
+        if constexpr (std::is_same_v<T, long double>)
+            return m_precise;
+        else if constexpr (std::is_same_v<T, Rounded<double>>)
+            return T::near(m_value, m_error);
+        else if constexpr (std::is_same_v<T, Rounded<long double>>) {
+            // The double encloses; the long double computes.
+            T constant = T::near(m_value, m_error);
+            constant.error = m_precise_error;
+            return constant;
+        } else
+            return m_value;
+    }
+
+  private:
+    long double m_precise = 0;
+    double m_value = 0, m_precise_error = 0, m_error = 0;
+};
+
+/// A double that stands for a value at most `error` away, as formulas compute with it.
+template <class T>
+auto measured(double value, double error) {
+    if constexpr (std::is_same_v<T, Rounded<double>> || std::is_same_v<T, Rounded<long double>>)
+        return T::near(value, error);
+    else
+        return value;
+}
+
+}  // namespace anamorph

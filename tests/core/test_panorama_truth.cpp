@@ -1,0 +1,471 @@
+// SPDX-License-Identifier: Apache-2.0
+// Every pixel of a panorama, exact ones too, against long double: none is farther from the truth than its
+// bound, whatever the projections, sizes, fields of view and angles.
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <random>
+
+#include "anamorph/approx/plan.h"
+#include "anamorph/image/block_reader.h"
+#include "anamorph/image/draw.h"
+#include "anamorph/image/footprint.h"
+#include "anamorph/simd/block_sampler.h"
+#include "panorama_oracle.h"
+
+namespace anamorph {
+namespace {
+
+using enum Projection;
+using oracle::Real;
+using oracle::Vector;
+using oracle::View;
+
+constexpr Projection kAll[] = {equirectangular, cylindrical, rectilinear, fisheye,    equisolid,
+                               stereographic,   mercator,    cubemap,     cubemap3x2, cubecross};
+
+Chart chart_of(const View& v) {
+    return {v.projection, v.width, v.height, v.fov, v.centers ? PixelSpacing::centers : PixelSpacing::edges};
+}
+
+struct Scene {
+    View source, target;
+    Orientation look;
+    double tol;
+    Scheme scheme = Scheme::automatic;
+
+    Panorama map() const { return {chart_of(source), chart_of(target), look}; }
+    PlanOptions options() const {
+        PlanOptions options;
+        options.scheme = scheme;
+        options.tol = tol;
+        return options;
+    }
+};
+
+std::string words(const Scene& s) {
+    std::string text;
+    for (const View* v : {&s.source, &s.target})
+        text += std::string(name_of(v->projection)) + " " + std::to_string(v->width) + "x" +
+                std::to_string(v->height) + " fov " + ::testing::PrintToString(v->fov) +
+                (v->centers ? " centers " : " ");
+    return text + "yaw " + ::testing::PrintToString(s.look.yaw) + " pitch " +
+           ::testing::PrintToString(s.look.pitch) + " roll " + ::testing::PrintToString(s.look.roll) +
+           " tol " + ::testing::PrintToString(s.tol) + " scheme " +
+           std::to_string(static_cast<int>(s.scheme));
+}
+
+struct Findings {
+    std::int64_t pixels = 0, over_bound = 0, over_tol = 0, lost = 0;
+    double worst = 0, worst_excess = -HUGE_VAL, worst_bound = 0;
+    int worst_x = 0, worst_y = 0;
+};
+
+/// The distance of a point in use from the truth, on the face that it stands on; a turn counts nothing.
+Real distance(const View& source, const Point<double>& used, const Point<long double>& truth) {
+    Real dx = used.x - truth.x;
+    if (source.projection == equirectangular || source.projection == cylindrical ||
+        source.projection == mercator) {
+        const Real period = 2 * oracle::kPi * oracle::scale(source).x;
+        dx -= std::round(dx / period) * period;
+    }
+    return std::hypot(dx, used.y - truth.y);
+}
+
+/// Is it in the image, a few pixels within?
+bool well_inside(const View& v, const Piece& piece, const Point<long double>& p) {
+    const Box box = is_cube(v.projection) ? piece.box : Box{0, 0, v.width, v.height};
+    return p.x > box.x0 + 0.01L && p.x < box.x1 - 0.01L && p.y > box.y0 + 0.01L && p.y < box.y1 - 0.01L;
+}
+
+/// Straight behind a lens that shows it all around its rim, and at a pole, any point in all directions will
+/// do.
+bool all_around(const View& source, const Vector& ray) {
+    const bool lens = source.projection == fisheye || source.projection == equisolid;
+    return lens ? ray.x == 0 && ray.y == 0 && ray.z < 0
+                : source.projection == equirectangular && ray.x == 0 && ray.z == 0;
+}
+
+Real error_of(const Scene& scene, const Piece& piece, const Vector& ray, const Point<double>& used) {
+    const Point<long double> truth = oracle::point_of(scene.source, piece, ray);
+    if (!all_around(scene.source, ray)) return distance(scene.source, used, truth);
+    if (scene.source.projection == equirectangular) return std::fabs(used.y - truth.y);
+    const Real cx = Real(scene.source.width) / 2, cy = Real(scene.source.height) / 2;
+    return std::fabs(std::hypot(used.x - cx, used.y - cy) - std::hypot(truth.x - cx, truth.y - cy));
+}
+
+Findings examine(const Scene& scene) {
+    Findings found;
+    const Panorama map = scene.map();
+    const Plan plan(map, scene.options());
+    for (std::int64_t region = 0; region < plan.regions(); ++region)
+        for (const Block& block : plan.blocks(region)) {
+            const Piece& target = map.target().pieces()[static_cast<std::size_t>(block.piece)];
+            float px[simd::kRowRoom], py[simd::kRowRoom];
+            for (int j = block.box.y0; j < block.box.y1; ++j) {
+                if (block.kind == Block::Kind::polynomial) block_row(plan, block, block.box, j, px, py);
+                for (int i = block.box.x0; i < block.box.x1; ++i) {
+                    ++found.pixels;
+                    Vector ray;
+                    const bool has_ray = oracle::ray_of(scene.target, target, i + 0.5L, j + 0.5L, ray);
+                    ray = oracle::rotated(ray, scene.look);
+                    Point<double> used{};
+                    int piece = block.source_piece;
+                    bool seen = block.kind == Block::Kind::polynomial;
+                    if (block.kind == Block::Kind::exact)
+                        seen = static_cast<const BlockMap&>(plan).exact(block, i + 0.5, j + 0.5, used, piece);
+                    else if (seen)
+                        used = {block.base_x + double{px[i - block.box.x0]},
+                                block.base_y + double{py[i - block.box.x0]}};
+                    if (!seen) {
+                        for (const Piece& p : map.source().pieces())
+                            found.lost +=
+                                has_ray && !all_around(scene.source, ray) &&
+                                well_inside(scene.source, p, oracle::point_of(scene.source, p, ray));
+                        continue;
+                    }
+                    const Piece& on = map.source().pieces()[static_cast<std::size_t>(piece)];
+                    const double error = static_cast<double>(error_of(scene, on, ray, used));
+                    found.worst_bound = std::max(found.worst_bound, block.bound);
+                    if (!(error <= block.bound)) ++found.over_bound;
+                    // Nothing holds a tolerance where doubles are wider apart, far from the image, or at a
+                    // pole.
+                    const bool held = block.bound <= scene.tol || block.kind == Block::Kind::polynomial;
+                    if (scene.tol > 0 && held && !(error <= scene.tol)) ++found.over_tol;
+                    if (!(error - block.bound <= found.worst_excess)) {
+                        found.worst_excess = error - block.bound;
+                        found.worst_x = i, found.worst_y = j;
+                    }
+                    found.worst = std::max(found.worst, error);
+                }
+            }
+        }
+    return found;
+}
+
+Findings expect_truth(const Scene& scene) {
+    const Findings found = examine(scene);
+    EXPECT_EQ(found.over_bound, 0) << words(scene) << ": " << found.worst_excess << " over its bound at "
+                                   << found.worst_x << ' ' << found.worst_y;
+    EXPECT_EQ(found.over_tol, 0) << words(scene) << ": " << found.worst;
+    EXPECT_EQ(found.lost, 0) << words(scene);
+    return found;
+}
+
+class Random {
+  public:
+    explicit Random(unsigned seed) : m_engine(seed) {}
+    double between(double low, double high) {
+        return std::uniform_real_distribution<double>(low, high)(m_engine);
+    }
+    int integer(int low, int high) { return std::uniform_int_distribution<int>(low, high)(m_engine); }
+    bool chance(double share) { return between(0, 1) < share; }
+    /// Any angle, a right one, nearly a right one, or far too many turns.
+    double angle() {
+        const double right = 90.0 * integer(-5, 5);
+        switch (integer(0, 4)) {
+            case 0:
+                return right;
+            case 1:
+                return right + std::pow(10, between(-17, -1));
+            case 2:
+                return between(-1, 1) * std::pow(10, between(2, 15));
+            default:
+                return between(-200, 200);
+        }
+    }
+    View view(Projection projection, bool large) {
+        View v{projection, 0, 0, 90};
+        const int size = static_cast<int>(large ? std::pow(2, between(3, 22)) : between(20, 90));
+        v.width = size;
+        v.height = std::max(1, static_cast<int>(size * between(0.3, 1.2)));
+        const double widest = projection == rectilinear ? 179 : projection == stereographic ? 359.5 : 360;
+        v.fov = chance(0.4)   ? Chart::default_fov(projection)
+                : chance(0.3) ? widest
+                : chance(0.3) ? std::pow(10, between(-4, 2))
+                              : between(1, widest);
+        if (projection == equirectangular && chance(0.7)) v.width = 2 * v.height, v.fov = 360;
+        const int face = std::max(1, size / 4);
+        if (projection == cubemap) v = {projection, face, 6 * face, 90};
+        if (projection == cubemap3x2) v = {projection, 3 * face, 2 * face, 90};
+        if (projection == cubecross) v = {projection, 4 * face, 3 * face, 90};
+        return v;
+    }
+
+  private:
+    std::mt19937 m_engine;
+};
+
+TEST(PanoramaTruth, NoPixelIsOverItsBound) {
+    // More by the environment: rounds over all pairs, and a seed.
+    const char* const rounds = std::getenv("ANAMORPH_TRUTH_ROUNDS");
+    const char* const seed_text = std::getenv("ANAMORPH_TRUTH_SEED");
+    const unsigned seed = seed_text ? static_cast<unsigned>(std::atoi(seed_text)) : 1987;
+    SCOPED_TRACE(::testing::Message() << "seed " << seed);
+    Random random(seed);
+    constexpr double kTols[] = {1, 0.01, 1e-4, 1e-6, 0};
+    std::int64_t pixels = 0;
+    for (int round = 0; round < (rounds ? std::atoi(rounds) : 1); ++round)
+        for (const Projection from : kAll)
+            for (const Projection to : kAll) {
+                Scene scene{random.view(from, true), random.view(to, false), {}, kTols[random.integer(0, 4)]};
+                scene.look = {random.angle(), random.angle(), random.chance(0.5) ? 0 : random.angle()};
+                scene.scheme = random.chance(0.3)   ? Scheme::residual
+                               : random.chance(0.5) ? Scheme::blocks
+                                                    : Scheme::automatic;
+                if (scene.source.width > 8 && scene.source.height > 48 && random.chance(0.2))
+                    scene.source.centers = true;
+                pixels += expect_truth(scene).pixels;
+            }
+    RecordProperty("pixels", std::to_string(pixels));
+}
+
+TEST(PanoramaTruth, HardViewsAreUnderTheirBounds) {
+    const View sphere{equirectangular, 65536, 32768, 360};
+    const Scene scenes[] = {
+        // Straight behind an equisolid lens, and a view that is next to nothing wide.
+        {{equisolid, 16384, 16384, 360}, {fisheye, 301, 301, 0.1}, {180, 0, 0}, 0},
+        {{stereographic, 16384, 16384, 359}, {fisheye, 301, 301, 0.1}, {180, 0, 0}, 0},
+        {{fisheye, 16384, 16384, 360}, {rectilinear, 101, 101, 1e-4}, {180, 0, 0}, 0},
+        // Many turns.
+        {sphere, {rectilinear, 96, 64, 90}, {1e12, 0, 0}, 0},
+        {sphere, {rectilinear, 96, 64, 90}, {1e12, -3e14, 7e13}, 1e-4},
+        // Poles in the middle of a pixel.
+        {sphere, {rectilinear, 101, 101, 1e-3}, {30, 90, 0}, 0},
+        {sphere, {rectilinear, 101, 101, 90}, {30, -90, 12}, 0.01},
+        {{mercator, 4096, 4096, 360}, {rectilinear, 101, 101, 1}, {30, 90, 0}, 0.01},
+        {{cylindrical, 4096, 4096, 360}, {rectilinear, 101, 101, 1}, {30, 90, 0}, 0.01},
+        // The horizon of a lens in the middle of pixels.
+        {{rectilinear, 2048, 2048, 90}, {equirectangular, 202, 101, 360}, {0, 0, 0}, 0},
+        // Taller than wide.
+        {sphere, {mercator, 2, 300, 360}, {20, 0, 0}, 0},
+        {{mercator, 16, 2000, 360}, {mercator, 3, 330, 360}, {20, 0, 0}, 0},
+        {sphere, {cylindrical, 2, 16384, 360}, {20, 30, 0}, 0},
+        // Cells of a table, whose corners lie where no pixel's centre does.
+        {{rectilinear, 3110, 3603, 179.99},
+         {cubemap3x2, 6, 4, 90},
+         {129.1118028, -12.25501377, 0},
+         1.584,
+         Scheme::residual},
+    };
+    for (const Scene& scene : scenes) {
+        const Findings found = expect_truth(scene);
+        EXPECT_LE(found.worst_bound, std::max(scene.tol, 1e-4)) << words(scene);
+    }
+}
+
+// The two that were once off by .0108 and .0174 pixels.
+TEST(PanoramaTruth, RoundingIsFarBelowAnyTolerance) {
+    EXPECT_LT(examine({{equisolid, 16384, 16384, 360}, {fisheye, 301, 301, 0.1}, {180, 0, 0}, 0}).worst,
+              1e-9);
+    EXPECT_LT(
+        examine({{equirectangular, 65536, 32768, 360}, {rectilinear, 96, 64, 90}, {1e12, 0, 0}, 0}).worst,
+        1e-9);
+}
+
+// A bound is of use only near what it bounds.
+TEST(PanoramaTruth, BoundsOfExactPixelsAreNotIdle) {
+    for (const Projection from : kAll)
+        for (const Projection to : kAll) {
+            Random random(7);
+            Scene scene{random.view(from, false), random.view(to, false), {20, 30, 40}, 0};
+            for (View* v : {&scene.source, &scene.target})
+                if (!is_cube(v->projection)) *v = {v->projection, 1000, 500, 100};
+            scene.target.width = is_cube(to) ? scene.target.width : 64;
+            scene.target.height = is_cube(to) ? scene.target.height : 48;
+            const Findings found = expect_truth(scene);
+            EXPECT_GT(found.worst, 0) << words(scene);
+            EXPECT_LE(found.worst_bound, 1e-4) << words(scene);
+        }
+}
+
+TEST(PanoramaTruth, StraightBehindALensIsItsRim) {
+    // The middle of the back face, which faces of odd size have.
+    for (const Projection lens : {fisheye, equisolid}) {
+        const Panorama map({lens, 1000, 1000, 360}, {cubemap3x2, 15, 10});
+        Point<double> p{};
+        int piece = 0;
+        ASSERT_TRUE(map.exact(12.5, 7.5, 5, p, piece)) << name_of(lens);
+        EXPECT_NEAR(std::hypot(p.x - 500, p.y - 500), 500, 1e-9) << name_of(lens);
+    }
+    // Beyond the end of a lens that does not reach so far: out of its picture.
+    const Panorama half({fisheye, 1000, 1000, 180}, {cubemap3x2, 15, 10});
+    Point<double> p{};
+    int piece = 0;
+    ASSERT_TRUE(half.exact(12.5, 7.5, 5, p, piece));
+    EXPECT_NEAR(std::hypot(p.x - 500, p.y - 500), 1000, 1e-9);
+    const Panorama plane({stereographic, 1000, 1000, 359}, {cubemap3x2, 15, 10});
+    EXPECT_FALSE(plane.exact(12.5, 7.5, 5, p, piece));
+    // And ahead is the middle.
+    ASSERT_TRUE(half.exact(7.5, 7.5, 4, p, piece));
+    EXPECT_NEAR(p.x, 500, 1e-9);
+    EXPECT_NEAR(p.y, 500, 1e-9);
+}
+
+TEST(PanoramaTruth, TallMercatorPicturesReachTheirPoles) {
+    const Panorama map({equirectangular, 512, 256}, {mercator, 4, 1200, 360});
+    for (const double y : {0.5, 10.5, 100.5, 1199.5}) {
+        Point<double> p{};
+        int piece = 0;
+        ASSERT_TRUE(map.exact(0.5, y, 0, p, piece)) << y;
+        EXPECT_NEAR(p.x, 64, 1e-9);
+        EXPECT_NEAR(p.y, y < 600 ? 0 : 256, 1e-9);
+    }
+}
+
+TEST(PanoramaTruth, TheErrorPictureIsAgainstLongDouble) {
+    const View source{equirectangular, 65536, 32768, 360}, target{rectilinear, 96, 64, 90};
+    const Scene scene{source, target, {33, 44, 55}, 0};
+    const Panorama map = scene.map();
+    const Plan plan(map, scene.options());
+    std::vector<float> pixels(96 * 64);
+    const ImageView picture =
+        packed_view(reinterpret_cast<std::byte*>(pixels.data()), PixelType::float32, 96, 64, 1);
+    ASSERT_TRUE(draw_blocks(plan, Border(map.source(), Wrap::automatic), Filter::bilinear, Output::error,
+                            nullptr, {0, 0, 96, 64}, picture, serial_for));
+    float most = 0;
+    for (int j = 0; j < 64; ++j)
+        for (int i = 0; i < 96; ++i) {
+            Vector ray;
+            const Piece& piece = map.target().pieces()[0];
+            ASSERT_TRUE(oracle::ray_of(target, piece, i + 0.5L, j + 0.5L, ray));
+            const Point<long double> truth =
+                oracle::point_of(source, map.source().pieces()[0], oracle::rotated(ray, scene.look));
+            Point<double> used{};
+            int on = 0;
+            ASSERT_TRUE(plan.exact(i + 0.5, j + 0.5, 0, used, on));
+            const float error = pixels[static_cast<std::size_t>(j * 96 + i)];
+            ASSERT_NEAR(error, static_cast<double>(distance(source, used, truth)), 1e-12);
+            most = std::max(most, error);
+        }
+    EXPECT_GT(most, 1e-11);
+    EXPECT_LT(most, 1e-9);
+}
+
+// Rounding of Taylor polynomials, in all their coefficients together, is below its bound.
+TEST(PanoramaTruth, TaylorPolynomialsRoundLessThanTheirBound) {
+    Random random(5);
+    int finite = 0, tried = 0;
+    double most = 0;
+    for (int round = 0; round < 20; ++round)
+        for (const Projection from : kAll)
+            for (const Projection to : kAll) {
+                const Panorama map(chart_of(random.view(from, true)), chart_of(random.view(to, false)),
+                                   {random.angle(), random.angle(), random.angle()});
+                const int piece = random.integer(0, static_cast<int>(map.target().pieces().size()) - 1);
+                const Box& box = map.target().pieces()[static_cast<std::size_t>(piece)].box;
+                const double x = random.between(box.x0, box.x1), y = random.between(box.y0, box.y1);
+                const double hx = random.between(0.1, 8), hy = random.between(0.1, 8),
+                             d = random.between(0, 3);
+                const Panorama::Local local = map.local_around(x, y, piece);
+                const auto bound = map.taylor_rounding({x - d, x + d}, {y - d, y + d}, hx, hy, local);
+                ++tried;
+                if (!(bound.error.x < 1 && bound.error.y < 1)) continue;
+                ++finite;
+                const double px = x + random.between(-d, d), py = y + random.between(-d, d);
+                using J = Jet<double, 4>;
+                using K = Jet<long double, 4>;
+                const Point<J> p = map(J::variable(px, hx, 0), J::variable(py, 0, hy), local);
+                const Point<K> q = map(K::variable(px, hx, 0), K::variable(py, 0, hy), local);
+                const auto check = [&](const J& a, const K& b, double error, double size) {
+                    Real off = 0, sum = 0;
+                    for (int i = 0; i < J::kSize; ++i) {
+                        off += std::fabs(a.c[i] - b.c[i]);
+                        sum += std::fabs(b.c[i]);
+                    }
+                    EXPECT_LE(off, error) << name_of(from) << ' ' << name_of(to);
+                    EXPECT_LE(sum, size) << name_of(from) << ' ' << name_of(to);
+                    most = std::max(most, static_cast<double>(off / error));
+                };
+                check(p.x, q.x, bound.error.x, bound.size.x);
+                check(p.y, q.y, bound.error.y, bound.size.y);
+            }
+    EXPECT_GT(finite, tried / 4);
+    EXPECT_GT(most, 1e-4);
+}
+
+/// A source of given level sizes and nothing else.
+class Sizes final : public Source {
+  public:
+    Sizes(int width, int height) {
+        for (;; width = std::max(1, width / 2), height = std::max(1, height / 2)) {
+            m_sizes.push_back({width, height});
+            if (width == 1 && height == 1) break;
+        }
+    }
+    PixelType type() const noexcept override { return PixelType::float32; }
+    int channels() const noexcept override { return 1; }
+    int levels() const noexcept override { return static_cast<int>(m_sizes.size()); }
+    Size size(int level) const noexcept override { return m_sizes[static_cast<std::size_t>(level)]; }
+    bool read(int, const Box&, std::byte*, std::ptrdiff_t) const noexcept override { return false; }
+
+  private:
+    std::vector<Size> m_sizes;
+};
+
+// Whatever is left out has no texel of the source in any tap, with the steepest footprints too.
+TEST(PanoramaTruth, WhatIsCulledHasNoTexels) {
+    const Scene scenes[] = {
+        // Far more minified one way than the other.
+        {{cylindrical, 4095, 4095, 60}, {equirectangular, 400, 200, 360}, {20, 10, 0}, 0.5, Scheme::blocks},
+        {{rectilinear, 3000, 3000, 20}, {equirectangular, 600, 300, 360}, {20, 30, 0}, 0.5, Scheme::blocks},
+        {{rectilinear, 30000, 7, 20}, {equirectangular, 600, 300, 360}, {20, 30, 0}, 0.5, Scheme::blocks},
+        {{stereographic, 9000, 9000, 100}, {fisheye, 300, 300, 360}, {0, 20, 40}, 0.5, Scheme::blocks},
+        {{fisheye, 9000, 9000, 30}, {equirectangular, 300, 150, 360}, {0, 20, 40}, 0.5, Scheme::blocks},
+    };
+    std::int64_t all_culled = 0;
+    double coarsest = 0;
+    for (const Scene& scene : scenes) {
+        const Panorama map = scene.map();
+        const Plan plan(map, scene.options());
+        const Sizes source(scene.source.width, scene.source.height);
+        const FootprintChooser chooser(source);
+        std::int64_t culled = 0, hit = 0;
+        double widest = 0;
+        for (std::int64_t region = 0; region < plan.regions(); ++region)
+            for (const Block& block : plan.blocks(region)) {
+                if (block.kind != Block::Kind::outside) continue;
+                for (int j = block.box.y0; j < block.box.y1; ++j)
+                    for (int i = block.box.x0; i < block.box.x1; ++i) {
+                        Point<double> p{};
+                        int piece = 0;
+                        if (!map.exact(i + 0.5, j + 0.5, block.piece, p, piece)) continue;
+                        ++culled;
+                        const Jacobian jacobian = plan.jacobian(i + 0.5, j + 0.5, block.piece);
+                        const Footprint f = chooser(jacobian);
+                        const auto& scale = chooser.scale(f.level);
+                        const Source::Size size = source.size(f.level);
+                        widest = std::max(widest, 1 / scale[0]);
+                        for (int a = 0; a < f.taps_a; ++a)
+                            for (int b = 0; b < f.taps_b; ++b) {
+                                const Point<double> o = tap_offset(f, jacobian, scale, a, b);
+                                const double u = p.x * scale[0] + o.x, v = p.y * scale[1] + o.y;
+                                hit += u > -0.5 && u < size.width + 0.5 && v > -0.5 && v < size.height + 0.5;
+                            }
+                    }
+            }
+        EXPECT_EQ(hit, 0) << words(scene);
+        all_culled += culled;
+        coarsest = std::max(coarsest, widest);
+    }
+    EXPECT_GT(all_culled, 1000);
+    EXPECT_GT(coarsest, 1);
+}
+
+TEST(Rotation, AnglesAreReducedExactly) {
+    const auto same = [](const Orientation& a, const Orientation& b) {
+        const glm::dmat3 m = rotation(a), n = rotation(b);
+        for (int i = 0; i < 3; ++i)
+            for (int j = 0; j < 3; ++j) EXPECT_EQ(m[i][j], n[i][j]) << i << ' ' << j;
+    };
+    same({360e9 + 17, 0, 0}, {17, 0, 0});
+    same({-1e12, 0, 0}, {-std::fmod(1e12, 360.0), 0, 0});
+    same({0, 180, 0}, {180, 0, 180});
+    const glm::dmat3 back = rotation({180, 0, 0});
+    EXPECT_EQ(back[0][0], -1);
+    EXPECT_EQ(back[2][0], 0);
+    EXPECT_EQ(rotation({0, 90, 0})[2][1], -1);
+}
+
+}  // namespace
+}  // namespace anamorph
