@@ -46,7 +46,7 @@ class FunctionMap final : public BlockMap {
             const bool done = m_kind == Block::Kind::polynomial ? polynomial(b, writer)
                               : m_kind == Block::Kind::computed ? writer.computed(b, at(b, 0, 0), 0)
                                                                 : false;
-            if (!done) writer.exact(b);
+            if (!done) writer.exact(b, 0);
         });
     }
 
