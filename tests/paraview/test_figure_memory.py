@@ -56,7 +56,7 @@ def play(folder, script):
         file.write(PLAY)
     with open(folder + "/script.nudes", "w") as file:
         file.write(script)
-    done = subprocess.run([*xvfb_run(341), "pvbatch", folder + "/play.py", folder + "/script.nudes"], env=ENVIRONMENT,
+    done = subprocess.run([*xvfb_run(351), "pvbatch", folder + "/play.py", folder + "/script.nudes"], env=ENVIRONMENT,
                           capture_output=True, text=True, timeout=280)
     assert done.returncode == 0, (done.stdout[-2000:], done.stderr[-4000:])
     return [line.split() for line in done.stdout.splitlines()], done.stdout + done.stderr
