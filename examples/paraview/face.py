@@ -2,7 +2,8 @@
 """Raises a face from a picture by 50 deformations, makes nine faces of it by editing parts, synthesises expressions by
 weights, and films them: Figures 4.4 to 4.6 of Oka 1987 in our own pictures.
 
-Usage, with the plugin's folder in PV_PLUGIN_PATH, under xvfb-run where there is no screen:
+Usage, with the plugin's folder in PV_PLUGIN_PATH, after xvfb-run -a -s "-screen 0 1280x1024x24 -noreset" where there is
+no screen:
     pvbatch face.py OUT [--frames 73] [--points 257]
 
 Writes to the folder OUT: face.png (the picture), raised.png (before, after, and the bumps), variants.png,

@@ -4,11 +4,12 @@
     pvbatch figures.py [SCRIPT [FOLDER]]
 
 Writes FOLDER/figures.png (a frame from the middle) and FOLDER/figures.pvsm (the state, for ParaView's File > Load
-State). SCRIPT is the walker beside this example by default, FOLDER the working folder. The plugin is found by
-ParaView itself or through PV_PLUGIN_PATH, or its file is named by ANAMORPH_PLUGIN.
+State). SCRIPT is the walker beside this example by default, FOLDER, which is made, the working folder. The plugin is
+found by ParaView itself or through PV_PLUGIN_PATH, or its file is named by ANAMORPH_PLUGIN.
 """
 import os
 import sys
+import tempfile
 
 from paraview.simple import (ColorBy, CreateRenderView, GetAnimationScene, LoadPlugin, OpenDataFile, Render,
                              SaveScreenshot, SaveState, Show)
@@ -19,8 +20,12 @@ if "ANAMORPH_PLUGIN" in os.environ:
 here = os.path.dirname(os.path.abspath(__file__))
 script = sys.argv[1] if len(sys.argv) > 1 else os.path.join(here, "..", "figures", "walker.nudes")
 folder = sys.argv[2] if len(sys.argv) > 2 else "."
+os.makedirs(folder, exist_ok=True)
 
 figures = OpenDataFile(os.path.abspath(script))
+figures.UpdatePipeline()
+if figures.GetDataInformation().GetNumberOfPoints() == 0:
+    sys.exit(f"{script}: there are no figures")
 view = CreateRenderView()
 view.ViewSize = [600, 600]
 view.Background = [1, 1, 1]
@@ -51,6 +56,12 @@ times = list(figures.TimestepValues)
 if times:
     scene.AnimationTime = times[len(times) // 2]
 Render(view)
-SaveScreenshot(os.path.join(folder, "figures.png"), view, ImageResolution=[600, 600])
-SaveState(os.path.join(folder, "figures.pvsm"))
+# ParaView does not say what it could not write. Older files stay until there are new ones.
+with tempfile.TemporaryDirectory(dir=folder) as new:
+    SaveScreenshot(os.path.join(new, "figures.png"), view, ImageResolution=[600, 600])
+    SaveState(os.path.join(new, "figures.pvsm"))
+    for name in ("figures.png", "figures.pvsm"):
+        if not os.path.exists(os.path.join(new, name)) or os.path.getsize(os.path.join(new, name)) == 0:
+            sys.exit(f"{os.path.join(folder, name)}: cannot be written")
+        os.replace(os.path.join(new, name), os.path.join(folder, name))
 print(len(times), "frames;", surfaces.GetDataInformation().GetNumberOfCells(), "triangles")

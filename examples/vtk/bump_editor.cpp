@@ -154,7 +154,8 @@ void BumpEditor::OnLeftButtonDown() {
     m_selected = found;
     m_before = this->bump(found);
     m_height = this->handle(found)[2];
-    m_last_y = this->Interactor->GetEventPosition()[1];
+    const int* mouse = this->Interactor->GetEventPosition();
+    m_last = {mouse[0], mouse[1]};
     m_drag = this->Interactor->GetShiftKey()     ? Drag::raise
              : this->Interactor->GetControlKey() ? Drag::widen
                                                  : Drag::move;
@@ -166,9 +167,16 @@ void BumpEditor::OnMouseMove() {
         this->Superclass::OnMouseMove();
         return;
     }
+    this->drag_to_mouse();
+    this->Interactor->Render();
+}
+
+void BumpEditor::drag_to_mouse() {
+    const int* mouse = this->Interactor->GetEventPosition();
+    if (m_last == std::array{mouse[0], mouse[1]}) return;
+    const int up = mouse[1] - m_last[1];
+    m_last = {mouse[0], mouse[1]};
     Bump b = this->bump(m_selected);
-    const int up = this->Interactor->GetEventPosition()[1] - m_last_y;
-    m_last_y += up;
     if (m_drag == Drag::raise) {
         b[6] += up * this->length_of_a_pixel();
     } else if (m_drag == Drag::widen) {
@@ -180,7 +188,6 @@ void BumpEditor::OnMouseMove() {
         b[1] = (*at)[1] + m_grip[1];
     }
     this->put(m_selected, b);
-    this->Interactor->Render();
 }
 
 void BumpEditor::OnLeftButtonUp() {
@@ -188,6 +195,8 @@ void BumpEditor::OnLeftButtonUp() {
         this->Superclass::OnLeftButtonUp();
         return;
     }
+    // The last piece of the way may come without a move of its own.
+    this->drag_to_mouse();
     m_drag = Drag::none;
     const Bump b = this->bump(m_selected);
     if (b != m_before) this->make({m_selected, m_before, b});

@@ -62,6 +62,7 @@ class BumpEditor : public vtkInteractorStyleTrackballCamera {
     void make(const Edit& edit);
     void rotate(double azimuth, double elevation);
     void start_move();
+    void drag_to_mouse();
     int bump_at_mouse() const;
     std::optional<std::array<double, 2>> mouse_at_height(double z) const;
     double length_of_a_pixel() const;
@@ -72,7 +73,7 @@ class BumpEditor : public vtkInteractorStyleTrackballCamera {
     int m_selected = -1;
     Drag m_drag = Drag::none;
     Bump m_before{};                 ///< the bump when the drag began
-    int m_last_y = 0;                ///< of the mouse
+    std::array<int, 2> m_last{};     ///< where the mouse was
     double m_height = 0;             ///< of the plane in which the bump is moved
     std::array<double, 2> m_grip{};  ///< from the mouse's point of that plane to the bump's centre
 };

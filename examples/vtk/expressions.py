@@ -5,7 +5,8 @@
 Usage: expressions.py [--size PIXELS] FOLDER
 
 Writes FOLDER/variants.png (the face and its nine variants) and FOLDER/expressions.png (sums of variants, some with
-weights outside 0 to 1). PIXELS is the width of one face. Without a display, run it under xvfb-run -a.
+weights outside 0 to 1). PIXELS is the width of one face. Without a display, run it under
+xvfb-run -a -s "-screen 0 1280x1024x24 -noreset".
 
 The way is that of Oka 1987, chapter 4: a plane is raised by a picture, bumps are added to it (section 4.1), edits of the
 bumps make other shapes, and weighted sums of the shapes make the rest (section 4.2).

@@ -3,6 +3,7 @@
 """The list of deformations as a user edits it: defaults from the data, table, handles, files, a table as an input,
 texture coordinates, the overlay."""
 import csv
+import random
 
 import surfaces
 from paraview import servermanager
@@ -98,6 +99,73 @@ def check_overlay(deform):
     assert positions == {0, 1, 2, 3}, positions
 
 
+def used_plane(deform):
+    deform.UpdatePropertyInformation()
+    return [list(deform.GetPropertyValue(name)) for name in ("UsedOrigin", "UsedAxis1", "UsedAxis2")]
+
+
+def check_plane():
+    """The automatic plane stays while a surface turns, and handles with it; frozen, it stays with other cells too."""
+    sphere = Sphere(ThetaResolution=64, PhiResolution=64)
+
+    def turned_sphere(degrees):
+        turned = Transform(Input=sphere, Transform="Transform")
+        turned.Transform.Rotate = [degrees, 2 * degrees, 3 * degrees]
+        turned.UpdatePipeline()
+        return turned
+
+    def chosen(degrees):
+        alone = AnamorphDeform(Input=turned_sphere(degrees))
+        alone.UpdatePipeline()
+        return used_plane(alone)[1:]
+    assert len({str(chosen(degrees)) for degrees in range(0, 40, 4)}) > 1
+    turned = turned_sphere(0)
+    deform = AnamorphDeform(Input=turned)
+    deform.UpdatePipeline()
+    axes = used_plane(deform)[1:]
+    for degrees in range(4, 40, 4):
+        turned.Transform.Rotate = [degrees, 2 * degrees, 3 * degrees]
+        deform.UpdatePipeline()
+        assert used_plane(deform)[1:] == axes, degrees
+    for i in range(2):
+        deform.SelectedCenter = [.1 * c for c in axes[i]]
+        deform.UpdatePipeline()
+        close(deform.Deformations[:2], [0 if i else .1, .1 if i else 0])
+    turned.Transform.Scale = [1, 2, 3]
+    plane = used_plane(deform)
+    deform.InvokeCommand("FreezePlane")
+    assert deform.AutomaticPlane == 0
+    close(sum(used_plane(deform), []), sum(plane, []))
+    assert [list(deform.Origin), list(deform.Axis1), list(deform.Axis2)] == used_plane(deform)
+    sphere.PhiResolution = 20
+    deform.UpdatePipeline()
+    assert used_plane(deform)[1:] == axes
+    # Of what has not been updated yet, too.
+    new = AnamorphDeform(Input=Plane(Origin=[0, 0, 5], Point1=[1, 0, 5], Point2=[0, 1, 6]))
+    new.InvokeCommand("FreezePlane")
+    assert new.AutomaticPlane == 0 and list(new.Axis2) == [0, 1, 0] and new.Origin[2] == 5.5, list(new.Axis2)
+
+
+def check_handles_in_any_order(plane):
+    """What is set between two updates acts together; a corner beside the centre leaves the extent that way."""
+    values = {"Deformations": [0, 0, 1, 1, 0, 0, 1, 0, 1, 2, 3, 0.5, 0.25, 1, 2, 3, 1, 1], "SelectedDeformation": 1,
+              "AutomaticPlane": 0, "Origin": [1, 0, 0], "Axis1": [0, 2, 0], "Axis2": [0, 0, -1],
+              "SelectedCenter": [1, 8, -1], "SelectedCorner": [1, 8, -5], "SelectedVector": [0, 0, 2]}
+    for seed in range(10):
+        names = list(values)
+        random.Random(seed).shuffle(names)
+        deform = AnamorphDeform(Input=plane)
+        for name in names:
+            setattr(deform, name, values[name])
+        assert list(deform.Deformations) == values["Deformations"][:9] + [4, 1, 0.5, 4, 0, 0, 2, 1, 1], \
+            (names, list(deform.Deformations))
+        # The next update begins anew: the list as it is set then.
+        deform.UpdatePipeline()
+        deform.Deformations = values["Deformations"]
+        assert list(deform.Deformations) == values["Deformations"]
+        close(deform.SelectedCenter, [1, 4, -3])
+
+
 def check_refusal(plane):
     """An extent of 0 is an error, not a crash; the next edit mends it."""
     deform = AnamorphDeform(Input=plane, Deformations=[0, 0, 0, 1, 0, 0, 1, 0, 1])
@@ -116,4 +184,6 @@ check_handles(square, {"AutomaticPlane": 0, "Origin": [1, 0, 0], "Axis1": [0, 2,
 check_table(check_files(square), square)
 check_texture_coordinates(square)
 check_overlay(check_files(square))
+check_plane()
+check_handles_in_any_order(square)
 check_refusal(square)

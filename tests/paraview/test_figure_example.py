@@ -34,10 +34,36 @@ def run(*command):
     return done.stdout
 
 
+def fails(*command):
+    """Its exit status is not 0; what it says."""
+    done = subprocess.run(command, env=ENVIRONMENT, capture_output=True, text=True, timeout=250)
+    assert done.returncode not in (0, -11), (command, done.returncode, done.stdout[-2000:], done.stderr[-4000:])
+    return done.stdout + done.stderr
+
+
+EXAMPLE = SOURCE + "/examples/paraview/figures.py"
+WALKER = SOURCE + "/examples/figures/walker.nudes"
 with tempfile.TemporaryDirectory() as folder:
-    walker = SOURCE + "/examples/figures/walker.nudes"
-    printed = run(*xvfb_run(311), "pvbatch", SOURCE + "/examples/paraview/figures.py", walker, folder)
+    out = folder + "/not/there/yet"
+    printed = run(*xvfb_run(311), "pvbatch", EXAMPLE, WALKER, out)
     assert "49 frames" in printed, printed
+    assert sorted(os.listdir(out)) == ["figures.png", "figures.pvsm"]
+    # The command of the README.
+    with open(SOURCE + "/plugins/paraview/README.md") as file:
+        commands = [line.strip() for line in file if line.startswith("    ") and "figures.py" in line]
+    assert len(commands) == 1, commands
+    environment = {**ENVIRONMENT, "PV_PLUGIN_PATH": os.path.dirname(ENVIRONMENT["ANAMORPH_PLUGIN"])}
+    del environment["ANAMORPH_PLUGIN"]
+    subprocess.run(commands[0].replace("OUT", folder + "/readme"), shell=True, check=True, cwd=SOURCE, env=environment,
+                   stdout=subprocess.DEVNULL, timeout=250)
+    assert sorted(os.listdir(folder + "/readme")) == ["figures.png", "figures.pvsm"]
     with open(folder + "/again.py", "w") as file:
         file.write(AGAIN)
-    run(*xvfb_run(312), "pvbatch", folder + "/again.py", folder)
+    run(*xvfb_run(312), "pvbatch", folder + "/again.py", out)
+    # A folder that cannot be made, and a script without figures, are failures.
+    open(folder + "/file", "w").close()
+    assert folder + "/file" in fails(*xvfb_run(313), "pvbatch", EXAMPLE, WALKER, folder + "/file/out")
+    with open(folder + "/empty.nudes", "w") as file:
+        file.write("stop\n")
+    assert "there are no figures" in fails(*xvfb_run(314), "pvbatch", EXAMPLE, folder + "/empty.nudes", out)
+    assert "none.nudes" in fails(*xvfb_run(315), "pvbatch", EXAMPLE, folder + "/none.nudes", out)

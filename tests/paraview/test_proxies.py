@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 # host: pvpython
-"""Every proxy of the plugin can be made; every property is documented and has the default of the C++ class; every
-parameter of a class is a property."""
+"""Every proxy of the plugin can be made; every property is documented, has the default of the C++ class and the range that
+it takes; every parameter of a class is a property."""
 import glob
 import os
 import re
@@ -10,6 +10,8 @@ import xml.etree.ElementTree as xml
 import anamorph
 from paraview import servermanager
 from paraview.simple import LoadPlugin
+from paraview.vtk.vtkFiltersSources import vtkPlaneSource
+from paraview.vtk.vtkImagingCore import vtkRTAnalyticSource
 
 LoadPlugin(os.environ["ANAMORPH_PLUGIN"], remote=False, ns=globals())
 PAPERS = ("Oka 1987", "Chapman 1986")
@@ -82,6 +84,79 @@ def check_parameters(element):
     return len(own)
 
 
+def with_input(cls):
+    """A new object that has what it needs to execute, seen by a camera."""
+    new = cls()
+    if cls is anamorph.vtkAnamorphReliefSource:
+        picture = vtkRTAnalyticSource()
+        picture.SetWholeExtent(0, 9, 0, 9, 0, 0)
+        picture.Update()
+        new.SetInputData(picture.GetOutput())
+    elif cls is anamorph.vtkAnamorphFigureReader:
+        with open("ranges.nudes", "w") as file:
+            file.write("figure f 1 a\nellipsoid a 5 8 4\nrepeat 0 2 moveto f a 500 500 300\nstop\n")
+        new.SetFileName("ranges.nudes")
+    elif issubclass(cls, anamorph.vtkAnamorphFigureAlgorithm):
+        reader = with_input(anamorph.vtkAnamorphFigureReader)
+        reader.Update()
+        new.SetInputData(reader.GetOutput())
+        new.SetViewMode(1)
+        if cls is anamorph.vtkAnamorphFigureGeometry:
+            new.SetToleranceMode(1)
+            new.SetTolerance(100)
+        new.SetCameraParallelProjection(True)
+    else:
+        plane = vtkPlaneSource()
+        plane.Update()
+        for _ in range(2 if cls is anamorph.vtkAnamorphInbetween else 1):
+            new.AddInputDataObject(plane.GetOutput())
+    return new
+
+
+def is_taken(cls, command, value, perspective):
+    """Whether a value is kept as it is, and the class executes with it."""
+    new, errors = with_input(cls), []
+    new.AddObserver("ErrorEvent", lambda *_: errors.append(1))
+    new.GetExecutive().AddObserver("ErrorEvent", lambda *_: errors.append(1))
+    if perspective:
+        new.SetCameraParallelProjection(False)
+    getattr(new, command)(*value)
+    kept = numbers(getattr(new, "G" + command[1:])()) == [float(v) for v in value]
+    if kept:
+        new.Update()
+    return kept and not errors
+
+
+def check_ranges(element):
+    """What a property's domain allows is what the class takes, at both ends and not a step beyond. Returns how many ends
+    there were."""
+    cls, ends = getattr(anamorph, element.get("class")), 0
+    for p in properties(element):
+        command, size = p.get("command") or "", int(p.get("number_of_elements") or 1)
+        domains = [d for d in p if d.tag in ("IntRangeDomain", "DoubleRangeDomain", "EnumerationDomain")]
+        if not command.startswith("Set") or not domains or p.get("repeat_command"):
+            continue
+        if domains[0].tag == "EnumerationDomain":
+            values = [int(entry.get("value")) for entry in domains[0]]
+            assert values == list(range(len(values))), (p.get("name"), values)
+            least, most, number = values[0], values[-1], int
+        else:
+            least, most = domains[0].get("min"), domains[0].get("max")
+            number = int if domains[0].tag == "IntRangeDomain" else float
+        perspective = p.get("name") == "CameraViewAngle"
+        for end, outwards in ((least, -1), (most, 1)):
+            if end is None:
+                continue
+            end = number(end)
+            # An open end is shown as a thousandth beside it; a step leads over it.
+            beyond = end + outwards * (1 if number is int else 0.001)
+            where = (element.get("name"), p.get("name"), end, beyond)
+            assert is_taken(cls, command, [end] * size, perspective), where
+            assert not is_taken(cls, command, [beyond] * size, perspective), where
+            ends += 1
+    return ends
+
+
 found = list(proxies())
 assert len(found) >= 4, found
 manager = servermanager.ProxyManager()
@@ -100,4 +175,6 @@ for group, element in found:
     assert element.find("Hints/ShowInMenu").get("category") == "Anamorph", name
     compared, own = check_defaults(element), check_parameters(element)
     assert compared >= 4 and own >= 4, (name, compared, own)
-    print(name, ":", compared, "defaults,", own, "parameters")
+    ends = check_ranges(element)
+    assert ends >= 2, (name, ends)
+    print(name, ":", compared, "defaults,", own, "parameters,", ends, "ends of ranges")

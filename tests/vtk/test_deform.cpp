@@ -31,6 +31,8 @@
 #include <vtkStructuredGrid.h>
 #include <vtkStructuredGridAlgorithm.h>
 #include <vtkTable.h>
+#include <vtkTransform.h>
+#include <vtkTransformPolyDataFilter.h>
 #include <vtkTriangle.h>
 #include <vtkUnsignedCharArray.h>
 #include <vtkUnstructuredGrid.h>
@@ -44,6 +46,8 @@
 #include <glm/geometric.hpp>
 #include <limits>
 #include <random>
+#include <set>
+#include <string>
 
 #include "anamorph/deform/deformation.h"
 #include "support.h"
@@ -1140,6 +1144,169 @@ TEST(VtkDeform, TablesAndFiles) {
     filter->Modified();
     filter->Update();
     EXPECT_THAT(errors.text(), HasSubstr("no column extent_u"));
+}
+
+TEST(VtkDeform, AColumnOfAnotherLengthIsRefusedByName) {
+    const char* const names[] = {"center_u", "center_v", "extent_u", "extent_v", "x",
+                                 "y",        "z",        "kernel",   "enabled"};
+    for (const char* name : names)
+        for (const vtkIdType length : {0, 2, 4, 5}) {
+            SCOPED_TRACE(name + (" " + std::to_string(length)));
+            vtkNew<vtkAnamorphDeform> filter;
+            add(filter, bumps(3, 16));
+            vtkNew<vtkTable> table;
+            filter->GetDeformationList()->WriteTable(table);
+            table->GetColumnByName(name)->SetNumberOfTuples(length);
+            vtkNew<vtkAnamorphDeformationList> list;
+            Errors list_errors(list);
+            EXPECT_EQ(list->ReadTable(table), 0);
+            EXPECT_EQ(list->GetNumberOfDeformations(), 0);
+            // Of the first column the second is told: it has another length than the first.
+            const bool first = std::string(name) == "center_u";
+            const std::string wanted = std::string("column ") + (first ? "center_v" : name) + " has " +
+                                       std::to_string(first ? 3 : length) + " rows, column center_u has " +
+                                       std::to_string(first ? length : 3);
+            EXPECT_THAT(list_errors.text(), HasSubstr(wanted));
+            Errors errors(filter);
+            filter->SetInputData(square(9, VTK_DOUBLE));
+            filter->SetInputData(1, table);
+            filter->Update();
+            EXPECT_THAT(errors.text(), HasSubstr(wanted));
+            EXPECT_EQ(output(filter)->GetNumberOfPoints(), 0);
+        }
+}
+
+TEST(VtkDeform, MarksOfGhostCellsThatAreTooFewAreRefusedByName) {
+    const auto mesh = square(9, VTK_DOUBLE);
+    vtkNew<vtkUnsignedCharArray> marks;
+    marks->SetName(vtkDataSetAttributes::GhostArrayName());
+    marks->SetNumberOfTuples(3);
+    marks->FillValue(0);
+    mesh->GetCellData()->AddArray(marks);
+    vtkNew<vtkAnamorphDeform> filter;
+    add(filter, bumps(3, 16));
+    filter->SetInputData(mesh);
+    Errors errors(filter);
+    filter->Update();
+    EXPECT_THAT(errors.text(), HasSubstr("vtkGhostType of the cells has 3 tuples, needed are " +
+                                         std::to_string(mesh->GetNumberOfCells())));
+}
+
+namespace {
+
+/// A sphere that is turned, degree by degree.
+struct TurningSphere {
+    TurningSphere() {
+        source->SetThetaResolution(64);
+        source->SetPhiResolution(64);
+        turned->SetInputConnection(source->GetOutputPort());
+        turned->SetTransform(turn);
+        filter->SetInputConnection(turned->GetOutputPort());
+    }
+    void turn_by(double degrees, double x, double y, double z) {
+        turn->Identity();
+        turn->RotateWXYZ(degrees, x, y, z);
+        filter->Update();
+    }
+    /// The direction that is in neither axis.
+    int across() {
+        for (int c = 0; c < 3; ++c)
+            if (filter->GetUsedAxis1()[c] == 0 && filter->GetUsedAxis2()[c] == 0) return c;
+        return -1;
+    }
+
+    vtkNew<vtkSphereSource> source;
+    vtkNew<vtkTransform> turn;
+    vtkNew<vtkTransformPolyDataFilter> turned;
+    vtkNew<vtkAnamorphDeform> filter;
+};
+
+}  // namespace
+
+TEST(VtkDeform, TheAutomaticPlaneStaysWhileTheTopologyDoes) {
+    std::set<int> chosen;
+    for (int degrees = 0; degrees < 40; ++degrees) {
+        TurningSphere alone;
+        alone.turn_by(degrees, 1, 2, 3);
+        chosen.insert(alone.across());
+    }
+    ASSERT_GT(chosen.size(), 1u);  // which two directions are longest changes while it turns
+    TurningSphere sphere;
+    sphere.turn_by(0, 1, 2, 3);
+    const int first = sphere.across();
+    for (int degrees = 1; degrees < 40; ++degrees) {
+        sphere.turn_by(degrees, 1, 2, 3);
+        EXPECT_EQ(sphere.across(), first) << degrees;
+    }
+    // An error in between, and data without points, change nothing.
+    sphere.filter->AddDeformation(0, 0, 0, 1, 0, 0, 1);
+    Errors errors(sphere.filter);
+    sphere.turn_by(40, 1, 2, 3);
+    EXPECT_THAT(errors.text(), HasSubstr("extent"));
+    sphere.filter->RemoveAllDeformations();
+    sphere.filter->SetInputData(vtkNew<vtkPolyData>());
+    sphere.filter->Update();
+    sphere.filter->SetInputConnection(sphere.turned->GetOutputPort());
+    sphere.turn_by(30, 1, 2, 3);
+    EXPECT_EQ(sphere.across(), first);
+}
+
+TEST(VtkDeform, TheAutomaticPlaneIsChosenAnewWithOtherCells) {
+    TurningSphere sphere;
+    sphere.source->SetRadius(1);
+    sphere.turn->Scale(1, 2, 3);
+    sphere.filter->Update();
+    EXPECT_EQ(sphere.across(), 0);
+    const auto stretch = [&](double x, double y, double z) {
+        sphere.turn->Identity();
+        sphere.turn->Scale(x, y, z);
+        sphere.filter->Update();
+    };
+    stretch(3, 2, 1);
+    EXPECT_EQ(sphere.across(), 0);
+    sphere.source->SetPhiResolution(63);
+    sphere.filter->Update();
+    EXPECT_EQ(sphere.across(), 2);
+    stretch(1, 2, 3);
+    EXPECT_EQ(sphere.across(), 2);
+    // The same numbers of points and cells, joined otherwise.
+    sphere.source->SetPhiResolution(64);
+    sphere.filter->Update();
+    EXPECT_EQ(sphere.across(), 0);
+    sphere.source->SetThetaResolution(62);
+    sphere.source->SetPhiResolution(66);
+    stretch(2, 3, 1);
+    EXPECT_EQ(sphere.across(), 2);
+    // Without the automatic plane it is forgotten.
+    stretch(1, 2, 3);
+    EXPECT_EQ(sphere.across(), 2);
+    sphere.filter->AutomaticPlaneOff();
+    sphere.filter->Update();
+    sphere.filter->AutomaticPlaneOn();
+    sphere.filter->Update();
+    EXPECT_EQ(sphere.across(), 0);
+    // What has become flat along an axis has no parameters there.
+    stretch(3, 0, 1);
+    EXPECT_EQ(sphere.across(), 1);
+}
+
+TEST(VtkDeform, AFrozenPlaneIsTheOneUsedLast) {
+    TurningSphere sphere;
+    sphere.turn->Scale(1, 2, 3);
+    sphere.turn->Translate(5, 0, 0);
+    sphere.filter->AddDeformation(0, 0, .5, .5, 1, 0, 0);
+    sphere.filter->Update();
+    const std::vector<double> expected = coordinates(output(sphere.filter));
+    sphere.filter->FreezePlane();
+    EXPECT_FALSE(sphere.filter->GetAutomaticPlane());
+    EXPECT_THAT(std::vector<double>(sphere.filter->GetOrigin(), sphere.filter->GetOrigin() + 3),
+                testing::ElementsAre(testing::DoubleNear(5, 1e-6), 0, 0));
+    sphere.filter->Update();
+    EXPECT_EQ(coordinates(output(sphere.filter)), expected);
+    sphere.source->SetPhiResolution(20);
+    sphere.turn->Scale(9, 1, 1);
+    sphere.filter->Update();
+    EXPECT_EQ(sphere.across(), 0);
 }
 
 TEST(VtkDeform, Overlay) {

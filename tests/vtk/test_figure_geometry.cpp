@@ -278,6 +278,17 @@ TEST(VtkFigureGeometry, WhatCannotBeDoneIsAnError) {
                     HasSubstr("allowed is a positive number"));
     EXPECT_THAT(errors_of<vtkAnamorphFigureGeometry>(figure, [](auto* g) { g->SetTolerance(1e-9); }),
                 HasSubstr("is too small"));
+    // Large bodies need too many triangles; with the tolerance that the message names they do not.
+    const auto large = figures({{{}, {6e5, 3e5, 5e5}, {1, 0, 0, 0}}, {{}, {5e5, 5e5, 5e5}, {1, 0, 0, 0}}});
+    const std::string refused =
+        errors_of<vtkAnamorphFigureGeometry>(large, [](auto* g) { g->SetTolerance(2); });
+    EXPECT_THAT(refused,
+                testing::ContainsRegex("Tolerance=2: needs [0-9]+ triangles, allowed are 4194304; "));
+    const std::size_t named = refused.find("4194304; ");
+    ASSERT_NE(named, std::string::npos);
+    const double enough = std::stod(refused.substr(named + 9));
+    EXPECT_NE(errors_of<vtkAnamorphFigureGeometry>(large, [&](auto* g) { g->SetTolerance(enough / 2); }), "");
+    EXPECT_EQ(errors_of<vtkAnamorphFigureGeometry>(large, [&](auto* g) { g->SetTolerance(enough); }), "");
     const auto camera = [&](const std::function<void(vtkAnamorphFigureGeometry*)>& set) {
         return errors_of<vtkAnamorphFigureGeometry>(figure, [&](auto* g) {
             g->SetToleranceMode(vtkAnamorphFigureGeometry::PIXELS);

@@ -24,8 +24,11 @@
 #include <chrono>
 #include <cmath>
 #include <filesystem>
+#include <fstream>
 #include <functional>
+#include <iterator>
 #include <random>
+#include <string>
 
 #include "support.h"
 
@@ -387,6 +390,47 @@ class Recorder : public vtkImageAlgorithm {
     }
 };
 vtkStandardNewMacro(Recorder);
+
+// VTK 9.1's own reader ends the program on these.
+TEST(VtkRelief, APngFileThatIsNotWholeIsRefused) {
+    const Folder folder;
+    const std::string name = folder.path("whole.png");
+    vtkNew<vtkPNGWriter> writer;
+    writer->SetFileName(name.c_str());
+    writer->SetInputData(picture(19, 13, VTK_UNSIGNED_CHAR, 3));
+    writer->Write();
+    std::ifstream file(name, std::ios::binary);
+    const std::string bytes{std::istreambuf_iterator<char>(file), {}};
+    ASSERT_GT(bytes.size(), 300u);
+    const auto error_of_file = [&](const std::string& text) {
+        return errors_of<vtkAnamorphReliefSource>(
+            nullptr, [&](auto* r) { r->SetFileName(folder.write("a.png", text).c_str()); });
+    };
+    EXPECT_EQ(error_of_file(bytes), "");
+    for (std::size_t length = 8; length < bytes.size(); length += length < 80 ? 1 : 29)
+        EXPECT_THAT(error_of_file(bytes.substr(0, length)),
+                    HasSubstr("the file ends before the picture does"))
+            << length;
+    for (std::size_t at = 8; at < bytes.size(); at += 41) {
+        std::string damaged = bytes;
+        damaged[at] = static_cast<char>(damaged[at] ^ 1);
+        EXPECT_THAT(error_of_file(damaged), testing::ContainsRegex("the file (ends before|is damaged)"))
+            << at;
+    }
+    // A file that is mended is read.
+    vtkNew<vtkAnamorphReliefSource> source;
+    Errors errors(source);
+    const std::string half = folder.write("half.png", bytes.substr(0, bytes.size() / 2));
+    source->SetFileName(half.c_str());
+    source->Update();
+    EXPECT_THAT(errors.text(), HasSubstr("the file ends"));
+    errors.clear();
+    folder.write("half.png", bytes);
+    source->Modified();
+    source->Update();
+    EXPECT_EQ(errors.text(), "");
+    EXPECT_EQ(grid_of(source)->GetNumberOfPoints(), 19 * 13);
+}
 
 TEST(VtkRelief, PiecesAndGhostsMakeUpTheWholeAndReadWhatTheyNeed) {
     vtkNew<Recorder> recorder;

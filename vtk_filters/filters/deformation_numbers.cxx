@@ -106,7 +106,12 @@ std::vector<Numbers> numbers_in(vtkTable* table) {
             throw Error(std::string("the table of deformations: column ") + kColumns[c] + " has " +
                         std::to_string(columns[c]->GetNumberOfComponents()) + " components, needed is 1");
     }
-    const vtkIdType rows = table->GetNumberOfRows();
+    const vtkIdType rows = columns[0]->GetNumberOfTuples();
+    for (int c = 1; c < 9; ++c)
+        if (columns[c] && columns[c]->GetNumberOfTuples() != rows)
+            throw Error(std::string("the table of deformations: column ") + kColumns[c] + " has " +
+                        std::to_string(columns[c]->GetNumberOfTuples()) + " rows, column " + kColumns[0] +
+                        " has " + std::to_string(rows) + ": needed are as many in each");
     if (rows > static_cast<vtkIdType>(anamorph::kMaxDeformations))
         throw Error("the table of deformations has " + std::to_string(rows) + " rows, allowed are " +
                     std::to_string(anamorph::kMaxDeformations));

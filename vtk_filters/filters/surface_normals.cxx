@@ -9,7 +9,9 @@
 #include <glm/geometric.hpp>
 #include <limits>
 #include <numbers>
+#include <string>
 
+#include "anamorph/error.h"
 #include "vtkCell.h"
 #include "vtkCellData.h"
 #include "vtkCellType.h"
@@ -78,6 +80,16 @@ void read_cell(vtkPointSet* mesh, vtkIdType id, CellReader& reader, const Body& 
 
 bool hidden(vtkUnsignedCharArray* ghosts, vtkIdType cell) {
     return ghosts && (ghosts->GetValue(cell) & vtkDataSetAttributes::HIDDENCELL) != 0;
+}
+
+/// The marks of ghost cells, one for each cell; null where there are none.
+vtkUnsignedCharArray* ghosts_of(vtkPointSet* mesh) {
+    vtkUnsignedCharArray* ghosts = mesh->GetCellGhostArray();
+    if (ghosts && ghosts->GetNumberOfTuples() != mesh->GetNumberOfCells())
+        throw anamorph::Error(std::string("the array ") + ghosts->GetName() + " of the cells has " +
+                              std::to_string(ghosts->GetNumberOfTuples()) + " tuples, needed are " +
+                              std::to_string(mesh->GetNumberOfCells()));
+    return ghosts;
 }
 
 glm::dvec3 point_of(vtkPointSet* mesh, vtkIdType id) {
@@ -205,7 +217,7 @@ std::vector<glm::dvec2> with_finite_parameters(std::vector<glm::dvec2> parameter
 void for_each_surface_cell(vtkPointSet* mesh,
                            const std::function<void(vtkIdType count, const vtkIdType* points)>& body) {
     CellReader reader;
-    vtkUnsignedCharArray* ghosts = mesh->GetCellGhostArray();
+    vtkUnsignedCharArray* ghosts = ghosts_of(mesh);
     for (vtkIdType id = 0; id < mesh->GetNumberOfCells(); ++id)
         if (!hidden(ghosts, id)) read_cell(mesh, id, reader, body);
 }
@@ -227,7 +239,7 @@ void write_normals(const NormalsOf& of, const std::vector<vtkIdType>& points, T*
         of.mesh->GetCellType(0);  // builds what is built on demand, on this thread
         vtkNew<vtkIdList> first;
         of.mesh->GetCellPoints(0, first);
-        vtkUnsignedCharArray* ghosts = of.mesh->GetCellGhostArray();
+        vtkUnsignedCharArray* ghosts = ghosts_of(of.mesh);
         parallel_for(chunks_of(cells), [&](std::int64_t chunk) {
             CellReader reader;
             for (vtkIdType id = chunk * kChunk; id < std::min<vtkIdType>((chunk + 1) * kChunk, cells); ++id)

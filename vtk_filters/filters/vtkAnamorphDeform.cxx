@@ -3,17 +3,16 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <string>
 #include <vector>
 
 #include "anamorph/error.h"
+#include "automatic_plane.h"
 #include "deform_overlay.h"
 #include "deformation_numbers.h"
 #include "deformed_mesh.h"
 #include "execution.h"
 #include "vtkAnamorphDeformationList.h"
-#include "vtkCommunicator.h"
 #include "vtkCompositeDataIterator.h"
 #include "vtkDataObjectTree.h"
 #include "vtkDoubleArray.h"
@@ -37,60 +36,13 @@ namespace {
 using anamorph::Deformation;
 using anamorph::Error;
 using anamorph_vtk::DeformedMesh;
+using anamorph_vtk::distributed;
 using anamorph_vtk::Numbers;
-
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 /// A leaf of the input and that of the output, a shallow copy of it.
 struct Leaf {
     vtkPointSet *in, *out;
 };
-
-/// Least and most of finite points; of none if there are more than DeformedMesh takes, which refuses them.
-struct Bounds {
-    double least[3] = {kInfinity, kInfinity, kInfinity}, most[3] = {-kInfinity, -kInfinity, -kInfinity};
-
-    void add(const Bounds& other) {
-        for (int c = 0; c < 3; ++c) {
-            least[c] = std::min(least[c], other.least[c]);
-            most[c] = std::max(most[c], other.most[c]);
-        }
-    }
-};
-
-Bounds bounds_of(vtkPointSet* mesh) {
-    Bounds bounds;
-    const vtkIdType count = mesh->GetNumberOfPoints();
-    for (vtkIdType i = 0; i < count && count <= DeformedMesh::kMostPoints; ++i) {
-        double p[3];
-        mesh->GetPoints()->GetPoint(i, p);
-        if (!std::isfinite(p[0]) || !std::isfinite(p[1]) || !std::isfinite(p[2])) continue;
-        for (int c = 0; c < 3; ++c) {
-            bounds.least[c] = std::min(bounds.least[c], p[c]);
-            bounds.most[c] = std::max(bounds.most[c], p[c]);
-        }
-    }
-    return bounds;
-}
-
-/// The plane of the two directions that are longest, in the order of x, y, z; its parameters are coordinates.
-anamorph::ParameterPlane plane_of(const Bounds& bounds) {
-    if (!(bounds.least[0] <= bounds.most[0])) return {};
-    const auto length = [&](int c) { return bounds.most[c] - bounds.least[c]; };
-    int across = 2;
-    for (const int c : {1, 0})
-        if (length(c) < length(across)) across = c;
-    glm::dvec3 origin(0.0), axes[2] = {glm::dvec3(0.0), glm::dvec3(0.0)};
-    origin[across] = bounds.least[across] / 2 + bounds.most[across] / 2;
-    int next = 0;
-    for (int c = 0; c < 3; ++c)
-        if (c != across) axes[next++][c] = 1;
-    return {origin, axes[0], axes[1]};
-}
-
-bool distributed(vtkMultiProcessController* controller) {
-    return controller && controller->GetNumberOfProcesses() > 1;
-}
 
 /// The deformations of the tables of all ranks: those of one if all that have any have the same.
 std::vector<Numbers> of_all_ranks(const std::vector<Numbers>& own, bool failed,
@@ -162,6 +114,14 @@ double resolution_for(const std::vector<Deformation>& list) {
     return std::ldexp(1., std::clamp(kStep * steps + kUsual - 48, -500, 500));
 }
 
+glm::dvec3 vector(const double* v) {
+    return {v[0], v[1], v[2]};
+}
+
+void put(glm::dvec3 v, double* to) {
+    for (int c = 0; c < 3; ++c) to[c] = v[c];
+}
+
 void add_field_value(vtkDataObject* object, const char* name, double value) {
     // The container is shared with the input, the arrays stay so.
     vtkNew<vtkFieldData> fields;
@@ -176,24 +136,8 @@ void add_field_value(vtkDataObject* object, const char* name, double value) {
 }  // namespace
 
 struct vtkAnamorphDeform::Kept {
-    struct Mesh {
-        std::unique_ptr<DeformedMesh> deformed;
-        vtkMTimeType bounds_time = 0;
-        Bounds bounds;
-    };
-    std::vector<Mesh> meshes;  ///< by leaf
-
-    Bounds bounds(const std::vector<Leaf>& leaves) {
-        Bounds all;
-        for (std::size_t i = 0; i < leaves.size(); ++i) {
-            if (leaves[i].in->GetNumberOfPoints() == 0) continue;
-            const vtkMTimeType time = leaves[i].in->GetMTime();
-            if (meshes[i].bounds_time != time) meshes[i].bounds = bounds_of(leaves[i].in);
-            meshes[i].bounds_time = time;
-            all.add(meshes[i].bounds);
-        }
-        return all;
-    }
+    std::vector<std::unique_ptr<DeformedMesh>> meshes;  ///< by leaf
+    anamorph_vtk::AutomaticPlane plane;
 };
 
 vtkAnamorphDeform::vtkAnamorphDeform()
@@ -315,6 +259,13 @@ vtkMultiProcessController* vtkAnamorphDeform::GetController() {
     return this->Controller;
 }
 
+void vtkAnamorphDeform::FreezePlane() {
+    this->SetOrigin(this->UsedOrigin);
+    this->SetAxis1(this->UsedAxis1);
+    this->SetAxis2(this->UsedAxis2);
+    this->AutomaticPlaneOff();
+}
+
 vtkMTimeType vtkAnamorphDeform::GetMTime() {
     return std::max(this->Superclass::GetMTime(), this->DeformationList->GetMTime());
 }
@@ -378,7 +329,7 @@ int vtkAnamorphDeform::RequestData(vtkInformation*, vtkInformationVector** input
         try {
             this->Execute(inputs, outputs);
         } catch (...) {
-            *this->Meshes = Kept();
+            this->Meshes->meshes.clear();
             throw;
         }
     };
@@ -420,29 +371,23 @@ void vtkAnamorphDeform::Execute(vtkInformationVector** inputs, vtkInformationVec
     anamorph_vtk::DeformSettings settings;
     settings.on_plane = this->ParameterMode == PLANE;
     if (settings.on_plane && this->AutomaticPlane) {
-        Bounds bounds = this->Meshes->bounds(leaves);
-        if (distributed(this->Controller)) {
-            Bounds all;
-            this->Controller->AllReduce(bounds.least, all.least, 3, vtkCommunicator::MIN_OP);
-            this->Controller->AllReduce(bounds.most, all.most, 3, vtkCommunicator::MAX_OP);
-            bounds = all;
-        } else if (vtkInformation* info = outputs->GetInformationObject(0);
-                   info->Get(vtkStreamingDemandDrivenPipeline::UPDATE_NUMBER_OF_PIECES()) > 1) {
+        if (!distributed(this->Controller) &&
+            outputs->GetInformationObject(0)->Get(
+                vtkStreamingDemandDrivenPipeline::UPDATE_NUMBER_OF_PIECES()) > 1)
             throw Error(
                 "AutomaticPlane=1: one piece of the data does not tell the bounds of all; set Origin, "
                 "Axis1 and Axis2, or execute all pieces under a controller");
-        }
-        settings.plane = plane_of(bounds);
-    } else if (settings.on_plane) {
-        const auto vector = [](const double* v) { return glm::dvec3(v[0], v[1], v[2]); };
-        settings.plane = {vector(this->Origin), vector(this->Axis1), vector(this->Axis2)};
+        std::vector<vtkPointSet*> meshes;
+        for (const Leaf& leaf : leaves) meshes.push_back(leaf.in);
+        settings.plane = this->Meshes->plane.of(meshes, this->Controller);
+    } else {
+        this->Meshes->plane.forget();
+        if (settings.on_plane)
+            settings.plane = {vector(this->Origin), vector(this->Axis1), vector(this->Axis2)};
     }
-    const auto report = [](glm::dvec3 v, double* to) {
-        for (int c = 0; c < 3; ++c) to[c] = v[c];
-    };
-    report(settings.plane.origin(), this->UsedOrigin);
-    report(settings.plane.axis_u(), this->UsedAxis1);
-    report(settings.plane.axis_v(), this->UsedAxis2);
+    put(settings.plane.origin(), this->UsedOrigin);
+    put(settings.plane.axis_u(), this->UsedAxis1);
+    put(settings.plane.axis_v(), this->UsedAxis2);
 
     std::vector<Numbers> numbers = this->DeformationList->GetAll();
     if (this->FileName && *this->FileName) {
@@ -468,7 +413,7 @@ void vtkAnamorphDeform::Execute(vtkInformationVector** inputs, vtkInformationVec
     for (std::size_t i = 0; i < leaves.size(); ++i) {
         auto& [in, out] = leaves[i];
         add_field_value(out, "anamorph:error_bound", this->ErrorBound);
-        std::unique_ptr<DeformedMesh>& mesh = this->Meshes->meshes[i].deformed;
+        std::unique_ptr<DeformedMesh>& mesh = this->Meshes->meshes[i];
         const double count = static_cast<double>(in->GetNumberOfPoints());
         vtkDataArray* coordinates =
             settings.on_plane || count == 0 ? nullptr : this->GetInputArrayToProcess(0, in);
@@ -485,8 +430,7 @@ void vtkAnamorphDeform::Execute(vtkInformationVector** inputs, vtkInformationVec
     if (!this->GenerateOverlay) return;
     std::vector<anamorph_vtk::OverlayMesh> meshes;
     for (std::size_t i = 0; i < leaves.size(); ++i)
-        if (this->Meshes->meshes[i].deformed)
-            meshes.push_back({leaves[i].in, &this->Meshes->meshes[i].deformed->parameters()});
+        if (this->Meshes->meshes[i]) meshes.push_back({leaves[i].in, &this->Meshes->meshes[i]->parameters()});
     const bool whole = settings.on_plane && !distributed(this->Controller);
     draw_overlay(list, settings.options, meshes, whole ? &settings.plane : nullptr, overlay);
 }

@@ -11,7 +11,10 @@
  * Parameters are texture coordinates (the point array chosen with SetInputArrayToProcess(0, 0, 0, 0, name),
  * or the active ones), or those of a plane: p = Origin + u Axis1 + v Axis2 + a part across both. With
  * AutomaticPlane, u and v are the two of x, y and z in which the whole data (all blocks, all ranks of the
- * Controller) are largest: centres are then points of that plane, and extents lengths.
+ * Controller) are largest: centres are then points of that plane, and extents lengths. The two stay while the
+ * data have the same points and cells by number and connectivity, so that bumps do not jump when a surface
+ * turns, unless the surface has become flat along one of them; an execution without AutomaticPlane forgets
+ * them.
  *
  * Input: any vtkPointSet, or multiblock data and collections of partitioned data sets; leaves of other types
  * are passed on. Points that have no finite parameters stay. What comes out shares all arrays but the points,
@@ -133,8 +136,10 @@ class ANAMORPHFILTERS_EXPORT vtkAnamorphDeform : public vtkPassInputTypeAlgorith
 
     ///@{
     /**
-     * The plane of the last execution.
+     * The plane of the last execution. FreezePlane() makes it that of the next ones too: it sets Origin,
+     * Axis1 and Axis2 to it, and AutomaticPlane off.
      */
+    void FreezePlane();
     vtkGetVector3Macro(UsedOrigin, double);
     vtkGetVector3Macro(UsedAxis1, double);
     vtkGetVector3Macro(UsedAxis2, double);

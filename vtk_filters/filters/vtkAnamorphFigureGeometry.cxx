@@ -6,6 +6,7 @@
 #include <glm/geometric.hpp>
 #include <glm/vec2.hpp>
 #include <numbers>
+#include <string>
 #include <vector>
 
 #include "anamorph/error.h"
@@ -34,7 +35,8 @@ using anamorph::View;
 
 constexpr double kPi = std::numbers::pi;
 constexpr double kMostSteps = 1 << 12;  ///< either way
-constexpr vtkIdType kMostPoints = VTK_INT_MAX;
+/// About 0.8 GB with the arrays of the bodies; a renderer needs as much again.
+constexpr vtkIdType kMostTriangles = vtkIdType{1} << 22;
 constexpr int kLeastRows = 4, kLeastColumns = 6;
 
 /// A grid over an ellipsoid. Its poles are a point for each column, between the grid's lines.
@@ -47,6 +49,15 @@ struct Grid {
 
     vtkIdType points() const { return vtkIdType{rows - 1} * (columns + 1) + 2 * columns; }
     vtkIdType triangles() const { return vtkIdType{rows - 1} * columns * 2; }
+    vtkIdType end_point() const { return first_point + points(); }
+    vtkIdType end_triangle() const { return first_triangle + triangles(); }
+};
+
+/// A point of the input and how far its surface may be off, in units.
+struct Body {
+    vtkIdType id;
+    Ellipsoid shape;
+    double tolerance;
 };
 
 /// The steps that hold a tolerance. The mixed term 2 n h k is at most n h^2 + n k^2; h and k take half each.
@@ -63,6 +74,40 @@ Grid grid_of(vtkIdType body, const Ellipsoid& shape, double tolerance) {
     const double h = kPi / rows, k = 2 * kPi / columns;
     grid.bound = (m * h * h + 2 * n * h * k + n * k * k) / 8;
     return grid;
+}
+
+/// One after the other.
+std::vector<Grid> grids_of(const std::vector<Body>& bodies) {
+    std::vector<Grid> grids;
+    for (const Body& body : bodies) {
+        Grid grid = grid_of(body.id, body.shape, body.tolerance);
+        if (!grids.empty()) {
+            grid.first_point = grids.back().end_point();
+            grid.first_triangle = grids.back().end_triangle();
+        }
+        grids.push_back(grid);
+    }
+    return grids;
+}
+
+/// Refuses what would take too much memory, and says with which tolerance it would not.
+void check_size(const std::vector<Body>& bodies, double tolerance) {
+    const auto triangles = [&](double factor) {
+        vtkIdType sum = 0;
+        for (const Body& body : bodies)
+            sum += grid_of(body.id, body.shape, factor * body.tolerance).triangles();
+        return sum;
+    };
+    const vtkIdType needed = triangles(1);
+    if (needed <= kMostTriangles) return;
+    const std::string allowed =
+        "needs " + std::to_string(needed) + " triangles, allowed are " + std::to_string(kMostTriangles);
+    constexpr double kMostFactor = 1 << 20;
+    for (double factor = 2; factor <= kMostFactor; factor *= 2)
+        if (triangles(factor) <= kMostTriangles)
+            throw Error("Tolerance", anamorph::shortest(tolerance),
+                        allowed + "; " + anamorph::shortest(factor * tolerance) + " needs no more");
+    throw Error("Tolerance", anamorph::shortest(tolerance), allowed);
 }
 
 /// Most that a point of a body may move for the picture to move by `pixels`. In perspective the image of q +
@@ -196,24 +241,17 @@ void vtkAnamorphFigureGeometry::Draw(vtkPolyData* input, vtkPolyData* output,
     const anamorph_vtk::FigureData figures(input);
     const View view = this->ToleranceMode == PIXELS ? this->ViewOf(input) : View();
     const double half_diagonal = 0.5 * std::hypot(this->ViewSize[0], this->ViewSize[1]);
-    std::vector<Grid> grids;
-    vtkIdType points = 0, triangles = 0;
-    for (vtkIdType i = 0; i < figures.size(); ++i) {
-        const auto shape = figures.ellipsoid(i);
-        if (!shape) continue;
-        const double tolerance = this->ToleranceMode == PIXELS
-                                     ? tolerance_in_units(this->Tolerance, *shape, view, half_diagonal)
-                                     : this->Tolerance;
-        Grid grid = grid_of(i, *shape, tolerance);
-        grid.first_point = points;
-        grid.first_triangle = triangles;
-        points += grid.points();
-        triangles += grid.triangles();
-        if (points > kMostPoints)
-            throw Error("Tolerance", anamorph::shortest(this->Tolerance),
-                        "allowed are at most " + std::to_string(kMostPoints) + " points");
-        grids.push_back(grid);
-    }
+    std::vector<Body> bodies;
+    for (vtkIdType i = 0; i < figures.size(); ++i)
+        if (const auto shape = figures.ellipsoid(i))
+            bodies.push_back({i, *shape,
+                              this->ToleranceMode == PIXELS
+                                  ? tolerance_in_units(this->Tolerance, *shape, view, half_diagonal)
+                                  : this->Tolerance});
+    check_size(bodies, this->Tolerance);
+    const std::vector<Grid> grids = grids_of(bodies);
+    const vtkIdType points = grids.empty() ? 0 : grids.back().end_point(),
+                    triangles = grids.empty() ? 0 : grids.back().end_triangle();
     execution.progress(0.1);
     const auto parallel_for = execution.stage(0.1, 0.9);
     if (this->OutputPointsPrecision == DOUBLE_PRECISION)

@@ -12,6 +12,7 @@
 #include "anamorph/error.h"
 #include "anamorph/parameter.h"
 #include "execution.h"
+#include "png_file.h"
 #include "smp_for.h"
 #include "vtkAOSDataArrayTemplate.h"
 #include "vtkArrayDispatch.h"
@@ -400,6 +401,7 @@ vtkInformation* vtkAnamorphReliefSource::PictureInformation(vtkInformationVector
             std::error_code ignored;
             if (!std::filesystem::exists(this->FileName, ignored))
                 throw Error("FileName", this->FileName, "there is no such file");
+            anamorph_vtk::check_png(this->FileName);
             vtkImageReader2* reader = vtkImageReader2Factory::CreateImageReader2(this->FileName.c_str());
             if (!reader)
                 throw Error("FileName", this->FileName, "needed is a picture that VTK's image readers know");

@@ -86,7 +86,7 @@ class ANAMORPHFILTERS_EXPORT vtkAnamorphReliefSource : public vtkStructuredGridA
      * Which component is the height, from 0, or LUMINANCE (the default): 0.2126 R + 0.7152 G + 0.0722 B of
      * the numbers as stored; of pictures with less than three components, the first.
      */
-    vtkSetMacro(Component, int);
+    vtkSetClampMacro(Component, int, LUMINANCE, VTK_INT_MAX);
     vtkGetMacro(Component, int);
     ///@}
 

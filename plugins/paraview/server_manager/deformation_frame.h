@@ -25,11 +25,14 @@ struct Frame {
     Point point(double u, double v, double t) const;
     /// (u, v, t) of a point.
     Point parameters(const Point& point) const;
+    /// Is a point over (u, v), within rounding?
+    bool is_over(double u, double v, const Point& point) const;
+    bool operator==(const Frame&) const = default;
 };
 
 /// That of a deform proxy: from its properties Origin, Axis1 and Axis2, or with AutomaticPlane as
-/// vtkAnamorphDeform takes it from bounds. Of texture coordinates: x-y. None while bounds are not known, or
-/// axes are parallel.
+/// vtkAnamorphDeform had it last, or would take it from bounds. Of texture coordinates: x-y. None while
+/// bounds are not known, or axes are parallel.
 std::optional<Frame> frame_of(vtkSMProxy* deform);
 
 /// Those of its input; false if they are not known.

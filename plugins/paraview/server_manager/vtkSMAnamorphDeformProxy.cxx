@@ -1,14 +1,20 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "vtkSMAnamorphDeformProxy.h"
 
+#include <algorithm>
 #include <cmath>
-#include <string_view>
+#include <initializer_list>
+#include <optional>
+#include <string>
 #include <vector>
 
 #include "deformation_frame.h"
+#include "vtkCommand.h"
 #include "vtkObjectFactory.h"
 #include "vtkSMProperty.h"
 #include "vtkSMPropertyHelper.h"
+#include "vtkSMSessionProxyManager.h"
+#include "vtkSmartPointer.h"
 
 using namespace anamorph_paraview;
 
@@ -17,11 +23,11 @@ vtkStandardNewMacro(vtkSMAnamorphDeformProxy);
 namespace {
 
 /// Holds a flag up.
-struct WhileLoading {
-    explicit WhileLoading(bool& held) : flag(held), before(held) { flag = true; }
-    ~WhileLoading() { flag = before; }
-    WhileLoading(const WhileLoading&) = delete;
-    WhileLoading& operator=(const WhileLoading&) = delete;
+struct WhileHeld {
+    explicit WhileHeld(bool& held) : flag(held), before(held) { flag = true; }
+    ~WhileHeld() { flag = before; }
+    WhileHeld(const WhileHeld&) = delete;
+    WhileHeld& operator=(const WhileHeld&) = delete;
 
     bool& flag;
     bool before;
@@ -29,7 +35,74 @@ struct WhileLoading {
 
 }  // namespace
 
-vtkSMAnamorphDeformProxy::vtkSMAnamorphDeformProxy() = default;
+/// What was set since the last update.
+struct vtkSMAnamorphDeformProxy::Edits {
+    bool begun = false;
+    std::vector<double> list;  ///< without what the handles do
+    std::optional<Point> center, corner, vector;
+    std::optional<Frame> frame;  ///< that the handles are shown in
+};
+
+namespace {
+
+std::vector<double> numbers_of(vtkSMProxy* proxy, const char* name) {
+    return vtkSMPropertyHelper(proxy, name, true).GetDoubleArray();
+}
+
+std::optional<Point> point_of(vtkSMProxy* proxy, const char* name) {
+    const std::vector<double> numbers = numbers_of(proxy, name);
+    if (numbers.size() != 3) return std::nullopt;
+    return Point{numbers[0], numbers[1], numbers[2]};
+}
+
+/// Changes nothing where the numbers are the same.
+void set_numbers(vtkSMProxy* proxy, const char* name, const double* numbers, std::size_t count) {
+    vtkSMPropertyHelper(proxy, name, true).Set(numbers, static_cast<unsigned int>(count));
+}
+
+/// A row of the list, and the plane that its numbers are on.
+struct Row {
+    double* numbers;
+    Frame frame;
+
+    double center(unsigned int i) const { return numbers[kCenter + i]; }
+    double corner(unsigned int i) const { return numbers[kCenter + i] + numbers[kExtent + i]; }
+
+    void move_center(const Point& handle) const {
+        if (frame.is_over(center(0), center(1), handle)) return;
+        const Point at = frame.parameters(handle);
+        for (unsigned int i = 0; i < 2; ++i) numbers[kCenter + i] = at[i];
+    }
+    /// A corner beside the centre tells no extent that way.
+    void move_corner(const Point& handle) const {
+        if (frame.is_over(corner(0), corner(1), handle)) return;
+        const Point at = frame.parameters(handle);
+        for (unsigned int i = 0; i < 2; ++i)
+            if (const double extent = std::fabs(at[i] - center(i)); extent > 0) numbers[kExtent + i] = extent;
+    }
+    void set_vector(const Point& vector) const { std::copy(vector.begin(), vector.end(), numbers + kVector); }
+};
+
+/// The row that is selected. None where there is none, or the plane is not known yet.
+std::optional<Row> selected_row(vtkSMProxy* proxy, std::vector<double>& list) {
+    const unsigned int columns = columns_of(proxy->GetProperty("Deformations"));
+    const int selected = vtkSMPropertyHelper(proxy, "SelectedDeformation", true).GetAsInt();
+    if (columns < kLeastColumns || selected < 0) return std::nullopt;
+    const std::size_t first = static_cast<std::size_t>(selected) * columns;
+    const std::optional<Frame> frame = frame_of(proxy);
+    if (!frame || list.size() < first + columns) return std::nullopt;
+    return Row{list.data() + first, *frame};
+}
+
+bool is_one_of(const std::string& name, std::initializer_list<const char*> names) {
+    return std::find(names.begin(), names.end(), name) != names.end();
+}
+
+}  // namespace
+
+vtkSMAnamorphDeformProxy::vtkSMAnamorphDeformProxy() : Pending(std::make_unique<Edits>()) {
+    this->AddObserver(vtkCommand::UpdatePropertyEvent, this, &vtkSMAnamorphDeformProxy::PropertyPushed);
+}
 vtkSMAnamorphDeformProxy::~vtkSMAnamorphDeformProxy() = default;
 
 void vtkSMAnamorphDeformProxy::PrintSelf(ostream& os, vtkIndent indent) {
@@ -45,110 +118,147 @@ int vtkSMAnamorphDeformProxy::ReadXMLAttributes(vtkSMSessionProxyManager* manage
 void vtkSMAnamorphDeformProxy::SetPropertyModifiedFlag(const char* name, int flag) {
     this->Superclass::SetPropertyModifiedFlag(name, flag);
     if (flag == 0 || this->InStep) return;
-    this->InStep = true;
-    const std::string_view changed = name;
-    if (changed == "SelectedCenter") this->WriteCenter();
-    if (changed == "SelectedCorner") this->WriteExtent();
-    if (changed == "SelectedVector") this->WriteVector();
-    for (const char* followed : {"SelectedCenter", "SelectedDeformation", "Deformations", "Input",
-                                 "ParameterMode", "AutomaticPlane", "Origin", "Axis1", "Axis2"})
-        if (changed == followed) this->ShowRow();
-    this->InStep = false;
-    if (changed == "ImportFile" || changed == "ExportFile") this->FilesPending = true;
+    const WhileHeld step(this->InStep);
+    if (is_one_of(name, {"ImportFile", "ExportFile"})) this->FilesPending = true;
+    if (is_one_of(name,
+                  {"SelectedCenter", "SelectedCorner", "SelectedVector", "SelectedDeformation",
+                   "Deformations", "Input", "ParameterMode", "AutomaticPlane", "Origin", "Axis1", "Axis2"}))
+        this->Edited(name);
 }
 
 int vtkSMAnamorphDeformProxy::LoadXMLState(vtkPVXMLElement* element, vtkSMProxyLocator* locator) {
-    const WhileLoading loading(this->InStep);
+    const WhileHeld loading(this->InStep);
+    *this->Pending = Edits();
     return this->Superclass::LoadXMLState(element, locator);
 }
 
 void vtkSMAnamorphDeformProxy::LoadState(const vtkSMMessage* message, vtkSMProxyLocator* locator) {
-    const WhileLoading loading(this->InStep);
+    const WhileHeld loading(this->InStep);
+    *this->Pending = Edits();
     this->Superclass::LoadState(message, locator);
 }
 
 void vtkSMAnamorphDeformProxy::UpdateVTKObjects() {
-    this->Superclass::UpdateVTKObjects();
-    if (!this->FilesPending) return;
-    vtkSMPropertyHelper import_file(this, "ImportFile"), export_file(this, "ExportFile");
-    if (*import_file.GetAsString() != '\0') {
-        vtkSMProperty* list = this->GetProperty("DeformationsInfo");
-        this->UpdatePropertyInformation(list);
-        const std::vector<double> rows = vtkSMPropertyHelper(list).GetDoubleArray();
-        vtkSMPropertyHelper(this, "Deformations").Set(rows.data(), static_cast<unsigned int>(rows.size()));
+    if (!this->FilesPending) {
+        this->Superclass::UpdateVTKObjects();
+        return;
     }
+    this->FilesPending = false;
     // What is done once is not done again by a state or an undo.
+    vtkSMPropertyHelper import_file(this, "ImportFile"), export_file(this, "ExportFile");
+    const std::string file = import_file.GetAsString();
     import_file.Set("");
+    if (!file.empty()) this->ImportDeformations(file.c_str());
+    this->Superclass::UpdateVTKObjects();
     export_file.Set("");
     this->FilesPending = false;
     this->Superclass::UpdateVTKObjects();
 }
 
-namespace {
+/// Through a filter of its own: a trace would take what is asked of this one for what was set.
+void vtkSMAnamorphDeformProxy::ImportDeformations(const char* file) {
+    const auto reader = vtk::TakeSmartPointer(vtkSMAnamorphDeformProxy::SafeDownCast(
+        this->GetSessionProxyManager()->NewProxy(this->GetXMLGroup(), this->GetXMLName())));
+    if (!reader) return;
+    reader->SetLocation(this->GetLocation());
+    const WhileHeld step(reader->InStep);
+    const std::vector<double> list = numbers_of(this, "Deformations");
+    set_numbers(reader, "Deformations", list.data(), list.size());
+    reader->UpdateProperty("Deformations");
+    vtkSMPropertyHelper(reader, "ImportFile").Set(file);
+    reader->UpdateProperty("ImportFile");
+    reader->UpdatePropertyInformation(reader->GetProperty("DeformationsInfo"));
+    const std::vector<double> read = numbers_of(reader, "DeformationsInfo");
+    set_numbers(this, "Deformations", read.data(), read.size());
+}
 
-/// The row that is selected, and the plane it is on. `complete` is false where there is none, or the plane is
-/// not known yet: then both sides stay as they are.
-struct Selection {
-    explicit Selection(vtkSMProxy* proxy)
-        : deformations(proxy, "Deformations", true),
-          center(proxy, "SelectedCenter", true),
-          corner(proxy, "SelectedCorner", true),
-          vector(proxy, "SelectedVector", true) {
-        const unsigned int columns = columns_of(proxy->GetProperty("Deformations"));
-        const int selected = vtkSMPropertyHelper(proxy, "SelectedDeformation", true).GetAsInt();
-        const std::optional<Frame> known = frame_of(proxy);
-        if (columns < kLeastColumns || selected < 0 || !known) return;
-        frame = *known;
-        row = static_cast<unsigned int>(selected) * columns;
-        complete = deformations.GetNumberOfElements() >= row + columns && center.GetNumberOfElements() == 3 &&
-                   corner.GetNumberOfElements() == 3 && vector.GetNumberOfElements() == 3;
+// ---- The list and the handles ----
+
+void vtkSMAnamorphDeformProxy::Edited(const char* name) {
+    Edits& edits = *this->Pending;
+    const std::string changed = name;
+    if (!edits.begun || changed == "Deformations") edits.list = numbers_of(this, "Deformations");
+    edits.begun = true;
+    if (changed == "SelectedCenter") {
+        edits.center = point_of(this, name);
+        this->HandlesPut = true;
     }
-    double value(unsigned int column) const { return deformations.GetAsDouble(row + column); }
-    void set_value(unsigned int column, double value) { deformations.Set(row + column, value); }
-    Point parameters(const vtkSMPropertyHelper& handle) const {
-        return frame.parameters({handle.GetAsDouble(0), handle.GetAsDouble(1), handle.GetAsDouble(2)});
+    if (changed == "SelectedCorner") edits.corner = point_of(this, name);
+    if (changed == "SelectedVector") edits.vector = point_of(this, name);
+    if (changed == "Input") this->UsedPlaneKnown = false;
+    this->Resolve();
+}
+
+void vtkSMAnamorphDeformProxy::Resolve() {
+    const Edits& edits = *this->Pending;
+    std::vector<double> list = edits.list;
+    if (const std::optional<Row> row = selected_row(this, list)) {
+        if (edits.center) row->move_center(*edits.center);
+        if (edits.corner) row->move_corner(*edits.corner);
+        if (edits.vector) row->set_vector(*edits.vector);
     }
-
-    Frame frame;
-    vtkSMPropertyHelper deformations, center, corner, vector;
-    unsigned int row = 0;
-    bool complete = false;
-};
-
-}  // namespace
-
-void vtkSMAnamorphDeformProxy::ShowRow() {
-    Selection selection(this);
-    if (!selection.complete) return;
-    const double u = selection.value(kCenter), v = selection.value(kCenter + 1);
-    // Handles are on the plane, or where they have been put across it.
-    const double height = this->HandlesPut ? selection.parameters(selection.center)[2] : 0;
-    const Point center = selection.frame.point(u, v, height);
-    const Point corner =
-        selection.frame.point(u + selection.value(kExtent), v + selection.value(kExtent + 1), height);
-    selection.center.Set(center.data(), 3);
-    selection.corner.Set(corner.data(), 3);
-    for (unsigned int i = 0; i < 3; ++i) selection.vector.Set(i, selection.value(kVector + i));
+    set_numbers(this, "Deformations", list.data(), list.size());
+    this->ShowHandles(false);
 }
 
-void vtkSMAnamorphDeformProxy::WriteCenter() {
-    Selection selection(this);
-    if (!selection.complete) return;
-    this->HandlesPut = true;
-    const Point center = selection.parameters(selection.center);
-    for (unsigned int i = 0; i < 2; ++i) selection.set_value(kCenter + i, center[i]);
+/// Where the row is, but for those that were put somewhere since the last update, unless all.
+void vtkSMAnamorphDeformProxy::ShowHandles(bool all) {
+    Edits& edits = *this->Pending;
+    std::vector<double> list = numbers_of(this, "Deformations");
+    const std::optional<Row> row = selected_row(this, list);
+    const std::optional<Point> at = point_of(this, "SelectedCenter");
+    if (!row || !at) return;
+    edits.frame = row->frame;
+    // They are on the plane, or where they have been put across it.
+    const double height = this->HandlesPut ? row->frame.parameters(*at)[2] : 0;
+    const auto show = [&](const char* name, bool put, const double* numbers) {
+        if (all || !put) set_numbers(this, name, numbers, 3);
+    };
+    show("SelectedCenter", edits.center.has_value(),
+         row->frame.point(row->center(0), row->center(1), height).data());
+    show("SelectedCorner", edits.corner.has_value(),
+         row->frame.point(row->corner(0), row->corner(1), height).data());
+    show("SelectedVector", edits.vector.has_value(), row->numbers + kVector);
 }
 
-void vtkSMAnamorphDeformProxy::WriteExtent() {
-    Selection selection(this);
-    if (!selection.complete) return;
-    const Point corner = selection.parameters(selection.corner);
-    for (unsigned int i = 0; i < 2; ++i)
-        selection.set_value(kExtent + i, std::fabs(corner[i] - selection.value(kCenter + i)));
+// ---- The plane ----
+
+void vtkSMAnamorphDeformProxy::PostUpdateData(bool using_cache) {
+    const bool updated = this->NeedsUpdate;
+    this->Superclass::PostUpdateData(using_cache);
+    if (!updated) return;
+    const WhileHeld step(this->InStep);
+    this->TakeUsedPlane();
+    const std::optional<Frame> shown = this->Pending->frame;
+    *this->Pending = Edits();
+    this->Pending->frame = shown;
+    if (frame_of(this) != shown) this->ShowHandles(true);
 }
 
-void vtkSMAnamorphDeformProxy::WriteVector() {
-    Selection selection(this);
-    if (!selection.complete) return;
-    for (unsigned int i = 0; i < 3; ++i) selection.set_value(kVector + i, selection.vector.GetAsDouble(i));
+void vtkSMAnamorphDeformProxy::TakeUsedPlane() {
+    this->UsedPlaneKnown = vtkSMPropertyHelper(this, "ParameterMode").GetAsInt() == 0 &&
+                           vtkSMPropertyHelper(this, "AutomaticPlane").GetAsInt() != 0;
+    if (!this->UsedPlaneKnown) return;
+    double* to = this->UsedPlane;
+    for (const char* name : {"UsedOrigin", "UsedAxis1", "UsedAxis2"}) {
+        this->UpdatePropertyInformation(this->GetProperty(name));
+        vtkSMPropertyHelper(this, name).Get(to, 3);
+        to += 3;
+    }
+}
+
+void vtkSMAnamorphDeformProxy::PropertyPushed(vtkObject*, unsigned long, void* name) {
+    if (name && std::string(static_cast<const char*>(name)) == "FreezePlane") this->FreezePlane();
+}
+
+void vtkSMAnamorphDeformProxy::FreezePlane() {
+    this->UpdatePipeline();
+    const double* plane = this->GetUsedPlane();
+    if (!plane) return;
+    const std::vector<double> kept(plane, plane + 9);
+    set_numbers(this, "Origin", kept.data(), 3);
+    set_numbers(this, "Axis1", kept.data() + 3, 3);
+    set_numbers(this, "Axis2", kept.data() + 6, 3);
+    vtkSMPropertyHelper(this, "AutomaticPlane").Set(0);
+    this->UpdateVTKObjects();
 }

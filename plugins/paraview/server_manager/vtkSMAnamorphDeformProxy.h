@@ -9,6 +9,14 @@
  * row SelectedDeformation. What is written to them is written to the row, and they follow the list, the
  * selection and the plane of (u, v).
  *
+ * What is set between two updates of the filter acts together, each property with its last value, whatever
+ * the order it is set in: the list, in it the row that is selected, in it what the handles were put to, seen
+ * in the parameters that are chosen. A handle that is where the row has it changes nothing, to the bit. So
+ * traces and macros, which have the handles beside the list, make the list that was recorded.
+ *
+ * The automatic plane is that of the last update, or before one that of the input's bounds. The command
+ * FreezePlane updates the filter and makes it Origin, Axis1 and Axis2, with AutomaticPlane off.
+ *
  * Setting ImportFile takes the list from a file on the server, setting ExportFile writes it to one; both are
  * empty again when that is done.
  *
@@ -20,6 +28,8 @@
 #include "AnamorphServerManagerModule.h"  // for the export macro
 #include "vtkSMSourceProxy.h"
 
+#include <memory>  // for the edits
+
 class ANAMORPHSERVERMANAGER_EXPORT vtkSMAnamorphDeformProxy : public vtkSMSourceProxy {
   public:
     static vtkSMAnamorphDeformProxy* New();
@@ -30,25 +40,39 @@ class ANAMORPHSERVERMANAGER_EXPORT vtkSMAnamorphDeformProxy : public vtkSMSource
     int LoadXMLState(vtkPVXMLElement* element, vtkSMProxyLocator* locator) override;
     void LoadState(const vtkSMMessage* message, vtkSMProxyLocator* locator) override;
 
+    /**
+     * Origin, Axis1 and Axis2 of the automatic plane of the last update; null where there was none.
+     */
+    const double* GetUsedPlane() const { return this->UsedPlaneKnown ? this->UsedPlane : nullptr; }
+
   protected:
     vtkSMAnamorphDeformProxy();
     ~vtkSMAnamorphDeformProxy() override;
 
     int ReadXMLAttributes(vtkSMSessionProxyManager* manager, vtkPVXMLElement* element) override;
     void SetPropertyModifiedFlag(const char* name, int flag) override;
+    void PostUpdateData(bool using_cache) override;
 
   private:
     vtkSMAnamorphDeformProxy(const vtkSMAnamorphDeformProxy&) = delete;
     void operator=(const vtkSMAnamorphDeformProxy&) = delete;
 
-    void ShowRow();
-    void WriteCenter();
-    void WriteExtent();
-    void WriteVector();
+    struct Edits;
+
+    void Edited(const char* name);
+    void Resolve();
+    void ShowHandles(bool all);
+    void TakeUsedPlane();
+    void ImportDeformations(const char* file);
+    void PropertyPushed(vtkObject*, unsigned long, void* name);
+    void FreezePlane();
 
     bool InStep = true;         ///< while one side follows the other, and before there are all properties
     bool HandlesPut = false;    ///< SelectedCenter has been written to
     bool FilesPending = false;  ///< ImportFile or ExportFile is set, and not yet sent
+    double UsedPlane[9] = {};
+    bool UsedPlaneKnown = false;
+    std::unique_ptr<Edits> Pending;  ///< since the last update
 };
 
 #endif

@@ -139,6 +139,45 @@ TEST_F(VtkEditor, ShiftRaisesAndControlWidens) {
     EXPECT_NEAR(m_editor->bump(0)[2], 0.15 * std::pow(1.01, -20), 1e-12);
 }
 
+TEST_F(VtkEditor, ADragEndsWhereTheButtonIsReleased) {
+    for (const bool shift : {false, true}) {
+        const std::array<int, 2> from = this->seen(0), to{from[0] + 40, from[1] + 25};
+        const Bump before = m_editor->bump(0);
+        this->drag(from, to, shift);
+        const Bump wanted = m_editor->bump(0);
+        this->press("z");
+        ASSERT_EQ(m_editor->bump(0), before);
+        // The last move, or all of them, may not be told.
+        for (const bool moved : {true, false}) {
+            this->event(vtkCommand::LeftButtonPressEvent, from, nullptr, shift);
+            if (moved) this->event(vtkCommand::MouseMoveEvent, {from[0] + 7, from[1] + 31}, nullptr, shift);
+            this->event(vtkCommand::LeftButtonReleaseEvent, to, nullptr, shift);
+            for (std::size_t i = 0; i < wanted.size(); ++i)
+                EXPECT_NEAR(m_editor->bump(0)[i], wanted[i], 1e-12) << i;
+            this->press("z");
+            EXPECT_EQ(m_editor->bump(0), before);
+        }
+    }
+}
+
+TEST_F(VtkEditor, AClickSelectsAndEditsNothing) {
+    const Bump first = m_editor->bump(0), second = m_editor->bump(1);
+    this->drag(this->seen(0), {150, 150});
+    const Bump dragged = m_editor->bump(0);
+    for (const int k : {1, 0})
+        for (const bool moved : {true, false}) {
+            const std::array<int, 2> at = this->seen(k);
+            this->event(vtkCommand::LeftButtonPressEvent, at);
+            if (moved) this->event(vtkCommand::MouseMoveEvent, at);
+            this->event(vtkCommand::LeftButtonReleaseEvent, at);
+            EXPECT_EQ(m_editor->selected(), k);
+            EXPECT_EQ(m_editor->bump(0), dragged);
+            EXPECT_EQ(m_editor->bump(1), second);
+        }
+    this->press("z");  // of the drag: clicks are no steps
+    EXPECT_EQ(m_editor->bump(0), first);
+}
+
 TEST_F(VtkEditor, ElsewhereTheViewRotatesAndNothingIsEdited) {
     const std::vector<double> before = this->points();
     const std::array<double, 3> from = this->camera();
