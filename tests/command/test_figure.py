@@ -21,7 +21,7 @@ def scene(*bodies, extra=""):
     """A script of one frame: bodies are (name, half-axes, center), each a figure."""
     text = ""
     for name, axes, center in bodies:
-        text += "figure f%s 1 %s ellipsoid %s %s %s %s\n" % (name, name, name, *axes)
+        text += "figure f%s 1 %s\nellipsoid %s %s %s %s\n" % (name, name, name, *axes)
         text += "repeat 0 1 moveto f%s %s %s %s %s\n" % (name, name, *center)
     return text + extra + "stop\n"
 
@@ -103,28 +103,53 @@ class Check(Case):
         self.assertRegex(lines[1], r"bad\.n:4:16: error: found \"oops\", expected ")
 
     def test_what_is_an_error_in_strict_is_none_in_classic(self):
-        text = "figure f 1 a ellipsoid a -1 2 3 linear 0 1 moveby f a 1 2 3 stop"
+        text = "figure f 1 a\nellipsoid a -1 2 3\nlinear 0 1 moveby f a 1 2 3\nstop"
         self.assertEqual(self.run_program("check", "-", text=text).returncode, 0)
         result = self.run_program("check", "-", "--dialect=strict", text=text)
         self.assertEqual(result.returncode, 1)
-        self.assertRegex(result.stdout.decode(), r"^stdin:1:\d+: error: ")
+        self.assertRegex(result.stdout.decode(), r"^stdin:2:\d+: error: ")
 
     def test_libraries_and_includes(self):
-        library = self.write("lib.n", "figure f 1 a ellipsoid a 1 2 3\n")
-        text = "linear 0 1 moveby f a 1 2 3 stop"
+        library = self.write("lib.n", "figure f 1 a\nellipsoid a 1 2 3\n")
+        text = "linear 0 1 moveby f a 1 2 3\nstop"
         self.assertEqual(self.run_program("check", "-", text=text).returncode, 1)
         self.assertEqual(self.output("check", "-", "--library", library, text=text), b"")
         # An include is looked for beside the script, wherever the program runs.
-        self.assertEqual(self.output("check", self.write("inc.n", "include lib.n " + text)), b"")
-        result = self.run_program("check", self.write("none.n", "include nowhere.n stop"))
+        self.assertEqual(self.output("check", self.write("inc.n", "include lib.n\n" + text)), b"")
+        result = self.run_program("check", self.write("none.n", "include nowhere.n\nstop"))
         self.assertEqual(result.returncode, 1)
         self.assertIn(b"nowhere.n", result.stdout)
 
 
+    def test_what_the_originals_pass_over_is_a_warning(self):
+        text = "figure f 1 a\nellipsoid a 1 2 3 4\nlinear 0 1 moveby f a 1 2 3 linear 0 1 nothing\nstop"
+        result = self.run_program("check", "-", text=text)
+        self.assertEqual(result.returncode, 0)
+        lines = result.stdout.decode().splitlines()
+        self.assertEqual([line.split(" ")[:2] for line in lines],
+                         [["stdin:2:19:", "warning:"], ["stdin:3:29:", "warning:"]])
+
+    def test_files_that_are_no_scripts_stay_unseen(self):
+        secret = self.write("secret", "key=hunter2\n")
+        for options in ([self.write("s.n", "include secret\nstop")], ["-", "--library", secret]):
+            result = self.run_program("check", *options, text="stop")
+            self.assertEqual(result.returncode, 1)
+            self.assertIn(b"it is not a script", result.stdout)
+            self.assertNotIn(b"hunter2", result.stdout + result.stderr)
+        # Nothing waits for a pipe that a script names.
+        os.mkfifo(self.path("pipe"))
+        result = self.run_program("check", self.write("p.n", "include pipe\nstop"))
+        self.assertIn(b"there is no such file", result.stdout)
+
+    def test_the_help_says_where_classic_is_not_the_original(self):
+        text = " ".join(self.output("frames", "--help").decode().split())
+        self.assertRegex(text, "abut and touch end in exact contact")
+
+
 class Frames(Case):
     # Two bodies joined at (0, 40, 0) of the first and (0, -20, 0) of the second, which so is at y = 60.
-    SCRIPT = ("figure f 2 a b ellipsoid a 10 40 20 ellipsoid b 5 20 5 joint j a 0 40 0 b 0 -20 0\n"
-              "linear 0 2 moveby f a 100 10 -3 repeat 1 2 colour b 10 20 30 stop")
+    SCRIPT = ("figure f 2 a b\nellipsoid a 10 40 20\nellipsoid b 5 20 5\njoint j a 0 40 0 b 0 -20 0\n"
+              "linear 0 2 moveby f a 100 10 -3\nrepeat 1 2 colour b 10 20 30\nstop")
 
     def test_the_originals_format(self):
         lines = self.output("frames", "-", text=self.SCRIPT).decode().splitlines()
@@ -150,7 +175,7 @@ class Frames(Case):
         self.assertIn("frame=3: allowed are 0 to 2", self.error("frames", path, "--frame", "3"))
 
     def test_what_scripts_print_goes_to_the_standard_error(self):
-        result = self.run_program("frames", "-", text="variables 1 v repeat 0 1 set v 7 repeat 0 2 print v stop")
+        result = self.run_program("frames", "-", text="variables 1 v\nrepeat 0 1 set v 7\nrepeat 0 2 print v\nstop")
         self.assertEqual(result.returncode, 0)
         self.assertEqual(len(result.stderr.splitlines()), 2)
         self.assertIn(b"7", result.stderr.splitlines()[0])
@@ -232,9 +257,9 @@ class Pictures(Case):
         bone = scene(("bone", (10, 100, 10), (500, 300, 500)))
         [(name, points, _)] = self.paths(bone, "--sticks=axes", "--size=1000", kind="stick")
         self.assertEqual((name, sorted(points)), ("bone", [(500, 600), (500, 800)]))
-        limbs = ("figure f 3 a b c ellipsoid a 1 9 1 ellipsoid b 1 9 1 ellipsoid c 1 9 1\n"
-                 "joint j a 0 100 0 b 0 -100 0 joint k b 0 100 0 c 0 -100 0\n"
-                 "repeat 0 1 moveto f b 500 500 500 stop")
+        limbs = ("figure f 3 a b c\nellipsoid a 1 9 1\nellipsoid b 1 9 1\nellipsoid c 1 9 1\n"
+                 "joint j a 0 100 0 b 0 -100 0\njoint k b 0 100 0 c 0 -100 0\n"
+                 "repeat 0 1 moveto f b 500 500 500\nstop")
         paths = self.paths(limbs, "--sticks=joints", "--size=1000", kind="stick")
         # a and c from their centres to their joints, b from joint to joint.
         self.assertEqual({name: sorted(points) for name, points, _ in paths},
@@ -275,7 +300,7 @@ class Pictures(Case):
         self.assertIn("need the name of a file", self.error("svg", WALKER, "--frame=all"))
 
     def test_the_first_frame_shown_is_the_default(self):
-        text = "view 2 4 " + NEAR_AND_FAR.replace("stop", "linear 0 4 moveby fnear near 1 1 1 stop")
+        text = "view 2 4\n" + NEAR_AND_FAR.replace("stop", "linear 0 4 moveby fnear near 1 1 1\nstop")
         self.assertIn("frame 3", self.svg(text).find(SVG + "title").text)
 
     def test_the_same_for_any_number_of_threads(self):
@@ -375,9 +400,9 @@ class BadInput(Case):
 
     def test_scripts(self):
         self.assertIn("shows no frame", self.error("text", "-", "--frame=all", text="stop"))
-        self.assertIn("stdin:1:1", self.error("frames", "-", text="nonsense stop"))
-        self.assertIn("divi", self.error("frames", "-", text="variables 1 v repeat 0 1 divide v 1 0 stop"))
-        line = "subroutine s repeat 0 1 call s endsub s call 0 1 s stop"
+        self.assertIn("stdin:1:1", self.error("frames", "-", text="nonsense\nstop"))
+        self.assertIn("divi", self.error("frames", "-", text="variables 1 v\nrepeat 0 1 divide v 1 0\nstop"))
+        line = "subroutine s\nrepeat 0 1 call s\nendsub s\ncall 0 1 s\nstop"
         self.assertIn("call each other", self.error("frames", "-", text=line))
         self.run_program("svg", "-", text=scene(("z", (0, 0, 0), (500, 500, 500))))
         self.run_program("svg", "-", text=scene(("n", (1000000, "0.000001", 1), (500, 500, 500))))
