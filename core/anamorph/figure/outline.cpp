@@ -73,7 +73,7 @@ Outline outline_of(const SeenBody& body, std::size_t position, const std::vector
             add_hidden(body, all[static_cast<std::size_t>(j)], view.perspective(), hidden);
     std::vector<Arc> cut;
     if (body.kind == OutlineKind::cut) cut = {cut_arc(body.viewed, view.near)};
-    split(union_of(std::move(hidden), kTurn), cut, kTurn, true, outline.visible, outline.hidden);
+    split(std::move(hidden), cut, kTurn, true, outline.visible, outline.hidden);
     return outline;
 }
 
@@ -152,7 +152,7 @@ void hide_lines(std::span<SeenLine> lines, std::span<const Ellipsoid> bodies, co
                 i < ignored.size() && std::find(ignored[i].begin(), ignored[i].end(), j) != ignored[i].end();
             if (!skip) add_hidden(from, to, seen[static_cast<std::size_t>(j)], view.perspective(), hidden);
         }
-        split(union_of(std::move(hidden), 1, false), cut, 1, false, line.visible, line.hidden);
+        split(std::move(hidden), cut, 1, false, line.visible, line.hidden);
     });
 }
 

@@ -103,7 +103,7 @@ class Pair {
             append(hidden, parts, k);
         }
         const auto period = static_cast<double>(count);
-        split(union_of(std::move(hidden), period), cut, period, true, curve.visible, curve.hidden);
+        split(std::move(hidden), cut, period, true, curve.visible, curve.hidden);
     }
 
   private:

@@ -104,7 +104,14 @@ void add_hidden(const SeenBody& body, const SeenBody& other, bool perspective, s
     for (int k = 0; k < roots.count; ++k) {
         const bool last = k + 1 == roots.count;
         const Arc arc{roots.angle[k], last ? roots.angle[0] + kTurn : roots.angle[k + 1]};
-        if (arc.end > arc.begin && is_hidden(path, other, arc)) hidden.push_back(arc);
+        if (!(arc.end > arc.begin) || !is_hidden(path, other, arc)) continue;
+        hidden.push_back(arc);
+        // Cut at the turn by the root itself: a turn more and less would round it, and leave an arc of no
+        // length.
+        if (last) {
+            hidden.back().end = kTurn;
+            hidden.push_back({0, roots.angle[0]});
+        }
     }
 }
 
