@@ -266,6 +266,25 @@ class Pictures(Case):
                          {"a": [(500, 600), (500, 700)], "b": [(500, 400), (500, 600)],
                           "c": [(500, 300), (500, 400)]})
 
+    def test_nothing_is_drawn_as_a_stroke_without_extent(self):
+        # A joint in the middle of its body, a body that is a point, and bodies by chance.
+        still = ("figure f 2 a b\nellipsoid a 9 9 9\nellipsoid b 9 9 9\njoint j a 0 0 0 b 0 30 0\n"
+                 "repeat 0 1 moveto f a 500 500 500\n")
+        self.assertEqual([name for name, _, _ in self.paths(still + "stop", "--sticks=joints", kind="stick")], ["b"])
+        root = self.svg(scene(("point", (0, 0, 0), (500, 500, 500))))
+        self.assertEqual([e.get("data-body") for e in root.iter(SVG + "circle")], ["point"])
+        self.assertEqual(list(root.iter(SVG + "path")), [])
+        chance = random.Random(20261)
+        bodies = [("b%d" % k, [chance.randint(0, 120) for _ in "xyz"], [chance.randint(200, 800) for _ in "xyz"])
+                  for k in range(60)]
+        for options in ([], ["--hidden=dash"], ["--crossings"], ["--perspective=900"]):
+            count = 0
+            for kind in ("visible", "hidden"):
+                for name, points, _ in self.paths(scene(*bodies), *options, kind=kind):
+                    count += 1
+                    self.assertGreater(max(math.dist(points[0], p) for p in points), 0, (name, options))
+            self.assertGreater(count, 60)
+
     def test_level_of_detail(self):
         crowd = scene(("dot", (1, 1, 1), (100, 100, 100)), ("line", (1, 50, 1), (300, 500, 100)),
                       ("body", (50, 60, 50), (600, 600, 100)))
