@@ -4,9 +4,11 @@ import math
 import os
 import random
 import re
+import signal
 import struct
 import subprocess
 import tempfile
+import time
 import unittest
 import xml.etree.ElementTree as xml
 import zlib
@@ -347,6 +349,53 @@ class Pictures(Case):
         data = self.read("w.png")
         self.assertEqual(data[:8], b"\x89PNG\r\n\x1a\n")
         self.assertEqual(struct.unpack(">II", data[16:24]), (100, 100))
+
+
+class WholeFiles(Case):
+    """A file is there in full, or as it was before."""
+    FAILS_LATE = "figure f 1 a\nellipsoid a 9 9 9\nlinear 0 9 moveby f a 1 0 0\nrepeat 7 8 grofig f a 0 1 1\nstop"
+    ENDLESS = "figure f 1 a\nellipsoid a 9 9 9\nlinear 0 900000000 moveby f a 1 0 0\nstop"
+    COMMANDS = ("frames", "text") + (("pdf",) if CAIRO else ())
+
+    def test_a_script_that_fails_late_leaves_the_old_file(self):
+        for command in self.COMMANDS:
+            self.write("out", "old")
+            self.assertIn("a factor is zero",
+                          self.error(command, "-", "-o", self.path("out"), "--frame=all", text=self.FAILS_LATE))
+            self.assertEqual(self.read("out"), b"old", command)
+            self.assertEqual(os.listdir(self.folder), ["out"], command)
+            os.remove(self.path("out"))
+            self.error(command, "-", "-o", self.path("out"), "--frame=all", text=self.FAILS_LATE)
+            self.assertEqual(os.listdir(self.folder), [], command)
+
+    def test_interrupted_it_leaves_the_old_file_and_nothing_else(self):
+        script = self.write("endless.n", self.ENDLESS)
+        for command in self.COMMANDS:
+            for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
+                self.write("out", "old")
+                process = subprocess.Popen([PROGRAM, command, script, "-o", self.path("out"), "--frame=all"],
+                                           stderr=subprocess.DEVNULL)
+                # It is at work when something is in the folder that grows.
+                deadline = time.monotonic() + 60
+                while time.monotonic() < deadline and all(
+                        os.path.getsize(self.path(name)) == 0 for name in os.listdir(self.folder)
+                        if name not in ("out", "endless.n")):
+                    self.assertIsNone(process.poll())
+                    time.sleep(0.01)
+                process.send_signal(number)
+                self.assertEqual(process.wait(60), -number)
+                self.assertEqual(self.read("out"), b"old", (command, number))
+                self.assertEqual(sorted(os.listdir(self.folder)), ["endless.n", "out"], (command, number))
+
+    def test_what_is_replaced_keeps_its_rights_and_links_lead_where_they_did(self):
+        self.write("real", "old")
+        os.chmod(self.path("real"), 0o640)
+        os.symlink("real", self.path("link"))
+        self.output("frames", WALKER, "-o", self.path("link"))
+        self.assertTrue(os.path.islink(self.path("link")))
+        self.assertEqual(self.read("real"), self.output("frames", WALKER))
+        self.assertEqual(os.stat(self.path("real")).st_mode & 0o777, 0o640)
+        self.assertEqual(sorted(os.listdir(self.folder)), ["link", "real"])
 
 
 class Text(Case):
