@@ -82,6 +82,7 @@ class Page {
         OutlineOptions options;
         options.hide = m_options.hidden != Hidden::draw;
         options.crossings = m_options.crossings;
+        options.keep_hidden = m_options.hidden == Hidden::dash;
         options.tol = kShareOfTol * m_options.tol;
         const Outlines found = outlines(m_frame, m_view, options, parallel_for);
         const std::vector<Outline>& all = found.bodies;
