@@ -101,84 +101,102 @@ bool may_meet(const SeenBody& body, const Piece& piece) {
 
 namespace {
 
-class Patches {
-  public:
-    Patches(const SeenBody& body, const glm::dmat3& from_unit, bool perspective)
-        : m_body(body), m_from_unit(from_unit), m_perspective(perspective) {
-        for (int k = 0; k < 3; ++k) m_size += glm::dot(from_unit[k], from_unit[k]);
-        m_size = std::sqrt(m_size);
-    }
-
-    /// `others` from `first` on are those that may hide the spherical triangle.
-    void add(const std::array<glm::dvec3, 3>& corners, std::vector<const SeenBody*>& others,
-             std::size_t first, std::size_t last, int level) {
-        const Piece piece = piece_of(corners);
-        if (far_side_of(m_body, piece) == Cover::all) return;
-        const std::size_t next = others.size();
-        for (std::size_t k = first; k < last; ++k) {
-            const Cover cover = cover_of(*others[k], piece, m_perspective);
-            if (cover == Cover::all) {
-                // What hides one piece often hides its neighbour.
-                std::swap(others[first], others[k]);
-                others.resize(next);
-                return;
-            }
-            if (cover == Cover::partly) others.push_back(others[k]);
-        }
-        const std::size_t end = others.size();
-        if (end == next || level == kLevels) {
-            m_pieces.push_back(piece);
-        } else {
-            const auto& [a, b, c] = corners;
-            const glm::dvec3 ab = glm::normalize(a + b), bc = glm::normalize(b + c),
-                             ca = glm::normalize(c + a);
-            for (const std::array<glm::dvec3, 3>& part : {std::array{a, ab, ca}, std::array{b, bc, ab},
-                                                          std::array{c, ca, bc}, std::array{ab, bc, ca}})
-                add(part, others, next, end, level + 1);
-        }
-        others.resize(next);
-    }
-
-    std::vector<Piece> take() { return std::move(m_pieces); }
-
-  private:
-    static constexpr int kLevels = 4;
-
-    /// A flat triangle's points are no farther from a point than its corners; the sphere's are little above
-    /// it.
-    Piece piece_of(const std::array<glm::dvec3, 3>& corners) const {
-        const glm::dvec3 middle = glm::normalize(corners[0] + corners[1] + corners[2]);
-        Piece piece;
-        piece.center = m_body.center + m_from_unit * middle;
-        double radius = 0;
-        for (const glm::dvec3& corner : corners) {
-            radius = std::max(radius, glm::distance(corner, middle));
-            piece.around = std::max(piece.around, glm::length(m_from_unit * (corner - middle)));
-        }
-        piece.around = (piece.around + 0.5 * m_size * radius * radius) * (1 + 0x1p-30);
-        return piece;
-    }
-
-    const SeenBody& m_body;
-    const glm::dmat3& m_from_unit;
-    bool m_perspective;
-    double m_size = 0;
-    std::vector<Piece> m_pieces;
-};
+std::array<Surface::Triangle, 4> quarters(const Surface::Triangle& corners) {
+    const auto& [a, b, c] = corners;
+    const glm::dvec3 ab = glm::normalize(a + b), bc = glm::normalize(b + c), ca = glm::normalize(c + a);
+    return {{{a, ab, ca}, {b, bc, ab}, {c, ca, bc}, {ab, bc, ca}}};
+}
 
 }  // namespace
 
-std::vector<Piece> seen_pieces(const SeenBody& body, const glm::dmat3& from_unit,
-                               std::vector<const SeenBody*> others, bool perspective) {
-    Patches patches(body, from_unit, perspective);
-    // An octahedron.
+Surface::Surface(const SeenBody& body, const glm::dmat3& from_unit, bool perspective)
+    : m_body(body), m_from_unit(from_unit), m_perspective(perspective) {
+    for (int k = 0; k < 3; ++k) m_size += glm::dot(from_unit[k], from_unit[k]);
+    m_size = std::sqrt(m_size);
+}
+
+/// A flat triangle's points are no farther from a point than its corners; the sphere's are little above it.
+Piece Surface::piece_of(const Triangle& corners) const {
+    const glm::dvec3 middle = glm::normalize(corners[0] + corners[1] + corners[2]);
+    Piece piece;
+    piece.center = m_body.center + m_from_unit * middle;
+    double radius = 0;
+    for (const glm::dvec3& corner : corners) {
+        radius = std::max(radius, glm::distance(corner, middle));
+        piece.around = std::max(piece.around, glm::length(m_from_unit * (corner - middle)));
+    }
+    piece.around = (piece.around + 0.5 * m_size * radius * radius) * (1 + 0x1p-30);
+    return piece;
+}
+
+/// Appends those of a range of others that may hide a part of a piece; false where one hides all of it.
+bool Surface::leave_doubts(const Piece& piece, Others& others, std::size_t from, std::size_t to) const {
+    for (std::size_t k = from; k < to; ++k) {
+        const Cover cover = cover_of(*others[k], piece, m_perspective);
+        if (cover == Cover::all) {
+            // What hides one piece often hides its neighbour.
+            std::swap(others[from], others[k]);
+            return false;
+        }
+        if (cover == Cover::partly) others.push_back(others[k]);
+    }
+    return true;
+}
+
+void Surface::add_seen(const Triangle& corners, Others& others, std::size_t from, std::size_t to, int level,
+                       std::vector<Part>& found) const {
+    constexpr int kLevels = 2;
+    const Piece piece = piece_of(corners);
+    if (far_side_of(m_body, piece) == Cover::all) return;
+    const std::size_t next = others.size();
+    if (leave_doubts(piece, others, from, to)) {
+        const std::size_t end = others.size();
+        if (end == next || level == kLevels)
+            found.push_back(
+                {corners, piece, {others.begin() + static_cast<std::ptrdiff_t>(next), others.end()}});
+        else
+            for (const Triangle& part : quarters(corners))
+                add_seen(part, others, next, end, level + 1, found);
+    }
+    others.resize(next);
+}
+
+std::vector<Surface::Part> Surface::seen(Others others) const {
+    std::vector<Part> found;
     const std::size_t count = others.size();
+    // An octahedron.
     for (const double x : {-1.0, 1.0})
         for (const double y : {-1.0, 1.0})
             for (const double z : {-1.0, 1.0})
-                patches.add({glm::dvec3(x, 0, 0), glm::dvec3(0, y, 0), glm::dvec3(0, 0, z)}, others, 0, count,
-                            0);
-    return patches.take();
+                add_seen({glm::dvec3(x, 0, 0), glm::dvec3(0, y, 0), glm::dvec3(0, 0, z)}, others, 0, count, 0,
+                         found);
+    return found;
+}
+
+bool Surface::shows(const Triangle& corners, const SeenBody& other, Others& others, std::size_t from,
+                    std::size_t to, int level) const {
+    constexpr int kLevels = 1;
+    const Piece piece = piece_of(corners);
+    if (!may_meet(other, piece) || far_side_of(m_body, piece) == Cover::all ||
+        far_side_of(other, piece) == Cover::all)
+        return false;
+    const std::size_t next = others.size();
+    bool found = false;
+    if (leave_doubts(piece, others, from, to)) {
+        const std::size_t end = others.size();
+        found = level == kLevels;
+        if (!found)
+            for (const Triangle& part : quarters(corners))
+                if ((found = shows(part, other, others, next, end, level + 1))) break;
+    }
+    others.resize(next);
+    return found;
+}
+
+bool Surface::may_show_meeting(const SeenBody& other, const Part& part) const {
+    Others others = part.others;
+    std::erase(others, &other);
+    return shows(part.corners, other, others, 0, others.size(), 0);
 }
 
 }  // namespace anamorph

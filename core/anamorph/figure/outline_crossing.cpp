@@ -38,40 +38,64 @@ SphereCurve curve_on(const SeenBody& on, const glm::dmat3& from_unit_on, const S
     return curve;
 }
 
-/// What may be seen of the bodies' surfaces, where bodies hide each other; otherwise everything.
+/// What may be seen of the bodies' surfaces, where bodies hide each other.
 class SeenSurfaces {
   public:
     SeenSurfaces(std::span<const Ellipsoid> bodies, const std::vector<SeenBody>& seen, const View& view,
                  const Overlaps& overlaps, const ParallelFor& parallel_for)
-        : m_pieces(seen.size()), m_seen(seen.size()) {
+        : m_bodies(seen), m_perspective(view.perspective()), m_parts(seen.size()), m_seen(seen.size()) {
+        for (const Ellipsoid& body : bodies) m_from_unit.push_back(from_unit(body, view));
         parallel_for(static_cast<std::int64_t>(seen.size()), [&](std::int64_t n) {
             const auto i = static_cast<std::size_t>(n);
-            m_seen[i] = !seen[i].solid;
-            if (!seen[i].solid) return;
-            std::vector<const SeenBody*> others;
-            for (const int j : overlaps.with(surface_box(seen[i])))
-                if (j != static_cast<int>(i)) others.push_back(&seen[static_cast<std::size_t>(j)]);
-            m_pieces[i] =
-                seen_pieces(seen[i], from_unit(bodies[i], view), std::move(others), view.perspective());
-            m_seen[i] = !m_pieces[i].empty();
+            if (seen[i].solid) {
+                Surface::Others others;
+                for (const int j : overlaps.with(surface_box(seen[i])))
+                    if (j != static_cast<int>(i)) others.push_back(&seen[static_cast<std::size_t>(j)]);
+                m_parts[i] = surface(static_cast<int>(i)).seen(std::move(others));
+            }
+            m_seen[i] = !seen[i].solid || !m_parts[i].empty();
         });
     }
 
     bool any(int body) const { return m_seen[static_cast<std::size_t>(body)] != 0; }
 
-    /// May something be seen of the curve in which two bodies meet?
-    bool may_show(const std::vector<SeenBody>& seen, int i, int j) const {
-        const auto meets = [&](int one, int other) {
-            const std::vector<Piece>& pieces = m_pieces[static_cast<std::size_t>(one)];
-            return std::any_of(pieces.begin(), pieces.end(), [&](const Piece& piece) {
-                return may_meet(seen[static_cast<std::size_t>(other)], piece);
-            });
-        };
-        return meets(i, j) && meets(j, i);
+    /// The bodies after this one with which it meets in a curve of which something may be seen.
+    std::vector<int> met_by(int body) const {
+        std::vector<int> found;
+        for (const Surface::Part& part : parts(body))
+            for (const SeenBody* other : part.others) {
+                const auto j = static_cast<int>(other - m_bodies.data());
+                if (j > body && other->solid && any(j) && may_meet(*other, part.piece)) found.push_back(j);
+            }
+        std::sort(found.begin(), found.end());
+        found.erase(std::unique(found.begin(), found.end()), found.end());
+        std::erase_if(found, [&](int j) { return !may_show(body, j) || !may_show(j, body); });
+        return found;
     }
 
   private:
-    std::vector<std::vector<Piece>> m_pieces;
+    const std::vector<Surface::Part>& parts(int body) const {
+        return m_parts[static_cast<std::size_t>(body)];
+    }
+
+    Surface surface(int body) const {
+        const auto i = static_cast<std::size_t>(body);
+        return {m_bodies[i], m_from_unit[i], m_perspective};
+    }
+
+    bool may_show(int body, int meeting) const {
+        const SeenBody& other = m_bodies[static_cast<std::size_t>(meeting)];
+        const Surface own = surface(body);
+        return std::any_of(parts(body).begin(), parts(body).end(), [&](const Surface::Part& part) {
+            return std::find(part.others.begin(), part.others.end(), &other) != part.others.end() &&
+                   own.may_show_meeting(other, part);
+        });
+    }
+
+    const std::vector<SeenBody>& m_bodies;
+    bool m_perspective;
+    std::vector<glm::dmat3> m_from_unit;
+    std::vector<std::vector<Surface::Part>> m_parts;
     std::vector<char> m_seen;  ///< written by many threads, so no bits
 };
 
@@ -308,13 +332,13 @@ std::vector<CrossingCurve> crossing_curves(std::span<const Ellipsoid> bodies,
         const auto i = static_cast<std::size_t>(n);
         const auto first = static_cast<int>(i);
         if (!seen[i].solid || (!options.keep_hidden && surfaces && !surfaces->any(first))) return;
-        std::vector<int> others = overlaps.with(surface_box(seen[i])), hiding = others;
-        std::sort(others.begin(), others.end());
+        std::vector<int> hiding = overlaps.with(surface_box(seen[i])), others = hiding;
         // What is hidden is hidden by something that is seen, or may be.
         if (surfaces) std::erase_if(hiding, [&](int j) { return !surfaces->any(j); });
+        if (surfaces && !options.keep_hidden) others = surfaces->met_by(first);
+        std::sort(others.begin(), others.end());
         for (const int j : others) {
             if (j <= first || !seen[static_cast<std::size_t>(j)].solid) continue;
-            if (!options.keep_hidden && surfaces && !surfaces->may_show(seen, first, j)) continue;
             Pair pair(bodies, seen, view, options.tol, first, j);
             for (const std::vector<glm::dvec3>& loop : pair.loops()) {
                 CrossingCurve curve = pair.curve(loop);
