@@ -112,6 +112,10 @@ Outlines outlines(std::span<const Ellipsoid> bodies, const View& view, const Out
             result.bodies[i] = outline_of(seen[i], i, seen,
                                           options.hide ? overlaps.with(boxes[i]) : std::vector<int>(), view);
     });
+    // Limbs tell at once where a tolerance asks for too many chords, crossings late.
+    if (options.crossings)
+        for (const Outline& outline : result.bodies)
+            if (outline.kind == OutlineKind::whole) chord_angles(outline, {0, kTurn}, view, options.tol);
     if (options.crossings) result.crossings = crossing_curves(bodies, seen, view, options, parallel_for);
     return result;
 }

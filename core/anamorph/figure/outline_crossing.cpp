@@ -259,7 +259,7 @@ class Pair {
         const double middle = 0.5 * (a.s + b.s);
         if (all) {
             add(chord, a.s, b.s);
-        } else if (end > next && glm::length(piece.half) <= chord.least) {
+        } else if (end > next && (glm::length(piece.half) <= chord.least || b.s - a.s <= kShortest)) {
             mark_short(chord, a, b, next, end);
         } else if (end > next) {
             const End m = on_curve(chord.index, middle);
@@ -299,6 +299,8 @@ class Pair {
     /// Of what chords may be off.
     static constexpr double kLeast = 1.0 / 16;
     static constexpr int kHalvings = 30;
+    /// Of a chord, where its curve is not found beside it.
+    static constexpr double kShortest = 0x1p-14;
 
     const std::vector<SeenBody>& m_seen;
     const View& m_view;
