@@ -11,6 +11,7 @@ import matplotlib
 
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt
+from whole_file import whole_file
 
 ACROSS = 3
 
@@ -27,7 +28,8 @@ def main():
         axes.imshow(plt.imread(picture))
         axes.set_title(picture.stem.replace("_", " "))
     figure.tight_layout()
-    figure.savefig(sys.argv[1], dpi=80)
+    with whole_file(sys.argv[1]) as name:
+        figure.savefig(name, dpi=80)
 
 
 if __name__ == "__main__":

@@ -8,6 +8,7 @@ import sys
 
 import numpy as np
 import OpenImageIO as oiio
+from whole_file import whole_file
 
 SIZE = 480
 Y, X = np.mgrid[0:SIZE, 0:SIZE] + 0.5
@@ -86,15 +87,16 @@ def write(name, picture):
     buf.set_pixels(oiio.ROI(), np.ascontiguousarray(picture, np.float32))
     buf = oiio.ImageBufAlgo.colorconvert(buf, "linear", "sRGB")
     buf.set_write_format(oiio.UINT8)
-    if not buf.write(name):
-        sys.exit(buf.geterror())
+    with whole_file(name) as beside:
+        if not buf.write(beside):
+            sys.exit(buf.geterror())
 
 
 if len(sys.argv) != 4:
     sys.exit(__doc__.strip().splitlines()[-1])
 write(sys.argv[1], face(ROUND))
 write(sys.argv[2], face(LONG))
-with open(sys.argv[3], "w", encoding="ascii") as table:
+with whole_file(sys.argv[3]) as beside, open(beside, "w", encoding="ascii") as table:
     table.write("ax0,ay0,ax1,ay1,bx0,by0,bx1,by1\n")
     for a, b in zip(lines(ROUND), lines(LONG)):
         table.write(",".join(f"{v:.1f}" for v in (*a, *b)) + "\n")

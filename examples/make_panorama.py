@@ -10,6 +10,7 @@ import sys
 
 import numpy as np
 import OpenImageIO as oiio
+from whole_file import whole_file
 
 EYE_HEIGHT = 1.6  # metres
 COLUMNS, RING_RADIUS, COLUMN_RADIUS, COLUMN_HEIGHT = 12, 6.0, 0.5, 5.0  # metres
@@ -78,9 +79,11 @@ def main():
     spec = oiio.ImageSpec(width, height, 3, oiio.FLOAT)
     spec.attribute("oiio:ColorSpace", "Linear")
     output = oiio.ImageOutput.create(sys.argv[1])
-    if not output or not output.open(sys.argv[1], spec) or not output.write_image(picture):
-        sys.exit(f"{sys.argv[1]}: {output.geterror() if output else oiio.geterror()}")
-    output.close()
+    if not output:
+        sys.exit(f"{sys.argv[1]}: {oiio.geterror()}")
+    with whole_file(sys.argv[1]) as name:
+        if not output.open(name, spec) or not output.write_image(picture) or not output.close():
+            sys.exit(f"{sys.argv[1]}: {output.geterror()}")
 
 
 if __name__ == "__main__":

@@ -15,6 +15,7 @@ import matplotlib
 
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt
+from whole_file import whole_file
 
 COLUMNS = ("op case scheme tol_px size threads ns_per_px ratio_to_exact mean_error_px p99_error_px "
            "max_error_px bound_px exact_fraction").split()
@@ -90,7 +91,8 @@ def main():
     figure.suptitle(f"Time against error, {rows[0]['op']}, {size} x {size}")
     figure.tight_layout(rect=(0, 0, 1 - 1.9 / figure.get_figwidth(), 1))
     for picture in arguments.picture:
-        figure.savefig(picture, dpi=110)
+        with whole_file(picture) as name:
+            figure.savefig(name, dpi=110)
 
 
 if __name__ == "__main__":

@@ -18,6 +18,15 @@ constexpr double kShareOfTol = 0.99;
 /// Longer arcs are closed.
 constexpr double kWholeTurn = 2 * std::numbers::pi - 1e-9;
 
+/// Strokes no longer are points in a file.
+constexpr double kLeastExtent = 1e-4;
+
+bool has_extent(const std::vector<glm::dvec2>& points) {
+    return std::any_of(points.begin(), points.end(), [&](const glm::dvec2& p) {
+        return std::max(std::fabs(p.x - points[0].x), std::fabs(p.y - points[0].y)) > kLeastExtent;
+    });
+}
+
 struct Box {
     double low, high;  ///< both ways
 };
@@ -73,6 +82,7 @@ class Page {
         OutlineOptions options;
         options.hide = m_options.hidden != Hidden::draw;
         options.crossings = m_options.crossings;
+        options.keep_hidden = m_options.hidden == Hidden::dash;
         options.tol = kShareOfTol * m_options.tol;
         const Outlines found = outlines(m_frame, m_view, options, parallel_for);
         const std::vector<Outline>& all = found.bodies;
@@ -119,12 +129,14 @@ class Page {
     }
 
     void draw_dot(std::size_t i, const Outline& outline) {
-        if (outline.visible.empty()) return;
-        const glm::dvec2 at = on_page(outline.screen.center);
+        if (!outline.visible.empty()) add_dot(i, on_page(outline.screen.center), outline.viewed.center.z);
+    }
+
+    void add_dot(std::size_t i, const glm::dvec2& at, double depth) {
         if (std::min(at.x, at.y) < m_box.low || std::max(at.x, at.y) > m_box.high) return;
         Stroke stroke = stroke_of(StrokeKind::dot, i);
         stroke.points.assign(1, at);
-        stroke.depth = outline.viewed.center.z;
+        stroke.depth = depth;
         m_drawing.strokes.push_back(std::move(stroke));
     }
 
@@ -160,8 +172,13 @@ class Page {
             points.push_back(on_page(outline.on_screen(angle, m_view)));
             depth += outline.viewed(angle).z;
         }
-        if (arc.length() > kWholeTurn) points.back() = points.front();
-        add(kind, i, points, depth / static_cast<double>(points.size()));
+        depth /= static_cast<double>(points.size());
+        if (arc.length() > kWholeTurn) {
+            // A body that is a point is there nevertheless.
+            if (kind == StrokeKind::visible && !has_extent(points)) return add_dot(i, points[0], depth);
+            points.back() = points.front();
+        }
+        add(kind, i, points, depth);
     }
 
     /// A part of a closed polyline; it may go over its end.
@@ -188,7 +205,7 @@ class Page {
         add(kind, i, {on_page(m_view.to_screen(from)), on_page(m_view.to_screen(to))}, 0.5 * (from.z + to.z));
     }
 
-    /// Adds what of a polyline is on the page.
+    /// Adds what of a polyline is on the page, but nothing of no extent: round caps would make it a dot.
     void add(StrokeKind kind, std::size_t i, const std::vector<glm::dvec2>& points, double depth) {
         Stroke stroke = stroke_of(kind, i);
         stroke.depth = depth;
@@ -196,12 +213,12 @@ class Page {
             glm::dvec2 a = points[k], b = points[k + 1];
             if (!clip(a, b, m_box)) continue;
             if (stroke.points.empty() || stroke.points.back() != a) {
-                if (!stroke.points.empty()) m_drawing.strokes.push_back(stroke);
+                if (has_extent(stroke.points)) m_drawing.strokes.push_back(stroke);
                 stroke.points = {a};
             }
             stroke.points.push_back(b);
         }
-        if (!stroke.points.empty()) m_drawing.strokes.push_back(std::move(stroke));
+        if (has_extent(stroke.points)) m_drawing.strokes.push_back(std::move(stroke));
     }
 
     Stroke stroke_of(StrokeKind kind, std::size_t i) const {

@@ -102,7 +102,8 @@ class Command {
         static const std::map<std::string, Dialect> dialects{{"classic", Dialect::classic},
                                                              {"strict", Dialect::strict}};
         sub->add_option("--dialect", m_settings.source.dialect,
-                        "classic: as the programs of 2003 ran scripts; strict: as the language is documented")
+                        "classic: as the programs of 2003 ran scripts, but abut and touch end in exact "
+                        "contact; strict: as the language is documented")
             ->transform(CLI::CheckedTransformer(dialects))
             ->option_text("classic|strict [classic]");
         sub->add_option("--library", m_settings.source.libraries,

@@ -21,9 +21,11 @@ std::string read_all(std::istream& in, const std::string& name) {
     return text;
 }
 
-std::optional<std::string> read_file(const std::string& path) {
+/// `any`: pipes and devices, too.
+std::optional<std::string> read_file(const std::string& path, bool any) {
     std::error_code error;
-    if (std::filesystem::is_directory(path, error)) return std::nullopt;
+    if (any ? std::filesystem::is_directory(path, error) : !std::filesystem::is_regular_file(path, error))
+        return std::nullopt;
     std::ifstream in(path, std::ios::binary);
     if (!in) return std::nullopt;
     return read_all(in, path);
@@ -38,13 +40,14 @@ Script read_script(const ScriptSource& source) {
     options.libraries = source.libraries;
     options.include = [&](const std::string& name) {
         const auto& libraries = source.libraries;
-        if (std::find(libraries.begin(), libraries.end(), name) != libraries.end()) return read_file(name);
+        if (std::find(libraries.begin(), libraries.end(), name) != libraries.end())
+            return read_file(name, true);
         const std::filesystem::path folder =
             standard ? std::filesystem::path() : std::filesystem::path(source.path).parent_path();
-        return read_file((folder / name).string());
+        return read_file((folder / name).string(), false);
     };
     if (standard) return parse_script(read_all(std::cin, "the standard input"), "stdin", options);
-    const std::optional<std::string> text = read_file(source.path);
+    const std::optional<std::string> text = read_file(source.path, true);
     if (!text) throw Error("cannot read " + source.path);
     return parse_script(*text, source.path, options);
 }

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <charconv>
 #include <cmath>
+#include <cstdlib>
+#include <type_traits>
 
 #include "frame_range.h"
 #include "writers.h"
@@ -8,28 +10,48 @@
 namespace anamorph::command {
 namespace {
 
-/// Four decimals at most, with a point whatever the locale.
-std::string number(double value) {
-    char text[64];
-    const double rounded = std::round(value * 1e4) / 1e4 + 0.0;
-    const auto end = std::to_chars(text, text + sizeof text, rounded).ptr;
-    return {text, end};
-}
-
-std::string color(const glm::dvec3& rgb) {
-    std::string text = "rgb(";
-    for (int k = 0; k < 3; ++k) text.append(k ? "," : "").append(std::to_string(std::lround(rgb[k])));
-    return text + ")";
-}
-
-std::string path_data(const std::vector<glm::dvec2>& points) {
-    const bool closed = points.size() > 3 && points.front() == points.back();
-    std::string data = "M";
-    for (std::size_t k = 0; k + (closed ? 1 : 0) < points.size(); ++k) {
-        if (k > 0) data += k == 1 ? "L" : " ";
-        data += number(points[k].x) + " " + number(points[k].y);
+/// Appends four decimals at most, with a point whatever the locale.
+void add(std::string& text, double value) {
+    constexpr long long kUnits = 10000;
+    const long long units = std::llround(value * kUnits), size = std::llabs(units);
+    char digits[32];
+    char* end = std::to_chars(digits, digits + sizeof digits, size / kUnits).ptr;
+    if (long long rest = size % kUnits; rest > 0) {
+        *end++ = '.';
+        for (long long place = kUnits / 10; rest > 0; rest %= place, place /= 10)
+            *end++ = static_cast<char>('0' + rest / place);
     }
-    return data + (closed ? "Z" : "");
+    if (units < 0) text += '-';
+    text.append(digits, end);
+}
+
+/// Appends texts and numbers.
+template <class... Parts>
+void add(std::string& text, const Parts&... parts) {
+    const auto one = [&](const auto& part) {
+        if constexpr (std::is_same_v<std::decay_t<decltype(part)>, double>)
+            add(text, part);
+        else
+            text += part;
+    };
+    (one(parts), ...);
+}
+
+void add_path(std::string& text, const std::vector<glm::dvec2>& points) {
+    const bool closed = points.size() > 3 && points.front() == points.back();
+    text += " d=\"M";
+    for (std::size_t k = 0; k + (closed ? 1 : 0) < points.size(); ++k) {
+        if (k > 0) text += k == 1 ? 'L' : ' ';
+        add(text, points[k].x);
+        text += ' ';
+        add(text, points[k].y);
+    }
+    text += closed ? "Z\"" : "\"";
+}
+
+void add_color(std::string& text, const char* attribute, const glm::dvec3& rgb) {
+    add(text, attribute, "rgb(", std::to_string(std::lround(rgb.r)), ",", std::to_string(std::lround(rgb.g)),
+        ",", std::to_string(std::lround(rgb.b)), ")\"");
 }
 
 const char* class_of(StrokeKind kind) {
@@ -45,36 +67,41 @@ const char* class_of(StrokeKind kind) {
     }
 }
 
-std::string svg_of(const Stroke& stroke, const Drawing& drawing) {
-    const std::string name = " data-body=\"" + stroke.body + "\"";
-    if (stroke.kind == StrokeKind::dot)
-        return "<circle class=\"dot\"" + name + " cx=\"" + number(stroke.points[0].x) + "\" cy=\"" +
-               number(stroke.points[0].y) + "\" r=\"" + number(drawing.line_width) + "\" fill=\"" +
-               color(stroke.color) + "\" stroke=\"none\"/>\n";
-    const std::string data = " d=\"" + path_data(stroke.points) + "\"";
-    std::string text;
-    if (drawing.halo > 0 && stroke.kind != StrokeKind::hidden)
-        text += "<path class=\"halo\"" + data + " stroke=\"white\" stroke-width=\"" +
-                number(drawing.line_width + 2 * drawing.halo) + "\" stroke-linecap=\"butt\"/>\n";
-    text += std::string("<path class=\"") + class_of(stroke.kind) + "\"" + name + data + " stroke=\"" +
-            color(stroke.color) + "\"";
-    if (stroke.kind == StrokeKind::hidden)
-        text += " stroke-dasharray=\"" + number(3 * drawing.line_width) + " " +
-                number(3 * drawing.line_width) + "\"";
-    return text + "/>\n";
+void add_stroke(std::string& text, const Stroke& stroke, const Drawing& drawing) {
+    if (stroke.kind == StrokeKind::dot) {
+        add(text, "<circle class=\"dot\" data-body=\"", stroke.body, "\" cx=\"", stroke.points[0].x,
+            "\" cy=\"", stroke.points[0].y, "\" r=\"", drawing.line_width);
+        add_color(text, "\" fill=\"", stroke.color);
+        text += " stroke=\"none\"/>\n";
+        return;
+    }
+    if (drawing.halo > 0 && stroke.kind != StrokeKind::hidden) {
+        text += "<path class=\"halo\"";
+        add_path(text, stroke.points);
+        add(text, " stroke=\"white\" stroke-width=\"", drawing.line_width + 2 * drawing.halo,
+            "\" stroke-linecap=\"butt\"/>\n");
+    }
+    add(text, "<path class=\"", class_of(stroke.kind), "\" data-body=\"", stroke.body, "\"");
+    add_path(text, stroke.points);
+    add_color(text, " stroke=\"", stroke.color);
+    const double dash = 3 * drawing.line_width;
+    if (stroke.kind == StrokeKind::hidden) add(text, " stroke-dasharray=\"", dash, " ", dash, "\"");
+    text += "/>\n";
 }
 
 std::string svg_of(const Drawing& drawing) {
-    const std::string size = number(drawing.size);
-    std::string text =
-        "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"" +
-        size + "\" height=\"" + size + "\" viewBox=\"0 0 " + size + " " + size + "\">\n<title>frame " +
-        std::to_string(drawing.frame) +
+    std::string text, size;
+    add(size, drawing.size);
+    add(text,
+        "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"",
+        size, "\" height=\"", size, "\" viewBox=\"0 0 ", size, " ", size, "\">\n<title>frame ",
+        std::to_string(drawing.frame),
         "</title>\n<rect width=\"100%\" height=\"100%\" fill=\"white\"/>\n<g fill=\"none\" "
-        "stroke-linejoin=\"round\" stroke-linecap=\"round\" stroke-width=\"" +
-        number(drawing.line_width) + "\">\n";
-    for (const Stroke& stroke : drawing.strokes) text += svg_of(stroke, drawing);
-    return text + "</g>\n</svg>\n";
+        "stroke-linejoin=\"round\" stroke-linecap=\"round\" stroke-width=\"",
+        drawing.line_width, "\">\n");
+    for (const Stroke& stroke : drawing.strokes) add_stroke(text, stroke, drawing);
+    text += "</g>\n</svg>\n";
+    return text;
 }
 
 class SvgWriter : public DrawingWriter {

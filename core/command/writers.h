@@ -6,24 +6,9 @@
 #include <string>
 
 #include "drawing.h"
+#include "output_file.h"
 
 namespace anamorph::command {
-
-/// What a file, or the standard output as "-", is written by. Throws Error where it cannot be.
-class OutputFile {
-  public:
-    explicit OutputFile(const std::string& name);
-    ~OutputFile();
-    OutputFile(const OutputFile&) = delete;
-    OutputFile& operator=(const OutputFile&) = delete;
-
-    void write(std::string_view text);
-    void close();
-
-  private:
-    struct Impl;
-    std::unique_ptr<Impl> m_impl;
-};
 
 /// Writes drawings one after the other; throws Error where it cannot.
 class DrawingWriter {

@@ -10,14 +10,16 @@
 #include <cstdlib>
 #include <ctime>
 #include <exception>
-#include <fstream>
 #include <numeric>
+#include <optional>
 #include <random>
+#include <sstream>
 #include <stdexcept>
 #include <string_view>
 #include <utility>
 
 #include "bench.h"
+#include "output_file.h"
 
 namespace anamorph::bench {
 namespace {
@@ -116,10 +118,9 @@ void print_targets(const Report& report) {
 
 int run(int argc, char** argv) {
     const Settings settings = parse(argc, argv);
-    std::ofstream csv;
+    std::optional<anamorph::command::OutputFile> csv;
     if (!settings.bounds) {
-        csv.open(settings.csv);
-        if (!csv) throw std::runtime_error("--csv " + settings.csv + ": cannot be written");
+        csv.emplace(settings.csv);  // before the work, which is long
         print_head();
     }
     Report report;
@@ -134,8 +135,10 @@ int run(int argc, char** argv) {
     if (report.rows.empty())
         throw std::invalid_argument("--case " + settings.case_name + " --scheme " + settings.scheme +
                                     ": no such row");
-    write_csv(csv, report);
-    if (!csv.flush()) throw std::runtime_error("--csv " + settings.csv + ": cannot be written");
+    std::ostringstream table;
+    write_csv(table, report);
+    csv->write(table.str());
+    csv->close();
     print_targets(report);
     for (const std::string& failure : report.failures)
         std::fprintf(stderr, "speed_vs_error: %s\n", failure.c_str());

@@ -4,9 +4,11 @@ import math
 import os
 import random
 import re
+import signal
 import struct
 import subprocess
 import tempfile
+import time
 import unittest
 import xml.etree.ElementTree as xml
 import zlib
@@ -21,7 +23,7 @@ def scene(*bodies, extra=""):
     """A script of one frame: bodies are (name, half-axes, center), each a figure."""
     text = ""
     for name, axes, center in bodies:
-        text += "figure f%s 1 %s ellipsoid %s %s %s %s\n" % (name, name, name, *axes)
+        text += "figure f%s 1 %s\nellipsoid %s %s %s %s\n" % (name, name, name, *axes)
         text += "repeat 0 1 moveto f%s %s %s %s %s\n" % (name, name, *center)
     return text + extra + "stop\n"
 
@@ -103,28 +105,53 @@ class Check(Case):
         self.assertRegex(lines[1], r"bad\.n:4:16: error: found \"oops\", expected ")
 
     def test_what_is_an_error_in_strict_is_none_in_classic(self):
-        text = "figure f 1 a ellipsoid a -1 2 3 linear 0 1 moveby f a 1 2 3 stop"
+        text = "figure f 1 a\nellipsoid a -1 2 3\nlinear 0 1 moveby f a 1 2 3\nstop"
         self.assertEqual(self.run_program("check", "-", text=text).returncode, 0)
         result = self.run_program("check", "-", "--dialect=strict", text=text)
         self.assertEqual(result.returncode, 1)
-        self.assertRegex(result.stdout.decode(), r"^stdin:1:\d+: error: ")
+        self.assertRegex(result.stdout.decode(), r"^stdin:2:\d+: error: ")
 
     def test_libraries_and_includes(self):
-        library = self.write("lib.n", "figure f 1 a ellipsoid a 1 2 3\n")
-        text = "linear 0 1 moveby f a 1 2 3 stop"
+        library = self.write("lib.n", "figure f 1 a\nellipsoid a 1 2 3\n")
+        text = "linear 0 1 moveby f a 1 2 3\nstop"
         self.assertEqual(self.run_program("check", "-", text=text).returncode, 1)
         self.assertEqual(self.output("check", "-", "--library", library, text=text), b"")
         # An include is looked for beside the script, wherever the program runs.
-        self.assertEqual(self.output("check", self.write("inc.n", "include lib.n " + text)), b"")
-        result = self.run_program("check", self.write("none.n", "include nowhere.n stop"))
+        self.assertEqual(self.output("check", self.write("inc.n", "include lib.n\n" + text)), b"")
+        result = self.run_program("check", self.write("none.n", "include nowhere.n\nstop"))
         self.assertEqual(result.returncode, 1)
         self.assertIn(b"nowhere.n", result.stdout)
 
 
+    def test_what_the_originals_pass_over_is_a_warning(self):
+        text = "figure f 1 a\nellipsoid a 1 2 3 4\nlinear 0 1 moveby f a 1 2 3 linear 0 1 nothing\nstop"
+        result = self.run_program("check", "-", text=text)
+        self.assertEqual(result.returncode, 0)
+        lines = result.stdout.decode().splitlines()
+        self.assertEqual([line.split(" ")[:2] for line in lines],
+                         [["stdin:2:19:", "warning:"], ["stdin:3:29:", "warning:"]])
+
+    def test_files_that_are_no_scripts_stay_unseen(self):
+        secret = self.write("secret", "key=hunter2\n")
+        for options in ([self.write("s.n", "include secret\nstop")], ["-", "--library", secret]):
+            result = self.run_program("check", *options, text="stop")
+            self.assertEqual(result.returncode, 1)
+            self.assertIn(b"it is not a script", result.stdout)
+            self.assertNotIn(b"hunter2", result.stdout + result.stderr)
+        # Nothing waits for a pipe that a script names.
+        os.mkfifo(self.path("pipe"))
+        result = self.run_program("check", self.write("p.n", "include pipe\nstop"))
+        self.assertIn(b"there is no such file", result.stdout)
+
+    def test_the_help_says_where_classic_is_not_the_original(self):
+        text = " ".join(self.output("frames", "--help").decode().split())
+        self.assertRegex(text, "abut and touch end in exact contact")
+
+
 class Frames(Case):
     # Two bodies joined at (0, 40, 0) of the first and (0, -20, 0) of the second, which so is at y = 60.
-    SCRIPT = ("figure f 2 a b ellipsoid a 10 40 20 ellipsoid b 5 20 5 joint j a 0 40 0 b 0 -20 0\n"
-              "linear 0 2 moveby f a 100 10 -3 repeat 1 2 colour b 10 20 30 stop")
+    SCRIPT = ("figure f 2 a b\nellipsoid a 10 40 20\nellipsoid b 5 20 5\njoint j a 0 40 0 b 0 -20 0\n"
+              "linear 0 2 moveby f a 100 10 -3\nrepeat 1 2 colour b 10 20 30\nstop")
 
     def test_the_originals_format(self):
         lines = self.output("frames", "-", text=self.SCRIPT).decode().splitlines()
@@ -150,7 +177,7 @@ class Frames(Case):
         self.assertIn("frame=3: allowed are 0 to 2", self.error("frames", path, "--frame", "3"))
 
     def test_what_scripts_print_goes_to_the_standard_error(self):
-        result = self.run_program("frames", "-", text="variables 1 v repeat 0 1 set v 7 repeat 0 2 print v stop")
+        result = self.run_program("frames", "-", text="variables 1 v\nrepeat 0 1 set v 7\nrepeat 0 2 print v\nstop")
         self.assertEqual(result.returncode, 0)
         self.assertEqual(len(result.stderr.splitlines()), 2)
         self.assertIn(b"7", result.stderr.splitlines()[0])
@@ -232,14 +259,33 @@ class Pictures(Case):
         bone = scene(("bone", (10, 100, 10), (500, 300, 500)))
         [(name, points, _)] = self.paths(bone, "--sticks=axes", "--size=1000", kind="stick")
         self.assertEqual((name, sorted(points)), ("bone", [(500, 600), (500, 800)]))
-        limbs = ("figure f 3 a b c ellipsoid a 1 9 1 ellipsoid b 1 9 1 ellipsoid c 1 9 1\n"
-                 "joint j a 0 100 0 b 0 -100 0 joint k b 0 100 0 c 0 -100 0\n"
-                 "repeat 0 1 moveto f b 500 500 500 stop")
+        limbs = ("figure f 3 a b c\nellipsoid a 1 9 1\nellipsoid b 1 9 1\nellipsoid c 1 9 1\n"
+                 "joint j a 0 100 0 b 0 -100 0\njoint k b 0 100 0 c 0 -100 0\n"
+                 "repeat 0 1 moveto f b 500 500 500\nstop")
         paths = self.paths(limbs, "--sticks=joints", "--size=1000", kind="stick")
         # a and c from their centres to their joints, b from joint to joint.
         self.assertEqual({name: sorted(points) for name, points, _ in paths},
                          {"a": [(500, 600), (500, 700)], "b": [(500, 400), (500, 600)],
                           "c": [(500, 300), (500, 400)]})
+
+    def test_nothing_is_drawn_as_a_stroke_without_extent(self):
+        # A joint in the middle of its body, a body that is a point, and bodies by chance.
+        still = ("figure f 2 a b\nellipsoid a 9 9 9\nellipsoid b 9 9 9\njoint j a 0 0 0 b 0 30 0\n"
+                 "repeat 0 1 moveto f a 500 500 500\n")
+        self.assertEqual([name for name, _, _ in self.paths(still + "stop", "--sticks=joints", kind="stick")], ["b"])
+        root = self.svg(scene(("point", (0, 0, 0), (500, 500, 500))))
+        self.assertEqual([e.get("data-body") for e in root.iter(SVG + "circle")], ["point"])
+        self.assertEqual(list(root.iter(SVG + "path")), [])
+        chance = random.Random(20261)
+        bodies = [("b%d" % k, [chance.randint(0, 120) for _ in "xyz"], [chance.randint(200, 800) for _ in "xyz"])
+                  for k in range(60)]
+        for options in ([], ["--hidden=dash"], ["--crossings"], ["--perspective=900"]):
+            count = 0
+            for kind in ("visible", "hidden"):
+                for name, points, _ in self.paths(scene(*bodies), *options, kind=kind):
+                    count += 1
+                    self.assertGreater(max(math.dist(points[0], p) for p in points), 0, (name, options))
+            self.assertGreater(count, 60)
 
     def test_level_of_detail(self):
         crowd = scene(("dot", (1, 1, 1), (100, 100, 100)), ("line", (1, 50, 1), (300, 500, 100)),
@@ -275,7 +321,7 @@ class Pictures(Case):
         self.assertIn("need the name of a file", self.error("svg", WALKER, "--frame=all"))
 
     def test_the_first_frame_shown_is_the_default(self):
-        text = "view 2 4 " + NEAR_AND_FAR.replace("stop", "linear 0 4 moveby fnear near 1 1 1 stop")
+        text = "view 2 4\n" + NEAR_AND_FAR.replace("stop", "linear 0 4 moveby fnear near 1 1 1\nstop")
         self.assertIn("frame 3", self.svg(text).find(SVG + "title").text)
 
     def test_the_same_for_any_number_of_threads(self):
@@ -303,6 +349,53 @@ class Pictures(Case):
         data = self.read("w.png")
         self.assertEqual(data[:8], b"\x89PNG\r\n\x1a\n")
         self.assertEqual(struct.unpack(">II", data[16:24]), (100, 100))
+
+
+class WholeFiles(Case):
+    """A file is there in full, or as it was before."""
+    FAILS_LATE = "figure f 1 a\nellipsoid a 9 9 9\nlinear 0 9 moveby f a 1 0 0\nrepeat 7 8 grofig f a 0 1 1\nstop"
+    ENDLESS = "figure f 1 a\nellipsoid a 9 9 9\nlinear 0 900000000 moveby f a 1 0 0\nstop"
+    COMMANDS = ("frames", "text") + (("pdf",) if CAIRO else ())
+
+    def test_a_script_that_fails_late_leaves_the_old_file(self):
+        for command in self.COMMANDS:
+            self.write("out", "old")
+            self.assertIn("a factor is zero",
+                          self.error(command, "-", "-o", self.path("out"), "--frame=all", text=self.FAILS_LATE))
+            self.assertEqual(self.read("out"), b"old", command)
+            self.assertEqual(os.listdir(self.folder), ["out"], command)
+            os.remove(self.path("out"))
+            self.error(command, "-", "-o", self.path("out"), "--frame=all", text=self.FAILS_LATE)
+            self.assertEqual(os.listdir(self.folder), [], command)
+
+    def test_interrupted_it_leaves_the_old_file_and_nothing_else(self):
+        script = self.write("endless.n", self.ENDLESS)
+        for command in self.COMMANDS:
+            for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
+                self.write("out", "old")
+                process = subprocess.Popen([PROGRAM, command, script, "-o", self.path("out"), "--frame=all"],
+                                           stderr=subprocess.DEVNULL)
+                # It is at work when something is in the folder that grows.
+                deadline = time.monotonic() + 60
+                while time.monotonic() < deadline and all(
+                        os.path.getsize(self.path(name)) == 0 for name in os.listdir(self.folder)
+                        if name not in ("out", "endless.n")):
+                    self.assertIsNone(process.poll())
+                    time.sleep(0.01)
+                process.send_signal(number)
+                self.assertEqual(process.wait(60), -number)
+                self.assertEqual(self.read("out"), b"old", (command, number))
+                self.assertEqual(sorted(os.listdir(self.folder)), ["endless.n", "out"], (command, number))
+
+    def test_what_is_replaced_keeps_its_rights_and_links_lead_where_they_did(self):
+        self.write("real", "old")
+        os.chmod(self.path("real"), 0o640)
+        os.symlink("real", self.path("link"))
+        self.output("frames", WALKER, "-o", self.path("link"))
+        self.assertTrue(os.path.islink(self.path("link")))
+        self.assertEqual(self.read("real"), self.output("frames", WALKER))
+        self.assertEqual(os.stat(self.path("real")).st_mode & 0o777, 0o640)
+        self.assertEqual(sorted(os.listdir(self.folder)), ["link", "real"])
 
 
 class Text(Case):
@@ -375,9 +468,9 @@ class BadInput(Case):
 
     def test_scripts(self):
         self.assertIn("shows no frame", self.error("text", "-", "--frame=all", text="stop"))
-        self.assertIn("stdin:1:1", self.error("frames", "-", text="nonsense stop"))
-        self.assertIn("divi", self.error("frames", "-", text="variables 1 v repeat 0 1 divide v 1 0 stop"))
-        line = "subroutine s repeat 0 1 call s endsub s call 0 1 s stop"
+        self.assertIn("stdin:1:1", self.error("frames", "-", text="nonsense\nstop"))
+        self.assertIn("divi", self.error("frames", "-", text="variables 1 v\nrepeat 0 1 divide v 1 0\nstop"))
+        line = "subroutine s\nrepeat 0 1 call s\nendsub s\ncall 0 1 s\nstop"
         self.assertIn("call each other", self.error("frames", "-", text=line))
         self.run_program("svg", "-", text=scene(("z", (0, 0, 0), (500, 500, 500))))
         self.run_program("svg", "-", text=scene(("n", (1000000, "0.000001", 1), (500, 500, 500))))

@@ -158,5 +158,79 @@ TEST(FigureOutlineCrossing, HoldsItsTolerance) {
     EXPECT_GT(hidden, vertices / 10);
 }
 
+std::size_t visible_parts(const std::vector<CrossingCurve>& curves) {
+    std::size_t count = 0;
+    for (const CrossingCurve& curve : curves) count += curve.visible.size();
+    return count;
+}
+
+// Two discs a twentieth of a pixel thick: they meet in curves half as far apart as chords may be off. What is
+// seen of them does not depend on the tolerance.
+TEST(FigureOutlineCrossing, ThinDiscsAreNotDashed) {
+    const auto turned = [](double angle, const glm::dvec3& axis) {
+        return glm::dmat3(glm::rotate(glm::dmat4(1), angle, axis));
+    };
+    const std::vector<Ellipsoid> discs{{{0, 0, 0}, {400, 400, 0.05}, turned(0.9, {0, 1, 0})},
+                                       {{0, 0, 0}, {400, 400, 0.05}, turned(1.1, {1, 0, 0})}};
+    View view;
+    view.scale = 0.5;
+    const Outlines coarse = outlines(discs, view, with_crossings(0.1)),
+                   fine = outlines(discs, view, with_crossings(0.001));
+    EXPECT_EQ(visible_parts(coarse.crossings), visible_parts(fine.crossings));
+    EXPECT_GE(visible_parts(coarse.crossings), 1u);
+    EXPECT_LE(visible_parts(coarse.crossings), 4u);
+}
+
+// A shell nearer to a sphere than chords may be off hides all of what crosses the sphere, or nothing.
+TEST(FigureOutlineCrossing, CloseShellsDoNotDash) {
+    for (const double shell : {-0.02, 0.02}) {
+        const std::vector<Ellipsoid> bodies{{{0, 0, 0}, glm::dvec3(300)},
+                                            {{0, 0, 0}, glm::dvec3(300 + shell)},
+                                            {{150, 20, -80}, {200, 300, 250}}};
+        const Outlines found = outlines(bodies, View{}, with_crossings(0.1));
+        EXPECT_EQ(found.crossings.size(), 2u);
+        for (const CrossingCurve& curve : found.crossings) {
+            const bool outer = curve.first == (shell > 0 ? 1 : 0);
+            EXPECT_LE(curve.visible.size(), 1u);
+            EXPECT_EQ(curve.visible.empty(), !outer) << curve.first;
+        }
+    }
+}
+
+// Of curves of which nothing is seen none is kept where that is asked for; the others are the same to the
+// bit.
+TEST(FigureOutlineCrossing, HiddenCurvesNeedNotBeKept) {
+    int kept = 0, all = 0;
+    for (std::uint64_t seed = 1; seed <= 30; ++seed) {
+        SCOPED_TRACE(::testing::Message() << "seed " << seed);
+        test::SceneMaker random(seed);
+        std::vector<Ellipsoid> bodies;
+        for (int k = 0; k < 40; ++k) bodies.push_back(random.body(100, 20, 60));
+        const View view = random.view(seed % 2 == 0);
+        OutlineOptions options = with_crossings(0.5);
+        const Outlines with = outlines(bodies, view, options);
+        options.keep_hidden = false;
+        const Outlines without = outlines(bodies, view, options);
+        std::size_t k = 0;
+        for (const CrossingCurve& curve : with.crossings) {
+            ++all;
+            if (curve.visible.empty()) continue;
+            ++kept;
+            ASSERT_LT(k, without.crossings.size());
+            EXPECT_EQ(curve.points, without.crossings[k].points);
+            EXPECT_EQ(curve.visible, without.crossings[k].visible);
+            ++k;
+        }
+        EXPECT_EQ(k, without.crossings.size());
+    }
+    EXPECT_GT(kept, 500);
+    EXPECT_GT(all, 2 * kept);
+}
+
+TEST(FigureOutlineCrossing, TolerancesThatAskForTooMuchAreRefused) {
+    const std::vector<Ellipsoid> bodies{{{-3, 0, 0}, glm::dvec3(5)}, {{3, 0, 0}, glm::dvec3(5)}};
+    EXPECT_THROW(outlines(bodies, View{}, with_crossings(1e-13)), Error);
+}
+
 }  // namespace
 }  // namespace anamorph

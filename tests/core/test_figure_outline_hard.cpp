@@ -157,6 +157,26 @@ TEST(FigureOutlineHard, BodiesAcrossTheEyePlaneAndAroundTheEye) {
     EXPECT_GT(behind, 30);
 }
 
+// Between two arcs that one body hides, where one of them goes over the turn, nothing is left to be drawn.
+TEST(FigureOutlineHard, NoArcsWithoutLength) {
+    int arcs = 0, over_the_turn = 0;
+    for (std::uint64_t seed = 1; seed <= 400; ++seed) {
+        SCOPED_TRACE(::testing::Message() << "seed " << seed);
+        test::SceneMaker random(seed);
+        const test::Scene scene =
+            random.scene(seed % 2 ? test::Family::large : test::Family::small, seed % 4 < 2);
+        for (const Outline& outline : outlines(scene.bodies, scene.view).bodies)
+            for (const auto* list : {&outline.visible, &outline.hidden})
+                for (const Arc& arc : *list) {
+                    ++arcs;
+                    over_the_turn += arc.end > kTurn;
+                    EXPECT_GT(arc.length(), 1e-12);
+                }
+    }
+    EXPECT_GT(arcs, 1000);
+    EXPECT_GT(over_the_turn, 100);
+}
+
 TEST(FigureOutlineHard, RootsHalfATurnAround) {
     // Crossings at every angle, 180 degrees among them, where tan(t / 2) is infinite.
     for (int n = 0; n < 72; ++n) {

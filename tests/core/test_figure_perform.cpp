@@ -19,7 +19,7 @@ using namespace figure_cases;
 using testing::ElementsAre;
 using testing::HasSubstr;
 
-const std::string kOne = "figure f 1 a  ellipsoid a 5 5 5\n";
+const std::string kOne = "figure f 1 a\nellipsoid a 5 5 5\n";
 
 double x_of(const FigureFrame& frame) {
     return frame.bodies.at(0).shape.center.x;
@@ -57,21 +57,21 @@ TEST(FigureShares, SumToOneAndLeaveNothing) {
 
 TEST(FigureTime, FramesOfASubroutineCountFromItsSmallest) {
     // The subroutine's zero is 10; called at 2, its first frame is 3 and the call ends it after 4.
-    EXPECT_THAT(places(kOne + "call 2 4 s  repeat 0 1 moveto f a 100 0 0\n"
-                              "subroutine s  linear 10 14 moveby f world 8 0 0  endsub s  stop"),
+    EXPECT_THAT(places(kOne + "call 2 4 s\nrepeat 0 1 moveto f a 100 0 0\n"
+                              "subroutine s\nlinear 10 14 moveby f world 8 0 0\nendsub s\nstop"),
                 ElementsAre(100, 100, 102, 104));
 }
 
 TEST(FigureTime, CallAsAnActionIsTheFirstFrameEachTime) {
     EXPECT_THAT(
-        places(kOne + "repeat 0 3 call s\nsubroutine s  accel 5 9 moveby f world 10 0 0  endsub s  stop"),
+        places(kOne + "repeat 0 3 call s\nsubroutine s\naccel 5 9 moveby f world 10 0 0\nendsub s\nstop"),
         ElementsAre(1, 2, 3));
 }
 
 TEST(FigureTime, SpeedInterpolatesAndSkips) {
-    EXPECT_THAT(places(kOne + "speed 2  linear 0 2 moveby f world 8 0 0  stop"), ElementsAre(2, 4, 6, 8));
+    EXPECT_THAT(places(kOne + "speed 2\nlinear 0 2 moveby f world 8 0 0\nstop"), ElementsAre(2, 4, 6, 8));
     // A speed below zero shows every third frame.
-    Performance p = perform(kOne + "speed -3  linear 0 10 moveby f world 10 0 0  stop");
+    Performance p = perform(kOne + "speed -3\nlinear 0 10 moveby f world 10 0 0\nstop");
     EXPECT_EQ(p.first_frame(), 3);
     EXPECT_EQ(p.last_frame(), 9);
     EXPECT_EQ(p.frame_count(), 3);
@@ -82,11 +82,11 @@ TEST(FigureTime, SpeedInterpolatesAndSkips) {
 }
 
 TEST(FigureTime, ViewShowsAPart) {
-    Performance p = perform(kOne + "view 3 5  linear 0 10 moveby f world 10 0 0  stop");
+    Performance p = perform(kOne + "view 3 5\nlinear 0 10 moveby f world 10 0 0\nstop");
     EXPECT_EQ(p.first_frame(), 4);
     EXPECT_EQ(p.last_frame(), 5);
     EXPECT_EQ(all_frames(p).size(), 2u);
-    Performance none = perform(kOne + "view 50 60  linear 0 10 moveby f world 10 0 0  stop");
+    Performance none = perform(kOne + "view 50 60\nlinear 0 10 moveby f world 10 0 0\nstop");
     EXPECT_EQ(none.frame_count(), 0);
     EXPECT_TRUE(all_frames(none).empty());
 }
@@ -94,15 +94,15 @@ TEST(FigureTime, ViewShowsAPart) {
 // Frame numbers may be variables: 4 is known only after frame 1 has set it.
 TEST(FigureTime, VariableFrames) {
     for (const Dialect dialect : {Dialect::classic, Dialect::strict})
-        EXPECT_THAT(places("variables 2 from to " + kOne +
-                               "repeat 0 1 set from 2  repeat 0 1 add to from from\n"
-                               "linear from to moveby f world 8 0 0  stop",
+        EXPECT_THAT(places("variables 2 from to\n" + kOne +
+                               "repeat 0 1 set from 2\nrepeat 0 1 add to from from\n"
+                               "linear from to moveby f world 8 0 0\nstop",
                            dialect),
                     ElementsAre(0, 0, 4, 8));
 }
 
 TEST(FigureTime, NothingToDoIsNoFrame) {
-    Performance p = perform(kOne + "linear 9 3 moveby f world 1 0 0  stop");
+    Performance p = perform(kOne + "linear 9 3 moveby f world 1 0 0\nstop");
     EXPECT_EQ(p.frame_count(), 0);
     EXPECT_EQ(p.frame(0).bodies.size(), 1u);  // the figures at rest are there
     EXPECT_THAT(error_of([&] { p.frame(1); }), HasSubstr("frame=1: allowed are 0 to 0"));
@@ -112,21 +112,21 @@ TEST(FigureTime, NothingToDoIsNoFrame) {
 
 TEST(FigureVariables, HoldNames) {
     Performance p = perform(
-        "figure f 2 a b  ellipsoid a 10 40 20  ellipsoid b 10 40 20  joint j a 0 40 0 b 0 -40 0\n"
+        "figure f 2 a b\nellipsoid a 10 40 20\nellipsoid b 10 40 20\njoint j a 0 40 0 b 0 -40 0\n"
         "variables 5 who part at way does\n"
-        "repeat 0 1 set who f  repeat 0 1 set part b  repeat 0 1 set at j  repeat 0 1 set way x\n"
-        "repeat 0 1 set does s  repeat 0 1 bendby part at world 90 way  call 1 2 does\n"
-        "subroutine s repeat 0 1 moveto who part 1 2 3  endsub s stop",
+        "repeat 0 1 set who f\nrepeat 0 1 set part b\nrepeat 0 1 set at j\nrepeat 0 1 set way x\n"
+        "repeat 0 1 set does s\nrepeat 0 1 bendby part at world 90 way\ncall 1 2 does\n"
+        "subroutine s\nrepeat 0 1 moveto who part 1 2 3\nendsub s\nstop",
         Dialect::strict);
     expect_near(body_named(p.frame(1), "b").shape.center, {0, 40, 40}, 1e-12);
     expect_near(body_named(p.frame(2), "b").shape.center, {1, 2, 3}, 1e-12);
     // Strict: an axis is no joint.
     EXPECT_THAT(error_of([] {
-                    perform(kOne + "variables 1 v  repeat 0 1 set v x\n  repeat 0 1 bendby a v a 1 x stop",
+                    perform(kOne + "variables 1 v\nrepeat 0 1 set v x\n  repeat 0 1 bendby a v a 1 x\nstop",
                             Dialect::strict)
                         .frame(1);
                 }),
-                HasSubstr("own.n:3:14: the variable v holds an axis, needed is a joint"));
+                HasSubstr("own.n:5:14: the variable v holds an axis, needed is a joint"));
 }
 
 TEST(FigureVariables, Calculate) {
@@ -134,13 +134,13 @@ TEST(FigureVariables, Calculate) {
     PerformanceOptions options;
     options.message = [&](const std::string& line) { lines.push_back(line); };
     Performance p(
-        program_of("variables 3 p q r " + kOne +
-                   "repeat 0 1 print p  repeat 0 1 set p 8  repeat 0 1 set q -3\n"
-                   "repeat 0 1 add r p q  repeat 0 1 print r  repeat 0 1 subtract r p q  repeat 0 1 print r\n"
-                   "repeat 0 1 multiply r p q  repeat 0 1 print r  repeat 0 1 divide r q p  "
+        program_of("variables 3 p q r\n" + kOne +
+                   "repeat 0 1 print p\nrepeat 0 1 set p 8\nrepeat 0 1 set q -3\n"
+                   "repeat 0 1 add r p q\nrepeat 0 1 print r\nrepeat 0 1 subtract r p q\nrepeat 0 1 print r\n"
+                   "repeat 0 1 multiply r p q\nrepeat 0 1 print r\nrepeat 0 1 divide r q p\n"
                    "repeat 0 1 print r\n"
-                   "repeat 0 1 invert p  repeat 0 1 print p  repeat 0 1 negate p  repeat 0 1 print p\n"
-                   "repeat 0 1 set p 0  repeat 0 1 invert p  repeat 1 3 print p stop"),
+                   "repeat 0 1 invert p\nrepeat 0 1 print p\nrepeat 0 1 negate p\nrepeat 0 1 print p\n"
+                   "repeat 0 1 set p 0\nrepeat 0 1 invert p\nrepeat 1 3 print p\nstop"),
         options);
     p.frame(3);
     const std::vector<std::string> said = lines;
@@ -162,9 +162,9 @@ TEST(FigureVariables, ReadPlaces) {
     const auto values = [&](const std::string& action) {
         seen.clear();
         Performance p(
-            program_of("variables 3 p q r figure f 2 a b  ellipsoid a 10 40 20  ellipsoid b 1 2 3\n"
-                       "joint j a 0 40 0 b 0 -40 0  repeat 0 1 spinby f a world 90 x repeat 0 1 " +
-                       action + " p q r  repeat 0 1 print p  repeat 0 1 print q  repeat 0 1 print r stop"),
+            program_of("variables 3 p q r\nfigure f 2 a b\nellipsoid a 10 40 20\nellipsoid b 1 2 3\n"
+                       "joint j a 0 40 0 b 0 -40 0\nrepeat 0 1 spinby f a world 90 x\nrepeat 0 1 " +
+                       action + " p q r\nrepeat 0 1 print p\nrepeat 0 1 print q\nrepeat 0 1 print r\nstop"),
             options);
         p.frame(1);
         return glm::dvec3(seen.at(0), seen.at(1), seen.at(2));
@@ -191,13 +191,13 @@ void expect_same(const FigureFrame& a, const FigureFrame& b) {
 }
 
 const std::string kDance =
-    "figure f 3 a b c  ellipsoid a 10 40 20  ellipsoid b 10 40 20  ellipsoid c 7 9 3\n"
-    "joint j a 0 40 0 b 0 -40 0  joint k b 3 1 4 c 0 0 0  figure g 1 d  ellipsoid d 5 5 5\n"
-    "linear 0 300 moveby f world 500 1 2  call 0 40 swing  call 60 100 swing  call 110 260 swing\n"
-    "repeat 40 41 attach b l d 1 2 3  repeat 130 131 detach d l h  linear 100 101 colour c 1 2 3\n"
+    "figure f 3 a b c\nellipsoid a 10 40 20\nellipsoid b 10 40 20\nellipsoid c 7 9 3\n"
+    "joint j a 0 40 0 b 0 -40 0\njoint k b 3 1 4 c 0 0 0\nfigure g 1 d\nellipsoid d 5 5 5\n"
+    "linear 0 300 moveby f world 500 1 2\ncall 0 40 swing\ncall 60 100 swing\ncall 110 260 swing\n"
+    "repeat 40 41 attach b l d 1 2 3\nrepeat 130 131 detach d l h\nlinear 100 101 colour c 1 2 3\n"
     "linear 400 500 moveto g d 9 9 9\n"
-    "subroutine swing  quadratic 0 20 flex b j 100  cubic 20 40 flex b j -110  linear 7 30 rotate c k 77\n"
-    "linear 3 150 spinby f b world 200 y  endsub swing  stop";
+    "subroutine swing\nquadratic 0 20 flex b j 100\ncubic 20 40 flex b j -110\nlinear 7 30 rotate c k 77\n"
+    "linear 3 150 spinby f b world 200 y\nendsub swing\nstop";
 
 TEST(FigureFrames, AreTheSameInAnyOrder) {
     Performance forward = perform(kDance);
@@ -224,7 +224,7 @@ TEST(FigureFrames, AreTheSameInAnyOrder) {
 // A million frames, one at a time, forwards, and then a part of them backwards.
 TEST(FigureFrames, AMillionOneAtATime) {
     constexpr int kFrames = 1000000;
-    Performance p = perform(kOne + "linear 0 1000000 moveby f world 1000 0 0 stop");
+    Performance p = perform(kOne + "linear 0 1000000 moveby f world 1000 0 0\nstop");
     ASSERT_EQ(p.last_frame(), kFrames);
     double worst = 0;
     for (int f = 1; f <= kFrames; ++f) worst = std::max(worst, std::abs(x_of(p.frame(f)) - f * 1e-3));
@@ -236,7 +236,7 @@ TEST(FigureFrames, AMillionOneAtATime) {
 // What lies between two movements costs nothing.
 TEST(FigureFrames, FarApart) {
     Performance p =
-        perform(kOne + "repeat 0 1 moveto f a 1 0 0  repeat 900000000 900000001 moveto f a 2 0 0 stop");
+        perform(kOne + "repeat 0 1 moveto f a 1 0 0\nrepeat 900000000 900000001 moveto f a 2 0 0\nstop");
     EXPECT_EQ(x_of(p.frame(900000001)), 2);
     EXPECT_EQ(x_of(p.frame(450000000)), 1);
 }
@@ -248,7 +248,7 @@ TEST(FigureFrames, TenThousandEllipsoids) {
     for (int i = 0; i < 10000; ++i) script += "\nellipsoid" + name(i) + " 1 2 1";
     for (int i = 1; i < 10000; ++i)
         script += "\njoint j" + std::to_string(i) + name(i - 1) + " 0 2 0" + name(i) + " 0 -2 0";
-    Performance p = perform(script + "\nlinear 0 2 bendby e5000 j5000 world 180 x stop");
+    Performance p = perform(script + "\nlinear 0 2 bendby e5000 j5000 world 180 x\nstop");
     const FigureFrame frame = p.frame(2);
     ASSERT_EQ(frame.bodies.size(), 10000u);
     // Folded back at y = 4 * 4999 + 2.
@@ -260,29 +260,29 @@ TEST(FigureFrames, TenThousandEllipsoids) {
 TEST(FigureErrors, NameTheLine) {
     const auto error = [](const std::string& script, Dialect dialect = Dialect::classic) {
         return error_of([&] {
-            Performance p = perform(kOne + "variables 2 v w\n" + script + " stop", dialect);
+            Performance p = perform(kOne + "variables 2 v w\n" + script + "\nstop", dialect);
             all_frames(p);
         });
     };
     EXPECT_THAT(error("repeat 0 1 divide v 1 0"),
-                HasSubstr("own.n:3:12: divide in frame 1: a division by zero"));
+                HasSubstr("own.n:4:12: divide in frame 1: a division by zero"));
     EXPECT_THAT(error("repeat 0 1 grofig f a 1 0 1"),
-                HasSubstr("own.n:3:12: grofig in frame 1: a factor is zero"));
+                HasSubstr("own.n:4:12: grofig in frame 1: a factor is zero"));
     EXPECT_THAT(error("repeat 0 1 moveby f v 1 0 0"), HasSubstr("holds -1, which is not an ellipsoid"));
     EXPECT_THAT(error("repeat 0 1 moveby f a v 0 0", Dialect::strict), HasSubstr("used before it is set"));
     EXPECT_THAT(error("repeat 0 99 multiply v v v\nrepeat 0 1 set v 1000\nrepeat 1 9999 multiply v v 1000"),
                 HasSubstr("the variable v overflows"));
     EXPECT_THAT(error("repeat 0 2000 grofig f a 1000 1 1"),
-                HasSubstr("own.n:3:15: grofig in frame 103: the ellipsoid a is out of all bounds"));
+                HasSubstr("own.n:4:15: grofig in frame 103: the ellipsoid a is out of all bounds"));
     EXPECT_THAT(error("repeat 0 1 detach a k h\nrepeat 1 2 attach a k a 0 0 0"),
-                HasSubstr("own.n:3:12: detach in frame 1: there is no joint k at this moment"));
+                HasSubstr("own.n:4:12: detach in frame 1: there is no joint k at this moment"));
     EXPECT_THAT(error("repeat 1 2 attach a k a 0 0 0\nrepeat 2 3 attach a k a 0 0 0"),
-                HasSubstr("own.n:4:12: attach in frame 2: the joint k is in use"));
+                HasSubstr("own.n:5:12: attach in frame 2: the joint k is in use"));
     EXPECT_THAT(error("repeat 1 2 attach a k a 0 0 0", Dialect::strict), HasSubstr("closes a ring"));
 }
 
 TEST(FigureErrors, AFrameThatFailsLeavesTheOthers) {
-    Performance p = perform(kOne + "linear 0 10 moveby f world 10 0 0  repeat 5 6 grofig f a 0 1 1 stop");
+    Performance p = perform(kOne + "linear 0 10 moveby f world 10 0 0\nrepeat 5 6 grofig f a 0 1 1\nstop");
     EXPECT_NEAR(x_of(p.frame(5)), 5, 1e-12);
     EXPECT_THAT(error_of([&] { p.frame(8); }), HasSubstr("frame 6: a factor is zero"));
     EXPECT_NEAR(x_of(p.frame(4)), 4, 1e-12);
@@ -291,24 +291,32 @@ TEST(FigureErrors, AFrameThatFailsLeavesTheOthers) {
 
 TEST(FigureErrors, SubroutinesThatCallThemselves) {
     const std::string once =
-        kOne + "call 0 5 s  subroutine s  call 0 5 s  repeat 0 1 moveby f a 1 0 0 endsub s stop";
+        kOne + "call 0 5 s\nsubroutine s\ncall 0 5 s\nrepeat 0 1 moveby f a 1 0 0\nendsub s\nstop";
     EXPECT_THAT(error_of([&] { perform(once).frame(1); }), HasSubstr("call each other without end"));
     // Twice each time: nothing deep, but very many.
-    std::string many = kOne + "call 0 5 s0 ";
+    std::string many = kOne + "call 0 5 s0\n";
     for (int i = 0; i < 60; ++i) {
         const std::string s = numbered("s", i), next = numbered("s", i + 1);
-        many += "subroutine " + s + " call 0 5 " + next + " call 0 5 " + next + " endsub " + s + "\n";
+        many += "subroutine " + s + "\ncall 0 5 " + next + "\ncall 0 5 " + next + "\nendsub " + s + "\n";
     }
-    many += "subroutine s60 repeat 0 1 moveby f a 1 0 0 endsub s60 stop";
-    EXPECT_THAT(error_of([&] { perform(many).frame(1); }), HasSubstr("call each other without end"));
+    many += "subroutine s60\nrepeat 0 1 moveby f a 1 0 0\nendsub s60\nstop";
+    EXPECT_THAT(error_of([&] { perform(many).frame(1); }), HasSubstr("allowed are 10000 calls in a frame"));
+    // One below the other, deep: no ring, and said to be none.
+    std::string deep = kOne + "call 0 1 s0\n";
+    for (int i = 0; i < 1000; ++i)
+        deep += "subroutine " + numbered("s", i) + "\ncall 0 1 " + numbered("s", i + 1) + "\nendsub " +
+                numbered("s", i) + "\n";
+    deep += "subroutine s1000\nrepeat 0 1 moveby f a 1 0 0\nendsub s1000\nstop";
+    EXPECT_THAT(error_of([&] { perform(deep).frame(1); }),
+                HasSubstr("allowed are 200 subroutines that call each the next"));
     // Later each time, it comes to an end: moves in frames 1, 3 and 5.
     EXPECT_THAT(
-        places(kOne + "call 0 6 s  subroutine s  repeat 0 1 moveby f a 1 0 0  call 2 6 s  endsub s stop"),
+        places(kOne + "call 0 6 s\nsubroutine s\nrepeat 0 1 moveby f a 1 0 0\ncall 2 6 s\nendsub s\nstop"),
         ElementsAre(1, 1, 2, 2, 3, 3));
 }
 
 TEST(FigureErrors, ScriptsThatNeverEnd) {
-    Performance p = perform(kOne + "variables 1 v  repeat 0 1 set v 2  repeat 0 v add v v 1 stop");
+    Performance p = perform(kOne + "variables 1 v\nrepeat 0 1 set v 2\nrepeat 0 v add v v 1\nstop");
     EXPECT_EQ(p.frame(500).number, 500);  // as far as is asked
     EXPECT_THAT(error_of([&] { p.last_frame(); }), HasSubstr("does not end"));
 }
@@ -317,9 +325,9 @@ TEST(FigureErrors, ScriptsThatNeverEnd) {
 
 TEST(FigureShapes, ZeroAndNegativeAxes) {
     Performance p = perform(
-        "figure f 2 disc needle  ellipsoid disc 30 0 30  ellipsoid needle 0 -40 0\n"
-        "joint j disc 0 0 0 needle 0 -40 0  repeat 0 1 ground f  repeat 1 2 balance needle j world x\n"
-        "repeat 2 3 touch needle disc needle world j x  repeat 3 4 grofig f disc 2 -1 1 stop");
+        "figure f 2 disc needle\nellipsoid disc 30 0 30\nellipsoid needle 0 -40 0\n"
+        "joint j disc 0 0 0 needle 0 -40 0\nrepeat 0 1 ground f\nrepeat 1 2 balance needle j world x\n"
+        "repeat 2 3 touch needle disc needle world j x\nrepeat 3 4 grofig f disc 2 -1 1\nstop");
     const FigureFrame frame = p.frame(1);
     EXPECT_EQ(body_named(frame, "disc").shape.center.y, 0);
     EXPECT_EQ(body_named(frame, "needle").shape.axes, glm::dvec3(0, 40, 0));
@@ -334,9 +342,9 @@ TEST(FigureShapes, ZeroAndNegativeAxes) {
 // A ring of three: what lies beyond a joint is the whole ring, which therefore turns as one.
 TEST(FigureShapes, RingOfJoints) {
     const std::string ring =
-        "figure f 3 a b c  ellipsoid a 5 5 5  ellipsoid b 5 5 5  ellipsoid c 5 5 5\n"
-        "joint j a 5 0 0 b -5 0 0  joint k b 0 5 0 c 0 -5 0  joint l c 9 0 0 a 0 9 0\n"
-        "repeat 0 1 bendby b j world 90 z  stop";
+        "figure f 3 a b c\nellipsoid a 5 5 5\nellipsoid b 5 5 5\nellipsoid c 5 5 5\n"
+        "joint j a 5 0 0 b -5 0 0\njoint k b 0 5 0 c 0 -5 0\njoint l c 9 0 0 a 0 9 0\n"
+        "repeat 0 1 bendby b j world 90 z\nstop";
     Performance p = perform(ring);
     const FigureFrame frame = p.frame(1);
     // About the joint at (5, 0, 0): a from the left to below it, b from the right to above it.
@@ -349,7 +357,7 @@ TEST(FigureShapes, RingOfJoints) {
 // A figure in pieces: the piece of its first ellipsoid moves, the others do not, and still belong to it.
 TEST(FigureShapes, FigureInPieces) {
     Performance p =
-        perform("figure f 2 a b  ellipsoid a 5 5 5  ellipsoid b 5 5 5 repeat 0 1 moveby f a 7 0 0 stop");
+        perform("figure f 2 a b\nellipsoid a 5 5 5\nellipsoid b 5 5 5\nrepeat 0 1 moveby f a 7 0 0\nstop");
     const FigureFrame frame = p.frame(1);
     EXPECT_EQ(body_named(frame, "a").shape.center.x, 7);
     EXPECT_EQ(body_named(frame, "b").shape.center.x, 0);

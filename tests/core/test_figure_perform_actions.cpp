@@ -19,8 +19,8 @@ using testing::HasSubstr;
 
 // a stands at the origin, b on top of it at y = 80; they meet at y = 40. c is alone, at the origin.
 const std::string kTwo =
-    "figure f 2 a b  ellipsoid a 10 40 20  ellipsoid b 10 40 20  joint j a 0 40 0 b 0 -40 0\n"
-    "figure g 1 c  ellipsoid c 5 5 5\n";
+    "figure f 2 a b\nellipsoid a 10 40 20\nellipsoid b 10 40 20\njoint j a 0 40 0 b 0 -40 0\n"
+    "figure g 1 c\nellipsoid c 5 5 5\n";
 
 glm::dvec3 center(const FigureFrame& frame, const std::string& name) {
     return body_named(frame, name).shape.center;
@@ -30,7 +30,7 @@ glm::dvec3 center(const FigureFrame& frame, const std::string& name) {
 
 // cubic over 4 frames: shares 1, 4, 4, 1 of 10. A factor of 16 so grows to 16^(0.1), 16^(0.5), 16^(0.9), 16.
 TEST(FigureOwnScripts, GroellCubic) {
-    Performance p = perform(kTwo + "cubic 0 4 groell a 1 16 0.5 stop");
+    Performance p = perform(kTwo + "cubic 0 4 groell a 1 16 0.5\nstop");
     const double shares[] = {0, 0.1, 0.5, 0.9, 1};
     for (int f = 1; f <= 4; ++f) {
         const FigureFrame frame = p.frame(f);
@@ -45,9 +45,9 @@ TEST(FigureOwnScripts, GroellCubic) {
 // to -x. Taken apart again, c stays where it is; the name h then means it, and f the rest.
 TEST(FigureOwnScripts, AttachSpinDetach) {
     Performance p = perform(kTwo +
-                            "repeat 0 1 moveto g c 200 0 0  repeat 0 1 attach a k c 0 10 5\n"
-                            "linear 1 3 spinby f a world 90 z  repeat 3 4 detach c k h\n"
-                            "repeat 4 5 moveby f world 1 2 3  repeat 4 5 moveby h world 0 0 50 stop");
+                            "repeat 0 1 moveto g c 200 0 0\nrepeat 0 1 attach a k c 0 10 5\n"
+                            "linear 1 3 spinby f a world 90 z\nrepeat 3 4 detach c k h\n"
+                            "repeat 4 5 moveby f world 1 2 3\nrepeat 4 5 moveby h world 0 0 50\nstop");
     const FigureFrame attached = p.frame(3);
     expect_near(center(attached, "c"), {0, 200, 0}, 1e-12);
     expect_near(center(attached, "b"), {-80, 0, 0}, 1e-12);
@@ -62,15 +62,15 @@ TEST(FigureOwnScripts, AttachSpinDetach) {
 }
 
 TEST(FigureOwnScripts, AttachTakesItsPlaceFromTheSecondWhereStrict) {
-    Performance p =
-        perform(kTwo + "repeat 0 1 moveto g c 200 0 0  repeat 0 1 attach a k c 0 10 5 stop", Dialect::strict);
+    Performance p = perform(kTwo + "repeat 0 1 moveto g c 200 0 0\nrepeat 0 1 attach a k c 0 10 5\nstop",
+                            Dialect::strict);
     expect_near(p.frame(1).joints[1].position, {200, 10, 5}, 0);
 }
 
 TEST(FigureOwnScripts, TextureUntilColoured) {
     Performance p = perform(kTwo +
                             "repeat 0 1 texture a bricks.ppm 12 -7\n"
-                            "linear 1 3 colour a 55 28 164 stop");
+                            "linear 1 3 colour a 55 28 164\nstop");
     const Body textured = body_named(p.frame(1), "a");
     EXPECT_EQ(textured.texture, "bricks.ppm");
     EXPECT_EQ(textured.texture_offset, glm::dvec2(12, -7));
@@ -87,9 +87,9 @@ TEST(FigureOwnScripts, TextureUntilColoured) {
 // at y = sqrt(40^2 + (80 / 3)^2), z = 0, and x stays.
 TEST(FigureOwnScripts, BalanceLiftsTheCentreOfMass) {
     Performance p = perform(
-        "figure f 3 stand small large  ellipsoid stand 5 5 5  ellipsoid small 10 10 10\n"
-        "ellipsoid large 20 20 20  joint foot stand 0 0 0 small -40 0 0\n"
-        "joint arm small 0 45 30 large 0 0 0  repeat 0 1 balance small foot world x stop");
+        "figure f 3 stand small large\nellipsoid stand 5 5 5\nellipsoid small 10 10 10\n"
+        "ellipsoid large 20 20 20\njoint foot stand 0 0 0 small -40 0 0\n"
+        "joint arm small 0 45 30 large 0 0 0\nrepeat 0 1 balance small foot world x\nstop");
     const FigureFrame frame = p.frame(1);
     const glm::dvec3 mass = (center(frame, "small") + 8.0 * center(frame, "large")) / 9.0;
     expect_near(mass, {40, std::hypot(40.0, 80.0 / 3), 0}, 1e-9);
@@ -100,7 +100,7 @@ TEST(FigureOwnScripts, BalanceLiftsTheCentreOfMass) {
 
 // b bends about x by 30 degrees a frame: at 45 it is held in the strict dialect. The classic one goes on.
 TEST(FigureOwnScripts, LimitHolds) {
-    const std::string script = kTwo + "limit j -30 45 0 0 0 0  repeat 0 3 bendby b j a 30 x stop";
+    const std::string script = kTwo + "limit j -30 45 0 0 0 0\nrepeat 0 3 bendby b j a 30 x\nstop";
     Performance strict = perform(script, Dialect::strict), classic = perform(script);
     const double held[] = {0, 30, 45, 45};
     for (int f = 1; f <= 3; ++f) {
@@ -115,7 +115,7 @@ TEST(FigureOwnScripts, LimitHolds) {
 // backwards against it: that ends at -30.
 TEST(FigureOwnScripts, LimitHoldsTheOtherSide) {
     Performance p =
-        perform(kTwo + "limit j -30 45 0 0 0 0  repeat 0 1 bendby a j world 60 x stop", Dialect::strict);
+        perform(kTwo + "limit j -30 45 0 0 0 0\nrepeat 0 1 bendby a j world 60 x\nstop", Dialect::strict);
     const double angle = 30 * kDegree;
     expect_near(center(p.frame(1), "a"), {0, 40 - 40 * std::cos(angle), -40 * std::sin(angle)}, 1e-9);
     EXPECT_EQ(center(p.frame(1), "b"), glm::dvec3(0, 80, 0));
@@ -125,8 +125,8 @@ TEST(FigureOwnScripts, LimitHoldsTheOtherSide) {
 TEST(FigureOwnScripts, LimitOfEachAngle) {
     Performance p = perform(kTwo +
                                 "limit j -90 90 -10 10 -5 90\n"
-                                "repeat 0 1 bendby b j b 20 x  repeat 1 2 bendby b j b 50 y "
-                                "repeat 2 3 bendby b j b -40 z stop",
+                                "repeat 0 1 bendby b j b 20 x\nrepeat 1 2 bendby b j b 50 y\n"
+                                "repeat 2 3 bendby b j b -40 z\nstop",
                             Dialect::strict);
     const auto angles = [&](int f) { return xyz_of_rotation(body_named(p.frame(f), "b").shape.rotation); };
     expect_near(angles(1), {20, 0, 0}, 1e-9);
@@ -139,8 +139,8 @@ TEST(FigureOwnScripts, LimitOfEachAngle) {
 // Balls of radius 5 and 10 whose centres are 9 apart across the way meet at 12 along it: 12^2 + 9^2 = 15^2.
 TEST(FigureOwnScripts, AbutBalls) {
     Performance p = perform(
-        "figure f 1 a  ellipsoid a 5 5 5  figure g 1 b  ellipsoid b 10 10 10\n"
-        "repeat 0 1 moveto g b 100 9 0  linear 1 3 abut a b world x stop");
+        "figure f 1 a\nellipsoid a 5 5 5\nfigure g 1 b\nellipsoid b 10 10 10\n"
+        "repeat 0 1 moveto g b 100 9 0\nlinear 1 3 abut a b world x\nstop");
     EXPECT_NEAR(center(p.frame(2), "a").x, (100 - 12) / 2.0, 1e-9);  // half of the way
     expect_near(center(p.frame(3), "a"), {100 - 12, 0, 0}, 1e-9);
 }
@@ -148,22 +148,22 @@ TEST(FigureOwnScripts, AbutBalls) {
 // From inside the shorter way out is taken: at x = 3 it is the one ahead. And what passes by goes to the
 // closest.
 TEST(FigureOwnScripts, AbutFromInsideAndPast) {
-    const std::string balls = "figure f 1 a  ellipsoid a 5 5 5  figure g 1 b  ellipsoid b 10 10 10\n";
-    Performance inside = perform(balls + "repeat 0 1 moveto f a 3 0 0  repeat 0 1 abut a b world x stop");
+    const std::string balls = "figure f 1 a\nellipsoid a 5 5 5\nfigure g 1 b\nellipsoid b 10 10 10\n";
+    Performance inside = perform(balls + "repeat 0 1 moveto f a 3 0 0\nrepeat 0 1 abut a b world x\nstop");
     EXPECT_NEAR(center(inside.frame(1), "a").x, 15, 1e-9);
-    Performance past = perform(balls + "repeat 0 1 moveto f a 70 40 0  repeat 0 1 abut a b world x stop");
+    Performance past = perform(balls + "repeat 0 1 moveto f a 70 40 0\nrepeat 0 1 abut a b world x\nstop");
     expect_near(center(past.frame(1), "a"), {0, 40, 0}, 1e-7);
 }
 
 // An ellipsoid of half axis 30 along the way, then turned so that the one of 20 lies along it.
 TEST(FigureOwnScripts, AbutEllipsoid) {
     const std::string start =
-        "figure f 1 a  ellipsoid a 30 20 10  figure g 1 b  ellipsoid b 5 5 5\n"
-        "repeat 0 1 moveto g b 100 0 0";
-    Performance flat = perform(start + " repeat 0 1 abut a b world x stop");
+        "figure f 1 a\nellipsoid a 30 20 10\nfigure g 1 b\nellipsoid b 5 5 5\n"
+        "repeat 0 1 moveto g b 100 0 0\n";
+    Performance flat = perform(start + "repeat 0 1 abut a b world x\nstop");
     EXPECT_NEAR(center(flat.frame(1), "a").x, 100 - 35, 1e-9);
     Performance turned =
-        perform(start + " repeat 0 1 spinby f a world 90 z repeat 0 1 abut a b world x stop");
+        perform(start + "repeat 0 1 spinby f a world 90 z\nrepeat 0 1 abut a b world x\nstop");
     EXPECT_NEAR(center(turned.frame(1), "a").x, 100 - 25, 1e-9);
 }
 
@@ -174,8 +174,8 @@ TEST(FigureOwnScripts, AbutEllipsoid) {
 // turns 10 + 1 + 0.1 degrees a frame at most.
 TEST(FigureOwnScripts, Drag) {
     const std::string script =
-        "figure f 2 a b  ellipsoid a 10 10 10  ellipsoid b 5 5 5  joint j a 0 0 0 b 0 -30 0\n"
-        "repeat 0 1 bendby b j world 30 x  repeat 1 12 drag b b j a x stop";
+        "figure f 2 a b\nellipsoid a 10 10 10\nellipsoid b 5 5 5\njoint j a 0 0 0 b 0 -30 0\n"
+        "repeat 0 1 bendby b j world 30 x\nrepeat 1 12 drag b b j a x\nstop";
     const double t = std::acos(-1.0 / 6);
     Performance strict = perform(script, Dialect::strict), classic = perform(script);
     const FigureFrame exact = strict.frame(2);
@@ -194,8 +194,8 @@ TEST(FigureOwnScripts, Drag) {
 // A long ellipsoid: its lowest point is found by looking at many of its surface.
 TEST(FigureOwnScripts, DragEllipsoidReachesTheGround) {
     Performance p = perform(
-        "figure f 2 a b  ellipsoid a 12 8 30  ellipsoid b 6 25 9  joint j a 0 0 20 b 3 -28 4\n"
-        "repeat 0 1 spinby f a world 25 y  repeat 0 1 drag b b j a x stop",
+        "figure f 2 a b\nellipsoid a 12 8 30\nellipsoid b 6 25 9\njoint j a 0 0 20 b 3 -28 4\n"
+        "repeat 0 1 spinby f a world 25 y\nrepeat 0 1 drag b b j a x\nstop",
         Dialect::strict);
     const FigureFrame frame = p.frame(1);
     for (const char* const name : {"a", "b"}) {
@@ -221,9 +221,9 @@ TEST(FigureOwnScripts, DragEllipsoidReachesTheGround) {
 TEST(FigureOwnScripts, TouchBalls) {
     for (const Dialect dialect : {Dialect::classic, Dialect::strict}) {
         Performance p = perform(
-            "figure f 2 a b  ellipsoid a 3 3 3  ellipsoid b 10 10 10  joint j a 0 0 0 b 0 -40 0\n"
-            "figure g 1 c  ellipsoid c 5 5 5  repeat 0 1 moveto g c 50 0 0\n"
-            "repeat 0 1 touch b c b world j z stop",
+            "figure f 2 a b\nellipsoid a 3 3 3\nellipsoid b 10 10 10\njoint j a 0 0 0 b 0 -40 0\n"
+            "figure g 1 c\nellipsoid c 5 5 5\nrepeat 0 1 moveto g c 50 0 0\n"
+            "repeat 0 1 touch b c b world j z\nstop",
             dialect);
         const double t = std::acos((1600 + 2500 - 225) / 4000.0);
         expect_near(center(p.frame(1), "b"), {40 * std::cos(t), 40 * std::sin(t), 0}, 1e-9);
@@ -233,13 +233,14 @@ TEST(FigureOwnScripts, TouchBalls) {
 // Overlapping, they are turned apart; out of reach, to the closest.
 TEST(FigureOwnScripts, TouchFromInsideAndOutOfReach) {
     const std::string arm =
-        "figure f 2 a b  ellipsoid a 3 3 3  ellipsoid b 10 10 10  joint j a 0 0 0 b 0 -40 0\n"
-        "figure g 1 c  ellipsoid c 5 5 5 ";
-    Performance inside = perform(arm + "repeat 0 1 moveto g c 1 50 0 repeat 0 1 touch b c b world j z stop");
+        "figure f 2 a b\nellipsoid a 3 3 3\nellipsoid b 10 10 10\njoint j a 0 0 0 b 0 -40 0\n"
+        "figure g 1 c\nellipsoid c 5 5 5\n";
+    Performance inside =
+        perform(arm + "repeat 0 1 moveto g c 1 50 0\nrepeat 0 1 touch b c b world j z\nstop");
     const FigureFrame frame = inside.frame(1);
     EXPECT_NEAR(glm::distance(center(frame, "b"), center(frame, "c")), 15, 1e-9);
     EXPECT_LT(center(frame, "b").x, 0);  // the shorter way out
-    Performance far = perform(arm + "repeat 0 1 moveto g c 300 0 0 repeat 0 1 touch b c b world j z stop");
+    Performance far = perform(arm + "repeat 0 1 moveto g c 300 0 0\nrepeat 0 1 touch b c b world j z\nstop");
     expect_near(center(far.frame(1), "b"), {40, 0, 0}, 1e-5);
 }
 
@@ -260,11 +261,11 @@ TEST(FigureOwnScripts, TouchIsTheNearest) {
     int touching = 0;
     for (int i = 0; i < 80; ++i) {
         SCOPED_TRACE(i);
-        Performance p = perform("figure f 2 a b  ellipsoid a 3 3 3  ellipsoid b" + numbers(2, 40) +
-                                "  joint j a 0 0 0 b" + numbers(-40, 40) + "  figure g 1 c  ellipsoid c" +
-                                numbers(2, 20) + "  repeat 0 1 moveto g c" + numbers(-45, 45) +
-                                "  repeat 0 1 spinto g c world" + numbers(0, 180) +
-                                "\nrepeat 1 2 touch b c b world j z stop");
+        Performance p = perform("figure f 2 a b\nellipsoid a 3 3 3\nellipsoid b" + numbers(2, 40) +
+                                "\njoint j a 0 0 0 b" + numbers(-40, 40) + "\nfigure g 1 c\nellipsoid c" +
+                                numbers(2, 20) + "\nrepeat 0 1 moveto g c" + numbers(-45, 45) +
+                                "\nrepeat 0 1 spinto g c world" + numbers(0, 180) +
+                                "\nrepeat 1 2 touch b c b world j z\nstop");
         const FigureFrame before = p.frame(1), after = p.frame(2);
         const Ellipsoid from = body_named(before, "b").shape, still = body_named(before, "c").shape;
         const auto apart = [&](double angle) {
@@ -290,8 +291,8 @@ TEST(FigureOwnScripts, TouchIsTheNearest) {
 // -40 to -120, which takes c along.
 TEST(FigureOwnScripts, GrojntTakesLimbsAlong) {
     Performance p = perform(
-        "figure f 3 a b c  ellipsoid a 10 40 20  ellipsoid b 10 40 20  ellipsoid c 5 5 5\n"
-        "joint j a 0 40 0 b 0 -40 0  joint k a 0 -40 0 c 0 5 0  linear 0 2 grojnt a j 1 2 1 stop");
+        "figure f 3 a b c\nellipsoid a 10 40 20\nellipsoid b 10 40 20\nellipsoid c 5 5 5\n"
+        "joint j a 0 40 0 b 0 -40 0\njoint k a 0 -40 0 c 0 5 0\nlinear 0 2 grojnt a j 1 2 1\nstop");
     const FigureFrame frame = p.frame(2);
     expect_near(center(frame, "a"), {0, -40, 0}, 1e-12);
     expect_near(body_named(frame, "a").shape.axes, {10, 80, 20}, 1e-12);
@@ -302,7 +303,7 @@ TEST(FigureOwnScripts, GrojntTakesLimbsAlong) {
 
 // After a quarter turn about z, the y axis of a points to -x: so the joint and b move there.
 TEST(FigureOwnScripts, MovjntInAxesOfTheEllipsoid) {
-    Performance p = perform(kTwo + "repeat 0 1 spinby f a world 90 z  linear 1 3 movjnt j a 0 8 1 stop");
+    Performance p = perform(kTwo + "repeat 0 1 spinby f a world 90 z\nlinear 1 3 movjnt j a 0 8 1\nstop");
     expect_near(center(p.frame(2), "b"), {-84, 0, 0.5}, 1e-12);
     expect_near(center(p.frame(3), "b"), {-88, 0, 1}, 1e-12);
     expect_near(p.frame(3).joints[0].position, {-48, 0, 1}, 1e-12);
@@ -311,7 +312,7 @@ TEST(FigureOwnScripts, MovjntInAxesOfTheEllipsoid) {
 
 // The centres reach 80 up: made 200 they are 2.5 times as far apart.
 TEST(FigureOwnScripts, Growto) {
-    Performance p = perform(kTwo + "linear 0 3 growto f a 7 200 7 stop");
+    Performance p = perform(kTwo + "linear 0 3 growto f a 7 200 7\nstop");
     expect_near(center(p.frame(3), "b"), {0, 200, 0}, 1e-9);
     expect_near(body_named(p.frame(3), "b").shape.axes, {10, 100, 20}, 1e-9);
 }
@@ -319,7 +320,7 @@ TEST(FigureOwnScripts, Growto) {
 // --- ground
 
 TEST(FigureOwnScripts, GroundEndsGroundedWhereStrict) {
-    const std::string script = kTwo + "linear 0 2 ground f stop";
+    const std::string script = kTwo + "linear 0 2 ground f\nstop";
     EXPECT_EQ(center(perform(script, Dialect::strict).frame(2), "a").y, 40);
     EXPECT_EQ(center(perform(script).frame(2), "a").y, 30);  // as printed in grnd.3
 }
@@ -327,19 +328,19 @@ TEST(FigureOwnScripts, GroundEndsGroundedWhereStrict) {
 // --- forbid, allow
 
 TEST(FigureOwnScripts, ForbiddenEllipsoidsStop) {
-    const std::string start = "figure f 1 a  ellipsoid a 5 5 5  figure g 1 b  ellipsoid b 10 10 10\n";
-    const std::string run = " repeat 0 1 moveto g b 30 0 0  linear 1 31 moveby f world 30 0 0 stop";
-    Performance p = perform(start + "repeat 0 1 forbid a b" + run);
+    const std::string start = "figure f 1 a\nellipsoid a 5 5 5\nfigure g 1 b\nellipsoid b 10 10 10\n";
+    const std::string run = "repeat 0 1 moveto g b 30 0 0\nlinear 1 31 moveby f world 30 0 0\nstop";
+    Performance p = perform(start + "repeat 0 1 forbid a b\n" + run);
     EXPECT_NEAR(center(p.frame(15), "a").x, 14, 1e-9);
     EXPECT_THAT(error_of([&] { p.frame(18); }), HasSubstr("frame 17: the ellipsoids a and b meet"));
     EXPECT_NEAR(center(p.frame(15), "a").x, 14, 1e-9);
-    Performance allowed = perform(start + "repeat 0 1 forbid world world  repeat 0 1 allow b a" + run);
+    Performance allowed = perform(start + "repeat 0 1 forbid world world\nrepeat 0 1 allow b a\n" + run);
     EXPECT_NEAR(center(allowed.frame(31), "a").x, 30, 1e-9);
     // The two parts of a figure overlap at their joint, which world does not mean; named, they are meant.
     const std::string joined =
-        "figure f 2 a b  ellipsoid a 5 5 5  ellipsoid b 5 5 5  joint j a 0 4 0 b 0 -4 0\n";
-    EXPECT_NO_THROW(perform(joined + "repeat 0 1 forbid world world stop").frame(1));
-    EXPECT_THROW(perform(joined + "repeat 0 1 forbid a b stop").frame(1), Error);
+        "figure f 2 a b\nellipsoid a 5 5 5\nellipsoid b 5 5 5\njoint j a 0 4 0 b 0 -4 0\n";
+    EXPECT_NO_THROW(perform(joined + "repeat 0 1 forbid world world\nstop").frame(1));
+    EXPECT_THROW(perform(joined + "repeat 0 1 forbid a b\nstop").frame(1), Error);
 }
 
 }  // namespace

@@ -16,7 +16,7 @@ def centers(source):
 
 for name in ("ball.nudes", "ball.n"):
     with open(name, "w") as file:
-        file.write("figure f 1 ball ellipsoid ball 10 20 30 linear 0 8 moveby f ball 80 0 -40 stop")
+        file.write("figure f 1 ball\nellipsoid ball 10 20 30\nlinear 0 8 moveby f ball 80 0 -40\nstop")
     ball = OpenDataFile(os.path.abspath(name))
     assert ball.GetXMLName() == "AnamorphFigureReader", ball.GetXMLName()
     assert list(ball.TimestepValues) == [1, 2, 3, 4, 5, 6, 7, 8]

@@ -95,7 +95,8 @@ TEST(VtkFigureReader, ThePlaceAndTurnOfTheView) {
     const Folder folder;
     vtkNew<vtkAnamorphFigureReader> reader;
     // `observe 0 90 0` turns z to x: what was to the right is then nearest.
-    reader->SetFileName(folder.write("v.n", "repeat 0 1 place 1 2 3 repeat 0 1 observe 0 90 0 stop").c_str());
+    reader->SetFileName(
+        folder.write("v.n", "repeat 0 1 place 1 2 3\nrepeat 0 1 observe 0 90 0\nstop").c_str());
     reader->Update();
     vtkFieldData* field = reader->GetOutput()->GetFieldData();
     EXPECT_THAT(numbers(field->GetArray("ViewCenter")), ElementsAre(1, 2, -3));
@@ -137,15 +138,15 @@ TEST(VtkFigureReader, TimesAreTheFramesShown) {
 TEST(VtkFigureReader, OnlyWhatTheScriptShows) {
     const Folder folder;
     vtkNew<vtkAnamorphFigureReader> reader;
-    reader->SetFileName(folder.write("s.n", "speed -3 linear 0 10 moveby every world 1 2 3 stop").c_str());
+    reader->SetFileName(folder.write("s.n", "speed -3\nlinear 0 10 moveby every world 1 2 3\nstop").c_str());
     reader->UpdateInformation();
     EXPECT_THAT(steps_of(reader), ElementsAre(3, 6, 9));
     reader->UpdateTimeStep(8.5);
     EXPECT_EQ(time_of(reader), 6);
-    reader->SetFileName(folder.write("v.n", "view 3 5 linear 0 10 moveby every world 1 2 3 stop").c_str());
+    reader->SetFileName(folder.write("v.n", "view 3 5\nlinear 0 10 moveby every world 1 2 3\nstop").c_str());
     reader->UpdateInformation();
     EXPECT_THAT(steps_of(reader), ElementsAre(4, 5));
-    reader->SetFileName(folder.write("long.n", "linear 0 5000000 moveby every world 1 2 3 stop").c_str());
+    reader->SetFileName(folder.write("long.n", "linear 0 5000000 moveby every world 1 2 3\nstop").c_str());
     reader->UpdateInformation();
     EXPECT_FALSE(reader->GetOutputInformation(0)->Has(Executive::TIME_STEPS()));
     EXPECT_EQ(reader->GetOutputInformation(0)->Get(Executive::TIME_RANGE())[1], 5000000);
@@ -155,7 +156,7 @@ TEST(VtkFigureReader, WithoutFramesFiguresAreAtRest) {
     const Folder folder;
     vtkNew<vtkAnamorphFigureReader> reader;
     Errors errors(reader);
-    reader->SetFileName(folder.write("rest.n", "figure f 1 a ellipsoid a 1 2 3 stop").c_str());
+    reader->SetFileName(folder.write("rest.n", "figure f 1 a\nellipsoid a 1 2 3\nstop").c_str());
     reader->Update();
     EXPECT_EQ(errors.text(), "");
     EXPECT_EQ(reader->GetOutput()->GetNumberOfPoints(), 1);
@@ -196,8 +197,8 @@ TEST(VtkFigureReader, WhatCannotBeReadIsAnError) {
     EXPECT_THAT(error_of(bad), HasSubstr("bad.n:2:15: error: found \"x\""));
     EXPECT_THAT(error_of(bad), HasSubstr("(and 1 more)"));
     const std::string late =
-        folder.write("late.n", "variables 1 v linear 2 3 divide v 1 0 repeat 0 1 set v 1 stop");
-    EXPECT_THAT(error_of(late, [](auto* r) { r->UpdateTimeStep(3); }), HasSubstr("late.n:1:"));
+        folder.write("late.n", "variables 1 v\nlinear 2 3 divide v 1 0\nrepeat 0 1 set v 1\nstop");
+    EXPECT_THAT(error_of(late, [](auto* r) { r->UpdateTimeStep(3); }), HasSubstr("late.n:2:"));
 }
 
 TEST(VtkFigureReader, AnErrorIsOverWhenItsCauseIs) {
@@ -226,9 +227,9 @@ TEST(VtkFigureReader, AnErrorIsOverWhenItsCauseIs) {
 
 TEST(VtkFigureReader, LibrariesAndIncludes) {
     const Folder folder;
-    const std::string library = folder.write("lib.n", "figure f 1 a ellipsoid a 1 2 3"),
-                      plain = folder.write("plain.n", "linear 0 2 moveby f a 1 2 3 stop"),
-                      includes = folder.write("inc.n", "include lib.n linear 0 2 moveby f a 1 2 3 stop");
+    const std::string library = folder.write("lib.n", "figure f 1 a\nellipsoid a 1 2 3"),
+                      plain = folder.write("plain.n", "linear 0 2 moveby f a 1 2 3\nstop"),
+                      includes = folder.write("inc.n", "include lib.n\nlinear 0 2 moveby f a 1 2 3\nstop");
     EXPECT_THAT(error_of(plain), HasSubstr("plain.n:1:"));
     EXPECT_EQ(error_of(plain, [&](auto* r) { r->AddLibrary(library.c_str()); }), "");
     EXPECT_EQ(error_of(includes), "");
@@ -248,10 +249,10 @@ TEST(VtkFigureReader, LibrariesAndIncludes) {
 TEST(VtkFigureReader, Dialects) {
     const Folder folder;
     const std::string path =
-        folder.write("d.n", "figure f 1 a ellipsoid a -1 2 3 linear 0 1 moveby f a 1 2 3 stop");
+        folder.write("d.n", "figure f 1 a\nellipsoid a -1 2 3\nlinear 0 1 moveby f a 1 2 3\nstop");
     EXPECT_EQ(error_of(path), "");
     EXPECT_THAT(error_of(path, [](auto* r) { r->SetDialect(vtkAnamorphFigureReader::STRICT); }),
-                HasSubstr("d.n:1:"));
+                HasSubstr("d.n:2:"));
 }
 
 TEST(VtkFigureReader, SaysWhatItCanRead) {

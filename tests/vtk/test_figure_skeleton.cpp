@@ -37,12 +37,13 @@ TEST(VtkFigureSkeleton, TheLongestAxisOfEachBody) {
 TEST(VtkFigureSkeleton, FromJointToJoint) {
     const Folder folder;
     vtkNew<vtkAnamorphFigureReader> reader;
-    reader->SetFileName(folder
-                            .write("limbs.n",
-                                   "figure f 3 a b c ellipsoid a 1 9 1 ellipsoid b 1 9 1 ellipsoid c 1 9 1\n"
-                                   "joint j a 0 100 0 b 0 -100 0 joint k b 0 100 0 c 0 -100 0\n"
-                                   "repeat 0 1 moveto f b 500 500 500 stop")
-                            .c_str());
+    reader->SetFileName(
+        folder
+            .write("limbs.n",
+                   "figure f 3 a b c\nellipsoid a 1 9 1\nellipsoid b 1 9 1\nellipsoid c 1 9 1\n"
+                   "joint j a 0 100 0 b 0 -100 0\njoint k b 0 100 0 c 0 -100 0\n"
+                   "repeat 0 1 moveto f b 500 500 500\nstop")
+            .c_str());
     vtkNew<Skeleton> filter;
     filter->SetInputConnection(reader->GetOutputPort());
     filter->SetMode(Skeleton::JOINTS);

@@ -35,7 +35,7 @@ for name, value in view + [("Mode", skeleton.SPHERES), ("LevelOfDetail", 3), ("T
 with tempfile.TemporaryDirectory() as folder:
     path = os.path.join(folder, "one.nudes")
     with open(path, "w") as file:
-        file.write("figure f 1 a ellipsoid a 10 20 30 linear 0 3 moveby f a 3 0 0 stop")
+        file.write("figure f 1 a\nellipsoid a 10 20 30\nlinear 0 3 moveby f a 3 0 0\nstop")
     reader = anamorph.vtkAnamorphFigureReader()
     assert reader.CanReadFile(path)
     reader.SetFileName(path)

@@ -86,6 +86,7 @@ void vtkAnamorphFigureOutline::Draw(vtkPolyData* input, vtkPolyData* output,
                 anamorph::chord_angles(outline, arc, view, this->Tolerance);
     options.hide = this->Hidden != TRANSPARENT;
     options.crossings = this->Crossings;
+    options.keep_hidden = this->Hidden == KEPT;
     options.tol = this->Tolerance;
     execution.progress(0.05);
     anamorph::Outlines all = anamorph::outlines(bodies.shapes, view, options, execution.stage(0.1, 0.6));

@@ -73,7 +73,7 @@ Outline outline_of(const SeenBody& body, std::size_t position, const std::vector
             add_hidden(body, all[static_cast<std::size_t>(j)], view.perspective(), hidden);
     std::vector<Arc> cut;
     if (body.kind == OutlineKind::cut) cut = {cut_arc(body.viewed, view.near)};
-    split(union_of(std::move(hidden), kTurn), cut, kTurn, true, outline.visible, outline.hidden);
+    split(std::move(hidden), cut, kTurn, true, outline.visible, outline.hidden);
     return outline;
 }
 
@@ -102,18 +102,21 @@ Outlines outlines(std::span<const Ellipsoid> bodies, const View& view, const Out
     for (const SeenBody& body : seen)
         boxes.push_back(body.seen() ? ScreenBox{body.low, body.high, body.limb_farthest}
                                     : ScreenBox{glm::dvec2(1), glm::dvec2(-1), -HUGE_VAL});
-    const std::vector<std::vector<int>> near_by =
-        options.hide ? overlapping(boxes, seen) : std::vector<std::vector<int>>(seen.size());
+    const Overlaps overlaps(seen);
     Outlines result;
     result.bodies.resize(bodies.size());
     constexpr std::size_t batch = 16;
     parallel_for(static_cast<std::int64_t>((bodies.size() + batch - 1) / batch), [&](std::int64_t k) {
         const std::size_t first = static_cast<std::size_t>(k) * batch;
         for (std::size_t i = first; i < std::min(first + batch, bodies.size()); ++i)
-            result.bodies[i] = outline_of(seen[i], i, seen, near_by[i], view);
+            result.bodies[i] = outline_of(seen[i], i, seen,
+                                          options.hide ? overlaps.with(boxes[i]) : std::vector<int>(), view);
     });
+    // Limbs tell at once where a tolerance asks for too many chords, crossings late.
     if (options.crossings)
-        result.crossings = crossing_curves(bodies, seen, view, options.tol, options.hide, parallel_for);
+        for (const Outline& outline : result.bodies)
+            if (outline.kind == OutlineKind::whole) chord_angles(outline, {0, kTurn}, view, options.tol);
+    if (options.crossings) result.crossings = crossing_curves(bodies, seen, view, options, parallel_for);
     return result;
 }
 
@@ -140,19 +143,19 @@ void hide_lines(std::span<SeenLine> lines, std::span<const Ellipsoid> bodies, co
         ends.push_back({view.to_view(line.from), view.to_view(line.to)});
         boxes.push_back(box_of(ends.back(), view.perspective()));
     }
-    const std::vector<std::vector<int>> near_by = overlapping(boxes, seen);
+    const Overlaps overlaps(seen);
     parallel_for(static_cast<std::int64_t>(lines.size()), [&](std::int64_t k) {
         const auto i = static_cast<std::size_t>(k);
         SeenLine& line = lines[i];
         const auto& [from, to] = ends[i];
         std::vector<Arc> hidden, cut;
         if (view.perspective()) cut = nearer_part(from.z, to.z, view.near);
-        for (const int j : near_by[i]) {
+        for (const int j : overlaps.with(boxes[i])) {
             const bool skip =
                 i < ignored.size() && std::find(ignored[i].begin(), ignored[i].end(), j) != ignored[i].end();
             if (!skip) add_hidden(from, to, seen[static_cast<std::size_t>(j)], view.perspective(), hidden);
         }
-        split(union_of(std::move(hidden), 1, false), cut, 1, false, line.visible, line.hidden);
+        split(std::move(hidden), cut, 1, false, line.visible, line.hidden);
     });
 }
 

@@ -58,14 +58,16 @@ struct CrossingCurve {
     int first = 0, second = 0;       ///< positions of the bodies
     std::vector<glm::dvec3> points;  ///< in the scene, on both surfaces; the last is joined to the first
     /// Parts of the polyline: 2.25 is the point a quarter of the way from points[2] to points[3]. As arcs,
-    /// with the number of points for 2 pi.
+    /// with the number of points for 2 pi. They are found on the curve itself, and on the polyline lie beside
+    /// where they are on it. Parts shorter than a sixteenth of tol may be missed.
     std::vector<Arc> visible, hidden;
 };
 
 struct OutlineOptions {
-    bool hide = true;        ///< false: bodies are transparent, as VISIB draws them
-    bool crossings = false;  ///< also the curves in which bodies pass through each other
-    double tol = 0.1;        ///< pixels that the chords of those curves may be off on the screen; positive
+    bool hide = true;         ///< false: bodies are transparent, as VISIB draws them
+    bool crossings = false;   ///< also the curves in which bodies pass through each other
+    bool keep_hidden = true;  ///< false: such curves of which nothing is seen are left out
+    double tol = 0.1;         ///< pixels that the chords of those curves may be off on the screen; positive
     /// Names of the bodies for messages; empty: their positions.
     std::vector<std::string> names;
 };

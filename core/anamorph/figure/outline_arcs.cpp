@@ -23,10 +23,8 @@ void roll(std::vector<Arc>& arcs, double period) {
     arcs.erase(arcs.begin());
 }
 
-}  // namespace
-
-std::vector<Arc> union_of(std::vector<Arc> arcs, double period, bool closed) {
-    unroll(arcs, period);
+/// Sorts arcs of [0, period], and joins those that meet.
+void join(std::vector<Arc>& arcs) {
     std::sort(arcs.begin(), arcs.end(), [](const Arc& a, const Arc& b) { return a.begin < b.begin; });
     std::size_t kept = 0;
     for (const Arc& arc : arcs) {
@@ -37,34 +35,57 @@ std::vector<Arc> union_of(std::vector<Arc> arcs, double period, bool closed) {
             arcs[kept++] = arc;
     }
     arcs.resize(kept);
+}
+
+/// What of [0, period] joined arcs leave out, to the bit.
+std::vector<Arc> gaps_of(const std::vector<Arc>& arcs, double period) {
+    std::vector<Arc> gaps;
+    double end = 0;
+    for (const Arc& arc : arcs) {
+        if (arc.begin > end) gaps.push_back({end, arc.begin});
+        end = arc.end;
+    }
+    if (end < period) gaps.push_back({end, period});
+    return gaps;
+}
+
+}  // namespace
+
+std::vector<Arc> union_of(std::vector<Arc> arcs, double period, bool closed) {
+    unroll(arcs, period);
+    join(arcs);
     if (closed) roll(arcs, period);
     return arcs;
 }
 
-std::vector<Arc> complement_of(const std::vector<Arc>& arcs, double period, bool closed) {
-    std::vector<Arc> rest;
-    if (arcs.empty()) return {{0, period}};
-    // The gaps before each arc, from the end of an arc that runs over `period` on.
-    double end = std::max(0.0, arcs.back().end - period);
-    for (const Arc& arc : arcs) {
-        if (arc.begin > end) rest.push_back({end, arc.begin});
-        end = arc.end;
-    }
-    if (end < period) rest.push_back({end, period});
+std::vector<Arc> complement_of(std::vector<Arc> arcs, double period, bool closed) {
+    unroll(arcs, period);
+    join(arcs);
+    std::vector<Arc> rest = gaps_of(arcs, period);
     if (closed) roll(rest, period);
     return rest;
 }
 
 void split(std::vector<Arc> hidden_parts, const std::vector<Arc>& cut, double period, bool closed,
            std::vector<Arc>& visible, std::vector<Arc>& hidden) {
-    visible = complement_of(hidden_parts, period, closed);
+    unroll(hidden_parts, period);
+    join(hidden_parts);
     hidden = std::move(hidden_parts);
-    if (cut.empty()) return;
-    std::vector<Arc> not_visible = hidden, not_hidden = visible;
-    not_visible.insert(not_visible.end(), cut.begin(), cut.end());
-    not_hidden.insert(not_hidden.end(), cut.begin(), cut.end());
-    visible = complement_of(union_of(std::move(not_visible), period, closed), period, closed);
-    hidden = complement_of(union_of(std::move(not_hidden), period, closed), period, closed);
+    visible = gaps_of(hidden, period);
+    if (!cut.empty()) {
+        // Each is what the other and the cut leave out.
+        std::vector<Arc> taken = hidden, other = visible;
+        for (std::vector<Arc>* arcs : {&taken, &other}) {
+            arcs->insert(arcs->end(), cut.begin(), cut.end());
+            unroll(*arcs, period);
+            join(*arcs);
+        }
+        visible = gaps_of(taken, period);
+        hidden = gaps_of(other, period);
+    }
+    if (!closed) return;
+    roll(visible, period);
+    roll(hidden, period);
 }
 
 std::vector<Arc> nearer_part(double from, double to, double near) {

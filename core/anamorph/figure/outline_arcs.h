@@ -12,10 +12,11 @@ namespace anamorph {
 /// ends at `period` is joined to one that begins at 0.
 std::vector<Arc> union_of(std::vector<Arc> arcs, double period, bool closed = true);
 
-/// What of [0, period] `arcs`, as union_of returns them, leave out.
-std::vector<Arc> complement_of(const std::vector<Arc>& arcs, double period, bool closed = true);
+/// What of [0, period] arcs, as union_of takes them, leave out.
+std::vector<Arc> complement_of(std::vector<Arc> arcs, double period, bool closed = true);
 
-/// Sorts a range into visible and hidden parts, without those that are `cut`.
+/// Sorts a range into visible and hidden parts, without those that are `cut`; both as union_of takes them. An
+/// end of an arc that does not run over `period` is the end of a part to the bit.
 void split(std::vector<Arc> hidden_parts, const std::vector<Arc>& cut, double period, bool closed,
            std::vector<Arc>& visible, std::vector<Arc>& hidden);
 

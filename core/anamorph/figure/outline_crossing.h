@@ -9,10 +9,10 @@
 
 namespace anamorph {
 
-/// The loops of all pairs of `bodies` (as `seen` in `view`), in the order of the pairs; what is seen of them
-/// too where `hide` is set.
+/// The loops of all pairs of `bodies` (as `seen` in `view`) that `options` ask for, in the order of the
+/// pairs.
 std::vector<CrossingCurve> crossing_curves(std::span<const Ellipsoid> bodies,
-                                           const std::vector<SeenBody>& seen, const View& view, double tol,
-                                           bool hide, const ParallelFor& parallel_for);
+                                           const std::vector<SeenBody>& seen, const View& view,
+                                           const OutlineOptions& options, const ParallelFor& parallel_for);
 
 }  // namespace anamorph

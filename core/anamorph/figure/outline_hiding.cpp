@@ -8,6 +8,7 @@
 #include <numeric>
 
 #include "anamorph/figure/outline_arcs.h"
+#include "anamorph/figure/outline_cover.h"
 
 namespace anamorph {
 namespace {
@@ -104,7 +105,14 @@ void add_hidden(const SeenBody& body, const SeenBody& other, bool perspective, s
     for (int k = 0; k < roots.count; ++k) {
         const bool last = k + 1 == roots.count;
         const Arc arc{roots.angle[k], last ? roots.angle[0] + kTurn : roots.angle[k + 1]};
-        if (arc.end > arc.begin && is_hidden(path, other, arc)) hidden.push_back(arc);
+        if (!(arc.end > arc.begin) || !is_hidden(path, other, arc)) continue;
+        hidden.push_back(arc);
+        // Cut at the turn by the root itself: a turn more and less would round it, and leave an arc of no
+        // length.
+        if (last) {
+            hidden.back().end = kTurn;
+            hidden.push_back({0, roots.angle[0]});
+        }
     }
 }
 
@@ -125,9 +133,6 @@ void add_hidden(const glm::dvec3& from, const glm::dvec3& to, const SeenBody& ot
                 std::vector<Arc>& hidden) {
     const glm::dvec3 step = to - from;
     const bool around_eye = other.kind == OutlineKind::around_eye;
-    const double reach = glm::length(from) + glm::length(to) + glm::length(other.center);
-    const double surface_noise = kRounding * other.unit_size * reach;
-    const double cone_noise = kRounding * other.cone_size * reach;
     std::vector<double> cuts;
     glm::dvec3 u{0.0}, v{0.0};
     if (other.solid) {
@@ -150,22 +155,12 @@ void add_hidden(const glm::dvec3& from, const glm::dvec3& to, const SeenBody& ot
                        x.y * x.y + y.y * y.y - w.y * w.y, cuts);
         if (!other.solid && beyond.y != 0) cuts.push_back(-beyond.x / beyond.y);
     }
-    const auto is_hidden = [&](double s) {
-        const glm::dvec3 at = u + v * s;
-        const double surface = glm::dot(at, at) - 1;
-        if (around_eye) return other.solid && surface > surface_noise;
-        if (other.solid && surface < -surface_noise) return true;
-        const glm::dvec2 p{x.x + s * x.y, y.x + s * y.y};
-        const double depth = w.x + s * w.y;
-        return other.covers && beyond.x + s * beyond.y > cone_noise &&
-               glm::dot(p, p) - depth * depth < -cone_noise;
-    };
     std::erase_if(cuts, [](double s) { return !(s > 0 && s < 1); });
     cuts.push_back(0);
     cuts.push_back(1);
     std::sort(cuts.begin(), cuts.end());
     for (std::size_t k = 0; k + 1 < cuts.size(); ++k)
-        if (cuts[k + 1] > cuts[k] && is_hidden(0.5 * (cuts[k] + cuts[k + 1])))
+        if (cuts[k + 1] > cuts[k] && hides(other, from + step * (0.5 * (cuts[k] + cuts[k + 1])), perspective))
             hidden.push_back({cuts[k], cuts[k + 1]});
 }
 
@@ -188,37 +183,26 @@ bool may_hide(const SeenBody& body, const ScreenBox& box) {
            body.low.y <= box.high.y && body.nearest <= box.farthest;
 }
 
-std::vector<std::vector<int>> overlapping(const std::vector<ScreenBox>& boxes,
-                                          const std::vector<SeenBody>& bodies) {
-    // A sweep in x over the left ends of both: each meets those of the other kind that are still open.
-    struct Entry {
-        double left;
-        int box, body;
-    };
-    std::vector<Entry> entries;
-    for (int i = 0; i < static_cast<int>(boxes.size()); ++i)
-        entries.push_back({boxes[static_cast<std::size_t>(i)].low.x, i, -1});
-    for (int i = 0; i < static_cast<int>(bodies.size()); ++i)
-        entries.push_back({bodies[static_cast<std::size_t>(i)].low.x, -1, i});
-    std::sort(entries.begin(), entries.end(), [](const Entry& a, const Entry& b) { return a.left < b.left; });
+Overlaps::Overlaps(const std::vector<SeenBody>& bodies) : m_bodies(bodies), m_by_left(bodies.size()) {
+    std::iota(m_by_left.begin(), m_by_left.end(), 0);
+    std::stable_sort(m_by_left.begin(), m_by_left.end(), [&](int a, int b) {
+        return bodies[static_cast<std::size_t>(a)].low.x < bodies[static_cast<std::size_t>(b)].low.x;
+    });
+    double right = -HUGE_VAL;
+    for (const int i : m_by_left) {
+        right = std::max(right, bodies[static_cast<std::size_t>(i)].high.x);
+        m_right.push_back(right);
+    }
+}
 
-    std::vector<std::vector<int>> found(boxes.size());
-    std::vector<int> open_boxes, open_bodies;
-    const auto meet = [&](int i, int j) {
-        if (may_hide(bodies[static_cast<std::size_t>(j)], boxes[static_cast<std::size_t>(i)]))
-            found[static_cast<std::size_t>(i)].push_back(j);
-    };
-    for (const Entry& e : entries) {
-        std::erase_if(open_boxes, [&](int i) { return boxes[static_cast<std::size_t>(i)].high.x < e.left; });
-        std::erase_if(open_bodies,
-                      [&](int j) { return bodies[static_cast<std::size_t>(j)].high.x < e.left; });
-        if (e.box >= 0) {
-            for (const int j : open_bodies) meet(e.box, j);
-            open_boxes.push_back(e.box);
-        } else {
-            for (const int i : open_boxes) meet(i, e.body);
-            open_bodies.push_back(e.body);
-        }
+std::vector<int> Overlaps::with(const ScreenBox& box) const {
+    std::vector<int> found;
+    // From the first that nothing before it reaches the box, to the last that begins left of its right end.
+    const auto from = std::lower_bound(m_right.begin(), m_right.end(), box.low.x) - m_right.begin();
+    for (auto k = static_cast<std::size_t>(from); k < m_by_left.size(); ++k) {
+        const SeenBody& body = m_bodies[static_cast<std::size_t>(m_by_left[k])];
+        if (body.low.x > box.high.x) break;
+        if (may_hide(body, box)) found.push_back(m_by_left[k]);
     }
     return found;
 }

@@ -28,8 +28,18 @@ ScreenBox box_of(std::span<const glm::dvec3> points, bool perspective);
 /// Does the box of the body's limb overlap, and not all of the body lie beyond?
 bool may_hide(const SeenBody& body, const ScreenBox& box);
 
-/// For each box, the bodies that may hide what is in it.
-std::vector<std::vector<int>> overlapping(const std::vector<ScreenBox>& boxes,
-                                          const std::vector<SeenBody>& bodies);
+/// Finds the bodies that may hide what is in a box.
+class Overlaps {
+  public:
+    /// `bodies` must outlive this.
+    explicit Overlaps(const std::vector<SeenBody>& bodies);
+    /// In no order that means something.
+    std::vector<int> with(const ScreenBox& box) const;
+
+  private:
+    const std::vector<SeenBody>& m_bodies;
+    std::vector<int> m_by_left;   ///< ordered by the left ends of the limbs
+    std::vector<double> m_right;  ///< the rightmost end of a limb up to there
+};
 
 }  // namespace anamorph

@@ -1,4 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
+// A meridian (a great circle through a pole) turns half a turn about the pole, and where it meets the curve
+// is followed: roots of one equation in the latitude, which outline_roots tells apart however close they are.
+// The pole lies where the quadric is thinnest, so that its two faces stay apart.
+//
+// f(longitude, latitude) = |v|^2 - 1 with v = offset + matrix (e cos + p sin) and e = e1 cos + e2 sin.
+// Between two meridians the latitudes are divided into boxes in which Taylor's theorem says that f has no
+// zero, or that f rises or falls with the latitude. Where boxes of the second kind stand alone, exactly one
+// branch of the curve passes; where a box is neither, the meridians come closer together.
 #include "anamorph/figure/outline_loops.h"
 
 #include <algorithm>
@@ -6,265 +14,464 @@
 #include <cmath>
 #include <cstdint>
 #include <glm/geometric.hpp>
-#include <unordered_map>
+#include <numbers>
+
+#include "anamorph/figure/outline_roots.h"
 
 namespace anamorph {
 namespace {
 
-using Triangle = std::array<int, 3>;
+constexpr double kTurn = 2 * std::numbers::pi;
+constexpr int kFirstStrips = 16, kDeepestStrip = 44;
+// Bodies that nearly coincide meet nearly everywhere: what is then left of the curve is cut short.
+constexpr int kMostStrips = 1 << 20, kMostDoubtfulStrips = 20000, kMostBoxes = 1 << 19;
+// Smaller parts of what is allowed do not matter.
+constexpr double kNegligible = 0.02;
 
-// Near-coincident bodies meet everywhere: what is then left of the curve is cut short.
-constexpr std::size_t kMostCells = 40000;
-constexpr int kMostLevels = 40, kMostHalvings = 16;
+/// An interval of latitudes, in parts of the turn, so that neighbours share their ends to the bit.
+struct Box {
+    static constexpr int kLevels = 40;
+    static constexpr std::int64_t kAll = std::int64_t{8} << kLevels;
+    std::int64_t low = 0, size = 0;
 
-std::uint64_t edge_key(int a, int b) {
-    const auto low = static_cast<std::uint64_t>(std::min(a, b)),
-               high = static_cast<std::uint64_t>(std::max(a, b));
-    return high << 32 | low;
-}
-
-using Tolerance = std::function<bool(const glm::dvec3&, double, double)>;
-
-/// A bound of the curve's curvature within `radius` of u. In the sphere it is |t.H t| / |grad f| along the
-/// curve's tangent t, with f = |B u + b|^2 - 1 and H = 2 B^T B - (u.grad f); the sphere's own is 1.
-struct Bend {
-    bool known = false;  ///< the curve's direction changes by less than 30 degrees
-    double curvature = 0;
-
-    Bend(const SphereCurve& curve, const glm::dvec3& u, double radius) {
-        double square_norm = 0;
-        for (int k = 0; k < 3; ++k) square_norm += glm::dot(curve.matrix[k], curve.matrix[k]);
-        const glm::dvec3 gradient = 2.0 * ((curve.matrix * u + curve.offset) * curve.matrix);
-        const double across = glm::dot(gradient, u);
-        const glm::dvec3 in_sphere = gradient - u * across;
-        const double along = glm::length(in_sphere);
-        // How much the gradient, the tangent's direction and H change over the radius.
-        const double change = (2 * square_norm * (1 + radius) + std::fabs(across) + along * radius) * radius;
-        known = change <= 0.5 * along;
-        if (!known) return;
-        const glm::dvec3 bent = curve.matrix * (glm::cross(u, in_sphere) / along);
-        const double in_cell = std::fabs(2 * glm::dot(bent, bent) - across) +
-                               2 * (change / along) * (2 * square_norm + std::fabs(across)) + change;
-        curvature = std::hypot(in_cell / (along - change), 1.0);
+    static double angle(std::int64_t at) {
+        return kTurn * static_cast<double>(at) / static_cast<double>(kAll);
     }
+    double middle() const { return angle(low) + radius(); }
+    double radius() const { return 0.5 * angle(size); }
 };
 
-/// Adds points between p and q, on the curve and not q, until its chords hold. Between them the curve is at
-/// most twice as long as the chord, as its direction changes by less than 60 degrees; a curve with curvature
-/// k is at most k l^2 / 8 from a chord of length l, 1.2 times that where its direction changes so much.
-void add_between(const SphereCurve& curve, const glm::dvec3& p, const glm::dvec3& q, const Tolerance& holds,
-                 int depth, std::vector<glm::dvec3>& points) {
-    const double length = glm::distance(p, q);
-    const glm::dvec3 middle = glm::normalize(p + q);
-    const Bend bend(curve, middle, 1.5 * length);
-    const double deviation = bend.known ? 1.2 * bend.curvature * length * length / 8 : length;
-    if (depth == 0 || !(length > 0) || holds(middle, length, deviation)) return;
-    // Across the chord, in the sphere, to the curve.
-    const glm::dvec3 across = glm::cross(middle, (q - p) / length);
-    glm::dvec3 u = middle;
-    double moved = 0;
-    for (int k = 0; k < 12; ++k) {
-        const glm::dvec3 v = curve.matrix * u + curve.offset;
-        const double step = -(glm::dot(v, v) - 1) / (2 * glm::dot(v, curve.matrix * across));
-        if (!(std::fabs(moved + step) < length)) return;
-        moved += step;
-        u = glm::normalize(middle + across * moved);
-        if (std::fabs(step) < 0x1p-50) break;
-    }
-    add_between(curve, p, u, holds, depth - 1, points);
-    points.push_back(u);
-    add_between(curve, u, q, holds, depth - 1, points);
+enum class Kind { free, steady, unknown };
+
+/// Where the curve meets a meridian.
+struct Root {
+    double latitude = 0;
+    int node = 0;
+};
+
+/// Neighbouring boxes that the curve may pass.
+struct Group {
+    std::int64_t low = 0, high = 0;  ///< in the parts of Box; high may be beyond the turn
+    bool certain = true;             ///< one branch passes, or none
+    double bend = 0;                 ///< bounds the second derivative of the branch by the longitude
+    std::int64_t unknown_low = 0, unknown_high = 0;  ///< where it is not
+    std::vector<Root> left, right;
+
+    double extent() const { return Box::angle(unknown_high - unknown_low); }
+};
+
+/// The eigenvectors of a symmetric matrix as columns, the largest eigenvalue's first (Jacobi's method).
+glm::dmat3 eigenvectors(glm::dmat3 a) {
+    glm::dmat3 v(1.0);
+    for (int sweep = 0; sweep < 30; ++sweep)
+        for (const auto& [i, j] : {std::array{0, 1}, std::array{0, 2}, std::array{1, 2}}) {
+            if (a[i][j] == 0) continue;
+            const double t = 0.5 * std::atan2(2 * a[i][j], a[i][i] - a[j][j]);
+            glm::dmat3 turn(1.0);
+            turn[i][i] = turn[j][j] = std::cos(t);
+            turn[i][j] = std::sin(t);
+            turn[j][i] = -turn[i][j];
+            a = glm::transpose(turn) * a * turn;
+            v = v * turn;
+        }
+    std::array<int, 3> order{0, 1, 2};
+    std::sort(order.begin(), order.end(), [&](int i, int j) { return a[i][i] > a[j][j]; });
+    return {v[order[0]], v[order[1]], v[order[2]]};
 }
 
-/// Cells on the sphere, all of one size, that the curve may pass through: refined together, so that
-/// neighbours always share whole edges.
-class Cells {
+class Sweep {
   public:
-    explicit Cells(const SphereCurve& curve) : m_curve(curve) {
-        double square = 0;
-        for (int k = 0; k < 3; ++k) square += glm::dot(curve.matrix[k], curve.matrix[k]);
-        m_square_norm = square;
-        // An icosahedron, turned so that no corner lies on an axis or in a plane of symmetry.
-        const double phi = 0.5 * (1 + std::sqrt(5.0));
-        const glm::dvec3 x = glm::normalize(glm::dvec3(0.613, 0.257, 0.747)),
-                         y = glm::normalize(glm::cross(x, glm::dvec3(0.113, 0.883, -0.456))),
-                         z = glm::cross(x, y);
-        const glm::dmat3 turn(x, y, z);
-        for (const double one : {-1.0, 1.0})
-            for (const double far : {-phi, phi})
-                for (const glm::dvec3& p :
-                     {glm::dvec3(0, one, far), glm::dvec3(one, far, 0), glm::dvec3(far, 0, one)})
-                    add_corner(turn * p);
-        // Its faces: the corners that are an edge (2 of its units) apart from each other.
-        const double edge = 2 / std::sqrt(phi * phi + 1) * 1.01;
-        const int count = static_cast<int>(m_corners.size());
-        const auto joined = [&](int a, int b) { return glm::distance(corner(a), corner(b)) < edge; };
-        for (int a = 0; a < count; ++a)
-            for (int b = a + 1; b < count; ++b)
-                for (int c = b + 1; c < count; ++c)
-                    if (joined(a, b) && joined(b, c) && joined(a, c)) m_cells.push_back({a, b, c});
+    Sweep(const SphereCurve& curve, const AllowedDeviation& allowed) : m_curve(curve), m_allowed(allowed) {
+        const glm::dmat3 axes = eigenvectors(glm::transpose(curve.matrix) * curve.matrix);
+        m_pole = pole_of(axes);
+        const int other = std::fabs(glm::dot(axes[2], m_pole)) < 0.7 ? 2 : 0;
+        m_first = glm::normalize(glm::cross(axes[other], m_pole));
+        m_second = glm::cross(m_pole, m_first);
+        m_at_pole = curve.matrix * m_pole;
+        const glm::dvec3 one = curve.matrix * m_first, two = curve.matrix * m_second;
+        m_pole_size = glm::length(m_at_pole);
+        // The larger singular value.
+        const double a = glm::dot(one, one), b = glm::dot(two, two);
+        m_equator_size = std::sqrt(0.5 * (a + b) + std::hypot(0.5 * (a - b), glm::dot(one, two)));
+        m_skew = std::fabs(glm::dot(one, m_at_pole)) + std::fabs(glm::dot(two, m_at_pole));
+    }
+
+    std::vector<std::vector<glm::dvec3>> loops() {
+        if (coincides()) return {};
+        std::vector<Box> all;
+        for (int k = 0; k < 8; ++k) all.push_back({k * (Box::kAll / 8), Box::kAll / 8});
+        // From an angle that no symmetry prefers.
+        constexpr double from = 0.3;
+        const Meridian first = meridian(from);
+        Meridian left = first;
+        for (int k = 1; k <= kFirstStrips; ++k) {
+            Meridian right =
+                k < kFirstStrips ? meridian(from + 0.5 * kTurn * k / kFirstStrips) : turned(first);
+            strip(left, right, all, 0);
+            left = std::move(right);
+        }
+        return linked();
+    }
+
+  private:
+    struct Node {
+        glm::dvec3 u{0.0};
+        std::array<int, 2> link{-1, -1};  ///< to the left and to the right: twice the node, plus its side
+        bool visited = false;
+    };
+    struct Meridian {
+        double longitude = 0;
+        std::vector<Root> roots;  ///< by their latitudes
+    };
+
+    /// The direction in which the quadric is thinnest; of several, that in which it lies.
+    glm::dvec3 pole_of(const glm::dmat3& axes) const {
+        const auto size = [&](int k) { return glm::length(m_curve.matrix * axes[k]); };
+        const glm::dvec3 toward = glm::transpose(m_curve.matrix) * m_curve.offset;
+        glm::dvec3 pole(0.0);
+        for (int k = 0; k < 3; ++k)
+            if (size(k) > size(0) * (1 - 0x1p-20)) pole += axes[k] * glm::dot(axes[k], toward);
+        return glm::length(pole) > 0x1p-20 * glm::length(toward) ? glm::normalize(pole) : axes[0];
     }
 
     bool coincides() const {
-        return std::all_of(m_values.begin(), m_values.end(),
-                           [&](double v) { return std::fabs(v) <= m_curve.noise; });
-    }
-
-    /// Halves all cells; those that the curve cannot pass through are dropped.
-    void refine() {
-        std::vector<Triangle> finer;
-        m_middles.clear();
-        for (const auto& [a, b, c] : m_cells) {
-            const int ab = middle(a, b), bc = middle(b, c), ca = middle(c, a);
-            for (const Triangle& t : {Triangle{a, ab, ca}, {b, bc, ab}, {c, ca, bc}, {ab, bc, ca}})
-                if (may_meet(t)) finer.push_back(t);
+        for (int k = 0; k < 64; ++k) {
+            const double z = (k + 0.5) / 32 - 1, r = std::sqrt(1 - z * z), t = 2.4 * k;
+            if (std::fabs(m_curve.at({r * std::cos(t), r * std::sin(t), z})) > m_curve.noise) return false;
         }
-        m_cells = std::move(finer);
+        return true;
     }
 
-    /// Does the curve cross each cell in one direction, or is the cell so small that it does not matter?
-    bool clear(const Tolerance& holds) const {
-        return std::all_of(m_cells.begin(), m_cells.end(), [&](const Triangle& t) {
-            const Cell cell(*this, t);
-            return Bend(m_curve, cell.middle, cell.radius).known ||
-                   holds(cell.middle, cell.radius, cell.radius);
-        });
+    glm::dvec3 equator(double longitude) const {
+        return m_first * std::cos(longitude) + m_second * std::sin(longitude);
     }
 
-    std::size_t count() const { return m_cells.size(); }
+    Meridian meridian(double longitude) {
+        const glm::dvec3 e = equator(longitude), at = m_curve.matrix * e;
+        WaveSquares f;
+        f.x = {m_curve.offset.x, at.x, m_at_pole.x};
+        f.y = {m_curve.offset.y, at.y, m_at_pole.y};
+        f.z = {m_curve.offset.z, at.z, m_at_pole.z};
+        f.w.k = 1;
+        f.noise = m_curve.noise;
+        Roots roots;
+        add_roots(f, roots);
+        drop_touching(f, roots);
+        Meridian m;
+        m.longitude = longitude;
+        for (int k = 0; k < roots.count; ++k) {
+            const double t = roots.angle[k];
+            m.roots.push_back({t, static_cast<int>(m_nodes.size())});
+            m_nodes.push_back({glm::normalize(e * std::cos(t) + m_pole * std::sin(t)), {-1, -1}, false});
+        }
+        return m;
+    }
 
-    std::vector<std::vector<glm::dvec3>> loops() const {
-        // Every cell with both signs has one chord, between two of its edges.
-        std::unordered_map<std::uint64_t, std::array<std::uint64_t, 2>> next;
-        std::vector<std::uint64_t> order;
-        const auto link = [&](std::uint64_t from, std::uint64_t to) {
-            const auto [it, fresh] = next.try_emplace(from, std::array{to, to});
-            if (fresh)
-                order.push_back(from);
-            else
-                it->second[1] = to;
+    /// Of an odd number of roots one is no change of sign: two that rounding has made one.
+    static void drop_touching(const WaveSquares& f, Roots& roots) {
+        const auto negative_after = [&](int k) {
+            const double next = k + 1 < roots.count ? roots.angle[k + 1] : roots.angle[0] + kTurn;
+            return f.at(direction(0.5 * (roots.angle[k] + next))) < 0;
         };
-        for (const Triangle& t : m_cells) {
-            std::uint64_t cut[2];
-            int cuts = 0;
-            for (int k = 0; k < 3; ++k) {
-                const int a = t[static_cast<std::size_t>(k)], b = t[static_cast<std::size_t>((k + 1) % 3)];
-                if (inside(a) != inside(b)) cut[cuts++] = edge_key(a, b);
-            }
-            if (cuts == 2) {
-                link(cut[0], cut[1]);
-                link(cut[1], cut[0]);
-            }
+        for (int k = 0; roots.count % 2 == 1 && k < roots.count; ++k) {
+            if (roots.count > 1 && negative_after(k) != negative_after((k + roots.count - 1) % roots.count))
+                continue;
+            std::copy(roots.angle + k + 1, roots.angle + roots.count, roots.angle + k);
+            --roots.count;
         }
+    }
+
+    /// The same meridian half a turn on: the latitude runs the other way.
+    static Meridian turned(Meridian m) {
+        m.longitude += 0.5 * kTurn;
+        for (Root& root : m.roots) {
+            root.latitude = 0.5 * kTurn - root.latitude;
+            if (root.latitude < 0) root.latitude += kTurn;
+        }
+        std::sort(m.roots.begin(), m.roots.end(),
+                  [](const Root& a, const Root& b) { return a.latitude < b.latitude; });
+        return m;
+    }
+
+    // --- Boxes
+
+    struct Strip {
+        double half = 0;                  ///< of its width
+        glm::dvec3 at{0.0}, across{0.0};  ///< matrix e in its middle, and the derivative by the longitude
+    };
+
+    /// What f does in a box of latitudes within a strip.
+    struct Findings {
+        Kind kind = Kind::unknown;
+        bool hopeless = false;         ///< only a narrower strip helps
+        double first = 0, second = 0;  ///< of a branch: bound the latitude's derivatives by the longitude
+        double bend = 0;               ///< and the second derivative of the point
+    };
+    Findings examine(const Strip& strip, double middle, double r) const {
+        const double cosine = std::cos(middle), sine = std::sin(middle), h = strip.half, e = m_equator_size;
+        const double c0 = std::fabs(cosine), s0 = std::fabs(sine);
+        const double c = std::min(1.0, c0 + r), s = std::min(1.0, s0 + r), reach = c * e + s * m_pole_size;
+        const glm::dvec3 v = m_curve.offset + strip.at * cosine + m_at_pole * sine,
+                         by_latitude = m_at_pole * cosine - strip.at * sine,
+                         by_longitude = strip.across * cosine;
+        const double f = std::fabs(glm::dot(v, v) - 1), a = 2 * std::fabs(glm::dot(v, by_longitude)),
+                     b = 2 * std::fabs(glm::dot(v, by_latitude)), size = glm::length(v);
+        Findings found;
+        // How far v and its derivative by the latitude may go from the middle of the box.
+        const double steepest = glm::length(by_latitude) + h * s * e + r * reach;
+        const double moved = h * c * e + r * steepest, farthest = size + moved;
+        const double swing =
+            h * a + r * b + moved * moved + size * (h * h * c * e + 2 * h * r * s * e + r * r * reach);
+        if (f > swing + 2 * m_curve.noise) {
+            found.kind = Kind::free;
+            return found;
+        }
+        // The second derivatives in the middle, and how much the third, bounded, change them in the box.
+        const glm::dvec3 twist = strip.across * -sine, back = strip.at * -cosine,
+                         fall = back - m_at_pole * sine;
+        const auto bound_21 = [&](double cos_most, double sin_most, double v_most) {
+            return 2 *
+                   (3 * cos_most * sin_most * e * e + cos_most * cos_most * m_skew + v_most * sin_most * e);
+        };
+        const double to_side = s * (s * e * e + c * m_skew);
+        const double t30 = 2 * (3 * c * c * e * e + farthest * c * e), t21 = bound_21(c, s, farthest),
+                     t12 = 2 * (2 * to_side + c * (c * e * e + s * m_skew) + farthest * c * e),
+                     t03 = 2 * (3 * steepest * reach + farthest * (s * e + c * m_pole_size));
+        const auto second = [&](double at_middle, double by_h, double by_r) {
+            return 2 * std::fabs(at_middle) + h * by_h + r * by_r;
+        };
+        const double along = second(glm::dot(by_longitude, by_longitude) + glm::dot(v, back), t30, t21);
+        const double mixed_here = glm::dot(by_longitude, by_latitude) + glm::dot(v, twist);
+        const double mixed = second(mixed_here, t21, t12);
+        const double twice = second(glm::dot(by_latitude, by_latitude) + glm::dot(v, fall), t12, t03);
+        const double slope = b - h * mixed - r * twice;
+        if (slope > 0) {
+            found.kind = Kind::steady;
+            found.first = (a + h * along + r * mixed) / slope;
+            found.second = (along + 2 * mixed * found.first + twice * found.first * found.first) / slope;
+            found.bend = c + 2 * s * found.first + found.first * found.first + found.second;
+            return found;
+        }
+        // The same for the middle alone, which no narrower box changes.
+        const double moved_here = h * c0 * e;
+        const bool never_free =
+            f <= h * a + size * h * moved_here + moved_here * moved_here + 2 * m_curve.noise;
+        const bool never_steady =
+            b <= h * (2 * std::fabs(mixed_here) + h * bound_21(c0, s0, size + moved_here));
+        found.hopeless = (never_free && never_steady) || f + swing <= 8 * m_curve.noise;
+        return found;
+    }
+
+    /// Bounds the second derivative of the only branch in a strip, whose latitudes at its sides are known,
+    /// where it stays in a box about them: as far as its steepest slope in the box takes it.
+    double bend_of(const Strip& strip, double left, double right, double otherwise) const {
+        right -= kTurn * std::round((right - left) / kTurn);
+        const double middle = 0.5 * (left + right);
+        double r = 0.7 * std::fabs(right - left) + 0x1p-40;
+        for (int k = 0; k < 4; ++k) {
+            const Findings found = examine(strip, middle, r);
+            if (found.kind != Kind::steady) break;
+            const double needed = found.first * strip.half;
+            if (needed <= r) return std::min(found.bend, otherwise);
+            r = 1.3 * needed;
+        }
+        return otherwise;
+    }
+
+    /// Divides a box until it is known, or only a narrower strip helps; adds what is not free.
+    void divide(const Strip& strip, const Box& box, std::vector<Box>& boxes, std::vector<Group>& groups) {
+        const Findings found = examine(strip, box.middle(), box.radius());
+        if (found.kind == Kind::free) return;
+        if (found.kind == Kind::unknown && !found.hopeless && box.size > 1 && ++m_boxes < kMostBoxes) {
+            divide(strip, {box.low, box.size / 2}, boxes, groups);
+            divide(strip, {box.low + box.size / 2, box.size / 2}, boxes, groups);
+            return;
+        }
+        boxes.push_back(box);
+        if (groups.empty() || groups.back().high != box.low)
+            groups.push_back({box.low, box.low, true, 0, 0, 0, {}, {}});
+        Group& group = groups.back();
+        group.high = box.low + box.size;
+        if (found.kind != Kind::steady) {
+            if (group.certain) group.unknown_low = box.low;
+            group.unknown_high = group.high;
+            group.certain = false;
+        }
+        group.bend = std::max(group.bend, found.bend);
+    }
+
+    /// Joins the last group to the first where they meet at 0.
+    static void close(std::vector<Group>& groups) {
+        if (groups.size() < 2 || groups.front().low > 0 || groups.back().high < Box::kAll) return;
+        Group& last = groups.back();
+        const Group& front = groups.front();
+        last.high += front.high;
+        if (!front.certain) {
+            if (last.certain) last.unknown_low = Box::kAll + front.unknown_low;
+            last.unknown_high = Box::kAll + front.unknown_high;
+            last.certain = false;
+        }
+        last.bend = std::max(last.bend, front.bend);
+        groups.erase(groups.begin());
+    }
+
+    /// Gives the roots of a meridian to their groups; false where one is in none.
+    static bool assign(const Meridian& m, std::vector<Group>& groups, bool left) {
+        for (const Root& root : m.roots) {
+            Group* nearest = nullptr;
+            double least = HUGE_VAL;
+            for (Group& g : groups)
+                for (const double turn : {0.0, kTurn}) {
+                    const double t = root.latitude + turn;
+                    const double away = std::max({Box::angle(g.low) - t, t - Box::angle(g.high), 0.0});
+                    if (away < least) least = away, nearest = &g;
+                }
+            if (!nearest || least > 1e-9) return false;
+            (left ? nearest->left : nearest->right).push_back(root);
+        }
+        return true;
+    }
+
+    // --- Strips
+
+    const glm::dvec3& point(const Root& root) const { return m_nodes[static_cast<std::size_t>(root.node)].u; }
+
+    void link(const Root& one, int a_side, const Root& other, int b_side) {
+        const int a = one.node, b = other.node;
+        m_nodes[static_cast<std::size_t>(a)].link[static_cast<std::size_t>(a_side)] = 2 * b + b_side;
+        m_nodes[static_cast<std::size_t>(b)].link[static_cast<std::size_t>(b_side)] = 2 * a + a_side;
+    }
+
+    /// Is all that matters known of a group in a strip of this width?
+    bool settled(const Group& g, const Strip& strip, double width) const {
+        const double middle = 0.5 * (Box::angle(g.unknown_low) + Box::angle(g.unknown_high));
+        if (g.certain && g.left.size() == g.right.size() && g.left.size() < 2) {
+            if (g.left.empty()) return true;
+            const glm::dvec3 &p = point(g.left[0]), &q = point(g.right[0]);
+            const double length = glm::distance(p, q);
+            const double bend = bend_of(strip, g.left[0].latitude, g.right[0].latitude, g.bend);
+            return bend * width * width / 8 <= m_allowed(glm::normalize(p + q), length);
+        }
+        const std::vector<Root>& two = g.left.empty() ? g.right : g.left;
+        const bool fold = g.left.size() + g.right.size() == 2 && two.size() == 2;
+        const glm::dvec3 u =
+            fold ? point(two[0]) : equator(m_middle) * std::cos(middle) + m_pole * std::sin(middle);
+        const double small = kNegligible * m_allowed(u, g.extent() + width);
+        // Where a branch turns back it does so within the strip, between its two roots.
+        if (fold && width <= small && g.extent() <= 4 * glm::distance(point(two[0]), point(two[1])))
+            return true;
+        return width <= small && g.extent() <= small;
+    }
+
+    /// Joins what is left of a group: across the strip in order, and what remains, neighbour to neighbour.
+    void join(const Group& g) {
+        std::vector<Root> left = g.left, right = g.right;
+        std::vector<Root>& more = left.size() > right.size() ? left : right;
+        const std::size_t fewer = std::min(left.size(), right.size());
+        const int side = &more == &left ? 1 : 0;
+        while (more.size() >= fewer + 2) {
+            std::size_t nearest = 0;
+            const auto gap = [&](std::size_t k) { return glm::distance(point(more[k]), point(more[k + 1])); };
+            for (std::size_t k = 1; k + 1 < more.size(); ++k)
+                if (gap(k) < gap(nearest)) nearest = k;
+            link(more[nearest], side, more[nearest + 1], side);
+            more.erase(more.begin() + static_cast<std::ptrdiff_t>(nearest),
+                       more.begin() + static_cast<std::ptrdiff_t>(nearest) + 2);
+        }
+        for (std::size_t k = 0; k < std::min(left.size(), right.size()); ++k) link(left[k], 1, right[k], 0);
+    }
+
+    void strip(const Meridian& left, const Meridian& right, const std::vector<Box>& boxes, int depth) {
+        const double width = right.longitude - left.longitude;
+        m_middle = 0.5 * (left.longitude + right.longitude);
+        Strip strip_here;
+        strip_here.half = 0.5 * width * (1 + 0x1p-40);
+        strip_here.at = m_curve.matrix * equator(m_middle);
+        strip_here.across = m_curve.matrix * equator(m_middle + 0.25 * kTurn);
+        std::vector<Box> finer;
+        std::vector<Group> groups;
+        for (const Box& box : boxes) divide(strip_here, box, finer, groups);
+        close(groups);
+        const bool assigned = assign(left, groups, true) && assign(right, groups, false);
+        const bool doubtful = !assigned || std::any_of(groups.begin(), groups.end(), [](const Group& g) {
+            return !g.certain || g.left.size() != g.right.size();
+        });
+        const bool enough = depth == kDeepestStrip || ++m_strips > kMostStrips || m_boxes > kMostBoxes ||
+                            (doubtful && ++m_doubtful > kMostDoubtfulStrips);
+        const bool done = assigned && std::all_of(groups.begin(), groups.end(), [&](const Group& g) {
+                              return settled(g, strip_here, width);
+                          });
+        if (done || enough) {
+            for (const Group& g : groups) join(g);
+            return;
+        }
+        const Meridian middle = meridian(m_middle);
+        strip(left, middle, finer, depth + 1);
+        strip(middle, right, finer, depth + 1);
+    }
+
+    // --- Loops
+
+    std::vector<std::vector<glm::dvec3>> linked() {
         std::vector<std::vector<glm::dvec3>> all;
-        for (const std::uint64_t start : order) {
-            if (!next.count(start)) continue;
-            std::vector<glm::dvec3> loop;
-            std::uint64_t at = start;
-            for (auto it = next.find(at); it != next.end(); it = next.find(at)) {
-                loop.push_back(crossing(at));
-                const auto [one, other] = it->second;
-                next.erase(it);
-                at = next.count(one) ? one : other;
-            }
+        for (std::size_t start = 0; start < m_nodes.size(); ++start) {
+            if (m_nodes[start].visited) continue;
+            std::vector<glm::dvec3> loop = followed(start, 1);
+            // The other end of what is not closed, which only rounding leaves so.
+            if (const std::vector<glm::dvec3> rest = followed(start, 0); rest.size() > 1)
+                loop.insert(loop.begin(), rest.rbegin(), rest.rend() - 1);
             if (loop.size() > 2) all.push_back(std::move(loop));
         }
         return all;
     }
 
-  private:
-    struct Cell {
-        glm::dvec3 middle;
-        double radius;
-
-        Cell(const Cells& cells, const Triangle& t)
-            : middle(glm::normalize(cells.corner(t[0]) + cells.corner(t[1]) + cells.corner(t[2]))),
-              radius(0) {
-            for (const int k : t) radius = std::max(radius, glm::distance(middle, cells.corner(k)));
+    std::vector<glm::dvec3> followed(std::size_t start, int side) {
+        std::vector<glm::dvec3> points{m_nodes[start].u};
+        m_nodes[start].visited = true;
+        std::size_t at = start;
+        while (true) {
+            const int next = m_nodes[at].link[static_cast<std::size_t>(side)];
+            if (next < 0 || m_nodes[static_cast<std::size_t>(next / 2)].visited) return points;
+            at = static_cast<std::size_t>(next / 2);
+            side = 1 - next % 2;
+            m_nodes[at].visited = true;
+            points.push_back(m_nodes[at].u);
         }
-    };
-
-    const glm::dvec3& corner(int i) const { return m_corners[static_cast<std::size_t>(i)]; }
-    bool inside(int i) const { return m_values[static_cast<std::size_t>(i)] < -m_curve.noise; }
-
-    int add_corner(const glm::dvec3& p) {
-        m_corners.push_back(glm::normalize(p));
-        m_values.push_back(m_curve.at(m_corners.back()));
-        return static_cast<int>(m_corners.size()) - 1;
-    }
-    int middle(int a, int b) {
-        const auto [it, fresh] = m_middles.try_emplace(edge_key(a, b), 0);
-        if (fresh) it->second = add_corner(corner(a) + corner(b));
-        return it->second;
-    }
-
-    /// Of f = |B u + b|^2 - 1: its gradient in the sphere, the part across it, and |B|^2.
-    struct Slope {
-        double along, across;
-    };
-    Slope slope(const glm::dvec3& u) const {
-        const glm::dvec3 gradient = 2.0 * ((m_curve.matrix * u + m_curve.offset) * m_curve.matrix);
-        const double across = glm::dot(gradient, u);
-        return {glm::length(gradient - u * across), std::fabs(across)};
-    }
-
-    /// f(u) = f(m) + grad.(u - m) + |B (u - m)|^2, and u - m has -|u - m|^2 / 2 along m.
-    bool may_meet(const Triangle& t) const {
-        const Cell cell(*this, t);
-        const auto [along, across] = slope(cell.middle);
-        const double r = cell.radius * (1 + 0x1p-40);
-        return std::fabs(m_curve.at(cell.middle)) <=
-               along * r + (0.5 * across + m_square_norm) * r * r + 2 * m_curve.noise;
-    }
-
-    /// The root on the great circle from corner a to corner b, whose signs differ.
-    glm::dvec3 crossing(std::uint64_t edge) const {
-        int a = static_cast<int>(edge & 0xffffffffu), b = static_cast<int>(edge >> 32);
-        if (inside(b)) std::swap(a, b);
-        const glm::dvec3 p = corner(a), step = corner(b) - p;
-        const double enough = 0x1p-50 / glm::length(step);
-        double low = 0, high = 1, s = 0.5;
-        for (int k = 0; k < 160 && high - low > enough; ++k) {
-            const glm::dvec3 q = p + step * s, u = glm::normalize(q), v = m_curve.matrix * u + m_curve.offset;
-            const double f = glm::dot(v, v) - 1;
-            if (std::fabs(f) <= m_curve.noise * 0x1p-5) break;
-            (f < -m_curve.noise ? low : high) = s;
-            const glm::dvec3 turn = (step - u * glm::dot(u, step)) / glm::length(q);
-            const double next = s - f / (2 * glm::dot(v, m_curve.matrix * turn));
-            if (std::fabs(next - s) < enough) break;
-            // Far from the root Newton's method creeps: every third step halves.
-            s = k % 3 < 2 && next > low && next < high ? next : 0.5 * (low + high);
-        }
-        return glm::normalize(p + step * s);
     }
 
     const SphereCurve& m_curve;
-    double m_square_norm = 0;
-    std::vector<glm::dvec3> m_corners;
-    std::vector<double> m_values;
-    std::vector<Triangle> m_cells;
-    std::unordered_map<std::uint64_t, int> m_middles;
+    const AllowedDeviation& m_allowed;
+    glm::dvec3 m_pole{0.0}, m_first{0.0}, m_second{0.0}, m_at_pole{0.0};
+    double m_pole_size = 0, m_equator_size = 0;  ///< the largest of `matrix` on the pole, and on the equator
+    double m_skew = 0;  ///< how far the images of pole and equator are from orthogonal
+    double m_middle = 0;
+    int m_strips = 0, m_doubtful = 0, m_boxes = 0;
+    std::vector<Node> m_nodes;
 };
 
 }  // namespace
 
-std::vector<std::vector<glm::dvec3>> loops_of(const SphereCurve& curve, const Tolerance& holds) {
-    Cells cells(curve);
-    if (cells.coincides()) return {};
-    cells.refine();
-    for (int level = 1; level < kMostLevels && cells.count() > 0 && cells.count() < kMostCells; ++level) {
-        if (cells.clear(holds)) break;
-        cells.refine();
+std::vector<std::vector<glm::dvec3>> loops_of(const SphereCurve& curve, const AllowedDeviation& allowed) {
+    return Sweep(curve, allowed).loops();
+}
+
+glm::dvec3 point_between(const SphereCurve& curve, const glm::dvec3& p, const glm::dvec3& q, double s) {
+    const double length = glm::distance(p, q);
+    const glm::dvec3 start = glm::normalize(p + (q - p) * s);
+    if (!(length > 0)) return start;
+    // Newton's method across the chord, in the sphere.
+    const glm::dvec3 across = glm::cross(start, (q - p) / length);
+    glm::dvec3 u = start;
+    double moved = 0;
+    for (int k = 0; k < 12; ++k) {
+        const glm::dvec3 v = curve.matrix * u + curve.offset;
+        const double step = -(glm::dot(v, v) - 1) / (2 * glm::dot(v, curve.matrix * across));
+        if (!(std::fabs(moved + step) < length)) return start;
+        moved += step;
+        u = glm::normalize(start + across * moved);
+        if (std::fabs(step) < 0x1p-50) break;
     }
-    std::vector<std::vector<glm::dvec3>> loops;
-    for (const std::vector<glm::dvec3>& coarse : cells.loops()) {
-        std::vector<glm::dvec3>& loop = loops.emplace_back();
-        for (std::size_t k = 0; k < coarse.size(); ++k) {
-            loop.push_back(coarse[k]);
-            add_between(curve, coarse[k], coarse[(k + 1) % coarse.size()], holds, kMostHalvings, loop);
-        }
-    }
-    return loops;
+    return u;
 }
 
 }  // namespace anamorph

@@ -21,11 +21,15 @@ struct SphereCurve {
     }
 };
 
-/// The curve as closed polylines, their points on it. `holds(u, radius, deviation)` says whether a chord may
-/// be that far off (in the sphere's units), all within `radius` of u. Loops may be left out, or joined where
-/// they come near each other, within a distance that holds.
-std::vector<std::vector<glm::dvec3>> loops_of(
-    const SphereCurve& curve,
-    const std::function<bool(const glm::dvec3& u, double radius, double deviation)>& holds);
+/// How far chords may be off, in the sphere's units, within `radius` of u.
+using AllowedDeviation = std::function<double(const glm::dvec3& u, double radius)>;
+
+/// The curve as closed polylines, their points on it, one for each of its loops. Loops may be left out, or
+/// joined where they come near each other, only where they are smaller or nearer than a small part of what is
+/// allowed.
+std::vector<std::vector<glm::dvec3>> loops_of(const SphereCurve& curve, const AllowedDeviation& allowed);
+
+/// The curve's point beside the part `s` of the chord from p to q, two neighbours of a loop.
+glm::dvec3 point_between(const SphereCurve& curve, const glm::dvec3& p, const glm::dvec3& q, double s);
 
 }  // namespace anamorph

@@ -16,7 +16,7 @@ namespace {
 
 constexpr int kLargestFrame = 1000000000;
 constexpr int kMostUnknownFrames = 1000000;
-constexpr int kDeepestCall = 200;
+constexpr std::size_t kDeepestCall = 200;
 constexpr int kMostCalls = 10000;  // of subroutines in one frame
 
 /// Frames of a movement, on the clock of its subroutine.
@@ -107,7 +107,19 @@ struct Performance::Impl {
 
     // --- Performing
 
-    void perform_subroutine(int subroutine, double clock, int depth) {
+    /// Counts a call; throws Error where there are too many, or too many inside of each other.
+    void check_calls(const Movement& m, int called) {
+        const bool deep = calling.size() == kDeepestCall;
+        if (++calls <= kMostCalls && !deep) return;
+        const bool ring = std::find(calling.begin(), calling.end(), called) != calling.end();
+        throw Error(
+            program.where(m.position) + ": call in frame " + std::to_string(performing) + ": " +
+            (ring   ? "subroutines call each other without end"
+             : deep ? "allowed are " + std::to_string(kDeepestCall) + " subroutines that call each the next"
+                    : "allowed are " + std::to_string(kMostCalls) + " calls in a frame"));
+    }
+
+    void perform_subroutine(int subroutine, double clock) {
         const auto s = static_cast<std::size_t>(subroutine);
         for (std::size_t i = 0; i < spans[s].size(); ++i) {
             const Span span = span_of(s, i);
@@ -117,12 +129,12 @@ struct Performance::Impl {
             if (m.action == Action::call) {
                 const int called =
                     FigureAction::index(program, state, m.operands[0], OperandKind::subroutine, m.position);
-                if (depth == kDeepestCall || ++calls > kMostCalls)
-                    throw Error(program.where(m.position) + ": call in frame " + std::to_string(performing) +
-                                ": subroutines call each other without end");
+                check_calls(m, called);
                 // A call runs on from frame to frame; as an action, `call` is the first frame each time.
                 const double since = m.distribution == Distribution::call ? clock - span.start : 1;
-                perform_subroutine(called, zero_of(called) + since, depth + 1);
+                calling.push_back(called);
+                perform_subroutine(called, zero_of(called) + since);
+                calling.pop_back();
                 continue;
             }
             const Shares shares = shares_of(m.distribution, clock - span.start, span.stop - span.start);
@@ -134,8 +146,9 @@ struct Performance::Impl {
     void perform_next() {
         performing = now + 1;
         calls = 0;
+        calling.clear();
         idle = true;
-        perform_subroutine(0, zero_of(0) + performing, 0);
+        perform_subroutine(0, zero_of(0) + performing);
         check_overlaps(program, state, performing);
         now = performing;
         told = std::max(told, now);
@@ -247,6 +260,7 @@ struct Performance::Impl {
 
     FigureState state;  ///< after frame `now`
     int now = 0, performing = 0, told = 0, calls = 0;
+    std::vector<int> calling;  ///< the subroutines being performed, each called by the one before
     bool idle = false;
     std::map<int, FigureState> kept;  ///< frame 0 always
     std::size_t kept_bytes = 0;

@@ -15,7 +15,7 @@
 namespace anamorph {
 
 enum class Dialect {
-    classic,  ///< as the programs of 2003 ran scripts
+    classic,  ///< as the programs of 2003 ran scripts, but for `abut` and `touch`, which end in exact contact
     strict    ///< as the language is documented; see script.h and performance.h for what differs
 };
 
@@ -119,6 +119,7 @@ struct Subroutine {
 struct Program {
     Dialect dialect = Dialect::classic;
     std::vector<std::string> files;
+    std::vector<ScriptPosition> included_at;  ///< for each file; line 0 where no statement included it
     std::vector<EllipsoidDeclaration> ellipsoids;
     std::vector<JointDeclaration> joints;
     std::vector<FigureDeclaration> figures;
@@ -129,6 +130,8 @@ struct Program {
 
     /// "walk.n:12:5"
     std::string where(const ScriptPosition& position) const;
+    /// " (included at walk.n:3:1)", one for each file between; nothing of a script itself.
+    std::string included_from(int file) const;
 };
 
 /// The word of the language.

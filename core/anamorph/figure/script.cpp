@@ -2,6 +2,7 @@
 #include "anamorph/figure/script.h"
 
 #include <algorithm>
+#include <array>
 #include <numeric>
 
 #include "anamorph/error.h"
@@ -57,6 +58,7 @@ class Checker {
                            ": it will not move with the figure");
         }
         if (m_program.dialect == Dialect::strict) check_calls();
+        check_ends();
     }
 
   private:
@@ -67,7 +69,8 @@ class Checker {
     void report(bool error, const ScriptPosition& position, const std::string& message) {
         m_script.diagnostics.push_back({error ? Severity::error : Severity::warning,
                                         m_program.files[static_cast<std::size_t>(position.file)],
-                                        position.line, position.column, "", "", message});
+                                        position.line, position.column, "", "", message,
+                                        m_program.included_from(position.file)});
     }
 
     /// Takes away, again and again, subroutines that call none of those left: a ring remains.
@@ -94,6 +97,78 @@ class Checker {
                     "subroutines call themselves, by way of " + quoted(m_program.subroutines[i].name));
     }
 
+    /// Which subroutines the script may come to: all, where a variable says which.
+    std::vector<bool> called() const {
+        std::vector<bool> found(m_program.subroutines.size());
+        std::vector<std::size_t> waiting{0};
+        found[0] = true;
+        while (!waiting.empty()) {
+            const std::size_t s = waiting.back();
+            waiting.pop_back();
+            for (const Movement& m : m_program.subroutines[s].movements) {
+                if (m.action != Action::call) continue;
+                if (m.operands[0].kind != OperandKind::subroutine)
+                    return std::vector<bool>(found.size(), true);
+                const auto to = static_cast<std::size_t>(m.operands[0].index);
+                if (!found[to]) waiting.push_back(to);
+                found[to] = true;
+            }
+        }
+        return found;
+    }
+
+    /// Joints that `attach` makes, whose ends are known only when the script is performed.
+    std::vector<bool> attached_joints() const {
+        std::vector<bool> attached(m_program.joints.size());
+        for (std::size_t j = 0; j < attached.size(); ++j) attached[j] = m_program.joints[j].attached;
+        for (const Subroutine& s : m_program.subroutines)
+            for (const Movement& m : s.movements) {
+                if (m.action != Action::attach) continue;
+                if (m.operands[1].kind != OperandKind::joint) return std::vector<bool>(attached.size(), true);
+                attached[static_cast<std::size_t>(m.operands[1].index)] = true;
+            }
+        return attached;
+    }
+
+    /// The positions of an action's operands of which the first must be an ellipsoid at the second, a joint.
+    static std::optional<std::array<std::size_t, 2>> end_and_joint(Action action) {
+        switch (action) {
+            case Action::flex:
+            case Action::rotate:
+            case Action::abduct:
+            case Action::grojnt:
+            case Action::detach:
+                return {{0, 1}};
+            case Action::movjnt:
+                return {{1, 0}};
+            case Action::drag:
+                return {{1, 2}};
+            default:
+                return std::nullopt;
+        }
+    }
+
+    /// Joints that are not at the ellipsoid they are named with: an error where the script comes there.
+    void check_ends() {
+        const std::vector<bool> reached = called(), attached = attached_joints();
+        for (std::size_t s = 0; s < m_program.subroutines.size(); ++s)
+            for (const Movement& m : m_program.subroutines[s].movements) {
+                const auto places = end_and_joint(m.action);
+                if (!places) continue;
+                const Operand &end = m.operands[(*places)[0]], &at = m.operands[(*places)[1]];
+                if (end.kind != OperandKind::ellipsoid || at.kind != OperandKind::joint ||
+                    attached[static_cast<std::size_t>(at.index)])
+                    continue;
+                const JointDeclaration& joint = m_program.joints[static_cast<std::size_t>(at.index)];
+                if (end.index != joint.first && end.index != joint.second)
+                    report(reached[s] && !runs_backwards(m), m.position,
+                           std::string(name_of(m.action)) + ": the ellipsoid " +
+                               quoted(ellipsoid(end.index)) + " is not at the joint " + quoted(joint.name) +
+                               ", which connects " + quoted(ellipsoid(joint.first)) + " and " +
+                               quoted(ellipsoid(joint.second)));
+            }
+    }
+
     Script& m_script;
     Program& m_program;
 };
@@ -110,9 +185,17 @@ std::string Program::where(const ScriptPosition& position) const {
            ":" + std::to_string(position.column);
 }
 
+std::string Program::included_from(int file) const {
+    std::string text;
+    for (auto f = static_cast<std::size_t>(file); f < included_at.size() && included_at[f].line > 0;
+         f = static_cast<std::size_t>(included_at[f].file))
+        text += (text.empty() ? " (included at " : ", at ") + where(included_at[f]);
+    return text.empty() ? text : text + ")";
+}
+
 std::string Diagnostic::text() const {
     return excerpt(file) + ":" + std::to_string(line) + ":" + std::to_string(column) + ": " +
-           (severity == Severity::error ? "error: " : "warning: ") + message;
+           (severity == Severity::error ? "error: " : "warning: ") + message + included_from;
 }
 
 bool Script::ok() const {

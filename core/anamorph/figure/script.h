@@ -12,11 +12,12 @@
 //                    subroutine S ... endsub S    speed k    view f0 f1    debug n    include NAME
 //     movements      DISTRIBUTION f0 f1 ACTION operands    call f0 f1 S
 //
-// Operands are numbers and names; any of them may be a variable. In the classic dialect ellipsoids, joints
-// and figures may also be named before they are declared, a `-` anywhere in a number turns its sign, and
-// names that clash give warnings. In the strict dialect only subroutines may be named early, and these are
-// errors: clashes of names, declaring something twice, negative axes, joints that form a ring, subroutines
-// that call themselves, frames that run backwards.
+// Operands are numbers and names; any of them may be a variable. In the classic dialect every statement
+// begins on a new line, and what follows a complete one on its line is passed over with a warning;
+// ellipsoids, joints and figures may also be named before they are declared, a `-` anywhere in a number turns
+// its sign, and names that clash give warnings. In the strict dialect only subroutines may be named early,
+// and these are errors: clashes of names, declaring something twice, negative axes, joints that form a ring,
+// subroutines that call themselves, frames that run backwards.
 #pragma once
 
 #include <functional>
@@ -41,6 +42,7 @@ struct Diagnostic {
     int line = 0, column = 0;     ///< from 1; bytes
     std::string found, expected;  ///< empty where they do not apply
     std::string message;
+    std::string included_from;  ///< where an included file is included; empty otherwise
 
     /// One line: "walk.n:12:5: error: found \"hed\", expected an ellipsoid".
     std::string text() const;

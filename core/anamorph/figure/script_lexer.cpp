@@ -21,6 +21,11 @@ bool is_blank(char c) {
 
 }  // namespace
 
+ScriptLexer::ScriptLexer(std::string_view text) : m_text(text) {
+    constexpr std::string_view kByteOrderMark = "\xef\xbb\xbf";
+    if (m_text.starts_with(kByteOrderMark)) m_text.remove_prefix(kByteOrderMark.size());
+}
+
 void ScriptLexer::advance() {
     if (m_text[m_at++] == '\n') {
         ++m_line;
@@ -48,6 +53,17 @@ ScriptToken ScriptLexer::next() {
     const std::size_t from = m_at;
     while (m_at < m_text.size() && m_text[m_at] != '*' && !is_blank(m_text[m_at])) advance();
     token.text = m_text.substr(from, m_at - from);
+    return token;
+}
+
+ScriptToken ScriptLexer::skip_line() {
+    const ScriptLexer before = *this;
+    const ScriptToken token = next();
+    if (token.begins_line || token.text.empty()) {
+        *this = before;
+        return {};
+    }
+    while (m_at < m_text.size() && m_text[m_at] != '\n') advance();
     return token;
 }
 

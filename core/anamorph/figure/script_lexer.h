@@ -18,8 +18,11 @@ struct ScriptToken {
 /// Tokens lie between blanks; `*`, wherever it is, starts a comment that lasts to the end of the line.
 class ScriptLexer {
   public:
-    explicit ScriptLexer(std::string_view text) : m_text(text) {}
+    /// A byte order mark ahead of the text is left out.
+    explicit ScriptLexer(std::string_view text);
     ScriptToken next();
+    /// Leaves the line, if a token of it is left: the first such, or an empty one.
+    ScriptToken skip_line();
 
   private:
     void skip_blanks();

@@ -30,8 +30,12 @@ void ScriptParser::movement(Distribution distribution) {
     } else {
         const ScriptToken token = peek();
         entry = script_table::find_action(token.text);
-        if (!entry) unexpected(token, "an action");
+        if (!entry)
+            unexpected(token, "an action" + suggestion(nearest_of(token.text, script_table::words(true))));
         this->take();
+        warn_of_short_form(token, *entry, true);
+        m_entry = entry;
+        m_entry_position = m.position;
         if (entry->keyword == script_table::Keyword::ignored) {
             report(Severity::warning, m.position, std::string(token.text), "",
                    quoted(token.text) + " is passed over");
@@ -53,8 +57,7 @@ void ScriptParser::movement(Distribution distribution) {
 }
 
 void ScriptParser::check_frames(const Movement& m) {
-    if (m.start.kind != OperandKind::number || m.stop.kind != OperandKind::number) return;
-    if (m.stop.number < m.start.number) fault(m.position, "the frames run backwards: it never happens");
+    if (runs_backwards(m)) fault(m.position, "the frames run backwards: it never happens");
 }
 
 Operand ScriptParser::take_value(char letter, Pending& pending, bool& waits, bool& usable) {
@@ -64,7 +67,8 @@ Operand ScriptParser::take_value(char letter, Pending& pending, bool& waits, boo
     const auto refuse = [&] {
         usable = false;
         report(Severity::error, position, std::string(token.text), expected,
-               "found " + quoted(token.text) + ", expected " + expected);
+               "found " + quoted(token.text) + ", expected " + expected +
+                   suggestion(m_symbols.nearest(letter, token.text)) + usage());
         return Operand{};
     };
     if (looks_like_number(token.text)) {
@@ -89,6 +93,7 @@ Operand ScriptParser::take_value(char letter, Pending& pending, bool& waits, boo
     if (letter != 's' && letter != '*' && strict()) return refuse();
     pending.letter = letter;
     pending.name = token.text;
+    pending.usage = usage();
     pending.position = position;
     waits = true;
     return {};
@@ -102,7 +107,8 @@ void ScriptParser::resolve_pending() {
             found && found->kind == OperandKind::subroutine && !m_defined_subroutines.contains(found->index);
         if (!found || wrong || undefined) {
             report(Severity::error, p.position, p.name, description_of(p.letter),
-                   "found " + quoted(p.name) + ", expected " + description_of(p.letter));
+                   "found " + quoted(p.name) + ", expected " + description_of(p.letter) +
+                       suggestion(m_symbols.nearest(p.letter, p.name)) + p.usage);
             continue;
         }
         Movement& m = m_program.subroutines[static_cast<std::size_t>(p.subroutine)].movements[p.movement];

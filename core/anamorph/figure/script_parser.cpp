@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "anamorph/text_file.h"
 
@@ -18,6 +19,16 @@ constexpr int kMostMessages = 100;  // of errors, and of warnings
 constexpr std::size_t kDeepestInclude = 16;
 constexpr int kMostCount = 1 << 20;
 constexpr int kLargestFrame = 1000000000;
+// Shorter words are not taken for the beginning of a statement where something is wrong.
+constexpr std::size_t kShortestForm = 3;
+
+/// Nothing but comments, or a word first that begins a statement.
+bool begins_as_script(std::string_view text) {
+    const ScriptToken first = ScriptLexer(text).next();
+    return first.text.empty() ||
+           (first.text.size() >= kShortestForm && script_table::find_statement(first.text) &&
+            text.find('\0') == std::string_view::npos);
+}
 
 }  // namespace
 
@@ -27,17 +38,23 @@ ScriptParser::ScriptParser(Script& script, const ScriptOptions& options)
 }
 
 void ScriptParser::parse(std::string_view text, std::string_view name) {
-    if (!m_options.libraries.empty()) m_program.files.emplace_back(name);
+    if (!m_options.libraries.empty()) add_file(std::string(name), {});
     for (const std::string& library : m_options.libraries) parse_included(library, {});
-    parse_file(text, std::string(name), false);
+    parse_file(text, std::string(name), {}, false);
     resolve_pending();
     check_program(m_script);
 }
 
 // --- Texts
 
-void ScriptParser::parse_file(std::string_view text, const std::string& name, bool library) {
+void ScriptParser::add_file(const std::string& name, const ScriptPosition& included_at) {
     m_program.files.push_back(name);
+    m_program.included_at.push_back(included_at);
+}
+
+void ScriptParser::parse_file(std::string_view text, const std::string& name,
+                              const ScriptPosition& included_at, bool library) {
+    add_file(name, included_at);
     const int file = static_cast<int>(m_program.files.size()) - 1;
     m_included_bytes += text.size();
     m_file = file;
@@ -52,6 +69,7 @@ void ScriptParser::parse_file(std::string_view text, const std::string& name, bo
     while (true) {
         try {
             if (!statement(library)) break;
+            end_statement();
         } catch (const Abandoned&) {
             skip_to_statement();
         }
@@ -69,11 +87,16 @@ void ScriptParser::parse_included(const std::string& name, const ScriptPosition&
     if (m_including.size() >= kDeepestInclude ||
         std::find(m_including.begin(), m_including.end(), name) != m_including.end())
         return error(position, "include " + excerpt(name) + ": it includes itself, or is too deep");
+    const std::string what = (position.line > 0 ? "include " : "library ") + excerpt(name);
     const auto text = m_options.include ? m_options.include(name) : std::nullopt;
-    if (!text) return error(position, "include " + excerpt(name) + ": there is no such file");
+    if (!text) return error(position, what + ": there is no such file");
+    // Of other files no message may show a word.
+    if (!begins_as_script(*text))
+        return error(position,
+                     what + ": it is not a script: it does not begin with a declaration or a movement");
     const ScriptLexer lexer = m_lexer;
     const int file = m_file;
-    parse_file(*text, name, true);
+    parse_file(*text, name, position, true);
     m_lexer = lexer;
     m_file = file;
     m_peeked = false;
@@ -90,10 +113,11 @@ void ScriptParser::report(Severity severity, const ScriptPosition& position, std
     const auto file = static_cast<std::size_t>(position.file);
     const std::string name = file < m_program.files.size() ? m_program.files[file] : std::string();
     m_script.diagnostics.push_back({severity, name, position.line, position.column, std::move(found),
-                                    std::move(expected), std::move(message)});
+                                    std::move(expected), std::move(message),
+                                    m_program.included_from(position.file)});
     if (!is_error || count < kMostMessages) return;
     m_script.diagnostics.push_back({Severity::error, name, position.line, position.column, "", "",
-                                    std::to_string(kMostMessages) + " errors: the rest is not read"});
+                                    std::to_string(kMostMessages) + " errors: the rest is not read", ""});
     throw ScriptTooBad{};
 }
 
@@ -105,10 +129,19 @@ void ScriptParser::fault(const ScriptPosition& position, const std::string& mess
     report(strict() ? Severity::error : Severity::warning, position, "", "", message);
 }
 
-void ScriptParser::unexpected(const ScriptToken& token, const char* expected) {
+std::string ScriptParser::usage() const {
+    if (!m_entry || m_entry->usage.empty()) return {};
+    return std::string(" (").append(m_entry->word).append(" ").append(m_entry->usage).append(")");
+}
+
+void ScriptParser::unexpected(const ScriptToken& token, const std::string& expected) {
     const std::string found = token.text.empty() ? "the end of the text" : std::string(token.text);
-    report(Severity::error, position_of(token), found, expected,
-           "found " + (token.text.empty() ? found : quoted(found)) + ", expected " + expected);
+    // Where a statement is cut short by the next, it is the one that is wrong.
+    const bool cut_short = m_entry && (token.text.empty() || begins_statement(token));
+    const std::string what =
+        "found " + (token.text.empty() ? found : quoted(found)) + ", expected " + expected;
+    report(Severity::error, cut_short ? m_entry_position : position_of(token), found, expected,
+           (cut_short ? std::string(m_entry->word) + " is not complete: " + what : what) + usage());
     throw Abandoned{};
 }
 
@@ -153,13 +186,14 @@ ScriptPosition ScriptParser::position_of(const ScriptToken& token) const {
 bool ScriptParser::begins_statement(const ScriptToken& token) const {
     if (m_symbols.known(token.text)) return false;
     if (script_table::is_keyword(token.text)) return true;
-    return token.begins_line && token.text.size() >= 3 && script_table::find_statement(token.text);
+    return token.begins_line && token.text.size() >= kShortestForm &&
+           script_table::find_statement(token.text);
 }
 
 void ScriptParser::skip_to_statement() {
     while (!peek().text.empty()) {
         const auto* entry = script_table::find_statement(peek().text);
-        if (entry && begins_statement(peek())) return;
+        if (entry && begins_statement(peek()) && (strict() || peek().begins_line)) return;
         take();
     }
 }
@@ -171,8 +205,8 @@ ScriptToken ScriptParser::take_operand(const char* expected) {
 
 std::string ScriptParser::take_name(OperandKind kind) {
     const std::string expected = std::string("a name for ") + description_of(kind);
-    if (peek().text.empty() || script_table::is_keyword(peek().text)) unexpected(peek(), expected.c_str());
-    if (looks_like_number(peek().text)) unexpected(take(), expected.c_str());
+    if (peek().text.empty() || script_table::is_keyword(peek().text)) unexpected(peek(), expected);
+    if (looks_like_number(peek().text)) unexpected(take(), expected);
     const ScriptToken token = take();
     if (const auto other = m_symbols.other_kind(kind, token.text))
         fault(position_of(token),
@@ -204,7 +238,39 @@ int ScriptParser::take_mention(OperandKind kind) {
 
 // --- Statements
 
+void ScriptParser::end_statement() {
+    m_entry = nullptr;
+    if (strict() || m_peeked) return;
+    const ScriptToken token = m_lexer.skip_line();
+    if (token.text.empty()) return;
+    report(Severity::warning, position_of(token), std::string(token.text), "",
+           "found " + quoted(token.text) + " after the end of a statement: " +
+               (script_table::find_statement(token.text) && begins_statement(token)
+                    ? "a statement begins on a new line, and the rest of this one is passed over"
+                    : "the rest of the line is passed over"));
+}
+
+void ScriptParser::unknown_statement(const ScriptToken& token) {
+    if (script_table::is_keyword(token.text))
+        unexpected(token,
+                   "a declaration or a movement: before an action stand how it is spread and two frames, "
+                   "as in linear 0 9 " +
+                       std::string(token.text));
+    unexpected(token, "a declaration or a movement" +
+                          suggestion(nearest_of(token.text, script_table::words(false))));
+}
+
+void ScriptParser::warn_of_short_form(const ScriptToken& token, const script_table::Entry& entry,
+                                      bool action) {
+    const auto* rival = script_table::rival_of(entry, token.text, action);
+    if (!rival || !m_short_forms.emplace(token.text).second) return;
+    report(
+        Severity::warning, position_of(token), std::string(token.text), "",
+        quoted(token.text) + " is taken for " + quoted(entry.word) + ", and not for " + quoted(rival->word));
+}
+
 bool ScriptParser::statement(bool library) {
+    m_entry = nullptr;
     const ScriptToken token = take();
     if (token.text.empty()) {
         if (!library)
@@ -213,7 +279,10 @@ bool ScriptParser::statement(bool library) {
         return false;
     }
     const auto* entry = script_table::find_statement(token.text);
-    if (!entry) unexpected(token, "a declaration or a movement");
+    if (!entry) unknown_statement(token);
+    warn_of_short_form(token, *entry, false);
+    m_entry = entry;
+    m_entry_position = position_of(token);
     switch (entry->keyword) {
         case Keyword::figure:
             figure();
@@ -260,6 +329,7 @@ bool ScriptParser::statement(bool library) {
             skip_to_statement();
             break;
         default:
+            m_entry = nullptr;
             unexpected(token, "a declaration or a movement: it is a word of the first versions");
     }
     return true;
@@ -371,7 +441,9 @@ void ScriptParser::speed() {
 
 void ScriptParser::view() {
     std::array<int, 2> frames{};
-    for (int& f : frames) f = take_integer("a frame", -kLargestFrame, kLargestFrame);
+    // Drivers write the largest number they know for "to the end".
+    constexpr int kAny = std::numeric_limits<int>::max();
+    for (int& f : frames) f = std::clamp(take_integer("a frame", -kAny, kAny), -kLargestFrame, kLargestFrame);
     m_program.view = frames;
 }
 

@@ -28,16 +28,21 @@ class ScriptParser {
         int subroutine = 0;
         std::size_t movement = 0, operand = 0;
         char letter = 'n';
-        std::string name;
+        std::string name, usage;
         ScriptPosition position;
     };
 
     // Texts
-    void parse_file(std::string_view text, const std::string& name, bool library);
+    void parse_file(std::string_view text, const std::string& name, const ScriptPosition& included_at,
+                    bool library);
     void parse_included(const std::string& name, const ScriptPosition& position);
+    void add_file(const std::string& name, const ScriptPosition& included_at);
 
     // Statements; each throws Abandoned where it cannot go on
     bool statement(bool library);  ///< false at the end of the text
+    void end_statement();
+    void unknown_statement(const ScriptToken& token);
+    void warn_of_short_form(const ScriptToken& token, const script_table::Entry& entry, bool action);
     void skip_to_statement();
     void figure();
     void ellipsoid();
@@ -71,7 +76,9 @@ class ScriptParser {
     void error(const ScriptPosition& position, const std::string& message);
     /// A warning, in the strict dialect an error.
     void fault(const ScriptPosition& position, const std::string& message);
-    [[noreturn]] void unexpected(const ScriptToken& token, const char* expected);
+    [[noreturn]] void unexpected(const ScriptToken& token, const std::string& expected);
+    /// How the statement being read goes on after its word.
+    std::string usage() const;
     void check_size(std::size_t size, const ScriptPosition& position);
 
     Script& m_script;
@@ -82,6 +89,9 @@ class ScriptParser {
     ScriptToken m_token;
     bool m_peeked = false;
     int m_file = 0;
+    const script_table::Entry* m_entry = nullptr;  ///< of the statement or the action being read
+    ScriptPosition m_entry_position;
+    std::set<std::string, std::less<>> m_short_forms;     ///< those that have been warned of
     int m_subroutine = 0;                                 ///< the one being read
     std::set<int> m_defined_subroutines{0}, m_shaped{0};  ///< declared in full, not only named
     std::vector<std::string> m_including;
@@ -92,6 +102,12 @@ class ScriptParser {
 
 /// Thrown out of the parser where it gives up: too many errors, or a text too large.
 struct ScriptTooBad {};
+
+/// Do numbers say that a movement never happens?
+inline bool runs_backwards(const Movement& m) {
+    return m.start.kind == OperandKind::number && m.stop.kind == OperandKind::number &&
+           m.stop.number < m.start.number;
+}
 
 /// What only the whole program shows: rings of joints, figures in pieces, subroutines that call themselves.
 void check_program(Script& script);

@@ -2,6 +2,8 @@
 #include "anamorph/figure/script_symbols.h"
 
 #include <algorithm>
+#include <numeric>
+#include <utility>
 
 #include "anamorph/text_file.h"
 
@@ -109,6 +111,51 @@ std::string quoted(std::string_view text) {
     return out;
 }
 
+namespace {
+
+/// How many letters are to be exchanged, put in, taken out, or swapped with the next to turn a into b.
+std::size_t edit_distance(std::string_view a, std::string_view b) {
+    std::vector<std::size_t> before, last(b.size() + 1), row(b.size() + 1);
+    std::iota(last.begin(), last.end(), 0);
+    for (std::size_t i = 1; i <= a.size(); ++i) {
+        row[0] = i;
+        for (std::size_t j = 1; j <= b.size(); ++j) {
+            const bool same = a[i - 1] == b[j - 1];
+            row[j] = std::min({last[j] + 1, row[j - 1] + 1, last[j - 1] + (same ? 0 : 1)});
+            if (i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1])
+                row[j] = std::min(row[j], before[j - 2] + 1);
+        }
+        before = std::exchange(last, row);
+    }
+    return last[b.size()];
+}
+
+}  // namespace
+
+std::string nearest_of(std::string_view word, const std::vector<std::string_view>& candidates) {
+    // Names are short; in longer ones, and among very many, it is not worth the time.
+    constexpr std::size_t kLongest = 32, kMostCandidates = 10000;
+    if (word.size() > kLongest || candidates.size() > kMostCandidates) return {};
+    std::size_t least = std::max<std::size_t>(word.size() / 3, 1) + 1;
+    std::string_view nearest;
+    for (const std::string_view candidate : candidates) {
+        const std::size_t longer = std::max(candidate.size(), word.size()),
+                          shorter = std::min(candidate.size(), word.size());
+        if (shorter < 2 || longer - shorter > least) continue;
+        const std::size_t distance = edit_distance(word, candidate);
+        const bool tie = distance == least && !nearest.empty() && candidate < nearest;
+        if (distance < least || tie) {
+            least = distance;
+            nearest = candidate;
+        }
+    }
+    return std::string(nearest);
+}
+
+std::string suggestion(const std::string& name) {
+    return name.empty() ? std::string() : ", did you mean " + quoted(name) + "?";
+}
+
 ScriptSymbols::ScriptSymbols(Program& program) : m_program(program) {
     make(OperandKind::subroutine, "nudes", {});
     make(OperandKind::figure, "every", {});
@@ -183,6 +230,16 @@ std::optional<Operand> ScriptSymbols::resolve(char letter, std::string_view name
     for (const char kind : kinds_for(letter))
         if (const auto index = find(kind_of(kind), name)) return Operand{kind_of(kind), 0, *index};
     return std::nullopt;
+}
+
+std::string ScriptSymbols::nearest(char letter, std::string_view name) const {
+    std::vector<std::string_view> candidates;
+    for (const auto& [known, row] : m_indices) {
+        bool fits = letter != 'J' && letter != 'F' && row[column(OperandKind::variable)] >= 0;
+        for (const char kind : kinds_for(letter)) fits = fits || row[column(kind_of(kind))] >= 0;
+        if (fits) candidates.push_back(known);
+    }
+    return nearest_of(name, candidates);
 }
 
 }  // namespace anamorph

@@ -7,6 +7,7 @@
 #include <string>
 #include <string_view>
 #include <unordered_map>
+#include <vector>
 
 #include "anamorph/figure/program.h"
 
@@ -18,6 +19,12 @@ const char* description_of(OperandKind kind);
 
 /// Fit for a message: in quotes, on one line, not endless.
 std::string quoted(std::string_view text);
+
+/// The candidate that `word` is most likely a misspelling of; empty where none is near.
+std::string nearest_of(std::string_view word, const std::vector<std::string_view>& candidates);
+
+/// `, did you mean "NAME"?`, or nothing for an empty name.
+std::string suggestion(const std::string& name);
 
 class ScriptSymbols {
   public:
@@ -33,6 +40,8 @@ class ScriptSymbols {
 
     /// What a name means where `letter` is asked for: a variable first. Numbers are not looked up.
     std::optional<Operand> resolve(char letter, std::string_view name) const;
+    /// The known name of what `letter` asks for that is nearest to `name`; empty where none is near.
+    std::string nearest(char letter, std::string_view name) const;
 
   private:
     static constexpr int kKinds = 8;

@@ -4,6 +4,7 @@
 
 #include <span>
 #include <string_view>
+#include <vector>
 
 #include "anamorph/figure/program.h"
 
@@ -36,6 +37,8 @@ struct Entry {
     /// What the operands of an action are, a letter each: n number, v variable, e ellipsoid, j joint, J joint
     /// made here, f figure, F figure made here, a axis, s subroutine, i image, * anything.
     std::string_view operands = {};
+    /// What follows the word, for people: a name for each operand.
+    std::string_view usage = {};
 };
 
 std::span<const Entry> entries();
@@ -44,6 +47,10 @@ std::span<const Entry> entries();
 const Entry* find_statement(std::string_view word);
 /// The same among actions and what is ignored.
 const Entry* find_action(std::string_view word);
+/// Another entry that a shortened `word` may mean where `entry` is the first; nullptr where there is none.
+const Entry* rival_of(const Entry& entry, std::string_view word, bool among_actions);
+/// All that may stand in one of the two places.
+std::vector<std::string_view> words(bool of_actions);
 /// Whether `word` is a keyword, written in full.
 bool is_keyword(std::string_view word);
 
