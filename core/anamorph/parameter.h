@@ -22,10 +22,10 @@ namespace anamorph {
 
 enum class ParameterType {
     number,   ///< finite, decimal, with a point whatever the locale
-    whole,    ///< a whole number
+    whole,    ///< an integer
     toggle,   ///< 0 or 1
     choice,   ///< one of `choices`
-    extent,   ///< N or NxM, whole numbers
+    extent,   ///< N or NxM, integers
     numbers,  ///< as number, one or more, separated by commas
     image,    ///< the name of an image, or of a recipe
     file,     ///< the name of another file
@@ -39,11 +39,14 @@ struct Parameter {
     std::string default_value;  ///< as written in a recipe; may be empty, which `documentation` then explains
     std::vector<std::string> choices;
     double minimum = 0, maximum = 0;  ///< of number, whole, numbers and extent
+    bool above_minimum = false;       ///< the minimum itself is not accepted (of number and numbers)
     std::string documentation;        ///< one line
     std::string alias;                ///< another key for the same
 
-    /// "allowed is a number from 0 to 10", "allowed are edges, centers".
-    std::string allowed() const;
+    /// What a value may be: "a number from 0 to 10", "edges, centers".
+    std::string accepted() const;
+    /// The same for a message: "must be a number from 0 to 10", "must be one of edges, centers".
+    std::string rule() const;
 };
 
 using ParameterTable = std::vector<Parameter>;

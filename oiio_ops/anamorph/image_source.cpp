@@ -153,8 +153,8 @@ int unassociated_alpha_of(const ImageSpec& spec) {
 
 void check_flat(const ImageSpec& spec, const std::string& name) {
     const std::string image = "source \"" + printable(name) + "\"";
-    if (spec.deep) throw Error(image + " is deep: allowed are flat images");
-    if (spec.depth > 1 || spec.full_depth > 1) throw Error(image + " is a volume: allowed are flat images");
+    if (spec.deep) throw Error(image + " is deep: must be a flat image");
+    if (spec.depth > 1 || spec.full_depth > 1) throw Error(image + " is a volume: must be a flat image");
     if (spec.width < 1 || spec.height < 1 || spec.full_width < 1 || spec.full_height < 1 ||
         spec.nchannels < 1)
         throw Error(image + " has no pixels");
@@ -345,21 +345,21 @@ std::string joined(const std::vector<std::string>& words) {
 
 std::shared_ptr<const WorkingSpace> WorkingSpace::make(const std::string& name, const ImageSpec& spec) {
     if (spec.nchannels < 3)
-        throw Error("colorspace", printable(name), "allowed are sources of at least 3 channels");
+        throw Error("colorspace", printable(name), "the source must have at least 3 channels");
     const OIIO::ColorConfig& config = color_config();
     const char* role = config.getColorSpaceNameByRole(name);
     const std::string space = role ? role : name;
     const std::string own = spec.get_string_attribute("oiio:ColorSpace");
     if (own.empty())
         throw Error("colorspace", printable(name),
-                    "the source does not say its own color space; allowed is none for such a source");
+                    "the source does not say its own color space: must not be given");
     if (own == space) return nullptr;
     auto result = std::make_shared<WorkingSpace>();
     result->m_there = config.createColorProcessor(own, space);
     result->m_back = config.createColorProcessor(space, own);
     if (!result->m_there || !result->m_back) {
         throw Error("colorspace", printable(name),
-                    "no way to it from \"" + own + "\"; allowed are the role scene_linear and " +
+                    "no way to it from \"" + own + "\": must be the role scene_linear or one of " +
                         joined(config.getColorSpaceNames()));
     }
     result->m_channels = spec.nchannels;

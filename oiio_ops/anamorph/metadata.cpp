@@ -96,7 +96,7 @@ void check_size(const PictureRequest& picture, const ImageSpec& source) {
                              double(source.format.size()) / (1024.0 * 1024.0);
     if (limit > 0 && megabytes > limit)
         throw Error("size", std::to_string(picture.width) + "x" + std::to_string(picture.height),
-                    "allowed are at most " + std::to_string(limit) + " MB (limits:imagesize_MB)");
+                    "must make at most " + std::to_string(limit) + " MB (limits:imagesize_MB)");
 }
 
 ImageSpec picture_spec(const ImageSpec& source, const PictureRequest& picture) {

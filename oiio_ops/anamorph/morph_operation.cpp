@@ -98,12 +98,12 @@ void check_alike(const std::vector<OIIO::ImageSpec>& specs, const ParameterValue
         const std::string& key = morph_pictures()[i];
         if (other.nchannels != a.nchannels)
             throw Error("picture " + key + " has " + std::to_string(other.nchannels) +
-                        " channels and a has " + std::to_string(a.nchannels) + ": allowed are as many");
+                        " channels and a has " + std::to_string(a.nchannels) + ": must have as many");
         const std::string space = other.get_string_attribute("oiio:ColorSpace"),
                           space_a = a.get_string_attribute("oiio:ColorSpace");
         if (!values.given("colorspace") && !space.empty() && !space_a.empty() && space != space_a)
             throw Error("picture " + key + " is in color space \"" + printable(space) + "\" and a in \"" +
-                        printable(space_a) + "\": allowed with colorspace= only");
+                        printable(space_a) + "\": must be the same, or colorspace be given");
     }
 }
 
@@ -122,14 +122,12 @@ const OperationKind& morph_kind() {
             const MorphRequest request = read_morph_request(values, sizes);
             const auto file = files.find("features");
             if (file == files.end())
-                throw Error(
-                    "features is not given: allowed is the name of a .json, "
-                    ".csv or .svg file");
+                throw Error("features is not given: must be the name of a .json, .csv or .svg file");
             std::shared_ptr<const Features> features = read_features(file->second);
             if (static_cast<std::size_t>(features->shapes()) != specs.size())
                 throw Error("features", printable(file->second.name),
-                            "the file has " + std::to_string(features->shapes()) + " shapes; given are " +
-                                std::to_string(specs.size()) + " pictures");
+                            "the file has " + std::to_string(features->shapes()) + " shapes: must have " +
+                                std::to_string(specs.size()) + ", as many as pictures are given");
             if (request.pin_border) {
                 auto pinned = std::make_shared<Features>(*features);
                 pinned->pin_border(*request.pin_border);

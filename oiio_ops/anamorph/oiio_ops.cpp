@@ -50,7 +50,8 @@ ParameterValues values_of(const OperationKind& kind, const OIIO::ParamValueList&
     std::vector<std::string> of_recipes = kind.sources;
     of_recipes.insert(of_recipes.end(), {"tile", "mip", "frames"});
     for (const std::string& name : of_recipes)
-        if (asked.given(name)) throw Error(name, printable(asked.text(name)), "allowed in recipes only");
+        if (asked.given(name))
+            throw Error(name, printable(asked.text(name)), "must be given in recipes only");
     values.assign(assignments);
     return values;
 }
@@ -83,8 +84,7 @@ void prepare(ImageBuf& dst, const ImageSpec& picture, ROI& roi) {
         roi = ROI(spec.x, spec.x + spec.width, spec.y, spec.y + spec.height, 0, 1,
                   roi.defined() ? roi.chbegin : 0, roi.defined() ? roi.chend : spec.nchannels);
     } else {
-        if (dst.deep() || dst.spec().depth > 1)
-            throw Error("dst is deep or a volume: allowed are flat images");
+        if (dst.deep() || dst.spec().depth > 1) throw Error("dst is deep or a volume: must be a flat image");
         roi = roi.defined() ? roi_intersection(roi, dst.roi()) : dst.roi();
         if (!dst.localpixels() && !dst.make_writable(true)) throw Error("dst cannot be written");
     }
@@ -135,7 +135,7 @@ bool run(const OperationKind& kind, const char* name, ImageBuf& dst,
          int nthreads) {
     try {
         if (sources.size() < kind.least_sources || sources.size() > kind.sources.size())
-            throw Error(std::to_string(sources.size()) + " source images: allowed are " +
+            throw Error(std::to_string(sources.size()) + " source images: must be " +
                         std::to_string(kind.least_sources) + " to " + std::to_string(kind.sources.size()));
         std::vector<ImageSpec> specs;
         for (const ImageBuf* src : sources) {

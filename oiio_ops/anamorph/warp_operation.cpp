@@ -38,19 +38,17 @@ GivenMap read_map(const WarpRequest& request, const SideFiles& files) {
     const auto mesh = files.find("mesh"), points = files.find("points");
     const bool has_mesh = mesh != files.end(), has_points = points != files.end();
     if (has_mesh && has_points)
-        throw Error("points", printable(points->second.name), "allowed without mesh only");
+        throw Error("points", printable(points->second.name), "must not be given together with mesh");
     if (!has_mesh && !has_points)
-        throw Error(
-            "mesh is not given: allowed are a mesh (.json), an ST-map (an "
-            "image), or points");
+        throw Error("mesh is not given: needed are a mesh (.json), an ST-map (an image), or points");
     const SideFile& file = has_mesh ? mesh->second : points->second;
     std::shared_ptr<const WarpMap> map = has_mesh ? read_warp_map(file, request.step) : read_points(file);
     if (has_points && std::holds_alternative<ControlMesh>(map->shape))
-        throw Error("points", printable(file.name), "the file holds a mesh: allowed as mesh");
+        throw Error("points", printable(file.name), "the file holds a mesh: must be given as mesh");
     if (request.direction) {
         auto turned = std::make_shared<WarpMap>(*map);
         auto* shape = std::get_if<ControlMesh>(&turned->shape);
-        if (!shape) throw Error("direction is given for points: allowed for a mesh only");
+        if (!shape) throw Error("direction is given with points: must be given with a mesh only");
         shape->direction = *request.direction;
         map = turned;
     }

@@ -133,7 +133,7 @@ class FileInput final : public ImageInput {
             const ImageSpec& spec = level_spec(*open, subimage, miplevel);
             if (chbegin < 0 || chend > spec.nchannels || chbegin >= chend)
                 throw Error("channels " + std::to_string(chbegin) + " to " + std::to_string(chend) +
-                            ": allowed are 0 to " + std::to_string(spec.nchannels));
+                            ": must be from 0 to " + std::to_string(spec.nchannels));
             if (chend - chbegin == spec.nchannels) return read_rows(subimage, miplevel, ybegin, yend, data);
             constexpr int kRows = 256;
             const std::size_t channel = spec.format.size(), pixel = spec.pixel_bytes();
@@ -176,7 +176,7 @@ class FileInput final : public ImageInput {
         const std::shared_ptr<const Content> open = content();
         const ImageSpec& spec = level_spec(*open, subimage, miplevel);
         if (end > spec.y + spec.height)
-            throw Error("rows up to " + std::to_string(end) + ": allowed are up to " +
+            throw Error("rows up to " + std::to_string(end) + ": must be up to " +
                         std::to_string(spec.y + spec.height));
         read_box(*open, subimage, miplevel, {spec.x, begin, spec.x + spec.width, end}, data);
     }
@@ -246,7 +246,7 @@ class BufferOutput final : public ImageOutput {
 
     bool open(const std::string& name, const ImageSpec& spec, OpenMode mode) override {
         if (mode != Create) return failed("an image in memory has one subimage and one level");
-        if (spec.deep || spec.depth > 1) return failed("allowed are flat images");
+        if (spec.deep || spec.depth > 1) return failed("must be a flat image");
         if (spec.width < 1 || spec.height < 1 || spec.nchannels < 1) return failed("the image has no pixels");
         m_name = name;
         m_spec = spec;

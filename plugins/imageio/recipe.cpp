@@ -28,7 +28,7 @@ bool read_recipe_file(const std::string& path, std::string& text) {
     if (!fs::is_regular_file(status)) throw Error(what + " is not a file");
     const std::uintmax_t size = fs::file_size(path, failure);
     if (failure || size > kMaxRecipeBytes)
-        throw Error(what + " has " + std::to_string(size) + " bytes: allowed are at most " +
+        throw Error(what + " has " + std::to_string(size) + " bytes: must have at most " +
                     std::to_string(kMaxRecipeBytes));
     std::ifstream file(path, std::ios::binary);
     text.resize(static_cast<std::size_t>(size));
@@ -111,7 +111,7 @@ class Walk {
             throw Error("recipes read each other: " + cycle);
         }
         if (kind && static_cast<int>(m_way.size()) > kMaxDepth)
-            throw Error("recipes nest too deep: allowed are " + std::to_string(kMaxDepth));
+            throw Error("recipes nest too deep: must be at most " + std::to_string(kMaxDepth));
         if (m_seen.insert(name).second) {
             m_identity += state_of(file);
             if (kind)

@@ -152,10 +152,10 @@ class RecipeContent final : public Content {
             const auto file = recipe.files.find(keys[i]);
             const bool given = file != recipe.files.end();
             if (i < recipe.kind->least_sources && !given)
-                throw Error(keys[i] + " is not given: allowed is the name of an image");
+                throw Error(keys[i] + " is not given: must be the name of an image");
             if (given && i > sources.size())
                 throw Error(keys[i], printable(file->second.name),
-                            "allowed is to give " + keys[i - 1] + " too");
+                            "must be given together with " + keys[i - 1]);
             if (given) sources.push_back(file->second);
         }
         return sources;

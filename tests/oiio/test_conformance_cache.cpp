@@ -109,7 +109,7 @@ TEST_F(CacheConformance, conformance_16_cycles) {
     std::string deep = "city.exr";
     for (int i = 0; i < 40; ++i)
         deep = OIIO::Strutil::fmt::format("n{}.pano?to=equirectangular&size=8&src={}", i, deep);
-    EXPECT_THAT(open_error(deep), HasSubstr("nest too deep: allowed are 16"));
+    EXPECT_THAT(open_error(deep), HasSubstr("nest too deep: must be at most 16"));
     // Two threads that enter a cycle from both ends must not wait for each other.
     std::vector<std::thread> threads;
     std::atomic<int> opened{0};

@@ -34,13 +34,15 @@ ParameterTable make_table() {
         choice("from", "", projections(),
                "projection of the source; by default what the image says of itself"),
         choice("to", "rectilinear", projections(), "projection of the picture"),
-        number(
+        above(number(
             "srcfov", "degrees", "", 0, 360,
-            "horizontal field of view of the source, edge to edge; by default 360 for equirectangular, "
-            "cylindrical "
-            "and mercator, 180 for fisheye, equisolid and stereographic, 90 for rectilinear and cube faces"),
-        number("fov", "degrees", "", 0, 360,
-               "horizontal field of view of the picture, edge to edge; defaults as for srcfov"),
+            "horizontal field of view of the source, edge to edge; by default what the image says of itself, "
+            "else 360 for equirectangular, cylindrical and mercator, 180 for fisheye, equisolid and "
+            "stereographic, 90 for rectilinear and cube faces")),
+        above(
+            number("fov", "degrees", "", 0, 360,
+                   "horizontal field of view of the picture, edge to edge: below 180 for rectilinear, below "
+                   "360 for stereographic, 90 for cube faces; defaults by projection as for srcfov")),
         number("yaw", "degrees", "0", -kInfinity, kInfinity, "where the camera looks: to the right"),
         number("pitch", "degrees", "0", -kInfinity, kInfinity, "where the camera looks: up"),
         number("roll", "degrees", "0", -kInfinity, kInfinity,
@@ -89,7 +91,7 @@ int columns_of_faces(Projection projection) {
 }
 
 SizeValue natural_size(Projection projection, double fov, double width) {
-    const double limit = rows::kMaxSize;
+    const double limit = kMaxSide;
     const int w = static_cast<int>(std::clamp(std::round(width), 1.0, limit));
     const int h = static_cast<int>(std::clamp(std::round(w * natural_aspect(projection, fov)), 1.0, limit));
     return {w, h};
@@ -113,15 +115,13 @@ Projection source_projection(const ParameterValues& values, const SourceFacts& s
     if (std::int64_t{source.width} == std::int64_t{source.height} * 2) return Projection::equirectangular;
     if (std::int64_t{source.width} * 6 == source.height) return Projection::cubemap;
     throw Error("from is not given and the source (" + std::to_string(source.width) + "x" +
-                std::to_string(source.height) + ") does not say its projection: allowed are " +
+                std::to_string(source.height) + ") does not say its projection: must be one of " +
                 projection_names());
 }
 
 double field_of_view(const ParameterValues& values, std::string_view name, Projection projection) {
     if (!values.given(name)) return Chart::default_fov(projection);
-    const double fov = values.number(name);
-    if (!(fov > 0)) throw Error(std::string(name), values.text(name), "allowed is above 0 degrees");
-    return fov;
+    return values.number(name);
 }
 
 }  // namespace
