@@ -2,6 +2,7 @@
 #include "anamorph/image_source.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstring>
 #include <map>
 
@@ -143,6 +144,9 @@ Frame frame_of(const ImageSpec& spec) {
         const int top = spec.get_int_attribute("GPano:CroppedAreaTopPixels");
         return {full_width, full_height, {left, top, left + spec.width, top + spec.height}};
     }
+    if (spec.get_string_attribute("textureformat") == "CubeFace Environment" &&
+        spec.height == std::int64_t{6} * spec.width)
+        return {spec.width, spec.height, {0, 0, spec.width, spec.height}};
     const int left = spec.x - spec.full_x, top = spec.y - spec.full_y;
     return {spec.full_width, spec.full_height, {left, top, left + spec.width, top + spec.height}};
 }
@@ -151,13 +155,17 @@ int unassociated_alpha_of(const ImageSpec& spec) {
     return spec.get_int_attribute("oiio:UnassociatedAlpha") ? spec.alpha_channel : -1;
 }
 
-void check_flat(const ImageSpec& spec, const std::string& name) {
+void check_source(const ImageSpec& spec, const std::string& name) {
     const std::string image = "source \"" + printable(name) + "\"";
     if (spec.deep) throw Error(image + " is deep: must be a flat image");
     if (spec.depth > 1 || spec.full_depth > 1) throw Error(image + " is a volume: must be a flat image");
     if (spec.width < 1 || spec.height < 1 || spec.full_width < 1 || spec.full_height < 1 ||
         spec.nchannels < 1)
         throw Error(image + " has no pixels");
+    const float aspect = spec.get_float_attribute("PixelAspectRatio", 1.0f);
+    if (!(std::fabs(aspect - 1) <= 1e-4f))
+        throw Error(image + " has PixelAspectRatio=" + shortest(aspect) +
+                    ": must be 1; resize it to square pixels, or correct the attribute");
 }
 
 // --- CacheSource -------------------------------------------------------------------------------------------
@@ -182,7 +190,7 @@ CacheSource::CacheSource(ImageCacheRef cache, const std::string& name, int subim
         const std::string why = why_not();
         throw Error("source \"" + printable(name) + "\": " + (why.empty() ? "cannot be read" : why));
     }
-    check_flat(base, name);
+    check_source(base, name);
     m_levels.push_back({base, frame_of(base)});
     m_type = pixel_type(base.format);
     m_alpha = unassociated_alpha_of(base);

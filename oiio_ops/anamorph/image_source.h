@@ -28,7 +28,7 @@ PixelType pixel_type(OIIO::TypeDesc type);
 OIIO::TypeDesc oiio_type(PixelType type);
 
 /// The data window inside the panorama: from the display window, or from GPano's cropped area where the image
-/// has one.
+/// has one. An environment of six faces that is as high as these is whole: OpenEXR's display window is one.
 struct Frame {
     int width = 0, height = 0;  ///< of the panorama
     Box data;                   ///< relative to the panorama's corner
@@ -38,8 +38,8 @@ Frame frame_of(const OIIO::ImageSpec& spec);
 /// The channel by which a picture's colour is not yet multiplied, or -1.
 int unassociated_alpha_of(const OIIO::ImageSpec& spec);
 
-/// Throws Error when the image is deep, has depth, or has no pixels or channels.
-void check_flat(const OIIO::ImageSpec& spec, const std::string& name);
+/// Throws Error when the image is deep, has depth, has no pixels or channels, or pixels that are not square.
+void check_source(const OIIO::ImageSpec& spec, const std::string& name);
 
 /// A file, read tile by tile through an ImageCache. Each read borrows one of a pool of the cache's thread
 /// records, so it may happen inside another read of the same cache. Throws Error when the image cannot be

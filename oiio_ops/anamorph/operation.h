@@ -42,8 +42,9 @@ enum class PixelKind { color, point, value };
 struct PictureRequest {
     int width = 0, height = 0;
     PixelKind pixels = PixelKind::color;
-    Facts facts;      ///< known beforehand: "anamorph:tol"
-    std::string key;  ///< the same text, the same drawing
+    Facts facts;                ///< known beforehand: "anamorph:tol"
+    OIIO::ParamValueList says;  ///< what the picture says of itself to those who read it: its projection
+    std::string key;            ///< the same text, the same drawing
     std::function<std::unique_ptr<const Drawing>()> solve;
 };
 

@@ -54,16 +54,19 @@ class PanoOperation final : public Operation {
             request.target = *half;
         }
         const Output output = request.options.output;
-        return PictureRequest{
-            request.target.width(),
-            request.target.height(),
-            output == Output::color   ? PixelKind::color
-            : output == Output::stmap ? PixelKind::point
-                                      : PixelKind::value,
-            {{"anamorph:tol", request.options.tol}},
-            key_of(request),
-            [request] { return std::make_unique<PanoDrawing>(request); },
-        };
+        PictureRequest picture;
+        picture.width = request.target.width();
+        picture.height = request.target.height();
+        picture.pixels = output == Output::color   ? PixelKind::color
+                         : output == Output::stmap ? PixelKind::point
+                                                   : PixelKind::value;
+        picture.facts = {{"anamorph:tol", request.options.tol}};
+        picture.says = projection_attributes(request.target, picture.pixels == PixelKind::color);
+        picture.says.attribute("anamorph:from", std::string(name_of(request.source.projection())) + " (" +
+                                                    request.source_reason + ")");
+        picture.key = key_of(request);
+        picture.solve = [request] { return std::make_unique<PanoDrawing>(request); };
+        return picture;
     }
 
     Faces faces() const override {

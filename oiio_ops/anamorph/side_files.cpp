@@ -12,6 +12,7 @@
 #include "anamorph/map/features_file.h"
 #include "anamorph/map/mesh_file.h"
 #include "anamorph/memo.h"
+#include "anamorph/orientation.h"
 #include "anamorph/text_file.h"
 
 namespace anamorph {
@@ -67,7 +68,17 @@ WarpMap read_stmap(const std::string& name, int step) {
         why.resize(std::min(why.size(), why.find('\n')));
         throw Error(what + ": " + why);
     }
-    return mesh_from_stmap(uv.data(), spec.width, spec.height, 2, std::ptrdiff_t{2} * spec.width, step, name);
+    const StoredOrder order(spec);
+    if (order.is_upright())
+        return mesh_from_stmap(uv.data(), spec.width, spec.height, 2, std::ptrdiff_t{2} * spec.width, step,
+                               name);
+    const Source::Size size = order.upright_size({spec.width, spec.height});
+    constexpr std::ptrdiff_t kPixel = 2 * sizeof(float);
+    std::vector<float> turned(uv.size());
+    order.turn(reinterpret_cast<const std::byte*>(uv.data()), reinterpret_cast<std::byte*>(turned.data()),
+               size.width, size.height, kPixel, kPixel * size.width);
+    return mesh_from_stmap(turned.data(), size.width, size.height, 2, std::ptrdiff_t{2} * size.width, step,
+                           name);
 }
 
 /// What make() makes, kept for the next who asks where the file's state has an identity.

@@ -9,6 +9,7 @@
 #include "anamorph/image_source.h"
 #include "anamorph/memo.h"
 #include "anamorph/metadata.h"
+#include "anamorph/orientation.h"
 #include "anamorph/parallel.h"
 #include "anamorph/picture.h"
 #include "recipe.h"
@@ -96,8 +97,10 @@ class RecipeContent final : public Content {
             images.push_back(std::move(image));
             identity += file.identity;
         }
-        m_source = specs[0];
-        m_operation = recipe.kind->read(values, specs, recipe.files);
+        std::vector<ImageSpec> upright_specs;
+        for (const ImageSpec& spec : specs) upright_specs.push_back(upright(spec));
+        m_source = upright_specs[0];
+        m_operation = recipe.kind->read(values, upright_specs, recipe.files);
         const PictureRequest first = *m_operation->picture(0, 0);
         check_size(first, m_source);
 
@@ -175,7 +178,7 @@ class RecipeContent final : public Content {
         return found->second;
     }
 
-    ImageSpec m_source;  ///< of the first source
+    ImageSpec m_source;  ///< of the first source, upright
     std::unique_ptr<const Operation> m_operation;
     std::shared_ptr<const SourceStacks> m_stacks;
     SizeValue m_tile;

@@ -211,7 +211,7 @@ TEST_F(Ops, MetadataThatHoldsIsKept) {
     EXPECT_EQ(spec.get_string_attribute("oiio:ColorSpace"), "sRGB");
     EXPECT_FALSE(spec.find_attribute("GPano:ProjectionType"));
     EXPECT_FALSE(spec.find_attribute("textureformat"));
-    EXPECT_FALSE(spec.find_attribute("Orientation"));
+    EXPECT_EQ(spec.get_int_attribute("Orientation"), 1);
     EXPECT_FLOAT_EQ(spec.get_float_attribute("anamorph:tol"), 0.02f);
     EXPECT_LE(spec.get_float_attribute("anamorph:max_error", 9), 0.02f);
     EXPECT_GE(spec.get_float_attribute("anamorph:exact_fraction", -1), 0.0f);
