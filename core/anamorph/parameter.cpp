@@ -4,8 +4,10 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <new>
 #include <optional>
 #include <set>
+#include <stdexcept>
 
 namespace anamorph {
 namespace {
@@ -148,6 +150,11 @@ bool is_control(char c) {
     return (byte < 0x20 && c != '\t') || byte == 0x7f;
 }
 
+void make_printable(std::string& text) {
+    std::replace_if(
+        text.begin(), text.end(), [](char c) { return is_control(c) || c == '\t'; }, '?');
+}
+
 template <class Number>
 std::string fewest_digits(Number value) {
     char text[64];
@@ -167,9 +174,16 @@ std::string shortest(float value) {
 std::string printable(std::string_view text) {
     constexpr std::size_t kMost = 100;
     std::string out(text.substr(0, kMost));
-    std::replace_if(
-        out.begin(), out.end(), [](char c) { return is_control(c) || c == '\t'; }, '?');
+    make_printable(out);
     return text.size() > kMost ? out + "..." : out;
+}
+
+std::string message_of(const std::exception& error, const std::string& what) {
+    const bool memory = dynamic_cast<const std::bad_alloc*>(&error) != nullptr ||
+                        dynamic_cast<const std::length_error*>(&error) != nullptr;
+    std::string message = memory ? "not enough memory for " + what : std::string(error.what());
+    make_printable(message);
+    return message;
 }
 
 std::string Parameter::accepted() const {
@@ -263,6 +277,16 @@ SizeValue ParameterValues::extent(std::string_view name) const {
     const std::optional<SizeValue> value = to_extent(text(name));
     if (!value) throw Error(std::string(name), text(name), "must be N or NxM");
     return *value;
+}
+
+std::string ParameterValues::key(const std::vector<std::string>& without) const {
+    std::string key;
+    for (const Parameter& parameter : *m_table) {
+        if (std::find(without.begin(), without.end(), parameter.name) != without.end()) continue;
+        // No value holds a line break, and none that is given is empty.
+        key += parameter.name + "=" + text(parameter.name) + "\n";
+    }
+    return key;
 }
 
 std::vector<Assignment> parse_recipe(std::string_view text) {

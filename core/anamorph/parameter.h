@@ -11,6 +11,7 @@
 #pragma once
 
 #include <cstddef>
+#include <exception>
 #include <map>
 #include <string>
 #include <string_view>
@@ -81,6 +82,9 @@ class ParameterValues {
     bool toggle(std::string_view name) const { return text(name) == "1"; }
     SizeValue extent(std::string_view name) const;
 
+    /// All values as one text, which differs where any value does; `without`: the names of those left out.
+    std::string key(const std::vector<std::string>& without = {}) const;
+
   private:
     const ParameterTable* m_table;
     std::map<std::string, std::string> m_given;
@@ -100,6 +104,9 @@ RecipeName parse_recipe_name(std::string_view name);
 
 /// `text` for a message: at most 100 characters, all printable.
 std::string printable(std::string_view text);
+
+/// What `error` says, in one printable line; of memory that cannot be had, that it cannot be had for `what`.
+std::string message_of(const std::exception& error, const std::string& what);
 
 /// A number in the fewest digits that read back as the same number.
 std::string shortest(double value);

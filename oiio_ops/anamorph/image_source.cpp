@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstring>
 #include <map>
+#include <string_view>
 
 #include "anamorph/error.h"
 #include "anamorph/image/pixel.h"
@@ -107,11 +108,6 @@ ImageSpec spec_in_cache(ImageCache& cache, OIIO::ustring name, int subimage, int
     return spec;
 }
 
-std::string first_line(std::string message) {
-    message.resize(std::min(message.size(), message.find('\n')));
-    return message;
-}
-
 }  // namespace
 
 PixelType pixel_type(TypeDesc type) {
@@ -168,29 +164,53 @@ void check_source(const ImageSpec& spec, const std::string& name) {
                     ": must be 1; resize it to square pixels, or correct the attribute");
 }
 
+std::string reason_of(std::string message, const std::string& name, const std::string& shown) {
+    for (std::size_t at = 0; !name.empty() && (at = message.find(name, at)) != std::string::npos;) {
+        message.replace(at, name.size(), printable(shown));
+        at += printable(shown).size();
+    }
+    message.resize(std::min(message.size(), message.find('\n')));
+    constexpr std::string_view kOurs = "anamorph: ";
+    const std::size_t ours = message.rfind(kOurs);
+    return ours == std::string::npos ? message : message.substr(ours + kOurs.size());
+}
+
 // --- CacheSource -------------------------------------------------------------------------------------------
 
-CacheSource::CacheSource(ImageCacheRef cache, const std::string& name, int subimage, int first_level,
-                         Facts facts)
-    : m_cache(std::move(cache)), m_name(name), m_subimage(subimage), m_first_level(first_level) {
-    const auto file = facts == Facts::from_file ? open_as_cache_does(*m_cache, name) : nullptr;
-    const auto spec_of = [&](int level) {
-        if (facts == Facts::from_cache)
-            return spec_in_cache(*m_cache, m_name, m_subimage, m_first_level + level);
-        return file ? file->spec(m_subimage, m_first_level + level) : ImageSpec();
-    };
-    const auto why_not = [&] {
-        return first_line(facts == Facts::from_cache ? m_cache->geterror()
-                          : file                     ? file->geterror()
-                                                     : OIIO::geterror());
-    };
+CacheSource::CacheSource(ImageCacheRef cache, const std::string& name, const std::string& shown, int subimage,
+                         int first_level)
+    : m_cache(std::move(cache)),
+      m_name(name),
+      m_shown(shown),
+      m_subimage(subimage),
+      m_first_level(first_level) {}
 
+CacheSource::CacheSource(ImageCacheRef cache, const std::string& name, int subimage, int first_level)
+    : CacheSource(std::move(cache), name, name, subimage, first_level) {
+    read_levels([&](int level) { return spec_in_cache(*m_cache, m_name, m_subimage, m_first_level + level); },
+                [&] { return m_cache->geterror(); });
+}
+
+CacheSource::CacheSource(ImageCacheRef cache, const std::string& name, const std::string& shown,
+                         const SpecOf& spec_of)
+    : CacheSource(std::move(cache), name, shown, 0, 0) {
+    read_levels(spec_of, [] { return std::string(); });
+}
+
+CacheSource::CacheSource(ImageCacheRef cache, const std::string& name, const std::string& shown)
+    : CacheSource(std::move(cache), name, shown, 0, 0) {
+    const auto file = open_as_cache_does(*m_cache, name);
+    read_levels([&](int level) { return file ? file->spec(0, level) : ImageSpec(); },
+                [&] { return file ? file->geterror() : OIIO::geterror(); });
+}
+
+void CacheSource::read_levels(const SpecOf& spec_of, const std::function<std::string()>& why_not) {
     const ImageSpec base = spec_of(0);
     if (base.format == OIIO::TypeUnknown) {
-        const std::string why = why_not();
-        throw Error("source \"" + printable(name) + "\": " + (why.empty() ? "cannot be read" : why));
+        const std::string why = reason_of(why_not(), m_name.string(), m_shown);
+        throw Error("source \"" + printable(m_shown) + "\": " + (why.empty() ? "cannot be read" : why));
     }
-    check_source(base, name);
+    check_source(base, m_shown);
     m_levels.push_back({base, frame_of(base)});
     m_type = pixel_type(base.format);
     m_alpha = unassociated_alpha_of(base);
@@ -219,15 +239,25 @@ Source::Size CacheSource::size(int level) const noexcept {
     return {f.width, f.height};
 }
 
+std::vector<ImageSpec> CacheSource::specs() const {
+    std::vector<ImageSpec> specs;
+    for (const Level& level : m_levels) specs.push_back(level.spec);
+    return specs;
+}
+
 std::string CacheSource::error() const {
     std::lock_guard lock(m_mutex);
     return m_error;
 }
 
 bool CacheSource::fail(const std::string& message) const {
+    const std::string why = reason_of(message, m_name.string(), m_shown);
+    const std::string source = "source \"";
     std::lock_guard lock(m_mutex);
-    m_error =
-        "source \"" + printable(m_name.string()) + "\": " + (message.empty() ? "cannot be read" : message);
+    // A source that is a recipe names the source that failed itself.
+    m_error = why.starts_with(source)
+                  ? why
+                  : source + printable(m_shown) + "\": " + (why.empty() ? "cannot be read" : why);
     return false;
 }
 
@@ -241,7 +271,7 @@ bool CacheSource::read(int level, const Box& box, std::byte* texels,
         return copy_tiles(level, data, texels + (data.y0 - box.y0) * row_stride + (data.x0 - box.x0) * pixel,
                           row_stride);
     } catch (const std::exception& e) {
-        return fail(e.what());
+        return fail(message_of(e, "its pixels"));
     }
 }
 
@@ -257,7 +287,7 @@ bool CacheSource::copy_tiles(int level, const Box& box, std::byte* texels, std::
         !m_cache->get_image_info(image, thread, m_subimage, file_level, resolution,
                                  TypeDesc(TypeDesc::INT, 2), size) ||
         !m_cache->get_image_info(image, thread, m_subimage, file_level, channel_count, OIIO::TypeInt, &count))
-        return fail(first_line(m_cache->geterror()));
+        return fail(m_cache->geterror());
     if (size[0] != l.spec.width || size[1] != l.spec.height || count != l.spec.nchannels)
         return fail("has changed since it was opened");
 
@@ -269,7 +299,7 @@ bool CacheSource::copy_tiles(int level, const Box& box, std::byte* texels, std::
         for (int x = box.x0; x < box.x1;) {
             ImageCache::Tile* tile =
                 m_cache->get_tile(image, thread, m_subimage, file_level, x + to_x, y + to_y, l.spec.z);
-            if (!tile) return fail(first_line(m_cache->geterror()));
+            if (!tile) return fail(m_cache->geterror());
             const OIIO::ROI where = m_cache->tile_roi(tile);
             TypeDesc format;
             const auto* pixels = static_cast<const std::byte*>(m_cache->tile_pixels(tile, format));

@@ -139,6 +139,10 @@ SourceFacts facts_of(const ImageSpec& spec) {
     return facts;
 }
 
+SourceImage source_image(const ImageSpec& spec) {
+    return {facts_of(spec), spec.nchannels, spec.get_string_attribute("oiio:ColorSpace")};
+}
+
 OIIO::ParamValueList projection_attributes(const Chart& picture, bool color) {
     OIIO::ParamValueList says;
     says.attribute(kProjection,

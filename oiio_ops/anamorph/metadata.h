@@ -9,6 +9,9 @@
 
 namespace anamorph {
 
+/// What an operation may know of an upright image.
+SourceImage source_image(const OIIO::ImageSpec& spec);
+
 /// The panorama's size, and its projection as GPano, OpenEXR's envmap, a texture's format or a picture of
 /// ours names it.
 SourceFacts facts_of(const OIIO::ImageSpec& spec);

@@ -138,21 +138,22 @@ bool run(const OperationKind& kind, const char* name, ImageBuf& dst,
         if (sources.size() < kind.least_sources || sources.size() > kind.sources.size())
             throw Error(std::to_string(sources.size()) + " source images: must be " +
                         std::to_string(kind.least_sources) + " to " + std::to_string(kind.sources.size()));
-        std::vector<ImageSpec> specs, upright_specs;
+        std::vector<ImageSpec> specs;
+        std::vector<SourceImage> known;
         for (const ImageBuf* src : sources) {
             if (!src) throw Error("a source image is null");
             check_readable(*src);
             specs.push_back(src->spec());
-            upright_specs.push_back(upright(src->spec()));
+            known.push_back(source_image(upright(src->spec())));
         }
         const ParameterValues values = values_of(kind, options, dst);
         const std::unique_ptr<const Operation> operation =
-            kind.read(values, upright_specs, side_files_of(kind, values));
+            kind.read(values, known, side_files_of(kind, values));
         const PictureRequest request = *operation->picture(0, 0);
         check_size(request, specs[0]);
         const ParallelFor parallel_for = default_parallel_for(nthreads);
         const std::unique_ptr<const Drawing> drawing = request.solve();
-        const ImageSpec spec = picture_spec(upright_specs[0], request);
+        const ImageSpec spec = picture_spec(upright(specs[0]), request);
         const Facts reached = drawing->reached(parallel_for);
 
         std::vector<std::unique_ptr<Source>> images;
@@ -165,7 +166,7 @@ bool run(const OperationKind& kind, const char* name, ImageBuf& dst,
         add_facts(dst.specmod(), reached);
         return true;
     } catch (const std::exception& e) {
-        dst.errorfmt("{}: {}", name, e.what());
+        dst.errorfmt("{}: {}", name, message_of(e, "the picture"));
         return false;
     }
 }

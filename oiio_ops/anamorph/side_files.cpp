@@ -8,6 +8,7 @@
 #include <fstream>
 #include <vector>
 
+#include "anamorph/file_names.h"
 #include "anamorph/image_source.h"
 #include "anamorph/map/features_file.h"
 #include "anamorph/map/mesh_file.h"
@@ -42,10 +43,10 @@ std::string read_text(const std::string& name, std::size_t most) {
 /// Read past any cache, on this thread alone: a read may go on around us.
 WarpMap read_stmap(const std::string& name, int step) {
     const std::string what = "ST-map \"" + printable(name) + "\"";
+    check_file_name("mesh", name);
     const auto input = OIIO::ImageInput::open(name);
     if (!input) {
-        std::string why = OIIO::geterror();
-        why.resize(std::min(why.size(), why.find('\n')));
+        const std::string why = reason_of(OIIO::geterror(), name, name);
         throw Error(what + ": " + (why.empty() ? "cannot be read" : why));
     }
     input->threads(1);
@@ -64,9 +65,7 @@ WarpMap read_stmap(const std::string& name, int step) {
                         std::to_string(ControlMesh::kMaxVertices));
     std::vector<float> uv(static_cast<std::size_t>(spec.width) * static_cast<std::size_t>(spec.height) * 2);
     if (!input->read_image(0, 0, 0, 2, OIIO::TypeFloat, uv.data())) {
-        std::string why = input->geterror();
-        why.resize(std::min(why.size(), why.find('\n')));
-        throw Error(what + ": " + why);
+        throw Error(what + ": " + reason_of(input->geterror(), name, name));
     }
     const StoredOrder order(spec);
     if (order.is_upright())

@@ -44,6 +44,22 @@ void explain_to_oiiotool(const std::string& name, const std::string& reason) {
 #endif
 }
 
+/// Counts how deep this thread is inside calls of ours: what fails in an inner one is told by the outer one.
+class Inside {
+  public:
+    Inside() { ++count(); }
+    ~Inside() { --count(); }
+    Inside(const Inside&) = delete;
+    Inside& operator=(const Inside&) = delete;
+    static int depth() { return count(); }
+
+  private:
+    static int& count() {
+        static thread_local int depth = 0;
+        return depth;
+    }
+};
+
 class FileInput final : public ImageInput {
     // Newer versions of OpenImageIO have more overloads of these.
     using ImageInput::read_native_scanlines;
@@ -75,6 +91,7 @@ class FileInput final : public ImageInput {
     bool open(const std::string& name, ImageSpec& spec, const ImageSpec& config) override {
         // The extension first: OpenImageIO offers names of all kinds.
         if (!valid_file(name)) return failed("not a .pano, .warp, .morph or .anabuf name");
+        const Inside inside;
         try {
             const PoolWorker worker;
             close();
@@ -88,8 +105,9 @@ class FileInput final : public ImageInput {
             m_spec = spec = m_content->spec(0, 0);
             return true;
         } catch (const std::exception& e) {
-            explain_to_oiiotool(name, e.what());
-            return failed(e.what());
+            const std::string reason = message_of(e, "\"" + printable(name) + "\"");
+            if (Inside::depth() == 1) explain_to_oiiotool(name, reason);
+            return failed(reason);
         }
     }
 
@@ -216,12 +234,13 @@ class FileInput final : public ImageInput {
     }
     template <class Body>
     bool guarded(const Body& body) {
+        const Inside inside;
         try {
             const PoolWorker worker;
             body();
             return true;
         } catch (const std::exception& e) {
-            return failed(e.what());
+            return failed(message_of(e, "the picture"));
         }
     }
 
