@@ -35,6 +35,7 @@ class CacheThread {
         m_record = cache->get_perthread_info(m_record);
     }
     ~CacheThread() {
+        let_go();
         std::lock_guard lock(m_pool.mutex);
         m_pool.idle.push_back(m_record);
     }
@@ -43,16 +44,35 @@ class CacheThread {
 
     operator ImageCache::Perthread*() const { return m_record; }
 
+    /// A record keeps the last two tiles that it was asked for. One that lies idle or waits while a tile is
+    /// made by a recipe would keep them beyond the cache's limit of memory, at which OpenImageIO aborts when
+    /// it is passed tenfold: two tiles of a pixel take their place.
+    void let_go() const {
+        for (ImageCache::ImageHandle* pixel : m_pool.pixels)
+            if (ImageCache::Tile* tile =
+                    pixel ? m_pool.cache->get_tile(pixel, m_record, 0, 0, 0, 0, 0) : nullptr)
+                m_pool.cache->release_tile(tile);
+    }
+
   private:
     struct Pool {
+        ImageCache* cache = nullptr;
         std::mutex mutex;
         std::vector<ImageCache::Perthread*> idle;
+        ImageCache::ImageHandle* pixels[2] = {};
     };
-    static Pool& pool_of(const ImageCache* cache) {
+    static Pool& pool_of(ImageCache* cache) {
         static std::mutex mutex;
         static auto& pools = *new std::map<const ImageCache*, Pool>;
         std::lock_guard lock(mutex);
-        return pools[cache];
+        Pool& pool = pools[cache];
+        if (!pool.cache) {
+            pool.cache = cache;
+            for (const int i : {0, 1})
+                pool.pixels[i] = cache->get_image_handle(OIIO::ustring(
+                    "anamorph" + std::to_string(i) + ".null?RES=1x1&TILE=16x16&CHANNELS=1&TYPE=uint8"));
+        }
+        return pool;
     }
 
     Pool& m_pool;
