@@ -4,8 +4,10 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <new>
 #include <optional>
 #include <set>
+#include <stdexcept>
 
 namespace anamorph {
 namespace {
@@ -72,7 +74,10 @@ std::optional<std::vector<double>> to_numbers(std::string_view text) {
 }
 
 bool is_allowed(const Parameter& parameter, const std::string& value) {
-    const auto in_range = [&](double v) { return v >= parameter.minimum && v <= parameter.maximum; };
+    const auto in_range = [&](double v) {
+        const bool low = parameter.above_minimum ? v > parameter.minimum : v >= parameter.minimum;
+        return low && v <= parameter.maximum;
+    };
     switch (parameter.type) {
         case ParameterType::number: {
             const std::optional<double> v = to_number(value);
@@ -145,6 +150,11 @@ bool is_control(char c) {
     return (byte < 0x20 && c != '\t') || byte == 0x7f;
 }
 
+void make_printable(std::string& text) {
+    std::replace_if(
+        text.begin(), text.end(), [](char c) { return is_control(c) || c == '\t'; }, '?');
+}
+
 template <class Number>
 std::string fewest_digits(Number value) {
     char text[64];
@@ -164,41 +174,62 @@ std::string shortest(float value) {
 std::string printable(std::string_view text) {
     constexpr std::size_t kMost = 100;
     std::string out(text.substr(0, kMost));
-    std::replace_if(
-        out.begin(), out.end(), [](char c) { return is_control(c) || c == '\t'; }, '?');
+    make_printable(out);
     return text.size() > kMost ? out + "..." : out;
 }
 
-std::string Parameter::allowed() const {
+std::string message_of(const std::exception& error, const std::string& what) {
+    const bool memory = dynamic_cast<const std::bad_alloc*>(&error) != nullptr ||
+                        dynamic_cast<const std::length_error*>(&error) != nullptr;
+    std::string message = memory ? "not enough memory for " + what : std::string(error.what());
+    make_printable(message);
+    return message;
+}
+
+std::string Parameter::accepted() const {
+    const std::string from_to = " from " + shortest(minimum) + " to " + shortest(maximum);
     switch (type) {
         case ParameterType::number: {
-            const bool low = std::isfinite(minimum), high = std::isfinite(maximum);
-            if (low && high)
-                return "allowed is a number from " + shortest(minimum) + " to " + shortest(maximum);
-            return low ? "allowed is a number from " + shortest(minimum) : "allowed is a finite number";
+            const std::string least = (above_minimum ? " above " : " of at least ") + shortest(minimum);
+            if (!std::isfinite(minimum)) return "a finite number";
+            if (!std::isfinite(maximum)) return "a number" + least;
+            return "a number" + (above_minimum ? least + ", at most " + shortest(maximum) : from_to);
         }
         case ParameterType::whole:
-            return "allowed is a whole number from " + shortest(minimum) + " to " + shortest(maximum);
+            return "an integer" + from_to;
         case ParameterType::toggle:
-            return "allowed are 0, 1";
+            return "0 or 1";
         case ParameterType::choice:
-            return "allowed are " + joined(choices);
+            return joined(choices);
         case ParameterType::extent:
-            return "allowed is N or NxM, whole numbers from " + shortest(minimum) + " to " +
-                   shortest(maximum);
+            return "N or NxM, integers" + from_to;
         case ParameterType::numbers:
             if (std::isfinite(minimum) && std::isfinite(maximum))
-                return "allowed are numbers from " + shortest(minimum) + " to " + shortest(maximum) +
-                       ", separated by commas";
+                return "numbers" + from_to + ", separated by commas";
             return std::isfinite(minimum)
-                       ? "allowed are numbers from " + shortest(minimum) + ", separated by commas"
-                       : "allowed are finite numbers, separated by commas";
+                       ? "numbers of at least " + shortest(minimum) + ", separated by commas"
+                       : "finite numbers, separated by commas";
+        case ParameterType::image:
+            return "the name of an image";
+        case ParameterType::file:
+            return "the name of a file";
+        case ParameterType::text:
+            return "text";
+    }
+    return {};
+}
+
+std::string Parameter::rule() const {
+    switch (type) {
+        case ParameterType::choice:
+            return "must be one of " + accepted();
         case ParameterType::image:
         case ParameterType::file:
         case ParameterType::text:
-            return "allowed is any text but none";
+            return "must not be empty";
+        default:
+            return "must be " + accepted();
     }
-    return {};
 }
 
 void ParameterValues::assign(const std::vector<Assignment>& place) {
@@ -207,11 +238,11 @@ void ParameterValues::assign(const std::vector<Assignment>& place) {
         const Parameter* parameter = find(*m_table, a.key);
         if (!parameter)
             throw Error(printable(a.key), printable(a.value),
-                        "there is no such parameter; allowed are " + joined(names(*m_table)));
+                        "there is no such parameter: must be one of " + joined(names(*m_table)));
         if (!seen.insert(parameter->name).second)
-            throw Error(parameter->name, printable(a.value), "given twice in one place; allowed is once");
+            throw Error(parameter->name, printable(a.value), "given twice in one place: must be given once");
         if (!is_allowed(*parameter, a.value))
-            throw Error(parameter->name, printable(a.value), parameter->allowed());
+            throw Error(parameter->name, printable(a.value), parameter->rule());
         m_given[parameter->name] = a.value;
     }
 }
@@ -226,31 +257,41 @@ const std::string& ParameterValues::text(std::string_view name) const {
 
 double ParameterValues::number(std::string_view name) const {
     const std::optional<double> value = to_number(text(name));
-    if (!value) throw Error(std::string(name), text(name), "not a number");
+    if (!value) throw Error(std::string(name), text(name), "must be a number");
     return *value;
 }
 
 int ParameterValues::whole(std::string_view name) const {
     const std::optional<int> value = to_whole(text(name));
-    if (!value) throw Error(std::string(name), text(name), "not a whole number");
+    if (!value) throw Error(std::string(name), text(name), "must be an integer");
     return *value;
 }
 
 std::vector<double> ParameterValues::numbers(std::string_view name) const {
     const std::optional<std::vector<double>> values = to_numbers(text(name));
-    if (!values) throw Error(std::string(name), text(name), "not numbers");
+    if (!values) throw Error(std::string(name), text(name), "must be numbers");
     return *values;
 }
 
 SizeValue ParameterValues::extent(std::string_view name) const {
     const std::optional<SizeValue> value = to_extent(text(name));
-    if (!value) throw Error(std::string(name), text(name), "not an extent");
+    if (!value) throw Error(std::string(name), text(name), "must be N or NxM");
     return *value;
+}
+
+std::string ParameterValues::key(const std::vector<std::string>& without) const {
+    std::string key;
+    for (const Parameter& parameter : *m_table) {
+        if (std::find(without.begin(), without.end(), parameter.name) != without.end()) continue;
+        // No value holds a line break, and none that is given is empty.
+        key += parameter.name + "=" + text(parameter.name) + "\n";
+    }
+    return key;
 }
 
 std::vector<Assignment> parse_recipe(std::string_view text) {
     if (text.size() > kMaxRecipeBytes)
-        throw Error("recipe of " + std::to_string(text.size()) + " bytes: allowed are at most " +
+        throw Error("recipe of " + std::to_string(text.size()) + " bytes: must have at most " +
                     std::to_string(kMaxRecipeBytes));
     if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);
     std::vector<Assignment> out;
@@ -261,12 +302,13 @@ std::vector<Assignment> parse_recipe(std::string_view text) {
         if (line.ends_with('\r')) line.remove_suffix(1);
         const std::string where = "recipe line " + std::to_string(number);
         if (std::any_of(line.begin(), line.end(), is_control))
-            throw Error(where + " holds a control character: allowed is text, one key=value a line");
+            throw Error(where + " holds a control character: must be text, one key=value a line");
         line = trimmed(line);
         if (line.empty() || line.front() == '#') continue;
         const std::optional<Assignment> assignment = to_assignment(line);
         if (!assignment)
-            throw Error(where + " is \"" + printable(line) + "\": allowed are key=value and # comments");
+            throw Error(where + " is \"" + printable(line) +
+                        "\": must be key=value, or a comment that begins with #");
         out.push_back(*assignment);
     }
     return out;
@@ -281,7 +323,7 @@ RecipeName parse_recipe_name(std::string_view name) {
         std::size_t end = rest.find('&');
         std::optional<Assignment> assignment = to_assignment(rest.substr(0, end));
         if (!assignment || std::any_of(assignment->value.begin(), assignment->value.end(), is_control))
-            throw Error("argument \"" + printable(rest.substr(0, end)) + "\": allowed is key=value");
+            throw Error("argument \"" + printable(rest.substr(0, end)) + "\": must be key=value");
         // A nested recipe name keeps its own arguments.
         const std::size_t value = rest.find('=') + 1, bracketed = bracketed_name(rest.substr(value));
         if (bracketed > 0) {
@@ -301,11 +343,9 @@ std::string reference_page(const std::string& title, const ParameterTable& table
     std::string page =
         "# " + title + "\n\n| key | default | unit | allowed | meaning |\n|---|---|---|---|---|\n";
     for (const Parameter& p : table) {
-        const std::string allowed = p.allowed();
         const std::string key = p.alias.empty() ? "`" + p.name + "`" : "`" + p.name + "` (`" + p.alias + "`)";
         page += "| " + key + " | " + (p.default_value.empty() ? "" : "`" + p.default_value + "`") + " | " +
-                p.unit + " | " + allowed.substr(allowed.find(' ', allowed.find(' ') + 1) + 1) + " | " +
-                p.documentation + " |\n";
+                p.unit + " | " + p.accepted() + " | " + p.documentation + " |\n";
     }
     return page;
 }

@@ -11,6 +11,7 @@
 #pragma once
 
 #include <cstddef>
+#include <exception>
 #include <map>
 #include <string>
 #include <string_view>
@@ -22,10 +23,10 @@ namespace anamorph {
 
 enum class ParameterType {
     number,   ///< finite, decimal, with a point whatever the locale
-    whole,    ///< a whole number
+    whole,    ///< an integer
     toggle,   ///< 0 or 1
     choice,   ///< one of `choices`
-    extent,   ///< N or NxM, whole numbers
+    extent,   ///< N or NxM, integers
     numbers,  ///< as number, one or more, separated by commas
     image,    ///< the name of an image, or of a recipe
     file,     ///< the name of another file
@@ -39,11 +40,14 @@ struct Parameter {
     std::string default_value;  ///< as written in a recipe; may be empty, which `documentation` then explains
     std::vector<std::string> choices;
     double minimum = 0, maximum = 0;  ///< of number, whole, numbers and extent
+    bool above_minimum = false;       ///< the minimum itself is not accepted (of number and numbers)
     std::string documentation;        ///< one line
     std::string alias;                ///< another key for the same
 
-    /// "allowed is a number from 0 to 10", "allowed are edges, centers".
-    std::string allowed() const;
+    /// What a value may be: "a number from 0 to 10", "edges, centers".
+    std::string accepted() const;
+    /// The same for a message: "must be a number from 0 to 10", "must be one of edges, centers".
+    std::string rule() const;
 };
 
 using ParameterTable = std::vector<Parameter>;
@@ -78,6 +82,9 @@ class ParameterValues {
     bool toggle(std::string_view name) const { return text(name) == "1"; }
     SizeValue extent(std::string_view name) const;
 
+    /// All values as one text, which differs where any value does; `without`: the names of those left out.
+    std::string key(const std::vector<std::string>& without = {}) const;
+
   private:
     const ParameterTable* m_table;
     std::map<std::string, std::string> m_given;
@@ -97,6 +104,9 @@ RecipeName parse_recipe_name(std::string_view name);
 
 /// `text` for a message: at most 100 characters, all printable.
 std::string printable(std::string_view text);
+
+/// What `error` says, in one printable line; of memory that cannot be had, that it cannot be had for `what`.
+std::string message_of(const std::exception& error, const std::string& what);
 
 /// A number in the fewest digits that read back as the same number.
 std::string shortest(double value);

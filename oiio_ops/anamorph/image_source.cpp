@@ -2,8 +2,10 @@
 #include "anamorph/image_source.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstring>
 #include <map>
+#include <string_view>
 
 #include "anamorph/error.h"
 #include "anamorph/image/pixel.h"
@@ -33,6 +35,7 @@ class CacheThread {
         m_record = cache->get_perthread_info(m_record);
     }
     ~CacheThread() {
+        let_go();
         std::lock_guard lock(m_pool.mutex);
         m_pool.idle.push_back(m_record);
     }
@@ -41,16 +44,35 @@ class CacheThread {
 
     operator ImageCache::Perthread*() const { return m_record; }
 
+    /// A record keeps the last two tiles that it was asked for. One that lies idle or waits while a tile is
+    /// made by a recipe would keep them beyond the cache's limit of memory, at which OpenImageIO aborts when
+    /// it is passed tenfold: two tiles of a pixel take their place.
+    void let_go() const {
+        for (ImageCache::ImageHandle* pixel : m_pool.pixels)
+            if (ImageCache::Tile* tile =
+                    pixel ? m_pool.cache->get_tile(pixel, m_record, 0, 0, 0, 0, 0) : nullptr)
+                m_pool.cache->release_tile(tile);
+    }
+
   private:
     struct Pool {
+        ImageCache* cache = nullptr;
         std::mutex mutex;
         std::vector<ImageCache::Perthread*> idle;
+        ImageCache::ImageHandle* pixels[2] = {};
     };
-    static Pool& pool_of(const ImageCache* cache) {
+    static Pool& pool_of(ImageCache* cache) {
         static std::mutex mutex;
         static auto& pools = *new std::map<const ImageCache*, Pool>;
         std::lock_guard lock(mutex);
-        return pools[cache];
+        Pool& pool = pools[cache];
+        if (!pool.cache) {
+            pool.cache = cache;
+            for (const int i : {0, 1})
+                pool.pixels[i] = cache->get_image_handle(OIIO::ustring(
+                    "anamorph" + std::to_string(i) + ".null?RES=1x1&TILE=16x16&CHANNELS=1&TYPE=uint8"));
+        }
+        return pool;
     }
 
     Pool& m_pool;
@@ -106,11 +128,6 @@ ImageSpec spec_in_cache(ImageCache& cache, OIIO::ustring name, int subimage, int
     return spec;
 }
 
-std::string first_line(std::string message) {
-    message.resize(std::min(message.size(), message.find('\n')));
-    return message;
-}
-
 }  // namespace
 
 PixelType pixel_type(TypeDesc type) {
@@ -143,6 +160,9 @@ Frame frame_of(const ImageSpec& spec) {
         const int top = spec.get_int_attribute("GPano:CroppedAreaTopPixels");
         return {full_width, full_height, {left, top, left + spec.width, top + spec.height}};
     }
+    if (spec.get_string_attribute("textureformat") == "CubeFace Environment" &&
+        spec.height == std::int64_t{6} * spec.width)
+        return {spec.width, spec.height, {0, 0, spec.width, spec.height}};
     const int left = spec.x - spec.full_x, top = spec.y - spec.full_y;
     return {spec.full_width, spec.full_height, {left, top, left + spec.width, top + spec.height}};
 }
@@ -151,38 +171,66 @@ int unassociated_alpha_of(const ImageSpec& spec) {
     return spec.get_int_attribute("oiio:UnassociatedAlpha") ? spec.alpha_channel : -1;
 }
 
-void check_flat(const ImageSpec& spec, const std::string& name) {
+void check_source(const ImageSpec& spec, const std::string& name) {
     const std::string image = "source \"" + printable(name) + "\"";
-    if (spec.deep) throw Error(image + " is deep: allowed are flat images");
-    if (spec.depth > 1 || spec.full_depth > 1) throw Error(image + " is a volume: allowed are flat images");
+    if (spec.deep) throw Error(image + " is deep: must be a flat image");
+    if (spec.depth > 1 || spec.full_depth > 1) throw Error(image + " is a volume: must be a flat image");
     if (spec.width < 1 || spec.height < 1 || spec.full_width < 1 || spec.full_height < 1 ||
         spec.nchannels < 1)
         throw Error(image + " has no pixels");
+    const float aspect = spec.get_float_attribute("PixelAspectRatio", 1.0f);
+    if (!(std::fabs(aspect - 1) <= 1e-4f))
+        throw Error(image + " has PixelAspectRatio=" + shortest(aspect) +
+                    ": must be 1; resize it to square pixels, or correct the attribute");
+}
+
+std::string reason_of(std::string message, const std::string& name, const std::string& shown) {
+    for (std::size_t at = 0; !name.empty() && (at = message.find(name, at)) != std::string::npos;) {
+        message.replace(at, name.size(), printable(shown));
+        at += printable(shown).size();
+    }
+    message.resize(std::min(message.size(), message.find('\n')));
+    constexpr std::string_view kOurs = "anamorph: ";
+    const std::size_t ours = message.rfind(kOurs);
+    return ours == std::string::npos ? message : message.substr(ours + kOurs.size());
 }
 
 // --- CacheSource -------------------------------------------------------------------------------------------
 
-CacheSource::CacheSource(ImageCacheRef cache, const std::string& name, int subimage, int first_level,
-                         Facts facts)
-    : m_cache(std::move(cache)), m_name(name), m_subimage(subimage), m_first_level(first_level) {
-    const auto file = facts == Facts::from_file ? open_as_cache_does(*m_cache, name) : nullptr;
-    const auto spec_of = [&](int level) {
-        if (facts == Facts::from_cache)
-            return spec_in_cache(*m_cache, m_name, m_subimage, m_first_level + level);
-        return file ? file->spec(m_subimage, m_first_level + level) : ImageSpec();
-    };
-    const auto why_not = [&] {
-        return first_line(facts == Facts::from_cache ? m_cache->geterror()
-                          : file                     ? file->geterror()
-                                                     : OIIO::geterror());
-    };
+CacheSource::CacheSource(ImageCacheRef cache, const std::string& name, const std::string& shown, int subimage,
+                         int first_level)
+    : m_cache(std::move(cache)),
+      m_name(name),
+      m_shown(shown),
+      m_subimage(subimage),
+      m_first_level(first_level) {}
 
+CacheSource::CacheSource(ImageCacheRef cache, const std::string& name, int subimage, int first_level)
+    : CacheSource(std::move(cache), name, name, subimage, first_level) {
+    read_levels([&](int level) { return spec_in_cache(*m_cache, m_name, m_subimage, m_first_level + level); },
+                [&] { return m_cache->geterror(); });
+}
+
+CacheSource::CacheSource(ImageCacheRef cache, const std::string& name, const std::string& shown,
+                         const SpecOf& spec_of)
+    : CacheSource(std::move(cache), name, shown, 0, 0) {
+    read_levels(spec_of, [] { return std::string(); });
+}
+
+CacheSource::CacheSource(ImageCacheRef cache, const std::string& name, const std::string& shown)
+    : CacheSource(std::move(cache), name, shown, 0, 0) {
+    const auto file = open_as_cache_does(*m_cache, name);
+    read_levels([&](int level) { return file ? file->spec(0, level) : ImageSpec(); },
+                [&] { return file ? file->geterror() : OIIO::geterror(); });
+}
+
+void CacheSource::read_levels(const SpecOf& spec_of, const std::function<std::string()>& why_not) {
     const ImageSpec base = spec_of(0);
     if (base.format == OIIO::TypeUnknown) {
-        const std::string why = why_not();
-        throw Error("source \"" + printable(name) + "\": " + (why.empty() ? "cannot be read" : why));
+        const std::string why = reason_of(why_not(), m_name.string(), m_shown);
+        throw Error("source \"" + printable(m_shown) + "\": " + (why.empty() ? "cannot be read" : why));
     }
-    check_flat(base, name);
+    check_source(base, m_shown);
     m_levels.push_back({base, frame_of(base)});
     m_type = pixel_type(base.format);
     m_alpha = unassociated_alpha_of(base);
@@ -211,15 +259,25 @@ Source::Size CacheSource::size(int level) const noexcept {
     return {f.width, f.height};
 }
 
+std::vector<ImageSpec> CacheSource::specs() const {
+    std::vector<ImageSpec> specs;
+    for (const Level& level : m_levels) specs.push_back(level.spec);
+    return specs;
+}
+
 std::string CacheSource::error() const {
     std::lock_guard lock(m_mutex);
     return m_error;
 }
 
 bool CacheSource::fail(const std::string& message) const {
+    const std::string why = reason_of(message, m_name.string(), m_shown);
+    const std::string source = "source \"";
     std::lock_guard lock(m_mutex);
-    m_error =
-        "source \"" + printable(m_name.string()) + "\": " + (message.empty() ? "cannot be read" : message);
+    // A source that is a recipe names the source that failed itself.
+    m_error = why.starts_with(source)
+                  ? why
+                  : source + printable(m_shown) + "\": " + (why.empty() ? "cannot be read" : why);
     return false;
 }
 
@@ -233,7 +291,7 @@ bool CacheSource::read(int level, const Box& box, std::byte* texels,
         return copy_tiles(level, data, texels + (data.y0 - box.y0) * row_stride + (data.x0 - box.x0) * pixel,
                           row_stride);
     } catch (const std::exception& e) {
-        return fail(e.what());
+        return fail(message_of(e, "its pixels"));
     }
 }
 
@@ -249,7 +307,7 @@ bool CacheSource::copy_tiles(int level, const Box& box, std::byte* texels, std::
         !m_cache->get_image_info(image, thread, m_subimage, file_level, resolution,
                                  TypeDesc(TypeDesc::INT, 2), size) ||
         !m_cache->get_image_info(image, thread, m_subimage, file_level, channel_count, OIIO::TypeInt, &count))
-        return fail(first_line(m_cache->geterror()));
+        return fail(m_cache->geterror());
     if (size[0] != l.spec.width || size[1] != l.spec.height || count != l.spec.nchannels)
         return fail("has changed since it was opened");
 
@@ -261,7 +319,7 @@ bool CacheSource::copy_tiles(int level, const Box& box, std::byte* texels, std::
         for (int x = box.x0; x < box.x1;) {
             ImageCache::Tile* tile =
                 m_cache->get_tile(image, thread, m_subimage, file_level, x + to_x, y + to_y, l.spec.z);
-            if (!tile) return fail(first_line(m_cache->geterror()));
+            if (!tile) return fail(m_cache->geterror());
             const OIIO::ROI where = m_cache->tile_roi(tile);
             TypeDesc format;
             const auto* pixels = static_cast<const std::byte*>(m_cache->tile_pixels(tile, format));
@@ -345,21 +403,21 @@ std::string joined(const std::vector<std::string>& words) {
 
 std::shared_ptr<const WorkingSpace> WorkingSpace::make(const std::string& name, const ImageSpec& spec) {
     if (spec.nchannels < 3)
-        throw Error("colorspace", printable(name), "allowed are sources of at least 3 channels");
+        throw Error("colorspace", printable(name), "the source must have at least 3 channels");
     const OIIO::ColorConfig& config = color_config();
     const char* role = config.getColorSpaceNameByRole(name);
     const std::string space = role ? role : name;
     const std::string own = spec.get_string_attribute("oiio:ColorSpace");
     if (own.empty())
         throw Error("colorspace", printable(name),
-                    "the source does not say its own color space; allowed is none for such a source");
+                    "the source does not say its own color space: must not be given");
     if (own == space) return nullptr;
     auto result = std::make_shared<WorkingSpace>();
     result->m_there = config.createColorProcessor(own, space);
     result->m_back = config.createColorProcessor(space, own);
     if (!result->m_there || !result->m_back) {
         throw Error("colorspace", printable(name),
-                    "no way to it from \"" + own + "\"; allowed are the role scene_linear and " +
+                    "no way to it from \"" + own + "\": must be the role scene_linear or one of " +
                         joined(config.getColorSpaceNames()));
     }
     result->m_channels = spec.nchannels;

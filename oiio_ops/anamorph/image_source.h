@@ -10,6 +10,7 @@
 #include <OpenImageIO/imagebuf.h>
 #include <OpenImageIO/imagecache.h>
 
+#include <functional>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -28,7 +29,7 @@ PixelType pixel_type(OIIO::TypeDesc type);
 OIIO::TypeDesc oiio_type(PixelType type);
 
 /// The data window inside the panorama: from the display window, or from GPano's cropped area where the image
-/// has one.
+/// has one. An environment of six faces that is as high as these is whole: OpenEXR's display window is one.
 struct Frame {
     int width = 0, height = 0;  ///< of the panorama
     Box data;                   ///< relative to the panorama's corner
@@ -38,22 +39,33 @@ Frame frame_of(const OIIO::ImageSpec& spec);
 /// The channel by which a picture's colour is not yet multiplied, or -1.
 int unassociated_alpha_of(const OIIO::ImageSpec& spec);
 
-/// Throws Error when the image is deep, has depth, or has no pixels or channels.
-void check_flat(const OIIO::ImageSpec& spec, const std::string& name);
+/// Throws Error when the image is deep, has depth, has no pixels or channels, or pixels that are not square.
+void check_source(const OIIO::ImageSpec& spec, const std::string& name);
+
+/// The reason that OpenImageIO gives for a failure, fit for a message about the file that was opened as
+/// `name` and is shown as `shown`: one line, without the reader's own prefix.
+std::string reason_of(std::string message, const std::string& name, const std::string& shown);
 
 /// A file, read tile by tile through an ImageCache. Each read borrows one of a pool of the cache's thread
 /// records, so it may happen inside another read of the same cache. Throws Error when the image cannot be
 /// opened.
 class CacheSource final : public Source {
   public:
-    /// Where sizes and metadata are read. `from_file` touches no lock of the cache: a cache that is opening
-    /// one of its files would otherwise wait for another, which may wait for the first to be closed.
-    enum class Facts { from_cache, from_file };
-    CacheSource(ImageCacheRef cache, const std::string& name, int subimage = 0, int first_level = 0,
-                Facts facts = Facts::from_cache);
+    /// Sizes and metadata as the cache knows them.
+    CacheSource(ImageCacheRef cache, const std::string& name, int subimage, int first_level);
+
+    /// The spec of a MIP level; one without a format where there is none.
+    using SpecOf = std::function<OIIO::ImageSpec(int level)>;
+    /// A file that the cache is asked for as `name` and that messages call `shown`; sizes and metadata from
+    /// `spec_of`, or from the file itself. Neither touches a lock of the cache: a cache that is opening one
+    /// of its files would otherwise wait for another, which may wait for the first to be closed.
+    CacheSource(ImageCacheRef cache, const std::string& name, const std::string& shown,
+                const SpecOf& spec_of);
+    CacheSource(ImageCacheRef cache, const std::string& name, const std::string& shown);
 
     const OIIO::ImageSpec& spec() const { return m_levels.front().spec; }
-    const Frame& frame() const { return m_levels.front().frame; }
+    /// Of all levels that serve, as the file says.
+    std::vector<OIIO::ImageSpec> specs() const;
     /// What the last failed read failed of.
     std::string error() const;
 
@@ -73,11 +85,16 @@ class CacheSource final : public Source {
         OIIO::ImageSpec spec;  ///< the file's
         Frame frame;
     };
+    CacheSource(ImageCacheRef cache, const std::string& name, const std::string& shown, int subimage,
+                int first_level);
+    /// `why_not`: the reason where there is no level 0.
+    void read_levels(const SpecOf& spec_of, const std::function<std::string()>& why_not);
     bool copy_tiles(int level, const Box& box, std::byte* texels, std::ptrdiff_t row_stride) const;
     bool fail(const std::string& message) const;
 
     ImageCacheRef m_cache;
     OIIO::ustring m_name;
+    std::string m_shown;
     int m_subimage, m_first_level;
     PixelType m_type = PixelType::float32;
     int m_alpha = -1;

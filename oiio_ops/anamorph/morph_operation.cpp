@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Pictures that turn into each other along corresponding lines.
 #include "anamorph/image/morph_parameters.h"
-#include "anamorph/image_source.h"
 #include "anamorph/operation.h"
 #include "anamorph/side_files.h"
 
@@ -29,9 +28,8 @@ class MorphDrawing final : public Drawing {
 
 class MorphOperation final : public Operation {
   public:
-    MorphOperation(const MorphRequest& request, std::shared_ptr<const Features> features,
-                   std::string identity)
-        : m_request(request), m_features(std::move(features)), m_identity(std::move(identity)) {}
+    MorphOperation(const MorphRequest& request, std::shared_ptr<const Features> features)
+        : m_request(request), m_features(std::move(features)) {}
 
     int frames() const override { return m_request.frames; }
 
@@ -47,7 +45,6 @@ class MorphOperation final : public Operation {
         picture.pixels = pixels_of(options.output);
         picture.facts = {{"anamorph:tol", options.tol}};
         if (options.shape_weights.empty()) picture.facts.push_back({"anamorph:t", options.t});
-        picture.key = key_of(request, options) + "\n" + m_identity;
         picture.solve = [request, options, features = m_features] {
             return std::make_unique<MorphDrawing>(features, request, options);
         };
@@ -68,42 +65,22 @@ class MorphOperation final : public Operation {
         }
     }
 
-    static std::string key_of(const MorphRequest& r, const MorphOptions& o) {
-        std::string key = "morph ";
-        for (const int number : {r.width, r.height, static_cast<int>(o.scheme), static_cast<int>(o.filter),
-                                 static_cast<int>(o.wrap), static_cast<int>(o.output), o.mesh_cells,
-                                 o.mesh_levels, o.t_color ? 1 : 0})
-            key += std::to_string(number) + " ";
-        for (const double number : {o.tol, o.t, o.t_color.value_or(o.t), o.weight_a, o.weight_b, o.weight_p,
-                                    r.pin_border.value_or(-1)})
-            key += shortest(number) + " ";
-        for (const auto* weights : {&o.shape_weights, &o.color_weights}) {
-            for (const double weight : *weights) key += shortest(weight) + ",";
-            key += " ";
-        }
-        for (const Source::Size& size : r.pictures)
-            key += std::to_string(size.width) + "x" + std::to_string(size.height) + " ";
-        return key;
-    }
-
     MorphRequest m_request;
     std::shared_ptr<const Features> m_features;
-    std::string m_identity;  ///< of the features
 };
 
 /// What a blend needs: as many channels of the same meaning, colour in one space.
-void check_alike(const std::vector<OIIO::ImageSpec>& specs, const ParameterValues& values) {
-    for (std::size_t i = 1; i < specs.size(); ++i) {
-        const OIIO::ImageSpec &a = specs[0], &other = specs[i];
+void check_alike(const std::vector<SourceImage>& images, const ParameterValues& values) {
+    for (std::size_t i = 1; i < images.size(); ++i) {
+        const SourceImage &a = images[0], &other = images[i];
         const std::string& key = morph_pictures()[i];
-        if (other.nchannels != a.nchannels)
-            throw Error("picture " + key + " has " + std::to_string(other.nchannels) +
-                        " channels and a has " + std::to_string(a.nchannels) + ": allowed are as many");
-        const std::string space = other.get_string_attribute("oiio:ColorSpace"),
-                          space_a = a.get_string_attribute("oiio:ColorSpace");
+        if (other.channels != a.channels)
+            throw Error("picture " + key + " has " + std::to_string(other.channels) + " channels and a has " +
+                        std::to_string(a.channels) + ": must have as many");
+        const std::string &space = other.color_space, &space_a = a.color_space;
         if (!values.given("colorspace") && !space.empty() && !space_a.empty() && space != space_a)
             throw Error("picture " + key + " is in color space \"" + printable(space) + "\" and a in \"" +
-                        printable(space_a) + "\": allowed with colorspace= only");
+                        printable(space_a) + "\": must be the same, or colorspace be given");
     }
 }
 
@@ -112,31 +89,25 @@ void check_alike(const std::vector<OIIO::ImageSpec>& specs, const ParameterValue
 const OperationKind& morph_kind() {
     static const OperationKind kind{
         "morph", &morph_parameters(), morph_pictures(), 2,
-        [](const ParameterValues& values, const std::vector<OIIO::ImageSpec>& specs, const SideFiles& files) {
+        [](const ParameterValues& values, const std::vector<SourceImage>& images, const SideFiles& files) {
             std::vector<Source::Size> sizes;
-            for (const OIIO::ImageSpec& spec : specs) {
-                const Frame frame = frame_of(spec);
-                sizes.push_back({frame.width, frame.height});
-            }
-            check_alike(specs, values);
+            for (const SourceImage& image : images) sizes.push_back(image.size());
+            check_alike(images, values);
             const MorphRequest request = read_morph_request(values, sizes);
             const auto file = files.find("features");
             if (file == files.end())
-                throw Error(
-                    "features is not given: allowed is the name of a .json, "
-                    ".csv or .svg file");
+                throw Error("features is not given: must be the name of a .json, .csv or .svg file");
             std::shared_ptr<const Features> features = read_features(file->second);
-            if (static_cast<std::size_t>(features->shapes()) != specs.size())
+            if (static_cast<std::size_t>(features->shapes()) != images.size())
                 throw Error("features", printable(file->second.name),
-                            "the file has " + std::to_string(features->shapes()) + " shapes; given are " +
-                                std::to_string(specs.size()) + " pictures");
+                            "the file has " + std::to_string(features->shapes()) + " shapes: must have " +
+                                std::to_string(images.size()) + ", as many as pictures are given");
             if (request.pin_border) {
                 auto pinned = std::make_shared<Features>(*features);
                 pinned->pin_border(*request.pin_border);
                 features = pinned;
             }
-            return std::unique_ptr<const Operation>(
-                std::make_unique<MorphOperation>(request, features, file->second.identity));
+            return std::unique_ptr<const Operation>(std::make_unique<MorphOperation>(request, features));
         }};
     return kind;
 }

@@ -6,6 +6,7 @@
 
 #include "anamorph/image_source.h"
 #include "anamorph/metadata.h"
+#include "anamorph/orientation.h"
 #include "anamorph/parallel.h"
 #include "anamorph/picture.h"
 
@@ -30,7 +31,7 @@ void check_readable(const ImageBuf& src) {
     // Asking for the pixels reads a file that was only named so far.
     const bool local = src.localpixels() != nullptr;
     if (!src.initialized() && src.name().empty()) throw Error("the source image is not initialised");
-    if (src.initialized()) check_flat(src.spec(), src.name());
+    if (src.initialized()) check_source(src.spec(), src.name());
     if (!src.initialized() || (!local && src.storage() != ImageBuf::IMAGECACHE))
         throw Error("the source image cannot be read: " + src.geterror());
 }
@@ -50,7 +51,8 @@ ParameterValues values_of(const OperationKind& kind, const OIIO::ParamValueList&
     std::vector<std::string> of_recipes = kind.sources;
     of_recipes.insert(of_recipes.end(), {"tile", "mip", "frames"});
     for (const std::string& name : of_recipes)
-        if (asked.given(name)) throw Error(name, printable(asked.text(name)), "allowed in recipes only");
+        if (asked.given(name))
+            throw Error(name, printable(asked.text(name)), "must be given in recipes only");
     values.assign(assignments);
     return values;
 }
@@ -83,8 +85,7 @@ void prepare(ImageBuf& dst, const ImageSpec& picture, ROI& roi) {
         roi = ROI(spec.x, spec.x + spec.width, spec.y, spec.y + spec.height, 0, 1,
                   roi.defined() ? roi.chbegin : 0, roi.defined() ? roi.chend : spec.nchannels);
     } else {
-        if (dst.deep() || dst.spec().depth > 1)
-            throw Error("dst is deep or a volume: allowed are flat images");
+        if (dst.deep() || dst.spec().depth > 1) throw Error("dst is deep or a volume: must be a flat image");
         roi = roi.defined() ? roi_intersection(roi, dst.roi()) : dst.roi();
         if (!dst.localpixels() && !dst.make_writable(true)) throw Error("dst cannot be written");
     }
@@ -135,22 +136,24 @@ bool run(const OperationKind& kind, const char* name, ImageBuf& dst,
          int nthreads) {
     try {
         if (sources.size() < kind.least_sources || sources.size() > kind.sources.size())
-            throw Error(std::to_string(sources.size()) + " source images: allowed are " +
+            throw Error(std::to_string(sources.size()) + " source images: must be " +
                         std::to_string(kind.least_sources) + " to " + std::to_string(kind.sources.size()));
         std::vector<ImageSpec> specs;
+        std::vector<SourceImage> known;
         for (const ImageBuf* src : sources) {
             if (!src) throw Error("a source image is null");
             check_readable(*src);
             specs.push_back(src->spec());
+            known.push_back(source_image(upright(src->spec())));
         }
         const ParameterValues values = values_of(kind, options, dst);
         const std::unique_ptr<const Operation> operation =
-            kind.read(values, specs, side_files_of(kind, values));
+            kind.read(values, known, side_files_of(kind, values));
         const PictureRequest request = *operation->picture(0, 0);
         check_size(request, specs[0]);
         const ParallelFor parallel_for = default_parallel_for(nthreads);
         const std::unique_ptr<const Drawing> drawing = request.solve();
-        const ImageSpec spec = picture_spec(specs[0], request);
+        const ImageSpec spec = picture_spec(upright(specs[0]), request);
         const Facts reached = drawing->reached(parallel_for);
 
         std::vector<std::unique_ptr<Source>> images;
@@ -159,11 +162,11 @@ bool run(const OperationKind& kind, const char* name, ImageBuf& dst,
                                                        filtering_space(values, request.pixels));
         prepare(dst, spec, roi);
         fill(dst, Picture(*drawing, stacks), spec.nchannels, roi, parallel_for);
-        add_facts(dst.specmod(), request.facts);
+        add_own_facts(dst.specmod(), request);
         add_facts(dst.specmod(), reached);
         return true;
     } catch (const std::exception& e) {
-        dst.errorfmt("{}: {}", name, e.what());
+        dst.errorfmt("{}: {}", name, message_of(e, "the picture"));
         return false;
     }
 }

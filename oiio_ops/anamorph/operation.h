@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "anamorph/error.h"
+#include "anamorph/image/reproject_parameters.h"
 #include "anamorph/image/source.h"
 #include "anamorph/parameter.h"
 
@@ -42,8 +43,8 @@ enum class PixelKind { color, point, value };
 struct PictureRequest {
     int width = 0, height = 0;
     PixelKind pixels = PixelKind::color;
-    Facts facts;      ///< known beforehand: "anamorph:tol"
-    std::string key;  ///< the same text, the same drawing
+    Facts facts;                ///< known beforehand: "anamorph:tol"
+    OIIO::ParamValueList says;  ///< what the picture says of itself to those who read it: its projection
     std::function<std::unique_ptr<const Drawing>()> solve;
 };
 
@@ -69,17 +70,29 @@ struct SideFile {
 };
 using SideFiles = std::map<std::string, SideFile>;  ///< by key; those that were given
 
+/// All that an operation knows of a source before pixels are read.
+struct SourceImage {
+    SourceFacts facts;
+    int channels = 0;
+    std::string color_space;
+
+    Source::Size size() const { return {facts.width, facts.height}; }
+};
+
 /// An operation as hosts know it.
 struct OperationKind {
     std::string name;                  ///< of its recipes: "pano"
     const ParameterTable* parameters;  ///< keys of type image and file are its sources and side files
     std::vector<std::string> sources;  ///< keys of the images it draws
     std::size_t least_sources;
-    /// `specs`: of the sources given, in the order of their keys. Throws Error.
+    /// `images`: the sources given, in the order of their keys. Throws Error.
     std::unique_ptr<const Operation> (*read)(const ParameterValues& values,
-                                             const std::vector<OIIO::ImageSpec>& specs,
-                                             const SideFiles& files);
+                                             const std::vector<SourceImage>& images, const SideFiles& files);
 };
+
+/// Made of all that `read` is given: the same text, the same drawings. The sources' pixels are none of it.
+std::string operation_key(const OperationKind& kind, const ParameterValues& values,
+                          const std::vector<SourceImage>& images, const SideFiles& files);
 
 const OperationKind& pano_kind();
 const OperationKind& warp_kind();

@@ -25,23 +25,6 @@ class PanoDrawing final : public Drawing {
     Reprojection m_reprojection;
 };
 
-std::string text_of(const Chart& chart) {
-    return std::string(name_of(chart.projection())) + " " + std::to_string(chart.width()) + "x" +
-           std::to_string(chart.height()) + " " + shortest(chart.fov()) + " " +
-           std::to_string(static_cast<int>(chart.spacing())) + " ";
-}
-
-std::string key_of(const ReprojectRequest& request) {
-    const Orientation& o = request.orientation;
-    const ReprojectOptions& p = request.options;
-    std::string key = "pano " + text_of(request.source) + text_of(request.target);
-    for (const double number : {o.yaw, o.pitch, o.roll, p.tol}) key += shortest(number) + " ";
-    for (const int number : {static_cast<int>(p.scheme), static_cast<int>(p.filter), static_cast<int>(p.wrap),
-                             static_cast<int>(p.output)})
-        key += std::to_string(number) + " ";
-    return key;
-}
-
 class PanoOperation final : public Operation {
   public:
     explicit PanoOperation(const ReprojectRequest& request) : m_request(request) {}
@@ -54,16 +37,18 @@ class PanoOperation final : public Operation {
             request.target = *half;
         }
         const Output output = request.options.output;
-        return PictureRequest{
-            request.target.width(),
-            request.target.height(),
-            output == Output::color   ? PixelKind::color
-            : output == Output::stmap ? PixelKind::point
-                                      : PixelKind::value,
-            {{"anamorph:tol", request.options.tol}},
-            key_of(request),
-            [request] { return std::make_unique<PanoDrawing>(request); },
-        };
+        PictureRequest picture;
+        picture.width = request.target.width();
+        picture.height = request.target.height();
+        picture.pixels = output == Output::color   ? PixelKind::color
+                         : output == Output::stmap ? PixelKind::point
+                                                   : PixelKind::value;
+        picture.facts = {{"anamorph:tol", request.options.tol}};
+        picture.says = projection_attributes(request.target, picture.pixels == PixelKind::color);
+        picture.says.attribute("anamorph:from", std::string(name_of(request.source.projection())) + " (" +
+                                                    request.source_reason + ")");
+        picture.solve = [request] { return std::make_unique<PanoDrawing>(request); };
+        return picture;
     }
 
     Faces faces() const override {
@@ -84,8 +69,8 @@ const OperationKind& pano_kind() {
         &reproject_parameters(),
         {"src"},
         1,
-        [](const ParameterValues& values, const std::vector<OIIO::ImageSpec>& specs, const SideFiles&) {
-            const ReprojectRequest request = read_reproject_request(values, facts_of(specs[0]));
+        [](const ParameterValues& values, const std::vector<SourceImage>& images, const SideFiles&) {
+            const ReprojectRequest request = read_reproject_request(values, images[0].facts);
             return std::unique_ptr<const Operation>(std::make_unique<PanoOperation>(request));
         }};
     return kind;

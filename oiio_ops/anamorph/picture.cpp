@@ -6,6 +6,7 @@
 
 #include "anamorph/image/pixel.h"
 #include "anamorph/image/pyramid.h"
+#include "anamorph/orientation.h"
 
 namespace anamorph {
 
@@ -16,6 +17,10 @@ std::string filtering_space(const ParameterValues& values, PixelKind pixels) {
 SourceStack::SourceStack(std::unique_ptr<Source> image, const OIIO::ImageSpec& spec,
                          const Operation::Faces& faces, const std::string& colorspace)
     : m_image(std::move(image)), m_top(m_image.get()) {
+    if (const StoredOrder order(spec); !order.is_upright()) {
+        m_upright = std::make_unique<UprightSource>(*m_image, order);
+        m_top = m_upright.get();
+    }
     if (!colorspace.empty()) {
         m_space = WorkingSpace::make(colorspace, spec);
         if (m_space) {

@@ -16,11 +16,11 @@ namespace anamorph {
 /// The colour space to filter in that was asked for; empty where no colour is drawn.
 std::string filtering_space(const ParameterValues& values, PixelKind pixels);
 
-/// What stands between a file and the resampler: the image, its working space, its pyramid. Reading is thread
-/// safe.
+/// What stands between a file and the resampler: the image, turned upright, its working space, its pyramid.
+/// Reading is thread safe.
 class SourceStack {
   public:
-    /// `colorspace` may be empty. Throws Error.
+    /// `spec`: of the image as it is stored. `colorspace` may be empty. Throws Error.
     SourceStack(std::unique_ptr<Source> image, const OIIO::ImageSpec& spec, const Operation::Faces& faces,
                 const std::string& colorspace);
     ~SourceStack();
@@ -31,7 +31,7 @@ class SourceStack {
     std::string error() const;
 
   private:
-    std::unique_ptr<Source> m_image, m_working, m_pyramid;
+    std::unique_ptr<Source> m_image, m_upright, m_working, m_pyramid;
     std::shared_ptr<const WorkingSpace> m_space;
     const Source* m_top;
 };

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // A picture drawn through a control mesh.
 #include "anamorph/image/warp_parameters.h"
-#include "anamorph/image_source.h"
 #include "anamorph/operation.h"
 #include "anamorph/side_files.h"
 
@@ -28,38 +27,32 @@ class WarpDrawing final : public Drawing {
     MeshWarp m_warp;
 };
 
-/// The mesh or the points that were asked for, and what tells them apart from others.
-struct GivenMap {
-    std::shared_ptr<const WarpMap> map;
-    std::string key;
-};
-
-GivenMap read_map(const WarpRequest& request, const SideFiles& files) {
+/// The mesh or the points that were asked for.
+std::shared_ptr<const WarpMap> read_map(const WarpRequest& request, const SideFiles& files) {
     const auto mesh = files.find("mesh"), points = files.find("points");
     const bool has_mesh = mesh != files.end(), has_points = points != files.end();
     if (has_mesh && has_points)
-        throw Error("points", printable(points->second.name), "allowed without mesh only");
+        throw Error("points", printable(points->second.name), "must not be given together with mesh");
     if (!has_mesh && !has_points)
-        throw Error(
-            "mesh is not given: allowed are a mesh (.json), an ST-map (an "
-            "image), or points");
+        throw Error("mesh is not given: needed are a mesh (.json), an ST-map (an image), or points");
     const SideFile& file = has_mesh ? mesh->second : points->second;
     std::shared_ptr<const WarpMap> map = has_mesh ? read_warp_map(file, request.step) : read_points(file);
     if (has_points && std::holds_alternative<ControlMesh>(map->shape))
-        throw Error("points", printable(file.name), "the file holds a mesh: allowed as mesh");
+        throw Error("points", printable(file.name), "the file holds a mesh: must be given as mesh");
     if (request.direction) {
         auto turned = std::make_shared<WarpMap>(*map);
         auto* shape = std::get_if<ControlMesh>(&turned->shape);
-        if (!shape) throw Error("direction is given for points: allowed for a mesh only");
+        if (!shape) throw Error("direction is given with points: must be given with a mesh only");
         shape->direction = *request.direction;
         map = turned;
     }
-    return {map, file.identity};
+    return map;
 }
 
 class WarpOperation final : public Operation {
   public:
-    WarpOperation(const WarpRequest& request, const GivenMap& given) : m_request(request), m_given(given) {}
+    WarpOperation(const WarpRequest& request, std::shared_ptr<const WarpMap> map)
+        : m_request(request), m_map(std::move(map)) {}
 
     std::optional<PictureRequest> picture(int, int level) const override {
         WarpRequest request = m_request;
@@ -74,9 +67,8 @@ class WarpOperation final : public Operation {
                          : output == WarpOutput::stmap ? PixelKind::point
                                                        : PixelKind::value;
         picture.facts = {{"anamorph:tol", request.options.tol}};
-        picture.key = key_of(request) + std::to_string(level) + "\n" + m_given.key;
         // Positions in pixels are pixels of the finest level.
-        picture.solve = [request, level, map = m_given.map, whole = m_request] {
+        picture.solve = [request, level, map = m_map, whole = m_request] {
             return std::make_unique<WarpDrawing>(
                 level > 0 ? in_fractions(*map, whole.source, whole.target) : *map, request);
         };
@@ -84,19 +76,8 @@ class WarpOperation final : public Operation {
     }
 
   private:
-    static std::string key_of(const WarpRequest& r) {
-        const MeshWarpOptions& o = r.options;
-        std::string key = "warp ";
-        for (const int number :
-             {r.source.width, r.source.height, r.target.width, r.target.height, static_cast<int>(o.scheme),
-              static_cast<int>(o.filter), static_cast<int>(o.wrap), static_cast<int>(o.output), r.step,
-              r.direction ? static_cast<int>(*r.direction) : -1})
-            key += std::to_string(number) + " ";
-        return key + shortest(o.tol) + " " + shortest(o.amount) + " ";
-    }
-
     WarpRequest m_request;
-    GivenMap m_given;
+    std::shared_ptr<const WarpMap> m_map;
 };
 
 }  // namespace
@@ -107,9 +88,8 @@ const OperationKind& warp_kind() {
         &warp_parameters(),
         {"src"},
         1,
-        [](const ParameterValues& values, const std::vector<OIIO::ImageSpec>& specs, const SideFiles& files) {
-            const Frame frame = frame_of(specs[0]);
-            WarpRequest request = read_warp_request(values, {frame.width, frame.height});
+        [](const ParameterValues& values, const std::vector<SourceImage>& images, const SideFiles& files) {
+            WarpRequest request = read_warp_request(values, images[0].size());
             const GivenMap given = read_map(request, files);
             // An ST-map is as large as its picture.
             const auto* mesh = std::get_if<ControlMesh>(&given.map->shape);

@@ -44,6 +44,22 @@ void explain_to_oiiotool(const std::string& name, const std::string& reason) {
 #endif
 }
 
+/// Counts how deep this thread is inside calls of ours: what fails in an inner one is told by the outer one.
+class Inside {
+  public:
+    Inside() { ++count(); }
+    ~Inside() { --count(); }
+    Inside(const Inside&) = delete;
+    Inside& operator=(const Inside&) = delete;
+    static int depth() { return count(); }
+
+  private:
+    static int& count() {
+        static thread_local int depth = 0;
+        return depth;
+    }
+};
+
 class FileInput final : public ImageInput {
     // Newer versions of OpenImageIO have more overloads of these.
     using ImageInput::read_native_scanlines;
@@ -75,6 +91,7 @@ class FileInput final : public ImageInput {
     bool open(const std::string& name, ImageSpec& spec, const ImageSpec& config) override {
         // The extension first: OpenImageIO offers names of all kinds.
         if (!valid_file(name)) return failed("not a .pano, .warp, .morph or .anabuf name");
+        const Inside inside;
         try {
             const PoolWorker worker;
             close();
@@ -88,8 +105,9 @@ class FileInput final : public ImageInput {
             m_spec = spec = m_content->spec(0, 0);
             return true;
         } catch (const std::exception& e) {
-            explain_to_oiiotool(name, e.what());
-            return failed(e.what());
+            const std::string reason = message_of(e, "\"" + printable(name) + "\"");
+            if (Inside::depth() == 1) explain_to_oiiotool(name, reason);
+            return failed(reason);
         }
     }
 
@@ -133,7 +151,7 @@ class FileInput final : public ImageInput {
             const ImageSpec& spec = level_spec(*open, subimage, miplevel);
             if (chbegin < 0 || chend > spec.nchannels || chbegin >= chend)
                 throw Error("channels " + std::to_string(chbegin) + " to " + std::to_string(chend) +
-                            ": allowed are 0 to " + std::to_string(spec.nchannels));
+                            ": must be from 0 to " + std::to_string(spec.nchannels));
             if (chend - chbegin == spec.nchannels) return read_rows(subimage, miplevel, ybegin, yend, data);
             constexpr int kRows = 256;
             const std::size_t channel = spec.format.size(), pixel = spec.pixel_bytes();
@@ -176,7 +194,7 @@ class FileInput final : public ImageInput {
         const std::shared_ptr<const Content> open = content();
         const ImageSpec& spec = level_spec(*open, subimage, miplevel);
         if (end > spec.y + spec.height)
-            throw Error("rows up to " + std::to_string(end) + ": allowed are up to " +
+            throw Error("rows up to " + std::to_string(end) + ": must be up to " +
                         std::to_string(spec.y + spec.height));
         read_box(*open, subimage, miplevel, {spec.x, begin, spec.x + spec.width, end}, data);
     }
@@ -216,12 +234,13 @@ class FileInput final : public ImageInput {
     }
     template <class Body>
     bool guarded(const Body& body) {
+        const Inside inside;
         try {
             const PoolWorker worker;
             body();
             return true;
         } catch (const std::exception& e) {
-            return failed(e.what());
+            return failed(message_of(e, "the picture"));
         }
     }
 
@@ -246,7 +265,7 @@ class BufferOutput final : public ImageOutput {
 
     bool open(const std::string& name, const ImageSpec& spec, OpenMode mode) override {
         if (mode != Create) return failed("an image in memory has one subimage and one level");
-        if (spec.deep || spec.depth > 1) return failed("allowed are flat images");
+        if (spec.deep || spec.depth > 1) return failed("must be a flat image");
         if (spec.width < 1 || spec.height < 1 || spec.nchannels < 1) return failed("the image has no pixels");
         m_name = name;
         m_spec = spec;

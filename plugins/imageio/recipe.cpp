@@ -6,8 +6,8 @@
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
-#include <set>
 
+#include "anamorph/file_names.h"
 #include "buffer_store.h"
 
 namespace anamorph {
@@ -28,7 +28,7 @@ bool read_recipe_file(const std::string& path, std::string& text) {
     if (!fs::is_regular_file(status)) throw Error(what + " is not a file");
     const std::uintmax_t size = fs::file_size(path, failure);
     if (failure || size > kMaxRecipeBytes)
-        throw Error(what + " has " + std::to_string(size) + " bytes: allowed are at most " +
+        throw Error(what + " has " + std::to_string(size) + " bytes: must have at most " +
                     std::to_string(kMaxRecipeBytes));
     std::ifstream file(path, std::ios::binary);
     text.resize(static_cast<std::size_t>(size));
@@ -41,6 +41,20 @@ bool read_recipe_file(const std::string& path, std::string& text) {
 std::string normal(const std::string& name) {
     const std::string_view base = base_of(name);
     return fs::path(base).lexically_normal().string() + name.substr(base.size());
+}
+
+/// A path without "." and empty parts, which mean nothing; ".." is kept, since a link may stand before it.
+std::string without_detours(std::string_view path) {
+    std::string out = path.starts_with('/') ? "/" : "";
+    while (!path.empty()) {
+        const std::size_t slash = path.find('/');
+        const std::string_view part = path.substr(0, slash);
+        path.remove_prefix(slash == std::string_view::npos ? path.size() : slash + 1);
+        if (part.empty() || part == ".") continue;
+        if (!out.empty() && out.back() != '/') out += '/';
+        out += part;
+    }
+    return out;
 }
 
 std::string state_of(const std::string& name) {
@@ -57,8 +71,9 @@ std::string state_of(const std::string& name) {
 /// The values of a recipe, and the files that they name; nothing is known of those yet.
 Recipe read_recipe(const OperationKind& kind, const std::string& name,
                    const std::vector<Assignment>& config) {
-    const RecipeName parsed = parse_recipe_name(name);
-    Recipe recipe{&kind, ParameterValues(*kind.parameters), {}};
+    RecipeName parsed = parse_recipe_name(name);
+    parsed.base = without_detours(parsed.base);
+    Recipe recipe{&kind, ParameterValues(*kind.parameters), {}, {}};
     // Takes the values of one place; files there are relative to `folder`.
     const auto take = [&](const std::vector<Assignment>& place, const fs::path& folder) {
         ParameterValues own(*kind.parameters);
@@ -68,7 +83,9 @@ Recipe read_recipe(const OperationKind& kind, const std::string& name,
                 continue;
             const std::string& file = own.text(p.name);
             const bool in_memory = has_extension(file, kBufferExtension);
-            recipe.files[p.name].name = in_memory ? file : (folder / file).string();
+            const std::string path = (folder / std::string(base_of(file))).string();
+            recipe.files[p.name].name =
+                in_memory ? file : without_detours(path) + file.substr(base_of(file).size());
         }
         recipe.values.assign(place);
     };
@@ -84,46 +101,9 @@ Recipe read_recipe(const OperationKind& kind, const std::string& name,
     take(config, {});
     if (!recipe.files.count(kind.sources[0]))
         recipe.files[kind.sources[0]].name = parsed.base.substr(0, parsed.base.size() - kind.name.size() - 1);
+    for (const auto& [key, file] : recipe.files) check_file_name(key, file.name);
     return recipe;
 }
-
-/// Walks the files that a file is made of, each once. `way` are the recipes that lead to it.
-class Walk {
-  public:
-    /// The states of `file` and of all that it is made of.
-    std::string identity_of(const std::string& file, const std::string& recipe) {
-        m_seen.clear();
-        m_way = {normal(recipe)};
-        m_identity.clear();
-        visit(file);
-        return m_identity;
-    }
-
-  private:
-    void visit(const std::string& file) {
-        const std::string name = normal(file);
-        const OperationKind* kind = kind_of(file);
-        const bool again = std::find(m_way.begin(), m_way.end(), name) != m_way.end();
-        m_way.push_back(name);
-        if (kind && again) {
-            std::string cycle;
-            for (const std::string& n : m_way) cycle += (cycle.empty() ? "" : " -> ") + printable(n);
-            throw Error("recipes read each other: " + cycle);
-        }
-        if (kind && static_cast<int>(m_way.size()) > kMaxDepth)
-            throw Error("recipes nest too deep: allowed are " + std::to_string(kMaxDepth));
-        if (m_seen.insert(name).second) {
-            m_identity += state_of(file);
-            if (kind)
-                for (const auto& [key, used] : read_recipe(*kind, file, {}).files) visit(used.name);
-        }
-        m_way.pop_back();
-    }
-
-    std::vector<std::string> m_way;  ///< the recipes that lead to the file
-    std::set<std::string> m_seen;
-    std::string m_identity;
-};
 
 }  // namespace
 
@@ -141,13 +121,62 @@ const OperationKind* kind_of(std::string_view name) {
     return nullptr;
 }
 
-Recipe load_recipe(const std::string& name, const std::vector<Assignment>& config) {
+Recipe RecipeReader::load(const std::string& name, const std::vector<Assignment>& config) {
     const OperationKind* kind = kind_of(name);
     if (!kind) throw Error("\"" + printable(name) + "\" is not a recipe's name");
-    Recipe recipe = read_recipe(*kind, name, config);
-    Walk walk;
-    for (auto& [key, file] : recipe.files) file.identity = walk.identity_of(file.name, name);
+    Recipe recipe = config.empty() && m_nested.count(normal(name)) ? m_nested.at(normal(name))
+                                                                   : read_recipe(*kind, name, config);
+    recipe.identity = kind->name + "\n" + recipe.values.key();
+    for (auto& [key, file] : recipe.files) {
+        m_way = {normal(name)};
+        file.identity = identity_of(file.name);
+        recipe.identity += key + "=" + file.name + "\n" + file.identity;
+    }
     return recipe;
+}
+
+const Recipe& RecipeReader::nested(const OperationKind& kind, const std::string& name) {
+    const auto found = m_nested.find(normal(name));
+    if (found != m_nested.end()) return found->second;
+    if (m_nested.size() >= kMaxRecipes)
+        throw Error("recipe \"" + printable(m_way.front()) + "\" reads from more than " +
+                    std::to_string(kMaxRecipes) + " others: must be at most so many");
+    return in_recipe(name, [&]() -> const Recipe& {
+        return m_nested.emplace(normal(name), read_recipe(kind, name, {})).first->second;
+    });
+}
+
+/// The states of a file and of all that it is made of.
+const std::string& RecipeReader::identity_of(const std::string& file) {
+    const auto found = m_identities.find(normal(file));
+    if (found != m_identities.end()) return found->second;
+    m_seen.clear();
+    m_identity.clear();
+    visit(file);
+    return m_identities.emplace(normal(file), m_identity).first->second;
+}
+
+/// Walks the files that a file is made of, each once.
+void RecipeReader::visit(const std::string& file) {
+    const std::string name = normal(file);
+    const OperationKind* kind = kind_of(file);
+    const bool again = std::find(m_way.begin(), m_way.end(), name) != m_way.end();
+    m_way.push_back(name);
+    if (kind && again) {
+        std::string cycle;
+        for (const std::string& n : m_way) cycle += (cycle.empty() ? "" : " -> ") + printable(n);
+        throw Error("recipes read each other: " + cycle);
+    }
+    if (kind && static_cast<int>(m_way.size()) > kMaxDepth)
+        throw Error("recipes nest too deep: must be at most " + std::to_string(kMaxDepth));
+    if (m_seen.insert(name).second) {
+        const auto [state, is_new] = m_states.try_emplace(name);
+        if (is_new) state->second = state_of(file);
+        m_identity += state->second;
+        if (kind)
+            for (const auto& [key, used] : nested(*kind, file).files) visit(used.name);
+    }
+    m_way.pop_back();
 }
 
 }  // namespace anamorph

@@ -2,6 +2,8 @@
 // Recipes as files and names: where the values come from, and which files they lead to.
 #pragma once
 
+#include <map>
+#include <set>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -15,6 +17,18 @@ namespace anamorph {
 bool has_extension(std::string_view name, std::string_view extension);
 constexpr std::string_view kBufferExtension = ".anabuf";
 
+/// Runs `body`; where it throws an Error that does not name the recipe, the recipe is named in front.
+template <class Body>
+decltype(auto) in_recipe(std::string_view name, const Body& body) {
+    try {
+        return body();
+    } catch (const Error& e) {
+        const std::string base = printable(name.substr(0, name.find('?'))), what = e.what();
+        if (what.find(base) != std::string::npos) throw;
+        throw Error("in \"" + base + "\": " + what);
+    }
+}
+
 /// The operation whose recipes have such a name, or null.
 const OperationKind* kind_of(std::string_view name);
 
@@ -24,13 +38,33 @@ struct Recipe {
     /// The sources and side files by key, each with the folder it stands in. Identities tell states of the
     /// file, and of all that it is made of where it is a recipe, apart: names, times of writing (ns), sizes.
     SideFiles files;
+    std::string identity;  ///< the same text, the same picture: values, and identities of files
 };
 
-/// The recipe file if there is one, overridden by the name's arguments, overridden by `config`. A relative
-/// file name in a file is relative to that file's folder, else to the working folder; the first source is by
-/// default the recipe's name without its extension. Follows the recipes that the recipe reads from. Throws
-/// Error, also on a cycle and beyond kMaxDepth.
-Recipe load_recipe(const std::string& name, const std::vector<Assignment>& config = {});
-constexpr int kMaxDepth = 16;
+/// Recipes as one reading from outside finds them: no file of theirs is read twice, nor looked at twice.
+class RecipeReader {
+  public:
+    /// The recipe file if there is one, overridden by the name's arguments, overridden by `config`. A
+    /// relative
+    /// file name in a file is relative to that file's folder, else to the working folder; the first source is
+    /// by default the recipe's name without its extension. Follows the recipes that the recipe reads from.
+    /// Throws Error, also on a cycle, and beyond kMaxDepth and kMaxRecipes.
+    Recipe load(const std::string& name, const std::vector<Assignment>& config = {});
+
+  private:
+    const Recipe& nested(const OperationKind& kind, const std::string& name);
+    const std::string& identity_of(const std::string& file);
+    void visit(const std::string& file);
+
+    std::map<std::string, Recipe> m_nested;           ///< by name, those that others read from
+    std::map<std::string, std::string> m_identities;  ///< of files, by name
+    std::map<std::string, std::string> m_states;      ///< of files, by name
+    // Of the walk through what one file is made of:
+    std::vector<std::string> m_way;  ///< the recipes that lead to the file
+    std::set<std::string> m_seen;
+    std::string m_identity;
+};
+constexpr int kMaxDepth = 16;     ///< recipes that read from each other, one from the next
+constexpr int kMaxRecipes = 100;  ///< that one recipe reads from, directly or not
 
 }  // namespace anamorph

@@ -9,6 +9,7 @@
 #include "anamorph/image_source.h"
 #include "anamorph/memo.h"
 #include "anamorph/metadata.h"
+#include "anamorph/orientation.h"
 #include "anamorph/parallel.h"
 #include "anamorph/picture.h"
 #include "recipe.h"
@@ -53,11 +54,6 @@ class Solved {
     Facts m_reached;
 };
 
-std::shared_ptr<Solved> solve(const PictureRequest& request) {
-    static auto& memo = *new Memo<Solved>(16);
-    return memo.get(request.key, [&] { return std::make_shared<Solved>(request); });
-}
-
 /// The name by which the cache is asked for a source: another spelling of its path after each change of its
 /// identity, since the cache would go on with what it knows, and to have it forget is not safe while others
 /// read.
@@ -81,30 +77,69 @@ std::string cached_name(const std::string& source, const std::string& identity) 
     return folder + spelling + path.filename().string() + source.substr(path.string().size());
 }
 
+/// All that one reading from outside opens: nothing twice, nor what another one holds open.
+class Opening {
+  public:
+    std::shared_ptr<const Content> open(const std::string& name, const std::vector<Assignment>& config);
+    /// A source that is no recipe; its header is read once.
+    std::unique_ptr<CacheSource> open_file(const SideFile& file);
+
+  private:
+    RecipeReader m_reader;
+    std::map<std::string, std::vector<ImageSpec>> m_headers;       ///< levels of files, by name
+    std::map<std::string, std::shared_ptr<const Content>> m_open;  ///< by identity
+};
+
+/// The open pictures of the process, by identity.
+class OpenPictures {
+  public:
+    static OpenPictures& instance() {
+        static auto& pictures = *new OpenPictures;
+        return pictures;
+    }
+    std::shared_ptr<const Content> find(const std::string& identity) {
+        const std::lock_guard lock(m_mutex);
+        const auto found = m_open.find(identity);
+        return found == m_open.end() ? nullptr : found->second.lock();
+    }
+    void add(const std::string& identity, const std::shared_ptr<const Content>& content) {
+        const std::lock_guard lock(m_mutex);
+        std::erase_if(m_open, [](const auto& entry) { return entry.second.expired(); });
+        m_open[identity] = content;
+    }
+
+  private:
+    std::mutex m_mutex;
+    std::map<std::string, std::weak_ptr<const Content>> m_open;
+};
+
 class RecipeContent final : public Content {
   public:
-    RecipeContent(const std::string& name, const std::vector<Assignment>& config) {
-        const Recipe recipe = load_recipe(name, config);
+    RecipeContent(const Recipe& recipe, Opening& opening) {
         const ParameterValues& values = recipe.values;
         std::vector<std::unique_ptr<Source>> images;
         std::vector<ImageSpec> specs;
+        std::vector<SourceImage> known;
         std::string identity;
         for (const SideFile& file : sources_of(recipe)) {
-            auto image = std::make_unique<CacheSource>(shared_cache(), cached_name(file.name, file.identity),
-                                                       0, 0, CacheSource::Facts::from_file);
+            std::unique_ptr<CacheSource> image = open_source(file, opening);
             specs.push_back(image->spec());
+            known.push_back(source_image(upright(image->spec())));
             images.push_back(std::move(image));
             identity += file.identity;
         }
-        m_source = specs[0];
-        m_operation = recipe.kind->read(values, specs, recipe.files);
+        m_source = upright(specs[0]);
+        m_operation = recipe.kind->read(values, known, recipe.files);
+        m_key = operation_key(*recipe.kind, values, known, recipe.files);
         const PictureRequest first = *m_operation->picture(0, 0);
         check_size(first, m_source);
 
         const std::string space = filtering_space(values, first.pixels);
         const Operation::Faces faces = m_operation->faces();
         static auto& stacks = *new Memo<const SourceStacks>(2);
-        m_stacks = stacks.get(identity + space + "\n" + std::to_string(faces.columns * faces.rows), [&] {
+        const std::string stack_key =
+            identity + space + "\n" + std::to_string(faces.columns) + "x" + std::to_string(faces.rows);
+        m_stacks = stacks.get(stack_key, [&] {
             return std::make_shared<const SourceStacks>(
                 make_source_stacks(std::move(images), specs, faces, space));
         });
@@ -116,7 +151,7 @@ class RecipeContent final : public Content {
         // What a film of many frames reached is not known without solving them all.
         for (int i = 0; subimages() == 1 && i < m_levels; ++i) {
             Level& l = level(0, i);
-            l.solved = solve(l.request);
+            l.solved = solve(l);
             add_facts(l.spec, l.solved->reached());
         }
     }
@@ -129,7 +164,7 @@ class RecipeContent final : public Content {
 
     void read(int subimage, int level, const Box& box, std::byte* pixels) const override {
         const Level& l = this->level(subimage, level);
-        const std::shared_ptr<Solved> solved = l.solved ? l.solved : solve(l.request);
+        const std::shared_ptr<Solved> solved = l.solved ? l.solved : solve(l);
         const bool small = std::int64_t{box.width()} * box.height() < kParallelPixels;
         const Picture picture(solved->drawing(), *m_stacks);
         picture.draw(
@@ -140,9 +175,22 @@ class RecipeContent final : public Content {
   private:
     struct Level {
         PictureRequest request;
+        std::string key;  ///< the same text, the same drawing
         ImageSpec spec;
         std::shared_ptr<Solved> solved;
     };
+
+    /// A source that is a recipe stays open while this picture is, so that the cache that asks for it by its
+    /// name does not make it again.
+    std::unique_ptr<CacheSource> open_source(const SideFile& file, Opening& opening) {
+        if (!kind_of(file.name)) return opening.open_file(file);
+        const std::shared_ptr<const Content> content =
+            in_recipe(file.name, [&] { return opening.open(file.name, {}); });
+        m_nested.push_back(content);
+        return std::make_unique<CacheSource>(
+            shared_cache(), cached_name(file.name, file.identity), file.name,
+            [&](int level) { return level < content->levels(0) ? content->spec(0, level) : ImageSpec(); });
+    }
 
     /// Those that are given, in their order.
     static std::vector<SideFile> sources_of(const Recipe& recipe) {
@@ -152,13 +200,18 @@ class RecipeContent final : public Content {
             const auto file = recipe.files.find(keys[i]);
             const bool given = file != recipe.files.end();
             if (i < recipe.kind->least_sources && !given)
-                throw Error(keys[i] + " is not given: allowed is the name of an image");
+                throw Error(keys[i] + " is not given: must be the name of an image");
             if (given && i > sources.size())
                 throw Error(keys[i], printable(file->second.name),
-                            "allowed is to give " + keys[i - 1] + " too");
+                            "must be given together with " + keys[i - 1]);
             if (given) sources.push_back(file->second);
         }
         return sources;
+    }
+
+    static std::shared_ptr<Solved> solve(const Level& level) {
+        static auto& memo = *new Memo<Solved>(16);
+        return memo.get(level.key, [&] { return std::make_shared<Solved>(level.request); });
     }
 
     Level& level(int subimage, int number) const {
@@ -167,6 +220,7 @@ class RecipeContent final : public Content {
         if (is_new) {
             Level& made = found->second;
             made.request = *m_operation->picture(subimage, number);
+            made.key = m_key + "frame " + std::to_string(subimage) + " level " + std::to_string(number);
             made.spec = picture_spec(m_source, made.request);
             const bool tiled = m_tile.width > 0 && m_tile.height > 0;
             made.spec.tile_width = tiled ? m_tile.width : 0;
@@ -175,8 +229,10 @@ class RecipeContent final : public Content {
         return found->second;
     }
 
-    ImageSpec m_source;  ///< of the first source
+    ImageSpec m_source;  ///< of the first source, upright
     std::unique_ptr<const Operation> m_operation;
+    std::string m_key;  ///< of the operation
+    std::vector<std::shared_ptr<const Content>> m_nested;
     std::shared_ptr<const SourceStacks> m_stacks;
     SizeValue m_tile;
     int m_levels = 1;
@@ -184,10 +240,41 @@ class RecipeContent final : public Content {
     mutable std::map<std::pair<int, int>, Level> m_known;  ///< by frame and MIP level
 };
 
+std::shared_ptr<const Content> Opening::open(const std::string& name, const std::vector<Assignment>& config) {
+    const Recipe recipe = m_reader.load(name, config);
+    std::shared_ptr<const Content>& content = m_open[recipe.identity];
+    if (!content) content = OpenPictures::instance().find(recipe.identity);
+    if (content) return content;
+    auto made = std::make_shared<const RecipeContent>(recipe, *this);
+    OpenPictures::instance().add(recipe.identity, made);
+    return m_open[recipe.identity] = made;
+}
+
+std::unique_ptr<CacheSource> Opening::open_file(const SideFile& file) {
+    const std::string name = cached_name(file.name, file.identity);
+    const auto known = m_headers.find(file.name);
+    if (known != m_headers.end())
+        return std::make_unique<CacheSource>(shared_cache(), name, file.name, [&](int level) {
+            const auto i = static_cast<std::size_t>(level);
+            return i < known->second.size() ? known->second[i] : ImageSpec();
+        });
+    auto source = std::make_unique<CacheSource>(shared_cache(), name, file.name);
+    m_headers[file.name] = source->specs();
+    return source;
+}
+
 }  // namespace
 
 std::shared_ptr<const Content> open_recipe(const std::string& name, const std::vector<Assignment>& config) {
-    return std::make_shared<RecipeContent>(name, config);
+    // An ST-map that is a recipe is opened by OpenImageIO while the recipe that names it is.
+    static thread_local Opening* around = nullptr;
+    if (around) return around->open(name, config);
+    Opening opening;
+    struct Around {
+        explicit Around(Opening& opening) { around = &opening; }
+        ~Around() { around = nullptr; }
+    } const guard(opening);
+    return opening.open(name, config);
 }
 
 }  // namespace anamorph

@@ -126,7 +126,7 @@ TEST(MorphRequest, ReadsItsValues) {
     EXPECT_THAT(error_of([&] {
                     morph({{"t", "1"}, {"shape_weights", "0,1,0"}}, three);
                 }),
-                HasSubstr("t=1: allowed without shape_weights"));
+                HasSubstr("t=1: must not be given together with shape_weights"));
 }
 
 /// Makes the morph that a table's values ask for.
@@ -155,7 +155,7 @@ TEST(MorphRequest, WhatARowAllowsIsWhatTheMorphTakes) {
             EXPECT_EQ(ask(std::isfinite(end) ? end : std::copysign(1e300, end)), "no error");
             if (!std::isfinite(end)) continue;
             const double step = whole ? end + std::copysign(1.0, beyond) : std::nextafter(end, beyond);
-            EXPECT_EQ(ask(step), p.name + "=" + shortest(step) + ": " + p.allowed());
+            EXPECT_EQ(ask(step), p.name + "=" + shortest(step) + ": " + p.rule());
             ++ends;
         }
     }
@@ -172,7 +172,7 @@ TEST(MorphRequest, WeightsAreNamedAsTheyWereGiven) {
         EXPECT_EQ(error_of([&] {
                       morph({{name, "1000001,-1000000"}});
                   }),
-                  name + "=1000001,-1000000: allowed are numbers from -1e+06 to 1e+06, separated by commas");
+                  name + "=1000001,-1000000: must be numbers from -1e+06 to 1e+06, separated by commas");
     }
 }
 
@@ -186,7 +186,7 @@ TEST(MorphRequest, AFilmRunsOverT) {
     EXPECT_THAT(error_of([] {
                     morph({{"frames", "3"}, {"t", "0.5"}});
                 }),
-                HasSubstr("t=0.5: allowed without frames"));
+                HasSubstr("t=0.5: must not be given together with frames"));
     EXPECT_THAT(error_of([] { morph({{"frames", "0"}}); }), HasSubstr("frames=0"));
 }
 

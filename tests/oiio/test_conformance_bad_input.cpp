@@ -25,7 +25,7 @@ class BadInput : public InFolder {
 
 /// One line that names the parameter, what was given and what is allowed.
 void expect_refused(const std::string& arguments, const std::string& parameter,
-                    const std::string& allowed = "allowed") {
+                    const std::string& allowed = "must") {
     SCOPED_TRACE(arguments);
     const std::string error = open_error("city.exr.pano?" + arguments);
     EXPECT_THAT(error, AllOf(HasSubstr(parameter), HasSubstr(allowed), Not(HasSubstr("\n"))));
@@ -49,17 +49,17 @@ void open_and_read(const std::string& name) {
 
 TEST_F(BadInput, conformance_20_sizes) {
     for (const char* size :
-         {"0", "-1", "0x5", "5x0", "5x-5", "99999999999", "16777217", "1e3", "5x", "x", "4294967297x1"})
+         {"0", "-1", "0x5", "5x0", "5x-5", "99999999999", "1048577", "1e3", "5x", "x", "4294967297x1"})
         expect_refused(std::string("size=") + size, "size=");
     // More than limits:imagesize_MB, which is 32 GB unless set.
-    for (const char* size : {"16777216", "16777216x16777216", "100000x100000"})
+    for (const char* size : {"1048576", "1048576x1048576", "100000x100000"})
         expect_refused(std::string("size=") + size, "limits:imagesize_MB");
     for (const char* tile : {"-1", "99999", "64x", "1x1x1"})
         expect_refused(std::string("tile=") + tile, "tile=");
     int limit = 0;
     ASSERT_TRUE(OIIO::getattribute("limits:imagesize_MB", limit));
     OIIO::attribute("limits:imagesize_MB", 1);
-    expect_refused("size=1024", "allowed are at most 1 MB");
+    expect_refused("size=1024", "must make at most 1 MB");
     open_and_read("city.exr.pano?size=100");
     OIIO::attribute("limits:imagesize_MB", limit);
     expect_refused("size=16x16&to=cubemap", "size=16x16", "needs square faces, 1 across and 6 down");
@@ -149,11 +149,11 @@ TEST_F(BadInput, conformance_23_recipe_files) {
     expect_error("src=city.exr\nyaw three\n", "line 2 is \"yaw three\"");
     expect_error(std::string("src=city.exr\nyaw=\0 3\n", 21), "line 2 holds a control character");
     expect_error("\x89PNG\r\n\x1a\n", "line");
-    expect_error("src=city.exr\nfov=1e999\n", "fov=1e999: allowed is a number from 0 to 360");
+    expect_error("src=city.exr\nfov=1e999\n", "fov=1e999: must be a number above 0, at most 360");
 
     write_text("huge.pano", "src=city.exr\n");
     std::filesystem::resize_file("huge.pano", 100 << 20);
-    EXPECT_THAT(open_error("huge.pano"), HasSubstr("104857600 bytes: allowed are at most 1048576"));
+    EXPECT_THAT(open_error("huge.pano"), HasSubstr("104857600 bytes: must have at most 1048576"));
     std::filesystem::create_directory("folder.pano");
     EXPECT_THAT(open_error("folder.pano"), HasSubstr("is not a file"));
 

@@ -41,10 +41,9 @@ Output output_of(WarpOutput output) {
 }
 
 void check_size(const char* name, int width, int height) {
-    constexpr int kMost = 1 << 20;
-    if (width < 1 || height < 1 || width > kMost || height > kMost)
+    if (width < 1 || height < 1 || width > kMaxSide || height > kMaxSide)
         throw Error(name, std::to_string(width) + "x" + std::to_string(height),
-                    "allowed are 1 to " + std::to_string(kMost) + " pixels either way");
+                    "must be 1 to " + std::to_string(kMaxSide) + " pixels either way");
 }
 
 /// body(rows) for boxes of a few whole rows of `box`.

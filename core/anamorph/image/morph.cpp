@@ -83,11 +83,10 @@ bool only(const std::vector<double>& weights, std::size_t shape) {
 }
 
 std::vector<FeatureMap::Size> sizes_of(const std::vector<Source::Size>& pictures, int width, int height) {
-    constexpr int kMostSide = 1 << 24;
     const auto check = [](const std::string& name, int w, int h) {
-        if (!(w > 0 && h > 0 && w <= kMostSide && h <= kMostSide))
+        if (!(w > 0 && h > 0 && w <= kMaxSide && h <= kMaxSide))
             throw Error(name, std::to_string(w) + "x" + std::to_string(h),
-                        "allowed are 1 to 16777216 pixels each way");
+                        "must be 1 to " + std::to_string(kMaxSide) + " pixels either way");
     };
     check("size", width, height);
     std::vector<FeatureMap::Size> sizes;

@@ -122,7 +122,7 @@ MorphRequest read_morph_request(const ParameterValues& values, const std::vector
     // What says the same as another key, where both are given.
     const auto refuse = [&](const char* name, const char* other) {
         if (values.given(name) && values.given(other))
-            throw Error(name, values.text(name), std::string("allowed without ") + other + " only");
+            throw Error(name, values.text(name), std::string("must not be given together with ") + other);
     };
     refuse("t", "shape_weights");
     refuse("t_color", "color_weights");
@@ -133,7 +133,7 @@ MorphRequest read_morph_request(const ParameterValues& values, const std::vector
         refuse("color_weights", "frames");
     }
     if (pictures.size() > 2 && !values.given("shape_weights"))
-        throw Error("shape_weights is not given: allowed is one number for each of the " +
+        throw Error("shape_weights is not given: must be one number for each of the " +
                     std::to_string(pictures.size()) + " pictures, with sum 1");
     return request;
 }

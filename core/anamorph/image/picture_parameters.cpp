@@ -3,6 +3,8 @@
 
 #include <cmath>
 
+#include "anamorph/image/source.h"
+
 namespace anamorph::rows {
 namespace {
 
@@ -44,6 +46,11 @@ Parameter number(const char* name, const char* unit, std::string value, double l
     return parameter;
 }
 
+Parameter above(Parameter number) {
+    number.above_minimum = true;
+    return number;
+}
+
 Parameter whole(const char* name, const char* unit, std::string value, int least, int most, const char* doc) {
     Parameter parameter = number(name, unit, std::move(value), least, most, doc);
     parameter.type = ParameterType::whole;
@@ -68,7 +75,7 @@ Parameter file(const char* name, const char* doc) {
 }
 
 Parameter size(const char* doc) {
-    Parameter parameter = extent("size", "", 1, kMaxSize, doc);
+    Parameter parameter = extent("size", "", 1, kMaxSide, doc);
     parameter.alias = "res";
     return parameter;
 }
@@ -101,7 +108,7 @@ SizeValue size_of(const ParameterValues& values, const SizeValue& natural) {
     SizeValue size = values.extent("size");
     if (size.height < 0) {
         const double height = std::round(double(size.width) * natural.height / natural.width);
-        size.height = static_cast<int>(std::clamp(height, 1.0, kMaxSize));
+        size.height = static_cast<int>(std::clamp(height, 1.0, double{kMaxSide}));
     }
     return size;
 }

@@ -13,11 +13,12 @@
 namespace anamorph::rows {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr double kMaxSize = 1 << 24;  ///< pixels of a picture, either way
 
 Parameter choice(const char* name, std::string value, std::vector<std::string> choices, const char* doc);
 Parameter number(const char* name, const char* unit, std::string value, double least, double most,
                  const char* doc);
+/// The same without the minimum itself.
+Parameter above(Parameter number);
 Parameter whole(const char* name, const char* unit, std::string value, int least, int most, const char* doc);
 Parameter numbers(const char* name, double least, const char* doc);
 Parameter text(const char* name, const char* doc);

@@ -32,15 +32,18 @@ ParameterTable make_table() {
             "the source image; by default the recipe's name without .pano; in a name it stands last when it "
             "has arguments of its own"),
         choice("from", "", projections(),
-               "projection of the source; by default what the image says of itself"),
+               "projection of the source; by default what the image says of itself, else by its shape: 2:1 "
+               "equirectangular, 1:6 cubemap (anamorph:from tells what was assumed)"),
         choice("to", "rectilinear", projections(), "projection of the picture"),
-        number(
+        above(number(
             "srcfov", "degrees", "", 0, 360,
-            "horizontal field of view of the source, edge to edge; by default 360 for equirectangular, "
-            "cylindrical "
-            "and mercator, 180 for fisheye, equisolid and stereographic, 90 for rectilinear and cube faces"),
-        number("fov", "degrees", "", 0, 360,
-               "horizontal field of view of the picture, edge to edge; defaults as for srcfov"),
+            "horizontal field of view of the source, edge to edge; by default what the image says of itself, "
+            "else 360 for equirectangular, cylindrical and mercator, 180 for fisheye, equisolid and "
+            "stereographic, 90 for rectilinear and cube faces")),
+        above(
+            number("fov", "degrees", "", 0, 360,
+                   "horizontal field of view of the picture, edge to edge: below 180 for rectilinear, below "
+                   "360 for stereographic, 90 for cube faces; defaults by projection as for srcfov")),
         number("yaw", "degrees", "0", -kInfinity, kInfinity, "where the camera looks: to the right"),
         number("pitch", "degrees", "0", -kInfinity, kInfinity, "where the camera looks: up"),
         number("roll", "degrees", "0", -kInfinity, kInfinity,
@@ -89,7 +92,7 @@ int columns_of_faces(Projection projection) {
 }
 
 SizeValue natural_size(Projection projection, double fov, double width) {
-    const double limit = rows::kMaxSize;
+    const double limit = kMaxSide;
     const int w = static_cast<int>(std::clamp(std::round(width), 1.0, limit));
     const int h = static_cast<int>(std::clamp(std::round(w * natural_aspect(projection, fov)), 1.0, limit));
     return {w, h};
@@ -107,21 +110,27 @@ SizeValue default_size(Projection projection, double fov, const Chart& source) {
     return natural_size(projection, fov, face * faces);
 }
 
-Projection source_projection(const ParameterValues& values, const SourceFacts& source) {
-    if (values.given("from")) return projection_from_name(values.text("from"), "from");
-    if (source.projection) return *source.projection;
-    if (std::int64_t{source.width} == std::int64_t{source.height} * 2) return Projection::equirectangular;
-    if (std::int64_t{source.width} * 6 == source.height) return Projection::cubemap;
+struct Taken {
+    Projection projection;
+    std::string reason;
+};
+
+/// What the source is taken for, and why.
+Taken source_projection(const ParameterValues& values, const SourceFacts& source) {
+    if (values.given("from")) return {projection_from_name(values.text("from"), "from"), "given"};
+    if (source.projection) return {*source.projection, "as " + source.said_by + " says"};
+    if (std::int64_t{source.width} == std::int64_t{source.height} * 2)
+        return {Projection::equirectangular, "assumed from the 2:1 shape"};
+    if (std::int64_t{source.width} * 6 == source.height)
+        return {Projection::cubemap, "assumed from the 1:6 shape"};
     throw Error("from is not given and the source (" + std::to_string(source.width) + "x" +
-                std::to_string(source.height) + ") does not say its projection: allowed are " +
+                std::to_string(source.height) + ") does not say its projection: must be one of " +
                 projection_names());
 }
 
 double field_of_view(const ParameterValues& values, std::string_view name, Projection projection) {
     if (!values.given(name)) return Chart::default_fov(projection);
-    const double fov = values.number(name);
-    if (!(fov > 0)) throw Error(std::string(name), values.text(name), "allowed is above 0 degrees");
-    return fov;
+    return values.number(name);
 }
 
 }  // namespace
@@ -132,8 +141,10 @@ const ParameterTable& reproject_parameters() {
 }
 
 ReprojectRequest read_reproject_request(const ParameterValues& values, const SourceFacts& facts) {
-    const Projection from = source_projection(values, facts);
-    const Chart source(from, facts.width, facts.height, field_of_view(values, "srcfov", from),
+    const auto [from, reason] = source_projection(values, facts);
+    const bool says_fov = !values.given("srcfov") && facts.fov && facts.projection == from;
+    const Chart source(from, facts.width, facts.height,
+                       says_fov ? *facts.fov : field_of_view(values, "srcfov", from),
                        chosen<PixelSpacing>(values, "pixels", kSpacings), "src");
 
     const Projection to = projection_from_name(values.text("to"), "to");
@@ -160,7 +171,8 @@ ReprojectRequest read_reproject_request(const ParameterValues& values, const Sou
     return {source,
             Chart(to, size.width, size.height, fov),
             {values.number("yaw"), values.number("pitch"), values.number("roll")},
-            options};
+            options,
+            reason};
 }
 
 std::optional<Chart> half_size(const Chart& chart) {

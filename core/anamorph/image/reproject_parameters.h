@@ -3,6 +3,7 @@
 #pragma once
 
 #include <optional>
+#include <string>
 #include <string_view>
 
 #include "anamorph/image/reproject.h"
@@ -15,8 +16,11 @@ const ParameterTable& reproject_parameters();
 /// What is known of the source before a pixel is read.
 struct SourceFacts {
     int width = 0, height = 0;
-    /// What the image says of itself, if it does.
-    std::optional<Projection> projection;
+    /// What the image says of itself, if it does, where it says so, and its horizontal field of view in
+    /// degrees.
+    std::optional<Projection> projection = {};
+    std::string said_by = {};
+    std::optional<double> fov = {};
 };
 
 /// A reprojection as asked for.
@@ -24,13 +28,16 @@ struct ReprojectRequest {
     Chart source, target;
     Orientation orientation;
     ReprojectOptions options;
+    /// Why the source is taken for what it is: "given", "assumed from the 2:1 shape" ...
+    std::string source_reason;
 
     Panorama map() const { return Panorama(source, target, orientation); }
 };
 
 /// Reads a table's values. Throws Error; it names `from` when the source does not say what it is.
 ///
-/// Without `from`: what the image says, else 2:1 is equirectangular and 1:6 a cubemap.
+/// Without `from`: what the image says, else 2:1 is equirectangular and 1:6 a cubemap. Without `srcfov`: what
+/// the image says, where that is of the same projection, else the projection's default.
 /// Without `size`: the source's pixels per degree at the centre of both, at most kMaxDefaultSize either way.
 /// With one number, the width; the height is then the projection's own: half the width for a full
 /// equirectangular image, 90 degrees for a cylindrical one, square faces for cubes, else the width.

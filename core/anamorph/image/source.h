@@ -6,6 +6,8 @@
 
 namespace anamorph {
 
+constexpr int kMaxSide = 1 << 20;  ///< pixels of a picture, either way
+
 /// The pixels of one image at one or more resolutions, level 0 the finest. Reading is thread safe.
 class Source {
   public:

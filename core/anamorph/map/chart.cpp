@@ -109,7 +109,7 @@ Projection projection_from_name(std::string_view name, const std::string& parame
     if (name == "latlong") return Projection::equirectangular;
     for (const auto& [known, projection] : kNames)
         if (known == name) return projection;
-    throw Error(parameter, std::string(name), "allowed are " + projection_names());
+    throw Error(parameter, std::string(name), "must be one of " + projection_names());
 }
 
 std::string_view name_of(Projection projection) {
@@ -158,15 +158,15 @@ Chart::Chart(Projection projection, int width, int height, double fov, PixelSpac
     : m_projection(projection), m_width(width), m_height(height), m_fov(fov), m_spacing(spacing) {
     const std::string size = std::to_string(width) + "x" + std::to_string(height);
     if (width < 1 || height < 1 || width > kMaxSize || height > kMaxSize)
-        throw Error(prefix + "size", size, "allowed is 1x1 to 16777216x16777216 pixels");
+        throw Error(prefix + "size", size, "must be 1x1 to 16777216x16777216 pixels");
     if (m_fov == 0) m_fov = default_fov(projection);
     const auto [limit, inclusive] = fov_limit(projection);
     if (is_cube(projection)) {
         if (m_fov != 90) throw Error(prefix + "fov", print(fov), "the faces of a cube have 90 degrees");
     } else if (!(m_fov > 0 && (m_fov < limit || (inclusive && m_fov == limit))))
         throw Error(prefix + "fov", print(fov),
-                    std::string("allowed for ") + std::string(name_of(projection)) + " is above 0 and " +
-                        (inclusive ? "up to " : "below ") + print(limit) + " degrees");
+                    "must be above 0 and " + std::string(inclusive ? "up to " : "below ") + print(limit) +
+                        " degrees for " + std::string(name_of(projection)));
 
     int columns = width;
     long double plane = plane_width(is_cube(projection) ? Projection::rectilinear : projection, m_fov);

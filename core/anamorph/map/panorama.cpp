@@ -72,7 +72,7 @@ Panorama::Panorama(const Chart& source, const Chart& target, const Orientation& 
         {"yaw", orientation.yaw}, {"pitch", orientation.pitch}, {"roll", orientation.roll}};
     for (const auto& [name, value] : angles)
         if (!std::isfinite(value))
-            throw Error(name, std::to_string(value), "allowed are finite angles in degrees");
+            throw Error(name, std::to_string(value), "must be a finite angle in degrees");
     m_turn = turn_of(orientation);
     m_rotation = matrix_of(m_turn);
 }

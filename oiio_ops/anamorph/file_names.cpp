@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "anamorph/file_names.h"
+
+#include <algorithm>
+#include <cctype>
+#include <cstdlib>
+#include <filesystem>
+#include <string_view>
+
+#include "anamorph/parameter.h"
+
+namespace anamorph {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// "http:", "concat:", "subfile,,start,0,end,9,,:" in front; two characters at least.
+bool has_scheme(std::string_view name) {
+    const std::size_t colon = name.find(':');
+    if (colon == std::string_view::npos || colon < 2 || !std::isalpha(static_cast<unsigned char>(name[0])))
+        return false;
+    return std::all_of(name.begin(), name.begin() + static_cast<std::ptrdiff_t>(colon), [](unsigned char c) {
+        return std::isalnum(c) || c == '+' || c == '-' || c == '.' || c == ',' || c == '_';
+    });
+}
+
+bool urls_are_allowed() {
+    const char* value = std::getenv("ANAMORPH_ALLOW_URLS");
+    return value && std::string_view(value) == "1";
+}
+
+}  // namespace
+
+void check_file_name(const std::string& key, const std::string& name) {
+    // As a name, and without the arguments of one that OpenImageIO makes pixels of.
+    for (const std::string& path : {name, name.substr(0, name.find('?'))}) {
+        std::error_code failure;
+        const fs::file_status status = fs::status(path, failure);
+        if (failure || !fs::exists(status)) continue;
+        if (fs::is_regular_file(status)) return;
+        throw Error(key, printable(name),
+                    "is not a file but a folder, pipe or device: must be the name of a file");
+    }
+    if (has_scheme(name) && !urls_are_allowed())
+        throw Error(key, printable(name),
+                    "is an address: must be the name of a file, unless the environment variable "
+                    "ANAMORPH_ALLOW_URLS is 1");
+}
+
+}  // namespace anamorph

@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: Apache-2.0
+// Which names of files are opened at all.
+#pragma once
+
+#include <string>
+
+namespace anamorph {
+
+/// Throws Error naming `key` where `name` is that of a pipe, a device or a folder, which would be waited for;
+/// or an address (http://..., or any other scheme), which OpenImageIO may connect to, unless the environment
+/// variable ANAMORPH_ALLOW_URLS is 1. A name that is none of a file may be one that OpenImageIO makes pixels
+/// of, and passes.
+void check_file_name(const std::string& key, const std::string& name);
+
+}  // namespace anamorph

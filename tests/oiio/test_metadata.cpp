@@ -1,0 +1,331 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a picture says of itself and what it takes over of its source: values that are no colour are written
+// as they are, turned sources come upright, and a picture's projection is known to the next who reads it.
+#include <OpenImageIO/imagebufalgo.h>
+#include <OpenImageIO/imagecache.h>
+#include <OpenImageIO/strutil.h>
+
+#include "anamorph/oiio_ops.h"
+#include "host.h"
+
+namespace anamorph {
+namespace {
+
+using namespace testing_oiio;
+using OIIO::ImageBuf;
+using OIIO::ImageSpec;
+using testing::AllOf;
+using testing::HasSubstr;
+using testing::Not;
+
+const char* const kGrid = R"({"columns": 2, "rows": 2, "units": "fractions", "vertices": [
+    [0, 0], [0.5, 0], [1, 0],  [0, 0.5], [0.61, 0.42], [1, 0.5],  [0, 1], [0.5, 1], [1, 1]]})";
+
+class Metadata : public InFolder {
+  protected:
+    void SetUp() override {
+        InFolder::SetUp();
+        write_panorama("city.exr", 64, 32);
+        write_text("grid.json", kGrid);
+        write_text("lines.csv", "8,8,50,12,12,10,44,20\n40,20,20,28,44,18,18,30\n");
+    }
+};
+
+ImageSpec spec_of(const std::string& name) {
+    const auto input = open(name);
+    return input ? input->spec() : ImageSpec();
+}
+
+TEST_F(Metadata, ValuesThatAreNoColourAreWrittenAsTheyAre) {
+    for (const char* compression : {"dwaa", "dwab", "pxr24", "b44", "b44a", "jpeg"}) {
+        const bool jpeg = compression == std::string("jpeg");
+        const bool half = compression[0] == 'b';
+        const std::string source = jpeg ? "lossy.jpg" : "lossy.exr";
+        ImageBuf image = panorama(64, 32, half ? OIIO::TypeHalf : jpeg ? OIIO::TypeUInt8 : OIIO::TypeFloat);
+        image.specmod().attribute("compression", compression);
+        write_image(image, source);
+        ASSERT_THAT(spec_of(source).get_string_attribute("compression", "jpeg"),
+                    testing::StartsWith(compression));
+        std::vector<std::string> recipes;
+        for (const char* output : {"stmap", "error", "bound"}) {
+            recipes.push_back(source + ".pano?size=48x40&output=" + output);
+            recipes.push_back(source + ".pano?size=48x24&to=equirectangular&output=" + output);
+        }
+        for (const char* output : {"stmap", "error", "bound", "folds"})
+            recipes.push_back(source + ".warp?mesh=grid.json&output=" + output);
+        for (const char* output : {"stmap_a", "stmap_b", "error", "bound"})
+            recipes.push_back(source + ".morph?features=lines.csv&b=" + source + "&output=" + output);
+        for (const std::string& recipe : recipes)
+            for (const char* written : {"out.exr", "out.tif"}) {
+                SCOPED_TRACE(recipe + " -o " + written);
+                const Ran ran = run("oiiotool '" + recipe + "' -o " + written);
+                ASSERT_EQ(ran.status, 0) << ran.text;
+                EXPECT_EQ(spec_of(written).format, OIIO::TypeFloat);
+                EXPECT_TRUE(read_floats(written) == read_floats(recipe));
+            }
+    }
+}
+
+TEST_F(Metadata, ColourKeepsHowItIsCodedAndValuesDoNot) {
+    ImageBuf image = panorama(64, 32);
+    const std::pair<const char*, const char*> coding[] = {{"compression", "dwab"},
+                                                          {"oiio:ColorSpace", "sRGB"},
+                                                          {"Exif:ColorSpace", "1"},
+                                                          {"jpeg:subsampling", "4:4:4"},
+                                                          {"ICCProfile:color_space", "RGB"}};
+    for (const auto& [name, value] : coding) image.specmod().attribute(name, value);
+    image.specmod().attribute("CompressionQuality", 40);
+    image.specmod().attribute("Artist", "somebody");
+    for (const char* output : {"color", "stmap", "error", "bound"}) {
+        SCOPED_TRACE(output);
+        const bool color = output == std::string("color");
+        const ImageSpec spec = reproject(image, options({{"size", "8"}, {"output", output}})).spec();
+        for (const auto& [name, value] : coding)
+            EXPECT_EQ(spec.find_attribute(name) != nullptr, color) << name;
+        EXPECT_EQ(spec.find_attribute("CompressionQuality") != nullptr, color);
+        EXPECT_EQ(spec.get_string_attribute("Artist"), "somebody");
+    }
+}
+
+TEST_F(Metadata, WhatTheWarpMakesUntrueIsDropped) {
+    ImageBuf image = panorama(64, 32);
+    for (const char* name :
+         {"textureformat", "wrapmodes", "envmap", "oiio:SHA-1", "oiio:AverageColor", "GPano:ProjectionType",
+          "Exif:FocalLength", "Exif:FocalLengthIn35mmFilm", "Exif:FocalPlaneXResolution", "Exif:SubjectArea",
+          "Exif:PixelXDimension", "thumbnail_width", "originalDataWindow", "fovcot", "tiff:Compression"})
+        image.specmod().attribute(name,
+                                  name == std::string("GPano:ProjectionType") ? "equirectangular" : "1");
+    const char* const kept[] = {
+        "Artist",       "Copyright", "Exif:ExposureTime", "Exif:SubjectDistance", "Exif:Flash",
+        "IPTC:Caption", "Make",      "DateTime"};
+    for (const char* name : kept) image.specmod().attribute(name, "2");
+    image.specmod().attribute("smpte:TimeCode", 3);
+    const ImageBuf pictures[] = {
+        reproject(image, options({{"size", "8"}})),
+        mesh_warp(image, options({{"mesh", "grid.json"}})),
+        morph(image, image, options({{"features", "lines.csv"}})),
+    };
+    for (const ImageBuf& picture : pictures) {
+        ASSERT_FALSE(picture.has_error()) << picture.geterror();
+        for (const OIIO::ParamValue& a : image.spec().extra_attribs) {
+            const std::string name = a.name().string();
+            const bool holds = a.get_string() == "2" || a.get_string() == "3";
+            EXPECT_EQ(picture.spec().find_attribute(name) != nullptr, holds) << name;
+        }
+    }
+}
+
+/// What a stored image shows, from the table of the TIFF specification: the sides on which its first row and
+/// its first column lie.
+ImageBuf shown(const ImageBuf& stored, int orientation) {
+    const char* const sides[] = {"top left", "top right", "bottom right", "bottom left",
+                                 "left top", "right top", "right bottom", "left bottom"};
+    const std::string row = std::string(sides[orientation - 1])
+                                .substr(0, std::string(sides[orientation - 1]).find(' ')),
+                      column = std::string(sides[orientation - 1]).substr(row.size() + 1);
+    const int w = stored.spec().width, h = stored.spec().height;
+    const bool rows_stay = row == "top" || row == "bottom";
+    ImageBuf upright(
+        ImageSpec(rows_stay ? w : h, rows_stay ? h : w, stored.nchannels(), stored.spec().format));
+    std::vector<float> pixel(static_cast<std::size_t>(stored.nchannels()));
+    for (int y = 0; y < h; ++y)
+        for (int x = 0; x < w; ++x) {
+            stored.getpixel(x, y, pixel.data());
+            const int from_row = row == "top" || row == "left" ? y : h - 1 - y;
+            const int from_column = column == "top" || column == "left" ? x : w - 1 - x;
+            upright.setpixel(rows_stay ? from_column : from_row, rows_stay ? from_row : from_column,
+                             pixel.data());
+        }
+    return upright;
+}
+
+/// A stored image of each orientation, and what it shows.
+class Orientations : public Metadata, public testing::WithParamInterface<int> {
+  protected:
+    void SetUp() override {
+        Metadata::SetUp();
+        ImageBuf stored = panorama(70, 44, OIIO::TypeUInt16, 3);
+        stored.specmod().attribute("Orientation", GetParam());
+        stored.set_write_tiles(16, 16);
+        write_image(stored, "stored.tif");
+        ImageBuf upright = shown(stored, GetParam());
+        upright.specmod().attribute("Orientation", 1);
+        upright.set_write_tiles(16, 16);
+        write_image(upright, "upright.tif");
+        ASSERT_EQ(spec_of("stored.tif").get_int_attribute("Orientation"), GetParam());
+    }
+};
+INSTANTIATE_TEST_SUITE_P(Exif, Orientations, testing::Range(1, 9));
+
+TEST_P(Orientations, SourcesAreReadUpright) {
+    const char* const recipes[] = {".pano?from=rectilinear&fov=70&yaw=8",
+                                   ".pano?from=fisheye&srcfov=120",
+                                   ".warp?mesh=grid.json",
+                                   ".warp?mesh=grid.json&mip=1&tile=16",
+                                   ".morph?b=upright.tif&features=lines.csv",
+
+                                   ".warp?mesh=grid.json&output=stmap"};
+    for (const std::string recipe : recipes) {
+        SCOPED_TRACE(recipe);
+        EXPECT_TRUE(read_pixels("stored.tif" + recipe) == read_pixels("upright.tif" + recipe));
+        EXPECT_EQ(spec_of("stored.tif" + recipe).get_int_attribute("Orientation", 1), 1);
+    }
+    EXPECT_TRUE(read_pixels("upright.tif.morph?b=stored.tif&features=lines.csv") ==
+                read_pixels("upright.tif.morph?b=upright.tif&features=lines.csv"));
+    for (const bool cached : {false, true}) {
+        const auto cache = OIIO::ImageCache::create(true);
+        ImageBuf stored("stored.tif", 0, 0, cached ? cache : nullptr),
+            upright("upright.tif", 0, 0, cached ? cache : nullptr);
+        ASSERT_TRUE(stored.read(0, 0, !cached));
+        ASSERT_TRUE(upright.read(0, 0, !cached));
+        const auto o = options({{"from", "rectilinear"}, {"yaw", "10"}});
+        EXPECT_EQ(bytes(reproject(stored, o)), bytes(reproject(upright, o)));
+        for (ImageBuf* image : {&stored, &upright}) image->specmod().attribute("oiio:ColorSpace", "sRGB");
+        const auto w = options({{"mesh", "grid.json"}, {"colorspace", "linear"}});
+        EXPECT_EQ(bytes(mesh_warp(stored, w)), bytes(mesh_warp(upright, w)));
+        EXPECT_EQ(mesh_warp(stored, w).spec().get_int_attribute("Orientation"), 1);
+    }
+}
+
+TEST_P(Orientations, SoAreDataWindowsAndStMaps) {
+    ImageBuf stored = panorama(70, 44);
+    stored.specmod().attribute("Orientation", GetParam());
+    ImageBuf part = OIIO::ImageBufAlgo::crop(stored, OIIO::ROI(12, 50, 5, 30));
+    ImageBuf padded(ImageSpec(70, 44, 3, OIIO::TypeFloat));
+    ASSERT_TRUE(OIIO::ImageBufAlgo::paste(padded, 0, 0, 0, 0, part));
+    padded.specmod().attribute("Orientation", GetParam());
+    const auto w = options({{"mesh", "grid.json"}});
+    EXPECT_EQ(bytes(mesh_warp(part, w)), bytes(mesh_warp(shown(padded, GetParam()), w)));
+    // An ST-map stored turned.
+    ASSERT_EQ(run("oiiotool 'city.exr.warp?mesh=grid.json&output=stmap&size=20x30' -o st.exr").status, 0);
+    ImageBuf map("st.exr"), turned;
+    ASSERT_TRUE(map.read(0, 0, true));
+    // Turned so that the orientation takes it back: 6 and 8 are each other's, the others their own.
+    turned = shown(map, GetParam() == 6 ? 8 : GetParam() == 8 ? 6 : GetParam());
+    turned.specmod().attribute("Orientation", GetParam());
+    write_image(turned, "turned.exr");
+    ASSERT_EQ(spec_of("turned.exr").get_int_attribute("Orientation", 1), GetParam());
+    EXPECT_TRUE(read_pixels("city.exr.warp?mesh=turned.exr") == read_pixels("city.exr.warp?mesh=st.exr"));
+}
+
+TEST_F(Metadata, ATurnedSourceIsReadByTiles) {
+    ImageBuf stored = panorama(1024, 1024, OIIO::TypeUInt8);
+    stored.specmod().attribute("Orientation", 6);
+    stored.set_write_tiles(64, 64);
+    write_image(stored, "stored.tif");
+    const auto cache = OIIO::ImageCache::create(true);
+    const std::string name = "stored.tif.warp?mesh=grid.json&tile=64";
+    std::vector<float> pixels(64 * 64 * 3);
+    ASSERT_TRUE(
+        cache->get_pixels(OIIO::ustring(name), 0, 0, 64, 128, 640, 704, 0, 1, OIIO::TypeFloat, pixels.data()))
+        << cache->geterror();
+    long long tiles = -1;
+    ASSERT_TRUE(cache->get_image_info(OIIO::ustring("stored.tif"), 0, 0, OIIO::ustring("stat:tilesread"),
+                                      OIIO::TypeDesc::INT64, &tiles));
+    EXPECT_GT(tiles, 0);
+    EXPECT_LE(tiles, 9) << "of 256";
+}
+
+TEST_F(Metadata, PixelsThatAreNotSquareAreRefused) {
+    ImageBuf image = panorama(64, 32);
+    image.specmod().attribute("PixelAspectRatio", 2.0f);
+    write_image(image, "wide.exr");
+    const std::string reason = "source \"wide.exr\" has PixelAspectRatio=2: must be 1";
+    for (const char* recipe :
+         {"wide.exr.pano", "wide.exr.warp?mesh=grid.json", "wide.exr.morph?b=city.exr&features=lines.csv",
+          "city.exr.morph?b=wide.exr&features=lines.csv"})
+        EXPECT_THAT(open_error(recipe), HasSubstr(reason)) << recipe;
+    EXPECT_THAT(mesh_warp(image, options({{"mesh", "grid.json"}})).geterror(),
+                HasSubstr("has PixelAspectRatio=2: must be 1"));
+}
+
+TEST_F(Metadata, APanoramaSaysThatItIsOne) {
+    const ImageSpec latlong = spec_of("city.exr.pano?to=equirectangular&size=64x32&yaw=30");
+    EXPECT_EQ(latlong.get_string_attribute("GPano:ProjectionType"), "equirectangular");
+    EXPECT_EQ(latlong.get_int_attribute("GPano:FullPanoWidthPixels"), 64);
+    EXPECT_EQ(latlong.get_int_attribute("GPano:FullPanoHeightPixels"), 32);
+    EXPECT_EQ(latlong.get_int_attribute("GPano:CroppedAreaTopPixels", -1), 0);
+    EXPECT_EQ(latlong.get_string_attribute("textureformat"), "LatLong Environment");
+    EXPECT_EQ(latlong.get_string_attribute("oiio:updirection"), "y");
+    const ImageSpec cube = spec_of("city.exr.pano?to=cubemap&size=16");
+    EXPECT_EQ(cube.get_string_attribute("textureformat"), "CubeFace Environment");
+    EXPECT_EQ(cube.get_string_attribute("oiio:updirection"), "y");
+    EXPECT_FALSE(cube.find_attribute("GPano:ProjectionType"));
+    // Half of the height: the rest is cropped. A part of the turn is no environment.
+    const ImageSpec band = spec_of("city.exr.pano?to=equirectangular&size=64x16");
+    EXPECT_EQ(band.get_int_attribute("GPano:FullPanoHeightPixels"), 32);
+    EXPECT_EQ(band.get_int_attribute("GPano:CroppedAreaTopPixels"), 8);
+    EXPECT_FALSE(band.find_attribute("textureformat"));
+    for (const char* no :
+         {"to=equirectangular&fov=90&size=64x32", "to=equirectangular&size=64x64", "to=cubemap3x2&size=48x32",
+          "to=rectilinear&size=64x32", "to=equirectangular&size=64x32&output=stmap"}) {
+        const ImageSpec spec = spec_of(std::string("city.exr.pano?") + no);
+        EXPECT_FALSE(spec.find_attribute("GPano:ProjectionType")) << no;
+        EXPECT_FALSE(spec.find_attribute("textureformat")) << no;
+        EXPECT_TRUE(spec.find_attribute("panoramaProjection")) << no;
+    }
+    // A warp of it is none any more.
+    const ImageSpec warped = spec_of("x.warp?mesh=grid.json&src=city.exr.pano?to=equirectangular&size=64x32");
+    for (const char* name : {"GPano:ProjectionType", "textureformat", "panoramaProjection", "anamorph:from"})
+        EXPECT_FALSE(warped.find_attribute(name)) << name;
+}
+
+TEST_F(Metadata, ARecipeKnowsWhatItReads) {
+    for (const std::string view :
+         {"to=equirectangular&size=64x32", "to=equirectangular&size=64x16",
+          "to=equirectangular&size=60x60&fov=90", "to=cylindrical&size=64x30",
+          "to=rectilinear&size=50x40&fov=110", "to=fisheye&size=40x40&fov=200", "to=equisolid&size=64x32",
+          "to=stereographic&size=40x40&fov=250", "to=mercator&size=60x40", "to=cubemap&size=16x96",
+          "to=cubemap3x2&size=48x32", "to=cubecross&size=64x48"}) {
+        SCOPED_TRACE(view);
+        const std::string recipe = "city.exr.pano?" + view;
+        const std::size_t end = view.find('&'), fov = view.find("fov=");
+        const std::string to = view.substr(3, end - 3),
+                          degrees = fov == std::string::npos ? "" : "&src" + view.substr(fov);
+        const std::string chained = "v.pano?yaw=20&size=30x30&src=" + recipe,
+                          told = "v.pano?yaw=20&size=30x30&from=" + to + degrees + "&src=" + recipe;
+        EXPECT_TRUE(read_pixels(chained) == read_pixels(told));
+        EXPECT_EQ(spec_of(chained).get_string_attribute("anamorph:from"),
+                  to + " (as panoramaProjection says)");
+        // Also by way of a file.
+        ASSERT_EQ(run("oiiotool '" + recipe + "' -o view.exr").status, 0);
+        EXPECT_TRUE(read_pixels("view.exr.pano?yaw=20&size=30x30") == read_pixels(told));
+    }
+    EXPECT_THAT(open_error("v.pano?src=city.exr.warp?mesh=grid.json&size=30x30"),
+                HasSubstr("from is not given"));
+}
+
+TEST_F(Metadata, WhatWasAssumedIsSaid) {
+    const auto from = [](const std::string& name) {
+        return spec_of(name).get_string_attribute("anamorph:from");
+    };
+    EXPECT_EQ(from("city.exr.pano?size=8"), "equirectangular (assumed from the 2:1 shape)");
+    EXPECT_EQ(from("city.exr.pano?size=8&from=fisheye"), "fisheye (given)");
+    write_panorama("strip.exr", 8, 48);
+    EXPECT_EQ(from("strip.exr.pano?size=8"), "cubemap (assumed from the 1:6 shape)");
+    ImageBuf image = panorama(64, 32);
+    image.specmod().attribute("GPano:ProjectionType", "fisheye");
+    write_image(image, "fish.exr");
+    EXPECT_EQ(from("fish.exr.pano?size=8"), "fisheye (as GPano:ProjectionType says)");
+    write_panorama("square.exr", 32, 32);
+    EXPECT_THAT(open_error("square.exr.pano?size=8"), HasSubstr("from is not given"));
+    ImageBuf dst(ImageSpec(8, 8, 3, OIIO::TypeFloat));
+    ASSERT_TRUE(reproject(dst, panorama(64, 32))) << dst.geterror();
+    EXPECT_EQ(dst.spec().get_string_attribute("anamorph:from"),
+              "equirectangular (assumed from the 2:1 shape)");
+}
+
+TEST_F(Metadata, StockProgramsKnowAnEnvironment) {
+    // maketx keeps what the picture says; OpenEXR's own attribute comes back as a texture's format.
+    write_text("sky.pano", "src=city.exr\nto=equirectangular\nsize=64x32\nyaw=10\n");
+    ASSERT_EQ(run("maketx --envlatl sky.pano -o sky.exr").status, 0);
+    EXPECT_EQ(spec_of("sky.exr").get_string_attribute("textureformat"), "LatLong Environment");
+    EXPECT_EQ(spec_of("sky.exr.pano?size=8").get_string_attribute("anamorph:from").substr(0, 15),
+              "equirectangular");
+    const Ran info = run("iinfo -v sky.pano");
+    EXPECT_THAT(info.text, AllOf(HasSubstr("GPano:ProjectionType: \"equirectangular\""),
+                                 HasSubstr("textureformat: \"LatLong Environment\"")));
+}
+
+}  // namespace
+}  // namespace anamorph

@@ -1,0 +1,146 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a row of a parameter table says is what the code accepts: every row of every operation at both of its
+// ends, drawn by the recipe, and one step beyond, refused by its name.
+#include <OpenImageIO/strutil.h>
+
+#include <cfloat>
+#include <cmath>
+
+#include "anamorph/operation.h"
+#include "host.h"
+
+namespace anamorph {
+namespace {
+
+using namespace testing_oiio;
+using testing::HasSubstr;
+using testing::StartsWith;
+using Values = std::vector<std::string>;
+
+struct Ends {
+    Values accepted, refused;
+};
+
+/// Where a range is open towards infinity its end is the largest number there is.
+Ends ends_of_number(const Parameter& p) {
+    Ends ends;
+    if (std::isfinite(p.minimum)) {
+        const double least = p.above_minimum ? std::nextafter(p.minimum, DBL_MAX) : p.minimum;
+        ends.accepted.push_back(shortest(least));
+        ends.refused.push_back(shortest(std::nextafter(least, -DBL_MAX)));
+    } else {
+        ends.accepted.push_back(shortest(-DBL_MAX));
+        ends.refused.push_back("-1e309");
+    }
+    if (std::isfinite(p.maximum)) {
+        ends.accepted.push_back(shortest(p.maximum));
+        ends.refused.push_back(shortest(std::nextafter(p.maximum, DBL_MAX)));
+    } else {
+        ends.accepted.push_back(shortest(DBL_MAX));
+        ends.refused.push_back("1e309");
+    }
+    return ends;
+}
+
+Ends ends_of(const Parameter& p) {
+    const auto text = [](double value) { return std::to_string(std::llround(value)); };
+    switch (p.type) {
+        case ParameterType::number:
+            return ends_of_number(p);
+        case ParameterType::whole:
+            return {{text(p.minimum), text(p.maximum)}, {text(p.minimum - 1), text(p.maximum + 1)}};
+        case ParameterType::extent: {
+            const auto least = std::llround(p.minimum), most = std::llround(p.maximum);
+            const auto size = [](long long width, long long height) {
+                return OIIO::Strutil::fmt::format("{}x{}", width, height);
+            };
+            return {Values{text(p.minimum), size(least, least), size(most, 1), size(1, most)},
+                    Values{text(p.minimum - 1), size(most, least - 1), size(most + 1, 1), size(1, most + 1)}};
+        }
+        case ParameterType::toggle:
+            return {Values{"0", "1"}, Values{"-1", "2", "true"}};
+        case ParameterType::choice:
+            return {p.choices, Values{"", "none", p.choices.front().substr(1)}};
+        default:
+            return {};
+    }
+}
+
+class ParameterEnds : public InFolder {
+  protected:
+    void SetUp() override {
+        InFolder::SetUp();
+        write_panorama("city.exr", 24, 12);
+        write_panorama("town.exr", 24, 12);
+        write_panorama("cube.exr", 6, 36);
+        write_panorama("cube3x2.exr", 12, 8);
+        write_panorama("cross.exr", 16, 12);
+        write_text("still.json", R"({"columns": 1, "rows": 1, "units": "fractions",
+                                     "vertices": [[0, 0], [1, 0], [0, 1], [1, 1]]})");
+        write_text("lines.csv", "2,2,20,3,4,4,18,5\n");
+        ASSERT_EQ(run("oiiotool 'city.exr.warp?mesh=still.json&output=stmap' -o st.exr").status, 0);
+    }
+
+    /// A recipe in which any value of `key` has a meaning.
+    static std::string name_for(const std::string& kind, const std::string& key, const std::string& value) {
+        std::string name = base_for(kind, key, value);
+        if (key != "size" && !(key == "to" && value.starts_with("cube"))) name += "&size=4x3";
+        name.append("&").append(key).append("=").append(value);
+        return name;
+    }
+
+  private:
+    static std::string base_for(const std::string& kind, const std::string& key, const std::string& value) {
+        if (kind == "morph") return "city.exr.morph?b=town.exr&features=lines.csv";
+        if (kind == "warp")
+            return key == "step" ? "city.exr.warp?mesh=st.exr" : "city.exr.warp?mesh=still.json";
+        if (key == "from") {
+            if (value == "cubemap") return "cube.exr.pano?yaw=1";
+            if (value == "cubemap3x2") return "cube3x2.exr.pano?yaw=1";
+            return value == "cubecross" ? "cross.exr.pano?yaw=1" : "city.exr.pano?yaw=1";
+        }
+        if (value == "cubemap") return "city.exr.pano?size=2x12";
+        if (value == "cubemap3x2") return "city.exr.pano?size=6x4";
+        if (value == "cubecross") return "city.exr.pano?size=8x6";
+        // Lenses that may have 360 degrees.
+        return key == "fov" || key == "size" ? "city.exr.pano?to=equirectangular"
+                                             : "city.exr.pano?from=latlong";
+    }
+};
+
+/// Opens the picture and reads its first pixel.
+std::string error_of(const std::string& name) {
+    const auto input = OIIO::ImageInput::open(name);
+    if (!input) return OIIO::geterror();
+    const OIIO::ImageSpec spec = input->spec();
+    std::vector<float> pixels(
+        spec.tile_width > 0
+            ? static_cast<std::size_t>(spec.tile_pixels()) * static_cast<std::size_t>(spec.nchannels)
+            : static_cast<std::size_t>(spec.width) * static_cast<std::size_t>(spec.nchannels));
+    const bool read = spec.tile_width > 0 ? input->read_tile(0, 0, 0, OIIO::TypeFloat, pixels.data())
+                                          : input->read_scanline(0, 0, OIIO::TypeFloat, pixels.data());
+    if (!read) return input->geterror();
+    for (const float value : pixels)
+        if (!std::isfinite(value)) return "a pixel is not finite";
+    return "";
+}
+
+TEST_F(ParameterEnds, EveryRowAcceptsWhatItSaysAndNoMore) {
+    for (const OperationKind* kind : {&pano_kind(), &warp_kind(), &morph_kind()})
+        for (const Parameter& p : *kind->parameters) {
+            const Ends ends = ends_of(p);
+            for (const std::string& value : ends.accepted) {
+                const std::string name = name_for(kind->name, p.name, value);
+                EXPECT_EQ(error_of(name), "") << name;
+            }
+            for (const std::string& value : ends.refused) {
+                const std::string name = name_for(kind->name, p.name, value);
+                std::string start = "anamorph: ";
+                start.append(p.name).append("=").append(value).append(": ").append(p.rule());
+                EXPECT_THAT(open_error(name), StartsWith(start)) << name;
+            }
+        }
+}
+
+}  // namespace
+}  // namespace anamorph
