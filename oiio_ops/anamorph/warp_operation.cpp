@@ -90,12 +90,12 @@ const OperationKind& warp_kind() {
         1,
         [](const ParameterValues& values, const std::vector<SourceImage>& images, const SideFiles& files) {
             WarpRequest request = read_warp_request(values, images[0].size());
-            const GivenMap given = read_map(request, files);
+            const std::shared_ptr<const WarpMap> map = read_map(request, files);
             // An ST-map is as large as its picture.
-            const auto* mesh = std::get_if<ControlMesh>(&given.map->shape);
+            const auto* mesh = std::get_if<ControlMesh>(&map->shape);
             if (mesh && mesh->width > 0 && mesh->direction == Direction::pull)
                 request.target = warp_target(values, {mesh->width, mesh->height});
-            return std::unique_ptr<const Operation>(std::make_unique<WarpOperation>(request, given));
+            return std::unique_ptr<const Operation>(std::make_unique<WarpOperation>(request, map));
         }};
     return kind;
 }
