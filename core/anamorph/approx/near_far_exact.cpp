@@ -135,8 +135,8 @@ class BoxBound {
         to.off = 4 * (rounding.turn * rho + rounding.place +
                       2 * kHalfUlp * (rho + std::fabs(x) + std::fabs(y) + 2 * radius + m_map.weights().a));
         to.displaced = (3 + 2 * rounding.stretch) * to.off + 8 * rounding.place;
-        // By definition on the pixel (near_far_exact.h).
-        if (radius == 0 && distance == 0) to.off = 0;
+        // Without any rounding.
+        if (radius == 0 && distance == 0 && m_map.passes_through(i, x, y)) to.off = 0;
         to.nearest = std::max(distance - radius - 2 * to.off, m_map.weights().a);
         const FeatureMap::Displacement& d = m_map.displacement(i, shape);
         const auto moved = [&](double origin, double along_rate, double beside_rate) {

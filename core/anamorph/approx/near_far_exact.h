@@ -9,9 +9,10 @@
 namespace anamorph {
 
 /// The most by which FeatureMap, in double, is off from the lines' exact formula at the pixels of a box, for
-/// any of `shapes`, in pixels of their pictures. With a = 0 the map jumps where lines cross: those whose
-/// distance from a pixel's centre, in double, is exactly 0 count as passing through it, and where that of
-/// several is nothing but rounding the bound is as large as what they say differs.
+/// any of `shapes`, in pixels of their pictures. With a = 0 the map jumps where lines cross: where the
+/// distance of several from a pixel's centre is nothing but rounding the bound is as large as what they say
+/// differs, unless all of these are found at distance 0 and certainly pass through it
+/// (FeatureMap::passes_through).
 double exact_bound(const FeatureMap& map, const std::vector<int>& shapes, const Box& box);
 
 }  // namespace anamorph

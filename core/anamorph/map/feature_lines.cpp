@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "anamorph/map/feature_lines.h"
 
+#include <array>
+
 #include "anamorph/error.h"
 #include "anamorph/parameter.h"
 
@@ -31,25 +33,64 @@ double length_of(const Point<double>& v) {
     return std::sqrt(v.x * v.x + v.y * v.y);
 }
 
+/// A double, and whether it is what exact arithmetic gives: an operation's remainder, which a fused product
+/// or differences tell, is 0. Products near underflow, whose remainder has no double, do not count as exact.
+struct Checked {
+    double value = 0;
+    bool exact = true;
+
+    friend Checked operator*(const Checked& a, const Checked& b) {
+        const double p = a.value * b.value;
+        const bool none =
+            a.value == 0 || b.value == 0 || (std::fabs(p) > 1e-250 && std::fma(a.value, b.value, -p) == 0);
+        return {p, a.exact && b.exact && none};
+    }
+    friend Checked operator/(const Checked& a, const Checked& b) {
+        const double q = a.value / b.value;
+        return {q, a.exact && b.exact && (Checked{q} * b).exact && q * b.value == a.value};
+    }
+    friend Checked operator+(const Checked& a, const Checked& b) {
+        const double sum = a.value + b.value, of_b = sum - a.value, of_a = sum - of_b;
+        return {sum, a.exact && b.exact && (a.value - of_a) + (b.value - of_b) == 0};
+    }
+    friend Checked operator-(const Checked& a, const Checked& b) { return a + Checked{-b.value, b.exact}; }
+};
+
+/// The coordinates of p, then of q.
+using Ends = std::array<Checked, 4>;
+
+Line line_of(const Ends& e) {
+    return {{e[0].value, e[1].value}, {e[2].value, e[3].value}};
+}
+
+/// A line of the target: the sum of every shape's by its weight.
+Ends mixed(const std::vector<Ends>& shapes, const std::vector<double>& mixture) {
+    Ends sum;
+    for (std::size_t k = 0; k < shapes.size(); ++k)
+        for (std::size_t i = 0; i < sum.size(); ++i) sum[i] = sum[i] + Checked{mixture[k]} * shapes[k][i];
+    return sum;
+}
+
 /// What rounding does to a line of the target of this length, and to what it says: FeatureMap::Rounding but
 /// for the weight. Ends are made of a quotient and two products for each coordinate and shape and their sum;
 /// a direction is the difference of two ends over a length that is off as they are.
-FeatureMap::Rounding rounding_of(const std::vector<Line>& shapes, const std::vector<double>& mixture,
-                                 double length) {
-    double mixed = 0, largest = 0, shortest_length = length, longest = length;
+FeatureMap::Rounding rounding_of(const std::vector<Ends>& shapes, const std::vector<double>& mixture,
+                                 const Ends& target, double length) {
+    double in_mixture = 0, largest = 0, shortest_length = length, longest = length;
     for (std::size_t k = 0; k < shapes.size(); ++k) {
-        const Line& l = shapes[k];
+        const Line l = line_of(shapes[k]);
         const double size =
             std::max({std::fabs(l.p.x), std::fabs(l.p.y), std::fabs(l.q.x), std::fabs(l.q.y)});
-        mixed += std::fabs(mixture[k]) * size;
+        in_mixture += std::fabs(mixture[k]) * size;
         largest = std::max(largest, size);
         const double own = length_of({l.q.x - l.p.x, l.q.y - l.p.y});
         shortest_length = std::min(shortest_length, own);
         longest = std::max(longest, own);
     }
-    const double place = (static_cast<double>(shapes.size()) + 3) * kHalfUlp * std::max(mixed, largest);
+    const double place = (static_cast<double>(shapes.size()) + 3) * kHalfUlp * std::max(in_mixture, largest);
     const double stretch = longest / length;
-    return {place, 8 * place * (1 + stretch) / shortest_length, 0, stretch};
+    const bool exact = std::all_of(target.begin(), target.end(), [](const Checked& c) { return c.exact; });
+    return {place, 8 * place * (1 + stretch) / shortest_length, 0, stretch, exact, line_of(target).q};
 }
 
 /// Lines that keep the chain within kCurveDeviation of a cubic: between two points at a step h of its
@@ -186,14 +227,10 @@ FeatureMap::FeatureMap(const Features& features, const std::vector<Size>& pictur
     for (const Size& picture : pictures)
         m_scales.push_back({double(picture.width) / target.width, double(picture.height) / target.height});
 
-    const auto add = [&](const std::vector<Line>& shape_lines, double weight, const std::string& name) {
-        Line line{{0, 0}, {0, 0}};
+    const auto add = [&](const std::vector<Ends>& shape_lines, double weight, const std::string& name) {
+        const Ends ends = mixed(shape_lines, mixture);
+        const Line line = line_of(ends);
         bool moves = false;
-        for (std::size_t k = 0; k < shapes; ++k) {
-            const Line& l = shape_lines[k];
-            line.p = {line.p.x + mixture[k] * l.p.x, line.p.y + mixture[k] * l.p.y};
-            line.q = {line.q.x + mixture[k] * l.q.x, line.q.y + mixture[k] * l.q.y};
-        }
         const Point<double> e{line.q.x - line.p.x, line.q.y - line.p.y};
         const double length = length_of(e);
         // Shorter than this its direction is rounding.
@@ -203,7 +240,7 @@ FeatureMap::FeatureMap(const Features& features, const std::vector<Size>& pictur
             throw Error(name, written(line), "a line needs a length, here too");
         const Point<double> along{e.x / length, e.y / length};
         for (std::size_t k = 0; k < shapes; ++k) {
-            const Line& l = shape_lines[k];
+            const Line l = line_of(shape_lines[k]);
             const Point<double> to{l.q.x - l.p.x, l.q.y - l.p.y};
             const double to_length = length_of(to);
             if (!(to_length > 1e-9)) throw Error(name, written(l), "a line needs a length");
@@ -216,18 +253,22 @@ FeatureMap::FeatureMap(const Features& features, const std::vector<Size>& pictur
                 moves = moves || v.x != 0 || v.y != 0;
         }
         m_lines.push_back({line.p, along, length, weight, moves});
-        m_roundings.push_back(rounding_of(shape_lines, mixture, length));
+        m_roundings.push_back(rounding_of(shape_lines, mixture, ends, length));
     };
 
-    std::vector<Line> scaled(shapes);
+    std::vector<Ends> scaled(shapes);
     for (std::size_t i = 0; i < features.size(); ++i) {
         if (features.weight(i) == 0) continue;
         for (int k = 0; k < m_shapes; ++k) {
             const Features::Frame frame = features.frame(k);
-            const double sx = target.width / (frame.width > 0 ? frame.width : picture(k).width);
-            const double sy = target.height / (frame.height > 0 ? frame.height : picture(k).height);
+            const auto ratio = [](double to, double own, double otherwise) {
+                return Checked{to} / Checked{own > 0 ? own : otherwise};
+            };
+            const Checked sx = ratio(target.width, frame.width, picture(k).width),
+                          sy = ratio(target.height, frame.height, picture(k).height);
             const Line& l = features.line(i, k);
-            scaled[static_cast<std::size_t>(k)] = {{l.p.x * sx, l.p.y * sy}, {l.q.x * sx, l.q.y * sy}};
+            scaled[static_cast<std::size_t>(k)] = {Checked{l.p.x} * sx, Checked{l.p.y} * sy,
+                                                   Checked{l.q.x} * sx, Checked{l.q.y} * sy};
         }
         add(scaled, features.weight(i), features.name(i));
     }
@@ -235,7 +276,8 @@ FeatureMap::FeatureMap(const Features& features, const std::vector<Size>& pictur
         const double w = target.width, h = target.height;
         const Point<double> corners[] = {{0, 0}, {w, 0}, {w, h}, {0, h}};
         for (int i = 0; i < 4; ++i) {
-            scaled.assign(shapes, {corners[i], corners[(i + 1) % 4]});
+            const Point<double>&p = corners[i], &q = corners[(i + 1) % 4];
+            scaled.assign(shapes, {Checked{p.x}, Checked{p.y}, Checked{q.x}, Checked{q.y}});
             add(scaled, features.border_weight(), "border");
         }
     }
@@ -259,6 +301,20 @@ FeatureMap::FeatureMap(const Features& features, const std::vector<Size>& pictur
         line.factor = kLeastFactor;
         m_roundings[i].weight = 1;
     }
+}
+
+bool FeatureMap::passes_through(std::size_t i, double x, double y) const {
+    const Point<double>&p = m_lines[i].p, &q = m_roundings[i].q;
+    const auto between = [](double a, double b, double at) {
+        return std::min(a, b) <= at && at <= std::max(a, b);
+    };
+    if (!m_roundings[i].exact || !between(p.x, q.x, x) || !between(p.y, q.y, y)) return false;
+    // On its straight line: dy ex = dx ey.
+    const Checked dx = Checked{x} - Checked{p.x}, dy = Checked{y} - Checked{p.y};
+    const Checked ex = Checked{q.x} - Checked{p.x}, ey = Checked{q.y} - Checked{p.y};
+    if (!(dx.exact && dy.exact && ex.exact && ey.exact)) return false;
+    const Checked one = dy * ex, other = dx * ey;
+    return one.exact && other.exact && one.value == other.value;
 }
 
 }  // namespace anamorph

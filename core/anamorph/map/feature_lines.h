@@ -139,6 +139,8 @@ class FeatureMap {
         double turn;     ///< its direction, and the rates of its displacements
         double weight;   ///< its weight in proportion, but for the distance
         double stretch;  ///< no rounding: the greatest length in a shape over that in the target
+        bool exact;      ///< its ends p and q are not off at all
+        Point<double> q;
     };
     struct Size {
         int width, height;
@@ -159,6 +161,8 @@ class FeatureMap {
         return m_displacements[i * static_cast<std::size_t>(m_shapes) + static_cast<std::size_t>(shape)];
     }
     const Rounding& rounding(std::size_t i) const { return m_roundings[i]; }
+    /// Does a line as the given numbers define it certainly pass through this point, to the last digit?
+    bool passes_through(std::size_t i, double x, double y) const;
     /// Pixels of a shape's picture per pixel of the target.
     Point<double> scale(int shape) const { return m_scales[static_cast<std::size_t>(shape)]; }
 
