@@ -286,7 +286,7 @@ namespace {
 
 // Derivatives on a grid are added tile by tile, so that what is kept does not grow with the grid nor with the
 // list.
-constexpr int kTileColumns = 128, kTileRows = 32;
+constexpr int kTileColumns = 64, kTileRows = 16;
 static_assert(kTileColumns <= SurfaceSlopes::kMost && kTileColumns % simd::kGridBlock == 0);
 
 GridPart common(const GridPart& a, const GridPart& b) {
