@@ -90,44 +90,38 @@ vtkUnsignedCharArray* ghosts_of(vtkPointSet* mesh) {
     return ghosts;
 }
 
-glm::dvec3 unit(glm::dvec3 v) {
-    const double length = glm::length(v);
-    return length > 0 && std::isfinite(length) ? v / length : glm::dvec3(0.0);
-}
-
-/// Fixed point for sums of unit vectors times angles up to 2 pi: 2^16 corners at a point.
-constexpr double kCornerUnit = 0x1p-44;
-
-/// What the corners of cells at one point add up to.
-class CornerSum {
+/// What the corners of cells need of the undeformed mesh.
+class Cells {
   public:
-    CornerSum(const Triples& points, const std::vector<glm::dvec2>& parameters,
-              const anamorph::SurfaceSlopes& slopes, int k)
-        : m_points(points),
-          m_parameters(parameters),
-          m_id(slopes.point(k)),
-          m_at(points[m_id]),
-          m_parameter(parameters[static_cast<std::size_t>(m_id)]),
-          m_by_u(slopes.by_u(k)),
-          m_by_v(slopes.by_v(k)) {}
+    Cells(const Triples& points, const std::vector<glm::dvec2>& parameters)
+        : m_points(points), m_parameters(parameters) {}
 
-    /// The corners that a cell has at the point.
-    void add_cell(vtkIdType count, const vtkIdType* cell) {
-        for (vtkIdType i = 0; i < count; ++i)
-            if (cell[i] == m_id)
-                add_corner(neighbour(count, cell, i, 1), neighbour(count, cell, i, count - 1),
-                           count > 3 ? area_of(count, cell) : glm::dvec3(0.0));
+    /// The corners that a cell has at a point, which is the k-th of the sums.
+    void add_corners(vtkIdType count, const vtkIdType* cell, std::int64_t point, int k,
+                     anamorph::CornerSums& sums) const {
+        for (vtkIdType i = 0; i < count; ++i) {
+            if (cell[i] != point) continue;
+            const anamorph::CornerSums::Edge next = edge(point, neighbour(count, cell, i, 1)),
+                                             previous = edge(point, neighbour(count, cell, i, count - 1));
+            // A corner that goes inwards: the polygon has the rest of the turn, on the other side.
+            const bool goes_inwards =
+                count > 3 && glm::dot(glm::cross(next.points, previous.points), area_of(count, cell)) < 0;
+            sums.add(k, next, previous, goes_inwards);
+        }
     }
-
-    glm::dvec3 sum() const { return kCornerUnit * glm::dvec3(m_sum[0], m_sum[1], m_sum[2]); }
 
   private:
     glm::dvec2 parameter(vtkIdType id) const { return m_parameters[static_cast<std::size_t>(id)]; }
 
+    anamorph::CornerSums::Edge edge(vtkIdType from, vtkIdType to) const {
+        return {m_points[to] - m_points[from], parameter(to) - parameter(from)};
+    }
+
     /// The neighbour of a corner, one way around or the other.
     vtkIdType neighbour(vtkIdType count, const vtkIdType* cell, vtkIdType i, vtkIdType step) const {
-        vtkIdType k = (i + step) % count;
-        while (k != i && !is_finite(parameter(cell[k]))) k = (k + step) % count;
+        const auto after = [&](vtkIdType k) { return k + step < count ? k + step : k + step - count; };
+        vtkIdType k = after(i);
+        while (k != i && !is_finite(parameter(cell[k]))) k = after(k);
         return cell[k];
     }
 
@@ -143,30 +137,8 @@ class CornerSum {
         return area;
     }
 
-    /// area: of the polygon, undeformed, if its corner may go inwards.
-    void add_corner(vtkIdType next, vtkIdType previous, const glm::dvec3& area) {
-        const glm::dvec3 to_next = m_points[next] - m_at, to_previous = m_points[previous] - m_at;
-        const auto edge = [&](vtkIdType to, const glm::dvec3& undeformed) {
-            const glm::dvec2 ds = parameter(to) - m_parameter;
-            return unit(undeformed + ds.x * m_by_u + ds.y * m_by_v);
-        };
-        const glm::dvec3 a = edge(next, to_next), b = edge(previous, to_previous), across = glm::cross(a, b);
-        const double sine = glm::length(across);
-        if (!(sine > 0)) return;
-        double angle = std::atan2(sine, glm::dot(a, b));
-        // A corner that goes inwards: the polygon has the rest of the turn, on the other side.
-        if (glm::dot(glm::cross(to_next, to_previous), area) < 0) angle -= 2 * std::numbers::pi;
-        const glm::dvec3 weighted = across * (angle / sine);
-        for (int c = 0; c < 3; ++c) m_sum[c] += std::llround(weighted[c] / kCornerUnit);
-    }
-
     const Triples& m_points;
     const std::vector<glm::dvec2>& m_parameters;
-    std::int64_t m_id;
-    glm::dvec3 m_at;
-    glm::dvec2 m_parameter;
-    glm::dvec3 m_by_u, m_by_v;
-    std::int64_t m_sum[3] = {};
 };
 
 }  // namespace
@@ -254,9 +226,10 @@ void SurfaceNormals::turn(const anamorph::SurfaceSlopes& slopes, Normals& to) co
 }
 
 void SurfaceNormals::add_corners(const anamorph::SurfaceSlopes& slopes, Normals& to) const {
+    const Cells cells(m_points, m_parameters);
+    anamorph::CornerSums sums(slopes);
     CellReader reader;
     for (int k = 0; k < slopes.count; ++k) {
-        CornerSum corners(m_points, m_parameters, slopes, k);
         const auto id = static_cast<std::size_t>(slopes.point(k));
         std::uint32_t last = 0;
         for (std::int64_t i = m_first[id]; i < m_first[id + 1]; ++i) {
@@ -264,10 +237,13 @@ void SurfaceNormals::add_corners(const anamorph::SurfaceSlopes& slopes, Normals&
             // A cell that comes to the point twice stands there twice.
             if (i > m_first[id] && cell == last) continue;
             last = cell;
-            read_cell(m_mesh, cell, reader,
-                      [&](vtkIdType count, const vtkIdType* around) { corners.add_cell(count, around); });
+            read_cell(m_mesh, cell, reader, [&](vtkIdType count, const vtkIdType* around) {
+                cells.add_corners(count, around, slopes.point(k), k, sums);
+            });
         }
-        glm::dvec3 normal = unit(corners.sum());
+    }
+    for (int k = 0; k < slopes.count; ++k) {
+        glm::dvec3 normal = sums.normal(k);
         if (normal == glm::dvec3(0.0) && m_on_plane)
             normal = anamorph::normal_of({glm::dvec3(0.0), slopes.by_u(k), slopes.by_v(k)}, m_plane.axis_u(),
                                          m_plane.axis_v());

@@ -49,3 +49,16 @@ inline Triple<T> turned_normal(const Triple<T>& n, const Triple<T>& a, const Tri
             n.y + from_u.y + from_v.y + across * both_ways.y,
             n.z + from_u.z + from_v.z + across * both_ways.z};
 }
+
+/// The sum over the corners at a point of normal times angle is the surface's normal there (Thuermer and
+/// Wuethrich 1998). This is one corner's, between edges of unit length, one of which may be 0: the normal
+/// a x b / |a x b|, or 0, and the angle.
+template <class T>
+inline Triple<T> corner_normal(const Triple<T>& a, const Triple<T>& b, T& angle) {
+    const Triple<T> across = cross_product(a, b);
+    const T sine = sqrt(dot_product(across, across));
+    angle = atan2(sine, dot_product(a, b));
+    const auto parallel = is_zero(sine);
+    const T inverse = select(parallel, T(0.0), T(1.0) / sine);
+    return {across.x * inverse, across.y * inverse, across.z * inverse};
+}

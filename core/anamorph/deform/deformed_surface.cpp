@@ -4,9 +4,11 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <glm/geometric.hpp>
 #include <iterator>
 #include <limits>
 #include <new>
+#include <numbers>
 #include <stdexcept>
 
 #include "anamorph/parameter.h"
@@ -658,6 +660,54 @@ void turn_normals(const SurfaceSlopes& slopes, glm::dvec3 gradient_u, glm::dvec3
     const double gradients[2][3] = {{gradient_u.x, gradient_u.y, gradient_u.z},
                                     {gradient_v.x, gradient_v.y, gradient_v.z}};
     simd::turn_normals(by, gradients, count, to);
+}
+
+void CornerSums::add(int k, const Edge& next, const Edge& previous, bool goes_inwards) {
+    if (m_count == kMost) carry_out();
+    const int at = m_count++;
+    m_point[at] = k;
+    for (int c = 0; c < 6; ++c) m_by[c][at] = m_slopes.by[c][k];
+    for (int c = 0; c < 3; ++c) {
+        m_next[c][at] = next.points[c];
+        m_previous[c][at] = previous.points[c];
+    }
+    for (int c = 0; c < 2; ++c) {
+        m_next_by[c][at] = next.parameters[c];
+        m_previous_by[c][at] = previous.parameters[c];
+    }
+    m_turns[at] = goes_inwards ? 2 * std::numbers::pi : 0;
+}
+
+void CornerSums::carry_out() {
+    // 2^16 unit vectors times angles up to 2 pi.
+    constexpr double kUnit = 0x1p-44;
+    simd::CornerEdges edges{};
+    for (int c = 0; c < 6; ++c) edges.by[c] = m_by[c];
+    for (int c = 0; c < 3; ++c) {
+        edges.next[c] = m_next[c];
+        edges.previous[c] = m_previous[c];
+    }
+    for (int c = 0; c < 2; ++c) {
+        edges.next_by[c] = m_next_by[c];
+        edges.previous_by[c] = m_previous_by[c];
+    }
+    edges.turns = m_turns;
+    // What fills the last vector is a corner without a direction.
+    const int count = round_up(m_count, simd::kPointBlock);
+    for (double(&values)[kMost] : m_next) std::fill(values + m_count, values + count, 0.0);
+    double normals[3][kMost];
+    double* const out[3] = {normals[0], normals[1], normals[2]};
+    simd::corner_normals(edges, kUnit, static_cast<std::size_t>(count), out);
+    for (int i = 0; i < m_count; ++i)
+        for (int c = 0; c < 3; ++c) m_sums[m_point[i]][c] += static_cast<std::int64_t>(normals[c][i]);
+    m_count = 0;
+}
+
+glm::dvec3 CornerSums::normal(int k) {
+    if (m_count > 0) carry_out();
+    const glm::dvec3 sum(m_sums[k][0], m_sums[k][1], m_sums[k][2]);
+    const double length = glm::length(sum);
+    return length > 0 ? sum / length : glm::dvec3(0.0);
 }
 
 namespace {

@@ -91,6 +91,37 @@ using TakeSlopes = std::function<void(const SurfaceSlopes&)>;
 void turn_normals(const SurfaceSlopes& slopes, glm::dvec3 gradient_u, glm::dvec3 gradient_v,
                   double (&normals)[3][SurfaceSlopes::kMost]);
 
+/// Sums of what the corners of surface cells have for a normal at some points: each its own normal times its
+/// angle (Thuermer and Wuethrich 1998). Edges of the cells are the undeformed surface's tangents, and become
+/// e + D_u du + D_v dv. Sums are in fixed point: the order of the corners does not matter, of which there are
+/// up to 2^16 at a point.
+class CornerSums {
+  public:
+    explicit CornerSums(const SurfaceSlopes& slopes) : m_slopes(slopes) {}
+
+    /// An edge to a neighbour, undeformed, and its change of parameters.
+    struct Edge {
+        glm::dvec3 points;
+        glm::dvec2 parameters;
+    };
+    /// A corner at the k-th point, between the edges to the next point of the cell and to the one before.
+    void add(int k, const Edge& next, const Edge& previous, bool goes_inwards);
+    /// The unit normal at the k-th point, when all corners are added; 0 where there is none.
+    glm::dvec3 normal(int k);
+
+  private:
+    void carry_out();
+
+    static constexpr int kMost = 128;
+
+    const SurfaceSlopes& m_slopes;
+    std::int64_t m_sums[SurfaceSlopes::kMost][3] = {};
+    int m_count = 0;
+    int m_point[kMost];
+    double m_by[6][kMost], m_next[3][kMost], m_previous[3][kMost], m_next_by[2][kMost],
+        m_previous_by[2][kMost], m_turns[kMost];
+};
+
 /// A surface over a grid of u (of its columns) and v (of its rows), point (i, j) at j * columns + i. F of a
 /// Gaussian is a product of a factor of the column and one of the row.
 class DeformedGrid {

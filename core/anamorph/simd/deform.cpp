@@ -85,32 +85,37 @@ HWY_INLINE Slope ZeroUnless(L::M inside, const Slope& a) {
 HWY_INLINE L DistanceOf(const AxisKernel& kernel, const L& x) {
     return (x - L(kernel.center)) * L(kernel.inverse_extent);
 }
-/// t as a number of which the derivative by x is asked, or not.
-HWY_INLINE L WithSlope(const L& t, double, const L*) {
-    return t;
+/// t, as a number of which the derivative by x is asked, or not.
+template <class T>
+HWY_INLINE T NumberOf(const AxisKernel& kernel, const L& t) {
+    if constexpr (std::is_same_v<T, L>) {
+        return t;
+    } else {
+        // As far out as this the factors are 0 in double, and their derivatives are finite.
+        const double most = kernel.gaussian ? 30.0 : 2.0;
+        return Slope(max(min(t, L(most)), L(-most)), L(kernel.inverse_extent));
+    }
 }
-HWY_INLINE Slope WithSlope(const L& t, double inverse_extent, const Slope*) {
-    return {t, L(inverse_extent)};
-}
-/// The factor of t in one direction. T: L, or Slope for its derivative by x too.
+/// The factor of t in one direction, not cut off. T: L, or Slope for its derivative by x too.
 template <class T>
 HWY_INLINE T FactorOf(const AxisKernel& kernel, const L& t) {
-    // As far out as this the factors are 0 in double, and their derivatives stay finite on the way there.
-    const double most = kernel.gaussian ? 30.0 : 2.0;
-    const L near = max(min(t, L(most)), L(-most));
-    const T squared = square(WithSlope(near, kernel.inverse_extent, static_cast<const T*>(nullptr)));
-    return kernel.gaussian ? ZeroUnless(hn::Le(abs(t).v, hn::Set(D(), kernel.reach)), gaussian_of(squared))
-                           : squared;
+    const T squared = square(NumberOf<T>(kernel, t));
+    return kernel.gaussian ? gaussian_of(squared) : squared;
+}
+template <class T>
+HWY_INLINE T CutFactorOf(const AxisKernel& kernel, const L& t) {
+    const T factor = FactorOf<T>(kernel, t);
+    return kernel.gaussian ? ZeroUnless(hn::Le(abs(t).v, hn::Set(D(), kernel.reach)), factor) : factor;
 }
 
 void AxisFactors(const AxisKernel& kernel, const double* x, int count, double* out, double* slope) {
     const auto at = [&](const double* from, double* to, double* slope_to) HWY_ATTR {
         const L t = DistanceOf(kernel, L::load(from));
         if (!slope_to) {
-            FactorOf<L>(kernel, t).store(to);
+            CutFactorOf<L>(kernel, t).store(to);
             return;
         }
-        const Slope factor = FactorOf<Slope>(kernel, t);
+        const Slope factor = CutFactorOf<Slope>(kernel, t);
         factor.value.store(to);
         factor.by.store(slope_to);
     };
@@ -286,6 +291,7 @@ void DeformPoints(const PointTerm* const* terms, std::size_t term_count, const d
         const L pu = L::load(u + i), pv = L::load(v + i);
         VI sum[3];
         for (int c = 0; c < 3; ++c) sum[c] = hn::LoadU(di, sums[c] + i);
+        std::size_t added = 0;
         for (std::size_t k = 0; k < term_count; ++k) {
             const PointTerm& term = *terms[k];
             const AtPoints at(term, pu, pv);
@@ -294,10 +300,10 @@ void DeformPoints(const PointTerm* const* terms, std::size_t term_count, const d
             const L across = FactorOf<L>(at.across, at.x), row = FactorOf<L>(at.down, at.y);
             const L f = ZeroUnless(at.inside, term.gaussian ? across : wendland_of(across + row));
             const L down = ZeroUnless(at.inside, term.gaussian ? row : L(1.0));
-            for (int c = 0; c < 3; ++c)
-                sum[c] = WithoutRounders(AddRounded(sum[c], (L(term.units[c]) * down).v, f.v), 1);
+            for (int c = 0; c < 3; ++c) sum[c] = AddRounded(sum[c], (L(term.units[c]) * down).v, f.v);
+            ++added;
         }
-        for (int c = 0; c < 3; ++c) hn::StoreU(sum[c], di, sums[c] + i);
+        for (int c = 0; c < 3; ++c) hn::StoreU(WithoutRounders(sum[c], added), di, sums[c] + i);
     }
 }
 
@@ -341,8 +347,9 @@ void AddPointSlopes(const PointTerm* const* terms, std::size_t term_count, const
         for (std::size_t k = 0; k < term_count; ++k) {
             const AtPoints at(*terms[k], pu, pv);
             if (hn::AllFalse(D(), at.inside)) continue;
-            AddSlopes(FactorOf<Slope>(at.across, at.x), FactorOf<Slope>(at.down, at.y), terms[k]->gaussian,
-                      terms[k]->units, sum);
+            Slope across = FactorOf<Slope>(at.across, at.x);
+            if (terms[k]->gaussian) across = ZeroUnless(at.inside, across);
+            AddSlopes(across, FactorOf<Slope>(at.down, at.y), terms[k]->gaussian, terms[k]->units, sum);
         }
         for (int c = 0; c < 6; ++c) sum[c].store(sums[c] + i);
     }
@@ -371,6 +378,27 @@ void TurnNormals(const double* const* slopes, const double (&gradients)[2][3], s
         turned.x.store(normals[0] + i);
         turned.y.store(normals[1] + i);
         turned.z.store(normals[2] + i);
+    }
+}
+
+void CornerNormals(const CornerEdges& corners, double unit, std::size_t count, double* const* out) {
+    const L inverse(1 / unit);
+    for (std::size_t i = 0; i < count; i += static_cast<std::size_t>(kLanes)) {
+        const auto edge = [&](const double* const(&undeformed)[3], const double* const(&by)[2]) HWY_ATTR {
+            const L du = L::load(by[0] + i), dv = L::load(by[1] + i);
+            const auto moved = [&](int c) HWY_ATTR {
+                return L::load(undeformed[c] + i) + du * L::load(corners.by[c] + i) +
+                       dv * L::load(corners.by[3 + c] + i);
+            };
+            return UnitOf({moved(0), moved(1), moved(2)});
+        };
+        L angle;
+        const Triple<L> normal = corner_normal(edge(corners.next, corners.next_by),
+                                               edge(corners.previous, corners.previous_by), angle);
+        const L weight = (angle - L::load(corners.turns + i)) * inverse;
+        L(hn::Round((normal.x * weight).v)).store(out[0] + i);
+        L(hn::Round((normal.y * weight).v)).store(out[1] + i);
+        L(hn::Round((normal.z * weight).v)).store(out[2] + i);
     }
 }
 
@@ -466,6 +494,7 @@ HWY_EXPORT(AxisFactors);
 HWY_EXPORT(AddRowSlopes);
 HWY_EXPORT(AddPointSlopes);
 HWY_EXPORT(TurnNormals);
+HWY_EXPORT(CornerNormals);
 HWY_EXPORT(DeformBandFloat);
 HWY_EXPORT(DeformBandDouble);
 HWY_EXPORT(DeformPoints);
@@ -487,6 +516,9 @@ void add_point_slopes(const PointTerm* const* terms, std::size_t term_count, con
 void turn_normals(const double* const slopes[6], const double (&gradients)[2][3], std::size_t count,
                   double* const normals[3]) {
     HWY_DYNAMIC_DISPATCH(TurnNormals)(slopes, gradients, count, normals);
+}
+void corner_normals(const CornerEdges& corners, double unit, std::size_t count, double* const out[3]) {
+    HWY_DYNAMIC_DISPATCH(CornerNormals)(corners, unit, count, out);
 }
 void deform_band(const GridBand<float>& band) {
     HWY_DYNAMIC_DISPATCH(DeformBandFloat)(band);

@@ -24,7 +24,7 @@ inline constexpr int kGridRows = 2;    ///< rows drawn together; rows of sums ar
 inline constexpr int kPointBlock = 8;  ///< points handled together; cells of points are padded to it
 
 /// One direction of a kernel: what it makes of t = (x - center) inverse_extent. A Gaussian's factor is
-/// exp(-t^2), and 0 where |t| > reach; otherwise it is t^2, at most 4.
+/// exp(-t^2), and 0 where |t| > reach; otherwise it is t^2, beyond 1 perhaps a smaller number above 1.
 struct AxisKernel {
     double center, inverse_extent, reach;
     bool gaussian;
@@ -96,6 +96,17 @@ void add_point_slopes(const PointTerm* const* terms, std::size_t term_count, con
 /// has no direction becomes 0. count: a multiple of kPointBlock.
 void turn_normals(const double* const slopes[6], const double (&gradients)[2][3], std::size_t count,
                   double* const normals[3]);
+
+/// Corners of cells of a surface, displaced: an edge e becomes e + D_u du + D_v dv.
+struct CornerEdges {
+    const double* by[6];                        ///< D_u and D_v at the corner
+    const double *next[3], *previous[3];        ///< the edges to the neighbours
+    const double *next_by[2], *previous_by[2];  ///< their changes of u and v
+    const double* turns;  ///< 0, or 2 pi for corners that go inwards: it is taken from the angle
+};
+/// out[c][i] = the normal of a corner times its angle (corner_normal), in whole multiples of `unit`; 0 where
+/// an edge has no direction. count: a multiple of kPointBlock.
+void corner_normals(const CornerEdges& corners, double unit, std::size_t count, double* const out[3]);
 
 /// out[i] = sum_k weights[k] shapes[k][i], added in double in the order of the shapes and rounded once. Errs
 /// by half a unit in the last place of the result, plus (shape_count + 1) 2^-53 of the sum of the magnitudes.
