@@ -149,9 +149,7 @@ Triples::Triples(vtkDataArray* array) : m_array(array) {
         m_doubles = doubles->GetPointer(0);
 }
 
-glm::dvec3 Triples::operator[](std::int64_t i) const {
-    if (m_floats) return {m_floats[3 * i], m_floats[3 * i + 1], m_floats[3 * i + 2]};
-    if (m_doubles) return {m_doubles[3 * i], m_doubles[3 * i + 1], m_doubles[3 * i + 2]};
+glm::dvec3 Triples::read(std::int64_t i) const {
     double tuple[3];
     m_array->GetTuple(i, tuple);
     return {tuple[0], tuple[1], tuple[2]};

@@ -39,9 +39,14 @@ std::vector<glm::dvec2> with_finite_parameters(std::vector<glm::dvec2> parameter
 class Triples {
   public:
     explicit Triples(vtkDataArray* array);
-    glm::dvec3 operator[](std::int64_t i) const;
+    glm::dvec3 operator[](std::int64_t i) const {
+        if (m_floats) return {m_floats[3 * i], m_floats[3 * i + 1], m_floats[3 * i + 2]};
+        return m_doubles ? glm::dvec3(m_doubles[3 * i], m_doubles[3 * i + 1], m_doubles[3 * i + 2]) : read(i);
+    }
 
   private:
+    glm::dvec3 read(std::int64_t i) const;
+
     vtkSmartPointer<vtkDataArray> m_array;
     const float* m_floats = nullptr;  ///< of an array of floats without gaps
     const double* m_doubles = nullptr;
