@@ -398,12 +398,21 @@ TEST(VtkDeform, ExecutesOnlyWhenSomethingChanged) {
     EXPECT_EQ(source->executions, 1);
 }
 
+vtkSmartPointer<vtkFloatArray> slanted_normals(vtkIdType count) {
+    auto normals = vtkSmartPointer<vtkFloatArray>::New();
+    normals->SetNumberOfComponents(3);
+    for (vtkIdType i = 0; i < count; ++i) normals->InsertNextTuple3(.1 * static_cast<double>(i % 7), .2, .9);
+    return normals;
+}
+
 TEST(VtkDeform, EditsComputeWhatTheyReachAndLeaveNoTrace) {
     for (const double relief : {0., .1}) {
-        // A grid, and points that are none.
-        for (const bool grid : {true, false}) {
+        // A grid, and points that are none; normals of cells, and normals that turn along.
+        for (const auto& [grid, given] : {std::pair(true, false), std::pair(true, true),
+                                          std::pair(false, false), std::pair(false, true)}) {
             const auto mesh = square(60, VTK_DOUBLE, relief);
             if (!grid) mesh->GetPoints()->SetPoint(5, .123, .456, 0);
+            if (given) mesh->GetPointData()->SetNormals(slanted_normals(3600));
             vtkNew<vtkAnamorphDeform> filter;
             filter->SetInputData(mesh);
             std::vector<Deformation> list = bumps(12, 4);
@@ -795,6 +804,30 @@ TEST(VtkDeform, NormalsOfPolygonsThatAreNotConvex) {
         const glm::dvec3 expected = normal_of(displacement_at(list, {p[0], p[1]}), {1, 0, 0}, {0, 1, 0});
         EXPECT_LE(glm::length(glm::dvec3(n[0], n[1], n[2]) - expected), 1e-9) << i;
     }
+}
+
+TEST(VtkDeform, NormalsLeaveOutHiddenCells) {
+    const auto mesh = square(20, VTK_DOUBLE, .1);
+    const auto grid = structured(mesh);
+    vtkNew<vtkCellArray> visible;
+    vtkNew<vtkIdList> ids;
+    for (vtkIdType cell = 0; cell < mesh->GetNumberOfCells(); ++cell) {
+        const bool hide = cell % 5 == 2;
+        if (hide) grid->BlankCell(cell);
+        mesh->GetCellPoints(cell, ids);
+        if (!hide) visible->InsertNextCell(ids);
+    }
+    const auto rest = square(20, VTK_DOUBLE, .1);
+    rest->SetPolys(visible);
+    const auto normals_of = [&](vtkPointSet* input) {
+        vtkNew<vtkAnamorphDeform> filter;
+        filter->SetInputData(input);
+        add(filter, bumps(6, 41));
+        filter->Update();
+        return numbers(output(filter)->GetPointData()->GetNormals());
+    };
+    EXPECT_EQ(normals_of(grid), normals_of(rest));
+    EXPECT_NE(normals_of(grid), normals_of(mesh));
 }
 
 TEST(VtkDeform, NormalsOfACurvedSurface) {

@@ -109,15 +109,18 @@ class MeshOf final : public DeformedMesh {
 
     void read_parameters() {
         vtkDataArray* source = m_settings.on_plane ? m_source : m_coordinates;
-        const vtkIdType count = source->GetNumberOfTuples();
-        m_parameters.resize(static_cast<std::size_t>(count));
-        double tuple[9];
-        for (vtkIdType i = 0; i < count; ++i) {
+        const Triples points(m_source);
+        const auto parameters_of = [&](vtkIdType i) {
+            if (m_settings.on_plane) return m_settings.plane.parameters(points[i]);
+            double tuple[9];
             source->GetTuple(i, tuple);
-            glm::dvec2& p = m_parameters[static_cast<std::size_t>(i)];
-            p = m_settings.on_plane ? m_settings.plane.parameters({tuple[0], tuple[1], tuple[2]})
-                                    : glm::dvec2(tuple[0], tuple[1]);
-            if (!is_finite(p)) m_unmoved.push_back(i);
+            return glm::dvec2(tuple[0], tuple[1]);
+        };
+        const vtkIdType count = source->GetNumberOfTuples();
+        m_parameters.reserve(static_cast<std::size_t>(count));
+        for (vtkIdType i = 0; i < count; ++i) {
+            m_parameters.push_back(parameters_of(i));
+            if (!is_finite(m_parameters.back())) m_unmoved.push_back(i);
         }
     }
 
