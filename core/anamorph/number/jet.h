@@ -16,7 +16,6 @@
 #include <utility>
 
 #include "anamorph/number/interval.h"
-#include "anamorph/number/number.h"
 
 namespace anamorph {
 
@@ -277,7 +276,8 @@ inline void sin_cos(const Jet<T, N>& a, Jet<T, N>& s, Jet<T, N>& c) {
     jet_detail::oscillate<-1>(s, c, a);
 }
 template <class T>
-requires(std::is_same_v<T, Interval>) inline void sin_cos(const T& a, T& s, T& c) {
+requires(std::is_floating_point_v<T> || std::is_same_v<T, Interval>) inline void sin_cos(const T& a, T& s,
+                                                                                         T& c) {
     using std::cos;
     using std::sin;
     s = sin(a);
@@ -431,16 +431,6 @@ Jet<T, N> without_hair(Jet<T, N> a) {
 template <class T>
 const T& either(const T& a, const T&) {
     return a;
-}
-
-// Conditions are those of the constant part.
-template <class T, int N>
-auto is_zero(const Jet<T, N>& a) {
-    return is_zero(a.c[0]);
-}
-template <class T, int N>
-auto is_negative(const Jet<T, N>& a) {
-    return is_negative(a.c[0]);
 }
 
 /// The polynomial of `Degree` about 0 as one about `shift`, in units of `scale`, by repeated division;
