@@ -6,6 +6,11 @@
 // DeformedGrid filled and drawn. edit: one bump of a DeformedGrid changed and drawn, averaged over all bumps.
 // points and points_edit: the same of DeformedPoints. memory: as many bytes copied as fixed reads and writes.
 //
+// With normals: the same planes, normals (0, 0, 1) that turn along. double: the plain loop, that of a bump
+// giving both derivatives from its value. grid, points: DeformedGrid and DeformedPoints filled and drawn, and
+// their slopes, which turn the normals. grid_edit, points_edit: the same after one bump that reaches 250 to
+// 300 points has changed. Errors are those of a component of a normal.
+//
 // A blend of 10 shapes of as many points, weights from -0.3 to 0.4. double: the plain loop. blend: inbetween.
 // regions: inbetween_from_base with a mask for every other shape. memory: as many bytes copied as blend reads
 // and writes.
@@ -15,6 +20,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <functional>
+#include <glm/geometric.hpp>
 #include <random>
 #include <string>
 #include <utility>
@@ -219,6 +226,134 @@ void run_list(const Settings& settings, Report& report, const std::string& name,
         name, side, points, settings, contenders, [&](std::size_t k) { return exact[k]; }, report);
 }
 
+/// The loop that one would write first, with normals: those of the plane are (0, 0, 1).
+void plain_normals_loop(const std::vector<Deformation>& list, const std::vector<double>& u, const float* base,
+                        float* out, float* normals) {
+    for (const double v : u)
+        for (const double column : u) {
+            glm::dvec3 p(base[0], base[1], base[2]), by_u(1, 0, 0), by_v(0, 1, 0);
+            for (const Deformation& d : list) {
+                const double s = (column - d.center.x) / d.extent.x, t = (v - d.center.y) / d.extent.y,
+                             f = std::exp(-s * s - t * t);
+                p += d.vector * f;
+                by_u += d.vector * (-2 * s / d.extent.x * f);
+                by_v += d.vector * (-2 * t / d.extent.y * f);
+            }
+            const glm::dvec3 normal = glm::normalize(glm::cross(by_u, by_v));
+            for (int c = 0; c < 3; ++c) {
+                *out++ = static_cast<float>(p[c]);
+                *normals++ = static_cast<float>(normal[c]);
+            }
+            base += 3;
+        }
+}
+
+/// A surface whose points and normals are drawn.
+template <class Surface>
+class WithNormals {
+  public:
+    WithNormals(Surface surface, std::vector<Deformation> list, const float* base, float* out, float* normals)
+        : m_surface(std::move(surface)),
+          m_list(std::move(list)),
+          m_base(base),
+          m_out(out),
+          m_normals(normals) {
+        m_surface.apply(difference({}, m_list));
+    }
+    void draw() {
+        m_surface.write(m_base, m_out);
+        draw_normals(nullptr);
+    }
+    /// Changes the last bump, there and back.
+    void edit() {
+        const Deformation before = m_list.back();
+        m_list.back().vector.z *= -1;
+        const std::vector<DeformationChange> changes{{before, m_list.back()}};
+        m_surface.apply(changes);
+        m_surface.update(m_base, m_out);
+        draw_normals(&changes);
+    }
+
+  private:
+    void draw_normals(const std::vector<DeformationChange>* changes) {
+        m_surface.slopes(m_list, changes, [&](const SurfaceSlopes& slopes) {
+            double normals[3][SurfaceSlopes::kMost] = {};
+            std::fill_n(normals[2], slopes.count, 1.0);
+            turn_normals(slopes, {1, 0, 0}, {0, 1, 0}, normals);
+            for (int k = 0; k < slopes.count; ++k)
+                for (int c = 0; c < 3; ++c)
+                    m_normals[3 * slopes.point(k) + c] = static_cast<float>(normals[c][k]);
+        });
+    }
+
+    Surface m_surface;
+    std::vector<Deformation> m_list;
+    const float* m_base;
+    float *m_out, *m_normals;
+};
+
+/// Normals in long double, of every kTruthStep-th point.
+std::vector<long double> true_normals(const std::vector<Deformation>& list,
+                                      const std::vector<glm::dvec2>& points) {
+    using Vector = glm::vec<3, long double>;
+    std::vector<long double> exact(3 * points.size());
+    for (std::size_t p = 0; p < points.size(); p += kTruthStep) {
+        Vector by_u(1, 0, 0), by_v(0, 1, 0);
+        for (const Deformation& d : list) {
+            const long double s = (points[p].x - static_cast<long double>(d.center.x)) / d.extent.x,
+                              t = (points[p].y - static_cast<long double>(d.center.y)) / d.extent.y,
+                              f = std::exp(-s * s - t * t);
+            by_u += Vector(d.vector) * (-2 * s / d.extent.x * f);
+            by_v += Vector(d.vector) * (-2 * t / d.extent.y * f);
+        }
+        const Vector normal = glm::normalize(glm::cross(by_u, by_v));
+        for (int c = 0; c < 3; ++c) exact[3 * p + static_cast<std::size_t>(c)] = normal[c];
+    }
+    return exact;
+}
+
+void run_normals(const Settings& settings, Report& report, const std::string& name, double least_extent,
+                 double most_extent) {
+    if (!settings.wants_case(name)) return;
+    const int side = std::min(settings.size, kMostSide);
+    std::vector<Deformation> list = gaussians(1, least_extent, most_extent);
+    // Of 4 extents each way: some 16 to 18 columns and rows.
+    const double small = 2.2 / side;
+    list.push_back({{0, 0, .1 * small}, {.5, .5}, {small, small}});
+    std::vector<double> u;
+    for (int i = 0; i < side; ++i) u.push_back(static_cast<float>((i + 0.5) / side));
+    const std::size_t points = u.size() * u.size(), bytes = 3 * points * sizeof(float);
+    const Buffer base(bytes), out(bytes), normals(bytes), edited(bytes), edited_normals(bytes);
+    std::vector<glm::dvec2> parameters;
+    for (std::size_t p = 0; p < points; ++p) {
+        parameters.push_back({u[p % u.size()], u[p / u.size()]});
+        base.as<float>()[3 * p] = static_cast<float>(parameters[p].x);
+        base.as<float>()[3 * p + 1] = static_cast<float>(parameters[p].y);
+        base.as<float>()[3 * p + 2] = 0;
+    }
+    const std::vector<long double> exact = true_normals(list, parameters);
+    WithNormals<DeformedGrid> grid({u, u}, list, base.as<float>(), out.as<float>(), normals.as<float>());
+    WithNormals<DeformedPoints> scattered(DeformedPoints(parameters), list, base.as<float>(), out.as<float>(),
+                                          normals.as<float>());
+    WithNormals<DeformedGrid> grid_edits({u, u}, list, base.as<float>(), edited.as<float>(),
+                                         edited_normals.as<float>());
+    WithNormals<DeformedPoints> point_edits(DeformedPoints(parameters), list, base.as<float>(),
+                                            edited.as<float>(), edited_normals.as<float>());
+    grid_edits.draw();
+    point_edits.draw();
+    const auto drawn = [to = normals.as<float>()](std::size_t k) { return static_cast<double>(to[k]); };
+    const std::vector<Contender> contenders = {
+        {"double",
+         [&] { plain_normals_loop(list, u, base.as<float>(), out.as<float>(), normals.as<float>()); }, 1,
+         drawn},
+        {"grid", [&] { grid.draw(); }, 1, drawn},
+        {"points", [&] { scattered.draw(); }, 1, drawn},
+        {"grid_edit", [&] { grid_edits.edit(); }},
+        {"points_edit", [&] { point_edits.edit(); }}};
+    measure(
+        name, side, points, settings, contenders, [&](std::size_t k) { return exact[k]; }, report);
+}
+
 void run_blend(const Settings& settings, Report& report) {
     if (!settings.wants_case("blend10")) return;
     const int side = std::min(settings.size, kMostSide);
@@ -270,6 +405,8 @@ void run_blend(const Settings& settings, Report& report) {
 void run(const Settings& settings, Report& report) {
     run_list(settings, report, "gaussians_local", .02, .08);
     run_list(settings, report, "gaussians_wide", .1, .3);
+    run_normals(settings, report, "normals_local", .02, .08);
+    run_normals(settings, report, "normals_wide", .1, .3);
     run_blend(settings, report);
     const auto row = [&](const char* case_name, const char* scheme) {
         return report.find(case_name, scheme);
@@ -282,6 +419,10 @@ void run(const Settings& settings, Report& report) {
                             row("gaussians_local", "fixed"), row("gaussians_local", "edit"));
     report.add_speed_target("deform: one edit of wide Gaussians, times recomputing", 15,
                             row("gaussians_wide", "fixed"), row("gaussians_wide", "edit"));
+    report.add_speed_target("deform: points and normals, 50 local Gaussians, times the plain double loop", 5,
+                            row("normals_local", "double"), row("normals_local", "grid"));
+    report.add_speed_target("deform: points and normals, 50 wide Gaussians, times the plain double loop", 3.3,
+                            row("normals_wide", "double"), row("normals_wide", "grid"));
     report.add_speed_target("deform: a blend of 10 shapes, times the plain loop", 1.8,
                             row("blend10", "double"), row("blend10", "blend"));
     report.add_speed_target("deform: a blend of 10 shapes, share of the memory limit", .45,

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 #include <optional>
 #include <string>
 #include <type_traits>
@@ -31,19 +30,6 @@ using anamorph::DeformedGrid;
 using anamorph::DeformedPoints;
 using anamorph::Error;
 using anamorph::ParallelFor;
-
-constexpr std::int64_t kChunk = 8192;
-
-std::int64_t chunks_of(std::int64_t count) {
-    return (count + kChunk - 1) / kChunk;
-}
-
-template <class Body>
-void for_each_point(std::int64_t count, const ParallelFor& parallel_for, const Body& body) {
-    parallel_for(chunks_of(count), [&](std::int64_t chunk) {
-        for (std::int64_t i = chunk * kChunk; i < std::min((chunk + 1) * kChunk, count); ++i) body(i);
-    });
-}
 
 /// The values of the columns and rows if points are a grid: u depends on the column alone, v on the row
 /// alone.
@@ -123,15 +109,18 @@ class MeshOf final : public DeformedMesh {
 
     void read_parameters() {
         vtkDataArray* source = m_settings.on_plane ? m_source : m_coordinates;
-        const vtkIdType count = source->GetNumberOfTuples();
-        m_parameters.resize(static_cast<std::size_t>(count));
-        double tuple[9];
-        for (vtkIdType i = 0; i < count; ++i) {
+        const Triples points(m_source);
+        const auto parameters_of = [&](vtkIdType i) {
+            if (m_settings.on_plane) return m_settings.plane.parameters(points[i]);
+            double tuple[9];
             source->GetTuple(i, tuple);
-            glm::dvec2& p = m_parameters[static_cast<std::size_t>(i)];
-            p = m_settings.on_plane ? m_settings.plane.parameters({tuple[0], tuple[1], tuple[2]})
-                                    : glm::dvec2(tuple[0], tuple[1]);
-            if (!is_finite(p)) m_unmoved.push_back(i);
+            return glm::dvec2(tuple[0], tuple[1]);
+        };
+        const vtkIdType count = source->GetNumberOfTuples();
+        m_parameters.reserve(static_cast<std::size_t>(count));
+        for (vtkIdType i = 0; i < count; ++i) {
+            m_parameters.push_back(parameters_of(i));
+            if (!is_finite(m_parameters.back())) m_unmoved.push_back(i);
         }
     }
 
@@ -194,54 +183,31 @@ class MeshOf final : public DeformedMesh {
         return written;
     }
 
-    /// The points that changes reach.
-    std::vector<vtkIdType> reached(const std::vector<DeformationChange>& changes,
-                                   const ParallelFor& parallel_for) const {
-        const anamorph::DisplacementSum sum(m_settings.options);
-        std::vector<char> marked(size());
-        for_each_point(static_cast<std::int64_t>(size()), parallel_for, [&](std::int64_t i) {
-            const glm::dvec2 p = m_parameters[static_cast<std::size_t>(i)];
-            const auto reaches = [&](const std::optional<Deformation>& d) {
-                // A little more than the core, whatever the rounding.
-                const double reach = d ? sum.reach(d->kernel) * (1 + 1e-9) : 0;
-                return d && std::fabs(p.x - d->center.x) <= reach * d->extent.x &&
-                       std::fabs(p.y - d->center.y) <= reach * d->extent.y;
-            };
-            for (const DeformationChange& change : changes)
-                if (reaches(change.before) || reaches(change.after)) {
-                    marked[static_cast<std::size_t>(i)] = 1;
-                    break;
-                }
-        });
-        std::vector<vtkIdType> points;
-        for (std::size_t i = 0; i < marked.size(); ++i)
-            if (marked[i]) points.push_back(static_cast<vtkIdType>(i));
-        return points;
-    }
-
     /// mesh: a shallow copy of the undeformed one.
     void update_normals(const std::vector<DeformationChange>& changes, vtkPointSet* mesh,
                         const ParallelFor& parallel_for) {
+        const bool all = !m_normals;
+        if (!all && changes.empty()) return;
         vtkDataArray* given = mesh->GetPointData()->GetNormals();
         if (given && (given->GetNumberOfComponents() != 3 ||
                       given->GetNumberOfTuples() != static_cast<vtkIdType>(size())))
             given = nullptr;
-        std::vector<vtkIdType> points;
-        if (!m_normals) {
-            points.resize(size());
-            std::iota(points.begin(), points.end(), vtkIdType{0});
+        if (!m_surface_normals)
+            m_surface_normals.emplace(mesh, m_parameters, m_settings.on_plane ? &m_settings.plane : nullptr,
+                                      given);
+        if (all) {
             m_normals = new_array(size());
             m_normals->SetName(given && given->GetName() ? given->GetName() : "Normals");
-        } else {
-            if (changes.empty()) return;
-            points = reached(changes, parallel_for);
-            if (points.empty()) return;
         }
         own(m_normals);
-        const NormalsOf of{mesh,  &m_parameters, m_settings.on_plane ? &m_settings.plane : nullptr,
-                           given, &m_list,       m_settings.options};
         T* const normals = m_normals->GetPointer(0);
-        write_normals(of, points, normals, parallel_for);
+        const auto write = [&](const anamorph::SurfaceSlopes& slopes) {
+            m_surface_normals->write(slopes, normals);
+        };
+        if (const auto* grid = std::get_if<DeformedGrid>(&m_surface))
+            grid->slopes(m_list, all ? nullptr : &changes, write, parallel_for);
+        else
+            std::get<DeformedPoints>(m_surface).slopes(m_list, all ? nullptr : &changes, write, parallel_for);
         for (const vtkIdType i : m_unmoved) {
             double n[3] = {};
             if (given) given->GetTuple(i, n);
@@ -268,6 +234,7 @@ class MeshOf final : public DeformedMesh {
     std::vector<glm::dvec2> m_parameters;
     std::vector<vtkIdType> m_unmoved;  ///< points whose parameters are not finite
     std::variant<std::monostate, DeformedGrid, DeformedPoints> m_surface;
+    std::optional<SurfaceNormals> m_surface_normals;
     std::vector<Deformation> m_list;  ///< that the surface and the arrays are of
     vtkSmartPointer<Array> m_points, m_displacement, m_normals;
 };

@@ -2,16 +2,16 @@
 #include "surface_normals.h"
 
 #include <algorithm>
-#include <array>
-#include <atomic>
 #include <cmath>
 #include <functional>
 #include <glm/geometric.hpp>
 #include <limits>
 #include <numbers>
+#include <numeric>
 #include <string>
 
 #include "anamorph/error.h"
+#include "vtkAOSDataArrayTemplate.h"
 #include "vtkCell.h"
 #include "vtkCellData.h"
 #include "vtkCellType.h"
@@ -25,8 +25,6 @@
 
 namespace anamorph_vtk {
 namespace {
-
-using anamorph::DisplacementJet;
 
 /// What a thread needs to read cells.
 struct CellReader {
@@ -92,116 +90,70 @@ vtkUnsignedCharArray* ghosts_of(vtkPointSet* mesh) {
     return ghosts;
 }
 
-glm::dvec3 point_of(vtkPointSet* mesh, vtkIdType id) {
-    double p[3];
-    mesh->GetPoints()->GetPoint(id, p);
-    return {p[0], p[1], p[2]};
-}
-
-glm::dvec3 unit(glm::dvec3 v) {
-    const double length = glm::length(v);
-    return length > 0 && std::isfinite(length) ? v / length : glm::dvec3(0.0);
-}
-
-/// n after the Jacobian I + by_u grad_u^T + by_v grad_v^T.
-glm::dvec3 moved_normal(glm::dvec3 n, const anamorph::ParameterPlane& plane, const DisplacementJet& jet) {
-    n = unit(n);
-    // Two tangents with a x b = n.
-    const glm::dvec3 other = std::fabs(n.x) < 0.6 ? glm::dvec3(1, 0, 0) : glm::dvec3(0, 1, 0);
-    const glm::dvec3 a = unit(glm::cross(other, n)), b = glm::cross(n, a);
-    const auto moved = [&](glm::dvec3 t) {
-        return t + glm::dot(plane.gradient_u(), t) * jet.by_u + glm::dot(plane.gradient_v(), t) * jet.by_v;
-    };
-    return unit(glm::cross(moved(a), moved(b)));
-}
-
-/// Fixed point for sums of unit vectors times angles up to 2 pi: 2^16 corners at a point.
-constexpr double kCornerUnit = 0x1p-44;
-
-/// The corners of cells at some points.
-class CornerSums {
+/// What the corners of cells need of the undeformed mesh.
+class Cells {
   public:
-    CornerSums(const NormalsOf& of, const std::vector<vtkIdType>& points,
-               const std::vector<DisplacementJet>& jets)
-        : m_of(of),
-          m_jets(jets),
-          m_slot(static_cast<std::size_t>(of.mesh->GetNumberOfPoints()), -1),
-          m_sums(points.size()) {
-        for (std::size_t k = 0; k < points.size(); ++k)
-            m_slot[static_cast<std::size_t>(points[k])] = static_cast<std::int64_t>(k);
-    }
+    Cells(const Triples& points, const std::vector<glm::dvec2>& parameters)
+        : m_points(points), m_parameters(parameters) {}
 
-    void add_cell(vtkIdType count, const vtkIdType* points) {
-        // The neighbour of a corner, one way around or the other.
-        const auto neighbour = [&](vtkIdType i, vtkIdType step) {
-            vtkIdType k = (i + step) % count;
-            while (k != i && !is_finite((*m_of.parameters)[static_cast<std::size_t>(points[k])]))
-                k = (k + step) % count;
-            return points[k];
-        };
-        const glm::dvec3 area = count > 3 ? area_of(count, points) : glm::dvec3(0.0);
+    /// The corners that a cell has at a point, which is the k-th of the sums.
+    void add_corners(vtkIdType count, const vtkIdType* cell, std::int64_t point, int k,
+                     anamorph::CornerSums& sums) const {
         for (vtkIdType i = 0; i < count; ++i) {
-            const std::int64_t slot = m_slot[static_cast<std::size_t>(points[i])];
-            if (slot >= 0)
-                add_corner(static_cast<std::size_t>(slot), points[i], neighbour(i, 1),
-                           neighbour(i, count - 1), area);
+            if (cell[i] != point) continue;
+            const anamorph::CornerSums::Edge next = edge(point, neighbour(count, cell, i, 1)),
+                                             previous = edge(point, neighbour(count, cell, i, count - 1));
+            // A corner that goes inwards: the polygon has the rest of the turn, on the other side.
+            const bool goes_inwards =
+                count > 3 && glm::dot(glm::cross(next.points, previous.points), area_of(count, cell)) < 0;
+            sums.add(k, next, previous, goes_inwards);
         }
     }
 
-    glm::dvec3 sum(std::size_t k) const {
-        return kCornerUnit * glm::dvec3(m_sums[k][0], m_sums[k][1], m_sums[k][2]);
+  private:
+    glm::dvec2 parameter(vtkIdType id) const { return m_parameters[static_cast<std::size_t>(id)]; }
+
+    anamorph::CornerSums::Edge edge(vtkIdType from, vtkIdType to) const {
+        return {m_points[to] - m_points[from], parameter(to) - parameter(from)};
     }
 
-  private:
+    /// The neighbour of a corner, one way around or the other.
+    vtkIdType neighbour(vtkIdType count, const vtkIdType* cell, vtkIdType i, vtkIdType step) const {
+        const auto after = [&](vtkIdType k) { return k + step < count ? k + step : k + step - count; };
+        vtkIdType k = after(i);
+        while (k != i && !is_finite(parameter(cell[k]))) k = after(k);
+        return cell[k];
+    }
+
     /// Twice the area of a polygon along its normal, undeformed.
-    glm::dvec3 area_of(vtkIdType count, const vtkIdType* points) const {
-        const glm::dvec3 first = point_of(m_of.mesh, points[0]);
-        glm::dvec3 area(0.0), edge = point_of(m_of.mesh, points[1]) - first;
+    glm::dvec3 area_of(vtkIdType count, const vtkIdType* cell) const {
+        const glm::dvec3 first = m_points[cell[0]];
+        glm::dvec3 area(0.0), edge = m_points[cell[1]] - first;
         for (vtkIdType i = 2; i < count; ++i) {
-            const glm::dvec3 next = point_of(m_of.mesh, points[i]) - first;
+            const glm::dvec3 next = m_points[cell[i]] - first;
             area += glm::cross(edge, next);
             edge = next;
         }
         return area;
     }
 
-    /// area: of the polygon, undeformed, if its corner may go inwards.
-    void add_corner(std::size_t slot, vtkIdType at, vtkIdType next, vtkIdType previous,
-                    const glm::dvec3& area) {
-        const DisplacementJet& jet = m_jets[slot];
-        const glm::dvec3 p = point_of(m_of.mesh, at);
-        const glm::dvec2 s = (*m_of.parameters)[static_cast<std::size_t>(at)];
-        const glm::dvec3 to_next = point_of(m_of.mesh, next) - p,
-                         to_previous = point_of(m_of.mesh, previous) - p;
-        const auto edge = [&](vtkIdType to, const glm::dvec3& undeformed) {
-            const glm::dvec2 ds = (*m_of.parameters)[static_cast<std::size_t>(to)] - s;
-            return unit(undeformed + ds.x * jet.by_u + ds.y * jet.by_v);
-        };
-        const glm::dvec3 a = edge(next, to_next), b = edge(previous, to_previous), across = glm::cross(a, b);
-        const double sine = glm::length(across);
-        if (!(sine > 0)) return;
-        double angle = std::atan2(sine, glm::dot(a, b));
-        // A corner that goes inwards: the polygon has the rest of the turn, on the other side.
-        if (glm::dot(glm::cross(to_next, to_previous), area) < 0) angle -= 2 * std::numbers::pi;
-        const glm::dvec3 weighted = across * (angle / sine);
-        for (int c = 0; c < 3; ++c)
-            std::atomic_ref<std::int64_t>(m_sums[slot][static_cast<std::size_t>(c)])
-                .fetch_add(std::llround(weighted[c] / kCornerUnit), std::memory_order_relaxed);
-    }
-
-    const NormalsOf& m_of;
-    const std::vector<DisplacementJet>& m_jets;
-    std::vector<std::int64_t> m_slot;  ///< of a point in `points`, or -1
-    std::vector<std::array<std::int64_t, 3>> m_sums;
+    const Triples& m_points;
+    const std::vector<glm::dvec2>& m_parameters;
 };
 
-constexpr std::int64_t kChunk = 4096;
+}  // namespace
 
-std::int64_t chunks_of(std::int64_t count) {
-    return (count + kChunk - 1) / kChunk;
+Triples::Triples(vtkDataArray* array) : m_array(array) {
+    if (auto* floats = vtkAOSDataArrayTemplate<float>::FastDownCast(array)) m_floats = floats->GetPointer(0);
+    if (auto* doubles = vtkAOSDataArrayTemplate<double>::FastDownCast(array))
+        m_doubles = doubles->GetPointer(0);
 }
 
-}  // namespace
+glm::dvec3 Triples::read(std::int64_t i) const {
+    double tuple[3];
+    m_array->GetTuple(i, tuple);
+    return {tuple[0], tuple[1], tuple[2]};
+}
 
 bool is_finite(glm::dvec2 parameters) {
     return std::isfinite(parameters.x) && std::isfinite(parameters.y);
@@ -222,57 +174,93 @@ void for_each_surface_cell(vtkPointSet* mesh,
         if (!hidden(ghosts, id)) read_cell(mesh, id, reader, body);
 }
 
-template <class T>
-void write_normals(const NormalsOf& of, const std::vector<vtkIdType>& points, T* out,
-                   const anamorph::ParallelFor& parallel_for) {
-    if (points.empty()) return;
-    std::vector<glm::dvec2> parameters(points.size());
-    for (std::size_t k = 0; k < points.size(); ++k)
-        parameters[k] = (*of.parameters)[static_cast<std::size_t>(points[k])];
-    parameters = with_finite_parameters(std::move(parameters));
-    std::vector<DisplacementJet> jets(points.size());
-    anamorph::displacement_jets(*of.list, parameters, of.options, jets.data(), parallel_for);
+SurfaceNormals::SurfaceNormals(vtkPointSet* mesh, const std::vector<glm::dvec2>& parameters,
+                               const anamorph::ParameterPlane* plane, vtkDataArray* normals)
+    : m_points(mesh->GetPoints()->GetData()),
+      m_normals(normals),
+      m_parameters(parameters),
+      m_on_plane(plane != nullptr) {
+    if (plane) m_plane = *plane;
+    m_exact = plane && normals;
+    if (m_exact) return;
+    m_mesh = vtkSmartPointer<vtkPointSet>::Take(mesh->NewInstance());
+    m_mesh->CopyStructure(mesh);
+    m_ghosts = ghosts_of(mesh);
+    link_cells();
+}
 
-    const bool exact = of.plane && of.normals;
-    CornerSums corners(of, exact ? std::vector<vtkIdType>() : points, jets);
-    if (const vtkIdType cells = exact ? 0 : of.mesh->GetNumberOfCells(); cells > 0) {
-        of.mesh->GetCellType(0);  // builds what is built on demand, on this thread
-        vtkNew<vtkIdList> first;
-        of.mesh->GetCellPoints(0, first);
-        vtkUnsignedCharArray* ghosts = ghosts_of(of.mesh);
-        parallel_for(chunks_of(cells), [&](std::int64_t chunk) {
-            CellReader reader;
-            for (vtkIdType id = chunk * kChunk; id < std::min<vtkIdType>((chunk + 1) * kChunk, cells); ++id)
-                if (!hidden(ghosts, id))
-                    read_cell(of.mesh, id, reader, [&](vtkIdType count, const vtkIdType* around) {
-                        corners.add_cell(count, around);
-                    });
-        });
-    }
-
-    const auto normal_at = [&](std::size_t k) {
-        if (exact) {
-            double n[3];
-            of.normals->GetTuple(points[k], n);
-            return moved_normal({n[0], n[1], n[2]}, *of.plane, jets[k]);
+void SurfaceNormals::link_cells() {
+    const vtkIdType cells = m_mesh->GetNumberOfCells();
+    m_first.assign(m_parameters.size() + 1, 0);
+    if (cells == 0) return;
+    if (cells > std::numeric_limits<std::uint32_t>::max())
+        throw anamorph::Error("the mesh has " + std::to_string(cells) +
+                              " cells, allowed are fewer than 2^32");
+    m_mesh->GetCellType(0);  // builds what is built on demand, on this thread
+    CellReader reader;
+    const auto each_point = [&](const auto& body) {
+        for (vtkIdType id = 0; id < cells; ++id) {
+            if (hidden(m_ghosts, id)) continue;
+            read_cell(m_mesh, id, reader, [&](vtkIdType count, const vtkIdType* points) {
+                for (vtkIdType i = 0; i < count; ++i) body(static_cast<std::size_t>(points[i]), id);
+            });
         }
-        const glm::dvec3 sum = unit(corners.sum(k));
-        if (sum != glm::dvec3(0.0) || !of.plane) return sum;
-        return normal_of(jets[k], of.plane->axis_u(), of.plane->axis_v());
     };
-    const auto count = static_cast<std::int64_t>(points.size());
-    parallel_for(chunks_of(count), [&](std::int64_t chunk) {
-        for (std::int64_t i = chunk * kChunk; i < std::min((chunk + 1) * kChunk, count); ++i) {
-            const auto k = static_cast<std::size_t>(i);
-            const glm::dvec3 normal = normal_at(k);
-            for (int c = 0; c < 3; ++c) out[3 * points[k] + c] = static_cast<T>(normal[c]);
-        }
+    each_point([&](std::size_t point, vtkIdType) { ++m_first[point]; });
+    std::inclusive_scan(m_first.begin(), m_first.end(), m_first.begin());
+    m_cells.resize(static_cast<std::size_t>(m_first.back()));
+    // Backwards into what was counted: m_first[i] then is where point i begins.
+    each_point([&](std::size_t point, vtkIdType id) {
+        m_cells[static_cast<std::size_t>(--m_first[point])] = static_cast<std::uint32_t>(id);
     });
 }
 
-template void write_normals(const NormalsOf&, const std::vector<vtkIdType>&, float*,
-                            const anamorph::ParallelFor&);
-template void write_normals(const NormalsOf&, const std::vector<vtkIdType>&, double*,
-                            const anamorph::ParallelFor&);
+void SurfaceNormals::turn(const anamorph::SurfaceSlopes& slopes, Normals& to) const {
+    for (int k = 0; k < slopes.count; ++k) {
+        const glm::dvec3 n = m_normals[slopes.point(k)];
+        for (int c = 0; c < 3; ++c) to[c][k] = n[c];
+    }
+    anamorph::turn_normals(slopes, m_plane.gradient_u(), m_plane.gradient_v(), to);
+}
+
+void SurfaceNormals::add_corners(const anamorph::SurfaceSlopes& slopes, Normals& to) const {
+    const Cells cells(m_points, m_parameters);
+    anamorph::CornerSums sums(slopes);
+    CellReader reader;
+    for (int k = 0; k < slopes.count; ++k) {
+        const auto id = static_cast<std::size_t>(slopes.point(k));
+        std::uint32_t last = 0;
+        for (std::int64_t i = m_first[id]; i < m_first[id + 1]; ++i) {
+            const std::uint32_t cell = m_cells[static_cast<std::size_t>(i)];
+            // A cell that comes to the point twice stands there twice.
+            if (i > m_first[id] && cell == last) continue;
+            last = cell;
+            read_cell(m_mesh, cell, reader, [&](vtkIdType count, const vtkIdType* around) {
+                cells.add_corners(count, around, slopes.point(k), k, sums);
+            });
+        }
+    }
+    for (int k = 0; k < slopes.count; ++k) {
+        glm::dvec3 normal = sums.normal(k);
+        if (normal == glm::dvec3(0.0) && m_on_plane)
+            normal = anamorph::normal_of({glm::dvec3(0.0), slopes.by_u(k), slopes.by_v(k)}, m_plane.axis_u(),
+                                         m_plane.axis_v());
+        for (int c = 0; c < 3; ++c) to[c][k] = normal[c];
+    }
+}
+
+template <class T>
+void SurfaceNormals::write(const anamorph::SurfaceSlopes& slopes, T* out) const {
+    Normals normals = {};
+    if (m_exact)
+        turn(slopes, normals);
+    else
+        add_corners(slopes, normals);
+    for (int k = 0; k < slopes.count; ++k)
+        for (int c = 0; c < 3; ++c) out[3 * slopes.point(k) + c] = static_cast<T>(normals[c][k]);
+}
+
+template void SurfaceNormals::write(const anamorph::SurfaceSlopes&, float*) const;
+template void SurfaceNormals::write(const anamorph::SurfaceSlopes&, double*) const;
 
 }  // namespace anamorph_vtk

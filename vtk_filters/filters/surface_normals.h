@@ -14,36 +14,72 @@
 // A point of no surface cell has the normal of the parameter plane, or none (0, 0, 0).
 #pragma once
 
+#include <functional>
 #include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
 #include <vector>
 
 #include "anamorph/deform/deformed_surface.h"
 #include "anamorph/deform/plane_warp.h"
+#include "vtkSmartPointer.h"
 #include "vtkType.h"
 
 class vtkDataArray;
 class vtkPointSet;
+class vtkUnsignedCharArray;
 
 namespace anamorph_vtk {
-
-struct NormalsOf {
-    vtkPointSet* mesh;                          ///< undeformed
-    const std::vector<glm::dvec2>* parameters;  ///< of all its points; cells leave out those not finite
-    const anamorph::ParameterPlane* plane;      ///< null: texture coordinates
-    vtkDataArray* normals;                      ///< of the undeformed mesh, or null
-    const std::vector<anamorph::Deformation>* list;
-    anamorph::DeformOptions options;
-};
 
 bool is_finite(glm::dvec2 parameters);
 
 /// Those that are not finite replaced by those of another point: the core takes no others.
 std::vector<glm::dvec2> with_finite_parameters(std::vector<glm::dvec2> parameters);
 
-/// Writes the normals of `points` to out, three numbers a point of the mesh. May build the mesh's cells.
-template <class T>
-void write_normals(const NormalsOf& of, const std::vector<vtkIdType>& points, T* out,
-                   const anamorph::ParallelFor& parallel_for);
+/// Three numbers a tuple, of any array, from any thread.
+class Triples {
+  public:
+    explicit Triples(vtkDataArray* array);
+    glm::dvec3 operator[](std::int64_t i) const {
+        if (m_floats) return {m_floats[3 * i], m_floats[3 * i + 1], m_floats[3 * i + 2]};
+        return m_doubles ? glm::dvec3(m_doubles[3 * i], m_doubles[3 * i + 1], m_doubles[3 * i + 2]) : read(i);
+    }
+
+  private:
+    glm::dvec3 read(std::int64_t i) const;
+
+    vtkSmartPointer<vtkDataArray> m_array;
+    const float* m_floats = nullptr;  ///< of an array of floats without gaps
+    const double* m_doubles = nullptr;
+};
+
+/// The normals of a mesh, for any deformation of it.
+class SurfaceNormals {
+  public:
+    /// mesh: undeformed. parameters: of all its points, to be kept as long as this; cells leave out those not
+    /// finite. plane: null for texture coordinates. normals: of the undeformed mesh, or null.
+    SurfaceNormals(vtkPointSet* mesh, const std::vector<glm::dvec2>& parameters,
+                   const anamorph::ParameterPlane* plane, vtkDataArray* normals);
+
+    /// Writes the normals of some points to out, three numbers a point of the mesh. From any thread.
+    template <class T>
+    void write(const anamorph::SurfaceSlopes& slopes, T* out) const;
+
+  private:
+    /// The cells at each point: those of point i are m_cells[m_first[i]] to m_cells[m_first[i + 1]].
+    void link_cells();
+    using Normals = double[3][anamorph::SurfaceSlopes::kMost];
+    void turn(const anamorph::SurfaceSlopes& slopes, Normals& to) const;
+    void add_corners(const anamorph::SurfaceSlopes& slopes, Normals& to) const;
+
+    vtkSmartPointer<vtkPointSet> m_mesh;  ///< without its arrays
+    vtkSmartPointer<vtkUnsignedCharArray> m_ghosts;
+    Triples m_points, m_normals;
+    const std::vector<glm::dvec2>& m_parameters;
+    bool m_on_plane, m_exact;
+    anamorph::ParameterPlane m_plane;
+    std::vector<std::int64_t> m_first;
+    std::vector<std::uint32_t> m_cells;
+};
 
 /// Calls body(cell_points) for the linear surface cells of a mesh, others cut into triangles; corners in
 /// order. On one thread.

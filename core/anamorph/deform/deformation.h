@@ -17,6 +17,7 @@
 #include <vector>
 
 #include "anamorph/number/jet.h"
+#include "anamorph/number/number.h"
 
 namespace anamorph {
 
@@ -42,20 +43,23 @@ inline constexpr double kLeastExtent = 1e-300, kMostExtent = 1e300;
 /// Throws Error that names the field, unless all numbers are finite and extents in their range.
 void check_deformation(const Deformation& deformation);
 
-/// F of x = (u - c_u) / a_u and y = (v - c_v) / a_v: 1 at the centre. T: double, long double, or jets of them
-/// up to the second degree.
+// What the formulas ask of jets: conditions are those of the constant part.
+template <class T, int N>
+auto is_zero(const Jet<T, N>& a) {
+    return is_zero(a.c[0]);
+}
+template <class T, int N>
+auto is_negative(const Jet<T, N>& a) {
+    return is_negative(a.c[0]);
+}
+
+#include "anamorph/deform/deformation_formula.h"
+
+/// F of x = (u - c_u) / a_u and y = (v - c_v) / a_v: 1 at the centre.
 template <class T>
 T kernel_value(DeformationKernel kernel, const T& x, const T& y) {
-    using std::exp;
-    using std::sqrt;
     const T squared = square(x) + square(y);
-    if (kernel == DeformationKernel::gaussian) return exp(-squared);
-    const auto at = constant_part(squared);
-    if (!(at < 1)) return T(0.0);
-    // Expanded: 1 - 10 r^2 + 20 r^3 - 15 r^4 + 4 r^5. At r = 0, r^3 has no derivatives up to the second.
-    if (at == 0) return T(1.0) - T(10.0) * squared;
-    const T r = sqrt(squared), rest = T(1.0) - r;
-    return square(square(rest)) * (T(4.0) * r + T(1.0));
+    return kernel == DeformationKernel::gaussian ? gaussian_of(squared) : wendland_of(squared);
 }
 
 /// F(p, c, a) at p = (u, v), exactly (with no cutoff).

@@ -4,8 +4,11 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <glm/geometric.hpp>
+#include <iterator>
 #include <limits>
 #include <new>
+#include <numbers>
 #include <stdexcept>
 
 #include "anamorph/parameter.h"
@@ -70,10 +73,7 @@ Axis add_axis(std::span<const double> values, double center, double extent, bool
     tables.resize(tables.size() + static_cast<std::size_t>(axis.end - axis.begin), gaussian ? 0.0 : 2.0);
     const int count = std::min(axis.end, static_cast<int>(values.size())) - axis.begin;
     const double* from = values.data() + axis.begin;
-    if (gaussian)
-        simd::gaussian_factors(from, count, center, inverse, reach, tables.data() + axis.at);
-    else
-        simd::squared_distances(from, count, center, inverse, tables.data() + axis.at);
+    simd::axis_factors({center, inverse, reach, gaussian}, from, count, tables.data() + axis.at, nullptr);
     return axis;
 }
 
@@ -284,6 +284,132 @@ void DeformedGrid::write(const T* base, T* out, const ParallelFor& parallel_for,
     draw(true, base, out, parallel_for, displacement);
 }
 
+namespace {
+
+// Derivatives on a grid are added tile by tile, so that what is kept does not grow with the grid nor with the
+// list.
+constexpr int kTileColumns = 64, kTileRows = 16;
+static_assert(kTileColumns <= SurfaceSlopes::kMost && kTileColumns % simd::kGridBlock == 0);
+
+GridPart common(const GridPart& a, const GridPart& b) {
+    return {std::max(a.column_begin, b.column_begin), std::max(a.row_begin, b.row_begin),
+            std::min(a.column_end, b.column_end), std::min(a.row_end, b.row_end)};
+}
+
+/// The derivatives at a part of a tile.
+class TileSlopes {
+  public:
+    TileSlopes(const GridPart& part, std::span<const double> u, std::span<const double> v)
+        : m_part(part),
+          m_width(round_up(part.column_end - part.column_begin, simd::kGridBlock)),
+          m_u(u.subspan(static_cast<std::size_t>(part.column_begin),
+                        static_cast<std::size_t>(part.column_end - part.column_begin))),
+          m_v(v.subspan(static_cast<std::size_t>(part.row_begin),
+                        static_cast<std::size_t>(part.row_end - part.row_begin))),
+          m_by(static_cast<std::size_t>(6 * m_width) * m_v.size()) {}
+
+    void add(const Term& from, const DisplacementSum& sum) {
+        const Deformation& d = *from.deformation;
+        const bool gaussian = d.kernel == DeformationKernel::gaussian;
+        const simd::AxisKernel across{d.center.x, 1 / d.extent.x, sum.reach(d.kernel), gaussian},
+            down{d.center.y, 1 / d.extent.y, sum.reach(d.kernel), gaussian};
+        const auto [column, column_end] = reached(m_u, across.center, across.inverse_extent, across.reach);
+        const auto [row, row_end] = reached(m_v, down.center, down.inverse_extent, down.reach);
+        if (column == column_end || row == row_end) return;
+        TileTerm& term = m_terms.emplace_back();
+        term.columns = {round_down(column, simd::kGridBlock), row, round_up(column_end, simd::kGridBlock),
+                        row_end};
+        set_units(from, 1, term.vector);
+        term.gaussian = gaussian;
+        // Beyond the last column F has no slope.
+        std::fill(term.column, term.column + m_width, gaussian ? 0.0 : 2.0);
+        std::fill(term.column_slope, term.column_slope + m_width, 0.0);
+        simd::axis_factors(across, m_u.data(), static_cast<int>(m_u.size()), term.column, term.column_slope);
+        simd::axis_factors(down, m_v.data(), static_cast<int>(m_v.size()), term.row, term.row_slope);
+        if (m_terms.size() == kTermsAtOnce) carry_out();
+    }
+
+    void take(int columns, const TakeSlopes& take) {
+        carry_out();
+        for (int row = 0; row < static_cast<int>(m_v.size()); ++row) {
+            double by[6][SurfaceSlopes::kMost];
+            for (int c = 0; c < 6; ++c) std::copy_n(sums(row, c), m_width, by[c]);
+            take({static_cast<int>(m_u.size()),
+                  std::int64_t{m_part.row_begin + row} * columns + m_part.column_begin, nullptr, by});
+        }
+    }
+
+  private:
+    struct TileTerm {
+        GridPart columns;  ///< and rows, of the tile
+        double vector[3];
+        bool gaussian;
+        double column[kTileColumns], column_slope[kTileColumns], row[kTileRows], row_slope[kTileRows];
+    };
+    static constexpr std::size_t kTermsAtOnce = 64;
+
+    double* sums(int row, int c) { return m_by.data() + std::ptrdiff_t{6 * row + c} * m_width; }
+
+    void carry_out() {
+        std::vector<simd::RowTerm> on_block;
+        for (int row = 0; row < static_cast<int>(m_v.size()); ++row)
+            for (int column = 0; column < m_width; column += simd::kGridBlock) {
+                on_block.clear();
+                for (const TileTerm& t : m_terms)
+                    if (t.columns.column_begin <= column && column < t.columns.column_end &&
+                        t.columns.row_begin <= row && row < t.columns.row_end)
+                        on_block.push_back({t.column + column,
+                                            t.column_slope + column,
+                                            t.row[row],
+                                            t.row_slope[row],
+                                            {t.vector[0], t.vector[1], t.vector[2]},
+                                            t.gaussian});
+                double* to[6];
+                for (int c = 0; c < 6; ++c) to[c] = sums(row, c) + column;
+                simd::add_row_slopes(on_block.data(), on_block.size(), simd::kGridBlock, to);
+            }
+        m_terms.clear();
+    }
+
+    GridPart m_part;
+    int m_width;
+    std::span<const double> m_u, m_v;
+    std::vector<double> m_by;
+    std::vector<TileTerm> m_terms;
+};
+
+}  // namespace
+
+void DeformedGrid::slopes(const std::vector<Deformation>& list, const std::vector<DeformationChange>* changes,
+                          const TakeSlopes& take, const ParallelFor& parallel_for) const {
+    const int columns = static_cast<int>(m_u.size()), rows = static_cast<int>(m_v.size());
+    const std::vector<DeformationChange> all = difference({}, list);
+    const std::vector<Term> terms = terms_of(all);
+    std::vector<GridPart> parts;
+    if (!changes) parts.push_back({0, 0, columns, rows});
+    for (const Term& term : terms_of(changes ? std::span(*changes) : std::span<const DeformationChange>())) {
+        const Deformation& d = *term.deformation;
+        const double reach = m_sum.reach(d.kernel);
+        const auto [column, column_end] = reached(m_u, d.center.x, 1 / d.extent.x, reach);
+        const auto [row, row_end] = reached(m_v, d.center.y, 1 / d.extent.y, reach);
+        parts.push_back({column, row, column_end, row_end});
+    }
+    const std::int64_t across = (columns + kTileColumns - 1) / kTileColumns,
+                       down = (rows + kTileRows - 1) / kTileRows;
+    parallel_for(across * down, [&](std::int64_t i) {
+        const int column = static_cast<int>(i % across) * kTileColumns,
+                  row = static_cast<int>(i / across) * kTileRows;
+        const GridPart tile{column, row, std::min(column + kTileColumns, columns),
+                            std::min(row + kTileRows, rows)};
+        GridPart part;
+        for (const GridPart& p : parts) hull(part, common(tile, p));
+        if (part.empty()) return;
+        TileSlopes slopes_of_part(part, m_u, m_v);
+        for (const Term& term : terms) slopes_of_part.add(term, m_sum);
+        slopes_of_part.take(columns, take);
+    });
+}
+
 template <class T>
 double deform_grid(const std::vector<Deformation>& list, std::span<const double> u, std::span<const double> v,
                    const DeformOptions& options, const T* base, T* out, const ParallelFor& parallel_for) {
@@ -346,6 +472,25 @@ bool reaches(const simd::PointTerm& term, int axis, double least, double most) {
            (least - term.center[axis]) * term.inverse_extent[axis] <= term.reach;
 }
 
+/// Terms for derivatives: with V for units.
+std::vector<simd::PointTerm> slope_terms(const std::vector<DeformationChange>& changes,
+                                         const DisplacementSum& sum) {
+    std::vector<simd::PointTerm> terms;
+    for (const Term& from : terms_of(changes)) {
+        terms.push_back(point_term(from, sum));
+        set_units(from, 1, terms.back().units);
+    }
+    return terms;
+}
+
+/// The derivatives at `count` points, a multiple of simd::kPointBlock.
+void point_slopes(const std::vector<const simd::PointTerm*>& near, const double* u, const double* v,
+                  std::size_t count, double (&by)[6][SurfaceSlopes::kMost]) {
+    double* sums[6];
+    for (int c = 0; c < 6; ++c) std::fill_n(sums[c] = by[c], count, 0.0);
+    simd::add_point_slopes(near.data(), near.size(), u, v, count, sums);
+}
+
 }  // namespace
 
 DeformedPoints::DeformedPoints(std::span<const glm::dvec2> points, const DeformOptions& options)
@@ -400,6 +545,66 @@ void DeformedPoints::apply(std::span<const DeformationChange> changes) {
     m_pending.insert(m_pending.end(), changes.begin(), changes.end());
 }
 
+void DeformedPoints::each_cell(
+    const std::vector<simd::PointTerm>& visiting, bool all, const std::vector<simd::PointTerm>& terms,
+    const ParallelFor& parallel_for,
+    const std::function<void(const Cell&, const std::vector<const simd::PointTerm*>&)>& body) const {
+    using Pointers = std::vector<const simd::PointTerm*>;
+    const auto row_of = [](const std::vector<simd::PointTerm>& from, double least, double most) {
+        Pointers on_row;
+        for (const simd::PointTerm& term : from)
+            if (reaches(term, 1, least, most)) on_row.push_back(&term);
+        return on_row;
+    };
+    const auto visit_row = [&](std::int64_t row) {
+        const std::size_t begin = m_cell_rows[static_cast<std::size_t>(row)],
+                          end = m_cell_rows[static_cast<std::size_t>(row) + 1];
+        double least = std::numeric_limits<double>::infinity(), most = -least;
+        for (std::size_t c = begin; c < end; ++c) {
+            least = std::min(least, m_cells[c].least.y);
+            most = std::max(most, m_cells[c].most.y);
+        }
+        const Pointers visiting_row = row_of(visiting, least, most);
+        if (visiting_row.empty() && !all) return;
+        const Pointers on_row = row_of(terms, least, most);
+        Pointers near;
+        for (std::size_t c = begin; c < end; ++c) {
+            const Cell& cell = m_cells[c];
+            if (cell.begin == cell.end) continue;
+            const auto reaches_cell = [&](const simd::PointTerm* term) {
+                return reaches(*term, 0, cell.least.x, cell.most.x) &&
+                       reaches(*term, 1, cell.least.y, cell.most.y);
+            };
+            if (!all && std::none_of(visiting_row.begin(), visiting_row.end(), reaches_cell)) continue;
+            near.clear();
+            std::copy_if(on_row.begin(), on_row.end(), std::back_inserter(near), reaches_cell);
+            body(cell, near);
+        }
+    };
+    if (!m_cells.empty()) parallel_for(static_cast<std::int64_t>(m_cell_rows.size()) - 1, visit_row);
+}
+
+void DeformedPoints::slopes(const std::vector<Deformation>& list,
+                            const std::vector<DeformationChange>* changes, const TakeSlopes& take,
+                            const ParallelFor& parallel_for) const {
+    const std::vector<DeformationChange> all = difference({}, list);
+    const std::vector<simd::PointTerm> terms = slope_terms(all, m_sum);
+    std::vector<simd::PointTerm> visiting;
+    if (changes) visiting = slope_terms(*changes, m_sum);
+    constexpr std::size_t kMost = SurfaceSlopes::kMost;
+    each_cell(visiting, !changes, terms, parallel_for,
+              [&](const Cell& cell, const std::vector<const simd::PointTerm*>& near) {
+                  double by[6][kMost];
+                  for (std::size_t at = cell.begin; at < cell.end; at += kMost) {
+                      const std::size_t slots = std::min(kMost, cell.end - at);
+                      point_slopes(near, &m_u[at], &m_v[at], slots, by);
+                      const auto end = std::find(&m_point[at], &m_point[at] + slots, -1);
+                      if (end != &m_point[at])
+                          take({static_cast<int>(end - &m_point[at]), 0, &m_point[at], by});
+                  }
+              });
+}
+
 template <class T>
 std::int64_t DeformedPoints::draw(bool all, const T* base, T* out, const ParallelFor& parallel_for,
                                   T* displacement) {
@@ -407,16 +612,10 @@ std::int64_t DeformedPoints::draw(bool all, const T* base, T* out, const Paralle
     for (const Term& from : terms_of(m_pending)) terms.push_back(point_term(from, m_sum));
     std::atomic<std::int64_t> written = 0;
     const double resolution = m_sum.options().resolution;
-    const auto draw_cell = [&](const Cell& cell, const std::vector<const simd::PointTerm*>& on_row,
-                               std::vector<const simd::PointTerm*>& on_cell) {
-        on_cell.clear();
-        for (const simd::PointTerm* term : on_row)
-            if (reaches(*term, 0, cell.least.x, cell.most.x) && reaches(*term, 1, cell.least.y, cell.most.y))
-                on_cell.push_back(term);
-        if (on_cell.empty() && !all) return;
+    const auto draw_cell = [&](const Cell& cell, const std::vector<const simd::PointTerm*>& near) {
         std::int64_t* const sums[3] = {&m_sums[0][cell.begin], &m_sums[1][cell.begin],
                                        &m_sums[2][cell.begin]};
-        simd::deform_points(on_cell.data(), on_cell.size(), &m_u[cell.begin], &m_v[cell.begin],
+        simd::deform_points(near.data(), near.size(), &m_u[cell.begin], &m_v[cell.begin],
                             cell.end - cell.begin, sums);
         std::int64_t points = 0;
         for (std::size_t slot = cell.begin; slot < cell.end && m_point[slot] >= 0; ++slot, ++points)
@@ -429,22 +628,7 @@ std::int64_t DeformedPoints::draw(bool all, const T* base, T* out, const Paralle
             }
         written += points;
     };
-    const auto draw_row = [&](std::int64_t row) {
-        const std::size_t begin = m_cell_rows[static_cast<std::size_t>(row)],
-                          end = m_cell_rows[static_cast<std::size_t>(row) + 1];
-        double least = std::numeric_limits<double>::infinity(), most = -least;
-        for (std::size_t c = begin; c < end; ++c) {
-            least = std::min(least, m_cells[c].least.y);
-            most = std::max(most, m_cells[c].most.y);
-        }
-        std::vector<const simd::PointTerm*> on_row, on_cell;
-        for (const simd::PointTerm& term : terms)
-            if (reaches(term, 1, least, most)) on_row.push_back(&term);
-        for (std::size_t c = begin; c < end; ++c)
-            if (m_cells[c].begin != m_cells[c].end) draw_cell(m_cells[c], on_row, on_cell);
-    };
-    if (!m_cells.empty() && (all || !terms.empty()))
-        parallel_for(static_cast<std::int64_t>(m_cell_rows.size()) - 1, draw_row);
+    if (all || !terms.empty()) each_cell(terms, all, terms, parallel_for, draw_cell);
     m_pending.clear();
     return written;
 }
@@ -466,37 +650,114 @@ template void DeformedPoints::write(const double*, double*, const ParallelFor&, 
 
 // --- Normals
 
-void displacement_jets(const std::vector<Deformation>& list, std::span<const glm::dvec2> points,
-                       const DeformOptions& options, DisplacementJet* out, const ParallelFor& parallel_for) {
+void turn_normals(const SurfaceSlopes& slopes, glm::dvec3 gradient_u, glm::dvec3 gradient_v,
+                  double (&normals)[3][SurfaceSlopes::kMost]) {
+    const std::size_t count = static_cast<std::size_t>(round_up(slopes.count, simd::kPointBlock));
+    const double* by[6];
+    for (int c = 0; c < 6; ++c) by[c] = slopes.by[c];
+    double* to[3];
+    for (int c = 0; c < 3; ++c) to[c] = normals[c];
+    const double gradients[2][3] = {{gradient_u.x, gradient_u.y, gradient_u.z},
+                                    {gradient_v.x, gradient_v.y, gradient_v.z}};
+    simd::turn_normals(by, gradients, count, to);
+}
+
+void CornerSums::add(int k, const Edge& next, const Edge& previous, bool goes_inwards) {
+    if (m_count == kMost) carry_out();
+    const int at = m_count++;
+    m_point[at] = k;
+    for (int c = 0; c < 6; ++c) m_by[c][at] = m_slopes.by[c][k];
+    for (int c = 0; c < 3; ++c) {
+        m_next[c][at] = next.points[c];
+        m_previous[c][at] = previous.points[c];
+    }
+    for (int c = 0; c < 2; ++c) {
+        m_next_by[c][at] = next.parameters[c];
+        m_previous_by[c][at] = previous.parameters[c];
+    }
+    m_turns[at] = goes_inwards ? 2 * std::numbers::pi : 0;
+}
+
+void CornerSums::carry_out() {
+    // 2^16 unit vectors times angles up to 2 pi.
+    constexpr double kUnit = 0x1p-44;
+    simd::CornerEdges edges{};
+    for (int c = 0; c < 6; ++c) edges.by[c] = m_by[c];
+    for (int c = 0; c < 3; ++c) {
+        edges.next[c] = m_next[c];
+        edges.previous[c] = m_previous[c];
+    }
+    for (int c = 0; c < 2; ++c) {
+        edges.next_by[c] = m_next_by[c];
+        edges.previous_by[c] = m_previous_by[c];
+    }
+    edges.turns = m_turns;
+    // What fills the last vector is a corner without a direction.
+    const int count = round_up(m_count, simd::kPointBlock);
+    for (double(&values)[kMost] : m_next) std::fill(values + m_count, values + count, 0.0);
+    double normals[3][kMost];
+    double* const out[3] = {normals[0], normals[1], normals[2]};
+    simd::corner_normals(edges, kUnit, static_cast<std::size_t>(count), out);
+    for (int i = 0; i < m_count; ++i)
+        for (int c = 0; c < 3; ++c) m_sums[m_point[i]][c] += static_cast<std::int64_t>(normals[c][i]);
+    m_count = 0;
+}
+
+glm::dvec3 CornerSums::normal(int k) {
+    if (m_count > 0) carry_out();
+    const glm::dvec3 sum(m_sums[k][0], m_sums[k][1], m_sums[k][2]);
+    const double length = glm::length(sum);
+    return length > 0 ? sum / length : glm::dvec3(0.0);
+}
+
+namespace {
+
+/// A few neighbouring points and the terms that reach them.
+struct Chunk {
+    std::size_t begin, end;  ///< of the points, at most kMost
+    std::vector<std::size_t> near;
+
+    static constexpr std::size_t kMost = 64;
+};
+
+void each_chunk(std::span<const glm::dvec2> points, const std::vector<simd::PointTerm>& terms,
+                const ParallelFor& parallel_for, const std::function<void(const Chunk&)>& body) {
     for (std::size_t i = 0; i < points.size(); ++i)
         for (int c = 0; c < 2; ++c)
             if (!std::isfinite(points[i][c]))
                 throw Error("points[" + std::to_string(i) + "]", shortest(points[i][c]),
                             "allowed are finite numbers");
+    const auto chunks = static_cast<std::int64_t>((points.size() + Chunk::kMost - 1) / Chunk::kMost);
+    parallel_for(chunks, [&](std::int64_t i) {
+        const std::size_t begin = static_cast<std::size_t>(i) * Chunk::kMost;
+        Chunk chunk{begin, std::min(begin + Chunk::kMost, points.size()), {}};
+        glm::dvec2 least = points[begin], most = least;
+        for (std::size_t k = begin; k < chunk.end; ++k)
+            for (int c = 0; c < 2; ++c) {
+                least[c] = std::min(least[c], points[k][c]);
+                most[c] = std::max(most[c], points[k][c]);
+            }
+        for (std::size_t k = 0; k < terms.size(); ++k)
+            if (reaches(terms[k], 0, least.x, most.x) && reaches(terms[k], 1, least.y, most.y))
+                chunk.near.push_back(k);
+        body(chunk);
+    });
+}
+
+}  // namespace
+
+void displacement_jets(const std::vector<Deformation>& list, std::span<const glm::dvec2> points,
+                       const DeformOptions& options, DisplacementJet* out, const ParallelFor& parallel_for) {
     DisplacementSum sum(options);
     const std::vector<DeformationChange> changes = difference({}, list);
     sum.apply(changes);
     const std::vector<Term> all = terms_of(changes);
-    std::vector<simd::PointTerm> terms;
-    for (const Term& term : all) terms.push_back(point_term(term, sum));
-    constexpr std::size_t kChunk = 64;
-    parallel_for(static_cast<std::int64_t>((points.size() + kChunk - 1) / kChunk), [&](std::int64_t chunk) {
-        const std::size_t begin = static_cast<std::size_t>(chunk) * kChunk,
-                          end = std::min(begin + kChunk, points.size());
-        glm::dvec2 least = points[begin], most = least;
-        for (std::size_t i = begin; i < end; ++i)
-            for (int c = 0; c < 2; ++c) {
-                least[c] = std::min(least[c], points[i][c]);
-                most[c] = std::max(most[c], points[i][c]);
-            }
-        std::vector<std::size_t> near;
-        for (std::size_t k = 0; k < terms.size(); ++k)
-            if (reaches(terms[k], 0, least.x, most.x) && reaches(terms[k], 1, least.y, most.y))
-                near.push_back(k);
-        for (std::size_t i = begin; i < end; ++i) {
+    const std::vector<simd::PointTerm> terms = slope_terms(changes, sum);
+    each_chunk(points, terms, parallel_for, [&](const Chunk& chunk) {
+        for (std::size_t i = chunk.begin; i < chunk.end; ++i) {
             const glm::dvec2 p = points[i];
             out[i] = {};
-            for (const std::size_t k : near)
+            for (const std::size_t k : chunk.near)
                 if (reaches(terms[k], 0, p.x, p.x) && reaches(terms[k], 1, p.y, p.y))
                     add_displacement(*all[k].deformation, p, out[i]);
         }
@@ -510,10 +771,31 @@ void deformed_normals(const std::vector<Deformation>& list, std::span<const glm:
         if (size != 1 && size != points.size())
             throw Error(name, std::to_string(size) + " vectors",
                         "needed are one, or as many as points, " + std::to_string(points.size()));
-    std::vector<DisplacementJet> jets(points.size());
-    displacement_jets(list, points, options, jets.data(), parallel_for);
-    for (std::size_t i = 0; i < points.size(); ++i)
-        out[i] = normal_of(jets[i], base_u[base_u.size() == 1 ? 0 : i], base_v[base_v.size() == 1 ? 0 : i]);
+    DisplacementSum sum(options);
+    const std::vector<DeformationChange> changes = difference({}, list);
+    sum.apply(changes);
+    const std::vector<simd::PointTerm> terms = slope_terms(changes, sum);
+    each_chunk(points, terms, parallel_for, [&](const Chunk& chunk) {
+        std::vector<const simd::PointTerm*> near;
+        for (const std::size_t k : chunk.near) near.push_back(&terms[k]);
+        // Points that fill the last vector have no parameters.
+        double u[Chunk::kMost], v[Chunk::kMost], by[6][SurfaceSlopes::kMost];
+        std::fill_n(u, Chunk::kMost, std::numeric_limits<double>::quiet_NaN());
+        std::fill_n(v, Chunk::kMost, std::numeric_limits<double>::quiet_NaN());
+        for (std::size_t i = chunk.begin; i < chunk.end; ++i) {
+            u[i - chunk.begin] = points[i].x;
+            v[i - chunk.begin] = points[i].y;
+        }
+        point_slopes(near, u, v, Chunk::kMost, by);
+        for (std::size_t i = chunk.begin; i < chunk.end; ++i) {
+            DisplacementJet jet;
+            for (int c = 0; c < 3; ++c) {
+                jet.by_u[c] = by[c][i - chunk.begin];
+                jet.by_v[c] = by[3 + c][i - chunk.begin];
+            }
+            out[i] = normal_of(jet, base_u[base_u.size() == 1 ? 0 : i], base_v[base_v.size() == 1 ? 0 : i]);
+        }
+    });
 }
 
 }  // namespace anamorph

@@ -4,7 +4,7 @@
 // Displacements are added in fixed point: whole multiples of `resolution` in 64 bits. Whole numbers add
 // without rounding, so the surface has the same bits for any order of the list, any history of edits that led
 // to it, any number of threads and any cut of a surface into pieces; what was added and taken away again
-// leaves no trace. On another instruction set a contribution may differ in its last place.
+// leaves no trace. All instruction sets give the same bits.
 //
 // Errors. A Gaussian is cut off where it is certain to be below `cutoff`: a point whose distance from the
 // centre, along u or along v, is more than sqrt(-log(cutoff)) extents is not moved. A contribution is off by
@@ -15,6 +15,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 #include <span>
@@ -24,6 +25,10 @@
 #include "anamorph/error.h"
 
 namespace anamorph {
+
+namespace simd {
+struct PointTerm;
+}
 
 struct DeformOptions {
     double cutoff = 1e-7;         ///< of V, from 0 (nothing is cut off) to 0.5
@@ -65,6 +70,58 @@ struct GridPart {
     bool operator==(const GridPart&) const = default;
 };
 
+/// The derivatives of the displacement at some points of a surface.
+struct SurfaceSlopes {
+    static constexpr int kMost = 256;  ///< points at once; what is computed with them has as much room
+
+    int count;
+    std::int64_t first;          ///< the points are first, first + 1, ...
+    const std::int32_t* points;  ///< or, unless null, these
+    double (*by)[kMost];         ///< by[c][k]: component c at the k-th of them by u, by[3 + c][k] by v
+
+    std::int64_t point(int k) const { return points ? points[k] : first + k; }
+    glm::dvec3 by_u(int k) const { return {by[0][k], by[1][k], by[2][k]}; }
+    glm::dvec3 by_v(int k) const { return {by[3][k], by[4][k], by[5][k]}; }
+};
+/// Called with points that belong together, from several threads, with each point once.
+using TakeSlopes = std::function<void(const SurfaceSlopes&)>;
+
+/// normals[c][k], of any length, become the unit normals of the displaced surface at the points of `slopes`:
+/// space moves with the Jacobian I + D_u grad(u)^T + D_v grad(v)^T. 0 where there is no direction.
+void turn_normals(const SurfaceSlopes& slopes, glm::dvec3 gradient_u, glm::dvec3 gradient_v,
+                  double (&normals)[3][SurfaceSlopes::kMost]);
+
+/// Sums of what the corners of surface cells have for a normal at some points: each its own normal times its
+/// angle (Thuermer and Wuethrich 1998). Edges of the cells are the undeformed surface's tangents, and become
+/// e + D_u du + D_v dv. Sums are in fixed point: the order of the corners does not matter, of which there are
+/// up to 2^16 at a point.
+class CornerSums {
+  public:
+    explicit CornerSums(const SurfaceSlopes& slopes) : m_slopes(slopes) {}
+
+    /// An edge to a neighbour, undeformed, and its change of parameters.
+    struct Edge {
+        glm::dvec3 points;
+        glm::dvec2 parameters;
+    };
+    /// A corner at the k-th point, between the edges to the next point of the cell and to the one before.
+    void add(int k, const Edge& next, const Edge& previous, bool goes_inwards);
+    /// The unit normal at the k-th point, when all corners are added; 0 where there is none.
+    glm::dvec3 normal(int k);
+
+  private:
+    void carry_out();
+
+    static constexpr int kMost = 128;
+
+    const SurfaceSlopes& m_slopes;
+    std::int64_t m_sums[SurfaceSlopes::kMost][3] = {};
+    int m_count = 0;
+    int m_point[kMost];
+    double m_by[6][kMost], m_next[3][kMost], m_previous[3][kMost], m_next_by[2][kMost],
+        m_previous_by[2][kMost], m_turns[kMost];
+};
+
 /// A surface over a grid of u (of its columns) and v (of its rows), point (i, j) at j * columns + i. F of a
 /// Gaussian is a product of a factor of the column and one of the row.
 class DeformedGrid {
@@ -88,6 +145,13 @@ class DeformedGrid {
                T* displacement = nullptr);
 
     double error_bound() const { return m_sum.error_bound(); }
+
+    /// Gives `take` the derivatives of the displacement by a list at the points that changes reach, and at a
+    /// few around them; at all points if `changes` is null. They are added in double in an order of its own:
+    /// the same bits for any order of the list, and whatever other points there are. A Gaussian that is cut
+    /// off is missing up to 2 reach cutoff |V| / a of a derivative.
+    void slopes(const std::vector<Deformation>& list, const std::vector<DeformationChange>* changes,
+                const TakeSlopes& take, const ParallelFor& parallel_for = serial_for) const;
 
   private:
     template <class T>
@@ -126,6 +190,10 @@ class DeformedPoints {
 
     double error_bound() const { return m_sum.error_bound(); }
 
+    /// As in DeformedGrid.
+    void slopes(const std::vector<Deformation>& list, const std::vector<DeformationChange>* changes,
+                const TakeSlopes& take, const ParallelFor& parallel_for = serial_for) const;
+
   private:
     struct Cell {
         std::size_t begin, end;  ///< slots, multiples of simd::kPointBlock
@@ -133,6 +201,12 @@ class DeformedPoints {
     };
     template <class T>
     std::int64_t draw(bool all, const T* base, T* out, const ParallelFor& parallel_for, T* displacement);
+    /// Calls body(cell, near) for cells with points, unless `all` only for those that a term of `visiting`
+    /// reaches; near: the terms of `terms` that reach it.
+    void each_cell(
+        const std::vector<simd::PointTerm>& visiting, bool all, const std::vector<simd::PointTerm>& terms,
+        const ParallelFor& parallel_for,
+        const std::function<void(const Cell&, const std::vector<const simd::PointTerm*>&)>& body) const;
 
     DisplacementSum m_sum;
     std::vector<Cell> m_cells;

@@ -4,6 +4,7 @@
 #include "anamorph/simd/deform.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstring>
 #include <type_traits>
 #include <vector>
@@ -11,27 +12,30 @@
 #include "hwy/foreach_target.h"  // must come before highway.h
 #include "hwy/highway.h"
 
-// After foreach_target.h: compiled once for every instruction set.
-#include "hwy/contrib/math/math-inl.h"
-
 HWY_BEFORE_NAMESPACE();
 namespace anamorph::simd {
 namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
+#include "anamorph/number/lanes.h"
+// Templates over the number, compiled once for every instruction set.
+#include "anamorph/deform/deformation_formula.h"
+
 using D = hn::CappedTag<double, kPointBlock>;
 using DI = hn::RebindToSigned<D>;
 using V = hn::Vec<D>;
 using VI = hn::Vec<DI>;
+using L = Lanes<D>;
 constexpr int kLanes = static_cast<int>(hn::MaxLanes(D()));
 
 /// A number in [-2^51, 2^51] plus this has the rounded number in its last bits.
 constexpr double kRounder = 0x1.8p52;
 constexpr std::int64_t kRounderBits = 0x4338000000000000;
 
-/// sum + round(a b), and kRounderBits too many.
+/// sum + round(a b), and kRounderBits too many. The product is rounded on its own: all instruction sets give
+/// the same bits.
 HWY_INLINE VI AddRounded(VI sum, V a, V b) {
-    return hn::Add(sum, hn::BitCast(DI(), hn::MulAdd(a, b, hn::Set(D(), kRounder))));
+    return hn::Add(sum, hn::BitCast(DI(), hn::Add(hn::Mul(a, b), hn::Set(D(), kRounder))));
 }
 /// Takes away what `times` calls of AddRounded added too many, modulo 2^64.
 HWY_INLINE VI WithoutRounders(VI sum, std::size_t times) {
@@ -39,45 +43,91 @@ HWY_INLINE VI WithoutRounders(VI sum, std::size_t times) {
     return hn::Sub(sum, hn::Set(DI(), static_cast<std::int64_t>(bits)));
 }
 
-HWY_INLINE V GaussianOf(V squared) {
-    // Beyond 800 the value is 0 in double; infinities stay out of the exponential.
-    return hn::Exp(D(), hn::Neg(hn::Min(squared, hn::Set(D(), 800.0))));
+/// A number and its derivative: as much of a number as kernels ask for.
+struct Slope {
+    L value, by;
+
+    HWY_INLINE Slope(double k) : value(k), by(0.0) {}  // NOLINT: a number has a slope
+    HWY_INLINE Slope(const L& v, const L& d) : value(v), by(d) {}
+
+    friend HWY_INLINE Slope operator-(const Slope& a) { return {-a.value, -a.by}; }
+    friend HWY_INLINE Slope operator+(const Slope& a, const Slope& b) {
+        return {a.value + b.value, a.by + b.by};
+    }
+    friend HWY_INLINE Slope operator-(const Slope& a, const Slope& b) {
+        return {a.value - b.value, a.by - b.by};
+    }
+    friend HWY_INLINE Slope operator*(const Slope& a, const Slope& b) {
+        return {a.value * b.value, a.value * b.by + a.by * b.value};
+    }
+    friend HWY_INLINE Slope square(const Slope& a) { return {square(a.value), L(2.0) * a.value * a.by}; }
+    friend HWY_INLINE Slope sqrt(const Slope& a) {
+        const L r = sqrt(a.value);
+        return {r, a.by * (L(0.5) / r)};
+    }
+    friend HWY_INLINE Slope exp(const Slope& a) {
+        const L e = exp(a.value);
+        return {e, e * a.by};
+    }
+    friend HWY_INLINE L::M is_zero(const Slope& a) { return is_zero(a.value); }
+    friend HWY_INLINE L::M is_negative(const Slope& a) { return is_negative(a.value); }
+    friend HWY_INLINE Slope select(L::M where, const Slope& a, const Slope& b) {
+        return {select(where, a.value, b.value), select(where, a.by, b.by)};
+    }
+};
+
+HWY_INLINE L ZeroUnless(L::M inside, const L& a) {
+    return L(hn::IfThenElseZero(inside, a.v));
 }
-/// (1 - r)^4 (4 r + 1), 0 from r = 1 on.
-HWY_INLINE V WendlandOf(V squared) {
-    const D d;
-    const V r = hn::Sqrt(squared), rest = hn::Max(hn::Sub(hn::Set(d, 1.0), r), hn::Zero(d));
-    const V rest2 = hn::Mul(rest, rest);
-    return hn::Mul(hn::Mul(rest2, rest2), hn::MulAdd(hn::Set(d, 4.0), r, hn::Set(d, 1.0)));
+HWY_INLINE Slope ZeroUnless(L::M inside, const Slope& a) {
+    return {ZeroUnless(inside, a.value), ZeroUnless(inside, a.by)};
 }
 
-/// out[i] = f(t[i]), t = (x - center) inverse_extent, with full vectors only.
-template <class F>
-HWY_INLINE void EachDistance(const double* x, int count, double center, double inverse_extent, double* out,
-                             const F& f) {
-    const D d;
-    const V c = hn::Set(d, center), a = hn::Set(d, inverse_extent);
+HWY_INLINE L DistanceOf(const AxisKernel& kernel, const L& x) {
+    return (x - L(kernel.center)) * L(kernel.inverse_extent);
+}
+/// t, as a number of which the derivative by x is asked, or not.
+template <class T>
+HWY_INLINE T NumberOf(const AxisKernel& kernel, const L& t) {
+    if constexpr (std::is_same_v<T, L>) {
+        return t;
+    } else {
+        // As far out as this the factors are 0 in double, and their derivatives are finite.
+        const double most = kernel.gaussian ? 30.0 : 2.0;
+        return Slope(max(min(t, L(most)), L(-most)), L(kernel.inverse_extent));
+    }
+}
+/// The factor of t in one direction, not cut off. T: L, or Slope for its derivative by x too.
+template <class T>
+HWY_INLINE T FactorOf(const AxisKernel& kernel, const L& t) {
+    const T squared = square(NumberOf<T>(kernel, t));
+    return kernel.gaussian ? gaussian_of(squared) : squared;
+}
+template <class T>
+HWY_INLINE T CutFactorOf(const AxisKernel& kernel, const L& t) {
+    const T factor = FactorOf<T>(kernel, t);
+    return kernel.gaussian ? ZeroUnless(hn::Le(abs(t).v, hn::Set(D(), kernel.reach)), factor) : factor;
+}
+
+void AxisFactors(const AxisKernel& kernel, const double* x, int count, double* out, double* slope) {
+    const auto at = [&](const double* from, double* to, double* slope_to) HWY_ATTR {
+        const L t = DistanceOf(kernel, L::load(from));
+        if (!slope_to) {
+            CutFactorOf<L>(kernel, t).store(to);
+            return;
+        }
+        const Slope factor = CutFactorOf<Slope>(kernel, t);
+        factor.value.store(to);
+        factor.by.store(slope_to);
+    };
     int i = 0;
-    for (; i + kLanes <= count; i += kLanes)
-        hn::StoreU(f(hn::Mul(hn::Sub(hn::LoadU(d, x + i), c), a)), d, out + i);
+    for (; i + kLanes <= count; i += kLanes) at(x + i, out + i, slope ? slope + i : nullptr);
     if (i >= count) return;
-    HWY_ALIGN double last[kLanes] = {};
+    HWY_ALIGN double last[kLanes] = {}, last_slope[kLanes];
     std::copy(x + i, x + count, last);
-    hn::Store(f(hn::Mul(hn::Sub(hn::Load(d, last), c), a)), d, last);
+    at(last, last, slope ? last_slope : nullptr);
     std::copy(last, last + (count - i), out + i);
-}
-
-void GaussianFactors(const double* x, int count, double center, double inverse_extent, double reach,
-                     double* out) {
-    EachDistance(x, count, center, inverse_extent, out, [reach](V t) HWY_ATTR {
-        const auto inside = hn::Le(hn::Abs(t), hn::Set(D(), reach));
-        return hn::IfThenElseZero(inside, GaussianOf(hn::Mul(t, t)));
-    });
-}
-
-void SquaredDistances(const double* x, int count, double center, double inverse_extent, double* out) {
-    EachDistance(x, count, center, inverse_extent, out,
-                 [](V t) HWY_ATTR { return hn::Min(hn::Mul(t, t), hn::Set(D(), 2.0)); });
+    if (slope) std::copy(last_slope, last_slope + (count - i), slope + i);
 }
 
 /// A term on a pair of rows.
@@ -124,7 +174,8 @@ void AddToBlock(const PairTerm* const* terms, std::size_t count, int column, std
             for (int v = 0; v < kVectors; ++v) {
                 const V across = hn::LoadU(d, from + v * kLanes);
                 for (int r = 0; r < kGridRows; ++r) {
-                    const V f = term.gaussian ? across : WendlandOf(hn::Add(across, hn::Set(d, term.row[r])));
+                    const V f =
+                        term.gaussian ? across : wendland_of(L(hn::Add(across, hn::Set(d, term.row[r])))).v;
                     for (int c = 0; c < 3; ++c)
                         sum[r][c][v] = AddRounded(sum[r][c][v], hn::Set(d, term.weight[r][c]), f);
                 }
@@ -218,30 +269,137 @@ void DeformBandDouble(const GridBand<double>& band) {
     DeformBand(band);
 }
 
+/// A deformation at the points of a vector.
+struct AtPoints {
+    AxisKernel across, down;
+    L x, y;
+    L::M inside;
+
+    HWY_INLINE AtPoints(const PointTerm& term, const L& u, const L& v)
+        : across{term.center[0], term.inverse_extent[0], term.reach, term.gaussian},
+          down{term.center[1], term.inverse_extent[1], term.reach, term.gaussian},
+          x(DistanceOf(across, u)),
+          y(DistanceOf(down, v)),
+          inside(hn::And(hn::Le(abs(x).v, hn::Set(D(), term.reach)),
+                         hn::Le(abs(y).v, hn::Set(D(), term.reach)))) {}
+};
+
 void DeformPoints(const PointTerm* const* terms, std::size_t term_count, const double* u, const double* v,
                   std::size_t count, std::int64_t* const* sums) {
     const D d;
     const DI di;
     for (std::size_t i = 0; i < count; i += static_cast<std::size_t>(kLanes)) {
-        const V pu = hn::LoadU(d, u + i), pv = hn::LoadU(d, v + i);
+        const L pu = L::load(u + i), pv = L::load(v + i);
         VI sum[3];
         for (int c = 0; c < 3; ++c) sum[c] = hn::LoadU(di, sums[c] + i);
+        std::size_t added = 0;
         for (std::size_t k = 0; k < term_count; ++k) {
             const PointTerm& term = *terms[k];
-            const V x = hn::Mul(hn::Sub(pu, hn::Set(d, term.center[0])), hn::Set(d, term.inverse_extent[0]));
-            const V y = hn::Mul(hn::Sub(pv, hn::Set(d, term.center[1])), hn::Set(d, term.inverse_extent[1]));
-            const V reach = hn::Set(d, term.reach);
-            const auto inside = hn::And(hn::Le(hn::Abs(x), reach), hn::Le(hn::Abs(y), reach));
-            if (hn::AllFalse(d, inside)) continue;
+            const AtPoints at(term, pu, pv);
+            if (hn::AllFalse(d, at.inside)) continue;
             // Factors and products as on grids, so that a point gets the same bits there and here.
-            const V across2 = hn::Mul(x, x), down2 = hn::Mul(y, y);
-            const V across = term.gaussian ? GaussianOf(across2) : WendlandOf(hn::Add(across2, down2));
-            const V f = hn::IfThenElseZero(inside, across);
-            const V down = hn::IfThenElseZero(inside, term.gaussian ? GaussianOf(down2) : hn::Set(d, 1.0));
-            for (int c = 0; c < 3; ++c)
-                sum[c] = WithoutRounders(AddRounded(sum[c], hn::Mul(hn::Set(d, term.units[c]), down), f), 1);
+            const L across = FactorOf<L>(at.across, at.x), row = FactorOf<L>(at.down, at.y);
+            const L f = ZeroUnless(at.inside, term.gaussian ? across : wendland_of(across + row));
+            const L down = ZeroUnless(at.inside, term.gaussian ? row : L(1.0));
+            for (int c = 0; c < 3; ++c) sum[c] = AddRounded(sum[c], (L(term.units[c]) * down).v, f.v);
+            ++added;
         }
-        for (int c = 0; c < 3; ++c) hn::StoreU(sum[c], di, sums[c] + i);
+        for (int c = 0; c < 3; ++c) hn::StoreU(WithoutRounders(sum[c], added), di, sums[c] + i);
+    }
+}
+
+/// Adds V dF/du and V dF/dv of a term with these factors.
+HWY_INLINE void AddSlopes(const Slope& across, const Slope& down, bool gaussian, const double (&vector)[3],
+                          L (&sum)[6]) {
+    L by_u, by_v;
+    if (gaussian) {
+        by_u = across.by * down.value;
+        by_v = across.value * down.by;
+    } else {
+        const L f = wendland_of(Slope(across.value + down.value, L(1.0))).by;
+        by_u = f * across.by;
+        by_v = f * down.by;
+    }
+    for (int c = 0; c < 3; ++c) {
+        sum[c] = sum[c] + L(vector[c]) * by_u;
+        sum[c + 3] = sum[c + 3] + L(vector[c]) * by_v;
+    }
+}
+
+void AddRowSlopes(const RowTerm* terms, std::size_t term_count, std::size_t count, double* const* sums) {
+    for (std::size_t i = 0; i < count; i += static_cast<std::size_t>(kLanes)) {
+        L sum[6];
+        for (int c = 0; c < 6; ++c) sum[c] = L::load(sums[c] + i);
+        for (std::size_t k = 0; k < term_count; ++k) {
+            const RowTerm& term = terms[k];
+            AddSlopes(Slope(L::load(term.column + i), L::load(term.column_slope + i)),
+                      Slope(L(term.row), L(term.row_slope)), term.gaussian, term.vector, sum);
+        }
+        for (int c = 0; c < 6; ++c) sum[c].store(sums[c] + i);
+    }
+}
+
+void AddPointSlopes(const PointTerm* const* terms, std::size_t term_count, const double* u, const double* v,
+                    std::size_t count, double* const* sums) {
+    for (std::size_t i = 0; i < count; i += static_cast<std::size_t>(kLanes)) {
+        const L pu = L::load(u + i), pv = L::load(v + i);
+        L sum[6];
+        for (int c = 0; c < 6; ++c) sum[c] = L::load(sums[c] + i);
+        for (std::size_t k = 0; k < term_count; ++k) {
+            const AtPoints at(*terms[k], pu, pv);
+            if (hn::AllFalse(D(), at.inside)) continue;
+            Slope across = FactorOf<Slope>(at.across, at.x);
+            if (terms[k]->gaussian) across = ZeroUnless(at.inside, across);
+            AddSlopes(across, FactorOf<Slope>(at.down, at.y), terms[k]->gaussian, terms[k]->units, sum);
+        }
+        for (int c = 0; c < 6; ++c) sum[c].store(sums[c] + i);
+    }
+}
+
+/// Of length 1; 0 for what has no length, or none that is finite.
+HWY_INLINE Triple<L> UnitOf(const Triple<L>& a) {
+    const L length = sqrt(dot_product(a, a)), inverse = L(1.0) / length;
+    const auto good = hn::And(hn::Gt(length.v, hn::Zero(D())), hn::Lt(length.v, hn::Set(D(), HUGE_VAL)));
+    return {ZeroUnless(good, a.x * inverse), ZeroUnless(good, a.y * inverse),
+            ZeroUnless(good, a.z * inverse)};
+}
+
+void TurnNormals(const double* const* slopes, const double (&gradients)[2][3], std::size_t count,
+                 double* const* normals) {
+    const auto gradient = [&](int i) HWY_ATTR {
+        return Triple<L>{gradients[i][0], gradients[i][1], gradients[i][2]};
+    };
+    const Triple<L> g = gradient(0), h = gradient(1), gh = cross_product(g, h);
+    for (std::size_t i = 0; i < count; i += static_cast<std::size_t>(kLanes)) {
+        const auto loaded = [i](const double* const* from) HWY_ATTR {
+            return Triple<L>{L::load(from[0] + i), L::load(from[1] + i), L::load(from[2] + i)};
+        };
+        const Triple<L> n = UnitOf(loaded(normals));
+        const Triple<L> turned = UnitOf(turned_normal(n, loaded(slopes), loaded(slopes + 3), g, h, gh));
+        turned.x.store(normals[0] + i);
+        turned.y.store(normals[1] + i);
+        turned.z.store(normals[2] + i);
+    }
+}
+
+void CornerNormals(const CornerEdges& corners, double unit, std::size_t count, double* const* out) {
+    const L inverse(1 / unit);
+    for (std::size_t i = 0; i < count; i += static_cast<std::size_t>(kLanes)) {
+        const auto edge = [&](const double* const(&undeformed)[3], const double* const(&by)[2]) HWY_ATTR {
+            const L du = L::load(by[0] + i), dv = L::load(by[1] + i);
+            const auto moved = [&](int c) HWY_ATTR {
+                return L::load(undeformed[c] + i) + du * L::load(corners.by[c] + i) +
+                       dv * L::load(corners.by[3 + c] + i);
+            };
+            return UnitOf({moved(0), moved(1), moved(2)});
+        };
+        L angle;
+        const Triple<L> normal = corner_normal(edge(corners.next, corners.next_by),
+                                               edge(corners.previous, corners.previous_by), angle);
+        const L weight = (angle - L::load(corners.turns + i)) * inverse;
+        L(hn::Round((normal.x * weight).v)).store(out[0] + i);
+        L(hn::Round((normal.y * weight).v)).store(out[1] + i);
+        L(hn::Round((normal.z * weight).v)).store(out[2] + i);
     }
 }
 
@@ -333,8 +491,11 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace anamorph::simd {
 
-HWY_EXPORT(GaussianFactors);
-HWY_EXPORT(SquaredDistances);
+HWY_EXPORT(AxisFactors);
+HWY_EXPORT(AddRowSlopes);
+HWY_EXPORT(AddPointSlopes);
+HWY_EXPORT(TurnNormals);
+HWY_EXPORT(CornerNormals);
 HWY_EXPORT(DeformBandFloat);
 HWY_EXPORT(DeformBandDouble);
 HWY_EXPORT(DeformPoints);
@@ -343,12 +504,22 @@ HWY_EXPORT(BlendDouble);
 HWY_EXPORT(BlendMaskedFloat);
 HWY_EXPORT(BlendMaskedDouble);
 
-void gaussian_factors(const double* x, int count, double center, double inverse_extent, double reach,
-                      double* out) {
-    HWY_DYNAMIC_DISPATCH(GaussianFactors)(x, count, center, inverse_extent, reach, out);
+void axis_factors(const AxisKernel& kernel, const double* x, int count, double* out, double* slope) {
+    HWY_DYNAMIC_DISPATCH(AxisFactors)(kernel, x, count, out, slope);
 }
-void squared_distances(const double* x, int count, double center, double inverse_extent, double* out) {
-    HWY_DYNAMIC_DISPATCH(SquaredDistances)(x, count, center, inverse_extent, out);
+void add_row_slopes(const RowTerm* terms, std::size_t term_count, std::size_t count, double* const sums[6]) {
+    HWY_DYNAMIC_DISPATCH(AddRowSlopes)(terms, term_count, count, sums);
+}
+void add_point_slopes(const PointTerm* const* terms, std::size_t term_count, const double* u, const double* v,
+                      std::size_t count, double* const sums[6]) {
+    HWY_DYNAMIC_DISPATCH(AddPointSlopes)(terms, term_count, u, v, count, sums);
+}
+void turn_normals(const double* const slopes[6], const double (&gradients)[2][3], std::size_t count,
+                  double* const normals[3]) {
+    HWY_DYNAMIC_DISPATCH(TurnNormals)(slopes, gradients, count, normals);
+}
+void corner_normals(const CornerEdges& corners, double unit, std::size_t count, double* const out[3]) {
+    HWY_DYNAMIC_DISPATCH(CornerNormals)(corners, unit, count, out);
 }
 void deform_band(const GridBand<float>& band) {
     HWY_DYNAMIC_DISPATCH(DeformBandFloat)(band);

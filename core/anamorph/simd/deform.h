@@ -23,11 +23,14 @@ inline constexpr int kGridBlock = 32;  ///< columns that are culled together; ta
 inline constexpr int kGridRows = 2;    ///< rows drawn together; rows of sums are padded to it
 inline constexpr int kPointBlock = 8;  ///< points handled together; cells of points are padded to it
 
-/// out[i] = exp(-t^2), t = (x[i] - center) inverse_extent, and 0 where |t| > reach. count: any.
-void gaussian_factors(const double* x, int count, double center, double inverse_extent, double reach,
-                      double* out);
-/// out[i] = t^2, at most 2.
-void squared_distances(const double* x, int count, double center, double inverse_extent, double* out);
+/// One direction of a kernel: what it makes of t = (x - center) inverse_extent. A Gaussian's factor is
+/// exp(-t^2), and 0 where |t| > reach; otherwise it is t^2, beyond 1 perhaps a smaller number above 1.
+struct AxisKernel {
+    double center, inverse_extent, reach;
+    bool gaussian;
+};
+/// out[i] = the factor at x[i], slope[i] = its derivative by x, unless slope is null. count: any.
+void axis_factors(const AxisKernel& kernel, const double* x, int count, double* out, double* slope);
 
 /// A deformation over a grid. Gaussian: F = column[i] row[j]; otherwise F is Wendland's function of
 /// r^2 = column[i] + row[j].
@@ -73,6 +76,37 @@ struct PointTerm {
 /// Adds terms to sums[c][i] of points (u[i], v[i]). count: a multiple of kPointBlock; NaN points get nothing.
 void deform_points(const PointTerm* const* terms, std::size_t term_count, const double* u, const double* v,
                    std::size_t count, std::int64_t* const sums[3]);
+
+/// A deformation over a stretch of one row of a grid, with the derivatives of its factors (axis_factors).
+struct RowTerm {
+    const double *column, *column_slope;  ///< of the stretch's points
+    double row, row_slope;
+    double vector[3];
+    bool gaussian;
+};
+/// Adds V dF/du to sums[0], sums[1] and sums[2], V dF/dv to sums[3], sums[4] and sums[5], term after term;
+/// all instruction sets give the same bits. count: a multiple of kPointBlock.
+void add_row_slopes(const RowTerm* terms, std::size_t term_count, std::size_t count, double* const sums[6]);
+/// The same at single points, with V for units, and the same bits.
+void add_point_slopes(const PointTerm* const* terms, std::size_t term_count, const double* u, const double* v,
+                      std::size_t count, double* const sums[6]);
+
+/// Unit normals: normals[c][i], of any length, become those of the surface that is displaced with the
+/// derivatives slopes[0..2][i] by u and slopes[3..5][i] by v (turned_normal). gradients: of u and of v. What
+/// has no direction becomes 0. count: a multiple of kPointBlock.
+void turn_normals(const double* const slopes[6], const double (&gradients)[2][3], std::size_t count,
+                  double* const normals[3]);
+
+/// Corners of cells of a surface, displaced: an edge e becomes e + D_u du + D_v dv.
+struct CornerEdges {
+    const double* by[6];                        ///< D_u and D_v at the corner
+    const double *next[3], *previous[3];        ///< the edges to the neighbours
+    const double *next_by[2], *previous_by[2];  ///< their changes of u and v
+    const double* turns;  ///< 0, or 2 pi for corners that go inwards: it is taken from the angle
+};
+/// out[c][i] = the normal of a corner times its angle (corner_normal), in whole multiples of `unit`; 0 where
+/// an edge has no direction. count: a multiple of kPointBlock.
+void corner_normals(const CornerEdges& corners, double unit, std::size_t count, double* const out[3]);
 
 /// out[i] = sum_k weights[k] shapes[k][i], added in double in the order of the shapes and rounded once. Errs
 /// by half a unit in the last place of the result, plus (shape_count + 1) 2^-53 of the sum of the magnitudes.
