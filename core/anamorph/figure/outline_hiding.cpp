@@ -53,7 +53,7 @@ struct Path {
             if (perspective) cone.w = beyond;
             cone.w.k += 1;
             cone.noise = kRounding * other.cone_size * reach;
-            beyond_noise = cone.noise;
+            beyond_noise = kRounding * other.beyond_size * reach;
         }
     }
 };
