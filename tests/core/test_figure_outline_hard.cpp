@@ -386,5 +386,14 @@ TEST(FigureOutlineHard, LinesAreHiddenAsDepthTestsSay) {
     EXPECT_THROW(hide_lines(bad, {}, View{}), Error);
 }
 
+// What lies beyond a limb's plane is told by the rounding of depths, not by that of the small body's image.
+TEST(FigureOutlineHard, SmallBodiesHideWhatIsALittleBehindThem) {
+    const std::vector<Ellipsoid> bodies{{{1000, 0, 0}, glm::dvec3(1e-4)},
+                                        {{1000, 0, -2e-7}, glm::dvec3(1.000001e-4)}};
+    const Outlines found = outlines(bodies, View{});
+    EXPECT_TRUE(found.bodies[0].visible.empty());
+    EXPECT_TRUE(found.bodies[1].hidden.empty());
+}
+
 }  // namespace
 }  // namespace anamorph
