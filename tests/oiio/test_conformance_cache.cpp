@@ -292,9 +292,10 @@ TEST_F(CacheConformance, conformance_29_a_wide_view_reads_the_level_it_needs) {
     std::vector<float> pixels, plain;
     const OIIO::ROI all(0, 64, 0, 64);
     ASSERT_TRUE(read_through_cache("large.tx.pano?size=64&fov=100", all, pixels)) << m_cache->geterror();
-    // 512 tiles stand on level 0, 341 / 2 on the others.
+    // 512 tiles stand on level 0, 171 on the others. The picture is minified 12 times in the middle and 5
+    // times in the corners, so it needs parts of level 2 (32 tiles) and level 3 (8 tiles).
     std::printf("read %lld of 683 tiles\n", static_cast<long long>(tiles_read("large.tx")));
-    EXPECT_LE(tiles_read("large.tx"), 32);
+    EXPECT_LE(tiles_read("large.tx"), 40);
     ASSERT_TRUE(read_through_cache("large.exr.pano?size=64&fov=100", all, plain)) << m_cache->geterror();
     EXPECT_LT(largest_difference(pixels, plain), 0.05);
 }

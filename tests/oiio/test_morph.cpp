@@ -216,7 +216,7 @@ TEST_F(Morph, SeveralKeyShapes) {
         {"1,0", "shape_weights"},
         {"0.5,0.5,0.5", "shape_weights"},
         {"1,0,0&t=0.5", "t=0.5: must not be given together with shape_weights"},
-        {"1,0,x", "shape_weights=1,0,x: must be finite numbers"},
+        {"1,0,x", "shape_weights=1,0,x: must be numbers from -1e+06 to 1e+06, separated by commas"},
         {"1,0,0&d=none.exr", "none.exr"},
         {"1,0,0&e=c.exr", "must be given together with d"},
     };
