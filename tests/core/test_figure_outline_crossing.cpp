@@ -181,6 +181,50 @@ TEST(FigureOutlineCrossing, ThinDiscsAreNotDashed) {
     EXPECT_LE(visible_parts(coarse.crossings), 4u);
 }
 
+// Flakes of any size and place: a loop is seen in one part or two.
+TEST(FigureOutlineCrossing, FlakesAreNotDashed) {
+    std::size_t curves = 0, dashed = 0;
+    for (std::uint64_t seed = 1; seed <= 300; ++seed) {
+        test::SceneMaker random(seed);
+        const auto flake = [&](double size) {
+            return Ellipsoid{random.point(0.3 * size),
+                             {size, size * random.between(0.3, 1), size * random.between(2e-5, 4e-4)},
+                             random.rotation()};
+        };
+        const std::vector<Ellipsoid> bodies{flake(6), flake(20)};
+        const Outlines found = outlines(bodies, random.view(seed % 2 == 0), with_crossings(0.03));
+        for (const CrossingCurve& curve : found.crossings) {
+            ++curves;
+            dashed += curve.visible.size() > 2;
+        }
+    }
+    EXPECT_GT(curves, 200u);
+    EXPECT_EQ(dashed, 0u);
+}
+
+// Bodies a hundred-thousandth of their thickness apart meet at angles as small; their curve holds tol still.
+TEST(FigureOutlineCrossing, HoldsItsToleranceWhereBodiesNearlyCoincide) {
+    constexpr double kTol = 0.05;
+    int checked = 0;
+    for (std::uint64_t seed = 1; seed <= 12; ++seed) {
+        SCOPED_TRACE(::testing::Message() << "seed " << seed);
+        test::SceneMaker random(seed);
+        const Ellipsoid disc{random.point(20), {130, 64, 1.06}, random.rotation()};
+        Ellipsoid moved = disc;
+        moved.center += random.direction() * 3e-5;
+        const std::vector<Ellipsoid> bodies{disc, moved};
+        const View view = random.view(seed % 2 == 0);
+        const Outlines found = outlines(bodies, view, with_crossings(kTol));
+        double worst = 0;
+        for (const glm::dvec3& p : points_on_both(disc, moved, random)) {
+            ++checked;
+            worst = std::max(worst, distance_to(found.crossings, 0, 1, view, p));
+        }
+        EXPECT_LE(worst, kTol);
+    }
+    EXPECT_GT(checked, 50);
+}
+
 // A shell nearer to a sphere than chords may be off hides all of what crosses the sphere, or nothing.
 TEST(FigureOutlineCrossing, CloseShellsDoNotDash) {
     for (const double shell : {-0.02, 0.02}) {

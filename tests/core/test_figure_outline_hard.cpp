@@ -386,5 +386,28 @@ TEST(FigureOutlineHard, LinesAreHiddenAsDepthTestsSay) {
     EXPECT_THROW(hide_lines(bad, {}, View{}), Error);
 }
 
+// Spheroids that share an axis, seen along another: the limb of one touches the other's rim at the axis'
+// ends, and goes from before it to behind it there.
+TEST(FigureOutlineHard, LimbsPassBehindWhereTheyTouchTheRim) {
+    const glm::dvec3 axes(74, 74, 0.157);
+    for (const double angle : {0.3, 1.0, 2.0, 2.9}) {
+        const std::vector<Ellipsoid> bodies{
+            {{0, 0, 0}, axes}, {{0, 0, 0}, axes, glm::dmat3(glm::rotate(glm::dmat4(1), angle, {1, 0, 0}))}};
+        const Outlines found = outlines(bodies, View{});
+        double hidden = 0;
+        for (const Arc& arc : found.bodies[1].hidden) hidden += arc.length();
+        EXPECT_NEAR(hidden, std::numbers::pi, 1e-6) << angle;
+    }
+}
+
+// What lies beyond a limb's plane is told by the rounding of depths, not by that of the small body's image.
+TEST(FigureOutlineHard, SmallBodiesHideWhatIsALittleBehindThem) {
+    const std::vector<Ellipsoid> bodies{{{1000, 0, 0}, glm::dvec3(1e-4)},
+                                        {{1000, 0, -2e-7}, glm::dvec3(1.000001e-4)}};
+    const Outlines found = outlines(bodies, View{});
+    EXPECT_TRUE(found.bodies[0].visible.empty());
+    EXPECT_TRUE(found.bodies[1].hidden.empty());
+}
+
 }  // namespace
 }  // namespace anamorph

@@ -116,7 +116,8 @@ void set_cone(SeenBody& body, const Vector& c, const Vector& f, const Vector& g,
     body.x_row = glm::cross(g, ray) / volume;
     body.y_row = glm::cross(ray, f) / volume;
     body.beyond = normal / volume;
-    body.cone_size = glm::length(body.x_row) + glm::length(body.y_row) + glm::length(body.beyond);
+    body.beyond_size = glm::length(body.beyond);
+    body.cone_size = glm::length(body.x_row) + glm::length(body.y_row) + body.beyond_size;
 }
 
 double amplitude(double a, double b) {

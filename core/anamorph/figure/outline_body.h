@@ -32,7 +32,7 @@ struct SeenBody {
     glm::dvec2 low{0.0}, high{0.0};       ///< box of the limb on the screen of unit distance
     double nearest = 0;                   ///< depth of the body's nearest point
     double limb_farthest = 0, reach = 0;  ///< of the limb: greatest depth, greatest absolute coordinate
-    double unit_size = 0, cone_size = 0;  ///< magnitudes of `unit`, and of the three rows
+    double unit_size = 0, cone_size = 0, beyond_size = 0;  ///< of `unit`, of the three rows, of `beyond`
 
     bool seen() const { return kind == OutlineKind::whole || kind == OutlineKind::cut; }
 };

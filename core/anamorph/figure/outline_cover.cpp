@@ -36,9 +36,8 @@ struct Shadow {
             return glm::dvec2(glm::dot(row, d), glm::dot(row, piece.half));
         };
         const glm::dvec2 x = both(body.x_row), y = both(body.y_row), z = both(body.beyond);
-        const double slack = body.cone_size * piece.around;
-        across = lengths(glm::dvec2(x.x, y.x), glm::dvec2(x.y, y.y)).wider(slack);
-        beyond = Range{z.x - std::fabs(z.y), z.x + std::fabs(z.y)}.wider(slack);
+        across = lengths(glm::dvec2(x.x, y.x), glm::dvec2(x.y, y.y)).wider(body.cone_size * piece.around);
+        beyond = Range{z.x - std::fabs(z.y), z.x + std::fabs(z.y)}.wider(body.beyond_size * piece.around);
         area = perspective ? Range{1 + beyond.low, 1 + beyond.high} : Range{1, 1};
     }
 };
@@ -62,9 +61,9 @@ Cover cover_of(const SeenBody& body, const Piece& piece, bool perspective) {
     bool beside = true;
     if (body.covers) {
         const Shadow shadow(body, piece, perspective);
-        const double rim = kRounding * body.cone_size * size;
-        if (shadow.beyond.low > rim && shadow.across.high < shadow.area.low - rim) return Cover::all;
-        beside = shadow.beyond.high < -rim || shadow.across.low > shadow.area.high + rim;
+        const double rim = kRounding * body.cone_size * size, plane = kRounding * body.beyond_size * size;
+        if (shadow.beyond.low > plane && shadow.across.high < shadow.area.low - rim) return Cover::all;
+        beside = shadow.beyond.high < -plane || shadow.across.low > shadow.area.high + rim;
     }
     return beside && surface.low > 1 ? Cover::none : Cover::partly;
 }
@@ -77,7 +76,8 @@ Cover far_side_of(const SeenBody& body, const Piece& piece) {
 
 bool hides(const SeenBody& body, const glm::dvec3& point, bool perspective) {
     const double size = size_of(body, point), surface_noise = kRounding * body.unit_size * size,
-                 cone_noise = kRounding * body.cone_size * size;
+                 cone_noise = kRounding * body.cone_size * size,
+                 beyond_noise = kRounding * body.beyond_size * size;
     const glm::dvec3 u = (point - body.center) * body.unit;
     const double surface = glm::dot(u, u) - 1;
     if (body.kind == OutlineKind::around_eye) return body.solid && surface > surface_noise;
@@ -86,7 +86,7 @@ bool hides(const SeenBody& body, const glm::dvec3& point, bool perspective) {
     const glm::dvec3 d = point - body.viewed.center;
     const double x = glm::dot(body.x_row, d), y = glm::dot(body.y_row, d), beyond = glm::dot(body.beyond, d);
     const double w = perspective ? 1 + beyond : 1;
-    return beyond > cone_noise && x * x + y * y - w * w < -cone_noise;
+    return beyond > beyond_noise && x * x + y * y - w * w < -cone_noise;
 }
 
 bool is_on_far_side(const SeenBody& body, const glm::dvec3& point) {
@@ -144,8 +144,9 @@ bool Surface::leave_doubts(const Piece& piece, Others& others, std::size_t from,
 }
 
 void Surface::add_seen(const Triangle& corners, Others& others, std::size_t from, std::size_t to, int level,
-                       std::vector<Part>& found) const {
+                       std::size_t most, std::vector<Part>& found) const {
     constexpr int kLevels = 2;
+    if (found.size() >= most) return;
     const Piece piece = piece_of(corners);
     if (far_side_of(m_body, piece) == Cover::all) return;
     const std::size_t next = others.size();
@@ -156,12 +157,12 @@ void Surface::add_seen(const Triangle& corners, Others& others, std::size_t from
                 {corners, piece, {others.begin() + static_cast<std::ptrdiff_t>(next), others.end()}});
         else
             for (const Triangle& part : quarters(corners))
-                add_seen(part, others, next, end, level + 1, found);
+                add_seen(part, others, next, end, level + 1, most, found);
     }
     others.resize(next);
 }
 
-std::vector<Surface::Part> Surface::seen(Others others) const {
+std::vector<Surface::Part> Surface::seen(Others others, std::size_t most) const {
     std::vector<Part> found;
     const std::size_t count = others.size();
     // An octahedron.
@@ -169,7 +170,7 @@ std::vector<Surface::Part> Surface::seen(Others others) const {
         for (const double y : {-1.0, 1.0})
             for (const double z : {-1.0, 1.0})
                 add_seen({glm::dvec3(x, 0, 0), glm::dvec3(0, y, 0), glm::dvec3(0, 0, z)}, others, 0, count, 0,
-                         found);
+                         most, found);
     return found;
 }
 

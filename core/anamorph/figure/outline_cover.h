@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -45,15 +46,15 @@ class Surface {
 
     Surface(const SeenBody& body, const glm::dmat3& from_unit, bool perspective);
 
-    /// Parts that together hold all that may be seen of it, where `others` may hide it.
-    std::vector<Part> seen(Others others) const;
+    /// Parts that together hold all that may be seen of it, where `others` may hide it; `most` of them.
+    std::vector<Part> seen(Others others, std::size_t most = SIZE_MAX) const;
     /// May something be seen of where a part passes through another body's surface?
     bool may_show_meeting(const SeenBody& other, const Part& part) const;
 
   private:
     Piece piece_of(const Triangle& corners) const;
     void add_seen(const Triangle& corners, Others& others, std::size_t from, std::size_t to, int level,
-                  std::vector<Part>& found) const;
+                  std::size_t most, std::vector<Part>& found) const;
     bool shows(const Triangle& corners, const SeenBody& other, Others& others, std::size_t from,
                std::size_t to, int level) const;
     bool leave_doubts(const Piece& piece, Others& others, std::size_t from, std::size_t to) const;

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <optional>
 
 #include "anamorph/figure/outline_arcs.h"
@@ -38,64 +39,78 @@ SphereCurve curve_on(const SeenBody& on, const glm::dmat3& from_unit_on, const S
     return curve;
 }
 
-/// What may be seen of the bodies' surfaces, where bodies hide each other.
+/// Which bodies may be seen, and which pairs of them where they meet. What hides a surface is found twice,
+/// body by body, and not kept: kept for all bodies it would grow with their square.
 class SeenSurfaces {
   public:
     SeenSurfaces(std::span<const Ellipsoid> bodies, const std::vector<SeenBody>& seen, const View& view,
                  const Overlaps& overlaps, const ParallelFor& parallel_for)
-        : m_bodies(seen), m_perspective(view.perspective()), m_parts(seen.size()), m_seen(seen.size()) {
+        : m_bodies(seen),
+          m_overlaps(overlaps),
+          m_perspective(view.perspective()),
+          m_parallel_for(parallel_for),
+          m_seen(seen.size()) {
         for (const Ellipsoid& body : bodies) m_from_unit.push_back(from_unit(body, view));
-        parallel_for(static_cast<std::int64_t>(seen.size()), [&](std::int64_t n) {
-            const auto i = static_cast<std::size_t>(n);
-            if (seen[i].solid) {
-                Surface::Others others;
-                for (const int j : overlaps.with(surface_box(seen[i])))
-                    if (j != static_cast<int>(i)) others.push_back(&seen[static_cast<std::size_t>(j)]);
-                m_parts[i] = surface(static_cast<int>(i)).seen(std::move(others));
-            }
-            m_seen[i] = !seen[i].solid || !m_parts[i].empty();
-        });
+        for_all(
+            [&](std::size_t i) { m_seen[i] = !seen[i].solid || !surface(i).seen(others_of(i), 1).empty(); });
     }
 
     bool any(int body) const { return m_seen[static_cast<std::size_t>(body)] != 0; }
 
-    /// The bodies after this one with which it meets in a curve of which something may be seen.
-    std::vector<int> met_by(int body) const {
-        std::vector<int> found;
-        for (const Surface::Part& part : parts(body))
-            for (const SeenBody* other : part.others) {
-                const auto j = static_cast<int>(other - m_bodies.data());
-                if (j > body && other->solid && any(j) && may_meet(*other, part.piece)) found.push_back(j);
+    /// For each body those after it with which it meets in a curve of which something may be seen.
+    std::vector<std::vector<int>> meetings() const {
+        std::vector<std::vector<int>> showing(m_bodies.size()), both(m_bodies.size());
+        for_all([&](std::size_t i) {
+            if (m_seen[i] && m_bodies[i].solid) showing[i] = shown_on(i);
+        });
+        for (std::size_t i = 0; i < showing.size(); ++i)
+            for (const int j : showing[i]) {
+                const std::vector<int>& back = showing[static_cast<std::size_t>(j)];
+                if (static_cast<std::size_t>(j) > i &&
+                    std::binary_search(back.begin(), back.end(), static_cast<int>(i)))
+                    both[i].push_back(j);
             }
-        std::sort(found.begin(), found.end());
-        found.erase(std::unique(found.begin(), found.end()), found.end());
-        std::erase_if(found, [&](int j) { return !may_show(body, j) || !may_show(j, body); });
-        return found;
+        return both;
     }
 
   private:
-    const std::vector<Surface::Part>& parts(int body) const {
-        return m_parts[static_cast<std::size_t>(body)];
+    void for_all(const std::function<void(std::size_t)>& work) const {
+        m_parallel_for(static_cast<std::int64_t>(m_bodies.size()),
+                       [&](std::int64_t n) { work(static_cast<std::size_t>(n)); });
     }
 
-    Surface surface(int body) const {
-        const auto i = static_cast<std::size_t>(body);
-        return {m_bodies[i], m_from_unit[i], m_perspective};
+    Surface surface(std::size_t i) const { return {m_bodies[i], m_from_unit[i], m_perspective}; }
+
+    /// The bodies that may hide some of a body: those first that begin nearest to the observer.
+    Surface::Others others_of(std::size_t i) const {
+        Surface::Others others;
+        for (const int j : m_overlaps.with(surface_box(m_bodies[i])))
+            if (j != static_cast<int>(i)) others.push_back(&m_bodies[static_cast<std::size_t>(j)]);
+        std::sort(others.begin(), others.end(),
+                  [](const SeenBody* a, const SeenBody* b) { return a->nearest < b->nearest; });
+        return others;
     }
 
-    bool may_show(int body, int meeting) const {
-        const SeenBody& other = m_bodies[static_cast<std::size_t>(meeting)];
+    /// The bodies that on the surface of this one may be seen to meet it, in order.
+    std::vector<int> shown_on(std::size_t body) const {
         const Surface own = surface(body);
-        return std::any_of(parts(body).begin(), parts(body).end(), [&](const Surface::Part& part) {
-            return std::find(part.others.begin(), part.others.end(), &other) != part.others.end() &&
-                   own.may_show_meeting(other, part);
-        });
+        std::vector<char> shows(m_bodies.size());
+        for (const Surface::Part& part : own.seen(others_of(body)))
+            for (const SeenBody* other : part.others) {
+                const auto j = static_cast<std::size_t>(other - m_bodies.data());
+                if (!shows[j] && other->solid && m_seen[j]) shows[j] = own.may_show_meeting(*other, part);
+            }
+        std::vector<int> found;
+        for (std::size_t j = 0; j < shows.size(); ++j)
+            if (shows[j]) found.push_back(static_cast<int>(j));
+        return found;
     }
 
     const std::vector<SeenBody>& m_bodies;
+    const Overlaps& m_overlaps;
     bool m_perspective;
+    const ParallelFor& m_parallel_for;
     std::vector<glm::dmat3> m_from_unit;
-    std::vector<std::vector<Surface::Part>> m_parts;
     std::vector<char> m_seen;  ///< written by many threads, so no bits
 };
 
@@ -326,6 +341,9 @@ std::vector<CrossingCurve> crossing_curves(std::span<const Ellipsoid> bodies,
     const Overlaps overlaps(seen);
     std::optional<SeenSurfaces> surfaces;
     if (options.hide) surfaces.emplace(bodies, seen, view, overlaps, parallel_for);
+    const bool cull = surfaces && !options.keep_hidden;
+    const std::vector<std::vector<int>> meetings =
+        cull ? surfaces->meetings() : std::vector<std::vector<int>>(bodies.size());
     const glm::dmat3 to_scene = glm::transpose(view.rotation);
     const glm::dvec3 eye(0, 0, view.perspective() ? view.eye_distance : 0);
 
@@ -333,11 +351,10 @@ std::vector<CrossingCurve> crossing_curves(std::span<const Ellipsoid> bodies,
     parallel_for(static_cast<std::int64_t>(bodies.size()), [&](std::int64_t n) {
         const auto i = static_cast<std::size_t>(n);
         const auto first = static_cast<int>(i);
-        if (!seen[i].solid || (!options.keep_hidden && surfaces && !surfaces->any(first))) return;
-        std::vector<int> hiding = overlaps.with(surface_box(seen[i])), others = hiding;
+        if (!seen[i].solid || (cull && meetings[i].empty())) return;
+        std::vector<int> hiding = overlaps.with(surface_box(seen[i])), others = cull ? meetings[i] : hiding;
         // What is hidden is hidden by something that is seen, or may be.
         if (surfaces) std::erase_if(hiding, [&](int j) { return !surfaces->any(j); });
-        if (surfaces && !options.keep_hidden) others = surfaces->met_by(first);
         std::sort(others.begin(), others.end());
         for (const int j : others) {
             if (j <= first || !seen[static_cast<std::size_t>(j)].solid) continue;

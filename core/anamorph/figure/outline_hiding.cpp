@@ -53,7 +53,7 @@ struct Path {
             if (perspective) cone.w = beyond;
             cone.w.k += 1;
             cone.noise = kRounding * other.cone_size * reach;
-            beyond_noise = cone.noise;
+            beyond_noise = kRounding * other.beyond_size * reach;
         }
     }
 };
@@ -92,7 +92,8 @@ void add_hidden(const SeenBody& body, const SeenBody& other, bool perspective, s
     if (!around_eye && other.covers) {
         if (passes_by(path.cone)) return;
         add_roots(path.cone, roots);
-        if (!other.solid) add_roots(path.beyond, roots);
+        // A path may come from before a body to behind it where it only touches the rim.
+        add_roots(path.beyond, roots);
     }
     // Beyond the limb's plane, what is inside is also behind.
     const bool all_beyond = other.covers && path.beyond.k - path.beyond.amplitude() > path.beyond_noise;
@@ -153,7 +154,7 @@ void add_hidden(const glm::dvec3& from, const glm::dvec3& to, const SeenBody& ot
         if (perspective) w += beyond;
         add_line_roots(x.x * x.x + y.x * y.x - w.x * w.x, x.x * x.y + y.x * y.y - w.x * w.y,
                        x.y * x.y + y.y * y.y - w.y * w.y, cuts);
-        if (!other.solid && beyond.y != 0) cuts.push_back(-beyond.x / beyond.y);
+        if (beyond.y != 0) cuts.push_back(-beyond.x / beyond.y);
     }
     std::erase_if(cuts, [](double s) { return !(s > 0 && s < 1); });
     cuts.push_back(0);

@@ -94,6 +94,7 @@ class Sweep {
         const double a = glm::dot(one, one), b = glm::dot(two, two);
         m_equator_size = std::sqrt(0.5 * (a + b) + std::hypot(0.5 * (a - b), glm::dot(one, two)));
         m_skew = std::fabs(glm::dot(one, m_at_pole)) + std::fabs(glm::dot(two, m_at_pole));
+        bound_by_form(axes);
     }
 
     std::vector<std::vector<glm::dvec3>> loops() {
@@ -132,6 +133,18 @@ class Sweep {
         for (int k = 0; k < 3; ++k)
             if (size(k) > size(0) * (1 - 0x1p-20)) pole += axes[k] * glm::dot(axes[k], toward);
         return glm::length(pole) > 0x1p-20 * glm::length(toward) ? glm::normalize(pole) : axes[0];
+    }
+
+    /// With |u| = 1, f = u Q u + 2 g u + a constant, where Q = matrix^T matrix - s may have any s: the middle
+    /// of the eigenvalues makes it least. Bounds by Q and g are small where the bodies nearly coincide, those
+    /// by v elsewhere. No derivative of u by longitude and latitude is longer than 1.
+    void bound_by_form(const glm::dmat3& axes) {
+        const glm::dvec3 large = m_curve.matrix * axes[0], small = m_curve.matrix * axes[2];
+        const double most = glm::dot(large, large), least = glm::dot(small, small);
+        const double form = 0.5 * (most - least) + 0x1p-44 * most;
+        const double linear = glm::length(glm::transpose(m_curve.matrix) * m_curve.offset);
+        m_most_second = 4 * form + 2 * linear;
+        m_most_third = 8 * form + 2 * linear;
     }
 
     bool coincides() const {
@@ -220,8 +233,8 @@ class Sweep {
         // How far v and its derivative by the latitude may go from the middle of the box.
         const double steepest = glm::length(by_latitude) + h * s * e + r * reach;
         const double moved = h * c * e + r * steepest, farthest = size + moved;
-        const double swing =
-            h * a + r * b + moved * moved + size * (h * h * c * e + 2 * h * r * s * e + r * r * reach);
+        const double bent = moved * moved + size * (h * h * c * e + 2 * h * r * s * e + r * r * reach);
+        const double swing = h * a + r * b + std::min(bent, 0.5 * m_most_second * (h + r) * (h + r));
         if (f > swing + 2 * m_curve.noise) {
             found.kind = Kind::free;
             return found;
@@ -230,13 +243,15 @@ class Sweep {
         const glm::dvec3 twist = strip.across * -sine, back = strip.at * -cosine,
                          fall = back - m_at_pole * sine;
         const auto bound_21 = [&](double cos_most, double sin_most, double v_most) {
-            return 2 *
-                   (3 * cos_most * sin_most * e * e + cos_most * cos_most * m_skew + v_most * sin_most * e);
+            const double by_v =
+                3 * cos_most * sin_most * e * e + cos_most * cos_most * m_skew + v_most * sin_most * e;
+            return std::min(2 * by_v, m_most_third);
         };
         const double to_side = s * (s * e * e + c * m_skew);
-        const double t30 = 2 * (3 * c * c * e * e + farthest * c * e), t21 = bound_21(c, s, farthest),
-                     t12 = 2 * (2 * to_side + c * (c * e * e + s * m_skew) + farthest * c * e),
-                     t03 = 2 * (3 * steepest * reach + farthest * (s * e + c * m_pole_size));
+        const auto third = [&](double half) { return std::min(2 * half, m_most_third); };
+        const double t30 = third(3 * c * c * e * e + farthest * c * e), t21 = bound_21(c, s, farthest),
+                     t12 = third(2 * to_side + c * (c * e * e + s * m_skew) + farthest * c * e),
+                     t03 = third(3 * steepest * reach + farthest * (s * e + c * m_pole_size));
         const auto second = [&](double at_middle, double by_h, double by_r) {
             return 2 * std::fabs(at_middle) + h * by_h + r * by_r;
         };
@@ -254,8 +269,9 @@ class Sweep {
         }
         // The same for the middle alone, which no narrower box changes.
         const double moved_here = h * c0 * e;
+        const double bent_here = size * h * moved_here + moved_here * moved_here;
         const bool never_free =
-            f <= h * a + size * h * moved_here + moved_here * moved_here + 2 * m_curve.noise;
+            f <= h * a + std::min(bent_here, 0.5 * m_most_second * h * h) + 2 * m_curve.noise;
         const bool never_steady =
             b <= h * (2 * std::fabs(mixed_here) + h * bound_21(c0, s0, size + moved_here));
         found.hopeless = (never_free && never_steady) || f + swing <= 8 * m_curve.noise;
@@ -444,6 +460,7 @@ class Sweep {
     glm::dvec3 m_pole{0.0}, m_first{0.0}, m_second{0.0}, m_at_pole{0.0};
     double m_pole_size = 0, m_equator_size = 0;  ///< the largest of `matrix` on the pole, and on the equator
     double m_skew = 0;  ///< how far the images of pole and equator are from orthogonal
+    double m_most_second = 0, m_most_third = 0;  ///< bound the second and third derivatives of f
     double m_middle = 0;
     int m_strips = 0, m_doubtful = 0, m_boxes = 0;
     std::vector<Node> m_nodes;
@@ -455,17 +472,37 @@ std::vector<std::vector<glm::dvec3>> loops_of(const SphereCurve& curve, const Al
     return Sweep(curve, allowed).loops();
 }
 
+namespace {
+
+/// The root of |v + s w| = 1 at which that rises with s (side 1) or falls (-1); with side 0 the step of
+/// Newton's method.
+double root_on_side(const glm::dvec3& v, const glm::dvec3& w, int side) {
+    const double a = glm::dot(w, w), b = glm::dot(v, w), c = glm::dot(v, v) - 1;
+    const double discriminant = b * b - a * c;
+    if (side == 0 || !(discriminant > 0)) return -c / (2 * b);
+    const double root = side * std::sqrt(discriminant);
+    return (b < 0) == (side > 0) ? (root - b) / a : -c / (root + b);
+}
+
+}  // namespace
+
 glm::dvec3 point_between(const SphereCurve& curve, const glm::dvec3& p, const glm::dvec3& q, double s) {
     const double length = glm::distance(p, q);
     const glm::dvec3 start = glm::normalize(p + (q - p) * s);
     if (!(length > 0)) return start;
+    const glm::dvec3 along = (q - p) / length, across = glm::cross(start, along);
+    // The other face of a thin quadric may be nearer to the chord than the curve is: the face is the one on
+    // which the quadric rises across the chord as it does at both ends.
+    const auto rises_at = [&](const glm::dvec3& u) {
+        return glm::dot(curve.matrix * u + curve.offset, curve.matrix * glm::cross(u, along)) > 0;
+    };
+    const bool rises = rises_at(p);
+    const int side = rises != rises_at(q) ? 0 : rises ? 1 : -1;
     // Newton's method across the chord, in the sphere.
-    const glm::dvec3 across = glm::cross(start, (q - p) / length);
     glm::dvec3 u = start;
     double moved = 0;
     for (int k = 0; k < 12; ++k) {
-        const glm::dvec3 v = curve.matrix * u + curve.offset;
-        const double step = -(glm::dot(v, v) - 1) / (2 * glm::dot(v, curve.matrix * across));
+        const double step = root_on_side(curve.matrix * u + curve.offset, curve.matrix * across, side);
         if (!(std::fabs(moved + step) < length)) return start;
         moved += step;
         u = glm::normalize(start + across * moved);
