@@ -65,7 +65,7 @@ struct Scale {
     Real x, y;
 };
 inline Scale scale(const View& v) {
-    const int columns = face_width(v), rows = is_cube(v.projection) ? columns : v.height;
+    const int columns = face_width(v), rows = has_faces(v.projection) ? columns : v.height;
     const Real wide = 2 * half_plane(v), high = wide * rows / columns;
     return v.centers ? Scale{(columns - 1) / wide, (rows - 1) / high} : Scale{columns / wide, rows / high};
 }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "anamorph/image/border.h"
+#include "projection_cases.h"
 
 #include <gtest/gtest.h>
 
@@ -41,32 +42,14 @@ constexpr std::int64_t kExtremes[] = {std::numeric_limits<std::int64_t>::min(),
                                       0,
                                       5};
 
-std::pair<int, int> size_for(Projection projection, int n) {
-    switch (projection) {
-        case Projection::cubemap:
-            return {n, 6 * n};
-        case Projection::cubemap3x2:
-            return {3 * n, 2 * n};
-        case Projection::cubecross:
-            return {4 * n, 3 * n};
-        default:
-            return {2 * n, n};
-    }
-}
-
 Chart chart_for(Projection projection, int n, PixelSpacing spacing = PixelSpacing::edges) {
-    const auto [w, h] = size_for(projection, n);
-    return Chart(projection, w, h, 0, spacing);
+    return test::example_chart(projection, n, spacing);
 }
 
-constexpr Projection kAll[] = {
-    Projection::equirectangular, Projection::cylindrical,   Projection::rectilinear, Projection::fisheye,
-    Projection::equisolid,       Projection::stereographic, Projection::mercator,    Projection::cubemap,
-    Projection::cubemap3x2,      Projection::cubecross};
 constexpr Projection kCubes[] = {Projection::cubemap, Projection::cubemap3x2, Projection::cubecross};
 
 TEST(Border, TexelsInsideStandForThemselvesAndAllOthersLieInside) {
-    for (const Projection projection : kAll)
+    for (const Projection projection : kProjections)
         for (const PixelSpacing spacing : {PixelSpacing::edges, PixelSpacing::centers})
             for (const Wrap wrap : {Wrap::automatic, Wrap::black, Wrap::clamp, Wrap::periodic, Wrap::mirror})
                 for (const int divisor : {1, 2, 4, 5}) {
@@ -98,7 +81,7 @@ TEST(Border, TexelsInsideStandForThemselvesAndAllOthersLieInside) {
 }
 
 TEST(Border, RunsAreWhatResolvesTexelByTexel) {
-    for (const Projection projection : kAll)
+    for (const Projection projection : kProjections)
         for (const PixelSpacing spacing : {PixelSpacing::edges, PixelSpacing::centers})
             for (const Wrap wrap :
                  {Wrap::automatic, Wrap::black, Wrap::clamp, Wrap::periodic, Wrap::mirror}) {
@@ -129,7 +112,7 @@ TEST(Border, RunsAreWhatResolvesTexelByTexel) {
 }
 
 TEST(Border, OddAndTinyLevelsAreSafe) {
-    for (const Projection projection : kAll)
+    for (const Projection projection : kProjections)
         for (const PixelSpacing spacing : {PixelSpacing::edges, PixelSpacing::centers})
             for (const Source::Size level : {Source::Size{1, 1}, {2, 1}, {1, 2}, {3, 7}, {5, 3}}) {
                 const Chart chart = chart_for(projection, 16, spacing);

@@ -74,7 +74,7 @@ Real distance(const View& source, const Point<double>& used, const Point<long do
 
 /// Is it in the image, a few pixels within?
 bool well_inside(const View& v, const Piece& piece, const Point<long double>& p) {
-    const Box box = is_cube(v.projection) ? piece.box : Box{0, 0, v.width, v.height};
+    const Box box = has_faces(v.projection) ? piece.box : Box{0, 0, v.width, v.height};
     return p.x > box.x0 + 0.01L && p.x < box.x1 - 0.01L && p.y > box.y0 + 0.01L && p.y < box.y1 - 0.01L;
 }
 
@@ -270,9 +270,9 @@ TEST(PanoramaTruth, BoundsOfExactPixelsAreNotIdle) {
             Random random(7);
             Scene scene{random.view(from, false), random.view(to, false), {20, 30, 40}, 0};
             for (View* v : {&scene.source, &scene.target})
-                if (!is_cube(v->projection)) *v = {v->projection, 1000, 500, 100};
-            scene.target.width = is_cube(to) ? scene.target.width : 64;
-            scene.target.height = is_cube(to) ? scene.target.height : 48;
+                if (!has_faces(v->projection)) *v = {v->projection, 1000, 500, 100};
+            scene.target.width = has_faces(to) ? scene.target.width : 64;
+            scene.target.height = has_faces(to) ? scene.target.height : 48;
             const Findings found = expect_truth(scene);
             EXPECT_GT(found.worst, 0) << words(scene);
             EXPECT_LE(found.worst_bound, 1e-4) << words(scene);

@@ -9,6 +9,7 @@
 #include "anamorph/approx/plan.h"
 #include "anamorph/image/block_reader.h"
 #include "anamorph/simd/block_sampler.h"
+#include "projection_cases.h"
 
 namespace anamorph {
 namespace {
@@ -20,22 +21,6 @@ struct View {
     Orientation look;
     PixelSpacing spacing = PixelSpacing::edges;
 };
-
-/// A chart of about that width in the projection's own shape.
-Chart chart_of(Projection projection, int width, double fov, PixelSpacing spacing = PixelSpacing::edges) {
-    switch (projection) {
-        case Projection::cubemap:
-            return {projection, width / 4, width / 4 * 6, 0, spacing};
-        case Projection::cubemap3x2:
-            return {projection, width / 3 * 3, width / 3 * 2, 0, spacing};
-        case Projection::cubecross:
-            return {projection, width / 4 * 4, width / 4 * 3, 0, spacing};
-        case Projection::equirectangular:
-            return {projection, width, width / 2, fov, spacing};
-        default:
-            return {projection, width, width * 3 / 4, fov, spacing};
-    }
-}
 
 struct Findings {
     double worst_excess = -HUGE_VAL;  ///< error - bound
@@ -107,8 +92,8 @@ Findings examine(const Panorama& map, const PlanOptions& options) {
 }
 
 void expect_promise(const View& view, double tol, Scheme scheme, std::vector<double>* ratios = nullptr) {
-    const Panorama map(chart_of(view.source, view.source_width, view.source_fov, view.spacing),
-                       chart_of(view.target, view.target_width, view.target_fov), view.look);
+    const Panorama map(test::chart_of_width(view.source, view.source_width, view.source_fov, view.spacing),
+                       test::chart_of_width(view.target, view.target_width, view.target_fov), view.look);
     PlanOptions options;
     options.tol = tol;
     options.scheme = scheme;
@@ -119,10 +104,6 @@ void expect_promise(const View& view, double tol, Scheme scheme, std::vector<dou
     if (ratios) ratios->insert(ratios->end(), found.ratios.begin(), found.ratios.end());
 }
 
-constexpr Projection kAll[] = {
-    Projection::equirectangular, Projection::cylindrical,   Projection::rectilinear, Projection::fisheye,
-    Projection::equisolid,       Projection::stereographic, Projection::mercator,    Projection::cubemap,
-    Projection::cubemap3x2,      Projection::cubecross};
 constexpr double kTols[] = {1, 1.0 / 16, 0.01, 0.001};
 
 double median(std::vector<double> values) {
@@ -140,8 +121,8 @@ TEST(Plan, HoldsTheToleranceForEveryPairOfProjections) {
     };
     for (const double tol : kTols) {
         std::vector<double> ratios;
-        for (const Projection source : kAll)
-            for (const Projection target : kAll) {
+        for (const Projection source : kProjections)
+            for (const Projection target : kProjections) {
                 View view;
                 view.source = source;
                 view.target = target;
@@ -238,7 +219,8 @@ TEST(Plan, ReachedIsTheLargestBoundAndTheExactShare) {
 TEST(Plan, FindsTheRegionsOfABox) {
     for (const Projection projection :
          {Projection::rectilinear, Projection::cubecross, Projection::cubemap}) {
-        const Panorama map(Chart(Projection::equirectangular, 512, 256), chart_of(projection, 4000, 0));
+        const Panorama map(Chart(Projection::equirectangular, 512, 256),
+                           test::chart_of_width(projection, 4000, 0));
         const Plan plan(map, {});
         for (const Box& box : {Box{0, 0, 1, 1}, Box{500, 300, 1700, 1030}, Box{1023, 1023, 1025, 1025},
                                Box{-5, -5, 0, 100}, Box{0, 0, 4000, 6000}}) {

@@ -77,7 +77,7 @@ TEST_F(BadInput, conformance_21_values) {
     expect_refused("fov=-10", "fov=-10");
     expect_refused("fov=180", "fov=180");
     expect_refused("to=fisheye&fov=361", "fov=361");
-    expect_refused("to=cubemap&fov=80", "fov=80", "have 90 degrees");
+    expect_refused("to=cubemap&fov=80", "fov=80", "always has 90 degrees");
     expect_refused("tol=-0.1", "tol=-0.1");
     expect_refused("mip=2", "mip=2");
     expect_refused("yaw=1&yaw=2", "yaw=2: given twice");

@@ -72,9 +72,10 @@ class ParameterEnds : public InFolder {
         InFolder::SetUp();
         write_panorama("city.exr", 24, 12);
         write_panorama("town.exr", 24, 12);
-        write_panorama("cube.exr", 6, 36);
-        write_panorama("cube3x2.exr", 12, 8);
-        write_panorama("cross.exr", 16, 12);
+        for (const Projection p : kProjections)
+            if (has_faces(p))
+                write_panorama(std::string(name_of(p)) + ".exr", 4 * faces_of(p).columns,
+                               4 * faces_of(p).rows);
         write_text("still.json", R"({"columns": 1, "rows": 1, "units": "fractions",
                                      "vertices": [[0, 0], [1, 0], [0, 1], [1, 1]]})");
         write_text("lines.csv", "2,2,20,3,4,4,18,5\n");
@@ -84,24 +85,27 @@ class ParameterEnds : public InFolder {
     /// A recipe in which any value of `key` has a meaning.
     static std::string name_for(const std::string& kind, const std::string& key, const std::string& value) {
         std::string name = base_for(kind, key, value);
-        if (key != "size" && !(key == "to" && value.starts_with("cube"))) name += "&size=4x3";
+        if (name.find("size=") == std::string::npos && key != "size") name += "&size=4x3";
         name.append("&").append(key).append("=").append(value);
         return name;
     }
 
   private:
+    /// Those of a projection; none for what is not the name of one.
+    static FaceGrid faces_named(const std::string& value) {
+        for (const Projection p : kProjections)
+            if (name_of(p) == value) return faces_of(p);
+        return {};
+    }
     static std::string base_for(const std::string& kind, const std::string& key, const std::string& value) {
         if (kind == "morph") return "city.exr.morph?b=town.exr&features=lines.csv";
         if (kind == "warp")
             return key == "step" ? "city.exr.warp?mesh=st.exr" : "city.exr.warp?mesh=still.json";
-        if (key == "from") {
-            if (value == "cubemap") return "cube.exr.pano?yaw=1";
-            if (value == "cubemap3x2") return "cube3x2.exr.pano?yaw=1";
-            return value == "cubecross" ? "cross.exr.pano?yaw=1" : "city.exr.pano?yaw=1";
-        }
-        if (value == "cubemap") return "city.exr.pano?size=2x12";
-        if (value == "cubemap3x2") return "city.exr.pano?size=6x4";
-        if (value == "cubecross") return "city.exr.pano?size=8x6";
+        const FaceGrid faces = faces_named(value);
+        if (key == "from") return (faces.columns > 0 ? value : "city") + ".exr.pano?yaw=1";
+        if (key == "to" && faces.columns > 0)
+            return "city.exr.pano?size=" + std::to_string(2 * faces.columns) + "x" +
+                   std::to_string(2 * faces.rows);
         // Lenses that may have 360 degrees.
         return key == "fov" || key == "size" ? "city.exr.pano?to=equirectangular"
                                              : "city.exr.pano?from=latlong";

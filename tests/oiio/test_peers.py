@@ -255,6 +255,30 @@ class Ffmpeg(PictureTest):
         ):
             self.compare("centers", peer, ours + "&from=equirectangular&pixels=centers", PANORAMA_PIXEL)
 
+    def test_from_panorama_where_there_is_a_picture(self):
+        """ffmpeg goes on beyond the outlines of these, where we have nothing."""
+        save_pictures("centers", panorama_rays("centers"))
+        for peer, ours in (
+                ("e:octahedron:w=256:h=256", "to=octahedral&size=256"),
+                ("e:hammer:w=512:h=256", "to=hammer&size=512x256"),
+                ("e:sinusoidal:w=512:h=256", "to=sinusoidal&size=512x256"),
+                ("e:og:h_fov=180:v_fov=180:w=256:h=256", "to=orthographic&size=256"),
+                ("e:dfisheye:h_fov=180:v_fov=180:w=512:h=256", "to=dual_fisheye&size=512x256"),
+        ):
+            ours += "&from=equirectangular&pixels=centers"
+            inside = recipe("centers.tif", ours)[..., :3].any(axis=-1)
+            self.assertGreater(inside.mean(), 0.5)
+            self.compare("centers", peer, ours, PANORAMA_PIXEL, inside)
+
+    def test_equi_angular_cube(self):
+        """v360 leaves a margin of two pixels around the faces of its eac, which is up to 4 pixels of the source each way;
+        faces in other places or turns would be off by hundreds."""
+        save_pictures("centers", panorama_rays("centers"))
+        theirs = directions(self.v360("centers.tif", "e:eac:w=384:h=256"))
+        mine = directions(recipe("centers.tif", "to=eac&size=384x256&from=equirectangular&pixels=centers"))
+        difference = angles(theirs, mine, PANORAMA_PIXEL)
+        self.assert_close(difference, 4, 6, "v360's eac, source pixels")
+
     def test_orientation(self):
         save_pictures("turned", panorama_rays("centers"))
         v_fov = 2 * np.degrees(np.arctan(0.75))  # 3:4 in the plane, not in degrees

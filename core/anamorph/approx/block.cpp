@@ -136,6 +136,11 @@ bool BlockMap::exact(const Block& block, double x, double y, Point<double>& sour
     return seen;
 }
 
+void BlockMap::exact_row(const Block& block, int row, ExactPoint* points) const noexcept {
+    for (int x = block.box.x0; x < block.box.x1; ++x, ++points)
+        points->seen = exact(block, x + 0.5, block.box.y0 + row + 0.5, points->at, points->piece);
+}
+
 BlockPolynomial BlockMap::bicubic(const Block& block) const noexcept {
     return quadratic_of(block);
 }

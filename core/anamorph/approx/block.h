@@ -112,6 +112,13 @@ class BlockMap {
     /// The source point of a target point of an exact block.
     bool exact(const Block& block, double x, double y, Point<double>& source_point,
                int& source_piece) const noexcept;
+    /// The source points of row `row` (0 is the block's first) of an exact block.
+    struct ExactPoint {
+        Point<double> at{};
+        int piece = 0;
+        bool seen = false;  ///< false where there is none
+    };
+    virtual void exact_row(const Block& block, int row, ExactPoint* points) const noexcept;
     /// Source pixels per target pixel at a target point.
     virtual Jacobian jacobian(double x, double y, int piece) const noexcept = 0;
     /// The polynomial of a bicubic block.

@@ -893,7 +893,9 @@ CellField::Tally NearFar::tally(const Box& region) const {
         });
         return tally;
     }
-    for (const Cell& cell : m_state->region(region)->cells) {
+    // Kept here: the cache may let go of it meanwhile.
+    const auto planned = m_state->region(region);
+    for (const Cell& cell : planned->cells) {
         tally.bound = std::max(tally.bound, cell.bound);
         if (cell.exact) tally.exact_pixels += std::int64_t{cell.box.width()} * cell.box.height();
     }

@@ -9,6 +9,7 @@
 #include "anamorph/approx/block_writer.h"
 #include "anamorph/approx/residual.h"
 #include "anamorph/approx/taylor.h"
+#include "anamorph/simd/panorama_rows.h"
 
 namespace anamorph {
 namespace {
@@ -110,6 +111,7 @@ class Planner {
     }
 
     enum class Cover { inside, outside, mixed };
+    static bool one_signed(const Interval& a) { return a.lo > 0 || a.hi < 0; }
     // The Taylor polynomial of a block has degree 4; its remainder is bounded over large boxes.
     using Tail = Remainder<5>;
 
@@ -128,13 +130,13 @@ class Planner {
         const Interval x = across(box), y = down(box);
         const Interval in = m_map.target().inside(x, y, m_piece);
         if (in.hi < 0) return Cover::outside;
-        if (!(in.lo >= 0)) return Cover::mixed;
+        if (!(in.lo >= 0) || !one_signed(m_map.target().crease(x, y, m_piece))) return Cover::mixed;
         const Chart& source = m_map.source();
         const Ray<Interval> ray = m_map.local_ray(x, y, local);
-        const Interval seen = source.sees(ray);
-        if (seen.hi < 0) return Cover::outside;
-        if (!(seen.lo > 0)) return Cover::mixed;
-        if (source.has_azimuth()) {
+        const Interval seen = source.sees(ray, local.source.piece);
+        if (seen.hi < 0 && source.pieces().size() == 1) return Cover::outside;
+        if (!(seen.lo > 0) || !one_signed(source.crease(ray))) return Cover::mixed;
+        if (source.counted() == Counted::azimuth) {
             // The branch serves less than half a turn. It must not cross the far side where the image has an
             // edge.
             if (!(ray.z.lo > 0)) return Cover::mixed;
@@ -155,7 +157,7 @@ class Planner {
             return f.c[0].hi < -margin || f.c[0].lo > size + margin;
         };
         const bool out = (!source.closed() && beyond(p.x, source.width())) || beyond(p.y, source.height());
-        return out && !is_cube(source.projection()) ? Cover::outside : Cover::inside;
+        return out && source.pieces().size() == 1 ? Cover::outside : Cover::inside;
     }
 
     /// How far from its source point a pixel's texels lie at most, in source pixels (image/footprint.h).
@@ -527,6 +529,16 @@ bool Plan::exact(double x, double y, int piece, Point<double>& source_point,
 bool Plan::truth(double x, double y, int piece, Point<long double>& source_point,
                  int& source_piece) const noexcept {
     return m_map.exact<long double>(x, y, piece, source_point, source_piece);
+}
+
+void Plan::exact_row(const Block& block, int row, ExactPoint* points) const noexcept {
+    if (block.precise) return BlockMap::exact_row(block, row, points);
+    simd::ExactRow found;
+    const int count = block.box.width();
+    simd::exact_row(m_map.target(), m_map.source(), m_map.turn(), block.piece, block.box.x0 + 0.5,
+                    block.box.y0 + row + 0.5, count, found);
+    for (int i = 0; i < count; ++i)
+        points[i] = {{found.x[i], found.y[i]}, static_cast<int>(found.piece[i]), found.seen[i] != 0};
 }
 
 Jacobian Plan::jacobian(double x, double y, int piece) const noexcept {

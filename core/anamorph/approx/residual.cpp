@@ -27,7 +27,7 @@ LinearPart linear_part(const Panorama& map, int piece) {
     const Ray<double> axis = map.local_ray(part.cx, part.cy, local);
     using J = Jet1<double>;
     const Point<J> p = map(J::variable(part.cx, 1, 0), J::variable(part.cy, 0, 1), local);
-    bool finite = source.sees(axis) > 0;
+    bool finite = source.sees(axis, local.source.piece) > 0;
     for (int i = 0; i < J::kSize; ++i) finite = finite && std::isfinite(p.x.c[i]) && std::isfinite(p.y.c[i]);
     if (!finite) return part;
     part.origin = {p.x.c[0], p.y.c[0]};

@@ -43,16 +43,6 @@ inline constexpr double kLeastExtent = 1e-300, kMostExtent = 1e300;
 /// Throws Error that names the field, unless all numbers are finite and extents in their range.
 void check_deformation(const Deformation& deformation);
 
-// What the formulas ask of jets: conditions are those of the constant part.
-template <class T, int N>
-auto is_zero(const Jet<T, N>& a) {
-    return is_zero(a.c[0]);
-}
-template <class T, int N>
-auto is_negative(const Jet<T, N>& a) {
-    return is_negative(a.c[0]);
-}
-
 #include "anamorph/deform/deformation_formula.h"
 
 /// F of x = (u - c_u) / a_u and y = (v - c_v) / a_v: 1 at the centre.

@@ -442,14 +442,11 @@ bool BlockReader::exact_rows(const Block& block, const Box& part, const Row& row
     // Positions of the whole block decide how it is read, whatever part of it is asked for.
     const int w = block.box.width();
     m_exact.resize(static_cast<std::size_t>(w) * static_cast<std::size_t>(block.box.height()));
-    bool together = true;
-    for (int j = block.box.y0; j < block.box.y1; ++j)
-        for (int i = block.box.x0; i < block.box.x1; ++i) {
-            Exact& e = m_exact.data()[(j - block.box.y0) * w + i - block.box.x0];
-            e.seen = m_map.exact(block, i + 0.5, j + 0.5, e.at, e.piece);
-            together =
-                together && e.seen && e.piece == m_exact[0].piece && is_near(e.at.x) && is_near(e.at.y);
-        }
+    for (int j = 0; j < block.box.height(); ++j) m_map.exact_row(block, j, m_exact.data() + j * w);
+    const auto near_first = [&](const BlockMap::ExactPoint& e) {
+        return e.seen && e.piece == m_exact[0].piece && is_near(e.at.x) && is_near(e.at.y);
+    };
+    const bool together = std::all_of(m_exact.begin(), m_exact.end(), near_first);
     if (!together) return rows_one_by_one(block, {}, part, row);
     const auto at = [&](int i, int j) -> const Point<double>& { return m_exact.data()[j * w + i].at; };
     return for_each_footprint(block, at, [&](const Box& cell, const Filtering& f) {
@@ -461,7 +458,7 @@ bool BlockReader::exact_cell(const Filtering& f, const Block& block, const Box& 
                              const Row& row) {
     const Box own = part_of(cell, block, part);
     if (own.empty()) return true;
-    const Exact* points = m_exact.data();
+    const BlockMap::ExactPoint* points = m_exact.data();
     const int w = block.box.width();
     double x0 = HUGE_VAL, y0 = HUGE_VAL, x1 = -HUGE_VAL, y1 = -HUGE_VAL;
     for (int j = cell.y0; j < cell.y1; ++j)

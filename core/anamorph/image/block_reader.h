@@ -73,11 +73,6 @@ class BlockReader {
     struct Range {
         double low = 0, high = 0;
     };
-    struct Exact {
-        Point<double> at;
-        int piece;
-        bool seen;
-    };
     struct LevelPolynomial;
     struct LevelPoints;
     struct Span;
@@ -118,7 +113,7 @@ class BlockReader {
     PointSampler m_points;
     FootprintChooser m_chooser;
     std::vector<float> m_values, m_computed;
-    std::vector<Exact> m_exact;
+    std::vector<BlockMap::ExactPoint> m_exact;
 };
 
 }  // namespace anamorph

@@ -31,8 +31,8 @@ int scaled(int edge, int full, int size) {
     return static_cast<int>((2 * std::int64_t{edge} * size + full) / (2 * std::int64_t{full}));
 }
 
-/// The texel of a cube's level that the ray through (x, y) of the extended plane of `piece` meets.
-Texel across_cube_edge(const Chart& chart, double x, double y, int piece, const Source::Size& level,
+/// The texel of a level of several faces that the ray through (x, y) of the extended plane of `piece` meets.
+Texel across_face_edge(const Chart& chart, double x, double y, int piece, const Source::Size& level,
                        const Border& border) {
     const double kx = static_cast<double>(chart.width()) / level.width;
     const double ky = static_cast<double>(chart.height()) / level.height;
@@ -77,7 +77,7 @@ TexelRun around_sphere(const Chart& chart, std::int64_t x, std::int64_t y, const
 Border::Border(const Chart& chart, Wrap wrap) : m_chart(chart), m_wrap(wrap) {}
 
 Box Border::interior(int piece, const Source::Size& level) const noexcept {
-    if (!is_cube(m_chart.projection())) return {0, 0, level.width, level.height};
+    if (m_chart.pieces().size() == 1) return {0, 0, level.width, level.height};
     const Box& box = m_chart.pieces()[static_cast<std::size_t>(piece)].box;
     const int w = m_chart.width(), h = m_chart.height();
     Box r{scaled(box.x0, w, level.width), scaled(box.y0, h, level.height), scaled(box.x1, w, level.width),
@@ -111,8 +111,8 @@ TexelRun Border::resolve_run(std::int64_t x, std::int64_t y, int piece, const So
         case Wrap::mirror:
             return {{mirrored(x, box.x0, box.x1), mirrored(y, box.y0, box.y1)}};
         case Wrap::automatic:
-            if (is_cube(m_chart.projection()))
-                return {across_cube_edge(m_chart, static_cast<double>(x), static_cast<double>(y), piece,
+            if (m_chart.pieces().size() > 1)
+                return {across_face_edge(m_chart, static_cast<double>(x), static_cast<double>(y), piece,
                                          level, *this)};
             if (m_chart.closed() && (in_row || m_chart.reaches_poles()))
                 return run(around_sphere(m_chart, x, y, level));

@@ -77,7 +77,7 @@ class MapPainter {
     /// cube edges, which exact points do not cross, on the edge, which is nearer to them.
     Point<double> in_image(Point<double> p) const {
         const double w = m_source.width(), h = m_source.height(), period = m_source.period();
-        const bool cube = is_cube(m_source.projection());
+        const bool cube = has_faces(m_source.projection());
         if (m_source.closed() && (p.x < 0 || p.x > w)) p.x -= std::floor(p.x / period) * period;
         if (cube) p.x = std::clamp(p.x, 0.0, w);
         if (cube || m_source.reaches_poles()) p.y = std::clamp(p.y, 0.0, h);

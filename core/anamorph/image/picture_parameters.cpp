@@ -10,7 +10,7 @@ namespace {
 
 constexpr double kMaxTile = 4096;
 
-Parameter row(const char* name, ParameterType type, const char* doc) {
+Parameter row(const char* name, ParameterType type, const std::string& doc) {
     Parameter parameter;
     parameter.name = name;
     parameter.type = type;
@@ -18,7 +18,7 @@ Parameter row(const char* name, ParameterType type, const char* doc) {
     return parameter;
 }
 
-Parameter extent(const char* name, std::string value, double least, double most, const char* doc) {
+Parameter extent(const char* name, std::string value, double least, double most, const std::string& doc) {
     Parameter parameter = row(name, ParameterType::extent, doc);
     parameter.unit = "pixels";
     parameter.default_value = std::move(value);
@@ -29,7 +29,8 @@ Parameter extent(const char* name, std::string value, double least, double most,
 
 }  // namespace
 
-Parameter choice(const char* name, std::string value, std::vector<std::string> choices, const char* doc) {
+Parameter choice(const char* name, std::string value, std::vector<std::string> choices,
+                 const std::string& doc) {
     Parameter parameter = row(name, ParameterType::choice, doc);
     parameter.default_value = std::move(value);
     parameter.choices = std::move(choices);
@@ -37,7 +38,7 @@ Parameter choice(const char* name, std::string value, std::vector<std::string> c
 }
 
 Parameter number(const char* name, const char* unit, std::string value, double least, double most,
-                 const char* doc) {
+                 const std::string& doc) {
     Parameter parameter = row(name, ParameterType::number, doc);
     parameter.unit = unit;
     parameter.default_value = std::move(value);
@@ -51,30 +52,31 @@ Parameter above(Parameter number) {
     return number;
 }
 
-Parameter whole(const char* name, const char* unit, std::string value, int least, int most, const char* doc) {
+Parameter whole(const char* name, const char* unit, std::string value, int least, int most,
+                const std::string& doc) {
     Parameter parameter = number(name, unit, std::move(value), least, most, doc);
     parameter.type = ParameterType::whole;
     return parameter;
 }
 
-Parameter numbers(const char* name, double least, const char* doc) {
+Parameter numbers(const char* name, double least, const std::string& doc) {
     Parameter parameter = row(name, ParameterType::numbers, doc);
     parameter.minimum = least;
     parameter.maximum = kInfinity;
     return parameter;
 }
 
-Parameter text(const char* name, const char* doc) {
+Parameter text(const char* name, const std::string& doc) {
     return row(name, ParameterType::text, doc);
 }
-Parameter image(const char* name, const char* doc) {
+Parameter image(const char* name, const std::string& doc) {
     return row(name, ParameterType::image, doc);
 }
-Parameter file(const char* name, const char* doc) {
+Parameter file(const char* name, const std::string& doc) {
     return row(name, ParameterType::file, doc);
 }
 
-Parameter size(const char* doc) {
+Parameter size(const std::string& doc) {
     Parameter parameter = extent("size", "", 1, kMaxSide, doc);
     parameter.alias = "res";
     return parameter;
@@ -99,7 +101,7 @@ Parameter tol() {
                   "most that a source point may be off; 0: every pixel exactly");
 }
 
-Parameter colorspace(const char* doc) {
+Parameter colorspace(const std::string& doc) {
     return text("colorspace", doc);
 }
 

@@ -14,23 +14,25 @@ namespace anamorph::rows {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-Parameter choice(const char* name, std::string value, std::vector<std::string> choices, const char* doc);
+Parameter choice(const char* name, std::string value, std::vector<std::string> choices,
+                 const std::string& doc);
 Parameter number(const char* name, const char* unit, std::string value, double least, double most,
-                 const char* doc);
+                 const std::string& doc);
 /// The same without the minimum itself.
 Parameter above(Parameter number);
-Parameter whole(const char* name, const char* unit, std::string value, int least, int most, const char* doc);
-Parameter numbers(const char* name, double least, const char* doc);
-Parameter text(const char* name, const char* doc);
-Parameter image(const char* name, const char* doc);
-Parameter file(const char* name, const char* doc);
+Parameter whole(const char* name, const char* unit, std::string value, int least, int most,
+                const std::string& doc);
+Parameter numbers(const char* name, double least, const std::string& doc);
+Parameter text(const char* name, const std::string& doc);
+Parameter image(const char* name, const std::string& doc);
+Parameter file(const char* name, const std::string& doc);
 
-Parameter size(const char* doc);
+Parameter size(const std::string& doc);
 Parameter tile();
 Parameter mip();
 Parameter filter();
 Parameter tol();
-Parameter colorspace(const char* doc);
+Parameter colorspace(const std::string& doc);
 
 /// Width and height asked for by `size`: those of `natural` where none is, its shape where only a width is
 /// given.

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
+#include <map>
 
 #include "anamorph/image/picture_parameters.h"
 
@@ -17,11 +19,32 @@ const std::vector<std::string> kWraps = {"automatic", "black", "clamp", "periodi
 const std::vector<std::string> kSchemes = {"auto", "exact", "blocks", "residual"};
 const std::vector<std::string> kOutputs = {"color", "stmap", "error", "bound"};
 
-std::vector<std::string> projections() {
-    std::vector<std::string> names = {"latlong"};
-    for (int i = 0; i <= static_cast<int>(Projection::cubecross); ++i)
-        names.insert(names.end() - 1, std::string(name_of(static_cast<Projection>(i))));
-    return names;
+/// "360 for equirectangular, cylindrical; 180 for fisheye": what each projection has by default.
+std::string default_fovs() {
+    std::map<double, std::string, std::greater<>> names;
+    for (const Projection p : kProjections) {
+        std::string& list = names[fov_of(p).standard];
+        list += (list.empty() ? "" : ", ") + std::string(name_of(p));
+    }
+    std::string text;
+    for (const auto& [fov, list] : names)
+        text += (text.empty() ? "" : "; ") + std::to_string(std::lround(fov)) + " for " + list;
+    return text;
+}
+
+/// "below 180 for rectilinear, 90 for cubemap": what not every projection can have.
+std::string limited_fovs() {
+    std::string text;
+    for (const Projection p : kProjections) {
+        const FieldOfView fov = fov_of(p);
+        if (fov.most == 360 && !fov.open && !fov.fixed) continue;
+        text += (text.empty() ? "" : ", ") +
+                std::string(fov.fixed  ? ""
+                            : fov.open ? "below "
+                                       : "up to ") +
+                std::to_string(std::lround(fov.most)) + " for " + std::string(name_of(p));
+    }
+    return text;
 }
 
 ParameterTable make_table() {
@@ -31,19 +54,24 @@ ParameterTable make_table() {
             "src",
             "the source image; by default the recipe's name without .pano; in a name it stands last when it "
             "has arguments of its own"),
-        choice("from", "", projections(),
+        choice("from", "", projection_name_list(),
                "projection of the source; by default what the image says of itself, else by its shape: 2:1 "
                "equirectangular, 1:6 cubemap (anamorph:from tells what was assumed)"),
-        choice("to", "rectilinear", projections(), "projection of the picture"),
-        above(number(
-            "srcfov", "degrees", "", 0, 360,
-            "horizontal field of view of the source, edge to edge; by default what the image says of itself, "
-            "else 360 for equirectangular, cylindrical and mercator, 180 for fisheye, equisolid and "
-            "stereographic, 90 for rectilinear and cube faces")),
-        above(
-            number("fov", "degrees", "", 0, 360,
-                   "horizontal field of view of the picture, edge to edge: below 180 for rectilinear, below "
-                   "360 for stereographic, 90 for cube faces; defaults by projection as for srcfov")),
+        choice("to", "rectilinear", projection_name_list(), "projection of the picture"),
+        above(number("srcfov", "degrees", "", 0, 360,
+                     "horizontal field of view of the source, edge to edge, or of each of its faces; by "
+                     "default what the "
+                     "image says of itself, else " +
+                         default_fovs())),
+        above(number("fov", "degrees", "", 0, 360,
+                     "horizontal field of view of the picture, edge to edge, or of each of its faces: " +
+                         limited_fovs() + "; defaults by projection as for srcfov")),
+        number("srcd", "", "1", 0, Chart::kMostDistance,
+               "Pannini's distance d of the source, for from=pannini"),
+        number("d", "", "1", 0, Chart::kMostDistance,
+               "Pannini's distance d of the picture, for to=pannini: 0 is rectilinear, 1 the usual one; fov "
+               "stays "
+               "below the angle at which d + cos or 1 + d cos of its half is 0"),
         number("yaw", "degrees", "0", -kInfinity, kInfinity, "where the camera looks: to the right"),
         number("pitch", "degrees", "0", -kInfinity, kInfinity, "where the camera looks: up"),
         number("roll", "degrees", "0", -kInfinity, kInfinity,
@@ -68,29 +96,6 @@ ParameterTable make_table() {
     };
 }
 
-/// Height over width of the picture of a projection.
-double natural_aspect(Projection projection, double fov) {
-    switch (projection) {
-        case Projection::equirectangular:
-            return std::min(fov, 180.0) / fov;
-        // 90 degrees of elevation: 2 tan 45 over the azimuth.
-        case Projection::cylindrical:
-            return 2 / (fov * std::numbers::pi / 180);
-        case Projection::cubemap:
-            return 6;
-        case Projection::cubemap3x2:
-            return 2.0 / 3;
-        case Projection::cubecross:
-            return 3.0 / 4;
-        default:
-            return 1;
-    }
-}
-
-int columns_of_faces(Projection projection) {
-    return projection == Projection::cubemap3x2 ? 3 : projection == Projection::cubecross ? 4 : 1;
-}
-
 SizeValue natural_size(Projection projection, double fov, double width) {
     const double limit = kMaxSide;
     const int w = static_cast<int>(std::clamp(std::round(width), 1.0, limit));
@@ -99,13 +104,13 @@ SizeValue natural_size(Projection projection, double fov, double width) {
 }
 
 /// The picture's size where none was given: as many pixels per radian at its centre as the source has.
-SizeValue default_size(Projection projection, double fov, const Chart& source) {
+SizeValue default_size(Projection projection, double fov, double d, const Chart& source) {
     const int probe = 1200;  // holds whole faces of every cube layout
     const SizeValue shape = natural_size(projection, fov, probe);
-    const Chart chart(projection, shape.width, shape.height, fov);
-    const double width = probe * source.scale_x() / chart.scale_x();
+    const Chart chart(projection, shape.width, shape.height, fov, PixelSpacing::edges, "", d);
+    const double width = probe * source.pixels_per_radian() / chart.pixels_per_radian();
     const double most = kMaxDefaultSize / std::max(1.0, natural_aspect(projection, fov));
-    const int faces = columns_of_faces(projection);
+    const int faces = std::max(1, faces_of(projection).columns);
     const double face = std::max(1.0, std::min(std::round(width / faces), std::floor(most / faces)));
     return natural_size(projection, fov, face * faces);
 }
@@ -145,18 +150,21 @@ ReprojectRequest read_reproject_request(const ParameterValues& values, const Sou
     const bool says_fov = !values.given("srcfov") && facts.fov && facts.projection == from;
     const Chart source(from, facts.width, facts.height,
                        says_fov ? *facts.fov : field_of_view(values, "srcfov", from),
-                       chosen<PixelSpacing>(values, "pixels", kSpacings), "src");
+                       chosen<PixelSpacing>(values, "pixels", kSpacings), "src", values.number("srcd"));
 
     const Projection to = projection_from_name(values.text("to"), "to");
-    const double fov = field_of_view(values, "fov", to);
+    const double fov = field_of_view(values, "fov", to), d = values.number("d");
+    const auto chart = [&](int width, int height) {
+        return Chart(to, width, height, fov, PixelSpacing::edges, "", d);
+    };
     // Reports a field of view that the lens cannot have before a size is made of it.
     const int probe = 12;
     static_cast<void>(
-        Chart(to, probe, is_cube(to) ? static_cast<int>(probe * natural_aspect(to, fov)) : probe, fov));
+        chart(probe, has_faces(to) ? static_cast<int>(probe * natural_aspect(to, fov)) : probe));
 
     SizeValue size;
     if (!values.given("size")) {
-        size = default_size(to, fov, source);
+        size = default_size(to, fov, d, source);
     } else {
         size = values.extent("size");
         if (size.height < 0) size = natural_size(to, fov, size.width);
@@ -169,19 +177,18 @@ ReprojectRequest read_reproject_request(const ParameterValues& values, const Sou
     options.wrap = chosen<Wrap>(values, "wrap", kWraps);
     options.output = chosen<Output>(values, "output", kOutputs);
     return {source,
-            Chart(to, size.width, size.height, fov),
+            chart(size.width, size.height),
             {values.number("yaw"), values.number("pitch"), values.number("roll")},
             options,
             reason};
 }
 
 std::optional<Chart> half_size(const Chart& chart) {
-    const int columns = columns_of_faces(chart.projection());
-    const int rows = is_cube(chart.projection()) ? chart.height() / (chart.width() / columns) : 1;
+    const FaceGrid faces = faces_of(chart.projection());
+    const int columns = std::max(1, faces.columns), rows = std::max(1, faces.rows);
     const int w = chart.width() / columns, h = chart.height() / rows;
     if (w == 1 && h == 1) return {};
-    return Chart(chart.projection(), std::max(1, w / 2) * columns, std::max(1, h / 2) * rows, chart.fov(),
-                 chart.spacing());
+    return chart.resized(std::max(1, w / 2) * columns, std::max(1, h / 2) * rows);
 }
 
 }  // namespace anamorph

@@ -102,7 +102,7 @@ double Panorama::exact_error(const Interval& x, const Interval& y, int piece) co
     std::array<R, 6> along;
     double most = -HUGE_VAL;
     for (std::size_t i = 0; i < pieces && pieces > 1; ++i) {
-        const auto& f = m_source.pieces()[i].axes[2];
+        const glm::dvec3& f = m_source.pieces()[i].toward;
         along[i] = ray.x * f[0] + ray.y * f[1] + ray.z * f[2];
         most = std::max(most, lower_end(along[i]));
     }

@@ -26,6 +26,8 @@ class Panorama {
 
     const Chart& source() const { return m_source; }
     const Chart& target() const { return m_target; }
+    /// source ray = turn * target ray, by columns.
+    const std::array<std::array<Constant, 3>, 3>& turn() const { return m_turn; }
 
     /// The map about one point: a branch of either chart, and the rotation between their local rays.
     struct Local {

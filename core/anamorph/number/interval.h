@@ -20,6 +20,8 @@
 #include <cmath>
 #include <limits>
 
+#include "anamorph/number/number.h"
+
 namespace anamorph {
 
 struct Interval {
@@ -118,7 +120,9 @@ inline Interval operator*(const Interval& a, const Interval& b) {
     if (std::isnan(p + q + r + s)) return Interval::all();
     const Interval product = interval_detail::widen(std::min(std::min(p, q), std::min(r, s)),
                                                     std::max(std::max(p, q), std::max(r, s)));
-    return interval_detail::underflows(product) ? interval_detail::small_product(a, b) : product;
+    if (!interval_detail::underflows(product)) return product;
+    const bool zero = (a.lo == 0 && a.hi == 0) || (b.lo == 0 && b.hi == 0);
+    return zero ? Interval(0) : interval_detail::small_product(a, b);
 }
 inline Interval operator/(const Interval& a, const Interval& b) {
     if (!(b.lo > 0 || b.hi < 0)) return Interval::all();
@@ -246,6 +250,57 @@ inline Interval atan2(const Interval& y, const Interval& x) {
     if (angle.lo == 0 && y.lo != 0) angle.lo -= interval_detail::kSmallest;
     if (angle.hi == 0 && y.hi != 0) angle.hi += interval_detail::kSmallest;
     return angle;
+}
+
+inline Interval min(const Interval& a, const Interval& b) {
+    return {std::min(a.lo, b.lo), std::min(a.hi, b.hi)};
+}
+inline Interval max(const Interval& a, const Interval& b) {
+    return {std::max(a.lo, b.lo), std::max(a.hi, b.hi)};
+}
+
+/// Whether a condition holds for the members of an interval: for none, for all, or it is not known.
+enum class Certainty { no, yes, open };
+
+inline Certainty is_negative(const Interval& a) {
+    return a.hi < 0 ? Certainty::yes : a.lo >= 0 ? Certainty::no : Certainty::open;
+}
+/// Is this certainly the number zero?
+inline bool is_zero(const Interval& a) {
+    return a.lo == 0 && a.hi == 0;
+}
+/// Of members that are not less.
+inline Interval without_hair(const Interval& a) {
+    return {a.lo < 0 ? 0 : a.lo, a.hi < 0 ? 0 : a.hi};
+}
+inline void sin_cos(const Interval& a, Interval& s, Interval& c) {
+    s = sin(a);
+    c = cos(a);
+}
+inline Interval scaled_sinh(const Interval& a, Interval& s) {
+    s = tanh(a);
+    const Interval r = Interval(1) / cosh(a);
+    return {std::max(r.lo, kLeastScale), std::max(r.hi, kLeastScale)};
+}
+inline double enlarger(const Interval& a, const Interval& b) {
+    return enlarger(magnitude(a), magnitude(b));
+}
+inline Certainty both(Certainty a, Certainty b) {
+    if (a == Certainty::no || b == Certainty::no) return Certainty::no;
+    return a == Certainty::yes && b == Certainty::yes ? Certainty::yes : Certainty::open;
+}
+inline Certainty both(bool a, Certainty b) {
+    return a ? b : Certainty::no;
+}
+/// Members of both.
+inline Interval hull(const Interval& a, const Interval& b) {
+    if (std::isnan(a.lo + a.hi + b.lo + b.hi)) return Interval::all();
+    return {std::min(a.lo, b.lo), std::max(a.hi, b.hi)};
+}
+/// What `a` or `b` is where the condition is not known.
+template <class T>
+T select(Certainty condition, const T& a, const T& b) {
+    return condition == Certainty::yes ? a : condition == Certainty::no ? b : hull(a, b);
 }
 
 }  // namespace anamorph

@@ -9,26 +9,14 @@
 // E = s d/ds + t d/dt multiplies f_k by k, so the classic one-variable recurrences hold part by part.
 #pragma once
 
-#include <algorithm>
 #include <cmath>
-#include <limits>
 #include <type_traits>
 #include <utility>
 
 #include "anamorph/number/interval.h"
+#include "anamorph/number/number.h"
 
 namespace anamorph {
-
-/// Is this certainly the number zero?
-inline bool is_zero(double a) {
-    return a == 0;
-}
-inline bool is_zero(long double a) {
-    return a == 0;
-}
-inline bool is_zero(const Interval& a) {
-    return a.lo == 0 && a.hi == 0;
-}
 
 template <class T, int N>
 struct Jet {
@@ -96,7 +84,7 @@ ANAMORPH_UNROLLED inline T convolve(const Jet<T, N>& f, const Jet<T, N>& g, int 
             const T& left = f.c[J::part(a) + i];
             // Lines, constants and even functions are mostly zeros; intervals gain by seeing it.
             if constexpr (std::is_same_v<T, Interval>)
-                if (is_zero(left)) return;
+                if (is_zero(left) || is_zero(g.c[J::part(b) + j])) return;
             part += left * g.c[J::part(b) + j];
         });
         const int w = weight(a);
@@ -233,13 +221,6 @@ inline Jet<T, N> operator/(const Jet<T, N>& f, const Jet<T, N>& g) {
     return q;
 }
 
-inline double square(double a) {
-    return a * a;
-}
-inline long double square(long double a) {
-    return a * a;
-}
-
 /// a a, with a constant part that is never negative.
 template <class T, int N>
 inline Jet<T, N> square(const Jet<T, N>& a) {
@@ -275,14 +256,6 @@ inline void sin_cos(const Jet<T, N>& a, Jet<T, N>& s, Jet<T, N>& c) {
     c = Jet<T, N>(cos(a.c[0]));
     jet_detail::oscillate<-1>(s, c, a);
 }
-template <class T>
-requires(std::is_floating_point_v<T> || std::is_same_v<T, Interval>) inline void sin_cos(const T& a, T& s,
-                                                                                         T& c) {
-    using std::cos;
-    using std::sin;
-    s = sin(a);
-    c = cos(a);
-}
 
 /// E g = g E a, so k g_k = sum_(0<j<=k) j a_j g_(k-j)
 template <class T, int N>
@@ -305,35 +278,24 @@ inline Jet<T, N> sinh(const Jet<T, N>& a) {
     return s;
 }
 
-/// 1 / cosh(a), or where that is next to nothing the least of which products do not underflow: what it scales
-/// keeps its direction.
-inline double scaled_one(double a) {
-    return std::max(1 / std::cosh(a), 0x1p-960);
-}
-inline long double scaled_one(long double a) {
-    return std::max(1 / std::cosh(a),
-                    std::numeric_limits<long double>::min_exponent < -16000 ? 0x1p-16000L : 0x1p-960L);
-}
-inline Interval scaled_one(const Interval& a) {
-    const Interval r = Interval(1) / cosh(a);
-    return {r.lo < 0x1p-960 ? 0x1p-960 : r.lo, r.hi < 0x1p-960 ? 0x1p-960 : r.hi};
+/// a E g = E a
+template <class T, int N>
+inline Jet<T, N> log(const Jet<T, N>& a) {
+    using std::log;
+    Jet<T, N> g(log(a.c[0]));
+    jet_detail::integrate_quotient(g, jet_detail::euler(a), a);
+    return g;
 }
 
-/// sinh(a) and 1, both over cosh of a's constant part: no a overflows them.
+/// Over cosh of a's constant part.
 template <class T, int N>
-inline void scaled_sinh(const Jet<T, N>& a, Jet<T, N>& s, T& one) {
-    using std::tanh;
+inline T scaled_sinh(const Jet<T, N>& a, Jet<T, N>& s) {
+    T sine;
+    const T one = scaled_sinh(a.c[0], sine);
     Jet<T, N> c(T(1));
-    s = Jet<T, N>(tanh(a.c[0]));
-    one = scaled_one(a.c[0]);
+    s = Jet<T, N>(sine);
     jet_detail::oscillate<1>(s, c, a);
-}
-template <class T>
-requires(std::is_floating_point_v<T> || std::is_same_v<T, Interval>) inline void scaled_sinh(const T& a, T& s,
-                                                                                             T& one) {
-    using std::tanh;
-    s = tanh(a);
-    one = scaled_one(a);
+    return one;
 }
 
 /// E g sqrt(1 + a^2) = E a
@@ -380,57 +342,37 @@ inline double lower_end(const Interval& a) {
     return a.lo;
 }
 
-/// The largest magnitude of the constant part.
-inline double upper_magnitude(double a) {
-    return std::fabs(a);
-}
-inline double upper_magnitude(long double a) {
-    return static_cast<double>(std::fabs(a));
-}
-inline double upper_magnitude(const Interval& a) {
-    return magnitude(a);
+// Conditions are those of the constant part, and so is the choice between two jets.
+template <class T, int N>
+auto is_zero(const Jet<T, N>& a) {
+    return is_zero(a.c[0]);
 }
 template <class T, int N>
-double upper_magnitude(const Jet<T, N>& a) {
-    return upper_magnitude(a.c[0]);
-}
-
-/// 1 or -1: the sign of the constant part, 0 counted positive; 0 where members differ.
-inline int sign(double a) {
-    return a < 0 ? -1 : 1;
-}
-inline int sign(long double a) {
-    return a < 0 ? -1 : 1;
-}
-inline int sign(const Interval& a) {
-    return a.lo >= 0 ? 1 : a.hi < 0 ? -1 : 0;
+auto is_negative(const Jet<T, N>& a) {
+    return is_negative(a.c[0]);
 }
 template <class T, int N>
-int sign(const Jet<T, N>& a) {
-    return sign(a.c[0]);
+Jet<T, N> hull(const Jet<T, N>& a, const Jet<T, N>& b) {
+    Jet<T, N> r;
+    for (int i = 0; i < Jet<T, N>::kSize; ++i) r.c[i] = hull(a.c[i], b.c[i]);
+    return r;
 }
-
-/// What is at least 0 but for a hair: that is taken off; what is less stays negative.
-inline double without_hair(double a) {
-    return a < 0 && a > -0x1p-38 ? 0 : a;
+template <class T, int N>
+Jet<T, N> min(const Jet<T, N>& a, const Jet<T, N>& b) {
+    return select(is_negative(T(b.c[0] - a.c[0])), b, a);
 }
-inline long double without_hair(long double a) {
-    return a < 0 && a > -0x1p-38L ? 0 : a;
-}
-/// Of members that are not less.
-inline Interval without_hair(const Interval& a) {
-    return {a.lo < 0 ? 0 : a.lo, a.hi < 0 ? 0 : a.hi};
+template <class T, int N>
+Jet<T, N> max(const Jet<T, N>& a, const Jet<T, N>& b) {
+    return select(is_negative(T(a.c[0] - b.c[0])), b, a);
 }
 template <class T, int N>
 Jet<T, N> without_hair(Jet<T, N> a) {
     a.c[0] = without_hair(a.c[0]);
     return a;
 }
-
-/// Two forms of one value, where members are to be computed by either.
-template <class T>
-const T& either(const T& a, const T&) {
-    return a;
+template <class T, int N>
+double enlarger(const Jet<T, N>& a, const Jet<T, N>& b) {
+    return enlarger(a.c[0], b.c[0]);
 }
 
 /// The polynomial of `Degree` about 0 as one about `shift`, in units of `scale`, by repeated division;

@@ -10,21 +10,28 @@
 // them):
 //
 //   + - * / sqrt square             1 m
-//   sin_cos(a)  |a| <= 1e4          2 + |a| 2^-11      (absolute)
+//   sin_cos(a)  |a| <= 1e4          4 m in double; 2 + |a| 2^-11 in float (absolute)
 //   atan2                           5 m
-//   exp                             3 m                over the whole range, gradual underflow apart
-//   log                             3 m + 1
-//   sinh(a)                         4 cosh(a)
-//   asinh(a)                        4 (1 + m)
+//   exp  log                        3 m      gradual underflow apart
+//   asinh                           8 m
+//   scaled_sinh(a, s)               8 m      s; 5 m what is returned, gradual underflow apart
 //
 // NaN and infinities come out as IEEE has them for + - * / sqrt; the functions give NaN for NaN.
+
+/// The lanes for which a condition holds.
+template <class Tag>
+struct LaneMask {
+    hn::Mask<Tag> m;
+
+    friend HWY_INLINE LaneMask both(const LaneMask& a, const LaneMask& b) { return {hn::And(a.m, b.m)}; }
+};
 
 template <class Tag>
 struct Lanes {
     using D = Tag;
     using Scalar = hn::TFromD<D>;
     using V = hn::Vec<D>;
-    using M = hn::Mask<D>;
+    using M = LaneMask<D>;
     static constexpr int kCount = static_cast<int>(hn::MaxLanes(D()));
 
     V v;
@@ -49,11 +56,19 @@ struct Lanes {
     friend HWY_INLINE Lanes min(const Lanes& a, const Lanes& b) { return select(b < a, b, a); }
     friend HWY_INLINE Lanes max(const Lanes& a, const Lanes& b) { return select(a < b, b, a); }
 
-    friend HWY_INLINE M operator<(const Lanes& a, const Lanes& b) { return hn::Lt(a.v, b.v); }
-    friend HWY_INLINE M is_zero(const Lanes& a) { return hn::Eq(a.v, hn::Zero(D())); }
-    friend HWY_INLINE M is_negative(const Lanes& a) { return hn::Lt(a.v, hn::Zero(D())); }
-    friend HWY_INLINE Lanes select(M where, const Lanes& a, const Lanes& b) {
-        return Lanes(hn::IfThenElse(where, a.v, b.v));
+    friend HWY_INLINE M operator<(const Lanes& a, const Lanes& b) { return {hn::Lt(a.v, b.v)}; }
+    friend HWY_INLINE M is_zero(const Lanes& a) { return {hn::Eq(a.v, hn::Zero(D()))}; }
+    friend HWY_INLINE M is_negative(const Lanes& a) { return {hn::Lt(a.v, hn::Zero(D()))}; }
+    friend HWY_INLINE Lanes without_hair(const Lanes& a) {
+        return select(both(is_negative(a), Lanes(-0x1p-38) < a), Lanes(0), a);
+    }
+    friend HWY_INLINE Lanes enlarger(const Lanes& a, const Lanes& b) {
+        constexpr bool kDouble = sizeof(Scalar) == 8;
+        return select(max(abs(a), abs(b)) < Lanes(kDouble ? 0x1p-400 : 0x1p-50),
+                      Lanes(kDouble ? 0x1p500 : 0x1p60), Lanes(1));
+    }
+    friend HWY_INLINE Lanes select(const M& where, const Lanes& a, const Lanes& b) {
+        return Lanes(hn::IfThenElse(where.m, a.v, b.v));
     }
 };
 
@@ -87,11 +102,18 @@ HWY_INLINE void sin_cos_of_eighths(const Lanes<D>& r, Lanes<D>& s, Lanes<D>& c) 
     }
 }
 
+/// The lanes in which a whole number has a bit.
+template <class D>
+HWY_INLINE LaneMask<D> has_bit(hn::Vec<hn::RebindToSigned<D>> n, int bit) {
+    const hn::RebindToSigned<D> di;
+    const auto b = hn::Set(di, bit);
+    return {hn::MaskFromVec(hn::BitCast(D(), hn::VecFromMask(di, hn::Eq(hn::And(n, b), b))))};
+}
+
 /// Takes off quarters of a turn, in parts of pi / 2 that have as many bits less as the count of quarters may
 /// have; then by quadrant.
 template <class D>
 HWY_INLINE void sin_cos(const Lanes<D>& a, Lanes<D>& sine, Lanes<D>& cosine) {
-    const D d;
     const hn::RebindToSigned<D> di;
     const Lanes<D> quarters(hn::Round((a * 0.63661977236758134308).v));
     Lanes<D> r;
@@ -104,14 +126,10 @@ HWY_INLINE void sin_cos(const Lanes<D>& a, Lanes<D>& sine, Lanes<D>& cosine) {
     Lanes<D> s, c;
     sin_cos_of_eighths(r, s, c);
     const auto n = hn::ConvertTo(di, quarters.v);
-    const auto one = hn::Set(di, 1), two = hn::Set(di, 2);
-    const auto odd = hn::MaskFromVec(hn::BitCast(d, hn::VecFromMask(di, hn::Eq(hn::And(n, one), one))));
-    const auto bit = [&](auto count) HWY_ATTR {
-        return hn::MaskFromVec(hn::BitCast(d, hn::VecFromMask(di, hn::Eq(hn::And(count, two), two))));
-    };
+    const LaneMask<D> odd = has_bit<D>(n, 1);
     const Lanes<D> plain_sine = select(odd, c, s), plain_cosine = select(odd, s, c);
-    sine = select(bit(n), -plain_sine, plain_sine);
-    cosine = select(bit(hn::Add(n, one)), -plain_cosine, plain_cosine);
+    sine = select(has_bit<D>(n, 2), -plain_sine, plain_sine);
+    cosine = select(has_bit<D>(hn::Add(n, hn::Set(di, 1)), 2), -plain_cosine, plain_cosine);
 }
 
 /// The angle of (x, y). With p <= q the two magnitudes: atan(p / q), or beyond tan(pi / 8)
@@ -214,19 +232,40 @@ HWY_INLINE Lanes<D> log(const Lanes<D>& a) {
     return select(a < infinite, ended, a);
 }
 
+/// log(1 + a) for a >= 0: what rounding takes from 1 + a = w is made good by a / (w - 1) (Kahan).
 template <class D>
-HWY_INLINE Lanes<D> sinh(const Lanes<D>& a) {
-    const Lanes<D> e = exp(abs(a) * 0.5);
-    // e^|a| as a square, so that it overflows no sooner than the result.
-    return Lanes<D>(hn::CopySign(((e * 0.5) * e - Lanes<D>(0.5) / e / e).v, a.v));
+HWY_INLINE Lanes<D> log_of_one_more(const Lanes<D>& a) {
+    using L = Lanes<D>;
+    const L w = a + L(1), rest = w - L(1);
+    return select(is_zero(rest), a, log(w) * (a / select(is_zero(rest), L(1), rest)));
 }
+/// e^a - 1 for a <= 0, likewise.
+template <class D>
+HWY_INLINE Lanes<D> exp_less_one(const Lanes<D>& a) {
+    using L = Lanes<D>;
+    const L w = exp(a), rest = w - L(1), logarithm = log(w);
+    // Where e^a is 1 it is a; where next to nothing, -1.
+    const L value = rest * (a / select(is_zero(logarithm), L(1), logarithm));
+    return select(is_zero(rest), a, select(a < L(-30), rest, value));
+}
+
+/// log(1 + b + b^2 / (1 + sqrt(1 + b^2))) for b = |a|; beyond 2^30 the 1 is lost, and squares would overflow.
 template <class D>
 HWY_INLINE Lanes<D> asinh(const Lanes<D>& a) {
-    const Lanes<D> b = abs(a);
-    // Beyond 2^30 the 1 is lost, and squares would overflow.
-    const auto large = Lanes<D>(0x1p30) < b;
-    const Lanes<D> c = select(large, Lanes<D>(0), b);
-    const Lanes<D> value =
-        select(large, log(b) + Lanes<D>(0.69314718055994530942), log(c + sqrt(c * c + Lanes<D>(1))));
-    return Lanes<D>(hn::CopySign(value.v, a.v));
+    using L = Lanes<D>;
+    const L b = abs(a);
+    const LaneMask<D> large = L(0x1p30) < b;
+    const L c = select(large, L(0), b), c2 = c * c;
+    const L value =
+        select(large, log(b) + L(0.69314718055994530942), log_of_one_more(c + c2 / (L(1) + sqrt(c2 + L(1)))));
+    return L(hn::CopySign(value.v, a.v));
+}
+
+/// With m = e^-2|a| - 1: tanh |a| = -m / (m + 2), and 1 / cosh(a) = 2 e^-|a| / (m + 2).
+template <class D>
+HWY_INLINE Lanes<D> scaled_sinh(const Lanes<D>& a, Lanes<D>& s) {
+    using L = Lanes<D>;
+    const L b = abs(a), m = exp_less_one(b * -2.0), over = m + L(2);
+    s = L(hn::CopySign((-m / over).v, a.v));
+    return max(exp(-b) * 2.0 / over, L(sizeof(hn::TFromD<D>) == 8 ? kLeastScale : 0x1p-100));
 }

@@ -7,10 +7,10 @@
 //
 // With a radius it stands for jets too. Jet<Real, N> at a point of the box has the exact coefficients a_ij
 // and computed ones; a_00 lies in `range`, the sum of the other |a_ij| is at most `radius`, and the sum of
-// all |computed - exact| at most `error`. With |a| the sum of all |a_ij|, |a b| <= |a| |b|, so that jets can
-// be bounded like numbers: a power series of a_00 + n has no larger norm than the series of magnitudes at |n|
-// <= radius. What a recurrence of number/jet.h computes solves its equation up to a residual, which is kSum
-// times what was summed up; the error is the residual times the inverse of what it is divided by.
+// all |computed - exact| at most `error`. With |a| the sum of all |a_ij|, |a b| <= |a| |b|, so that jets can be
+// bounded like numbers: a power series of a_00 + n has no larger norm than the series of magnitudes at
+// |n| <= radius. What a recurrence of number/jet.h computes solves its equation up to a residual, which is
+// kSum times what was summed up; the error is the residual times the inverse of what it is divided by.
 //
 // Angles are meant modulo a turn: where atan2 jumps by one, no error is counted.
 //
@@ -104,8 +104,8 @@ inline double least_magnitude(const Interval& a) {
 
 /// What recurrences add to functions that solve E u = v E a, E v = -+ u E a, E the operator that multiplies
 /// degree k by k: u and v are sums of exp(+-c a), c = 1 or i, each of norm at most exp(r) relative to its
-/// constant part; the residual of the equations is kSum kDegree r exp(r) for each, and it is divided by u + c
-/// v and multiplied by it again.
+/// constant part; the residual of the equations is kSum kDegree r exp(r) for each, and it is divided by u + c v
+/// and multiplied by it again.
 template <class Real>
 double oscillation_error(double r) {
     using R = Rounded<Real>;
@@ -189,21 +189,21 @@ void sin_cos(const Rounded<Real>& a, Rounded<Real>& s, Rounded<Real>& c) {
     s = a.is_zero() ? a : wave(sin(a.range));
     c = wave(cos(a.range));
 }
-/// As for Jet: sinh(a) and 1, both over cosh of a's constant part.
+/// As for Jet: over cosh of a's constant part.
 template <class Real>
-void scaled_sinh(const Rounded<Real>& a, Rounded<Real>& s, Rounded<Real>& one) {
+Rounded<Real> scaled_sinh(const Rounded<Real>& a, Rounded<Real>& s) {
     using R = Rounded<Real>;
     const double grown = std::exp(a.radius), moved = a.error * grown * std::exp(a.error);
     const Interval t = tanh(a.range), sech = Interval(1) / cosh(a.range);
     // Below this a number is computed that is as large instead.
-    const double least = sech.lo < 0x1p-959 ? 0x1p-959 : 0;
+    const double least = sech.lo < 2 * kLeastScale ? 2 * kLeastScale : 0;
     s = rounded_detail::result<Real>(t, grown - 1,
                                      moved + rounded_detail::oscillation_error<Real>(a.radius) +
                                          R::kLibm * (a.is_jet() ? grown : magnitude(t)),
                                      0);
     if (a.is_zero()) s = a;
     // |sech'| <= sech
-    one = rounded_detail::result<Real>(sech, 0, magnitude(sech) * (moved + R::kLibm) + least, 2 * R::kUnit);
+    return rounded_detail::result<Real>(sech, 0, magnitude(sech) * (moved + R::kLibm) + least, 2 * R::kUnit);
 }
 /// sqrt(1 + a^2) E g = E a
 template <class Real>
@@ -263,35 +263,50 @@ template <class Real>
 bool is_zero(const Rounded<Real>& a) {
     return a.is_zero();
 }
-template <class Real>
-const Rounded<Real>& constant_part(const Rounded<Real>& a) {
-    return a;
-}
-template <class Real>
-double upper_magnitude(const Rounded<Real>& a) {
-    return a.computed_size();
-}
 /// The least of all exact and all computed values.
 template <class Real>
 double lower_end(const Rounded<Real>& a) {
     return a.range.lo - a.radius - a.error;
 }
-/// The sign of all exact and all computed values; 0 where they differ.
+/// Of all exact and all computed values.
 template <class Real>
-int sign(const Rounded<Real>& a) {
+Certainty is_negative(const Rounded<Real>& a) {
     const double off = a.radius + a.error;
-    return a.range.lo - off >= 0 ? 1 : a.range.hi + off < 0 ? -1 : 0;
+    return is_negative(Interval(a.range.lo - off, a.range.hi + off));
 }
-/// Of values that are not less.
 template <class Real>
 Rounded<Real> without_hair(const Rounded<Real>& a) {
     return {without_hair(a.range), a.radius, a.error};
 }
-/// Computed in one of two ways of the same value.
 template <class Real>
-Rounded<Real> either(const Rounded<Real>& a, const Rounded<Real>& b) {
-    const auto larger = [](double p, double q) { return p >= q || std::isnan(p) ? p : q; };
-    return {a.range, larger(a.radius, b.radius), larger(a.error, b.error)};
+double enlarger(const Rounded<Real>& a, const Rounded<Real>& b) {
+    return enlarger(a.computed_size(), b.computed_size());
+}
+
+namespace rounded_detail {
+inline double larger(double a, double b) {
+    return a >= b || std::isnan(a) ? a : b;
+}
+}  // namespace rounded_detail
+
+/// One of two, which are the same where rounding decides between them.
+template <class Real>
+Rounded<Real> hull(const Rounded<Real>& a, const Rounded<Real>& b) {
+    return {hull(a.range, b.range), rounded_detail::larger(a.radius, b.radius),
+            rounded_detail::larger(a.error, b.error)};
+}
+/// No further off than the one that is further off.
+template <class Real>
+Rounded<Real> min(const Rounded<Real>& a, const Rounded<Real>& b) {
+    Rounded<Real> r = hull(a, b);
+    r.range = min(a.range, b.range);
+    return r;
+}
+template <class Real>
+Rounded<Real> max(const Rounded<Real>& a, const Rounded<Real>& b) {
+    Rounded<Real> r = hull(a, b);
+    r.range = max(a.range, b.range);
+    return r;
 }
 
 /// A constant of a formula: a number known better than double holds it, for every number that formulas are

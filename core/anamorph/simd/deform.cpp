@@ -9,6 +9,8 @@
 #include <type_traits>
 #include <vector>
 
+#include "anamorph/number/number.h"
+
 #include "hwy/foreach_target.h"  // must come before highway.h
 #include "hwy/highway.h"
 
@@ -77,7 +79,7 @@ struct Slope {
 };
 
 HWY_INLINE L ZeroUnless(L::M inside, const L& a) {
-    return L(hn::IfThenElseZero(inside, a.v));
+    return L(hn::IfThenElseZero(inside.m, a.v));
 }
 HWY_INLINE Slope ZeroUnless(L::M inside, const Slope& a) {
     return {ZeroUnless(inside, a.value), ZeroUnless(inside, a.by)};
@@ -106,7 +108,7 @@ HWY_INLINE T FactorOf(const AxisKernel& kernel, const L& t) {
 template <class T>
 HWY_INLINE T CutFactorOf(const AxisKernel& kernel, const L& t) {
     const T factor = FactorOf<T>(kernel, t);
-    return kernel.gaussian ? ZeroUnless(hn::Le(abs(t).v, hn::Set(D(), kernel.reach)), factor) : factor;
+    return kernel.gaussian ? ZeroUnless(L::M{hn::Le(abs(t).v, hn::Set(D(), kernel.reach))}, factor) : factor;
 }
 
 void AxisFactors(const AxisKernel& kernel, const double* x, int count, double* out, double* slope) {
@@ -280,8 +282,8 @@ struct AtPoints {
           down{term.center[1], term.inverse_extent[1], term.reach, term.gaussian},
           x(DistanceOf(across, u)),
           y(DistanceOf(down, v)),
-          inside(hn::And(hn::Le(abs(x).v, hn::Set(D(), term.reach)),
-                         hn::Le(abs(y).v, hn::Set(D(), term.reach)))) {}
+          inside{hn::And(hn::Le(abs(x).v, hn::Set(D(), term.reach)),
+                         hn::Le(abs(y).v, hn::Set(D(), term.reach)))} {}
 };
 
 void DeformPoints(const PointTerm* const* terms, std::size_t term_count, const double* u, const double* v,
@@ -296,7 +298,7 @@ void DeformPoints(const PointTerm* const* terms, std::size_t term_count, const d
         for (std::size_t k = 0; k < term_count; ++k) {
             const PointTerm& term = *terms[k];
             const AtPoints at(term, pu, pv);
-            if (hn::AllFalse(d, at.inside)) continue;
+            if (hn::AllFalse(d, at.inside.m)) continue;
             // Factors and products as on grids, so that a point gets the same bits there and here.
             const L across = FactorOf<L>(at.across, at.x), row = FactorOf<L>(at.down, at.y);
             const L f = ZeroUnless(at.inside, term.gaussian ? across : wendland_of(across + row));
@@ -347,7 +349,7 @@ void AddPointSlopes(const PointTerm* const* terms, std::size_t term_count, const
         for (int c = 0; c < 6; ++c) sum[c] = L::load(sums[c] + i);
         for (std::size_t k = 0; k < term_count; ++k) {
             const AtPoints at(*terms[k], pu, pv);
-            if (hn::AllFalse(D(), at.inside)) continue;
+            if (hn::AllFalse(D(), at.inside.m)) continue;
             Slope across = FactorOf<Slope>(at.across, at.x);
             if (terms[k]->gaussian) across = ZeroUnless(at.inside, across);
             AddSlopes(across, FactorOf<Slope>(at.down, at.y), terms[k]->gaussian, terms[k]->units, sum);
@@ -359,7 +361,7 @@ void AddPointSlopes(const PointTerm* const* terms, std::size_t term_count, const
 /// Of length 1; 0 for what has no length, or none that is finite.
 HWY_INLINE Triple<L> UnitOf(const Triple<L>& a) {
     const L length = sqrt(dot_product(a, a)), inverse = L(1.0) / length;
-    const auto good = hn::And(hn::Gt(length.v, hn::Zero(D())), hn::Lt(length.v, hn::Set(D(), HUGE_VAL)));
+    const L::M good = both(L(0.0) < length, length < L(HUGE_VAL));
     return {ZeroUnless(good, a.x * inverse), ZeroUnless(good, a.y * inverse),
             ZeroUnless(good, a.z * inverse)};
 }

@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: Apache-2.0
+// Points of a picture, rays, and the derivative of a map between pictures.
+#pragma once
+
+#include <glm/mat3x3.hpp>
+#include <type_traits>
+
+#include "anamorph/number/rounded.h"
+
+namespace anamorph {
+
+/// In pixels, x right, y down; the centre of the first pixel is (0.5, 0.5). Or in the units of a plane.
+template <class T>
+struct Point {
+    T x, y;
+};
+inline Point<double> operator+(const Point<double>& a, const Point<double>& b) {
+    return {a.x + b.x, a.y + b.y};
+}
+inline Point<double> operator-(const Point<double>& a, const Point<double>& b) {
+    return {a.x - b.x, a.y - b.y};
+}
+inline Point<double> operator*(const Point<double>& a, double k) {
+    return {a.x * k, a.y * k};
+}
+
+/// Source pixels (level 0) that the source point moves per target pixel: right, (x_i, y_i), and down, (x_j,
+/// y_j).
+struct Jacobian {
+    double x_i = 1, y_i = 0, x_j = 0, y_j = 1;
+};
+
+/// A direction of any length: x right, y down, z forward.
+template <class T>
+struct Ray {
+    T x, y, z;
+};
+
+/// matrix * ray, with entry(column, row) of the matrix.
+template <class T, class Entry>
+requires(std::is_invocable_v<Entry, int, int>) Ray<T> transform(const Entry& entry, const Ray<T>& ray) {
+    const auto row = [&](int i) -> T {
+        return ray.x * entry(0, i) + ray.y * entry(1, i) + ray.z * entry(2, i);
+    };
+    return {row(0), row(1), row(2)};
+}
+/// Of a matrix whose entries are off by `error` at most.
+template <class T>
+Ray<T> transform(const glm::dmat3& matrix, const Ray<T>& ray, double error = 0) {
+    return transform([&](int column, int row) { return measured<T>(matrix[column][row], error); }, ray);
+}
+
+}  // namespace anamorph

@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: Apache-2.0
+// Two equidistant fisheyes side by side, as cameras with two lenses write them: the back on the left, the front on the
+// right (ffmpeg's v360 calls it dfisheye). The field of view is that of one of them.
+#ifdef ANAMORPH_PROJECTION
+ANAMORPH_PROJECTION(dual_fisheye, DualFisheye)
+#else
+
+struct DualFisheye : Fisheye {
+    static constexpr int columns = 2, rows = 1;
+
+    static double aspect(double) { return 0.5; }
+    static std::vector<Face> faces() {
+        return {{anamorph::faces::kBack, 0, 0}, {anamorph::faces::kFront, 1, 0}};
+    }
+
+    /// Each lens sees a circle, and no further than right behind.
+    template <class T>
+    static T inside(const Point<T>& p, const Setting& s) {
+        const double radius = std::min(s.half_width, std::numbers::pi);
+        return 1 * kSlack - (square(p.x) + square(p.y)) * (1 / (radius * radius));
+    }
+    /// Each shows its half.
+    template <class T>
+    static T sees(const Ray<T>& r, const Setting&) {
+        return r.z;
+    }
+};
+
+#endif

@@ -1,0 +1,131 @@
+// SPDX-License-Identifier: Apache-2.0
+// What projections of one family share. Without a guard and a namespace, as list.h says.
+#ifndef ANAMORPH_PROJECTION
+
+inline constexpr long double kDegree = std::numbers::pi_v<long double> / 180;
+
+/// tan of an angle of 0 to 90 degrees; the nearer to 90, the more the angle's distance from it matters, which
+/// is exact.
+inline long double tan_of(long double degrees) {
+    return degrees > 45 ? 1 / std::tan((90 - degrees) * kDegree) : std::tan(degrees * kDegree);
+}
+
+/// The defaults. `ray` and `point` are what a projection has to give:
+///   Ray<T> ray(const Point<T>& plane, const Setting&)     the local ray of a point of the plane
+///   Point<T> point(const Ray<T>& local, const Setting&)   the point of the plane of a local ray
+struct AnyProjection {
+    /// A second name.
+    static constexpr std::string_view alias = "";
+    static constexpr Counted counted = Counted::none;
+    /// Faces across and down the picture; each is square. 0: the picture is one piece of any shape.
+    static constexpr int columns = 0, rows = 0;
+    static std::vector<Face> faces() { return {}; }
+    /// Where the centre of a face stands in the plane, along x: -1 for a left one, 1 for a right one; and y.
+    static constexpr double face_centre = 0;
+    /// Rows of a full turn close on themselves at a column.
+    static constexpr bool closes = false;
+    /// The first and last row of a full picture are the poles.
+    static constexpr bool has_pole_rows = false;
+
+    /// The width of the plane that a field of view in degrees covers.
+    static long double width(long double degrees, const Setting&) { return degrees * kDegree; }
+    /// Of a lens that shows what is straight behind all around its rim: the width of its whole plane.
+    static constexpr double diameter = HUGE_VAL;
+    /// The largest tangent of a ray in the corner of a plane of twice this size; 0: there is no limit.
+    static double largest_tangent(double, double) { return 0; }
+    /// The field of view's limits where they depend on the setting.
+    static double most_fov(const FieldOfView& fov, const Setting&) { return fov.most; }
+    /// Units of the plane for a radian straight ahead.
+    static constexpr double per_radian = 1;
+    /// Height over width of a picture of a field of view in degrees.
+    static double aspect(double) { return 1; }
+
+    /// A hair over a limit still counts, so that the last pixel of a full picture is never lost to rounding.
+    static constexpr double kSlack = 1 + 1e-12;
+    /// >= 0 where a point of the plane has a ray.
+    template <class T>
+    static T inside(const Point<T>&, const Setting&) {
+        return T(1);
+    }
+    /// > 0 where a local ray is seen, and lies on the face it is local to. A lens that cannot see all
+    /// directions ends where their tangents are as large as the setting's reach.
+    template <class T>
+    static T sees(const Ray<T>&, const Setting&) {
+        return T(1);
+    }
+    /// Zero only where the formulas have a crease: of the plane, and among local rays.
+    template <class T>
+    static T plane_crease(const Point<T>&) {
+        return T(1);
+    }
+    template <class T>
+    static T ray_crease(const Ray<T>&) {
+        return T(1);
+    }
+};
+
+/// X is the azimuth.
+struct CylinderFamily : AnyProjection {
+    static constexpr Counted counted = Counted::azimuth;
+    static constexpr FieldOfView fov{360, 360};
+    static constexpr bool closes = true;
+};
+
+/// The radius is a function of the angle t from the axis.
+struct AxisFamily : AnyProjection {
+    static constexpr FieldOfView fov{180, 360};
+};
+
+/// On a flat picture a ray stands where it meets the plane z = 1.
+struct FlatFamily : AnyProjection {
+    template <class T>
+    static Ray<T> ray(const Point<T>& p, const Setting&) {
+        return {p.x, p.y, T(1)};
+    }
+    template <class T>
+    static Point<T> point(const Ray<T>& r, const Setting&) {
+        return {r.x / r.z, r.y / r.z};
+    }
+};
+
+/// Six faces, on each of which the forward component of a ray is the largest.
+struct CubeFamily : FlatFamily {
+    static constexpr FieldOfView fov{90, 90, false, true};
+
+    static long double width(long double, const Setting&) { return 2; }
+
+    template <class T>
+    static T sees(const Ray<T>& r, const Setting&) {
+        return min(min(r.z - r.x, r.z + r.x), min(r.z - r.y, r.z + r.y));
+    }
+};
+
+/// The angle of (across, ahead), counted from `along`.
+template <class T>
+T tilt(const T& across, const T& ahead, const Heading& along) {
+    const auto cos = measured<T>(along.cos, along.error), sin = measured<T>(along.sin, along.error);
+    return atan2(T(across * cos - ahead * sin), T(ahead * cos + across * sin)) + along.angle;
+}
+
+/// The same ray, longer where the squares of x and z would underflow.
+template <class T>
+Ray<T> with_squares(const Ray<T>& r) {
+    const auto k = enlarger(r.x, r.z);
+    return {r.x * k, r.y * k, r.z * k};
+}
+
+/// The length of a ray across the vertical axis.
+template <class T>
+T across_length(const Ray<T>& r) {
+    return sqrt(T(square(r.x) + square(r.z)));
+}
+
+/// n + z for n^2 = rho^2 + z^2, without cancelling where z is negative.
+template <class T>
+T add_to_length(const T& n, const T& z, const T& rho_squared) {
+    const auto behind = is_negative(z);
+    // Only one of the two divisors is used, and it is at least n.
+    return select(behind, T(rho_squared / (n + select(behind, T(-z), z))), T(n + z));
+}
+
+#endif

@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: Apache-2.0
+// Fisheye, equidistant: the radius is t, the angle from the axis.
+#ifdef ANAMORPH_PROJECTION
+ANAMORPH_PROJECTION(fisheye, Fisheye)
+#else
+
+struct Fisheye : AxisFamily {
+    static constexpr Counted counted = Counted::axis;
+    static constexpr double diameter = 2 * std::numbers::pi;
+
+    template <class T>
+    static T inside(const Point<T>& p, const Setting&) {
+        return std::numbers::pi * std::numbers::pi * kSlack - (square(p.x) + square(p.y));
+    }
+    /// sin t along the radius, cos t along the axis.
+    template <class T>
+    static Ray<T> ray(const Point<T>& p, const Setting& s) {
+        const auto cos = measured<T>(s.around.cos, s.around.error),
+                   sin = measured<T>(s.around.sin, s.around.error);
+        const T u = p.x * cos + p.y * sin, v = p.y * cos - p.x * sin;
+        const T r = sqrt(T(square(u) + square(v)));
+        T st, ct;
+        sin_cos(r, st, ct);
+        const T k = select(is_zero(r), T(1), T(st / r));
+        return {u * k, v * k, ct};
+    }
+    /// Straight ahead t / rho is 1 / z; straight behind it is all of the rim, of which one point is taken.
+    template <class T>
+    static Point<T> point(const Ray<T>& r, const Setting& s) {
+        const T rho = sqrt(T(square(r.x) + square(r.y)));
+        const auto on_axis = is_zero(rho);
+        const T k = select(on_axis, T(T(1) / r.z), T(tilt(rho, r.z, s.along) / rho));
+        const auto cos = measured<T>(s.around.cos, s.around.error),
+                   sin = measured<T>(s.around.sin, s.around.error);
+        const auto behind = both(on_axis, is_negative(r.z));
+        return {select(behind, T(kHalfTurn.as<T>()), T((r.x * cos - r.y * sin) * k)),
+                select(behind, T(0), T((r.y * cos + r.x * sin) * k))};
+    }
+
+  private:
+    static inline const Constant kHalfTurn{std::numbers::pi_v<long double>};
+};
+
+#endif

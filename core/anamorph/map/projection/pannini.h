@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: Apache-2.0
+// The general Pannini projection (Sharpless, Postle and German 2010) with distance d: a cylinder seen from d behind its
+// axis. With S = (d + 1) / (d + cos a): X = S sin a, Y = S tan e. d = 0 is rectilinear.
+#ifdef ANAMORPH_PROJECTION
+ANAMORPH_PROJECTION(pannini, Pannini)
+#else
+
+struct Pannini : AnyProjection {
+    static constexpr FieldOfView fov{180, 360, true};
+
+    /// cos a stays above this: nearer to the back the picture turns round (d > 1) or its scale has no end.
+    static double least_cosine(const Setting& s) { return -std::min(s.d, 1 / s.d); }
+    static double most_fov(const FieldOfView& most, const Setting& s) {
+        return std::min(most.most, 2 * std::acos(least_cosine(s)) * 180 / std::numbers::pi);
+    }
+    static long double width(long double degrees, const Setting& s) {
+        const long double half = degrees / 2 * kDegree;
+        return 2 * (s.d + 1.0L) * std::sin(half) / (s.d + std::cos(half));
+    }
+    static double largest_tangent(double half_width, double half_height) {
+        return std::max(half_width, half_height);
+    }
+
+    /// Of d > 1, a picture ends where the cylinder's far side begins: X^2 (d^2 - 1) = (d + 1)^2.
+    template <class T>
+    static T inside(const Point<T>& p, const Setting& s) {
+        const double k = (s.d - 1) / (s.d + 1);
+        return 1 * kSlack - square(p.x) * k;
+    }
+    template <class T>
+    static T sees(const Ray<T>& r, const Setting& s) {
+        const T rho = across_length(r), far = (rho * s.d + r.z) * s.reach;
+        return min(min(T(r.z - rho * least_cosine(s)), min(T(far - r.x), T(far + r.x))),
+                   min(T(far - r.y), T(far + r.y)));
+    }
+    /// With k = X^2 / (d + 1)^2: (k + 1) cos a = sqrt(1 + k - k d^2) - k d, from X (d + cos a) = (d + 1) sin a.
+    template <class T>
+    static Ray<T> ray(const Point<T>& p, const Setting& s) {
+        const T k = square(p.x) * (1 / ((s.d + 1) * (s.d + 1)));
+        const T cosine = (sqrt(without_hair(T(1.0 + k * ((1 - s.d) * (1 + s.d))))) - k * s.d) / (k + 1.0);
+        const T per_s = (cosine + s.d) * (1 / (s.d + 1));
+        return {p.x * per_s, p.y * per_s, cosine};
+    }
+    template <class T>
+    static Point<T> point(const Ray<T>& r, const Setting& s) {
+        const T k = T(s.d + 1) / (across_length(r) * s.d + r.z);
+        return {r.x * k, r.y * k};
+    }
+};
+
+#endif
