@@ -205,7 +205,7 @@ HWY_INLINE Lanes<D> log(const Lanes<D>& a) {
     const D d;
     const hn::RebindToSigned<D> di;
     constexpr bool kDouble = sizeof(hn::TFromD<D>) == 8;
-    constexpr int kBits = kDouble ? 52 : 23, kBias = kDouble ? 1023 : 127;
+    constexpr int kBits = kDouble ? 52 : 23;
     // What is less than normal is made larger first.
     const auto tiny = a < L(kDouble ? 0x1p-1022 : 0x1p-126);
     const L x = select(tiny, a * (kDouble ? 0x1p54 : 0x1p25), a);
@@ -217,7 +217,6 @@ HWY_INLINE Lanes<D> log(const Lanes<D>& a) {
     const auto n = hn::ShiftRight<kBits>(hn::Sub(bits, offset));
     const L m(hn::BitCast(d, hn::Sub(bits, hn::ShiftLeft<kBits>(n))));
     const L exponent = L(hn::ConvertTo(d, n)) - select(tiny, L(kDouble ? 54 : 25), L(0));
-    static_cast<void>(kBias);
     constexpr double kR[] = {6.666666666666735130e-01, 3.999999999940941908e-01, 2.857142874366239149e-01,
                              2.222219843214978396e-01, 1.818357216161805012e-01, 1.531383769920937332e-01,
                              1.479819860511658591e-01};
