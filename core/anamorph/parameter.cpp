@@ -50,14 +50,14 @@ std::optional<int> to_whole(std::string_view text) {
     return value;
 }
 
-std::optional<SizeValue> to_extent(std::string_view text) {
+std::optional<Size> to_extent(std::string_view text) {
     const std::size_t cross = text.find_first_of("xX");
     const std::optional<int> width = to_whole(text.substr(0, cross));
     if (!width) return {};
-    if (cross == std::string_view::npos) return SizeValue{*width, -1};
+    if (cross == std::string_view::npos) return Size{*width, -1};
     const std::optional<int> height = to_whole(text.substr(cross + 1));
     if (!height) return {};
-    return SizeValue{*width, *height};
+    return Size{*width, *height};
 }
 
 /// "1,2.5,-3", with or without blanks
@@ -93,7 +93,7 @@ bool is_allowed(const Parameter& parameter, const std::string& value) {
             return std::find(parameter.choices.begin(), parameter.choices.end(), value) !=
                    parameter.choices.end();
         case ParameterType::extent: {
-            const std::optional<SizeValue> v = to_extent(value);
+            const std::optional<Size> v = to_extent(value);
             const bool one = value.find_first_of("xX") == std::string::npos;
             return v && in_range(v->width) && (one || in_range(v->height));
         }
@@ -273,8 +273,8 @@ std::vector<double> ParameterValues::numbers(std::string_view name) const {
     return *values;
 }
 
-SizeValue ParameterValues::extent(std::string_view name) const {
-    const std::optional<SizeValue> value = to_extent(text(name));
+Size ParameterValues::extent(std::string_view name) const {
+    const std::optional<Size> value = to_extent(text(name));
     if (!value) throw Error(std::string(name), text(name), "must be N or NxM");
     return *value;
 }

@@ -18,6 +18,7 @@
 #include <vector>
 
 #include "anamorph/error.h"
+#include "anamorph/geometry/size.h"
 
 namespace anamorph {
 
@@ -52,11 +53,6 @@ struct Parameter {
 
 using ParameterTable = std::vector<Parameter>;
 
-/// A width and a height; the height is -1 where only one number was given.
-struct SizeValue {
-    int width = 0, height = -1;
-};
-
 /// One `key=value`, as written.
 struct Assignment {
     std::string key, value;
@@ -80,7 +76,8 @@ class ParameterValues {
     int whole(std::string_view name) const;
     std::vector<double> numbers(std::string_view name) const;
     bool toggle(std::string_view name) const { return text(name) == "1"; }
-    SizeValue extent(std::string_view name) const;
+    /// Its height is -1 where only one number was given.
+    Size extent(std::string_view name) const;
 
     /// All values as one text, which differs where any value does; `without`: the names of those left out.
     std::string key(const std::vector<std::string>& without = {}) const;

@@ -10,6 +10,7 @@
 
 #include "anamorph/error.h"
 #include "anamorph/figure/frame.h"
+#include "anamorph/parallel_for.h"
 
 namespace anamorph::command {
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "anamorph/error.h"
+#include "anamorph/parallel_for.h"
 
 namespace anamorph::command {
 

@@ -8,8 +8,8 @@
 #include <string_view>
 
 #include "anamorph/error.h"
-#include "anamorph/image/pixel.h"
 #include "anamorph/parameter.h"
+#include "anamorph/render/pixel.h"
 
 namespace anamorph {
 namespace {
@@ -254,7 +254,7 @@ void CacheSource::read_levels(const SpecOf& spec_of, const std::function<std::st
     why_not();  // a level that is not there is no error
 }
 
-Source::Size CacheSource::size(int level) const noexcept {
+Size CacheSource::size(int level) const noexcept {
     const Frame& f = m_levels[static_cast<std::size_t>(level)].frame;
     return {f.width, f.height};
 }

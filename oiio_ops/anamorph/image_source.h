@@ -17,7 +17,7 @@
 #include <string>
 #include <vector>
 
-#include "anamorph/image/source.h"
+#include "anamorph/render/source.h"
 
 namespace anamorph {
 

@@ -4,8 +4,8 @@
 
 #include <OpenImageIO/imageio.h>
 
-#include "anamorph/image/reproject_parameters.h"
 #include "anamorph/operation.h"
+#include "anamorph/render/reproject_parameters.h"
 
 namespace anamorph {
 

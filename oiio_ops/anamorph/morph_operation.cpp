@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Pictures that turn into each other along corresponding lines.
-#include "anamorph/image/morph_parameters.h"
 #include "anamorph/operation.h"
+#include "anamorph/render/morph_parameters.h"
 #include "anamorph/side_files.h"
 
 namespace anamorph {
@@ -90,7 +90,7 @@ const OperationKind& morph_kind() {
     static const OperationKind kind{
         "morph", &morph_parameters(), morph_pictures(), 2,
         [](const ParameterValues& values, const std::vector<SourceImage>& images, const SideFiles& files) {
-            std::vector<Source::Size> sizes;
+            std::vector<Size> sizes;
             for (const SourceImage& image : images) sizes.push_back(image.size());
             check_alike(images, values);
             const MorphRequest request = read_morph_request(values, sizes);

@@ -14,9 +14,10 @@
 #include <vector>
 
 #include "anamorph/error.h"
-#include "anamorph/image/reproject_parameters.h"
-#include "anamorph/image/source.h"
+#include "anamorph/parallel_for.h"
 #include "anamorph/parameter.h"
+#include "anamorph/render/reproject_parameters.h"
+#include "anamorph/render/source.h"
 
 namespace anamorph {
 
@@ -76,7 +77,7 @@ struct SourceImage {
     int channels = 0;
     std::string color_space;
 
-    Source::Size size() const { return {facts.width, facts.height}; }
+    Size size() const { return {facts.width, facts.height}; }
 };
 
 /// An operation as hosts know it.

@@ -14,22 +14,22 @@ StoredOrder::StoredOrder(int orientation) {
     mirrors_y = orientation == 3 || orientation == 4 || orientation == 6 || orientation == 7;
 }
 
-Source::Size StoredOrder::upright_size(const Source::Size& stored) const {
-    return swaps ? Source::Size{stored.height, stored.width} : stored;
+Size StoredOrder::upright_size(const Size& stored) const {
+    return swaps ? Size{stored.height, stored.width} : stored;
 }
 
-void StoredOrder::mirror(Box& box, const Source::Size& stored) const {
+void StoredOrder::mirror(Box& box, const Size& stored) const {
     if (mirrors_x) box = {stored.width - box.x1, box.y0, stored.width - box.x0, box.y1};
     if (mirrors_y) box = {box.x0, stored.height - box.y1, box.x1, stored.height - box.y0};
 }
 
-Box StoredOrder::stored_box(const Box& upright, const Source::Size& stored) const {
+Box StoredOrder::stored_box(const Box& upright, const Size& stored) const {
     Box box = swaps ? Box{upright.y0, upright.x0, upright.y1, upright.x1} : upright;
     mirror(box, stored);
     return box;
 }
 
-Box StoredOrder::upright_box(const Box& box, const Source::Size& stored) const {
+Box StoredOrder::upright_box(const Box& box, const Size& stored) const {
     Box upright = box;
     mirror(upright, stored);
     return swaps ? Box{upright.y0, upright.x0, upright.y1, upright.x1} : upright;
@@ -37,7 +37,7 @@ Box StoredOrder::upright_box(const Box& box, const Source::Size& stored) const {
 
 void StoredOrder::turn(const std::byte* from, std::byte* to, int width, int height, std::ptrdiff_t pixel,
                        std::ptrdiff_t to_row_stride) const {
-    const Source::Size stored = upright_size({width, height});
+    const Size stored = upright_size({width, height});
     const std::ptrdiff_t row = stored.width * pixel;
     // Steps in the stored pixels for a step right and a step down in the upright ones.
     std::ptrdiff_t along_x = mirrors_x ? -pixel : pixel, along_y = mirrors_y ? -row : row;
@@ -59,7 +59,7 @@ OIIO::ImageSpec upright(const OIIO::ImageSpec& spec) {
                              "CroppedAreaImageHeightPixels", "CroppedAreaLeftPixels", "CroppedAreaTopPixels"})
         out.erase_attribute(std::string("GPano:") + name);
     const Frame frame = frame_of(spec);
-    const Source::Size stored{frame.width, frame.height}, size = order.upright_size(stored);
+    const Size stored{frame.width, frame.height}, size = order.upright_size(stored);
     const Box data = order.upright_box(frame.data, stored);
     out.x = data.x0, out.y = data.y0;
     out.width = data.width(), out.height = data.height();

@@ -7,8 +7,8 @@
 
 #include <vector>
 
-#include "anamorph/image/source.h"
 #include "anamorph/map/chart.h"
+#include "anamorph/render/source.h"
 
 namespace anamorph {
 
@@ -23,17 +23,17 @@ struct StoredOrder {
         : StoredOrder(spec.get_int_attribute("Orientation", 1)) {}
 
     bool is_upright() const { return !swaps && !mirrors_x && !mirrors_y; }
-    Source::Size upright_size(const Source::Size& stored) const;
+    Size upright_size(const Size& stored) const;
     /// Where upright pixels are stored, and the other way; `stored` is the size of the stored image.
-    Box stored_box(const Box& upright, const Source::Size& stored) const;
-    Box upright_box(const Box& box, const Source::Size& stored) const;
+    Box stored_box(const Box& upright, const Size& stored) const;
+    Box upright_box(const Box& box, const Size& stored) const;
     /// Copies packed pixels of `pixel` bytes, `from` holding those of a stored box that become those of
     /// `width` x `height` upright ones.
     void turn(const std::byte* from, std::byte* to, int width, int height, std::ptrdiff_t pixel,
               std::ptrdiff_t to_row_stride) const;
 
   private:
-    void mirror(Box& box, const Source::Size& stored) const;
+    void mirror(Box& box, const Size& stored) const;
 };
 
 /// The spec of the upright image: windows turned, Orientation 1 where there was one.

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // A panorama seen through another lens.
-#include "anamorph/image/reproject_parameters.h"
 #include "anamorph/metadata.h"
 #include "anamorph/operation.h"
+#include "anamorph/render/reproject_parameters.h"
 
 namespace anamorph {
 namespace {

@@ -5,6 +5,7 @@
 #include <OpenImageIO/thread.h>
 
 #include "anamorph/error.h"
+#include "anamorph/parallel_for.h"
 
 namespace anamorph {
 

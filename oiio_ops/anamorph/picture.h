@@ -10,6 +10,7 @@
 
 #include "anamorph/image_source.h"
 #include "anamorph/operation.h"
+#include "anamorph/parallel_for.h"
 
 namespace anamorph {
 

@@ -71,7 +71,7 @@ WarpMap read_stmap(const std::string& name, int step) {
     if (order.is_upright())
         return mesh_from_stmap(uv.data(), spec.width, spec.height, 2, std::ptrdiff_t{2} * spec.width, step,
                                name);
-    const Source::Size size = order.upright_size({spec.width, spec.height});
+    const Size size = order.upright_size({spec.width, spec.height});
     constexpr std::ptrdiff_t kPixel = 2 * sizeof(float);
     std::vector<float> turned(uv.size());
     order.turn(reinterpret_cast<const std::byte*>(uv.data()), reinterpret_cast<std::byte*>(turned.data()),

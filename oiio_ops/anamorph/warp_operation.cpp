@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // A picture drawn through a control mesh.
-#include "anamorph/image/warp_parameters.h"
 #include "anamorph/operation.h"
+#include "anamorph/render/warp_parameters.h"
 #include "anamorph/side_files.h"
 
 namespace anamorph {

@@ -234,7 +234,7 @@ class RecipeContent final : public Content {
     std::string m_key;  ///< of the operation
     std::vector<std::shared_ptr<const Content>> m_nested;
     std::shared_ptr<const SourceStacks> m_stacks;
-    SizeValue m_tile;
+    Size m_tile;
     int m_levels = 1;
     mutable std::mutex m_mutex;
     mutable std::map<std::pair<int, int>, Level> m_known;  ///< by frame and MIP level

@@ -29,7 +29,7 @@
 #include "anamorph/approx/near_far.h"
 #include "anamorph/approx/near_far_line.h"
 #include "anamorph/approx/near_far_mesh.h"
-#include "anamorph/image/morph.h"
+#include "anamorph/render/morph.h"
 #include "anamorph/simd/near_far.h"
 #include "bench.h"
 #include "pixels.h"
@@ -412,7 +412,7 @@ void run_frame(Bench& bench) {
     const MemorySource source_a(view_of(a)), source_b(view_of(b));
     const ImageView to =
         packed_view(reinterpret_cast<std::byte*>(out.data()), PixelType::uint8, size, size, 3);
-    const std::vector<Source::Size> sizes(2, {size, size});
+    const std::vector<Size> sizes(2, {size, size});
 
     struct Frame {
         const char* scheme;

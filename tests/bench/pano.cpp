@@ -18,8 +18,8 @@
 #include <string>
 #include <utility>
 
-#include "anamorph/image/pyramid.h"
-#include "anamorph/image/reproject.h"
+#include "anamorph/render/pyramid.h"
+#include "anamorph/render/reproject.h"
 #include "bench.h"
 #include "pano_points.h"
 #include "pano_rivals.h"

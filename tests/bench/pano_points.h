@@ -6,6 +6,7 @@
 
 #include "anamorph/approx/plan.h"
 #include "anamorph/map/panorama.h"
+#include "anamorph/parallel_for.h"
 
 namespace anamorph::bench {
 

@@ -11,6 +11,7 @@
 
 #include "anamorph/error.h"
 #include "anamorph/map/panorama.h"
+#include "anamorph/parallel_for.h"
 #include "pixels.h"
 
 namespace anamorph::bench {

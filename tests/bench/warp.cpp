@@ -15,9 +15,9 @@
 #include <mutex>
 #include <random>
 
-#include "anamorph/image/block_reader.h"
-#include "anamorph/image/mesh_warp.h"
 #include "anamorph/map/scattered.h"
+#include "anamorph/render/block_reader.h"
+#include "anamorph/render/mesh_warp.h"
 #include "anamorph/simd/block_sampler.h"
 #include "bench.h"
 #include "pixels.h"

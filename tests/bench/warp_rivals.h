@@ -10,8 +10,8 @@
 #include <string>
 #include <vector>
 
-#include "anamorph/image/view.h"
 #include "anamorph/map/mesh.h"
+#include "anamorph/render/view.h"
 
 namespace anamorph::bench {
 

@@ -27,7 +27,7 @@ class Random {
 };
 
 /// Evenly spaced vertices that stay where they are.
-inline ControlMesh identity_mesh(const Extent& size, int columns, int rows) {
+inline ControlMesh identity_mesh(const Size& size, int columns, int rows) {
     ControlMesh mesh;
     mesh.columns = columns;
     mesh.rows = rows;
@@ -39,7 +39,7 @@ inline ControlMesh identity_mesh(const Extent& size, int columns, int rows) {
 
 /// Vertices moved by up to `amplitude` cells; lines at random places if `uneven`; `levels` finer levels, each
 /// with some cells cut and some of their vertices moved.
-inline ControlMesh random_mesh(Random& random, const Extent& from, const Extent& to, int columns, int rows,
+inline ControlMesh random_mesh(Random& random, const Size& from, const Size& to, int columns, int rows,
                                double amplitude, bool uneven, int levels) {
     ControlMesh mesh = identity_mesh(to, columns, rows);
     const double dx = amplitude * to.width / columns, dy = amplitude * to.height / rows;
@@ -85,7 +85,7 @@ inline ControlMesh random_mesh(Random& random, const Extent& from, const Extent&
 }
 
 /// By name: what breaks those who sample.
-inline std::vector<std::pair<std::string, ControlMesh>> hard_meshes(const Extent& from, const Extent& to) {
+inline std::vector<std::pair<std::string, ControlMesh>> hard_meshes(const Size& from, const Size& to) {
     std::vector<std::pair<std::string, ControlMesh>> meshes;
     const auto add = [&](const char* name, int columns, int rows, const auto& move) {
         ControlMesh mesh = identity_mesh(to, columns, rows);

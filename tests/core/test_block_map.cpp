@@ -6,8 +6,8 @@
 #include <thread>
 #include <vector>
 
-#include "anamorph/image/draw.h"
 #include "anamorph/map/chart.h"
+#include "anamorph/render/draw.h"
 
 namespace anamorph {
 namespace {

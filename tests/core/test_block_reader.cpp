@@ -7,9 +7,9 @@
 #include <numbers>
 #include <random>
 
-#include "anamorph/image/block_reader.h"
-#include "anamorph/image/draw.h"
-#include "anamorph/image/pyramid.h"
+#include "anamorph/render/block_reader.h"
+#include "anamorph/render/draw.h"
+#include "anamorph/render/pyramid.h"
 #include "function_map.h"
 #include "guarded_memory.h"
 
@@ -43,7 +43,7 @@ struct Picture {
 };
 
 Border border_of(const Source& source, Wrap wrap) {
-    const Source::Size size = source.size(0);
+    const Size size = source.size(0);
     return Border(Chart(Projection::rectilinear, size.width, size.height, 90), wrap);
 }
 

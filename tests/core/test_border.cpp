@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "anamorph/image/border.h"
+#include "anamorph/render/border.h"
 #include "projection_cases.h"
 
 #include <gtest/gtest.h>
@@ -55,7 +55,7 @@ TEST(Border, TexelsInsideStandForThemselvesAndAllOthersLieInside) {
                 for (const int divisor : {1, 2, 4, 5}) {
                     const Chart chart = chart_for(projection, 20, spacing);
                     const Border border(chart, wrap);
-                    const Source::Size level{chart.width() / divisor, chart.height() / divisor};
+                    const Size level{chart.width() / divisor, chart.height() / divisor};
                     for (int piece = 0; piece < static_cast<int>(chart.pieces().size()); ++piece) {
                         const Box box = border.interior(piece, level);
                         for (int y = box.y0 - 6; y < box.y1 + 6; ++y)
@@ -87,7 +87,7 @@ TEST(Border, RunsAreWhatResolvesTexelByTexel) {
                  {Wrap::automatic, Wrap::black, Wrap::clamp, Wrap::periodic, Wrap::mirror}) {
                 const Chart chart = chart_for(projection, 10, spacing);
                 const Border border(chart, wrap);
-                const Source::Size level{chart.width(), chart.height()};
+                const Size level{chart.width(), chart.height()};
                 const int piece = static_cast<int>(chart.pieces().size()) - 1;
                 const Box box = border.interior(piece, level);
                 for (const int limit : {1, 7, 100})
@@ -114,7 +114,7 @@ TEST(Border, RunsAreWhatResolvesTexelByTexel) {
 TEST(Border, OddAndTinyLevelsAreSafe) {
     for (const Projection projection : kProjections)
         for (const PixelSpacing spacing : {PixelSpacing::edges, PixelSpacing::centers})
-            for (const Source::Size level : {Source::Size{1, 1}, {2, 1}, {1, 2}, {3, 7}, {5, 3}}) {
+            for (const Size level : {Size{1, 1}, {2, 1}, {1, 2}, {3, 7}, {5, 3}}) {
                 const Chart chart = chart_for(projection, 16, spacing);
                 const Border border(chart, Wrap::automatic);
                 for (int piece = 0; piece < static_cast<int>(chart.pieces().size()); ++piece) {
@@ -131,7 +131,7 @@ TEST(Border, OddAndTinyLevelsAreSafe) {
 
 TEST(Border, PlainModesAreOpenImageIOs) {
     const Chart chart(Projection::rectilinear, 4, 3);
-    const Source::Size level{4, 3};
+    const Size level{4, 3};
     const auto row = [&](Wrap wrap) {
         std::vector<int> columns;
         for (int x = -6; x < 10; ++x) columns.push_back(Border(chart, wrap).resolve(x, 1, 0, level).x);
@@ -148,7 +148,7 @@ TEST(Border, PlainModesAreOpenImageIOs) {
 
 TEST(Border, PlainModesStayOnTheirFace) {
     const Chart chart = chart_for(Projection::cubemap3x2, 8);
-    const Source::Size level{24, 16};
+    const Size level{24, 16};
     // Piece 4, the front, is the middle of the lower row.
     EXPECT_EQ(Border(chart, Wrap::periodic).interior(4, level), (Box{8, 8, 16, 16}));
     EXPECT_EQ(Border(chart, Wrap::periodic).resolve(7, 16, 4, level), (Texel{15, 8}));
@@ -161,7 +161,7 @@ TEST(Border, PlainModesStayOnTheirFace) {
 TEST(Border, PanoramasCloseAndGoOverThePoles) {
     const Chart chart(Projection::equirectangular, 16, 8);
     const Border border(chart, Wrap::automatic);
-    const Source::Size level{16, 8};
+    const Size level{16, 8};
     EXPECT_EQ(border.resolve(-1, 3, 0, level), (Texel{15, 3}));
     EXPECT_EQ(border.resolve(16, 3, 0, level), (Texel{0, 3}));
     EXPECT_EQ(border.resolve(37, 3, 0, level), (Texel{5, 3}));
@@ -178,7 +178,7 @@ TEST(Border, PanoramasCloseAndGoOverThePoles) {
 TEST(Border, BetweenCentresTheLastTexelRepeatsTheFirst) {
     const Chart chart(Projection::equirectangular, 16, 8, 0, PixelSpacing::centers);
     const Border border(chart, Wrap::automatic);
-    const Source::Size level{16, 8};
+    const Size level{16, 8};
     EXPECT_EQ(border.interior(0, level), (Box{0, 0, 16, 8}));
     EXPECT_EQ(border.resolve(15, 3, 0, level), (Texel{15, 3}));
     EXPECT_EQ(border.resolve(16, 3, 0, level), (Texel{1, 3}));
@@ -192,7 +192,7 @@ TEST(Border, BetweenCentresTheLastTexelRepeatsTheFirst) {
 }
 
 TEST(Border, WhatDoesNotCloseIsBlackBeyond) {
-    const Source::Size level{16, 8};
+    const Size level{16, 8};
     const Chart half(Projection::equirectangular, 16, 8, 180);
     EXPECT_EQ(Border(half, Wrap::automatic).resolve(16, 3, 0, level), kNone);
     EXPECT_EQ(Border(half, Wrap::automatic).resolve(3, -1, 0, level), kNone);
@@ -213,12 +213,12 @@ double angle_between(const Ray<double>& a, const Ray<double>& b) {
 }
 
 /// The ray through the centre of a texel of a level.
-Ray<double> ray_of(const Chart& chart, int x, int y, int piece, const Source::Size& level) {
+Ray<double> ray_of(const Chart& chart, int x, int y, int piece, const Size& level) {
     return chart.ray((x + 0.5) * chart.width() / level.width, (y + 0.5) * chart.height() / level.height,
                      piece);
 }
 
-int piece_at(const Border& border, const Chart& chart, const Texel& texel, const Source::Size& level) {
+int piece_at(const Border& border, const Chart& chart, const Texel& texel, const Size& level) {
     for (int i = 0; i < static_cast<int>(chart.pieces().size()); ++i) {
         const Box box = border.interior(i, level);
         if (texel.x >= box.x0 && texel.x < box.x1 && texel.y >= box.y0 && texel.y < box.y1) return i;
@@ -234,7 +234,7 @@ TEST(Border, CubeFacesGoOnOnTheirNeighbours) {
                 const int n = 32 / divisor;
                 const Chart chart = chart_for(projection, 32, spacing);
                 const Border border(chart, Wrap::automatic);
-                const Source::Size level{chart.width() / divisor, chart.height() / divisor};
+                const Size level{chart.width() / divisor, chart.height() / divisor};
                 const double allowed = 1.01 * std::sqrt(2.0) / (spacing == PixelSpacing::edges ? n : n - 1);
                 for (int piece = 0; piece < 6; ++piece) {
                     const Box box = border.interior(piece, level);
@@ -259,7 +259,7 @@ TEST(Border, CubeEdgesMeetWithoutASeam) {
     for (const Projection projection : kCubes) {
         const Chart chart = chart_for(projection, n);
         const Border border(chart, Wrap::automatic);
-        const Source::Size level{chart.width(), chart.height()};
+        const Size level{chart.width(), chart.height()};
         for (int piece = 0; piece < 6; ++piece) {
             const Box box = border.interior(piece, level);
             for (int side = 0; side < 4; ++side) {

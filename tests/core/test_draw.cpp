@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "anamorph/image/reproject.h"
+#include "anamorph/render/reproject.h"
 
 namespace anamorph {
 namespace {

@@ -11,7 +11,7 @@
 namespace anamorph {
 namespace {
 
-constexpr FeatureMap::Size kSize{200, 160};
+constexpr Size kSize{200, 160};
 
 FeatureMap map_of(const Features& features, double t, const LineWeights& weights = {}) {
     return FeatureMap(features, {kSize, kSize}, kSize, {1 - t, t}, weights);
@@ -162,7 +162,7 @@ TEST(FeatureMap, FarAwayAndSteepWeightsStayFinite) {
 TEST(FeatureMap, ThreeShapesMix) {
     Features features(3);
     features.add_line({{{10, 10}, {50, 10}}, {{10, 40}, {50, 40}}, {{40, 10}, {80, 10}}});
-    const std::vector<FeatureMap::Size> sizes(3, kSize);
+    const std::vector<Size> sizes(3, kSize);
     const FeatureMap map(features, sizes, kSize, {0.5, 0.25, 0.25}, {});
     // A pure shift by (7.5, 7.5): back to A by as much.
     const Point<double> p = map(100.0, 100.0, 0);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "anamorph/image/filter.h"
+#include "anamorph/render/filter.h"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 #include <random>
 #include <vector>
 
-#include "anamorph/image/pixel.h"
+#include "anamorph/render/pixel.h"
 
 namespace {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "anamorph/image/footprint.h"
+#include "anamorph/render/footprint.h"
 
 #include <gtest/gtest.h>
 
@@ -9,8 +9,8 @@
 #include <random>
 #include <vector>
 
-#include "anamorph/image/filter.h"
-#include "anamorph/image/pyramid.h"
+#include "anamorph/render/filter.h"
+#include "anamorph/render/pyramid.h"
 
 namespace {
 

@@ -40,7 +40,7 @@ TEST(Mesh, GoesThroughItsVertices) {
     constexpr unsigned kSeed = 521;
     SCOPED_TRACE(::testing::Message() << "seed " << kSeed);
     test::Random random(kSeed);
-    const Extent from{300, 200}, to{500, 450};
+    const Size from{300, 200}, to{500, 450};
     const ControlMesh given = test::random_mesh(random, from, to, 6, 4, 0.5, false, 0);
     const Mesh mesh(given, from, to, 1);
     for (int r = 0; r <= 4; ++r)
@@ -55,7 +55,7 @@ TEST(Mesh, GoesThroughItsVertices) {
 TEST(Mesh, DerivativesAreCatmullRoms) {
     // Eq. 5.8 at an inner vertex of cells of 50 pixels.
     test::Random random(522);
-    const Extent from{300, 200}, to{300, 200};
+    const Size from{300, 200}, to{300, 200};
     const ControlMesh given = test::random_mesh(random, from, to, 6, 4, 0.5, false, 0);
     const Mesh mesh(given, from, to, 1);
     const auto v = [&](int c, int r) { return given.vertices[static_cast<std::size_t>(r * 7 + c)]; };
@@ -69,7 +69,7 @@ TEST(Mesh, DerivativesAreCatmullRoms) {
 
 TEST(Mesh, LinearMapsStayLinear) {
     // On even and uneven lines, outside the lines, and on finer levels.
-    const Extent from{300, 200}, to{300, 200};
+    const Size from{300, 200}, to{300, 200};
     test::Random random(523);
     for (const bool uneven : {false, true}) {
         ControlMesh given = test::random_mesh(random, from, to, 5, 4, 0, uneven, 3);
@@ -96,7 +96,7 @@ TEST(Mesh, LinearMapsStayLinear) {
 
 TEST(Mesh, AmountBlends) {
     test::Random random(524);
-    const Extent from{300, 200}, to{360, 150};
+    const Size from{300, 200}, to{360, 150};
     const ControlMesh given = test::random_mesh(random, from, to, 5, 4, 0.4, true, 2);
     const Mesh none(given, from, to, 0), half(given, from, to, 0.5), full(given, from, to, 1),
         twice(given, from, to, 2);
@@ -163,7 +163,7 @@ TEST(Mesh, HasNoCracksAndNoKinks) {
     constexpr unsigned kSeed = 525;
     SCOPED_TRACE(::testing::Message() << "seed " << kSeed);
     test::Random random(kSeed);
-    const Extent from{300, 200}, to{300, 200};
+    const Size from{300, 200}, to{300, 200};
     for (int n = 0; n < 12; ++n) {
         SCOPED_TRACE(n);
         const ControlMesh given = test::random_mesh(random, from, to, random.whole(1, 7), random.whole(2, 6),
@@ -174,7 +174,7 @@ TEST(Mesh, HasNoCracksAndNoKinks) {
 
 TEST(Mesh, CellsCoverTheImageOnce) {
     test::Random random(526);
-    const Extent from{300, 200}, to{300, 200};
+    const Size from{300, 200}, to{300, 200};
     const ControlMesh given = test::random_mesh(random, from, to, 6, 5, 0.2, false, 5);
     const Mesh mesh(given, from, to, 1);
     double area = 0;
@@ -193,7 +193,7 @@ TEST(Mesh, CellsCoverTheImageOnce) {
 
 TEST(Mesh, FinerVerticesAreMet) {
     // One cell of 2 x 2 cut, and its neighbours with it, so that all vertices inside are real.
-    const Extent size{64, 64};
+    const Size size{64, 64};
     ControlMesh given = test::identity_mesh(size, 2, 2);
     given.levels.push_back({{{0, 0}, {1, 0}, {0, 1}, {1, 1}}, {{1, 1, {20, 11}}, {2, 1, {37, 18}}}});
     const Mesh mesh(given, size, size, 1);
@@ -208,7 +208,7 @@ TEST(Mesh, FinerVerticesAreMet) {
 }
 
 TEST(Mesh, RefusesWhatIsNoMesh) {
-    const Extent size{64, 64};
+    const Size size{64, 64};
     const ControlMesh good = test::identity_mesh(size, 3, 2);
     const auto refused = [&](const ControlMesh& mesh, double amount = 1) {
         const std::string message = message_of([&] { Mesh(mesh, size, size, amount, "grid.json"); });

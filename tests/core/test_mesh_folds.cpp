@@ -7,8 +7,8 @@
 #include <random>
 #include <vector>
 
-#include "anamorph/image/mesh_warp.h"
 #include "anamorph/map/mesh_file.h"
+#include "anamorph/render/mesh_warp.h"
 
 namespace anamorph {
 namespace {

@@ -15,8 +15,8 @@ namespace {
 constexpr double kTols[] = {1, 1.0 / 4, 1.0 / 16, 1.0 / 64, 0.01};
 
 /// Every pixel: blocks within their bounds of the exact point, and that one a source point of the pixel.
-test::Findings expect_promise(const ControlMesh& given, const Extent& source, const Extent& target,
-                              double tol, double amount = 1) {
+test::Findings expect_promise(const ControlMesh& given, const Size& source, const Size& target, double tol,
+                              double amount = 1) {
     SCOPED_TRACE(::testing::Message() << "tol " << tol << ", amount " << amount);
     const InversePlan plan(Mesh(given, source, target, amount), WarpScheme::automatic, tol, "mesh");
     int lost = 0, unseen_folds = 0;
@@ -52,7 +52,7 @@ TEST(MeshInverse, HoldsTheToleranceOnRandomMeshes) {
     test::Random random(kSeed);
     for (int n = 0; n < 10; ++n) {
         SCOPED_TRACE(n);
-        const Extent source{random.whole(40, 400), random.whole(40, 400)},
+        const Size source{random.whole(40, 400), random.whole(40, 400)},
             target{random.whole(40, 400), random.whole(40, 300)};
         // Amplitudes up to where neighbours change places.
         const ControlMesh mesh =
@@ -63,7 +63,7 @@ TEST(MeshInverse, HoldsTheToleranceOnRandomMeshes) {
 }
 
 TEST(MeshInverse, HoldsTheToleranceOnHardMeshes) {
-    const Extent source{160, 120}, target{150, 100};
+    const Size source{160, 120}, target{150, 100};
     for (const auto& [name, mesh] : test::hard_meshes(source, target)) {
         SCOPED_TRACE(name);
         for (const double amount : {1.0, 0.0, -1.5}) expect_promise(mesh, source, target, 1.0 / 16, amount);
@@ -73,7 +73,7 @@ TEST(MeshInverse, HoldsTheToleranceOnHardMeshes) {
 TEST(MeshInverse, InvertsThePullOfTheSameMesh) {
     // A point pushed by the mesh comes back.
     test::Random random(552);
-    const Extent source{300, 200}, target{400, 300};
+    const Size source{300, 200}, target{400, 300};
     const ControlMesh given = test::random_mesh(random, source, target, 5, 4, 0.2, false, 1);
     const InversePlan plan(Mesh(given, source, target, 1), WarpScheme::automatic, 0.01, "mesh");
     int compared = 0;
@@ -102,7 +102,7 @@ TEST(MeshInverse, InvertsThePullOfTheSameMesh) {
 
 TEST(MeshInverse, FindsAllSourcePointsOfAFold) {
     // x runs 0, 200, 100, 300: between the turns every column has three source points.
-    const Extent size{300, 60};
+    const Size size{300, 60};
     ControlMesh mesh = test::identity_mesh(size, 3, 1);
     for (std::size_t r = 0; r < 2; ++r) std::swap(mesh.vertices[4 * r + 1], mesh.vertices[4 * r + 2]);
     const InversePlan plan(Mesh(mesh, size, size, 1), WarpScheme::automatic, 1.0 / 16, "mesh");
@@ -126,7 +126,7 @@ TEST(MeshInverse, FindsAllSourcePointsOfAFold) {
 }
 
 TEST(MeshInverse, NothingWhereTheMeshDoesNotReach) {
-    const Extent size{200, 100};
+    const Size size{200, 100};
     ControlMesh mesh = test::identity_mesh(size, 2, 2);
     for (Point<double>& v : mesh.vertices) v = {50 + v.x / 2, 25 + v.y / 2};
     const InversePlan plan(Mesh(mesh, size, size, 1), WarpScheme::automatic, 1.0 / 16, "mesh");
@@ -140,7 +140,7 @@ TEST(MeshInverse, NothingWhereTheMeshDoesNotReach) {
 
 TEST(MeshInverse, MostPixelsNeedNoExactPoints) {
     test::Random random(553);
-    const Extent size{1024, 1024};
+    const Size size{1024, 1024};
     ControlMesh mesh = test::random_mesh(random, size, size, 12, 12, 0.15, false, 0);
     const InversePlan plan(Mesh(mesh, size, size, 1), WarpScheme::automatic, 1.0 / 16, "mesh");
     const Reached reached = plan.reached(serial_for);

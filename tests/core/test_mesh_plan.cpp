@@ -22,7 +22,7 @@ Point<long double> truth(const Mesh& mesh, double x, double y) {
     return mesh.at(mesh.patch(mesh.cell_at(x, y)), static_cast<long double>(x), static_cast<long double>(y));
 }
 
-void expect_promise(const ControlMesh& given, const Extent& target, const Extent& source, WarpScheme scheme,
+void expect_promise(const ControlMesh& given, const Size& target, const Size& source, WarpScheme scheme,
                     double tol, double amount = 1, bool all_exact = false) {
     SCOPED_TRACE(::testing::Message() << "scheme " << static_cast<int>(scheme) << ", tol " << tol);
     const MeshPlan plan(Mesh(given, target, source, amount), scheme, tol);
@@ -43,7 +43,7 @@ TEST(MeshPlan, HoldsTheToleranceOnRandomMeshes) {
     SCOPED_TRACE(::testing::Message() << "seed " << kSeed);
     test::Random random(kSeed);
     for (int n = 0; n < 12; ++n) {
-        const Extent target{random.whole(40, 700), random.whole(40, 300)},
+        const Size target{random.whole(40, 700), random.whole(40, 300)},
             source{random.whole(40, 3000), random.whole(40, 3000)};
         const ControlMesh mesh =
             test::random_mesh(random, target, source, random.whole(1, 9), random.whole(1, 9),
@@ -55,7 +55,7 @@ TEST(MeshPlan, HoldsTheToleranceOnRandomMeshes) {
 }
 
 TEST(MeshPlan, HoldsTheToleranceOnHardMeshes) {
-    const Extent target{300, 200}, source{320, 240};
+    const Size target{300, 200}, source{320, 240};
     for (const auto& [name, mesh] : test::hard_meshes(target, source)) {
         SCOPED_TRACE(name);
         for (const WarpScheme scheme : kSchemes)
@@ -69,21 +69,21 @@ TEST(MeshPlan, ManyCells) {
     constexpr unsigned kSeed = 5302;
     SCOPED_TRACE(::testing::Message() << "seed " << kSeed);
     test::Random random(kSeed);
-    const Extent target{640, 400}, source{640, 400};
+    const Size target{640, 400}, source{640, 400};
     const ControlMesh mesh = test::random_mesh(random, target, source, 1000, 1000, 0.3, false, 0);
     for (const WarpScheme scheme : kSchemes) expect_promise(mesh, target, source, scheme, 1.0 / 16);
 }
 
 TEST(MeshPlan, TolZeroIsExact) {
     test::Random random(5303);
-    const Extent target{200, 100}, source{220, 90};
+    const Size target{200, 100}, source{220, 90};
     const ControlMesh mesh = test::random_mesh(random, target, source, 4, 3, 0.3, false, 2);
     for (const WarpScheme scheme : kSchemes) expect_promise(mesh, target, source, scheme, 0, 1, true);
 }
 
 TEST(MeshPlan, MostPixelsNeedNoExactPoints) {
     test::Random random(5304);
-    const Extent target{1024, 1024}, source{1024, 1024};
+    const Size target{1024, 1024}, source{1024, 1024};
     const ControlMesh mesh = test::random_mesh(random, target, source, 12, 12, 0.2, false, 0);
     for (const WarpScheme scheme : {WarpScheme::automatic, WarpScheme::hermite, WarpScheme::residual}) {
         const MeshPlan plan(Mesh(mesh, target, source, 1), scheme, 1.0 / 16);
@@ -96,7 +96,7 @@ TEST(MeshPlan, MostPixelsNeedNoExactPoints) {
 
 TEST(MeshPlan, BoundsAreNotFarAboveTheError) {
     test::Random random(5305);
-    const Extent target{512, 512}, source{512, 512};
+    const Size target{512, 512}, source{512, 512};
     const ControlMesh mesh = test::random_mesh(random, target, source, 5, 5, 0.3, false, 0);
     const auto median_ratio = [&](WarpScheme scheme, double tol) {
         const MeshPlan plan(Mesh(mesh, target, source, 1), scheme, tol);
@@ -115,7 +115,7 @@ TEST(MeshPlan, EveryInstructionSetKeepsTheBound) {
     constexpr unsigned kSeed = 5307;
     SCOPED_TRACE(::testing::Message() << "seed " << kSeed);
     test::Random random(kSeed);
-    const Extent target{300, 200}, source{65536, 200};
+    const Size target{300, 200}, source{65536, 200};
     const ControlMesh mesh = test::random_mesh(random, target, source, 3, 3, 0.3, false, 1);
     for (const char* const* set = simd::instruction_sets(); *set; ++set) {
         SCOPED_TRACE(*set);
@@ -129,7 +129,7 @@ TEST(MeshPlan, EveryInstructionSetKeepsTheBound) {
 // Whole patches need not be cut: a tolerance a thousand times smaller costs no more blocks.
 TEST(MeshPlan, SmallTolerancesNeedNoSmallBlocks) {
     test::Random random(5306);
-    const Extent size{512, 512};
+    const Size size{512, 512};
     const ControlMesh mesh = test::random_mesh(random, size, size, 5, 5, 0.3, false, 0);
     const auto blocks = [&](double tol) {
         const MeshPlan plan(Mesh(mesh, size, size, 1), WarpScheme::automatic, tol);
@@ -147,7 +147,7 @@ TEST(MeshPlan, RefusesATolerance) {
 }
 
 TEST(MeshPlan, FoldsWhereTheMapTurnsOver) {
-    const Extent size{300, 200};
+    const Size size{300, 200};
     ControlMesh mesh = test::identity_mesh(size, 3, 2);
     const MeshPlan plain(Mesh(mesh, size, size, 1), WarpScheme::automatic, 0.1);
     EXPECT_EQ(plain.folded_pixels({0, 0, 300, 200}), 0);

@@ -6,8 +6,8 @@
 #include <cmath>
 #include <thread>
 
-#include "anamorph/image/mesh_warp.h"
-#include "anamorph/image/pyramid.h"
+#include "anamorph/render/mesh_warp.h"
+#include "anamorph/render/pyramid.h"
 #include "mesh_cases.h"
 
 namespace anamorph {
@@ -51,7 +51,7 @@ void two_threads(std::int64_t count, const std::function<void(std::int64_t)>& bo
 }
 
 /// Draws the picture at once, and in pieces, last ones first, on two threads.
-void expect_same_bits(const WarpMap& map, const MeshWarpOptions& options, const Extent& target,
+void expect_same_bits(const WarpMap& map, const MeshWarpOptions& options, const Size& target,
                       const Picture& texels) {
     SCOPED_TRACE(::testing::Message() << map.name << ", scheme " << static_cast<int>(options.scheme)
                                       << ", output " << static_cast<int>(options.output));
@@ -79,7 +79,7 @@ TEST(MeshWarp, SameBitsForAnyCutAndThreads) {
     constexpr unsigned kSeed = 541;
     SCOPED_TRACE(::testing::Message() << "seed " << kSeed);
     test::Random random(kSeed);
-    const Extent target{700, 530}, size{400, 300};
+    const Size target{700, 530}, size{400, 300};
     const Picture texels = noise(random, size.width, size.height);
     const WarpMap pull{"pull", test::random_mesh(random, target, size, 5, 4, 0.4, true, 2)};
     ControlMesh mesh = test::random_mesh(random, size, target, 5, 4, 0.3, false, 1);
@@ -111,7 +111,7 @@ TEST(MeshWarp, SameBitsForAnyCutAndThreads) {
 // its value there.
 TEST(MeshWarp, AntialiasedPatchesStandWhereTheyBelong) {
     test::Random random(544);
-    const Extent target{128, 96}, size{2048, 1536};
+    const Size target{128, 96}, size{2048, 1536};
     const WarpMap map{"grid", test::random_mesh(random, target, size, 2, 2, 0.5, false, 0)};
     Picture ramp(size.width, size.height, 3);
     for (int y = 0; y < size.height; ++y)
@@ -145,7 +145,7 @@ TEST(MeshWarp, AntialiasedPatchesStandWhereTheyBelong) {
 
 TEST(MeshWarp, AmountZeroIsTheSourceToTheBit) {
     test::Random random(542);
-    const Extent size{300, 200};
+    const Size size{300, 200};
     const Picture texels = noise(random, size.width, size.height);
     const MemorySource source(texels.source());
     const WarpMap map{"grid", test::random_mesh(random, size, size, 5, 4, 0.4, true, 2)};
@@ -161,7 +161,7 @@ TEST(MeshWarp, AmountZeroIsTheSourceToTheBit) {
 
 TEST(MeshWarp, OutputsAgree) {
     test::Random random(543);
-    const Extent target{256, 192}, size{400, 300};
+    const Size target{256, 192}, size{400, 300};
     const WarpMap map{"grid", test::random_mesh(random, target, size, 3, 3, 0.9, false, 1)};
     MeshWarpOptions options;
     options.tol = 0.25;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "anamorph/image/morph.h"
+#include "anamorph/render/morph.h"
 
 #include <gtest/gtest.h>
 
@@ -58,7 +58,7 @@ std::shared_ptr<const Features> face(double scale_b = 1) {
 }
 
 constexpr int kWidth = 190, kHeight = 150;
-constexpr Source::Size kSize{kWidth, kHeight};
+constexpr Size kSize{kWidth, kHeight};
 
 FloatPicture draw(const Morph& morph, const std::vector<const Source*>& sources, int channels,
                   const Box& box = {0, 0, kWidth, kHeight}, const ParallelFor& parallel_for = serial_for) {
@@ -246,7 +246,7 @@ TEST(Morph, TheMeshSaysThatItHoldsNothing) {
 }
 
 TEST(Morph, BadParametersAreNamed) {
-    const auto message = [](MorphOptions options, Source::Size b = kSize) -> std::string {
+    const auto message = [](MorphOptions options, Size b = kSize) -> std::string {
         try {
             const Morph morph(face(), {kSize, b}, kWidth, kHeight, options);
         } catch (const Error& error) {

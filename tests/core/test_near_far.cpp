@@ -24,7 +24,7 @@ struct Outcome {
 
 Outcome measure(const FeatureMap& map, double tol) {
     const NearFar field(map, {tol, {0, 1}});
-    const FeatureMap::Size size = map.target();
+    const Size size = map.target();
     Outcome out;
     for (int y = 0; y < size.height; y += CellField::kRegion)
         for (int x = 0; x < size.width; x += CellField::kRegion) {
@@ -53,8 +53,7 @@ Outcome measure(const FeatureMap& map, double tol) {
     return out;
 }
 
-FeatureMap map_of(const Features& features, FeatureMap::Size size, const LineWeights& weights,
-                  double t = 0.5) {
+FeatureMap map_of(const Features& features, Size size, const LineWeights& weights, double t = 0.5) {
     return FeatureMap(features, {size, size}, size, {1 - t, t}, weights);
 }
 
@@ -399,7 +398,7 @@ TEST(NearFar, EveryInstructionSetHolds) {
 /// All that a plan says and places: blocks, bounds and points, byte by byte.
 std::vector<std::uint8_t> bytes_of(const FeatureMap& map, double tol) {
     const NearFar field(map, {tol, {0, 1}});
-    const FeatureMap::Size size = map.target();
+    const Size size = map.target();
     std::vector<std::uint8_t> bytes;
     const auto put = [&](const auto& value) {
         const auto* at = reinterpret_cast<const std::uint8_t*>(&value);
@@ -502,7 +501,7 @@ class Oracle {
 };
 
 /// Where both shapes are seen at every pixel, as the oracle says.
-std::vector<Point<long double>> truth_of(const Oracle& oracle, FeatureMap::Size size) {
+std::vector<Point<long double>> truth_of(const Oracle& oracle, Size size) {
     std::vector<Point<long double>> truth;
     for (int y = 0; y < size.height; ++y)
         for (int x = 0; x < size.width; ++x)
@@ -517,7 +516,7 @@ std::vector<Point<long double>> truth_of(const Oracle& oracle, FeatureMap::Size 
 /// Every pixel of a plan against the truth: the largest error, error less bound, and bound.
 Outcome against(const std::vector<Point<long double>>& truth, const FeatureMap& map, double tol) {
     const NearFar field(map, {tol, {0, 1}});
-    const FeatureMap::Size size = map.target();
+    const Size size = map.target();
     Outcome out;
     out.over = -HUGE_VAL;
     const Box whole{0, 0, size.width, size.height};
@@ -546,7 +545,7 @@ Outcome against(const std::vector<Point<long double>>& truth, const FeatureMap& 
 TEST(NearFar, NoPixelIsOverToleranceOrBoundByAnOracleOnAnyInstructionSet) {
     constexpr unsigned kSeed = 41;
     SCOPED_TRACE(testing::Message() << "seed " << kSeed);
-    const FeatureMap::Size size{100, 36};
+    const Size size{100, 36};
     int n = 0;
     for (const std::string& family : families::names())
         for (const LineWeights& w :

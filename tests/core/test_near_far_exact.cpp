@@ -32,7 +32,7 @@ Found pixel_of(const std::vector<Line>& first, const std::vector<Line>& second) 
     Features features(2);
     features.add_line(first);
     features.add_line(second);
-    const FeatureMap::Size size{kSize, kSize};
+    const Size size{kSize, kSize};
     const FeatureMap map(features, {size, size}, size, {0.5, 0.5}, {0, 0.5, 0.5});
     NearFarOptions options;
     options.tol = 0;

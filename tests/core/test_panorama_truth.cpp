@@ -7,9 +7,9 @@
 #include <random>
 
 #include "anamorph/approx/plan.h"
-#include "anamorph/image/block_reader.h"
-#include "anamorph/image/draw.h"
-#include "anamorph/image/footprint.h"
+#include "anamorph/render/block_reader.h"
+#include "anamorph/render/draw.h"
+#include "anamorph/render/footprint.h"
 #include "anamorph/simd/block_sampler.h"
 #include "panorama_oracle.h"
 
@@ -434,7 +434,7 @@ TEST(PanoramaTruth, WhatIsCulledHasNoTexels) {
                         const Jacobian jacobian = plan.jacobian(i + 0.5, j + 0.5, block.piece);
                         const Footprint f = chooser(jacobian);
                         const auto& scale = chooser.scale(f.level);
-                        const Source::Size size = source.size(f.level);
+                        const Size size = source.size(f.level);
                         widest = std::max(widest, 1 / scale[0]);
                         for (int a = 0; a < f.taps_a; ++a)
                             for (int b = 0; b < f.taps_b; ++b) {

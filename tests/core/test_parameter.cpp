@@ -7,8 +7,8 @@
 #include <clocale>
 #include <random>
 
-#include "anamorph/image/picture_parameters.h"
-#include "anamorph/image/reproject_parameters.h"
+#include "anamorph/render/picture_parameters.h"
+#include "anamorph/render/reproject_parameters.h"
 
 namespace anamorph {
 namespace {

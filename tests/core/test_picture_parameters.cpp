@@ -5,8 +5,8 @@
 
 #include <cmath>
 
-#include "anamorph/image/morph_parameters.h"
-#include "anamorph/image/warp_parameters.h"
+#include "anamorph/render/morph_parameters.h"
+#include "anamorph/render/warp_parameters.h"
 
 namespace anamorph {
 namespace {
@@ -24,14 +24,14 @@ std::string error_of(const Body& body) {
     return "no error";
 }
 
-WarpRequest warp(const std::vector<Assignment>& assignments, const Source::Size& source = {300, 200}) {
+WarpRequest warp(const std::vector<Assignment>& assignments, const Size& source = {300, 200}) {
     ParameterValues values(warp_parameters());
     values.assign(assignments);
     return read_warp_request(values, source);
 }
 
 MorphRequest morph(const std::vector<Assignment>& assignments,
-                   const std::vector<Source::Size>& pictures = {{300, 200}, {64, 64}}) {
+                   const std::vector<Size>& pictures = {{300, 200}, {64, 64}}) {
     ParameterValues values(morph_parameters());
     values.assign(assignments);
     return read_morph_request(values, pictures);
@@ -119,7 +119,7 @@ TEST(MorphRequest, ReadsItsValues) {
     EXPECT_EQ(other.options.t_color, 0);
     EXPECT_EQ(other.pin_border, 0);
     EXPECT_EQ(other.options.output, MorphOutput::lines);
-    const std::vector<Source::Size> three = {{8, 8}, {8, 8}, {8, 8}};
+    const std::vector<Size> three = {{8, 8}, {8, 8}, {8, 8}};
     EXPECT_EQ(morph({{"shape_weights", "0.5,0.25,0.25"}}, three).options.shape_weights,
               (std::vector<double>{0.5, 0.25, 0.25}));
     EXPECT_THAT(error_of([&] { morph({}, three); }), HasSubstr("shape_weights is not given"));

@@ -7,7 +7,7 @@
 #include <random>
 
 #include "anamorph/approx/plan.h"
-#include "anamorph/image/block_reader.h"
+#include "anamorph/render/block_reader.h"
 #include "anamorph/simd/block_sampler.h"
 #include "projection_cases.h"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "anamorph/image/pyramid.h"
+#include "anamorph/render/pyramid.h"
 
 #include <gtest/gtest.h>
 
@@ -12,7 +12,7 @@
 #include <thread>
 #include <vector>
 
-#include "anamorph/image/pixel.h"
+#include "anamorph/render/pixel.h"
 
 namespace {
 
@@ -59,7 +59,7 @@ class Noise final : public Source {
 };
 
 std::vector<std::byte> whole(const Source& source, int level) {
-    const Source::Size size = source.size(level);
+    const Size size = source.size(level);
     const std::ptrdiff_t stride = std::ptrdiff_t{size.width} * source.channels() * size_of(source.type());
     std::vector<std::byte> bytes(static_cast<std::size_t>(stride * size.height));
     EXPECT_TRUE(source.read(level, {0, 0, size.width, size.height}, bytes.data(), stride));

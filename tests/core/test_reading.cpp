@@ -9,8 +9,8 @@
 #include <numbers>
 #include <random>
 
-#include "anamorph/image/mesh_warp.h"
-#include "anamorph/image/reproject.h"
+#include "anamorph/render/mesh_warp.h"
+#include "anamorph/render/reproject.h"
 
 namespace anamorph {
 namespace {

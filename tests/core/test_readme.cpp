@@ -5,11 +5,11 @@
 #include <fstream>
 #include <sstream>
 
-#include "anamorph/image/morph_parameters.h"
-#include "anamorph/image/reproject_parameters.h"
-#include "anamorph/image/warp_parameters.h"
 #include "anamorph/map/features_file.h"
 #include "anamorph/map/mesh_file.h"
+#include "anamorph/render/morph_parameters.h"
+#include "anamorph/render/reproject_parameters.h"
+#include "anamorph/render/warp_parameters.h"
 
 namespace {
 

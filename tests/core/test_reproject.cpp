@@ -8,10 +8,10 @@
 #include <random>
 #include <thread>
 
-#include "anamorph/image/filter.h"
-#include "anamorph/image/pixel.h"
-#include "anamorph/image/pyramid.h"
-#include "anamorph/image/reproject.h"
+#include "anamorph/render/filter.h"
+#include "anamorph/render/pixel.h"
+#include "anamorph/render/pyramid.h"
+#include "anamorph/render/reproject.h"
 #include "anamorph/simd/block_sampler.h"
 
 namespace anamorph {

@@ -17,7 +17,7 @@ using ::testing::AllOf;
 using ::testing::HasSubstr;
 using ::testing::Not;
 
-const Extent kTarget{300, 200}, kSource{320, 260};
+const Size kTarget{300, 200}, kSource{320, 260};
 
 ControlPoints random_points(test::Random& random, int count, double amplitude) {
     ControlPoints points;

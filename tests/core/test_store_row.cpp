@@ -7,8 +7,8 @@
 #include <cstring>
 #include <vector>
 
-#include "anamorph/image/pixel.h"
-#include "anamorph/image/window.h"
+#include "anamorph/render/pixel.h"
+#include "anamorph/render/window.h"
 #include "anamorph/simd/block_sampler.h"
 #include "guarded_memory.h"
 

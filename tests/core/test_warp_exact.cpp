@@ -13,7 +13,7 @@
 namespace anamorph {
 namespace {
 
-const Extent kTarget{180, 130}, kSource{320, 200};
+const Size kTarget{180, 130}, kSource{320, 200};
 
 struct Worst {
     double exact_bound = 0, exact_error = 0;

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "anamorph/approx/block.h"
-#include "anamorph/image/block_reader.h"
+#include "anamorph/render/block_reader.h"
 #include "anamorph/simd/block_sampler.h"
 
 namespace anamorph::test {

@@ -21,7 +21,7 @@ using RealPoint = Point<Real>;
 /// A mesh of one level: Catmull-Rom slopes of what vertices are moved by, Hermite's cubics both ways.
 class MeshOracle {
   public:
-    MeshOracle(const ControlMesh& mesh, const Extent& from, const Extent& to, double amount)
+    MeshOracle(const ControlMesh& mesh, const Size& from, const Size& to, double amount)
         : m_sx(Real(to.width) / from.width), m_sy(Real(to.height) / from.height) {
         m_x = lines(mesh.x_lines, mesh.columns, from.width, mesh.units);
         m_y = lines(mesh.y_lines, mesh.rows, from.height, mesh.units);
@@ -70,7 +70,7 @@ class MeshOracle {
                                        : given[std::size_t(i)] * Real(units == Units::pixels ? 1 : size));
         return at;
     }
-    void extend(const Extent& from) {
+    void extend(const Size& from) {
         const auto beyond = [](const RealPoint& a, const RealPoint& b, Real k) {
             return RealPoint{a.x + (a.x - b.x) * k, a.y + (a.y - b.y) * k};
         };
@@ -181,7 +181,7 @@ class PushOracle {
 /// Points in pixels: which of them make triangles is the map's, all else is computed here.
 class PointsOracle {
   public:
-    PointsOracle(const ControlPoints& points, const Scattered& map, const Extent& from, const Extent& to)
+    PointsOracle(const ControlPoints& points, const Scattered& map, const Size& from, const Size& to)
         : m_sx(Real(to.width) / from.width), m_sy(Real(to.height) / from.height) {
         std::map<std::pair<double, double>, int> known;
         for (const ControlPoints::Pair& p : points.pairs) {

@@ -19,7 +19,7 @@ void read(const Parse& parse, std::string_view text) {
         fuzz::require(features.size() > 0, "a file has features");
         fuzz::require(features.shapes() >= 2, "a morph has shapes");
         const auto shapes = static_cast<std::size_t>(features.shapes());
-        const std::vector<FeatureMap::Size> sizes(shapes, {64, 48});
+        const std::vector<Size> sizes(shapes, {64, 48});
         std::vector<double> mixture(shapes, 0.0);
         mixture[0] = mixture[1] = 0.5;
         const FeatureMap map(features, sizes, {64, 48}, mixture, {});

@@ -5,8 +5,8 @@
 #include <cstdint>
 #include <string_view>
 
-#include "anamorph/image/mesh_warp.h"
 #include "anamorph/map/mesh_file.h"
+#include "anamorph/render/mesh_warp.h"
 #include "expect_error.h"
 
 using namespace anamorph;

@@ -5,9 +5,9 @@
 #include <cstdint>
 #include <string_view>
 
-#include "anamorph/image/morph_parameters.h"
-#include "anamorph/image/reproject_parameters.h"
-#include "anamorph/image/warp_parameters.h"
+#include "anamorph/render/morph_parameters.h"
+#include "anamorph/render/reproject_parameters.h"
+#include "anamorph/render/warp_parameters.h"
 #include "expect_error.h"
 
 using namespace anamorph;

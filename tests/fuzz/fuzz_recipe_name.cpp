@@ -4,8 +4,8 @@
 #include <cstdint>
 #include <string>
 
-#include "anamorph/image/morph_parameters.h"
-#include "anamorph/image/reproject_parameters.h"
+#include "anamorph/render/morph_parameters.h"
+#include "anamorph/render/reproject_parameters.h"
 #include "expect_error.h"
 
 using namespace anamorph;

@@ -7,6 +7,7 @@
 #include <initializer_list>
 
 #include "anamorph/error.h"
+#include "anamorph/parallel_for.h"
 
 class vtkAlgorithm;
 class vtkDataObject;

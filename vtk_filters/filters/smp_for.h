@@ -5,6 +5,8 @@
 #include <cstdint>
 #include <functional>
 
+#include "anamorph/parallel_for.h"
+
 namespace anamorph {
 
 /// The core's ParallelFor on vtkSMPTools.

@@ -13,6 +13,7 @@
 
 #include "anamorph/error.h"
 #include "anamorph/map/chart.h"
+#include "anamorph/parallel_for.h"
 
 namespace anamorph {
 

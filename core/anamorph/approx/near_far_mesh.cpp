@@ -49,10 +49,10 @@ struct FeatureMesh::State {
                          [](ControlMesh& c, int, int, const Point<double>& at) { c.vertices.push_back(at); });
         std::set<Place> parents;
         for (int level = 1; level <= levels; ++level) parents = refine(level, parents);
-        const FeatureMap::Size target = map.target();
+        const Size target = map.target();
         for (const int k : shapes)
-            meshes.emplace_back(controls[static_cast<std::size_t>(k)], Extent{target.width, target.height},
-                                Extent{map.picture(k).width, map.picture(k).height}, 1.0);
+            meshes.emplace_back(controls[static_cast<std::size_t>(k)], Size{target.width, target.height},
+                                Size{map.picture(k).width, map.picture(k).height}, 1.0);
     }
 
     double line_at(int size, int level, int number) const {
@@ -109,7 +109,7 @@ struct FeatureMesh::State {
             last = static_cast<int>(std::clamp(std::floor(std::max(a, b) / unit), 0.0, count - 1.0));
         };
         const Point<double> q{line.p.x + line.along.x * line.length, line.p.y + line.along.y * line.length};
-        const FeatureMap::Size size = map.target();
+        const Size size = map.target();
         int c0, c1, r0, r1;
         range(line.p.x, q.x, size.width, c0, c1);
         range(line.p.y, q.y, size.height, r0, r1);

@@ -160,7 +160,7 @@ class Planner {
         return out && source.pieces().size() == 1 ? Cover::outside : Cover::inside;
     }
 
-    /// How far from its source point a pixel's texels lie at most, in source pixels (image/footprint.h).
+    /// How far from its source point a pixel's texels lie at most, in source pixels (render/footprint.h).
     ///
     /// Taps: a side of the footprint that is n texels of its level long has at most n + 1 taps, since the
     /// energy of w texels is at least 2 / (3 w), and two texels between them at most: they reach n texels

@@ -23,6 +23,7 @@
 
 #include "anamorph/deform/deformation.h"
 #include "anamorph/error.h"
+#include "anamorph/parallel_for.h"
 
 namespace anamorph {
 

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "anamorph/error.h"
+#include "anamorph/parallel_for.h"
 
 namespace anamorph {
 

@@ -8,6 +8,7 @@
 
 #include "anamorph/figure/frame.h"
 #include "anamorph/figure/outline.h"
+#include "anamorph/parallel_for.h"
 
 namespace anamorph {
 

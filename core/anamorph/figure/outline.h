@@ -20,6 +20,7 @@
 #include "anamorph/figure/outline_view.h"
 #include "anamorph/map/ellipse.h"
 #include "anamorph/map/ellipsoid.h"
+#include "anamorph/parallel_for.h"
 
 namespace anamorph {
 

@@ -9,6 +9,7 @@
 
 #include "anamorph/figure/outline.h"
 #include "anamorph/figure/outline_roots.h"
+#include "anamorph/parallel_for.h"
 
 namespace anamorph {
 

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "anamorph/figure/outline_body.h"
+#include "anamorph/parallel_for.h"
 
 namespace anamorph {
 

@@ -16,6 +16,7 @@
 #include <type_traits>
 #include <vector>
 
+#include "anamorph/geometry/size.h"
 #include "anamorph/map/chart.h"
 #include "anamorph/number/jet.h"
 
@@ -141,9 +142,6 @@ class FeatureMap {
         double stretch;  ///< no rounding: the greatest length in a shape over that in the target
         bool exact;      ///< its ends p and q are not off at all
         Point<double> q;
-    };
-    struct Size {
-        int width, height;
     };
 
     /// `mixture`: the shapes' weights, with sum 1. Throws Error naming a line that has no length in the

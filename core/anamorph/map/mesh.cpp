@@ -290,8 +290,7 @@ class Mesh::Refiner {
 
 // ----------------------------------------------------------------------------------------------------------
 
-Mesh::Mesh(const ControlMesh& mesh, const Extent& from, const Extent& to, double amount,
-           const std::string& name)
+Mesh::Mesh(const ControlMesh& mesh, const Size& from, const Size& to, double amount, const std::string& name)
     : m_from(from), m_to(to) {
     check_count(name, "columns", mesh.columns, 1, ControlMesh::kMaxCells);
     check_count(name, "rows", mesh.rows, 1, ControlMesh::kMaxCells);

@@ -16,6 +16,7 @@
 #include <array>
 #include <cstddef>
 
+#include "anamorph/geometry/size.h"
 #include "anamorph/map/mesh_data.h"
 #include "anamorph/number/jet.h"
 #include "anamorph/number/tracked.h"
@@ -54,11 +55,6 @@ struct Patch {
     }
 };
 
-/// Width and height of an image.
-struct Extent {
-    int width = 0, height = 0;
-};
-
 /// A cell that is not cut.
 struct MeshCell {
     int level = 0, column = 0, row = 0;  ///< on the lattice of its level
@@ -70,11 +66,11 @@ class Mesh {
   public:
     /// `amount` blends from the identity (0) to the mesh (1) and beyond. Throws Error that names `name` and
     /// the vertex.
-    Mesh(const ControlMesh& mesh, const Extent& from, const Extent& to, double amount,
+    Mesh(const ControlMesh& mesh, const Size& from, const Size& to, double amount,
          const std::string& name = "mesh");
 
-    const Extent& from() const { return m_from; }
-    const Extent& to() const { return m_to; }
+    const Size& from() const { return m_from; }
+    const Size& to() const { return m_to; }
     int columns() const { return static_cast<int>(m_x.size()) - 1; }
     int rows() const { return static_cast<int>(m_y.size()) - 1; }
     /// The lines of level 0, from edge to edge of the image.
@@ -185,7 +181,7 @@ class Mesh {
         for (int k = 0; k < 4; ++k) each_part(cell_of(child + k), body);
     }
 
-    Extent m_from, m_to;
+    Size m_from, m_to;
     Point<double> m_scale;
     std::vector<double> m_x, m_y;
     double m_line_rounding = 4 * 0x1p-53;  ///< of a line's magnitude; 0 where all are exact

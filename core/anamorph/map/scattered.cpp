@@ -53,7 +53,7 @@ std::string text_of(double value) {
 }
 
 /// The points in pixels with their displacements.
-std::vector<Node> nodes_of(const ControlPoints& points, const Extent& from, const Extent& to, double amount,
+std::vector<Node> nodes_of(const ControlPoints& points, const Size& from, const Size& to, double amount,
                            const std::string& name) {
     if (points.pairs.empty()) throw Error(name + ": there are no points");
     if (points.pairs.size() > ControlPoints::kMaxPoints)
@@ -228,7 +228,7 @@ struct Element {
 
 /// Corners and barycentric coordinates of the cubic between corners i and j and the middle.
 CubicTriangle frame_of(const Element& e, std::size_t i, std::size_t j, const Vector& a, const Vector& b,
-                       const Extent& image) {
+                       const Size& image) {
     CubicTriangle p{};
     const Vector to_middle = e.to_middle(i), middle = e.v[i]->at + to_middle;
     p.corner[0] = {e.v[i]->x(), e.v[i]->y()};
@@ -264,7 +264,7 @@ CubicTriangle frame_of(const Element& e, std::size_t i, std::size_t j, const Vec
 }
 
 /// The three cubics of a triangle.
-void add_cubics(const std::vector<Node>& nodes, const Corners& corners, const Extent& image,
+void add_cubics(const std::vector<Node>& nodes, const Corners& corners, const Size& image,
                 std::vector<CubicTriangle>& cubics) {
     Element e{{&nodes[corners[0]], &nodes[corners[1]], &nodes[corners[2]]}, {}};
     e.area = cross(e.difference(1, 0), e.difference(2, 0));
@@ -387,7 +387,7 @@ bool CubicTriangle::meets(const Bounds& box) const {
            !beyond(-a[0] - a[1], -b[0] - b[1], 1 - c[0] - c[1]);
 }
 
-Scattered::Scattered(const ControlPoints& points, const Extent& from, const Extent& to, double amount,
+Scattered::Scattered(const ControlPoints& points, const Size& from, const Size& to, double amount,
                      const std::string& name)
     : m_from(from), m_to(to) {
     if (!std::isfinite(amount)) throw Error("amount", text_of(amount), "allowed are finite numbers");

@@ -12,6 +12,7 @@
 
 #include <array>
 
+#include "anamorph/geometry/size.h"
 #include "anamorph/map/mesh.h"
 #include "anamorph/map/mesh_tree.h"
 
@@ -71,11 +72,11 @@ class Scattered {
   public:
     /// `from` is the target, `to` the source. Throws Error that names `name` and the point: one that is not a
     /// number, two at the same place, none at all.
-    Scattered(const ControlPoints& points, const Extent& from, const Extent& to, double amount,
+    Scattered(const ControlPoints& points, const Size& from, const Size& to, double amount,
               const std::string& name = "points");
 
-    const Extent& from() const { return m_from; }
-    const Extent& to() const { return m_to; }
+    const Size& from() const { return m_from; }
+    const Size& to() const { return m_to; }
     const Point<double>& scale() const { return m_scale; }
     const std::vector<CubicTriangle>& triangles() const { return m_triangles; }
     const BoundsTree& tree() const { return m_tree; }
@@ -95,7 +96,7 @@ class Scattered {
     double orientation() const { return m_orientation; }
 
   private:
-    Extent m_from, m_to;
+    Size m_from, m_to;
     Point<double> m_scale;
     std::vector<CubicTriangle> m_triangles;
     BoundsTree m_tree;

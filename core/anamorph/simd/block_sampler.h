@@ -12,7 +12,7 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "anamorph/image/view.h"
+#include "anamorph/render/view.h"
 
 namespace anamorph::simd {
 

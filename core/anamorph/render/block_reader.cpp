@@ -1,0 +1,600 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "anamorph/render/block_reader.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <numeric>
+
+#include "anamorph/approx/block_writer.h"
+#include "anamorph/render/pixel.h"
+
+namespace anamorph {
+namespace {
+
+constexpr int kMaxRow = simd::kMaxRow;
+
+bool is_polynomial(const Block& block) {
+    return block.kind == Block::Kind::polynomial || block.kind == Block::Kind::bicubic;
+}
+
+BlockPolynomial polynomial_of(const BlockMap& map, const Block& block) {
+    return block.kind == Block::Kind::bicubic ? map.bicubic(block) : quadratic_of(block);
+}
+
+simd::Polynomials on_block(const BlockPolynomial& p, const Block& block) {
+    return {p.c, p.degree, block.box.width(), block.box.height()};
+}
+
+/// From the coefficients of a polynomial block.
+Jacobian jacobian_of(const Block& block) {
+    const double hx = half(block.box.width()), hy = half(block.box.height());
+    return {block.x[1] / hx, block.y[1] / hx, block.x[2] / hy, block.y[2] / hy};
+}
+
+// Pixels share a footprint whose axes are off by at most this part of their lengths, or by half a source
+// pixel.
+constexpr double kFootprintShare = 1.0 / 4, kFootprintOff = 0.5;
+
+/// May (step_x, step_y) stand in for an axis (x, y) of a footprint? All may where the map does not minify.
+inline bool alike(double x, double y, double step_x, double step_y) {
+    const double length = x * x + y * y, step = step_x * step_x + step_y * step_y;
+    const double off = square(step_x - x) + square(step_y - y);
+    // Written so that what is no number is like nothing.
+    return off <= std::max(square(kFootprintOff), square(kFootprintShare) * length) ||
+           (length <= 1 && step <= 1);
+}
+
+/// Is the footprint in the middle of a polynomial block right for all its pixels? The derivative along s is
+/// the sum of i c[j][i] s^(i - 1) t^j, and differs from c[0][1] by at most the magnitudes of its other terms.
+bool shares_footprint(const BlockPolynomial& p, const Block& block) {
+    double along_s[2] = {}, along_t[2] = {};
+    for (int k = 0; k < 2; ++k)
+        for (int j = 0; j <= p.degree; ++j)
+            for (int i = 0; i <= p.degree; ++i) {
+                const double c = std::fabs(double{p.c[j][4 * k + i]});
+                if (i > 1 || j > 0) along_s[k] += i * c;
+                if (j > 1 || i > 0) along_t[k] += j * c;
+            }
+    const double hx = half(block.box.width()), hy = half(block.box.height());
+    const auto steady = [](double x, double y, double off_x, double off_y) {
+        const double length = std::hypot(x, y), off = std::hypot(off_x, off_y);
+        return off <= std::max(kFootprintOff, kFootprintShare * length) || length + off <= 1;
+    };
+    return steady(p.c[0][1] / hx, p.c[0][5] / hx, along_s[0] / hx, along_s[1] / hx) &&
+           steady(p.c[1][0] / hy, p.c[1][4] / hy, along_t[0] / hy, along_t[1] / hy);
+}
+
+/// The source points of a block's pixels, counted from its corner, and the steps from one to the next.
+template <class At>
+class Steps {
+  public:
+    Steps(const At& at, const Block& block) : m_at(at), m_size{0, 0, block.box.width(), block.box.height()} {}
+
+    bool go_both_ways() const { return m_size.x1 > 1 && m_size.y1 > 1; }
+    /// The map's derivative in the middle of a cell: of the two nearest steps within the block, either way,
+    /// the shorter one, which does not cross a seam.
+    Jacobian jacobian(const Box& cell) const {
+        const int i = (cell.x0 + cell.x1) / 2, j = (cell.y0 + cell.y1) / 2;
+        const Point<double> across =
+            shorter(i, m_size.x1, [&](int k) { return m_at(k + 1, j) - m_at(k, j); });
+        const Point<double> down = shorter(j, m_size.y1, [&](int k) { return m_at(i, k + 1) - m_at(i, k); });
+        return {across.x, across.y, down.x, down.y};
+    }
+    /// Is every step of a cell like the axes of a footprint?
+    bool alike(const Box& cell, const Jacobian& to) const {
+        const Box a = across(cell), b = down(cell);
+        bool all = true;
+        for (int j = a.y0; j < a.y1 && all; ++j)
+            for (int i = a.x0; i < a.x1; ++i) {
+                const Point<double> step = m_at(i + 1, j) - m_at(i, j);
+                all &= anamorph::alike(to.x_i, to.y_i, step.x, step.y);
+            }
+        for (int j = b.y0; j < b.y1 && all; ++j)
+            for (int i = b.x0; i < b.x1; ++i) {
+                const Point<double> step = m_at(i, j + 1) - m_at(i, j);
+                all &= anamorph::alike(to.x_j, to.y_j, step.x, step.y);
+            }
+        return all;
+    }
+
+  private:
+    /// The shorter of the two steps, of a row of `count` pixels, next to pixel k.
+    template <class Step>
+    static Point<double> shorter(int k, int count, const Step& step) {
+        const int first = std::clamp(k - 1, 0, std::max(0, count - 3)), last = std::min(first + 1, count - 2);
+        const Point<double> a = step(first), b = step(last);
+        return square(a.x) + square(a.y) < square(b.x) + square(b.y) ? a : b;
+    }
+
+    /// Where steps to the right, or down, begin; those of a single column or row go to a neighbour of the
+    /// block, if it has one.
+    Box across(const Box& cell) const {
+        if (cell.width() > 1) return {cell.x0, cell.y0, cell.x1 - 1, cell.y1};
+        const int x = std::max(0, std::min(cell.x0, m_size.x1 - 2));
+        return {x, cell.y0, std::min(x + 1, m_size.x1 - 1), cell.y1};
+    }
+    Box down(const Box& cell) const {
+        if (cell.height() > 1) return {cell.x0, cell.y0, cell.x1, cell.y1 - 1};
+        const int y = std::max(0, std::min(cell.y0, m_size.y1 - 2));
+        return {cell.x0, y, cell.x1, std::min(y + 1, m_size.y1 - 1)};
+    }
+
+    const At& m_at;
+    Box m_size;
+};
+
+/// The least and the greatest of the points of a cell in one coordinate; NaN where one is not finite.
+void range_over(const float* at, std::ptrdiff_t stride, int width, int height, double& low, double& high) {
+    // In lanes, so that the compiler need not keep the order of comparisons.
+    constexpr int kLanes = 16;
+    float least[kLanes], greatest[kLanes], nothing[kLanes] = {};
+    std::fill_n(least, kLanes, HUGE_VALF);
+    std::fill_n(greatest, kLanes, -HUGE_VALF);
+    const auto take = [&](float v, int lane) {
+        least[lane] = v < least[lane] ? v : least[lane];
+        greatest[lane] = v > greatest[lane] ? v : greatest[lane];
+        nothing[lane] += v - v;
+    };
+    for (int j = 0; j < height; ++j, at += stride) {
+        int i = 0;
+        for (; i + kLanes <= width; i += kLanes)
+            for (int lane = 0; lane < kLanes; ++lane) take(at[i + lane], lane);
+        for (; i < width; ++i) take(at[i], 0);
+    }
+    const double zero = double{std::accumulate(nothing, nothing + kLanes, 0.0f)};
+    low = *std::min_element(least, least + kLanes) + zero;
+    high = *std::max_element(greatest, greatest + kLanes) + zero;
+}
+
+/// body(cell, jacobian) for the largest cells of a block, counted from its corner, that share a footprint:
+/// those in whose middle the map's derivative is like all their steps, and single pixels. False when any
+/// body was.
+template <class Derivative, class Alike, class Body>
+bool for_each_cell(const Box& cell, const Derivative& derivative, const Alike& alike, const Body& body) {
+    const Jacobian jacobian = derivative(cell);
+    if ((cell.width() == 1 && cell.height() == 1) || alike(cell, jacobian)) return body(cell, jacobian);
+    Box first = cell, second = cell;
+    if (cell.width() >= cell.height())
+        first.x1 = second.x0 = (cell.x0 + cell.x1) / 2;
+    else
+        first.y1 = second.y0 = (cell.y0 + cell.y1) / 2;
+    const bool done = for_each_cell(first, derivative, alike, body);
+    return for_each_cell(second, derivative, alike, body) && done;
+}
+
+bool is_near(double at) {
+    return std::fabs(at) < kFarthest;
+}
+
+Box whole(const Block& block) {
+    return {0, 0, block.box.width(), block.box.height()};
+}
+
+/// The part of a block's cell that lies in a box of the picture.
+Box part_of(const Box& cell, const Block& block, const Box& part) {
+    const int x = block.box.x0, y = block.box.y0;
+    return intersection({cell.x0 + x, cell.y0 + y, cell.x1 + x, cell.y1 + y}, part);
+}
+
+}  // namespace
+
+void block_row(const BlockMap& map, const Block& block, const Box& part, int j, float* x, float* y) {
+    const int row = j - block.box.y0, begin = part.x0 - block.box.x0, end = part.x1 - block.box.x0;
+    if (is_polynomial(block)) {
+        const BlockPolynomial p = polynomial_of(map, block);
+        simd::block_points(on_block(p, block), row, begin, end, x, y);
+    }
+    if (block.kind == Block::Kind::computed) map.computed_row(block, row, begin, end, x, y);
+}
+
+/// A block's polynomial in texels of a level: less a base of its own, with the ranges of x and y.
+struct BlockReader::LevelPolynomial {
+    BlockPolynomial p;
+    std::int32_t base_x, base_y;
+    Range x, y;
+
+    LevelPolynomial(const BlockPolynomial& of_source, const Block& block, double scale_x, double scale_y)
+        : p(of_source), base_x(block.base_x), base_y(block.base_y) {
+        x = take(0, base_x, scale_x);
+        y = take(4, base_y, scale_y);
+    }
+
+  private:
+    /// One coordinate: coefficients and base to the level, and the range.
+    Range take(int first, std::int32_t& base, double scale) {
+        double spread = 0;
+        for (int j = 0; j <= p.degree; ++j)
+            for (int i = first; i <= first + p.degree; ++i) {
+                if (j == 0 && i == first) continue;
+                if (scale != 1) p.c[j][i] = static_cast<float>(p.c[j][i] * scale);
+                spread += std::fabs(p.c[j][i]);
+            }
+        float& middle = p.c[0][first];
+        if (scale != 1) {
+            const double origin = (base + static_cast<double>(middle)) * scale;
+            base = static_cast<std::int32_t>(std::floor(origin));
+            middle = static_cast<float>(origin - base);
+        }
+        // s and t are at most 1 in float too, so that no term is larger than its coefficient; and rounding
+        // moves the sum by at most that much.
+        spread += (spread + std::fabs(middle)) * term_rounding(2 * p.degree);
+        return {middle - spread, middle + spread};
+    }
+};
+
+/// The texels from the low to the high end of a range past a base, with those that taps and kernel need
+/// around them.
+struct BlockReader::Span {
+    double first, last;
+
+    Span(const Filtering& f, double tap_reach, std::int32_t base, const Range& range) {
+        const int support = f.kernel == simd::Kernel::bicubic    ? 2
+                            : f.kernel == simd::Kernel::bilinear ? 1
+                                                                 : 0;
+        first = base + std::floor(range.low - tap_reach) - support;
+        last = base + std::floor(range.high + tap_reach) + support + 1;
+    }
+    bool fits() const { return std::max(std::fabs(first), std::fabs(last)) < (1 << 30); }
+    double farthest_from(std::int32_t base) const {
+        return std::max(std::fabs(first - base), std::fabs(last - base));
+    }
+};
+
+/// One coordinate of points in double, in texels of a level: `base` is the texel that the least one falls
+/// into, the range counts from there.
+struct BlockReader::LevelPoints {
+    double scale;
+    std::int32_t base;
+    Range range;
+
+    LevelPoints(double least, double greatest, double level_scale)
+        : scale(level_scale),
+          base(static_cast<std::int32_t>(std::floor(least * scale))),
+          range{0, greatest * scale - base} {}
+
+    /// The texel a point falls into, less the base, and how far into it. Whole texels apart: the rest loses
+    /// at most half of 2^-24 texels in float, all of it where float would round it to the next texel.
+    void split(double point, std::int32_t& texel, float& rest) const {
+        const double at = point * scale, floor = std::floor(at);
+        texel = static_cast<std::int32_t>(floor) - base;
+        rest = std::min(static_cast<float>(at - floor), 0x1.fffffep-1f);
+    }
+};
+
+BlockReader::BlockReader(const BlockMap& map, const Source& source, const Border& border, Filter filter)
+    : m_map(map),
+      m_source(source),
+      m_filter(filter),
+      m_reader(source, border),
+      m_points(source, border),
+      m_chooser(source),
+      m_values(static_cast<std::size_t>(kMaxRow) * static_cast<std::size_t>(source.channels()) + 16) {}
+
+bool BlockReader::rows(const Block& block, const Box& part, const Row& row) {
+    switch (block.kind) {
+        case Block::Kind::outside:
+            std::fill(m_values.begin(), m_values.end(), 0.0f);
+            for (int j = part.y0; j < part.y1; ++j)
+                for (int x = part.x0; x < part.x1; x += kMaxRow)
+                    row(x, j, std::min(kMaxRow, part.x1 - x), m_values.data(), 1);
+            return true;
+        case Block::Kind::polynomial:
+        case Block::Kind::bicubic:
+            return polynomial_rows(block, part, row);
+        case Block::Kind::computed:
+            return rows(block, points_of(block), part, row);
+        case Block::Kind::exact:
+            break;
+    }
+    return exact_rows(block, part, row);
+}
+
+bool BlockReader::draw(const Block& block, const Box& part, const Canvas& canvas, const Block* next) {
+    if (is_polynomial(block) && canvas.packed() && m_source.unassociated_alpha() < 0) {
+        const Filtering f = filtering(jacobian_of(block));
+        const BlockPolynomial of_source = polynomial_of(m_map, block);
+        const LevelPolynomial polynomial(of_source, block, f.scale_x, f.scale_y);
+        Window window;
+        const Got got = shares_filter(of_source, block) ? polynomial_window(f, block, polynomial, window)
+                                                        : Got::too_large;
+        if (got == Got::failed) return false;
+        if (got == Got::window) {
+            simd::draw_block(texels_of(f, window, polynomial.base_x, polynomial.base_y),
+                             on_block(polynomial.p, block), part.x0 - block.box.x0, part.x1 - block.box.x0,
+                             part.y0 - block.box.y0, part.y1 - block.box.y0,
+                             canvas.scale_from(one_of(window.type)), canvas.type(),
+                             canvas.at(part.x0, part.y0), canvas.row_stride(), upcoming(next, f));
+            return true;
+        }
+    }
+    return rows(block, part, [&](int x, int y, int count, const float* values, float one) {
+        canvas.store(x, y, count, values, one);
+    });
+}
+
+// --- blocks by kind
+// ------------------------------------------------------------------------------------------
+
+/// Do all pixels of a polynomial block share the filter that serves its middle?
+bool BlockReader::shares_filter(const BlockPolynomial& polynomial, const Block& block) const {
+    return m_filter != Filter::antialias || shares_footprint(polynomial, block);
+}
+
+bool BlockReader::polynomial_rows(const Block& block, const Box& part, const Row& row) {
+    const BlockPolynomial of_source = polynomial_of(m_map, block);
+    if (!shares_filter(of_source, block)) return rows(block, points_of(block), part, row);
+    const Filtering f = filtering(jacobian_of(block));
+    const LevelPolynomial polynomial(of_source, block, f.scale_x, f.scale_y);
+    Window window;
+    const Got got = polynomial_window(f, block, polynomial, window);
+    if (got == Got::failed) return false;
+    if (got == Got::too_large) return rows_one_by_one(block, {}, part, row);
+    const simd::Texels texels = texels_of(f, window, polynomial.base_x, polynomial.base_y);
+    alignas(64) float px[simd::kRowRoom], py[simd::kRowRoom];
+    for (int j = part.y0; j < part.y1; ++j) {
+        simd::block_points(on_block(polynomial.p, block), j - block.box.y0, part.x0 - block.box.x0,
+                           part.x1 - block.box.x0, px, py);
+        sample(texels, {px, py, part.width()}, window.type, part.x0, j, row);
+    }
+    return true;
+}
+
+bool BlockReader::rows(const Block& block, const BlockPoints& points, const Box& part, const Row& row) {
+    const auto at = [&](int i, int j) {
+        const std::ptrdiff_t k = j * points.row_stride + i;
+        return Point<double>{points.x[k], points.y[k]};
+    };
+    const auto body = [&](const Box& cell, const Filtering& f) {
+        return points_cell(f, block, points, cell, part, row);
+    };
+    return for_each_footprint(block, at, body);
+}
+
+/// body(cell, filtering) for the cells of a block that share a footprint; `at` gives the source points of its
+/// pixels, counted from its corner.
+template <class At, class Body>
+bool BlockReader::for_each_footprint(const Block& block, const At& at, const Body& body) const {
+    if (m_filter != Filter::antialias) return body(whole(block), filtering({}));
+    const Steps<At> steps(at, block);
+    const auto derivative = [&](const Box& cell) {
+        if (steps.go_both_ways()) return steps.jacobian(cell);
+        return m_map.jacobian(block.box.x0 + 0.5 * (cell.x0 + cell.x1),
+                              block.box.y0 + 0.5 * (cell.y0 + cell.y1), block.piece);
+    };
+    const auto alike = [&](const Box& cell, const Jacobian& jacobian) { return steps.alike(cell, jacobian); };
+    return for_each_cell(whole(block), derivative, alike,
+                         [&](const Box& cell, const Jacobian& j) { return body(cell, filtering(j)); });
+}
+
+bool BlockReader::points_cell(const Filtering& f, const Block& block, const BlockPoints& points,
+                              const Box& cell, const Box& part, const Row& row) {
+    const Box own = part_of(cell, block, part);
+    if (own.empty()) return true;
+    Range x, y;
+    const std::ptrdiff_t first = cell.y0 * points.row_stride + cell.x0;
+    range_over(points.x + first, points.row_stride, cell.width(), cell.height(), x.low, x.high);
+    range_over(points.y + first, points.row_stride, cell.width(), cell.height(), y.low, y.high);
+    const bool near = is_near(block.base_x + x.low) && is_near(block.base_x + x.high) &&
+                      is_near(block.base_y + y.low) && is_near(block.base_y + y.high);
+    if (!near) return rows_one_by_one(block, points, own, row);
+    // On the source itself the block's offsets serve as they are, unless a cell lies apart from its base.
+    if (f.level > 0 || !(cell == whole(block))) {
+        const auto at = [&](int i, int j) {
+            const std::ptrdiff_t k = (j - block.box.y0) * points.row_stride + i - block.box.x0;
+            return Point<double>{block.base_x + double{points.x[k]}, block.base_y + double{points.y[k]}};
+        };
+        const LevelPoints lx(block.base_x + x.low, block.base_x + x.high, f.scale_x),
+            ly(block.base_y + y.low, block.base_y + y.high, f.scale_y);
+        const Got got = split_rows(f, block.source_piece, at, lx, ly, cell, own, row);
+        return got == Got::too_large ? rows_one_by_one(block, points, own, row) : got == Got::window;
+    }
+    Window window;
+    const Got got = window_of(f, block.source_piece, block.base_x, x, block.base_y, y, cell, window);
+    if (got == Got::too_large) return rows_one_by_one(block, points, own, row);
+    if (got == Got::failed) return false;
+    const simd::Texels texels = texels_of(f, window, block.base_x, block.base_y);
+    for (int j = own.y0; j < own.y1; ++j) {
+        const std::ptrdiff_t at = (j - block.box.y0) * points.row_stride + own.x0 - block.box.x0;
+        sample(texels, {points.x + at, points.y + at, own.width()}, window.type, own.x0, j, row);
+    }
+    return true;
+}
+
+/// The pixels of `own`, a part of a cell whose points lie in the given ranges; `at` gives their source
+/// points.
+template <class At>
+BlockReader::Got BlockReader::split_rows(const Filtering& f, int piece, const At& at, const LevelPoints& x,
+                                         const LevelPoints& y, const Box& cell, const Box& own,
+                                         const Row& row) {
+    Window window;
+    const Got got = window_of(f, piece, x.base, x.range, y.base, y.range, cell, window);
+    if (got != Got::window) return got;
+    const simd::Texels texels = texels_of(f, window, x.base, y.base);
+    alignas(64) float fx[simd::kRowRoom] = {}, fy[simd::kRowRoom] = {};
+    alignas(64) std::int32_t ix[simd::kRowRoom] = {}, iy[simd::kRowRoom] = {};
+    for (int j = own.y0; j < own.y1; ++j) {
+        for (int i = own.x0; i < own.x1; ++i) {
+            const Point<double> p = at(i, j);
+            const int k = i - own.x0;
+            x.split(p.x, ix[k], fx[k]);
+            y.split(p.y, iy[k], fy[k]);
+        }
+        sample(texels, {fx, fy, own.width(), ix, iy}, window.type, own.x0, j, row);
+    }
+    return Got::window;
+}
+
+/// The source points of all pixels of a block.
+BlockPoints BlockReader::points_of(const Block& block) {
+    constexpr std::size_t kPlane = std::size_t{simd::kRowRoom} * Block::kMaxSide;
+    m_computed.resize(2 * kPlane);
+    const BlockPoints points{m_computed.data(), m_computed.data() + kPlane, simd::kRowRoom};
+    for (int j = 0; j < block.box.height(); ++j) {
+        float* row = m_computed.data() + j * points.row_stride;
+        block_row(m_map, block, block.box, block.box.y0 + j, row, row + kPlane);
+    }
+    return points;
+}
+
+bool BlockReader::exact_rows(const Block& block, const Box& part, const Row& row) {
+    // Positions of the whole block decide how it is read, whatever part of it is asked for.
+    const int w = block.box.width();
+    m_exact.resize(static_cast<std::size_t>(w) * static_cast<std::size_t>(block.box.height()));
+    for (int j = 0; j < block.box.height(); ++j) m_map.exact_row(block, j, m_exact.data() + j * w);
+    const auto near_first = [&](const BlockMap::ExactPoint& e) {
+        return e.seen && e.piece == m_exact[0].piece && is_near(e.at.x) && is_near(e.at.y);
+    };
+    const bool together = std::all_of(m_exact.begin(), m_exact.end(), near_first);
+    if (!together) return rows_one_by_one(block, {}, part, row);
+    const auto at = [&](int i, int j) -> const Point<double>& { return m_exact.data()[j * w + i].at; };
+    return for_each_footprint(block, at, [&](const Box& cell, const Filtering& f) {
+        return exact_cell(f, block, cell, part, row);
+    });
+}
+
+bool BlockReader::exact_cell(const Filtering& f, const Block& block, const Box& cell, const Box& part,
+                             const Row& row) {
+    const Box own = part_of(cell, block, part);
+    if (own.empty()) return true;
+    const BlockMap::ExactPoint* points = m_exact.data();
+    const int w = block.box.width();
+    double x0 = HUGE_VAL, y0 = HUGE_VAL, x1 = -HUGE_VAL, y1 = -HUGE_VAL;
+    for (int j = cell.y0; j < cell.y1; ++j)
+        for (int i = cell.x0; i < cell.x1; ++i) {
+            const Point<double>& p = points[j * w + i].at;
+            x0 = std::min(x0, p.x);
+            x1 = std::max(x1, p.x);
+            y0 = std::min(y0, p.y);
+            y1 = std::max(y1, p.y);
+        }
+    const auto at = [&](int i, int j) { return points[(j - block.box.y0) * w + i - block.box.x0].at; };
+    const Got got = split_rows(f, points[0].piece, at, LevelPoints(x0, x1, f.scale_x),
+                               LevelPoints(y0, y1, f.scale_y), cell, own, row);
+    return got == Got::too_large ? rows_one_by_one(block, {}, own, row) : got == Got::window;
+}
+
+/// Each pixel with a window of its own: where a block's texels lie far apart.
+bool BlockReader::rows_one_by_one(const Block& block, const BlockPoints& points, const Box& part,
+                                  const Row& row) {
+    const int channels = m_source.channels();
+    alignas(64) float px[simd::kRowRoom] = {}, py[simd::kRowRoom] = {};
+    bool ok = true;
+    for (int j = part.y0; j < part.y1; ++j) {
+        if (points.x) {
+            const std::ptrdiff_t at = (j - block.box.y0) * points.row_stride + part.x0 - block.box.x0;
+            std::copy_n(points.x + at, part.width(), px);
+            std::copy_n(points.y + at, part.width(), py);
+        } else
+            block_row(m_map, block, part, j, px, py);
+        for (int i = part.x0; i < part.x1; ++i) {
+            float* pixel = m_values.data() + (i - part.x0) * channels;
+            Point<double> p{block.base_x + double(px[i - part.x0]), block.base_y + double(py[i - part.x0])};
+            int piece = block.source_piece;
+            if (block.kind == Block::Kind::exact && !m_map.exact(block, i + 0.5, j + 0.5, p, piece))
+                std::fill_n(pixel, channels, 0.0f);
+            else
+                ok = sample_point(i, j, block.piece, p, piece, pixel) && ok;
+        }
+        finish(part.x0, j, part.width(), 1, row);
+    }
+    return ok;
+}
+
+bool BlockReader::sample_point(int i, int j, int target_piece, const Point<double>& p, int piece,
+                               float* pixel) {
+    if (m_filter != Filter::antialias) return m_points.sample(m_filter, 0, piece, p.x, p.y, pixel);
+    const Jacobian jacobian = m_map.jacobian(i + 0.5, j + 0.5, target_piece);
+    return m_points.sample(m_chooser(jacobian), jacobian, piece, p.x, p.y, pixel);
+}
+
+void BlockReader::sample(const simd::Texels& texels, const simd::Offsets& offsets, PixelType type, int x,
+                         int y, const Row& row) {
+    simd::sample_row(texels, offsets, m_values.data());
+    finish(x, y, offsets.count, one_of(type), row);
+}
+
+/// A row of filtered values to the taker.
+void BlockReader::finish(int x, int y, int count, float one, const Row& row) {
+    const int alpha = m_source.unassociated_alpha(), channels = m_source.channels();
+    for (int i = 0; alpha >= 0 && i < count; ++i)
+        unassociate_alpha(m_values.data() + i * channels, channels, alpha);
+    row(x, y, count, m_values.data(), one);
+}
+
+// --- windows and filters
+// -------------------------------------------------------------------------------------
+
+BlockReader::Got BlockReader::polynomial_window(const Filtering& f, const Block& block,
+                                                const LevelPolynomial& p, Window& window) {
+    return window_of(f, block.source_piece, p.base_x, p.x, p.base_y, p.y, block.box, window);
+}
+
+BlockReader::Got BlockReader::window_of(const Filtering& f, int piece, std::int32_t base_x,
+                                        const Range& range_x, std::int32_t base_y, const Range& range_y,
+                                        const Box& block, Window& window) {
+    const Span x(f, f.reach_x, base_x, range_x), y(f, f.reach_y, base_y, range_y);
+    // More texels than this per pixel are better fetched one pixel at a time.
+    constexpr double kMost = 32;
+    const double texels = (x.last - x.first) * (y.last - y.first);
+    const double pixels = double(block.width()) * block.height();
+    if (!(texels <= kMost * pixels + 4096) || !x.fits() || !y.fits()) return Got::too_large;
+    // Offsets are floats, which move half a texel without losing it, and count elements in 32 bits.
+    constexpr double kMostOffset = 1 << 20;
+    const double most_x = x.farthest_from(base_x), most_y = y.farthest_from(base_y);
+    if (!(most_x <= kMostOffset && most_y <= kMostOffset)) return Got::too_large;
+    const Box box{static_cast<int>(x.first), static_cast<int>(y.first), static_cast<int>(x.last),
+                  static_cast<int>(y.last)};
+    if (!m_reader.get(f.level, piece, box, window)) return Got::failed;
+    const double pixel = double(window.channels) * size_of(window.type);
+    const double span = std::fabs(double(window.row_stride)) * most_y + pixel * most_x;
+    return span < std::numeric_limits<std::int32_t>::max() ? Got::window : Got::too_large;
+}
+
+/// Where the next block's texels stand in memory, if they do; filtered like this one's.
+simd::Upcoming BlockReader::upcoming(const Block* next, const Filtering& f) const {
+    const ConstImageView* view = m_source.view(f.level);
+    if (!next || !view || !is_polynomial(*next)) return {};
+    const LevelPolynomial p(quadratic_of(*next), *next, f.scale_x, f.scale_y);
+    const Span x(f, f.reach_x, p.base_x, p.x), y(f, f.reach_y, p.base_y, p.y);
+    if (!(x.first >= 0 && y.first >= 0 && x.last <= view->width && y.last <= view->height)) return {};
+    return {view->at(static_cast<std::ptrdiff_t>(x.first), static_cast<std::ptrdiff_t>(y.first)),
+            view->row_stride, static_cast<int>(y.last - y.first),
+            static_cast<int>((x.last - x.first) * view->pixel_stride)};
+}
+
+simd::Texels BlockReader::texels_of(const Filtering& f, const Window& window, std::int32_t base_x,
+                                    std::int32_t base_y) {
+    const std::ptrdiff_t pixel = std::ptrdiff_t{window.channels} * size_of(window.type);
+    return {window.texels + (base_y - window.box.y0) * window.row_stride + (base_x - window.box.x0) * pixel,
+            window.row_stride,
+            window.type,
+            window.channels,
+            f.kernel,
+            f.taps.data(),
+            f.tap_count};
+}
+
+BlockReader::Filtering BlockReader::filtering(const Jacobian& jacobian) const {
+    Filtering f;
+    if (m_filter == Filter::nearest) f.kernel = simd::Kernel::nearest;
+    if (m_filter == Filter::bicubic) f.kernel = simd::Kernel::bicubic;
+    if (m_filter != Filter::antialias) return f;
+    const Footprint footprint = m_chooser(jacobian);
+    f.level = footprint.level;
+    f.scale_x = m_chooser.scale(f.level)[0];
+    f.scale_y = m_chooser.scale(f.level)[1];
+    f.tap_count = 0;
+    for (int b = 0; b < footprint.taps_b; ++b)
+        for (int a = 0; a < footprint.taps_a; ++a) {
+            const Point<double> o = tap_offset(footprint, jacobian, {f.scale_x, f.scale_y}, a, b);
+            f.taps[static_cast<std::size_t>(f.tap_count++)] = {static_cast<float>(o.x),
+                                                               static_cast<float>(o.y)};
+            f.reach_x = std::max(f.reach_x, std::fabs(o.x));
+            f.reach_y = std::max(f.reach_y, std::fabs(o.y));
+        }
+    return f;
+}
+
+}  // namespace anamorph

@@ -1,0 +1,119 @@
+// SPDX-License-Identifier: Apache-2.0
+// The filtered pixels of a block: its source points, the level and taps that serve them, the window of texels
+// they read, and the loops over its rows.
+#pragma once
+
+#include <array>
+#include <functional>
+#include <vector>
+
+#include "anamorph/approx/block.h"
+#include "anamorph/render/canvas.h"
+#include "anamorph/render/filter.h"
+#include "anamorph/render/footprint.h"
+#include "anamorph/render/window.h"
+
+namespace anamorph {
+
+/// Source points of all pixels of a block, row by row, as offsets from the block's base in source pixels.
+struct BlockPoints {
+    const float *x = nullptr, *y = nullptr;
+    std::ptrdiff_t row_stride = 0;  ///< floats; behind every row at least 16 more may be read
+};
+
+/// How far, in a coarse level's texels and along each axis, the point sampled there may be from the one that
+/// a block's bound holds for: in units of 2^-24, 1/2 for the place of the polynomial's origin past a whole
+/// texel of the level, 3 for the additions it goes through (two of Horner's rule, one of the sampler), and 1
+/// of kSamplerRounding; points from a table or in double lose less. The next power of two.
+inline constexpr double kLevelRounding = 0x1p-21;
+
+/// The offsets from the base of a polynomial, bicubic or computed block for row j of `part` of it; room for
+/// simd::kRowRoom floats each. Nothing is written for other kinds.
+void block_row(const BlockMap& map, const Block& block, const Box& part, int j, float* x, float* y);
+
+/// Reads one source through one map; one per thread. The bits of a pixel depend on its block and the source,
+/// not on the part of the block that is asked for.
+///
+/// Where it reads. On the source itself the point sampled is within the block's bound of the exact one; that
+/// of an exact pixel is within 2^-23 texels of the point in double (its rest past a whole texel is rounded,
+/// and kSamplerRounding). On a coarser level of a pyramid kLevelRounding of that level's texels are added:
+/// what is left of a point past a whole texel is a float there too.
+///
+/// What it averages. An antialiased pixel takes a footprint whose axes are the map's own, its steps from
+/// pixel to pixel, to within a quarter of their lengths or half a source pixel: by blocks where one serves
+/// all of their pixels, else by parts of them, down to single pixels.
+class BlockReader {
+  public:
+    /// The arguments outlive the reader.
+    BlockReader(const BlockMap& map, const Source& source, const Border& border, Filter filter);
+
+    /// Takes `count` pixels from (x, y) on, channel by channel; `one` is the value that stands for 1.
+    using Row = std::function<void(int x, int y, int count, const float* values, float one)>;
+
+    /// The pixels of `part` of a block, row by row; those without a source point are 0. False when the source
+    /// could not be read.
+    bool rows(const Block& block, const Box& part, const Row& row);
+    /// The same with the points of a computed block already at hand.
+    bool rows(const Block& block, const BlockPoints& points, const Box& part, const Row& row);
+
+    /// Draws `part` of a block. `next` is the block to be drawn after this one, if any: its texels are
+    /// brought near meanwhile.
+    bool draw(const Block& block, const Box& part, const Canvas& canvas, const Block* next = nullptr);
+
+  private:
+    /// The level and taps that all pixels of a cell share.
+    struct Filtering {
+        int level = 0;
+        double scale_x = 1, scale_y = 1;  ///< level texels per source pixel
+        simd::Kernel kernel = simd::Kernel::bilinear;
+        int tap_count = 1;
+        std::array<simd::Tap, simd::kMaxTaps> taps{};
+        double reach_x = 0, reach_y = 0;  ///< of the taps, level texels
+    };
+    struct Range {
+        double low = 0, high = 0;
+    };
+    struct LevelPolynomial;
+    struct LevelPoints;
+    struct Span;
+    enum class Got { window, too_large, failed };
+
+    bool polynomial_rows(const Block& block, const Box& part, const Row& row);
+    bool exact_rows(const Block& block, const Box& part, const Row& row);
+    bool rows_one_by_one(const Block& block, const BlockPoints& points, const Box& part, const Row& row);
+    bool sample_point(int i, int j, int target_piece, const Point<double>& p, int piece, float* pixel);
+    void sample(const simd::Texels& texels, const simd::Offsets& offsets, PixelType type, int x, int y,
+                const Row& row);
+    void finish(int x, int y, int count, float one, const Row& row);
+
+    template <class At, class Body>
+    bool for_each_footprint(const Block& block, const At& at, const Body& body) const;
+    bool points_cell(const Filtering& f, const Block& block, const BlockPoints& points, const Box& cell,
+                     const Box& part, const Row& row);
+    bool exact_cell(const Filtering& f, const Block& block, const Box& cell, const Box& part, const Row& row);
+    template <class At>
+    Got split_rows(const Filtering& f, int piece, const At& at, const LevelPoints& x, const LevelPoints& y,
+                   const Box& cell, const Box& own, const Row& row);
+
+    bool shares_filter(const BlockPolynomial& polynomial, const Block& block) const;
+    BlockPoints points_of(const Block& block);
+    Filtering filtering(const Jacobian& jacobian) const;
+    Got polynomial_window(const Filtering& f, const Block& block, const LevelPolynomial& polynomial,
+                          Window& window);
+    Got window_of(const Filtering& f, int piece, std::int32_t base_x, const Range& range_x,
+                  std::int32_t base_y, const Range& range_y, const Box& block, Window& window);
+    static simd::Texels texels_of(const Filtering& f, const Window& window, std::int32_t base_x,
+                                  std::int32_t base_y);
+    simd::Upcoming upcoming(const Block* next, const Filtering& f) const;
+
+    const BlockMap& m_map;
+    const Source& m_source;
+    Filter m_filter;
+    WindowReader m_reader;
+    PointSampler m_points;
+    FootprintChooser m_chooser;
+    std::vector<float> m_values, m_computed;
+    std::vector<BlockMap::ExactPoint> m_exact;
+};
+
+}  // namespace anamorph

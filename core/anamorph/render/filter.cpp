@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "anamorph/render/filter.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "anamorph/render/pixel.h"
+
+namespace anamorph {
+namespace {
+
+/// The texels one axis of a filter reads: `first`, `first` + 1, ... with their weights.
+struct Taps {
+    int first = 0, count = 1;
+    std::array<double, 4> weight{1, 0, 0, 0};
+};
+
+Taps taps_at(Filter filter, double at) {
+    // Far beyond every edge all points are alike; int64 holds them, int must too.
+    at = std::clamp(at, -0x1p30, 0x1p30);
+    if (filter == Filter::nearest) return {static_cast<int>(std::floor(at)), 1, {1}};
+    const double floor = std::floor(at - 0.5), t = at - 0.5 - floor;
+    const int below = static_cast<int>(floor);
+    if (filter == Filter::bicubic) return {below - 1, 4, catmull_rom_weights(t)};
+    const auto [first, second] = bilinear_weights(t);
+    return {below, 2, {first, second}};
+}
+
+}  // namespace
+
+PointSampler::PointSampler(const Source& source, const Border& border)
+    : m_source(source),
+      m_reader(source, border),
+      m_tap(static_cast<std::size_t>(source.channels())),
+      m_sum(static_cast<std::size_t>(source.channels())) {}
+
+bool PointSampler::sample(Filter filter, int level, int piece, double x, double y, float* pixel) noexcept {
+    const int channels = m_source.channels();
+    std::fill_n(pixel, channels, 0.0f);
+    if (std::isnan(x) || std::isnan(y)) return true;
+    const Taps across = taps_at(filter, x), down = taps_at(filter, y);
+    const Box box{across.first, down.first, across.first + across.count, down.first + down.count};
+    Window window;
+    if (!m_reader.get(level, piece, box, window)) return false;
+
+    const std::ptrdiff_t size = size_of(window.type);
+    for (int c = 0; c < channels; ++c) {
+        double sum = 0;
+        for (int j = 0; j < down.count; ++j)
+            for (int i = 0; i < across.count; ++i) {
+                const double weight =
+                    across.weight[static_cast<std::size_t>(i)] * down.weight[static_cast<std::size_t>(j)];
+                if (weight == 0) continue;
+                const std::byte* texel = window.texels + j * window.row_stride + (i * channels + c) * size;
+                sum += weight * static_cast<double>(load_channel(texel, window.type));
+            }
+        pixel[c] = static_cast<float>(sum);
+    }
+    return true;
+}
+
+bool PointSampler::sample(const Footprint& footprint, const Jacobian& jacobian, int piece, double x, double y,
+                          float* pixel) noexcept {
+    const Size full = m_source.size(0), size = m_source.size(footprint.level);
+    const double sx = static_cast<double>(size.width) / full.width,
+                 sy = static_cast<double>(size.height) / full.height;
+    std::fill(m_sum.begin(), m_sum.end(), 0.0);
+    for (int j = 0; j < footprint.taps_b; ++j)
+        for (int i = 0; i < footprint.taps_a; ++i) {
+            const Point<double> tap = tap_offset(footprint, jacobian, {sx, sy}, i, j);
+            if (!sample(Filter::bilinear, footprint.level, piece, x * sx + tap.x, y * sy + tap.y,
+                        m_tap.data()))
+                return false;
+            for (std::size_t c = 0; c < m_sum.size(); ++c) m_sum[c] += static_cast<double>(m_tap[c]);
+        }
+    const double taps = footprint.taps_a * footprint.taps_b;
+    for (std::size_t c = 0; c < m_sum.size(); ++c) pixel[c] = static_cast<float>(m_sum[c] / taps);
+    return true;
+}
+
+}  // namespace anamorph

@@ -1,0 +1,141 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "anamorph/render/morph_parameters.h"
+
+#include "anamorph/approx/near_far_mesh.h"
+#include "anamorph/render/picture_parameters.h"
+
+namespace anamorph {
+namespace {
+
+using rows::chosen;
+
+// In the order of their enumerations.
+const std::vector<std::string> kWraps = {"automatic", "black", "clamp", "periodic", "mirror"};
+const std::vector<std::string> kSchemes = {"auto", "exact", "mesh"};
+const std::vector<std::string> kOutputs = {"color",   "warp_a", "warp_b", "stmap_a",
+                                           "stmap_b", "lines",  "error",  "bound"};
+constexpr int kMaxFrames = 9999;
+
+/// Weights of the pictures.
+Parameter weights(const char* name, const char* doc) {
+    Parameter row = rows::numbers(name, -MorphOptions::kMostT, doc);
+    row.maximum = MorphOptions::kMostT;
+    return row;
+}
+
+ParameterTable make_table() {
+    using namespace rows;
+    ParameterTable table = {
+        image("a", "the first picture; by default the recipe's name without .morph"),
+        image("b", "the second picture"),
+    };
+    for (std::size_t i = 2; i < morph_pictures().size(); ++i)
+        table.push_back(image(morph_pictures()[i].c_str(), "one more picture, with shape_weights"));
+    const ParameterTable others = {
+        file("features", "lines that correspond to each other in the pictures: .json, .csv or .svg"),
+        number("t", "", "0.5", -MorphOptions::kMostT, MorphOptions::kMostT,
+               "of the shape: 0 is that of a, 1 that of b"),
+        number("t_color", "", "", -MorphOptions::kMostT, MorphOptions::kMostT,
+               "of the color: 0 is that of a, 1 that of b; by default t"),
+        weights("shape_weights", "of the shape, in place of t: one for each picture, with sum 1"),
+        weights("color_weights", "of the color, in place of t_color; by default shape_weights"),
+        whole("frames", "", "1", 1, kMaxFrames,
+              "more than 1: as many subimages, t running evenly from 0 in the first to 1 in the last"),
+        number(
+            "weight_a", "", "1", 0, LineWeights::kMostA,
+            "a of a line's weight (length^p / (a + distance))^b: the smaller, the closer lines are followed"),
+        number("weight_b", "", "2", 0, LineWeights::kMostB, "b of it: how fast a line's influence falls off"),
+        number("weight_p", "", "0.5", 0, LineWeights::kMostP, "p of it: how much more long lines count"),
+        number(
+            "pin_border", "", "", 0, kInfinity,
+            "holds the picture's border with lines of this weight; 0: not; by default as the features say"),
+        size("width and height of the picture, or its width alone; by default those of a"),
+        tile(),
+        mip(),
+        filter(),
+        choice("wrap", "automatic", kWraps, "what lies beyond a picture's edge; automatic is clamp"),
+        tol(),
+        choice("scheme", "auto", kSchemes,
+               "how source points are found within tol; mesh, on a grid with cells cut near the lines, holds "
+               "none"),
+        whole("mesh_cells", "", "12", 1, FeatureMesh::kMostCells, "of scheme mesh: cells each way"),
+        whole("mesh_levels", "", "1", 0, FeatureMesh::kMostLevels,
+              "of scheme mesh: how often cells near a line are cut into four"),
+        colorspace("color space to filter and blend in; by default that of the pictures"),
+        choice("output", "color", kOutputs,
+               "color; warp_a, warp_b: one picture alone, warped; lines: the morph with all features drawn "
+               "over it; or per pixel: stmap_a, stmap_b, the point (u, v) in a picture in 0 to 1 with v "
+               "down; error, the distance of the point used from the exact one in source pixels; bound, the "
+               "proven bound of that"),
+    };
+    table.insert(table.end(), others.begin(), others.end());
+    return table;
+}
+
+}  // namespace
+
+const ParameterTable& morph_parameters() {
+    static const ParameterTable table = make_table();
+    return table;
+}
+
+const std::vector<std::string>& morph_pictures() {
+    static const std::vector<std::string> keys = {"a", "b", "c", "d", "e", "f", "g", "h"};
+    return keys;
+}
+
+MorphOptions MorphRequest::frame_options(int frame) const {
+    MorphOptions out = options;
+    if (frames > 1) out.t = double(frame) / (frames - 1);
+    return out;
+}
+
+MorphRequest read_morph_request(const ParameterValues& values, const std::vector<Size>& pictures) {
+    MorphRequest request;
+    request.pictures = pictures;
+    const Size size = rows::size_of(values, {pictures[0].width, pictures[0].height});
+    request.width = size.width;
+    request.height = size.height;
+
+    MorphOptions& options = request.options;
+    options.scheme = chosen<MorphScheme>(values, "scheme", kSchemes);
+    options.tol = values.number("tol");
+    options.filter = chosen<Filter>(values, "filter", rows::filters());
+    options.wrap = chosen<Wrap>(values, "wrap", kWraps);
+    options.output = chosen<MorphOutput>(values, "output", kOutputs);
+    options.t = values.number("t");
+    if (values.given("t_color")) options.t_color = values.number("t_color");
+    if (values.given("shape_weights")) options.shape_weights = values.numbers("shape_weights");
+    if (values.given("color_weights")) options.color_weights = values.numbers("color_weights");
+    options.weight_a = values.number("weight_a");
+    options.weight_b = values.number("weight_b");
+    options.weight_p = values.number("weight_p");
+    options.mesh_cells = values.whole("mesh_cells");
+    options.mesh_levels = values.whole("mesh_levels");
+    if (values.given("pin_border")) request.pin_border = values.number("pin_border");
+
+    for (const char* name : {"shape_weights", "color_weights"})
+        if (values.given(name))
+            check_mixture(name, values.text(name), values.numbers(name), static_cast<int>(pictures.size()));
+
+    request.frames = values.whole("frames");
+    // What says the same as another key, where both are given.
+    const auto refuse = [&](const char* name, const char* other) {
+        if (values.given(name) && values.given(other))
+            throw Error(name, values.text(name), std::string("must not be given together with ") + other);
+    };
+    refuse("t", "shape_weights");
+    refuse("t_color", "color_weights");
+    refuse("t_color", "shape_weights");
+    if (request.frames > 1) {
+        refuse("t", "frames");
+        refuse("shape_weights", "frames");
+        refuse("color_weights", "frames");
+    }
+    if (pictures.size() > 2 && !values.given("shape_weights"))
+        throw Error("shape_weights is not given: must be one number for each of the " +
+                    std::to_string(pictures.size()) + " pictures, with sum 1");
+    return request;
+}
+
+}  // namespace anamorph

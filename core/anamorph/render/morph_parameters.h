@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: Apache-2.0
+// The parameters of a feature morph, and what they make of pictures of given sizes.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "anamorph/geometry/size.h"
+#include "anamorph/parameter.h"
+#include "anamorph/render/morph.h"
+
+namespace anamorph {
+
+const ParameterTable& morph_parameters();
+
+/// The keys of the pictures: a, b, c ...
+const std::vector<std::string>& morph_pictures();
+
+/// A morph as asked for, but for the features.
+struct MorphRequest {
+    std::vector<Size> pictures;
+    int width = 0, height = 0;
+    MorphOptions options;
+    std::optional<double> pin_border;  ///< unless as the features say
+    int frames = 1;
+
+    /// Of a film: t runs evenly from 0 in the first frame to 1 in the last; t_color does too unless it was
+    /// given.
+    MorphOptions frame_options(int frame) const;
+};
+
+/// Reads a table's values. Without `size` the picture has that of the first; with one number, its shape.
+/// Throws Error.
+MorphRequest read_morph_request(const ParameterValues& values, const std::vector<Size>& pictures);
+
+}  // namespace anamorph

@@ -1,0 +1,194 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "anamorph/render/reproject_parameters.h"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <map>
+
+#include "anamorph/render/picture_parameters.h"
+
+namespace anamorph {
+namespace {
+
+using rows::chosen;
+
+// In the order of their enumerations.
+const std::vector<std::string> kSpacings = {"edges", "centers"};
+const std::vector<std::string> kWraps = {"automatic", "black", "clamp", "periodic", "mirror"};
+const std::vector<std::string> kSchemes = {"auto", "exact", "blocks", "residual"};
+const std::vector<std::string> kOutputs = {"color", "stmap", "error", "bound"};
+
+/// "360 for equirectangular, cylindrical; 180 for fisheye": what each projection has by default.
+std::string default_fovs() {
+    std::map<double, std::string, std::greater<>> names;
+    for (const Projection p : kProjections) {
+        std::string& list = names[fov_of(p).standard];
+        list += (list.empty() ? "" : ", ") + std::string(name_of(p));
+    }
+    std::string text;
+    for (const auto& [fov, list] : names)
+        text += (text.empty() ? "" : "; ") + std::to_string(std::lround(fov)) + " for " + list;
+    return text;
+}
+
+/// "below 180 for rectilinear, 90 for cubemap": what not every projection can have.
+std::string limited_fovs() {
+    std::string text;
+    for (const Projection p : kProjections) {
+        const FieldOfView fov = fov_of(p);
+        if (fov.most == 360 && !fov.open && !fov.fixed) continue;
+        text += (text.empty() ? "" : ", ") +
+                std::string(fov.fixed  ? ""
+                            : fov.open ? "below "
+                                       : "up to ") +
+                std::to_string(std::lround(fov.most)) + " for " + std::string(name_of(p));
+    }
+    return text;
+}
+
+ParameterTable make_table() {
+    using namespace rows;
+    return {
+        image(
+            "src",
+            "the source image; by default the recipe's name without .pano; in a name it stands last when it "
+            "has arguments of its own"),
+        choice("from", "", projection_name_list(),
+               "projection of the source; by default what the image says of itself, else by its shape: 2:1 "
+               "equirectangular, 1:6 cubemap (anamorph:from tells what was assumed)"),
+        choice("to", "rectilinear", projection_name_list(), "projection of the picture"),
+        above(number("srcfov", "degrees", "", 0, 360,
+                     "horizontal field of view of the source, edge to edge, or of each of its faces; by "
+                     "default what the "
+                     "image says of itself, else " +
+                         default_fovs())),
+        above(number("fov", "degrees", "", 0, 360,
+                     "horizontal field of view of the picture, edge to edge, or of each of its faces: " +
+                         limited_fovs() + "; defaults by projection as for srcfov")),
+        number("srcd", "", "1", 0, Chart::kMostDistance,
+               "Pannini's distance d of the source, for from=pannini"),
+        number("d", "", "1", 0, Chart::kMostDistance,
+               "Pannini's distance d of the picture, for to=pannini: 0 is rectilinear, 1 the usual one; fov "
+               "stays "
+               "below the angle at which d + cos or 1 + d cos of its half is 0"),
+        number("yaw", "degrees", "0", -kInfinity, kInfinity, "where the camera looks: to the right"),
+        number("pitch", "degrees", "0", -kInfinity, kInfinity, "where the camera looks: up"),
+        number("roll", "degrees", "0", -kInfinity, kInfinity,
+               "the camera's turn about its axis, clockwise; roll is applied first, then pitch, then yaw"),
+        size("width and height of the picture, or its width alone; by default as fine as the source at the "
+             "centre"),
+        tile(),
+        mip(),
+        filter(),
+        choice("wrap", "automatic", kWraps,
+               "what lies beyond the source's edge; automatic goes on across the seam, the poles and cube "
+               "edges"),
+        tol(),
+        choice("pixels", "edges", kSpacings,
+               "where the source's field of view ends: at the edges of its outer pixels or at their centers"),
+        choice("scheme", "auto", kSchemes, "how source points are found within tol"),
+        colorspace("color space to filter in; by default the source's own"),
+        choice("output", "color", kOutputs,
+               "color, or per pixel: stmap, the source point (u, v) with v down, in 0 to 1 on the source, "
+               "beyond that beyond its edges, (-1, -1) where there is none; error, its distance from the "
+               "exact one in source pixels; bound, the proven bound of that"),
+    };
+}
+
+Size natural_size(Projection projection, double fov, double width) {
+    const double limit = kMaxSide;
+    const int w = static_cast<int>(std::clamp(std::round(width), 1.0, limit));
+    const int h = static_cast<int>(std::clamp(std::round(w * natural_aspect(projection, fov)), 1.0, limit));
+    return {w, h};
+}
+
+/// The picture's size where none was given: as many pixels per radian at its centre as the source has.
+Size default_size(Projection projection, double fov, double d, const Chart& source) {
+    const int probe = 1200;  // holds whole faces of every cube layout
+    const Size shape = natural_size(projection, fov, probe);
+    const Chart chart(projection, shape.width, shape.height, fov, PixelSpacing::edges, "", d);
+    const double width = probe * source.pixels_per_radian() / chart.pixels_per_radian();
+    const double most = kMaxDefaultSize / std::max(1.0, natural_aspect(projection, fov));
+    const int faces = std::max(1, faces_of(projection).columns);
+    const double face = std::max(1.0, std::min(std::round(width / faces), std::floor(most / faces)));
+    return natural_size(projection, fov, face * faces);
+}
+
+struct Taken {
+    Projection projection;
+    std::string reason;
+};
+
+/// What the source is taken for, and why.
+Taken source_projection(const ParameterValues& values, const SourceFacts& source) {
+    if (values.given("from")) return {projection_from_name(values.text("from"), "from"), "given"};
+    if (source.projection) return {*source.projection, "as " + source.said_by + " says"};
+    if (std::int64_t{source.width} == std::int64_t{source.height} * 2)
+        return {Projection::equirectangular, "assumed from the 2:1 shape"};
+    if (std::int64_t{source.width} * 6 == source.height)
+        return {Projection::cubemap, "assumed from the 1:6 shape"};
+    throw Error("from is not given and the source (" + std::to_string(source.width) + "x" +
+                std::to_string(source.height) + ") does not say its projection: must be one of " +
+                projection_names());
+}
+
+double field_of_view(const ParameterValues& values, std::string_view name, Projection projection) {
+    if (!values.given(name)) return Chart::default_fov(projection);
+    return values.number(name);
+}
+
+}  // namespace
+
+const ParameterTable& reproject_parameters() {
+    static const ParameterTable table = make_table();
+    return table;
+}
+
+ReprojectRequest read_reproject_request(const ParameterValues& values, const SourceFacts& facts) {
+    const auto [from, reason] = source_projection(values, facts);
+    const bool says_fov = !values.given("srcfov") && facts.fov && facts.projection == from;
+    const Chart source(from, facts.width, facts.height,
+                       says_fov ? *facts.fov : field_of_view(values, "srcfov", from),
+                       chosen<PixelSpacing>(values, "pixels", kSpacings), "src", values.number("srcd"));
+
+    const Projection to = projection_from_name(values.text("to"), "to");
+    const double fov = field_of_view(values, "fov", to), d = values.number("d");
+    const auto chart = [&](int width, int height) {
+        return Chart(to, width, height, fov, PixelSpacing::edges, "", d);
+    };
+    // Reports a field of view that the lens cannot have before a size is made of it.
+    const int probe = 12;
+    static_cast<void>(
+        chart(probe, has_faces(to) ? static_cast<int>(probe * natural_aspect(to, fov)) : probe));
+
+    Size size;
+    if (!values.given("size")) {
+        size = default_size(to, fov, d, source);
+    } else {
+        size = values.extent("size");
+        if (size.height < 0) size = natural_size(to, fov, size.width);
+    }
+
+    ReprojectOptions options;
+    options.scheme = chosen<Scheme>(values, "scheme", kSchemes);
+    options.tol = values.number("tol");
+    options.filter = chosen<Filter>(values, "filter", rows::filters());
+    options.wrap = chosen<Wrap>(values, "wrap", kWraps);
+    options.output = chosen<Output>(values, "output", kOutputs);
+    return {source,
+            chart(size.width, size.height),
+            {values.number("yaw"), values.number("pitch"), values.number("roll")},
+            options,
+            reason};
+}
+
+std::optional<Chart> half_size(const Chart& chart) {
+    const FaceGrid faces = faces_of(chart.projection());
+    const int columns = std::max(1, faces.columns), rows = std::max(1, faces.rows);
+    const int w = chart.width() / columns, h = chart.height() / rows;
+    if (w == 1 && h == 1) return {};
+    return chart.resized(std::max(1, w / 2) * columns, std::max(1, h / 2) * rows);
+}
+
+}  // namespace anamorph

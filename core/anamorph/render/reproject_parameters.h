@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: Apache-2.0
+// The parameters of a panorama reprojection, and what they make of a source of a given size.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "anamorph/parameter.h"
+#include "anamorph/render/reproject.h"
+
+namespace anamorph {
+
+const ParameterTable& reproject_parameters();
+
+/// What is known of the source before a pixel is read.
+struct SourceFacts {
+    int width = 0, height = 0;
+    /// What the image says of itself, if it does, where it says so, and its horizontal field of view in
+    /// degrees.
+    std::optional<Projection> projection = {};
+    std::string said_by = {};
+    std::optional<double> fov = {};
+};
+
+/// A reprojection as asked for.
+struct ReprojectRequest {
+    Chart source, target;
+    Orientation orientation;
+    ReprojectOptions options;
+    /// Why the source is taken for what it is: "given", "assumed from the 2:1 shape" ...
+    std::string source_reason;
+
+    Panorama map() const { return Panorama(source, target, orientation); }
+};
+
+/// Reads a table's values. Throws Error; it names `from` when the source does not say what it is.
+///
+/// Without `from`: what the image says, else 2:1 is equirectangular and 1:6 a cubemap. Without `srcfov`: what
+/// the image says, where that is of the same projection, else the projection's default.
+/// Without `size`: the source's pixels per degree at the centre of both, at most kMaxDefaultSize either way.
+/// With one number, the width; the height is then the projection's own: half the width for a full
+/// equirectangular image, 90 degrees for a cylindrical one, square faces for cubes, else the width.
+ReprojectRequest read_reproject_request(const ParameterValues& values, const SourceFacts& source);
+constexpr int kMaxDefaultSize = 16384;
+
+/// The next level of a picture's pyramid: half the pixels each way (rounded down, at least 1), the same view;
+/// none after the last.
+std::optional<Chart> half_size(const Chart& chart);
+
+}  // namespace anamorph

@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: Apache-2.0
+// The work of drawing a box of a picture, shared out to threads.
+#pragma once
+
+#include <algorithm>
+#include <vector>
+
+#include "anamorph/approx/block.h"
+#include "anamorph/parallel_for.h"
+
+namespace anamorph {
+
+/// The blocks of one region that begin in some of its rows: the work of one thread.
+class Strip {
+  public:
+    static constexpr int kHeight = 64;
+
+    Strip(const SharedBlocks& blocks, int y0, const Box& box)
+        : m_blocks(blocks), m_y0(y0), m_y1(y0 + kHeight), m_box(box) {}
+
+    /// body(block, part, next) for every block that meets the box: `part` of it lies there; `next` is the
+    /// block after it, or null.
+    template <class Body>
+    void for_each_block(const Body& body) const {
+        for (std::size_t k = 0; k < m_blocks.size(); ++k) {
+            const Block& block = m_blocks[k];
+            Box part = intersection(block.box, m_box);
+            if (block.kind == Block::Kind::outside) {
+                // It has no texels and may be cut at will; others are no taller than a strip.
+                part.y0 = std::max(part.y0, m_y0);
+                part.y1 = std::min(part.y1, m_y1);
+            } else if (block.box.y0 < m_y0 || block.box.y0 >= m_y1)
+                continue;
+            if (!part.empty()) body(block, part, k + 1 < m_blocks.size() ? &m_blocks[k + 1] : nullptr);
+        }
+    }
+
+  private:
+    const SharedBlocks& m_blocks;
+    int m_y0, m_y1;
+    Box m_box;
+};
+
+/// body(strip) for strips that together hold every block that meets `box`. Plans come first in the same loop,
+/// so that threads neither wait for each other's plan nor meet in between.
+template <class Body>
+void for_each_strip(const BlockMap& map, const Box& box, const ParallelFor& parallel_for, const Body& body) {
+    struct Work {
+        std::int64_t region;
+        int y0;
+    };
+    // As many regions at a time as their plans are kept for.
+    constexpr std::size_t kBatch = 1024;
+    const std::vector<std::int64_t> regions = map.regions_in(box);
+    for (std::size_t first = 0; first < regions.size(); first += kBatch) {
+        const std::size_t count = std::min(kBatch, regions.size() - first);
+        std::vector<Work> strips;
+        for (std::size_t i = first; i < first + count; ++i) {
+            const Box region = map.region_box(regions[i]), part = intersection(region, box);
+            for (int y = region.y0; y < part.y1; y += Strip::kHeight)
+                if (y + 2 * Strip::kHeight > part.y0) strips.push_back({regions[i], y});
+        }
+        parallel_for(static_cast<std::int64_t>(count + strips.size()), [&](std::int64_t item) {
+            const auto i = static_cast<std::size_t>(item);
+            if (i < count) {
+                map.blocks(regions[first + i]);
+                return;
+            }
+            const auto [region, y0] = strips[i - count];
+            const SharedBlocks blocks = map.blocks(region);
+            body(Strip(blocks, y0, box));
+        });
+    }
+}
+
+}  // namespace anamorph

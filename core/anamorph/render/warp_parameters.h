@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: Apache-2.0
+// The parameters of a mesh warp, and what they make of a source of a given size.
+#pragma once
+
+#include <optional>
+
+#include "anamorph/geometry/size.h"
+#include "anamorph/parameter.h"
+#include "anamorph/render/mesh_warp.h"
+#include "anamorph/render/source.h"
+
+namespace anamorph {
+
+const ParameterTable& warp_parameters();
+
+/// A warp as asked for, but for the mesh itself.
+struct WarpRequest {
+    Size source, target;
+    MeshWarpOptions options;
+    int step = 1;                        ///< of an ST-map: every step-th pixel is a vertex
+    std::optional<Direction> direction;  ///< unless as the mesh says
+};
+
+/// Reads a table's values. Without `size` the picture has the source's; with one number, the source's shape.
+/// Throws Error.
+WarpRequest read_warp_request(const ParameterValues& values, const Size& source);
+
+/// The picture's size, as read_warp_request has it, where `natural` stands in for the source's.
+Size warp_target(const ParameterValues& values, const Size& natural);
+
+/// The same warp with every position in fractions of its image: for pictures of another size than the one
+/// that positions in pixels are given for.
+WarpMap in_fractions(const WarpMap& map, const Size& source, const Size& target);
+
+}  // namespace anamorph

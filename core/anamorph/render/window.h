@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: Apache-2.0
+// The part of a source that a block of the picture reads, as one rectangle of texels without an edge.
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "anamorph/render/border.h"
+#include "anamorph/render/source.h"
+
+namespace anamorph {
+
+/// `texels` points at texel (box.x0, box.y0): packed pixels of `type`. At least kSlack bytes behind the last
+/// texel of every row may be read (they hold anything).
+struct Window {
+    static constexpr std::ptrdiff_t kSlack = 64;
+
+    const std::byte* texels = nullptr;
+    PixelType type = PixelType::float32;
+    int channels = 0;
+    std::ptrdiff_t row_stride = 0;
+    Box box;
+};
+
+/// Gets windows; keeps the memory of the last one. One per thread.
+class WindowReader {
+  public:
+    WindowReader(const Source& source, const Border& border) : m_source(source), m_border(border) {}
+
+    /// The texels of `box` on `piece` of `level`; the box may reach over every edge. Points into the source
+    /// when the box lies inside a level in memory (packed, not to be multiplied by alpha), else into memory
+    /// of its own. With unassociated alpha the window is float with colour multiplied by alpha. False when
+    /// the source could not be read or the box has more than kMaxTexels texels.
+    bool get(int level, int piece, const Box& box, Window& window) noexcept;
+
+    static constexpr std::int64_t kMaxTexels = std::int64_t{1} << 24;
+
+  private:
+    const Source& m_source;
+    const Border& m_border;
+    std::vector<std::byte> m_texels, m_raw;
+};
+
+}  // namespace anamorph
