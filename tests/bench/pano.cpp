@@ -198,7 +198,7 @@ class Scene {
         plan.scheme = options.scheme;
         plan.tol = options.tol;
         const View& view = *c.view;
-        c.points = [this, &view, plan] { return plan_points(Plan(view.map, plan), all()); };
+        c.points = [this, &view, plan] { return plan_points(PanoramaPlan(view.map, plan), all()); };
         const Reached reached = Reprojection(view.map, options).reached(all());
         c.options = options;
         c.one_tap = options.filter == Filter::bilinear;
@@ -602,8 +602,8 @@ double median(std::vector<double>& values) {
 
 /// Prints one line on the polynomial blocks of a plan and returns the median of bound over largest true
 /// error; NaN when there is none.
-double report_blocks(const std::string& view, const Plan& plan, const char* scheme, const Points& truth,
-                     const ParallelFor& parallel_for) {
+double report_blocks(const std::string& view, const PanoramaPlan& plan, const char* scheme,
+                     const Points& truth, const ParallelFor& parallel_for) {
     std::mutex mutex;
     std::vector<double> ratios;
     int broken = 0;
@@ -682,7 +682,7 @@ void report_bounds(const Settings& settings) {
                 options.scheme = scheme;
                 options.tol = tol;
                 const double m =
-                    report_blocks(name, Plan(map, options), scheme_name, truth, pool.parallel_for());
+                    report_blocks(name, PanoramaPlan(map, options), scheme_name, truth, pool.parallel_for());
                 if (!std::isnan(m)) medians.push_back(m);
             }
         }

@@ -34,7 +34,7 @@ Points true_points(const Panorama& map, const ParallelFor& parallel_for) {
     return points;
 }
 
-Points plan_points(const Plan& plan, const ParallelFor& parallel_for) {
+Points plan_points(const PanoramaPlan& plan, const ParallelFor& parallel_for) {
     Points points(pixels(plan.map()), {std::nan(""), std::nan("")});
     parallel_for(plan.regions(), [&](std::int64_t region) {
         for (const Block& block : plan.blocks(region))

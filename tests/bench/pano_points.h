@@ -4,7 +4,7 @@
 
 #include <vector>
 
-#include "anamorph/approx/plan.h"
+#include "anamorph/approx/panorama_plan.h"
 #include "anamorph/map/panorama.h"
 #include "anamorph/parallel_for.h"
 
@@ -46,7 +46,7 @@ void for_points(const Panorama& map, const Block& block, const Body& body) {
 }
 
 /// The points that a plan leads to.
-Points plan_points(const Plan& plan, const ParallelFor& parallel_for);
+Points plan_points(const PanoramaPlan& plan, const ParallelFor& parallel_for);
 
 /// Distance of two source points; a turn apart is the same where the source closes on itself.
 double distance(const Chart& source, const Point<double>& a, const Point<double>& b);

@@ -6,7 +6,8 @@
 #include <cstdlib>
 #include <random>
 
-#include "anamorph/approx/plan.h"
+#include "anamorph/approx/panorama_plan.h"
+#include "anamorph/approx/taylor.h"
 #include "anamorph/render/block_reader.h"
 #include "anamorph/render/draw.h"
 #include "anamorph/render/footprint.h"
@@ -97,7 +98,7 @@ Real error_of(const Scene& scene, const Piece& piece, const Vector& ray, const P
 Findings examine(const Scene& scene) {
     Findings found;
     const Panorama map = scene.map();
-    const Plan plan(map, scene.options());
+    const PanoramaPlan plan(map, scene.options());
     for (std::int64_t region = 0; region < plan.regions(); ++region)
         for (const Block& block : plan.blocks(region)) {
             const Piece& target = map.target().pieces()[static_cast<std::size_t>(block.piece)];
@@ -317,7 +318,7 @@ TEST(PanoramaTruth, TheErrorPictureIsAgainstLongDouble) {
     const View source{equirectangular, 65536, 32768, 360}, target{rectilinear, 96, 64, 90};
     const Scene scene{source, target, {33, 44, 55}, 0};
     const Panorama map = scene.map();
-    const Plan plan(map, scene.options());
+    const PanoramaPlan plan(map, scene.options());
     std::vector<float> pixels(96 * 64);
     const ImageView picture =
         packed_view(reinterpret_cast<std::byte*>(pixels.data()), PixelType::float32, 96, 64, 1);
@@ -358,7 +359,7 @@ TEST(PanoramaTruth, TaylorPolynomialsRoundLessThanTheirBound) {
                 const double hx = random.between(0.1, 8), hy = random.between(0.1, 8),
                              d = random.between(0, 3);
                 const Panorama::Local local = map.local_around(x, y, piece);
-                const auto bound = map.taylor_rounding({x - d, x + d}, {y - d, y + d}, hx, hy, local);
+                const auto bound = taylor_rounding(map, {x - d, x + d}, {y - d, y + d}, hx, hy, local);
                 ++tried;
                 if (!(bound.error.x < 1 && bound.error.y < 1)) continue;
                 ++finite;
@@ -417,7 +418,7 @@ TEST(PanoramaTruth, WhatIsCulledHasNoTexels) {
     double coarsest = 0;
     for (const Scene& scene : scenes) {
         const Panorama map = scene.map();
-        const Plan plan(map, scene.options());
+        const PanoramaPlan plan(map, scene.options());
         const Sizes source(scene.source.width, scene.source.height);
         const FootprintChooser chooser(source);
         std::int64_t culled = 0, hit = 0;

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <random>
 
-#include "anamorph/approx/plan.h"
+#include "anamorph/approx/panorama_plan.h"
 #include "anamorph/render/block_reader.h"
 #include "anamorph/simd/block_sampler.h"
 #include "projection_cases.h"
@@ -39,7 +39,7 @@ double distance(const Chart& source, double x, double y, const Point<long double
 /// Looks at every pixel of every block.
 Findings examine(const Panorama& map, const PlanOptions& options) {
     Findings found;
-    const Plan plan(map, options);
+    const PanoramaPlan plan(map, options);
     std::vector<int> covered(static_cast<std::size_t>(map.target().width()) *
                              static_cast<std::size_t>(map.target().height()));
     for (std::int64_t r = 0; r < plan.regions(); ++r)
@@ -173,25 +173,12 @@ TEST(Plan, HoldsTheToleranceInHardViews) {
             }
 }
 
-TEST(Plan, DegreeOneHoldsTheToleranceToo) {
-    const Panorama map(Chart(Projection::equirectangular, 2048, 1024),
-                       Chart(Projection::rectilinear, 256, 256, 90), {30, 20, 10});
-    PlanOptions options;
-    options.degree = 1;
-    options.tol = 0.25;
-    const Findings found = examine(map, options);
-    EXPECT_LE(found.worst_excess, 0);
-    EXPECT_LE(found.worst_bound, 0.25);
-    EXPECT_EQ(found.lost, 0);
-    EXPECT_LT(found.exact_pixels, found.pixels);
-}
-
 TEST(Plan, ZeroToleranceIsExactEverywhere) {
     const Panorama map(Chart(Projection::equirectangular, 512, 256),
                        Chart(Projection::rectilinear, 100, 70, 90));
     PlanOptions options;
     options.tol = 0;
-    const Plan plan(map, options);
+    const PanoramaPlan plan(map, options);
     const Reached reached = plan.reached(serial_for);
     EXPECT_EQ(reached.exact_fraction, 1);
     // What rounding costs, which is not nothing.
@@ -202,7 +189,7 @@ TEST(Plan, ZeroToleranceIsExactEverywhere) {
 TEST(Plan, ReachedIsTheLargestBoundAndTheExactShare) {
     const Panorama map(Chart(Projection::equirectangular, 4096, 2048),
                        Chart(Projection::rectilinear, 300, 200, 100), {0, 80, 0});
-    const Plan plan(map, {});
+    const PanoramaPlan plan(map, {});
     double bound = 0;
     std::int64_t exact = 0;
     for (std::int64_t r = 0; r < plan.regions(); ++r)
@@ -221,7 +208,7 @@ TEST(Plan, FindsTheRegionsOfABox) {
          {Projection::rectilinear, Projection::cubecross, Projection::cubemap}) {
         const Panorama map(Chart(Projection::equirectangular, 512, 256),
                            test::chart_of_width(projection, 4000, 0));
-        const Plan plan(map, {});
+        const PanoramaPlan plan(map, {});
         for (const Box& box : {Box{0, 0, 1, 1}, Box{500, 300, 1700, 1030}, Box{1023, 1023, 1025, 1025},
                                Box{-5, -5, 0, 100}, Box{0, 0, 4000, 6000}}) {
             std::vector<std::int64_t> expected;
@@ -233,8 +220,8 @@ TEST(Plan, FindsTheRegionsOfABox) {
     // A picture far too large to draw costs nothing to begin.
     const Panorama huge(Chart(Projection::equirectangular, 512, 256),
                         Chart(Projection::rectilinear, 1 << 24, 1 << 24, 90));
-    EXPECT_EQ(Plan(huge, {}).regions(), std::int64_t{1} << 30);
-    EXPECT_EQ(Plan(huge, {}).regions_in({1 << 23, 1 << 23, (1 << 23) + 1, (1 << 23) + 1}).size(), 1u);
+    EXPECT_EQ(PanoramaPlan(huge, {}).regions(), std::int64_t{1} << 30);
+    EXPECT_EQ(PanoramaPlan(huge, {}).regions_in({1 << 23, 1 << 23, (1 << 23) + 1, (1 << 23) + 1}).size(), 1u);
 }
 
 TEST(Plan, RefusesATolerance) {
@@ -244,7 +231,7 @@ TEST(Plan, RefusesATolerance) {
         PlanOptions options;
         options.tol = tol;
         try {
-            const Plan plan(map, options);
+            const PanoramaPlan plan(map, options);
             ADD_FAILURE() << "tol " << tol << " was taken";
         } catch (const Error& error) {
             EXPECT_EQ(error.parameter(), "tol");

@@ -19,32 +19,20 @@ LinearCoefficients minimax_coefficients(double x_max, double height) {
 }
 
 LinearPart linear_part(const Panorama& map, int piece) {
+    LinearPart part = linear_part<Panorama>(map, piece);
     const Chart &source = map.source(), &target = map.target();
-    const Box& box = target.pieces()[static_cast<std::size_t>(piece)].box;
-    LinearPart part{0.5 * (box.x0 + box.x1), 0.5 * (box.y0 + box.y1), {}, {}, {}};
-    part.origin = {0.5 * source.width(), 0.5 * source.height()};
-    const Panorama::Local local = map.local_around(part.cx, part.cy, piece);
-    const Ray<double> axis = map.local_ray(part.cx, part.cy, local);
-    using J = Jet1<double>;
-    const Point<J> p = map(J::variable(part.cx, 1, 0), J::variable(part.cy, 0, 1), local);
-    bool finite = source.sees(axis, local.source.piece) > 0;
-    for (int i = 0; i < J::kSize; ++i) finite = finite && std::isfinite(p.x.c[i]) && std::isfinite(p.y.c[i]);
-    if (!finite) return part;
-    part.origin = {p.x.c[0], p.y.c[0]};
-    part.right = {p.x.c[1], p.y.c[1]};
-    part.down = {p.x.c[2], p.y.c[2]};
+    if (source.projection() != Projection::cylindrical || target.projection() != Projection::rectilinear)
+        return part;
+    const Ray<double> axis = map.local_ray(part.cx, part.cy, map.local_around(part.cx, part.cy, piece));
     const bool level = std::fabs(part.right.y) + std::fabs(part.down.x) < 1e-12 * source.width() &&
                        std::fabs(axis.y) < 1e-12 * (std::fabs(axis.x) + std::fabs(axis.z));
-    if (source.projection() == Projection::cylindrical && target.projection() == Projection::rectilinear &&
-        level) {
-        // In units of the plane: theta = azimuth / 2 pi, v = slope / height.
-        const double x_max = 0.5 * target.width() / target.scale_x(),
-                     height = source.height() / source.scale_y();
-        const LinearCoefficients k = minimax_coefficients(x_max, height);
-        part.right.x =
-            std::copysign(k.a * 2 * std::numbers::pi * source.scale_x() / target.scale_x(), part.right.x);
-        part.down.y = std::copysign(k.b * height * source.scale_y() / target.scale_y(), part.down.y);
-    }
+    if (!level) return part;
+    // In units of the plane: theta = azimuth / 2 pi, v = slope / height.
+    const double x_max = 0.5 * target.width() / target.scale_x(), height = source.height() / source.scale_y();
+    const LinearCoefficients k = minimax_coefficients(x_max, height);
+    part.right.x =
+        std::copysign(k.a * 2 * std::numbers::pi * source.scale_x() / target.scale_x(), part.right.x);
+    part.down.y = std::copysign(k.b * height * source.scale_y() / target.scale_y(), part.down.y);
     return part;
 }
 

@@ -27,8 +27,27 @@ struct LinearPart {
     }
 };
 
-/// The minimax coefficients where the paper derives them (a level view of a cylinder); elsewhere the map's
-/// derivative at the piece's centre, and the centre of the source where there is none.
+/// The map's derivative at the piece's centre; the centre of the source where there is none.
+template <class Map>
+LinearPart linear_part(const Map& map, int piece) {
+    const Box box = map.target_pieces()[static_cast<std::size_t>(piece)];
+    const Size source = map.source_size();
+    LinearPart part{0.5 * (box.x0 + box.x1), 0.5 * (box.y0 + box.y1), {}, {}, {}};
+    part.origin = {0.5 * source.width, 0.5 * source.height};
+    Point<double> centre{};
+    int source_piece = 0;
+    if (!map.exact(part.cx, part.cy, piece, centre, source_piece)) return part;
+    using J = Jet1<double>;
+    const Point<J> p = map(J::variable(part.cx, 1, 0), J::variable(part.cy, 0, 1),
+                           map.local_around(part.cx, part.cy, piece));
+    for (int i = 0; i < J::kSize; ++i)
+        if (!std::isfinite(p.x.c[i]) || !std::isfinite(p.y.c[i])) return part;
+    part.origin = {p.x.c[0], p.y.c[0]};
+    part.right = {p.x.c[1], p.y.c[1]};
+    part.down = {p.x.c[2], p.y.c[2]};
+    return part;
+}
+/// The minimax coefficients where the paper derives them: a level view of a cylinder.
 LinearPart linear_part(const Panorama& map, int piece);
 
 }  // namespace anamorph

@@ -5,7 +5,9 @@
 
 #include <cmath>
 
+#include "anamorph/geometry/point.h"
 #include "anamorph/number/jet.h"
+#include "anamorph/number/rounded.h"
 
 namespace anamorph {
 
@@ -31,14 +33,29 @@ struct Remainder {
     }
 };
 
+/// What rounding to double does to a map's Taylor polynomials, of degree 4 at most: a bound of its sum over
+/// all coefficients, and of the coefficients themselves.
+struct TaylorRounding {
+    Point<double> error, size;
+};
+
+/// About all points of a box, on neighbourhoods of up to the given size.
+template <class Map>
+TaylorRounding taylor_rounding(const Map& map, const Interval& x, const Interval& y, double half_width,
+                               double half_height, const typename Map::Local& local) {
+    using R = Rounded<double>;
+    const Point<R> p = map(R(x, half_width, 0), R(y, half_height, 0), local);
+    return {{p.x.error, p.y.error}, {p.x.computed_size(), p.y.computed_size()}};
+}
+
 /// The polynomial c[0] + c[1] s + c[2] t + c[3] s^2 + c[4] s t + c[5] t^2 nearest to a Taylor polynomial of
-/// degree 4 on [-1, 1]^2, found by dropping the products of Chebyshev polynomials above `degree`; `error`
+/// degree 4 on [-1, 1]^2, found by dropping the products of Chebyshev polynomials above degree 2; `error`
 /// bounds what was dropped (each product is at most 1).
 struct Economized {
     double c[6];
     double error;
 
-    Economized(const Jet<double, 4>& f, int degree) {
+    explicit Economized(const Jet<double, 4>& f) {
         const auto size = [&](int i, int j) { return std::fabs(f.at(i, j)); };
         // s^3 = (3 T1 + T3) / 4, s^2 t = (1 + T2) t / 2, s^4 = (3 + 4 T2 + T4) / 8, s^2 t^2 = (1 + T2)(1 +
         // T2) / 4
@@ -52,11 +69,6 @@ struct Economized {
         c[5] = 2 * tt;
         error = 0.5 * (size(2, 1) + size(1, 2)) + 0.25 * (size(3, 0) + size(0, 3)) +
                 0.25 * (size(3, 1) + size(1, 3) + size(2, 2)) + 0.125 * (size(4, 0) + size(0, 4));
-        if (degree < 2) {
-            c[0] += ss + tt;
-            error += std::fabs(ss) + std::fabs(tt) + std::fabs(c[4]);
-            c[3] = c[4] = c[5] = 0;
-        }
     }
 };
 

@@ -87,6 +87,39 @@ Panorama::Local Panorama::local_around(double x, double y, int piece) const {
     return local;
 }
 
+std::vector<Box> Panorama::target_pieces() const {
+    std::vector<Box> boxes;
+    for (const Piece& piece : m_target.pieces()) boxes.push_back(piece.box);
+    return boxes;
+}
+
+SourceEdges Panorama::source_edges() const {
+    const bool whole = m_source.pieces().size() == 1;
+    return {whole && !m_source.closed(), whole};
+}
+
+Cover Panorama::cover(const Interval& x, const Interval& y, int piece, const Local& local,
+                      bool across_seam) const {
+    const auto one_signed = [](const Interval& a) { return a.lo > 0 || a.hi < 0; };
+    const Interval in = m_target.inside(x, y, piece);
+    if (in.hi < 0) return Cover::outside;
+    if (!(in.lo >= 0) || !one_signed(m_target.crease(x, y, piece))) return Cover::mixed;
+    const Ray<Interval> ray = local_ray(x, y, local);
+    const Interval seen = m_source.sees(ray, local.source.piece);
+    if (seen.hi < 0 && m_source.pieces().size() == 1) return Cover::outside;
+    if (!(seen.lo > 0) || !one_signed(m_source.crease(ray))) return Cover::mixed;
+    if (m_source.counted() == Counted::azimuth) {
+        // The branch serves less than half a turn. It must not cross the far side where the image has an
+        // edge.
+        if (!(ray.z.lo > 0)) return Cover::mixed;
+        const Interval azimuth = atan2(ray.x, ray.z) + local.source.around.angle;
+        if (!(m_source.closed() && across_seam) &&
+            !(azimuth.lo > -std::numbers::pi && azimuth.hi < std::numbers::pi))
+            return Cover::mixed;
+    }
+    return Cover::inside;
+}
+
 template <class Real>
 double Panorama::exact_error(const Interval& x, const Interval& y, int piece) const {
     using R = Rounded<Real>;
@@ -110,11 +143,8 @@ double Panorama::exact_error(const Interval& x, const Interval& y, int piece) co
     for (std::size_t i = 0; i < pieces; ++i) {
         if (pieces > 1 && along[i].range.hi + along[i].error < most) continue;
         const Point<R> p = m_source.point(ray, static_cast<int>(i));
-        // The result is kept in double.
-        const double unit = std::is_same_v<Real, double> ? 0 : 0x1p-53;
-        const double distance =
-            std::hypot(p.x.error + unit * p.x.computed_size(), p.y.error + unit * p.y.computed_size());
-        if (!(distance <= error)) error = distance * rounded_detail::kUp;
+        const double distance = kept_error(p);
+        if (!(distance <= error)) error = distance;
     }
     // Straight behind a lens that shows it all around its rim, nothing is known but that.
     const double widest = m_source.widest();
@@ -122,12 +152,5 @@ double Panorama::exact_error(const Interval& x, const Interval& y, int piece) co
 }
 template double Panorama::exact_error<double>(const Interval&, const Interval&, int) const;
 template double Panorama::exact_error<long double>(const Interval&, const Interval&, int) const;
-
-Panorama::TaylorRounding Panorama::taylor_rounding(const Interval& x, const Interval& y, double half_width,
-                                                   double half_height, const Local& local) const {
-    using R = Rounded<double>;
-    const Point<R> p = (*this)(R(x, half_width, 0), R(y, half_height, 0), local);
-    return {{p.x.error, p.y.error}, {p.x.computed_size(), p.y.computed_size()}};
-}
 
 }  // namespace anamorph

@@ -7,6 +7,7 @@
 #include <glm/mat3x3.hpp>
 
 #include "anamorph/map/chart.h"
+#include "anamorph/map/formula_map.h"
 
 namespace anamorph {
 
@@ -36,6 +37,15 @@ class Panorama {
     };
     /// For a neighbourhood of a target point.
     Local local_around(double x, double y, int piece) const;
+
+    // As a FormulaMap.
+    Size target_size() const { return {m_target.width(), m_target.height()}; }
+    Size source_size() const { return {m_source.width(), m_source.height()}; }
+    std::vector<Box> target_pieces() const;
+    int source_piece(const Local& local) const { return local.source.piece; }
+    int period() const { return m_source.closed() ? m_source.period() : 0; }
+    SourceEdges source_edges() const;
+    Cover cover(const Interval& x, const Interval& y, int piece, const Local& local, bool across_seam) const;
 
     /// The source's local ray of a target point.
     template <class T>
@@ -67,15 +77,6 @@ class Panorama {
     /// infinite where it is not certain that there is one.
     template <class Real>
     double exact_error(const Interval& x, const Interval& y, int piece) const;
-
-    /// Bounds what rounding to double does to the map's Taylor polynomials about the points of a box, of
-    /// degree 4 at most, in all their coefficients together, on neighbourhoods of up to the given size; and
-    /// their values.
-    struct TaylorRounding {
-        Point<double> error, size;
-    };
-    TaylorRounding taylor_rounding(const Interval& x, const Interval& y, double half_width,
-                                   double half_height, const Local& local) const;
 
   private:
     /// The entries of a product of rotations to and from a local frame: each of its two angles may be off

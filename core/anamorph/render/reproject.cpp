@@ -19,7 +19,7 @@ struct Reprojection::State {
     State(const Panorama& map, const ReprojectOptions& reproject)
         : options(reproject), plan(map, plan_options(reproject)), border(map.source(), reproject.wrap) {}
     ReprojectOptions options;
-    Plan plan;
+    PanoramaPlan plan;
     Border border;
 };
 

@@ -4,7 +4,7 @@
 
 #include <memory>
 
-#include "anamorph/approx/plan.h"
+#include "anamorph/approx/panorama_plan.h"
 #include "anamorph/parallel_for.h"
 #include "anamorph/render/draw.h"
 

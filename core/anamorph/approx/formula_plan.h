@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-// The blocks of a panorama's pull map: polynomials for the source point with a proven bound of their error,
-// split where the bound exceeds the tolerance, exact where no block holds it. Exact pixels have a bound too:
-// that of their rounding, in double, or where that is not enough in long double.
+// The blocks of a map that is one formula: polynomials for the source point with a proven bound of their
+// error, split where the bound exceeds the tolerance, exact where no block holds it. Exact pixels have a bound
+// too: that of their rounding, in double, or where that is not enough in long double.
+//
+// A map's plans are compiled once: the header of its plan declares `extern template class FormulaPlan<Map>`,
+// and one source file includes approx/formula_planner.h and instantiates it. See approx/panorama_plan.h.
 #pragma once
 
 #include "anamorph/approx/block.h"
-#include "anamorph/map/panorama.h"
+#include "anamorph/map/formula_map.h"
 
 namespace anamorph {
 
@@ -16,19 +19,19 @@ enum class Scheme { automatic, exact, blocks, residual };
 struct PlanOptions {
     Scheme scheme = Scheme::automatic;
     double tol = 0.01;  ///< source pixels
-    int degree = 2;     ///< of the polynomials of scheme blocks: 1 or 2
     /// Source points that lie outside the source image by more than a filter's support need not be found.
     bool cull = true;
     /// Blocks may run over the seam of a source that closes on itself, with x beyond its edges.
     bool across_seam = true;
 };
 
-class Plan final : public BlockMap {
+template <class Map>
+class FormulaPlan : public BlockMap {
   public:
     /// Throws Error when tol is negative or not a number.
-    Plan(const Panorama& map, const PlanOptions& options);
+    FormulaPlan(const Map& map, const PlanOptions& options);
 
-    const Panorama& map() const { return m_map; }
+    const Map& map() const { return m_map; }
     const PlanOptions& options() const { return m_options; }
 
     bool exact(double x, double y, int piece, Point<double>& source_point,
@@ -36,13 +39,12 @@ class Plan final : public BlockMap {
     bool truth(double x, double y, int piece, Point<long double>& source_point,
                int& source_piece) const noexcept override;
     Jacobian jacobian(double x, double y, int piece) const noexcept override;
-    void exact_row(const Block& block, int row, ExactPoint* points) const noexcept override;
 
   protected:
     void plan(const Box& box, int piece, Blocks& blocks) const override;
 
   private:
-    Panorama m_map;
+    Map m_map;
     PlanOptions m_options;
 };
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "anamorph/approx/plan.h"
+// How FormulaPlan cuts a map into blocks. Included only by source files that instantiate it.
+#pragma once
 
 #include <algorithm>
 #include <bit>
@@ -7,55 +8,55 @@
 #include <optional>
 
 #include "anamorph/approx/block_writer.h"
+#include "anamorph/approx/formula_plan.h"
 #include "anamorph/approx/residual.h"
 #include "anamorph/approx/taylor.h"
-#include "anamorph/simd/panorama_rows.h"
 
 namespace anamorph {
-namespace {
+namespace planner_detail {
 
-constexpr int kBlockWidth = BlockWriter::kWidth, kBlockHeight = BlockWriter::kHeight;
+inline constexpr int kBlockWidth = BlockWriter::kWidth, kBlockHeight = BlockWriter::kHeight;
 // Below this a polynomial costs more than its pixels.
-constexpr int kFloor = 8, kResidualFloor = 4;
+inline constexpr int kFloor = 8, kResidualFloor = 4;
 
 // A bound costs as much as so many exact pixels, and is not tried over boxes that it could not pay for.
-constexpr int kBoundCost = 170, kBoundPixels = 512;
+inline constexpr int kBoundCost = 170, kBoundPixels = 512;
 // Where only the fastest way is asked for, bounds may cost more than they have saved so far by this part of
 // the region's pixels.
-constexpr double kCredit = 1.0 / 16;
+inline constexpr double kCredit = 1.0 / 16;
 
 // What a Taylor polynomial goes through once its coefficients are known, in units of rounding of their sum:
 // moved and scaled to a part of its box, 25 operations for each variable, of which the shift's own rounding
 // counts four times more, on magnitudes that a part's outermost pixel may double; rearranged in Chebyshev
 // polynomials, 6 operations on twice the sum; less a base, as four corners' mean and as linear part and
 // residual of a table, 8.
-constexpr double kRearranged = (2 * (2 * 25 + 2 * 4) + 2 * 6 + 8 + 24) * 0x1p-53;
+inline constexpr double kRearranged = (2 * (2 * 25 + 2 * 4) + 2 * 6 + 8 + 24) * 0x1p-53;
 // Blocks of a box share a bound of rounding up to this part of the tolerance; above, each has its own.
-constexpr double kSharedRounding = 1.0 / 64;
+inline constexpr double kSharedRounding = 1.0 / 64;
 
 // Where any pixel is exact, what rounding costs it need not be known better than this (source pixels).
-constexpr double kExactGoal = 1e-4;
+inline constexpr double kExactGoal = 1e-4;
 // Boxes of up to so many exact pixels are read in long double where that keeps the tolerance, larger ones are
 // halved first.
-constexpr int kPrecisePixels = 64;
+inline constexpr int kPrecisePixels = 64;
 // Long double is at most so many times more precise: 11 bits less those by which constants are known worse.
-constexpr double kPreciseGain = 512;
+inline constexpr double kPreciseGain = 512;
 
 // The part of the tolerance that a remainder may take up before a fresh one, over a smaller box, is worth its
 // cost.
-constexpr double kTailShare = 0.25;
+inline constexpr double kTailShare = 0.25;
 // Blocks share a Taylor polynomial where its remainder leaves room for so many times the last block's error.
-constexpr double kFitMargin = 1.1;
+inline constexpr double kFitMargin = 1.1;
 
-int pixels_of(const Box& box) {
+inline int pixels_of(const Box& box) {
     return box.width() * box.height();
 }
 
-double length(double x, double y) {
+inline double length(double x, double y) {
     return std::sqrt(x * x + y * y);
 }
 
-Box sub_box(const Box& box, bool vertical_cut, bool second) {
+inline Box sub_box(const Box& box, bool vertical_cut, bool second) {
     Box b = box;
     if (vertical_cut) {
         const int cut = box.x0 + static_cast<int>(std::bit_ceil(static_cast<unsigned>(box.width()))) / 2;
@@ -68,9 +69,12 @@ Box sub_box(const Box& box, bool vertical_cut, bool second) {
 }
 
 /// Plans one piece of the target; blocks are appended to `blocks`.
+template <FormulaMap Map>
 class Planner {
+    using Local = typename Map::Local;
+
   public:
-    Planner(const Panorama& map, const PlanOptions& options, const Box& region, int piece, Blocks& blocks)
+    Planner(const Map& map, const PlanOptions& options, const Box& region, int piece, Blocks& blocks)
         : m_map(map),
           m_options(options),
           m_piece(piece),
@@ -86,8 +90,7 @@ class Planner {
     void settle(const Box& box) {
         if (!worth_a_bound(box)) return exact(box);
         const std::size_t first = m_blocks.size();
-        const Panorama::Local local =
-            m_map.local_around(0.5 * (box.x0 + box.x1), 0.5 * (box.y0 + box.y1), m_piece);
+        const Local local = m_map.local_around(0.5 * (box.x0 + box.x1), 0.5 * (box.y0 + box.y1), m_piece);
         switch (cover(box, local)) {
             case Cover::outside:
                 emit(box, Block::Kind::outside);
@@ -110,14 +113,12 @@ class Planner {
         return m_options.scheme != Scheme::automatic || (pixels_of(box) >= kBoundPixels && m_balance >= 0);
     }
 
-    enum class Cover { inside, outside, mixed };
-    static bool one_signed(const Interval& a) { return a.lo > 0 || a.hi < 0; }
     // The Taylor polynomial of a block has degree 4; its remainder is bounded over large boxes.
     using Tail = Remainder<5>;
 
     /// The map's Taylor coefficients over a box, in pixels of the target.
     template <int N>
-    Point<Jet<Interval, N>> enclose(const Box& box, const Panorama::Local& local) const {
+    Point<Jet<Interval, N>> enclose(const Box& box, const Local& local) const {
         using J = Jet<Interval, N>;
         return m_map(J::variable(across(box), 1, 0), J::variable(down(box), 0, 1), local);
     }
@@ -126,38 +127,23 @@ class Planner {
     Interval down(const Box& box) const { return {box.y0 + m_margin, box.y1 - m_margin}; }
 
     /// Does every point of the box have a source point on one smooth branch of the map?
-    Cover cover(const Box& box, const Panorama::Local& local) const {
-        const Interval x = across(box), y = down(box);
-        const Interval in = m_map.target().inside(x, y, m_piece);
-        if (in.hi < 0) return Cover::outside;
-        if (!(in.lo >= 0) || !one_signed(m_map.target().crease(x, y, m_piece))) return Cover::mixed;
-        const Chart& source = m_map.source();
-        const Ray<Interval> ray = m_map.local_ray(x, y, local);
-        const Interval seen = source.sees(ray, local.source.piece);
-        if (seen.hi < 0 && source.pieces().size() == 1) return Cover::outside;
-        if (!(seen.lo > 0) || !one_signed(source.crease(ray))) return Cover::mixed;
-        if (source.counted() == Counted::azimuth) {
-            // The branch serves less than half a turn. It must not cross the far side where the image has an
-            // edge.
-            if (!(ray.z.lo > 0)) return Cover::mixed;
-            const Interval azimuth = atan2(ray.x, ray.z) + local.source.around.angle;
-            if (!(source.closed() && m_options.across_seam) &&
-                !(azimuth.lo > -std::numbers::pi && azimuth.hi < std::numbers::pi))
-                return Cover::mixed;
-        }
-        return m_options.cull ? culled(box, local) : Cover::inside;
+    Cover cover(const Box& box, const Local& local) const {
+        const Cover found = m_map.cover(across(box), down(box), m_piece, local, m_options.across_seam);
+        return found == Cover::inside && m_options.cull ? culled(box, local) : found;
     }
 
     /// Outside when every pixel's footprint lies beyond the source image's edges.
-    Cover culled(const Box& box, const Panorama::Local& local) const {
-        const Chart& source = m_map.source();
+    Cover culled(const Box& box, const Local& local) const {
         const auto p = enclose<1>(box, local);
-        const double margin = footprint_reach(p, source);
-        const auto beyond = [&](const Jet<Interval, 1>& f, int size) {
-            return f.c[0].hi < -margin || f.c[0].lo > size + margin;
+        const Size size = m_map.source_size();
+        const SourceEdges edges = m_map.source_edges();
+        const double margin = footprint_reach(p, size);
+        const auto beyond = [&](const Jet<Interval, 1>& f, int length) {
+            return f.c[0].hi < -margin || f.c[0].lo > length + margin;
         };
-        const bool out = (!source.closed() && beyond(p.x, source.width())) || beyond(p.y, source.height());
-        return out && source.pieces().size() == 1 ? Cover::outside : Cover::inside;
+        const bool out =
+            (edges.across && beyond(p.x, size.width)) || (edges.down && beyond(p.y, size.height));
+        return out ? Cover::outside : Cover::inside;
     }
 
     /// How far from its source point a pixel's texels lie at most, in source pixels (render/footprint.h).
@@ -174,12 +160,12 @@ class Planner {
     /// as large as the image at most.
     ///
     /// Other filters and rounding: 4 pixels.
-    static double footprint_reach(const Point<Jet<Interval, 1>>& p, const Chart& source) {
+    static double footprint_reach(const Point<Jet<Interval, 1>>& p, const Size& source) {
         const double length =
             magnitude(p.x.c[1]) + magnitude(p.x.c[2]) + magnitude(p.y.c[1]) + magnitude(p.y.c[2]);
         const double texel = 16 * std::max(1.0, length);
-        const double narrow = std::min(source.width(), source.height());
-        return length + (texel < narrow ? texel : std::max(source.width(), source.height())) + 4;
+        const double narrow = std::min(source.width, source.height);
+        return length + (texel < narrow ? texel : std::max(source.width, source.height)) + 4;
     }
 
     /// What a bound over a box gives the blocks in it.
@@ -189,24 +175,23 @@ class Planner {
     };
 
     /// What rounding costs the blocks in a box, of up to a given size; or values, for a size of 0.
-    double rounding_over(const Box& box, double half_width, double half_height,
-                         const Panorama::Local& local) const {
-        const auto t = m_map.taylor_rounding(across(box), down(box), half_width, half_height, local);
+    double rounding_over(const Box& box, double half_width, double half_height, const Local& local) const {
+        const auto t = taylor_rounding(m_map, across(box), down(box), half_width, half_height, local);
         return length(t.error.x + kRearranged * t.size.x, t.error.y + kRearranged * t.size.y);
     }
     /// One for all blocks of a box where it is small.
-    double shared_rounding(const Box& box, const Panorama::Local& local) const {
+    double shared_rounding(const Box& box, const Local& local) const {
         const double rounding = rounding_over(box, half(std::min(2 * kBlockWidth, box.width())),
                                               half(std::min(2 * kBlockHeight, box.height())), local);
         return rounding <= kSharedRounding * m_options.tol ? rounding : HUGE_VAL;
     }
-    double rounding_of(const Box& block, const Bound& bound, const Panorama::Local& local) const {
+    double rounding_of(const Box& block, const Bound& bound, const Local& local) const {
         return bound.rounding < HUGE_VAL
                    ? bound.rounding
                    : rounding_over(block, half(block.width()), half(block.height()), local);
     }
 
-    void settle_blocks(const Box& box, const Panorama::Local& local, std::size_t first) {
+    void settle_blocks(const Box& box, const Local& local, std::size_t first) {
         m_balance -= kBoundCost;
         const auto p = enclose<5>(box, local);
         Bound bound{Tail(p.x), Tail(p.y), HUGE_VAL};
@@ -224,7 +209,7 @@ class Planner {
     }
 
     /// Is a remainder small enough for the blocks of a box? Tried on the one in its middle.
-    bool serves(const Box& box, const Panorama::Local& local, const Bound& bound) const {
+    bool serves(const Box& box, const Local& local, const Bound& bound) const {
         const int x0 = (box.x0 + box.x1) / 2, y0 = (box.y0 + box.y1) / 2;
         const Box middle{x0, y0, std::min(x0 + kBlockWidth, box.x1), std::min(y0 + kBlockHeight, box.y1)};
         const double tail = tail_over(middle, bound);
@@ -234,8 +219,7 @@ class Planner {
     /// A block that misses the tolerance is cut until it holds it; what is left of the remainder by then
     /// decides.
     bool small_tail(double tail, double fit) const {
-        const double cut =
-            fit > m_options.tol ? std::pow(m_options.tol / fit, 1.0 / (m_options.degree + 1)) : 1;
+        const double cut = fit > m_options.tol ? std::pow(m_options.tol / fit, 1.0 / 3) : 1;
         return tail * std::pow(cut, 5) <= kTailShare * m_options.tol;
     }
 
@@ -244,25 +228,22 @@ class Planner {
         Economized x, y;
         double error;
 
-        Fit(const Point<Jet<double, 4>>& f, int degree)
-            : taylor(f), x(f.x, degree), y(f.y, degree), error(length(x.error, y.error)) {}
+        explicit Fit(const Point<Jet<double, 4>>& f)
+            : taylor(f), x(f.x), y(f.y), error(length(x.error, y.error)) {}
     };
     /// The map's Taylor polynomial about the middle of a box, with offsets of -1 to 1 over its pixel centres.
-    static Point<Jet<double, 4>> taylor_of(const Panorama& map, const Box& box,
-                                           const Panorama::Local& local) {
+    static Point<Jet<double, 4>> taylor_of(const Map& map, const Box& box, const Local& local) {
         using J = Jet<double, 4>;
         return map(J::variable(0.5 * (box.x0 + box.x1), half(box.width()), 0),
                    J::variable(0.5 * (box.y0 + box.y1), 0, half(box.height())), local);
     }
-    Fit fit_of(const Box& box, const Panorama::Local& local) const {
-        return {taylor_of(m_map, box, local), m_options.degree};
-    }
+    Fit fit_of(const Box& box, const Local& local) const { return Fit(taylor_of(m_map, box, local)); }
 
     /// All blocks of a box: up to four from one Taylor polynomial where it serves them all.
-    void place_all(const Box& box, const Panorama::Local& local, const Bound& bound) {
+    void place_all(const Box& box, const Local& local, const Bound& bound) {
         for_boxes(box, 2 * kBlockWidth, 2 * kBlockHeight, [&](const Box& b) { share(b, local, bound); });
     }
-    void share(const Box& box, const Panorama::Local& local, const Bound& bound) {
+    void share(const Box& box, const Local& local, const Bound& bound) {
         const bool wide = box.width() > kBlockWidth, high = box.height() > kBlockHeight;
         if (!wide && !high) return place(box, local, bound);
         const double tail = tail_over(box, bound);
@@ -278,29 +259,28 @@ class Planner {
                 return on_part(f, 0.5 * (b.x0 + b.x1 - box.x0 - box.x1) * per_x, half(b.width()) * per_x,
                                0.5 * (b.y0 + b.y1 - box.y0 - box.y1) * per_y, half(b.height()) * per_y);
             };
-            const Fit fit({part(taylor.x), part(taylor.y)}, m_options.degree);
+            const Fit fit({part(taylor.x), part(taylor.y)});
             m_fit = fit.error;
-            if (!emit_polynomial(b, local.source.piece, fit.x.c, fit.y.c,
+            if (!emit_polynomial(b, m_map.source_piece(local), fit.x.c, fit.y.c,
                                  fit.error + tail + rounding_of(b, bound, local)))
                 place(b, local, bound);
         });
     }
 
     /// Emits the box as one polynomial block if that holds the tolerance, else halves it.
-    void place(const Box& box, const Panorama::Local& local, const Bound& bound) {
+    void place(const Box& box, const Local& local, const Bound& bound) {
         const std::size_t first = m_blocks.size();
         const Fit fit = fit_of(box, local);
         m_fit = fit.error;
         const double tail = tail_over(box, bound);
-        if (emit_polynomial(box, local.source.piece, fit.x.c, fit.y.c,
+        if (emit_polynomial(box, m_map.source_piece(local), fit.x.c, fit.y.c,
                             fit.error + tail + rounding_of(box, bound, local)))
             return;
         // Halve the side along which more was dropped, with a new remainder where that is to blame.
-        const int k = m_options.degree + 1;
         const auto dropped = [&](int i, int j) {
             return std::fabs(fit.taylor.x.at(i, j)) + std::fabs(fit.taylor.y.at(i, j));
         };
-        const bool vertical_cut = dropped(k, 0) + dropped(k - 1, 1) >= dropped(0, k) + dropped(1, k - 1);
+        const bool vertical_cut = dropped(3, 0) + dropped(2, 1) >= dropped(0, 3) + dropped(1, 2);
         const bool renew = !small_tail(tail, fit.error);
         halve(box, vertical_cut, kFloor, first, [&](const Box& b) {
             if (renew && worth_a_bound(b))
@@ -311,7 +291,7 @@ class Planner {
     }
 
     /// Kim's table: bilinear cells between nodes on a regular grid, as wide as the second derivatives allow.
-    void settle_residual(const Box& box, const Panorama::Local& local, std::size_t first) {
+    void settle_residual(const Box& box, const Local& local, std::size_t first) {
         const auto p = enclose<2>(box, local);
         // |f - its bilinear interpolant| <= h^2 / 2 max |f_ss| per direction, h half the cell.
         const auto error = [&](int w, int h) {
@@ -336,7 +316,7 @@ class Planner {
     }
 
     /// One cell of the table: residuals at its four corners in float, plus the linear part.
-    void place_cell(const Box& box, const Panorama::Local& local, double interpolation_error) {
+    void place_cell(const Box& box, const Local& local, double interpolation_error) {
         if (!m_linear) m_linear = linear_part(m_map, m_piece);
         double x[4], y[4], stored = 0;
         for (int i = 0; i < 4; ++i) {
@@ -362,7 +342,7 @@ class Planner {
         bilinear(y, cy);
         const std::size_t first = m_blocks.size();
         const double rounding = rounding_over(box, 0, 0, local);
-        if (emit_polynomial(box, local.source.piece, cx, cy,
+        if (emit_polynomial(box, m_map.source_piece(local), cx, cy,
                             interpolation_error + stored * 0x1p-24 + rounding))
             return;
         halve(box, box.width() > box.height(), kResidualFloor, first, [&](const Box& b) { settle(b); });
@@ -377,7 +357,7 @@ class Planner {
         block.piece = m_piece;
         block.source_piece = source_piece;
         // The turn that brings the block's middle into the image.
-        if (const int period = m_map.source().period(); m_map.source().closed())
+        if (const int period = m_map.period(); period > 0)
             block.base_x -= static_cast<int>(std::floor(static_cast<double>(block.base_x) / period)) * period;
         return true;
     }
@@ -428,7 +408,7 @@ class Planner {
         }
     }
 
-    const Panorama& m_map;
+    const Map& m_map;
     const PlanOptions& m_options;
     int m_piece;
     Blocks& m_blocks;
@@ -439,21 +419,22 @@ class Planner {
 };
 
 /// Gives exact blocks the bound of their rounding, and cuts out of them the pixels that need long double.
+template <FormulaMap Map>
 class ExactBounds {
   public:
-    ExactBounds(const Panorama& map, double tol, Blocks& blocks)
+    ExactBounds(const Map& map, double tol, Blocks& blocks)
         : m_map(map), m_goal(tol > 0 ? tol : kExactGoal), m_blocks(blocks) {}
 
     /// Appends the blocks of an exact block.
     void place(Block block) {
         const Interval x{block.box.x0 + 0.5, block.box.x1 - 0.5}, y{block.box.y0 + 0.5, block.box.y1 - 0.5};
-        block.bound = m_map.exact_error<double>(x, y, block.piece);
+        block.bound = m_map.template exact_error<double>(x, y, block.piece);
         const int pixels = pixels_of(block.box);
         const bool may_help =
             pixels == 1 || (pixels <= kPrecisePixels && block.bound <= kPreciseGain * m_goal);
         if (!(block.bound <= m_goal) && may_help) {
             block.precise = true;
-            block.bound = m_map.exact_error<long double>(x, y, block.piece);
+            block.bound = m_map.template exact_error<long double>(x, y, block.piece);
         }
         if (block.bound <= m_goal || pixels == 1)
             m_blocks.push_back(block);
@@ -480,40 +461,37 @@ class ExactBounds {
     }
     static double larger(double a, double b) { return a >= b || std::isnan(a) ? a : b; }
 
-    const Panorama& m_map;
+    const Map& m_map;
     double m_goal;
     Blocks& m_blocks;
 };
 
-std::vector<Box> boxes_of(const Chart& chart) {
-    std::vector<Box> boxes;
-    for (const Piece& piece : chart.pieces()) boxes.push_back(piece.box);
-    return boxes;
-}
+}  // namespace planner_detail
 
-}  // namespace
-
-Plan::Plan(const Panorama& map, const PlanOptions& options)
-    : BlockMap(map.target().width(), map.target().height(), boxes_of(map.target())),
+template <class Map>
+FormulaPlan<Map>::FormulaPlan(const Map& map, const PlanOptions& options)
+    : BlockMap(map.target_size().width, map.target_size().height, map.target_pieces()),
       m_map(map),
       m_options(options) {
     if (!(options.tol >= 0 && options.tol < HUGE_VAL)) {
         char text[32];
         std::snprintf(text, sizeof text, "%g", options.tol);
-        throw Error("tol", text, "allowed is 0 (exact) or a finite number of source pixels above it");
+        throw Error("tol", text, "must be 0 (exact) or a finite number of source pixels above it");
     }
 }
 
-void Plan::plan(const Box& box, int piece, Blocks& blocks) const {
+template <class Map>
+void FormulaPlan<Map>::plan(const Box& box, int piece, Blocks& blocks) const {
+    using namespace planner_detail;
     Blocks planned;
     planned.reserve(2 * kRegion * kRegion / (kBlockWidth * kBlockHeight));
-    Planner planner(m_map, m_options, box, piece, planned);
+    Planner<Map> planner(m_map, m_options, box, piece, planned);
     if (m_options.scheme == Scheme::exact || m_options.tol == 0)
         planner.exact(box);
     else
         planner.settle(box);
     blocks.reserve(planned.size());
-    ExactBounds exact(m_map, m_options.tol, blocks);
+    ExactBounds<Map> exact(m_map, m_options.tol, blocks);
     for (const Block& block : planned)
         if (block.kind == Block::Kind::exact)
             exact.place(block);
@@ -521,27 +499,21 @@ void Plan::plan(const Box& box, int piece, Blocks& blocks) const {
             blocks.push_back(block);
 }
 
-bool Plan::exact(double x, double y, int piece, Point<double>& source_point,
-                 int& source_piece) const noexcept {
+template <class Map>
+bool FormulaPlan<Map>::exact(double x, double y, int piece, Point<double>& source_point,
+                             int& source_piece) const noexcept {
     return m_map.exact(x, y, piece, source_point, source_piece);
 }
 
-bool Plan::truth(double x, double y, int piece, Point<long double>& source_point,
-                 int& source_piece) const noexcept {
-    return m_map.exact<long double>(x, y, piece, source_point, source_piece);
+template <class Map>
+bool FormulaPlan<Map>::truth(double x, double y, int piece, Point<long double>& source_point,
+                             int& source_piece) const noexcept {
+    return m_map.exact(static_cast<long double>(x), static_cast<long double>(y), piece, source_point,
+                       source_piece);
 }
 
-void Plan::exact_row(const Block& block, int row, ExactPoint* points) const noexcept {
-    if (block.precise) return BlockMap::exact_row(block, row, points);
-    simd::ExactRow found;
-    const int count = block.box.width();
-    simd::exact_row(m_map.target(), m_map.source(), m_map.turn(), block.piece, block.box.x0 + 0.5,
-                    block.box.y0 + row + 0.5, count, found);
-    for (int i = 0; i < count; ++i)
-        points[i] = {{found.x[i], found.y[i]}, static_cast<int>(found.piece[i]), found.seen[i] != 0};
-}
-
-Jacobian Plan::jacobian(double x, double y, int piece) const noexcept {
+template <class Map>
+Jacobian FormulaPlan<Map>::jacobian(double x, double y, int piece) const noexcept {
     using J = Jet1<double>;
     const Point<J> p = m_map(J::variable(x, 1, 0), J::variable(y, 0, 1), m_map.local_around(x, y, piece));
     return {p.x.c[1], p.y.c[1], p.x.c[2], p.y.c[2]};

@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: Apache-2.0
+// The blocks of a panorama's pull map.
+#pragma once
+
+#include "anamorph/approx/formula_plan.h"
+#include "anamorph/map/panorama.h"
+
+namespace anamorph {
+
+extern template class FormulaPlan<Panorama>;
+
+class PanoramaPlan final : public FormulaPlan<Panorama> {
+  public:
+    using FormulaPlan::exact;
+    using FormulaPlan::FormulaPlan;
+
+    /// Exact pixels by vectors.
+    void exact_row(const Block& block, int row, ExactPoint* points) const noexcept override;
+};
+
+}  // namespace anamorph
