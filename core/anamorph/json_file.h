@@ -21,7 +21,7 @@ inline Json parse_json(std::string_view text, std::string_view file) {
             return true;
         });
     } catch (const Json::exception& error) {
-        // Without the reader's own prefix.
+        // The reader's own prefix is left out.
         const std::string_view what = error.what();
         const std::size_t end = what.find("] ");
         fail(file, "", "is no JSON: " + excerpt(end == std::string_view::npos ? what : what.substr(end + 2)));

@@ -21,7 +21,7 @@ void fail(std::string_view file, const std::string& entry, const std::string& wh
 
 void check_size(std::string_view text, std::string_view file) {
     if (text.size() > kMostBytes)
-        fail(file, "", "allowed are files up to " + std::to_string(kMostBytes >> 20) + " MB");
+        fail(file, "", "must be at most " + std::to_string(kMostBytes >> 20) + " MB");
 }
 
 bool take_number(std::string_view& text, double& value) {
@@ -38,7 +38,7 @@ double number(std::string_view field) {
     double value;
     std::string_view rest = field;
     if (!take_number(rest, value) || !rest.empty())
-        throw Error("needed is a number, not \"" + excerpt(field) + "\"");
+        throw Error("must be a number, not \"" + excerpt(field) + "\"");
     return value;
 }
 

@@ -37,10 +37,10 @@ bool take_number(std::string_view& text, double& value);
 /// The number that `field` is. Throws Error where it is none.
 double number(std::string_view field);
 
-/// Without blanks at its ends.
+/// The text without blanks at its ends.
 std::string_view trimmed(std::string_view text);
 
-/// What stands between the commas, trimmed.
+/// The fields between the commas, trimmed.
 std::vector<std::string_view> fields_of(std::string_view row);
 
 /// Whether a file's name ends like this, in small letters or capitals.

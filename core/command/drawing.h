@@ -19,13 +19,13 @@ enum class Sticks { none, axes, joints };
 
 struct DrawingOptions {
     double size = 500;  ///< the window of 1000 units, in pixels
-    std::optional<double>
-        perspective;  ///< from the eye to the middle of the window, units; orthographic without
+    /// The distance from the eye to the middle of the window, in units; orthographic without.
+    std::optional<double> perspective;
     Hidden hidden = Hidden::remove;   ///< what becomes of hidden arcs; draw: bodies are transparent
     Sticks sticks = Sticks::none;     ///< instead of outlines
     bool crossings = false;           ///< also the curves in which bodies pass through each other
     double lod = 0;                   ///< bodies no wider are dots and lines; pixels
-    double tol = 0.1;                 ///< most that chords are off the curve; pixels
+    double tol = 0.1;                 ///< maximum chord error; pixels
     double line_width = 1, halo = 0;  ///< pixels; the halo is the gap on either side of a nearer line
     bool colors = false;              ///< of the bodies; black otherwise
 };

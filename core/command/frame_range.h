@@ -17,9 +17,9 @@ struct FrameRange {
     int first = 1, last = 1, step = 1;
 
     bool several() const { return all || last > first; }
-    /// How many there are; of `all`, asks the performance.
+    /// The number of frames; for `all` it asks the performance.
     int count(Performance& performance) const;
-    /// In order. Throws Error where one is not performed.
+    /// Calls body for the frames in order. Throws Error where one is not performed.
     void for_each(Performance& performance, const std::function<void(const FigureFrame&)>& body) const;
 };
 

@@ -47,7 +47,7 @@ CLI::Validator number_from_to(double least, double most) {
             const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
             if (error == std::errc() && end == text.data() + text.size() && value >= least && value <= most)
                 return {};
-            return "\"" + text + "\": allowed is a number from " + shortest(least) + " to " + shortest(most);
+            return "\"" + text + "\": must be a number from " + shortest(least) + " to " + shortest(most);
         },
         "NUMBER");
 }
@@ -56,7 +56,7 @@ CLI::Validator frame_range() {
     return CLI::Validator(
         [](std::string& text) -> std::string {
             if (parse_frame_range(text)) return {};
-            return "\"" + text + "\": allowed are N, N-M, N-MxSTEP and all";
+            return "\"" + text + "\": must be N, N-M, N-MxSTEP or all";
         },
         "");
 }
@@ -156,7 +156,7 @@ class Command {
         DrawingOptions& d = m_settings.drawing;
         add_number(sub, "--size", d.size, 1, 16384,
                    "Pixels (in PDF points) that the window of 1000 units is");
-        add_number(sub, "--tol", d.tol, 0.01, 1000, "Most that chords are off the curve, in pixels");
+        add_number(sub, "--tol", d.tol, 0.01, 1000, "Maximum chord error, in pixels");
         add_number(sub, "--line-width", d.line_width, 0.01, 1000, "In pixels");
         add_number(sub, "--halo", d.halo, 0, 1000, "Gap on either side of a nearer line, in pixels");
         sub->add_flag("--colors", d.colors, "Lines in the colors of the bodies");

@@ -296,7 +296,6 @@ std::string number(double value) {
 }
 
 // --- the families
-// -------------------------------------------------------------------------------------------
 
 void run_families(Bench& bench) {
     const int size = std::min(kPaperSize, bench.settings().size);
@@ -349,7 +348,6 @@ void run_paper(Bench& bench) {
 }
 
 // --- whole frames
-// -------------------------------------------------------------------------------------------
 
 /// A picture of 8-bit noise in a TGA file (type 2, 24 bits, from the top).
 void write_tga(const std::filesystem::path& path, int size, const std::vector<std::uint8_t>& rgb) {

@@ -403,7 +403,6 @@ Chart cylinder(int width) {
 }
 
 // --- bilinear, float
-// ----------------------------------------------------------------------------------------------
 
 void run_bilinear(const Settings& settings, Report& report, const Chart& chart, const std::string& name) {
     const std::string turned = name + "_rotated";
@@ -434,7 +433,6 @@ void run_bilinear(const Settings& settings, Report& report, const Chart& chart, 
 }
 
 // --- bilinear, uint8
-// ----------------------------------------------------------------------------------------------
 
 void run_uint8(const Settings& settings, Report& report) {
     const std::string name = "equirect_uint8";
@@ -453,7 +451,6 @@ void run_uint8(const Settings& settings, Report& report) {
 }
 
 // --- antialiased
-// --------------------------------------------------------------------------------------------------
 
 using Polygon = std::vector<Point<double>>;
 
@@ -592,7 +589,6 @@ void run(const Settings& settings, Report& report) {
 }
 
 // --- bound over true error
-// ----------------------------------------------------------------------------------------
 
 double median(std::vector<double>& values) {
     const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);

@@ -39,8 +39,8 @@ int whole_number(std::string_view option, const char* text, int least, int most)
     char* end = nullptr;
     const long value = std::strtol(text, &end, 10);
     if (end == text || *end || value < least || value > most)
-        throw std::invalid_argument(std::string(option) + " " + text + ": allowed is " +
-                                    std::to_string(least) + " to " + std::to_string(most));
+        throw std::invalid_argument(std::string(option) + " " + text + ": must be " + std::to_string(least) +
+                                    " to " + std::to_string(most));
     return static_cast<int>(value);
 }
 
@@ -71,7 +71,7 @@ Settings parse(int argc, char** argv) {
         else
             throw std::invalid_argument(
                 std::string(option) +
-                ": allowed are --csv, --op, --size, --threads, --case, --scheme, --rounds "
+                ": must be one of --csv, --op, --size, --threads, --case, --scheme, --rounds "
                 "and --bounds");
     }
     if (s.csv.empty() && !s.bounds) throw std::invalid_argument("--csv: a file to write is needed");
@@ -79,7 +79,7 @@ Settings parse(int argc, char** argv) {
     if (s.op != "all" && std::none_of(ops().begin(), ops().end(), known)) {
         std::string names = "all";
         for (const Op& op : ops()) names += ", " + op.name;
-        throw std::invalid_argument("--op " + s.op + ": allowed are " + names);
+        throw std::invalid_argument("--op " + s.op + ": must be one of " + names);
     }
     return s;
 }

@@ -174,7 +174,7 @@ class Frames(Case):
         self.assertEqual(self.read("out.3"), whole)
         second = self.output("frames", path, "--frame", "2").splitlines()
         self.assertEqual(second, whole.splitlines()[5:])
-        self.assertIn("frame=3: allowed are 0 to 2", self.error("frames", path, "--frame", "3"))
+        self.assertIn("frame=3: must be an integer from 0 to 2", self.error("frames", path, "--frame", "3"))
 
     def test_what_scripts_print_goes_to_the_standard_error(self):
         result = self.run_program("frames", "-", text="variables 1 v\nrepeat 0 1 set v 7\nrepeat 0 2 print v\nstop")
@@ -445,9 +445,10 @@ class BadInput(Case):
     def test_options(self):
         for options, said in (
                 ([], "subcommand"), (["draw", WALKER], "subcommand"), (["svg"], "SCRIPT"),
-                (["svg", WALKER, "--frame=0x"], "allowed are N"), (["svg", WALKER, "--frame=5-1"], "allowed are N"),
-                (["svg", WALKER, "--frame=-1"], "allowed are N"), (["svg", WALKER, "--frame=9999999999"], "allowed"),
-                (["svg", WALKER, "--frame=1-4x0"], "allowed are N"), (["svg", WALKER, "--frame=900"], "0 to 49"),
+                (["svg", WALKER, "--frame=0x"], "must be N"), (["svg", WALKER, "--frame=5-1"], "must be N"),
+                (["svg", WALKER, "--frame=-1"], "must be N"),
+                (["svg", WALKER, "--frame=9999999999"], "must be N"),
+                (["svg", WALKER, "--frame=1-4x0"], "must be N"), (["svg", WALKER, "--frame=900"], "0 to 49"),
                 (["svg", WALKER, "--tol=0"], "--tol"), (["svg", WALKER, "--tol=nan"], "--tol"),
                 (["svg", WALKER, "--tol="], "--tol"), (["svg", WALKER, "--size=20000"], "--size"),
                 (["svg", WALKER, "--size=inf"], "--size"), (["svg", WALKER, "--perspective=0"], "--perspective"),

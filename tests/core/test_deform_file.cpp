@@ -99,14 +99,14 @@ TEST(DeformationFile, FaultsNameFileAndEntry) {
     json(R"({"deformations": 3})", "", "a list");
     json(R"({"deformations": [], "x": 1})", "", "nothing but");
     json(R"({"deformations": [7]})", "deformations[0]", "an object");
-    json(with("\"extent\": [1, 1]", "\"extent\": [1]"), "deformations[1]", "extent: needed is a list of 2");
-    json(with("\"extent\": [1, 1]", "\"extent\": [1, \"a\"]"), "deformations[1]", "extent: needed is a list");
-    json(with("\"extent\": [1, 1], ", ""), "deformations[1]", "extent: needed is a list");
-    json(with("\"extent\": [0.5, 4]", "\"extent\": [0, 4]"), "deformations[0]", "extent=0: allowed");
+    json(with("\"extent\": [1, 1]", "\"extent\": [1]"), "deformations[1]", "extent: must be a list of 2");
+    json(with("\"extent\": [1, 1]", "\"extent\": [1, \"a\"]"), "deformations[1]", "extent: must be a list");
+    json(with("\"extent\": [1, 1], ", ""), "deformations[1]", "extent: must be a list");
+    json(with("\"extent\": [0.5, 4]", "\"extent\": [0, 4]"), "deformations[0]", "extent=0: must be");
     json(with("wendland_c2", "wend\\nland"), "deformations[1]", "kernel=");
     json(with("\"wendland_c2\"", "2"), "deformations[1]", "kernel: needed");
-    json(with("false", "0"), "deformations[1]", "enabled: needed is true or false");
-    json(with("\"enabled\"", "\"on\""), "deformations[1]", "on: allowed are");
+    json(with("false", "0"), "deformations[1]", "enabled: must be true or false");
+    json(with("\"enabled\"", "\"on\""), "deformations[1]", "on: must be one of");
 
     const auto csv = [&](const std::string& row, const std::string& what) {
         expect("# list\n" + row, "face.csv", "row 2", what);
@@ -115,7 +115,7 @@ TEST(DeformationFile, FaultsNameFileAndEntry) {
     csv("1,2,3,4,5,6,7,gaussian,1,2", "not 10 fields");
     csv("1,2,3,4,5,6,x", "not \"x\"");
     csv("1,2,3,4,5,6,", "not \"\"");
-    csv("1,2,3,4,5,6,1e999", "needed is a number");
+    csv("1,2,3,4,5,6,1e999", "must be a number");
     csv("nan,2,3,4,5,6,7", "center=nan");
     csv("1,2,inf,4,5,6,7", "extent=inf");
     csv("1,2,3,4,5,-inf,7", "vector=-inf");

@@ -202,7 +202,7 @@ TEST(Features, BadLinesAreNamed) {
     EXPECT_EQ(message([&] {
                   features.add_line({{{3, NAN}, {3, 4}}, {{0, 0}, {1, 0}}});
               }),
-              "line 2=3,nan,3,4: allowed are coordinates up to 1e9 pixels");
+              "line 2=3,nan,3,4: coordinates must be at most 1e9 pixels");
     EXPECT_NE(message([&] { features.add_line({{{0, 0}, {1, 0}}, {{0, 0}, {1, 0}}}, NAN); }), "no error");
     EXPECT_NE(message([&] { features.add_polyline({{{0, 0}, {1, 0}}, {{0, 0}}}); }), "no error");
     EXPECT_NE(message([&] { features.add_curve({{{0, 0}, {1, 0}}, {{0, 0}, {1, 0}}}); }), "no error");

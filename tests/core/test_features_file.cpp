@@ -67,22 +67,22 @@ TEST(FeaturesJson, BadFilesAreNamed) {
     EXPECT_THAT(bad(""), HasSubstr("no JSON"));
     EXPECT_THAT(bad(std::string(100000, '[')), HasSubstr("deep"));
     EXPECT_THAT(bad(R"x({"features": [{"line": [[0,0,1,0], [0)x"), HasSubstr("no JSON"));
-    EXPECT_THAT(bad("[]"), HasSubstr("needed is an object"));
-    EXPECT_THAT(bad(R"x({"features": []})x"), HasSubstr("features: needed is a list of one or more"));
-    EXPECT_THAT(bad(R"x({"fetures": []})x"), HasSubstr("fetures: allowed are"));
+    EXPECT_THAT(bad("[]"), HasSubstr("must be an object"));
+    EXPECT_THAT(bad(R"x({"features": []})x"), HasSubstr("features: must be a list of one or more"));
+    EXPECT_THAT(bad(R"x({"fetures": []})x"), HasSubstr("fetures: must be one of"));
     EXPECT_THAT(bad(R"x({"features": [{"line": [[0,0,1,0], [0,0,1,0]]}, {"line": [[0,0,1], [0,0,1,0]]}]})x"),
-                HasSubstr("features[1]: needed is a list of 4 numbers"));
+                HasSubstr("features[1]: must be a list of 4 numbers"));
     EXPECT_THAT(bad(R"x({"features": [{"line": [[0,0,1,0], [0,0,"x\ny",0]]}]})x"),
-                HasSubstr("features[0]: needed is a number"));
+                HasSubstr("features[0]: must be a number"));
     EXPECT_THAT(bad(R"x({"features": [{"line": [[0,0,1,0], [5,6,5,6]], "name": "brow"}]})x"),
                 HasSubstr("features[0]: brow=5,6,5,6: a line needs a length"));
     EXPECT_THAT(bad(R"x({"features": [{"line": [[0,0,1,0]]}]})x"), HasSubstr("a morph needs two or more"));
     EXPECT_THAT(
         bad(R"x({"features": [{"line": [[0,0,1,0],[0,0,1,0]]}, {"line": [[0,0,1,0],[0,0,1,0],[0,0,1,0]]}]})x"),
-        HasSubstr("features[1]: line 2=3 shapes: needed are 2"));
+        HasSubstr("features[1]: line 2=3 shapes: must be 2"));
     EXPECT_THAT(bad(R"x({"features": [{"line": [[0,0,1e999,0],[0,0,1,0]]}]})x"), HasSubstr("lines.file: "));
     EXPECT_THAT(bad(R"x({"features": [{"line": [[0,0,1,0],[0,0,1,0]], "curve": []}]})x"),
-                HasSubstr("one of them is allowed"));
+                HasSubstr("must not both be given"));
     EXPECT_THAT(bad(R"x({"features": [{"line": [[0,0,1,0],[0,0,1,0]], "weight": -1}]})x"),
                 HasSubstr("weight=-1"));
     EXPECT_THAT(bad(R"x({"sizes": [[1, 0], [1, 1]], "features": [{"line": [[0,0,1,0],[0,0,1,0]]}]})x"),
@@ -110,10 +110,10 @@ TEST(FeaturesCsv, OnePairALine) {
 
 TEST(FeaturesCsv, BadRowsAreNamed) {
     const auto bad = [](const std::string& text) { return message(parse_features_csv, text); };
-    EXPECT_THAT(bad(""), HasSubstr("needed is one pair"));
-    EXPECT_THAT(bad("1,2,3,4,5,6,7\n"), HasSubstr("row 1: needed are 8 numbers"));
+    EXPECT_THAT(bad(""), HasSubstr("must have one pair"));
+    EXPECT_THAT(bad("1,2,3,4,5,6,7\n"), HasSubstr("row 1: must be 8 numbers"));
     EXPECT_THAT(bad("#\n1,2,3,4,5,6,7,8\n1,2,3,4,5,6,7,eight\n"),
-                HasSubstr("row 3: needed is a number, not \"eight\""));
+                HasSubstr("row 3: must be a number, not \"eight\""));
     EXPECT_THAT(bad("1,2,3,4,5,6,7,8,9,10\n"), HasSubstr("and perhaps a weight, not 10"));
     EXPECT_THAT(bad("1,2,1,2,5,6,7,8\n"), HasSubstr("row 1: line 1=1,2,1,2: a line needs a length"));
     EXPECT_THAT(bad("1,2,nan,2,5,6,7,8\n"), HasSubstr("row 1: "));
@@ -186,8 +186,8 @@ TEST(FeaturesSvg, BadFilesAreNamed) {
     const std::string line = R"x(<path id="p" d="M 1 2 3 4"/>)x";
     EXPECT_THAT(bad(""), HasSubstr("no XML"));
     EXPECT_THAT(bad("<svg><g"), HasSubstr("no XML"));
-    EXPECT_THAT(bad("<html/>"), HasSubstr("needed is an svg element"));
-    EXPECT_THAT(bad("<svg>" + line + "</svg>"), HasSubstr("needed are two layers"));
+    EXPECT_THAT(bad("<html/>"), HasSubstr("must be an svg element"));
+    EXPECT_THAT(bad("<svg>" + line + "</svg>"), HasSubstr("must have from 2 to 64 layers"));
     EXPECT_THAT(bad(svg(line, R"x(<path id="q" d="M 1 2 3 4"/>)x")),
                 HasSubstr("q in layer B: layer A has nothing with this id"));
     EXPECT_THAT(bad(svg(line + R"x(<path id="r" d="M 1 2 3 4"/>)x", R"x(<path id="p-1" d="M 1 2 3 4"/>)x")),
@@ -196,7 +196,7 @@ TEST(FeaturesSvg, BadFilesAreNamed) {
                 HasSubstr("p: the layers have 1 and 2 segments"));
     EXPECT_THAT(bad(svg(line, R"x(<path id="p-1" d="M 1 2 A 3 4 5 6 7 8 9"/>)x")), HasSubstr("arcs"));
     EXPECT_THAT(bad(svg(line, R"x(<path id="p-1" d="M 1 2 3 x"/>)x")),
-                HasSubstr("path p-1: needed is a number"));
+                HasSubstr("path p-1: there must be a number"));
     EXPECT_THAT(bad(svg(line, R"x(<path id="p-1" transform="turn(3)" d="M 1 2 3 4"/>)x")),
                 HasSubstr("path p-1: transform: turn"));
     EXPECT_THAT(bad(svg(line, R"x(<path id="p-1" d="M 1 2 1 2"/>)x")),
@@ -222,7 +222,7 @@ TEST(FeaturesFile, MoreLinesThanAllowedAreRefused) {
     for (std::size_t i = 0; i < kMaxFeatures; ++i) csv += "1,2,3,4,5,6,7,8\n";
     EXPECT_EQ(parse_features_file(csv, "a.csv").size(), kMaxFeatures);
     csv += "1,2,3,4,5,6,7,8\n";
-    EXPECT_THAT(message(parse_features_csv, csv), HasSubstr("131073: allowed are at most 131072 lines"));
+    EXPECT_THAT(message(parse_features_csv, csv), HasSubstr("131073: must have at most 131072 lines"));
 }
 
 TEST(FeaturesFile, EndlessFilesAreRefused) {

@@ -243,7 +243,7 @@ TEST(FigureOutlineHard, BadInputIsNamed) {
     const Ellipsoid good;
     Ellipsoid bad;
     bad.center.y = kNaN;
-    EXPECT_EQ(message({good, bad}, {}, {}), "body 1 center=0,nan,0: allowed is finite numbers up to 1e25");
+    EXPECT_EQ(message({good, bad}, {}, {}), "body 1 center=0,nan,0: must be finite numbers up to 1e25");
     EXPECT_NE(message({bad}, {}, named).find("body head center="), std::string::npos);
     EXPECT_EQ(message({good, bad}, {}, named).find('\n'), std::string::npos);
     bad = {};

@@ -105,7 +105,7 @@ TEST(FigureTime, NothingToDoIsNoFrame) {
     Performance p = perform(kOne + "linear 9 3 moveby f world 1 0 0\nstop");
     EXPECT_EQ(p.frame_count(), 0);
     EXPECT_EQ(p.frame(0).bodies.size(), 1u);  // the figures at rest are there
-    EXPECT_THAT(error_of([&] { p.frame(1); }), HasSubstr("frame=1: allowed are 0 to 0"));
+    EXPECT_THAT(error_of([&] { p.frame(1); }), HasSubstr("frame=1: must be an integer from 0 to 0"));
 }
 
 // --- Names in variables
@@ -126,7 +126,7 @@ TEST(FigureVariables, HoldNames) {
                             Dialect::strict)
                         .frame(1);
                 }),
-                HasSubstr("own.n:5:14: the variable v holds an axis, needed is a joint"));
+                HasSubstr("own.n:5:14: the variable v holds an axis, but must hold a joint"));
 }
 
 TEST(FigureVariables, Calculate) {
@@ -300,7 +300,7 @@ TEST(FigureErrors, SubroutinesThatCallThemselves) {
         many += "subroutine " + s + "\ncall 0 5 " + next + "\ncall 0 5 " + next + "\nendsub " + s + "\n";
     }
     many += "subroutine s60\nrepeat 0 1 moveby f a 1 0 0\nendsub s60\nstop";
-    EXPECT_THAT(error_of([&] { perform(many).frame(1); }), HasSubstr("allowed are 10000 calls in a frame"));
+    EXPECT_THAT(error_of([&] { perform(many).frame(1); }), HasSubstr("a frame has more than 10000 calls"));
     // One below the other, deep: no ring, and said to be none.
     std::string deep = kOne + "call 0 1 s0\n";
     for (int i = 0; i < 1000; ++i)
@@ -308,7 +308,7 @@ TEST(FigureErrors, SubroutinesThatCallThemselves) {
                 numbered("s", i) + "\n";
     deep += "subroutine s1000\nrepeat 0 1 moveby f a 1 0 0\nendsub s1000\nstop";
     EXPECT_THAT(error_of([&] { perform(deep).frame(1); }),
-                HasSubstr("allowed are 200 subroutines that call each the next"));
+                HasSubstr("more than 200 subroutines call each the next"));
     // Later each time, it comes to an end: moves in frames 1, 3 and 5.
     EXPECT_THAT(
         places(kOne + "call 0 6 s\nsubroutine s\nrepeat 0 1 moveby f a 1 0 0\ncall 2 6 s\nendsub s\nstop"),

@@ -276,7 +276,7 @@ TEST(FigureScript, WhatEachDeclarationNeeds) {
         for (const std::string& message : messages(script)) all += message + "\n";
         return all;
     };
-    EXPECT_THAT(error("figure h 0"), HasSubstr("expected a whole number of ellipsoids"));
+    EXPECT_THAT(error("figure h 0"), HasSubstr("expected the number of ellipsoids, an integer"));
     EXPECT_THAT(error("figure h 2 p"), HasSubstr("found \"stop\", expected a name for an ellipsoid"));
     EXPECT_THAT(error("figure f 1 p\nellipsoid p 1 1 1"), HasSubstr("the figure \"f\" is declared twice"));
     EXPECT_THAT(error("figure h 1 p"), HasSubstr("the ellipsoid \"p\" is declared nowhere"));
@@ -288,7 +288,7 @@ TEST(FigureScript, WhatEachDeclarationNeeds) {
     EXPECT_THAT(error("limit j 1 0 0 0 0 0"), HasSubstr("smallest angle is above the largest"));
     EXPECT_THAT(error("variables 2 q"), HasSubstr("found \"stop\", expected a name for a variable"));
     EXPECT_THAT(error("variables 1 linear"), HasSubstr("found \"linear\", expected a name"));
-    EXPECT_THAT(error("speed 0"), HasSubstr("found \"0\", expected a whole number but 0"));
+    EXPECT_THAT(error("speed 0"), HasSubstr("found \"0\", expected an integer other than 0"));
     EXPECT_THAT(error("view 1 1.5"), HasSubstr("found \"1.5\", expected a frame"));
     EXPECT_THAT(error("subroutine s\nendsub t"), HasSubstr("expected the end of \"s\""));
     EXPECT_THAT(error("subroutine s"), HasSubstr("the subroutine s has no end"));

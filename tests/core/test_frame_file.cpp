@@ -103,18 +103,18 @@ TEST(FrameFile, NamesTheLine) {
     const auto with = [](std::string text, const std::string& from, const std::string& to) {
         return text.replace(text.find(from), from.size(), to);
     };
-    EXPECT_EQ(error("3 x"), "own.3:1: found \"x\", expected a frame, a whole number");
+    EXPECT_EQ(error("3 x"), "own.3:1: found \"x\", expected a frame, an integer");
     EXPECT_EQ(error("3 1 0 0 0 0 0 0"), "own.3:1: the text ends inside of a frame");
     EXPECT_EQ(error(with(kFrame, "0 800 0", "0 8e2 0")),
-              "own.3:3: found \"8e2\", expected a coordinate, a whole number");
+              "own.3:3: found \"8e2\", expected a coordinate, an integer");
     EXPECT_EQ(error(with(kFrame, " c 3", "")), "own.3:4: found the end of the line, expected a name");
     EXPECT_EQ(error(with(kFrame, "50 0 50", "50 -1 50")), "own.3:4: an axis is negative");
     EXPECT_EQ(error(with(kFrame, "-1 1", "-2 1")), "own.3:5: expected -1 and a count of joints");
     EXPECT_EQ(error(with(kFrame, "-1 1", "-1 9")), "own.3:6: the text ends inside of a frame");
-    EXPECT_EQ(error(with(kFrame, "  0   1", "  0   3")), "own.3:6: allowed are ellipsoids from 0 to 2");
+    EXPECT_EQ(error(with(kFrame, "  0   1", "  0   3")), "own.3:6: an ellipsoid must be from 0 to 2");
     EXPECT_EQ(error("2000000000 1 0 0 0 0 0 0"), "own.3:1: the text ends inside of a frame");
     EXPECT_EQ(error("99999999999 1 0 0 0 0 0 0"),
-              "own.3:1: found \"99999999999\", expected a count of ellipsoids, a whole number");
+              "own.3:1: found \"99999999999\", expected a count of ellipsoids, an integer");
 }
 
 TEST(FrameFile, TruncatedAtEveryByte) {

@@ -223,7 +223,7 @@ TEST(Mesh, RefusesWhatIsNoMesh) {
     EXPECT_NE(refused(bad).find("vertex [2, 1]"), std::string::npos);
     bad = good;
     bad.vertices.pop_back();
-    EXPECT_NE(refused(bad).find("needed are 4 x 3"), std::string::npos) << refused(bad);
+    EXPECT_NE(refused(bad).find("must be 4 x 3"), std::string::npos) << refused(bad);
     bad = good;
     bad.columns = 0;
     EXPECT_NE(refused(bad).find("columns"), std::string::npos);

@@ -83,14 +83,14 @@ TEST(MeshFile, FaultsNameFileAndEntry) {
     expect(with("[0.4, 0.9]", "[0.4, null]"), "vertices[4][1]=null");
     expect(with("[0.4, 0.9]", "[0.4, NaN]"), "is no JSON");
     expect(with("[0.4, 0.9]", "[0.4, 1e999]"), "is no JSON");
-    expect(with(", [1, 1]]", "]"), "vertices=a list of 5: needed are (columns + 1) (rows + 1) = 6");
+    expect(with(", [1, 1]]", "]"), "vertices=a list of 5: must have (columns + 1) (rows + 1) = 6 entries");
     expect(with("\"columns\": 2", "\"columns\": 2.5"), "columns=2.5");
     expect(with("\"columns\": 2", "\"columns\": -1"), "columns=-1");
     expect(with("\"columns\": 2", "\"columns\": 1e9"), "columns=");
     expect(with("\"columns\": 2", "\"colums\": 2"), "\"colums\": no such key");
     expect(with("\"rows\": 1,", ""), "rows: is missing");
     expect(with("push", "pushed"), "direction=");
-    expect(with("fractions", "inches"), "units=\"inches\": allowed is \"pixels\" or \"fractions\"");
+    expect(with("fractions", "inches"), "units=\"inches\": must be \"pixels\" or \"fractions\"");
     expect(with("[[1, 0]]", "[[1, 0, 2]]"), "levels[0].cells[0]");
     expect(with("[3, 1, 0.7, 0.5]", "[3, 1, 0.7]"), "levels[0].vertices[0]");
     expect(with("\"levels\": [{", "\"levels\": {"), "is no JSON");
@@ -98,7 +98,7 @@ TEST(MeshFile, FaultsNameFileAndEntry) {
     expect(R"({"points": [[1, 2, 3]]})", "points[0]");
     expect(R"({"points": 3})", "points=3: a list is needed");
     expect("1,2,3,4\n5,6,7\n", "row 2", "p.csv");
-    expect("1,2,3,4\n5,6,x,8\n", "row 2: needed is a number, not \"x\"", "p.csv");
+    expect("1,2,3,4\n5,6,x,8\n", "row 2: must be a number, not \"x\"", "p.csv");
     expect("1,2,3,4\n5,6,,8\n", "row 2", "p.csv");
     expect("1,2,3,4,5\n", "row 1", "p.csv");
     expect("1,2,3,\n", "row 1", "p.csv");

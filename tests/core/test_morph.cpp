@@ -269,7 +269,7 @@ TEST(Morph, BadParametersAreNamed) {
     EXPECT_EQ(message(options), "t=1e+07: allowed is a number from -1e+06 to 1e+06");
     options = {};
     options.weight_b = NAN;
-    EXPECT_EQ(message(options), "weight_b=nan: allowed is a number from 0 to 16");
+    EXPECT_EQ(message(options), "weight_b=nan: must be a number from 0 to 16");
     options = {};
     EXPECT_NE(message(options, {0, 5}), "no error");
     options.scheme = MorphScheme::mesh;
@@ -287,7 +287,7 @@ TEST(Morph, BadParametersAreNamed) {
     }
     options = {};
     options.weight_b = std::nextafter(16.0, 17.0);
-    EXPECT_EQ(message(options), "weight_b=16.000000000000004: allowed is a number from 0 to 16");
+    EXPECT_EQ(message(options), "weight_b=16.000000000000004: must be a number from 0 to 16");
 }
 
 }  // namespace

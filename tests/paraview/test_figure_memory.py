@@ -71,5 +71,5 @@ with tempfile.TemporaryDirectory() as folder:
     lines, text = play(folder, "figure f 8 a b c d e f g h\n" +
                        "\n".join(f"ellipsoid {name} 90000 90000 90000" for name in "abcdefgh") +
                        "\nrepeat 0 2 moveto f a 300 200 300\nstop\n")
-    assert "triangles, allowed are" in text, text[-4000:]
+    assert "triangles, but there must be at most" in text, text[-4000:]
     assert int(lines[-1][-1]) < MOST, lines

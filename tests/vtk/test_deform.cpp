@@ -638,12 +638,12 @@ TEST(VtkDeform, WhatIsRefused) {
     const auto with = [&](double extent, double x, double kernel = 0, double enabled = 1) {
         return failure([=](Filter f) { f->SetDeformation(1, 0, 0, extent, 1, x, 0, 0, kernel, enabled); });
     };
-    EXPECT_THAT(with(0, 1), HasSubstr("deformation 1: extent=0: allowed are"));
+    EXPECT_THAT(with(0, 1), HasSubstr("deformation 1: extent=0: must be are"));
     EXPECT_THAT(with(-1, 1), HasSubstr("extent=-1"));
     EXPECT_THAT(with(kNan, 1), HasSubstr("extent=nan"));
     EXPECT_THAT(with(1, kInf), HasSubstr("vector=inf"));
     EXPECT_THAT(with(1, 1e300), HasSubstr("vector=1e+300"));
-    EXPECT_THAT(with(1, 1, 2), HasSubstr("kernel=2: allowed are 0 (gaussian) and 1"));
+    EXPECT_THAT(with(1, 1, 2), HasSubstr("kernel=2: must be 0 (gaussian) or 1"));
     EXPECT_THAT(with(1, 1, 0, .5), HasSubstr("enabled=0.5"));
     EXPECT_THAT(failure([](Filter f) { f->SetCutoff(.7); }), HasSubstr("cutoff=0.7"));
     EXPECT_THAT(failure([](Filter f) { f->SetCutoff(kNan); }), HasSubstr("cutoff=nan"));
@@ -664,7 +664,7 @@ TEST(VtkDeform, WhatIsRefused) {
     EXPECT_THAT(errors.text(), HasSubstr("position=0: the list is empty"));
     filter->AddDeformation(0, 0, 1, 1, 0, 0, 1);
     filter->MoveDeformation(0, 1);
-    EXPECT_THAT(errors.text(), HasSubstr("position=1: allowed are whole numbers from 0 to 0"));
+    EXPECT_THAT(errors.text(), HasSubstr("position=1: must be an integer from 0 to 0"));
     filter->SetNumberOfDeformations(-1);
     EXPECT_THAT(errors.text(), HasSubstr("NumberOfDeformations=-1"));
     filter->SetNumberOfDeformations(2000000000);
@@ -689,7 +689,7 @@ TEST(VtkDeform, HugeMeshesAreRefused) {
     add(filter, bumps(2, 8));
     Errors errors(filter);
     filter->Update();
-    EXPECT_THAT(errors.text(), HasSubstr("2147483648 points, allowed are fewer than 2^31"));
+    EXPECT_THAT(errors.text(), HasSubstr("2147483648 points, but must have fewer than 2^31"));
     filter->AutomaticPlaneOn();
     errors.clear();
     filter->Update();
@@ -946,7 +946,7 @@ TEST(VtkDeform, TextureCoordinates) {
     other->SetNumberOfComponents(1);
     by_texture->SetInputArrayToProcess(0, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, "other");
     by_texture->Update();
-    EXPECT_THAT(errors.text(), HasSubstr("texture coordinates other: needed are 2 to 9 components"));
+    EXPECT_THAT(errors.text(), HasSubstr("texture coordinates other: must have 2 to 9 components"));
 }
 
 TEST(VtkDeform, PlanesFromBoundsAndFromAxes) {
@@ -1259,7 +1259,7 @@ TEST(VtkDeform, MarksOfGhostCellsThatAreTooFewAreRefusedByName) {
     filter->SetInputData(mesh);
     Errors errors(filter);
     filter->Update();
-    EXPECT_THAT(errors.text(), HasSubstr("vtkGhostType of the cells has 3 tuples, needed are " +
+    EXPECT_THAT(errors.text(), HasSubstr("vtkGhostType of the cells has 3 tuples, but must have " +
                                          std::to_string(mesh->GetNumberOfCells())));
 }
 

@@ -271,19 +271,19 @@ TEST(VtkFigureGeometry, WhatCannotBeDoneIsAnError) {
     narrow->SetNumberOfTuples(1);
     bare->GetPointData()->AddArray(narrow);
     EXPECT_THAT(errors_of<vtkAnamorphFigureGeometry>(bare),
-                HasSubstr("the array \"Axes\" has 1 components, needed are 3"));
+                HasSubstr("the array \"Axes\" has 1 components, but must have 3"));
     const auto figure = figures({kLimb});
     for (const double bad : {0.0, -1.0, kNan})
         EXPECT_THAT(errors_of<vtkAnamorphFigureGeometry>(figure, [&](auto* g) { g->SetTolerance(bad); }),
-                    HasSubstr("allowed is a positive number"));
+                    HasSubstr("must be a positive number"));
     EXPECT_THAT(errors_of<vtkAnamorphFigureGeometry>(figure, [](auto* g) { g->SetTolerance(1e-9); }),
                 HasSubstr("is too small"));
     // Large bodies need too many triangles; with the tolerance that the message names they do not.
     const auto large = figures({{{}, {6e5, 3e5, 5e5}, {1, 0, 0, 0}}, {{}, {5e5, 5e5, 5e5}, {1, 0, 0, 0}}});
     const std::string refused =
         errors_of<vtkAnamorphFigureGeometry>(large, [](auto* g) { g->SetTolerance(2); });
-    EXPECT_THAT(refused,
-                testing::ContainsRegex("Tolerance=2: needs [0-9]+ triangles, allowed are 4194304; "));
+    EXPECT_THAT(refused, testing::ContainsRegex(
+                             "Tolerance=2: needs [0-9]+ triangles, but there must be at most 4194304; "));
     const std::size_t named = refused.find("4194304; ");
     ASSERT_NE(named, std::string::npos);
     const double enough = std::stod(refused.substr(named + 9));

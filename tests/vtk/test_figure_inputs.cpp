@@ -86,7 +86,7 @@ TYPED_TEST(VtkFigureInput, ArraysThatAreTooShortAreNotRead) {
     for (const char* name : {"Axes", "Orientation"}) {
         const auto input = figures(kBalls);
         input->GetPointData()->GetArray(name)->SetNumberOfTuples(1);
-        EXPECT_THAT(errors_of<TypeParam>(input), testing::HasSubstr("1 tuples, needed are 2"));
+        EXPECT_THAT(errors_of<TypeParam>(input), testing::HasSubstr("1 tuples, but must have 2"));
     }
     const auto input = figures(kBalls);
     vtkNew<vtkStringArray> names;

@@ -191,7 +191,7 @@ TEST(VtkFigureOutline, WhatCannotBeDoneIsAnError) {
     EXPECT_THAT(errors_of<Outline>(bare), HasSubstr("the input has no array \"Orientation\""));
     for (const double bad : {0.0, kNan})
         EXPECT_THAT(errors_of<Outline>(figures({kNear}), [&](auto* f) { f->SetTolerance(bad); }),
-                    HasSubstr("allowed is a positive number"));
+                    HasSubstr("must be a positive number"));
     // A tolerance that cannot be held is found before curves are followed, which takes long.
     vtkNew<ProgressObserver> progress;
     EXPECT_THAT(errors_of<Outline>(figures({kNear, kInside}),
@@ -200,7 +200,7 @@ TEST(VtkFigureOutline, WhatCannotBeDoneIsAnError) {
                                        f->SetTolerance(1e-300);
                                        f->AddObserver(vtkCommand::ProgressEvent, progress);
                                    }),
-                HasSubstr("allowed are tolerances that a million chords can hold"));
+                HasSubstr("must be a tolerance that a million chords can hold"));
     for (const double report : progress->reports) EXPECT_TRUE(report <= 0.1 || report == 1) << report;
     Ball vast = kNear;
     vast.axes.x = 1e60;

@@ -189,7 +189,7 @@ std::string error_of(const std::string& path, const std::function<void(vtkAnamor
 
 TEST(VtkFigureReader, WhatCannotBeReadIsAnError) {
     const Folder folder;
-    EXPECT_THAT(error_of(""), HasSubstr("FileName=: needed is the name of a script"));
+    EXPECT_THAT(error_of(""), HasSubstr("FileName=: must be the name of a script"));
     EXPECT_THAT(error_of(folder.path("none.n")), HasSubstr("there is no such file"));
     EXPECT_THAT(error_of(folder.path("")), HasSubstr("there is no such file"));
     const std::string bad =
@@ -241,7 +241,7 @@ TEST(VtkFigureReader, LibrariesAndIncludes) {
     EXPECT_STREQ(reader->GetLibrary(0), "");
     EXPECT_EQ(reader->GetLibrary(3), nullptr);
     reader->SetLibrary(-1, "x");
-    EXPECT_THAT(errors.text(), HasSubstr("Library index=-1: allowed are"));
+    EXPECT_THAT(errors.text(), HasSubstr("Library index=-1: must be"));
     reader->ClearLibraries();
     EXPECT_EQ(reader->GetNumberOfLibraries(), 0);
 }

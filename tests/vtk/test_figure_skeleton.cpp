@@ -116,10 +116,10 @@ TEST(VtkFigureSkeleton, WhatCannotBeDoneIsAnError) {
     EXPECT_THAT(errors_of<Skeleton>(bare), HasSubstr("the input has no array \"Axes\""));
     for (const double bad : {-1.0, kNan})
         EXPECT_THAT(errors_of<Skeleton>(figures({kBone}), [&](auto* f) { f->SetLevelOfDetail(bad); }),
-                    HasSubstr("allowed are numbers from 0"));
+                    HasSubstr("must be a number of at least 0"));
     for (const double bad : {0.0, kNan})
         EXPECT_THAT(errors_of<Skeleton>(figures({kBone}), [&](auto* f) { f->SetTolerance(bad); }),
-                    HasSubstr("allowed is a positive number"));
+                    HasSubstr("must be a positive number"));
     EXPECT_THAT(errors_of<Skeleton>(figures({kBone}),
                                     [](auto* f) {
                                         f->SetMode(Skeleton::SPHERES);

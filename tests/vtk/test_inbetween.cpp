@@ -146,7 +146,7 @@ TEST(VtkInbetween, WeightsThatAreRefusedAreNamed) {
     const struct {
         std::vector<double> weights;
         const char* message;
-    } cases[] = {{{1}, "Weights=1 numbers: needed are none, or as many as there are inputs, 2"},
+    } cases[] = {{{1}, "Weights=1 numbers: must be none, or one for each input, 2"},
                  {{1, 0, 0}, "Weights=3 numbers"},
                  {{kNan, 1}, "weights[0]=nan"},
                  {{1, kInf}, "weights[1]=inf"}};
@@ -166,7 +166,7 @@ TEST(VtkInbetween, WeightsThatAreRefusedAreNamed) {
         filter->SetBaseIndex(index);
         filter->Update();
         EXPECT_THAT(errors.text(),
-                    HasSubstr("BaseIndex=" + std::to_string(index) + ": allowed are the inputs 0 to 1"));
+                    HasSubstr("BaseIndex=" + std::to_string(index) + ": must be an input from 0 to 1"));
     }
 }
 
@@ -328,7 +328,7 @@ TEST(VtkInbetween, MasksThatAreRefusedAreNamed) {
     add_mask(base, "large", VTK_DOUBLE)->SetComponent(6, 0, 1e300);
     const std::pair<const char*, const char*> cases[] = {
         {"nothing", "Masks[1]=nothing: neither the base nor input 1 has"},
-        {"pairs", "Masks[1]=pairs: needed is one number for each point"},
+        {"pairs", "Masks[1]=pairs: must be one number for each point"},
         {"nan", "Masks[1]=nan: it is nan at point 5"},
         {"large", "Masks[1]=large: it is 1e+300 at point 6"}};
     for (const auto& [name, message] : cases) {
@@ -895,7 +895,7 @@ TEST(VtkInbetween, KeysThatAreRefusedAreNamed) {
     const std::pair<std::vector<Key>, const char*> cases[] = {
         {{{0, 0, 1}, {kNan, 1, 1}}, "Keys[1].Time=nan"},
         {{{kInf, 0, 1}}, "Keys[0].Time=inf"},
-        {{{0, 2, 1}}, "Keys[0].Input=2: allowed are the inputs 0 to 1"},
+        {{{0, 2, 1}}, "Keys[0].Input=2: must be an input from 0 to 1"},
         {{{0, -1, 1}}, "Keys[0].Input=-1"},
         {{{0, 0, 1}, {1, 1, 1}, {0, 0, 1}}, "Keys[2].Time=0: input 0 has a key at this time already"},
         {{{0, 0, 1}, {3, 1, 0.5}}, "Keys at time 3: weights=sum 0.5: the sum must be 1"},
@@ -1062,9 +1062,9 @@ TEST(VtkInbetween, UpdatesOnlyAfterAChangeOfAValue) {
     const Errors errors(filter);
     const vtkMTimeType time = filter->GetMTime();
     filter->SetWeight(-1, 1);
-    EXPECT_THAT(errors.text(), HasSubstr("index=-1: allowed are 0 to 1048575"));
+    EXPECT_THAT(errors.text(), HasSubstr("index=-1: must be an integer from 0 to 1048575"));
     filter->SetNumberOfKeys(VTK_INT_MAX);
-    EXPECT_THAT(errors.text(), HasSubstr("count=2147483647: allowed are 0 to 1048576"));
+    EXPECT_THAT(errors.text(), HasSubstr("count=2147483647: must be an integer from 0 to 1048576"));
     EXPECT_EQ(filter->GetMTime(), time);
     EXPECT_EQ(filter->GetWeight(1), 0.75);
     EXPECT_EQ(filter->GetWeight(2), 0);

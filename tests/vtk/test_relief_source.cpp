@@ -142,7 +142,7 @@ TEST(VtkRelief, HeightIsAComponentOrTheLuminance) {
     const Picture two = picture(4, 3, VTK_DOUBLE, 2);
     EXPECT_EQ(heights_of(two), heights_of(two, [](auto* s) { s->SetComponent(0); }));
     EXPECT_THAT(error_of(two, [](auto* s) { s->SetComponent(2); }),
-                HasSubstr("Component=2: allowed are -1 (luminance) to 1"));
+                HasSubstr("Component=2: must be an integer from -1 (luminance) to 1"));
 }
 
 TEST(VtkRelief, AnotherArrayMayBeChosenAndAnyLayoutIsRead) {
@@ -181,9 +181,9 @@ TEST(VtkRelief, EveryNthPixelOrAnyResolution) {
     EXPECT_EQ(heights_of(column).size(), 18u);
     for (const int n : {1, -3})
         EXPECT_THAT(error_of(image, [n](auto* s) { s->SetResolution(n, 5); }),
-                    HasSubstr("Resolution=" + std::to_string(n) + ": allowed are 0 and numbers from 2"));
+                    HasSubstr("Resolution=" + std::to_string(n) + ": must be 0 or an integer of at least 2"));
     EXPECT_THAT(error_of(image, [](auto* s) { s->SetResolution(VTK_INT_MAX, VTK_INT_MAX); }),
-                HasSubstr("allowed are at most 2147483647 points"));
+                HasSubstr("must be at most 2147483647 points"));
 }
 
 TEST(VtkRelief, SmoothingIsAGaussianMean) {
@@ -258,7 +258,7 @@ TEST(VtkRelief, WhatCannotBeRaisedIsAnError) {
     vtkNew<vtkImageData> volume;
     volume->SetDimensions(3, 3, 2);
     volume->AllocateScalars(VTK_FLOAT, 1);
-    EXPECT_THAT(error_of(volume), HasSubstr("the picture has 2 slices, needed is 1"));
+    EXPECT_THAT(error_of(volume), HasSubstr("the picture has 2 slices, but must have 1"));
     vtkNew<vtkImageData> bare;
     bare->SetDimensions(3, 3, 1);
     EXPECT_THAT(error_of(bare), HasSubstr("the picture has no such array of pixels"));
@@ -334,7 +334,7 @@ TEST(VtkRelief, PicturesAreReadFromFiles) {
     errors.clear();
     source->SetFileName(folder.write("text.png", "no picture").c_str());
     source->Update();
-    EXPECT_THAT(errors.text(), HasSubstr("text.png: needed is a picture that VTK's image readers know"));
+    EXPECT_THAT(errors.text(), HasSubstr("text.png: must be a picture that VTK's image readers know"));
     // Half of a picture, of which the reader itself makes an error but no error code.
     const std::string half = folder.path("half.bmp");
     vtkNew<vtkBMPWriter> bmp_writer;

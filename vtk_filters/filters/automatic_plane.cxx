@@ -22,7 +22,7 @@
 namespace anamorph_vtk {
 namespace {
 
-/// Of no points if there are more than DeformedMesh takes, which refuses them.
+/// The bounds are those of no points if there are more than DeformedMesh takes, which refuses them.
 Bounds bounds_of(vtkPointSet* mesh) {
     Bounds bounds;
     const vtkIdType count = mesh->GetNumberOfPoints();
@@ -67,7 +67,7 @@ class Hash {
     std::uint64_t m_value = 0xcbf29ce484222325u;
 };
 
-/// Of the numbers of points and cells, and of which points the cells have.
+/// A hash of the numbers of points and cells, and of which points the cells have.
 std::uint64_t topology_of(vtkPointSet* mesh) {
     Hash hash;
     hash.add(mesh->GetDataObjectType());

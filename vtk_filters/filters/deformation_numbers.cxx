@@ -28,8 +28,8 @@ constexpr int kNeededColumns = 7;
 
 Deformation deformation_of(const Numbers& n) {
     if (n[7] != 0 && n[7] != 1)
-        throw Error("kernel", anamorph::shortest(n[7]), "allowed are 0 (gaussian) and 1 (wendland_c2)");
-    if (n[8] != 0 && n[8] != 1) throw Error("enabled", anamorph::shortest(n[8]), "allowed are 0 and 1");
+        throw Error("kernel", anamorph::shortest(n[7]), "must be 0 (gaussian) or 1 (wendland_c2)");
+    if (n[8] != 0 && n[8] != 1) throw Error("enabled", anamorph::shortest(n[8]), "must be 0 or 1");
     const Deformation d{{n[4], n[5], n[6]},
                         {n[0], n[1]},
                         {n[2], n[3]},
@@ -74,8 +74,8 @@ std::vector<Numbers> read_deformations(const std::string& file_name) {
     if (!file) throw Error(file_name + ": cannot be read");
     const std::streamoff size = file.tellg();
     if (size < 0 || static_cast<std::size_t>(size) > anamorph::text_file::kMostBytes)
-        throw Error(file_name + ": allowed are files of up to " +
-                    std::to_string(anamorph::text_file::kMostBytes) + " bytes");
+        throw Error(file_name + ": must be at most " + std::to_string(anamorph::text_file::kMostBytes) +
+                    " bytes long");
     std::string text(static_cast<std::size_t>(size), '\0');
     file.seekg(0);
     if (!file.read(text.data(), size)) throw Error(file_name + ": cannot be read");
@@ -104,17 +104,17 @@ std::vector<Numbers> numbers_in(vtkTable* table) {
             throw Error(std::string("the table of deformations has no column ") + kColumns[c]);
         if (columns[c] && columns[c]->GetNumberOfComponents() != 1)
             throw Error(std::string("the table of deformations: column ") + kColumns[c] + " has " +
-                        std::to_string(columns[c]->GetNumberOfComponents()) + " components, needed is 1");
+                        std::to_string(columns[c]->GetNumberOfComponents()) + " components, but must have 1");
     }
     const vtkIdType rows = columns[0]->GetNumberOfTuples();
     for (int c = 1; c < 9; ++c)
         if (columns[c] && columns[c]->GetNumberOfTuples() != rows)
             throw Error(std::string("the table of deformations: column ") + kColumns[c] + " has " +
                         std::to_string(columns[c]->GetNumberOfTuples()) + " rows, column " + kColumns[0] +
-                        " has " + std::to_string(rows) + ": needed are as many in each");
+                        " has " + std::to_string(rows) + ": the columns must have equally many");
     if (rows > static_cast<vtkIdType>(anamorph::kMaxDeformations))
-        throw Error("the table of deformations has " + std::to_string(rows) + " rows, allowed are " +
-                    std::to_string(anamorph::kMaxDeformations));
+        throw Error("the table of deformations has " + std::to_string(rows) +
+                    " rows, but must have at most " + std::to_string(anamorph::kMaxDeformations));
     for (vtkIdType row = 0; row < rows; ++row) {
         Numbers numbers{0, 0, 1, 1, 0, 0, 0, 0, 1};
         for (int c = 0; c < 9; ++c) try {

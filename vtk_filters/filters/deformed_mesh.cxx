@@ -75,7 +75,7 @@ class MeshOf final : public DeformedMesh {
                      double begin, double end) override {
         std::vector<DeformationChange> changes = difference(m_list, list);
         if (changes.size() > list.size()) {
-            // From scratch is less work.
+            // Starting from scratch is less work.
             start();
             changes = difference({}, list);
         }
@@ -246,7 +246,7 @@ std::unique_ptr<DeformedMesh> DeformedMesh::make(vtkPointSet* mesh, vtkDataArray
     const vtkIdType count = mesh->GetNumberOfPoints();
     if (count == 0) return nullptr;
     if (count > kMostPoints)
-        throw Error("the mesh has " + std::to_string(count) + " points, allowed are fewer than 2^31");
+        throw Error("the mesh has " + std::to_string(count) + " points, but must have fewer than 2^31");
     if (!settings.on_plane) {
         if (!coordinates)
             throw Error("there are no texture coordinates: choose a point array, or use the plane");
@@ -254,7 +254,7 @@ std::unique_ptr<DeformedMesh> DeformedMesh::make(vtkPointSet* mesh, vtkDataArray
             coordinates->GetNumberOfComponents() > 9)
             throw Error(std::string("texture coordinates ") +
                         (coordinates->GetName() ? coordinates->GetName() : "") +
-                        ": needed are 2 to 9 components at every point, not " +
+                        ": must have 2 to 9 components at every point, not " +
                         std::to_string(coordinates->GetNumberOfComponents()) + " at " +
                         std::to_string(coordinates->GetNumberOfTuples()) + " of " + std::to_string(count));
     }

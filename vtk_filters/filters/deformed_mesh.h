@@ -52,7 +52,7 @@ class DeformedMesh {
     virtual vtkIdType deform(const std::vector<anamorph::Deformation>& list, vtkPointSet* out,
                              Execution& execution, double progress_begin, double progress_end) = 0;
 
-    /// Of all points. Those of points that are not moved are not finite.
+    /// The parameters of all points. Those of points that are not moved are not finite.
     virtual const std::vector<glm::dvec2>& parameters() const = 0;
 };
 

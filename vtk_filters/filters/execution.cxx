@@ -35,7 +35,7 @@ void Execution::progress(double amount) {
 
 anamorph::ParallelFor Execution::stage(double begin, double end) {
     return [this, begin, end](std::int64_t count, const std::function<void(std::int64_t)>& body) {
-        // In slices: observers are called from the filter's own thread alone.
+        // The work is done in slices: observers are called from the filter's own thread alone.
         constexpr std::int64_t kSlices = 10, kLeastSlice = 32;
         const std::int64_t slice = std::max((count + kSlices - 1) / kSlices, kLeastSlice);
         std::atomic<bool> failed = false;

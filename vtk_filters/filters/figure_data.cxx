@@ -87,11 +87,11 @@ vtkDataArray* point_array(vtkPolyData* data, const char* name, int components) {
                     "\" of its points: it is no figure of vtkAnamorphFigureReader");
     if (array->GetNumberOfComponents() != components)
         throw Error(std::string("the array \"") + name + "\" has " +
-                    std::to_string(array->GetNumberOfComponents()) + " components, needed are " +
+                    std::to_string(array->GetNumberOfComponents()) + " components, but must have " +
                     std::to_string(components));
     if (array->GetNumberOfTuples() != data->GetNumberOfPoints())
         throw Error(std::string("the array \"") + name + "\" has " +
-                    std::to_string(array->GetNumberOfTuples()) + " tuples, needed are " +
+                    std::to_string(array->GetNumberOfTuples()) + " tuples, but must have " +
                     std::to_string(data->GetNumberOfPoints()));
     return array;
 }

@@ -85,7 +85,7 @@ vtkUnsignedCharArray* ghosts_of(vtkPointSet* mesh) {
     vtkUnsignedCharArray* ghosts = mesh->GetCellGhostArray();
     if (ghosts && ghosts->GetNumberOfTuples() != mesh->GetNumberOfCells())
         throw anamorph::Error(std::string("the array ") + ghosts->GetName() + " of the cells has " +
-                              std::to_string(ghosts->GetNumberOfTuples()) + " tuples, needed are " +
+                              std::to_string(ghosts->GetNumberOfTuples()) + " tuples, but must have " +
                               std::to_string(mesh->GetNumberOfCells()));
     return ghosts;
 }
@@ -195,7 +195,7 @@ void SurfaceNormals::link_cells() {
     if (cells == 0) return;
     if (cells > std::numeric_limits<std::uint32_t>::max())
         throw anamorph::Error("the mesh has " + std::to_string(cells) +
-                              " cells, allowed are fewer than 2^32");
+                              " cells, but must have fewer than 2^32");
     m_mesh->GetCellType(0);  // builds what is built on demand, on this thread
     CellReader reader;
     const auto each_point = [&](const auto& body) {

@@ -32,7 +32,8 @@ namespace anamorph_vtk {
 
 bool is_finite(glm::dvec2 parameters);
 
-/// Those that are not finite replaced by those of another point: the core takes no others.
+/// The parameters, with those that are not finite replaced by those of another point: the core takes no
+/// others.
 std::vector<glm::dvec2> with_finite_parameters(std::vector<glm::dvec2> parameters);
 
 /// Three numbers a tuple, of any array, from any thread.

@@ -20,7 +20,7 @@ using Numbers = vtkAnamorphDeformationList::Numbers;
 constexpr int kMost = static_cast<int>(anamorph::kMaxDeformations);
 constexpr Numbers kNothing = {0, 0, 1, 1, 0, 0, 0, 0, 1};
 
-/// As a comparison of bits, so that NaN equals itself and setting it again changes nothing.
+/// Compares bits, so that NaN equals itself and setting it again changes nothing.
 bool same(const Numbers& a, const Numbers& b) {
     return std::equal(a.begin(), a.end(), b.begin(),
                       [](double x, double y) { return x == y || (x != x && y != y); });
@@ -44,15 +44,14 @@ void vtkAnamorphDeformationList::PrintSelf(ostream& os, vtkIndent indent) {
 bool vtkAnamorphDeformationList::IsPosition(int position, int end) {
     if (position >= 0 && position < end) return true;
     vtkErrorMacro(<< "position=" << position
-                  << (end > 0 ? ": allowed are whole numbers from 0 to " + std::to_string(end - 1)
+                  << (end > 0 ? ": must be an integer from 0 to " + std::to_string(end - 1)
                               : std::string(": the list is empty")));
     return false;
 }
 
 void vtkAnamorphDeformationList::SetNumberOfDeformations(int number) {
     if (number < 0 || number > kMost) {
-        vtkErrorMacro(<< "NumberOfDeformations=" << number << ": allowed are whole numbers from 0 to "
-                      << kMost);
+        vtkErrorMacro(<< "NumberOfDeformations=" << number << ": must be an integer from 0 to " << kMost);
         return;
     }
     if (number == this->GetNumberOfDeformations()) return;

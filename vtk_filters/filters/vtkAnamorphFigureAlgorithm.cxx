@@ -23,7 +23,7 @@ constexpr double kNear = 1e-3;
 
 glm::dvec3 point(const char* name, const double* v) {
     for (int k = 0; k < 3; ++k)
-        if (!std::isfinite(v[k])) throw Error(name, anamorph::shortest(v[k]), "allowed are finite numbers");
+        if (!std::isfinite(v[k])) throw Error(name, anamorph::shortest(v[k]), "must be a finite number");
     return {v[0], v[1], v[2]};
 }
 
@@ -31,7 +31,7 @@ double between(const char* name, double value, double least, double most) {
     if (!(value > least && value < most))
         throw Error(
             name, anamorph::shortest(value),
-            "allowed are numbers between " + anamorph::shortest(least) + " and " + anamorph::shortest(most));
+            "must be a number between " + anamorph::shortest(least) + " and " + anamorph::shortest(most));
     return value;
 }
 
@@ -42,7 +42,7 @@ vtkAnamorphFigureAlgorithm::~vtkAnamorphFigureAlgorithm() = default;
 
 anamorph::View vtkAnamorphFigureAlgorithm::ViewOf(vtkPolyData* figures) const {
     for (const int size : this->ViewSize)
-        if (size < 1) throw Error("ViewSize", std::to_string(size), "allowed are numbers from 1");
+        if (size < 1) throw Error("ViewSize", std::to_string(size), "must be an integer of at least 1");
     const double height = this->ViewSize[1];
     if (this->ViewMode == SCRIPT) return anamorph_vtk::script_view(figures, height);
     const glm::dvec3 eye = point("CameraPosition", this->CameraPosition),
@@ -69,7 +69,7 @@ anamorph::View vtkAnamorphFigureAlgorithm::ViewOf(vtkPolyData* figures) const {
 }
 
 void vtkAnamorphFigureAlgorithm::CheckPositive(const char* name, double value) {
-    if (!(value > 0)) throw Error(name, anamorph::shortest(value), "allowed is a positive number");
+    if (!(value > 0)) throw Error(name, anamorph::shortest(value), "must be a positive number");
 }
 
 int vtkAnamorphFigureAlgorithm::RequestData(vtkInformation*, vtkInformationVector** inputs,

@@ -25,7 +25,7 @@ class ANAMORPHFILTERS_EXPORT vtkAnamorphFigureAlgorithm : public vtkPolyDataAlgo
     vtkAbstractTypeMacro(vtkAnamorphFigureAlgorithm, vtkPolyDataAlgorithm);
     void PrintSelf(ostream& os, vtkIndent indent) override;
 
-    /** For ViewMode. */
+    /** The values of ViewMode. */
     enum { SCRIPT, CAMERA };
 
     ///@{
@@ -44,7 +44,8 @@ class ANAMORPHFILTERS_EXPORT vtkAnamorphFigureAlgorithm : public vtkPolyDataAlgo
     ///@}
 
     ///@{
-    /** As in vtkCamera. The default looks along -z at the middle of NUDES' window, which fills the view. */
+    /** The camera, as in vtkCamera. The default looks along -z at the middle of NUDES' window, which fills
+     * the view. */
     vtkSetVector3Macro(CameraPosition, double);
     vtkGetVector3Macro(CameraPosition, double);
     vtkSetVector3Macro(CameraFocalPoint, double);
@@ -66,7 +67,7 @@ class ANAMORPHFILTERS_EXPORT vtkAnamorphFigureAlgorithm : public vtkPolyDataAlgo
     vtkAnamorphFigureAlgorithm();
     ~vtkAnamorphFigureAlgorithm() override;
 
-    /// Of these ellipsoids. Throws anamorph::Error naming the property that is not as allowed.
+    /// The view of these ellipsoids. Throws anamorph::Error naming the property that is out of its range.
     anamorph::View ViewOf(vtkPolyData* figures) const;
     /// Throws anamorph::Error.
     static void CheckPositive(const char* name, double value);

@@ -68,7 +68,7 @@ Grid grid_of(vtkIdType body, const Ellipsoid& shape, double tolerance) {
                  columns = std::max(std::ceil(2 * kPi / most_k), 1.0 * kLeastColumns);
     if (!(rows <= kMostSteps && columns <= kMostSteps))
         throw Error("Tolerance", anamorph::shortest(tolerance),
-                    "is too small for ellipsoid " + std::to_string(body) + ", allowed are at most " +
+                    "is too small for ellipsoid " + std::to_string(body) + ", which may have at most " +
                         anamorph::shortest(kMostSteps) + " steps around it");
     Grid grid{body, shape, static_cast<int>(rows), static_cast<int>(columns)};
     const double h = kPi / rows, k = 2 * kPi / columns;
@@ -76,7 +76,7 @@ Grid grid_of(vtkIdType body, const Ellipsoid& shape, double tolerance) {
     return grid;
 }
 
-/// One after the other.
+/// The grids of all bodies, one after the other.
 std::vector<Grid> grids_of(const std::vector<Body>& bodies) {
     std::vector<Grid> grids;
     for (const Body& body : bodies) {
@@ -100,14 +100,14 @@ void check_size(const std::vector<Body>& bodies, double tolerance) {
     };
     const vtkIdType needed = triangles(1);
     if (needed <= kMostTriangles) return;
-    const std::string allowed =
-        "needs " + std::to_string(needed) + " triangles, allowed are " + std::to_string(kMostTriangles);
+    const std::string rule = "needs " + std::to_string(needed) + " triangles, but there must be at most " +
+                             std::to_string(kMostTriangles);
     constexpr double kMostFactor = 1 << 20;
     for (double factor = 2; factor <= kMostFactor; factor *= 2)
         if (triangles(factor) <= kMostTriangles)
             throw Error("Tolerance", anamorph::shortest(tolerance),
-                        allowed + "; " + anamorph::shortest(factor * tolerance) + " needs no more");
-    throw Error("Tolerance", anamorph::shortest(tolerance), allowed);
+                        rule + "; " + anamorph::shortest(factor * tolerance) + " needs no more");
+    throw Error("Tolerance", anamorph::shortest(tolerance), rule);
 }
 
 /// Most that a point of a body may move for the picture to move by `pixels`. In perspective the image of q +
@@ -134,7 +134,7 @@ struct Surface {
             const double v = 1.0 * row / grid.rows, u = column / grid.columns;
             const double t = kPi * (v - 0.5), p = kPi * (1 - 2 * u);
             const double c = row == 0 || row == grid.rows ? 0 : std::cos(t);
-            // Of the unit sphere; -cos p, because z is negated.
+            // The point of the unit sphere; -cos p, because z is negated.
             const glm::dvec3 s(c * std::sin(p), std::sin(t), -c * std::cos(p));
             put(points, i, grid.shape.center + grid.shape.rotation * (grid.shape.axes * s));
             put(normals, i, grid.shape.rotation * normal(grid.shape.axes, s));

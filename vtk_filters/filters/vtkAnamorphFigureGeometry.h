@@ -33,7 +33,7 @@ class ANAMORPHFILTERS_EXPORT vtkAnamorphFigureGeometry : public vtkAnamorphFigur
     vtkTypeMacro(vtkAnamorphFigureGeometry, vtkAnamorphFigureAlgorithm);
     void PrintSelf(ostream& os, vtkIndent indent) override;
 
-    /** For ToleranceMode. */
+    /** The values of ToleranceMode. */
     enum { UNITS, PIXELS };
 
     ///@{

@@ -22,7 +22,7 @@ class ANAMORPHFILTERS_EXPORT vtkAnamorphFigureOutline : public vtkAnamorphFigure
     vtkTypeMacro(vtkAnamorphFigureOutline, vtkAnamorphFigureAlgorithm);
     void PrintSelf(ostream& os, vtkIndent indent) override;
 
-    /** For Hidden. */
+    /** The values of Hidden. */
     enum { REMOVED, KEPT, TRANSPARENT };
 
     ///@{
@@ -35,7 +35,7 @@ class ANAMORPHFILTERS_EXPORT vtkAnamorphFigureOutline : public vtkAnamorphFigure
     ///@}
 
     ///@{
-    /** Also the curves in which bodies pass through each other. Off by default. */
+    /** Whether the curves in which bodies pass through each other are drawn too. Off by default. */
     vtkSetMacro(Crossings, bool);
     vtkGetMacro(Crossings, bool);
     vtkBooleanMacro(Crossings, bool);
@@ -52,7 +52,7 @@ class ANAMORPHFILTERS_EXPORT vtkAnamorphFigureOutline : public vtkAnamorphFigure
     ///@}
 
     ///@{
-    /** Most that chords may be off the curve, in pixels of the view; positive. The default is 0.1. */
+    /** Maximum chord error, in pixels of the view; positive. The default is 0.1. */
     vtkSetMacro(Tolerance, double);
     vtkGetMacro(Tolerance, double);
     ///@}

@@ -125,7 +125,8 @@ void vtkAnamorphFigureReader::SetNumberOfLibraries(int count) {
 
 void vtkAnamorphFigureReader::SetLibrary(int index, const char* name) {
     if (index < 0 || index >= kMostLibraries) {
-        vtkErrorMacro(<< "Library index=" << index << ": allowed are 0 to " << kMostLibraries - 1);
+        vtkErrorMacro(<< "Library index=" << index << ": must be an integer from 0 to "
+                      << kMostLibraries - 1);
         return;
     }
     if (index >= this->GetNumberOfLibraries()) this->SetNumberOfLibraries(index + 1);
@@ -149,7 +150,7 @@ void vtkAnamorphFigureReader::AddLibrary(const char* name) {
 void vtkAnamorphFigureReader::Prepare() {
     if (this->Current && this->Current->since == this->GetMTime()) return;
     this->Current = nullptr;
-    if (this->FileName.empty()) throw Error("FileName", "", "needed is the name of a script");
+    if (this->FileName.empty()) throw Error("FileName", "", "must be the name of a script");
     std::vector<std::string> libraries;
     for (const std::string& name : this->Libraries)
         if (!name.empty()) libraries.push_back(name);

@@ -37,7 +37,7 @@ class ANAMORPHFILTERS_EXPORT vtkAnamorphFigureReader : public vtkPolyDataAlgorit
     vtkTypeMacro(vtkAnamorphFigureReader, vtkPolyDataAlgorithm);
     void PrintSelf(ostream& os, vtkIndent indent) override;
 
-    /** For Dialect. */
+    /** The values of Dialect. */
     enum { CLASSIC, STRICT };
 
     ///@{

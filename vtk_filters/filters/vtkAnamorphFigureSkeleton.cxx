@@ -41,7 +41,8 @@ vtkAnamorphFigureSkeleton::~vtkAnamorphFigureSkeleton() = default;
 void vtkAnamorphFigureSkeleton::Draw(vtkPolyData* input, vtkPolyData* output,
                                      anamorph_vtk::Execution& execution) {
     if (!(this->LevelOfDetail >= 0))
-        throw Error("LevelOfDetail", anamorph::shortest(this->LevelOfDetail), "allowed are numbers from 0");
+        throw Error("LevelOfDetail", anamorph::shortest(this->LevelOfDetail),
+                    "must be a number of at least 0");
     CheckPositive("Tolerance", this->Tolerance);
     const Bodies bodies(input);
     const std::vector<Detail> details =

@@ -27,7 +27,7 @@ class ANAMORPHFILTERS_EXPORT vtkAnamorphFigureSkeleton : public vtkAnamorphFigur
     vtkTypeMacro(vtkAnamorphFigureSkeleton, vtkAnamorphFigureAlgorithm);
     void PrintSelf(ostream& os, vtkIndent indent) override;
 
-    /** For Mode. */
+    /** The values of Mode. */
     enum { AXES, JOINTS, SPHERES };
     /** Numbers in the array Detail. */
     enum { NONE, DOT, LINE, ELLIPSE, BODY };
@@ -39,13 +39,13 @@ class ANAMORPHFILTERS_EXPORT vtkAnamorphFigureSkeleton : public vtkAnamorphFigur
     ///@}
 
     ///@{
-    /** In pixels of the view, from 0 (the default): all is BODY. */
+    /** The width in pixels of the view up to which a body is a dot; 0 (the default): all is BODY. */
     vtkSetMacro(LevelOfDetail, double);
     vtkGetMacro(LevelOfDetail, double);
     ///@}
 
     ///@{
-    /** Of spheres, in units of the scene; positive. The default is 1. */
+    /** Maximum distance of the surface from the spheres, in units; positive. The default is 1. */
     vtkSetMacro(Tolerance, double);
     vtkGetMacro(Tolerance, double);
     ///@}

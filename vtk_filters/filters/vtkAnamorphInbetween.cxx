@@ -162,7 +162,7 @@ class Values {
     const T* m_data;
 };
 
-/// By input: one number for each point (or cell), or nothing.
+/// Masks by input: one number for each point (or cell), or nothing.
 using Masks = std::vector<std::vector<float>>;
 
 /// One array to blend.
@@ -189,7 +189,7 @@ void renormalize(T* vectors, vtkIdType count, int components) {
     anamorph::smp_for((count + kTurn - 1) / kTurn, turn);
 }
 
-/// At cells, the mean over the points.
+/// The mask at cells is the mean over the points.
 std::vector<float> cell_mask(vtkPointSet* surface, const std::vector<float>& points) {
     if (points.empty()) return {};
     std::vector<float> cells(static_cast<std::size_t>(surface->GetNumberOfCells()));
@@ -339,14 +339,14 @@ class Blend {
                 entry("Masks", i), name,
                 "neither the base nor input " + std::to_string(i) + " has an array of points of this name");
         if (array->GetNumberOfComponents() != 1 || array->GetNumberOfTuples() != points)
-            throw Error(entry("Masks", i), name, "needed is one number for each point");
+            throw Error(entry("Masks", i), name, "must be one number for each point");
         std::vector<float> mask;
         mask.reserve(static_cast<std::size_t>(points));
         for (const double value : vtk::DataArrayValueRange(array)) {
             if (!std::isfinite(static_cast<float>(value)))
                 throw Error(entry("Masks", i), name,
                             "it is " + anamorph::shortest(value) + " at point " +
-                                std::to_string(mask.size()) + ", allowed are finite numbers");
+                                std::to_string(mask.size()) + ", but must be finite");
             mask.push_back(static_cast<float>(value));
         }
         return mask;
@@ -482,7 +482,8 @@ namespace {
 template <class T>
 bool set_entry(vtkObject* object, std::vector<T>& list, int index, const T& value) {
     if (index < 0 || index >= kMostEntries) {
-        vtkErrorWithObjectMacro(object, << "index=" << index << ": allowed are 0 to " << kMostEntries - 1);
+        vtkErrorWithObjectMacro(
+            object, << "index=" << index << ": must be an integer from 0 to " << kMostEntries - 1);
         return false;
     }
     const auto i = static_cast<std::size_t>(index);
@@ -495,7 +496,8 @@ bool set_entry(vtkObject* object, std::vector<T>& list, int index, const T& valu
 template <class T>
 bool set_size(vtkObject* object, std::vector<T>& list, int count) {
     if (count < 0 || count > kMostEntries) {
-        vtkErrorWithObjectMacro(object, << "count=" << count << ": allowed are 0 to " << kMostEntries);
+        vtkErrorWithObjectMacro(object,
+                                << "count=" << count << ": must be an integer from 0 to " << kMostEntries);
         return false;
     }
     if (static_cast<std::size_t>(count) == list.size()) return false;
@@ -579,7 +581,7 @@ std::vector<double> vtkAnamorphInbetween::WeightsAt(int inputs, double time) con
     if (weights.empty()) weights.assign(count, this->Mode == DELTAS ? 0 : 1.0 / inputs);
     if (weights.size() != count)
         throw Error("Weights", std::to_string(weights.size()) + " numbers",
-                    "needed are none, or as many as there are inputs, " + std::to_string(count));
+                    "must be none, or one for each input, " + std::to_string(count));
     return this->CheckedSum(weights);
 }
 
@@ -589,11 +591,10 @@ std::vector<double> vtkAnamorphInbetween::WeightsOfKeysAt(int inputs, double tim
     for (std::size_t i = 0; i < this->Keys.size(); ++i) {
         const Key& key = this->Keys[i];
         if (!std::isfinite(key.Time))
-            throw Error(entry("Keys", i) + ".Time", anamorph::shortest(key.Time),
-                        "allowed are finite numbers");
+            throw Error(entry("Keys", i) + ".Time", anamorph::shortest(key.Time), "must be a finite number");
         if (key.Input < 0 || key.Input >= inputs)
             throw Error(entry("Keys", i) + ".Input", std::to_string(key.Input),
-                        "allowed are the inputs 0 to " + std::to_string(inputs - 1));
+                        "must be an input from 0 to " + std::to_string(inputs - 1));
         if (!seen.emplace(key.Time, key.Input).second)
             throw Error(entry("Keys", i) + ".Time", anamorph::shortest(key.Time),
                         "input " + std::to_string(key.Input) + " has a key at this time already");
@@ -703,7 +704,7 @@ int vtkAnamorphInbetween::RequestData(vtkInformation*, vtkInformationVector** in
     const auto execute = [&] {
         if (this->BaseIndex < 0 || this->BaseIndex >= count)
             throw Error("BaseIndex", std::to_string(this->BaseIndex),
-                        "allowed are the inputs 0 to " + std::to_string(count - 1));
+                        "must be an input from 0 to " + std::to_string(count - 1));
         const auto base = static_cast<std::size_t>(this->BaseIndex);
         double time =
             this->Keys.empty()

@@ -102,7 +102,7 @@ class ANAMORPHFILTERS_EXPORT vtkAnamorphInbetween : public vtkPassInputTypeAlgor
     int GetNumberOfKeys() { return static_cast<int>(this->Keys.size()); }
     void SetKey(int index, double time, int input, double weight);
     void AddKey(double time, int input, double weight);
-    /** As SetKey, of a row of a table of numbers. An input that is no whole number becomes -1, which no input
+    /** SetKey with a row of a table of numbers. An input that is not an integer becomes -1, which no input
      * has. */
     void SetKeyNumbers(int index, double time, double input, double weight);
     void ClearKeys() { this->SetNumberOfKeys(0); }

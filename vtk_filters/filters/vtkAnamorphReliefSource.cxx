@@ -47,10 +47,10 @@ constexpr int kStrip = 64;    ///< rows between two reports of progress
 constexpr double kReach = 3;  ///< of the smoothing Gaussian, in standard deviations
 
 void check_finite(const char* name, double value) {
-    if (!std::isfinite(value)) throw Error(name, anamorph::shortest(value), "allowed are finite numbers");
+    if (!std::isfinite(value)) throw Error(name, anamorph::shortest(value), "must be a finite number");
 }
 
-/// From begin to end, which is not among them.
+/// Integers from begin up to, but not including, end.
 struct Range {
     int begin, end;
     int size() const { return end - begin; }
@@ -78,11 +78,11 @@ struct Axis {
 Axis axis_of(const int* extent, int resolution, int sample_rate) {
     const std::int64_t size = std::int64_t{extent[1]} - extent[0] + 1;
     if (size > kMostPixels)
-        throw Error("the picture is " + std::to_string(size) + " pixels wide or high, allowed are up to " +
+        throw Error("the picture is " + std::to_string(size) + " pixels wide or high, but must be at most " +
                     std::to_string(kMostPixels));
     const int pixels = static_cast<int>(size);
     if (resolution < 0 || resolution == 1)
-        throw Error("Resolution", std::to_string(resolution), "allowed are 0 and numbers from 2");
+        throw Error("Resolution", std::to_string(resolution), "must be 0 or an integer of at least 2");
     return {pixels, resolution ? resolution : std::max(2, (pixels - 1) / sample_rate + 1)};
 }
 
@@ -98,12 +98,12 @@ Axes axes_of(const int* extent, const int* resolution, int sample_rate) {
     if (is_empty(extent)) throw Error("the picture has no pixels");
     if (extent[4] != extent[5])
         throw Error("the picture has " + std::to_string(std::int64_t{extent[5]} - extent[4] + 1) +
-                    " slices, needed is 1");
+                    " slices, but must have 1");
     const Axes axes{axis_of(extent, resolution[0], sample_rate),
                     axis_of(extent + 2, resolution[1], sample_rate)};
     if (std::int64_t{axes.x.points} * axes.y.points > kMostPoints)
         throw Error("Resolution", std::to_string(axes.x.points) + " x " + std::to_string(axes.y.points),
-                    "allowed are at most " + std::to_string(kMostPoints) + " points");
+                    "must be at most " + std::to_string(kMostPoints) + " points");
     return axes;
 }
 
@@ -212,7 +212,8 @@ Plane plane_of(glm::dvec3 origin, glm::dvec3 point1, glm::dvec3 point2, double a
     return plane;
 }
 
-/// Of the picture, from the middle of the first pixel to that of the last; 0 where there is none.
+/// Width over height of the picture, from the middle of the first pixel to that of the last; 0 where there
+/// is none.
 double aspect_of(vtkInformation* picture, const Axes& axes) {
     const double* spacing = picture->Get(vtkDataObject::SPACING());
     const double aspect =
@@ -265,7 +266,8 @@ Field read_pixels(vtkImageData* image, vtkDataArray* array, int component, const
         throw Error("the picture has no such array of pixels");
     if (component >= array->GetNumberOfComponents())
         throw Error("Component", std::to_string(component),
-                    "allowed are -1 (luminance) to " + std::to_string(array->GetNumberOfComponents() - 1));
+                    "must be an integer from -1 (luminance) to " +
+                        std::to_string(array->GetNumberOfComponents() - 1));
     const int* extent = image->GetExtent();
     const Range columns{extent[0] - whole[0], extent[1] - whole[0] + 1},
         rows{extent[2] - whole[2], extent[3] - whole[2] + 1};
@@ -349,8 +351,8 @@ struct Relief {
                heights.at(column, row) * plane.normal;
     }
 
-    /// Of P = O + s P_s + t P_t + h N, with differences of neighbours for the derivatives of h. Where heights
-    /// are not finite, the plane's.
+    /// The normal of P = O + s P_s + t P_t + h N, with differences of neighbours for the derivatives of h.
+    /// Where heights are not finite, the plane's.
     glm::dvec3 normal(int column, int row) const {
         const Range c = Range{column, column + 1}.grown(1, axes.x.points),
                     r = Range{row, row + 1}.grown(1, axes.y.points);
@@ -404,7 +406,7 @@ vtkInformation* vtkAnamorphReliefSource::PictureInformation(vtkInformationVector
             anamorph_vtk::check_png(this->FileName);
             vtkImageReader2* reader = vtkImageReader2Factory::CreateImageReader2(this->FileName.c_str());
             if (!reader)
-                throw Error("FileName", this->FileName, "needed is a picture that VTK's image readers know");
+                throw Error("FileName", this->FileName, "must be a picture that VTK's image readers know");
             reader->SetFileName(this->FileName.c_str());
             reader->AddObserver(vtkCommand::ErrorEvent, this, &vtkAnamorphReliefSource::ReaderFails);
             this->Reader = vtk::TakeSmartPointer<vtkAlgorithm>(reader);

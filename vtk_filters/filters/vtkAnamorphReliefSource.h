@@ -35,7 +35,7 @@ class ANAMORPHFILTERS_EXPORT vtkAnamorphReliefSource : public vtkStructuredGridA
     vtkTypeMacro(vtkAnamorphReliefSource, vtkStructuredGridAlgorithm);
     void PrintSelf(ostream& os, vtkIndent indent) override;
 
-    /** For Component. */
+    /** The values of Component. */
     enum { LUMINANCE = -1 };
 
     ///@{

@@ -12,13 +12,13 @@ namespace anamorph {
 namespace {
 
 void check_finite(const char* name, double value) {
-    if (!std::isfinite(value)) throw Error(name, shortest(value), "allowed are finite numbers");
+    if (!std::isfinite(value)) throw Error(name, shortest(value), "must be a finite number");
 }
 
 void check_extent(double value) {
     if (!(value >= kLeastExtent && value <= kMostExtent))
         throw Error("extent", shortest(value),
-                    "allowed are numbers from " + shortest(kLeastExtent) + " to " + shortest(kMostExtent));
+                    "must be a number from " + shortest(kLeastExtent) + " to " + shortest(kMostExtent));
 }
 
 std::optional<Deformation> effect(const Deformation& d) {
@@ -77,9 +77,8 @@ DeformationList::DeformationList(std::vector<Deformation> entries) : m_entries(s
 
 void DeformationList::check_position(std::size_t position, std::size_t end) const {
     if (position >= end)
-        throw Error(
-            "position", std::to_string(position),
-            end ? "allowed are whole numbers from 0 to " + std::to_string(end - 1) : "the list is empty");
+        throw Error("position", std::to_string(position),
+                    end ? "must be an integer from 0 to " + std::to_string(end - 1) : "the list is empty");
 }
 
 DeformationChange DeformationList::add(const Deformation& deformation) {

@@ -20,7 +20,7 @@ constexpr char kColumns[] = "center_u,center_v,extent_u,extent_v,x,y,z,kernel,en
 
 void check_count(const std::vector<Deformation>& list, std::string_view name, const std::string& label) {
     if (list.size() > kMaxDeformations)
-        fail(name, label, "allowed are up to " + std::to_string(kMaxDeformations) + " deformations");
+        fail(name, label, "must have at most " + std::to_string(kMaxDeformations) + " deformations");
 }
 
 // --- JSON
@@ -32,25 +32,25 @@ void read_numbers(const Json& entry, const char* key, Vector& to) {
     constexpr auto size = static_cast<std::size_t>(Vector::length());
     if (found == entry.end() || !found->is_array() || found->size() != size ||
         !std::all_of(found->begin(), found->end(), [](const Json& v) { return v.is_number(); }))
-        throw Error(std::string(key) + ": needed is a list of " + std::to_string(size) + " numbers");
+        throw Error(std::string(key) + ": must be a list of " + std::to_string(size) + " numbers");
     for (std::size_t i = 0; i < size; ++i) to[static_cast<int>(i)] = (*found)[i].template get<double>();
 }
 
 Deformation read_deformation(const Json& entry) {
-    if (!entry.is_object()) throw Error("needed is an object with vector, center and extent");
+    if (!entry.is_object()) throw Error("must be an object with vector, center and extent");
     for (const auto& [key, value] : entry.items())
         if (key != "vector" && key != "center" && key != "extent" && key != "kernel" && key != "enabled")
-            throw Error(excerpt(key) + ": allowed are vector, center, extent, kernel, enabled");
+            throw Error(excerpt(key) + ": must be one of vector, center, extent, kernel, enabled");
     Deformation d;
     read_numbers(entry, "vector", d.vector);
     read_numbers(entry, "center", d.center);
     read_numbers(entry, "extent", d.extent);
     if (entry.contains("kernel")) {
-        if (!entry["kernel"].is_string()) throw Error("kernel: needed is a name in quotes");
+        if (!entry["kernel"].is_string()) throw Error("kernel: must be a name in quotes");
         d.kernel = kernel_named(entry["kernel"].get_ref<const std::string&>());
     }
     if (entry.contains("enabled")) {
-        if (!entry["enabled"].is_boolean()) throw Error("enabled: needed is true or false");
+        if (!entry["enabled"].is_boolean()) throw Error("enabled: must be true or false");
         d.enabled = entry["enabled"].get<bool>();
     }
     check_deformation(d);
@@ -62,7 +62,7 @@ Deformation read_deformation(const Json& entry) {
 Deformation read_row(std::string_view row) {
     const std::vector<std::string_view> fields = text_file::fields_of(row);
     if (fields.size() < 7 || fields.size() > 9)
-        throw Error("needed are " + std::string(kColumns) + " (the last two if wanted), not " +
+        throw Error("must be " + std::string(kColumns) + " (the last two if wanted), not " +
                     std::to_string(fields.size()) + " fields");
     Deformation d;
     double* const numbers[7] = {&d.center.x, &d.center.y, &d.extent.x, &d.extent.y,
@@ -71,7 +71,7 @@ Deformation read_row(std::string_view row) {
     if (fields.size() > 7) d.kernel = kernel_named(fields[7]);
     if (fields.size() > 8) {
         if (fields[8] != "0" && fields[8] != "1")
-            throw Error("enabled", excerpt(fields[8]), "allowed are 0 and 1");
+            throw Error("enabled", excerpt(fields[8]), "must be 0 or 1");
         d.enabled = fields[8] == "1";
     }
     check_deformation(d);
@@ -97,7 +97,7 @@ const char* name_of(DeformationKernel kernel) {
 DeformationKernel kernel_named(std::string_view name) {
     for (const DeformationKernel kernel : {DeformationKernel::gaussian, DeformationKernel::wendland_c2})
         if (name == name_of(kernel)) return kernel;
-    throw Error("kernel", excerpt(name), "allowed are gaussian, wendland_c2");
+    throw Error("kernel", excerpt(name), "must be gaussian or wendland_c2");
 }
 
 std::vector<Deformation> parse_deformations_json(std::string_view text, std::string_view name) {
@@ -105,7 +105,7 @@ std::vector<Deformation> parse_deformations_json(std::string_view text, std::str
     const Json json = text_file::parse_json(text, name);
     if (!json.is_object() || json.size() != 1 || !json.contains("deformations") ||
         !json["deformations"].is_array())
-        fail(name, "", "needed is an object with nothing but a list, deformations");
+        fail(name, "", "must be an object with nothing but a list, deformations");
     std::vector<Deformation> list;
     for (const Json& entry : json["deformations"]) {
         const std::string label = "deformations[" + std::to_string(list.size()) + "]";

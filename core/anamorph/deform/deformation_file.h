@@ -31,7 +31,7 @@ std::vector<Deformation> parse_deformations_csv(std::string_view text, std::stri
 /// Chooses by the end of the name: .csv, else JSON.
 std::vector<Deformation> parse_deformations_file(std::string_view text, std::string_view name);
 
-/// What reads back as the same list, to the bit.
+/// The text of a file that reads back as the same list, to the bit.
 std::string deformations_json(const std::vector<Deformation>& list);
 std::string deformations_csv(const std::vector<Deformation>& list);
 

@@ -142,11 +142,11 @@ void check_axis(const char* name, std::span<const double> values) {
     constexpr std::size_t kMost = std::numeric_limits<std::int32_t>::max() - 1024;
     if (values.empty() || values.size() > kMost)
         throw Error(name, std::to_string(values.size()) + " values",
-                    "allowed are 1 to " + std::to_string(kMost));
+                    "must be from 1 to " + std::to_string(kMost));
     for (std::size_t i = 0; i < values.size(); ++i)
         if (!std::isfinite(values[i]))
             throw Error(std::string(name) + "[" + std::to_string(i) + "]", shortest(values[i]),
-                        "allowed are finite numbers");
+                        "must be a finite number");
 }
 
 void check_grid(std::span<const double> u, std::span<const double> v) {
@@ -155,7 +155,7 @@ void check_grid(std::span<const double> u, std::span<const double> v) {
     constexpr std::size_t kMostPoints = std::size_t{1} << 40;
     if (u.size() > kMostPoints / v.size())
         throw Error("u and v", std::to_string(u.size()) + "x" + std::to_string(v.size()) + " points",
-                    "allowed are up to 2^40");
+                    "must be at most 2^40");
 }
 
 void hull(GridPart& part, const GridPart& other) {
@@ -172,12 +172,11 @@ void hull(GridPart& part, const GridPart& other) {
 
 DisplacementSum::DisplacementSum(const DeformOptions& options) : m_options(options) {
     if (!(options.cutoff >= 0 && options.cutoff <= 0.5))
-        throw Error("cutoff", shortest(options.cutoff), "allowed are numbers from 0 to 0.5");
+        throw Error("cutoff", shortest(options.cutoff), "must be a number from 0 to 0.5");
     int exponent = 0;
     if (!(options.resolution >= 0x1p-500 && options.resolution <= 0x1p500) ||
         std::frexp(options.resolution, &exponent) != 0.5)
-        throw Error("resolution", shortest(options.resolution),
-                    "allowed are powers of 2 from 2^-500 to 2^500");
+        throw Error("resolution", shortest(options.resolution), "must be a power of 2 from 2^-500 to 2^500");
 }
 
 double DisplacementSum::reach(DeformationKernel kernel) const {
@@ -191,7 +190,7 @@ void DisplacementSum::add(Totals& totals, const Deformation& d, int sign) const 
         if (!(units < simd::kMostUnits))
             throw Error("vector", shortest(d.vector[c]),
                         "with resolution=" + shortest(m_options.resolution) +
-                            " allowed are magnitudes below " +
+                            ", the magnitude must be below " +
                             shortest(simd::kMostUnits * m_options.resolution));
         const auto whole = static_cast<std::int64_t>(units) * sign;
         if (static_cast<double>(totals.units[c]) + static_cast<double>(whole) >= kMostTotal)
@@ -496,14 +495,14 @@ void point_slopes(const std::vector<const simd::PointTerm*>& near, const double*
 DeformedPoints::DeformedPoints(std::span<const glm::dvec2> points, const DeformOptions& options)
     : m_sum(options) {
     if (points.size() > std::numeric_limits<std::int32_t>::max())
-        throw Error("points", std::to_string(points.size()), "allowed are fewer than 2^31");
+        throw Error("points", std::to_string(points.size()), "must be fewer than 2^31");
     if (points.empty()) return;
     glm::dvec2 least = points[0], most = points[0];
     for (std::size_t i = 0; i < points.size(); ++i)
         for (int c = 0; c < 2; ++c) {
             if (!std::isfinite(points[i][c]))
                 throw Error("points[" + std::to_string(i) + "]", shortest(points[i][c]),
-                            "allowed are finite numbers");
+                            "must be a finite number");
             least[c] = std::min(least[c], points[i][c]);
             most[c] = std::max(most[c], points[i][c]);
         }
@@ -726,7 +725,7 @@ void each_chunk(std::span<const glm::dvec2> points, const std::vector<simd::Poin
         for (int c = 0; c < 2; ++c)
             if (!std::isfinite(points[i][c]))
                 throw Error("points[" + std::to_string(i) + "]", shortest(points[i][c]),
-                            "allowed are finite numbers");
+                            "must be a finite number");
     const auto chunks = static_cast<std::int64_t>((points.size() + Chunk::kMost - 1) / Chunk::kMost);
     parallel_for(chunks, [&](std::int64_t i) {
         const std::size_t begin = static_cast<std::size_t>(i) * Chunk::kMost;
@@ -770,7 +769,7 @@ void deformed_normals(const std::vector<Deformation>& list, std::span<const glm:
     for (const auto& [name, size] : {std::pair("base_u", base_u.size()), std::pair("base_v", base_v.size())})
         if (size != 1 && size != points.size())
             throw Error(name, std::to_string(size) + " vectors",
-                        "needed are one, or as many as points, " + std::to_string(points.size()));
+                        "must be one, or as many as points, " + std::to_string(points.size()));
     DisplacementSum sum(options);
     const std::vector<DeformationChange> changes = difference({}, list);
     sum.apply(changes);

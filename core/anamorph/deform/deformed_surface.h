@@ -36,14 +36,14 @@ struct DeformOptions {
     double resolution = 0x1p-40;  ///< of the displacement: a power of two from 2^-500 to 2^500
 };
 
-/// What lists amount to: the promises of fixed point, kept in whole numbers.
+/// The sums of what lists add to the surface, in fixed point, with the bound of their error.
 class DisplacementSum {
   public:
     /// Throws Error on options out of range.
     explicit DisplacementSum(const DeformOptions& options);
 
     const DeformOptions& options() const { return m_options; }
-    /// In extents: where a kernel is cut off.
+    /// The distance from the centre, in extents, at which a kernel is cut off.
     double reach(DeformationKernel kernel) const;
     /// Takes note of changes. Throws Error naming the field if they leave the range, and then changes
     /// nothing.
@@ -181,7 +181,7 @@ class DeformedPoints {
     void apply(std::span<const DeformationChange> changes);
     void apply(const DeformationChange& change) { apply(std::span(&change, 1)); }
 
-    /// As in DeformedGrid. Returns the number of points that were written.
+    /// It works as in DeformedGrid, and returns the number of points that were written.
     template <class T>
     std::int64_t update(const T* base, T* out, const ParallelFor& parallel_for = serial_for,
                         T* displacement = nullptr);
@@ -191,7 +191,7 @@ class DeformedPoints {
 
     double error_bound() const { return m_sum.error_bound(); }
 
-    /// As in DeformedGrid.
+    /// It works as in DeformedGrid.
     void slopes(const std::vector<Deformation>& list, const std::vector<DeformationChange>* changes,
                 const TakeSlopes& take, const ParallelFor& parallel_for = serial_for) const;
 

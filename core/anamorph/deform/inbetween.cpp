@@ -17,22 +17,23 @@ void check_weights(std::span<const double> weights) {
     for (std::size_t i = 0; i < weights.size(); ++i)
         if (!std::isfinite(weights[i]))
             throw Error("weights[" + std::to_string(i) + "]", shortest(weights[i]),
-                        "allowed are finite numbers");
+                        "must be a finite number");
 }
 
 void check_sizes(std::size_t shapes, std::size_t weights, std::int64_t points, int components) {
     if (shapes != weights)
         throw Error("weights", std::to_string(weights) + " numbers",
-                    "needed are as many as there are shapes, " + std::to_string(shapes));
-    if (points < 0) throw Error("points", std::to_string(points), "allowed are numbers from 0");
-    if (components < 1) throw Error("components", std::to_string(components), "allowed are numbers from 1");
+                    "must be one for each shape, " + std::to_string(shapes));
+    if (points < 0) throw Error("points", std::to_string(points), "must be an integer of at least 0");
+    if (components < 1)
+        throw Error("components", std::to_string(components), "must be an integer of at least 1");
 }
 
 void check_mask(const float* mask, std::size_t shape, std::int64_t points) {
     for (std::int64_t p = 0; mask && p < points; ++p)
         if (!std::isfinite(mask[p]))
             throw Error("masks[" + std::to_string(shape) + "][" + std::to_string(p) + "]", shortest(mask[p]),
-                        "allowed are finite numbers");
+                        "must be a finite number");
 }
 
 /// Calls body(first, count) for stretches of points that make up all of them.
@@ -103,7 +104,7 @@ void inbetween_from_base(const T* base, std::span<const T* const> shapes, std::s
     check_weights(weights);
     if (!masks.empty() && masks.size() != shapes.size())
         throw Error("masks", std::to_string(masks.size()),
-                    "needed are none, or as many as there are shapes, " + std::to_string(shapes.size()));
+                    "must be none, or one for each shape, " + std::to_string(shapes.size()));
     for (std::size_t i = 0; i < masks.size(); ++i) check_mask(masks[i], i, points);
 
     Blend<T> active;

@@ -14,7 +14,7 @@ constexpr double kMost = 1e300;
 
 void check_number(const std::string& name, double value) {
     if (!(std::fabs(value) <= kMost))
-        throw Error(name, shortest(value), "allowed are numbers from -1e300 to 1e300");
+        throw Error(name, shortest(value), "must be a number from -1e300 to 1e300");
 }
 
 std::string entry(const char* name, std::size_t i) {
@@ -26,10 +26,10 @@ std::string entry(const char* name, std::size_t i) {
 KeyFrames::KeyFrames(std::vector<double> times, std::vector<std::vector<double>> values,
                      KeyInterpolation interpolation)
     : m_times(std::move(times)), m_values(std::move(values)), m_interpolation(interpolation) {
-    if (m_times.empty()) throw Error("times", "no numbers", "needed is one key frame or more");
+    if (m_times.empty()) throw Error("times", "no numbers", "there must be at least one key frame");
     if (m_values.size() != m_times.size())
         throw Error("values", std::to_string(m_values.size()) + " frames",
-                    "needed are as many as times, " + std::to_string(m_times.size()));
+                    "must be as many as times, " + std::to_string(m_times.size()));
     for (std::size_t k = 0; k < m_times.size(); ++k) {
         check_number(entry("times", k), m_times[k]);
         if (k > 0 && !(m_times[k] > m_times[k - 1]))
@@ -37,14 +37,14 @@ KeyFrames::KeyFrames(std::vector<double> times, std::vector<std::vector<double>>
                         "times must ascend, and the one before is " + shortest(m_times[k - 1]));
         if (m_values[k].size() != size())
             throw Error(entry("values", k), std::to_string(m_values[k].size()) + " numbers",
-                        "needed are as many as in the first frame, " + std::to_string(size()));
+                        "must be as many as in the first frame, " + std::to_string(size()));
         for (std::size_t i = 0; i < size(); ++i)
             check_number(entry("values", k) + "[" + std::to_string(i) + "]", m_values[k][i]);
     }
 }
 
 std::vector<double> KeyFrames::at(double time) const {
-    if (std::isnan(time)) throw Error("time", "nan", "allowed are numbers");
+    if (std::isnan(time)) throw Error("time", "nan", "must be a number");
     // The last frame that is not later.
     const auto next = std::upper_bound(m_times.begin(), m_times.end(), time);
     if (next == m_times.begin()) return m_values.front();

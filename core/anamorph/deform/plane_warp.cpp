@@ -29,7 +29,7 @@ std::string written(glm::dvec3 p) {
     return shortest(p.x) + "," + shortest(p.y) + "," + shortest(p.z);
 }
 
-/// In extents: beyond, a Gaussian is below 1e-18.
+/// Beyond this distance, in extents, a Gaussian is below 1e-18.
 double reach_of(DeformationKernel kernel) {
     return kernel == DeformationKernel::gaussian ? 6.44 : 1;
 }
@@ -93,14 +93,14 @@ ParameterPlane::ParameterPlane(glm::dvec3 origin, glm::dvec3 axis_u, glm::dvec3 
     : m_origin(origin), m_axis_u(axis_u), m_axis_v(axis_v) {
     for (const auto& [name, vector] :
          {std::pair("origin", origin), std::pair("axis_u", axis_u), std::pair("axis_v", axis_v)})
-        if (!finite(vector)) throw Error(name, written(vector), "allowed are finite numbers");
-    // In units of the axes' lengths, so that no product leaves the range of double.
+        if (!finite(vector)) throw Error(name, written(vector), "must be finite");
+    // The vectors are in units of the axes' lengths, so that no product leaves the range of double.
     const double length_u = glm::length(axis_u), length_v = glm::length(axis_v);
     const glm::dvec3 u = axis_u / length_u, v = axis_v / length_v, across = glm::cross(u, v);
     const double squared = glm::dot(across, across);
     if (!(squared > 1e-20) || !finite(1 / length_u * u) || !finite(1 / length_v * v))
         throw Error("axis_u and axis_v", written(axis_u) + " and " + written(axis_v),
-                    "needed are two directions that are not parallel");
+                    "must be two directions that are not parallel");
     m_gradient_u = glm::cross(v, across) / squared / length_u;
     m_gradient_v = glm::cross(across, u) / squared / length_v;
 }
@@ -134,7 +134,7 @@ PlaneWarp::PlaneWarp(const ParameterPlane& plane, const std::vector<Deformation>
     for (std::size_t k = 0; k < m_list.size(); ++k) {
         const glm::dvec2 reach = reach_of(m_list[k].kernel) * m_list[k].extent;
         const glm::dvec2 c = m_list[k].center;
-        // One bin more each way, whatever the rounding.
+        // One more bin each way covers the rounding.
         const int first_u = std::max(bin_of(c.x - reach.x, 0) - 1, 0),
                   last_u = std::min(bin_of(c.x + reach.x, 0) + 1, m_side - 1),
                   first_v = std::max(bin_of(c.y - reach.y, 1) - 1, 0),

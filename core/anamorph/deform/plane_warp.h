@@ -29,14 +29,14 @@ class ParameterPlane {
     /// Throws Error on axes that are parallel or zero, and on numbers that are not finite.
     ParameterPlane(glm::dvec3 origin, glm::dvec3 axis_u, glm::dvec3 axis_v);
 
-    /// Not finite where p is not.
+    /// The result is not finite where p is not.
     glm::dvec2 parameters(glm::dvec3 p) const;
     glm::dvec3 point(glm::dvec2 s) const { return m_origin + s.x * m_axis_u + s.y * m_axis_v; }
 
     glm::dvec3 origin() const { return m_origin; }
     glm::dvec3 axis_u() const { return m_axis_u; }
     glm::dvec3 axis_v() const { return m_axis_v; }
-    /// Of u and of v.
+    /// The gradients of u and of v.
     glm::dvec3 gradient_u() const { return m_gradient_u; }
     glm::dvec3 gradient_v() const { return m_gradient_v; }
 

@@ -55,8 +55,9 @@ double FigureAction::number(const Program& program, const FigureState& state, co
         const std::string name = excerpt(program.variables[static_cast<std::size_t>(operand.index)]);
         if (!value.set) fail_at(program, position, "the variable " + name + " is used before it is set");
         if (value.kind != OperandKind::number)
-            fail_at(program, position,
-                    "the variable " + name + " holds " + description_of(value.kind) + ", needed is a number");
+            fail_at(
+                program, position,
+                "the variable " + name + " holds " + description_of(value.kind) + ", but must hold a number");
     }
     return value.number;
 }
@@ -70,7 +71,7 @@ int FigureAction::index(const Program& program, const FigureState& state, const 
         fail_at(program, position, "the variable " + name + " is used before it is set");
     if (program.dialect == Dialect::strict && !is_same_kind(value, kind))
         fail_at(program, position,
-                "the variable " + name + " holds " + description_of(value.kind) + ", needed is " +
+                "the variable " + name + " holds " + description_of(value.kind) + ", but must hold " +
                     description_of(kind));
     if (!(value.number >= 0 && value.number < static_cast<double>(table_size(program, kind))))
         fail_at(program, position,

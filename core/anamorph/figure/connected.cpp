@@ -116,7 +116,7 @@ std::vector<Connection> connections(std::span<const Joint> joints, std::span<con
     const auto outline_of = [&](const Joint& joint, int body) -> const Outline& {
         if (body < 0 || static_cast<std::size_t>(body) >= std::min(bodies.size(), outlines.bodies.size()))
             throw Error("joint " + joint.name, std::to_string(body),
-                        "allowed are positions of the " + std::to_string(bodies.size()) + " bodies");
+                        "must be the position of one of the " + std::to_string(bodies.size()) + " bodies");
         return outlines.bodies[static_cast<std::size_t>(body)];
     };
     std::vector<Connection> all;

@@ -25,8 +25,8 @@ struct Connection {
     std::vector<Arc> first_inside, second_inside;  ///< of the limbs, inside the hull
 };
 
-/// One for each joint whose bodies' outlines are both of kind `whole`. `outlines` are those of `bodies` in
-/// `view`. Throws Error as `outlines` does, and for a joint of bodies that are not there.
+/// A connection for each joint whose bodies' outlines are both of kind `whole`. `outlines` are those of
+/// `bodies` in `view`. Throws Error as `outlines` does, and for a joint of bodies that are not there.
 std::vector<Connection> connections(std::span<const Joint> joints, std::span<const Ellipsoid> bodies,
                                     const Outlines& outlines, const View& view,
                                     const ParallelFor& parallel_for = serial_for);

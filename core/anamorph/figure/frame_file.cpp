@@ -60,7 +60,7 @@ class Words {
         int value = 0;
         const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
         if (error != std::errc() || end != word.data() + word.size() || word.empty())
-            throw Error("found \"" + excerpt(word) + "\", expected " + what + ", a whole number");
+            throw Error("found \"" + excerpt(word) + "\", expected " + what + ", an integer");
         return value;
     }
 
@@ -203,7 +203,7 @@ bool FrameReader::read(FigureFrame& frame) {
             joint.first = row.integer("an ellipsoid");
             joint.second = row.integer("an ellipsoid");
             if (std::min(joint.first, joint.second) < 0 || std::max(joint.first, joint.second) >= count)
-                throw Error("allowed are ellipsoids from 0 to " + std::to_string(count - 1));
+                throw Error("an ellipsoid must be from 0 to " + std::to_string(count - 1));
             joint.position = row.vector("a coordinate");
             joint.name = name_from(row, "a name");
             frame.joints.push_back(joint);

@@ -12,16 +12,16 @@ namespace anamorph {
 
 enum class Detail : unsigned char { none, dot, line, ellipse, body };
 
-/// Of an outline on the screen, pixels from side to side: a `dot` where it is nowhere wider than `lod`, a
-/// `line` (its longest axis) where it is so in one direction, an `ellipse` (a flat outline) up to
-/// `body_factor` times `lod` wide, and a whole `body` beyond. `none`: behind the observer.
+/// What a body is worth follows from the width of its outline on the screen: a `dot` where it is nowhere
+/// wider than `lod`, a `line` (its longest axis) where it is so in one direction, an `ellipse` (a flat
+/// outline) up to `body_factor` times `lod` wide, and a whole `body` beyond. `none`: behind the observer.
 struct DetailOptions {
     double lod = 1;  ///< pixels; 0: all bodies whole
     double body_factor = 16;
 };
 
-/// One for each body. A body that reaches nearer than View::near is drawn whole. Throws Error as outlines
-/// does, and when an option is negative or not a number.
+/// The details, one for each body. A body that reaches nearer than View::near is drawn whole. Throws Error
+/// as outlines does, and when an option is negative or not a number.
 std::vector<Detail> levels_of_detail(std::span<const Ellipsoid> bodies, const View& view,
                                      const DetailOptions& options = {});
 

@@ -30,7 +30,7 @@ struct Depth {
         : w(viewed.center.z),
           reach(std::hypot(viewed.cosine.z, viewed.sine.z)),
           peak(std::atan2(viewed.sine.z, viewed.cosine.z)) {}
-    /// Of the nearest and the farthest, geometric.
+    /// The geometric mean of the nearest and the farthest.
     double mean() const { return std::sqrt((w - reach) * (w + reach)); }
 };
 
@@ -96,7 +96,7 @@ double Outline::limb_angle(double angle, const View& view) const {
 Outlines outlines(std::span<const Ellipsoid> bodies, const View& view, const OutlineOptions& options,
                   const ParallelFor& parallel_for) {
     if (options.crossings && !(options.tol > 0))
-        throw Error("tol", shortest(options.tol), "allowed is a positive number of pixels");
+        throw Error("tol", shortest(options.tol), "must be a positive number of pixels");
     const std::vector<SeenBody> seen = see_all(bodies, view, options.names, parallel_for);
     std::vector<ScreenBox> boxes;
     for (const SeenBody& body : seen)

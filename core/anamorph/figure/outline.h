@@ -79,10 +79,10 @@ struct Outlines {
 };
 
 /// Throws Error when a body has a value that is not finite or larger than 1e25, or axes of rotation that are
-/// not orthonormal to 1e-6 (naming the body), and when the view or an option is not as allowed.
+/// not orthonormal to 1e-6 (naming the body), and when the view or an option is out of its range.
 Outlines outlines(std::span<const Ellipsoid> bodies, const View& view, const OutlineOptions& options = {},
                   const ParallelFor& parallel_for = serial_for);
-/// With the names of the frame's bodies.
+/// The same for the bodies of a frame, with their names.
 Outlines outlines(const FigureFrame& frame, const View& view, OutlineOptions options = {},
                   const ParallelFor& parallel_for = serial_for);
 

@@ -154,8 +154,8 @@ void set_box(SeenBody& body, bool perspective) {
 }  // namespace
 
 void check(const View& view) {
-    const auto demand = [](bool holds, const char* name, const std::string& value, const char* allowed) {
-        if (!holds) throw Error(name, value, std::string("allowed is ") + allowed);
+    const auto demand = [](bool holds, const char* name, const std::string& value, const char* rule) {
+        if (!holds) throw Error(name, value, std::string("must be ") + rule);
     };
     demand(orthonormal(view.rotation), "rotation", columns_of(view.rotation), "an orthonormal matrix");
     demand(within(view.center), "center", text_of(view.center), "numbers up to 1e25");
@@ -167,9 +167,9 @@ void check(const View& view) {
 }
 
 void check(const Ellipsoid& body, std::size_t position, const std::vector<std::string>& names) {
-    const auto fail = [&](const char* what, const std::string& value, const char* allowed) {
+    const auto fail = [&](const char* what, const std::string& value, const char* rule) {
         const std::string name = position < names.size() ? names[position] : std::to_string(position);
-        throw Error("body " + printable(name) + " " + what, value, std::string("allowed is ") + allowed);
+        throw Error("body " + printable(name) + " " + what, value, std::string("must be ") + rule);
     };
     if (!within(body.center)) fail("center", text_of(body.center), "finite numbers up to 1e25");
     if (!within(body.axes)) fail("axes", text_of(body.axes), "finite numbers up to 1e25");
@@ -177,7 +177,7 @@ void check(const Ellipsoid& body, std::size_t position, const std::vector<std::s
 }
 
 void check_point(const std::string& name, const glm::dvec3& point) {
-    if (!within(point)) throw Error(name, text_of(point), "allowed are finite numbers up to 1e25");
+    if (!within(point)) throw Error(name, text_of(point), "must be finite numbers up to 1e25");
 }
 
 SeenBody see(const Ellipsoid& shape, const View& view) {

@@ -13,7 +13,7 @@
 
 namespace anamorph {
 
-/// All in the coordinates of View::to_view, d = p - (a point of the body).
+/// A body in the coordinates of View::to_view, with d = p - (a point of the body).
 struct SeenBody {
     OutlineKind kind = OutlineKind::whole;
     Ellipse<glm::dvec3> limb;    ///< in the scene

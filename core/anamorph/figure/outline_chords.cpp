@@ -14,7 +14,7 @@ namespace {
 constexpr double kMostChords = 1 << 20;
 
 [[noreturn]] void too_many(double tol) {
-    throw Error("tol", shortest(tol), "allowed are tolerances that a million chords can hold");
+    throw Error("tol", shortest(tol), "must be a tolerance that a million chords can hold");
 }
 
 /// 1 - cos(h), without cancellation.
@@ -68,7 +68,7 @@ void bisect(const Ellipse<glm::dvec3>& limb, double a, double b, double zoom, do
 }  // namespace
 
 std::vector<double> chord_angles(const Outline& outline, const Arc& arc, const View& view, double tol) {
-    if (!(tol > 0)) throw Error("tol", shortest(tol), "allowed is a positive number of pixels");
+    if (!(tol > 0)) throw Error("tol", shortest(tol), "must be a positive number of pixels");
     if (!view.perspective()) return even_angles(outline, arc, view, tol);
     std::vector<double> angles{arc.begin};
     bisect(outline.viewed, arc.begin, arc.end, view.scale * view.eye_distance, tol, angles);

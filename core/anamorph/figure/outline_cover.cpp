@@ -19,7 +19,7 @@ struct Range {
     Range wider(double by) const { return {low - by, high + by}; }
 };
 
-/// Of |a + t b|, |t| <= 1.
+/// The range of |a + t b| for |t| <= 1.
 template <class Vector>
 Range lengths(const Vector& a, const Vector& b) {
     const double middle = glm::dot(a, a), slope = 2 * std::fabs(glm::dot(a, b));

@@ -14,7 +14,7 @@
 namespace anamorph {
 namespace {
 
-/// From the unit sphere of a solid body to directions in view, R diag(a).
+/// R diag(a), which takes the unit sphere of a solid body to directions in view.
 glm::dmat3 from_unit(const Ellipsoid& body, const View& view) {
     glm::dmat3 m = view.rotation * body.rotation;
     for (int k = 0; k < 3; ++k) m[k] *= std::fabs(body.axes[k]);
@@ -25,7 +25,7 @@ double norm(const glm::dmat3& m) {
     return std::sqrt(glm::dot(m[0], m[0]) + glm::dot(m[1], m[1]) + glm::dot(m[2], m[2]));
 }
 
-/// All of a body on the screen, down to its farthest point.
+/// The box of all of a body on the screen, down to its farthest point.
 ScreenBox surface_box(const SeenBody& body) {
     return {body.low, body.high, 2 * body.center.z - body.nearest};
 }
@@ -57,7 +57,7 @@ class SeenSurfaces {
 
     bool any(int body) const { return m_seen[static_cast<std::size_t>(body)] != 0; }
 
-    /// For each body those after it with which it meets in a curve of which something may be seen.
+    /// Lists for each body those after it with which it meets in a curve of which something may be seen.
     std::vector<std::vector<int>> meetings() const {
         std::vector<std::vector<int>> showing(m_bodies.size()), both(m_bodies.size());
         for_all([&](std::size_t i) {
@@ -132,7 +132,7 @@ class Pair {
         m_size = norm(m_from_unit);
     }
 
-    /// On the sphere, as loops_of gives them.
+    /// The loops on the sphere, as loops_of gives them.
     std::vector<std::vector<glm::dvec3>> loops() const {
         return loops_of(m_curve, [this](const glm::dvec3& u, double radius) { return allowed(u, radius); });
     }
@@ -179,7 +179,7 @@ class Pair {
 
     glm::dvec3 in_view(const glm::dvec3& u) const { return m_center + m_from_unit * u; }
 
-    /// On the sphere, how far chords may be off within `radius` of u.
+    /// How far chords may be off within `radius` of u, on the sphere.
     double allowed(const glm::dvec3& u, double radius) const {
         double zoom = m_view.scale;
         if (m_view.perspective()) {
@@ -311,10 +311,10 @@ class Pair {
             m_hidden.push_back({base + begin, base + end});
     }
 
-    /// Of what chords may be off.
+    /// The share of what chords may be off.
     static constexpr double kLeast = 1.0 / 16;
     static constexpr int kHalvings = 30;
-    /// Of a chord, where its curve is not found beside it.
+    /// The shortest part of a chord, where its curve is not found beside it.
     static constexpr double kShortest = 0x1p-14;
 
     const std::vector<SeenBody>& m_seen;

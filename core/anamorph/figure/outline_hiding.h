@@ -22,7 +22,8 @@ struct ScreenBox {
     double farthest = 0;
 };
 
-/// Of points as View::to_view gives them; in perspective, everything if one is not before the eye.
+/// The box around points as View::to_view gives them; in perspective, everything if one is not before the
+/// eye.
 ScreenBox box_of(std::span<const glm::dvec3> points, bool perspective);
 
 /// Does the box of the body's limb overlap, and not all of the body lie beyond?
@@ -33,7 +34,7 @@ class Overlaps {
   public:
     /// `bodies` must outlive this.
     explicit Overlaps(const std::vector<SeenBody>& bodies);
-    /// In no order that means something.
+    /// The order means nothing.
     std::vector<int> with(const ScreenBox& box) const;
 
   private:

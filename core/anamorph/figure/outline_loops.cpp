@@ -101,7 +101,7 @@ class Sweep {
         if (coincides()) return {};
         std::vector<Box> all;
         for (int k = 0; k < 8; ++k) all.push_back({k * (Box::kAll / 8), Box::kAll / 8});
-        // From an angle that no symmetry prefers.
+        // The strips begin at an angle that no symmetry prefers.
         constexpr double from = 0.3;
         const Meridian first = meridian(from);
         Meridian left = first;
@@ -180,7 +180,7 @@ class Sweep {
         return m;
     }
 
-    /// Of an odd number of roots one is no change of sign: two that rounding has made one.
+    /// When the number of roots is odd, one is no change of sign: two that rounding has made one.
     static void drop_touching(const WaveSquares& f, Roots& roots) {
         const auto negative_after = [&](int k) {
             const double next = k + 1 < roots.count ? roots.angle[k + 1] : roots.angle[0] + kTurn;

@@ -25,7 +25,7 @@ Direction small_angle(double t) {
 struct Tables {
     /// Ends (even) and middles (odd) of the first intervals.
     std::array<Direction, 2 * kIntervals + 1> first;
-    /// From the middle of an interval of a level to that of its second half.
+    /// The turn from the middle of an interval of a level to that of its second half.
     std::array<Direction, kMostLevels> half;
 
     Tables() {

@@ -16,7 +16,7 @@ namespace anamorph {
 /// middle + scale (q.x, q.y) eye_distance / (q.z + eye_distance): `center` is seen at `middle`, and what is
 /// as far away as it in the same size.
 struct View {
-    glm::dmat3 rotation{1.0};        ///< orthonormal; a mirror is allowed
+    glm::dmat3 rotation{1.0};        ///< orthonormal; it may mirror
     glm::dvec3 center{0.0};          ///< units of the scene
     glm::dvec2 middle{0.0};          ///< pixels
     double scale = 1;                ///< pixels a unit of the scene; positive
@@ -31,7 +31,7 @@ struct View {
         const glm::dvec3 q = rotation * (p - center);
         return perspective() ? q + glm::dvec3(0, 0, eye_distance) : q;
     }
-    /// Of a point q as to_view gives it.
+    /// Where a point q, as to_view gives it, is on the screen.
     glm::dvec2 to_screen(const glm::dvec3& q) const {
         const double zoom = perspective() ? scale * eye_distance / q.z : scale;
         return middle + glm::dvec2(zoom * q.x, zoom * q.y);
@@ -49,7 +49,7 @@ inline View view_of(const FigureFrame& frame, double scale = 1) {
     return view;
 }
 
-/// Throws Error naming the field of `view` that is not as allowed.
+/// Throws Error naming the field of `view` that is out of its range.
 void check(const View& view);
 
 }  // namespace anamorph

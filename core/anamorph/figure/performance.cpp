@@ -112,11 +112,10 @@ struct Performance::Impl {
         const bool deep = calling.size() == kDeepestCall;
         if (++calls <= kMostCalls && !deep) return;
         const bool ring = std::find(calling.begin(), calling.end(), called) != calling.end();
-        throw Error(
-            program.where(m.position) + ": call in frame " + std::to_string(performing) + ": " +
-            (ring   ? "subroutines call each other without end"
-             : deep ? "allowed are " + std::to_string(kDeepestCall) + " subroutines that call each the next"
-                    : "allowed are " + std::to_string(kMostCalls) + " calls in a frame"));
+        throw Error(program.where(m.position) + ": call in frame " + std::to_string(performing) + ": " +
+                    (ring   ? "subroutines call each other without end"
+                     : deep ? "more than " + std::to_string(kDeepestCall) + " subroutines call each the next"
+                            : "a frame has more than " + std::to_string(kMostCalls) + " calls"));
     }
 
     void perform_subroutine(int subroutine, double clock) {
@@ -305,7 +304,8 @@ int Performance::frame_count() {
 
 FigureFrame Performance::frame(int number) {
     if (number < 0 || !m_impl->reaches(number))
-        throw Error("frame", std::to_string(number), "allowed are 0 to " + std::to_string(m_impl->last()));
+        throw Error("frame", std::to_string(number),
+                    "must be an integer from 0 to " + std::to_string(m_impl->last()));
     m_impl->go_to(number);
     return frame_of(m_impl->state, m_impl->program, number);
 }

@@ -38,7 +38,7 @@ struct PerformanceOptions {
     std::size_t memory = std::size_t{32} << 20;  ///< bytes of states kept
 };
 
-/// Not for use by two threads at once.
+/// A performance must not be used by two threads at once.
 class Performance {
   public:
     explicit Performance(Program program, PerformanceOptions options = {});
@@ -51,7 +51,7 @@ class Performance {
     int first_frame() const;
     int last_frame();
     int frame_step() const;
-    /// How many are shown.
+    /// The number of frames that are shown.
     int frame_count();
 
     /// Any frame from 0 to the last that the script performs, shown or not. Throws Error: outside of these,

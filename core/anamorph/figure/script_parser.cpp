@@ -22,7 +22,7 @@ constexpr int kLargestFrame = 1000000000;
 // Shorter words are not taken for the beginning of a statement where something is wrong.
 constexpr std::size_t kShortestForm = 3;
 
-/// Nothing but comments, or a word first that begins a statement.
+/// Whether a text holds nothing but comments, or begins with a word that begins a statement.
 bool begins_as_script(std::string_view text) {
     const ScriptToken first = ScriptLexer(text).next();
     return first.text.empty() ||
@@ -59,7 +59,8 @@ void ScriptParser::parse_file(std::string_view text, const std::string& name,
     m_included_bytes += text.size();
     m_file = file;
     if (m_included_bytes > kMaxScriptText) {
-        error({file, 1, 1}, "allowed are texts up to " + std::to_string(kMaxScriptText >> 20) + " MB in all");
+        error({file, 1, 1}, "a script and what it includes must be at most " +
+                                std::to_string(kMaxScriptText >> 20) + " MB");
         throw ScriptTooBad{};
     }
     const int subroutine = m_subroutine;
@@ -90,7 +91,7 @@ void ScriptParser::parse_included(const std::string& name, const ScriptPosition&
     const std::string what = (position.line > 0 ? "include " : "library ") + excerpt(name);
     const auto text = m_options.include ? m_options.include(name) : std::nullopt;
     if (!text) return error(position, what + ": there is no such file");
-    // Of other files no message may show a word.
+    // No message may show a word of other files.
     if (!begins_as_script(*text))
         return error(position,
                      what + ": it is not a script: it does not begin with a declaration or a movement");
@@ -147,7 +148,7 @@ void ScriptParser::unexpected(const ScriptToken& token, const std::string& expec
 
 void ScriptParser::check_size(std::size_t size, const ScriptPosition& position) {
     if (size <= kMaxScriptItems) return;
-    error(position, "allowed are up to " + std::to_string(kMaxScriptItems) + " of anything");
+    error(position, "a script must have at most " + std::to_string(kMaxScriptItems) + " entries of any kind");
     throw ScriptTooBad{};
 }
 
@@ -343,7 +344,7 @@ void ScriptParser::figure() {
     if (index < 2 || !declared.ellipsoids.empty())
         error(position_of(token), "the figure " + quoted(name) + " is declared twice");
     declared.ellipsoids.clear();
-    const int count = take_integer("a whole number of ellipsoids from 1", 1, kMostCount);
+    const int count = take_integer("the number of ellipsoids, an integer of at least 1", 1, kMostCount);
     for (int i = 0; i < count; ++i) {
         const int ellipsoid = take_mention(OperandKind::ellipsoid);
         if (ellipsoid == 0) error(position_of(token), "world is no ellipsoid of a figure");
@@ -397,7 +398,7 @@ void ScriptParser::limit() {
 }
 
 void ScriptParser::variables() {
-    const int count = take_integer("a whole number of variables from 1", 1, kMostCount);
+    const int count = take_integer("the number of variables, an integer of at least 1", 1, kMostCount);
     for (int i = 0; i < count; ++i) {
         const ScriptToken token = peek();
         const std::string name = take_name(OperandKind::variable);
@@ -434,8 +435,8 @@ void ScriptParser::end_subroutine() {
 
 void ScriptParser::speed() {
     const ScriptToken token = peek();
-    const int k = take_integer("a whole number but 0", -kMostCount, kMostCount);
-    if (k == 0) unexpected(token, "a whole number but 0");
+    const int k = take_integer("an integer other than 0", -kMostCount, kMostCount);
+    if (k == 0) unexpected(token, "an integer other than 0");
     m_program.speed = k;
 }
 

@@ -100,7 +100,7 @@ class ScriptParser {
     int m_errors = 0, m_warnings = 0;
 };
 
-/// Thrown out of the parser where it gives up: too many errors, or a text too large.
+/// The parser throws this where it gives up: too many errors, or a text too large.
 struct ScriptTooBad {};
 
 /// Do numbers say that a movement never happens?

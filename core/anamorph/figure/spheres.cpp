@@ -112,9 +112,9 @@ class Fill {
 
 SphereFill fill_with_spheres(const Ellipsoid& body, const SphereOptions& options) {
     check(body, 0, {});
-    if (!(options.tol > 0)) throw Error("tol", shortest(options.tol), "allowed is a positive number");
+    if (!(options.tol > 0)) throw Error("tol", shortest(options.tol), "must be a positive number");
     if (options.most_spheres < 1)
-        throw Error("most_spheres", std::to_string(options.most_spheres), "allowed is a number from 1 on");
+        throw Error("most_spheres", std::to_string(options.most_spheres), "must be an integer of at least 1");
     SphereFill fill;
     fill.deviation = options.tol;
     while (!Fill(body, fill.deviation, static_cast<std::size_t>(options.most_spheres)).place(fill.spheres))

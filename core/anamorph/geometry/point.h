@@ -9,7 +9,8 @@
 
 namespace anamorph {
 
-/// In pixels, x right, y down; the centre of the first pixel is (0.5, 0.5). Or in the units of a plane.
+/// A point in pixels, x right, y down, with the centre of the first pixel at (0.5, 0.5), or in the units
+/// of a plane.
 template <class T>
 struct Point {
     T x, y;
@@ -24,8 +25,8 @@ inline Point<double> operator*(const Point<double>& a, double k) {
     return {a.x * k, a.y * k};
 }
 
-/// Source pixels (level 0) that the source point moves per target pixel: right, (x_i, y_i), and down, (x_j,
-/// y_j).
+/// How far the source point moves, in source pixels (level 0), for a step of one target pixel: to the right,
+/// (x_i, y_i), and down, (x_j, y_j).
 struct Jacobian {
     double x_i = 1, y_i = 0, x_j = 0, y_j = 1;
 };
@@ -44,7 +45,7 @@ requires(std::is_invocable_v<Entry, int, int>) Ray<T> transform(const Entry& ent
     };
     return {row(0), row(1), row(2)};
 }
-/// Of a matrix whose entries are off by `error` at most.
+/// The same for a matrix whose entries are off by at most `error`.
 template <class T>
 Ray<T> transform(const glm::dmat3& matrix, const Ray<T>& ray, double error = 0) {
     return transform([&](int column, int row) { return measured<T>(matrix[column][row], error); }, ray);

@@ -9,12 +9,12 @@
 namespace anamorph {
 
 struct EllipsoidContact {
-    /// Both, made larger or smaller about their centres by this factor, touch from outside: below 1 they
+    /// Scaled about their centres by this factor, both touch from outside: below 1 they
     /// share inner points, at 1 they touch, above they are apart. It is the square root of
     ///     F = max over 0 < l < 1 of l (1 - l) r^T ((1 - l) A + l B)^-1 r
     /// with r from the first centre to the second, and A, B = R diag(a^2) R^T of each.
     double ratio = 0;
-    /// Of the plane that then touches both, of length 1, from the first towards the second.
+    /// The normal of the plane that then touches both, of length 1, from the first towards the second.
     glm::dvec3 normal{0, 1, 0};
     /// The width of the slab square to `normal` that keeps them apart: at most their distance; negative
     /// where they overlap.

@@ -114,7 +114,6 @@ Point<double> on_cubic(const Point<double>* c, double t) {
 }  // namespace
 
 // --- Features
-// -----------------------------------------------------------------------------------------------
 
 Features::Features(int shapes) : m_shapes(shapes) {
     if (shapes < 2) throw Error("shapes", std::to_string(shapes), "a morph needs two or more");
@@ -128,14 +127,13 @@ std::string Features::name(std::size_t i) const {
 void Features::add_line(const std::vector<Line>& line, double weight, const std::string& name) {
     const std::string what = name_of(name, size());
     if (line.size() != static_cast<std::size_t>(m_shapes))
-        throw Error(what, std::to_string(line.size()) + " shapes", "needed are " + std::to_string(m_shapes));
+        throw Error(what, std::to_string(line.size()) + " shapes", "must be " + std::to_string(m_shapes));
     for (const Line& l : line) {
-        if (!fits(l.p) || !fits(l.q))
-            throw Error(what, written(l), "allowed are coordinates up to 1e9 pixels");
+        if (!fits(l.p) || !fits(l.q)) throw Error(what, written(l), "coordinates must be at most 1e9 pixels");
         if (l.p.x == l.q.x && l.p.y == l.q.y) throw Error(what, written(l), "a line needs a length");
     }
     if (!(weight >= 0 && std::isfinite(weight)))
-        throw Error(what + " weight", shortest(weight), "allowed is 0 or a finite number above it");
+        throw Error(what + " weight", shortest(weight), "must be a finite number of at least 0");
     m_lines.insert(m_lines.end(), line.begin(), line.end());
     m_weights.push_back(weight);
     m_names.push_back(name);
@@ -145,10 +143,9 @@ void Features::add_polyline(const std::vector<std::vector<Point<double>>>& verti
                             const std::string& name) {
     const std::string what = name_of(name, size());
     if (vertices.size() != static_cast<std::size_t>(m_shapes))
-        throw Error(what, std::to_string(vertices.size()) + " shapes",
-                    "needed are " + std::to_string(m_shapes));
+        throw Error(what, std::to_string(vertices.size()) + " shapes", "must be " + std::to_string(m_shapes));
     const std::size_t count = vertices[0].size();
-    if (count < 2) throw Error(what, std::to_string(count) + " vertices", "needed are two or more");
+    if (count < 2) throw Error(what, std::to_string(count) + " vertices", "must be two or more");
     for (const auto& v : vertices)
         if (v.size() != count)
             throw Error(what, std::to_string(v.size()) + " vertices",
@@ -165,10 +162,10 @@ void Features::add_curve(const std::vector<std::vector<Point<double>>>& control_
     const std::string what = name_of(name, size());
     if (control_points.size() != static_cast<std::size_t>(m_shapes))
         throw Error(what, std::to_string(control_points.size()) + " shapes",
-                    "needed are " + std::to_string(m_shapes));
+                    "must be " + std::to_string(m_shapes));
     const std::size_t count = control_points[0].size();
     if (count < 4 || count % 3 != 1)
-        throw Error(what, std::to_string(count) + " control points", "allowed are 4, 7, 10 ...");
+        throw Error(what, std::to_string(count) + " control points", "must be 4, 7, 10 ...");
     for (const auto& points : control_points) {
         if (points.size() != count)
             throw Error(what, std::to_string(points.size()) + " control points",
@@ -176,7 +173,7 @@ void Features::add_curve(const std::vector<std::vector<Point<double>>>& control_
         for (const Point<double>& p : points)
             if (!fits(p))
                 throw Error(what, shortest(p.x) + "," + shortest(p.y),
-                            "allowed are coordinates up to 1e9 pixels");
+                            "coordinates must be at most 1e9 pixels");
     }
     std::vector<std::vector<Point<double>>> chain(control_points.size());
     for (std::size_t k = 0; k < chain.size(); ++k) chain[k].push_back(control_points[k][0]);
@@ -192,7 +189,7 @@ void Features::add_curve(const std::vector<std::vector<Point<double>>>& control_
 
 void Features::pin_border(double weight) {
     if (!(weight >= 0 && std::isfinite(weight)))
-        throw Error("pin_border", shortest(weight), "allowed is 0 or a finite weight above it");
+        throw Error("pin_border", shortest(weight), "must be a finite number of at least 0");
     m_border = weight;
 }
 
@@ -200,12 +197,11 @@ void Features::set_frame(int shape, const Frame& frame) {
     if (!(frame.width > 0 && frame.height > 0 && frame.width <= kMostCoordinate &&
           frame.height <= kMostCoordinate))
         throw Error("size", shortest(frame.width) + "x" + shortest(frame.height),
-                    "allowed are sizes above 0 up to 1e9 pixels");
+                    "must be above 0 and at most 1e9 pixels");
     m_frames[static_cast<std::size_t>(shape)] = frame;
 }
 
 // --- FeatureMap
-// ---------------------------------------------------------------------------------------------
 
 FeatureMap::FeatureMap(const Features& features, const std::vector<Size>& pictures, const Size& target,
                        const std::vector<double>& mixture, const LineWeights& weights)
@@ -219,7 +215,7 @@ FeatureMap::FeatureMap(const Features& features, const std::vector<Size>& pictur
                     "the features have " + std::to_string(m_shapes) + " shapes");
     const auto check = [](const char* name, double value, double most) {
         if (!(value >= 0 && value <= most))
-            throw Error(name, shortest(value), "allowed is a number from 0 to " + shortest(most));
+            throw Error(name, shortest(value), "must be a number from 0 to " + shortest(most));
     };
     check("weight_a", weights.a, LineWeights::kMostA);
     check("weight_b", weights.b, LineWeights::kMostB);
@@ -281,7 +277,7 @@ FeatureMap::FeatureMap(const Features& features, const std::vector<Size>& pictur
             add(scaled, features.border_weight(), "border");
         }
     }
-    if (m_lines.empty()) throw Error("features", "0 lines", "needed is one with a weight above 0");
+    if (m_lines.empty()) throw Error("features", "0 lines", "there must be one with a weight above 0");
 
     double longest = 0, heaviest = 0;
     for (const TargetLine& line : m_lines) {
@@ -291,8 +287,8 @@ FeatureMap::FeatureMap(const Features& features, const std::vector<Size>& pictur
     const double exponent = weights.p * weights.b;
     for (std::size_t i = 0; i < m_lines.size(); ++i) {
         TargetLine& line = m_lines[i];
-        // Of the length, the exponent, the two powers (of the distance too), quotients and products; nothing
-        // is known of a factor that is raised.
+        // The rounding of the length, the exponent, the two powers (of the distance too), quotients and
+        // products; nothing is known of a factor that is raised.
         m_roundings[i].weight =
             exponent * 4 * m_roundings[i].place / line.length +
             kHalfUlp * (16 + 4 * weights.b + 2 * exponent * (1 + std::fabs(std::log(line.length / longest))));
@@ -309,7 +305,7 @@ bool FeatureMap::passes_through(std::size_t i, double x, double y) const {
         return std::min(a, b) <= at && at <= std::max(a, b);
     };
     if (!m_roundings[i].exact || !between(p.x, q.x, x) || !between(p.y, q.y, y)) return false;
-    // On its straight line: dy ex = dx ey.
+    // The point is on the straight line where dy ex = dx ey.
     const Checked dx = Checked{x} - Checked{p.x}, dy = Checked{y} - Checked{p.y};
     const Checked ex = Checked{q.x} - Checked{p.x}, ey = Checked{q.y} - Checked{p.y};
     if (!(dx.exact && dy.exact && ex.exact && ey.exact)) return false;

@@ -22,12 +22,12 @@
 
 namespace anamorph {
 
-/// From p to q, in pixels.
+/// A directed line from p to q, in pixels.
 struct Line {
     Point<double> p, q;
 };
 
-/// What corresponds in `shapes` pictures.
+/// The lines that correspond in `shapes` pictures.
 class Features {
   public:
     struct Frame {
@@ -94,7 +94,7 @@ inline T max(const T& x, const T& y) {
 template <class T>
 inline T root(const T& square) {
     using std::sqrt;
-    // On a line the root has a kink: its derivative is taken to be 0 there.
+    // The root has a kink on a line, where its derivative is taken to be 0.
     if (constant_part(square) == 0) return T(0);
     return sqrt(square);
 }
@@ -130,11 +130,11 @@ class FeatureMap {
         double factor;  ///< weight * length^(p b), relative to the greatest of each
         bool moves;     ///< not the same line in every shape
     };
-    /// Of one line for one shape, in the target's pixels.
+    /// What one line says for one shape, in the target's pixels.
     struct Displacement {
         Point<double> origin, along_rate, beside_rate;
     };
-    /// By how much the numbers of a line are off, which are doubles made of others.
+    /// How far the numbers of a line are off, which are doubles made of others.
     struct Rounding {
         double place;    ///< its ends, in the target's pixels
         double turn;     ///< its direction, and the rates of its displacements

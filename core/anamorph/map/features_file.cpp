@@ -15,16 +15,15 @@ using text_file::in_entry;
 using text_file::Json;
 
 // --- JSON
-// ---------------------------------------------------------------------------------------------------
 
 double number(const Json& json) {
-    if (!json.is_number()) throw Error("needed is a number, not " + excerpt(json.dump(-1, ' ', true)));
+    if (!json.is_number()) throw Error("must be a number, not " + excerpt(json.dump(-1, ' ', true)));
     return json.get<double>();
 }
 
 const Json& array(const Json& json, const char* of, std::size_t size = 0) {
     if (!json.is_array() || (size && json.size() != size))
-        throw Error("needed is a list of " + (size ? std::to_string(size) + " " : std::string()) + of);
+        throw Error("must be a list of " + (size ? std::to_string(size) + " " : std::string()) + of);
     return json;
 }
 
@@ -44,28 +43,28 @@ std::vector<Point<double>> read_points(const Json& json) {
 
 /// "line", "polyline" or "curve": which kind of feature an entry is.
 std::string kind_of(const Json& entry) {
-    if (!entry.is_object()) throw Error("needed is an object with line, polyline or curve");
+    if (!entry.is_object()) throw Error("must be an object with line, polyline or curve");
     std::string kind;
     for (const auto& [key, value] : entry.items()) {
         if (key == "name" || key == "weight") continue;
         if (key != "line" && key != "polyline" && key != "curve")
-            throw Error(excerpt(key) + ": allowed are line, polyline, curve, name, weight");
-        if (!kind.empty()) throw Error(kind + " and " + key + ": one of them is allowed");
+            throw Error(excerpt(key) + ": must be one of line, polyline, curve, name, weight");
+        if (!kind.empty()) throw Error(kind + " and " + key + ": must not both be given");
         kind = key;
     }
-    if (kind.empty()) throw Error("needed is line, polyline or curve");
+    if (kind.empty()) throw Error("must have one of line, polyline, curve");
     return kind;
 }
 
 void add_feature(const Json& entry, std::optional<Features>& features) {
     const std::string kind = kind_of(entry);
     const Json& shapes = array(entry[kind], "key shapes");
-    if (shapes.size() > 64) throw Error("allowed are up to 64 key shapes");
+    if (shapes.size() > 64) throw Error("there must be at most 64 key shapes");
     if (!features) features.emplace(static_cast<int>(shapes.size()));
     const double weight = entry.contains("weight") ? number(entry["weight"]) : 1;
     std::string name;
     if (entry.contains("name")) {
-        if (!entry["name"].is_string()) throw Error("name: needed is a text");
+        if (!entry["name"].is_string()) throw Error("name: must be a text in quotes");
         name = excerpt(entry["name"].get_ref<const std::string&>());
     }
     if (kind == "line") {
@@ -94,12 +93,11 @@ double border_weight(const Json& value) {
 }
 
 // --- CSV
-// ----------------------------------------------------------------------------------------------------
 
 std::vector<double> read_row(std::string_view row) {
     const std::vector<std::string_view> fields = text_file::fields_of(row);
     if (fields.size() < 8 || fields.size() > 9)
-        throw Error("needed are 8 numbers, ax0,ay0,ax1,ay1,bx0,by0,bx1,by1, and perhaps a weight, not " +
+        throw Error("must be 8 numbers, ax0,ay0,ax1,ay1,bx0,by0,bx1,by1, and a weight if wanted, not " +
                     std::to_string(fields.size()));
     std::vector<double> values;
     for (const std::string_view field : fields) values.push_back(text_file::number(field));
@@ -111,12 +109,12 @@ std::vector<double> read_row(std::string_view row) {
 Features parse_features_json(std::string_view text, std::string_view name) {
     text_file::check_size(text, name);
     const Json json = text_file::parse_json(text, name);
-    if (!json.is_object()) fail(name, "", "needed is an object with features");
+    if (!json.is_object()) fail(name, "", "must be an object with features");
     for (const auto& [key, value] : json.items())
         if (key != "features" && key != "sizes" && key != "pin_border")
-            fail(name, excerpt(key), "allowed are features, sizes, pin_border");
+            fail(name, excerpt(key), "must be one of features, sizes, pin_border");
     if (!json.contains("features") || !json["features"].is_array() || json["features"].empty())
-        fail(name, "features", "needed is a list of one or more features");
+        fail(name, "features", "must be a list of one or more features");
 
     std::optional<Features> features;
     std::size_t i = 0;
@@ -146,13 +144,13 @@ Features parse_features_csv(std::string_view text, std::string_view name) {
         });
         check_feature_count(features, name, label);
     });
-    if (features.size() == 0) fail(name, "", "needed is one pair of lines or more");
+    if (features.size() == 0) fail(name, "", "must have one pair of lines or more");
     return features;
 }
 
 void check_feature_count(const Features& features, std::string_view file, const std::string& entry) {
     if (features.size() > kMaxFeatures)
-        fail(file, entry, "allowed are at most " + std::to_string(kMaxFeatures) + " lines");
+        fail(file, entry, "must have at most " + std::to_string(kMaxFeatures) + " lines");
 }
 
 Features parse_features_file(std::string_view text, std::string_view name) {

@@ -18,7 +18,6 @@ using text_file::take_number;
 using Vertex = Point<double>;
 
 // --- the lists of numbers in attributes
-// -----------------------------------------------------------------------
 
 void skip_blanks(std::string_view& text) {
     while (!text.empty() && (text.front() == ' ' || text.front() == ',' || text.front() == '\t' ||
@@ -31,7 +30,8 @@ double next_number(std::string_view& text) {
     skip_blanks(text);
     const std::string_view at = text;
     double value;
-    if (!take_number(text, value)) throw Error("needed is a number at \"" + excerpt(at.substr(0, 20)) + "\"");
+    if (!take_number(text, value))
+        throw Error("there must be a number at \"" + excerpt(at.substr(0, 20)) + "\"");
     return value;
 }
 
@@ -41,12 +41,11 @@ double number_of(const pugi::xml_node& node, const char* attribute) {
     const double value = next_number(text);
     if (!text.empty() && text != "px")
         throw Error(std::string(attribute) + "=\"" + excerpt(node.attribute(attribute).value()) +
-                    "\": allowed are numbers of user units");
+                    "\": must be a number of user units");
     return value;
 }
 
 // --- transforms
-// -------------------------------------------------------------------------------------------------
 
 /// x' = a x + c y + e, y' = b x + d y + f.
 struct Transform {
@@ -59,7 +58,7 @@ struct Transform {
     }
     Transform inverse() const {
         const double det = a * d - b * c;
-        if (!(std::fabs(det) > 0)) throw Error("transform: allowed are those that can be undone");
+        if (!(std::fabs(det) > 0)) throw Error("transform: must be one that can be undone");
         return {d / det, -b / det, -c / det, a / det, (c * f - d * e) / det, (b * e - a * f) / det};
     }
 };
@@ -101,7 +100,6 @@ Transform parse_transform(std::string_view text) {
 }
 
 // --- shapes
-// -----------------------------------------------------------------------------------------------------
 
 /// A segment of a chain behind its first vertex: a straight line to `to`, or a cubic.
 struct Segment {
@@ -134,7 +132,7 @@ class PathReader {
                 command = c;
                 m_text.remove_prefix(1);
             } else if (command == 'Z' || command == 'z' || command == 0)
-                throw Error("d: needed is a command at \"" + excerpt(m_text.substr(0, 20)) + "\"");
+                throw Error("d: there must be a command at \"" + excerpt(m_text.substr(0, 20)) + "\"");
             step(command);
             // Pairs that follow a move are lines.
             if (command == 'M') command = 'L';
@@ -238,7 +236,7 @@ std::vector<Chain> read_points(std::string_view text, bool closed) {
         const double x = next_number(text);
         points.push_back({x, next_number(text)});
     }
-    if (points.size() < 2) throw Error("points: needed are two or more");
+    if (points.size() < 2) throw Error("points: must be two or more");
     Chain chain{points[0], {}};
     for (std::size_t i = 1; i < points.size(); ++i) chain.line_to(points[i]);
     if (closed) chain.close();
@@ -260,7 +258,6 @@ std::vector<Chain> chains_of(const pugi::xml_node& node) {
 }
 
 // --- the document
-// -----------------------------------------------------------------------------------------------
 
 struct Drawing {
     std::string id, label;
@@ -272,7 +269,8 @@ struct Drawing {
 struct Layer {
     std::string label;
     std::vector<Drawing> drawings;
-    /// From user units to pixels of the picture, and that picture's size, where the layer holds one.
+    /// The transform from user units to pixels of the picture, and that picture's size, where the layer
+    /// holds one.
     std::optional<Transform> to_picture;
     Features::Frame frame;
 };
@@ -319,7 +317,7 @@ class DocumentReader {
         Drawing drawing{node.attribute("id").value(), node.attribute("inkscape:label").value(), 1,
                         chains_of(node)};
         if (drawing.chains.empty()) return;
-        if (drawing.name().empty()) throw Error("an id is needed");
+        if (drawing.name().empty()) throw Error("must have an id");
         if (node.attribute("data-weight")) drawing.weight = number_of(node, "data-weight");
         for (Chain& chain : drawing.chains) apply(transform, chain);
         layer.drawings.push_back(std::move(drawing));
@@ -351,7 +349,6 @@ class DocumentReader {
 };
 
 // --- what belongs together
-// ----------------------------------------------------------------------------------------
 
 /// An id without a tail that names its layer: "brow_a" in layer A.
 std::string without_layer(const std::string& id, const std::string& layer) {
@@ -385,7 +382,7 @@ std::string in_layer(const Drawing& drawing, const Layer& layer) {
     return excerpt(drawing.name()) + " in layer " + excerpt(layer.label);
 }
 
-/// For every drawing of the first layer, the one of each layer that belongs to it.
+/// Lists for every drawing of the first layer the one of each layer that belongs to it.
 std::vector<std::vector<const Drawing*>> partners(const std::vector<Layer>& layers, std::string_view file) {
     const Layer& first = layers[0];
     Names labels, ids;
@@ -475,10 +472,10 @@ Features parse_features_svg(std::string_view text, std::string_view name) {
     if (!parsed)
         fail(name, "byte " + std::to_string(parsed.offset), std::string("no XML: ") + parsed.description());
     const pugi::xml_node root = document.child("svg");
-    if (!root) fail(name, "", "needed is an svg element");
+    if (!root) fail(name, "", "must be an svg element");
     const std::vector<Layer> layers = DocumentReader(name).read(root);
     if (layers.size() < 2 || layers.size() > 64)
-        fail(name, "", "needed are two layers with lines or more, not " + std::to_string(layers.size()));
+        fail(name, "", "must have from 2 to 64 layers with lines, not " + std::to_string(layers.size()));
     Features features(static_cast<int>(layers.size()));
     for (const std::vector<const Drawing*>& shapes : partners(layers, name)) {
         const std::string entry = excerpt(shapes[0]->name());

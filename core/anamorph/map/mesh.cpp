@@ -28,7 +28,7 @@ std::string text_of(int column, int row) {
 void check_count(const std::string& name, const char* what, double value, double least, double most) {
     if (!(value >= least && value <= most))
         throw Error(name + ": " + what, text_of(value),
-                    "allowed is " + text_of(least) + " to " + text_of(most));
+                    "must be from " + text_of(least) + " to " + text_of(most));
 }
 
 /// The lines in pixels, from edge to edge of an image of `size` pixels; `before` counts those added in front.
@@ -43,13 +43,13 @@ std::vector<double> lines_of(const std::vector<double>& given, int cells, int si
     }
     if (given.size() != lines.size())
         throw Error(name + ": " + key, std::to_string(given.size()) + " lines",
-                    "needed are " + std::to_string(lines.size()));
+                    "must be " + std::to_string(lines.size()));
     const double unit = units == Units::pixels ? 1 : size;
     for (std::size_t i = 0; i < lines.size(); ++i) {
         lines[i] = given[i] * unit;
         if (!(std::fabs(lines[i]) <= ControlMesh::kMaxPosition) || (i > 0 && !(lines[i] > lines[i - 1])))
             throw Error(name + ": " + key + "[" + std::to_string(i) + "]", text_of(given[i]),
-                        "allowed are ascending positions");
+                        "positions must ascend");
         // Cells so thin that their derivatives lose all digits.
         if (i > 0 && !(lines[i] - lines[i - 1] >= 1e-6))
             throw Error(name + ": " + key + "[" + std::to_string(i) + "]", text_of(given[i]),
@@ -104,12 +104,10 @@ double largest(const Point<double>& p) {
     return std::max(std::fabs(p.x), std::fabs(p.y));
 }
 
-// For the rounding of bounds that are sums themselves.
+// This factor covers the rounding of bounds that are sums themselves.
 constexpr double kSlack = 1 + 0x1p-40;
 
 }  // namespace
-
-// ----------------------------------------------------------------------------------------------------------
 
 /// Builds the levels above 0.
 class Mesh::Refiner {
@@ -153,7 +151,7 @@ class Mesh::Refiner {
             count += m_cut[k].size();
             if (count > ControlMesh::kMaxVertices / 16)
                 throw Error(m_name + ": levels", std::to_string(count) + " cells to cut",
-                            "allowed are " + std::to_string(ControlMesh::kMaxVertices / 16));
+                            "must be at most " + std::to_string(ControlMesh::kMaxVertices / 16));
             if (k == 0) break;
             for (const auto& [row, column] : m_cut[k])
                 for (const Place& p : {Place{row, column}, Place{row - 1, column}, Place{row + 1, column},
@@ -219,7 +217,7 @@ class Mesh::Refiner {
             if (v.column < 0 || v.column > m_given.columns << level || v.row < 0 ||
                 v.row > m_given.rows << level)
                 throw Error(entry, text_of(v.column, v.row),
-                            "allowed are columns 0 to " + std::to_string(m_given.columns << level) +
+                            "must be in columns 0 to " + std::to_string(m_given.columns << level) +
                                 " and rows 0 to " + std::to_string(m_given.rows << level));
             const Place place{v.row + (m_before_y << level), v.column + (m_before_x << level)};
             values[place] = m_mesh.displacement(
@@ -288,8 +286,6 @@ class Mesh::Refiner {
     std::map<Place, int> m_node_at;  ///< of the level built last
 };
 
-// ----------------------------------------------------------------------------------------------------------
-
 Mesh::Mesh(const ControlMesh& mesh, const Size& from, const Size& to, double amount, const std::string& name)
     : m_from(from), m_to(to) {
     check_count(name, "columns", mesh.columns, 1, ControlMesh::kMaxCells);
@@ -297,10 +293,10 @@ Mesh::Mesh(const ControlMesh& mesh, const Size& from, const Size& to, double amo
     const int across = mesh.columns + 1, down = mesh.rows + 1;
     if (mesh.vertices.size() != static_cast<std::size_t>(across) * static_cast<std::size_t>(down))
         throw Error(name + ": vertices", std::to_string(mesh.vertices.size()) + " positions",
-                    "needed are " + std::to_string(across) + " x " + std::to_string(down));
+                    "must be " + std::to_string(across) + " x " + std::to_string(down));
     check_count(name, "vertices", static_cast<double>(mesh.vertices.size()), 4, ControlMesh::kMaxVertices);
     check_count(name, "levels", static_cast<double>(mesh.levels.size()), 0, ControlMesh::kMaxLevels);
-    if (!std::isfinite(amount)) throw Error("amount", text_of(amount), "allowed are finite numbers");
+    if (!std::isfinite(amount)) throw Error("amount", text_of(amount), "must be a finite number");
     m_scale = {static_cast<double>(to.width) / from.width, static_cast<double>(to.height) / from.height};
 
     int before_x = 0, before_y = 0;
@@ -331,7 +327,7 @@ Mesh::Mesh(const ControlMesh& mesh, const Size& from, const Size& to, double amo
     m_orientation = turned_area() > 0 ? -1 : 1;
 }
 
-/// Of a vertex at (x, y); `entry()` names it.
+/// The displacement of a vertex at (x, y); `entry()` names it.
 template <class Entry>
 Mesh::Uncertain Mesh::displacement(const Point<double>& to, Units units, double x, double y, double amount,
                                    const Entry& entry) const {
@@ -340,7 +336,7 @@ Mesh::Uncertain Mesh::displacement(const Point<double>& to, Units units, double 
                        pixels ? Number(to.y) : Number(to.y) * Number(m_to.height)};
     if (!(at.x.size() <= ControlMesh::kMaxPosition && at.y.size() <= ControlMesh::kMaxPosition))
         throw Error(entry(), "[" + text_of(to.x) + ", " + text_of(to.y) + "]",
-                    "allowed are numbers that stand for at most 1e8 pixels");
+                    "must stand for at most 1e8 pixels");
     const auto moved = [&](const Number& there, double line, int to_size, int from_size) {
         return (there - place(line) * (Number(to_size) / Number(from_size))) * Number(amount);
     };
@@ -388,7 +384,7 @@ void Mesh::extend(int before_x, int before_y, int across, int down) {
     if (bottom <= rows()) rows_from(bottom - 1, bottom - 2, bottom);
 }
 
-/// The area in "from" of the cells of level 0 that are turned over, less that of those that are not.
+/// The area in "from" of the cells of level 0 that are flipped, less that of those that are not.
 double Mesh::turned_area() const {
     const auto position = [&](int c, int r) {
         return m_values[index(c, r)] +
@@ -397,7 +393,7 @@ double Mesh::turned_area() const {
     double area = 0;
     for (int r = 0; r < rows(); ++r)
         for (int c = 0; c < columns(); ++c) {
-            // Of a quadrilateral: the product of its diagonals.
+            // Twice the area of a quadrilateral is the product of its diagonals.
             const Point<double> p = position(c + 1, r + 1) - position(c, r),
                                 q = position(c, r + 1) - position(c + 1, r);
             const double turn = p.x * q.y - p.y * q.x;
@@ -461,7 +457,7 @@ MeshCell Mesh::leaf_at(double x, double y, bool left, bool above) const {
 MeshCell Mesh::cell_at(double x, double y) const {
     MeshCell cell = leaf_at(x, y, false, false);
     if (cell.level == 0 || (x != cell.x0 && y != cell.y0)) return cell;
-    // On an edge: the coarsest of the cells around.
+    // A point on an edge belongs to the coarsest of the cells around.
     for (const auto& [left, above] : {std::pair{true, false}, {false, true}, {true, true}}) {
         const MeshCell other = leaf_at(x, y, left, above);
         if (other.level < cell.level) cell = other;

@@ -7,10 +7,10 @@
 // identity, which maps the one image onto the other as a whole: the patches reproduce linear functions, so
 // this is the same map, and without displacement it is the identity to the bit.
 //
-// Smoothness. Each vertex of a level has one value and one set of derivatives, read by all cells around it:
-// the map is C1. A vertex with a cell beside it that is not cut takes all of them from the coarser patch, so
-// that the map is C1 across levels too. A point on an edge between two levels is evaluated in the coarser
-// cell.
+// Smoothness. Each vertex of a level has one value and one set of derivatives, read by all cells around
+// it: the map is C1. A vertex beside a cell that is not subdivided takes all of them from the coarser
+// patch, so that the map is C1 across levels too. A point on an edge between two levels is evaluated in
+// the coarser cell.
 #pragma once
 
 #include <array>
@@ -55,7 +55,7 @@ struct Patch {
     }
 };
 
-/// A cell that is not cut.
+/// A cell that is not subdivided.
 struct MeshCell {
     int level = 0, column = 0, row = 0;  ///< on the lattice of its level
     int node = -1;                       ///< the mesh's own; -1 at level 0
@@ -126,7 +126,7 @@ class Mesh {
     /// The map.
     Point<double> at(double x, double y) const { return at(patch(cell_at(x, y)), x, y); }
 
-    /// +1, or -1 where most of the mesh (of the area that its cells take in "from") is turned over.
+    /// +1, or -1 where most of the mesh (of the area that its cells take in "from") is flipped.
     double orientation() const { return m_orientation; }
 
   private:
@@ -164,7 +164,7 @@ class Mesh {
     /// A line's position with its rounding, whatever its level.
     Tracked<double> place(double line) const { return {line, m_line_rounding * std::fabs(line)}; }
     Knot knot_at(const MeshCell& cell, int corner) const;
-    /// Of each element of a patch's geometry, in either coordinate: how far it is from what the given numbers
+    /// How far each element of a patch's geometry is, in either coordinate, from what the given numbers
     /// define.
     using ElementErrors = std::array<std::array<double, 4>, 4>;
     ElementErrors element_errors(const MeshCell& cell) const;

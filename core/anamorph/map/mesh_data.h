@@ -17,12 +17,11 @@ namespace anamorph {
 
 enum class Units { pixels, fractions };
 
-/// pull: the mesh lies in the target image, and its vertices say where in the source they come from.
-/// push: the mesh lies in the source image, and its vertices say where in the target they go (what one
-/// drags).
+/// pull: the mesh lies in the target image, and its vertices say where in the source they come from. push:
+/// the mesh lies in the source image, and its vertices, which one drags, say where in the target they go.
 enum class Direction { pull, push };
 
-/// A rectangular mesh of columns x rows cells, any of which may be cut into four, to any depth.
+/// A rectangular mesh of columns x rows cells, any of which may be subdivided into four, to any depth.
 struct ControlMesh {
     static constexpr int kMaxCells = 8192;        ///< columns and rows, each
     static constexpr int kMaxVertices = 1 << 24;  ///< of all levels together
@@ -31,13 +30,14 @@ struct ControlMesh {
 
     Units units = Units::pixels;
     Direction direction = Direction::pull;
-    /// Of the image that the mesh was made of, an ST-map; 0: of none.
+    /// The size of the ST-map that the mesh was made of; 0 where there is none.
     int width = 0, height = 0;
     int columns = 1, rows = 1;
     /// (columns + 1) (rows + 1) of them, row by row from the top left.
     std::vector<Point<double>> vertices;
-    /// Where the lines of the mesh stand: columns + 1 and rows + 1 ascending positions. Empty: evenly, from
-    /// edge to edge of the image. Between the outermost lines and the edges the map goes on linearly.
+    /// Where the lines of the mesh stand: columns + 1 and rows + 1 ascending positions. When empty, the
+    /// lines are spread evenly from edge to edge of the image. Between the outermost lines and the edges
+    /// the map goes on linearly.
     std::vector<double> x_lines, y_lines;
 
     struct Cell {
@@ -48,10 +48,10 @@ struct ControlMesh {
         int column, row;
         Point<double> at;
     };
-    /// Level k = 1, 2 ... (levels[k - 1]): cells of level k - 1 that are cut into four, and the vertices
-    /// known at level k, whose lattice has 2^k columns by 2^k rows of cells in each cell of level 0. Vertices
-    /// that are not given, and those on a cell that is not cut (T-vertices, whatever is given for them), take
-    /// their value from the coarser model.
+    /// Level k = 1, 2 ... (levels[k - 1]): cells of level k - 1 that are subdivided into four, and the
+    /// vertices known at level k, whose lattice has 2^k columns by 2^k rows of cells in each cell of level
+    /// 0. Vertices that are not given, and those on a cell that is not subdivided (T-vertices, whatever is
+    /// given for them), take their value from the coarser model.
     struct Level {
         std::vector<Cell> cells;
         std::vector<Vertex> vertices;

@@ -34,7 +34,7 @@ class Entry {
 
     const Json& value() const { return m_value; }
 
-    [[noreturn]] void refuse(const std::string& needed) const { throw Error(m_path, shown(m_value), needed); }
+    [[noreturn]] void refuse(const std::string& rule) const { throw Error(m_path, shown(m_value), rule); }
 
     Entry operator[](std::size_t i) const { return {m_value[i], m_path + "[" + std::to_string(i) + "]"}; }
     Entry at(const char* key) const {
@@ -47,32 +47,32 @@ class Entry {
 
     /// An object with no keys but these.
     void expect_object(std::initializer_list<const char*> keys) const {
-        if (!m_value.is_object()) refuse("an object is needed");
+        if (!m_value.is_object()) refuse("must be an object");
         for (const auto& item : m_value.items()) {
             const std::string& key = item.key();
             if (std::any_of(keys.begin(), keys.end(), [&](const char* k) { return key == k; })) continue;
             std::string known;
             for (const char* k : keys) known += (known.empty() ? "" : ", ") + std::string(k);
-            throw Error(m_path + "\"" + excerpt(key) + "\": no such key, known are " + known);
+            throw Error(m_path + "\"" + excerpt(key) + "\": no such key; the keys are " + known);
         }
     }
     std::size_t expect_list(std::size_t most) const {
-        if (!m_value.is_array()) refuse("a list is needed");
-        if (m_value.size() > most) refuse("allowed are at most " + std::to_string(most) + " entries");
+        if (!m_value.is_array()) refuse("must be a list");
+        if (m_value.size() > most) refuse("must have at most " + std::to_string(most) + " entries");
         return m_value.size();
     }
     void expect_tuple(std::size_t size) const {
         if (!m_value.is_array() || m_value.size() != size)
-            refuse("a list of " + std::to_string(size) + " numbers is needed");
+            refuse("must be a list of " + std::to_string(size) + " numbers");
     }
     double number() const {
-        if (!m_value.is_number()) refuse("a number is needed");
+        if (!m_value.is_number()) refuse("must be a number");
         return m_value.get<double>();
     }
     int whole(int least, int most) const {
         const double v = number();
         if (!(v >= least && v <= most && v == std::floor(v)))
-            refuse("allowed are whole numbers from " + std::to_string(least) + " to " + std::to_string(most));
+            refuse("must be an integer from " + std::to_string(least) + " to " + std::to_string(most));
         return static_cast<int>(v);
     }
     /// The number of the word among `words`.
@@ -83,7 +83,7 @@ class Entry {
             if (m_value.is_string() && m_value.get_ref<const std::string&>() == w) return i;
             known += (i++ ? " or \"" : "\"") + std::string(w) + "\"";
         }
-        refuse("allowed is " + known);
+        refuse("must be " + known);
     }
 
   private:
@@ -143,7 +143,8 @@ ControlMesh control_mesh(const Entry& top) {
     const std::size_t count = vertices.expect_list(ControlMesh::kMaxVertices);
     const std::size_t across = static_cast<std::size_t>(mesh.columns) + 1,
                       needed = across * (static_cast<std::size_t>(mesh.rows) + 1);
-    if (count != needed) vertices.refuse("needed are (columns + 1) (rows + 1) = " + std::to_string(needed));
+    if (count != needed)
+        vertices.refuse("must have (columns + 1) (rows + 1) = " + std::to_string(needed) + " entries");
     mesh.vertices.reserve(count);
     for (std::size_t i = 0; i < count; ++i) {
         const Entry vertex = vertices[i];
@@ -181,7 +182,7 @@ WarpMap parse_mesh_json(std::string_view text, std::string_view name) {
     text_file::check_size(text, name);
     const Json json = text_file::parse_json(text, name);
     const Entry top(json, excerpt(name) + ": ");
-    if (!json.is_object()) fail(name, "", "an object with \"vertices\" or \"points\" is needed");
+    if (!json.is_object()) fail(name, "", "must be an object with \"vertices\" or \"points\"");
     if (top.has("points")) return {excerpt(name), control_points(top)};
     return {excerpt(name), control_mesh(top)};
 }
@@ -197,13 +198,13 @@ WarpMap parse_points_csv(std::string_view text, std::string_view name) {
         text_file::in_entry(name, label, [&] {
             const std::vector<std::string_view> fields = text_file::fields_of(row);
             if (fields.size() != 4)
-                throw Error("needed are four numbers x,y,u,v, not " + std::to_string(fields.size()));
+                throw Error("must be four numbers x,y,u,v, not " + std::to_string(fields.size()));
             double v[4];
             for (std::size_t i = 0; i < 4; ++i) v[i] = text_file::number(fields[i]);
             points.pairs.push_back({v[0], v[1], v[2], v[3]});
         });
         if (points.pairs.size() > ControlPoints::kMaxPoints)
-            fail(name, label, "allowed are at most " + std::to_string(ControlPoints::kMaxPoints) + " points");
+            fail(name, label, "must have at most " + std::to_string(ControlPoints::kMaxPoints) + " points");
     });
     return {excerpt(name), std::move(points)};
 }
@@ -217,7 +218,7 @@ WarpMap mesh_from_stmap(const float* uv, int width, int height, std::ptrdiff_t p
     if (width < 2 || height < 2)
         throw Error(excerpt(name), std::to_string(width) + "x" + std::to_string(height),
                     "an ST-map has at least 2 pixels either way");
-    if (step < 1) throw Error("step", std::to_string(step), "allowed are whole numbers from 1");
+    if (step < 1) throw Error("step", std::to_string(step), "must be an integer of at least 1");
     // Every step-th pixel, and the last.
     const auto taken = [&](int size) {
         std::vector<int> pixels;
@@ -236,7 +237,7 @@ WarpMap mesh_from_stmap(const float* uv, int width, int height, std::ptrdiff_t p
         columns.size() * rows.size() > ControlMesh::kMaxVertices)
         throw Error(excerpt(name),
                     std::to_string(columns.size()) + "x" + std::to_string(rows.size()) + " vertices",
-                    "allowed are at most " + std::to_string(ControlMesh::kMaxVertices) + ", and " +
+                    "must be at most " + std::to_string(ControlMesh::kMaxVertices) + ", with at most " +
                         std::to_string(ControlMesh::kMaxCells) + " cells either way: take a larger step");
     for (const int x : columns) mesh.x_lines.push_back((x + 0.5) / width);
     for (const int y : rows) mesh.y_lines.push_back((y + 0.5) / height);
@@ -246,7 +247,7 @@ WarpMap mesh_from_stmap(const float* uv, int width, int height, std::ptrdiff_t p
             const float* at = uv + y * row_stride + x * pixel_stride;
             if (!std::isfinite(at[0]) || !std::isfinite(at[1]))
                 throw Error(excerpt(name) + ": pixel [" + std::to_string(x) + ", " + std::to_string(y) + "]",
-                            std::to_string(at[0]) + "," + std::to_string(at[1]), "allowed are numbers");
+                            std::to_string(at[0]) + "," + std::to_string(at[1]), "must be finite numbers");
             mesh.vertices.push_back({at[0], at[1]});
         }
     return {excerpt(name), std::move(mesh)};

@@ -5,17 +5,18 @@
 // A mesh in JSON (positions as in mesh_data.h; keys in any order, others are refused):
 //
 //     {
-//       "direction": "pull",        pull: vertices of the target -> source (the default); push: source ->
-//       target "units": "pixels",          pixels (the default) or fractions "columns": 2, "rows": 1, cells
+//       "direction": "pull",        pull (the default): vertices in the target say where in the source they
+//                                   come from; push: vertices in the source say where in the target they go
+//       "units": "pixels",          pixels (the default) or fractions
+//       "columns": 2, "rows": 1,    cells
 //       "vertices": [[0, 0], [99.5, 4], [200, 0],  [0, 100], [101, 96], [200, 100]],
 //                                   (columns + 1) (rows + 1) positions, row by row from the top left
 //       "x": [0, 100, 200],         optional: where the lines stand, ascending; else evenly, edge to edge
 //       "y": [0, 100],
-//       "levels": [                 optional: cells cut into four, level by level
+//       "levels": [                 optional: cells subdivided into four, level by level
 //         {"cells": [[1, 0]],       column and row of cells of the level above (here: of the mesh itself)
-//          "vertices": [[3, 1, 151, 52]]}    column and row on the lattice of this level (here: 5 x 3),
-//          position
-//       ]
+//          "vertices": [[3, 1, 151, 52]]}    column and row on the lattice of this level (here: 5 x 3), and
+//       ]                                    the position
 //     }
 //
 // Pairs of points in JSON, x, y in the target and u, v in the source:

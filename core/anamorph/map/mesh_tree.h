@@ -47,7 +47,8 @@ class BoundsTree {
 
   private:
     static constexpr std::size_t kLeaf = 4;
-    /// In depth first order: the first child follows its parent; `next` is the node after all descendants.
+    /// The nodes are in depth-first order: the first child follows its parent; `next` is the node after
+    /// all descendants.
     struct Node {
         Bounds bounds;
         std::size_t next;

@@ -58,7 +58,7 @@ std::vector<Node> nodes_of(const ControlPoints& points, const Size& from, const 
     if (points.pairs.empty()) throw Error(name + ": there are no points");
     if (points.pairs.size() > ControlPoints::kMaxPoints)
         throw Error(name + ": points", std::to_string(points.pairs.size()),
-                    "allowed are at most " + std::to_string(ControlPoints::kMaxPoints));
+                    "must be at most " + std::to_string(ControlPoints::kMaxPoints));
     const bool pixels = points.units == Units::pixels;
     std::vector<Node> nodes;
     nodes.reserve(points.pairs.size() + 4);
@@ -73,7 +73,7 @@ std::vector<Node> nodes_of(const ControlPoints& points, const Size& from, const 
         for (const Number& v : {at.x, at.y, there.x, there.y})
             if (!(v.size() <= ControlMesh::kMaxPosition))
                 throw Error(name + ": points[" + std::to_string(i) + "]", text_of(rounded(v)),
-                            "allowed are numbers that stand for at most 1e8 pixels");
+                            "must stand for at most 1e8 pixels");
         const Vector d{moved(there.x, at.x, to.width, from.width),
                        moved(there.y, at.y, to.height, from.height)};
         if (!(d.x.size() <= 1e11 && d.y.size() <= 1e11))
@@ -215,7 +215,7 @@ struct Element {
     Number area;  ///< twice it
 
     Vector difference(std::size_t to, std::size_t from) const { return v[to]->at - v[from]->at; }
-    /// From corner k to the middle.
+    /// The vector from corner k to the middle.
     Vector to_middle(std::size_t k) const {
         return (difference((k + 1) % 3, k) + difference((k + 2) % 3, k)) * (Number(1) / Number(3));
     }
@@ -236,8 +236,8 @@ CubicTriangle frame_of(const Element& e, std::size_t i, std::size_t j, const Vec
     p.corner[2] = {rounded(middle.x), rounded(middle.y)};
     p.base = {std::floor(std::clamp(p.corner[2].x, 0.0, double(image.width))),
               std::floor(std::clamp(p.corner[2].y, 0.0, double(image.height)))};
-    // At the base, counted from the nearest corner of the triangle, where the coordinates are (1, 0), (0, 1),
-    // or at the one across, (-1, -1).
+    // The coordinates at the base are counted from the nearest corner of the triangle, where the
+    // coordinates are (1, 0), (0, 1), or at the one across, (-1, -1).
     const std::size_t k = 3 - i - j;
     const Vector base{Number(p.base.x), Number(p.base.y)};
     const auto distance = [&](std::size_t n) {
@@ -376,7 +376,7 @@ Bounds CubicTriangle::bounds() const {
 
 bool CubicTriangle::meets(const Bounds& box) const {
     if (!bounds().meets(box)) return false;
-    // All of the rectangle on the far side of an edge: a barycentric coordinate is negative on it.
+    // Where the whole rectangle is on the far side of an edge, a barycentric coordinate is negative on it.
     const double x = 0.5 * (box.x0 + box.x1) - base.x, y = 0.5 * (box.y0 + box.y1) - base.y;
     const double hx = 0.5 * (box.x1 - box.x0), hy = 0.5 * (box.y1 - box.y0);
     const double margin = 1e-9 + 2 * place_error(box);
@@ -390,7 +390,7 @@ bool CubicTriangle::meets(const Bounds& box) const {
 Scattered::Scattered(const ControlPoints& points, const Size& from, const Size& to, double amount,
                      const std::string& name)
     : m_from(from), m_to(to) {
-    if (!std::isfinite(amount)) throw Error("amount", text_of(amount), "allowed are finite numbers");
+    if (!std::isfinite(amount)) throw Error("amount", text_of(amount), "must be a finite number");
     m_scale = {static_cast<double>(to.width) / from.width, static_cast<double>(to.height) / from.height};
     std::vector<Node> nodes = nodes_of(points, from, to, amount, name);
     const std::size_t given = nodes.size();

@@ -18,7 +18,7 @@
 
 namespace anamorph {
 
-/// One cubic: a triangle with an edge of the triangulation and the middle of its triangle as corners.
+/// One cubic on a triangle whose corners are an edge of the triangulation and the middle of its triangle.
 struct CubicTriangle {
     Point<double> corner[3];
     /// Barycentric coordinates for corners 0 and 1 are c + a (x - base.x) + b (y - base.y). The base is a
@@ -53,7 +53,7 @@ struct CubicTriangle {
         double u, v, w;
     };
     Reach reach(const Bounds& box) const;
-    /// With coordinates of at most these magnitudes: the sum of the magnitudes of all terms of a coordinate
+    /// For coordinates of at most these magnitudes, the sum of the magnitudes of all terms of a coordinate
     /// of the displacement, of the errors of its Bezier points, and of its derivatives by the first two
     /// coordinates.
     struct Terms {
@@ -92,7 +92,7 @@ class Scattered {
     }
     Point<double> at(double x, double y) const { return at(triangle_at(x, y), x, y); }
 
-    /// +1, or -1 where the affine map that fits all pairs best turns the image over.
+    /// +1, or -1 where the affine map that fits all pairs best flips the image.
     double orientation() const { return m_orientation; }
 
   private:

@@ -358,7 +358,7 @@ void AddPointSlopes(const PointTerm* const* terms, std::size_t term_count, const
     }
 }
 
-/// Of length 1; 0 for what has no length, or none that is finite.
+/// The vector of length 1 in the same direction; 0 where the length is 0 or not finite.
 HWY_INLINE Triple<L> UnitOf(const Triple<L>& a) {
     const L length = sqrt(dot_product(a, a)), inverse = L(1.0) / length;
     const L::M good = both(L(0.0) < length, length < L(HUGE_VAL));

@@ -15,8 +15,9 @@ namespace anamorph::simd {
 
 /// Rounding by adding 1.5 * 2^52 holds up to here.
 inline constexpr double kMostUnits = 0x1p50;
-/// Of a kernel's value, in units of 2^-53: the distance over the extent errs by 2.5, times the kernel's
-/// greatest change with it, 2 t^2 e^(-t^2) <= 0.74, each way; the exponential function and products by 8.
+/// The error of a kernel's value, in units of 2^-53: the distance over the extent errs by 2.5, times the
+/// kernel's greatest change with it, 2 t^2 e^(-t^2) <= 0.74, each way; the exponential function and
+/// products by 8.
 inline constexpr double kKernelError = 16;
 
 inline constexpr int kGridBlock = 32;  ///< columns that are culled together; tables are padded to it

@@ -75,7 +75,7 @@ std::optional<Frame> frame_along(const double* origin, const double* axis1, cons
     return frame;
 }
 
-/// Of the last update, or else of the two directions that are longest.
+/// The plane of the last update, or else of the two directions that are longest.
 std::optional<Frame> automatic_frame(vtkSMProxy* deform) {
     auto* proxy = vtkSMAnamorphDeformProxy::SafeDownCast(deform);
     if (const double* used = proxy ? proxy->GetUsedPlane() : nullptr)

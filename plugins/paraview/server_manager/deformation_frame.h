@@ -30,12 +30,12 @@ struct Frame {
     bool operator==(const Frame&) const = default;
 };
 
-/// That of a deform proxy: from its properties Origin, Axis1 and Axis2, or with AutomaticPlane as
+/// The frame of a deform proxy: from its properties Origin, Axis1 and Axis2, or with AutomaticPlane as
 /// vtkAnamorphDeform had it last, or would take it from bounds. Of texture coordinates: x-y. None while
 /// bounds are not known, or axes are parallel.
 std::optional<Frame> frame_of(vtkSMProxy* deform);
 
-/// Those of its input; false if they are not known.
+/// The bounds of its input; false if they are not known.
 bool input_bounds(vtkSMProxy* deform, double bounds[6]);
 
 }  // namespace anamorph_paraview
