@@ -4,8 +4,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "anamorph/render/block_reader.h"
-
 namespace anamorph {
 namespace {
 
@@ -16,9 +14,16 @@ struct Found {
 };
 
 /// The source points of row j of `part` of a block, as they are used.
-void find_row(const BlockMap& map, const Block& block, const Box& part, int j, Found* found) {
-    alignas(64) float px[simd::kRowRoom], py[simd::kRowRoom];
-    block_row(map, block, part, j, px, py);
+void find_row(const BlockMap& map, const Block& block, const BlockPoints& points, const Box& part, int j,
+              Found* found) {
+    alignas(64) float room[2][simd::kRowRoom];
+    const float *px = room[0], *py = room[1];
+    if (block.kind == Block::Kind::computed) {
+        const std::ptrdiff_t at = (j - block.box.y0) * points.row_stride + part.x0 - block.box.x0;
+        px = points.x + at;
+        py = points.y + at;
+    } else
+        block_row(map, block, part, j, room[0], room[1]);
     for (int i = 0; i < part.width(); ++i) {
         const double x = part.x0 + i + 0.5, y = j + 0.5;
         Found& to = found[i] = {{}, block.source_piece, false};
@@ -72,14 +77,14 @@ void fill_rows(float value, const Box& part, const MapRow& row) {
 
 }  // namespace
 
-void map_rows(const BlockMap& map, const Chart& source, Output output, const Block& block, const Box& part,
-              const MapRow& row) {
+void map_rows(const BlockMap& map, const Chart& source, Output output, const Block& block,
+              const BlockPoints& points, const Box& part, const MapRow& row) {
     if (block.kind == Block::Kind::outside || output == Output::bound)
         return fill_rows(output == Output::stmap ? -1 : static_cast<float>(block.bound), part, row);
     Found found[simd::kMaxRow];
     float values[2 * simd::kMaxRow + 16] = {};
     for (int j = part.y0; j < part.y1; ++j) {
-        find_row(map, block, part, j, found);
+        find_row(map, block, points, part, j, found);
         for (int i = 0; i < part.width(); ++i)
             if (output == Output::stmap)
                 put_point(found[i], source, values + 2 * i);

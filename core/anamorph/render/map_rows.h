@@ -4,6 +4,7 @@
 
 #include <functional>
 
+#include "anamorph/render/block_reader.h"
 #include "anamorph/render/picture.h"
 
 namespace anamorph {
@@ -12,8 +13,8 @@ namespace anamorph {
 using MapRow = std::function<void(int x, int y, int count, const float* values)>;
 
 /// The pixels of `part` of a block, row by row: what `output`, which is not color, names. `source` is the
-/// chart of the block's layer.
-void map_rows(const BlockMap& map, const Chart& source, Output output, const Block& block, const Box& part,
-              const MapRow& row);
+/// chart of the block's layer; `points` are those of a computed block.
+void map_rows(const BlockMap& map, const Chart& source, Output output, const Block& block,
+              const BlockPoints& points, const Box& part, const MapRow& row);
 
 }  // namespace anamorph

@@ -90,9 +90,19 @@ class Painter {
         const auto store = [&](int x, int y, int count, const float* values) {
             m_canvas.store(x, y, count, values);
         };
+        const BlockPlanes planes(1);
         strip.for_each_block([&](const Block& block, const Box& part, const Block*) {
-            map_rows(map, layer.border.chart(), m_picture.output, block, part, store);
+            const BlockPoints points = points_of(map, {&block, 1}, planes) ? planes.points(0) : BlockPoints{};
+            map_rows(map, layer.border.chart(), m_picture.output, block, points, part, store);
         });
+    }
+
+    /// The points of the blocks that all layers have in one place, if they are computed and wanted.
+    bool points_of(const BlockMap& map, std::span<const Block> layers, const BlockPlanes& to) const {
+        if (layers.front().kind != Block::Kind::computed) return false;
+        if (!m_picture.shows_color() && m_picture.output == Output::bound) return false;
+        map.computed(layers, to.rows());
+        return true;
     }
 
     // --- several layers ----------------------------------------------------------------------------------
@@ -116,15 +126,20 @@ class Painter {
         store(pixels, m_canvas);
     }
 
-    /// body(blocks, part) for the blocks, one a layer, of every place that meets a box.
+    /// body(block, layer, points, part) for every block of every layer that meets a box; only computed ones
+    /// have points.
     template <class Body>
-    static void each_place(const BlockMap& map, const Box& box, const Body& body) {
+    void each_block(const BlockMap& map, const Box& box, const Body& body) const {
         const auto layers = static_cast<std::size_t>(map.layers());
+        const BlockPlanes planes(layers);
         for (const std::int64_t region : map.regions_in(box)) {
             const SharedBlocks blocks = map.blocks(region);
             for (std::size_t i = 0; i < blocks.size(); i += layers) {
                 const Box part = intersection(blocks[i].box, box);
-                if (!part.empty()) body(std::span<const Block>(&blocks[i], layers), part);
+                if (part.empty()) continue;
+                const bool known = points_of(map, {&blocks[i], layers}, planes);
+                for (std::size_t k = 0; k < layers; ++k)
+                    body(blocks[i + k], k, known ? planes.points(k) : BlockPoints{}, part);
             }
         }
     }
@@ -134,21 +149,17 @@ class Painter {
         std::deque<BlockReader> readers;
         for (const Picture::Layer& layer : map.layers)
             readers.emplace_back(*map.blocks, source_of(layer), layer.border, m_picture.filter);
-        const BlockPlanes planes(map.layers.size());
-        each_place(*map.blocks, pixels.box, [&](std::span<const Block> blocks, const Box& part) {
-            const bool computed = blocks.front().kind == Block::Kind::computed;
-            if (computed) map.blocks->computed(blocks, planes.rows());
-            for (std::size_t k = 0; k < blocks.size(); ++k) {
-                const double weight = map.layers[k].weight;
+        each_block(
+            *map.blocks, pixels.box,
+            [&](const Block& block, std::size_t k, const BlockPoints& points, const Box& part) {
                 const auto row = [&](int x, int y, int count, const float* values, float one) {
-                    add_row(pixels.at(x, y), count, values, static_cast<float>(weight / double{one}),
-                            first && k == 0);
+                    const double weight = map.layers[k].weight / double{one};
+                    add_row(pixels.at(x, y), count, values, static_cast<float>(weight), first && k == 0);
                 };
-                const bool done = computed ? readers[k].rows(blocks[k], planes.points(k), part, row)
-                                           : readers[k].rows(blocks[k], part, row);
+                const bool done =
+                    points.x ? readers[k].rows(block, points, part, row) : readers[k].rows(block, part, row);
                 if (!done) m_ok = false;
-            }
-        });
+            });
     }
 
     /// Adds a row of pixels, `weight` times. Colour is mixed as it is seen: by its alpha where that is not
@@ -180,16 +191,16 @@ class Painter {
 
     /// Keeps the largest of what the layers of a map say.
     void add_map(const Picture::Map& map, const PixelRows& pixels, bool first) const {
-        each_place(*map.blocks, pixels.box, [&](std::span<const Block> blocks, const Box& part) {
-            for (std::size_t k = 0; k < blocks.size(); ++k) {
-                const auto row = [&](int x, int y, int count, const float* values) {
-                    float* to = pixels.at(x, y);
-                    for (int i = 0; i < count * pixels.channels; ++i)
-                        to[i] = first && k == 0 ? values[i] : std::max(to[i], values[i]);
-                };
-                map_rows(*map.blocks, map.layers[k].border.chart(), m_picture.output, blocks[k], part, row);
-            }
-        });
+        each_block(*map.blocks, pixels.box,
+                   [&](const Block& block, std::size_t k, const BlockPoints& points, const Box& part) {
+                       const auto row = [&](int x, int y, int count, const float* values) {
+                           float* to = pixels.at(x, y);
+                           for (int i = 0; i < count * pixels.channels; ++i)
+                               to[i] = first && k == 0 ? values[i] : std::max(to[i], values[i]);
+                       };
+                       map_rows(*map.blocks, map.layers[k].border.chart(), m_picture.output, block, points,
+                                part, row);
+                   });
     }
 
     const Picture& m_picture;
