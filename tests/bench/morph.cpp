@@ -25,6 +25,7 @@
 #include <memory>
 #include <string>
 
+#include "../core/each_feature_block.h"
 #include "../core/feature_families.h"
 #include "anamorph/approx/near_far.h"
 #include "anamorph/approx/near_far_line.h"
@@ -57,20 +58,11 @@ struct Scene {
     std::size_t pixels() const { return static_cast<std::size_t>(size()) * static_cast<std::size_t>(size()); }
 };
 
-void each_region(int size, const ParallelFor& parallel_for, const std::function<void(const Box&)>& body) {
-    const int n = (size + CellField::kRegion - 1) / CellField::kRegion;
-    parallel_for(n * n, [&](std::int64_t i) {
-        const int x = static_cast<int>(i % n) * CellField::kRegion,
-                  y = static_cast<int>(i / n) * CellField::kRegion;
-        body({x, y, std::min(x + CellField::kRegion, size), std::min(y + CellField::kRegion, size)});
-    });
-}
-
 /// Evaluates both maps at every pixel, those of exact blocks in double.
-void evaluate(const CellField& field, const FeatureMap& map, const ParallelFor& parallel_for) {
-    each_region(map.target().width, parallel_for, [&](const Box& region) {
+void evaluate(const FeatureBlocks& blocks, const FeatureMap& map, const ParallelFor& parallel_for) {
+    parallel_for(blocks.regions(), [&](std::int64_t region) {
         double sum = 0;
-        field.each_block(region, region, [&](int k, const Block& block, const CellPoints& points) {
+        each_feature_block(blocks, region, [&](int k, const Block& block, const BlockPoints& points) {
             if (points.x || k != 0) return;
             for (int y = block.box.y0; y < block.box.y1; ++y)
                 for (int x = block.box.x0; x < block.box.x1; ++x) {
@@ -84,10 +76,10 @@ void evaluate(const CellField& field, const FeatureMap& map, const ParallelFor& 
     });
 }
 
-MapPoints points_of(const CellField& field, const Scene& scene, const ParallelFor& parallel_for) {
+MapPoints points_of(const FeatureBlocks& blocks, const Scene& scene, const ParallelFor& parallel_for) {
     MapPoints points(2 * scene.pixels());
-    each_region(scene.size(), parallel_for, [&](const Box& region) {
-        field.each_block(region, region, [&](int k, const Block& block, const CellPoints& at) {
+    parallel_for(blocks.regions(), [&](std::int64_t region) {
+        each_feature_block(blocks, region, [&](int k, const Block& block, const BlockPoints& at) {
             for (int y = block.box.y0; y < block.box.y1; ++y)
                 for (int x = block.box.x0; x < block.box.x1; ++x) {
                     const std::ptrdiff_t i = (y - block.box.y0) * at.row_stride + x - block.box.x0;
@@ -226,13 +218,9 @@ class Bench {
                         [&scene, all, tol] {
                             return points_of(NearFar(scene.map, {tol, {0, 1}}), scene, all);
                         }};
-            const NearFar field(scene.map, {tol, {0, 1}});
-            c.bound = c.exact_fraction = 0;
-            each_region(scene.size(), serial_for, [&](const Box& region) {
-                const CellField::Tally tally = field.tally(region);
-                c.bound = std::max(c.bound, tally.bound);
-                c.exact_fraction += static_cast<double>(tally.exact_pixels) / double(scene.pixels());
-            });
+            const Reached reached = NearFar(scene.map, {tol, {0, 1}}).reached(serial_for);
+            c.bound = reached.max_error;
+            c.exact_fraction = reached.exact_fraction;
             add(std::move(c));
         }
         for (int levels = 0; with_mesh && levels < 2; ++levels) {

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "anamorph/map/chart.h"
-#include "anamorph/render/draw.h"
+#include "draw_map.h"
 
 namespace anamorph {
 namespace {
@@ -16,7 +16,8 @@ namespace {
 class NumberedMap final : public BlockMap {
   public:
     NumberedMap(int side, std::size_t kept_regions)
-        : BlockMap(side, side, {Box{0, 0, side, side}}, kept_regions), m_columns(side / kRegion) {}
+        : BlockMap(side, side, {Box{0, 0, side, side}}, {.kept_regions = kept_regions}),
+          m_columns(side / kRegion) {}
 
     bool exact(double x, double y, int, Point<double>& at, int& piece) const noexcept override {
         at = {x, y};
@@ -84,7 +85,8 @@ TEST(ConcurrentBlocks, AreDrawnWhole) {
     const Box box{kOffset, kOffset, kOffset + kPart, kOffset + kPart};
     const ImageView view =
         packed_view(reinterpret_cast<std::byte*>(values.data()), PixelType::float32, kPart, kPart, 1);
-    EXPECT_TRUE(draw_blocks(map, border, Filter::bilinear, Output::bound, nullptr, box, view, four_threads));
+    EXPECT_TRUE(
+        test::draw_map(map, border, Filter::bilinear, Output::bound, nullptr, box, view, four_threads));
     for (int y = 0; y < kPart; y += 37)
         for (int x = 0; x < kPart; x += 41)
             ASSERT_EQ(values[static_cast<std::size_t>(y * kPart + x)],

@@ -8,8 +8,8 @@
 #include <random>
 
 #include "anamorph/render/block_reader.h"
-#include "anamorph/render/draw.h"
 #include "anamorph/render/pyramid.h"
+#include "draw_map.h"
 #include "function_map.h"
 #include "guarded_memory.h"
 
@@ -49,8 +49,8 @@ Border border_of(const Source& source, Wrap wrap) {
 
 Picture draw(const BlockMap& map, const Source& source, Filter filter, Wrap wrap = Wrap::clamp) {
     Picture picture(map.width(), map.height(), source.channels());
-    EXPECT_TRUE(draw_blocks(map, border_of(source, wrap), filter, Output::color, &source,
-                            {0, 0, map.width(), map.height()}, picture.view(), serial_for));
+    EXPECT_TRUE(test::draw_map(map, border_of(source, wrap), filter, Output::color, &source,
+                               {0, 0, map.width(), map.height()}, picture.view(), serial_for));
     return picture;
 }
 

@@ -234,7 +234,6 @@ TEST(Morph, TheMeshSaysThatItHoldsNothing) {
     options.mesh_levels = 0;
     options.output = MorphOutput::bound;
     const Morph morph(face(), {kSize, kSize}, kWidth, kHeight, options);
-    EXPECT_EQ(morph.mesh_evaluations(), 169);
     EXPECT_TRUE(std::isinf(morph.reached().max_error));
     EXPECT_TRUE(std::isinf(draw(morph, {nullptr, nullptr}, 1).pixels[0]));
     options.output = MorphOutput::error;
@@ -257,16 +256,16 @@ TEST(Morph, BadParametersAreNamed) {
     MorphOptions options;
     EXPECT_EQ(message(options), "no error");
     options.tol = -1;
-    EXPECT_EQ(message(options), "tol=-1: allowed is 0 (exact) or a finite number of source pixels above it");
+    EXPECT_EQ(message(options), "tol=-1: must be 0 (exact) or a finite number of source pixels above it");
     options = {};
     options.tol = NAN;
     options.scheme = MorphScheme::exact;
     EXPECT_NE(message(options), "no error");
     options = {};
     options.t = NAN;
-    EXPECT_EQ(message(options), "t=nan: allowed is a number from -1e+06 to 1e+06");
+    EXPECT_EQ(message(options), "t=nan: must be a number from -1e+06 to 1e+06");
     options.t = 1e7;
-    EXPECT_EQ(message(options), "t=1e+07: allowed is a number from -1e+06 to 1e+06");
+    EXPECT_EQ(message(options), "t=1e+07: must be a number from -1e+06 to 1e+06");
     options = {};
     options.weight_b = NAN;
     EXPECT_EQ(message(options), "weight_b=nan: must be a number from 0 to 16");
@@ -274,7 +273,7 @@ TEST(Morph, BadParametersAreNamed) {
     EXPECT_NE(message(options, {0, 5}), "no error");
     options.scheme = MorphScheme::mesh;
     options.mesh_cells = 0;
-    EXPECT_EQ(message(options), "mesh_cells=0: allowed is a whole number from 1 to 1024");
+    EXPECT_EQ(message(options), "mesh_cells=0: must be an integer from 1 to 1024");
     options = {};
     for (const std::vector<double>& weights :
          {std::vector<double>{1.5, 1.5}, {0.25, 0.25, 0.5}, {1}, {NAN, 1}, {-1e7, 1e7 + 1}}) {
@@ -283,7 +282,7 @@ TEST(Morph, BadParametersAreNamed) {
         for (const double w : weights) text += (text.empty() ? "" : ",") + shortest(w);
         EXPECT_EQ(message(options),
                   "shape_weights=" + text +
-                      ": allowed are 2 numbers from -1e+06 to 1e+06, one for each picture, with sum 1");
+                      ": must be 2 numbers from -1e+06 to 1e+06, one for each picture, with sum 1");
     }
     options = {};
     options.weight_b = std::nextafter(16.0, 17.0);

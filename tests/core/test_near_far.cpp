@@ -7,9 +7,11 @@
 #include <cmath>
 #include <numbers>
 
+#include "anamorph/approx/near_far_mesh.h"
 #include "anamorph/error.h"
 #include "anamorph/simd/block_sampler.h"
 #include "anamorph/simd/near_far.h"
+#include "each_feature_block.h"
 #include "feature_families.h"
 
 namespace anamorph {
@@ -24,31 +26,25 @@ struct Outcome {
 
 Outcome measure(const FeatureMap& map, double tol) {
     const NearFar field(map, {tol, {0, 1}});
-    const Size size = map.target();
     Outcome out;
-    for (int y = 0; y < size.height; y += CellField::kRegion)
-        for (int x = 0; x < size.width; x += CellField::kRegion) {
-            const Box region = intersection({x, y, x + CellField::kRegion, y + CellField::kRegion},
-                                            {0, 0, size.width, size.height});
-            field.each_block(region, region, [&](int k, const Block& block, const CellPoints& points) {
-                out.bound = std::max(out.bound, block.bound);
-                out.pixels += std::int64_t{block.box.width()} * block.box.height();
-                if (!points.x) {
-                    out.exact_fraction += double(block.box.width()) * block.box.height();
-                    return;
-                }
-                for (int j = block.box.y0; j < block.box.y1; ++j)
-                    for (int i = block.box.x0; i < block.box.x1; ++i) {
-                        const Point<double> truth = map(i + 0.5, j + 0.5, k);
-                        const std::ptrdiff_t at = (j - block.box.y0) * points.row_stride + i - block.box.x0;
-                        const double error = std::hypot(block.base_x + double(points.x[at]) - truth.x,
-                                                        block.base_y + double(points.y[at]) - truth.y);
-                        // A NaN counts as the worst there is.
-                        out.error = std::isnan(error) ? HUGE_VAL : std::max(out.error, error);
-                        out.over = std::isnan(error) ? HUGE_VAL : std::max(out.over, error - block.bound);
-                    }
-            });
+    each_feature_block(field, [&](int k, const Block& block, const BlockPoints& points) {
+        out.bound = std::max(out.bound, block.bound);
+        out.pixels += std::int64_t{block.box.width()} * block.box.height();
+        if (!points.x) {
+            out.exact_fraction += double(block.box.width()) * block.box.height();
+            return;
         }
+        for (int j = block.box.y0; j < block.box.y1; ++j)
+            for (int i = block.box.x0; i < block.box.x1; ++i) {
+                const Point<double> truth = map(i + 0.5, j + 0.5, k);
+                const std::ptrdiff_t at = (j - block.box.y0) * points.row_stride + i - block.box.x0;
+                const double error = std::hypot(block.base_x + double(points.x[at]) - truth.x,
+                                                block.base_y + double(points.y[at]) - truth.y);
+                // A NaN counts as the worst there is.
+                out.error = std::isnan(error) ? HUGE_VAL : std::max(out.error, error);
+                out.over = std::isnan(error) ? HUGE_VAL : std::max(out.over, error - block.bound);
+            }
+    });
     out.exact_fraction /= static_cast<double>(out.pixels);
     return out;
 }
@@ -342,10 +338,10 @@ TEST(NearFar, AHundredThousandLinesHold) {
     const FeatureMap map = map_of(*features, {2000, 2000}, {1, 2, 0.5});
     const NearFar field(map, {1.0 / 16, {0, 1}});
     // One region of many; the truth costs 1e5 lines a pixel.
-    const Box region{640, 640, 768, 768};
+    const std::int64_t region = field.regions_in({640, 640, 641, 641}).front();
     double over = -HUGE_VAL, bound = 0;
     int count = 0;
-    field.each_block(region, region, [&](int k, const Block& block, const CellPoints& points) {
+    each_feature_block(field, region, [&](int k, const Block& block, const BlockPoints& points) {
         bound = std::max(bound, block.bound);
         if (!points.x || count++ % 7) return;
         for (const int at : {0, block.box.width() - 1}) {
@@ -398,29 +394,23 @@ TEST(NearFar, EveryInstructionSetHolds) {
 /// All that a plan says and places: blocks, bounds and points, byte by byte.
 std::vector<std::uint8_t> bytes_of(const FeatureMap& map, double tol) {
     const NearFar field(map, {tol, {0, 1}});
-    const Size size = map.target();
     std::vector<std::uint8_t> bytes;
     const auto put = [&](const auto& value) {
         const auto* at = reinterpret_cast<const std::uint8_t*>(&value);
         bytes.insert(bytes.end(), at, at + sizeof value);
     };
-    for (int y = 0; y < size.height; y += CellField::kRegion)
-        for (int x = 0; x < size.width; x += CellField::kRegion) {
-            const Box region = intersection({x, y, x + CellField::kRegion, y + CellField::kRegion},
-                                            {0, 0, size.width, size.height});
-            field.each_block(region, region, [&](int k, const Block& block, const CellPoints& points) {
-                for (const int n : {k, block.box.x0, block.box.y0, block.box.x1, block.box.y1,
-                                    static_cast<int>(block.kind), int{block.base_x}, int{block.base_y}})
-                    put(n);
-                put(block.bound);
-                if (!points.x) return;
-                for (int j = 0; j < block.box.height(); ++j)
-                    for (int i = 0; i < block.box.width(); ++i) {
-                        put(points.x[j * points.row_stride + i]);
-                        put(points.y[j * points.row_stride + i]);
-                    }
-            });
-        }
+    each_feature_block(field, [&](int k, const Block& block, const BlockPoints& points) {
+        for (const int n : {k, block.box.x0, block.box.y0, block.box.x1, block.box.y1,
+                            static_cast<int>(block.kind), int{block.base_x}, int{block.base_y}})
+            put(n);
+        put(block.bound);
+        if (!points.x) return;
+        for (int j = 0; j < block.box.height(); ++j)
+            for (int i = 0; i < block.box.width(); ++i) {
+                put(points.x[j * points.row_stride + i]);
+                put(points.y[j * points.row_stride + i]);
+            }
+    });
     return bytes;
 }
 
@@ -519,26 +509,21 @@ Outcome against(const std::vector<Point<long double>>& truth, const FeatureMap& 
     const Size size = map.target();
     Outcome out;
     out.over = -HUGE_VAL;
-    const Box whole{0, 0, size.width, size.height};
-    for (int x = 0; x < size.width; x += CellField::kRegion) {
-        const Box region = intersection({x, 0, x + CellField::kRegion, CellField::kRegion}, whole);
-        out.bound = std::max(out.bound, field.tally(region).bound);
-        field.each_block(region, region, [&](int k, const Block& block, const CellPoints& points) {
-            for (int j = block.box.y0; j < block.box.y1; ++j)
-                for (int i = block.box.x0; i < block.box.x1; ++i) {
-                    const std::ptrdiff_t at = (j - block.box.y0) * points.row_stride + i - block.box.x0;
-                    const Point<double> used = points.x ? Point<double>{block.base_x + double(points.x[at]),
-                                                                        block.base_y + double(points.y[at])}
-                                                        : map(i + 0.5, j + 0.5, k);
-                    const Point<long double>& p =
-                        truth[static_cast<std::size_t>((j * size.width + i) * 2 + k)];
-                    const auto error = static_cast<double>(std::hypot(used.x - p.x, used.y - p.y));
-                    out.error = std::isnan(error) ? HUGE_VAL : std::max(out.error, error);
-                    out.over = std::isnan(error) ? HUGE_VAL : std::max(out.over, error - block.bound);
-                    ++out.pixels;
-                }
-        });
-    }
+    out.bound = field.reached(serial_for).max_error;
+    each_feature_block(field, [&](int k, const Block& block, const BlockPoints& points) {
+        for (int j = block.box.y0; j < block.box.y1; ++j)
+            for (int i = block.box.x0; i < block.box.x1; ++i) {
+                const std::ptrdiff_t at = (j - block.box.y0) * points.row_stride + i - block.box.x0;
+                const Point<double> used = points.x ? Point<double>{block.base_x + double(points.x[at]),
+                                                                    block.base_y + double(points.y[at])}
+                                                    : map(i + 0.5, j + 0.5, k);
+                const Point<long double>& p = truth[static_cast<std::size_t>((j * size.width + i) * 2 + k)];
+                const auto error = static_cast<double>(std::hypot(used.x - p.x, used.y - p.y));
+                out.error = std::isnan(error) ? HUGE_VAL : std::max(out.error, error);
+                out.over = std::isnan(error) ? HUGE_VAL : std::max(out.over, error - block.bound);
+                ++out.pixels;
+            }
+    });
     return out;
 }
 
@@ -575,15 +560,40 @@ TEST(NearFar, OneShapeAlone) {
     const auto features = families::Maker(150, 9).make("face", 32);
     const FeatureMap map = map_of(*features, {150, 150}, {1, 2, 0.5});
     const NearFar field(map, {0.05, {1}});
-    const Box region{0, 0, 128, 128};
     double worst = 0;
-    field.each_block(region, region, [&](int k, const Block& block, const CellPoints& points) {
+    each_feature_block(field, [&](int k, const Block& block, const BlockPoints& points) {
         EXPECT_EQ(k, 1);
         const Point<double> truth = map(block.box.x0 + 0.5, block.box.y0 + 0.5, 1);
         worst = std::max(worst, std::hypot(block.base_x + double(points.x[0]) - truth.x,
                                            block.base_y + double(points.y[0]) - truth.y));
     });
     EXPECT_LE(worst, 0.05);
+}
+
+TEST(NearFar, ARowAloneIsThatOfBothShapesTogether) {
+    const auto features = families::Maker(150, 9).make("face", 32);
+    const FeatureMap map = map_of(*features, {150, 150}, {1, 2, 0.5});
+    const NearFar field(map, {0.02, {0, 1}});
+    int compared = 0;
+    each_feature_block(field, [&](int, const Block& block, const BlockPoints& points) {
+        if (!points.x) return;
+        // Every third pixel on, so that rows begin anywhere.
+        const int row = block.box.height() / 2, begin = block.box.width() / 3, end = block.box.width();
+        float x[simd::kRowRoom], y[simd::kRowRoom];
+        field.computed_row(block, row, begin, end, x, y);
+        for (int i = begin; i < end; ++i, ++compared) {
+            ASSERT_EQ(x[i - begin], points.x[row * points.row_stride + i]);
+            ASSERT_EQ(y[i - begin], points.y[row * points.row_stride + i]);
+        }
+    });
+    EXPECT_GT(compared, 1000);
+}
+
+TEST(NearFar, TheMeshIsEvaluatedAtItsVertices) {
+    const auto features = families::Maker(150, 9).make("face", 32);
+    const FeatureMap map = map_of(*features, {150, 150}, {1, 2, 0.5});
+    EXPECT_EQ(FeatureMesh(map, 12, 0, {0, 1}).evaluations(), 169);
+    EXPECT_GT(FeatureMesh(map, 12, 1, {0, 1}).evaluations(), 169);
 }
 
 TEST(NearFar, BadTolerancesAreNamed) {

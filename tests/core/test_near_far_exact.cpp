@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "anamorph/approx/near_far.h"
+#include "each_feature_block.h"
 
 namespace {
 
@@ -39,8 +40,7 @@ Found pixel_of(const std::vector<Line>& first, const std::vector<Line>& second) 
     options.shapes = {0};
     const NearFar plan(map, options);
     Found found{map(15.5, kMiddle, 0).x - 15.5, NAN};
-    plan.each_block({0, 0, kSize, kSize}, {15, 10, 16, 11},
-                    [&](int, const Block& block, const CellPoints&) { found.bound = block.bound; });
+    each_feature_block(plan, [&](int, const Block& block, const BlockPoints&) { found.bound = block.bound; });
     return found;
 }
 

@@ -9,9 +9,9 @@
 #include "anamorph/approx/panorama_plan.h"
 #include "anamorph/approx/taylor.h"
 #include "anamorph/render/block_reader.h"
-#include "anamorph/render/draw.h"
 #include "anamorph/render/footprint.h"
 #include "anamorph/simd/block_sampler.h"
+#include "draw_map.h"
 #include "panorama_oracle.h"
 
 namespace anamorph {
@@ -322,8 +322,8 @@ TEST(PanoramaTruth, TheErrorPictureIsAgainstLongDouble) {
     std::vector<float> pixels(96 * 64);
     const ImageView picture =
         packed_view(reinterpret_cast<std::byte*>(pixels.data()), PixelType::float32, 96, 64, 1);
-    ASSERT_TRUE(draw_blocks(plan, Border(map.source(), Wrap::automatic), Filter::bilinear, Output::error,
-                            nullptr, {0, 0, 96, 64}, picture, serial_for));
+    ASSERT_TRUE(test::draw_map(plan, Border(map.source(), Wrap::automatic), Filter::bilinear, Output::error,
+                               nullptr, {0, 0, 96, 64}, picture, serial_for));
     float most = 0;
     for (int j = 0; j < 64; ++j)
         for (int i = 0; i < 96; ++i) {

@@ -36,11 +36,14 @@ struct BlockMap::Cache {
     std::optional<Reached> reached;
 };
 
-BlockMap::BlockMap(int width, int height, const std::vector<Box>& pieces, std::size_t kept_regions)
-    : m_width(width), m_height(height), m_cache(std::make_shared<Cache>(kept_regions)) {
+BlockMap::BlockMap(int width, int height, const std::vector<Box>& pieces, const BlockLayout& layout)
+    : m_width(width),
+      m_height(height),
+      m_layout(layout),
+      m_cache(std::make_shared<Cache>(layout.kept_regions)) {
+    const int side = layout.region_side;
     for (const Box& box : pieces) {
-        const int columns = (box.width() + kRegion - 1) / kRegion,
-                  rows = (box.height() + kRegion - 1) / kRegion;
+        const int columns = (box.width() + side - 1) / side, rows = (box.height() + side - 1) / side;
         m_grids.push_back({box, m_regions, columns});
         m_regions += std::int64_t{columns} * rows;
     }
@@ -50,9 +53,10 @@ BlockMap::Place BlockMap::place_of(std::int64_t region) const {
     std::size_t piece = m_grids.size() - 1;
     while (m_grids[piece].first > region) --piece;
     const Grid& grid = m_grids[piece];
-    const int x = grid.box.x0 + static_cast<int>((region - grid.first) % grid.columns) * kRegion;
-    const int y = grid.box.y0 + static_cast<int>((region - grid.first) / grid.columns) * kRegion;
-    return {intersection({x, y, x + kRegion, y + kRegion}, grid.box), static_cast<int>(piece)};
+    const int side = m_layout.region_side;
+    const int x = grid.box.x0 + static_cast<int>((region - grid.first) % grid.columns) * side;
+    const int y = grid.box.y0 + static_cast<int>((region - grid.first) / grid.columns) * side;
+    return {intersection({x, y, x + side, y + side}, grid.box), static_cast<int>(piece)};
 }
 
 std::vector<std::int64_t> BlockMap::regions_in(const Box& box) const {
@@ -60,7 +64,7 @@ std::vector<std::int64_t> BlockMap::regions_in(const Box& box) const {
     for (const Grid& grid : m_grids) {
         const Box part = intersection(box, grid.box);
         if (part.empty()) continue;
-        const auto number = [](int at, int from) { return (at - from) / kRegion; };
+        const auto number = [&](int at, int from) { return (at - from) / m_layout.region_side; };
         for (int row = number(part.y0, grid.box.y0); row <= number(part.y1 - 1, grid.box.y0); ++row)
             for (int column = number(part.x0, grid.box.x0); column <= number(part.x1 - 1, grid.box.x0);
                  ++column)
@@ -113,10 +117,16 @@ Reached BlockMap::reached(const ParallelFor& parallel_for) const {
         reached.max_error = std::max(reached.max_error, bound);
         exact += pixels;
     });
-    reached.exact_fraction = static_cast<double>(exact) / (double(m_width) * m_height);
+    reached.exact_fraction = static_cast<double>(exact) / (double(m_width) * m_height * layers());
     const std::lock_guard lock(m_cache->mutex);
     m_cache->reached = reached;
     return reached;
+}
+
+bool BlockMap::seen(double x, double y, int piece) const noexcept {
+    Point<double> p{};
+    int source_piece = 0;
+    return exact(x, y, piece, p, source_piece);
 }
 
 bool BlockMap::truth(double x, double y, int piece, Point<long double>& source_point,
@@ -148,6 +158,15 @@ BlockPolynomial BlockMap::bicubic(const Block& block) const noexcept {
 void BlockMap::computed_row(const Block&, int, int begin, int end, float* x, float* y) const noexcept {
     std::fill_n(x, end - begin, 0.0f);
     std::fill_n(y, end - begin, 0.0f);
+}
+
+void BlockMap::computed(std::span<const Block> layers, const PointRows* to) const noexcept {
+    for (const Block& block : layers) {
+        for (int row = 0; row < block.box.height(); ++row)
+            computed_row(block, row, 0, block.box.width(), to->x + row * to->stride,
+                         to->y + row * to->stride);
+        ++to;
+    }
 }
 
 }  // namespace anamorph

@@ -8,6 +8,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -16,6 +17,11 @@
 #include "anamorph/parallel_for.h"
 
 namespace anamorph {
+
+/// What a map keeps of a region for its computed blocks.
+struct RegionData {
+    virtual ~RegionData() = default;
+};
 
 /// A rectangle of target pixels, at most kMaxSide either way (outside blocks: any size), with one way to find
 /// their source points.
@@ -33,11 +39,14 @@ struct Block {
     Box box;
     Kind kind = Kind::exact;
     bool precise = false;  ///< exact blocks: in long double
-    int piece = 0;         ///< of the target
+    int piece = 0;         ///< of the target, and the layer (BlockMap)
     int source_piece = 0;  ///< not for exact blocks, nor outside
     std::int32_t base_x = 0, base_y = 0;
     float x[6] = {}, y[6] = {};
     double bound = 0;  ///< of the distance to the exact source point, in source pixels
+    /// Computed blocks: the data of their region, if the map keeps any, and which record there is theirs.
+    const RegionData* data = nullptr;
+    int record = 0;
 };
 
 /// The source points of a block less its base, evaluated in float by Block-wide loops: the sums of c[j][i]
@@ -56,8 +65,10 @@ struct Reached {
     double exact_fraction = 0;
 };
 
-/// The blocks of a region of the picture.
-using Blocks = std::vector<Block>;
+/// The blocks of a region of the picture, and the data that they point to.
+struct Blocks : std::vector<Block> {
+    std::shared_ptr<const RegionData> data;
+};
 
 /// Blocks that stay as long as this does, whatever the map they came from has let go since. A range, and no
 /// pointer: `for (const Block& b : map.blocks(region))` keeps them for the whole loop.
@@ -74,20 +85,38 @@ class SharedBlocks {
     std::shared_ptr<const Blocks> m_blocks;
 };
 
-/// A pull map cut into blocks. The target consists of pieces, each cut into regions of at most kRegion pixels
-/// square from its corner on; the blocks of a region cover it without overlap.
+/// Room for the source points of all pixels of a block, row by row, as offsets from its base.
+struct PointRows {
+    float *x, *y;
+    std::ptrdiff_t stride;  ///< floats from row to row; behind each there is room for 16 more
+};
+
+/// How a map is laid out, and what is kept of it.
+struct BlockLayout {
+    int layers = 1;
+    int region_side = 512;  ///< pixels
+    /// Plans of so many regions are kept; then all of them are let go.
+    std::size_t kept_regions = 2048;
+};
+
+/// A pull map cut into blocks. The target consists of pieces, each cut into square regions from its corner
+/// on; the blocks of a region cover it without overlap.
+///
+/// A map may have several layers, each with a source of its own: every pixel then has a source point in each.
+/// Pieces are numbered layer by layer, so that piece n of layer k is number n + k * (the pieces of the target).
+/// Blocks come layers() together: the same box and kind, one for each layer, in their order.
 class BlockMap {
   public:
-    static constexpr int kRegion = 512;
-    /// Plans of so many regions are kept; then all of them are let go.
-    static constexpr std::size_t kKeptRegions = 2048;
+    static constexpr int kRegion = BlockLayout{}.region_side;
 
     /// `pieces`: boxes of a target of width x height pixels.
-    BlockMap(int width, int height, const std::vector<Box>& pieces, std::size_t kept_regions = kKeptRegions);
+    BlockMap(int width, int height, const std::vector<Box>& pieces, const BlockLayout& layout = {});
     virtual ~BlockMap() = default;
 
     int width() const { return m_width; }
     int height() const { return m_height; }
+    int layers() const { return m_layout.layers; }
+    int layer_of(const Block& block) const { return block.piece / static_cast<int>(m_grids.size()); }
 
     /// Does every pixel of a box belong to a piece?
     bool covers(const Box& box) const;
@@ -101,13 +130,15 @@ class BlockMap {
     /// threads that ask for the same region plan it once.
     SharedBlocks blocks(std::int64_t region) const;
 
-    /// Over the whole picture.
+    /// Over the whole picture and all layers.
     Reached reached(const ParallelFor& parallel_for) const;
 
     /// The formula in double: the source point of a target point. False where there is none.
     virtual bool exact(double x, double y, int piece, Point<double>& source_point,
                        int& source_piece) const noexcept = 0;
-    /// The same as exactly as is known: what errors are measured against. In double if nothing better is.
+    /// Does exact() find one?
+    virtual bool seen(double x, double y, int piece) const noexcept;
+    /// The source point as exactly as is known: what errors are measured against. In double if nothing better is.
     virtual bool truth(double x, double y, int piece, Point<long double>& source_point,
                        int& source_piece) const noexcept;
     /// The source point of a target point of an exact block.
@@ -128,6 +159,8 @@ class BlockMap {
     /// block's base. There is room for 16 more floats.
     virtual void computed_row(const Block& block, int row, int begin, int end, float* x,
                               float* y) const noexcept;
+    /// All pixels of the computed blocks that all layers have in one place, each to rows of its own.
+    virtual void computed(std::span<const Block> layers, const PointRows* to) const noexcept;
 
   protected:
     /// Cuts `box`, a region of `piece`, into blocks.
@@ -149,6 +182,7 @@ class BlockMap {
     Place place_of(std::int64_t region) const;
 
     int m_width, m_height;
+    BlockLayout m_layout;
     std::vector<Grid> m_grids;
     std::int64_t m_regions = 0;
     std::shared_ptr<Cache> m_cache;

@@ -49,9 +49,7 @@
 #include <limits>
 #include <mutex>
 #include <numbers>
-#include <unordered_map>
 
-#include "anamorph/approx/near_far_exact.h"
 #include "anamorph/approx/near_far_line.h"
 #include "anamorph/error.h"
 #include "anamorph/parameter.h"
@@ -67,9 +65,8 @@ using simd::kMaxDegree;
 using simd::kSums;
 using simd::LineTable;
 
-constexpr int kRegion = CellField::kRegion;
-constexpr double kHalfRegion = kRegion / 2;
-static_assert(kHalfRegion == double(simd::kRegionHalf));
+constexpr auto kHalfRegion = static_cast<double>(simd::kRegionHalf);
+constexpr int kRegion = static_cast<int>(2 * kHalfRegion);
 // Cells are not cut below this.
 constexpr int kFloor = 4;
 constexpr auto kFloatUlp = static_cast<double>(simd::kFloatRounding);
@@ -150,7 +147,7 @@ int degree_for(double tol) {
 struct Cell {
     Box box;
     bool exact;
-    double bound;
+    double bound;  ///< not of exact cells
     CellFrame frame;
     std::int32_t base[kComponents];
     std::size_t coefficients, near;  ///< where they begin in the region's lists
@@ -158,7 +155,7 @@ struct Cell {
     bool fine;  ///< how near lines are placed
 };
 
-struct Region {
+struct Region final : RegionData {
     std::vector<Cell> cells;
     std::vector<float> coefficients;
     std::vector<FieldLine> lines;  ///< that are near, cell by cell, as seen from the cell's centre
@@ -313,12 +310,12 @@ struct FarSums : simd::LineSums {
 class Planner {
   public:
     Planner(const FeatureMap& map, const NearFarOptions& options, const Chebyshev& chebyshev,
-            const std::vector<float>& slopes, const Box& picture)
+            const std::vector<float>& slopes)
         : m_map(map),
           m_options(options),
           m_chebyshev(chebyshev),
           m_slopes(slopes),
-          m_picture(picture),
+          m_picture{0, 0, map.target().width, map.target().height},
           m_weights{static_cast<float>(map.weights().a), static_cast<float>(map.weights().b)} {}
 
     void plan(int x0, int y0, Region& region) {
@@ -696,9 +693,7 @@ class Planner {
             for (int x = x0; x < x0 + size; x += Block::kMaxSide) {
                 const int side = std::min(size, Block::kMaxSide);
                 const Box box = intersection({x, y, x + side, y + side}, m_picture);
-                if (!box.empty())
-                    m_region->cells.push_back(
-                        {box, true, exact_bound(m_map, m_options.shapes, box), {}, {}, 0, 0, 0, false});
+                if (!box.empty()) m_region->cells.push_back({box, true, 0, {}, {}, 0, 0, 0, false});
             }
     }
 
@@ -722,25 +717,16 @@ class Planner {
 }  // namespace
 
 struct NearFar::State {
-    static constexpr std::size_t kMost = 4096;
-
-    struct Planned {
-        std::once_flag once;
-        Region region;
-    };
-
-    const FeatureMap& map;
     NearFarOptions options;
     Chebyshev chebyshev;
-    std::mutex mutex;
-    std::unordered_map<std::int64_t, std::shared_ptr<Planned>> regions;
-
     std::vector<float> slopes;  ///< line by line: the most that its displacement changes over a pixel
+    /// Planners keep their memory from region to region.
+    std::mutex mutex;
     std::vector<std::unique_ptr<Planner>> idle;
 
-    State(const FeatureMap& feature_map, const NearFarOptions& near_far)
-        : map(feature_map), options(near_far), chebyshev(degree_for(near_far.tol)) {
-        if (exact()) return;
+    State(const FeatureMap& map, const NearFarOptions& near_far)
+        : options(near_far), chebyshev(degree_for(near_far.tol)) {
+        if (options.tol == 0) return;
         constexpr double kNowhere[kComponents] = {};
         for (std::size_t i = 0; i < map.size(); ++i) {
             const FieldLine l = seen_from(map, i, options.shapes, 0, 0, kNowhere, 1);
@@ -757,53 +743,64 @@ struct NearFar::State {
         }
     }
 
-    /// The plan of a region: made when first asked for, kept for a while.
-    std::shared_ptr<const Region> region(const Box& box) {
-        const std::int64_t key = std::int64_t{box.y0 / kRegion} << 32 | box.x0 / kRegion;
-        std::shared_ptr<Planned> found;
-        {
-            const std::lock_guard lock(mutex);
-            if (regions.size() >= kMost) regions.clear();
-            std::shared_ptr<Planned>& entry = regions[key];
-            if (!entry) entry = std::make_shared<Planned>();
-            found = entry;
-        }
-        std::call_once(found->once, [&] {
-            // Planners keep their memory from region to region.
-            std::unique_ptr<Planner> planner;
-            {
-                const std::lock_guard lock(mutex);
-                if (!idle.empty()) {
-                    planner = std::move(idle.back());
-                    idle.pop_back();
-                }
-            }
-            const Box picture{0, 0, map.target().width, map.target().height};
-            if (!planner) planner = std::make_unique<Planner>(map, options, chebyshev, slopes, picture);
-            planner->plan(box.x0, box.y0, found->region);
-            const std::lock_guard lock(mutex);
-            idle.push_back(std::move(planner));
-        });
-        return {found, &found->region};
+    std::unique_ptr<Planner> take_planner(const FeatureMap& map) {
+        const std::lock_guard lock(mutex);
+        if (idle.empty()) return std::make_unique<Planner>(map, options, chebyshev, slopes);
+        std::unique_ptr<Planner> planner = std::move(idle.back());
+        idle.pop_back();
+        return planner;
     }
-
-    bool exact() const { return options.tol == 0; }
+    void give_back(std::unique_ptr<Planner> planner) {
+        const std::lock_guard lock(mutex);
+        idle.push_back(std::move(planner));
+    }
 };
 
-NearFar::NearFar(const FeatureMap& map, const NearFarOptions& options) {
-    if (!(options.tol >= 0 && options.tol < HUGE_VAL)) {
+NearFar::NearFar(const FeatureMap& map, const NearFarOptions& options) : FeatureBlocks(map, options.shapes) {
+    if (!(options.tol >= 0 && options.tol < HUGE_VAL))
         throw Error("tol", shortest(options.tol),
-                    "allowed is 0 (exact) or a finite number of source pixels above it");
-    }
+                    "must be 0 (exact) or a finite number of source pixels above it");
     m_state = std::make_unique<State>(map, options);
 }
 NearFar::~NearFar() = default;
 
+void NearFar::plan(const Box& box, int, Blocks& blocks) const {
+    if (m_state->options.tol == 0) {
+        each_square(box, [&](const Box& square) { add_exact(square, blocks); });
+        return;
+    }
+    const auto region = std::make_shared<Region>();
+    std::unique_ptr<Planner> planner = m_state->take_planner(map());
+    planner->plan(box.x0, box.y0, *region);
+    m_state->give_back(std::move(planner));
+
+    blocks.reserve(region->cells.size() * static_cast<std::size_t>(layers()));
+    for (std::size_t i = 0; i < region->cells.size(); ++i) {
+        const Cell& cell = region->cells[i];
+        if (cell.exact)
+            add_exact(cell.box, blocks);
+        else
+            for (int k = 0; k < layers(); ++k) {
+                Block block;
+                block.box = cell.box;
+                block.kind = Block::Kind::computed;
+                block.piece = k;
+                block.base_x = cell.base[2 * k];
+                block.base_y = cell.base[2 * k + 1];
+                block.bound = cell.bound;
+                block.data = region.get();
+                block.record = static_cast<int>(i);
+                blocks.push_back(block);
+            }
+    }
+    blocks.data = region;
+}
+
 namespace {
 
-/// The points of all pixels of a cell, for both shapes.
+/// Pixels `part` of a cell, for all layers: x and y of the first from to[0] and to[1] on, and so on.
 void cell_points(const FeatureMap& map, const std::vector<int>& shapes, int degree, const Region& region,
-                 const Cell& cell, float* const* to, std::ptrdiff_t stride) {
+                 const Cell& cell, const Box& part, float* const* to, std::ptrdiff_t stride) {
     // In the frame of the cell's centre.
     simd::FieldCell field{{0, 0, cell.frame.half},
                           0,
@@ -821,10 +818,10 @@ void cell_points(const FeatureMap& map, const std::vector<int>& shapes, int degr
         return static_cast<float>(pixel % kRegion + 0.5 - kHalfRegion - static_cast<double>(center));
     };
     simd::FieldOutput out{};
-    out.x = from_center(cell.box.x0, cell.frame.x);
-    out.y = from_center(cell.box.y0, cell.frame.y);
-    out.width = cell.box.width();
-    out.height = cell.box.height();
+    out.x = from_center(part.x0, cell.frame.x);
+    out.y = from_center(part.y0, cell.frame.y);
+    out.width = part.width();
+    out.height = part.height();
     out.components = 2 * static_cast<int>(shapes.size());
     out.stride = stride;
     for (std::size_t n = 0; n < shapes.size(); ++n) {
@@ -841,65 +838,33 @@ void cell_points(const FeatureMap& map, const std::vector<int>& shapes, int degr
     simd::field_points(field, out);
 }
 
-/// Calls body(box) for the squares of a region that blocks of an exact plan are.
-template <class Body>
-void each_square(const Box& region, const Body& body) {
-    for (int y = region.y0; y < region.y1; y += Block::kMaxSide)
-        for (int x = region.x0; x < region.x1; x += Block::kMaxSide)
-            body(intersection({x, y, x + Block::kMaxSide, y + Block::kMaxSide}, region));
-}
-
 }  // namespace
 
-void NearFar::each_block(const Box& region, const Box& part, const Visit& visit) const {
-    const std::vector<int>& shapes = m_state->options.shapes;
-    Block block;
-    if (m_state->exact()) {
-        each_square(region, [&](const Box& box) {
-            if (intersection(box, part).empty()) return;
-            block.box = box;
-            block.bound = exact_bound(m_state->map, shapes, box);
-            for (const int k : shapes) visit(k, block, {});
-        });
-        return;
+void NearFar::computed(std::span<const Block> layers, const PointRows* to) const noexcept {
+    const auto& region = static_cast<const Region&>(*layers.front().data);
+    float* planes[kComponents] = {};
+    for (std::size_t k = 0; k < layers.size(); ++k) {
+        planes[2 * k] = to[k].x;
+        planes[2 * k + 1] = to[k].y;
     }
-    const std::shared_ptr<const Region> planned = m_state->region(region);
-    constexpr std::ptrdiff_t kStride = Block::kMaxSide + 16;
-    constexpr std::ptrdiff_t kPlane = Block::kMaxSide * kStride;
-    const std::unique_ptr<float[]> points(new float[kComponents * kPlane]);
-    float* to[kComponents];
-    for (std::ptrdiff_t c = 0; c < kComponents; ++c) to[c] = points.get() + c * kPlane;
-    for (const Cell& cell : planned->cells) {
-        if (intersection(cell.box, part).empty()) continue;
-        block.box = cell.box;
-        block.kind = cell.exact ? Block::Kind::exact : Block::Kind::computed;
-        block.bound = cell.bound;
-        if (!cell.exact) cell_points(m_state->map, shapes, m_state->chebyshev.k, *planned, cell, to, kStride);
-        for (std::size_t n = 0; n < shapes.size(); ++n) {
-            block.base_x = cell.base[2 * n];
-            block.base_y = cell.base[2 * n + 1];
-            visit(shapes[n], block,
-                  cell.exact ? CellPoints{} : CellPoints{to[2 * n], to[2 * n + 1], kStride});
-        }
-    }
+    cell_points(map(), shapes(), m_state->chebyshev.k, region,
+                region.cells[static_cast<std::size_t>(layers.front().record)], layers.front().box, planes,
+                to->stride);
 }
 
-CellField::Tally NearFar::tally(const Box& region) const {
-    Tally tally;
-    if (m_state->exact()) {
-        tally.exact_pixels = std::int64_t{region.width()} * region.height();
-        each_square(region, [&](const Box& box) {
-            tally.bound = std::max(tally.bound, exact_bound(m_state->map, m_state->options.shapes, box));
-        });
-        return tally;
-    }
-    // Kept here: the cache may let go of it meanwhile.
-    const auto planned = m_state->region(region);
-    for (const Cell& cell : planned->cells) {
-        tally.bound = std::max(tally.bound, cell.bound);
-        if (cell.exact) tally.exact_pixels += std::int64_t{cell.box.width()} * cell.box.height();
-    }
-    return tally;
+void NearFar::computed_row(const Block& block, int row, int begin, int end, float* x,
+                           float* y) const noexcept {
+    const auto& region = static_cast<const Region&>(*block.data);
+    const Box& box = block.box;
+    constexpr int kRoom = Block::kMaxSide + 16;
+    float others[2][kRoom];
+    // What the other layer has there comes with it and is not wanted.
+    float* planes[kComponents] = {others[0], others[1], others[0], others[1]};
+    planes[2 * layer_of(block)] = x;
+    planes[2 * layer_of(block) + 1] = y;
+    cell_points(map(), shapes(), m_state->chebyshev.k, region,
+                region.cells[static_cast<std::size_t>(block.record)],
+                {box.x0 + begin, box.y0 + row, box.x0 + end, box.y0 + row + 1}, planes, kRoom);
 }
 
 }  // namespace anamorph

@@ -14,7 +14,7 @@
 namespace anamorph {
 namespace {
 
-using Place = std::pair<int, int>;  ///< row, column
+using RowColumn = std::pair<int, int>;
 
 /// Does a line meet a rectangle? By cutting it at the rectangle's sides (Liang and Barsky).
 bool meets(const FeatureMap::TargetLine& line, double x0, double y0, double x1, double y1) {
@@ -34,23 +34,22 @@ bool meets(const FeatureMap::TargetLine& line, double x0, double y0, double x1, 
 struct FeatureMesh::State {
     const FeatureMap& map;
     int cells;
-    std::vector<int> shapes;
     std::vector<ControlMesh> controls;  ///< one a shape of the map
-    std::vector<Mesh> meshes;           ///< one for each of `shapes`
+    std::vector<Mesh> meshes;           ///< one a layer
     std::int64_t evaluations = 0;
 
     State(const FeatureMap& feature_map, int cell_count, int levels, const std::vector<int>& wanted)
-        : map(feature_map), cells(cell_count), shapes(wanted) {
+        : map(feature_map), cells(cell_count) {
         controls.resize(static_cast<std::size_t>(map.shapes()));
         for (ControlMesh& control : controls) control.columns = control.rows = cells;
         for (int row = 0; row <= cells; ++row)
             for (int column = 0; column <= cells; ++column)
                 evaluate(0, row, column,
                          [](ControlMesh& c, int, int, const Point<double>& at) { c.vertices.push_back(at); });
-        std::set<Place> parents;
+        std::set<RowColumn> parents;
         for (int level = 1; level <= levels; ++level) parents = refine(level, parents);
         const Size target = map.target();
-        for (const int k : shapes)
+        for (const int k : wanted)
             meshes.emplace_back(controls[static_cast<std::size_t>(k)], Size{target.width, target.height},
                                 Size{map.picture(k).width, map.picture(k).height}, 1.0);
     }
@@ -70,12 +69,12 @@ struct FeatureMesh::State {
 
     /// Cuts the cells of the level above that a line meets, and evaluates their new vertices; those beside a
     /// cell that is not cut take the coarser patch's value. Returns the cells cut.
-    std::set<Place> refine(int level, const std::set<Place>& parents) {
+    std::set<RowColumn> refine(int level, const std::set<RowColumn>& parents) {
         const auto is_cell = [&](int row, int column) {
             return level == 1 || parents.count({row / 2, column / 2}) != 0;
         };
         const int count = cells << (level - 1);
-        std::set<Place> cut;
+        std::set<RowColumn> cut;
         for (std::size_t i = 0; i < map.size(); ++i) mark(map.line(i), level - 1, count, is_cell, cut);
         for (ControlMesh& control : controls) {
             control.levels.emplace_back();
@@ -84,11 +83,12 @@ struct FeatureMesh::State {
         const auto is_cut = [&](int row, int column) {
             return row < 0 || column < 0 || row >= count || column >= count || cut.count({row, column});
         };
-        std::set<Place> vertices;
+        std::set<RowColumn> vertices;
         for (const auto& [row, column] : cut)
-            for (const Place& v : {Place{2 * row, 2 * column + 1}, Place{2 * row + 1, 2 * column},
-                                   Place{2 * row + 1, 2 * column + 1}, Place{2 * row + 1, 2 * column + 2},
-                                   Place{2 * row + 2, 2 * column + 1}})
+            for (const RowColumn& v :
+                 {RowColumn{2 * row, 2 * column + 1}, RowColumn{2 * row + 1, 2 * column},
+                  RowColumn{2 * row + 1, 2 * column + 1}, RowColumn{2 * row + 1, 2 * column + 2},
+                  RowColumn{2 * row + 2, 2 * column + 1}})
                 if (is_cut((v.first - 1) >> 1, (v.second - 1) >> 1) &&
                     is_cut((v.first - 1) >> 1, v.second >> 1) && is_cut(v.first >> 1, (v.second - 1) >> 1) &&
                     is_cut(v.first >> 1, v.second >> 1))
@@ -102,7 +102,7 @@ struct FeatureMesh::State {
 
     template <class IsCell>
     void mark(const FeatureMap::TargetLine& line, int level, int count, const IsCell& is_cell,
-              std::set<Place>& cut) const {
+              std::set<RowColumn>& cut) const {
         const auto range = [&](double a, double b, int size, int& first, int& last) {
             const double unit = static_cast<double>(size) / count;
             first = static_cast<int>(std::clamp(std::floor(std::min(a, b) / unit), 0.0, count - 1.0));
@@ -121,11 +121,17 @@ struct FeatureMesh::State {
                     cut.insert({row, column});
     }
 
-    /// The points of the pixels of a block that lie in one cell, less the block's base.
-    static void fill(const Mesh& mesh, const MeshCell& cell, const Block& block, std::ptrdiff_t stride,
-                     float* px, float* py) {
+    /// The points of pixels `box` of a block, less the block's base.
+    void fill(const Block& block, const Box& box, const PointRows& to) const {
+        const Mesh& mesh = meshes[static_cast<std::size_t>(block.piece)];
+        mesh.each_cell(box.x0, box.y0, box.x1, box.y1,
+                       [&](const MeshCell& cell) { fill(mesh, cell, block, box, to); });
+    }
+
+    /// Those that lie in one cell.
+    static void fill(const Mesh& mesh, const MeshCell& cell, const Block& block, const Box& box,
+                     const PointRows& to) {
         const Patch patch = mesh.patch(cell);
-        const Box& box = block.box;
         const auto first = [](double edge) { return static_cast<int>(std::ceil(edge - 0.5)); };
         const double kx = 1 / (patch.x1 - patch.x0), ky = 1 / (patch.y1 - patch.y0);
         const int i0 = std::max(first(cell.x0), box.x0), i1 = std::min(first(cell.x1), box.x1);
@@ -146,8 +152,8 @@ struct FeatureMesh::State {
             double cx[4], cy[4];
             cubic(row[0].x, row[1].x, row[2].x, row[3].x, cx);
             cubic(row[0].y, row[1].y, row[2].y, row[3].y, cy);
-            float* const to_x = px + (j - box.y0) * stride - box.x0;
-            float* const to_y = py + (j - box.y0) * stride - box.x0;
+            float* const to_x = to.x + (j - box.y0) * to.stride - box.x0;
+            float* const to_y = to.y + (j - box.y0) * to.stride - box.x0;
             const double y = (j + 0.5) * mesh.scale().y - block.base_y;
             for (int i = i0; i < i1; ++i) {
                 const double s = (i + 0.5 - patch.x0) * kx;
@@ -159,12 +165,12 @@ struct FeatureMesh::State {
     }
 };
 
-FeatureMesh::FeatureMesh(const FeatureMap& map, int cells, int levels, const std::vector<int>& shapes) {
+FeatureMesh::FeatureMesh(const FeatureMap& map, int cells, int levels, const std::vector<int>& shapes)
+    : FeatureBlocks(map, shapes) {
     const auto check = [](const char* name, int value, int least, int most) {
         if (value < least || value > most)
-            throw Error(
-                name, std::to_string(value),
-                "allowed is a whole number from " + std::to_string(least) + " to " + std::to_string(most));
+            throw Error(name, std::to_string(value),
+                        "must be an integer from " + std::to_string(least) + " to " + std::to_string(most));
     };
     check("mesh_cells", cells, 1, kMostCells);
     check("mesh_levels", levels, 0, kMostLevels);
@@ -176,37 +182,33 @@ std::int64_t FeatureMesh::evaluations() const {
     return m_state->evaluations;
 }
 
-void FeatureMesh::each_block(const Box& region, const Box& part, const Visit& visit) const {
-    constexpr int kSide = Block::kMaxSide;
-    constexpr std::ptrdiff_t kStride = kSide + 16;
-    std::vector<float> points(2 * kSide * kStride);
-    float *const px = points.data(), *const py = px + kSide * kStride;
+void FeatureMesh::plan(const Box& region, int, Blocks& blocks) const {
     Block block;
     block.kind = Block::Kind::computed;
     block.bound = std::numeric_limits<double>::infinity();
-    for (int y = region.y0; y < region.y1; y += kSide)
-        for (int x = region.x0; x < region.x1; x += kSide) {
-            block.box = {x, y, std::min(x + kSide, region.x1), std::min(y + kSide, region.y1)};
-            if (intersection(block.box, part).empty()) continue;
-            for (std::size_t k = 0; k < m_state->meshes.size(); ++k) {
-                const Mesh& mesh = m_state->meshes[k];
-                const Point<double> middle =
-                    mesh.at(0.5 * (block.box.x0 + block.box.x1), 0.5 * (block.box.y0 + block.box.y1));
-                const auto base = [](double at) {
-                    return static_cast<std::int32_t>(std::floor(std::clamp(at, -1e9, 1e9)));
-                };
-                block.base_x = base(middle.x);
-                block.base_y = base(middle.y);
-                mesh.each_cell(
-                    block.box.x0, block.box.y0, block.box.x1, block.box.y1,
-                    [&](const MeshCell& cell) { State::fill(mesh, cell, block, kStride, px, py); });
-                visit(m_state->shapes[k], block, {px, py, kStride});
-            }
+    each_square(region, [&](const Box& box) {
+        block.box = box;
+        for (block.piece = 0; block.piece < layers(); ++block.piece) {
+            const Mesh& mesh = m_state->meshes[static_cast<std::size_t>(block.piece)];
+            const Point<double> middle = mesh.at(0.5 * (box.x0 + box.x1), 0.5 * (box.y0 + box.y1));
+            const auto base = [](double at) {
+                return static_cast<std::int32_t>(std::floor(std::clamp(at, -1e9, 1e9)));
+            };
+            block.base_x = base(middle.x);
+            block.base_y = base(middle.y);
+            blocks.push_back(block);
         }
+    });
 }
 
-CellField::Tally FeatureMesh::tally(const Box&) const {
-    return {std::numeric_limits<double>::infinity(), 0};
+void FeatureMesh::computed_row(const Block& block, int row, int begin, int end, float* x,
+                               float* y) const noexcept {
+    const Box& b = block.box;
+    m_state->fill(block, {b.x0 + begin, b.y0 + row, b.x0 + end, b.y0 + row + 1}, {x, y, end - begin});
+}
+
+void FeatureMesh::computed(std::span<const Block> layers, const PointRows* to) const noexcept {
+    for (const Block& block : layers) m_state->fill(block, block.box, *to++);
 }
 
 }  // namespace anamorph

@@ -4,24 +4,31 @@
 // kinks on the lines: the bound is infinite.
 #pragma once
 
-#include "anamorph/approx/near_far.h"
+#include <memory>
+#include <vector>
+
+#include "anamorph/approx/feature_blocks.h"
 
 namespace anamorph {
 
-class FeatureMesh final : public CellField {
+class FeatureMesh final : public FeatureBlocks {
   public:
     static constexpr int kMostCells = 1024, kMostLevels = 4;
 
-    /// `cells` each way, those near a line cut `levels` times into four. The map outlives this. Throws Error
-    /// when there are more than allowed, or less than one cell.
+    /// `cells` each way, those near a line cut `levels` times into four; `shapes` become the layers. The map
+    /// outlives this. Throws Error when there are more than allowed, or less than one cell.
     FeatureMesh(const FeatureMap& map, int cells, int levels, const std::vector<int>& shapes);
     ~FeatureMesh() override;
 
     /// How often the map was evaluated: once for each vertex.
     std::int64_t evaluations() const;
 
-    void each_block(const Box& region, const Box& part, const Visit& visit) const override;
-    Tally tally(const Box& region) const override;
+    void computed_row(const Block& block, int row, int begin, int end, float* x,
+                      float* y) const noexcept override;
+    void computed(std::span<const Block> layers, const PointRows* to) const noexcept override;
+
+  protected:
+    void plan(const Box& box, int piece, Blocks& blocks) const override;
 
   private:
     struct State;

@@ -189,6 +189,16 @@ void block_row(const BlockMap& map, const Block& block, const Box& part, int j, 
     if (block.kind == Block::Kind::computed) map.computed_row(block, row, begin, end, x, y);
 }
 
+BlockPlanes::BlockPlanes(std::size_t layers) {
+    constexpr std::ptrdiff_t kPlane = std::ptrdiff_t{simd::kRowRoom} * Block::kMaxSide;
+    // Points are written before they are read.
+    m_values.reset(new float[2 * layers * std::size_t{kPlane} + 16]);
+    for (std::size_t k = 0; k < layers; ++k) {
+        float* x = m_values.get() + 2 * static_cast<std::ptrdiff_t>(k) * kPlane;
+        m_rows.push_back({x, x + kPlane, simd::kRowRoom});
+    }
+}
+
 /// A block's polynomial in texels of a level: less a base of its own, with the ranges of x and y.
 struct BlockReader::LevelPolynomial {
     BlockPolynomial p;
@@ -426,16 +436,16 @@ BlockReader::Got BlockReader::split_rows(const Filtering& f, int piece, const At
     return Got::window;
 }
 
-/// The source points of all pixels of a block.
+/// The source points of all pixels of a block; of a computed one, of a map of a single layer.
 BlockPoints BlockReader::points_of(const Block& block) {
-    constexpr std::size_t kPlane = std::size_t{simd::kRowRoom} * Block::kMaxSide;
-    m_computed.resize(2 * kPlane);
-    const BlockPoints points{m_computed.data(), m_computed.data() + kPlane, simd::kRowRoom};
-    for (int j = 0; j < block.box.height(); ++j) {
-        float* row = m_computed.data() + j * points.row_stride;
-        block_row(m_map, block, block.box, block.box.y0 + j, row, row + kPlane);
-    }
-    return points;
+    if (!m_planes) m_planes.emplace(1);
+    const PointRows& to = m_planes->rows()[0];
+    if (block.kind == Block::Kind::computed)
+        m_map.computed({&block, 1}, &to);
+    else
+        for (int j = 0; j < block.box.height(); ++j)
+            block_row(m_map, block, block.box, block.box.y0 + j, to.x + j * to.stride, to.y + j * to.stride);
+    return m_planes->points(0);
 }
 
 bool BlockReader::exact_rows(const Block& block, const Box& part, const Row& row) {

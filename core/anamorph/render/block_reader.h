@@ -5,6 +5,8 @@
 
 #include <array>
 #include <functional>
+#include <memory>
+#include <optional>
 #include <vector>
 
 #include "anamorph/approx/block.h"
@@ -19,6 +21,22 @@ namespace anamorph {
 struct BlockPoints {
     const float *x = nullptr, *y = nullptr;
     std::ptrdiff_t row_stride = 0;  ///< floats; behind every row at least 16 more may be read
+};
+
+/// Room for the points of the blocks that the layers of a map have in one place.
+class BlockPlanes {
+  public:
+    explicit BlockPlanes(std::size_t layers);
+
+    const PointRows* rows() const { return m_rows.data(); }
+    BlockPoints points(std::size_t layer) const {
+        const PointRows& r = m_rows[layer];
+        return {r.x, r.y, r.stride};
+    }
+
+  private:
+    std::unique_ptr<float[]> m_values;
+    std::vector<PointRows> m_rows;
 };
 
 /// How far, in a coarse level's texels and along each axis, the point sampled there may be from the one that
@@ -112,7 +130,8 @@ class BlockReader {
     WindowReader m_reader;
     PointSampler m_points;
     FootprintChooser m_chooser;
-    std::vector<float> m_values, m_computed;
+    std::vector<float> m_values;
+    std::optional<BlockPlanes> m_planes;
     std::vector<BlockMap::ExactPoint> m_exact;
 };
 

@@ -5,13 +5,11 @@
 
 #include "anamorph/approx/inverse.h"
 #include "anamorph/approx/mesh_scattered.h"
-#include "anamorph/render/canvas.h"
-#include "anamorph/render/draw.h"
 
 namespace anamorph {
 namespace {
 
-// Rows that one thread counts or draws at a time where there are no blocks.
+// Rows that one thread counts at a time.
 constexpr int kRows = 16;
 
 std::unique_ptr<const WarpPlan> make_plan(const WarpMap& map, const Size& source, const Size& target,
@@ -60,30 +58,18 @@ void for_each_rows(const Box& box, const ParallelFor& parallel_for,
 
 struct MeshWarp::State {
     State(const WarpMap& map, const Size& source, const Size& target, const MeshWarpOptions& warp)
-        : options(warp),
-          plan(make_plan(map, source, target, warp)),
-          border(Chart(Projection::rectilinear, source.width, source.height), warp.wrap) {}
-
-    void draw_folds(const Box& box, const ImageView& picture, const ParallelFor& parallel_for) const {
-        if (picture.channels != 1) throw Error("channels", std::to_string(picture.channels), "needed are 1");
-        const Canvas canvas(picture, box);
-        const Box whole{0, 0, plan->width(), plan->height()};
-        if (!plan->covers(box)) canvas.fill(box, 0);
-        for_each_rows(intersection(box, whole), parallel_for, [&](const Box& rows) {
-            float values[simd::kMaxRow + 16] = {};
-            for (int y = rows.y0; y < rows.y1; ++y)
-                for (int x = rows.x0; x < rows.x1; x += simd::kMaxRow) {
-                    const int count = std::min(simd::kMaxRow, rows.x1 - x);
-                    for (int i = 0; i < count; ++i) values[i] = plan->folds(x + i + 0.5, y + 0.5);
-                    canvas.store(x, y, count, values);
-                }
-            simd::finish_stores();
-        });
+        : options(warp), plan(make_plan(map, source, target, warp)) {
+        const Chart flat(Projection::rectilinear, source.width, source.height);
+        picture.maps = {{plan, {{Border(flat, warp.wrap)}}}};
+        picture.filter = warp.filter;
+        picture.output = output_of(warp.output);
+        if (warp.output == WarpOutput::folds)
+            picture.value = [p = plan.get()](double x, double y) { return p->folds(x, y); };
     }
 
     MeshWarpOptions options;
-    std::unique_ptr<const WarpPlan> plan;
-    Border border;
+    std::shared_ptr<const WarpPlan> plan;
+    Picture picture;
 };
 
 MeshWarp::MeshWarp(const WarpMap& map, int source_width, int source_height, int width, int height,
@@ -108,12 +94,14 @@ const MeshWarpOptions& MeshWarp::options() const {
 const BlockMap& MeshWarp::blocks() const {
     return *m_state->plan;
 }
+const Picture& MeshWarp::picture() const {
+    return m_state->picture;
+}
 int MeshWarp::channels(const Source& source) const {
-    if (m_state->options.output == WarpOutput::folds) return 1;
-    return channels_of(output_of(m_state->options.output), &source);
+    return m_state->picture.channels(&source);
 }
 Reached MeshWarp::reached(const ParallelFor& parallel_for) const {
-    return m_state->plan->reached(parallel_for);
+    return m_state->picture.reached(parallel_for);
 }
 
 double MeshWarp::folded_fraction(const ParallelFor& parallel_for) const {
@@ -124,15 +112,9 @@ double MeshWarp::folded_fraction(const ParallelFor& parallel_for) const {
     return static_cast<double>(folded) / (double(whole.width()) * whole.height());
 }
 
-bool MeshWarp::draw(const Source* source, const Box& box, const ImageView& picture,
+bool MeshWarp::draw(const Source* source, const Box& box, const ImageView& view,
                     const ParallelFor& parallel_for) const {
-    const MeshWarpOptions& options = m_state->options;
-    if (options.output == WarpOutput::folds) {
-        m_state->draw_folds(box, picture, parallel_for);
-        return true;
-    }
-    return draw_blocks(*m_state->plan, m_state->border, options.filter, output_of(options.output), source,
-                       box, picture, parallel_for);
+    return m_state->picture.draw({source}, box, view, parallel_for);
 }
 
 }  // namespace anamorph

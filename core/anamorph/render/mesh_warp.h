@@ -8,8 +8,7 @@
 #include "anamorph/approx/mesh_plan.h"
 #include "anamorph/map/mesh_data.h"
 #include "anamorph/parallel_for.h"
-#include "anamorph/render/border.h"
-#include "anamorph/render/filter.h"
+#include "anamorph/render/picture.h"
 
 namespace anamorph {
 
@@ -53,6 +52,7 @@ class MeshWarp {
     const MeshWarpOptions& options() const;
     /// The source point of every pixel, in blocks.
     const BlockMap& blocks() const;
+    const Picture& picture() const;
 
     /// Channels of the picture: the source's for color, 2 for stmap, else 1.
     int channels(const Source& source) const;
@@ -63,10 +63,10 @@ class MeshWarp {
     /// The fraction of the picture's pixels where the map is folded (output folds is not 0).
     double folded_fraction(const ParallelFor& parallel_for = serial_for) const;
 
-    /// Draws the pixels of `box` (of the target image) to `picture`, whose pixel (0, 0) is (box.x0, box.y0).
+    /// Draws the pixels of `box` (of the target image) to `view`, whose pixel (0, 0) is (box.x0, box.y0).
     /// `source` has the size given above at level 0; it is not read for the other outputs and may then be
     /// null. False when the source could not be read: the picture is then incomplete.
-    bool draw(const Source* source, const Box& box, const ImageView& picture,
+    bool draw(const Source* source, const Box& box, const ImageView& view,
               const ParallelFor& parallel_for = serial_for) const;
 
   private:

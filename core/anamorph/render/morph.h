@@ -8,13 +8,10 @@
 #include <string>
 #include <vector>
 
-#include "anamorph/approx/block.h"
 #include "anamorph/geometry/size.h"
 #include "anamorph/map/feature_lines.h"
 #include "anamorph/parallel_for.h"
-#include "anamorph/render/border.h"
-#include "anamorph/render/filter.h"
-#include "anamorph/render/source.h"
+#include "anamorph/render/picture.h"
 
 namespace anamorph {
 
@@ -49,8 +46,8 @@ struct MorphOptions {
     int mesh_levels = 1;  ///< times that its cells near a line are cut into four
 };
 
-/// Are these weights of the key shapes? Throws Error: `name`, the value as it was written and what is
-/// allowed.
+/// Are these weights of the key shapes? Throws Error: `name`, the value as it was written and what it must
+/// be.
 void check_mixture(const std::string& name, const std::string& text, const std::vector<double>& weights,
                    int shapes);
 
@@ -73,6 +70,7 @@ class Morph {
     int width() const;
     int height() const;
     const MorphOptions& options() const;
+    const Picture& picture() const;
 
     /// Which pictures are read, shape by shape.
     std::vector<bool> reads() const;
@@ -83,13 +81,11 @@ class Morph {
     /// The largest proven bound in use (source pixels; infinite for scheme mesh) and the fraction of pixels
     /// computed exactly, over the whole picture.
     Reached reached(const ParallelFor& parallel_for = serial_for) const;
-    /// How often scheme mesh evaluates the map; 0 for the others.
-    std::int64_t mesh_evaluations() const;
 
-    /// Draws the pixels of `box` (of the target image) to `picture`, whose pixel (0, 0) is (box.x0, box.y0).
+    /// Draws the pixels of `box` (of the target image) to `view`, whose pixel (0, 0) is (box.x0, box.y0).
     /// `sources`: one a shape, of the size given above at level 0 and all with as many channels; those that
     /// reads() does not name may be null. False when one could not be read: the picture is then incomplete.
-    bool draw(const std::vector<const Source*>& sources, const Box& box, const ImageView& picture,
+    bool draw(const std::vector<const Source*>& sources, const Box& box, const ImageView& view,
               const ParallelFor& parallel_for = serial_for) const;
 
   private:

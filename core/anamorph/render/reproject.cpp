@@ -17,10 +17,14 @@ PlanOptions plan_options(const ReprojectOptions& options) {
 
 struct Reprojection::State {
     State(const Panorama& map, const ReprojectOptions& reproject)
-        : options(reproject), plan(map, plan_options(reproject)), border(map.source(), reproject.wrap) {}
+        : options(reproject), plan(std::make_shared<PanoramaPlan>(map, plan_options(reproject))) {
+        picture.maps = {{plan, {{Border(map.source(), reproject.wrap)}}}};
+        picture.filter = reproject.filter;
+        picture.output = reproject.output;
+    }
     ReprojectOptions options;
-    PanoramaPlan plan;
-    Border border;
+    std::shared_ptr<const PanoramaPlan> plan;
+    Picture picture;
 };
 
 Reprojection::Reprojection(const Panorama& map, const ReprojectOptions& options)
@@ -30,22 +34,23 @@ Reprojection::Reprojection(Reprojection&&) noexcept = default;
 Reprojection& Reprojection::operator=(Reprojection&&) noexcept = default;
 
 const Panorama& Reprojection::map() const {
-    return m_state->plan.map();
+    return m_state->plan->map();
 }
 const ReprojectOptions& Reprojection::options() const {
     return m_state->options;
 }
+const Picture& Reprojection::picture() const {
+    return m_state->picture;
+}
 int Reprojection::channels(const Source& source) const {
-    return channels_of(m_state->options.output, &source);
+    return m_state->picture.channels(&source);
 }
 Reached Reprojection::reached(const ParallelFor& parallel_for) const {
-    return m_state->plan.reached(parallel_for);
+    return m_state->picture.reached(parallel_for);
 }
-bool Reprojection::draw(const Source* source, const Box& box, const ImageView& picture,
+bool Reprojection::draw(const Source* source, const Box& box, const ImageView& view,
                         const ParallelFor& parallel_for) const {
-    const ReprojectOptions& options = m_state->options;
-    return draw_blocks(m_state->plan, m_state->border, options.filter, options.output, source, box, picture,
-                       parallel_for);
+    return m_state->picture.draw({source}, box, view, parallel_for);
 }
 
 }  // namespace anamorph

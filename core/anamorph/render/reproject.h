@@ -6,7 +6,7 @@
 
 #include "anamorph/approx/panorama_plan.h"
 #include "anamorph/parallel_for.h"
-#include "anamorph/render/draw.h"
+#include "anamorph/render/picture.h"
 
 namespace anamorph {
 
@@ -30,6 +30,7 @@ class Reprojection {
 
     const Panorama& map() const;
     const ReprojectOptions& options() const;
+    const Picture& picture() const;
 
     /// Channels of the picture: the source's for color, 2 for stmap, 1 for error and bound.
     int channels(const Source& source) const;
@@ -38,10 +39,10 @@ class Reprojection {
     /// whole picture.
     Reached reached(const ParallelFor& parallel_for = serial_for) const;
 
-    /// Draws the pixels of `box` (of the target image) to `picture`, whose pixel (0, 0) is (box.x0, box.y0).
+    /// Draws the pixels of `box` (of the target image) to `view`, whose pixel (0, 0) is (box.x0, box.y0).
     /// `source` has the size of the map's source chart at level 0; it is not read for the other outputs and
     /// may then be null. False when the source could not be read: the picture is then incomplete.
-    bool draw(const Source* source, const Box& box, const ImageView& picture,
+    bool draw(const Source* source, const Box& box, const ImageView& view,
               const ParallelFor& parallel_for = serial_for) const;
 
   private:

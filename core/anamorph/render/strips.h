@@ -15,8 +15,11 @@ class Strip {
   public:
     static constexpr int kHeight = 64;
 
-    Strip(const SharedBlocks& blocks, int y0, const Box& box)
-        : m_blocks(blocks), m_y0(y0), m_y1(y0 + kHeight), m_box(box) {}
+    Strip(const SharedBlocks& blocks, const Box& region, int y0, const Box& box)
+        : m_blocks(blocks), m_region(region), m_y0(y0), m_y1(y0 + kHeight), m_box(box) {}
+
+    /// The part of the box that lies in the region and those rows.
+    Box box() const { return intersection({m_region.x0, m_y0, m_region.x1, m_y1}, m_box); }
 
     /// body(block, part, next) for every block that meets the box: `part` of it lies there; `next` is the
     /// block after it, or null.
@@ -37,6 +40,7 @@ class Strip {
 
   private:
     const SharedBlocks& m_blocks;
+    Box m_region;
     int m_y0, m_y1;
     Box m_box;
 };
@@ -68,9 +72,22 @@ void for_each_strip(const BlockMap& map, const Box& box, const ParallelFor& para
             }
             const auto [region, y0] = strips[i - count];
             const SharedBlocks blocks = map.blocks(region);
-            body(Strip(blocks, y0, box));
+            body(Strip(blocks, map.region_box(region), y0, box));
         });
     }
+}
+
+/// body(square) for the squares that together are a box: work without blocks.
+template <class Body>
+void for_each_square(const Box& box, const ParallelFor& parallel_for, const Body& body) {
+    if (box.empty()) return;
+    constexpr int kSide = 128;
+    const std::int64_t columns = (box.width() + kSide - 1) / kSide, rows = (box.height() + kSide - 1) / kSide;
+    parallel_for(columns * rows, [&](std::int64_t i) {
+        const int x = box.x0 + static_cast<int>(i % columns) * kSide,
+                  y = box.y0 + static_cast<int>(i / columns) * kSide;
+        body(intersection({x, y, x + kSide, y + kSide}, box));
+    });
 }
 
 }  // namespace anamorph

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: Apache-2.0
+// The maps of a morph (map/feature_lines.h) in blocks, one layer a shape: what every way to plan them has in
+// common.
+#pragma once
+
+#include <vector>
+
+#include "anamorph/approx/block.h"
+#include "anamorph/map/feature_lines.h"
+
+namespace anamorph {
+
+class FeatureBlocks : public BlockMap {
+  public:
+    /// The shapes that the layers show.
+    const std::vector<int>& shapes() const { return m_shapes; }
+
+    bool exact(double x, double y, int piece, Point<double>& source_point,
+               int& source_piece) const noexcept override;
+    bool seen(double x, double y, int piece) const noexcept override;
+    bool truth(double x, double y, int piece, Point<long double>& source_point,
+               int& source_piece) const noexcept override;
+    Jacobian jacobian(double x, double y, int piece) const noexcept override;
+
+  protected:
+    static constexpr int kRegion = 128;
+
+    /// The map outlives this.
+    FeatureBlocks(const FeatureMap& map, std::vector<int> shapes);
+
+    const FeatureMap& map() const { return m_map; }
+    int shape(int layer) const { return m_shapes[static_cast<std::size_t>(layer)]; }
+
+    /// Calls body(box) for the squares of a region of which each is one block.
+    template <class Body>
+    static void each_square(const Box& region, const Body& body) {
+        constexpr int kSide = Block::kMaxSide;
+        for (int y = region.y0; y < region.y1; y += kSide)
+            for (int x = region.x0; x < region.x1; x += kSide)
+                body(intersection({x, y, x + kSide, y + kSide}, region));
+    }
+    /// Writes a block for every layer.
+    void add_exact(const Box& box, Blocks& blocks) const;
+
+  private:
+    const FeatureMap& m_map;
+    std::vector<int> m_shapes;
+};
+
+}  // namespace anamorph
