@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The OpenImageIO plugin: inputs for recipes (NAME.pano, NAME.pano?key=value&..., NAME.warp, NAME.morph) and
+// The OpenImageIO plugin: inputs for recipes (NAME.pano, NAME.pano?key=value&... and so on, one extension an operation) and
 // for images in memory (NAME.anabuf), and the output that puts them there.
 #include <OpenImageIO/filesystem.h>
 #include <OpenImageIO/imagebuf.h>
@@ -44,6 +44,12 @@ void explain_to_oiiotool(const std::string& name, const std::string& reason) {
 #endif
 }
 
+std::string joined_extensions() {
+    std::string text;
+    for (const Operation* operation : operations()) text += "." + operation->name + ", ";
+    return text + std::string(kBufferExtension);
+}
+
 /// Counts how deep this thread is inside calls of ours: what fails in an inner one is told by the outer one.
 class Inside {
   public:
@@ -81,7 +87,7 @@ class FileInput final : public ImageInput {
     }
 
     bool valid_file(const std::string& name) const override {
-        return kind_of(name) || has_extension(name, kBufferExtension);
+        return operation_of(name) || has_extension(name, kBufferExtension);
     }
 
     bool open(const std::string& name, ImageSpec& spec) override {
@@ -90,15 +96,15 @@ class FileInput final : public ImageInput {
 
     bool open(const std::string& name, ImageSpec& spec, const ImageSpec& config) override {
         // The extension first: OpenImageIO offers names of all kinds.
-        if (!valid_file(name)) return failed("not a .pano, .warp, .morph or .anabuf name");
+        if (!valid_file(name)) return failed("not a " + joined_extensions() + " name");
         const Inside inside;
         try {
             const PoolWorker worker;
             close();
-            const OperationKind* kind = kind_of(name);
+            const Operation* operation = operation_of(name);
             std::shared_ptr<const Content> content =
-                kind ? open_recipe(name, assignments_of(config.extra_attribs, kind->name + ":"))
-                     : open_buffer(name);
+                operation ? open_recipe(name, assignments_of(config.extra_attribs, operation->name + ":"))
+                          : open_buffer(name);
             const lock_guard lock(*this);
             m_content = std::move(content);
             m_subimage = m_level = 0;
@@ -315,7 +321,11 @@ OIIO_EXPORT const char* anamorph_imageio_library_version() {
 OIIO_EXPORT OIIO::ImageInput* anamorph_input_imageio_create() {
     return new anamorph::FileInput;
 }
-OIIO_EXPORT const char* anamorph_input_extensions[] = {"pano", "warp", "morph", "anabuf", nullptr};
+OIIO_EXPORT const char* anamorph_input_extensions[] = {
+#define ANAMORPH_OPERATION(name) #name,
+#include "anamorph/operation/list.h"
+#undef ANAMORPH_OPERATION
+    "anabuf", nullptr};
 
 OIIO_EXPORT OIIO::ImageOutput* anamorph_output_imageio_create() {
     return new anamorph::BufferOutput;

@@ -31,7 +31,9 @@ class InputConformance : public InFolder {
 const std::string kView = "city.exr.pano?yaw=30&pitch=10&size=150x100";
 
 TEST_F(InputConformance, conformance_02_version_and_extensions_are_listed) {
-    EXPECT_THAT(OIIO::get_string_attribute("extension_list"), HasSubstr("anamorph:pano,warp,morph,anabuf"));
+    std::string extensions = "anamorph:";
+    for (const Operation* operation : operations()) extensions += operation->name + ",";
+    EXPECT_THAT(OIIO::get_string_attribute("extension_list"), HasSubstr(extensions + "anabuf"));
     EXPECT_THAT(OIIO::get_string_attribute("library_list"), HasSubstr("anamorph:Anamorph "));
     EXPECT_THAT(OIIO::get_string_attribute("input_format_list"), HasSubstr("anamorph"));
     EXPECT_THAT(OIIO::get_string_attribute("output_format_list"), HasSubstr("anamorph"));
