@@ -28,6 +28,10 @@ using OIIO::ImageInput;
 using OIIO::ImageOutput;
 using OIIO::ImageSpec;
 
+/// The name of the file and of its exports, too. It is not "anamorph": OpenImageIO takes an attribute whose
+/// name begins with a format's for that format's own, and keeps anamorph:tol out of files of any other.
+const char* const kFormat = "anamorph_recipes";
+
 /// oiiotool before 3.0 answers "File does not exist" where a name that is not on disk fails to open, whatever
 /// the reason was; so there the reason is said here, once.
 void explain_to_oiiotool(const std::string& name, const std::string& reason) {
@@ -75,7 +79,7 @@ class FileInput final : public ImageInput {
   public:
     ~FileInput() override { close(); }
 
-    const char* format_name() const override { return "anamorph"; }
+    const char* format_name() const override { return kFormat; }
 
     int supports(OIIO::string_view feature) const override {
 #if OIIO_VERSION >= 30000
@@ -258,7 +262,7 @@ class BufferOutput final : public ImageOutput {
   public:
     ~BufferOutput() override { close(); }
 
-    const char* format_name() const override { return "anamorph"; }
+    const char* format_name() const override { return kFormat; }
 
     int supports(OIIO::string_view feature) const override {
         // Procedural: hosts do not rename a file that is none.
@@ -311,25 +315,25 @@ class BufferOutput final : public ImageOutput {
 
 OIIO_PLUGIN_EXPORTS_BEGIN
 
-OIIO_EXPORT int anamorph_imageio_version = OIIO_PLUGIN_VERSION;
+OIIO_EXPORT int anamorph_recipes_imageio_version = OIIO_PLUGIN_VERSION;
 
-OIIO_EXPORT const char* anamorph_imageio_library_version() {
+OIIO_EXPORT const char* anamorph_recipes_imageio_library_version() {
     static const std::string text = std::string("Anamorph ") + anamorph::version();
     return text.c_str();
 }
 
-OIIO_EXPORT OIIO::ImageInput* anamorph_input_imageio_create() {
+OIIO_EXPORT OIIO::ImageInput* anamorph_recipes_input_imageio_create() {
     return new anamorph::FileInput;
 }
-OIIO_EXPORT const char* anamorph_input_extensions[] = {
+OIIO_EXPORT const char* anamorph_recipes_input_extensions[] = {
 #define ANAMORPH_OPERATION(name) #name,
 #include "anamorph/operation/list.h"
 #undef ANAMORPH_OPERATION
     "anabuf", nullptr};
 
-OIIO_EXPORT OIIO::ImageOutput* anamorph_output_imageio_create() {
+OIIO_EXPORT OIIO::ImageOutput* anamorph_recipes_output_imageio_create() {
     return new anamorph::BufferOutput;
 }
-OIIO_EXPORT const char* anamorph_output_extensions[] = {"anabuf", nullptr};
+OIIO_EXPORT const char* anamorph_recipes_output_extensions[] = {"anabuf", nullptr};
 
 OIIO_PLUGIN_EXPORTS_END

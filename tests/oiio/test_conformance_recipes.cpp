@@ -80,7 +80,7 @@ std::vector<float> read_subimage(ImageInput& input, int subimage, int level = 0)
 }
 
 TEST_P(RecipeConformance, conformance_03_04_names) {
-    const auto input = ImageInput::create("anamorph");
+    const auto input = ImageInput::create("anamorph_recipes");
     ASSERT_TRUE(input);
     const std::string extension = "." + operation().name, capitals = OIIO::Strutil::upper(extension);
     for (const std::string& known : {"a" + extension, "a" + capitals + "?x=1", "a.b" + extension})
@@ -94,7 +94,7 @@ TEST_P(RecipeConformance, conformance_03_04_names) {
 }
 
 TEST_P(RecipeConformance, conformance_05_open_close_reopen) {
-    const auto input = ImageInput::create("anamorph");
+    const auto input = ImageInput::create("anamorph_recipes");
     ImageSpec spec;
     const Pixels expected = read_pixels(name());
     for (int i = 0; i < 3; ++i) {
