@@ -247,6 +247,10 @@ void ParameterValues::assign(const std::vector<Assignment>& place) {
     }
 }
 
+bool ParameterValues::knows(std::string_view name) const {
+    return find(*m_table, name) != nullptr;
+}
+
 const std::string& ParameterValues::text(std::string_view name) const {
     const auto given = m_given.find(std::string(name));
     if (given != m_given.end()) return given->second;

@@ -68,6 +68,8 @@ class ParameterValues {
     void assign(const std::vector<Assignment>& place);
 
     const ParameterTable& table() const { return *m_table; }
+    /// Is there such a parameter?
+    bool knows(std::string_view name) const;
     bool given(std::string_view name) const { return m_given.count(std::string(name)) != 0; }
     /// As written, or the default.
     const std::string& text(std::string_view name) const;

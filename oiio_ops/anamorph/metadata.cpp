@@ -3,11 +3,13 @@
 
 #include <OpenImageIO/strutil.h>
 
+#include <algorithm>
 #include <string_view>
 #include <utility>
 #include <vector>
 
 #include "anamorph/image_source.h"
+#include "anamorph/operation/panorama_attributes.h"
 
 namespace anamorph {
 namespace {
@@ -15,10 +17,6 @@ namespace {
 using OIIO::ImageSpec;
 using OIIO::TypeDesc;
 namespace Strutil = OIIO::Strutil;
-
-// No name of ours with a colon: where the plugin is loaded, OpenImageIO takes "anamorph:" for what belongs to
-// that format alone, and does not write it to files of others.
-const char* const kProjection = "panoramaProjection";
 
 bool starts_with_any(const std::string& name, const std::vector<const char*>& beginnings) {
     for (const char* beginning : beginnings)
@@ -65,7 +63,7 @@ bool holds_no_longer(const std::string& name) {
                                                    "view",
                                                    "deepImageState",
                                                    "maxSamplesPerPixel",
-                                                   kProjection};
+                                                   kPanoramaProjection};
     // Exif:SubjectDistance is one of the camera's, and remains.
     if (Strutil::istarts_with(name, "Exif:SubjectDistance")) return false;
     return starts_with_any(name, beginnings) || is_any(name, names);
@@ -97,7 +95,7 @@ bool is_for_color(const std::string& name) {
     return starts_with_any(name, beginnings) || is_any(name, names);
 }
 
-/// "fisheye fov=180", as projection_attributes writes it.
+/// "fisheye fov=180", as panorama_attributes writes it.
 void read_projection(const std::string& text, SourceFacts& facts) {
     const std::size_t blank = text.find(' ');
     constexpr std::string_view kFov = " fov=";
@@ -108,7 +106,7 @@ void read_projection(const std::string& text, SourceFacts& facts) {
     } catch (const Error&) {
         return;
     }
-    facts.said_by = kProjection;
+    facts.said_by = kPanoramaProjection;
     if (Strutil::string_is_float(fov)) facts.fov = OIIO::Strutil::from_string<float>(fov);
 }
 
@@ -124,7 +122,7 @@ SourceFacts facts_of(const ImageSpec& spec) {
     const std::string gpano = Strutil::lower(spec.get_string_attribute("GPano:ProjectionType"));
     const std::string texture = spec.get_string_attribute("textureformat");
     // Ours first: it says the field of view too.
-    read_projection(spec.get_string_attribute(kProjection), facts);
+    read_projection(spec.get_string_attribute(kPanoramaProjection), facts);
     if (facts.projection) return facts;
     if (gpano == "equirectangular")
         says("GPano:ProjectionType", Projection::equirectangular);
@@ -141,33 +139,6 @@ SourceFacts facts_of(const ImageSpec& spec) {
 
 SourceImage source_image(const ImageSpec& spec) {
     return {facts_of(spec), spec.nchannels, spec.get_string_attribute("oiio:ColorSpace")};
-}
-
-OIIO::ParamValueList projection_attributes(const Chart& picture, bool color) {
-    OIIO::ParamValueList says;
-    says.attribute(kProjection,
-                   std::string(name_of(picture.projection())) + " fov=" + shortest(picture.fov()));
-    if (!color) return says;
-    const int w = picture.width(), h = picture.height(), whole = w / 2;
-    const auto environment = [&](const char* format) {
-        says.attribute("textureformat", format);
-        says.attribute("oiio:updirection", "y");
-    };
-    if (picture.projection() == Projection::cubemap) environment("CubeFace Environment");
-    // A whole turn, and as much of the poles as whole rows can say.
-    const bool turn = picture.projection() == Projection::equirectangular && picture.fov() == 360;
-    if (turn && w % 2 == 0 && h <= whole && (whole - h) % 2 == 0) {
-        says.attribute("GPano:ProjectionType", "equirectangular");
-        for (const auto& [name, value] : {std::pair{"FullPanoWidthPixels", w},
-                                          {"FullPanoHeightPixels", whole},
-                                          {"CroppedAreaImageWidthPixels", w},
-                                          {"CroppedAreaImageHeightPixels", h},
-                                          {"CroppedAreaLeftPixels", 0},
-                                          {"CroppedAreaTopPixels", (whole - h) / 2}})
-            says.attribute(std::string("GPano:") + name, value);
-        if (h == whole) environment("LatLong Environment");
-    }
-    return says;
 }
 
 std::vector<Assignment> assignments_of(const OIIO::ParamValueList& options, const std::string& prefix) {
@@ -190,54 +161,77 @@ std::vector<Assignment> assignments_of(const OIIO::ParamValueList& options, cons
     return out;
 }
 
-void check_size(const PictureRequest& picture, const ImageSpec& source) {
+namespace {
+
+/// Throws Error when a picture is larger than OpenImageIO allows.
+void check_size(const ImageSpec& picture) {
     const int limit = OIIO::get_int_attribute("limits:imagesize_MB", 32768);
-    const double megabytes = double(picture.width) * picture.height * source.nchannels *
-                             double(source.format.size()) / (1024.0 * 1024.0);
+    const double megabytes = double(picture.width) * picture.height * picture.nchannels *
+                             double(picture.format.size()) / (1024.0 * 1024.0);
     if (limit > 0 && megabytes > limit)
         throw Error("size", std::to_string(picture.width) + "x" + std::to_string(picture.height),
                     "must make at most " + std::to_string(limit) + " MB (limits:imagesize_MB)");
 }
 
-ImageSpec picture_spec(const ImageSpec& source, const PictureRequest& picture) {
-    ImageSpec spec = source;
+/// Channels by their names, as float.
+void set_channels(ImageSpec& spec, const std::vector<std::string>& names) {
+    spec.channelnames = names;
+    spec.nchannels = static_cast<int>(names.size());
+    const auto index = [&](const char* name) {
+        const auto found = std::find(names.begin(), names.end(), name);
+        return found == names.end() ? -1 : static_cast<int>(found - names.begin());
+    };
+    spec.alpha_channel = index("A");
+    spec.z_channel = index("Z");
+    spec.format = OIIO::TypeFloat;
+}
+
+}  // namespace
+
+ImageSpec picture_spec(const ImageSpec* source, const PictureRequest& picture) {
+    ImageSpec spec = source ? *source : ImageSpec();
     spec.x = spec.y = spec.z = 0;
     spec.full_x = spec.full_y = spec.full_z = 0;
-    spec.width = spec.full_width = picture.width;
-    spec.height = spec.full_height = picture.height;
+    spec.width = spec.full_width = picture.size.width;
+    spec.height = spec.full_height = picture.size.height;
     spec.depth = spec.full_depth = 1;
     spec.tile_width = spec.tile_height = 0;
     spec.tile_depth = 1;
     spec.channelformats.clear();
-    spec.format = oiio_type(pixel_type(source.format));
-    if (picture.pixels != PixelKind::color) {
-        const bool point = picture.pixels == PixelKind::point;
-        spec.nchannels = point ? 2 : 1;
-        spec.channelnames = point ? std::vector<std::string>{"R", "G"} : std::vector<std::string>{"Y"};
-        spec.alpha_channel = spec.z_channel = -1;
-        spec.format = OIIO::TypeFloat;
-    }
+    spec.format = oiio_type(pixel_type(spec.format));
     const bool color = picture.pixels == PixelKind::color;
+    if (!color)
+        set_channels(spec, picture.pixels == PixelKind::point ? std::vector<std::string>{"R", "G"}
+                                                              : std::vector<std::string>{"Y"});
+    else if (!source)
+        set_channels(spec, picture.channels);
+    check_size(spec);
     OIIO::ParamValueList kept;
     for (const OIIO::ParamValue& attribute : spec.extra_attribs) {
         const std::string name = attribute.name().string();
         if (!holds_no_longer(name) && (color || !is_for_color(name))) kept.push_back(attribute);
     }
     spec.extra_attribs = kept;
-    for (const OIIO::ParamValue& attribute : picture.says) spec.extra_attribs.add_or_replace(attribute);
-    add_own_facts(spec, picture);
+    add_attributes(spec, picture.says);
     return spec;
 }
 
-void add_own_facts(ImageSpec& spec, const PictureRequest& picture) {
-    for (const OIIO::ParamValue& attribute : picture.says)
-        if (Strutil::istarts_with(attribute.name().string(), "anamorph:"))
-            spec.extra_attribs.add_or_replace(attribute);
-    add_facts(spec, picture.facts);
+void add_attributes(ImageSpec& spec, const Attributes& attributes) {
+    for (const auto& [name, value] : attributes) {
+        if (const double* number = std::get_if<double>(&value))
+            spec.attribute(name, static_cast<float>(*number));
+        else if (const int* integer = std::get_if<int>(&value))
+            spec.attribute(name, *integer);
+        else
+            spec.attribute(name, std::get<std::string>(value));
+    }
 }
 
-void add_facts(ImageSpec& spec, const Facts& facts) {
-    for (const auto& [name, value] : facts) spec.attribute(name, static_cast<float>(value));
+Attributes own_attributes(const Attributes& attributes) {
+    Attributes own;
+    for (const Attribute& attribute : attributes)
+        if (attribute.name.starts_with("anamorph:")) own.push_back(attribute);
+    return own;
 }
 
 }  // namespace anamorph

@@ -4,8 +4,7 @@
 
 #include <OpenImageIO/imageio.h>
 
-#include "anamorph/operation.h"
-#include "anamorph/render/reproject_parameters.h"
+#include "anamorph/operation/operation.h"
 
 namespace anamorph {
 
@@ -16,25 +15,19 @@ SourceImage source_image(const OIIO::ImageSpec& spec);
 /// ours names it.
 SourceFacts facts_of(const OIIO::ImageSpec& spec);
 
-/// The other way: what a picture says of itself, so that facts_of and other programs know. Only a picture of
-/// colour is an environment to others.
-OIIO::ParamValueList projection_attributes(const Chart& picture, bool color);
-
 /// The options of a call as assignments: names with `prefix` (taken off), all names without one. Numbers are
 /// written in the fewest digits that read back, so that 0.01f means 0.01.
 std::vector<Assignment> assignments_of(const OIIO::ParamValueList& options, const std::string& prefix = "");
 
-/// Throws Error when a picture is larger than OpenImageIO's attribute limits:imagesize_MB.
-void check_size(const PictureRequest& picture, const OIIO::ImageSpec& source);
+/// The picture's header: its size and channels, the metadata of the upright source that still holds, and what
+/// the picture says of itself. No tiles. `source`: the first one, null where there is none. Throws Error where
+/// the picture is larger than OpenImageIO's attribute limits:imagesize_MB.
+OIIO::ImageSpec picture_spec(const OIIO::ImageSpec* source, const PictureRequest& picture);
 
-/// The picture's header: its size and channels, the metadata of the upright source that still holds, and the
-/// picture's own facts: anamorph:tol, anamorph:max_error and so on. No tiles.
-OIIO::ImageSpec picture_spec(const OIIO::ImageSpec& source, const PictureRequest& picture);
+/// Sets attributes; numbers that are no integers as type float.
+void add_attributes(OIIO::ImageSpec& spec, const Attributes& attributes);
 
-/// Sets the attributes of ours, anamorph:*, that a picture has beforehand.
-void add_own_facts(OIIO::ImageSpec& spec, const PictureRequest& picture);
-
-/// Sets them as attributes of type float.
-void add_facts(OIIO::ImageSpec& spec, const Facts& facts);
+/// Those of ours, anamorph:*.
+Attributes own_attributes(const Attributes& attributes);
 
 }  // namespace anamorph

@@ -6,9 +6,13 @@
 
 #include "anamorph/image_source.h"
 #include "anamorph/metadata.h"
+#include "anamorph/operation/morph.h"
+#include "anamorph/operation/pano.h"
+#include "anamorph/operation/warp.h"
 #include "anamorph/orientation.h"
 #include "anamorph/parallel.h"
-#include "anamorph/picture.h"
+#include "anamorph/side_files.h"
+#include "anamorph/source_stack.h"
 
 namespace anamorph {
 namespace {
@@ -36,20 +40,23 @@ void check_readable(const ImageBuf& src) {
         throw Error("the source image cannot be read: " + src.geterror());
 }
 
+/// Keys that only a file has a use for.
+const char* const kKeysOfRecipes[] = {"tile", "mip", "frames"};
+
 /// Options of the call, and the size of an initialised dst where no other is
 /// asked for.
-ParameterValues values_of(const OperationKind& kind, const OIIO::ParamValueList& options,
+ParameterValues values_of(const Operation& operation, const OIIO::ParamValueList& options,
                           const ImageBuf& dst) {
-    const ParameterTable& table = *kind.parameters;
+    const ParameterTable& table = *operation.parameters;
     ParameterValues values(table);
-    if (dst.initialized() && dst.spec().full_width > 0 && dst.spec().full_height > 0)
+    if (values.knows("size") && dst.initialized() && dst.spec().full_width > 0 && dst.spec().full_height > 0)
         values.assign(
             {{"size", std::to_string(dst.spec().full_width) + "x" + std::to_string(dst.spec().full_height)}});
     const std::vector<Assignment> assignments = assignments_of(options);
     ParameterValues asked(table);
     asked.assign(assignments);
-    std::vector<std::string> of_recipes = kind.sources;
-    of_recipes.insert(of_recipes.end(), {"tile", "mip", "frames"});
+    std::vector<std::string> of_recipes = operation.sources;
+    of_recipes.insert(of_recipes.end(), std::begin(kKeysOfRecipes), std::end(kKeysOfRecipes));
     for (const std::string& name : of_recipes)
         if (asked.given(name))
             throw Error(name, printable(asked.text(name)), "must be given in recipes only");
@@ -58,9 +65,9 @@ ParameterValues values_of(const OperationKind& kind, const OIIO::ParamValueList&
 }
 
 /// The files that the options name.
-SideFiles side_files_of(const OperationKind& kind, const ParameterValues& values) {
+SideFiles side_files_of(const Operation& operation, const ParameterValues& values) {
     SideFiles files;
-    for (const Parameter& p : *kind.parameters) {
+    for (const Parameter& p : *operation.parameters) {
         const bool names_a_file = p.type == ParameterType::image || p.type == ParameterType::file;
         if (names_a_file && values.given(p.name)) files[p.name] = {values.text(p.name), ""};
     }
@@ -98,14 +105,14 @@ Box box_of(const ROI& roi, const ImageSpec& dst) {
     return {roi.xbegin - dst.full_x, roi.ybegin - dst.full_y, roi.xend - dst.full_x, roi.yend - dst.full_y};
 }
 
-void fill(ImageBuf& dst, const Picture& picture, int channels, const ROI& roi,
-          const ParallelFor& parallel_for) {
+void fill(ImageBuf& dst, const SolvedPicture& picture, const SourceStacks& stacks, int channels,
+          const ROI& roi, const ParallelFor& parallel_for) {
     const ImageSpec& spec = dst.spec();
     const Box box = box_of(roi, spec);
     const bool all_channels = roi.chbegin == 0 && roi.chend == channels && spec.nchannels == roi.chend;
     const PixelType type = pixel_type(spec.format);
     if (all_channels && oiio_type(type) == spec.format) {
-        picture.draw(box,
+        draw_picture(picture, stacks, box,
                      {static_cast<std::byte*>(dst.pixeladdr(roi.xbegin, roi.ybegin)), type, box.width(),
                       box.height(), spec.nchannels, dst.pixel_stride(), dst.scanline_stride()},
                      parallel_for);
@@ -120,7 +127,7 @@ void fill(ImageBuf& dst, const Picture& picture, int channels, const ROI& roi,
         rows.yend = std::min(y + kRows, roi.yend);
         const Box part = box_of(rows, spec);
         pixels.resize(static_cast<std::size_t>(std::int64_t{part.width()} * part.height() * channels));
-        picture.draw(part,
+        draw_picture(picture, stacks, part,
                      packed_view(reinterpret_cast<std::byte*>(pixels.data()), PixelType::float32,
                                  part.width(), part.height(), channels),
                      parallel_for);
@@ -130,49 +137,48 @@ void fill(ImageBuf& dst, const Picture& picture, int channels, const ROI& roi,
     }
 }
 
-/// The operation `name`, of sources that are not dst.
-bool run(const OperationKind& kind, const char* name, ImageBuf& dst,
-         const std::vector<const ImageBuf*>& sources, const OIIO::ParamValueList& options, ROI roi,
-         int nthreads) {
-    try {
-        if (sources.size() < kind.least_sources || sources.size() > kind.sources.size())
-            throw Error(std::to_string(sources.size()) + " source images: must be " +
-                        std::to_string(kind.least_sources) + " to " + std::to_string(kind.sources.size()));
-        std::vector<ImageSpec> specs;
-        std::vector<SourceImage> known;
-        for (const ImageBuf* src : sources) {
-            if (!src) throw Error("a source image is null");
-            check_readable(*src);
-            specs.push_back(src->spec());
-            known.push_back(source_image(upright(src->spec())));
-        }
-        const ParameterValues values = values_of(kind, options, dst);
-        const std::unique_ptr<const Operation> operation =
-            kind.read(values, known, side_files_of(kind, values));
-        const PictureRequest request = *operation->picture(0, 0);
-        check_size(request, specs[0]);
-        const ParallelFor parallel_for = default_parallel_for(nthreads);
-        const std::unique_ptr<const Drawing> drawing = request.solve();
-        const ImageSpec spec = picture_spec(upright(specs[0]), request);
-        const Facts reached = drawing->reached(parallel_for);
-
-        std::vector<std::unique_ptr<Source>> images;
-        for (const ImageBuf* src : sources) images.push_back(source_of(*src));
-        const SourceStacks stacks = make_source_stacks(std::move(images), specs, operation->faces(),
-                                                       filtering_space(values, request.pixels));
-        prepare(dst, spec, roi);
-        fill(dst, Picture(*drawing, stacks), spec.nchannels, roi, parallel_for);
-        add_own_facts(dst.specmod(), request);
-        add_facts(dst.specmod(), reached);
-        return true;
-    } catch (const std::exception& e) {
-        dst.errorfmt("{}: {}", name, message_of(e, "the picture"));
-        return false;
-    }
+void check_count(const Operation& operation, std::size_t sources) {
+    const std::size_t least = operation.least_sources, most = operation.sources.size();
+    if (sources >= least && sources <= most) return;
+    throw Error(std::to_string(sources) + " source images: must be " + std::to_string(least) +
+                (least < most ? " to " + std::to_string(most) : ""));
 }
 
-/// The same; a source that is dst is copied first.
-bool run_in_place(const OperationKind& kind, const char* name, ImageBuf& dst,
+/// Fills dst by sources that are not dst. Throws Error.
+void run(const Operation& operation, ImageBuf& dst, const std::vector<const ImageBuf*>& sources,
+         const OIIO::ParamValueList& options, ROI roi, int nthreads) {
+    check_count(operation, sources.size());
+    std::vector<ImageSpec> specs;
+    std::vector<SourceImage> known;
+    for (const ImageBuf* src : sources) {
+        if (!src) throw Error("a source image is null");
+        check_readable(*src);
+        specs.push_back(src->spec());
+        known.push_back(source_image(upright(src->spec())));
+    }
+    const ParameterValues values = values_of(operation, options, dst);
+    const SideFiles files = side_files_of(operation, values);
+    const std::unique_ptr<const Pictures> pictures =
+        operation.read({values, known, files, side_file_reader()});
+    const PictureRequest request = *pictures->picture(0, 0);
+    const ImageSpec first = sources.empty() ? ImageSpec() : upright(specs[0]);
+    const ImageSpec spec = picture_spec(sources.empty() ? nullptr : &first, request);
+    const ParallelFor parallel_for = default_parallel_for(nthreads);
+    const std::unique_ptr<const SolvedPicture> picture = request.solve();
+    const Attributes reached = picture->reached(parallel_for);
+
+    std::vector<std::unique_ptr<Source>> images;
+    for (const ImageBuf* src : sources) images.push_back(source_of(*src));
+    const SourceStacks stacks = make_source_stacks(std::move(images), specs, pictures->faces(),
+                                                   filtering_space(values, request.pixels));
+    prepare(dst, spec, roi);
+    fill(dst, *picture, stacks, spec.nchannels, roi, parallel_for);
+    add_attributes(dst.specmod(), own_attributes(request.says));
+    add_attributes(dst.specmod(), reached);
+}
+
+/// What goes wrong is told as an error of `function`. A source that is dst is copied first.
+bool run_in_place(const Operation& operation, const char* function, ImageBuf& dst,
                   std::vector<const ImageBuf*> sources, const OIIO::ParamValueList& options, ROI roi,
                   int nthreads) {
     ImageBuf copy;
@@ -181,19 +187,41 @@ bool run_in_place(const OperationKind& kind, const char* name, ImageBuf& dst,
         if (!copy.initialized()) copy = dst;
         src = &copy;
     }
-    return run(kind, name, dst, sources, options, roi, nthreads);
+    try {
+        run(operation, dst, sources, options, roi, nthreads);
+        return true;
+    } catch (const std::exception& e) {
+        dst.errorfmt("{}: {}", function, message_of(e, "the picture"));
+        return false;
+    }
 }
 
 }  // namespace
 
+bool apply(ImageBuf& dst, OIIO::string_view operation, const std::vector<const ImageBuf*>& sources,
+           const OIIO::ParamValueList& options, ROI roi, int nthreads) {
+    const std::string name = operation;
+    if (const Operation* known = find_operation(name))
+        return run_in_place(*known, known->name.c_str(), dst, sources, options, roi, nthreads);
+    dst.errorfmt("apply: operation \"{}\": must be one of {}", printable(name), operation_names());
+    return false;
+}
+
+ImageBuf apply(OIIO::string_view operation, const std::vector<const ImageBuf*>& sources,
+               const OIIO::ParamValueList& options, ROI roi, int nthreads) {
+    ImageBuf result;
+    apply(result, operation, sources, options, roi, nthreads);
+    return result;
+}
+
 bool reproject(ImageBuf& dst, const ImageBuf& src, const OIIO::ParamValueList& options, ROI roi,
                int nthreads) {
-    return run_in_place(pano_kind(), "reproject", dst, {&src}, options, roi, nthreads);
+    return run_in_place(pano_operation(), "reproject", dst, {&src}, options, roi, nthreads);
 }
 
 bool mesh_warp(ImageBuf& dst, const ImageBuf& src, const OIIO::ParamValueList& options, ROI roi,
                int nthreads) {
-    return run_in_place(warp_kind(), "mesh_warp", dst, {&src}, options, roi, nthreads);
+    return run_in_place(warp_operation(), "mesh_warp", dst, {&src}, options, roi, nthreads);
 }
 
 bool morph(ImageBuf& dst, const ImageBuf& a, const ImageBuf& b, const OIIO::ParamValueList& options, ROI roi,
@@ -203,7 +231,7 @@ bool morph(ImageBuf& dst, const ImageBuf& a, const ImageBuf& b, const OIIO::Para
 
 bool morph(ImageBuf& dst, const std::vector<const ImageBuf*>& pictures, const OIIO::ParamValueList& options,
            ROI roi, int nthreads) {
-    return run_in_place(morph_kind(), "morph", dst, pictures, options, roi, nthreads);
+    return run_in_place(morph_operation(), "morph", dst, pictures, options, roi, nthreads);
 }
 
 ImageBuf reproject(const ImageBuf& src, const OIIO::ParamValueList& options, ROI roi, int nthreads) {

@@ -1,23 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// The files that shape a picture: meshes, ST-maps, points and features.
+// The files that shape a picture, opened by OpenImageIO: text, and images whose pixels are numbers.
 #pragma once
 
-#include <memory>
-
-#include "anamorph/map/feature_lines.h"
-#include "anamorph/map/mesh_data.h"
-#include "anamorph/operation.h"
+#include "anamorph/operation/side_files.h"
 
 namespace anamorph {
 
-/// A mesh or pairs of points from text (.json, .csv), or a mesh from every `step`-th pixel of an ST-map,
-/// which may be any image that OpenImageIO reads: u in its first channel, v in its second. Throws Error.
-std::shared_ptr<const WarpMap> read_warp_map(const SideFile& file, int step);
-
-/// Pairs of points from text. Throws Error.
-std::shared_ptr<const WarpMap> read_points(const SideFile& file);
-
-/// Feature lines from text (.json, .csv, .svg). Throws Error.
-std::shared_ptr<const Features> read_features(const SideFile& file);
+/// Files of the file system, and whatever images OpenImageIO reads; these past any cache, on the calling
+/// thread alone.
+const SideFileReader& side_file_reader();
 
 }  // namespace anamorph

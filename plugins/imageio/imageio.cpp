@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The OpenImageIO plugin: inputs for recipes (NAME.pano, NAME.pano?key=value&..., NAME.warp, NAME.morph) and
+// The OpenImageIO plugin: inputs for recipes (NAME.pano, NAME.pano?key=value&... and so on, one extension an operation) and
 // for images in memory (NAME.anabuf), and the output that puts them there.
 #include <OpenImageIO/filesystem.h>
 #include <OpenImageIO/imagebuf.h>
@@ -28,6 +28,10 @@ using OIIO::ImageInput;
 using OIIO::ImageOutput;
 using OIIO::ImageSpec;
 
+/// The name of the file and of its exports, too. It is not "anamorph": OpenImageIO takes an attribute whose
+/// name begins with a format's for that format's own, and keeps anamorph:tol out of files of any other.
+const char* const kFormat = "anamorph_recipes";
+
 /// oiiotool before 3.0 answers "File does not exist" where a name that is not on disk fails to open, whatever
 /// the reason was; so there the reason is said here, once.
 void explain_to_oiiotool(const std::string& name, const std::string& reason) {
@@ -42,6 +46,12 @@ void explain_to_oiiotool(const std::string& name, const std::string& reason) {
 #else
     static_cast<void>(name), static_cast<void>(reason);
 #endif
+}
+
+std::string joined_extensions() {
+    std::string text;
+    for (const Operation* operation : operations()) text += "." + operation->name + ", ";
+    return text + std::string(kBufferExtension);
 }
 
 /// Counts how deep this thread is inside calls of ours: what fails in an inner one is told by the outer one.
@@ -69,7 +79,7 @@ class FileInput final : public ImageInput {
   public:
     ~FileInput() override { close(); }
 
-    const char* format_name() const override { return "anamorph"; }
+    const char* format_name() const override { return kFormat; }
 
     int supports(OIIO::string_view feature) const override {
 #if OIIO_VERSION >= 30000
@@ -81,7 +91,7 @@ class FileInput final : public ImageInput {
     }
 
     bool valid_file(const std::string& name) const override {
-        return kind_of(name) || has_extension(name, kBufferExtension);
+        return operation_of(name) || has_extension(name, kBufferExtension);
     }
 
     bool open(const std::string& name, ImageSpec& spec) override {
@@ -90,15 +100,15 @@ class FileInput final : public ImageInput {
 
     bool open(const std::string& name, ImageSpec& spec, const ImageSpec& config) override {
         // The extension first: OpenImageIO offers names of all kinds.
-        if (!valid_file(name)) return failed("not a .pano, .warp, .morph or .anabuf name");
+        if (!valid_file(name)) return failed("not a " + joined_extensions() + " name");
         const Inside inside;
         try {
             const PoolWorker worker;
             close();
-            const OperationKind* kind = kind_of(name);
+            const Operation* operation = operation_of(name);
             std::shared_ptr<const Content> content =
-                kind ? open_recipe(name, assignments_of(config.extra_attribs, kind->name + ":"))
-                     : open_buffer(name);
+                operation ? open_recipe(name, assignments_of(config.extra_attribs, operation->name + ":"))
+                          : open_buffer(name);
             const lock_guard lock(*this);
             m_content = std::move(content);
             m_subimage = m_level = 0;
@@ -252,7 +262,7 @@ class BufferOutput final : public ImageOutput {
   public:
     ~BufferOutput() override { close(); }
 
-    const char* format_name() const override { return "anamorph"; }
+    const char* format_name() const override { return kFormat; }
 
     int supports(OIIO::string_view feature) const override {
         // Procedural: hosts do not rename a file that is none.
@@ -305,21 +315,25 @@ class BufferOutput final : public ImageOutput {
 
 OIIO_PLUGIN_EXPORTS_BEGIN
 
-OIIO_EXPORT int anamorph_imageio_version = OIIO_PLUGIN_VERSION;
+OIIO_EXPORT int anamorph_recipes_imageio_version = OIIO_PLUGIN_VERSION;
 
-OIIO_EXPORT const char* anamorph_imageio_library_version() {
+OIIO_EXPORT const char* anamorph_recipes_imageio_library_version() {
     static const std::string text = std::string("Anamorph ") + anamorph::version();
     return text.c_str();
 }
 
-OIIO_EXPORT OIIO::ImageInput* anamorph_input_imageio_create() {
+OIIO_EXPORT OIIO::ImageInput* anamorph_recipes_input_imageio_create() {
     return new anamorph::FileInput;
 }
-OIIO_EXPORT const char* anamorph_input_extensions[] = {"pano", "warp", "morph", "anabuf", nullptr};
+OIIO_EXPORT const char* anamorph_recipes_input_extensions[] = {
+#define ANAMORPH_OPERATION(name) #name,
+#include "anamorph/operation/list.h"
+#undef ANAMORPH_OPERATION
+    "anabuf", nullptr};
 
-OIIO_EXPORT OIIO::ImageOutput* anamorph_output_imageio_create() {
+OIIO_EXPORT OIIO::ImageOutput* anamorph_recipes_output_imageio_create() {
     return new anamorph::BufferOutput;
 }
-OIIO_EXPORT const char* anamorph_output_extensions[] = {"anabuf", nullptr};
+OIIO_EXPORT const char* anamorph_recipes_output_extensions[] = {"anabuf", nullptr};
 
 OIIO_PLUGIN_EXPORTS_END

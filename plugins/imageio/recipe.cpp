@@ -69,16 +69,16 @@ std::string state_of(const std::string& name) {
 }
 
 /// The values of a recipe, and the files that they name; nothing is known of those yet.
-Recipe read_recipe(const OperationKind& kind, const std::string& name,
+Recipe read_recipe(const Operation& operation, const std::string& name,
                    const std::vector<Assignment>& config) {
     RecipeName parsed = parse_recipe_name(name);
     parsed.base = without_detours(parsed.base);
-    Recipe recipe{&kind, ParameterValues(*kind.parameters), {}, {}};
+    Recipe recipe{&operation, ParameterValues(*operation.parameters), {}, {}};
     // Takes the values of one place; files there are relative to `folder`.
     const auto take = [&](const std::vector<Assignment>& place, const fs::path& folder) {
-        ParameterValues own(*kind.parameters);
+        ParameterValues own(*operation.parameters);
         own.assign(place);
-        for (const Parameter& p : *kind.parameters) {
+        for (const Parameter& p : *operation.parameters) {
             if ((p.type != ParameterType::image && p.type != ParameterType::file) || !own.given(p.name))
                 continue;
             const std::string& file = own.text(p.name);
@@ -99,8 +99,10 @@ Recipe read_recipe(const OperationKind& kind, const std::string& name,
     }
     take(parsed.assignments, {});
     take(config, {});
-    if (!recipe.files.count(kind.sources[0]))
-        recipe.files[kind.sources[0]].name = parsed.base.substr(0, parsed.base.size() - kind.name.size() - 1);
+    const bool draws_one = !operation.sources.empty();
+    if (draws_one && !recipe.files.count(operation.sources[0]))
+        recipe.files[operation.sources[0]].name =
+            parsed.base.substr(0, parsed.base.size() - operation.name.size() - 1);
     for (const auto& [key, file] : recipe.files) check_file_name(key, file.name);
     return recipe;
 }
@@ -115,18 +117,18 @@ bool has_extension(std::string_view name, std::string_view extension) {
                       [](char a, char b) { return (a >= 'A' && a <= 'Z' ? a - 'A' + 'a' : a) == b; });
 }
 
-const OperationKind* kind_of(std::string_view name) {
-    for (const OperationKind* kind : {&pano_kind(), &warp_kind(), &morph_kind()})
-        if (has_extension(name, "." + kind->name)) return kind;
+const Operation* operation_of(std::string_view name) {
+    for (const Operation* operation : operations())
+        if (has_extension(name, "." + operation->name)) return operation;
     return nullptr;
 }
 
 Recipe RecipeReader::load(const std::string& name, const std::vector<Assignment>& config) {
-    const OperationKind* kind = kind_of(name);
-    if (!kind) throw Error("\"" + printable(name) + "\" is not a recipe's name");
+    const Operation* operation = operation_of(name);
+    if (!operation) throw Error("\"" + printable(name) + "\" is not a recipe's name");
     Recipe recipe = config.empty() && m_nested.count(normal(name)) ? m_nested.at(normal(name))
-                                                                   : read_recipe(*kind, name, config);
-    recipe.identity = kind->name + "\n" + recipe.values.key();
+                                                                   : read_recipe(*operation, name, config);
+    recipe.identity = operation->name + "\n" + recipe.values.key();
     for (auto& [key, file] : recipe.files) {
         m_way = {normal(name)};
         file.identity = identity_of(file.name);
@@ -135,14 +137,14 @@ Recipe RecipeReader::load(const std::string& name, const std::vector<Assignment>
     return recipe;
 }
 
-const Recipe& RecipeReader::nested(const OperationKind& kind, const std::string& name) {
+const Recipe& RecipeReader::nested(const Operation& operation, const std::string& name) {
     const auto found = m_nested.find(normal(name));
     if (found != m_nested.end()) return found->second;
     if (m_nested.size() >= kMaxRecipes)
         throw Error("recipe \"" + printable(m_way.front()) + "\" reads from more than " +
                     std::to_string(kMaxRecipes) + " others: must be at most so many");
     return in_recipe(name, [&]() -> const Recipe& {
-        return m_nested.emplace(normal(name), read_recipe(kind, name, {})).first->second;
+        return m_nested.emplace(normal(name), read_recipe(operation, name, {})).first->second;
     });
 }
 
@@ -159,22 +161,22 @@ const std::string& RecipeReader::identity_of(const std::string& file) {
 /// Walks the files that a file is made of, each once.
 void RecipeReader::visit(const std::string& file) {
     const std::string name = normal(file);
-    const OperationKind* kind = kind_of(file);
+    const Operation* operation = operation_of(file);
     const bool again = std::find(m_way.begin(), m_way.end(), name) != m_way.end();
     m_way.push_back(name);
-    if (kind && again) {
+    if (operation && again) {
         std::string cycle;
         for (const std::string& n : m_way) cycle += (cycle.empty() ? "" : " -> ") + printable(n);
         throw Error("recipes read each other: " + cycle);
     }
-    if (kind && static_cast<int>(m_way.size()) > kMaxDepth)
+    if (operation && static_cast<int>(m_way.size()) > kMaxDepth)
         throw Error("recipes nest too deep: must be at most " + std::to_string(kMaxDepth));
     if (m_seen.insert(name).second) {
         const auto [state, is_new] = m_states.try_emplace(name);
         if (is_new) state->second = state_of(file);
         m_identity += state->second;
-        if (kind)
-            for (const auto& [key, used] : nested(*kind, file).files) visit(used.name);
+        if (operation)
+            for (const auto& [key, used] : nested(*operation, file).files) visit(used.name);
     }
     m_way.pop_back();
 }

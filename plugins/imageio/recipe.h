@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-#include "anamorph/operation.h"
+#include "anamorph/operation/operation.h"
 #include "anamorph/parameter.h"
 
 namespace anamorph {
@@ -30,10 +30,10 @@ decltype(auto) in_recipe(std::string_view name, const Body& body) {
 }
 
 /// The operation whose recipes have such a name, or null.
-const OperationKind* kind_of(std::string_view name);
+const Operation* operation_of(std::string_view name);
 
 struct Recipe {
-    const OperationKind* kind;
+    const Operation* operation;
     ParameterValues values;
     /// The sources and side files by key, each with the folder it stands in. Identities tell states of the
     /// file, and of all that it is made of where it is a recipe, apart: names, times of writing (ns), sizes.
@@ -52,7 +52,7 @@ class RecipeReader {
     Recipe load(const std::string& name, const std::vector<Assignment>& config = {});
 
   private:
-    const Recipe& nested(const OperationKind& kind, const std::string& name);
+    const Recipe& nested(const Operation& operation, const std::string& name);
     const std::string& identity_of(const std::string& file);
     void visit(const std::string& file);
 

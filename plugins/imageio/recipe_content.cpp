@@ -4,14 +4,16 @@
 #include <filesystem>
 #include <map>
 #include <mutex>
+#include <optional>
 #include <thread>
 
 #include "anamorph/image_source.h"
-#include "anamorph/memo.h"
 #include "anamorph/metadata.h"
+#include "anamorph/operation/memo.h"
 #include "anamorph/orientation.h"
 #include "anamorph/parallel.h"
-#include "anamorph/picture.h"
+#include "anamorph/side_files.h"
+#include "anamorph/source_stack.h"
 #include "recipe.h"
 
 namespace anamorph {
@@ -37,21 +39,21 @@ ImageCacheRef shared_cache() {
     return OIIO::ImageCache::create(true);
 }
 
-/// A drawing and, once asked for, what it reached.
+/// A picture and, once asked for, what it reached.
 class Solved {
   public:
-    explicit Solved(const PictureRequest& request) : m_drawing(request.solve()) {}
+    explicit Solved(const PictureRequest& request) : m_picture(request.solve()) {}
 
-    const Drawing& drawing() const { return *m_drawing; }
-    const Facts& reached() {
-        std::call_once(m_once, [this] { m_reached = m_drawing->reached(own_threads()); });
+    const SolvedPicture& picture() const { return *m_picture; }
+    const Attributes& reached() {
+        std::call_once(m_once, [this] { m_reached = m_picture->reached(own_threads()); });
         return m_reached;
     }
 
   private:
-    std::unique_ptr<const Drawing> m_drawing;
+    std::unique_ptr<const SolvedPicture> m_picture;
     std::once_flag m_once;
-    Facts m_reached;
+    Attributes m_reached;
 };
 
 /// The name by which the cache is asked for a source: another spelling of its path after each change of its
@@ -128,14 +130,14 @@ class RecipeContent final : public Content {
             images.push_back(std::move(image));
             identity += file.identity;
         }
-        m_source = upright(specs[0]);
-        m_operation = recipe.kind->read(values, known, recipe.files);
-        m_key = operation_key(*recipe.kind, values, known, recipe.files);
-        const PictureRequest first = *m_operation->picture(0, 0);
-        check_size(first, m_source);
+        if (!specs.empty()) m_source = upright(specs[0]);
+        m_pictures = recipe.operation->read({values, known, recipe.files, side_file_reader()});
+        m_key = operation_key(*recipe.operation, values, known, recipe.files);
+        m_tile = tile_of(values);
+        const PictureRequest first = level(0, 0).request;
 
         const std::string space = filtering_space(values, first.pixels);
-        const Operation::Faces faces = m_operation->faces();
+        const SourceFaces faces = m_pictures->faces();
         static auto& stacks = *new Memo<const SourceStacks>(2);
         const std::string stack_key =
             identity + space + "\n" + std::to_string(faces.columns) + "x" + std::to_string(faces.rows);
@@ -144,19 +146,17 @@ class RecipeContent final : public Content {
                 make_source_stacks(std::move(images), specs, faces, space));
         });
 
-        m_tile = values.extent("tile");
-        if (m_tile.height < 0) m_tile.height = m_tile.width;
-        if (values.toggle("mip"))
-            while (m_operation->picture(0, m_levels)) ++m_levels;
+        if (values.knows("mip") && values.toggle("mip"))
+            while (m_pictures->picture(0, m_levels)) ++m_levels;
         // What a film of many frames reached is not known without solving them all.
         for (int i = 0; subimages() == 1 && i < m_levels; ++i) {
             Level& l = level(0, i);
             l.solved = solve(l);
-            add_facts(l.spec, l.solved->reached());
+            add_attributes(l.spec, l.solved->reached());
         }
     }
 
-    int subimages() const override { return m_operation->frames(); }
+    int subimages() const override { return m_pictures->frames(); }
     int levels(int) const override { return m_levels; }
     const ImageSpec& spec(int subimage, int level) const override {
         return this->level(subimage, level).spec;
@@ -166,16 +166,16 @@ class RecipeContent final : public Content {
         const Level& l = this->level(subimage, level);
         const std::shared_ptr<Solved> solved = l.solved ? l.solved : solve(l);
         const bool small = std::int64_t{box.width()} * box.height() < kParallelPixels;
-        const Picture picture(solved->drawing(), *m_stacks);
-        picture.draw(
-            box, packed_view(pixels, pixel_type(l.spec.format), box.width(), box.height(), l.spec.nchannels),
+        draw_picture(
+            solved->picture(), *m_stacks, box,
+            packed_view(pixels, pixel_type(l.spec.format), box.width(), box.height(), l.spec.nchannels),
             small ? serial_for : own_threads());
     }
 
   private:
     struct Level {
         PictureRequest request;
-        std::string key;  ///< the same text, the same drawing
+        std::string key;  ///< the same text, the same picture
         ImageSpec spec;
         std::shared_ptr<Solved> solved;
     };
@@ -183,7 +183,7 @@ class RecipeContent final : public Content {
     /// A source that is a recipe stays open while this picture is, so that the cache that asks for it by its
     /// name does not make it again.
     std::unique_ptr<CacheSource> open_source(const SideFile& file, Opening& opening) {
-        if (!kind_of(file.name)) return opening.open_file(file);
+        if (!operation_of(file.name)) return opening.open_file(file);
         const std::shared_ptr<const Content> content =
             in_recipe(file.name, [&] { return opening.open(file.name, {}); });
         m_nested.push_back(content);
@@ -194,12 +194,12 @@ class RecipeContent final : public Content {
 
     /// Those that are given, in their order.
     static std::vector<SideFile> sources_of(const Recipe& recipe) {
-        const std::vector<std::string>& keys = recipe.kind->sources;
+        const std::vector<std::string>& keys = recipe.operation->sources;
         std::vector<SideFile> sources;
         for (std::size_t i = 0; i < keys.size(); ++i) {
             const auto file = recipe.files.find(keys[i]);
             const bool given = file != recipe.files.end();
-            if (i < recipe.kind->least_sources && !given)
+            if (i < recipe.operation->least_sources && !given)
                 throw Error(keys[i] + " is not given: must be the name of an image");
             if (given && i > sources.size())
                 throw Error(keys[i], printable(file->second.name),
@@ -207,6 +207,12 @@ class RecipeContent final : public Content {
             if (given) sources.push_back(file->second);
         }
         return sources;
+    }
+
+    static Size tile_of(const ParameterValues& values) {
+        if (!values.knows("tile")) return {};
+        const Size tile = values.extent("tile");
+        return {tile.width, tile.height < 0 ? tile.width : tile.height};
     }
 
     static std::shared_ptr<Solved> solve(const Level& level) {
@@ -219,9 +225,9 @@ class RecipeContent final : public Content {
         const auto [found, is_new] = m_known.try_emplace({subimage, number});
         if (is_new) {
             Level& made = found->second;
-            made.request = *m_operation->picture(subimage, number);
+            made.request = *m_pictures->picture(subimage, number);
             made.key = m_key + "frame " + std::to_string(subimage) + " level " + std::to_string(number);
-            made.spec = picture_spec(m_source, made.request);
+            made.spec = picture_spec(m_source ? &*m_source : nullptr, made.request);
             const bool tiled = m_tile.width > 0 && m_tile.height > 0;
             made.spec.tile_width = tiled ? m_tile.width : 0;
             made.spec.tile_height = tiled ? m_tile.height : 0;
@@ -229,8 +235,8 @@ class RecipeContent final : public Content {
         return found->second;
     }
 
-    ImageSpec m_source;  ///< of the first source, upright
-    std::unique_ptr<const Operation> m_operation;
+    std::optional<ImageSpec> m_source;  ///< of the first source, upright
+    std::unique_ptr<const Pictures> m_pictures;
     std::string m_key;  ///< of the operation
     std::vector<std::shared_ptr<const Content>> m_nested;
     std::shared_ptr<const SourceStacks> m_stacks;

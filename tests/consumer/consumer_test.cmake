@@ -5,7 +5,7 @@ include(${CMAKE_CURRENT_LIST_DIR}/install_and_test.cmake)
 install_and_test()
 
 # A stock host loads the installed plugin.
-file(GLOB_RECURSE plugin ${WORK_DIR}/prefix/anamorph.imageio.so)
+file(GLOB_RECURSE plugin ${WORK_DIR}/prefix/anamorph_recipes.imageio.so)
 get_filename_component(plugin_dir "${plugin}" DIRECTORY)
 run(oiiotool --pattern fill:color=0.25,0.5,0.75 64x32 3 -o ${WORK_DIR}/panorama.exr)
 run(${CMAKE_COMMAND} -E env OIIO_LIBRARY_PATH=${plugin_dir}

@@ -7,8 +7,8 @@
 #include <clocale>
 #include <random>
 
-#include "anamorph/render/picture_parameters.h"
-#include "anamorph/render/reproject_parameters.h"
+#include "anamorph/operation/pano.h"
+#include "anamorph/operation/rows.h"
 
 namespace anamorph {
 namespace {
@@ -28,7 +28,7 @@ std::string error_of(const Body& body) {
 }
 
 ParameterValues values(const std::vector<Assignment>& assignments) {
-    ParameterValues v(reproject_parameters());
+    ParameterValues v(*pano_operation().parameters);
     v.assign(assignments);
     return v;
 }
@@ -39,7 +39,7 @@ ReprojectRequest request(const std::vector<Assignment>& assignments,
 }
 
 TEST(Parameter, EveryDefaultIsAllowed) {
-    for (const Parameter& p : reproject_parameters()) {
+    for (const Parameter& p : *pano_operation().parameters) {
         SCOPED_TRACE(p.name);
         EXPECT_FALSE(p.documentation.empty());
         if (!p.default_value.empty()) {
@@ -49,7 +49,7 @@ TEST(Parameter, EveryDefaultIsAllowed) {
 }
 
 TEST(Parameter, LaterPlacesOverrideEarlierOnes) {
-    ParameterValues v(reproject_parameters());
+    ParameterValues v(*pano_operation().parameters);
     v.assign({{"yaw", "10"}, {"pitch", "5"}});
     v.assign({{"yaw", "20"}});
     EXPECT_EQ(v.number("yaw"), 20);
@@ -282,8 +282,8 @@ TEST(ReprojectRequest, HalfSizes) {
 }
 
 TEST(ReferencePage, HasEveryParameter) {
-    const std::string page = reference_page("Panorama", reproject_parameters());
-    for (const Parameter& p : reproject_parameters()) EXPECT_THAT(page, HasSubstr("| `" + p.name + "`"));
+    const std::string page = reference_page("Panorama", *pano_operation().parameters);
+    for (const Parameter& p : *pano_operation().parameters) EXPECT_THAT(page, HasSubstr("| `" + p.name + "`"));
     EXPECT_THAT(page, HasSubstr("| `tol` | `0.01` | source pixels | a number of at least 0 |"));
 }
 

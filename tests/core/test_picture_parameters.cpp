@@ -5,8 +5,8 @@
 
 #include <cmath>
 
-#include "anamorph/render/morph_parameters.h"
-#include "anamorph/render/warp_parameters.h"
+#include "anamorph/operation/morph.h"
+#include "anamorph/operation/warp.h"
 
 namespace anamorph {
 namespace {
@@ -25,24 +25,24 @@ std::string error_of(const Body& body) {
 }
 
 WarpRequest warp(const std::vector<Assignment>& assignments, const Size& source = {300, 200}) {
-    ParameterValues values(warp_parameters());
+    ParameterValues values(*warp_operation().parameters);
     values.assign(assignments);
     return read_warp_request(values, source);
 }
 
 MorphRequest morph(const std::vector<Assignment>& assignments,
                    const std::vector<Size>& pictures = {{300, 200}, {64, 64}}) {
-    ParameterValues values(morph_parameters());
+    ParameterValues values(*morph_operation().parameters);
     values.assign(assignments);
     return read_morph_request(values, pictures);
 }
 
 TEST(PictureParameters, EveryDefaultIsAllowed) {
-    for (const ParameterTable* table : {&warp_parameters(), &morph_parameters()})
-        for (const Parameter& p : *table) {
-            SCOPED_TRACE(p.name);
+    for (const Operation* operation : operations())
+        for (const Parameter& p : *operation->parameters) {
+            SCOPED_TRACE(operation->name + " " + p.name);
             EXPECT_FALSE(p.documentation.empty());
-            ParameterValues values(*table);
+            ParameterValues values(*operation->parameters);
             if (!p.default_value.empty()) {
                 EXPECT_NO_THROW(values.assign({{p.name, p.default_value}}));
             }
@@ -140,7 +140,7 @@ void make_morph(const std::vector<Assignment>& assignments) {
 
 TEST(MorphRequest, WhatARowAllowsIsWhatTheMorphTakes) {
     int ends = 0;
-    for (const Parameter& p : morph_parameters()) {
+    for (const Parameter& p : *morph_operation().parameters) {
         const bool number = p.type == ParameterType::number, whole = p.type == ParameterType::whole;
         if (!number && !whole) continue;
         SCOPED_TRACE(p.name);

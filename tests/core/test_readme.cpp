@@ -7,9 +7,7 @@
 
 #include "anamorph/map/features_file.h"
 #include "anamorph/map/mesh_file.h"
-#include "anamorph/render/morph_parameters.h"
-#include "anamorph/render/reproject_parameters.h"
-#include "anamorph/render/warp_parameters.h"
+#include "anamorph/operation/operation.h"
 
 namespace {
 
@@ -29,17 +27,20 @@ std::string readme() {
 void expect_listed(const std::string& recipe, const anamorph::ParameterTable& table) {
     std::string page = anamorph::reference_page("", table);
     page.erase(0, page.find('|'));
-    EXPECT_EQ(between(readme(), "<!-- keys of " + recipe + ": begin -->\n\n",
-                      "\n<!-- keys of " + recipe + ": end -->"),
-              page)
-        << "README.md is to have between its marks:\n\n"
-        << page;
+    const std::string listed = between(readme(), "<!-- keys of " + recipe + ": begin -->\n\n",
+                                       "\n<!-- keys of " + recipe + ": end -->");
+#ifdef ANAMORPH_TOYS
+    if (recipe == "toy" || recipe == "pano") {
+        EXPECT_NE(listed, page) << "the README has no toys, and the test is to notice";
+        return;
+    }
+#endif
+    EXPECT_EQ(listed, page) << "README.md is to have between its marks:\n\n" << page;
 }
 
 TEST(Readme, ListsTheKeys) {
-    expect_listed("pano", anamorph::reproject_parameters());
-    expect_listed("warp", anamorph::warp_parameters());
-    expect_listed("morph", anamorph::morph_parameters());
+    for (const anamorph::Operation* operation : anamorph::operations())
+        expect_listed(operation->name, *operation->parameters);
 }
 
 TEST(Readme, ItsFilesCanBeRead) {

@@ -4,9 +4,8 @@
 #include <cstdint>
 #include <string>
 
-#include "anamorph/render/morph_parameters.h"
-#include "anamorph/render/reproject_parameters.h"
 #include "expect_error.h"
+#include "read_operation.h"
 
 using namespace anamorph;
 
@@ -19,14 +18,9 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
             fuzz::require(!a.key.empty(), "a key is never empty");
             fuzz::require(text.find(a.value) != std::string::npos, "a value stands in the name as it is");
         }
-        ParameterValues values(reproject_parameters());
-        values.assign(name.assignments);
-        read_reproject_request(values, {1024, 512, std::nullopt});
     });
-    fuzz::expect_no_failure_but_error([&] {
-        ParameterValues values(morph_parameters());
-        values.assign(parse_recipe_name(text).assignments);
-        read_morph_request(values, {{1024, 512}, {64, 64}, {8, 8}});
-    });
+    for (const Operation* operation : operations())
+        fuzz::expect_no_failure_but_error(
+            [&] { fuzz::read_operation(*operation, parse_recipe_name(text).assignments); });
     return 0;
 }

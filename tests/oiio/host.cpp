@@ -150,6 +150,34 @@ std::unique_ptr<OIIO::ImageInput> open(const std::string& name) {
     return input;
 }
 
+std::string joined(const std::vector<Assignment>& arguments) {
+    std::vector<Assignment> all;
+    for (const Assignment& a : arguments) {
+        const auto same =
+            std::find_if(all.begin(), all.end(), [&](const Assignment& b) { return b.key == a.key; });
+        if (same == all.end())
+            all.push_back(a);
+        else
+            same->value = a.value;
+    }
+    std::string text;
+    for (const Assignment& a : all) text += (text.empty() ? "" : "&") + a.key + "=" + a.value;
+    return text;
+}
+
+std::string example(const Operation& operation, const std::vector<std::string>& sources,
+                    const std::vector<Assignment>& more) {
+    for (const auto& [name, text] : operation.example.files) write_text(name, text);
+    std::vector<Assignment> arguments;
+    for (std::size_t i = 1; i < operation.least_sources; ++i)
+        arguments.push_back({operation.sources[i], sources.at(i)});
+    for (const Assignment& a : parse_recipe_name("?" + operation.example.arguments).assignments)
+        arguments.push_back(a);
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    const std::string base = operation.sources.empty() ? "picture" : sources.at(0);
+    return base + "." + operation.name + "?" + joined(arguments);
+}
+
 OIIO::ParamValueList options(std::initializer_list<std::pair<const char*, const char*>> list) {
     OIIO::ParamValueList out;
     for (const auto& [key, value] : list) out.attribute(key, value);

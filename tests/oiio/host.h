@@ -17,6 +17,8 @@
 #include <utility>
 #include <vector>
 
+#include "anamorph/operation/operation.h"
+
 namespace anamorph::testing_oiio {
 
 /// Runs each test in an empty folder and removes it afterwards.
@@ -65,6 +67,13 @@ void write_text(const std::string& name, const std::string& text);
 
 /// The plugin's input of this name; the test fails where it cannot be opened.
 std::unique_ptr<OIIO::ImageInput> open(const std::string& name);
+
+/// Arguments of a recipe, later ones in place of earlier ones of the same key: "b=town.exr&t=0.3".
+std::string joined(const std::vector<Assignment>& arguments);
+/// The recipe that an operation gives as its example, of sources of these names (as many as it needs are
+/// taken), with more arguments. Its side files are written to the working folder.
+std::string example(const Operation& operation, const std::vector<std::string>& sources,
+                    const std::vector<Assignment>& more = {});
 
 /// Options of an operation.
 OIIO::ParamValueList options(std::initializer_list<std::pair<const char*, const char*>> list);

@@ -178,7 +178,7 @@ TEST_F(BadInput, conformance_24_foreign_names_are_left_alone) {
         EXPECT_EQ(ran.status, 1) << ran.text;
         EXPECT_THAT(ran.text, Not(HasSubstr("anamorph")));
     }
-    const auto input = ImageInput::create("anamorph");
+    const auto input = ImageInput::create("anamorph_recipes");
     OIIO::ImageSpec spec;
     EXPECT_FALSE(input->open("city.exr", spec));
     EXPECT_THAT(input->geterror(), HasSubstr("not a .pano"));

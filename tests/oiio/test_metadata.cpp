@@ -315,6 +315,22 @@ TEST_F(Metadata, WhatWasAssumedIsSaid) {
               "equirectangular (assumed from the 2:1 shape)");
 }
 
+TEST_F(Metadata, WhatWasReachedIsWrittenToFiles) {
+    // By a stock program, into a format that keeps any attribute.
+    for (const Operation* operation : operations()) {
+        const std::string recipe = example(*operation, {"city.exr", "city.exr"});
+        SCOPED_TRACE(recipe);
+        const Ran ran = run("oiiotool '" + recipe + "' -o y.exr && iinfo -v y.exr");
+        ASSERT_EQ(ran.status, 0) << ran.text;
+        const ImageSpec picture = spec_of(recipe), written = spec_of("y.exr");
+        for (const char* name : {"anamorph:tol", "anamorph:max_error", "anamorph:exact_fraction"}) {
+            EXPECT_GE(picture.get_float_attribute(name, -1), 0) << name;
+            EXPECT_EQ(written.get_float_attribute(name, -1), picture.get_float_attribute(name, -2)) << name;
+            EXPECT_THAT(ran.text, HasSubstr(name));
+        }
+    }
+}
+
 TEST_F(Metadata, StockProgramsKnowAnEnvironment) {
     // maketx keeps what the picture says; OpenEXR's own attribute comes back as a texture's format.
     write_text("sky.pano", "src=city.exr\nto=equirectangular\nsize=64x32\nyaw=10\n");

@@ -64,6 +64,39 @@ TEST_F(Ops, AgreesWithTheRecipe) {
         }
 }
 
+TEST_F(Ops, EveryOperationByItsNameIsItsRecipe) {
+    const std::vector<std::string> names = {"city.exr", "town.exr"};
+    write_panorama("city.exr", 64, 32);
+    write_image(OIIO::ImageBufAlgo::flop(panorama(64, 32)), "town.exr");
+    for (const Operation* operation : operations()) {
+        SCOPED_TRACE(operation->name);
+        const Pixels recipe = read_pixels(example(*operation, names));
+        std::vector<ImageBuf> images;
+        for (std::size_t i = 0; i < operation->least_sources; ++i) images.emplace_back(names[i]);
+        std::vector<const ImageBuf*> sources;
+        for (const ImageBuf& image : images) sources.push_back(&image);
+        ParamValueList o;
+        for (const Assignment& a : parse_recipe_name("?" + operation->example.arguments).assignments)
+            o.attribute(a.key, a.value);
+        const ImageBuf made = apply(operation->name, sources, o);
+        EXPECT_EQ(bytes(made), recipe.bytes);
+        for (const char* name : {"anamorph:tol", "anamorph:max_error"})
+            EXPECT_EQ(made.spec().get_float_attribute(name, -1), recipe.spec.get_float_attribute(name, -2));
+        // A part of it, in place of what was there.
+        ImageBuf dst(made.spec());
+        const ROI part(5, 20, 3, 17, 0, 1, 0, 3);
+        ASSERT_TRUE(apply(dst, operation->name, sources, o, part)) << dst.geterror();
+        EXPECT_EQ(bytes(OIIO::ImageBufAlgo::cut(dst, part)), bytes(OIIO::ImageBufAlgo::cut(made, part)));
+        // As many sources as it draws.
+        sources.resize(operation->sources.size() + 1, &dst);
+        EXPECT_FALSE(apply(dst, operation->name, sources, o));
+        EXPECT_THAT(dst.geterror(), AllOf(HasSubstr(operation->name + ": "),
+                                          HasSubstr("source images: must be "), Not(HasSubstr("\n"))));
+    }
+    const ImageBuf none = apply("none", {});
+    EXPECT_EQ(none.geterror(), "apply: operation \"none\": must be one of " + operation_names());
+}
+
 TEST_F(Ops, ReadsAnImageBehindACache) {
     write_panorama("s.exr", 256, 128);
     ImageBuf local("s.exr"), cached("s.exr", 0, 0, OIIO::ImageCache::create(true));

@@ -6,7 +6,7 @@
 #include <cfloat>
 #include <cmath>
 
-#include "anamorph/operation.h"
+#include "anamorph/operation/operation.h"
 #include "host.h"
 
 namespace anamorph {
@@ -78,16 +78,25 @@ class ParameterEnds : public InFolder {
                                4 * faces_of(p).rows);
         write_text("still.json", R"({"columns": 1, "rows": 1, "units": "fractions",
                                      "vertices": [[0, 0], [1, 0], [0, 1], [1, 1]]})");
-        write_text("lines.csv", "2,2,20,3,4,4,18,5\n");
         ASSERT_EQ(run("oiiotool 'city.exr.warp?mesh=still.json&output=stmap' -o st.exr").status, 0);
     }
 
     /// A recipe in which any value of `key` has a meaning.
-    static std::string name_for(const std::string& kind, const std::string& key, const std::string& value) {
-        std::string name = base_for(kind, key, value);
-        if (name.find("size=") == std::string::npos && key != "size") name += "&size=4x3";
-        name.append("&").append(key).append("=").append(value);
-        return name;
+    static std::string name_for(const Operation& operation, const std::string& key,
+                                const std::string& value) {
+        std::vector<std::string> sources = {"city.exr", "town.exr"};
+        std::vector<Assignment> arguments = {{"size", "4x3"}};
+        const auto add = [&](const char* name, const std::string& text) {
+            arguments.push_back({name, text});
+        };
+        const FaceGrid faces = faces_named(value);
+        if (key == "step") add("mesh", "st.exr");
+        if (key == "amount") add("mesh", "still.json");
+        if (key == "from" && faces.columns > 0) sources[0] = value + ".exr";
+        if (key == "to" && faces.columns > 0)
+            add("size", std::to_string(2 * faces.columns) + "x" + std::to_string(2 * faces.rows));
+        arguments.push_back({key, value});
+        return example(operation, sources, arguments);
     }
 
   private:
@@ -96,19 +105,6 @@ class ParameterEnds : public InFolder {
         for (const Projection p : kProjections)
             if (name_of(p) == value) return faces_of(p);
         return {};
-    }
-    static std::string base_for(const std::string& kind, const std::string& key, const std::string& value) {
-        if (kind == "morph") return "city.exr.morph?b=town.exr&features=lines.csv";
-        if (kind == "warp")
-            return key == "step" ? "city.exr.warp?mesh=st.exr" : "city.exr.warp?mesh=still.json";
-        const FaceGrid faces = faces_named(value);
-        if (key == "from") return (faces.columns > 0 ? value : "city") + ".exr.pano?yaw=1";
-        if (key == "to" && faces.columns > 0)
-            return "city.exr.pano?size=" + std::to_string(2 * faces.columns) + "x" +
-                   std::to_string(2 * faces.rows);
-        // Lenses that may have 360 degrees.
-        return key == "fov" || key == "size" ? "city.exr.pano?to=equirectangular"
-                                             : "city.exr.pano?from=latlong";
     }
 };
 
@@ -130,15 +126,15 @@ std::string error_of(const std::string& name) {
 }
 
 TEST_F(ParameterEnds, EveryRowAcceptsWhatItSaysAndNoMore) {
-    for (const OperationKind* kind : {&pano_kind(), &warp_kind(), &morph_kind()})
-        for (const Parameter& p : *kind->parameters) {
+    for (const Operation* operation : operations())
+        for (const Parameter& p : *operation->parameters) {
             const Ends ends = ends_of(p);
             for (const std::string& value : ends.accepted) {
-                const std::string name = name_for(kind->name, p.name, value);
+                const std::string name = name_for(*operation, p.name, value);
                 EXPECT_EQ(error_of(name), "") << name;
             }
             for (const std::string& value : ends.refused) {
-                const std::string name = name_for(kind->name, p.name, value);
+                const std::string name = name_for(*operation, p.name, value);
                 std::string start = "anamorph: ";
                 start.append(p.name).append("=").append(value).append(": ").append(p.rule());
                 EXPECT_THAT(open_error(name), StartsWith(start)) << name;

@@ -19,7 +19,6 @@
 #include <thread>
 
 #include "anamorph/oiio_ops.h"
-#include "anamorph/operation.h"
 #include "host.h"
 
 namespace anamorph {
@@ -318,68 +317,6 @@ TEST_F(RecipeFiles, MemoryThatCannotBeHadIsCalledSo) {
     EXPECT_EQ(message_of(std::bad_alloc(), "the picture"), "not enough memory for the picture");
     EXPECT_EQ(message_of(std::length_error("vector"), "it"), "not enough memory for it");
     EXPECT_EQ(message_of(Error("fov", "\n", "must be\t1"), "it"), "fov=?: must be?1");
-}
-
-/// Another value of a row than its default.
-std::string other_value(const Parameter& p) {
-    switch (p.type) {
-        case ParameterType::choice:
-            return p.choices[p.choices[0] == p.default_value ? 1 : 0];
-        case ParameterType::toggle:
-            return p.default_value == "1" ? "0" : "1";
-        case ParameterType::extent:
-        case ParameterType::whole:
-            return "3";
-        case ParameterType::number:
-            return "0.25";
-        case ParameterType::numbers:
-            return "0.25,0.75";
-        default:
-            return "other";
-    }
-}
-
-TEST(OperationKey, DiffersWithEveryKeyOfEveryOperation) {
-    for (const OperationKind* kind : {&pano_kind(), &warp_kind(), &morph_kind()}) {
-        std::vector<SourceImage> images(2);
-        for (SourceImage& image : images) {
-            image.facts.width = 64, image.facts.height = 32;
-            image.channels = 3;
-            image.color_space = "sRGB";
-        }
-        std::set<std::string> keys;
-        const auto add = [&](const std::vector<Assignment>& assignments, const std::vector<SourceImage>& of,
-                             const SideFiles& files) {
-            ParameterValues values(*kind->parameters);
-            values.assign(assignments);
-            return keys.insert(operation_key(*kind, values, of, files)).second;
-        };
-        EXPECT_TRUE(add({}, images, {}));
-        EXPECT_FALSE(add({}, images, {}));
-        for (const Parameter& p : *kind->parameters) {
-            const bool source =
-                std::find(kind->sources.begin(), kind->sources.end(), p.name) != kind->sources.end();
-            // The drawing is the same for other pixels of the same size: they have a key of their own.
-            EXPECT_EQ(add({{p.name, other_value(p)}}, images, {}), !source) << kind->name << " " << p.name;
-            if (p.type == ParameterType::file || (p.type == ParameterType::image && !source)) {
-                EXPECT_TRUE(add({}, images, {{p.name, {"f", "1"}}})) << p.name;
-                EXPECT_TRUE(add({}, images, {{p.name, {"f", "2"}}})) << p.name;
-            }
-        }
-        for (std::size_t i = 0; i < images.size(); ++i) {
-            const auto with = [&](const auto& change) {
-                std::vector<SourceImage> others = images;
-                change(others[i]);
-                return add({}, others, {});
-            };
-            EXPECT_TRUE(with([](SourceImage& s) { s.facts.width = 65; }));
-            EXPECT_TRUE(with([](SourceImage& s) { s.facts.height = 33; }));
-            EXPECT_TRUE(with([](SourceImage& s) { s.facts.projection = Projection::fisheye; }));
-            EXPECT_TRUE(with([](SourceImage& s) { s.facts.fov = 100; }));
-            EXPECT_TRUE(with([](SourceImage& s) { s.channels = 4; }));
-            EXPECT_TRUE(with([](SourceImage& s) { s.color_space = "linear"; }));
-        }
-    }
 }
 
 }  // namespace

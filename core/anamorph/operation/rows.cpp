@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "anamorph/render/picture_parameters.h"
+#include "anamorph/operation/rows.h"
 
 #include <cmath>
 

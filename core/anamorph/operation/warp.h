@@ -1,17 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
-// The parameters of a mesh warp, and what they make of a source of a given size.
+// The operation warp: a picture drawn through a control mesh, an ST-map or pairs of points.
 #pragma once
 
 #include <optional>
 
 #include "anamorph/geometry/size.h"
-#include "anamorph/parameter.h"
+#include "anamorph/operation/operation.h"
 #include "anamorph/render/mesh_warp.h"
-#include "anamorph/render/source.h"
 
 namespace anamorph {
 
-const ParameterTable& warp_parameters();
+const Operation& warp_operation();
 
 /// A warp as asked for, but for the mesh itself.
 struct WarpRequest {

@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "anamorph/render/reproject_parameters.h"
+#include "anamorph/operation/pano.h"
 
 #include <algorithm>
 #include <cmath>
 #include <functional>
 #include <map>
 
-#include "anamorph/render/picture_parameters.h"
+#include "anamorph/operation/panorama_attributes.h"
+#include "anamorph/operation/rows.h"
 
 namespace anamorph {
 namespace {
@@ -140,11 +141,6 @@ double field_of_view(const ParameterValues& values, std::string_view name, Proje
 
 }  // namespace
 
-const ParameterTable& reproject_parameters() {
-    static const ParameterTable table = make_table();
-    return table;
-}
-
 ReprojectRequest read_reproject_request(const ParameterValues& values, const SourceFacts& facts) {
     const auto [from, reason] = source_projection(values, facts);
     const bool says_fov = !values.given("srcfov") && facts.fov && facts.projection == from;
@@ -189,6 +185,78 @@ std::optional<Chart> half_size(const Chart& chart) {
     const int w = chart.width() / columns, h = chart.height() / rows;
     if (w == 1 && h == 1) return {};
     return chart.resized(std::max(1, w / 2) * columns, std::max(1, h / 2) * rows);
+}
+
+namespace {
+
+class SolvedPano final : public SolvedPicture {
+  public:
+    explicit SolvedPano(const ReprojectRequest& request) : m_reprojection(request.map(), request.options) {}
+
+    Attributes reached(const ParallelFor& parallel_for) const override {
+        const Reached reached = m_reprojection.reached(parallel_for);
+        return {{"anamorph:max_error", reached.max_error},
+                {"anamorph:exact_fraction", reached.exact_fraction}};
+    }
+    bool draw(const std::vector<const Source*>& sources, const Box& box, const ImageView& view,
+              const ParallelFor& parallel_for) const override {
+        return m_reprojection.draw(sources[0], box, view, parallel_for);
+    }
+
+  private:
+    Reprojection m_reprojection;
+};
+
+class Panos final : public Pictures {
+  public:
+    explicit Panos(const ReprojectRequest& request) : m_request(request) {}
+
+    std::optional<PictureRequest> picture(int, int level) const override {
+        ReprojectRequest request = m_request;
+        for (; level > 0; --level) {
+            const std::optional<Chart> half = half_size(request.target);
+            if (!half) return {};
+            request.target = *half;
+        }
+        const Output output = request.options.output;
+        PictureRequest picture;
+        picture.size = {request.target.width(), request.target.height()};
+        picture.pixels = output == Output::color   ? PixelKind::color
+                         : output == Output::stmap ? PixelKind::point
+                                                   : PixelKind::value;
+        picture.says = panorama_attributes(request.target, picture.pixels == PixelKind::color);
+        picture.says.push_back({"anamorph:tol", request.options.tol});
+        picture.says.push_back({"anamorph:from", std::string(name_of(request.source.projection())) + " (" +
+                                                     request.source_reason + ")"});
+        picture.solve = [request] { return std::make_unique<SolvedPano>(request); };
+        return picture;
+    }
+
+    SourceFaces faces() const override {
+        const Chart& source = m_request.source;
+        const Box& face = source.pieces()[0].box;
+        return {source.width() / face.width(), source.height() / face.height()};
+    }
+
+  private:
+    ReprojectRequest m_request;
+};
+
+}  // namespace
+
+const Operation& pano_operation() {
+    static const ParameterTable table = make_table();
+    static const Operation operation{
+        "pano",
+        "A panorama seen through another lens",
+        &table,
+        {"src"},
+        1,
+        {"from=equirectangular&to=equirectangular&yaw=40&pitch=20", {}},
+        [](const OperationInput& input) -> std::unique_ptr<const Pictures> {
+            return std::make_unique<Panos>(read_reproject_request(input.values, input.sources[0].facts));
+        }};
+    return operation;
 }
 
 }  // namespace anamorph

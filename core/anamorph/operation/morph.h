@@ -1,17 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
-// The parameters of a feature morph, and what they make of pictures of given sizes.
+// The operation morph: pictures that turn into each other along corresponding lines.
 #pragma once
 
 #include <optional>
 #include <vector>
 
 #include "anamorph/geometry/size.h"
-#include "anamorph/parameter.h"
+#include "anamorph/operation/operation.h"
 #include "anamorph/render/morph.h"
 
 namespace anamorph {
 
-const ParameterTable& morph_parameters();
+const Operation& morph_operation();
 
 /// The keys of the pictures: a, b, c ...
 const std::vector<std::string>& morph_pictures();

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "anamorph/render/morph_parameters.h"
+#include "anamorph/operation/morph.h"
 
 #include "anamorph/approx/near_far_mesh.h"
-#include "anamorph/render/picture_parameters.h"
+#include "anamorph/map/features_file.h"
+#include "anamorph/operation/rows.h"
 
 namespace anamorph {
 namespace {
@@ -74,11 +75,6 @@ ParameterTable make_table() {
 
 }  // namespace
 
-const ParameterTable& morph_parameters() {
-    static const ParameterTable table = make_table();
-    return table;
-}
-
 const std::vector<std::string>& morph_pictures() {
     static const std::vector<std::string> keys = {"a", "b", "c", "d", "e", "f", "g", "h"};
     return keys;
@@ -136,6 +132,127 @@ MorphRequest read_morph_request(const ParameterValues& values, const std::vector
         throw Error("shape_weights is not given: must be one number for each of the " +
                     std::to_string(pictures.size()) + " pictures, with sum 1");
     return request;
+}
+
+namespace {
+
+/// What a blend needs: as many channels of the same meaning, colour in one space.
+void check_alike(const std::vector<SourceImage>& sources, const ParameterValues& values) {
+    for (std::size_t i = 1; i < sources.size(); ++i) {
+        const SourceImage &a = sources[0], &other = sources[i];
+        const std::string& key = morph_pictures()[i];
+        if (other.channels != a.channels)
+            throw Error("picture " + key + " has " + std::to_string(other.channels) + " channels and a has " +
+                        std::to_string(a.channels) + ": must have as many");
+        const std::string &space = other.color_space, &space_a = a.color_space;
+        if (!values.given("colorspace") && !space.empty() && !space_a.empty() && space != space_a)
+            throw Error("picture " + key + " is in color space \"" + printable(space) + "\" and a in \"" +
+                        printable(space_a) + "\": must be the same, or colorspace be given");
+    }
+}
+
+std::shared_ptr<const Features> read_features(const MorphRequest& request, const OperationInput& input) {
+    const auto found = input.files.find("features");
+    if (found == input.files.end())
+        throw Error("features is not given: must be the name of a .json, .csv or .svg file");
+    const SideFile& file = found->second;
+    std::shared_ptr<const Features> features = read_once<Features>(
+        file, "features", [&] { return parse_features_file(input.reader.text(file.name), file.name); });
+    const std::size_t pictures = input.sources.size();
+    if (static_cast<std::size_t>(features->shapes()) != pictures)
+        throw Error("features", printable(file.name),
+                    "the file has " + std::to_string(features->shapes()) + " shapes: must have " +
+                        std::to_string(pictures) + ", as many as pictures are given");
+    if (!request.pin_border) return features;
+    auto pinned = std::make_shared<Features>(*features);
+    pinned->pin_border(*request.pin_border);
+    return pinned;
+}
+
+class SolvedMorph final : public SolvedPicture {
+  public:
+    SolvedMorph(std::shared_ptr<const Features> features, const MorphRequest& r, const MorphOptions& options)
+        : m_morph(std::move(features), r.pictures, r.width, r.height, options) {}
+
+    Attributes reached(const ParallelFor& parallel_for) const override {
+        const Reached reached = m_morph.reached(parallel_for);
+        return {{"anamorph:max_error", reached.max_error},
+                {"anamorph:exact_fraction", reached.exact_fraction}};
+    }
+    bool draw(const std::vector<const Source*>& sources, const Box& box, const ImageView& view,
+              const ParallelFor& parallel_for) const override {
+        return m_morph.draw(sources, box, view, parallel_for);
+    }
+
+  private:
+    Morph m_morph;
+};
+
+PixelKind pixels_of(MorphOutput output) {
+    switch (output) {
+        case MorphOutput::stmap_a:
+        case MorphOutput::stmap_b:
+            return PixelKind::point;
+        case MorphOutput::error:
+        case MorphOutput::bound:
+            return PixelKind::value;
+        default:
+            return PixelKind::color;
+    }
+}
+
+class Morphs final : public Pictures {
+  public:
+    Morphs(const MorphRequest& request, std::shared_ptr<const Features> features)
+        : m_request(request), m_features(std::move(features)) {}
+
+    int frames() const override { return m_request.frames; }
+
+    std::optional<PictureRequest> picture(int frame, int level) const override {
+        const std::optional<Size> size = level_size({m_request.width, m_request.height}, level);
+        if (!size) return {};
+        MorphRequest request = m_request;
+        request.width = size->width;
+        request.height = size->height;
+        const MorphOptions options = request.frame_options(frame);
+        PictureRequest picture;
+        picture.size = *size;
+        picture.pixels = pixels_of(options.output);
+        picture.says = {{"anamorph:tol", options.tol}};
+        if (options.shape_weights.empty()) picture.says.push_back({"anamorph:t", options.t});
+        picture.solve = [request, options, features = m_features] {
+            return std::make_unique<SolvedMorph>(features, request, options);
+        };
+        return picture;
+    }
+
+  private:
+    MorphRequest m_request;
+    std::shared_ptr<const Features> m_features;
+};
+
+const char* const kExampleFeatures = R"({"sizes": [[150, 100], [150, 100]], "features": [
+    {"line": [[60, 30, 120, 40], [80, 20, 130, 50]]},
+    {"line": [[40, 100, 90, 90], [30, 80, 70, 100]]}]})";
+
+std::unique_ptr<const Pictures> read_morphs(const OperationInput& input) {
+    std::vector<Size> sizes;
+    for (const SourceImage& image : input.sources) sizes.push_back(image.size());
+    check_alike(input.sources, input.values);
+    const MorphRequest request = read_morph_request(input.values, sizes);
+    return std::make_unique<Morphs>(request, read_features(request, input));
+}
+
+}  // namespace
+
+const Operation& morph_operation() {
+    static const ParameterTable table = make_table();
+    static const Operation operation{
+        "morph",    "Pictures that turn into each other along corresponding lines",
+        &table,     morph_pictures(),
+        2,          {"features=lines.json", {{"lines.json", kExampleFeatures}}},
+        read_morphs};
+    return operation;
 }
 
 }  // namespace anamorph

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "anamorph/picture.h"
+#include "anamorph/source_stack.h"
 
 #include <algorithm>
 #include <vector>
@@ -11,11 +11,11 @@
 namespace anamorph {
 
 std::string filtering_space(const ParameterValues& values, PixelKind pixels) {
-    return pixels == PixelKind::color ? values.text("colorspace") : "";
+    return pixels == PixelKind::color && values.knows("colorspace") ? values.text("colorspace") : "";
 }
 
-SourceStack::SourceStack(std::unique_ptr<Source> image, const OIIO::ImageSpec& spec,
-                         const Operation::Faces& faces, const std::string& colorspace)
+SourceStack::SourceStack(std::unique_ptr<Source> image, const OIIO::ImageSpec& spec, const SourceFaces& faces,
+                         const std::string& colorspace)
     : m_image(std::move(image)), m_top(m_image.get()) {
     if (const StoredOrder order(spec); !order.is_upright()) {
         m_upright = std::make_unique<UprightSource>(*m_image, order);
@@ -43,37 +43,40 @@ std::string SourceStack::error() const {
 }
 
 SourceStacks make_source_stacks(std::vector<std::unique_ptr<Source>> images,
-                                const std::vector<OIIO::ImageSpec>& specs, const Operation::Faces& faces,
+                                const std::vector<OIIO::ImageSpec>& specs, const SourceFaces& faces,
                                 const std::string& colorspace) {
     SourceStacks stacks;
     for (std::size_t i = 0; i < images.size(); ++i)
-        stacks.push_back(std::make_unique<const SourceStack>(
-            std::move(images[i]), specs[i], i == 0 ? faces : Operation::Faces{}, colorspace));
+        stacks.push_back(std::make_unique<const SourceStack>(std::move(images[i]), specs[i],
+                                                             i == 0 ? faces : SourceFaces{}, colorspace));
     return stacks;
 }
 
-Picture::Picture(const Drawing& drawing, const SourceStacks& sources)
-    : m_drawing(drawing), m_sources(sources) {
-    for (const auto& stack : sources) m_tops.push_back(&stack->top());
-}
+namespace {
 
-void Picture::draw_raw(const Box& box, const ImageView& view, const ParallelFor& parallel_for) const {
-    if (m_drawing.draw(m_tops, box, view, parallel_for)) return;
-    for (const auto& stack : m_sources)
+void draw_in_space(const SolvedPicture& picture, const SourceStacks& stacks, const Box& box,
+                   const ImageView& view, const ParallelFor& parallel_for) {
+    std::vector<const Source*> tops;
+    for (const auto& stack : stacks) tops.push_back(&stack->top());
+    if (picture.draw(tops, box, view, parallel_for)) return;
+    for (const auto& stack : stacks)
         if (const std::string error = stack->error(); !error.empty()) throw Error(error);
     throw Error("a source cannot be read");
 }
 
-void Picture::draw(const Box& box, const ImageView& view, const ParallelFor& parallel_for) const {
-    const WorkingSpace* space = m_sources[0]->space();
-    if (!space) return draw_raw(box, view, parallel_for);
+}  // namespace
+
+void draw_picture(const SolvedPicture& picture, const SourceStacks& stacks, const Box& box,
+                  const ImageView& view, const ParallelFor& parallel_for) {
+    const WorkingSpace* space = stacks.empty() ? nullptr : stacks[0]->space();
+    if (!space) return draw_in_space(picture, stacks, box, view, parallel_for);
     // In float and the working space, then back, row by row.
     const std::size_t row = static_cast<std::size_t>(box.width()) * static_cast<std::size_t>(view.channels);
     std::vector<float> pixels(row * static_cast<std::size_t>(box.height()));
-    draw_raw(box,
-             packed_view(reinterpret_cast<std::byte*>(pixels.data()), PixelType::float32, box.width(),
-                         box.height(), view.channels),
-             parallel_for);
+    draw_in_space(picture, stacks, box,
+                  packed_view(reinterpret_cast<std::byte*>(pixels.data()), PixelType::float32, box.width(),
+                              box.height(), view.channels),
+                  parallel_for);
     parallel_for(box.height(), [&](std::int64_t y) {
         float* values = pixels.data() + row * static_cast<std::size_t>(y);
         space->from_working(values, box.width(), 1);

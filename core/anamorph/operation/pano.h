@@ -1,27 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
-// The parameters of a panorama reprojection, and what they make of a source of a given size.
+// The operation pano: a panorama seen through another lens.
 #pragma once
 
 #include <optional>
 #include <string>
 #include <string_view>
 
-#include "anamorph/parameter.h"
+#include "anamorph/operation/operation.h"
 #include "anamorph/render/reproject.h"
 
 namespace anamorph {
 
-const ParameterTable& reproject_parameters();
-
-/// What is known of the source before a pixel is read.
-struct SourceFacts {
-    int width = 0, height = 0;
-    /// What the image says of itself, if it does, where it says so, and its horizontal field of view in
-    /// degrees.
-    std::optional<Projection> projection = {};
-    std::string said_by = {};
-    std::optional<double> fov = {};
-};
+const Operation& pano_operation();
 
 /// A reprojection as asked for.
 struct ReprojectRequest {

@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "anamorph/operation/operation.h"
+
+#include <algorithm>
+
+namespace anamorph {
+
+#define ANAMORPH_OPERATION(name) const Operation& name##_operation();
+#include "anamorph/operation/list.h"
+#undef ANAMORPH_OPERATION
+
+const std::vector<const Operation*>& operations() {
+    static const std::vector<const Operation*> all = {
+#define ANAMORPH_OPERATION(name) &name##_operation(),
+#include "anamorph/operation/list.h"
+#undef ANAMORPH_OPERATION
+    };
+    return all;
+}
+
+const Operation* find_operation(std::string_view name) {
+    for (const Operation* operation : operations())
+        if (operation->name == name) return operation;
+    return nullptr;
+}
+
+std::string operation_names() {
+    std::string names;
+    for (const Operation* operation : operations()) names += (names.empty() ? "" : ", ") + operation->name;
+    return names;
+}
+
+std::string operation_key(const Operation& operation, const ParameterValues& values,
+                          const std::vector<SourceImage>& sources, const SideFiles& files) {
+    std::string key = operation.name + "\n" + values.key(operation.sources);
+    for (const SourceImage& image : sources) {
+        const SourceFacts& facts = image.facts;
+        key += std::to_string(facts.width) + "x" + std::to_string(facts.height) + " " +
+               std::to_string(image.channels) + " \"" + image.color_space + "\" ";
+        if (facts.projection) key += std::string(name_of(*facts.projection)) + " as " + facts.said_by;
+        if (facts.fov) key += " fov=" + shortest(*facts.fov);
+        key += "\n";
+    }
+    for (const auto& [name, file] : files)
+        if (std::find(operation.sources.begin(), operation.sources.end(), name) == operation.sources.end())
+            key += name + "=" + file.name + "\n" + file.identity + "\n";
+    return key;
+}
+
+std::optional<Size> level_size(const Size& size, int level) {
+    if (level > 0 && std::max(size.width, size.height) >> level < 1) return {};
+    return Size{std::max(1, size.width >> level), std::max(1, size.height >> level)};
+}
+
+}  // namespace anamorph

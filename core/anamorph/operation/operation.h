@@ -1,0 +1,137 @@
+// SPDX-License-Identifier: Apache-2.0
+// What an operation is to its hosts: a table of parameters, and what it makes of checked values, of what is
+// known of its sources, and of the files beside them: pictures, to be solved and drawn.
+//
+// An operation is one file, which defines `const Operation& NAME_operation()`, and one line in list.h. All
+// hosts find it by the registry: recipes `x.NAME`, functions on image buffers, reference pages and tests.
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include "anamorph/error.h"
+#include "anamorph/geometry/size.h"
+#include "anamorph/map/chart.h"
+#include "anamorph/operation/side_files.h"
+#include "anamorph/parallel_for.h"
+#include "anamorph/parameter.h"
+#include "anamorph/render/source.h"
+
+namespace anamorph {
+
+/// What is known of a source before a pixel is read.
+struct SourceFacts {
+    int width = 0, height = 0;
+    /// What the image says of itself, if it does, where it says so, and its horizontal field of view in
+    /// degrees.
+    std::optional<Projection> projection = {};
+    std::string said_by = {};
+    std::optional<double> fov = {};
+};
+
+struct SourceImage {
+    SourceFacts facts;
+    int channels = 0;
+    std::string color_space;
+
+    Size size() const { return {facts.width, facts.height}; }
+};
+
+/// What a picture says of itself: "anamorph:max_error" and so on.
+struct Attribute {
+    std::string name;
+    std::variant<int, double, std::string> value;
+};
+using Attributes = std::vector<Attribute>;
+
+/// A picture, ready to draw any part of itself. Thread safe.
+class SolvedPicture {
+  public:
+    virtual ~SolvedPicture() = default;
+    /// What was reached over the whole picture.
+    virtual Attributes reached(const ParallelFor& parallel_for) const = 0;
+    /// Fills `view` with the pixels of `box`; sources are read for colour only. False when one could not be
+    /// read.
+    virtual bool draw(const std::vector<const Source*>& sources, const Box& box, const ImageView& view,
+                      const ParallelFor& parallel_for) const = 0;
+};
+
+/// What the channels of a picture hold: colour, the first source's channels and type; a source point (u, v);
+/// one value.
+enum class PixelKind { color, point, value };
+
+/// A picture before it is solved.
+struct PictureRequest {
+    Size size;
+    PixelKind pixels = PixelKind::color;
+    std::vector<std::string> channels;  ///< of colour that no source says the channels of: as float
+    Attributes says;                    ///< known beforehand: "anamorph:tol", the projection
+    std::function<std::unique_ptr<const SolvedPicture>()> solve;
+};
+
+/// How a source is divided into faces.
+struct SourceFaces {
+    int columns = 1, rows = 1;
+};
+
+/// What an operation makes of its values: a picture, or several that follow each other, as subimages of a
+/// file; each at all its levels.
+class Pictures {
+  public:
+    virtual ~Pictures() = default;
+    virtual int frames() const { return 1; }
+    /// A frame, or a coarser level of it; none past the last level.
+    virtual std::optional<PictureRequest> picture(int frame, int level) const = 0;
+    /// Of the first source.
+    virtual SourceFaces faces() const { return {}; }
+};
+
+/// All that an operation is given.
+struct OperationInput {
+    const ParameterValues& values;
+    const std::vector<SourceImage>& sources;  ///< those given, in the order of their keys
+    const SideFiles& files;
+    const SideFileReader& reader;
+};
+
+/// A small recipe: its arguments besides the sources, and the text of the files that they name.
+struct Example {
+    std::string arguments;
+    std::vector<std::pair<std::string, std::string>> files;
+};
+
+struct Operation {
+    std::string name;                  ///< of its recipes: "pano"
+    std::string title;                 ///< what it draws, in a few words
+    const ParameterTable* parameters;  ///< keys of type image and file are its sources and side files
+    std::vector<std::string> sources;  ///< keys of the images it draws; may be none
+    std::size_t least_sources;
+    Example example;  ///< for sources of any kind that are as large
+    /// Throws Error.
+    std::unique_ptr<const Pictures> (*read)(const OperationInput& input);
+};
+
+/// All operations, in the order of list.h.
+const std::vector<const Operation*>& operations();
+
+/// Null where there is none of that name.
+const Operation* find_operation(std::string_view name);
+
+/// "pano, warp, morph", for messages.
+std::string operation_names();
+
+/// Made of all that `read` is given: the same text, the same pictures. The sources' pixels are none of it.
+std::string operation_key(const Operation& operation, const ParameterValues& values,
+                          const std::vector<SourceImage>& sources, const SideFiles& files);
+
+/// Half the pixels each way, `level` times, rounded down, at least 1; none past the level of one pixel.
+std::optional<Size> level_size(const Size& size, int level);
+
+}  // namespace anamorph

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "anamorph/operation/panorama_attributes.h"
+
+#include <utility>
+
+namespace anamorph {
+
+Attributes panorama_attributes(const Chart& picture, bool color) {
+    Attributes says;
+    says.push_back({kPanoramaProjection,
+                    std::string(name_of(picture.projection())) + " fov=" + shortest(picture.fov())});
+    if (!color) return says;
+    const int w = picture.width(), h = picture.height(), whole = w / 2;
+    const auto environment = [&](const char* format) {
+        says.push_back({"textureformat", format});
+        says.push_back({"oiio:updirection", "y"});
+    };
+    if (picture.projection() == Projection::cubemap) environment("CubeFace Environment");
+    // A whole turn, and as much of the poles as whole rows can say.
+    const bool turn = picture.projection() == Projection::equirectangular && picture.fov() == 360;
+    if (turn && w % 2 == 0 && h <= whole && (whole - h) % 2 == 0) {
+        says.push_back({"GPano:ProjectionType", "equirectangular"});
+        for (const auto& [name, value] : {std::pair{"FullPanoWidthPixels", w},
+                                          {"FullPanoHeightPixels", whole},
+                                          {"CroppedAreaImageWidthPixels", w},
+                                          {"CroppedAreaImageHeightPixels", h},
+                                          {"CroppedAreaLeftPixels", 0},
+                                          {"CroppedAreaTopPixels", (whole - h) / 2}})
+            says.push_back({std::string("GPano:") + name, value});
+        if (h == whole) environment("LatLong Environment");
+    }
+    return says;
+}
+
+}  // namespace anamorph

@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: Apache-2.0
+// The files that an operation reads besides its sources: meshes, ST-maps, points, features. Hosts open them.
+#pragma once
+
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "anamorph/geometry/size.h"
+#include "anamorph/operation/memo.h"
+
+namespace anamorph {
+
+/// With an identity, which tells its states apart, what was read of a file is kept.
+struct SideFile {
+    std::string name, identity;
+};
+using SideFiles = std::map<std::string, SideFile>;  ///< by key; those that were given
+
+/// An image whose pixels are numbers, open.
+class SideImage {
+  public:
+    virtual ~SideImage() = default;
+    /// As it is seen upright.
+    virtual Size size() const = 0;
+    virtual int channels() const = 0;
+    /// The first `count` channels of all pixels, row by row, packed. Throws Error.
+    virtual std::vector<float> read(int count) = 0;
+};
+
+/// How a host opens side files.
+class SideFileReader {
+  public:
+    virtual ~SideFileReader() = default;
+    /// The whole of a text file. Throws Error, also where it is longer than text_file::kMostBytes.
+    virtual std::string text(const std::string& name) const = 0;
+    /// `key`: the parameter that names it, for messages. Throws Error, also where it is not a flat image.
+    virtual std::unique_ptr<SideImage> image(const std::string& key, const std::string& name) const = 0;
+};
+
+/// What make() reads of a file. What has an identity is kept for the next who asks for the same; `how` tells
+/// readings of one file apart.
+template <class Value, class Make>
+std::shared_ptr<const Value> read_once(const SideFile& file, const std::string& how, const Make& make) {
+    constexpr std::size_t kKept = 4;
+    static auto& memo = *new Memo<const Value>(kKept);
+    const auto made = [&] { return std::make_shared<const Value>(make()); };
+    return file.identity.empty() ? made() : memo.get(how + "\n" + file.identity, made);
+}
+
+}  // namespace anamorph

@@ -1,0 +1,239 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "anamorph/operation/warp.h"
+
+#include "anamorph/map/mesh_file.h"
+#include "anamorph/operation/rows.h"
+#include "anamorph/text_file.h"
+
+namespace anamorph {
+namespace {
+
+using rows::chosen;
+
+// In the order of their enumerations.
+const std::vector<std::string> kDirections = {"pull", "push"};
+const std::vector<std::string> kWraps = {"automatic", "black", "clamp", "periodic", "mirror"};
+const std::vector<std::string> kSchemes = {"auto", "exact", "hermite", "residual"};
+const std::vector<std::string> kOutputs = {"color", "stmap", "error", "bound", "folds"};
+constexpr int kMaxStep = 1 << 16;
+
+ParameterTable make_table() {
+    using namespace rows;
+    return {
+        image("src", "the source image; by default the recipe's name without .warp"),
+        image("mesh",
+              "the control mesh: a .json file, or an image that is an ST-map (any name with another ending)"),
+        whole("step", "pixels", "1", 1, kMaxStep,
+              "of an ST-map: every step-th pixel is a vertex of the mesh"),
+        file(
+            "points",
+            "in place of a mesh: pairs of points x, y (in the picture), u, v (in the source), .csv or .json"),
+        choice(
+            "direction", "", kDirections,
+            "pull: the mesh lies in the picture, its vertices say where in the source; push: the mesh lies "
+            "in the source, its vertices say where they go; by default what the file says, else pull"),
+        number("amount", "", "1", -kInfinity, kInfinity,
+               "how far every vertex is moved: 0 not at all, 1 as given, any other as far in proportion"),
+        size(
+            "width and height of the picture, or its width alone; by default the source's, of an ST-map that "
+            "pulls its own"),
+        tile(),
+        mip(),
+        filter(),
+        choice("wrap", "automatic", kWraps, "what lies beyond the source's edge; automatic is black"),
+        tol(),
+        choice("scheme", "auto", kSchemes, "how source points are found within tol"),
+        colorspace("color space to filter in; by default the source's own"),
+        choice("output", "color", kOutputs,
+               "color, or per pixel: stmap, the source point (u, v) in 0 to 1 with v down; error, its "
+               "distance from the exact one in source pixels; bound, the proven bound of that; folds, not 0 "
+               "where the warp folds"),
+    };
+}
+
+/// Divides a position in an image by its size.
+void divide(double& x, double& y, const Size& size) {
+    x /= size.width;
+    y /= size.height;
+}
+
+}  // namespace
+
+Size warp_target(const ParameterValues& values, const Size& natural) {
+    const Size size = rows::size_of(values, {natural.width, natural.height});
+    return {size.width, size.height};
+}
+
+WarpRequest read_warp_request(const ParameterValues& values, const Size& source) {
+    WarpRequest request;
+    request.source = source;
+    request.target = warp_target(values, source);
+    MeshWarpOptions& options = request.options;
+    options.scheme = chosen<WarpScheme>(values, "scheme", kSchemes);
+    options.tol = values.number("tol");
+    options.filter = chosen<Filter>(values, "filter", rows::filters());
+    options.wrap = chosen<Wrap>(values, "wrap", kWraps);
+    options.output = chosen<WarpOutput>(values, "output", kOutputs);
+    options.amount = values.number("amount");
+    request.step = values.whole("step");
+    if (values.given("direction")) request.direction = chosen<Direction>(values, "direction", kDirections);
+    return request;
+}
+
+WarpMap in_fractions(const WarpMap& map, const Size& source, const Size& target) {
+    WarpMap out = map;
+    if (auto* points = std::get_if<ControlPoints>(&out.shape); points && points->units == Units::pixels) {
+        points->units = Units::fractions;
+        for (ControlPoints::Pair& pair : points->pairs) {
+            divide(pair.x, pair.y, target);
+            divide(pair.u, pair.v, source);
+        }
+    }
+    if (auto* mesh = std::get_if<ControlMesh>(&out.shape); mesh && mesh->units == Units::pixels) {
+        mesh->units = Units::fractions;
+        const bool pull = mesh->direction == Direction::pull;
+        const Size &from = pull ? target : source, &to = pull ? source : target;
+        for (double& x : mesh->x_lines) x /= from.width;
+        for (double& y : mesh->y_lines) y /= from.height;
+        for (Point<double>& vertex : mesh->vertices) divide(vertex.x, vertex.y, to);
+        for (ControlMesh::Level& level : mesh->levels)
+            for (ControlMesh::Vertex& vertex : level.vertices) divide(vertex.at.x, vertex.at.y, to);
+    }
+    return out;
+}
+
+namespace {
+
+WarpMap read_stmap(const std::string& name, int step, const SideFileReader& reader) {
+    const std::string what = "ST-map \"" + printable(name) + "\"";
+    const std::unique_ptr<SideImage> image = reader.image("mesh", name);
+    const Size size = image->size();
+    const std::string shape = std::to_string(size.width) + "x" + std::to_string(size.height);
+    if (image->channels() < 2) throw Error(what + " has one channel: must have two, u and v");
+    constexpr std::int64_t kMostPixels = std::int64_t{1} << 28;
+    if (std::int64_t{size.width} * size.height > kMostPixels)
+        throw Error(what + " has " + shape + " pixels: must have at most " + std::to_string(kMostPixels));
+    const auto vertices = [&](int pixels) { return std::int64_t{(pixels - 1) / step} + 2; };
+    if (vertices(size.width) * vertices(size.height) > ControlMesh::kMaxVertices)
+        throw Error("step", std::to_string(step),
+                    what + " of " + shape + " makes too many vertices: must make at most " +
+                        std::to_string(ControlMesh::kMaxVertices));
+    const std::vector<float> uv = image->read(2);
+    return mesh_from_stmap(uv.data(), size.width, size.height, 2, std::ptrdiff_t{2} * size.width, step, name);
+}
+
+/// A mesh or pairs of points from text (.json, .csv), or a mesh from every `step`-th pixel of an ST-map: any
+/// image, u in its first channel, v in its second.
+std::shared_ptr<const WarpMap> read_mesh(const SideFile& file, int step, const SideFileReader& reader) {
+    const bool text = text_file::ends_with(file.name, ".json");
+    if (text && step != 1) throw Error("step", std::to_string(step), "must be given with ST-maps only");
+    return read_once<WarpMap>(file, "mesh " + std::to_string(step), [&] {
+        return text ? parse_warp_file(reader.text(file.name), file.name)
+                    : read_stmap(file.name, step, reader);
+    });
+}
+
+std::shared_ptr<const WarpMap> read_points(const SideFile& file, const SideFileReader& reader) {
+    return read_once<WarpMap>(file, "points",
+                              [&] { return parse_warp_file(reader.text(file.name), file.name); });
+}
+
+/// The mesh or the points that were asked for.
+std::shared_ptr<const WarpMap> read_map(const WarpRequest& request, const OperationInput& input) {
+    const auto mesh = input.files.find("mesh"), points = input.files.find("points");
+    const bool has_mesh = mesh != input.files.end(), has_points = points != input.files.end();
+    if (has_mesh && has_points)
+        throw Error("points", printable(points->second.name), "must not be given together with mesh");
+    if (!has_mesh && !has_points)
+        throw Error("mesh is not given: must be a mesh (.json) or an ST-map (an image), or points be given");
+    const SideFile& file = has_mesh ? mesh->second : points->second;
+    std::shared_ptr<const WarpMap> map =
+        has_mesh ? read_mesh(file, request.step, input.reader) : read_points(file, input.reader);
+    if (has_points && std::holds_alternative<ControlMesh>(map->shape))
+        throw Error("points", printable(file.name), "the file holds a mesh: must be given as mesh");
+    if (request.direction) {
+        auto turned = std::make_shared<WarpMap>(*map);
+        auto* shape = std::get_if<ControlMesh>(&turned->shape);
+        if (!shape) throw Error("direction is given with points: must be given with a mesh only");
+        shape->direction = *request.direction;
+        map = turned;
+    }
+    return map;
+}
+
+class SolvedWarp final : public SolvedPicture {
+  public:
+    SolvedWarp(const WarpMap& map, const WarpRequest& r)
+        : m_warp(map, r.source.width, r.source.height, r.target.width, r.target.height, r.options) {}
+
+    Attributes reached(const ParallelFor& parallel_for) const override {
+        const Reached reached = m_warp.reached(parallel_for);
+        return {{"anamorph:max_error", reached.max_error},
+                {"anamorph:exact_fraction", reached.exact_fraction},
+                {"anamorph:folded_fraction", m_warp.folded_fraction(parallel_for)}};
+    }
+    bool draw(const std::vector<const Source*>& sources, const Box& box, const ImageView& view,
+              const ParallelFor& parallel_for) const override {
+        return m_warp.draw(sources[0], box, view, parallel_for);
+    }
+
+  private:
+    MeshWarp m_warp;
+};
+
+class Warps final : public Pictures {
+  public:
+    Warps(const WarpRequest& request, std::shared_ptr<const WarpMap> map)
+        : m_request(request), m_map(std::move(map)) {}
+
+    std::optional<PictureRequest> picture(int, int level) const override {
+        const std::optional<Size> size = level_size(m_request.target, level);
+        if (!size) return {};
+        WarpRequest request = m_request;
+        request.target = *size;
+        const WarpOutput output = request.options.output;
+        PictureRequest picture;
+        picture.size = *size;
+        picture.pixels = output == WarpOutput::color   ? PixelKind::color
+                         : output == WarpOutput::stmap ? PixelKind::point
+                                                       : PixelKind::value;
+        picture.says = {{"anamorph:tol", request.options.tol}};
+        // Positions in pixels are pixels of the finest level.
+        picture.solve = [request, level, map = m_map, whole = m_request] {
+            return std::make_unique<SolvedWarp>(
+                level > 0 ? in_fractions(*map, whole.source, whole.target) : *map, request);
+        };
+        return picture;
+    }
+
+  private:
+    WarpRequest m_request;
+    std::shared_ptr<const WarpMap> m_map;
+};
+
+const char* const kExampleMesh = R"({"columns": 2, "rows": 2, "units": "fractions", "vertices": [
+    [0, 0], [0.5, 0], [1, 0],  [0, 0.5], [0.61, 0.42], [1, 0.5],  [0, 1], [0.5, 1], [1, 1]]})";
+
+std::unique_ptr<const Pictures> read_warps(const OperationInput& input) {
+    WarpRequest request = read_warp_request(input.values, input.sources[0].size());
+    const std::shared_ptr<const WarpMap> map = read_map(request, input);
+    // An ST-map is as large as its picture.
+    const auto* mesh = std::get_if<ControlMesh>(&map->shape);
+    if (mesh && mesh->width > 0 && mesh->direction == Direction::pull)
+        request.target = warp_target(input.values, {mesh->width, mesh->height});
+    return std::make_unique<Warps>(request, map);
+}
+
+}  // namespace
+
+const Operation& warp_operation() {
+    static const ParameterTable table = make_table();
+    static const Operation operation{
+        "warp",    "A picture drawn through a control mesh, an ST-map or pairs of points",
+        &table,    {"src"},
+        1,         {"mesh=grid.json", {{"grid.json", kExampleMesh}}},
+        read_warps};
+    return operation;
+}
+
+}  // namespace anamorph

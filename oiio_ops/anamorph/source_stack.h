@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: Apache-2.0
+// What stands between images and a picture drawn from them: turned upright, in the working colour space that
+// was asked for, in a pyramid.
+#pragma once
+
+#include <OpenImageIO/imageio.h>
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "anamorph/image_source.h"
+#include "anamorph/operation/operation.h"
+#include "anamorph/parallel_for.h"
+
+namespace anamorph {
+
+/// The colour space to filter in that was asked for; empty where no colour is drawn or none can be asked for.
+std::string filtering_space(const ParameterValues& values, PixelKind pixels);
+
+/// One image with all of that. Reading is thread safe.
+class SourceStack {
+  public:
+    /// `spec`: of the image as it is stored. `colorspace` may be empty. Throws Error.
+    SourceStack(std::unique_ptr<Source> image, const OIIO::ImageSpec& spec, const SourceFaces& faces,
+                const std::string& colorspace);
+    ~SourceStack();
+
+    const Source& top() const { return *m_top; }
+    const WorkingSpace* space() const { return m_space.get(); }
+    /// What the last failed read failed of; empty where none did.
+    std::string error() const;
+
+  private:
+    std::unique_ptr<Source> m_image, m_upright, m_working, m_pyramid;
+    std::shared_ptr<const WorkingSpace> m_space;
+    const Source* m_top;
+};
+
+/// The sources of a picture, as many as the operation takes; `faces` are the first one's.
+using SourceStacks = std::vector<std::unique_ptr<const SourceStack>>;
+SourceStacks make_source_stacks(std::vector<std::unique_ptr<Source>> images,
+                                const std::vector<OIIO::ImageSpec>& specs, const SourceFaces& faces,
+                                const std::string& colorspace);
+
+/// Fills `view` with the pixels of `box`, in the first source's own colour space. Throws Error when a source
+/// cannot be read.
+void draw_picture(const SolvedPicture& picture, const SourceStacks& stacks, const Box& box,
+                  const ImageView& view, const ParallelFor& parallel_for);
+
+}  // namespace anamorph
