@@ -13,7 +13,7 @@
 namespace anamorph::command {
 namespace {
 
-/// What is left for the rounding of numbers in a file.
+/// The rest is left for the rounding of numbers in a file (kTolRow).
 constexpr double kShareOfTol = 0.99;
 /// Longer arcs are closed.
 constexpr double kWholeTurn = 2 * std::numbers::pi - 1e-9;

@@ -23,13 +23,16 @@
 namespace anamorph::command {
 namespace {
 
+constexpr NumberRow kThreadsRow{"threads", 0, 0, 1024, NumberRow::closed, true};
+constexpr NumberRow kColumnsRow{"width", 80, 1, 4096, NumberRow::closed, true};
+
 /// What the command line says.
 struct Settings {
     ScriptSource source;
     std::string output = "-", frames;
     DrawingOptions drawing;
     double perspective = 0;
-    int threads = 0, columns = 80;
+    int threads = static_cast<int>(kThreadsRow.standard), columns = static_cast<int>(kColumnsRow.standard);
     Characters characters = Characters::braille;
 };
 
@@ -39,17 +42,16 @@ std::string one_line(std::string text) {
     return text;
 }
 
-/// Numbers from `least` to `most`, and no others (CLI11's own check lets NaN pass).
-CLI::Validator number_from_to(double least, double most) {
+/// The numbers of a row, and no others (CLI11's own check lets NaN pass).
+CLI::Validator number_of(const NumberRow& row) {
     return CLI::Validator(
-        [=](std::string& text) -> std::string {
+        [row](std::string& text) -> std::string {
             double value = 0;
             const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-            if (error == std::errc() && end == text.data() + text.size() && value >= least && value <= most)
-                return {};
-            return "\"" + text + "\": must be a number from " + shortest(least) + " to " + shortest(most);
+            if (error == std::errc() && end == text.data() + text.size() && row.holds(value)) return {};
+            return "\"" + text + "\": must be " + row.range();
         },
-        "NUMBER");
+        "");
 }
 
 CLI::Validator frame_range() {
@@ -125,11 +127,14 @@ class Command {
             ->option_text("RANGE");
     }
 
-    void add_number(CLI::App* sub, const char* name, double& value, double least, double most,
+    /// An option of a row. The help says its range and its default.
+    template <class Number>
+    void add_number(CLI::App* sub, const char* name, Number& value, const NumberRow& row,
                     const std::string& what) {
-        sub->add_option(name, value, what)
-            ->check(number_from_to(least, most))
-            ->option_text("NUMBER [" + shortest(value) + "]");
+        const std::string standard = std::isnan(row.standard) ? "" : " [" + shortest(row.standard) + "]";
+        sub->add_option(name, value, what + ": " + row.range())
+            ->check(number_of(row))
+            ->option_text("NUMBER" + standard);
     }
 
     void add_check() {
@@ -154,11 +159,11 @@ class Command {
                        "number, which else goes before the ending");
         add_drawing(sub);
         DrawingOptions& d = m_settings.drawing;
-        add_number(sub, "--size", d.size, 1, 16384,
+        add_number(sub, "--size", d.size, kSizeRow,
                    "Pixels (in PDF points) that the window of 1000 units is");
-        add_number(sub, "--tol", d.tol, 0.01, 1000, "Maximum chord error, in pixels");
-        add_number(sub, "--line-width", d.line_width, 0.01, 1000, "In pixels");
-        add_number(sub, "--halo", d.halo, 0, 1000, "Gap on either side of a nearer line, in pixels");
+        add_number(sub, "--tol", d.tol, kTolRow, "Maximum chord error, in pixels");
+        add_number(sub, "--line-width", d.line_width, kLineWidthRow, "Width of lines, in pixels");
+        add_number(sub, "--halo", d.halo, kHaloRow, "Gap on either side of a nearer line, in pixels");
         sub->add_flag("--colors", d.colors, "Lines in the colors of the bodies");
     }
 
@@ -170,9 +175,7 @@ class Command {
         });
         add_output(sub, "Where to; - is the standard output");
         add_drawing(sub);
-        sub->add_option("--width", m_settings.columns, "Characters across the picture")
-            ->check(number_from_to(1, 4096))
-            ->option_text("NUMBER [80]");
+        add_number(sub, "--width", m_settings.columns, kColumnsRow, "Characters across the picture");
         static const std::map<std::string, Characters> characters{{"braille", Characters::braille},
                                                                   {"ascii", Characters::ascii}};
         sub->add_option("--characters", m_settings.characters, "Braille are 2 x 4 dots each, ascii 1 x 2")
@@ -197,14 +200,12 @@ class Command {
             ->option_text("none|axes|joints [none]");
         sub->add_flag("--crossings", d.crossings,
                       "Draw the curves, too, in which bodies pass through each other");
-        add_number(sub, "--lod", d.lod, 0, 32767, "Bodies no wider, in pixels, are drawn as dots and lines");
-        sub->add_option("--perspective", m_settings.perspective,
-                        "In perspective, seen from so many units before the middle of the window")
-            ->check(number_from_to(1e-3, 1e9))
-            ->option_text("DISTANCE");
-        sub->add_option("--threads", m_settings.threads, "0: as many as there are processors")
-            ->check(number_from_to(0, 1024))
-            ->option_text("NUMBER [0]");
+        add_number(sub, "--lod", d.lod, kLevelOfDetailRow,
+                   "Bodies no wider, in pixels, are drawn as dots and lines");
+        add_number(sub, "--perspective", m_settings.perspective, kPerspectiveRow,
+                   "In perspective, seen from so many units before the middle of the window");
+        add_number(sub, "--threads", m_settings.threads, kThreadsRow,
+                   "Threads; 0 is as many as there are processors");
     }
 
     void add_stats() {

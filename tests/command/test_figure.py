@@ -458,6 +458,37 @@ class BadInput(Case):
                 (["svg", WALKER, "--nothing"], "--nothing")):
             self.assertIn(said, self.error(*options), options)
 
+    def test_numbers_are_what_the_help_says(self):
+        """Both ends of every range are taken, and one step beyond is refused in the words of the help; what it shows as
+        the default draws the same."""
+        ball = self.write("ball.n", scene(("ball", (100, 100, 100), (500, 500, 500))))
+        row = re.compile(r"--([a-z-]+) NUMBER(?: \[(.*)\])? +(.*)")
+        compared = 0
+        for command in ("svg", "text"):
+            plain = self.output(command, ball)
+            # An option may stand on one line and what it does on the next; long ones go on below.
+            text = re.sub(r"\n {10,}", " ", self.output(command, "--help").decode())
+            for name, standard, what in row.findall(text):
+                what = re.sub(" +", " ", what)
+                found = re.search(r": an? (number|integer) (?:(above)|of at least|from) ([\d.e+-]+)(?: to ([\d.e+-]+))?$", what)
+                self.assertIsNotNone(found, (name, what))
+                kind, above, least, most = found.groups()
+                step = 1 if kind == "integer" else 1e-6
+                for end, outwards in ((least, -1), (most, 1)):
+                    if end is None:
+                        continue
+                    if name not in ("size", "threads", "width") or outwards < 0:
+                        result = self.run_program(command, ball, "--%s=%s" % (name, end))
+                        self.assertEqual(result.returncode == 0, not above, (name, end))
+                    beyond = "--%s=%r" % (name, float(end) + outwards * step * max(1, abs(float(end))))
+                    self.assertIn("must be " + what.rpartition(": ")[2], self.error(command, ball, beyond))
+                for none in ("nan", "inf", "-inf", ""):
+                    self.error(command, ball, "--%s=%s" % (name, none))
+                if standard and (command, name) != ("text", "tol"):
+                    self.assertEqual(self.output(command, ball, "--%s=%s" % (name, standard)), plain, name)
+                compared += 1
+        self.assertEqual(compared, 7 + 4)
+
     def test_files(self):
         self.assertIn("cannot read", self.error("check", self.path("none.n")))
         self.assertIn("cannot read", self.error("svg", self.folder))

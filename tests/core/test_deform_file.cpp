@@ -104,7 +104,7 @@ TEST(DeformationFile, FaultsNameFileAndEntry) {
     json(with("\"extent\": [1, 1], ", ""), "deformations[1]", "extent: must be a list");
     json(with("\"extent\": [0.5, 4]", "\"extent\": [0, 4]"), "deformations[0]", "extent=0: must be");
     json(with("wendland_c2", "wend\\nland"), "deformations[1]", "kernel=");
-    json(with("\"wendland_c2\"", "2"), "deformations[1]", "kernel: needed");
+    json(with("\"wendland_c2\"", "2"), "deformations[1]", "kernel: must be");
     json(with("false", "0"), "deformations[1]", "enabled: must be true or false");
     json(with("\"enabled\"", "\"on\""), "deformations[1]", "on: must be one of");
 
@@ -125,7 +125,7 @@ TEST(DeformationFile, FaultsNameFileAndEntry) {
     expect(std::string(text_file::kMostBytes + 1, ' '), "long.csv", "", "64 MB");
     std::string many;
     for (std::size_t i = 0; i <= kMaxDeformations; ++i) many += "1,1,1,1,1,1,1\n";
-    expect(many, "many.csv", "row 1048577", "up to 1048576 deformations");
+    expect(many, "many.csv", "row 1048577", "at most 1048576 deformations");
 }
 
 }  // namespace

@@ -114,7 +114,7 @@ TEST(FeaturesCsv, BadRowsAreNamed) {
     EXPECT_THAT(bad("1,2,3,4,5,6,7\n"), HasSubstr("row 1: must be 8 numbers"));
     EXPECT_THAT(bad("#\n1,2,3,4,5,6,7,8\n1,2,3,4,5,6,7,eight\n"),
                 HasSubstr("row 3: must be a number, not \"eight\""));
-    EXPECT_THAT(bad("1,2,3,4,5,6,7,8,9,10\n"), HasSubstr("and perhaps a weight, not 10"));
+    EXPECT_THAT(bad("1,2,3,4,5,6,7,8,9,10\n"), HasSubstr("and a weight if wanted, not 10"));
     EXPECT_THAT(bad("1,2,1,2,5,6,7,8\n"), HasSubstr("row 1: line 1=1,2,1,2: a line needs a length"));
     EXPECT_THAT(bad("1,2,nan,2,5,6,7,8\n"), HasSubstr("row 1: "));
     EXPECT_THAT(bad("1,2,3,4,5,6,7,8,inf\n"), HasSubstr("row 1: line 1 weight"));

@@ -78,7 +78,7 @@ TEST(MeshFile, FaultsNameFileAndEntry) {
     expect("", "is no JSON");
     expect(kMesh.substr(0, kMesh.size() / 2), "is no JSON");
     expect("[1, 2]", "an object");
-    expect(with("[0.4, 0.9]", "[0.4]"), "vertices[4]=a list of 1: a list of 2 numbers is needed");
+    expect(with("[0.4, 0.9]", "[0.4]"), "vertices[4]=a list of 1: must be a list of 2 numbers");
     expect(with("[0.4, 0.9]", "[0.4, \"a\\nb\"]"), "vertices[4][1]=");
     expect(with("[0.4, 0.9]", "[0.4, null]"), "vertices[4][1]=null");
     expect(with("[0.4, 0.9]", "[0.4, NaN]"), "is no JSON");
@@ -96,7 +96,7 @@ TEST(MeshFile, FaultsNameFileAndEntry) {
     expect(with("\"levels\": [{", "\"levels\": {"), "is no JSON");
     expect(std::string(100000, '['), "deep");
     expect(R"({"points": [[1, 2, 3]]})", "points[0]");
-    expect(R"({"points": 3})", "points=3: a list is needed");
+    expect(R"({"points": 3})", "points=3: must be a list");
     expect("1,2,3,4\n5,6,7\n", "row 2", "p.csv");
     expect("1,2,3,4\n5,6,x,8\n", "row 2: must be a number, not \"x\"", "p.csv");
     expect("1,2,3,4\n5,6,,8\n", "row 2", "p.csv");

@@ -1,10 +1,11 @@
 # SPDX-License-Identifier: Apache-2.0
 # host: pvpython
 """Every proxy of the plugin can be made; every property is documented, has the default of the C++ class and the range that
-it takes; every parameter of a class is a property."""
+it takes, both those of the core's rows of numbers where it has one; every parameter of a class is a property."""
 import glob
 import os
 import re
+import subprocess
 import xml.etree.ElementTree as xml
 
 import anamorph
@@ -21,6 +22,17 @@ NO_PROPERTY = {
     "vtkAnamorphInbetween": {"SetKey"},
     "vtkAnamorphReliefSource": {"SetSize"},
 }
+# The core's rows of numbers, by name. Properties have the name of their row but for these.
+ROW_OF = {("vtkAnamorphFigureGeometry", "Tolerance"): "surface_tol", ("vtkAnamorphFigureOutline", "Tolerance"): "outline_tol",
+          ("vtkAnamorphFigureSkeleton", "Tolerance"): "sphere_tol"}
+# Numbers that the panel has in a table, where they have no range of their own.
+IN_TABLES = {"extent"}
+# What depends on the input is refused when the filter executes; the least value is in the XML all the same.
+LEAST_ALONE = {"BaseIndex": 0, "Resolution": 0}
+# Entries of menus that do not say the name of their value.
+OTHER_WORDS = {"As the input", "As the inputs", "Blend to unit length"}
+# A panel shows a slider for what has two ends. Ends beyond this are left to the filter.
+FAR = 1e9
 
 
 def proxies():
@@ -82,6 +94,76 @@ def check_parameters(element):
     missing = own - used - NO_PROPERTY.get(element.get("class"), set())
     assert not missing, (element.get("name"), missing)
     return len(own)
+
+
+def core_rows():
+    """What the core says of its numbers: default, least, most (None: no end or a far one), both as a panel shows them."""
+    rows = {}
+    for line in subprocess.run([os.environ["ANAMORPH_ROWS"]], capture_output=True, check=True, text=True).stdout.splitlines():
+        name, *texts = line.split()
+        standard, least, most, above, below, integer = (float(text) for text in texts)
+        rows[name] = {"default": standard, "min": least + 0.001 * above if abs(least) < FAR else None,
+                      "max": most - 0.001 * below if abs(most) < FAR else None, "integer": bool(integer)}
+    assert len(rows) >= 9, rows
+    return rows
+
+
+def domain_of(p):
+    found = [d for d in p if d.tag in ("IntRangeDomain", "DoubleRangeDomain", "EnumerationDomain", "BooleanDomain")]
+    return found[0] if found else None
+
+
+def clamped_to(cls, command, size, number):
+    """The least and the most that a setter makes of what is far out; None where it keeps that."""
+    ends = []
+    for far in (-2**31, 2**31 - 1) if number is int else (-1e300, 1e300):
+        new = cls()
+        getattr(new, command)(*[far] * size)
+        value = numbers(getattr(new, "G" + command[1:])())[0]
+        ends.append(None if value == far else value)
+    return ends
+
+
+def check_menu(cls, command, entries):
+    """A menu has all values that the class takes, each under the name of its enumerator."""
+    values = [int(entry.get("value")) for entry in entries]
+    least, most = clamped_to(cls, command, 1, int)
+    assert values == list(range(int(least), int(most) + 1)), (cls.__name__, command, values, least, most)
+    named = {}
+    for name in dir(cls):
+        if re.fullmatch("[A-Z][A-Z0-9_]+", name) and isinstance(getattr(cls, name), int):
+            named.setdefault(getattr(cls, name), set()).update(name.lower().split("_"))
+    for value, text in ((int(entry.get("value")), entry.get("text")) for entry in entries):
+        words = set(re.findall("[a-z]+", text.lower()))
+        assert text in OTHER_WORDS or words & named[value], (cls.__name__, command, text, named[value])
+
+
+def check_whole(element, rows):
+    """Every number has the default, the range and the type of its row in the core, or else the range of its class, no more
+    and no less. Returns the rows that were compared."""
+    cls, seen = getattr(anamorph, element.get("class")), set()
+    for p in properties(element):
+        name, command, domain = p.get("name"), p.get("command") or "", domain_of(p)
+        if not command.startswith("Set") or domain is None or domain.tag == "BooleanDomain" or p.get("repeat_command"):
+            continue
+        where = (element.get("name"), name)
+        if domain.tag == "EnumerationDomain":
+            check_menu(cls, command, list(domain))
+            continue
+        number = int if domain.tag == "IntRangeDomain" else float
+        shown = {end: float(domain.get(end)) if domain.get(end) else None for end in ("min", "max")}
+        row = ROW_OF.get((element.get("class"), name), re.sub("(?<!^)([A-Z])", r"_\1", name).lower())
+        if row in rows:
+            seen.add(row)
+            assert shown == {end: rows[row][end] for end in ("min", "max")}, (where, shown, rows[row])
+            assert set(numbers(p.get("default_values").split())) == {rows[row]["default"]}, (where, rows[row])
+            assert rows[row]["integer"] == (number is int), where
+        elif name in LEAST_ALONE:
+            assert shown == {"min": LEAST_ALONE[name], "max": None}, (where, shown)
+        else:
+            least, most = clamped_to(cls, command, int(p.get("number_of_elements")), number)
+            assert shown == {"min": least, "max": most}, (where, shown, least, most)
+    return seen
 
 
 def with_input(cls):
@@ -157,6 +239,7 @@ def check_ranges(element):
     return ends
 
 
+rows, compared_rows = core_rows(), set()
 found = list(proxies())
 assert len(found) >= 4, found
 manager = servermanager.ProxyManager()
@@ -175,6 +258,8 @@ for group, element in found:
     assert element.find("Hints/ShowInMenu").get("category") == "Anamorph", name
     compared, own = check_defaults(element), check_parameters(element)
     assert compared >= 4 and own >= 4, (name, compared, own)
+    compared_rows |= check_whole(element, rows)
     ends = check_ranges(element)
     assert ends >= 2, (name, ends)
     print(name, ":", compared, "defaults,", own, "parameters,", ends, "ends of ranges")
+assert compared_rows == set(rows) - IN_TABLES, (compared_rows, set(rows))

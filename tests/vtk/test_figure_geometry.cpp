@@ -275,7 +275,7 @@ TEST(VtkFigureGeometry, WhatCannotBeDoneIsAnError) {
     const auto figure = figures({kLimb});
     for (const double bad : {0.0, -1.0, kNan})
         EXPECT_THAT(errors_of<vtkAnamorphFigureGeometry>(figure, [&](auto* g) { g->SetTolerance(bad); }),
-                    HasSubstr("must be a positive number"));
+                    HasSubstr("must be a number above 0"));
     EXPECT_THAT(errors_of<vtkAnamorphFigureGeometry>(figure, [](auto* g) { g->SetTolerance(1e-9); }),
                 HasSubstr("is too small"));
     // Large bodies need too many triangles; with the tolerance that the message names they do not.

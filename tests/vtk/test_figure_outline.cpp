@@ -191,7 +191,7 @@ TEST(VtkFigureOutline, WhatCannotBeDoneIsAnError) {
     EXPECT_THAT(errors_of<Outline>(bare), HasSubstr("the input has no array \"Orientation\""));
     for (const double bad : {0.0, kNan})
         EXPECT_THAT(errors_of<Outline>(figures({kNear}), [&](auto* f) { f->SetTolerance(bad); }),
-                    HasSubstr("must be a positive number"));
+                    HasSubstr("must be a number above 0"));
     // A tolerance that cannot be held is found before curves are followed, which takes long.
     vtkNew<ProgressObserver> progress;
     EXPECT_THAT(errors_of<Outline>(figures({kNear, kInside}),

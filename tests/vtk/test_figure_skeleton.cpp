@@ -119,7 +119,7 @@ TEST(VtkFigureSkeleton, WhatCannotBeDoneIsAnError) {
                     HasSubstr("must be a number of at least 0"));
     for (const double bad : {0.0, kNan})
         EXPECT_THAT(errors_of<Skeleton>(figures({kBone}), [&](auto* f) { f->SetTolerance(bad); }),
-                    HasSubstr("must be a positive number"));
+                    HasSubstr("must be a number above 0"));
     EXPECT_THAT(errors_of<Skeleton>(figures({kBone}),
                                     [](auto* f) {
                                         f->SetMode(Skeleton::SPHERES);

@@ -5,6 +5,7 @@
 #include <glm/geometric.hpp>
 
 #include "anamorph/error.h"
+#include "anamorph/figure/figure_rows.h"
 #include "anamorph/figure/outline_view.h"
 #include "anamorph/figure/rotation.h"
 #include "anamorph/parameter.h"
@@ -27,22 +28,13 @@ glm::dvec3 point(const char* name, const double* v) {
     return {v[0], v[1], v[2]};
 }
 
-double between(const char* name, double value, double least, double most) {
-    if (!(value > least && value < most))
-        throw Error(
-            name, anamorph::shortest(value),
-            "must be a number between " + anamorph::shortest(least) + " and " + anamorph::shortest(most));
-    return value;
-}
-
 }  // namespace
 
 vtkAnamorphFigureAlgorithm::vtkAnamorphFigureAlgorithm() = default;
 vtkAnamorphFigureAlgorithm::~vtkAnamorphFigureAlgorithm() = default;
 
 anamorph::View vtkAnamorphFigureAlgorithm::ViewOf(vtkPolyData* figures) const {
-    for (const int size : this->ViewSize)
-        if (size < 1) throw Error("ViewSize", std::to_string(size), "must be an integer of at least 1");
+    for (const int size : this->ViewSize) anamorph::kViewSizeRow.check(size, "ViewSize");
     const double height = this->ViewSize[1];
     if (this->ViewMode == SCRIPT) return anamorph_vtk::script_view(figures, height);
     const glm::dvec3 eye = point("CameraPosition", this->CameraPosition),
@@ -58,18 +50,15 @@ anamorph::View vtkAnamorphFigureAlgorithm::ViewOf(vtkPolyData* figures) const {
     // Rows: what becomes x, y and z.
     view.rotation = glm::transpose(glm::dmat3(right, glm::cross(right, away), away));
     if (this->CameraParallelProjection) {
-        view.scale = height / (2 * between("CameraParallelScale", this->CameraParallelScale, 0, 1e50));
+        anamorph::kParallelScaleRow.check(this->CameraParallelScale, "CameraParallelScale");
+        view.scale = height / (2 * this->CameraParallelScale);
     } else {
-        const double angle = between("CameraViewAngle", this->CameraViewAngle, 0, 180);
+        anamorph::kViewAngleRow.check(this->CameraViewAngle, "CameraViewAngle");
         view.eye_distance = distance;
         view.near = kNear * distance;
-        view.scale = height / (2 * std::tan(0.5 * angle * anamorph::kDegree) * distance);
+        view.scale = height / (2 * std::tan(0.5 * this->CameraViewAngle * anamorph::kDegree) * distance);
     }
     return view;
-}
-
-void vtkAnamorphFigureAlgorithm::CheckPositive(const char* name, double value) {
-    if (!(value > 0)) throw Error(name, anamorph::shortest(value), "must be a positive number");
 }
 
 int vtkAnamorphFigureAlgorithm::RequestData(vtkInformation*, vtkInformationVector** inputs,

@@ -70,7 +70,6 @@ class ANAMORPHFILTERS_EXPORT vtkAnamorphFigureAlgorithm : public vtkPolyDataAlgo
     /// The view of these ellipsoids. Throws anamorph::Error naming the property that is out of its range.
     anamorph::View ViewOf(vtkPolyData* figures) const;
     /// Throws anamorph::Error.
-    static void CheckPositive(const char* name, double value);
     /// Writes the output. What it throws becomes an error message and an empty output.
     virtual void Draw(vtkPolyData* input, vtkPolyData* output, anamorph_vtk::Execution& execution) = 0;
 

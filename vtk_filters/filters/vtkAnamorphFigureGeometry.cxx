@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "anamorph/error.h"
+#include "anamorph/figure/figure_rows.h"
 #include "anamorph/parameter.h"
 #include "execution.h"
 #include "figure_data.h"
@@ -237,7 +238,7 @@ vtkAnamorphFigureGeometry::~vtkAnamorphFigureGeometry() = default;
 
 void vtkAnamorphFigureGeometry::Draw(vtkPolyData* input, vtkPolyData* output,
                                      anamorph_vtk::Execution& execution) {
-    CheckPositive("Tolerance", this->Tolerance);
+    anamorph::kSurfaceTolRow.check(this->Tolerance, "Tolerance");
     const anamorph_vtk::FigureData figures(input);
     const View view = this->ToleranceMode == PIXELS ? this->ViewOf(input) : View();
     const double half_diagonal = 0.5 * std::hypot(this->ViewSize[0], this->ViewSize[1]);

@@ -44,7 +44,7 @@ class ANAMORPHFILTERS_EXPORT vtkAnamorphFigureGeometry : public vtkAnamorphFigur
 
     ///@{
     /**
-     * Most that a surface may be off its ellipsoid; positive. The default is 0.25. More than 4,194,304
+     * Maximum distance of a surface from its ellipsoid; positive. The default is 0.25. More than 4,194,304
      * triangles are refused, which is some 0.8 GB; the message says which tolerance needs no more.
      */
     vtkSetMacro(Tolerance, double);

@@ -73,7 +73,7 @@ vtkAnamorphFigureOutline::~vtkAnamorphFigureOutline() = default;
 
 void vtkAnamorphFigureOutline::Draw(vtkPolyData* input, vtkPolyData* output,
                                     anamorph_vtk::Execution& execution) {
-    CheckPositive("Tolerance", this->Tolerance);
+    anamorph::kOutlineTolRow.check(this->Tolerance, "Tolerance");
     const anamorph_vtk::Bodies bodies(input);
     const anamorph::View view = this->ViewOf(input);
     anamorph::OutlineOptions options;

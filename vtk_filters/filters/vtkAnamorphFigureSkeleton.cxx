@@ -40,15 +40,16 @@ vtkAnamorphFigureSkeleton::~vtkAnamorphFigureSkeleton() = default;
 
 void vtkAnamorphFigureSkeleton::Draw(vtkPolyData* input, vtkPolyData* output,
                                      anamorph_vtk::Execution& execution) {
-    if (!(this->LevelOfDetail >= 0))
-        throw Error("LevelOfDetail", anamorph::shortest(this->LevelOfDetail),
-                    "must be a number of at least 0");
-    CheckPositive("Tolerance", this->Tolerance);
+    anamorph::kLevelOfDetailRow.check(this->LevelOfDetail, "LevelOfDetail");
+    anamorph::kSphereTolRow.check(this->Tolerance, "Tolerance");
     const Bodies bodies(input);
     const std::vector<Detail> details =
         anamorph::levels_of_detail(bodies.shapes, this->ViewOf(input), {this->LevelOfDetail});
     execution.progress(0.3);
 
+    static_assert(NONE == static_cast<int>(Detail::none) && DOT == static_cast<int>(Detail::dot) &&
+                  LINE == static_cast<int>(Detail::line) && ELLIPSE == static_cast<int>(Detail::ellipse) &&
+                  BODY == static_cast<int>(Detail::body));
     anamorph_vtk::LineWriter writer(input, this->OutputPointsPrecision, {"Detail", "Radius"});
     const auto add = [&](const std::vector<glm::dvec3>& points, std::size_t body, double radius) {
         writer.add(points, bodies.ids[body], {static_cast<double>(details[body]), radius});
@@ -57,14 +58,16 @@ void vtkAnamorphFigureSkeleton::Draw(vtkPolyData* input, vtkPolyData* output,
         if (details[i] == Detail::dot) add({bodies.shapes[i].center}, i, 0);
     const auto is_more_than_a_dot = [&](std::size_t i) { return details[i] > Detail::dot; };
     if (this->Mode == SPHERES) {
+        anamorph::SphereOptions options;
+        options.tol = this->Tolerance;
         for (std::size_t i = 0; i < details.size(); ++i) {
             execution.progress(0.3 + 0.6 * static_cast<double>(i) / static_cast<double>(details.size()));
             if (!is_more_than_a_dot(i)) continue;
-            const anamorph::SphereFill fill =
-                anamorph::fill_with_spheres(bodies.shapes[i], {this->Tolerance, 10000});
+            const anamorph::SphereFill fill = anamorph::fill_with_spheres(bodies.shapes[i], options);
             if (!(fill.deviation <= this->Tolerance))
                 throw Error("Tolerance", anamorph::shortest(this->Tolerance),
-                            "needs more than 10000 spheres for " + bodies.names[i]);
+                            "needs more than " + std::to_string(options.most_spheres) + " spheres for " +
+                                bodies.names[i]);
             for (const anamorph::Sphere& sphere : fill.spheres) add({sphere.center}, i, sphere.radius);
         }
     } else {

@@ -612,7 +612,12 @@ std::vector<double> vtkAnamorphInbetween::WeightsOfKeysAt(int inputs, double tim
             throw Error("Keys at time " + anamorph::shortest(frame_time) + ": " + error.what());
         }
     }
-    const auto interpolation = static_cast<anamorph::KeyInterpolation>(this->Interpolation);
+    using anamorph::KeyInterpolation;
+    static_assert(STEP == static_cast<int>(KeyInterpolation::step) &&
+                  LINEAR == static_cast<int>(KeyInterpolation::linear) &&
+                  CATMULL_ROM == static_cast<int>(KeyInterpolation::catmull_rom) &&
+                  MONOTONE_CUBIC == static_cast<int>(KeyInterpolation::monotone_cubic));
+    const auto interpolation = static_cast<KeyInterpolation>(this->Interpolation);
     const std::vector<double> weights = anamorph::KeyFrames(times, values, interpolation).at(time);
     if (this->Mode == DELTAS || this->Interpolation != MONOTONE_CUBIC) return weights;
     return anamorph::inbetween_weights(weights, anamorph::WeightSum::normalized);

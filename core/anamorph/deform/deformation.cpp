@@ -15,12 +15,6 @@ void check_finite(const char* name, double value) {
     if (!std::isfinite(value)) throw Error(name, shortest(value), "must be a finite number");
 }
 
-void check_extent(double value) {
-    if (!(value >= kLeastExtent && value <= kMostExtent))
-        throw Error("extent", shortest(value),
-                    "must be a number from " + shortest(kLeastExtent) + " to " + shortest(kMostExtent));
-}
-
 std::optional<Deformation> effect(const Deformation& d) {
     if (!d.enabled || d.vector == glm::dvec3(0.0)) return std::nullopt;
     return d;
@@ -46,8 +40,8 @@ std::vector<Deformation> effects(const std::vector<Deformation>& list) {
 void check_deformation(const Deformation& d) {
     for (const double v : {d.vector.x, d.vector.y, d.vector.z}) check_finite("vector", v);
     for (const double c : {d.center.x, d.center.y}) check_finite("center", c);
-    check_extent(d.extent.x);
-    check_extent(d.extent.y);
+    kExtentRow.check(d.extent.x);
+    kExtentRow.check(d.extent.y);
 }
 
 void add_displacement(const Deformation& d, glm::dvec2 p, DisplacementJet& sum) {

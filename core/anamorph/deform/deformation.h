@@ -16,6 +16,7 @@
 #include <string>
 #include <vector>
 
+#include "anamorph/deform/deform_rows.h"
 #include "anamorph/number/jet.h"
 #include "anamorph/number/number.h"
 
@@ -28,19 +29,16 @@ enum class DeformationKernel {
 };
 
 struct Deformation {
-    glm::dvec3 vector{0.0};  ///< V
-    glm::dvec2 center{0.0};  ///< c
-    glm::dvec2 extent{1.0};  ///< a: r is 1 on the ellipse with these half axes
+    glm::dvec3 vector{0.0};                  ///< V
+    glm::dvec2 center{0.0};                  ///< c
+    glm::dvec2 extent{kExtentRow.standard};  ///< a: r is 1 on the ellipse with these half axes
     DeformationKernel kernel = DeformationKernel::gaussian;
     bool enabled = true;
 
     bool operator==(const Deformation&) const = default;
 };
 
-/// Extents lie between these, so that neither they nor their inverses leave the range of double.
-inline constexpr double kLeastExtent = 1e-300, kMostExtent = 1e300;
-
-/// Throws Error that names the field, unless all numbers are finite and extents in their range.
+/// Throws Error that names the field, unless all numbers are finite and extents in the range of kExtentRow.
 void check_deformation(const Deformation& deformation);
 
 #include "anamorph/deform/deformation_formula.h"

@@ -171,8 +171,7 @@ void hull(GridPart& part, const GridPart& other) {
 }  // namespace
 
 DisplacementSum::DisplacementSum(const DeformOptions& options) : m_options(options) {
-    if (!(options.cutoff >= 0 && options.cutoff <= 0.5))
-        throw Error("cutoff", shortest(options.cutoff), "must be a number from 0 to 0.5");
+    kCutoffRow.check(options.cutoff);
     int exponent = 0;
     if (!(options.resolution >= 0x1p-500 && options.resolution <= 0x1p500) ||
         std::frexp(options.resolution, &exponent) != 0.5)

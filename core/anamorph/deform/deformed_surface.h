@@ -32,8 +32,8 @@ struct PointTerm;
 }
 
 struct DeformOptions {
-    double cutoff = 1e-7;         ///< of V, from 0 (nothing is cut off) to 0.5
-    double resolution = 0x1p-40;  ///< of the displacement: a power of two from 2^-500 to 2^500
+    double cutoff = kCutoffRow.standard;  ///< of V; 0: nothing is cut off
+    double resolution = 0x1p-40;          ///< of the displacement: a power of two from 2^-500 to 2^500
 };
 
 /// The sums of what lists add to the surface, in fixed point, with the bound of their error.

@@ -32,7 +32,7 @@ Detail detail_of(const Ellipsoid& body, const Outline& outline, const View& view
 std::vector<Detail> levels_of_detail(std::span<const Ellipsoid> bodies, const View& view,
                                      const DetailOptions& options) {
     for (const auto& [name, value] : {std::pair{"lod", options.lod}, {"body_factor", options.body_factor}})
-        if (!(value >= 0)) throw Error(name, shortest(value), "must be a number of at least 0");
+        kLevelOfDetailRow.check(value, name);
     OutlineOptions limbs;
     limbs.hide = false;
     std::vector<Detail> details;

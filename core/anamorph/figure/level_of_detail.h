@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "anamorph/figure/figure_rows.h"
 #include "anamorph/figure/outline_view.h"
 #include "anamorph/map/ellipsoid.h"
 
@@ -16,7 +17,7 @@ enum class Detail : unsigned char { none, dot, line, ellipse, body };
 /// wider than `lod`, a `line` (its longest axis) where it is so in one direction, an `ellipse` (a flat
 /// outline) up to `body_factor` times `lod` wide, and a whole `body` beyond. `none`: behind the observer.
 struct DetailOptions {
-    double lod = 1;  ///< pixels; 0: all bodies whole
+    double lod = kLevelOfDetailRow.standard;  ///< pixels; 0: all bodies whole
     double body_factor = 16;
 };
 

@@ -95,8 +95,7 @@ double Outline::limb_angle(double angle, const View& view) const {
 
 Outlines outlines(std::span<const Ellipsoid> bodies, const View& view, const OutlineOptions& options,
                   const ParallelFor& parallel_for) {
-    if (options.crossings && !(options.tol > 0))
-        throw Error("tol", shortest(options.tol), "must be a positive number of pixels");
+    if (options.crossings) kOutlineTolRow.check(options.tol, "tol");
     const std::vector<SeenBody> seen = see_all(bodies, view, options.names, parallel_for);
     std::vector<ScreenBox> boxes;
     for (const SeenBody& body : seen)

@@ -17,6 +17,7 @@
 #include <vector>
 
 #include "anamorph/error.h"
+#include "anamorph/figure/figure_rows.h"
 #include "anamorph/figure/outline_view.h"
 #include "anamorph/map/ellipse.h"
 #include "anamorph/map/ellipsoid.h"
@@ -65,10 +66,10 @@ struct CrossingCurve {
 };
 
 struct OutlineOptions {
-    bool hide = true;         ///< false: bodies are transparent, as VISIB draws them
-    bool crossings = false;   ///< also the curves in which bodies pass through each other
-    bool keep_hidden = true;  ///< false: such curves of which nothing is seen are left out
-    double tol = 0.1;         ///< pixels that the chords of those curves may be off on the screen; positive
+    bool hide = true;                      ///< false: bodies are transparent, as VISIB draws them
+    bool crossings = false;                ///< also the curves in which bodies pass through each other
+    bool keep_hidden = true;               ///< false: such curves of which nothing is seen are left out
+    double tol = kOutlineTolRow.standard;  ///< maximum chord error of those curves, in pixels
     /// Names of the bodies for messages; empty: their positions.
     std::vector<std::string> names;
 };
@@ -87,7 +88,8 @@ Outlines outlines(const FigureFrame& frame, const View& view, OutlineOptions opt
                   const ParallelFor& parallel_for = serial_for);
 
 /// Angles from arc.begin to arc.end between which chords stay within `tol` pixels of the limb's image on the
-/// screen. Throws Error when tol is not positive, or asks for more than a million chords.
+/// screen. Throws Error when tol is out of the range of kOutlineTolRow, or asks
+/// for more than a million chords.
 std::vector<double> chord_angles(const Outline& outline, const Arc& arc, const View& view, double tol);
 /// The points at those angles, on the screen.
 std::vector<glm::dvec2> chords(const Outline& outline, const Arc& arc, const View& view, double tol);

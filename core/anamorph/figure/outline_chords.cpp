@@ -68,7 +68,7 @@ void bisect(const Ellipse<glm::dvec3>& limb, double a, double b, double zoom, do
 }  // namespace
 
 std::vector<double> chord_angles(const Outline& outline, const Arc& arc, const View& view, double tol) {
-    if (!(tol > 0)) throw Error("tol", shortest(tol), "must be a positive number of pixels");
+    kOutlineTolRow.check(tol, "tol");
     if (!view.perspective()) return even_angles(outline, arc, view, tol);
     std::vector<double> angles{arc.begin};
     bisect(outline.viewed, arc.begin, arc.end, view.scale * view.eye_distance, tol, angles);

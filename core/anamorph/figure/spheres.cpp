@@ -112,7 +112,7 @@ class Fill {
 
 SphereFill fill_with_spheres(const Ellipsoid& body, const SphereOptions& options) {
     check(body, 0, {});
-    if (!(options.tol > 0)) throw Error("tol", shortest(options.tol), "must be a positive number");
+    kSphereTolRow.check(options.tol, "tol");
     if (options.most_spheres < 1)
         throw Error("most_spheres", std::to_string(options.most_spheres), "must be an integer of at least 1");
     SphereFill fill;

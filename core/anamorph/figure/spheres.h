@@ -5,6 +5,7 @@
 #include <glm/vec3.hpp>
 #include <vector>
 
+#include "anamorph/figure/figure_rows.h"
 #include "anamorph/map/ellipsoid.h"
 
 namespace anamorph {
@@ -15,7 +16,8 @@ struct Sphere {
 };
 
 struct SphereOptions {
-    double tol = 0.1;          ///< how far the body's surface may lie outside the spheres, units of the scene
+    /// Maximum distance of the body's surface from the spheres, in units of the scene.
+    double tol = kSphereTolRow.standard;
     int most_spheres = 10000;  ///< of one body; where tol needs more, `deviation` says what was reached
 };
 

@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: Apache-2.0
+// The numbers that users set of deformations (deformation.h, deformed_surface.h).
+#pragma once
+
+#include "anamorph/number_row.h"
+
+namespace anamorph {
+
+/// A half axis of a deformation, in the units of u or v. It and its inverse stay in the range of double.
+inline constexpr NumberRow kExtentRow{"extent", 1, 1e-300, 1e300};
+/// Where Gaussians are cut off, as a share of V.
+inline constexpr NumberRow kCutoffRow{"cutoff", 1e-7, 0, 0.5};
+
+inline constexpr NumberRow kDeformRows[] = {kExtentRow, kCutoffRow};
+
+}  // namespace anamorph
