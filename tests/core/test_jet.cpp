@@ -281,6 +281,55 @@ TEST(Jet, CoefficientsStandWhereTheHeaderSays) {
     EXPECT_FALSE(is_zero(Interval(0, 1)));
 }
 
+// Coefficients of all magnitudes, narrow, wide, of either sign and zero: products of members are enclosed. An
+// end that is no number bounds nothing, and says so.
+TEST(Jet, ProductsOfIntervalsEncloseThoseOfTheirMembers) {
+    SCOPED_TRACE("seed " + std::to_string(kSeed));
+    std::mt19937 random(kSeed);
+    using I = Jet<Interval, 5>;
+    const auto between = [&](double low, double high) {
+        return std::uniform_real_distribution<double>(low, high)(random);
+    };
+    // A box of coefficients, and members of it, most often its ends.
+    const auto fill = [&](I& box, std::array<Real, I::kSize>& member, double least, double most) {
+        for (std::size_t i = 0; i < member.size(); ++i) {
+            const double a = between(-1, 1) * std::exp2(between(least, most));
+            const double b =
+                random() % 3 ? a * between(0.5, 1.5) : between(-1, 1) * std::exp2(between(least, most));
+            box.c[i] = random() % 6 ? Interval(std::min(a, b), std::max(a, b)) : Interval(0);
+            member[i] = random() % 3
+                            ? (random() % 2 ? box.c[i].lo : box.c[i].hi)
+                            : std::clamp(between(box.c[i].lo, box.c[i].hi), box.c[i].lo, box.c[i].hi);
+        }
+    };
+    int bounded = 0, all = 0;
+    for (int round = 0; round < 3000; ++round) {
+        const double middle = round % 2 ? 0 : between(-1060, 1000), spread = between(0, 40);
+        I f, g;
+        std::array<Real, I::kSize> p, q;
+        fill(f, p, std::max(-1074.0, middle - spread), std::min(1023.0, middle + spread));
+        fill(g, q, -spread, spread);
+        const I product = f * g;
+        for (int k = 0; k <= 5; ++k)
+            for (int m = 0; m <= k; ++m) {
+                Real exact = 0, size = 0;
+                for (int a = 0; a <= k; ++a)
+                    for (int i = std::max(0, m - (k - a)); i <= std::min(a, m); ++i) {
+                        const Real term = p[static_cast<std::size_t>(I::part(a) + i)] *
+                                          q[static_cast<std::size_t>(I::part(k - a) + m - i)];
+                        exact += term;
+                        size += std::fabs(term);
+                    }
+                const Interval& bound = product.c[I::part(k) + m];
+                bounded += bound.hi - bound.lo <= 4 * size + 1e-280L;
+                ++all;
+                ASSERT_FALSE(bound.lo > exact + 1e-18L * size) << round << ' ' << k << ' ' << m;
+                ASSERT_FALSE(bound.hi < exact - 1e-18L * size) << round << ' ' << k << ' ' << m;
+            }
+    }
+    EXPECT_GT(bounded, all / 4);
+}
+
 TEST(Jet, WhatHasNoDerivativeHasNoBound) {
     using I = Jet2<Interval>;
     const I s = I::variable(Interval(-1, 1), 1, 0);

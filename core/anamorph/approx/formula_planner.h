@@ -45,8 +45,8 @@ inline constexpr double kPreciseGain = 512;
 // The part of the tolerance that a remainder may take up before a fresh one, over a smaller box, is worth its
 // cost.
 inline constexpr double kTailShare = 0.25;
-// Blocks share a Taylor polynomial where its remainder leaves room for so many times the last block's error.
-inline constexpr double kFitMargin = 1.1;
+// The part of the tolerance that a remainder over a box may take up for its polynomial to serve parts of it.
+inline constexpr double kPartShare = 0.5;
 
 inline int pixels_of(const Box& box) {
     return box.width() * box.height();
@@ -86,31 +86,29 @@ class Planner {
         for_blocks(box, [&](const Box& b) { emit(b, Block::Kind::exact); });
     }
 
-    /// Top-down: bounds the map over a large box, and settles its blocks with that bound if it serves them.
+    /// Top-down: finds the branch of the map on which a large box lies, and settles it there.
     void settle(const Box& box) {
         if (!worth_a_bound(box)) return exact(box);
-        const std::size_t first = m_blocks.size();
         const Local local = m_map.local_around(0.5 * (box.x0 + box.x1), 0.5 * (box.y0 + box.y1), m_piece);
         switch (cover(box, local)) {
             case Cover::outside:
-                emit(box, Block::Kind::outside);
-                return;
+                return emit(box, Block::Kind::outside);
             case Cover::mixed:
-                split(box, first);
-                return;
+                return split(box, [&](const Box& b) { settle(b); });
             case Cover::inside:
-                break;
+                return m_options.scheme == Scheme::residual ? settle_residual(box, local)
+                                                            : settle_blocks(box, local);
         }
-        if (m_options.scheme == Scheme::residual)
-            settle_residual(box, local, first);
-        else
-            settle_blocks(box, local, first);
     }
 
   private:
     /// May a bound over the box pay? Where only the fastest way is asked for.
     bool worth_a_bound(const Box& box) const {
         return m_options.scheme != Scheme::automatic || (pixels_of(box) >= kBoundPixels && m_balance >= 0);
+    }
+
+    Local local_about(const Box& box) const {
+        return m_map.local_around(0.5 * (box.x0 + box.x1), 0.5 * (box.y0 + box.y1), m_piece);
     }
 
     // The Taylor polynomial of a block has degree 4; its remainder is bounded over large boxes.
@@ -144,6 +142,15 @@ class Planner {
         const bool out =
             (edges.across && beyond(p.x, size.width)) || (edges.down && beyond(p.y, size.height));
         return out ? Cover::outside : Cover::inside;
+    }
+
+    /// Can no part of a box be culled, with its source points here?
+    bool is_kept(const Interval& x, const Interval& y) const {
+        const Size size = m_map.source_size();
+        const SourceEdges edges = m_map.source_edges();
+        const auto within = [](const Interval& a, int length) { return a.lo >= 0 && a.hi <= length; };
+        return !m_options.cull ||
+               ((!edges.across || within(x, size.width)) && (!edges.down || within(y, size.height)));
     }
 
     /// How far from its source point a pixel's texels lie at most, in source pixels (render/footprint.h).
@@ -185,22 +192,20 @@ class Planner {
                                               half(std::min(2 * kBlockHeight, box.height())), local);
         return rounding <= kSharedRounding * m_options.tol ? rounding : HUGE_VAL;
     }
-    double rounding_of(const Box& block, const Bound& bound, const Local& local) const {
-        return bound.rounding < HUGE_VAL
-                   ? bound.rounding
-                   : rounding_over(block, half(block.width()), half(block.height()), local);
-    }
-
-    void settle_blocks(const Box& box, const Local& local, std::size_t first) {
+    void settle_blocks(const Box& box, const Local& local) {
+        if (!worth_a_bound(box)) return exact(box);
         m_balance -= kBoundCost;
         const auto p = enclose<5>(box, local);
         Bound bound{Tail(p.x), Tail(p.y), HUGE_VAL};
         const bool is_block = box.width() <= kBlockWidth && box.height() <= kBlockHeight;
         if (is_block ? tail_over(box, bound) < HUGE_VAL : serves(box, local, bound)) {
             bound.rounding = shared_rounding(box, local);
-            place_all(box, local, bound);
-        } else
-            split(box, first);
+            for_boxes(box, 2 * kBlockWidth, 2 * kBlockHeight,
+                      [&](const Box& b) { place(b, expand(b, local, bound), local, bound); });
+        } else if (is_kept(p.x.c[0], p.y.c[0]))
+            split(box, [&](const Box& b) { settle_blocks(b, local_about(b)); });
+        else
+            split(box, [&](const Box& b) { settle(b); });
     }
 
     static double tail_over(const Box& box, const Bound& bound) {
@@ -213,7 +218,7 @@ class Planner {
         const int x0 = (box.x0 + box.x1) / 2, y0 = (box.y0 + box.y1) / 2;
         const Box middle{x0, y0, std::min(x0 + kBlockWidth, box.x1), std::min(y0 + kBlockHeight, box.y1)};
         const double tail = tail_over(middle, bound);
-        return tail < HUGE_VAL && small_tail(tail, fit_of(middle, local).error);
+        return tail < HUGE_VAL && small_tail(tail, Fit(taylor_of(middle, local)).error);
     }
 
     /// A block that misses the tolerance is cut until it holds it; what is left of the remainder by then
@@ -232,66 +237,63 @@ class Planner {
             : taylor(f), x(f.x), y(f.y), error(length(x.error, y.error)) {}
     };
     /// The map's Taylor polynomial about the middle of a box, with offsets of -1 to 1 over its pixel centres.
-    static Point<Jet<double, 4>> taylor_of(const Map& map, const Box& box, const Local& local) {
+    Point<Jet<double, 4>> taylor_of(const Box& box, const Local& local) const {
         using J = Jet<double, 4>;
-        return map(J::variable(0.5 * (box.x0 + box.x1), half(box.width()), 0),
-                   J::variable(0.5 * (box.y0 + box.y1), 0, half(box.height())), local);
-    }
-    Fit fit_of(const Box& box, const Local& local) const { return Fit(taylor_of(m_map, box, local)); }
-
-    /// All blocks of a box: up to four from one Taylor polynomial where it serves them all.
-    void place_all(const Box& box, const Local& local, const Bound& bound) {
-        for_boxes(box, 2 * kBlockWidth, 2 * kBlockHeight, [&](const Box& b) { share(b, local, bound); });
-    }
-    void share(const Box& box, const Local& local, const Bound& bound) {
-        const bool wide = box.width() > kBlockWidth, high = box.height() > kBlockHeight;
-        if (!wide && !high) return place(box, local, bound);
-        const double tail = tail_over(box, bound);
-        if (!(tail + kFitMargin * m_fit <= m_options.tol)) {
-            for_boxes(box, kBlockWidth, wide ? box.height() : kBlockHeight,
-                      [&](const Box& b) { share(b, local, bound); });
-            return;
-        }
-        const Point<Jet<double, 4>> taylor = taylor_of(m_map, box, local);
-        const double per_x = 1 / half(box.width()), per_y = 1 / half(box.height());
-        for_blocks(box, [&](const Box& b) {
-            const auto part = [&](const Jet<double, 4>& f) {
-                return on_part(f, 0.5 * (b.x0 + b.x1 - box.x0 - box.x1) * per_x, half(b.width()) * per_x,
-                               0.5 * (b.y0 + b.y1 - box.y0 - box.y1) * per_y, half(b.height()) * per_y);
-            };
-            const Fit fit({part(taylor.x), part(taylor.y)});
-            m_fit = fit.error;
-            if (!emit_polynomial(b, m_map.source_piece(local), fit.x.c, fit.y.c,
-                                 fit.error + tail + rounding_of(b, bound, local)))
-                place(b, local, bound);
-        });
+        return m_map(J::variable(0.5 * (box.x0 + box.x1), half(box.width()), 0),
+                     J::variable(0.5 * (box.y0 + box.y1), 0, half(box.height())), local);
     }
 
-    /// Emits the box as one polynomial block if that holds the tolerance, else halves it.
-    void place(const Box& box, const Local& local, const Bound& bound) {
-        const std::size_t first = m_blocks.size();
-        const Fit fit = fit_of(box, local);
-        m_fit = fit.error;
-        const double tail = tail_over(box, bound);
-        if (emit_polynomial(box, m_map.source_piece(local), fit.x.c, fit.y.c,
-                            fit.error + tail + rounding_of(box, bound, local)))
+    /// A Taylor polynomial, and how far it is from the map anywhere in its box, remainder and rounding.
+    struct Expansion {
+        Box box;
+        Point<Jet<double, 4>> taylor;
+        double error;
+    };
+    Expansion expand(const Box& box, const Local& local, const Bound& bound) const {
+        const double rounding = bound.rounding < HUGE_VAL
+                                    ? bound.rounding
+                                    : rounding_over(box, half(box.width()), half(box.height()), local);
+        return {box, taylor_of(box, local), tail_over(box, bound) + rounding};
+    }
+    /// On a part of its box.
+    static Fit fit_on(const Expansion& e, const Box& b) {
+        if (b == e.box) return Fit(e.taylor);
+        const double per_x = 1 / half(e.box.width()), per_y = 1 / half(e.box.height());
+        const auto part = [&](const Jet<double, 4>& f) {
+            return on_part(f, 0.5 * (b.x0 + b.x1 - e.box.x0 - e.box.x1) * per_x, half(b.width()) * per_x,
+                           0.5 * (b.y0 + b.y1 - e.box.y0 - e.box.y1) * per_y, half(b.height()) * per_y);
+        };
+        return Fit({part(e.taylor.x), part(e.taylor.y)});
+    }
+
+    /// Emits a part of an expansion's box as one polynomial block if that holds the tolerance, else halves it.
+    void place(const Box& box, const Expansion& expansion, const Local& local, const Bound& bound) {
+        if (box.width() > kBlockWidth || box.height() > kBlockHeight)
+            return for_blocks(box, [&](const Box& b) { place(b, expansion, local, bound); });
+        const Fit fit = fit_on(expansion, box);
+        if (emit_polynomial(box, m_map.source_piece(local), fit.x.c, fit.y.c, fit.error + expansion.error))
             return;
-        // Halve the side along which more was dropped, with a new remainder where that is to blame.
+        // One about its own middle has a smaller remainder: is it small enough for the box, or for its parts?
+        const double tail = tail_over(box, bound);
+        const bool holds = fit.error + tail <= m_options.tol;
+        if (box != expansion.box && tail < expansion.error && (holds || tail <= kPartShare * m_options.tol))
+            return place(box, expand(box, local, bound), local, bound);
+        // Halve the side along which more was dropped, with a new bound where that is to blame.
         const auto dropped = [&](int i, int j) {
             return std::fabs(fit.taylor.x.at(i, j)) + std::fabs(fit.taylor.y.at(i, j));
         };
         const bool vertical_cut = dropped(3, 0) + dropped(2, 1) >= dropped(0, 3) + dropped(1, 2);
         const bool renew = !small_tail(tail, fit.error);
-        halve(box, vertical_cut, kFloor, first, [&](const Box& b) {
+        halve(box, vertical_cut, kFloor, [&](const Box& b) {
             if (renew && worth_a_bound(b))
-                settle(b);
+                settle_blocks(b, local_about(b));
             else
-                place(b, local, bound);
+                place(b, expansion, local, bound);
         });
     }
 
     /// Kim's table: bilinear cells between nodes on a regular grid, as wide as the second derivatives allow.
-    void settle_residual(const Box& box, const Local& local, std::size_t first) {
+    void settle_residual(const Box& box, const Local& local) {
         const auto p = enclose<2>(box, local);
         // |f - its bilinear interpolant| <= h^2 / 2 max |f_ss| per direction, h half the cell.
         const auto error = [&](int w, int h) {
@@ -306,12 +308,12 @@ class Planner {
         if (holds)
             for_blocks(box, [&](const Box& b) { place_cell(b, local, error(b.width(), b.height())); });
         else if (!is_block)
-            split(box, first);
+            split(box, [&](const Box& b) { settle(b); });
         else {
             const double wide = magnitude(p.x.at(2, 0)) + magnitude(p.y.at(2, 0));
             const double high = magnitude(p.x.at(0, 2)) + magnitude(p.y.at(0, 2));
             const bool vertical_cut = wide * box.width() * box.width() >= high * box.height() * box.height();
-            halve(box, vertical_cut, kResidualFloor, first, [&](const Box& b) { settle(b); });
+            halve(box, vertical_cut, kResidualFloor, [&](const Box& b) { settle(b); });
         }
     }
 
@@ -340,12 +342,11 @@ class Planner {
         double cx[6], cy[6];
         bilinear(x, cx);
         bilinear(y, cy);
-        const std::size_t first = m_blocks.size();
         const double rounding = rounding_over(box, 0, 0, local);
         if (emit_polynomial(box, m_map.source_piece(local), cx, cy,
                             interpolation_error + stored * 0x1p-24 + rounding))
             return;
-        halve(box, box.width() > box.height(), kResidualFloor, first, [&](const Box& b) { settle(b); });
+        halve(box, box.width() > box.height(), kResidualFloor, [&](const Box& b) { settle(b); });
     }
 
     /// True when the polynomial, off by `error` in double and evaluated in float, keeps the tolerance: then
@@ -382,17 +383,18 @@ class Planner {
         for_boxes(box, kBlockWidth, kBlockHeight, body);
     }
 
-    /// Settles the halves of a box, cut across its longer side (counted in blocks).
-    void split(const Box& box, std::size_t first) {
+    /// `body` on the halves of a box, cut across its longer side (counted in blocks).
+    template <class Body>
+    void split(const Box& box, const Body& body) {
         const int wide = box.width() * kBlockHeight, high = box.height() * kBlockWidth;
-        halve(box, wide > high || (wide == high && box.width() > kFloor), kFloor, first,
-              [&](const Box& b) { settle(b); });
+        halve(box, wide > high || (wide == high && box.width() > kFloor), kFloor, body);
     }
 
     /// `body` on the halves of the box; where neither side can be cut above the floor, or everything in the
-    /// box came out exact, one exact block. `first`: the number of blocks before the box's own.
+    /// box came out exact, one exact block.
     template <class Body>
-    void halve(const Box& box, bool vertical_cut, int floor, std::size_t first, const Body& body) {
+    void halve(const Box& box, bool vertical_cut, int floor, const Body& body) {
+        const std::size_t first = m_blocks.size();
         if (vertical_cut ? box.width() <= floor : box.height() <= floor) vertical_cut = !vertical_cut;
         if (vertical_cut ? box.width() <= floor : box.height() <= floor) {
             emit(box, Block::Kind::exact);
@@ -412,7 +414,6 @@ class Planner {
     const PlanOptions& m_options;
     int m_piece;
     Blocks& m_blocks;
-    double m_fit = 0;  ///< the error of the last block's fit: what the next one's will be like
     double m_balance;  ///< exact pixels saved less those that bounds would have paid for
     double m_margin;   ///< of what is enclosed of a box: from its edges to the nodes that blocks are made of
     std::optional<LinearPart> m_linear;

@@ -124,6 +124,17 @@ inline Interval operator*(const Interval& a, const Interval& b) {
     const bool zero = (a.lo == 0 && a.hi == 0) || (b.lo == 0 && b.hi == 0);
     return zero ? Interval(0) : interval_detail::small_product(a, b);
 }
+inline Interval operator*(const Interval& a, double k) {
+    const double p = a.lo * k, q = a.hi * k;
+    if (std::isnan(p + q)) return Interval::all();
+    const Interval product = k < 0 ? interval_detail::widen(q, p) : interval_detail::widen(p, q);
+    if (!interval_detail::underflows(product)) return product;
+    const bool zero = k == 0 || (a.lo == 0 && a.hi == 0);
+    return zero ? Interval(0) : interval_detail::small_product(a, k);
+}
+inline Interval operator*(double k, const Interval& a) {
+    return a * k;
+}
 inline Interval operator/(const Interval& a, const Interval& b) {
     if (!(b.lo > 0 || b.hi < 0)) return Interval::all();
     Interval inverse = interval_detail::widen(1 / b.hi, 1 / b.lo);

@@ -70,27 +70,104 @@ ANAMORPH_UNROLLED inline void unroll(const Body& body) {
     (std::make_integer_sequence<int, Count>{});
 }
 
+/// A sum of products.
+template <class T>
+struct ProductSum {
+    T sum = T(0);
+
+    ANAMORPH_UNROLLED void add(const T& a, const T& b) { sum += a * b; }
+    ANAMORPH_UNROLLED void add(const ProductSum& part, int weight) {
+        sum += weight == 1 ? part.sum : part.sum * T(weight);
+    }
+    const T& value() const { return sum; }
+};
+/// Of intervals, in about as many steps as of numbers. With middles p, q and largest magnitudes P, Q of two
+/// factors, their product is within PQ - |p||q| of pq; so is a sum of them, with weights w, of the sum of w p q.
+/// Read here are s = 2 p and t = 2 q, sums of ends, which do not underflow.
+///
+/// Rounding, in units u = 2^-53 of G = sum |w| P Q, for N <= 6, when a coefficient has at most 16 products: s t w
+/// is off by 4 u of itself, and adding up by 16 u more, so that sum w s t and sum |w| |s| |t|, of 4 G at most, are
+/// off by 20 u of 4 G, and G by 18 u; the difference of sizes and the two ends by 4 u. 20 + 20 + 18 + 4 < 64 units;
+/// 128 are taken. What underflows is off by 2^-1022 at most, 16 products with weights up to 12 in three sums by
+/// less than 2^-1012: no more than the rest of the units where G is at least 2^-950. Where it is less, the sum is
+/// only known to be next to nothing.
+template <>
+struct ProductSum<Interval> {
+    double middle = 0, middle_size = 0;  ///< sum w s t and sum |w s t|
+    double size = 0;                     ///< G
+
+    ANAMORPH_UNROLLED void add(const Interval& a, const Interval& b) {
+        const double product = (a.lo + a.hi) * (b.lo + b.hi);
+        middle += product;
+        middle_size += std::fabs(product);
+        size += larger(-a.lo, a.hi) * larger(-b.lo, b.hi);
+    }
+    ANAMORPH_UNROLLED void add(const ProductSum& part, int weight) {
+        middle += part.middle * weight;
+        middle_size += part.middle_size * std::abs(weight);
+        size += part.size * std::abs(weight);
+    }
+    /// Unbounded where a factor is, or nearly so.
+    ANAMORPH_UNROLLED Interval value() const {
+        if (!(middle_size + size < 0x1p1000)) return Interval::all();
+        const double radius = size < 0x1p-950 ? 0x1p-940 : (size - 0.25 * middle_size) + size * 0x1p-46;
+        return {0.25 * middle - radius, 0.25 * middle + radius};
+    }
+
+  private:
+    ANAMORPH_UNROLLED static double larger(double a, double b) { return a > b ? a : b; }
+};
+
+/// The degree of a jet as a polynomial: parts above are zero. Constants, lines and their squares are mostly zeros,
+/// and gain by its being seen. N for vectors.
+template <class T, int N>
+int degree_of(const Jet<T, N>& jet) {
+    int degree = N;
+    if constexpr (requires(bool known, const T& a) { known = is_zero(a); })
+        for (int last = Jet<T, N>::kSize - 1; last > 0 && is_zero(jet.c[last]); --last)
+            if (last == Jet<T, N>::part(degree)) --degree;
+    return degree;
+}
+
+/// How many coefficients are worth an operation of their own: of intervals, those of the degree.
+template <class T, int N>
+int terms(const Jet<T, N>& jet) {
+    return std::is_same_v<T, Interval> ? Jet<T, N>::part(degree_of(jet) + 1) : Jet<T, N>::kSize;
+}
+
+/// A jet as a factor of products.
+template <class T, int N>
+struct Factor {
+    const Jet<T, N>& jet;
+    int degree;
+
+    explicit Factor(const Jet<T, N>& known) : jet(known), degree(degree_of(known)) {}
+    /// A jet of which more parts are to come.
+    static Factor growing(const Jet<T, N>& jet) { return Factor(jet, N); }
+
+  private:
+    Factor(const Jet<T, N>& unknown, int any) : jet(unknown), degree(any) {}
+};
+
 /// Coefficient m of the part of degree K of sum_(First <= a <= Last) weight(a) f_a g_(K-a).
 template <int K, int First, int Last, class T, int N, class Weight>
-ANAMORPH_UNROLLED inline T convolve(const Jet<T, N>& f, const Jet<T, N>& g, int m, const Weight& weight) {
+ANAMORPH_UNROLLED inline T convolve(const Factor<T, N>& f, const Factor<T, N>& g, int m,
+                                    const Weight& weight) {
     using J = Jet<T, N>;
-    T sum(0);
+    if (First > Last || K > f.degree + g.degree) return T(0);
+    ProductSum<T> sum;
     unroll<Last - First + 1>([&](auto offset) ANAMORPH_UNROLLED {
         constexpr int a = First + offset, b = K - a;
-        T part(0);
+        if (a > f.degree || b > g.degree) return;
+        ProductSum<T> part;
         unroll<a + 1>([&](auto i) ANAMORPH_UNROLLED {
             const int j = m - i;
-            if (j < 0 || j > b) return;
-            const T& left = f.c[J::part(a) + i];
-            // Lines, constants and even functions are mostly zeros; intervals gain by seeing it.
-            if constexpr (std::is_same_v<T, Interval>)
-                if (is_zero(left) || is_zero(g.c[J::part(b) + j])) return;
-            part += left * g.c[J::part(b) + j];
+            if (j >= 0 && j <= b) part.add(f.jet.c[J::part(a) + i], g.jet.c[J::part(b) + j]);
         });
-        const int w = weight(a);
-        sum += w == 1 ? part : part * T(w);
+        sum.add(part, weight(a));
     });
-    return sum;
+    static_assert(!std::is_same_v<T, Interval> || N <= 6);
+    return sum.value();
 }
 
 /// body(k, m) for the coefficients m of the parts of degree k = 1 ... N, part by part.
@@ -106,10 +183,14 @@ ANAMORPH_UNROLLED inline void each_coefficient(const Body& body) {
 template <class T, int N>
 inline void integrate_quotient(Jet<T, N>& g, const Jet<T, N>& w, const Jet<T, N>& q) {
     const T inverse = T(1) / q.c[0];
+    T part_of[N + 1];
+    for (int k = 1; k <= N; ++k) part_of[k] = inverse / T(k);
+    const auto left = Factor<T, N>::growing(g);
+    const Factor<T, N> right(q);
     each_coefficient<N>([&](auto k, auto m) ANAMORPH_UNROLLED {
-        const T known = convolve<k, 1, k - 1>(g, q, m, [](int j) { return j; });
+        const T known = convolve<k, 1, k - 1>(left, right, m, [](int j) { return j; });
         const int at = Jet<T, N>::part(k) + m;
-        g.c[at] = (w.c[at] - known) * (inverse / T(k));
+        g.c[at] = (w.c[at] - known) * part_of[k];
     });
 }
 
@@ -117,9 +198,10 @@ inline void integrate_quotient(Jet<T, N>& g, const Jet<T, N>& w, const Jet<T, N>
 template <class T, int N>
 inline Jet<T, N> wronskian(const Jet<T, N>& x, const Jet<T, N>& y) {
     Jet<T, N> r;
+    const Factor<T, N> left(x), right(y);
     each_coefficient<N>([&](auto k, auto m) ANAMORPH_UNROLLED {
         constexpr int degree = k;
-        r.c[Jet<T, N>::part(k) + m] = convolve<k, 0, k>(x, y, m, [](int a) { return degree - 2 * a; });
+        r.c[Jet<T, N>::part(k) + m] = convolve<k, 0, k>(left, right, m, [](int a) { return degree - 2 * a; });
     });
     return r;
 }
@@ -138,10 +220,12 @@ inline Jet<T, N> euler(const Jet<T, N>& f) {
 /// E u = v E a and E v = Sign * u E a: sine and cosine (Sign -1), or their hyperbolic twins (Sign 1).
 template <int Sign, class T, int N>
 inline void oscillate(Jet<T, N>& u, Jet<T, N>& v, const Jet<T, N>& a) {
+    const Factor<T, N> angle(a);
+    const auto sine = Factor<T, N>::growing(u), cosine = Factor<T, N>::growing(v);
     each_coefficient<N>([&](auto k, auto m) ANAMORPH_UNROLLED {
         const int at = Jet<T, N>::part(k) + m;
-        u.c[at] = convolve<k, 1, k>(a, v, m, [](int j) { return j; }) / T(k);
-        v.c[at] = convolve<k, 1, k>(a, u, m, [](int j) { return Sign * j; }) / T(k);
+        u.c[at] = convolve<k, 1, k>(angle, cosine, m, [](int j) { return j; }) / T(k);
+        v.c[at] = convolve<k, 1, k>(angle, sine, m, [](int j) { return Sign * j; }) / T(k);
     });
 }
 
@@ -156,27 +240,32 @@ inline Jet<T, N> operator-(const Jet<T, N>& a) {
 template <class T, int N>
 inline Jet<T, N> operator+(const Jet<T, N>& a, const Jet<T, N>& b) {
     Jet<T, N> r;
-    for (int i = 0; i < Jet<T, N>::kSize; ++i) r.c[i] = a.c[i] + b.c[i];
+    const int size = std::max(jet_detail::terms(a), jet_detail::terms(b));
+    for (int i = 0; i < size; ++i) r.c[i] = a.c[i] + b.c[i];
     return r;
 }
 template <class T, int N>
 inline Jet<T, N> operator-(const Jet<T, N>& a, const Jet<T, N>& b) {
     Jet<T, N> r;
-    for (int i = 0; i < Jet<T, N>::kSize; ++i) r.c[i] = a.c[i] - b.c[i];
+    const int size = std::max(jet_detail::terms(a), jet_detail::terms(b));
+    for (int i = 0; i < size; ++i) r.c[i] = a.c[i] - b.c[i];
     return r;
 }
 template <class T, int N>
 inline Jet<T, N> operator*(const Jet<T, N>& a, const Jet<T, N>& b) {
     Jet<T, N> r(a.c[0] * b.c[0]);
+    const jet_detail::Factor<T, N> left(a), right(b);
     jet_detail::each_coefficient<N>([&](auto k, auto m) ANAMORPH_UNROLLED {
-        r.c[Jet<T, N>::part(k) + m] = jet_detail::convolve<k, 0, k>(a, b, m, [](int) { return 1; });
+        r.c[Jet<T, N>::part(k) + m] = jet_detail::convolve<k, 0, k>(left, right, m, [](int) { return 1; });
     });
     return r;
 }
 template <class T, int N>
 inline Jet<T, N> operator*(const Jet<T, N>& a, double b) {
+    if (b == 1) return a;
     Jet<T, N> r;
-    for (int i = 0; i < Jet<T, N>::kSize; ++i) r.c[i] = a.c[i] * T(b);
+    const int size = jet_detail::terms(a);
+    for (int i = 0; i < size; ++i) r.c[i] = a.c[i] * b;
     return r;
 }
 template <class T, int N>
@@ -213,8 +302,10 @@ template <class T, int N>
 inline Jet<T, N> operator/(const Jet<T, N>& f, const Jet<T, N>& g) {
     const T inverse = T(1) / g.c[0];
     Jet<T, N> q(f.c[0] * inverse);
+    const auto left = jet_detail::Factor<T, N>::growing(q);
+    const jet_detail::Factor<T, N> right(g);
     jet_detail::each_coefficient<N>([&](auto k, auto m) ANAMORPH_UNROLLED {
-        const T known = jet_detail::convolve<k, 0, k - 1>(q, g, m, [](int) { return 1; });
+        const T known = jet_detail::convolve<k, 0, k - 1>(left, right, m, [](int) { return 1; });
         const int at = Jet<T, N>::part(k) + m;
         q.c[at] = (f.c[at] - known) * inverse;
     });
@@ -225,11 +316,12 @@ inline Jet<T, N> operator/(const Jet<T, N>& f, const Jet<T, N>& g) {
 template <class T, int N>
 inline Jet<T, N> square(const Jet<T, N>& a) {
     Jet<T, N> r(square(a.c[0]));
+    const jet_detail::Factor<T, N> both(a);
     jet_detail::each_coefficient<N>([&](auto k, auto m) ANAMORPH_UNROLLED {
         constexpr int degree = k;
         // Each pair of different parts counts twice.
         r.c[Jet<T, N>::part(k) + m] =
-            jet_detail::convolve<k, 0, k / 2>(a, a, m, [](int j) { return 2 * j == degree ? 1 : 2; });
+            jet_detail::convolve<k, 0, k / 2>(both, both, m, [](int j) { return 2 * j == degree ? 1 : 2; });
     });
     return r;
 }
@@ -240,8 +332,9 @@ inline Jet<T, N> sqrt(const Jet<T, N>& f) {
     using std::sqrt;
     Jet<T, N> r(sqrt(f.c[0]));
     const T inverse = T(0.5) / r.c[0];
+    const auto root = jet_detail::Factor<T, N>::growing(r);
     jet_detail::each_coefficient<N>([&](auto k, auto m) ANAMORPH_UNROLLED {
-        const T known = jet_detail::convolve<k, 1, k - 1>(r, r, m, [](int) { return 1; });
+        const T known = jet_detail::convolve<k, 1, k - 1>(root, root, m, [](int) { return 1; });
         const int at = Jet<T, N>::part(k) + m;
         r.c[at] = (f.c[at] - known) * inverse;
     });
@@ -262,9 +355,11 @@ template <class T, int N>
 inline Jet<T, N> exp(const Jet<T, N>& a) {
     using std::exp;
     Jet<T, N> g(exp(a.c[0]));
+    const jet_detail::Factor<T, N> exponent(a);
+    const auto power = jet_detail::Factor<T, N>::growing(g);
     jet_detail::each_coefficient<N>([&](auto k, auto m) ANAMORPH_UNROLLED {
         const int at = Jet<T, N>::part(k) + m;
-        g.c[at] = jet_detail::convolve<k, 1, k>(a, g, m, [](int j) { return j; }) / T(k);
+        g.c[at] = jet_detail::convolve<k, 1, k>(exponent, power, m, [](int j) { return j; }) / T(k);
     });
     return g;
 }
