@@ -13,28 +13,40 @@ struct Found {
     bool seen;
 };
 
-/// The source points of row j of `part` of a block, as they are used.
-void find_row(const BlockMap& map, const Block& block, const BlockPoints& points, const Box& part, int j,
-              Found* found) {
-    alignas(64) float room[2][simd::kRowRoom];
-    const float *px = room[0], *py = room[1];
-    if (block.kind == Block::Kind::computed) {
-        const std::ptrdiff_t at = (j - block.box.y0) * points.row_stride + part.x0 - block.box.x0;
-        px = points.x + at;
-        py = points.y + at;
-    } else
-        block_row(map, block, part, j, room[0], room[1]);
-    for (int i = 0; i < part.width(); ++i) {
-        const double x = part.x0 + i + 0.5, y = j + 0.5;
-        Found& to = found[i] = {{}, block.source_piece, false};
-        if (block.kind == Block::Kind::exact)
-            to.seen = map.exact(block, x, y, to.at, to.piece);
-        else
-            to = {{block.base_x + double{px[i]}, block.base_y + double{py[i]}},
-                  block.source_piece,
-                  map.seen(x, y, block.piece)};
+/// The source points of one row of a block, as they are used.
+class PointRow {
+  public:
+    /// Row j of `part` of the block.
+    PointRow(const BlockMap& map, const Block& block, const BlockPoints& points, const Box& part, int j)
+        : m_map(map), m_block(block), m_first(part.x0 + 0.5), m_y(j + 0.5) {
+        if (block.kind == Block::Kind::computed) {
+            const std::ptrdiff_t at = (j - block.box.y0) * points.row_stride + part.x0 - block.box.x0;
+            m_px = points.x + at;
+            m_py = points.y + at;
+        } else
+            block_row(map, block, part, j, m_room[0], m_room[1]);
     }
-}
+
+    double x(int i) const { return m_first + i; }
+    double y() const { return m_y; }
+    Found operator()(int i) const {
+        Found found{{}, m_block.source_piece, false};
+        if (m_block.kind == Block::Kind::exact)
+            found.seen = m_map.exact(m_block, x(i), m_y, found.at, found.piece);
+        else {
+            found.at = {m_block.base_x + double{m_px[i]}, m_block.base_y + double{m_py[i]}};
+            found.seen = m_map.seen(x(i), m_y, m_block.piece);
+        }
+        return found;
+    }
+
+  private:
+    const BlockMap& m_map;
+    const Block& m_block;
+    double m_first, m_y;
+    alignas(64) float m_room[2][simd::kRowRoom];
+    const float *m_px = m_room[0], *m_py = m_room[1];
+};
 
 /// The distance from the truth at (x, y); the source's x is counted around one with azimuths.
 double error_of(const Found& used, const BlockMap& map, const Chart& source, double x, double y, int piece) {
@@ -49,22 +61,35 @@ double error_of(const Found& used, const BlockMap& map, const Chart& source, dou
     return static_cast<double>(std::hypot(dx, at.y - truth.y));
 }
 
-/// The same point of a source that goes on past its edges: around the seam by full turns; at poles and cube
-/// edges, which exact points do not cross, on the edge, which is nearer to them.
-Point<double> in_image(Point<double> p, const Chart& source) {
-    const double w = source.width(), h = source.height(), period = source.period();
-    const bool cube = has_faces(source.projection());
-    if (source.closed() && (p.x < 0 || p.x > w)) p.x -= std::floor(p.x / period) * period;
-    if (cube) p.x = std::clamp(p.x, 0.0, w);
-    if (cube || source.reaches_poles()) p.y = std::clamp(p.y, 0.0, h);
-    return p;
-}
+/// Source points as (u, v) of a chart.
+class SourceImage {
+  public:
+    explicit SourceImage(const Chart& chart)
+        : m_width(chart.width()),
+          m_height(chart.height()),
+          m_period(chart.closed() ? chart.period() : HUGE_VAL),
+          m_cube(has_faces(chart.projection())),
+          m_poles(chart.reaches_poles()) {}
 
-void put_point(const Found& used, const Chart& source, float* uv) {
-    const Point<double> at = in_image(used.at, source);
-    uv[0] = used.seen ? static_cast<float>(at.x / source.width()) : -1;
-    uv[1] = used.seen ? static_cast<float>(at.y / source.height()) : -1;
-}
+    void put(const Found& used, float* uv) const {
+        const Point<double> at = inside(used.at);
+        uv[0] = used.seen ? static_cast<float>(at.x / m_width) : -1;
+        uv[1] = used.seen ? static_cast<float>(at.y / m_height) : -1;
+    }
+
+  private:
+    /// The same point of a source that goes on past its edges: around the seam by full turns; at poles and
+    /// cube edges, which exact points do not cross, on the edge, which is nearer to them.
+    Point<double> inside(Point<double> p) const {
+        if (m_period < HUGE_VAL && (p.x < 0 || p.x > m_width)) p.x -= std::floor(p.x / m_period) * m_period;
+        if (m_cube) p.x = std::clamp(p.x, 0.0, m_width);
+        if (m_cube || m_poles) p.y = std::clamp(p.y, 0.0, m_height);
+        return p;
+    }
+
+    double m_width, m_height, m_period;
+    bool m_cube, m_poles;
+};
 
 /// Every value the same.
 void fill_rows(float value, const Box& part, const MapRow& row) {
@@ -81,16 +106,16 @@ void map_rows(const BlockMap& map, const Chart& source, Output output, const Blo
               const BlockPoints& points, const Box& part, const MapRow& row) {
     if (block.kind == Block::Kind::outside || output == Output::bound)
         return fill_rows(output == Output::stmap ? -1 : static_cast<float>(block.bound), part, row);
-    Found found[simd::kMaxRow];
+    const SourceImage image(source);
     float values[2 * simd::kMaxRow + 16] = {};
     for (int j = part.y0; j < part.y1; ++j) {
-        find_row(map, block, points, part, j, found);
+        const PointRow used(map, block, points, part, j);
         for (int i = 0; i < part.width(); ++i)
             if (output == Output::stmap)
-                put_point(found[i], source, values + 2 * i);
+                image.put(used(i), values + 2 * i);
             else
-                values[i] = static_cast<float>(
-                    error_of(found[i], map, source, part.x0 + i + 0.5, j + 0.5, block.piece));
+                values[i] =
+                    static_cast<float>(error_of(used(i), map, source, used.x(i), used.y(), block.piece));
         row(part.x0, j, part.width(), values);
     }
 }

@@ -13,13 +13,12 @@ namespace anamorph {
 /// The blocks of one region that begin in some of its rows: the work of one thread.
 class Strip {
   public:
-    static constexpr int kHeight = 64;
+    /// `rows`: of a region, as wide as that.
+    Strip(const SharedBlocks& blocks, const Box& rows, const Box& box)
+        : m_blocks(blocks), m_rows(rows), m_box(box) {}
 
-    Strip(const SharedBlocks& blocks, const Box& region, int y0, const Box& box)
-        : m_blocks(blocks), m_region(region), m_y0(y0), m_y1(y0 + kHeight), m_box(box) {}
-
-    /// The part of the box that lies in the region and those rows.
-    Box box() const { return intersection({m_region.x0, m_y0, m_region.x1, m_y1}, m_box); }
+    /// The part of the box that lies in those rows.
+    Box box() const { return intersection(m_rows, m_box); }
 
     /// body(block, part, next) for every block that meets the box: `part` of it lies there; `next` is the
     /// block after it, or null.
@@ -30,9 +29,8 @@ class Strip {
             Box part = intersection(block.box, m_box);
             if (block.kind == Block::Kind::outside) {
                 // It has no texels and may be cut at will; others are no taller than a strip.
-                part.y0 = std::max(part.y0, m_y0);
-                part.y1 = std::min(part.y1, m_y1);
-            } else if (block.box.y0 < m_y0 || block.box.y0 >= m_y1)
+                part = intersection(part, m_rows);
+            } else if (block.box.y0 < m_rows.y0 || block.box.y0 >= m_rows.y1)
                 continue;
             if (!part.empty()) body(block, part, k + 1 < m_blocks.size() ? &m_blocks[k + 1] : nullptr);
         }
@@ -40,39 +38,44 @@ class Strip {
 
   private:
     const SharedBlocks& m_blocks;
-    Box m_region;
-    int m_y0, m_y1;
-    Box m_box;
+    Box m_rows, m_box;
 };
 
-/// body(strip) for strips that together hold every block that meets `box`. Plans come first in the same loop,
-/// so that threads neither wait for each other's plan nor meet in between.
+/// body(strip) for strips that together hold every block that meets `box`. A small region is one strip. Of
+/// larger ones plans come first in the same loop, so that threads neither wait for each other's plan nor meet
+/// in between.
 template <class Body>
 void for_each_strip(const BlockMap& map, const Box& box, const ParallelFor& parallel_for, const Body& body) {
     struct Work {
         std::int64_t region;
-        int y0;
+        Box rows;
     };
+    constexpr int kSmall = 128, kHeight = 64;
     // As many regions at a time as their plans are kept for.
     constexpr std::size_t kBatch = 1024;
     const std::vector<std::int64_t> regions = map.regions_in(box);
     for (std::size_t first = 0; first < regions.size(); first += kBatch) {
-        const std::size_t count = std::min(kBatch, regions.size() - first);
+        std::vector<std::int64_t> plans;
         std::vector<Work> strips;
-        for (std::size_t i = first; i < first + count; ++i) {
+        for (std::size_t i = first; i < std::min(first + kBatch, regions.size()); ++i) {
             const Box region = map.region_box(regions[i]), part = intersection(region, box);
-            for (int y = region.y0; y < part.y1; y += Strip::kHeight)
-                if (y + 2 * Strip::kHeight > part.y0) strips.push_back({regions[i], y});
+            const bool small = std::max(region.width(), region.height()) <= kSmall;
+            if (!small) plans.push_back(regions[i]);
+            const int height = small ? kSmall : kHeight;
+            for (int y = region.y0; y < part.y1; y += height)
+                if (y + height + Block::kMaxSide > part.y0)
+                    strips.push_back(
+                        {regions[i], {region.x0, y, region.x1, std::min(y + height, region.y1)}});
         }
-        parallel_for(static_cast<std::int64_t>(count + strips.size()), [&](std::int64_t item) {
+        parallel_for(static_cast<std::int64_t>(plans.size() + strips.size()), [&](std::int64_t item) {
             const auto i = static_cast<std::size_t>(item);
-            if (i < count) {
-                map.blocks(regions[first + i]);
+            if (i < plans.size()) {
+                map.blocks(plans[i]);
                 return;
             }
-            const auto [region, y0] = strips[i - count];
-            const SharedBlocks blocks = map.blocks(region);
-            body(Strip(blocks, map.region_box(region), y0, box));
+            const Work& work = strips[i - plans.size()];
+            const SharedBlocks blocks = map.blocks(work.region);
+            body(Strip(blocks, work.rows, box));
         });
     }
 }
