@@ -48,3 +48,6 @@
 #include "anamorph/render/source.h"
 #include "anamorph/render/view.h"
 #include "anamorph/version.h"
+
+/// All that the core declares, but for macros.
+namespace anamorph {}
