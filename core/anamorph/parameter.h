@@ -22,6 +22,7 @@
 
 namespace anamorph {
 
+/// What kind of value a parameter takes.
 enum class ParameterType {
     number,   ///< finite, decimal, with a point whatever the locale
     whole,    ///< an integer
@@ -34,6 +35,7 @@ enum class ParameterType {
     text      ///< any
 };
 
+/// A row of the table.
 struct Parameter {
     std::string name;
     ParameterType type = ParameterType::text;
@@ -51,6 +53,7 @@ struct Parameter {
     std::string rule() const;
 };
 
+/// All that an operation takes, in the order of its documentation.
 using ParameterTable = std::vector<Parameter>;
 
 /// One `key=value`, as written.
@@ -91,8 +94,10 @@ class ParameterValues {
 
 /// The assignments of a recipe file's text. Throws Error naming the line.
 std::vector<Assignment> parse_recipe(std::string_view text);
+/// Longer recipe files are refused.
 constexpr std::size_t kMaxRecipeBytes = std::size_t{1} << 20;
 
+/// A recipe name in its parts.
 struct RecipeName {
     std::string base;
     std::vector<Assignment> assignments;
@@ -109,6 +114,7 @@ std::string message_of(const std::exception& error, const std::string& what);
 
 /// A number in the fewest digits that read back as the same number.
 std::string shortest(double value);
+/// The same for a float.
 std::string shortest(float value);
 
 /// The table as a page of Markdown.

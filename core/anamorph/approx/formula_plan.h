@@ -16,6 +16,7 @@ namespace anamorph {
 /// (3.1), one linear map and a bilinear table of residuals (4.3, 4.4). automatic: the fastest that holds.
 enum class Scheme { automatic, exact, blocks, residual };
 
+/// How a map is approximated.
 struct PlanOptions {
     Scheme scheme = Scheme::automatic;
     double tol = 0.01;  ///< source pixels
@@ -25,6 +26,7 @@ struct PlanOptions {
     bool across_seam = true;
 };
 
+/// The blocks of a FormulaMap.
 template <class Map>
 class FormulaPlan : public BlockMap {
   public:

@@ -36,6 +36,7 @@ class WarpPlan : public BlockMap {
 
 class ResidualTables;
 
+/// The blocks of a control mesh that pulls.
 class MeshPlan final : public WarpPlan {
   public:
     /// `tol`: source pixels. Throws Error when it is negative or not a number.

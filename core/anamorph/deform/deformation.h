@@ -22,12 +22,14 @@
 
 namespace anamorph {
 
+/// F as a function of the distance r from the centre, in extents.
 enum class DeformationKernel {
     gaussian,    ///< exp(-r^2)                                            (4.2)
     wendland_c2  ///< (1 - r)^4 (4 r + 1) up to r = 1, then 0: twice continuously differentiable (Wendland
                  ///< 1995, phi_(3,1))
 };
 
+/// One bump: V F(p, c, a) of eq. (4.1).
 struct Deformation {
     glm::dvec3 vector{0.0};                  ///< V
     glm::dvec2 center{0.0};                  ///< c
@@ -61,6 +63,7 @@ T influence(const Deformation& d, const T& u, const T& v) {
 struct DisplacementJet {
     glm::dvec3 value{0.0}, by_u{0.0}, by_v{0.0};
 };
+/// In double, with no cutoff; deformations that are not enabled add nothing.
 DisplacementJet displacement_at(const std::vector<Deformation>& list, glm::dvec2 p);
 /// Adds one of them, enabled or not.
 void add_displacement(const Deformation& deformation, glm::dvec2 p, DisplacementJet& sum);

@@ -26,13 +26,16 @@ namespace anamorph {
 /// Longer lists are refused.
 inline constexpr std::size_t kMaxDeformations = std::size_t{1} << 20;
 
+/// Reads JSON as above.
 std::vector<Deformation> parse_deformations_json(std::string_view text, std::string_view name);
+/// Reads CSV as above.
 std::vector<Deformation> parse_deformations_csv(std::string_view text, std::string_view name);
 /// Chooses by the end of the name: .csv, else JSON.
 std::vector<Deformation> parse_deformations_file(std::string_view text, std::string_view name);
 
 /// The text of a file that reads back as the same list, to the bit.
 std::string deformations_json(const std::vector<Deformation>& list);
+/// The same as CSV.
 std::string deformations_csv(const std::vector<Deformation>& list);
 
 /// "gaussian", "wendland_c2".

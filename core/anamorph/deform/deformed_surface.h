@@ -31,6 +31,7 @@ namespace simd {
 struct PointTerm;
 }
 
+/// How exactly displacements are added.
 struct DeformOptions {
     double cutoff = kCutoffRow.standard;  ///< of V; 0: nothing is cut off
     double resolution = 0x1p-40;          ///< of the displacement: a power of two from 2^-500 to 2^500

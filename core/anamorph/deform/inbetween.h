@@ -16,10 +16,12 @@
 
 namespace anamorph {
 
+/// What becomes of the sum of the weights.
 enum class WeightSum {
     checked,    ///< has to be 1, within kWeightSumError
     normalized  ///< is divided out; may be anything that is not small beside the weights
 };
+/// How far from 1 a sum that is checked may be.
 inline constexpr double kWeightSumError = 1e-6;
 /// Weights may sum to this much less than their magnitudes before they cannot be normalized.
 inline constexpr double kLeastWeightSum = 1e-9;

@@ -10,6 +10,7 @@
 
 namespace anamorph {
 
+/// What lies between two key frames.
 enum class KeyInterpolation {
     step,  ///< the last frame's, up to the next
     linear,
@@ -21,6 +22,7 @@ enum class KeyInterpolation {
                     ///< ways keep the sum.
 };
 
+/// Numbers given at some times, and interpolated at all others.
 class KeyFrames {
   public:
     /// values[k] are the numbers at times[k]. Throws Error, naming the entry, unless there is a frame, times

@@ -47,16 +47,19 @@ class ParameterPlane {
     glm::dvec3 m_gradient_u{1, 0, 0}, m_gradient_v{0, 1, 0};
 };
 
+/// Whether a map of the plane folds.
 enum class FoldAnswer {
     none,      ///< proved, with outward rounding: det(I + G D') > 0 everywhere
     found,     ///< at `parameters`, where it is certainly not
     undecided  ///< it comes too close to 0 somewhere, or there are too many deformations to tell
 };
+/// What a search for folds found.
 struct Fold {
     FoldAnswer answer = FoldAnswer::none;
     glm::dvec2 parameters{0.0};
 };
 
+/// The map W of space, and its inverse.
 class PlaneWarp {
   public:
     PlaneWarp() = default;
@@ -70,6 +73,7 @@ class PlaneWarp {
     /// W'(p): column c is the derivative by coordinate c.
     glm::dmat3 jacobian(glm::dvec3 p) const;
 
+    /// A point that W moves to a given one.
     struct Inverse {
         glm::dvec3 point;
         bool found;  ///< false: `point` is the nearest to a solution that was met, or NaN for a q with NaN

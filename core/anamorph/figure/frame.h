@@ -24,12 +24,14 @@ struct Body {
     glm::dvec2 texture_offset{0};    ///< in texels
 };
 
+/// A point that two bodies have in common.
 struct Joint {
     std::string name;
     int first = 0, second = 0;  ///< the bodies that it connects, positions in FigureFrame::bodies
     glm::dvec3 position{0.0};   ///< in space
 };
 
+/// All that is there at one moment, and where it is seen from.
 struct FigureFrame {
     int number = 0;
     std::vector<Body> bodies;

@@ -43,6 +43,7 @@ class FrameReader {
     bool m_ended = false;
 };
 
+/// All frames of a text.
 std::vector<FigureFrame> parse_frames(std::string_view text, std::string_view name);
 
 }  // namespace anamorph

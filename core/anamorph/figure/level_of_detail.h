@@ -11,6 +11,7 @@
 
 namespace anamorph {
 
+/// How a body is drawn, from least to most.
 enum class Detail : unsigned char { none, dot, line, ellipse, body };
 
 /// What a body is worth follows from the width of its outline on the screen: a `dot` where it is nowhere

@@ -33,6 +33,7 @@ struct Arc {
     bool operator==(const Arc&) const = default;
 };
 
+/// Where a limb lies as seen by the observer.
 enum class OutlineKind : std::uint8_t {
     whole,       ///< the limb lies before the observer
     cut,         ///< in perspective: part of the limb is nearer than View::near, or behind the eye
@@ -40,6 +41,7 @@ enum class OutlineKind : std::uint8_t {
     around_eye,  ///< in perspective: the eye is inside the body
 };
 
+/// The limb of a body, and which arcs of it are seen.
 struct Outline {
     OutlineKind kind = OutlineKind::whole;
     Ellipse<glm::dvec3> limb;    ///< in the scene; what the arcs are angles of
@@ -65,6 +67,7 @@ struct CrossingCurve {
     std::vector<Arc> visible, hidden;
 };
 
+/// What is outlined, and how exactly.
 struct OutlineOptions {
     bool hide = true;                      ///< false: bodies are transparent, as VISIB draws them
     bool crossings = false;                ///< also the curves in which bodies pass through each other
@@ -74,6 +77,7 @@ struct OutlineOptions {
     std::vector<std::string> names;
 };
 
+/// The outlines of a scene.
 struct Outlines {
     std::vector<Outline> bodies;  ///< one a body, in their order
     std::vector<CrossingCurve> crossings;

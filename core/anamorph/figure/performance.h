@@ -32,6 +32,7 @@
 
 namespace anamorph {
 
+/// What a performance reports, and how much it keeps.
 struct PerformanceOptions {
     /// What `print` says and warnings, one line each, once for each frame however often it is performed.
     std::function<void(const std::string& line)> message;

@@ -14,6 +14,7 @@
 
 namespace anamorph {
 
+/// Two ways to read scripts and to perform them.
 enum class Dialect {
     classic,  ///< as the programs of 2003 ran scripts, but for `abut` and `touch`, which end in exact contact
     strict    ///< as the language is documented; see script.h and performance.h for what differs
@@ -22,6 +23,7 @@ enum class Dialect {
 /// How the share of an action is spread over its frames.
 enum class Distribution { repeat, linear, quadratic, cubic, accelerate, decelerate, call };
 
+/// The words of the language that do something.
 enum class Action {
     abduct,
     abut,
@@ -65,8 +67,10 @@ enum class Action {
     touch
 };
 
+/// What an operand is, and so which table its name is in.
 enum class OperandKind { number, variable, ellipsoid, joint, figure, axis, subroutine, image };
 
+/// What stands behind an action: a number, or a name by its position.
 struct Operand {
     OperandKind kind = OperandKind::number;
     double number = 0;  ///< of a number
@@ -89,12 +93,14 @@ struct Movement {
     ScriptPosition position;
 };
 
+/// `ellipsoid NAME x y z`.
 struct EllipsoidDeclaration {
     std::string name;
     glm::dvec3 axes{1.0};  ///< half the lengths
     ScriptPosition position;
 };
 
+/// `joint NAME`, with its `limit` if there is one.
 struct JointDeclaration {
     std::string name;
     bool attached = false;  ///< it is made by `attach`, and is not there before
@@ -104,18 +110,21 @@ struct JointDeclaration {
     ScriptPosition position;
 };
 
+/// `figure NAME n ellipsoids`.
 struct FigureDeclaration {
     std::string name;
     std::vector<int> ellipsoids;  ///< as listed; empty when `detach` makes it
     ScriptPosition position;
 };
 
+/// `subroutine NAME ... endsub NAME`.
 struct Subroutine {
     std::string name;
     std::vector<Movement> movements;
     ScriptPosition position;
 };
 
+/// All that a script and its libraries say.
 struct Program {
     Dialect dialect = Dialect::classic;
     std::vector<std::string> files;
@@ -136,6 +145,7 @@ struct Program {
 
 /// The word of the language.
 const char* name_of(Action action);
+/// The word of the language.
 const char* name_of(Distribution distribution);
 
 }  // namespace anamorph

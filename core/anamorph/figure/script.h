@@ -30,12 +30,15 @@
 
 namespace anamorph {
 
-/// Longer texts are refused, and programs with more of anything than this.
+/// Longer texts are refused.
 inline constexpr std::size_t kMaxScriptText = std::size_t{64} << 20;
+/// Programs with more of anything than this are refused.
 inline constexpr std::size_t kMaxScriptItems = std::size_t{1} << 20;
 
+/// An error makes a script unfit to be performed, a warning does not.
 enum class Severity { warning, error };
 
+/// What is wrong with a script, and where.
 struct Diagnostic {
     Severity severity = Severity::error;
     std::string file;
@@ -48,6 +51,7 @@ struct Diagnostic {
     std::string text() const;
 };
 
+/// How a script is read, and where it finds others.
 struct ScriptOptions {
     Dialect dialect = Dialect::classic;
     /// The text of an included file; nothing when there is none of that name.
@@ -55,6 +59,7 @@ struct ScriptOptions {
     std::vector<std::string> libraries;  ///< names of files to include ahead of the script
 };
 
+/// What was read, and what is wrong with it.
 struct Script {
     Program program;  ///< to be performed only when ok()
     std::vector<Diagnostic> diagnostics;

@@ -10,6 +10,7 @@
 
 namespace anamorph {
 
+/// A straight line that stands for a body, or for part of one.
 struct Stick {
     glm::dvec3 from{0.0}, to{0.0};  ///< in the scene
     int body = 0;                   ///< position of the body that it stands for
@@ -17,6 +18,7 @@ struct Stick {
 
 /// The longest axis of each body from end to end (the first of equal ones), in their order.
 std::vector<Stick> axis_sticks(std::span<const Ellipsoid> bodies);
+/// The same for the bodies of a frame.
 std::vector<Stick> axis_sticks(const FigureFrame& frame);
 
 /// For each body with joints: sticks from its centre to each of them; a body with two joints has one stick

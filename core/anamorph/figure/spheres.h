@@ -10,17 +10,20 @@
 
 namespace anamorph {
 
+/// In units of the scene.
 struct Sphere {
     glm::dvec3 center{0.0};
     double radius = 0;
 };
 
+/// How closely spheres have to fill a body.
 struct SphereOptions {
     /// Maximum distance of the body's surface from the spheres, in units of the scene.
     double tol = kSphereTolRow.standard;
     int most_spheres = 10000;  ///< of one body; where tol needs more, `deviation` says what was reached
 };
 
+/// The spheres that stand for a body.
 struct SphereFill {
     std::vector<Sphere> spheres;  ///< the largest inside the body about their centres, all of which touch it
     double deviation = 0;         ///< no point of the surface is farther than this from the nearest sphere

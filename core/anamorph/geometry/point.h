@@ -15,12 +15,15 @@ template <class T>
 struct Point {
     T x, y;
 };
+/// Points as vectors.
 inline Point<double> operator+(const Point<double>& a, const Point<double>& b) {
     return {a.x + b.x, a.y + b.y};
 }
+/// The vector from b to a.
 inline Point<double> operator-(const Point<double>& a, const Point<double>& b) {
     return {a.x - b.x, a.y - b.y};
 }
+/// A vector k times as long.
 inline Point<double> operator*(const Point<double>& a, double k) {
     return {a.x * k, a.y * k};
 }

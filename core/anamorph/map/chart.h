@@ -61,16 +61,21 @@ enum class PixelSpacing { edges, centers };
 
 /// "equirectangular" and so on; "latlong" is an alias. Throws Error naming `parameter`.
 Projection projection_from_name(std::string_view name, const std::string& parameter = "projection");
+/// The name that recipes have for it; never an alias.
 std::string_view name_of(Projection projection);
-/// All names, separated by ", ", for messages and documentation; and one by one, with the aliases behind.
+/// All names, separated by ", ", for messages and documentation.
 std::string projection_names();
+/// The names one by one, with the aliases behind.
 std::vector<std::string> projection_name_list();
+/// Its default field of view and its limits.
 FieldOfView fov_of(Projection projection);
 /// Faces across and down its picture; 0 where the picture is one piece of any shape.
 struct FaceGrid {
     int columns = 0, rows = 0;
 };
+/// How its picture is divided into faces.
 FaceGrid faces_of(Projection projection);
+/// Is its picture divided into faces?
 inline bool has_faces(Projection projection) {
     return faces_of(projection).columns > 0;
 }
@@ -92,6 +97,7 @@ struct Branch : Setting {
     glm::dmat3 axes{1};
 };
 
+/// A flat picture of directions: a projection, its field of view and its pixels.
 class Chart {
   public:
     /// Of Pannini's d.

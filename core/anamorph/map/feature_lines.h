@@ -30,6 +30,7 @@ struct Line {
 /// The lines that correspond in `shapes` pictures.
 class Features {
   public:
+    /// A size in pixels.
     struct Frame {
         double width = 0, height = 0;
     };

@@ -42,8 +42,11 @@ namespace anamorph {
 /// More lines than this are refused.
 inline constexpr std::size_t kMaxFeatures = std::size_t{1} << 17;
 
+/// Reads JSON as above.
 Features parse_features_json(std::string_view text, std::string_view name);
+/// Reads CSV as above.
 Features parse_features_csv(std::string_view text, std::string_view name);
+/// Reads SVG as above.
 Features parse_features_svg(std::string_view text, std::string_view name);
 /// Chooses by the end of the name: .csv, .svg, else JSON.
 Features parse_features_file(std::string_view text, std::string_view name);

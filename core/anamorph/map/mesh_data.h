@@ -15,6 +15,7 @@
 
 namespace anamorph {
 
+/// What positions are counted in: pixels, or the width and height of their image.
 enum class Units { pixels, fractions };
 
 /// pull: the mesh lies in the target image, and its vertices say where in the source they come from. push:
@@ -40,6 +41,7 @@ struct ControlMesh {
     /// the map goes on linearly.
     std::vector<double> x_lines, y_lines;
 
+    /// A cell by its place in the lattice.
     struct Cell {
         int column, row;
     };
@@ -63,6 +65,7 @@ struct ControlMesh {
 struct ControlPoints {
     static constexpr int kMaxPoints = 1 << 17;
 
+    /// (x, y) in the target comes from (u, v) in the source.
     struct Pair {
         double x, y, u, v;
     };

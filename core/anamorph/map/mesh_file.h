@@ -36,6 +36,7 @@ namespace anamorph {
 
 /// A mesh or pairs of points, whichever the JSON text holds ("vertices" or "points").
 WarpMap parse_mesh_json(std::string_view text, std::string_view name);
+/// Pairs of points from CSV as above.
 WarpMap parse_points_csv(std::string_view text, std::string_view name);
 /// Chooses by the end of the name: .csv, else JSON.
 WarpMap parse_warp_file(std::string_view text, std::string_view name);

@@ -20,6 +20,7 @@ struct Orientation {
 /// Rotation of rays: source ray = matrix * target ray (frame x right, y down, z forward).
 glm::dmat3 rotation(const Orientation& orientation);
 
+/// The pull map between two charts, one turned against the other.
 class Panorama {
   public:
     /// Throws Error when an angle is not finite.

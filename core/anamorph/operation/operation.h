@@ -36,6 +36,7 @@ struct SourceFacts {
     std::optional<double> fov = {};
 };
 
+/// A source as its host has opened it.
 struct SourceImage {
     SourceFacts facts;
     int channels = 0;
@@ -49,6 +50,7 @@ struct Attribute {
     std::string name;
     std::variant<int, double, std::string> value;
 };
+/// In the order in which they were made.
 using Attributes = std::vector<Attribute>;
 
 /// A picture, ready to draw any part of itself. Thread safe.
@@ -107,6 +109,7 @@ struct Example {
     std::vector<std::pair<std::string, std::string>> files;
 };
 
+/// An entry of the registry.
 struct Operation {
     std::string name;                  ///< of its recipes: "pano"
     std::string title;                 ///< what it draws, in a few words

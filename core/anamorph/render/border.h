@@ -29,6 +29,7 @@ struct TexelRun {
     int count = 1;
 };
 
+/// Finds the texel that stands beyond an edge of a source.
 class Border {
   public:
     Border(const Chart& chart, Wrap wrap);

@@ -19,6 +19,7 @@ namespace anamorph {
 /// further source points that land on the pixel.
 enum class WarpOutput { color, stmap, error, bound, folds };
 
+/// How a warp is drawn.
 struct MeshWarpOptions {
     WarpScheme scheme = WarpScheme::automatic;
     double tol = 0.01;  ///< source pixels; 0: every pixel in double, whose rounding is the bound

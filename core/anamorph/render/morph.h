@@ -26,6 +26,7 @@ enum class MorphScheme { automatic, exact, mesh };
 /// what is proven of that, in source pixels.
 enum class MorphOutput { color, warp_a, warp_b, stmap_a, stmap_b, lines, error, bound };
 
+/// What a morph shows, and how it is drawn.
 struct MorphOptions {
     MorphScheme scheme = MorphScheme::automatic;
     double tol = 0.01;  ///< source pixels; 0: every pixel exactly in double

@@ -43,6 +43,7 @@ struct Picture {
         int source = 0;     ///< which one of those that draw() is given
         double weight = 1;  ///< of its colour; the sum over all layers is 1
     };
+    /// A map, and what is seen through each of its layers.
     struct Map {
         std::shared_ptr<const BlockMap> blocks;
         std::vector<Layer> layers;  ///< as many as the map has

@@ -10,6 +10,7 @@
 
 namespace anamorph {
 
+/// How a reprojection is drawn.
 struct ReprojectOptions {
     Scheme scheme = Scheme::automatic;
     double tol = 0.01;  ///< source pixels; 0: every pixel exactly in double

@@ -12,6 +12,7 @@ namespace anamorph {
 /// uint8 and uint16 stand for 0..1 (normalised), half is IEEE binary16.
 enum class PixelType : std::uint8_t { uint8, uint16, half, float32 };
 
+/// Bytes of one channel.
 constexpr int size_of(PixelType type) {
     return type == PixelType::uint8 ? 1 : type == PixelType::float32 ? 4 : 2;
 }
@@ -30,7 +31,9 @@ struct BasicView {
     bool packed() const { return pixel_stride == std::ptrdiff_t{channels} * size_of(type); }
 };
 
+/// Pixels to write.
 using ImageView = BasicView<std::byte>;
+/// Pixels to read.
 using ConstImageView = BasicView<const std::byte>;
 
 /// A packed view of `data`.
