@@ -163,8 +163,7 @@ TEST(MorphRequest, WhatARowAllowsIsWhatTheMorphTakes) {
 }
 
 TEST(MorphRequest, WeightsAreNamedAsTheyWereGiven) {
-    const std::string allowed =
-        ": allowed are 2 numbers from -1e+06 to 1e+06, one for each picture, with sum 1";
+    const std::string allowed = ": must be 2 numbers from -1e+06 to 1e+06, one for each picture, with sum 1";
     for (const std::string name : {"shape_weights", "color_weights"}) {
         for (const std::string value : {"1.50, 1.5", "0.5", "0.2,0.2,0.6", "0.5,0.499"})
             EXPECT_EQ(error_of([&] { morph({{name, value}}); }), name + "=" + value + allowed);
