@@ -36,7 +36,7 @@ TEST(MeshFolds, TheFractionIsThatOfThePixels) {
             }
         if (mesh.columns > 2) mesh.levels.push_back({{{1, 0}}, {}});
         MeshWarpOptions options;
-        options.output = WarpOutput::folds;
+        options.folds = true;
         const MeshWarp warp({"mesh", mesh}, 120, 90, kWidth, kHeight, options);
         std::vector<float> folds(kWidth * kHeight, -1);
         ASSERT_TRUE(warp.draw(

@@ -100,9 +100,9 @@ TEST(MeshWarp, SameBitsForAnyCutAndThreads) {
     }
     options.scheme = WarpScheme::automatic;
     for (const WarpMap* map : {&push, &points}) expect_same_bits(*map, options, target, texels);
-    for (const WarpOutput output :
-         {WarpOutput::stmap, WarpOutput::error, WarpOutput::bound, WarpOutput::folds}) {
+    for (const Output output : {Output::stmap, Output::error, Output::bound, Output::color}) {
         options.output = output;
+        options.folds = output == Output::color;
         for (const WarpMap* map : {&pull, &push, &points}) expect_same_bits(*map, options, target, texels);
     }
 }
@@ -165,15 +165,16 @@ TEST(MeshWarp, OutputsAgree) {
     const WarpMap map{"grid", test::random_mesh(random, target, size, 3, 3, 0.9, false, 1)};
     MeshWarpOptions options;
     options.tol = 0.25;
-    const auto draw = [&](WarpOutput output, int channels) {
+    const auto draw = [&](Output output, int channels, bool folded = false) {
         options.output = output;
+        options.folds = folded;
         const MeshWarp warp(map, size.width, size.height, target.width, target.height, options);
         Picture picture(target.width, target.height, channels);
         EXPECT_TRUE(warp.draw(nullptr, {0, 0, target.width, target.height}, picture.view()));
         return picture;
     };
-    const Picture st = draw(WarpOutput::stmap, 2), error = draw(WarpOutput::error, 1),
-                  bound = draw(WarpOutput::bound, 1), folds = draw(WarpOutput::folds, 1);
+    const Picture st = draw(Output::stmap, 2), error = draw(Output::error, 1), bound = draw(Output::bound, 1),
+                  folds = draw(Output::color, 1, true);
     const Mesh mesh(std::get<ControlMesh>(map.shape), target, size, 1);
     double folded = 0, largest = 0;
     for (int y = 0; y < target.height; ++y)
@@ -186,7 +187,8 @@ TEST(MeshWarp, OutputsAgree) {
             largest = std::max(largest, double(bound.at(x, y, 0)));
             folded += folds.at(x, y, 0) != 0;
         }
-    options.output = WarpOutput::color;
+    options.output = Output::color;
+    options.folds = false;
     const MeshWarp warp(map, size.width, size.height, target.width, target.height, options);
     EXPECT_FLOAT_EQ(static_cast<float>(warp.reached().max_error), static_cast<float>(largest));
     EXPECT_GT(folded, 0);

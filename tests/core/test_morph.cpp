@@ -107,7 +107,8 @@ TEST(Morph, AShapeAndTheOthersColour) {
     options.filter = Filter::bilinear;
     const Morph morph(face(), {kSize, kSize}, kWidth, kHeight, options);
     EXPECT_EQ(morph.reads(), (std::vector<bool>{false, true}));
-    options.output = MorphOutput::warp_b;
+    options.t_color.reset();
+    options.picture = 1;
     const Morph warp(face(), {kSize, kSize}, kWidth, kHeight, options);
     EXPECT_EQ(draw(morph, {nullptr, &sb}, 3).pixels, draw(warp, {&sa, &sb}, 3).pixels);
 }
@@ -120,12 +121,11 @@ TEST(Morph, BlendsTheTwoWarps) {
     options.t_color = 0.25;
     options.tol = 0;
     options.filter = Filter::bilinear;
-    const auto drawn = [&](MorphOutput output) {
-        options.output = output;
+    const auto drawn = [&](std::optional<int> picture) {
+        options.picture = picture;
         return draw(Morph(face(), {kSize, kSize}, kWidth, kHeight, options), {&sa, &sb}, 3);
     };
-    const FloatPicture morph = drawn(MorphOutput::color), wa = drawn(MorphOutput::warp_a),
-                       wb = drawn(MorphOutput::warp_b);
+    const FloatPicture morph = drawn({}), wa = drawn(0), wb = drawn(1);
     for (std::size_t i = 0; i < morph.pixels.size(); ++i)
         ASSERT_NEAR(morph.pixels[i], 0.75f * wa.pixels[i] + 0.25f * wb.pixels[i], 1e-6f);
 }
@@ -134,12 +134,17 @@ TEST(Morph, BitsDependOnNeitherCropNorThreads) {
     const FloatPicture a = noise(kWidth, kHeight, 3, 6), b = noise(kWidth, kHeight, 3, 7);
     const MemorySource sa(a.source()), sb(b.source());
     for (const MorphScheme scheme : {MorphScheme::automatic, MorphScheme::exact, MorphScheme::mesh})
-        for (const MorphOutput output : {MorphOutput::color, MorphOutput::stmap_b, MorphOutput::lines}) {
+        for (const char* shown : {"color", "stmap", "lines"}) {
+            SCOPED_TRACE(shown);
             MorphOptions options;
             options.scheme = scheme;
-            options.output = output;
+            options.lines = shown == std::string("lines");
+            if (shown == std::string("stmap")) {
+                options.output = Output::stmap;
+                options.picture = 1;
+            }
             options.tol = 0.02;
-            const int channels = output == MorphOutput::stmap_b ? 2 : 3;
+            const int channels = options.picture ? 2 : 3;
             const Morph morph(face(), {kSize, kSize}, kWidth, kHeight, options);
             const FloatPicture whole = draw(morph, {&sa, &sb}, channels);
             const Morph again(face(), {kSize, kSize}, kWidth, kHeight, options);
@@ -232,11 +237,11 @@ TEST(Morph, TheMeshSaysThatItHoldsNothing) {
     MorphOptions options;
     options.scheme = MorphScheme::mesh;
     options.mesh_levels = 0;
-    options.output = MorphOutput::bound;
+    options.output = Output::bound;
     const Morph morph(face(), {kSize, kSize}, kWidth, kHeight, options);
     EXPECT_TRUE(std::isinf(morph.reached().max_error));
     EXPECT_TRUE(std::isinf(draw(morph, {nullptr, nullptr}, 1).pixels[0]));
-    options.output = MorphOutput::error;
+    options.output = Output::error;
     options.mesh_cells = 96;
     options.weight_a = 20;
     const FloatPicture error =

@@ -56,7 +56,8 @@ TEST(WarpRequest, ReadsItsValues) {
     EXPECT_EQ(plain.options.tol, 0.01);
     EXPECT_EQ(plain.options.scheme, WarpScheme::automatic);
     EXPECT_EQ(plain.options.filter, Filter::antialias);
-    EXPECT_EQ(plain.options.output, WarpOutput::color);
+    EXPECT_EQ(plain.options.output, Output::color);
+    EXPECT_FALSE(plain.options.folds);
     EXPECT_EQ(plain.options.amount, 1);
     EXPECT_FALSE(plain.direction);
     const WarpRequest other = warp({{"size", "150"},
@@ -67,7 +68,7 @@ TEST(WarpRequest, ReadsItsValues) {
     EXPECT_EQ(other.target.width, 150);
     EXPECT_EQ(other.target.height, 100);
     EXPECT_EQ(other.options.scheme, WarpScheme::residual);
-    EXPECT_EQ(other.options.output, WarpOutput::folds);
+    EXPECT_TRUE(other.options.folds);
     EXPECT_EQ(other.direction, Direction::push);
     EXPECT_EQ(other.options.amount, -0.5);
     EXPECT_EQ(warp({{"size", "1"}}, {1000, 1}).target.height, 1);
@@ -118,7 +119,7 @@ TEST(MorphRequest, ReadsItsValues) {
     EXPECT_EQ(other.frame_options(0).t, 0.25);
     EXPECT_EQ(other.options.t_color, 0);
     EXPECT_EQ(other.pin_border, 0);
-    EXPECT_EQ(other.options.output, MorphOutput::lines);
+    EXPECT_TRUE(other.options.lines);
     const std::vector<Size> three = {{8, 8}, {8, 8}, {8, 8}};
     EXPECT_EQ(morph({{"shape_weights", "0.5,0.25,0.25"}}, three).options.shape_weights,
               (std::vector<double>{0.5, 0.25, 0.25}));
@@ -127,6 +128,37 @@ TEST(MorphRequest, ReadsItsValues) {
                     morph({{"t", "1"}, {"shape_weights", "0,1,0"}}, three);
                 }),
                 HasSubstr("t=1: must not be given together with shape_weights"));
+}
+
+TEST(MorphRequest, APictureIsChosenByItsKeyOrAnOlderWord) {
+    struct Case {
+        std::vector<Assignment> given;
+        Output output;
+        std::optional<int> picture;
+    };
+    const Case cases[] = {{{}, Output::color, {}},
+                          {{{"output", "stmap"}}, Output::stmap, {}},
+                          {{{"output", "stmap"}, {"picture", "b"}}, Output::stmap, 1},
+                          {{{"picture", "a"}}, Output::color, 0},
+                          {{{"output", "error"}, {"picture", "b"}}, Output::error, 1},
+                          {{{"output", "stmap_a"}}, Output::stmap, 0},
+                          {{{"output", "stmap_b"}}, Output::stmap, 1},
+                          {{{"output", "warp_a"}}, Output::color, 0},
+                          {{{"output", "warp_b"}}, Output::color, 1}};
+    for (const Case& c : cases) {
+        const MorphOptions options = morph(c.given).options;
+        EXPECT_EQ(options.output, c.output);
+        EXPECT_EQ(options.picture, c.picture);
+        EXPECT_FALSE(options.lines);
+    }
+    EXPECT_EQ(error_of([] {
+                  morph({{"picture", "c"}});
+              }),
+              "picture=c: must be one of the pictures that are given, a to b");
+    EXPECT_EQ(error_of([] {
+                  morph({{"output", "warp_a"}, {"picture", "a"}});
+              }),
+              "picture=a: must not be given together with output=warp_a");
 }
 
 /// Makes the morph that a table's values ask for.
@@ -163,8 +195,7 @@ TEST(MorphRequest, WhatARowAllowsIsWhatTheMorphTakes) {
 }
 
 TEST(MorphRequest, WeightsAreNamedAsTheyWereGiven) {
-    const std::string allowed =
-        ": allowed are 2 numbers from -1e+06 to 1e+06, one for each picture, with sum 1";
+    const std::string allowed = ": must be 2 numbers from -1e+06 to 1e+06, one for each picture, with sum 1";
     for (const std::string name : {"shape_weights", "color_weights"}) {
         for (const std::string value : {"1.50, 1.5", "0.5", "0.2,0.2,0.6", "0.5,0.499"})
             EXPECT_EQ(error_of([&] { morph({{name, value}}); }), name + "=" + value + allowed);

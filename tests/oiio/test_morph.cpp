@@ -95,6 +95,7 @@ TEST_F(Morph, TheEndsAreThePictures) {
     // The colour of one, the shape of the other.
     EXPECT_EQ(read_pixels(kMorph + "&t=0.5&t_color=0"), read_pixels(kMorph + "&t=0.5&output=warp_a"));
     EXPECT_EQ(read_pixels(kMorph + "&t=0.5&t_color=1"), read_pixels(kMorph + "&t=0.5&output=warp_b"));
+    EXPECT_EQ(read_pixels(kMorph + "&t=0.5&t_color=1"), read_pixels(kMorph + "&t=0.5&picture=b"));
 }
 
 TEST_F(Morph, TilesThreadsAndCropsNeverChangePixels) {
@@ -109,6 +110,13 @@ TEST_F(Morph, EachOutputIsWhatItsNameSays) {
     EXPECT_NE(read_pixels(kMorph + "&output=lines").bytes, read_pixels(kMorph).bytes);
     for (const char* output : {"stmap_a", "stmap_b"})
         EXPECT_EQ(read_pixels(kMorph + "&output=" + output).spec.nchannels, 2) << output;
+    for (const std::string which : {"a", "b"}) {
+        EXPECT_EQ(read_pixels(kMorph + "&output=stmap&picture=" + which),
+                  read_pixels(kMorph + "&output=stmap_" + which));
+        EXPECT_EQ(read_pixels(kMorph + "&picture=" + which), read_pixels(kMorph + "&output=warp_" + which));
+    }
+    EXPECT_EQ(read_pixels(kMorph + "&output=stmap"), read_pixels(kMorph + "&output=stmap_a"));
+    EXPECT_THAT(open_error(kMorph + "&picture=c"), HasSubstr("picture=c: must be one of"));
     // Drawn along its map, a picture is what warp_a and warp_b show.
     for (const std::string which : {"a", "b"}) {
         const Ran map = run("oiiotool '" + kMorph + "&tol=0&output=stmap_" + which + "' -o st.exr");

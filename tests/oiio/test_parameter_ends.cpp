@@ -3,10 +3,11 @@
 // ends, drawn by the recipe, and one step beyond, refused by its name.
 #include <OpenImageIO/strutil.h>
 
+#include <algorithm>
 #include <cfloat>
 #include <cmath>
 
-#include "anamorph/operation/operation.h"
+#include "anamorph/operation/morph.h"
 #include "host.h"
 
 namespace anamorph {
@@ -95,11 +96,29 @@ class ParameterEnds : public InFolder {
         if (key == "from" && faces.columns > 0) sources[0] = value + ".exr";
         if (key == "to" && faces.columns > 0)
             add("size", std::to_string(2 * faces.columns) + "x" + std::to_string(2 * faces.rows));
+        if (key == "picture") {
+            for (const Assignment& a : pictures_to(value)) arguments.push_back(a);
+        }
         arguments.push_back({key, value});
         return example(operation, sources, arguments);
     }
 
   private:
+    /// Arguments of a morph of pictures up to that one, two at least.
+    static std::vector<Assignment> pictures_to(const std::string& key) {
+        const std::vector<std::string>& keys = morph_pictures();
+        const auto last = std::find(keys.begin(), keys.end(), key);
+        const auto count = static_cast<std::size_t>(last == keys.end() ? 2 : last - keys.begin() + 1);
+        std::vector<Assignment> arguments = {{"features", "many.json"}, {"shape_weights", "1"}};
+        std::string line = "[1, 2, 9, 3]";
+        for (std::size_t i = 1; i < std::max<std::size_t>(2, count); ++i) {
+            if (i > 1) arguments.push_back({keys[i], "town.exr"});
+            line += ", [1, 2, 9, 3]";
+            arguments[1].value += ",0";
+        }
+        write_text("many.json", "{\"features\": [{\"line\": [" + line + "]}]}");
+        return arguments;
+    }
     /// Those of a projection; none for what is not the name of one.
     static FaceGrid faces_named(const std::string& value) {
         for (const Projection p : kProjections)

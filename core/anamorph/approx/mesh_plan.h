@@ -28,7 +28,7 @@ class WarpPlan : public BlockMap {
   public:
     using BlockMap::BlockMap;
 
-    /// At a pixel's centre: what WarpOutput::folds shows.
+    /// At a pixel's centre: what MeshWarpOptions::folds shows.
     virtual float folds(double x, double y) const noexcept = 0;
     /// How many pixels of a box are folded (folds is not 0).
     virtual std::int64_t folded_pixels(const Box& box) const;

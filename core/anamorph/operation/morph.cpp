@@ -1,26 +1,35 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "anamorph/operation/morph.h"
 
+#include <algorithm>
+
 #include "anamorph/approx/near_far_mesh.h"
 #include "anamorph/map/features_file.h"
 #include "anamorph/operation/rows.h"
+#include "anamorph/operation/solved.h"
 
 namespace anamorph {
 namespace {
 
 using rows::chosen;
 
-// In the order of their enumerations.
-const std::vector<std::string> kWraps = {"automatic", "black", "clamp", "periodic", "mirror"};
-const std::vector<std::string> kSchemes = {"auto", "exact", "mesh"};
-const std::vector<std::string> kOutputs = {"color",   "warp_a", "warp_b", "stmap_a",
-                                           "stmap_b", "lines",  "error",  "bound"};
 constexpr int kMaxFrames = 9999;
 
 /// Weights of the pictures.
 Parameter weights(const char* name, const char* doc) {
     Parameter row = rows::numbers(name, -MorphOptions::kMostT, doc);
     row.maximum = MorphOptions::kMostT;
+    return row;
+}
+
+Parameter output_row() {
+    Parameter row = rows::output({{"lines", "color with the features of all pictures drawn over it"},
+                                  {"warp_a"},
+                                  {"warp_b"},
+                                  {"stmap_a"},
+                                  {"stmap_b"}});
+    row.documentation +=
+        "; warp_a, warp_b, stmap_a, stmap_b are older words for color and stmap with picture=a or b";
     return row;
 }
 
@@ -54,23 +63,39 @@ ParameterTable make_table() {
         tile(),
         mip(),
         filter(),
-        choice("wrap", "automatic", kWraps, "what lies beyond a picture's edge; automatic is clamp"),
+        wrap("is clamp"),
         tol(),
-        choice("scheme", "auto", kSchemes,
-               "how source points are found within tol; mesh, on a grid with cells cut near the lines, holds "
-               "none"),
+        scheme(
+            {{"auto"}, {"exact"}, {"mesh", "on a grid with cells cut near the lines, which holds no tol"}}),
         whole("mesh_cells", "", "12", 1, FeatureMesh::kMostCells, "of scheme mesh: cells each way"),
         whole("mesh_levels", "", "1", 0, FeatureMesh::kMostLevels,
               "of scheme mesh: how often cells near a line are cut into four"),
         colorspace("color space to filter and blend in; by default that of the pictures"),
-        choice("output", "color", kOutputs,
-               "color; warp_a, warp_b: one picture alone, warped; lines: the morph with all features drawn "
-               "over it; or per pixel: stmap_a, stmap_b, the point (u, v) in a picture in 0 to 1 with v "
-               "down; error, the distance of the point used from the exact one in source pixels; bound, the "
-               "proven bound of that"),
+        output_row(),
+        choice("picture", "", morph_pictures(),
+               "one picture alone, warped, in place of the blend: its color, stmap, error, bound; by default "
+               "stmap is that of a, error and bound are the largest"),
     };
     table.insert(table.end(), others.begin(), others.end());
     return table;
+}
+
+/// What is drawn, and of which picture. Older words of `output` say both: stmap_b.
+void read_output(const ParameterValues& values, std::size_t pictures, MorphOptions& options) {
+    const std::string& output = values.text("output");
+    const std::size_t bar = output.find('_');
+    const bool both = bar != std::string::npos;
+    if (both && values.given("picture"))
+        throw Error("picture", values.text("picture"), "must not be given together with output=" + output);
+    options.output = output.starts_with("stmap") ? Output::stmap : rows::chosen_output(values);
+    options.lines = output == "lines";
+    if (!both && !values.given("picture")) return;
+    const std::string key = both ? output.substr(bar + 1) : values.text("picture");
+    const std::vector<std::string>& keys = morph_pictures();
+    const auto index = static_cast<std::size_t>(std::find(keys.begin(), keys.end(), key) - keys.begin());
+    if (index >= pictures)
+        throw Error("picture", key, "must be one of the pictures that are given, a to " + keys[pictures - 1]);
+    options.picture = static_cast<int>(index);
 }
 
 }  // namespace
@@ -94,11 +119,11 @@ MorphRequest read_morph_request(const ParameterValues& values, const std::vector
     request.height = size.height;
 
     MorphOptions& options = request.options;
-    options.scheme = chosen<MorphScheme>(values, "scheme", kSchemes);
+    options.scheme = chosen<MorphScheme>(values, "scheme");
     options.tol = values.number("tol");
-    options.filter = chosen<Filter>(values, "filter", rows::filters());
-    options.wrap = chosen<Wrap>(values, "wrap", kWraps);
-    options.output = chosen<MorphOutput>(values, "output", kOutputs);
+    options.filter = chosen<Filter>(values, "filter");
+    options.wrap = chosen<Wrap>(values, "wrap");
+    read_output(values, pictures.size(), options);
     options.t = values.number("t");
     if (values.given("t_color")) options.t_color = values.number("t_color");
     if (values.given("shape_weights")) options.shape_weights = values.numbers("shape_weights");
@@ -169,38 +194,6 @@ std::shared_ptr<const Features> read_features(const MorphRequest& request, const
     return pinned;
 }
 
-class SolvedMorph final : public SolvedPicture {
-  public:
-    SolvedMorph(std::shared_ptr<const Features> features, const MorphRequest& r, const MorphOptions& options)
-        : m_morph(std::move(features), r.pictures, r.width, r.height, options) {}
-
-    Attributes reached(const ParallelFor& parallel_for) const override {
-        const Reached reached = m_morph.reached(parallel_for);
-        return {{"anamorph:max_error", reached.max_error},
-                {"anamorph:exact_fraction", reached.exact_fraction}};
-    }
-    bool draw(const std::vector<const Source*>& sources, const Box& box, const ImageView& view,
-              const ParallelFor& parallel_for) const override {
-        return m_morph.draw(sources, box, view, parallel_for);
-    }
-
-  private:
-    Morph m_morph;
-};
-
-PixelKind pixels_of(MorphOutput output) {
-    switch (output) {
-        case MorphOutput::stmap_a:
-        case MorphOutput::stmap_b:
-            return PixelKind::point;
-        case MorphOutput::error:
-        case MorphOutput::bound:
-            return PixelKind::value;
-        default:
-            return PixelKind::color;
-    }
-}
-
 class Morphs final : public Pictures {
   public:
     Morphs(const MorphRequest& request, std::shared_ptr<const Features> features)
@@ -221,7 +214,8 @@ class Morphs final : public Pictures {
         picture.says = {{"anamorph:tol", options.tol}};
         if (options.shape_weights.empty()) picture.says.push_back({"anamorph:t", options.t});
         picture.solve = [request, options, features = m_features] {
-            return std::make_unique<SolvedMorph>(features, request, options);
+            return std::make_unique<Solved<Morph>>(
+                Morph(features, request.pictures, request.width, request.height, options));
         };
         return picture;
     }
@@ -248,10 +242,8 @@ std::unique_ptr<const Pictures> read_morphs(const OperationInput& input) {
 const Operation& morph_operation() {
     static const ParameterTable table = make_table();
     static const Operation operation{
-        "morph",    "Pictures that turn into each other along corresponding lines",
-        &table,     morph_pictures(),
-        2,          {"features=lines.json", {{"lines.json", kExampleFeatures}}},
-        read_morphs};
+        "morph", "Pictures that turn into each other along corresponding lines", &table,     morph_pictures(),
+        2,       {"features=lines.json", {{"lines.json", kExampleFeatures}}},    read_morphs};
     return operation;
 }
 

@@ -8,17 +8,12 @@
 
 #include "anamorph/operation/panorama_attributes.h"
 #include "anamorph/operation/rows.h"
+#include "anamorph/operation/solved.h"
 
 namespace anamorph {
 namespace {
 
 using rows::chosen;
-
-// In the order of their enumerations.
-const std::vector<std::string> kSpacings = {"edges", "centers"};
-const std::vector<std::string> kWraps = {"automatic", "black", "clamp", "periodic", "mirror"};
-const std::vector<std::string> kSchemes = {"auto", "exact", "blocks", "residual"};
-const std::vector<std::string> kOutputs = {"color", "stmap", "error", "bound"};
 
 /// "360 for equirectangular, cylindrical; 180 for fisheye": what each projection has by default.
 std::string default_fovs() {
@@ -82,18 +77,13 @@ ParameterTable make_table() {
         tile(),
         mip(),
         filter(),
-        choice("wrap", "automatic", kWraps,
-               "what lies beyond the source's edge; automatic goes on across the seam, the poles and cube "
-               "edges"),
+        wrap("goes on across the seam, the poles and cube edges"),
         tol(),
-        choice("pixels", "edges", kSpacings,
+        choice("pixels", "edges", {"edges", "centers"},
                "where the source's field of view ends: at the edges of its outer pixels or at their centers"),
-        choice("scheme", "auto", kSchemes, "how source points are found within tol"),
+        scheme({{"auto"}, {"exact"}, {"blocks"}, {"residual"}}),
         colorspace("color space to filter in; by default the source's own"),
-        choice("output", "color", kOutputs,
-               "color, or per pixel: stmap, the source point (u, v) with v down, in 0 to 1 on the source, "
-               "beyond that beyond its edges, (-1, -1) where there is none; error, its distance from the "
-               "exact one in source pixels; bound, the proven bound of that"),
+        output(),
     };
 }
 
@@ -146,7 +136,7 @@ ReprojectRequest read_reproject_request(const ParameterValues& values, const Sou
     const bool says_fov = !values.given("srcfov") && facts.fov && facts.projection == from;
     const Chart source(from, facts.width, facts.height,
                        says_fov ? *facts.fov : field_of_view(values, "srcfov", from),
-                       chosen<PixelSpacing>(values, "pixels", kSpacings), "src", values.number("srcd"));
+                       chosen<PixelSpacing>(values, "pixels"), "src", values.number("srcd"));
 
     const Projection to = projection_from_name(values.text("to"), "to");
     const double fov = field_of_view(values, "fov", to), d = values.number("d");
@@ -167,11 +157,11 @@ ReprojectRequest read_reproject_request(const ParameterValues& values, const Sou
     }
 
     ReprojectOptions options;
-    options.scheme = chosen<Scheme>(values, "scheme", kSchemes);
+    options.scheme = chosen<Scheme>(values, "scheme");
     options.tol = values.number("tol");
-    options.filter = chosen<Filter>(values, "filter", rows::filters());
-    options.wrap = chosen<Wrap>(values, "wrap", kWraps);
-    options.output = chosen<Output>(values, "output", kOutputs);
+    options.filter = chosen<Filter>(values, "filter");
+    options.wrap = chosen<Wrap>(values, "wrap");
+    options.output = rows::chosen_output(values);
     return {source,
             chart(size.width, size.height),
             {values.number("yaw"), values.number("pitch"), values.number("roll")},
@@ -189,24 +179,6 @@ std::optional<Chart> half_size(const Chart& chart) {
 
 namespace {
 
-class SolvedPano final : public SolvedPicture {
-  public:
-    explicit SolvedPano(const ReprojectRequest& request) : m_reprojection(request.map(), request.options) {}
-
-    Attributes reached(const ParallelFor& parallel_for) const override {
-        const Reached reached = m_reprojection.reached(parallel_for);
-        return {{"anamorph:max_error", reached.max_error},
-                {"anamorph:exact_fraction", reached.exact_fraction}};
-    }
-    bool draw(const std::vector<const Source*>& sources, const Box& box, const ImageView& view,
-              const ParallelFor& parallel_for) const override {
-        return m_reprojection.draw(sources[0], box, view, parallel_for);
-    }
-
-  private:
-    Reprojection m_reprojection;
-};
-
 class Panos final : public Pictures {
   public:
     explicit Panos(const ReprojectRequest& request) : m_request(request) {}
@@ -218,17 +190,16 @@ class Panos final : public Pictures {
             if (!half) return {};
             request.target = *half;
         }
-        const Output output = request.options.output;
         PictureRequest picture;
         picture.size = {request.target.width(), request.target.height()};
-        picture.pixels = output == Output::color   ? PixelKind::color
-                         : output == Output::stmap ? PixelKind::point
-                                                   : PixelKind::value;
+        picture.pixels = pixels_of(request.options.output);
         picture.says = panorama_attributes(request.target, picture.pixels == PixelKind::color);
         picture.says.push_back({"anamorph:tol", request.options.tol});
         picture.says.push_back({"anamorph:from", std::string(name_of(request.source.projection())) + " (" +
                                                      request.source_reason + ")"});
-        picture.solve = [request] { return std::make_unique<SolvedPano>(request); };
+        picture.solve = [request] {
+            return std::make_unique<Solved<Reprojection>>(Reprojection(request.map(), request.options));
+        };
         return picture;
     }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "anamorph/operation/rows.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "anamorph/render/source.h"
@@ -25,6 +26,33 @@ Parameter extent(const char* name, std::string value, double least, double most,
     parameter.minimum = least;
     parameter.maximum = most;
     return parameter;
+}
+
+// What the words of all operations mean.
+const std::vector<Word> kSchemes = {{"auto", "the fastest that holds tol"},
+                                    {"exact", "every pixel by the formula"},
+                                    {"blocks", "quadratic polynomials on blocks"},
+                                    {"residual", "linear maps and a table of what remains"}};
+const std::vector<Word> kOutputs = {
+    {"color", ""},
+    {"stmap",
+     "the source point (u, v) with v down, in 0 to 1 on the source, beyond that beyond its edges, (-1, -1) "
+     "where there is none"},
+    {"error", "its distance from the exact one in source pixels"},
+    {"bound", "the proven bound of that"}};
+
+std::vector<std::string> names_of(const std::vector<Word>& words) {
+    std::vector<std::string> names;
+    for (const Word& word : words) names.push_back(word.name);
+    return names;
+}
+
+/// "exact, every pixel by the formula; blocks, ...", of those that have a meaning.
+std::string meanings_of(const std::vector<Word>& words) {
+    std::string text;
+    for (const Word& word : words)
+        if (!word.meaning.empty()) text += (text.empty() ? "" : "; ") + word.name + ", " + word.meaning;
+    return text;
 }
 
 }  // namespace
@@ -92,10 +120,6 @@ Parameter mip() {
     return parameter;
 }
 
-Parameter filter() {
-    return choice("filter", "antialias", filters(), "antialias is bilinear where the map magnifies");
-}
-
 Parameter tol() {
     return number("tol", "source pixels", "0.01", 0, kInfinity,
                   "most that a source point may be off; 0: every pixel exactly");
@@ -103,6 +127,30 @@ Parameter tol() {
 
 Parameter colorspace(const std::string& doc) {
     return text("colorspace", doc);
+}
+
+Parameter filter() {
+    return choice("filter", "antialias", {"nearest", "bilinear", "bicubic", "antialias"},
+                  "antialias is bilinear where the map magnifies");
+}
+
+Parameter wrap(const std::string& automatic) {
+    return choice("wrap", "automatic", {"automatic", "black", "clamp", "periodic", "mirror"},
+                  "what lies beyond a source's edge; automatic " + automatic);
+}
+
+Parameter scheme(const std::vector<Word>& words) {
+    std::vector<Word> known = words;
+    for (Word& word : known)
+        for (const Word& shared : kSchemes)
+            if (word.name == shared.name) word = shared;
+    return choice("scheme", "auto", names_of(known), "how source points are found: " + meanings_of(known));
+}
+
+Parameter output(const std::vector<Word>& own) {
+    std::vector<Word> words = kOutputs;
+    words.insert(words.end(), own.begin(), own.end());
+    return choice("output", "color", names_of(words), "color, or per pixel: " + meanings_of(words));
 }
 
 Size size_of(const ParameterValues& values, const Size& natural) {
@@ -115,9 +163,17 @@ Size size_of(const ParameterValues& values, const Size& natural) {
     return size;
 }
 
-const std::vector<std::string>& filters() {
-    static const std::vector<std::string> names = {"nearest", "bilinear", "bicubic", "antialias"};
-    return names;
+std::size_t chosen_index(const ParameterValues& values, std::string_view name) {
+    const ParameterTable& table = values.table();
+    const auto row =
+        std::find_if(table.begin(), table.end(), [&](const Parameter& p) { return p.name == name; });
+    const auto found = std::find(row->choices.begin(), row->choices.end(), values.text(name));
+    return static_cast<std::size_t>(found - row->choices.begin());
+}
+
+Output chosen_output(const ParameterValues& values) {
+    const std::size_t index = chosen_index(values, "output");
+    return index < kOutputs.size() ? static_cast<Output>(index) : Output::color;
 }
 
 }  // namespace anamorph::rows

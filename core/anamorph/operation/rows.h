@@ -2,7 +2,7 @@
 // The rows that the parameter tables of pictures share, and how rows are written.
 #pragma once
 
-#include <algorithm>
+#include <cstddef>
 #include <limits>
 #include <string>
 #include <string_view>
@@ -10,10 +10,11 @@
 
 #include "anamorph/geometry/size.h"
 #include "anamorph/parameter.h"
+#include "anamorph/render/picture.h"
 
 namespace anamorph::rows {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
+inline constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 Parameter choice(const char* name, std::string value, std::vector<std::string> choices,
                  const std::string& doc);
@@ -31,23 +32,38 @@ Parameter file(const char* name, const std::string& doc);
 Parameter size(const std::string& doc);
 Parameter tile();
 Parameter mip();
-Parameter filter();
 Parameter tol();
 Parameter colorspace(const std::string& doc);
+
+/// One of the values of a choice, and what it means.
+struct Word {
+    std::string name, meaning = {};
+};
+
+/// In the order of anamorph::Filter.
+Parameter filter();
+/// In the order of anamorph::Wrap. `automatic`: what that is here, "is black".
+Parameter wrap(const std::string& automatic);
+/// In the order of the operation's enumeration. The words auto, exact, blocks and residual mean the same
+/// everywhere and need no meaning here.
+Parameter scheme(const std::vector<Word>& words);
+/// The words that all operations share, in the order of anamorph::Output, then the operation's own.
+Parameter output(const std::vector<Word>& own = {});
 
 /// Width and height asked for by `size`: those of `natural` where none is, its shape where only a width is
 /// given.
 Size size_of(const ParameterValues& values, const Size& natural);
 
-/// What was chosen of a list in the order of its enumeration.
+/// Which of its choices a row has.
+std::size_t chosen_index(const ParameterValues& values, std::string_view name);
+
+/// The same of a row whose choices are in the order of an enumeration.
 template <class Enumeration>
-Enumeration chosen(const ParameterValues& values, std::string_view name,
-                   const std::vector<std::string>& names) {
-    const auto found = std::find(names.begin(), names.end(), values.text(name));
-    return static_cast<Enumeration>(found - names.begin());
+Enumeration chosen(const ParameterValues& values, std::string_view name) {
+    return static_cast<Enumeration>(chosen_index(values, name));
 }
 
-/// In the order of anamorph::Filter.
-const std::vector<std::string>& filters();
+/// Of `output`: colour for the operation's own words.
+Output chosen_output(const ParameterValues& values);
 
 }  // namespace anamorph::rows

@@ -3,6 +3,7 @@
 
 #include "anamorph/map/mesh_file.h"
 #include "anamorph/operation/rows.h"
+#include "anamorph/operation/solved.h"
 #include "anamorph/text_file.h"
 
 namespace anamorph {
@@ -10,11 +11,6 @@ namespace {
 
 using rows::chosen;
 
-// In the order of their enumerations.
-const std::vector<std::string> kDirections = {"pull", "push"};
-const std::vector<std::string> kWraps = {"automatic", "black", "clamp", "periodic", "mirror"};
-const std::vector<std::string> kSchemes = {"auto", "exact", "hermite", "residual"};
-const std::vector<std::string> kOutputs = {"color", "stmap", "error", "bound", "folds"};
 constexpr int kMaxStep = 1 << 16;
 
 ParameterTable make_table() {
@@ -29,7 +25,7 @@ ParameterTable make_table() {
             "points",
             "in place of a mesh: pairs of points x, y (in the picture), u, v (in the source), .csv or .json"),
         choice(
-            "direction", "", kDirections,
+            "direction", "", {"pull", "push"},
             "pull: the mesh lies in the picture, its vertices say where in the source; push: the mesh lies "
             "in the source, its vertices say where they go; by default what the file says, else pull"),
         number("amount", "", "1", -kInfinity, kInfinity,
@@ -40,14 +36,11 @@ ParameterTable make_table() {
         tile(),
         mip(),
         filter(),
-        choice("wrap", "automatic", kWraps, "what lies beyond the source's edge; automatic is black"),
+        wrap("is black"),
         tol(),
-        choice("scheme", "auto", kSchemes, "how source points are found within tol"),
+        scheme({{"auto"}, {"exact"}, {"hermite", "the mesh's bicubic patches in float"}, {"residual"}}),
         colorspace("color space to filter in; by default the source's own"),
-        choice("output", "color", kOutputs,
-               "color, or per pixel: stmap, the source point (u, v) in 0 to 1 with v down; error, its "
-               "distance from the exact one in source pixels; bound, the proven bound of that; folds, not 0 "
-               "where the warp folds"),
+        output({{"folds", "not 0 where the warp folds"}}),
     };
 }
 
@@ -69,14 +62,15 @@ WarpRequest read_warp_request(const ParameterValues& values, const Size& source)
     request.source = source;
     request.target = warp_target(values, source);
     MeshWarpOptions& options = request.options;
-    options.scheme = chosen<WarpScheme>(values, "scheme", kSchemes);
+    options.scheme = chosen<WarpScheme>(values, "scheme");
     options.tol = values.number("tol");
-    options.filter = chosen<Filter>(values, "filter", rows::filters());
-    options.wrap = chosen<Wrap>(values, "wrap", kWraps);
-    options.output = chosen<WarpOutput>(values, "output", kOutputs);
+    options.filter = chosen<Filter>(values, "filter");
+    options.wrap = chosen<Wrap>(values, "wrap");
+    options.output = rows::chosen_output(values);
+    options.folds = values.text("output") == "folds";
     options.amount = values.number("amount");
     request.step = values.whole("step");
-    if (values.given("direction")) request.direction = chosen<Direction>(values, "direction", kDirections);
+    if (values.given("direction")) request.direction = chosen<Direction>(values, "direction");
     return request;
 }
 
@@ -161,25 +155,9 @@ std::shared_ptr<const WarpMap> read_map(const WarpRequest& request, const Operat
     return map;
 }
 
-class SolvedWarp final : public SolvedPicture {
-  public:
-    SolvedWarp(const WarpMap& map, const WarpRequest& r)
-        : m_warp(map, r.source.width, r.source.height, r.target.width, r.target.height, r.options) {}
-
-    Attributes reached(const ParallelFor& parallel_for) const override {
-        const Reached reached = m_warp.reached(parallel_for);
-        return {{"anamorph:max_error", reached.max_error},
-                {"anamorph:exact_fraction", reached.exact_fraction},
-                {"anamorph:folded_fraction", m_warp.folded_fraction(parallel_for)}};
-    }
-    bool draw(const std::vector<const Source*>& sources, const Box& box, const ImageView& view,
-              const ParallelFor& parallel_for) const override {
-        return m_warp.draw(sources[0], box, view, parallel_for);
-    }
-
-  private:
-    MeshWarp m_warp;
-};
+Attributes folded(const MeshWarp& warp, const ParallelFor& parallel_for) {
+    return {{"anamorph:folded_fraction", warp.folded_fraction(parallel_for)}};
+}
 
 class Warps final : public Pictures {
   public:
@@ -191,17 +169,17 @@ class Warps final : public Pictures {
         if (!size) return {};
         WarpRequest request = m_request;
         request.target = *size;
-        const WarpOutput output = request.options.output;
         PictureRequest picture;
         picture.size = *size;
-        picture.pixels = output == WarpOutput::color   ? PixelKind::color
-                         : output == WarpOutput::stmap ? PixelKind::point
-                                                       : PixelKind::value;
+        picture.pixels = request.options.folds ? PixelKind::value : pixels_of(request.options.output);
         picture.says = {{"anamorph:tol", request.options.tol}};
         // Positions in pixels are pixels of the finest level.
         picture.solve = [request, level, map = m_map, whole = m_request] {
-            return std::make_unique<SolvedWarp>(
-                level > 0 ? in_fractions(*map, whole.source, whole.target) : *map, request);
+            return std::make_unique<Solved<MeshWarp>>(
+                MeshWarp(level > 0 ? in_fractions(*map, whole.source, whole.target) : *map,
+                         whole.source.width, whole.source.height, request.target.width, request.target.height,
+                         request.options),
+                folded);
         };
         return picture;
     }

@@ -25,19 +25,6 @@ std::unique_ptr<const WarpPlan> make_plan(const WarpMap& map, const Size& source
                                       options.tol);
 }
 
-Output output_of(WarpOutput output) {
-    switch (output) {
-        case WarpOutput::stmap:
-            return Output::stmap;
-        case WarpOutput::error:
-            return Output::error;
-        case WarpOutput::bound:
-            return Output::bound;
-        default:
-            return Output::color;
-    }
-}
-
 void check_size(const char* name, int width, int height) {
     if (width < 1 || height < 1 || width > kMaxSide || height > kMaxSide)
         throw Error(name, std::to_string(width) + "x" + std::to_string(height),
@@ -62,9 +49,8 @@ struct MeshWarp::State {
         const Chart flat(Projection::rectilinear, source.width, source.height);
         picture.maps = {{plan, {{Border(flat, warp.wrap)}}}};
         picture.filter = warp.filter;
-        picture.output = output_of(warp.output);
-        if (warp.output == WarpOutput::folds)
-            picture.value = [p = plan.get()](double x, double y) { return p->folds(x, y); };
+        picture.output = warp.output;
+        if (warp.folds) picture.value = [p = plan.get()](double x, double y) { return p->folds(x, y); };
     }
 
     MeshWarpOptions options;

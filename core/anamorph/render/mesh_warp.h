@@ -12,20 +12,17 @@
 
 namespace anamorph {
 
-/// color; stmap: the source point as (u, v) in 0..1, v down, (-1, -1) where there is none; error: its
-/// distance from the exact one, and bound: what is proven of that, in source pixels; folds: 0 where the map
-/// is one to one, else for a map that pulls 1 where it shows the source turned over (its Jacobian's
-/// determinant has the other sign than that of most of the mesh), and for a mesh that pushes the number of
-/// further source points that land on the pixel.
-enum class WarpOutput { color, stmap, error, bound, folds };
-
 /// How a warp is drawn.
 struct MeshWarpOptions {
     WarpScheme scheme = WarpScheme::automatic;
     double tol = 0.01;  ///< source pixels; 0: every pixel in double, whose rounding is the bound
     Filter filter = Filter::antialias;
     Wrap wrap = Wrap::automatic;  ///< automatic is black
-    WarpOutput output = WarpOutput::color;
+    Output output = Output::color;
+    /// In place of `output`: 0 where the map is one to one, else for a map that pulls 1 where it shows the
+    /// source turned over (its Jacobian's determinant has the other sign than that of most of the mesh), and
+    /// for a mesh that pushes the number of further source points that land on the pixel.
+    bool folds = false;
     double amount = 1;  ///< blends vertices from the identity (0) to the warp (1) and beyond; finite
 };
 
@@ -55,13 +52,13 @@ class MeshWarp {
     const BlockMap& blocks() const;
     const Picture& picture() const;
 
-    /// Channels of the picture: the source's for color, 2 for stmap, else 1.
+    /// Channels of the picture: the source's for colour, 2 for stmap, else 1.
     int channels(const Source& source) const;
 
     /// The largest proven bound in use (source pixels) and the fraction of pixels computed exactly, over the
     /// whole picture.
     Reached reached(const ParallelFor& parallel_for = serial_for) const;
-    /// The fraction of the picture's pixels where the map is folded (output folds is not 0).
+    /// The fraction of the picture's pixels where the map is folded (`folds` shows what is not 0).
     double folded_fraction(const ParallelFor& parallel_for = serial_for) const;
 
     /// Draws the pixels of `box` (of the target image) to `view`, whose pixel (0, 0) is (box.x0, box.y0).

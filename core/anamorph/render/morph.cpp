@@ -55,20 +55,6 @@ std::vector<Size> sizes_of(const std::vector<Size>& pictures, int width, int hei
     return sizes;
 }
 
-Output output_of(MorphOutput output) {
-    switch (output) {
-        case MorphOutput::stmap_a:
-        case MorphOutput::stmap_b:
-            return Output::stmap;
-        case MorphOutput::error:
-            return Output::error;
-        case MorphOutput::bound:
-            return Output::bound;
-        default:
-            return Output::color;
-    }
-}
-
 Border border_of(const Size& size, Wrap wrap) {
     // The angle of the flat chart plays no part for a plain rectangle of pixels.
     return Border(Chart(Projection::rectilinear, size.width, size.height, 90),
@@ -99,9 +85,9 @@ struct Morph::State {
             if (reads(k)) drawn.push_back(k);
         make_maps(drawn);
         picture.filter = options.filter;
-        picture.output = output_of(options.output);
+        picture.output = options.output;
         picture.same_as = untouched();
-        if (options.output == MorphOutput::lines)
+        if (options.lines)
             picture.overlay = [this](const PixelRows& pixels) { draw_features(*features, map, pixels); };
     }
 
@@ -120,13 +106,19 @@ struct Morph::State {
         return {};
     }
 
+    std::vector<double> only_picture(int k) const {
+        if (k < 0 || k >= map.shapes())
+            throw Error("picture", std::to_string(k),
+                        "must be an integer from 0 to " + std::to_string(map.shapes() - 1));
+        std::vector<double> one(static_cast<std::size_t>(map.shapes()), 0.0);
+        one[static_cast<std::size_t>(k)] = 1;
+        return one;
+    }
+
     /// The weights of the pictures in what is drawn.
     std::vector<double> colors() const {
-        std::vector<double> one(static_cast<std::size_t>(map.shapes()), 0.0);
-        const MorphOutput o = options.output;
-        if (o == MorphOutput::warp_a || o == MorphOutput::stmap_a) one[0] = 1;
-        if (o == MorphOutput::warp_b || o == MorphOutput::stmap_b) one[1] = 1;
-        if (one[0] + one[1] > 0) return one;
+        if (options.picture || options.output == Output::stmap)
+            return only_picture(options.picture.value_or(0));
         if (options.color_weights.empty() && !options.t_color) return shape;
         return mixture(options.color_weights, options.t_color.value_or(options.t), map.shapes(),
                        "color_weights", "t_color");

@@ -20,19 +20,17 @@ namespace anamorph {
 /// bound is infinite, and output error says what it does.
 enum class MorphScheme { automatic, exact, mesh };
 
-/// color: the morph; warp_a, warp_b: the first and the second picture alone, warped; stmap_a, stmap_b: their
-/// source points as (u, v) in 0..1, v down; lines: the morph with the features of every shape drawn over it;
-/// error: the distance of the source point used from the exact one, the largest over the pictures, and bound:
-/// what is proven of that, in source pixels.
-enum class MorphOutput { color, warp_a, warp_b, stmap_a, stmap_b, lines, error, bound };
-
 /// What a morph shows, and how it is drawn.
 struct MorphOptions {
     MorphScheme scheme = MorphScheme::automatic;
     double tol = 0.01;  ///< source pixels; 0: every pixel exactly in double
     Filter filter = Filter::antialias;
     Wrap wrap = Wrap::automatic;  ///< automatic is clamp: a morph has no edges of its own
-    MorphOutput output = MorphOutput::color;
+    Output output = Output::color;
+    /// One picture alone, warped, in place of the blend: 0 is the first. An ST-map is of one alone, the first
+    /// unless this is given.
+    std::optional<int> picture;
+    bool lines = false;  ///< draws the features of every shape over the colours
 
     static constexpr double kMostT = 1e6;
     double t = 0.5;                 ///< of the shape: 0 is A's, 1 is B's; kMostT at most, either way

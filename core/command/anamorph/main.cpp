@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: Apache-2.0
+// anamorph: what operations there are, and their keys.
+#include <CLI/CLI.hpp>
+#include <exception>
+#include <iostream>
+
+#include "anamorph/version.h"
+#include "reference.h"
+
+namespace anamorph::command {
+namespace {
+
+void print_help(const std::string& name) {
+    if (name.empty()) {
+        std::cout << operations_page();
+        return;
+    }
+    const Operation* operation = find_operation(name);
+    if (!operation) throw Error("operation", printable(name), "must be one of " + operation_names());
+    std::cout << operation_page(*operation);
+}
+
+int run(int argc, char** argv) {
+    CLI::App app{"Image warping with a tolerance that holds", "anamorph"};
+    app.require_subcommand(1);
+    app.set_version_flag("--version", "anamorph " + std::string(version()));
+    CLI::App* help = app.add_subcommand("help", "List the operations, or the keys of one");
+    std::string operation;
+    help->add_option("OPERATION", operation, "Its name; without, all are listed");
+    try {
+        app.parse(argc, argv);
+        print_help(operation);
+        if (std::cout.flush()) return 0;
+        throw Error("the standard output cannot be written");
+    } catch (const CLI::ParseError& e) {
+        if (e.get_exit_code() == 0) return app.exit(e);  // --help and --version
+        std::cerr << "anamorph: " << message_of(e, "the page") << "\n";
+    } catch (const std::exception& e) {
+        std::cerr << "anamorph: " << message_of(e, "the page") << "\n";
+    }
+    return 1;
+}
+
+}  // namespace
+}  // namespace anamorph::command
+
+int main(int argc, char** argv) {
+    return anamorph::command::run(argc, argv);
+}
