@@ -131,7 +131,7 @@ class Chart {
     double scale_y() const { return m_sy.value(); }
     /// Pixels for a radian straight ahead of a piece.
     double pixels_per_radian() const {
-        return scale_x() * (m_lens ? m_lens->magnification() : 1) *
+        return scale_x() * (m_lens ? m_lens->model().magnification() : 1) *
                with_projection(m_projection, [](auto formulas) { return formulas.per_radian; });
     }
     /// Source points of one ray lie so many pixels apart, or any multiple: a full turn, infinite where rows do

@@ -8,6 +8,7 @@
 #include <set>
 
 #include "anamorph/error.h"
+#include "anamorph/parameter.h"
 
 namespace anamorph {
 namespace {
@@ -57,20 +58,23 @@ double magnitude_of(const Constant* c, int count, double t) {
     return sum;
 }
 
-/// Does the radius rise over all of these t, with no pole near? A tangential part may take half of that away, so that
-/// what undoes it converges.
-bool rises(const LensTerms& lens, const Interval& t) {
+/// How much the radial part stretches the least, along the radius or across it, over all of these t; less than nothing
+/// where a pole is near.
+double least_stretch(const LensTerms& lens, const Interval& t) {
     using S = Series<Interval, 1>;
     const S at = S::variable(t);
     if (lens.under_count > 1) {
         const Interval under = lens_formula::sum_of_powers(lens.under, lens.under_count, t);
-        if (!(under.lo > 0x1p-40 * magnitude_of(lens.under, lens.under_count, t.hi))) return false;
+        if (!(under.lo > 0x1p-40 * magnitude_of(lens.under, lens.under_count, t.hi))) return -1;
     }
     const S stretch = lens_formula::stretch_at(lens, at);
     const Interval slope = stretch.c[0] + stretch.c[1] * t * (lens.in_radius ? 1.0 : 2.0);
-    const double radius = lens.in_radius ? t.hi : std::sqrt(t.hi) * (1 + interval_detail::kUlp);
-    const double taken = 2 * 6 * std::hypot(lens.mx, lens.my) * radius * (1 + 8 * interval_detail::kUlp);
-    return stretch.c[0].lo > taken && slope.lo > taken;
+    return stretch.c[0].lo > 0 && slope.lo > 0 ? std::min(stretch.c[0].lo, slope.lo) : -1;
+}
+
+/// How much the tangential part stretches the most, up to t: its slope is 2 (m.u) + 2 (u m^T + m u^T).
+double most_tangential(const LensTerms& lens, double t) {
+    return 6 * std::hypot(lens.mx, lens.my) * std::sqrt(t) * (1 + 8 * interval_detail::kUlp);
 }
 
 }  // namespace
@@ -86,11 +90,11 @@ LensModel LensModel::parse(std::string_view text, const std::string& parameter) 
     if (kind == kinds().end())
         throw Error(parameter, whole, "must begin with one of " + listed(kinds(), [](const auto& k) { return k.name; }));
     LensModel model{kind->kind, std::vector<double>(kind->values.size())};
-    text.remove_prefix(name.size());
-    if (text.empty()) return model;
     std::set<std::string_view> seen;
-    for (text.remove_prefix(1); !text.empty() || seen.empty();) {
-        const std::string_view part = text.substr(0, text.find(','));
+    for (std::size_t at = name.size(); at < text.size();) {
+        // What stands before is a colon or a comma.
+        const std::string_view part = text.substr(at + 1, text.find(',', at + 1) - (at + 1));
+        at += 1 + part.size();
         const std::size_t equals = std::min(part.find('='), part.size());
         const std::string_view key = part.substr(0, equals);
         const auto found = std::find(kind->values.begin(), kind->values.end(), key);
@@ -108,7 +112,6 @@ LensModel LensModel::parse(std::string_view text, const std::string& parameter) 
             throw Error(parameter, whole,
                         std::string(key) + " must be a number from " + print(-kMostValue) + " to " +
                             print(kMostValue));
-        text.remove_prefix(std::min(part.size() + 1, text.size()));
     }
     return model;
 }
@@ -118,12 +121,14 @@ std::string LensModel::text() const {
     char separator = ':';
     for (std::size_t i = 0; i < values.size(); ++i) {
         if (values[i] == 0) continue;
-        char number[64];
-        const auto end = std::to_chars(number, number + sizeof number, values[i]).ptr;
-        text += separator + names(kind)[i] + "=" + std::string(number, end);
+        text += separator + names(kind)[i] + "=" + shortest(values[i]);
         separator = ',';
     }
     return text;
+}
+
+double LensModel::magnification() const {
+    return kind == Kind::ptlens ? 1 - values[0] - values[1] - values[2] : 1;
 }
 
 Lens::Lens(const LensModel& model, Lensed lensed, const std::string& projection, const Plane& plane,
@@ -213,16 +218,19 @@ bool Lens::set_ends(double corner) {
     const double last = terms.in_radius ? farthest : farthest * farthest;
     const double value_limit = terms.in_radius ? most : most * most;
     // From the centre in steps over which the radius certainly rises, larger ones after such and smaller ones before
-    // others, down to where it folds.
-    double at = 0, step = last / 64;
+    // others, down to where it folds. A tangential part may take up half of what all of the disc so far is stretched:
+    // then each step of settled(), which undoes the radial part of a distance that the other changed, halves it.
+    double at = 0, step = last / 64, least = HUGE_VAL;
     bool folds = false;
     while (at < last && step > last * 0x1p-48) {
         const Interval part(at, std::min(at + step, last));
-        folds = !rises(terms, part);
+        const double here = std::min(least, least_stretch(terms, part));
+        folds = !(here > 2 * most_tangential(terms, part.hi));
         const bool goes_on = !folds && lens_formula::radial_at(terms, Interval(part.hi)).hi <= value_limit;
         step *= goes_on ? 2 : 0.5;
         if (!goes_on) continue;
         at = part.hi;
+        least = here;
         terms.condition = std::max(terms.condition, condition_over(part));
     }
     terms.end = at;
@@ -263,11 +271,6 @@ double Lens::condition_over(const Interval& t) const {
     return std::max(terms.in_radius ? ratio : ratio * ratio, steep / 8) * (1 + 0x1p-40);
 }
 
-double Lens::magnification() const {
-    const double centre = m_terms.over[0].value();
-    return m_terms.to_observed ? centre : 1 / centre;
-}
-
 namespace lens_detail {
 
 Interval radial_root(const LensTerms& lens, const Interval& value) {
@@ -295,6 +298,27 @@ double least_slope(const LensTerms& lens, const Interval& t) {
 
 Interval shrink(const LensTerms& lens, const Interval& value) {
     return Interval(1) / lens_formula::stretch_at(lens, lens_detail::radial_root(lens, value));
+}
+
+/// Wherever the members' points are, a step from a point in the middle ends no farther from it than half of that; more
+/// steps, with all of them, come nearer.
+Point<Interval> settled(const LensTerms& lens, const Point<Interval>& v) {
+    const auto middle = [](const Interval& a) { return 0.5 * a.lo + 0.5 * a.hi; };
+    const Point<double> u = lens_formula::settled(lens, Point<double>{middle(v.x), middle(v.y)});
+    const Point<Interval> next = lens_formula::nearer(lens, v, Point<Interval>{u.x, u.y});
+    const double far = magnitude(next.x - u.x) + magnitude(next.y - u.y);
+    if (!(far < HUGE_VAL)) return {Interval::all(), Interval::all()};
+    Point<Interval> box{{u.x - 2.01 * far, u.x + 2.01 * far}, {u.y - 2.01 * far, u.y + 2.01 * far}};
+    const auto common = [](const Interval& a, const Interval& b) {
+        return Interval(std::max(a.lo, b.lo), std::min(a.hi, b.hi));
+    };
+    for (int i = 0; i < 6; ++i) {
+        const Point<Interval> nearer = lens_formula::nearer(lens, v, box);
+        const Point<Interval> smaller{common(box.x, nearer.x), common(box.y, nearer.y)};
+        if (!(smaller.x.lo <= smaller.x.hi && smaller.y.lo <= smaller.y.hi)) break;
+        box = smaller;
+    }
+    return box;
 }
 
 }  // namespace anamorph

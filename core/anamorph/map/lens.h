@@ -48,6 +48,8 @@ struct LensModel {
     std::string text() const;
     /// The names of a model's values.
     static const std::vector<std::string>& names(Kind kind);
+    /// How much larger the observed picture is than the ideal one, at the centre.
+    double magnification() const;
 };
 
 /// What the formulas of a lens are read with.
@@ -76,6 +78,9 @@ struct LensTerms {
     /// becomes at the end.
     static constexpr double kResidual = 80, kOff = 32, kSmall = 0x1p-24;
     double condition = 1;
+    /// settled() ends with a step of at most kStill roundings of the end, or after kSteps.
+    static constexpr double kStill = 512;
+    static constexpr int kSteps = 72;
 };
 
 namespace lens_formula {
@@ -91,6 +96,13 @@ template <class Real>
 Rounded<Real> shrink(const LensTerms& lens, const Rounded<Real>& value);
 template <class T, int N>
 Jet<T, N> shrink(const LensTerms& lens, const Jet<T, N>& value);
+
+/// And settled().
+Point<Interval> settled(const LensTerms& lens, const Point<Interval>& v);
+template <class Real>
+Point<Rounded<Real>> settled(const LensTerms& lens, const Point<Rounded<Real>>& v);
+template <class T, int N>
+Point<Jet<T, N>> settled(const LensTerms& lens, const Point<Jet<T, N>>& v);
 
 /// The lens of a picture.
 class Lens {
@@ -126,8 +138,6 @@ class Lens {
         return lens_formula::has_observed(m_terms, ideal);
     }
 
-    /// How much larger the observed picture is than the ideal one, at the centre.
-    double magnification() const;
     /// How far from the centre an observed point may lie, in the plane.
     double reach() const { return m_terms.observed_end * m_terms.unit.value(); }
 
@@ -206,7 +216,103 @@ J compose(const lens_formula::Series<T, N>& series, const J& n) {
     return sum;
 }
 
+/// The derivative of F, a symmetric matrix: S + 2 m.u along the diagonal, 2 S' u u^T with S' by |u|^2, and
+/// 2 (u m^T + m u^T).
+template <class T>
+struct Slope {
+    T xx, xy, yy;
+
+    Slope(const LensTerms& lens, const Point<T>& u) {
+        const T squared = square(u.x) + square(u.y);
+        const auto stretch =
+            lens_formula::stretch_at(lens, lens_formula::Series<T, 1>::variable(squared));
+        const T along = stretch.c[0] + (u.x * lens.mx + u.y * lens.my) * 2.0;
+        xx = along + (stretch.c[1] * square(u.x) + u.x * lens.mx * 2.0) * 2.0;
+        yy = along + (stretch.c[1] * square(u.y) + u.y * lens.my * 2.0) * 2.0;
+        xy = (stretch.c[1] * (u.x * u.y) + u.x * lens.my + u.y * lens.mx) * 2.0;
+    }
+};
+
+/// The largest sum of a row of magnitudes, as `of` has them.
+template <class T, class Of>
+double largest_row(const Slope<T>& slope, const Of& of) {
+    return std::max(of(slope.xx), of(slope.yy)) + of(slope.xy);
+}
+
+/// Of numbers without jets.
+template <class Real>
+Point<Rounded<Real>> settled_values(const LensTerms& lens, const Point<Rounded<Real>>& v) {
+    using R = Rounded<Real>;
+    const Point<Interval> range = settled(lens, Point<Interval>{v.x.range, v.y.range});
+    // A step from the computed u, which is taken as it is, leads to within `step` of it; one without rounding halves its
+    // distance to the exact one. All of that within twice as much around.
+    double off = 0x1p-40 * lens.ideal_end;
+    for (int i = 0; i < 3; ++i) {
+        const auto around = [&](const Interval& r) { return Interval(r.lo - 2 * off, r.hi + 2 * off); };
+        const Point<R> u{R(around(range.x), 0, 0), R(around(range.y), 0, 0)};
+        const Point<R> next = lens_formula::nearer(lens, v, u);
+        const double step = 1.5 * LensTerms::kStill * R::kUnit * lens.ideal_end + 0x1p-70 * lens.ideal_end +
+                            next.x.error + next.y.error;
+        if (2 * step <= off) return {R(around(range.x), 0, 2 * step), R(around(range.y), 0, 2 * step)};
+        off = 4 * step;
+    }
+    return {R(range.x, 0, HUGE_VAL), R(range.y, 0, HUGE_VAL)};
+}
+
 }  // namespace lens_detail
+
+/// In norms (number/rounded.h), the larger of x and y: with J the slope at the constant parts, c the norm of its inverse
+/// and h that of what the slope is besides, the exact jets have n = J^-1 (v - (F(u + n) - F(u) - J n)) above their
+/// constants, so that |n| <= r wherever c (|v| + h r) <= r. What is computed has F(computed u) = v + rest; the slopes
+/// between the two are J and h at most, so it is off by c |rest| / (1 - c h).
+template <class Real>
+Point<Rounded<Real>> settled(const LensTerms& lens, const Point<Rounded<Real>>& v) {
+    using R = Rounded<Real>;
+    using lens_detail::largest_row;
+    const Point<R> u = lens_detail::settled_values(
+        lens, Point<R>{R(v.x.range, 0, v.x.error), R(v.y.range, 0, v.y.error)});
+    const double radius = std::max(v.x.radius, v.y.radius);
+    if (radius == 0) return u;
+    const lens_detail::Slope<R> at(lens, u);
+    const Interval determinant = at.xx.range * at.yy.range - square(at.xy.range);
+    const double c = largest_row(at, [](const R& k) { return magnitude(k.range); }) / determinant.lo;
+    double r = 1.25 * c * radius;
+    for (int i = 0; i < 4 && c > 0; ++i, r *= 1.25) {
+        const Point<R> jet{R(u.x.range, r, 0), R(u.y.range, r, 0)};
+        const lens_detail::Slope<R> slope(lens, jet);
+        const double h = largest_row(slope, [](const R& k) { return k.radius; });
+        if (!(c * (radius + h * r) <= r && c * h < 0.5)) continue;
+        // Every degree of F is rounded once more. Slopes are rounded, those of the computed u are read, and the solution
+        // is rounded by less than 16 units of all of it.
+        const Point<R> f = lens_formula::distorted(lens, jet);
+        const double size = largest_row(at, [](const R& k) { return k.computed_size(); });
+        const double rest = R::kDegree * std::max(f.x.error, f.y.error) + std::max(v.x.error, v.y.error) +
+                            (largest_row(at, [](const R& k) { return k.error; }) + 16 * R::kUnit * size * c * size) * r;
+        const double error = 1.25 * std::max({c * rest / (1 - c * h), u.x.error, u.y.error});
+        return {R(u.x.range, r, error), R(u.y.range, r, error)};
+    }
+    return {R(u.x.range, HUGE_VAL, HUGE_VAL), R(u.y.range, HUGE_VAL, HUGE_VAL)};
+}
+
+/// Degree by degree: what F(u) lacks of v is the slope times what u lacks.
+template <class T, int N>
+Point<Jet<T, N>> settled(const LensTerms& lens, const Point<Jet<T, N>>& v) {
+    using J = Jet<T, N>;
+    using lens_formula::settled;
+    const Point<T> constant = settled(lens, Point<T>{v.x.c[0], v.y.c[0]});
+    const lens_detail::Slope<T> slope(lens, constant);
+    const T determinant = slope.xx * slope.yy - square(slope.xy);
+    Point<J> u{J(constant.x), J(constant.y)};
+    for (int k = 1; k <= N; ++k) {
+        const Point<J> f = lens_formula::distorted(lens, u);
+        for (int i = J::part(k); i < J::part(k + 1); ++i) {
+            const T x = v.x.c[i] - f.x.c[i], y = v.y.c[i] - f.y.c[i];
+            u.x.c[i] = (slope.yy * x - slope.xy * y) / determinant;
+            u.y.c[i] = (slope.xx * y - slope.xy * x) / determinant;
+        }
+    }
+    return u;
+}
 
 template <class Real>
 Rounded<Real> shrink(const LensTerms& lens, const Rounded<Real>& value) {

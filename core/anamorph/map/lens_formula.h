@@ -21,30 +21,34 @@ struct Series {
         s.c[1] = T(1);
         return s;
     }
-
-    friend Series operator+(Series a, const Series& b) {
-        for (int k = 0; k <= N; ++k) a.c[k] = a.c[k] + b.c[k];
-        return a;
-    }
-    friend Series operator*(const Series& a, const Series& b) {
-        Series s;
-        for (int k = 0; k <= N; ++k) {
-            s.c[k] = a.c[0] * b.c[k];
-            for (int j = 1; j <= k; ++j) s.c[k] = s.c[k] + a.c[j] * b.c[k - j];
-        }
-        return s;
-    }
-    /// q with q b = a: b_0 q_k = a_k - sum_(j<k) q_j b_(k-j)
-    friend Series operator/(const Series& a, const Series& b) {
-        Series q;
-        for (int k = 0; k <= N; ++k) {
-            T rest = a.c[k];
-            for (int j = 0; j < k; ++j) rest = rest - q.c[j] * b.c[k - j];
-            q.c[k] = rest / b.c[0];
-        }
-        return q;
-    }
 };
+
+template <class T, int N>
+Series<T, N> operator+(const Series<T, N>& a, const Series<T, N>& b) {
+    Series<T, N> s;
+    for (int k = 0; k <= N; ++k) s.c[k] = a.c[k] + b.c[k];
+    return s;
+}
+template <class T, int N>
+Series<T, N> operator*(const Series<T, N>& a, const Series<T, N>& b) {
+    Series<T, N> s;
+    for (int k = 0; k <= N; ++k) {
+        s.c[k] = a.c[0] * b.c[k];
+        for (int j = 1; j <= k; ++j) s.c[k] = s.c[k] + a.c[j] * b.c[k - j];
+    }
+    return s;
+}
+/// q with q b = a: b_0 q_k = a_k - sum_(j<k) q_j b_(k-j)
+template <class T, int N>
+Series<T, N> operator/(const Series<T, N>& a, const Series<T, N>& b) {
+    Series<T, N> q;
+    for (int k = 0; k <= N; ++k) {
+        T rest = a.c[k];
+        for (int j = 0; j < k; ++j) rest = rest - q.c[j] * b.c[k - j];
+        q.c[k] = rest / b.c[0];
+    }
+    return q;
+}
 
 /// What a constant is read as beside a number, or a series of numbers.
 template <class T>
@@ -88,14 +92,21 @@ T radial_of(const LensTerms& lens, const Point<T>& u) {
     return select(centre, T(0), sqrt(T(select(centre, T(1), squared))));
 }
 
+/// F's tangential part.
+template <class T>
+Point<T> tangential_at(const LensTerms& lens, const Point<T>& u) {
+    const T squared = square(u.x) + square(u.y), along = (u.x * lens.mx + u.y * lens.my) * 2.0;
+    return {u.x * along + squared * lens.mx, u.y * along + squared * lens.my};
+}
+
 /// F.
 template <class T>
 Point<T> distorted(const LensTerms& lens, const Point<T>& u) {
     const T stretch = stretch_at(lens, radial_of(lens, u));
-    if (!lens.tangential) return {u.x * stretch, u.y * stretch};
-    const T squared = square(u.x) + square(u.y);
-    const T factor = stretch + (u.x * lens.mx + u.y * lens.my) * 2.0;
-    return {u.x * factor + squared * lens.mx, u.y * factor + squared * lens.my};
+    const Point<T> radial{u.x * stretch, u.y * stretch};
+    if (!lens.tangential) return radial;
+    const Point<T> more = tangential_at(lens, u);
+    return {radial.x + more.x, radial.y + more.y};
 }
 
 /// What rounding to T is relative to the number; 0 where that is not known.
@@ -143,11 +154,40 @@ T shrink(const LensTerms& lens, const T& value) {
     return T(1) / stretch_at(lens, radial_root(lens, value));
 }
 
+/// u whose radial part is v.
+template <class T>
+Point<T> radially_undistorted(const LensTerms& lens, const Point<T>& v) {
+    const T k = shrink(lens, radial_of(lens, v));
+    return {v.x * k, v.y * k};
+}
+
+/// A step towards u with F(u) = v: what is left of v without u's tangential part. The distance to u becomes half as large
+/// at most, as far as the lens goes (set_ends() in lens.cpp).
+template <class T>
+Point<T> nearer(const LensTerms& lens, const Point<T>& v, const Point<T>& u) {
+    const Point<T> more = tangential_at(lens, u);
+    return radially_undistorted(lens, Point<T>{v.x - more.x, v.y - more.y});
+}
+
+/// u with F(u) = v, of a lens with a tangential part: steps until one is next to nothing, or too many to matter.
+template <class T>
+Point<T> settled(const LensTerms& lens, const Point<T>& v) {
+    Point<T> u = radially_undistorted(lens, v);
+    for (int i = 0; i < LensTerms::kSteps; ++i) {
+        const Point<T> next = nearer(lens, v, u);
+        const T x = next.x - u.x, y = next.y - u.y;
+        const T left = LensTerms::kStill * unit_of<T>() * lens.ideal_end - max(max(x, T(-x)), max(y, T(-y)));
+        const auto open = is_negative(left);
+        u = {select(open, next.x, u.x), select(open, next.y, u.y)};
+        if (!somewhere(open)) break;
+    }
+    return u;
+}
+
 /// u with F(u) = v.
 template <class T>
 Point<T> undistorted(const LensTerms& lens, const Point<T>& v) {
-    const T k = shrink(lens, radial_of(lens, v));
-    return {v.x * k, v.y * k};
+    return lens.tangential ? settled(lens, v) : radially_undistorted(lens, v);
 }
 
 /// From the plane to the lens's own units, and about its centre; and back.
