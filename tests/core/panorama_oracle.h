@@ -115,17 +115,17 @@ class LensOracle {
     Real formula(Real r) const {
         using enum LensModel::Kind;
         const auto k = [&](std::size_t i) { return Real(m_values[i]); };
+        const Real r2 = r * r, r4 = r2 * r2;
         switch (m_kind) {
             case ptlens:
-                return k(0) * std::pow(r, 4) + k(1) * std::pow(r, 3) + k(2) * r * r + (1 - k(0) - k(1) - k(2)) * r;
+                return k(0) * r4 + k(1) * r2 * r + k(2) * r2 + (1 - k(0) - k(1) - k(2)) * r;
             case brown:
-                return r * (1 + k(0) * r * r + k(1) * std::pow(r, 4) + k(2) * std::pow(r, 6)) /
-                       (1 + k(3) * r * r + k(4) * std::pow(r, 4) + k(5) * std::pow(r, 6));
+                return r * (1 + k(0) * r2 + k(1) * r4 + k(2) * r2 * r4) /
+                       (1 + k(3) * r2 + k(4) * r4 + k(5) * r2 * r4);
             case three_de4:
-                return r + k(0) * std::pow(r, 3) + k(1) * std::pow(r, 5);
+                return r + k(0) * r2 * r + k(1) * r4 * r;
             default:
-                return r + k(0) * std::pow(r, 3) + k(1) * std::pow(r, 5) + k(2) * std::pow(r, 7) +
-                       k(3) * std::pow(r, 9);
+                return r + k(0) * r2 * r + k(1) * r4 * r + k(2) * r4 * r2 * r + k(3) * r4 * r4 * r;
         }
     }
     /// Its root, by halving; not a number beyond the fold.
@@ -163,8 +163,8 @@ class LensOracle {
         const Real radius = m_kind == LensModel::Kind::three_de4 ? formula(r) : root(r);
         const Point<Real> p{radius * std::cos(angle) * m_unit + Real(v.width) / 2,
                             radius * std::sin(angle) * m_unit + Real(v.height) / 2};
-        const bool tangential =
-            m_kind == LensModel::Kind::brown && (m_values[6] != 0 || m_values[7] != 0) && std::isfinite(radius);
+        const bool tangential = m_kind == LensModel::Kind::brown && (m_values[6] != 0 || m_values[7] != 0) &&
+                                std::isfinite(radius);
         return tangential ? newton(v, observed, p) : p;
     }
 
@@ -172,7 +172,8 @@ class LensOracle {
     Point<Real> newton(const View& v, const Point<Real>& wanted, Point<Real> p) const {
         for (int i = 0; i < 40; ++i) {
             const Real h = 1e-6L * m_unit;
-            const Point<Real> f = observed(v, p), a = observed(v, {p.x + h, p.y}), b = observed(v, {p.x, p.y + h});
+            const Point<Real> f = observed(v, p), a = observed(v, {p.x + h, p.y}),
+                              b = observed(v, {p.x, p.y + h});
             const Real xx = (a.x - f.x) / h, xy = (b.x - f.x) / h, yx = (a.y - f.y) / h, yy = (b.y - f.y) / h;
             const Real x = wanted.x - f.x, y = wanted.y - f.y, determinant = xx * yy - xy * yx;
             p = {p.x + (yy * x - xy * y) / determinant, p.y + (xx * y - yx * x) / determinant};

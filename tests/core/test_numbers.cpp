@@ -128,8 +128,9 @@ TYPED_TEST(Numbers, ReadEveryProjection) {
 
 TYPED_TEST(Numbers, ReadEveryLens) {
     using T = TypeParam;
-    for (const char* text : {"ptlens:a=0.01,b=-0.03,c=0.02,d=5", "ptlens:b=0.03", "brown:k1=-0.2,k2=0.05,k4=0.02",
-                             "3de4:k1=0.1,k2=0.03", "kb4:k1=0.05,k2=-0.01,k3=0.002,k4=-0.0003"}) {
+    for (const char* text :
+         {"ptlens:a=0.01,b=-0.03,c=0.02,d=5", "ptlens:b=0.03", "brown:k1=-0.2,k2=0.05,k4=0.02",
+          "3de4:k1=0.1,k2=0.03", "kb4:k1=0.05,k2=-0.01,k3=0.002,k4=-0.0003"}) {
         const bool fisheye = std::string_view(text).starts_with("kb4");
         const Chart chart(fisheye ? Projection::fisheye : Projection::rectilinear, 300, 200, 100,
                           PixelSpacing::edges, "", 1, LensModel::parse(text));

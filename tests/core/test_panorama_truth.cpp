@@ -26,14 +26,8 @@ constexpr Projection kAll[] = {equirectangular, cylindrical, rectilinear, fishey
                                stereographic,   mercator,    cubemap,     cubemap3x2, cubecross};
 
 Chart chart_of(const View& v) {
-    return {v.projection,
-            v.width,
-            v.height,
-            v.fov,
-            v.centers ? PixelSpacing::centers : PixelSpacing::edges,
-            "",
-            1,
-            v.lens};
+    return {v.projection, v.width, v.height, v.fov, v.centers ? PixelSpacing::centers : PixelSpacing::edges,
+            "",           1,       v.lens};
 }
 
 struct Scene {
@@ -207,7 +201,9 @@ class Random {
             v.projection != stereographic)
             return {};
         using enum LensModel::Kind;
-        const LensModel::Kind own = v.projection == rectilinear ? brown : v.projection == fisheye ? kb4 : ptlens;
+        const LensModel::Kind own = v.projection == rectilinear ? brown
+                                    : v.projection == fisheye   ? kb4
+                                                                : ptlens;
         LensModel model{chance(0.4) ? own : chance(0.5) ? ptlens : three_de4, {}};
         model.values.resize(LensModel::names(model.kind).size());
         // The farthest corner, in the model's unit.
@@ -215,10 +211,11 @@ class Random {
                                 ? 1
                                 : std::hypot(v.width, v.height) / 2 / static_cast<double>(oracle::scale(v).x);
         for (std::size_t i = 0; i + 2 < model.values.size() && i < 6; ++i)
-            model.values[i] = chance(0.3) ? 0
-                              : model.kind == ptlens
-                                  ? between(-0.05, 0.05)
-                                  : between(-0.06, 0.06) / std::pow(unit, 2.0 * static_cast<double>(i % 3 + 1));
+            model.values[i] =
+                chance(0.3) ? 0
+                : model.kind == ptlens
+                    ? between(-0.05, 0.05)
+                    : between(-0.06, 0.06) / std::pow(unit, 2.0 * static_cast<double>(i % 3 + 1));
         for (std::size_t i = 1; i <= 2; ++i)
             if (chance(0.3)) model.values[model.values.size() - i] = between(-0.1, 0.1) * v.width;
         return model;
@@ -293,7 +290,7 @@ TEST(PanoramaTruth, TheWholePictureThroughALensIsUnderItsBounds) {
         view.lens = LensModel::parse(text);
         return view;
     };
-    const View flat{rectilinear, 150, 100, 100}, fish{fisheye, 120, 120, 180}, photo{rectilinear, 6000, 4000, 80};
+    const View flat{rectilinear, 90, 60, 100}, fish{fisheye, 70, 70, 180}, photo{rectilinear, 6000, 4000, 80};
     const Scene scenes[] = {
         {sphere, lens(flat, "ptlens:a=0.02,b=-0.05,c=0.01,d=7,e=-3"), {10, 20, 30}, 0.01},
         {sphere, lens(flat, "brown:k1=-0.1,k2=0.01,k4=0.05"), {10, 80, 30}, 1e-4},

@@ -271,8 +271,11 @@ TEST(ReprojectRequest, ErrorsOfLensesAndSizes) {
 
 TEST(ReprojectRequest, Lenses) {
     const SourceFacts photo{3000, 2000, Projection::rectilinear};
-    const std::vector<Assignment> both = {
-        {"srcfov", "70"}, {"srclens", "brown:k1=-0.1"}, {"srcpitch", "5"}, {"lens", "ptlens:b=0.02,c=-0.5,d=3"}, {"fov", "60"}};
+    const std::vector<Assignment> both = {{"srcfov", "70"},
+                                          {"srclens", "brown:k1=-0.1"},
+                                          {"srcpitch", "5"},
+                                          {"lens", "ptlens:b=0.02,c=-0.5,d=3"},
+                                          {"fov", "60"}};
     const ReprojectRequest r = request(both, photo);
     EXPECT_EQ(r.source.lens()->model().text(), "brown:k1=-0.1");
     EXPECT_EQ(r.target.lens()->model().text(), "ptlens:b=0.02,c=-0.5,d=3");
@@ -296,7 +299,8 @@ TEST(ReprojectRequest, ErrorsOfLenses) {
     const auto error = [](const std::vector<Assignment>& assignments) {
         return error_of([&] { request(assignments); });
     };
-    EXPECT_THAT(error({{"lens", "ptlens:x=1"}}), HasSubstr("lens=ptlens:x=1: ptlens must be followed by values of"));
+    EXPECT_THAT(error({{"lens", "ptlens:x=1"}}),
+                HasSubstr("lens=ptlens:x=1: ptlens must be followed by values of"));
     EXPECT_THAT(error({{"srclens", "ptlens:a=1"}}),
                 HasSubstr("srclens=ptlens:a=1: must be none for equirectangular, which has no lens"));
     EXPECT_THAT(error({{"lens", "3de4:k1=-4"}, {"size", "300x200"}}),
@@ -320,7 +324,8 @@ TEST(ReprojectRequest, HalfSizes) {
 
 TEST(ReferencePage, HasEveryParameter) {
     const std::string page = reference_page("Panorama", *pano_operation().parameters);
-    for (const Parameter& p : *pano_operation().parameters) EXPECT_THAT(page, HasSubstr("| `" + p.name + "`"));
+    for (const Parameter& p : *pano_operation().parameters)
+        EXPECT_THAT(page, HasSubstr("| `" + p.name + "`"));
     EXPECT_THAT(page, HasSubstr("| `tol` | `0.01` | source pixels | a number of at least 0 |"));
 }
 

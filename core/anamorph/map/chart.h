@@ -236,8 +236,9 @@ Point<T> Chart::to_observed_plane(const T& x, const T& y, const Branch& branch) 
 
 template <class T>
 Point<T> Chart::to_plane(const T& x, const T& y, const Branch& branch) const {
-    const Point<T> p = to_observed_plane(x, y, branch);
-    return m_lens ? m_lens->ideal(p) : p;
+    Point<T> p = to_observed_plane(x, y, branch);
+    if (m_lens) p = m_lens->ideal(p);
+    return p;
 }
 
 template <class T>

@@ -86,9 +86,11 @@ const std::vector<std::string>& LensModel::names(Kind kind) {
 LensModel LensModel::parse(std::string_view text, const std::string& parameter) {
     const std::string whole(text);
     const std::string_view name = text.substr(0, text.find(':'));
-    const auto kind = std::find_if(kinds().begin(), kinds().end(), [&](const auto& k) { return k.name == name; });
+    const auto kind =
+        std::find_if(kinds().begin(), kinds().end(), [&](const auto& k) { return k.name == name; });
     if (kind == kinds().end())
-        throw Error(parameter, whole, "must begin with one of " + listed(kinds(), [](const auto& k) { return k.name; }));
+        throw Error(parameter, whole,
+                    "must begin with one of " + listed(kinds(), [](const auto& k) { return k.name; }));
     LensModel model{kind->kind, std::vector<double>(kind->values.size())};
     std::set<std::string_view> seen;
     for (std::size_t at = name.size(); at < text.size();) {
@@ -137,7 +139,8 @@ Lens::Lens(const LensModel& model, Lensed lensed, const std::string& projection,
     using enum LensModel::Kind;
     if (lensed == Lensed::no)
         throw Error(parameter, model.text(), "must be none for " + projection + ", which has no lens");
-    if ((model.kind == brown && lensed != Lensed::flat) || (model.kind == kb4 && lensed != Lensed::equidistant))
+    if ((model.kind == brown && lensed != Lensed::flat) ||
+        (model.kind == kb4 && lensed != Lensed::equidistant))
         throw Error(parameter, model.text(),
                     kind_of(model.kind).name + " must be of a " +
                         (model.kind == brown ? "rectilinear" : "fisheye") + " picture, not " + projection);
@@ -162,8 +165,9 @@ Lens::Lens(const LensModel& model, Lensed lensed, const std::string& projection,
             return print(std::round(10 * length * static_cast<double>(unit / plane.per_x)) / 10);
         };
         throw Error(parameter, model.text(),
-                    std::string(folds ? "folds" : "ends") + " at a radius of " + pixels(m_terms.observed_end) +
-                        " pixels: must not within " + pixels(asked) + ", the circle that the picture holds");
+                    std::string(folds ? "folds" : "ends") + " at a radius of " +
+                        pixels(m_terms.observed_end) + " pixels: must not within " + pixels(asked) +
+                        ", the circle that the picture holds");
     }
 }
 
@@ -263,7 +267,8 @@ double Lens::condition_over(const Interval& t) const {
     const Series<Interval, 1> stretch = lens_formula::stretch_at(terms, Series<Interval, 1>::variable(t));
     double over = magnitude_of(terms.over, terms.over_count, t.hi);
     if (m_model.kind == LensModel::Kind::ptlens)
-        over += 1 + std::fabs(m_model.values[0]) + std::fabs(m_model.values[1]) + std::fabs(m_model.values[2]);
+        over +=
+            1 + std::fabs(m_model.values[0]) + std::fabs(m_model.values[1]) + std::fabs(m_model.values[2]);
     const Interval below = lens_formula::sum_of_powers(terms.under, terms.under_count, t);
     const double under = magnitude_of(terms.under, terms.under_count, t.hi);
     const double ratio = (over + stretch.c[0].hi * under) / below.lo / stretch.c[0].lo;

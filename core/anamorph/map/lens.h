@@ -224,8 +224,7 @@ struct Slope {
 
     Slope(const LensTerms& lens, const Point<T>& u) {
         const T squared = square(u.x) + square(u.y);
-        const auto stretch =
-            lens_formula::stretch_at(lens, lens_formula::Series<T, 1>::variable(squared));
+        const auto stretch = lens_formula::stretch_at(lens, lens_formula::Series<T, 1>::variable(squared));
         const T along = stretch.c[0] + (u.x * lens.mx + u.y * lens.my) * 2.0;
         xx = along + (stretch.c[1] * square(u.x) + u.x * lens.mx * 2.0) * 2.0;
         yy = along + (stretch.c[1] * square(u.y) + u.y * lens.my * 2.0) * 2.0;
@@ -269,8 +268,8 @@ template <class Real>
 Point<Rounded<Real>> settled(const LensTerms& lens, const Point<Rounded<Real>>& v) {
     using R = Rounded<Real>;
     using lens_detail::largest_row;
-    const Point<R> u = lens_detail::settled_values(
-        lens, Point<R>{R(v.x.range, 0, v.x.error), R(v.y.range, 0, v.y.error)});
+    const Point<R> u =
+        lens_detail::settled_values(lens, Point<R>{R(v.x.range, 0, v.x.error), R(v.y.range, 0, v.y.error)});
     const double radius = std::max(v.x.radius, v.y.radius);
     if (radius == 0) return u;
     const lens_detail::Slope<R> at(lens, u);
@@ -286,8 +285,9 @@ Point<Rounded<Real>> settled(const LensTerms& lens, const Point<Rounded<Real>>& 
         // is rounded by less than 16 units of all of it.
         const Point<R> f = lens_formula::distorted(lens, jet);
         const double size = largest_row(at, [](const R& k) { return k.computed_size(); });
-        const double rest = R::kDegree * std::max(f.x.error, f.y.error) + std::max(v.x.error, v.y.error) +
-                            (largest_row(at, [](const R& k) { return k.error; }) + 16 * R::kUnit * size * c * size) * r;
+        const double rest =
+            R::kDegree * std::max(f.x.error, f.y.error) + std::max(v.x.error, v.y.error) +
+            (largest_row(at, [](const R& k) { return k.error; }) + 16 * R::kUnit * size * c * size) * r;
         const double error = 1.25 * std::max({c * rest / (1 - c * h), u.x.error, u.y.error});
         return {R(u.x.range, r, error), R(u.y.range, r, error)};
     }

@@ -88,9 +88,9 @@ glm::dmat3 rotation(const Orientation& orientation) {
 Panorama::Panorama(const Chart& source, const Chart& target, const Orientation& orientation,
                    const Orientation& held)
     : m_source(source), m_target(target) {
-    const std::pair<const char*, double> angles[] = {
-        {"yaw", orientation.yaw}, {"pitch", orientation.pitch}, {"roll", orientation.roll},
-        {"srcyaw", held.yaw},     {"srcpitch", held.pitch},     {"srcroll", held.roll}};
+    const std::pair<const char*, double> angles[] = {{"yaw", orientation.yaw},   {"pitch", orientation.pitch},
+                                                     {"roll", orientation.roll}, {"srcyaw", held.yaw},
+                                                     {"srcpitch", held.pitch},   {"srcroll", held.roll}};
     for (const auto& [name, value] : angles)
         if (!std::isfinite(value))
             throw Error(name, std::to_string(value), "must be a finite angle in degrees");

@@ -78,18 +78,18 @@ ParameterTable make_table() {
         number("roll", "degrees", "0", -kInfinity, kInfinity,
                "the camera's turn about its axis, clockwise; roll is applied first, then pitch, then yaw"),
         number("srcyaw", "degrees", "0", -kInfinity, kInfinity,
-               "how the camera of the source was held: turned to the right"),
+               "how the source's camera was held: turned to the right"),
         number("srcpitch", "degrees", "0", -kInfinity, kInfinity,
-               "how the camera of the source was held: tilted up; what its picture shows is levelled by it"),
+               "how the source's camera was held: tilted up"),
         number("srcroll", "degrees", "0", -kInfinity, kInfinity,
-               "how the camera of the source was held: turned about its axis, clockwise; in the same order"),
+               "how the source's camera was held: turned about its axis, clockwise; in the same order"),
         text("srclens",
-             "distortion of the source, as lens; by default what the image says of itself, else none; rays beyond "
-             "the radius at which it folds have no source point"),
+             "distortion of the source, as for lens; by default what the image says of itself, else none"),
         text("lens",
-             "distortion of the picture: none (the default), or MODEL:name=value,name=value, where MODEL is ptlens (a, b, c), brown "
-             "(k1 to k6, p1, p2), 3de4 (k1, k2) or kb4 (k1 to k4), each with the shift d, e of its centre in pixels; "
-             "fov is that without distortion; pixels beyond the radius at which it folds have no ray"),
+             "distortion of the picture: none, or MODEL:name=value,name=value with ptlens (a, b, c), brown "
+             "(k1 to k6, p1, p2), 3de4 (k1, k2) or kb4 (k1 to k4), and d, e, the shift of its centre in "
+             "pixels; "
+             "by default none; fields of view are those without distortion"),
         size("width and height of the picture, or its width alone; by default as fine as the source at the "
              "centre"),
         tile(),
@@ -123,7 +123,8 @@ Size default_size(Projection projection, double fov, double d, double magnified,
     const int probe = 1200;  // holds whole faces of every cube layout
     const Size shape = natural_size(projection, fov, probe);
     const Chart chart(projection, shape.width, shape.height, fov, PixelSpacing::edges, "", d);
-    const double width = probe * source.pixels_per_radian() / (chart.pixels_per_radian() * std::max(magnified, 1e-3));
+    const double width =
+        probe * source.pixels_per_radian() / (chart.pixels_per_radian() * std::max(magnified, 1e-3));
     const double most = kMaxDefaultSize / std::max(1.0, natural_aspect(projection, fov));
     const int faces = std::max(1, faces_of(projection).columns);
     const double face = std::max(1.0, std::min(std::round(width / faces), std::floor(most / faces)));
@@ -164,9 +165,9 @@ ReprojectRequest read_reproject_request(const ParameterValues& values, const Sou
     const bool says_fov = !values.given("srcfov") && facts.fov && facts.projection == from;
     const bool says_lens = !values.given("srclens") && facts.lens && facts.projection == from;
     const LensModel srclens = says_lens ? *facts.lens : lens_of(values, "srclens");
-    const Chart source(from, facts.width, facts.height,
-                       says_fov ? *facts.fov : field_of_view(values, "srcfov", from),
-                       chosen<PixelSpacing>(values, "pixels", kSpacings), "src", values.number("srcd"), srclens);
+    const Chart source(
+        from, facts.width, facts.height, says_fov ? *facts.fov : field_of_view(values, "srcfov", from),
+        chosen<PixelSpacing>(values, "pixels", kSpacings), "src", values.number("srcd"), srclens);
 
     const Projection to = projection_from_name(values.text("to"), "to");
     const double fov = field_of_view(values, "fov", to), d = values.number("d");
