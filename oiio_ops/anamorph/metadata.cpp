@@ -95,14 +95,18 @@ bool is_for_color(const std::string& name) {
     return starts_with_any(name, beginnings) || is_any(name, names);
 }
 
-/// "fisheye fov=180", as panorama_attributes writes it.
+/// "fisheye fov=180" or "rectilinear fov=90 lens=brown:k1=-0.1", as panorama_attributes writes it.
 void read_projection(const std::string& text, SourceFacts& facts) {
     const std::size_t blank = text.find(' ');
     constexpr std::string_view kFov = " fov=";
     if (blank == std::string::npos || text.compare(blank, kFov.size(), kFov) != 0) return;
-    const std::string fov = text.substr(blank + kFov.size());
+    const std::string rest = text.substr(blank + kFov.size()), fov = rest.substr(0, rest.find(' '));
+    constexpr std::string_view kLens = " lens=";
     try {
-        facts.projection = projection_from_name(text.substr(0, blank));
+        const Projection projection = projection_from_name(text.substr(0, blank));
+        if (rest.compare(fov.size(), kLens.size(), kLens) == 0)
+            facts.lens = LensModel::parse(rest.substr(fov.size() + kLens.size()));
+        facts.projection = projection;
     } catch (const Error&) {
         return;
     }

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <numbers>
 
 #include "anamorph/map/panorama.h"
@@ -23,6 +24,8 @@ struct View {
     int width, height;
     double fov;
     bool centers = false;
+    LensModel lens = {};
+    mutable std::shared_ptr<const class LensOracle> solved = {};
 };
 
 /// Radians per plane unit and all that: half the plane's width for half the field of view.
@@ -81,8 +84,121 @@ inline Vector across(const glm::dmat3& axes, const Vector& ray) {
     return {column(0), column(1), column(2)};
 }
 
+/// A lens in its own unit, from polar coordinates: radii, and how they become each other.
+class LensOracle {
+  public:
+    explicit LensOracle(const View& v) : m_kind(v.lens.kind), m_values(v.lens.values) {
+        using enum LensModel::Kind;
+        const std::size_t n = m_values.size();
+        m_unit = m_kind == ptlens      ? std::min(v.width, v.height) / Real(2)
+                 : m_kind == three_de4 ? std::sqrt(Real(v.width) * v.width + Real(v.height) * v.height) / 2
+                                       : scale(v).x;
+        m_cx = Real(v.width) / 2 + m_values[n - 2];
+        m_cy = Real(v.height) / 2 + m_values[n - 1];
+        // In steps up to where the radius falls; the top lies within one of them.
+        const Real far = 4 * std::sqrt(Real(v.width) * v.width + Real(v.height) * v.height) / m_unit;
+        const Real step = far / 4096;
+        const auto rises = [&](Real r) { return formula(r + step) > formula(r); };
+        for (m_end = 0; rises(m_end) && m_end < far && formula(m_end) < 4 * far;) m_end += step;
+        if (rises(m_end)) return;
+        Real low = std::max(m_end - step, Real(0)), high = m_end + step;
+        for (int i = 0; i < 200; ++i) {
+            const Real third = (high - low) / 3;
+            if (formula(low + third) < formula(high - third))
+                low += third;
+            else
+                high -= third;
+        }
+        m_end = (low + high) / 2;
+    }
+    /// The model's own polynomial.
+    Real formula(Real r) const {
+        using enum LensModel::Kind;
+        const auto k = [&](std::size_t i) { return Real(m_values[i]); };
+        const Real r2 = r * r, r4 = r2 * r2;
+        switch (m_kind) {
+            case ptlens:
+                return k(0) * r4 + k(1) * r2 * r + k(2) * r2 + (1 - k(0) - k(1) - k(2)) * r;
+            case brown:
+                return r * (1 + k(0) * r2 + k(1) * r4 + k(2) * r2 * r4) /
+                       (1 + k(3) * r2 + k(4) * r4 + k(5) * r2 * r4);
+            case three_de4:
+                return r + k(0) * r2 * r + k(1) * r4 * r;
+            default:
+                return r + k(0) * r2 * r + k(1) * r4 * r + k(2) * r4 * r2 * r + k(3) * r4 * r4 * r;
+        }
+    }
+    /// Its root, by halving; not a number beyond the fold.
+    Real root(Real value) const {
+        Real low = 0, high = m_end;
+        if (value > formula(m_end)) return NAN;
+        for (int i = 0; i < 90; ++i) {
+            const Real middle = (low + high) / 2;
+            (formula(middle) < value ? low : high) = middle;
+        }
+        return (low + high) / 2;
+    }
+    Real end() const { return m_end; }
+    Real unit() const { return m_unit; }
+
+    /// A pixel of the ideal picture as it is observed, and back. The ideal one's centre is the picture's middle.
+    Point<Real> observed(const View& v, const Point<Real>& ideal) const {
+        const Real x = (ideal.x - Real(v.width) / 2) / m_unit, y = (ideal.y - Real(v.height) / 2) / m_unit;
+        const Real r = std::hypot(x, y), angle = std::atan2(y, x);
+        if (m_kind != LensModel::Kind::three_de4 && r > m_end) return {NAN, NAN};
+        if (r == 0) return {m_cx, m_cy};
+        const Real radius = m_kind == LensModel::Kind::three_de4 ? root(r) : formula(r);
+        Point<Real> p{radius * std::cos(angle), radius * std::sin(angle)};
+        if (m_kind == LensModel::Kind::brown) {
+            const Real p1 = m_values[6], p2 = m_values[7];
+            p.x += 2 * p1 * x * y + p2 * (r * r + 2 * x * x);
+            p.y += p1 * (r * r + 2 * y * y) + 2 * p2 * x * y;
+        }
+        return {p.x * m_unit + m_cx, p.y * m_unit + m_cy};
+    }
+    Point<Real> ideal(const View& v, const Point<Real>& observed) const {
+        const Real x = (observed.x - m_cx) / m_unit, y = (observed.y - m_cy) / m_unit;
+        const Real r = std::hypot(x, y), angle = std::atan2(y, x);
+        if (m_kind == LensModel::Kind::three_de4 && r > m_end) return {NAN, NAN};
+        const Real radius = m_kind == LensModel::Kind::three_de4 ? formula(r) : root(r);
+        const Point<Real> p{radius * std::cos(angle) * m_unit + Real(v.width) / 2,
+                            radius * std::sin(angle) * m_unit + Real(v.height) / 2};
+        const bool tangential = m_kind == LensModel::Kind::brown && (m_values[6] != 0 || m_values[7] != 0) &&
+                                std::isfinite(radius);
+        return tangential ? newton(v, observed, p) : p;
+    }
+
+    /// With slopes from differences.
+    Point<Real> newton(const View& v, const Point<Real>& wanted, Point<Real> p) const {
+        for (int i = 0; i < 40; ++i) {
+            const Real h = 1e-6L * m_unit;
+            const Point<Real> f = observed(v, p), a = observed(v, {p.x + h, p.y}),
+                              b = observed(v, {p.x, p.y + h});
+            const Real xx = (a.x - f.x) / h, xy = (b.x - f.x) / h, yx = (a.y - f.y) / h, yy = (b.y - f.y) / h;
+            const Real x = wanted.x - f.x, y = wanted.y - f.y, determinant = xx * yy - xy * yx;
+            p = {p.x + (yy * x - xy * y) / determinant, p.y + (xx * y - yx * x) / determinant};
+        }
+        return p;
+    }
+
+  private:
+    LensModel::Kind m_kind;
+    std::vector<double> m_values;
+    Real m_unit = 1, m_cx = 0, m_cy = 0, m_end = 0;
+};
+
+inline const LensOracle& lens_of(const View& v) {
+    if (!v.solved) v.solved = std::make_shared<const LensOracle>(v);
+    return *v.solved;
+}
+
 /// The ray through a pixel's centre; false outside of the lens, by more than a hair.
 inline bool ray_of(const View& v, const Piece& piece, Real x, Real y, Vector& ray) {
+    if (v.lens.kind != LensModel::Kind::none) {
+        const Point<Real> ideal = lens_of(v).ideal(v, {x, y});
+        if (!std::isfinite(ideal.x)) return false;
+        x = ideal.x, y = ideal.y;
+    }
     const Scale s = scale(v);
     const Real px = (x - Real(piece.box.x0 + piece.box.x1) / 2) / s.x,
                py = (y - Real(piece.box.y0 + piece.box.y1) / 2) / s.y, r = std::hypot(px, py);
@@ -150,8 +266,22 @@ inline Vector rotated(Vector v, const Orientation& look) {
     return v;
 }
 
+/// The other way round, by the inverses in the other order.
+inline Vector turned_back(Vector v, const Orientation& held) {
+    turn(v.z, v.x, -held.yaw);
+    turn(v.y, v.z, -held.pitch);
+    turn(v.x, v.y, -held.roll);
+    return v;
+}
+
 /// The point of a ray on a given face. Not finite where there is none.
-inline Point<long double> point_of(const View& v, const Piece& piece, const Vector& ray) {
+inline Point<long double> point_of(const View& view, const Piece& piece, const Vector& ray) {
+    if (view.lens.kind != LensModel::Kind::none) {
+        View ideal = view;
+        ideal.lens = {};
+        return lens_of(view).observed(view, point_of(ideal, piece, ray));
+    }
+    const View& v = view;
     const Scale s = scale(v);
     const Real cx = Real(piece.box.x0 + piece.box.x1) / 2, cy = Real(piece.box.y0 + piece.box.y1) / 2;
     const Real rho = std::hypot(ray.x, ray.y), level = std::hypot(ray.x, ray.z), t = std::atan2(rho, ray.z);

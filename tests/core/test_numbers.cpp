@@ -126,6 +126,29 @@ TYPED_TEST(Numbers, ReadEveryProjection) {
     }
 }
 
+TYPED_TEST(Numbers, ReadEveryLens) {
+    using T = TypeParam;
+    for (const char* text :
+         {"ptlens:a=0.01,b=-0.03,c=0.02,d=5", "ptlens:b=0.03", "brown:k1=-0.2,k2=0.05,k4=0.02",
+          "3de4:k1=0.1,k2=0.03", "kb4:k1=0.05,k2=-0.01,k3=0.002,k4=-0.0003"}) {
+        const bool fisheye = std::string_view(text).starts_with("kb4");
+        const Chart chart(fisheye ? Projection::fisheye : Projection::rectilinear, 300, 200, 100,
+                          PixelSpacing::edges, "", 1, LensModel::parse(text));
+        const Lens& lens = *chart.lens();
+        for (const Point<double> p : {Point<double>{0.3, -0.2}, {0.01, 0.7}, {-0.6, 0.1}}) {
+            const Point<double> ideal = lens.ideal(p), observed = lens.observed(p);
+            const Point<T> q{T(p.x), T(p.y)}, i = lens.ideal(q), o = lens.observed(q);
+            const double near = TestFixture::kClose;
+            EXPECT_NEAR(middle(i.x), ideal.x, near) << text;
+            EXPECT_NEAR(middle(i.y), ideal.y, near) << text;
+            EXPECT_NEAR(middle(o.x), observed.x, near) << text;
+            EXPECT_NEAR(middle(o.y), observed.y, near) << text;
+            EXPECT_GT(middle(lens.inside(q)), 0) << text;
+            EXPECT_GT(middle(lens.sees(q)), 0) << text;
+        }
+    }
+}
+
 template <class T>
 class FormulaNumbers : public Numbers<T> {};
 // Bounds of rounding are asked of projections only.

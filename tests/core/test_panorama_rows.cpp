@@ -78,5 +78,32 @@ TEST(PanoramaRows, AreWithinTheBoundOfExactPixelsForEveryPairOfProjections) {
     EXPECT_GT(all.compared, 100000);
 }
 
+TEST(PanoramaRows, AreWithinTheBoundThroughLenses) {
+    const auto photo = [](Projection projection, const char* lens) {
+        return Chart(projection, 600, 400, 100, PixelSpacing::edges, "", 1, LensModel::parse(lens));
+    };
+    const Chart sphere(Projection::equirectangular, 512, 256);
+    const Chart lenses[] = {
+        photo(Projection::rectilinear, "ptlens:a=0.02,b=-0.05,c=0.01,d=7,e=-3"),
+        photo(Projection::rectilinear, "brown:k1=-0.15,k2=0.03,k3=-0.001,k4=0.01,k6=0.002"),
+        photo(Projection::rectilinear, "3de4:k1=0.1,k2=0.02,d=-5"),
+        photo(Projection::fisheye, "kb4:k1=0.05,k2=-0.01,k3=0.002,k4=-0.0003"),
+        photo(Projection::equisolid, "ptlens:b=-0.1"),
+        photo(Projection::stereographic, "ptlens:b=-0.45"),
+        photo(Projection::orthographic, "3de4:k1=-0.2,k2=0.02")};
+    std::int64_t compared = 0;
+    for (const Chart& lens : lenses)
+        for (const Panorama& map :
+             {Panorama(lens, sphere, {20, 30, 40}), Panorama(sphere, lens, {20, 30, 40}),
+              Panorama(lens, lens, {1, 2, 3}, {3, 2, 1})}) {
+            Found found;
+            compare(map, found);
+            EXPECT_EQ(found.over, 0) << lens.lens()->model().text();
+            EXPECT_LE(found.differ_in_seen, 2) << lens.lens()->model().text();
+            compared += found.compared;
+        }
+    EXPECT_GT(compared, 20000);
+}
+
 }  // namespace
 }  // namespace anamorph

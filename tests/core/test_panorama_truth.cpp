@@ -26,7 +26,8 @@ constexpr Projection kAll[] = {equirectangular, cylindrical, rectilinear, fishey
                                stereographic,   mercator,    cubemap,     cubemap3x2, cubecross};
 
 Chart chart_of(const View& v) {
-    return {v.projection, v.width, v.height, v.fov, v.centers ? PixelSpacing::centers : PixelSpacing::edges};
+    return {v.projection, v.width, v.height, v.fov, v.centers ? PixelSpacing::centers : PixelSpacing::edges,
+            "",           1,       v.lens};
 }
 
 struct Scene {
@@ -34,8 +35,9 @@ struct Scene {
     Orientation look;
     double tol;
     Scheme scheme = Scheme::automatic;
+    Orientation held = {};
 
-    Panorama map() const { return {chart_of(source), chart_of(target), look}; }
+    Panorama map() const { return {chart_of(source), chart_of(target), look, held}; }
     PlanOptions options() const {
         PlanOptions options;
         options.scheme = scheme;
@@ -49,7 +51,7 @@ std::string words(const Scene& s) {
     for (const View* v : {&s.source, &s.target})
         text += std::string(name_of(v->projection)) + " " + std::to_string(v->width) + "x" +
                 std::to_string(v->height) + " fov " + ::testing::PrintToString(v->fov) +
-                (v->centers ? " centers " : " ");
+                (v->centers ? " centers " : " ") + v->lens.text() + " ";
     return text + "yaw " + ::testing::PrintToString(s.look.yaw) + " pitch " +
            ::testing::PrintToString(s.look.pitch) + " roll " + ::testing::PrintToString(s.look.roll) +
            " tol " + ::testing::PrintToString(s.tol) + " scheme " +
@@ -109,7 +111,7 @@ Findings examine(const Scene& scene) {
                     ++found.pixels;
                     Vector ray;
                     const bool has_ray = oracle::ray_of(scene.target, target, i + 0.5L, j + 0.5L, ray);
-                    ray = oracle::rotated(ray, scene.look);
+                    ray = oracle::turned_back(oracle::rotated(ray, scene.look), scene.held);
                     Point<double> used{};
                     int piece = block.source_piece;
                     bool seen = block.kind == Block::Kind::polynomial;
@@ -193,6 +195,32 @@ class Random {
         return v;
     }
 
+    /// Often none; else of a model that the projection may have, and tame enough not to fold within the picture.
+    LensModel lens(const View& v) {
+        if (v.projection != rectilinear && v.projection != fisheye && v.projection != equisolid &&
+            v.projection != stereographic)
+            return {};
+        using enum LensModel::Kind;
+        const LensModel::Kind own = v.projection == rectilinear ? brown
+                                    : v.projection == fisheye   ? kb4
+                                                                : ptlens;
+        LensModel model{chance(0.4) ? own : chance(0.5) ? ptlens : three_de4, {}};
+        model.values.resize(LensModel::names(model.kind).size());
+        // The farthest corner, in the model's unit.
+        const double unit = model.kind == ptlens || model.kind == three_de4
+                                ? 1
+                                : std::hypot(v.width, v.height) / 2 / static_cast<double>(oracle::scale(v).x);
+        for (std::size_t i = 0; i + 2 < model.values.size() && i < 6; ++i)
+            model.values[i] =
+                chance(0.3) ? 0
+                : model.kind == ptlens
+                    ? between(-0.05, 0.05)
+                    : between(-0.06, 0.06) / std::pow(unit, 2.0 * static_cast<double>(i % 3 + 1));
+        for (std::size_t i = 1; i <= 2; ++i)
+            if (chance(0.3)) model.values[model.values.size() - i] = between(-0.1, 0.1) * v.width;
+        return model;
+    }
+
   private:
     std::mt19937 m_engine;
 };
@@ -219,6 +247,69 @@ TEST(PanoramaTruth, NoPixelIsOverItsBound) {
                 pixels += expect_truth(scene).pixels;
             }
     RecordProperty("pixels", std::to_string(pixels));
+}
+
+TEST(PanoramaTruth, NoPixelIsOverItsBoundThroughLenses) {
+    const char* const rounds = std::getenv("ANAMORPH_TRUTH_ROUNDS");
+    const char* const seed_text = std::getenv("ANAMORPH_TRUTH_SEED");
+    const unsigned seed = seed_text ? static_cast<unsigned>(std::atoi(seed_text)) : 1966;
+    SCOPED_TRACE(::testing::Message() << "seed " << seed);
+    Random random(seed);
+    constexpr double kTols[] = {1, 0.01, 1e-4, 0};
+    std::int64_t pixels = 0;
+    int with_lens = 0, refused = 0;
+    for (int round = 0; round < (rounds ? std::atoi(rounds) : 2); ++round)
+        for (const Projection from : kAll)
+            for (const Projection to : kAll) {
+                Scene scene{random.view(from, true), random.view(to, false), {}, kTols[random.integer(0, 3)]};
+                scene.source.lens = random.lens(scene.source);
+                scene.target.lens = random.lens(scene.target);
+                if (scene.source.lens.text() == "none" && scene.target.lens.text() == "none") continue;
+                scene.look = {random.angle(), random.angle(), random.chance(0.5) ? 0 : random.angle()};
+                if (random.chance(0.5)) scene.held = {random.angle(), random.angle(), random.angle()};
+                scene.scheme = random.chance(0.2)   ? Scheme::residual
+                               : random.chance(0.5) ? Scheme::blocks
+                                                    : Scheme::automatic;
+                try {
+                    static_cast<void>(scene.map());
+                } catch (const Error&) {
+                    ++refused;
+                    continue;
+                }
+                ++with_lens;
+                pixels += expect_truth(scene).pixels;
+            }
+    EXPECT_GT(with_lens, 40);
+    EXPECT_LT(refused, with_lens / 4);
+    RecordProperty("pixels", std::to_string(pixels));
+}
+
+TEST(PanoramaTruth, TheWholePictureThroughALensIsUnderItsBounds) {
+    const View sphere{equirectangular, 8192, 4096, 360};
+    const auto lens = [](View view, const char* text) {
+        view.lens = LensModel::parse(text);
+        return view;
+    };
+    const View flat{rectilinear, 90, 60, 100}, fish{fisheye, 70, 70, 180}, photo{rectilinear, 6000, 4000, 80};
+    const Scene scenes[] = {
+        {sphere, lens(flat, "ptlens:a=0.02,b=-0.05,c=0.01,d=7,e=-3"), {10, 20, 30}, 0.01},
+        {sphere, lens(flat, "brown:k1=-0.1,k2=0.01,k4=0.05"), {10, 80, 30}, 1e-4},
+        {sphere, lens(flat, "3de4:k1=0.1,k2=0.02"), {170, 20, 0}, 0.01},
+        {sphere, lens(fish, "kb4:k1=0.05,k2=-0.01,k3=0.002,k4=-0.0003"), {0, -90, 0}, 0.01},
+        {lens(photo, "ptlens:a=0.02,b=-0.05,c=0.01"), flat, {5, 5, 5}, 0.01},
+        {lens(photo, "brown:k1=-0.2,k2=0.05,p1=0.001,p2=-0.002,d=30,e=-20"), flat, {5, 5, 5}, 0.01},
+        {lens(photo, "3de4:k1=-0.1,k2=0.02,d=30"), lens(flat, "ptlens:b=0.03"), {5, 5, 5}, 1e-4},
+        // Lenses that fold in the picture, just beyond the circle that it holds.
+        {lens(photo, "ptlens:b=-0.45"), flat, {0, 0, 0}, 0.01},
+        {sphere, lens(flat, "ptlens:b=-0.45"), {0, 0, 0}, 0.01},
+        {lens({fisheye, 3000, 2000, 150}, "3de4:k1=-0.6"), lens(fish, "kb4:k1=-0.05"), {0, 10, 0}, 0.01},
+    };
+    for (Scene scene : scenes)
+        for (const Scheme scheme : {Scheme::automatic, Scheme::blocks, Scheme::residual}) {
+            scene.scheme = scheme;
+            const Findings found = expect_truth(scene);
+            EXPECT_LE(found.worst_bound, std::max(scene.tol, 1e-4)) << words(scene);
+        }
 }
 
 TEST(PanoramaTruth, HardViewsAreUnderTheirBounds) {

@@ -5,6 +5,8 @@
 #include <gtest/gtest.h>
 
 #include <clocale>
+#include <cmath>
+#include <numbers>
 #include <random>
 
 #include "anamorph/operation/pano.h"
@@ -267,6 +269,45 @@ TEST(ReprojectRequest, ErrorsOfLensesAndSizes) {
                 HasSubstr("srcfov=190"));
 }
 
+TEST(ReprojectRequest, Lenses) {
+    const SourceFacts photo{3000, 2000, Projection::rectilinear};
+    const std::vector<Assignment> both = {{"srcfov", "70"},
+                                          {"srclens", "brown:k1=-0.1"},
+                                          {"srcpitch", "5"},
+                                          {"lens", "ptlens:b=0.02,c=-0.5,d=3"},
+                                          {"fov", "60"}};
+    const ReprojectRequest r = request(both, photo);
+    EXPECT_EQ(r.source.lens()->model().text(), "brown:k1=-0.1");
+    EXPECT_EQ(r.target.lens()->model().text(), "ptlens:b=0.02,c=-0.5,d=3");
+    EXPECT_EQ(r.held.pitch, 5);
+    EXPECT_EQ(r.orientation.pitch, 0);
+    // As fine as the source at the centre, where this lens magnifies by 1.48.
+    const double tangents = std::tan(30 * std::numbers::pi / 180) / std::tan(35 * std::numbers::pi / 180);
+    EXPECT_EQ(r.target.width(), std::lround(3000 * tangents / 1.48));
+    EXPECT_EQ(half_size(r.target)->lens()->model().text(), r.target.lens()->model().text());
+    EXPECT_EQ(request({}).target.lens(), nullptr);
+    EXPECT_EQ(request({{"lens", "none"}, {"srclens", "none"}}).target.lens(), nullptr);
+    // What the image says of itself, unless its projection is another one or the recipe says something else.
+    SourceFacts says = photo;
+    says.lens = LensModel::parse("ptlens:b=-0.01");
+    EXPECT_EQ(request({}, says).source.lens()->model().text(), "ptlens:b=-0.01");
+    EXPECT_EQ(request({{"from", "fisheye"}}, says).source.lens(), nullptr);
+    EXPECT_EQ(request({{"srclens", "none"}}, says).source.lens(), nullptr);
+}
+
+TEST(ReprojectRequest, ErrorsOfLenses) {
+    const auto error = [](const std::vector<Assignment>& assignments) {
+        return error_of([&] { request(assignments); });
+    };
+    EXPECT_THAT(error({{"lens", "ptlens:x=1"}}),
+                HasSubstr("lens=ptlens:x=1: ptlens must be followed by values of"));
+    EXPECT_THAT(error({{"srclens", "ptlens:a=1"}}),
+                HasSubstr("srclens=ptlens:a=1: must be none for equirectangular, which has no lens"));
+    EXPECT_THAT(error({{"lens", "3de4:k1=-4"}, {"size", "300x200"}}),
+                HasSubstr("lens=3de4:k1=-4: folds at a radius of 52 pixels: must not within 100"));
+    EXPECT_THAT(error({{"srcyaw", "up"}}), HasSubstr("srcyaw=up: must be a finite number"));
+}
+
 TEST(ReprojectRequest, HalfSizes) {
     const auto levels = [](const std::vector<Assignment>& assignments) {
         std::optional<Chart> chart = request(assignments).target;
@@ -283,7 +324,8 @@ TEST(ReprojectRequest, HalfSizes) {
 
 TEST(ReferencePage, HasEveryParameter) {
     const std::string page = reference_page("Panorama", *pano_operation().parameters);
-    for (const Parameter& p : *pano_operation().parameters) EXPECT_THAT(page, HasSubstr("| `" + p.name + "`"));
+    for (const Parameter& p : *pano_operation().parameters)
+        EXPECT_THAT(page, HasSubstr("| `" + p.name + "`"));
     EXPECT_THAT(page, HasSubstr("| `tol` | `0.01` | source pixels | a number of at least 0 |"));
 }
 

@@ -101,7 +101,7 @@ double Chart::default_fov(Projection projection) {
 }
 
 Chart::Chart(Projection projection, int width, int height, double fov, PixelSpacing spacing,
-             const std::string& prefix, double d)
+             const std::string& prefix, double d, const LensModel& lens)
     : m_projection(projection), m_width(width), m_height(height), m_fov(fov), m_spacing(spacing) {
     const std::string size = std::to_string(width) + "x" + std::to_string(height);
     if (width < 1 || height < 1 || width > kMaxSize || height > kMaxSize)
@@ -115,11 +115,11 @@ Chart::Chart(Projection projection, int width, int height, double fov, PixelSpac
         m_pieces = face_pieces(projection, width, height, prefix + "size");
     else
         m_pieces = {Piece{{0, 0, width, height}}};
-    set_scale(prefix);
+    set_scale(prefix, lens);
     set_branches();
 }
 
-void Chart::set_scale(const std::string& prefix) {
+void Chart::set_scale(const std::string& prefix, const LensModel& lens) {
     const int columns = m_pieces[0].box.width(), rows = m_pieces[0].box.height();
     const long double plane =
         with_projection(m_projection, [&](auto formulas) { return formulas.width(m_fov, m_setting); });
@@ -136,6 +136,11 @@ void Chart::set_scale(const std::string& prefix) {
     m_sy = Constant(down);
     m_per_x = Constant(1 / across);
     m_per_y = Constant(1 / down);
+    if (lens.kind == LensModel::Kind::none) return;
+    const Lens::Plane half{plane / 2, plane / 2 * rows / columns, 1 / across, 1 / down};
+    const Lensed lensed = with_projection(m_projection, [](auto formulas) { return formulas.lensed; });
+    m_lens =
+        std::make_shared<const Lens>(lens, lensed, std::string(name_of(m_projection)), half, prefix + "lens");
 }
 
 void Chart::set_branches() {
@@ -158,7 +163,9 @@ void Chart::set_branches() {
 }
 
 Chart Chart::resized(int width, int height) const {
-    return Chart(m_projection, width, height, m_fov, m_spacing, "", m_setting.d);
+    Chart chart(m_projection, width, height, m_fov, m_spacing, "", m_setting.d);
+    chart.m_lens = m_lens;
+    return chart;
 }
 
 Branch Chart::branch_around(double x, double y, int piece) const {

@@ -4,7 +4,8 @@
 //
 // Frames. Image: pixels, x right, y down, the centre of pixel (i, j) at (i + 0.5, j + 0.5). Ray: x right, y
 // down, z forward, any length. Chart plane: (X, Y) = (image - centre) / pixels per unit, in the unit of the
-// lens (radians for angles).
+// projection (radians for angles). A picture taken through a lens (lens.h) is in the observed plane, from which
+// the lens leads to that of the projection.
 //
 // Projections: map/projection/, one a file, in the order of map/projection/list.h.
 #pragma once
@@ -12,6 +13,7 @@
 #include <algorithm>
 #include <cmath>
 #include <glm/mat3x3.hpp>
+#include <memory>
 #include <numbers>
 #include <string>
 #include <string_view>
@@ -19,6 +21,7 @@
 
 #include "anamorph/geometry/box.h"
 #include "anamorph/geometry/point.h"
+#include "anamorph/map/lens.h"
 #include "anamorph/map/projection/facts.h"
 #include "anamorph/number/jet.h"
 
@@ -104,10 +107,11 @@ class Chart {
     static constexpr double kMostDistance = 1000;
 
     /// `fov`: the horizontal field of view of the whole image in degrees, or of each face; 0 takes the
-    /// projection's default (default_fov). `d`: Pannini's distance. `prefix` is put before "fov", "size" and
-    /// "d" in errors. Throws Error.
+    /// projection's default (default_fov); without distortion. `d`: Pannini's distance. `prefix` is put before
+    /// "fov", "size", "d" and "lens" in errors. Throws Error.
     Chart(Projection projection, int width, int height, double fov = 0,
-          PixelSpacing spacing = PixelSpacing::edges, const std::string& prefix = "", double d = 1);
+          PixelSpacing spacing = PixelSpacing::edges, const std::string& prefix = "", double d = 1,
+          const LensModel& lens = {});
 
     static double default_fov(Projection projection);
     /// The same picture with other pixels; faces stay square. Throws Error.
@@ -119,6 +123,8 @@ class Chart {
     double fov() const { return m_fov; }
     PixelSpacing spacing() const { return m_spacing; }
     const std::vector<Piece>& pieces() const { return m_pieces; }
+    /// None of most pictures.
+    const Lens* lens() const { return m_lens.get(); }
 
     /// Does azimuth close on itself in this image (a full turn)? Its period in pixels is then period().
     bool closed() const { return m_closed; }
@@ -131,7 +137,8 @@ class Chart {
     double scale_y() const { return m_sy.value(); }
     /// Pixels for a radian straight ahead of a piece.
     double pixels_per_radian() const {
-        return scale_x() * with_projection(m_projection, [](auto formulas) { return formulas.per_radian; });
+        return scale_x() * (m_lens ? m_lens->model().magnification() : 1) *
+               with_projection(m_projection, [](auto formulas) { return formulas.per_radian; });
     }
     /// Source points of one ray lie so many pixels apart, or any multiple: a full turn, infinite where rows do
     /// not run around the sphere.
@@ -141,7 +148,8 @@ class Chart {
     /// No two points of rays lie farther apart, a hair aside.
     double widest() const {
         const double diameter =
-            with_projection(m_projection, [](auto formulas) -> double { return formulas.diameter; });
+            m_lens ? 2 * m_lens->reach()
+                   : with_projection(m_projection, [](auto formulas) -> double { return formulas.diameter; });
         return diameter * std::max(scale_x(), scale_y()) * (1 + 1e-9);
     }
 
@@ -202,9 +210,11 @@ class Chart {
 
   private:
     template <class T>
+    Point<T> to_observed_plane(const T& x, const T& y, const Branch& branch) const;
+    template <class T>
     Point<T> to_plane(const T& x, const T& y, const Branch& branch) const;
 
-    void set_scale(const std::string& prefix);
+    void set_scale(const std::string& prefix, const LensModel& lens);
     void set_branches();
 
     Projection m_projection;
@@ -218,21 +228,31 @@ class Chart {
     bool m_closed = false, m_poles = false, m_turns = false;
     std::vector<Piece> m_pieces;
     std::vector<Branch> m_branches;
+    std::shared_ptr<const Lens> m_lens;
 };
 
 // ---------------------------------------------------------------------------------------------------------
 
 template <class T>
-Point<T> Chart::to_plane(const T& x, const T& y, const Branch& branch) const {
+Point<T> Chart::to_observed_plane(const T& x, const T& y, const Branch& branch) const {
     const Box& box = m_pieces[static_cast<std::size_t>(branch.piece)].box;
     const double cx = 0.5 * (box.x0 + box.x1), cy = 0.5 * (box.y0 + box.y1);
     return {(x - cx) * m_per_x.as<T>() + branch.centre_x, (y - cy) * m_per_y.as<T>() + branch.centre_y};
 }
 
 template <class T>
+Point<T> Chart::to_plane(const T& x, const T& y, const Branch& branch) const {
+    Point<T> p = to_observed_plane(x, y, branch);
+    if (m_lens) p = m_lens->ideal(p);
+    return p;
+}
+
+template <class T>
 T Chart::inside(const T& x, const T& y, int piece) const {
     const Point<T> p = to_plane(x, y, branch(piece));
-    return with_projection(m_projection, [&](auto formulas) { return formulas.inside(p, branch(piece)); });
+    const T there =
+        with_projection(m_projection, [&](auto formulas) { return formulas.inside(p, branch(piece)); });
+    return m_lens ? min(there, m_lens->inside(to_observed_plane(x, y, branch(piece)))) : there;
 }
 
 template <class T>
@@ -243,12 +263,19 @@ Ray<T> Chart::local_ray(const T& x, const T& y, const Branch& branch) const {
 
 template <class T>
 T Chart::sees(const Ray<T>& local, int piece) const {
-    return with_projection(m_projection, [&](auto formulas) { return formulas.sees(local, branch(piece)); });
+    const T there =
+        with_projection(m_projection, [&](auto formulas) { return formulas.sees(local, branch(piece)); });
+    if (!m_lens) return there;
+    // What the projection does not see may have no point in its plane.
+    const Point<T> p = with_projection(
+        m_projection, [&](auto formulas) -> Point<T> { return formulas.point(local, branch(piece)); });
+    return select(is_negative(there), there, min(there, m_lens->sees(p)));
 }
 
 template <class T>
 T Chart::crease(const T& x, const T& y, int piece) const {
-    const Point<T> p = to_plane(x, y, branch(piece));
+    // No projection of one piece that may have a lens has a crease.
+    const Point<T> p = to_observed_plane(x, y, branch(piece));
     return with_projection(m_projection, [&](auto formulas) { return formulas.plane_crease(p); });
 }
 template <class T>
@@ -258,8 +285,9 @@ T Chart::crease(const Ray<T>& local) const {
 
 template <class T>
 Point<T> Chart::local_point(const Ray<T>& local, const Branch& branch) const {
-    const Point<T> p = with_projection(
-        m_projection, [&](auto formulas) -> Point<T> { return formulas.point(local, branch); });
+    Point<T> p = with_projection(m_projection,
+                                 [&](auto formulas) -> Point<T> { return formulas.point(local, branch); });
+    if (m_lens) p = m_lens->observed(p);
     const Box& box = m_pieces[static_cast<std::size_t>(branch.piece)].box;
     return {(p.x - branch.centre_x) * m_sx.as<T>() + 0.5 * (box.x0 + box.x1),
             (p.y - branch.centre_y) * m_sy.as<T>() + 0.5 * (box.y0 + box.y1)};

@@ -51,6 +51,25 @@ Turn turn_of(const Orientation& orientation) {
              {product(y.sin * p.cos), product(-p.sin), product(y.cos * p.cos)}}};
 }
 
+/// The inverse of the one times the other, by columns: dot products of their columns. Sums of three products are off by
+/// 3 units of each in long double; the entries are off by 33 units at most each.
+Turn relative(const Turn& held, const Turn& look) {
+    Turn turn;
+    for (std::size_t column = 0; column < 3; ++column)
+        for (std::size_t row = 0; row < 3; ++row) {
+            long double sum = 0, size = 0;
+            for (std::size_t i = 0; i < 3; ++i) {
+                const long double product = held[row][i].precise() * look[column][i].precise();
+                sum += product;
+                size += std::fabs(product);
+            }
+            // An entry that is known no better than that it is small.
+            const double error = static_cast<double>(size) * 72 * Rounded<long double>::kUnit;
+            turn[column][row] = Constant(sum == 0 && size > 0 ? error * 0x1p-20L : sum, 2 * error);
+        }
+    return turn;
+}
+
 glm::dmat3 matrix_of(const Turn& turn) {
     glm::dmat3 matrix;
     for (int column = 0; column < 3; ++column)
@@ -66,14 +85,17 @@ glm::dmat3 rotation(const Orientation& orientation) {
     return matrix_of(turn_of(orientation));
 }
 
-Panorama::Panorama(const Chart& source, const Chart& target, const Orientation& orientation)
+Panorama::Panorama(const Chart& source, const Chart& target, const Orientation& orientation,
+                   const Orientation& held)
     : m_source(source), m_target(target) {
-    const std::pair<const char*, double> angles[] = {
-        {"yaw", orientation.yaw}, {"pitch", orientation.pitch}, {"roll", orientation.roll}};
+    const std::pair<const char*, double> angles[] = {{"yaw", orientation.yaw},   {"pitch", orientation.pitch},
+                                                     {"roll", orientation.roll}, {"srcyaw", held.yaw},
+                                                     {"srcpitch", held.pitch},   {"srcroll", held.roll}};
     for (const auto& [name, value] : angles)
         if (!std::isfinite(value))
             throw Error(name, std::to_string(value), "must be a finite angle in degrees");
     m_turn = turn_of(orientation);
+    if (held.yaw != 0 || held.pitch != 0 || held.roll != 0) m_turn = relative(turn_of(held), m_turn);
     m_rotation = matrix_of(m_turn);
 }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The pull map of a reprojection: from a point of the target image through its ray, the camera's rotation and
-// the source's lens to a point of the source image. Pixels, x right, y down, pixel centres at + 0.5.
+// The pull map of a reprojection: from a point of the target image through its ray, the cameras' rotations and
+// the source's projection to a point of the source image. Pixels, x right, y down, pixel centres at + 0.5.
 #pragma once
 
 #include <array>
@@ -11,24 +11,26 @@
 
 namespace anamorph {
 
-/// Where the target's camera looks, in degrees: yaw to the right, pitch up, roll clockwise; the camera is
-/// rolled first, then pitched, then turned.
+/// Where a camera looks, in degrees: yaw to the right, pitch up, roll clockwise; the camera is rolled first, then
+/// pitched, then turned. With R its rotation, world ray = R * ray of the camera.
 struct Orientation {
     double yaw = 0, pitch = 0, roll = 0;
 };
 
-/// Rotation of rays: source ray = matrix * target ray (frame x right, y down, z forward).
+/// R, by frames x right, y down, z forward.
 glm::dmat3 rotation(const Orientation& orientation);
 
 /// The pull map between two charts, one turned against the other.
 class Panorama {
   public:
-    /// Throws Error when an angle is not finite.
-    Panorama(const Chart& source, const Chart& target, const Orientation& orientation = {});
+    /// `orientation`: where the target's camera looks; `held`: how that of the source was held (srcyaw, srcpitch and
+    /// srcroll in errors). Throws Error when an angle is not finite.
+    Panorama(const Chart& source, const Chart& target, const Orientation& orientation = {},
+             const Orientation& held = {});
 
     const Chart& source() const { return m_source; }
     const Chart& target() const { return m_target; }
-    /// source ray = turn * target ray, by columns.
+    /// source ray = turn * target ray, by columns: the one rotation, and the other's inverse.
     const std::array<std::array<Constant, 3>, 3>& turn() const { return m_turn; }
 
     /// The map about one point: a branch of either chart, and the rotation between their local rays.

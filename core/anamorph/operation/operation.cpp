@@ -39,6 +39,7 @@ std::string operation_key(const Operation& operation, const ParameterValues& val
                std::to_string(image.channels) + " \"" + image.color_space + "\" ";
         if (facts.projection) key += std::string(name_of(*facts.projection)) + " as " + facts.said_by;
         if (facts.fov) key += " fov=" + shortest(*facts.fov);
+        if (facts.lens) key += " lens=" + facts.lens->text();
         key += "\n";
     }
     for (const auto& [name, file] : files)

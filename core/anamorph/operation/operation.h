@@ -30,10 +30,11 @@ namespace anamorph {
 struct SourceFacts {
     int width = 0, height = 0;
     /// What the image says of itself, if it does, where it says so, and its horizontal field of view in
-    /// degrees.
+    /// degrees, and its lens.
     std::optional<Projection> projection = {};
     std::string said_by = {};
     std::optional<double> fov = {};
+    std::optional<LensModel> lens = {};
 };
 
 /// A source as its host has opened it.

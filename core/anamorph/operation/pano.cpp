@@ -72,6 +72,19 @@ ParameterTable make_table() {
         number("pitch", "degrees", "0", -kInfinity, kInfinity, "where the camera looks: up"),
         number("roll", "degrees", "0", -kInfinity, kInfinity,
                "the camera's turn about its axis, clockwise; roll is applied first, then pitch, then yaw"),
+        number("srcyaw", "degrees", "0", -kInfinity, kInfinity,
+               "how the source's camera was held: turned to the right"),
+        number("srcpitch", "degrees", "0", -kInfinity, kInfinity,
+               "how the source's camera was held: tilted up"),
+        number("srcroll", "degrees", "0", -kInfinity, kInfinity,
+               "how the source's camera was held: turned about its axis, clockwise; in the same order"),
+        text("srclens",
+             "distortion of the source, as for lens; by default what the image says of itself, else none"),
+        text("lens",
+             "distortion of the picture: none, or MODEL:name=value,name=value with ptlens (a, b, c), brown "
+             "(k1 to k6, p1, p2), 3de4 (k1, k2) or kb4 (k1 to k4), and d, e, the shift of its centre in "
+             "pixels; "
+             "by default none; fields of view are those without distortion"),
         size("width and height of the picture, or its width alone; by default as fine as the source at the "
              "centre"),
         tile(),
@@ -94,12 +107,14 @@ Size natural_size(Projection projection, double fov, double width) {
     return {w, h};
 }
 
-/// The picture's size where none was given: as many pixels per radian at its centre as the source has.
-Size default_size(Projection projection, double fov, double d, const Chart& source) {
+/// The picture's size where none was given: as many pixels per radian at its centre as the source has. `magnified`: by
+/// its lens there.
+Size default_size(Projection projection, double fov, double d, double magnified, const Chart& source) {
     const int probe = 1200;  // holds whole faces of every cube layout
     const Size shape = natural_size(projection, fov, probe);
     const Chart chart(projection, shape.width, shape.height, fov, PixelSpacing::edges, "", d);
-    const double width = probe * source.pixels_per_radian() / chart.pixels_per_radian();
+    const double width =
+        probe * source.pixels_per_radian() / (chart.pixels_per_radian() * std::max(magnified, 1e-3));
     const double most = kMaxDefaultSize / std::max(1.0, natural_aspect(projection, fov));
     const int faces = std::max(1, faces_of(projection).columns);
     const double face = std::max(1.0, std::min(std::round(width / faces), std::floor(most / faces)));
@@ -129,28 +144,35 @@ double field_of_view(const ParameterValues& values, std::string_view name, Proje
     return values.number(name);
 }
 
+LensModel lens_of(const ParameterValues& values, const std::string& name) {
+    return values.given(name) ? LensModel::parse(values.text(name), name) : LensModel{};
+}
+
 }  // namespace
 
 ReprojectRequest read_reproject_request(const ParameterValues& values, const SourceFacts& facts) {
     const auto [from, reason] = source_projection(values, facts);
     const bool says_fov = !values.given("srcfov") && facts.fov && facts.projection == from;
+    const bool says_lens = !values.given("srclens") && facts.lens && facts.projection == from;
+    const LensModel srclens = says_lens ? *facts.lens : lens_of(values, "srclens");
     const Chart source(from, facts.width, facts.height,
                        says_fov ? *facts.fov : field_of_view(values, "srcfov", from),
-                       chosen<PixelSpacing>(values, "pixels"), "src", values.number("srcd"));
+                       chosen<PixelSpacing>(values, "pixels"), "src", values.number("srcd"), srclens);
 
     const Projection to = projection_from_name(values.text("to"), "to");
     const double fov = field_of_view(values, "fov", to), d = values.number("d");
-    const auto chart = [&](int width, int height) {
-        return Chart(to, width, height, fov, PixelSpacing::edges, "", d);
+    const LensModel lens = lens_of(values, "lens");
+    const auto chart = [&](int width, int height, const LensModel& through) {
+        return Chart(to, width, height, fov, PixelSpacing::edges, "", d, through);
     };
     // Reports a field of view that the lens cannot have before a size is made of it.
     const int probe = 12;
     static_cast<void>(
-        chart(probe, has_faces(to) ? static_cast<int>(probe * natural_aspect(to, fov)) : probe));
+        chart(probe, has_faces(to) ? static_cast<int>(probe * natural_aspect(to, fov)) : probe, {}));
 
     Size size;
     if (!values.given("size")) {
-        size = default_size(to, fov, d, source);
+        size = default_size(to, fov, d, lens.magnification(), source);
     } else {
         size = values.extent("size");
         if (size.height < 0) size = natural_size(to, fov, size.width);
@@ -163,8 +185,9 @@ ReprojectRequest read_reproject_request(const ParameterValues& values, const Sou
     options.wrap = chosen<Wrap>(values, "wrap");
     options.output = rows::chosen_output(values);
     return {source,
-            chart(size.width, size.height),
+            chart(size.width, size.height, lens),
             {values.number("yaw"), values.number("pitch"), values.number("roll")},
+            {values.number("srcyaw"), values.number("srcpitch"), values.number("srcroll")},
             options,
             reason};
 }

@@ -7,8 +7,9 @@ namespace anamorph {
 
 Attributes panorama_attributes(const Chart& picture, bool color) {
     Attributes says;
-    says.push_back({kPanoramaProjection,
-                    std::string(name_of(picture.projection())) + " fov=" + shortest(picture.fov())});
+    std::string projection = std::string(name_of(picture.projection())) + " fov=" + shortest(picture.fov());
+    if (picture.lens()) projection += " lens=" + picture.lens()->model().text();
+    says.push_back({kPanoramaProjection, projection});
     if (!color) return says;
     const int w = picture.width(), h = picture.height(), whole = w / 2;
     const auto environment = [&](const char* format) {

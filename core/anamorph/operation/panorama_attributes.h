@@ -6,7 +6,7 @@
 
 namespace anamorph {
 
-/// Of any projection, "fisheye fov=180": the projection and its horizontal field of view in degrees. Without
+/// Of any projection, "fisheye fov=180": the projection, its horizontal field of view in degrees and its lens. Without
 /// a colon: OpenImageIO takes what stands before one for the name of a format.
 inline constexpr const char* kPanoramaProjection = "panoramaProjection";
 

@@ -15,6 +15,11 @@ namespace hn = hwy::HWY_NAMESPACE;
 
 // The formulas once more, for this instruction set.
 namespace formulas {
+template <class Tag>
+HWY_INLINE bool somewhere(const LaneMask<Tag>& condition) {
+    return !hn::AllFalse(Tag(), condition.m);
+}
+#include "anamorph/map/lens_formula.h"
 #include "anamorph/map/projection/list.h"
 }  // namespace formulas
 
@@ -51,6 +56,7 @@ Matrix MatrixOf(const glm::dmat3& axes) {
     return m;
 }
 
+/// With the lens of the target, if it has one and its projection may have one.
 template <class Projection>
 void TargetRays(const Chart& target, const Matrix& turn, int piece, double x0, double y, int count,
                 Rays& rays) {
@@ -60,8 +66,14 @@ void TargetRays(const Chart& target, const Matrix& turn, int piece, double x0, d
     const L py = L((y - plane.cy)) * plane.per_y + branch.centre_y;
     for (int i = 0; i < count; i += L::kCount) {
         const L x = L(hn::Iota(D(), i)) + x0;
-        const Point<L> p{(x - plane.cx) * plane.per_x + branch.centre_x, py};
-        Projection::inside(p, branch).store(rays.inside + i);
+        Point<L> p{(x - plane.cx) * plane.per_x + branch.centre_x, py};
+        L inside(1);
+        if constexpr (Projection::lensed != Lensed::no)
+            if (target.lens()) {
+                inside = formulas::has_ideal(target.lens()->terms(), p);
+                p = formulas::ideal_point(target.lens()->terms(), p);
+            }
+        min(Projection::inside(p, branch), inside).store(rays.inside + i);
         const Ray<L> r = Transformed(turn, Transformed(axes, Projection::ray(p, branch)));
         r.x.store(rays.x + i);
         r.y.store(rays.y + i);
@@ -97,7 +109,12 @@ void SourcePoints(const Chart& source, const Rays& rays, int count, ExactRow& ro
             const Chart::Plane plane = source.plane(k);
             const Ray<L> local = Transformed(MatrixOf(glm::transpose(branch.axes)), r);
             if (pieces == 1) seen = both(seen, L(0) < Projection::sees(local, branch));
-            const Point<L> p = Projection::point(local, branch);
+            Point<L> p = Projection::point(local, branch);
+            if constexpr (Projection::lensed != Lensed::no)
+                if (source.lens()) {
+                    seen = both(seen, L(0) < formulas::has_observed(source.lens()->terms(), p));
+                    p = formulas::observed_point(source.lens()->terms(), p);
+                }
             x = select(here, (p.x - branch.centre_x) * plane.sx + plane.cx, x);
             y = select(here, (p.y - branch.centre_y) * plane.sy + plane.cy, y);
         }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Rows of a panorama's pull map, exactly: the formulas of map/projection/ read with vectors of doubles.
+// Rows of a panorama's pull map, exactly: the formulas of map/projection/ and of lenses read with vectors of doubles.
 #pragma once
 
 #include <array>

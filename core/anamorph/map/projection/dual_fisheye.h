@@ -7,6 +7,7 @@ ANAMORPH_PROJECTION(dual_fisheye, DualFisheye)
 
 struct DualFisheye : Fisheye {
     static constexpr int columns = 2, rows = 1;
+    static constexpr Lensed lensed = Lensed::no;
 
     static double aspect(double) { return 0.5; }
     static std::vector<Face> faces() {

@@ -57,6 +57,10 @@ struct FieldOfView {
     bool fixed = false;  ///< there is only the standard one
 };
 
+/// What distortion a picture of a projection may have (map/lens.h): one of a flat picture, of one whose radius is the
+/// angle from the axis, of another with an axis, or none.
+enum class Lensed { no, flat, equidistant, axial };
+
 /// A face of a layout of several: its axes (right, down, forward) as columns, and where it stands. A ray
 /// belongs to the face whose `toward` it is nearest to.
 struct Face {

@@ -22,6 +22,7 @@ struct AnyProjection {
     static std::vector<Face> faces() { return {}; }
     /// Where the centre of a face stands in the plane, along x: -1 for a left one, 1 for a right one; and y.
     static constexpr double face_centre = 0;
+    static constexpr Lensed lensed = Lensed::no;
     /// Rows of a full turn close on themselves at a column.
     static constexpr bool closes = false;
     /// The first and last row of a full picture are the poles.
@@ -74,6 +75,7 @@ struct CylinderFamily : AnyProjection {
 /// The radius is a function of the angle t from the axis.
 struct AxisFamily : AnyProjection {
     static constexpr FieldOfView fov{180, 360};
+    static constexpr Lensed lensed = Lensed::axial;
 };
 
 /// On a flat picture a ray stands where it meets the plane z = 1.

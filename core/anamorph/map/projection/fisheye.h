@@ -6,6 +6,7 @@ ANAMORPH_PROJECTION(fisheye, Fisheye)
 
 struct Fisheye : AxisFamily {
     static constexpr Counted counted = Counted::axis;
+    static constexpr Lensed lensed = Lensed::equidistant;
     static constexpr double diameter = 2 * std::numbers::pi;
 
     template <class T>

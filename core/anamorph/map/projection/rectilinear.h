@@ -6,6 +6,7 @@ ANAMORPH_PROJECTION(rectilinear, Rectilinear)
 
 struct Rectilinear : FlatFamily {
     static constexpr FieldOfView fov{90, 180, true};
+    static constexpr Lensed lensed = Lensed::flat;
 
     static long double width(long double degrees, const Setting&) { return 2 * tan_of(degrees / 2); }
     static double largest_tangent(double half_width, double half_height) {

@@ -1,0 +1,335 @@
+// SPDX-License-Identifier: Apache-2.0
+// The distortion of a lens: a map between a picture as a lens without distortion would give it (the ideal one, a point
+// of the plane of its projection) and as it was taken (the observed one). One of the two directions is a formula, the
+// other the root of it, found by Newton's iteration and certified.
+//
+// Models, with u a point about the lens's centre, r = |u|, and v what becomes of it:
+//
+//   ptlens   ideal to observed, v = u (a r^3 + b r^2 + c r + 1 - a - b - c); PanoTools and Hugin. Unit: half of the
+//            picture's smaller side. For projections with an axis.
+//   brown    ideal to observed, v = u (1 + k1 r^2 + k2 r^4 + k3 r^6) / (1 + k4 r^2 + k5 r^4 + k6 r^6)
+//            + (2 p1 x y + p2 (r^2 + 2 x^2), p1 (r^2 + 2 y^2) + 2 p2 x y); Brown 1966, OpenCV. Unit: the focal
+//            length. For rectilinear pictures.
+//   3de4     observed to ideal, v = u (1 + k1 r^2 + k2 r^4); 3DEqualizer4's radial model of degree 4 without
+//            decentering. Unit: half of the picture's diagonal. For projections with an axis.
+//   kb4      ideal to observed, r = t the angle from the axis, v = u (1 + k1 t^2 + k2 t^4 + k3 t^6 + k4 t^8); Kannala
+//            and Brandt 2006, OpenCV's fisheye. Unit: the focal length. For equidistant fisheyes.
+//
+// The lens's centre stands d pixels right of the picture's middle and e below it; the axis of sight meets the plane
+// there. The focal length is that of the field of view without distortion.
+//
+// A lens ends where its radius no longer rises (it folds), and what lies beyond has no counterpart. It also ends at
+// 4 times the distance of the picture's farthest corner, and where that is 16 times as far in the ideal picture.
+#pragma once
+
+#include <limits>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "anamorph/geometry/point.h"
+#include "anamorph/map/projection/facts.h"
+#include "anamorph/number/jet.h"
+#include "anamorph/number/rounded.h"
+
+namespace anamorph {
+
+/// A lens by its parameters.
+struct LensModel {
+    enum class Kind { none, ptlens, brown, three_de4, kb4 };
+    Kind kind = Kind::none;
+    /// In the order of names().
+    std::vector<double> values;
+
+    /// "none", or MODEL:name=value,name=value as in "ptlens:a=0.01,b=-0.03"; what is not named is 0. Throws Error
+    /// naming `parameter`.
+    static LensModel parse(std::string_view text, const std::string& parameter = "lens");
+    /// As parse() reads it.
+    std::string text() const;
+    /// The names of a model's values.
+    static const std::vector<std::string>& names(Kind kind);
+    /// How much larger the observed picture is than the ideal one, at the centre.
+    double magnification() const;
+};
+
+/// What the formulas of a lens are read with.
+struct LensTerms {
+    /// Which way the formula goes.
+    bool to_observed = true;
+    /// In units of the plane: the model's own unit, the other way round, and the centre.
+    Constant unit, per_unit, shift_x, shift_y;
+
+    /// Is S a polynomial in r, not in r^2?
+    bool in_radius = false;
+    bool tangential = false;
+    double mx = 0, my = 0;
+    Constant over[5], under[4];
+    int over_count = 1, under_count = 1;
+
+    /// How far from the centre the ideal and the observed points may lie, in the model's unit.
+    double ideal_end = 0, observed_end = 0;
+    /// The end of t, and no more than what it becomes there.
+    double end = 0, value_end = 0;
+    /// About what a value times it is near the root.
+    double slope = 1;
+
+    /// The root of radial_at(t) = value is one up to kResidual roundings of value * `condition`, and radial_at() itself
+    /// is off by kOff of them at most (derived in lens.cpp); of a value next to nothing, by as many of kSmall of what it
+    /// becomes at the end.
+    static constexpr double kResidual = 80, kOff = 32, kSmall = 0x1p-24;
+    double condition = 1;
+    /// settled() ends with a step of at most kStill roundings of the end, or after kSteps.
+    static constexpr double kStill = 512;
+    static constexpr int kSteps = 72;
+};
+
+namespace lens_formula {
+inline bool somewhere(bool condition) {
+    return condition;
+}
+#include "anamorph/map/lens_formula.h"
+}  // namespace lens_formula
+
+/// shrink() for numbers that need more than an iteration; lens_formula.h has it for the others.
+Interval shrink(const LensTerms& lens, const Interval& value);
+template <class Real>
+Rounded<Real> shrink(const LensTerms& lens, const Rounded<Real>& value);
+template <class T, int N>
+Jet<T, N> shrink(const LensTerms& lens, const Jet<T, N>& value);
+
+/// And settled().
+Point<Interval> settled(const LensTerms& lens, const Point<Interval>& v);
+template <class Real>
+Point<Rounded<Real>> settled(const LensTerms& lens, const Point<Rounded<Real>>& v);
+template <class T, int N>
+Point<Jet<T, N>> settled(const LensTerms& lens, const Point<Jet<T, N>>& v);
+
+/// The lens of a picture.
+class Lens {
+  public:
+    /// The plane of a picture: half of what it covers, and units of it for a pixel.
+    struct Plane {
+        long double half_width, half_height, per_x, per_y;
+    };
+    /// Throws Error naming `parameter` where a projection of that kind has no such lens, and where the lens ends within
+    /// the largest circle that the picture holds. `projection`: its name.
+    Lens(const LensModel& model, Lensed lensed, const std::string& projection, const Plane& plane,
+         const std::string& parameter);
+
+    const LensModel& model() const { return m_model; }
+    const LensTerms& terms() const { return m_terms; }
+
+    /// The point of the ideal plane of one of the observed plane, and back: meaningful where inside() and sees() are
+    /// not negative.
+    template <class T>
+    Point<T> ideal(const Point<T>& observed) const {
+        return lens_formula::ideal_point(m_terms, observed);
+    }
+    template <class T>
+    Point<T> observed(const Point<T>& ideal) const {
+        return lens_formula::observed_point(m_terms, ideal);
+    }
+    template <class T>
+    T inside(const Point<T>& observed) const {
+        return lens_formula::has_ideal(m_terms, observed);
+    }
+    template <class T>
+    T sees(const Point<T>& ideal) const {
+        return lens_formula::has_observed(m_terms, ideal);
+    }
+
+    /// How far from the centre an observed point may lie, in the plane.
+    double reach() const { return m_terms.observed_end * m_terms.unit.value(); }
+
+  private:
+    void set_terms();
+    /// Returns whether the lens ends because it folds. `corner`: the farthest observed point of the picture.
+    bool set_ends(double corner);
+    /// What rounding of radial_at() is relative to, over its value.
+    double condition_over(const Interval& t) const;
+
+    LensModel m_model;
+    LensTerms m_terms;
+};
+
+// ---------------------------------------------------------------------------------------------------------
+
+namespace lens_detail {
+
+/// The inverse of a power series without its constant: x with g_1 x + g_2 x^2 + ... = y, by powers of y (Lagrange).
+template <class T, int N>
+lens_formula::Series<T, N> reversed(const lens_formula::Series<T, N>& g) {
+    static_assert(N >= 1 && N <= 5);
+    lens_formula::Series<T, N> x;
+    const T r = T(1) / g.c[1];
+    T b[6] = {T(0), T(1), T(0), T(0), T(0), T(0)}, power = r;
+    for (int k = 2; k <= N; ++k) b[k] = g.c[k] * r;
+    const T b22 = b[2] * b[2];
+    const T a[6] = {T(0),
+                    T(1),
+                    -b[2],
+                    b22 * 2.0 - b[3],
+                    b[2] * b[3] * 5.0 - b22 * b[2] * 5.0 - b[4],
+                    b22 * b22 * 14.0 - b22 * b[3] * 21.0 + b[2] * b[4] * 6.0 + b[3] * b[3] * 3.0 - b[5]};
+    for (int k = 1; k <= N; ++k, power = power * r) x.c[k] = a[k] * power;
+    return x;
+}
+
+/// shrink() by powers of what is added to a value, whose root is `t`.
+template <int N, class T>
+lens_formula::Series<T, N> shrink_series(const LensTerms& lens, const T& t) {
+    using S = lens_formula::Series<T, N>;
+    S root = reversed(lens_formula::radial_at(lens, S::variable(t)));
+    root.c[0] = t;
+    return S(T(1)) / lens_formula::stretch_at(lens, root);
+}
+
+/// Encloses the root of every member.
+Interval radial_root(const LensTerms& lens, const Interval& value);
+template <class T>
+T radial_root(const LensTerms& lens, const T& value) {
+    return lens_formula::radial_root(lens, value);
+}
+/// The least slope of radial_at() over an interval.
+double least_slope(const LensTerms& lens, const Interval& t);
+
+/// With its rounding, of all members.
+template <class Real>
+Rounded<Real> radial_root(const LensTerms& lens, const Rounded<Real>& value) {
+    const Interval range = radial_root(lens, value.range);
+    // radial_at(computed t) is off from the exact value by this at most; and t as much over the least slope from
+    // the one to the other, which lie `far` apart at most if that slope, over all of `far`, says so.
+    const double size = std::min(magnitude(value.range) + value.error, lens.value_end);
+    const double off = value.error + (LensTerms::kResidual + LensTerms::kOff + 1) * Rounded<Real>::kUnit *
+                                         lens.condition * (size + LensTerms::kSmall * lens.value_end);
+    const double far = 2 * off / least_slope(lens, range);
+    const Interval around{std::max(range.lo - far, 0.0), std::min(range.hi + far, lens.end)};
+    const bool known = far >= 0 && far < lens.end && off <= far * least_slope(lens, around);
+    return known ? Rounded<Real>(around, 0, far) : Rounded<Real>(Interval(0, lens.end), 0, lens.end);
+}
+
+/// sum_k series_k n^k by Horner's rule: n has no constant part.
+template <class J, class T, int N>
+J compose(const lens_formula::Series<T, N>& series, const J& n) {
+    J sum(series.c[N]);
+    for (int k = N - 1; k >= 0; --k) sum = sum * n + J(series.c[k]);
+    return sum;
+}
+
+/// The derivative of F, a symmetric matrix: S + 2 m.u along the diagonal, 2 S' u u^T with S' by |u|^2, and
+/// 2 (u m^T + m u^T).
+template <class T>
+struct Slope {
+    T xx, xy, yy;
+
+    Slope(const LensTerms& lens, const Point<T>& u) {
+        const T squared = square(u.x) + square(u.y);
+        const auto stretch = lens_formula::stretch_at(lens, lens_formula::Series<T, 1>::variable(squared));
+        const T along = stretch.c[0] + (u.x * lens.mx + u.y * lens.my) * 2.0;
+        xx = along + (stretch.c[1] * square(u.x) + u.x * lens.mx * 2.0) * 2.0;
+        yy = along + (stretch.c[1] * square(u.y) + u.y * lens.my * 2.0) * 2.0;
+        xy = (stretch.c[1] * (u.x * u.y) + u.x * lens.my + u.y * lens.mx) * 2.0;
+    }
+};
+
+/// The largest sum of a row of magnitudes, as `of` has them.
+template <class T, class Of>
+double largest_row(const Slope<T>& slope, const Of& of) {
+    return std::max(of(slope.xx), of(slope.yy)) + of(slope.xy);
+}
+
+/// Of numbers without jets.
+template <class Real>
+Point<Rounded<Real>> settled_values(const LensTerms& lens, const Point<Rounded<Real>>& v) {
+    using R = Rounded<Real>;
+    const Point<Interval> range = settled(lens, Point<Interval>{v.x.range, v.y.range});
+    // A step from the computed u, which is taken as it is, leads to within `step` of it; one without rounding halves its
+    // distance to the exact one. All of that within twice as much around.
+    double off = 0x1p-40 * lens.ideal_end;
+    for (int i = 0; i < 3; ++i) {
+        const auto around = [&](const Interval& r) { return Interval(r.lo - 2 * off, r.hi + 2 * off); };
+        const Point<R> u{R(around(range.x), 0, 0), R(around(range.y), 0, 0)};
+        const Point<R> next = lens_formula::nearer(lens, v, u);
+        const double step = 1.5 * LensTerms::kStill * R::kUnit * lens.ideal_end + 0x1p-70 * lens.ideal_end +
+                            next.x.error + next.y.error;
+        if (2 * step <= off) return {R(around(range.x), 0, 2 * step), R(around(range.y), 0, 2 * step)};
+        off = 4 * step;
+    }
+    return {R(range.x, 0, HUGE_VAL), R(range.y, 0, HUGE_VAL)};
+}
+
+}  // namespace lens_detail
+
+/// In norms (number/rounded.h), the larger of x and y: with J the slope at the constant parts, c the norm of its inverse
+/// and h that of what the slope is besides, the exact jets have n = J^-1 (v - (F(u + n) - F(u) - J n)) above their
+/// constants, so that |n| <= r wherever c (|v| + h r) <= r. What is computed has F(computed u) = v + rest; the slopes
+/// between the two are J and h at most, so it is off by c |rest| / (1 - c h).
+template <class Real>
+Point<Rounded<Real>> settled(const LensTerms& lens, const Point<Rounded<Real>>& v) {
+    using R = Rounded<Real>;
+    using lens_detail::largest_row;
+    const Point<R> u =
+        lens_detail::settled_values(lens, Point<R>{R(v.x.range, 0, v.x.error), R(v.y.range, 0, v.y.error)});
+    const double radius = std::max(v.x.radius, v.y.radius);
+    if (radius == 0) return u;
+    const lens_detail::Slope<R> at(lens, u);
+    const Interval determinant = at.xx.range * at.yy.range - square(at.xy.range);
+    const double c = largest_row(at, [](const R& k) { return magnitude(k.range); }) / determinant.lo;
+    double r = 1.25 * c * radius;
+    for (int i = 0; i < 4 && c > 0; ++i, r *= 1.25) {
+        const Point<R> jet{R(u.x.range, r, 0), R(u.y.range, r, 0)};
+        const lens_detail::Slope<R> slope(lens, jet);
+        const double h = largest_row(slope, [](const R& k) { return k.radius; });
+        if (!(c * (radius + h * r) <= r && c * h < 0.5)) continue;
+        // Every degree of F is rounded once more. Slopes are rounded, those of the computed u are read, and the solution
+        // is rounded by less than 16 units of all of it.
+        const Point<R> f = lens_formula::distorted(lens, jet);
+        const double size = largest_row(at, [](const R& k) { return k.computed_size(); });
+        const double rest =
+            R::kDegree * std::max(f.x.error, f.y.error) + std::max(v.x.error, v.y.error) +
+            (largest_row(at, [](const R& k) { return k.error; }) + 16 * R::kUnit * size * c * size) * r;
+        const double error = 1.25 * std::max({c * rest / (1 - c * h), u.x.error, u.y.error});
+        return {R(u.x.range, r, error), R(u.y.range, r, error)};
+    }
+    return {R(u.x.range, HUGE_VAL, HUGE_VAL), R(u.y.range, HUGE_VAL, HUGE_VAL)};
+}
+
+/// Degree by degree: what F(u) lacks of v is the slope times what u lacks.
+template <class T, int N>
+Point<Jet<T, N>> settled(const LensTerms& lens, const Point<Jet<T, N>>& v) {
+    using J = Jet<T, N>;
+    using lens_formula::settled;
+    const Point<T> constant = settled(lens, Point<T>{v.x.c[0], v.y.c[0]});
+    const lens_detail::Slope<T> slope(lens, constant);
+    const T determinant = slope.xx * slope.yy - square(slope.xy);
+    Point<J> u{J(constant.x), J(constant.y)};
+    for (int k = 1; k <= N; ++k) {
+        const Point<J> f = lens_formula::distorted(lens, u);
+        for (int i = J::part(k); i < J::part(k + 1); ++i) {
+            const T x = v.x.c[i] - f.x.c[i], y = v.y.c[i] - f.y.c[i];
+            u.x.c[i] = (slope.yy * x - slope.xy * y) / determinant;
+            u.y.c[i] = (slope.xx * y - slope.xy * x) / determinant;
+        }
+    }
+    return u;
+}
+
+template <class Real>
+Rounded<Real> shrink(const LensTerms& lens, const Rounded<Real>& value) {
+    using R = Rounded<Real>;
+    const R root = lens_detail::radial_root(lens, R(value.range, 0, value.error));
+    if (!value.is_jet()) return R(1) / lens_formula::stretch_at(lens, root);
+    constexpr int kDegree = static_cast<int>(R::kDegree);
+    return lens_detail::compose(lens_detail::shrink_series<kDegree>(lens, root),
+                                R(Interval(0), value.radius, value.error));
+}
+
+template <class T, int N>
+Jet<T, N> shrink(const LensTerms& lens, const Jet<T, N>& value) {
+    Jet<T, N> rest = value;
+    rest.c[0] = T(0);
+    return lens_detail::compose(
+        lens_detail::shrink_series<N>(lens, lens_detail::radial_root(lens, value.c[0])), rest);
+}
+
+}  // namespace anamorph
