@@ -78,6 +78,8 @@ bool is_allowed(const Parameter& parameter, const std::string& value) {
         const bool low = parameter.above_minimum ? v > parameter.minimum : v >= parameter.minimum;
         return low && v <= parameter.maximum;
     };
+    const bool is_choice = std::find(parameter.choices.begin(), parameter.choices.end(), value) !=
+                           parameter.choices.end();
     switch (parameter.type) {
         case ParameterType::number: {
             const std::optional<double> v = to_number(value);
@@ -90,12 +92,11 @@ bool is_allowed(const Parameter& parameter, const std::string& value) {
         case ParameterType::toggle:
             return value == "0" || value == "1";
         case ParameterType::choice:
-            return std::find(parameter.choices.begin(), parameter.choices.end(), value) !=
-                   parameter.choices.end();
+            return is_choice;
         case ParameterType::extent: {
             const std::optional<Size> v = to_extent(value);
             const bool one = value.find_first_of("xX") == std::string::npos;
-            return v && in_range(v->width) && (one || in_range(v->height));
+            return is_choice || (v && in_range(v->width) && (one || in_range(v->height)));
         }
         case ParameterType::numbers: {
             const std::optional<std::vector<double>> v = to_numbers(value);
@@ -202,7 +203,7 @@ std::string Parameter::accepted() const {
         case ParameterType::choice:
             return joined(choices);
         case ParameterType::extent:
-            return "N or NxM, integers" + from_to;
+            return "N or NxM, integers" + from_to + (choices.empty() ? "" : "; or " + joined(choices));
         case ParameterType::numbers:
             if (std::isfinite(minimum) && std::isfinite(maximum))
                 return "numbers" + from_to + ", separated by commas";

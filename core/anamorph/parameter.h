@@ -28,7 +28,7 @@ enum class ParameterType {
     whole,    ///< an integer
     toggle,   ///< 0 or 1
     choice,   ///< one of `choices`
-    extent,   ///< N or NxM, integers
+    extent,   ///< N or NxM, integers, or one of `choices`
     numbers,  ///< as number, one or more, separated by commas
     image,    ///< the name of an image, or of a recipe
     file,     ///< the name of another file

@@ -135,6 +135,9 @@ class Chart {
     /// Pixels per unit of the chart plane at pieces()[0].
     double scale_x() const { return m_sx.value(); }
     double scale_y() const { return m_sy.value(); }
+    /// Across, known better than double holds them.
+    const Constant& pixels_per_unit() const { return m_sx; }
+    const Constant& units_per_pixel() const { return m_per_x; }
     /// Pixels for a radian straight ahead of a piece.
     double pixels_per_radian() const {
         return scale_x() * (m_lens ? m_lens->model().magnification() : 1) *

@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "anamorph/map/lens_map.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "anamorph/error.h"
+
+namespace anamorph {
+namespace {
+
+/// No less than the largest magnitude of a function of [-1, 1], nor more by more than `slack`: `of` encloses it over
+/// an interval.
+template <class Of>
+double largest_magnitude(const Of& of, double slack) {
+    constexpr int kDeepest = 40;
+    double reached = 0, bound = 0;
+    const auto search = [&](const auto& self, const Interval& s, int depth) -> void {
+        const double most = magnitude(of(s));
+        if (most <= reached + slack || depth == kDeepest || !(most < HUGE_VAL)) {
+            bound = std::max(bound, most);
+            return;
+        }
+        const double middle = 0.5 * (s.lo + s.hi);
+        const Interval there = of(Interval(middle));
+        reached = std::max({reached, there.lo, -there.hi});
+        self(self, {s.lo, middle}, depth + 1);
+        self(self, {middle, s.hi}, depth + 1);
+    };
+    search(search, {-1, 1}, 0);
+    return bound;
+}
+
+/// As many pixels more or fewer on both sides as hold what lies up to `half` pixels from the middle.
+int widened(int side, double half) {
+    // A hair that rounding adds is no pixel.
+    const double more = std::ceil(half - 0.5 * side - 1e-6);
+    return static_cast<int>(std::clamp(side + 2 * more, 1.0, 1e9));
+}
+
+}  // namespace
+
+LensMap::LensMap(const Chart& observed, LensMode mode, const Size& covered, const Size& target,
+                 const Size& source)
+    : PlaneMap(target, source), m_observed(observed), m_mode(mode), m_scale(observed.pixels_per_unit()) {
+    if (!observed.lens()) throw Error("lens", "none", "must be a lens");
+    const long double per = observed.units_per_pixel().precise();
+    m_per_x = covered.width == target.width ? observed.units_per_pixel()
+                                            : Constant(per * covered.width / target.width);
+    m_per_y = covered.height == target.height ? observed.units_per_pixel()
+                                              : Constant(per * covered.height / target.height);
+}
+
+Size LensMap::covering(const Chart& observed, LensMode mode, const Size& size) {
+    // A lens takes what it maps one to one, so a picture's outline goes to that of what it becomes.
+    constexpr double kSlack = 1e-3;  // pixels
+    const Lens& lens = *observed.lens();
+    const bool undistort = mode == LensMode::undistort;
+    const double scale = observed.scale_x(), per = observed.units_per_pixel().value();
+    const double half_width = 0.5 * size.width * per, half_height = 0.5 * size.height * per;
+    const auto on_side = [&](const Interval& s, bool upright, double side) {
+        const Point<Interval> p = upright ? Point<Interval>{Interval(side * half_width), s * half_height}
+                                          : Point<Interval>{s * half_width, Interval(side * half_height)};
+        return undistort ? lens.ideal(p) : lens.observed(p);
+    };
+    double across = 0, down = 0;
+    for (const double side : {-1.0, 1.0})
+        for (const bool upright : {false, true}) {
+            const auto x = [&](const Interval& s) { return on_side(s, upright, side).x * scale; };
+            const auto y = [&](const Interval& s) { return on_side(s, upright, side).y * scale; };
+            across = std::max(across, largest_magnitude(x, kSlack));
+            down = std::max(down, largest_magnitude(y, kSlack));
+        }
+    // Beyond its end a lens maps nothing.
+    const LensTerms& terms = lens.terms();
+    const double unit = terms.unit.value() * scale;
+    const double end_x = undistort ? terms.ideal_end * unit
+                                   : terms.observed_end * unit + std::fabs(terms.shift_x.value()) * scale;
+    const double end_y = undistort ? terms.ideal_end * unit
+                                   : terms.observed_end * unit + std::fabs(terms.shift_y.value()) * scale;
+    return {widened(size.width, std::min(across, end_x)), widened(size.height, std::min(down, end_y))};
+}
+
+}  // namespace anamorph

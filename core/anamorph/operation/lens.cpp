@@ -1,0 +1,164 @@
+// SPDX-License-Identifier: Apache-2.0
+// A lens's distortion taken off a picture, or put on one.
+#include "anamorph/approx/lens_plan.h"
+#include "anamorph/operation/operation.h"
+#include "anamorph/operation/rows.h"
+#include "anamorph/operation/solved.h"
+
+namespace anamorph {
+namespace {
+
+using rows::chosen;
+
+const char* const kAll = "all";
+
+ParameterTable make_table() {
+    using namespace rows;
+    Parameter extent = size(
+        "width and height of the picture, or its width alone, about the same middle and as fine as the "
+        "source; all: so "
+        "many that nothing of the source is cut off; by default the source's");
+    extent.choices = {kAll};
+    return {
+        image("src", "the source image; by default the recipe's name without .lens"),
+        choice("mode", "undistort", {"undistort", "distort"},
+               "undistort: the source was taken through the lens, and the picture is free of it; distort: "
+               "the other way "
+               "round, with the picture of the size that the lens is of"),
+        text("lens",
+             "MODEL:name=value,name=value with ptlens (a, b, c), brown (k1 to k6, p1, p2), 3de4 (k1, k2) or "
+             "kb4 (k1 to "
+             "k4), and d, e, the shift of its centre in pixels; by default what the image says of itself"),
+        above(number("fov", "degrees", "", 0, 360,
+                     "horizontal field of view of the picture that was taken through the lens, without the "
+                     "distortion, "
+                     "for brown (below 180) and kb4, whose unit is the focal length; by default what the "
+                     "image says of "
+                     "itself")),
+        extent,
+        tile(),
+        mip(),
+        filter(),
+        wrap("is black"),
+        tol(),
+        scheme({{"auto"}, {"exact"}, {"blocks"}, {"residual"}}),
+        colorspace("color space to filter in; by default the source's own"),
+        output(),
+    };
+}
+
+struct LensRequest {
+    Chart observed;
+    LensMode mode;
+    Size source, target;
+    PlanOptions plan;
+    Filter filter;
+    Wrap wrap;
+    Output output;
+};
+
+LensModel model_of(const ParameterValues& values, const SourceFacts& facts) {
+    const LensModel model = values.given("lens") ? LensModel::parse(values.text("lens"))
+                            : facts.lens         ? *facts.lens
+                                                 : LensModel{};
+    if (model.kind != LensModel::Kind::none) return model;
+    if (values.given("lens"))
+        throw Error("lens", printable(values.text("lens")), "must be a lens, as in ptlens:b=-0.02");
+    throw Error("lens is not given and the source does not say it: must be given, as in ptlens:b=-0.02");
+}
+
+/// The picture as the lens gives it.
+Chart observed_chart(const ParameterValues& values, const SourceFacts& facts, const Size& size) {
+    const LensModel model = model_of(values, facts);
+    const bool fisheye = model.kind == LensModel::Kind::kb4;
+    const bool by_focal_length = fisheye || model.kind == LensModel::Kind::brown;
+    const Projection projection = fisheye ? Projection::fisheye : Projection::rectilinear;
+    // Of the other models nothing depends on it.
+    double fov = Chart::default_fov(projection);
+    if (by_focal_length && values.given("fov"))
+        fov = values.number("fov");
+    else if (by_focal_length && facts.fov && facts.projection == projection)
+        fov = *facts.fov;
+    else if (by_focal_length)
+        throw Error("fov is not given and the source does not say it: must be given for lens=" +
+                    model.text());
+    return Chart(projection, size.width, size.height, fov, PixelSpacing::edges, "", 1, model);
+}
+
+LensRequest read_request(const ParameterValues& values, const SourceFacts& facts) {
+    const Size source{facts.width, facts.height};
+    const auto mode = chosen<LensMode>(values, "mode");
+    const bool all = values.text("size") == kAll;
+    const Size asked = all ? source : rows::size_of(values, source);
+    const Chart observed = observed_chart(values, facts, mode == LensMode::distort ? asked : source);
+    const Size target = all ? LensMap::covering(observed, mode, source) : asked;
+    if (target.width > kMaxSide || target.height > kMaxSide)
+        throw Error("size", kAll,
+                    "makes " + std::to_string(target.width) + "x" + std::to_string(target.height) +
+                        " pixels: must be at most " + std::to_string(kMaxSide) + " either way");
+    const auto wrap = chosen<Wrap>(values, "wrap");
+    PlanOptions plan;
+    plan.scheme = chosen<Scheme>(values, "scheme");
+    plan.tol = values.number("tol");
+    plan.cull = wrap == Wrap::automatic || wrap == Wrap::black;
+    return {observed, mode,
+            source,   target,
+            plan,     chosen<Filter>(values, "filter"),
+            wrap,     rows::chosen_output(values)};
+}
+
+/// The map and its picture.
+class LensPicture {
+  public:
+    LensPicture(const LensRequest& r, const Size& pixels) {
+        const LensMap map(r.observed, r.mode, r.target, pixels, r.source);
+        const Chart flat(Projection::rectilinear, r.source.width, r.source.height);
+        m_picture.maps = {{std::make_shared<LensPlan>(map, r.plan), {{Border(flat, r.wrap)}}}};
+        m_picture.filter = r.filter;
+        m_picture.output = r.output;
+    }
+    const Picture& picture() const { return m_picture; }
+
+  private:
+    Picture m_picture;
+};
+
+class LensPictures final : public Pictures {
+  public:
+    explicit LensPictures(const LensRequest& request) : m_request(request) {}
+
+    std::optional<PictureRequest> picture(int, int level) const override {
+        const std::optional<Size> size = level_size(m_request.target, level);
+        if (!size) return {};
+        PictureRequest picture;
+        picture.size = *size;
+        picture.pixels = pixels_of(m_request.output);
+        picture.says = {{"anamorph:tol", m_request.plan.tol}};
+        picture.solve = [request = m_request, size = *size] {
+            return std::make_unique<Solved<LensPicture>>(LensPicture(request, size));
+        };
+        return picture;
+    }
+
+  private:
+    LensRequest m_request;
+};
+
+}  // namespace
+
+const Operation& lens_operation() {
+    static const ParameterTable table = make_table();
+    static const Operation operation{
+        "lens",
+        "The distortion of a lens taken off a flat picture, or put on one",
+        &table,
+        {"src"},
+        1,
+        {"lens=ptlens:a=0.01,b=-0.08,c=0.02", {}},
+        [](const OperationInput& input) -> std::unique_ptr<const Pictures> {
+            return std::make_unique<LensPictures>(read_request(input.values, input.sources[0].facts));
+        }};
+    return operation;
+}
+
+}  // namespace anamorph

@@ -1,0 +1,186 @@
+// SPDX-License-Identifier: Apache-2.0
+// A lens's distortion taken off a picture or put on one, in blocks: against the models in long double.
+#include "anamorph/map/lens_map.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+
+#include "anamorph/approx/lens_plan.h"
+#include "anamorph/error.h"
+#include "anamorph/render/block_reader.h"
+#include "anamorph/simd/block_sampler.h"
+#include "panorama_oracle.h"
+
+namespace anamorph {
+namespace {
+
+using oracle::LensOracle;
+using oracle::View;
+using Real = long double;
+
+constexpr Size kPicture = {620, 410};
+
+View view_of(const std::string& text) {
+    View view{text.starts_with("kb4") ? Projection::fisheye : Projection::rectilinear, kPicture.width,
+              kPicture.height, 80};
+    view.lens = LensModel::parse(text);
+    return view;
+}
+Chart chart_of(const View& v) {
+    return Chart(v.projection, v.width, v.height, v.fov, PixelSpacing::edges, "", 1, v.lens);
+}
+
+const char* const kLenses[] = {"ptlens:a=0.01,b=-0.03,c=0.02",
+                               "ptlens:a=-0.02,b=0.05,c=-0.03,d=12.5,e=-40",
+                               "ptlens:b=-0.45",
+                               "brown:k1=-0.2,k2=0.05,k3=-0.004",
+                               "brown:k1=0.1,k2=0.02,k3=0.001,k4=0.15,k5=0.01,k6=0.002",
+                               "brown:k1=-0.1,k2=0.02,p1=0.002,p2=-0.003",
+                               "3de4:k1=-0.25,d=20,e=10",
+                               "3de4:k1=0.1,k2=0.03",
+                               "kb4:k1=0.05,k2=-0.01,k3=0.002,k4=-0.0003"};
+
+/// The true source point of a target point; not a number where there is none.
+class Truth {
+  public:
+    Truth(const View& view, LensMode mode, const Size& covered, const Size& target, const Size& source)
+        : m_view(view), m_lens(view), m_mode(mode), m_covered(covered), m_target(target), m_source(source) {}
+
+    Point<Real> operator()(Real x, Real y) const {
+        const auto from_middle = [](Real at, int pixels, int shown) {
+            return (at / pixels - Real(1) / 2) * shown;
+        };
+        const Point<Real> p{from_middle(x, m_target.width, m_covered.width) + Real(kPicture.width) / 2,
+                            from_middle(y, m_target.height, m_covered.height) + Real(kPicture.height) / 2};
+        const Point<Real> q =
+            m_mode == LensMode::undistort ? m_lens.observed(m_view, p) : m_lens.ideal(m_view, p);
+        return {q.x - Real(kPicture.width) / 2 + Real(m_source.width) / 2,
+                q.y - Real(kPicture.height) / 2 + Real(m_source.height) / 2};
+    }
+
+  private:
+    View m_view;
+    LensOracle m_lens;
+    LensMode m_mode;
+    Size m_covered, m_target, m_source;
+};
+
+struct Findings {
+    std::int64_t over = 0, lost = 0, pixels = 0, exact = 0;
+    double bound = 0;
+};
+
+Findings examine(const LensPlan& plan, const Truth& truth) {
+    Findings found;
+    const Size source = plan.map().source_size();
+    float px[simd::kRowRoom], py[simd::kRowRoom];
+    for (std::int64_t region = 0; region < plan.regions(); ++region)
+        for (const Block& block : plan.blocks(region)) {
+            found.bound = std::max(found.bound, block.bound);
+            const bool polynomial = block.kind != Block::Kind::exact && block.kind != Block::Kind::outside;
+            for (int j = block.box.y0; j < block.box.y1; ++j) {
+                if (polynomial) block_row(plan, block, block.box, j, px, py);
+                for (int i = block.box.x0; i < block.box.x1; ++i) {
+                    ++found.pixels;
+                    found.exact += block.kind == Block::Kind::exact;
+                    const Point<Real> at = truth(i + 0.5L, j + 0.5L);
+                    Point<double> p{};
+                    int piece = 0;
+                    bool seen = polynomial;
+                    if (polynomial)
+                        p = {block.base_x + double{px[i - block.box.x0]},
+                             block.base_y + double{py[i - block.box.x0]}};
+                    else if (block.kind == Block::Kind::exact)
+                        seen = static_cast<const BlockMap&>(plan).exact(block, i + 0.5, j + 0.5, p, piece);
+                    constexpr double kFilter = 4;
+                    const bool in_source = at.x > -kFilter && at.x < source.width + kFilter &&
+                                           at.y > -kFilter && at.y < source.height + kFilter;
+                    if (!seen)
+                        found.lost += in_source;
+                    else if (std::isfinite(at.x))
+                        found.over += std::hypot(p.x - at.x, p.y - at.y) > block.bound;
+                }
+            }
+        }
+    return found;
+}
+
+TEST(LensMap, EveryLensHoldsEveryToleranceBothWays) {
+    constexpr unsigned kSeed = 1971;
+    SCOPED_TRACE(::testing::Message() << "seed " << kSeed);
+    std::mt19937 random(kSeed);
+    const double tols[] = {1, 1.0 / 16, 0.01, 1e-3, 1e-4, 1e-6, 0};
+    for (const char* text : kLenses)
+        for (const LensMode mode : {LensMode::undistort, LensMode::distort}) {
+            const double tol = tols[random() % std::size(tols)];
+            SCOPED_TRACE(::testing::Message()
+                         << text << " mode " << static_cast<int>(mode) << " tol " << tol);
+            const View view = view_of(text);
+            const Size target{kPicture.width + static_cast<int>(random() % 60) - 30, kPicture.height},
+                source{kPicture.width + static_cast<int>(random() % 20), kPicture.height - 7};
+            PlanOptions options;
+            options.tol = tol;
+            const LensPlan plan(LensMap(chart_of(view), mode, target, target, source), options);
+            const Findings found = examine(plan, Truth(view, mode, target, target, source));
+            EXPECT_EQ(found.over, 0);
+            EXPECT_EQ(found.lost, 0);
+            EXPECT_EQ(found.pixels, std::int64_t{target.width} * target.height);
+            EXPECT_LE(found.bound, tol > 0 ? tol : 1e-9);
+            if (tol >= 0.01) {
+                EXPECT_LT(found.exact, found.pixels / 5);
+            }
+        }
+}
+
+// Levels of a pyramid show the same with fewer pixels, which may not be square.
+TEST(LensMap, LevelsShowTheSame) {
+    const View view = view_of("brown:k1=-0.2,k2=0.05,k3=-0.004");
+    for (const LensMode mode : {LensMode::undistort, LensMode::distort}) {
+        const Size covered{701, 503}, target{350, 251};
+        const LensPlan plan(LensMap(chart_of(view), mode, covered, target, kPicture), {});
+        const Findings found = examine(plan, Truth(view, mode, covered, target, kPicture));
+        EXPECT_EQ(found.over, 0);
+        EXPECT_EQ(found.lost, 0);
+    }
+}
+
+TEST(LensMap, CoveringCutsNothingOff) {
+    for (const char* text : kLenses)
+        for (const LensMode mode : {LensMode::undistort, LensMode::distort}) {
+            SCOPED_TRACE(::testing::Message() << text << " mode " << static_cast<int>(mode));
+            const View view = view_of(text);
+            const LensOracle lens(view);
+            const Size all = LensMap::covering(chart_of(view), mode, kPicture);
+            EXPECT_EQ((all.width - kPicture.width) % 2, 0);
+            EXPECT_EQ((all.height - kPicture.height) % 2, 0);
+            // How far from the middle points of the picture's outline go, with those of a lens that ends before.
+            Real across = 0, down = 0;
+            for (int i = 0; i <= 20000; ++i) {
+                const Real s = i / Real(20000), w = kPicture.width, h = kPicture.height;
+                for (const Point<Real> p : {Point<Real>{s * w, 0}, {s * w, h}, {0, s * h}, {w, s * h}}) {
+                    const Point<Real> q =
+                        mode == LensMode::undistort ? lens.ideal(view, p) : lens.observed(view, p);
+                    if (!std::isfinite(q.x)) continue;
+                    across = std::max(across, std::fabs(q.x - w / 2));
+                    down = std::max(down, std::fabs(q.y - h / 2));
+                }
+            }
+            EXPECT_GE(all.width / Real(2), across - 1e-5L);
+            EXPECT_GE(all.height / Real(2), down - 1e-5L);
+            // Nor much more, but where the lens ends within the picture.
+            if (mode == LensMode::undistort && std::string(text) == "ptlens:b=-0.45") continue;
+            EXPECT_LE(all.width / Real(2), across + 2);
+            EXPECT_LE(all.height / Real(2), down + 2);
+        }
+}
+
+TEST(LensMap, NeedsALens) {
+    EXPECT_THROW(
+        LensMap(Chart(Projection::rectilinear, 10, 10), LensMode::distort, {10, 10}, {10, 10}, {10, 10}),
+        Error);
+}
+
+}  // namespace
+}  // namespace anamorph
