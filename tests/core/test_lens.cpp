@@ -211,8 +211,9 @@ TEST(Lens, JetsAreDerivatives) {
                                         (v[5] - 4 * v[4] + 6 * v[3] - 4 * v[2] + v[1]) / 24,
                                         (v[6] - 4 * v[5] + 5 * v[4] - 5 * v[2] + 4 * v[1] - v[0]) / 240};
             for (int k = 1; k <= 5; ++k)
-                EXPECT_NEAR(jet.x.at(k, 0), static_cast<double>(differences[k - 1]),
-                            5e-3 * std::fabs(jet.x.at(k, 0)) + 1e-5 * std::pow(1e-3, k) * lens.reach() + 1e-18)
+                EXPECT_NEAR(
+                    jet.x.at(k, 0), static_cast<double>(differences[k - 1]),
+                    5e-3 * std::fabs(jet.x.at(k, 0)) + 1e-5 * std::pow(1e-3, k) * lens.reach() + 1e-18)
                     << text << ' ' << k << ' ' << to_ideal;
         }
     }
