@@ -191,6 +191,8 @@ class FeatureMap {
     }
 
   private:
+    class Builder;
+
     template <class T>
     void sum(const T& x, const T& y, int first, int last, Point<T>* points) const;
 
