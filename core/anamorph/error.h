@@ -10,6 +10,7 @@ namespace anamorph {
 /// A parameter was given a value it cannot take. `what()` is one line: "fov=200: must be ...".
 class Error : public std::runtime_error {
   public:
+    /// `rule` says what the value must be: "must be a number from 0 to 8".
     Error(const std::string& parameter, const std::string& value, const std::string& rule)
         : std::runtime_error(parameter + "=" + value + ": " + rule), m_parameter(parameter) {}
     /// A failure that no single parameter caused.

@@ -64,6 +64,7 @@ struct Assignment {
 /// What was asked for: values checked against a table, later ones over earlier ones.
 class ParameterValues {
   public:
+    /// Nothing is given yet. Keeps a reference to the table.
     explicit ParameterValues(const ParameterTable& table) : m_table(&table) {}
 
     /// Takes the assignments of one place (a file, a name, a call). Throws Error on an unknown key, a key
@@ -73,13 +74,17 @@ class ParameterValues {
     const ParameterTable& table() const { return *m_table; }
     /// Is there such a parameter?
     bool knows(std::string_view name) const;
+    /// Was it assigned a value?
     bool given(std::string_view name) const { return m_given.count(std::string(name)) != 0; }
     /// As written, or the default.
     const std::string& text(std::string_view name) const;
     /// For parameters of type number, whole, numbers, toggle and extent that were given or have a default.
     double number(std::string_view name) const;
+    /// Of a whole number.
     int whole(std::string_view name) const;
+    /// Of a list of numbers.
     std::vector<double> numbers(std::string_view name) const;
+    /// Of a toggle: is it on?
     bool toggle(std::string_view name) const { return text(name) == "1"; }
     /// Its height is -1 where only one number was given.
     Size extent(std::string_view name) const;

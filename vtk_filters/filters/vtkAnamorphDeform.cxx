@@ -337,12 +337,25 @@ int vtkAnamorphDeform::RequestData(vtkInformation*, vtkInformationVector** input
                                  {vtkDataObject::GetData(outputs, 0), vtkDataObject::GetData(outputs, 1)});
 }
 
-void vtkAnamorphDeform::Execute(vtkInformationVector** inputs, vtkInformationVector* outputs) {
-    vtkDataObject* input = vtkDataObject::GetData(inputs[0]);
-    vtkDataObject* output = vtkDataObject::GetData(outputs, 0);
-    this->NumberOfPointsComputed = 0;
+/// One execution of the filter, step by step.
+struct vtkAnamorphDeform::Run {
+    vtkAnamorphDeform& filter;
+    vtkInformationVector* outputs;
+    std::vector<Leaf> leaves = {};
+    anamorph_vtk::DeformSettings settings = {};
+    std::vector<Deformation> list = {};
 
-    std::vector<Leaf> leaves;
+    void copy_leaves(vtkDataObject* input);
+    void choose_plane();
+    /// The filter's own deformations, those of its file, and `more`.
+    void gather_deformations(const std::vector<Numbers>& more);
+    void settle_precision();
+    void deform_leaves();
+    void draw_overlay_of_meshes();
+};
+
+void vtkAnamorphDeform::Run::copy_leaves(vtkDataObject* input) {
+    vtkDataObject* output = vtkDataObject::GetData(outputs, 0);
     const auto add = [&](vtkPointSet* in, vtkPointSet* out) {
         out->ShallowCopy(in);
         leaves.push_back({in, out});
@@ -364,14 +377,13 @@ void vtkAnamorphDeform::Execute(vtkInformationVector** inputs, vtkInformationVec
     } else {
         add(vtkPointSet::SafeDownCast(input), vtkPointSet::SafeDownCast(output));
     }
-    this->Meshes->meshes.resize(leaves.size());
+    filter.Meshes->meshes.resize(leaves.size());
+}
 
-    // What all ranks do together comes first: one that then fails does not keep the others waiting.
-    std::vector<Numbers> more = table_of(vtkTable::GetData(inputs[1]), this->Controller);
-    anamorph_vtk::DeformSettings settings;
-    settings.on_plane = this->ParameterMode == PLANE;
-    if (settings.on_plane && this->AutomaticPlane) {
-        if (!distributed(this->Controller) &&
+void vtkAnamorphDeform::Run::choose_plane() {
+    settings.on_plane = filter.ParameterMode == PLANE;
+    if (settings.on_plane && filter.AutomaticPlane) {
+        if (!distributed(filter.Controller) &&
             outputs->GetInformationObject(0)->Get(
                 vtkStreamingDemandDrivenPipeline::UPDATE_NUMBER_OF_PIECES()) > 1)
             throw Error(
@@ -379,58 +391,80 @@ void vtkAnamorphDeform::Execute(vtkInformationVector** inputs, vtkInformationVec
                 "Axis1 and Axis2, or execute all pieces under a controller");
         std::vector<vtkPointSet*> meshes;
         for (const Leaf& leaf : leaves) meshes.push_back(leaf.in);
-        settings.plane = this->Meshes->plane.of(meshes, this->Controller);
+        settings.plane = filter.Meshes->plane.of(meshes, filter.Controller);
     } else {
-        this->Meshes->plane.forget();
+        filter.Meshes->plane.forget();
         if (settings.on_plane)
-            settings.plane = {vector(this->Origin), vector(this->Axis1), vector(this->Axis2)};
+            settings.plane = {vector(filter.Origin), vector(filter.Axis1), vector(filter.Axis2)};
     }
-    put(settings.plane.origin(), this->UsedOrigin);
-    put(settings.plane.axis_u(), this->UsedAxis1);
-    put(settings.plane.axis_v(), this->UsedAxis2);
+    put(settings.plane.origin(), filter.UsedOrigin);
+    put(settings.plane.axis_u(), filter.UsedAxis1);
+    put(settings.plane.axis_v(), filter.UsedAxis2);
+}
 
-    std::vector<Numbers> numbers = this->DeformationList->GetAll();
-    if (this->FileName && *this->FileName) {
-        const std::vector<Numbers> file = anamorph_vtk::read_deformations(this->FileName);
+void vtkAnamorphDeform::Run::gather_deformations(const std::vector<Numbers>& more) {
+    std::vector<Numbers> numbers = filter.DeformationList->GetAll();
+    if (filter.FileName && *filter.FileName) {
+        const std::vector<Numbers> file = anamorph_vtk::read_deformations(filter.FileName);
         numbers.insert(numbers.end(), file.begin(), file.end());
     }
     numbers.insert(numbers.end(), more.begin(), more.end());
-    const std::vector<Deformation> list = anamorph_vtk::checked_deformations(numbers);
+    list = anamorph_vtk::checked_deformations(numbers);
+}
 
-    settings.options.cutoff = this->Cutoff;
+void vtkAnamorphDeform::Run::settle_precision() {
+    settings.options.cutoff = filter.Cutoff;
     settings.options.resolution = resolution_for(list);
-    settings.precision = this->OutputPointsPrecision;
-    settings.displacement = this->ComputeDisplacement;
-    settings.normals = this->ComputeNormals;
+    settings.precision = filter.OutputPointsPrecision;
+    settings.displacement = filter.ComputeDisplacement;
+    settings.normals = filter.ComputeNormals;
     anamorph::DisplacementSum sum(settings.options);
     sum.apply(difference({}, list));
-    this->ErrorBound = sum.error_bound();
+    filter.ErrorBound = sum.error_bound();
+}
 
-    anamorph_vtk::Execution execution(this);
+void vtkAnamorphDeform::Run::deform_leaves() {
+    anamorph_vtk::Execution execution(&filter);
     double total = 0, done = 0;
     for (const Leaf& leaf : leaves) total += static_cast<double>(leaf.in->GetNumberOfPoints());
-    const double share = this->GenerateOverlay ? 0.9 : 1;
+    const double share = filter.GenerateOverlay ? 0.9 : 1;
     for (std::size_t i = 0; i < leaves.size(); ++i) {
         auto& [in, out] = leaves[i];
-        add_field_value(out, "anamorph:error_bound", this->ErrorBound);
-        std::unique_ptr<DeformedMesh>& mesh = this->Meshes->meshes[i];
+        add_field_value(out, "anamorph:error_bound", filter.ErrorBound);
+        std::unique_ptr<DeformedMesh>& mesh = filter.Meshes->meshes[i];
         const double count = static_cast<double>(in->GetNumberOfPoints());
         vtkDataArray* coordinates =
-            settings.on_plane || count == 0 ? nullptr : this->GetInputArrayToProcess(0, in);
+            settings.on_plane || count == 0 ? nullptr : filter.GetInputArrayToProcess(0, in);
         if (count == 0 || (mesh && !mesh->fits(in, coordinates, settings))) mesh = nullptr;
         if (!mesh) mesh = DeformedMesh::make(in, coordinates, settings);
         if (!mesh) continue;
-        this->NumberOfPointsComputed +=
+        filter.NumberOfPointsComputed +=
             mesh->deform(list, out, execution, done / total * share, (done + count) / total * share);
         done += count;
     }
+}
 
+void vtkAnamorphDeform::Run::draw_overlay_of_meshes() {
     auto* overlay = vtkPolyData::GetData(outputs, 1);
     overlay->Initialize();
-    if (!this->GenerateOverlay) return;
+    if (!filter.GenerateOverlay) return;
     std::vector<anamorph_vtk::OverlayMesh> meshes;
     for (std::size_t i = 0; i < leaves.size(); ++i)
-        if (this->Meshes->meshes[i]) meshes.push_back({leaves[i].in, &this->Meshes->meshes[i]->parameters()});
-    const bool whole = settings.on_plane && !distributed(this->Controller);
+        if (filter.Meshes->meshes[i])
+            meshes.push_back({leaves[i].in, &filter.Meshes->meshes[i]->parameters()});
+    const bool whole = settings.on_plane && !distributed(filter.Controller);
     draw_overlay(list, settings.options, meshes, whole ? &settings.plane : nullptr, overlay);
+}
+
+void vtkAnamorphDeform::Execute(vtkInformationVector** inputs, vtkInformationVector* outputs) {
+    this->NumberOfPointsComputed = 0;
+    Run run{*this, outputs};
+    run.copy_leaves(vtkDataObject::GetData(inputs[0]));
+    // What all ranks do together comes first: one that then fails does not keep the others waiting.
+    const std::vector<Numbers> more = table_of(vtkTable::GetData(inputs[1]), this->Controller);
+    run.choose_plane();
+    run.gather_deformations(more);
+    run.settle_precision();
+    run.deform_leaves();
+    run.draw_overlay_of_meshes();
 }

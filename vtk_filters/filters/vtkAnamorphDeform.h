@@ -241,6 +241,7 @@ class ANAMORPHFILTERS_EXPORT vtkAnamorphDeform : public vtkPassInputTypeAlgorith
     vtkIdType NumberOfPointsComputed = 0;
 
     struct Kept;
+    struct Run;
     std::unique_ptr<Kept> Meshes;
 };
 

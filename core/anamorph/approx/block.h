@@ -74,11 +74,13 @@ struct Blocks : std::vector<Block> {
 /// pointer: `for (const Block& b : map.blocks(region))` keeps them for the whole loop.
 class SharedBlocks {
   public:
+    /// Keeps `blocks`, which are not null.
     explicit SharedBlocks(std::shared_ptr<const Blocks> blocks) : m_blocks(std::move(blocks)) {}
 
     auto begin() const { return m_blocks->begin(); }
     auto end() const { return m_blocks->end(); }
     std::size_t size() const { return m_blocks->size(); }
+    /// Block i, from 0 to size() - 1.
     const Block& operator[](std::size_t i) const { return (*m_blocks)[i]; }
 
   private:
@@ -116,12 +118,14 @@ class BlockMap {
     int width() const { return m_width; }
     int height() const { return m_height; }
     int layers() const { return m_layout.layers; }
+    /// The layer that a block belongs to.
     int layer_of(const Block& block) const { return block.piece / static_cast<int>(m_grids.size()); }
 
     /// Does every pixel of a box belong to a piece?
     bool covers(const Box& box) const;
 
     std::int64_t regions() const { return m_regions; }
+    /// The pixels of a region.
     Box region_box(std::int64_t region) const { return place_of(region).box; }
     /// The regions that meet a box of the picture.
     std::vector<std::int64_t> regions_in(const Box& box) const;
@@ -144,12 +148,13 @@ class BlockMap {
     /// The source point of a target point of an exact block.
     bool exact(const Block& block, double x, double y, Point<double>& source_point,
                int& source_piece) const noexcept;
-    /// The source points of row `row` (0 is the block's first) of an exact block.
+    /// The source point of a pixel of an exact block.
     struct ExactPoint {
         Point<double> at{};
         int piece = 0;
         bool seen = false;  ///< false where there is none
     };
+    /// The source points of row `row` (0 is the block's first) of an exact block.
     virtual void exact_row(const Block& block, int row, ExactPoint* points) const noexcept;
     /// Source pixels per target pixel at a target point.
     virtual Jacobian jacobian(double x, double y, int piece) const noexcept = 0;

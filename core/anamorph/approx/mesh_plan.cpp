@@ -184,7 +184,7 @@ void check_tol(double tol) {
     if (tol >= 0 && tol < HUGE_VAL) return;
     char text[32];
     std::snprintf(text, sizeof text, "%g", tol);
-    throw Error("tol", text, "allowed is 0 (exact) or a finite number of source pixels above it");
+    throw Error("tol", text, "must be 0 (exact) or a finite number of source pixels above it");
 }
 
 std::int64_t WarpPlan::folded_pixels(const Box& box) const {

@@ -85,14 +85,20 @@ struct DeformationChange {
 class DeformationList {
   public:
     DeformationList() = default;
+    /// A list of these entries, in their order.
     explicit DeformationList(std::vector<Deformation> entries);
 
     const std::vector<Deformation>& entries() const { return m_entries; }
 
+    /// Puts a deformation behind the last.
     DeformationChange add(const Deformation& deformation);
+    /// Puts one before that at `position`, or behind the last.
     DeformationChange insert(std::size_t position, const Deformation& deformation);
+    /// Puts one in the place of that at `position`.
     DeformationChange change(std::size_t position, const Deformation& deformation);
+    /// Takes one out.
     DeformationChange remove(std::size_t position);
+    /// Turns one on or off.
     DeformationChange enable(std::size_t position, bool enabled);
     /// The entry at `from` then stands at `to`. The surface stays as it is.
     void move(std::size_t from, std::size_t to);

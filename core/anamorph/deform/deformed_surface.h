@@ -81,8 +81,11 @@ struct SurfaceSlopes {
     const std::int32_t* points;  ///< or, unless null, these
     double (*by)[kMost];         ///< by[c][k]: component c at the k-th of them by u, by[3 + c][k] by v
 
+    /// The number of the k-th of the points.
     std::int64_t point(int k) const { return points ? points[k] : first + k; }
+    /// The derivative of the displacement by u at the k-th point.
     glm::dvec3 by_u(int k) const { return {by[0][k], by[1][k], by[2][k]}; }
+    /// The derivative by v.
     glm::dvec3 by_v(int k) const { return {by[3][k], by[4][k], by[5][k]}; }
 };
 /// Called with points that belong together, from several threads, with each point once.
@@ -99,6 +102,7 @@ void turn_normals(const SurfaceSlopes& slopes, glm::dvec3 gradient_u, glm::dvec3
 /// up to 2^16 at a point.
 class CornerSums {
   public:
+    /// Keeps a reference to `slopes`.
     explicit CornerSums(const SurfaceSlopes& slopes) : m_slopes(slopes) {}
 
     /// An edge to a neighbour, undeformed, and its change of parameters.
@@ -133,6 +137,7 @@ class DeformedGrid {
 
     /// Takes changes of the list; update() or write() carries them out. Throws Error if they are refused.
     void apply(std::span<const DeformationChange> changes);
+    /// Takes one change.
     void apply(const DeformationChange& change) { apply(std::span(&change, 1)); }
 
     /// Writes base + displacement where the changes since the last update() or write() have moved something,
@@ -179,13 +184,16 @@ class DeformedPoints {
     /// Throws Error that names the point on values that are not finite, and on 2^31 points or more.
     DeformedPoints(std::span<const glm::dvec2> points, const DeformOptions& options = {});
 
+    /// As that of DeformedGrid.
     void apply(std::span<const DeformationChange> changes);
+    /// Takes one change.
     void apply(const DeformationChange& change) { apply(std::span(&change, 1)); }
 
     /// It works as in DeformedGrid, and returns the number of points that were written.
     template <class T>
     std::int64_t update(const T* base, T* out, const ParallelFor& parallel_for = serial_for,
                         T* displacement = nullptr);
+    /// Writes all points.
     template <class T>
     void write(const T* base, T* out, const ParallelFor& parallel_for = serial_for,
                T* displacement = nullptr);

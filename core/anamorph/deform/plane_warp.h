@@ -31,6 +31,7 @@ class ParameterPlane {
 
     /// The result is not finite where p is not.
     glm::dvec2 parameters(glm::dvec3 p) const;
+    /// The point of the plane that has the parameters s.
     glm::dvec3 point(glm::dvec2 s) const { return m_origin + s.x * m_axis_u + s.y * m_axis_v; }
 
     glm::dvec3 origin() const { return m_origin; }

@@ -354,22 +354,13 @@ void FigureAction::perform() {
             return drag();
         case Action::balance:
             return balance();
-        case Action::set:
-            return set();
-        case Action::angles:
-            return store(2,
-                         angles_of_turn(glm::conjugate(body(ellipsoid(1)).turn) * body(ellipsoid(0)).turn));
-        case Action::centre:
-            return store(1, body(ellipsoid(0)).center);
-        case Action::axes:
-            return store(1, body(ellipsoid(0)).axes);
-        case Action::linkx:
-            return store(1, joint_position(joint(0)));
-        case Action::print: {
-            const auto variable = static_cast<std::size_t>(m_movement.operands[0].index);
-            return say("frame " + std::to_string(m_frame) + ", " + excerpt(m_program.variables[variable]) +
-                       " " + shortest(m_state.variables[variable].number));
-        }
+        default:
+            return change_scene();
+    }
+}
+
+void FigureAction::change_scene() const {
+    switch (m_movement.action) {
         case Action::colour: {
             auto& painted = body(ellipsoid(0));
             painted.color = towards(painted.color, vector(1), "the colour");
@@ -389,16 +380,40 @@ void FigureAction::perform() {
             m_state.place = towards(m_state.place, vector(0), "the place");
             return;
         case Action::allow:
-        case Action::forbid: {
-            const int first = ellipsoid(0), second = ellipsoid(1);
-            const bool forbidden = m_movement.action == Action::forbid;
-            auto& rules = m_state.overlaps;
-            const auto covered = [&](const FigureState::Overlap& rule) {
-                return (first == 0 && second == 0) || (rule.first == first && rule.second == second);
-            };
-            rules.erase(std::remove_if(rules.begin(), rules.end(), covered), rules.end());
-            if (forbidden || !rules.empty()) rules.push_back({first, second, forbidden});
-            return;
+        case Action::forbid:
+            return rule_overlap(m_movement.action == Action::forbid);
+        default:
+            return use_variables();
+    }
+}
+
+void FigureAction::rule_overlap(bool forbidden) const {
+    const int first = ellipsoid(0), second = ellipsoid(1);
+    auto& rules = m_state.overlaps;
+    const auto covered = [&](const FigureState::Overlap& rule) {
+        return (first == 0 && second == 0) || (rule.first == first && rule.second == second);
+    };
+    rules.erase(std::remove_if(rules.begin(), rules.end(), covered), rules.end());
+    if (forbidden || !rules.empty()) rules.push_back({first, second, forbidden});
+}
+
+void FigureAction::use_variables() const {
+    switch (m_movement.action) {
+        case Action::set:
+            return set();
+        case Action::angles:
+            return store(2,
+                         angles_of_turn(glm::conjugate(body(ellipsoid(1)).turn) * body(ellipsoid(0)).turn));
+        case Action::centre:
+            return store(1, body(ellipsoid(0)).center);
+        case Action::axes:
+            return store(1, body(ellipsoid(0)).axes);
+        case Action::linkx:
+            return store(1, joint_position(joint(0)));
+        case Action::print: {
+            const auto variable = static_cast<std::size_t>(m_movement.operands[0].index);
+            return say("frame " + std::to_string(m_frame) + ", " + excerpt(m_program.variables[variable]) +
+                       " " + shortest(m_state.variables[variable].number));
         }
         default:
             return calculate();

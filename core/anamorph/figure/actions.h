@@ -95,7 +95,12 @@ class FigureAction {
     void drag_exactly(int dragged, int ellipsoid, int joint, const glm::dvec3& axis) const;
     void balance() const;
 
+    /// Colours, textures, the view, and which ellipsoids may overlap; other actions use variables.
+    void change_scene() const;
+    void rule_overlap(bool forbidden) const;
+
     // Variables (actions.cpp)
+    void use_variables() const;
     void set() const;
     void calculate() const;
 

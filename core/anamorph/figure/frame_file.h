@@ -32,6 +32,7 @@ std::string frames_end_text(const FigureFrame& last);
 /// and the line.
 class FrameReader {
   public:
+    /// `name` stands in messages (a file's name).
     FrameReader(std::string_view text, std::string_view name);
     /// False at the end of the text or after the end record.
     bool read(FigureFrame& frame);

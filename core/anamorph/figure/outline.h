@@ -50,6 +50,7 @@ struct Outline {
     Ellipse<glm::dvec2> screen;
     std::vector<Arc> visible, hidden;  ///< sorted, disjoint; together all of the limb but what `near` cuts
 
+    /// The limb's point at `angle`, in pixels.
     glm::dvec2 on_screen(double angle, const View& view) const { return view.to_screen(viewed(angle)); }
     /// The angle on `screen` of the limb's point at `angle`.
     double screen_angle(double angle, const View& view) const;

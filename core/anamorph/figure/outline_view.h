@@ -36,6 +36,7 @@ struct View {
         const double zoom = perspective() ? scale * eye_distance / q.z : scale;
         return middle + glm::dvec2(zoom * q.x, zoom * q.y);
     }
+    /// Where a point of the scene is on the screen.
     glm::dvec2 project(const glm::dvec3& p) const { return to_screen(to_view(p)); }
 };
 

@@ -42,6 +42,7 @@ struct PerformanceOptions {
 /// A performance must not be used by two threads at once.
 class Performance {
   public:
+    /// `program`: that of a script without errors.
     explicit Performance(Program program, PerformanceOptions options = {});
     ~Performance();
     Performance(Performance&&) noexcept;

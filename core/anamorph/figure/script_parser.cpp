@@ -284,7 +284,12 @@ bool ScriptParser::statement(bool library) {
     warn_of_short_form(token, *entry, false);
     m_entry = entry;
     m_entry_position = position_of(token);
-    switch (entry->keyword) {
+    return rest_of_statement(*entry, token, library);
+}
+
+bool ScriptParser::rest_of_statement(const script_table::Entry& entry, const ScriptToken& word,
+                                     bool library) {
+    switch (entry.keyword) {
         case Keyword::figure:
             figure();
             break;
@@ -316,22 +321,22 @@ bool ScriptParser::statement(bool library) {
             take_number("a number");
             break;
         case Keyword::include:
-            parse_included(std::string(take_operand("a file name").text), position_of(token));
+            parse_included(std::string(take_operand("a file name").text), position_of(word));
             break;
         case Keyword::stop:
-            if (library) fault(position_of(token), "a library has no stop");
+            if (library) fault(position_of(word), "a library has no stop");
             return false;
         case Keyword::distribution:
-            movement(entry->distribution);
+            movement(entry.distribution);
             break;
         case Keyword::ignored:
-            report(Severity::warning, position_of(token), std::string(token.text), "",
-                   quoted(token.text) + " is passed over");
+            report(Severity::warning, position_of(word), std::string(word.text), "",
+                   quoted(word.text) + " is passed over");
             skip_to_statement();
             break;
         default:
             m_entry = nullptr;
-            unexpected(token, "a declaration or a movement: it is a word of the first versions");
+            unexpected(word, "a declaration or a movement: it is a word of the first versions");
     }
     return true;
 }

@@ -40,6 +40,8 @@ class ScriptParser {
 
     // Statements; each throws Abandoned where it cannot go on
     bool statement(bool library);  ///< false at the end of the text
+    /// What follows a statement's word; false after stop.
+    bool rest_of_statement(const script_table::Entry& entry, const ScriptToken& word, bool library);
     void end_statement();
     void unknown_statement(const ScriptToken& token);
     void warn_of_short_form(const ScriptToken& token, const script_table::Entry& entry, bool action);

@@ -113,6 +113,7 @@ class Chart {
           PixelSpacing spacing = PixelSpacing::edges, const std::string& prefix = "", double d = 1,
           const LensModel& lens = {});
 
+    /// The field of view that a chart of this projection has unless it is given one, in degrees.
     static double default_fov(Projection projection);
     /// The same picture with other pixels; faces stay square. Throws Error.
     Chart resized(int width, int height) const;
@@ -173,9 +174,10 @@ class Chart {
     template <class T>
     T sees(const Ray<T>& local, int piece = 0) const;
 
-    /// Of one sign where one smooth formula holds: at image points, and at local rays.
+    /// Of one sign where one smooth formula holds, at an image point.
     template <class T>
     T crease(const T& x, const T& y, int piece) const;
+    /// The same at a local ray.
     template <class T>
     T crease(const Ray<T>& local) const;
     /// Do formulas count azimuths, or angles about the axis of sight?
@@ -183,19 +185,21 @@ class Chart {
 
     /// The branch for single points of a piece: azimuths counted from straight ahead, in [-180, 180].
     const Branch& branch(int piece = 0) const { return m_branches[static_cast<std::size_t>(piece)]; }
-    /// The branch for a neighbourhood of an image point, or of a ray.
+    /// The branch for a neighbourhood of an image point.
     Branch branch_around(double x, double y, int piece) const;
+    /// The branch for a neighbourhood of a ray.
     Branch branch_around(const Ray<double>& ray) const;
 
     /// The piece that sees a ray.
     template <class T>
     int piece_of(const Ray<T>& ray) const;
 
-    /// The ray through an image point, and the image point of a ray.
+    /// The ray through an image point.
     template <class T>
     Ray<T> ray(const T& x, const T& y, int piece = 0) const {
         return transform(branch(piece).axes, local_ray(x, y, branch(piece)));
     }
+    /// The image point of a ray, on the piece that sees it.
     template <class T>
     Point<T> point(const Ray<T>& ray, int piece) const {
         return local_point(transform(glm::transpose(branch(piece).axes), ray), branch(piece));
@@ -205,6 +209,7 @@ class Chart {
     struct Plane {
         double cx, cy, sx, sy, per_x, per_y;
     };
+    /// Image and plane of a piece.
     Plane plane(int piece) const {
         const Box& box = m_pieces[static_cast<std::size_t>(piece)].box;
         return {0.5 * (box.x0 + box.x1), 0.5 * (box.y0 + box.y1), m_sx.value(), m_sy.value(),

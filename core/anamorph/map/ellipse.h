@@ -16,6 +16,7 @@ struct Ellipse {
 
     /// t in radians.
     Vector operator()(double t) const { return center + cosine * std::cos(t) + sine * std::sin(t); }
+    /// The derivative by t.
     Vector tangent(double t) const { return sine * std::cos(t) - cosine * std::sin(t); }
 };
 

@@ -203,16 +203,114 @@ void Features::set_frame(int shape, const Frame& frame) {
 
 // --- FeatureMap
 
+/// Makes the lines of a map: each as the target has it, and what it says.
+class FeatureMap::Builder {
+  public:
+    Builder(FeatureMap& map, const std::vector<double>& mixture) : m_map(map), m_mixture(mixture) {}
+
+    void add_features(const Features& features);
+    /// The four edges of the picture, which lie in the same place in every shape.
+    void add_border(double weight);
+    /// Weights in proportion to the greatest, with their rounding.
+    void finish_weights();
+
+  private:
+    void add(const std::vector<Ends>& shape_lines, double weight, const std::string& name);
+
+    FeatureMap& m_map;
+    const std::vector<double>& m_mixture;
+};
+
+void FeatureMap::Builder::add(const std::vector<Ends>& shape_lines, double weight, const std::string& name) {
+    const Ends ends = mixed(shape_lines, m_mixture);
+    const Line line = line_of(ends);
+    bool moves = false;
+    const Point<double> e{line.q.x - line.p.x, line.q.y - line.p.y};
+    const double length = length_of(e);
+    // Shorter than this its direction is rounding.
+    const double size = std::fabs(line.p.x) + std::fabs(line.p.y) + std::fabs(line.q.x) + std::fabs(line.q.y);
+    if (!(length > 1e-12 * size && length > 1e-9))
+        throw Error(name, written(line), "a line needs a length, here too");
+    const Point<double> along{e.x / length, e.y / length};
+    for (const Ends& shape_line : shape_lines) {
+        const Line l = line_of(shape_line);
+        const Point<double> to{l.q.x - l.p.x, l.q.y - l.p.y};
+        const double to_length = length_of(to);
+        if (!(to_length > 1e-9)) throw Error(name, written(l), "a line needs a length");
+        // Eq. 5.10 less X: (P' - P) + u (e' - e) + v (perp(e') / |e'| - perp(e) / |e|)
+        const Displacement d{{l.p.x - line.p.x, l.p.y - line.p.y},
+                             {to.x / length - along.x, to.y / length - along.y},
+                             {along.y - to.y / to_length, to.x / to_length - along.x}};
+        m_map.m_displacements.push_back(d);
+        for (const Point<double>& v : {d.origin, d.along_rate, d.beside_rate})
+            moves = moves || v.x != 0 || v.y != 0;
+    }
+    m_map.m_lines.push_back({line.p, along, length, weight, moves});
+    m_map.m_roundings.push_back(rounding_of(shape_lines, m_mixture, ends, length));
+}
+
+void FeatureMap::Builder::add_features(const Features& features) {
+    const Size& target = m_map.m_target;
+    std::vector<Ends> scaled(m_mixture.size());
+    for (std::size_t i = 0; i < features.size(); ++i) {
+        if (features.weight(i) == 0) continue;
+        for (int k = 0; k < m_map.m_shapes; ++k) {
+            const Features::Frame frame = features.frame(k);
+            const auto ratio = [](double to, double own, double otherwise) {
+                return Checked{to} / Checked{own > 0 ? own : otherwise};
+            };
+            const Checked sx = ratio(target.width, frame.width, m_map.picture(k).width),
+                          sy = ratio(target.height, frame.height, m_map.picture(k).height);
+            const Line& l = features.line(i, k);
+            scaled[static_cast<std::size_t>(k)] = {Checked{l.p.x} * sx, Checked{l.p.y} * sy,
+                                                   Checked{l.q.x} * sx, Checked{l.q.y} * sy};
+        }
+        add(scaled, features.weight(i), features.name(i));
+    }
+}
+
+void FeatureMap::Builder::add_border(double weight) {
+    const double w = m_map.m_target.width, h = m_map.m_target.height;
+    const Point<double> corners[] = {{0, 0}, {w, 0}, {w, h}, {0, h}};
+    for (int i = 0; i < 4; ++i) {
+        const Point<double>&p = corners[i], &q = corners[(i + 1) % 4];
+        add(std::vector<Ends>(m_mixture.size(), {Checked{p.x}, Checked{p.y}, Checked{q.x}, Checked{q.y}}),
+            weight, "border");
+    }
+}
+
+void FeatureMap::Builder::finish_weights() {
+    double longest = 0, heaviest = 0;
+    for (const TargetLine& line : m_map.m_lines) {
+        longest = std::max(longest, line.length);
+        heaviest = std::max(heaviest, line.factor);
+    }
+    const double b = m_map.m_weights.b, exponent = m_map.m_weights.p * b;
+    for (std::size_t i = 0; i < m_map.m_lines.size(); ++i) {
+        TargetLine& line = m_map.m_lines[i];
+        Rounding& rounding = m_map.m_roundings[i];
+        // The rounding of the length, the exponent, the two powers (of the distance too), quotients and
+        // products; nothing is known of a factor that is raised.
+        rounding.weight =
+            exponent * 4 * rounding.place / line.length +
+            kHalfUlp * (16 + 4 * b + 2 * exponent * (1 + std::fabs(std::log(line.length / longest))));
+        line.factor = line.factor / heaviest * std::pow(line.length / longest, exponent);
+        if (line.factor >= kLeastFactor) continue;
+        line.factor = kLeastFactor;
+        rounding.weight = 1;
+    }
+}
+
 FeatureMap::FeatureMap(const Features& features, const std::vector<Size>& pictures, const Size& target,
                        const std::vector<double>& mixture, const LineWeights& weights)
     : m_shapes(features.shapes()), m_target(target), m_pictures(pictures), m_weights(weights) {
-    const auto shapes = static_cast<std::size_t>(m_shapes);
-    if (pictures.size() != shapes)
-        throw Error("pictures", std::to_string(pictures.size()),
-                    "the features have " + std::to_string(m_shapes) + " shapes");
-    if (mixture.size() != shapes)
-        throw Error("shape weights", std::to_string(mixture.size()),
-                    "the features have " + std::to_string(m_shapes) + " shapes");
+    const auto check_count = [&](const char* name, std::size_t count) {
+        if (count != static_cast<std::size_t>(m_shapes))
+            throw Error(name, std::to_string(count),
+                        "the features have " + std::to_string(m_shapes) + " shapes");
+    };
+    check_count("pictures", pictures.size());
+    check_count("shape weights", mixture.size());
     const auto check = [](const char* name, double value, double most) {
         if (!(value >= 0 && value <= most))
             throw Error(name, shortest(value), "must be a number from 0 to " + shortest(most));
@@ -223,80 +321,11 @@ FeatureMap::FeatureMap(const Features& features, const std::vector<Size>& pictur
     for (const Size& picture : pictures)
         m_scales.push_back({double(picture.width) / target.width, double(picture.height) / target.height});
 
-    const auto add = [&](const std::vector<Ends>& shape_lines, double weight, const std::string& name) {
-        const Ends ends = mixed(shape_lines, mixture);
-        const Line line = line_of(ends);
-        bool moves = false;
-        const Point<double> e{line.q.x - line.p.x, line.q.y - line.p.y};
-        const double length = length_of(e);
-        // Shorter than this its direction is rounding.
-        const double size =
-            std::fabs(line.p.x) + std::fabs(line.p.y) + std::fabs(line.q.x) + std::fabs(line.q.y);
-        if (!(length > 1e-12 * size && length > 1e-9))
-            throw Error(name, written(line), "a line needs a length, here too");
-        const Point<double> along{e.x / length, e.y / length};
-        for (std::size_t k = 0; k < shapes; ++k) {
-            const Line l = line_of(shape_lines[k]);
-            const Point<double> to{l.q.x - l.p.x, l.q.y - l.p.y};
-            const double to_length = length_of(to);
-            if (!(to_length > 1e-9)) throw Error(name, written(l), "a line needs a length");
-            // Eq. 5.10 less X: (P' - P) + u (e' - e) + v (perp(e') / |e'| - perp(e) / |e|)
-            const Displacement d{{l.p.x - line.p.x, l.p.y - line.p.y},
-                                 {to.x / length - along.x, to.y / length - along.y},
-                                 {along.y - to.y / to_length, to.x / to_length - along.x}};
-            m_displacements.push_back(d);
-            for (const Point<double>& v : {d.origin, d.along_rate, d.beside_rate})
-                moves = moves || v.x != 0 || v.y != 0;
-        }
-        m_lines.push_back({line.p, along, length, weight, moves});
-        m_roundings.push_back(rounding_of(shape_lines, mixture, ends, length));
-    };
-
-    std::vector<Ends> scaled(shapes);
-    for (std::size_t i = 0; i < features.size(); ++i) {
-        if (features.weight(i) == 0) continue;
-        for (int k = 0; k < m_shapes; ++k) {
-            const Features::Frame frame = features.frame(k);
-            const auto ratio = [](double to, double own, double otherwise) {
-                return Checked{to} / Checked{own > 0 ? own : otherwise};
-            };
-            const Checked sx = ratio(target.width, frame.width, picture(k).width),
-                          sy = ratio(target.height, frame.height, picture(k).height);
-            const Line& l = features.line(i, k);
-            scaled[static_cast<std::size_t>(k)] = {Checked{l.p.x} * sx, Checked{l.p.y} * sy,
-                                                   Checked{l.q.x} * sx, Checked{l.q.y} * sy};
-        }
-        add(scaled, features.weight(i), features.name(i));
-    }
-    if (features.border_weight() > 0) {
-        const double w = target.width, h = target.height;
-        const Point<double> corners[] = {{0, 0}, {w, 0}, {w, h}, {0, h}};
-        for (int i = 0; i < 4; ++i) {
-            const Point<double>&p = corners[i], &q = corners[(i + 1) % 4];
-            scaled.assign(shapes, {Checked{p.x}, Checked{p.y}, Checked{q.x}, Checked{q.y}});
-            add(scaled, features.border_weight(), "border");
-        }
-    }
+    Builder builder(*this, mixture);
+    builder.add_features(features);
+    if (features.border_weight() > 0) builder.add_border(features.border_weight());
     if (m_lines.empty()) throw Error("features", "0 lines", "there must be one with a weight above 0");
-
-    double longest = 0, heaviest = 0;
-    for (const TargetLine& line : m_lines) {
-        longest = std::max(longest, line.length);
-        heaviest = std::max(heaviest, line.factor);
-    }
-    const double exponent = weights.p * weights.b;
-    for (std::size_t i = 0; i < m_lines.size(); ++i) {
-        TargetLine& line = m_lines[i];
-        // The rounding of the length, the exponent, the two powers (of the distance too), quotients and
-        // products; nothing is known of a factor that is raised.
-        m_roundings[i].weight =
-            exponent * 4 * m_roundings[i].place / line.length +
-            kHalfUlp * (16 + 4 * weights.b + 2 * exponent * (1 + std::fabs(std::log(line.length / longest))));
-        line.factor = line.factor / heaviest * std::pow(line.length / longest, exponent);
-        if (line.factor >= kLeastFactor) continue;
-        line.factor = kLeastFactor;
-        m_roundings[i].weight = 1;
-    }
+    builder.finish_weights();
 }
 
 bool FeatureMap::passes_through(std::size_t i, double x, double y) const {

@@ -41,6 +41,7 @@ class Features {
     int shapes() const { return m_shapes; }
     /// The number of lines.
     std::size_t size() const { return m_weights.size(); }
+    /// Line i as a shape has it.
     const Line& line(std::size_t i, int shape) const {
         return m_lines[i * static_cast<std::size_t>(m_shapes) + static_cast<std::size_t>(shape)];
     }
@@ -69,6 +70,7 @@ class Features {
 
     /// The size of the picture for which a shape's lines are given; {0, 0}: whatever size the picture has.
     Frame frame(int shape) const { return m_frames[static_cast<std::size_t>(shape)]; }
+    /// Throws Error unless the size is above 0 and at most 1e9 pixels either way.
     void set_frame(int shape, const Frame& frame);
 
   private:
@@ -152,13 +154,17 @@ class FeatureMap {
 
     int shapes() const { return m_shapes; }
     Size target() const { return m_target; }
+    /// The size of a shape's picture.
     Size picture(int shape) const { return m_pictures[static_cast<std::size_t>(shape)]; }
     const LineWeights& weights() const { return m_weights; }
     std::size_t size() const { return m_lines.size(); }
+    /// Line i of the target.
     const TargetLine& line(std::size_t i) const { return m_lines[i]; }
+    /// What line i says for a shape.
     const Displacement& displacement(std::size_t i, int shape) const {
         return m_displacements[i * static_cast<std::size_t>(m_shapes) + static_cast<std::size_t>(shape)];
     }
+    /// How far the numbers of line i are off.
     const Rounding& rounding(std::size_t i) const { return m_roundings[i]; }
     /// Does a line as the given numbers define it certainly pass through this point, to the last digit?
     bool passes_through(std::size_t i, double x, double y) const;
@@ -177,6 +183,7 @@ class FeatureMap {
     struct Frame {
         T along, beside;
     };
+    /// Finds where a point lies along and beside a line.
     template <class T>
     Frame<T> frame(const TargetLine& line, const T& x, const T& y) const {
         const T dx = x - line.p.x, dy = y - line.p.y;
@@ -191,6 +198,8 @@ class FeatureMap {
     }
 
   private:
+    class Builder;
+
     template <class T>
     void sum(const T& x, const T& y, int first, int last, Point<T>* points) const;
 

@@ -45,9 +45,11 @@ class Panorama {
     Size target_size() const { return {m_target.width(), m_target.height()}; }
     Size source_size() const { return {m_source.width(), m_source.height()}; }
     std::vector<Box> target_pieces() const;
+    /// The piece of the source that a branch leads to.
     int source_piece(const Local& local) const { return local.source.piece; }
     int period() const { return m_source.closed() ? m_source.period() : 0; }
     SourceEdges source_edges() const;
+    /// Whether the points of a box have source points on one branch.
     Cover cover(const Interval& x, const Interval& y, int piece, const Local& local, bool across_seam) const;
 
     /// The source's local ray of a target point.

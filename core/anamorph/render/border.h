@@ -32,6 +32,7 @@ struct TexelRun {
 /// Finds the texel that stands beyond an edge of a source.
 class Border {
   public:
+    /// The borders of a source that `chart` describes at level 0.
     Border(const Chart& chart, Wrap wrap);
 
     const Chart& chart() const noexcept { return m_chart; }

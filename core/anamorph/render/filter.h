@@ -35,6 +35,7 @@ std::array<T, 4> catmull_rom_weights(T t) {
 /// arguments.
 class PointSampler {
   public:
+    /// `border` is that of the source.
     PointSampler(const Source& source, const Border& border);
 
     /// The source at (x, y), in pixels of `level` (texel centres at + 0.5), on `piece`, which may be left

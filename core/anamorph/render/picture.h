@@ -29,6 +29,7 @@ struct PixelRows {
     int channels;
     float* values;
 
+    /// The channels of pixel (x, y) of the picture.
     float* at(int x, int y) const {
         return values + (std::ptrdiff_t{y - box.y0} * box.width() + x - box.x0) * channels;
     }

@@ -20,6 +20,7 @@ class Source {
     /// or -1: filter all channels as they are.
     virtual int unassociated_alpha() const noexcept { return -1; }
     virtual int levels() const noexcept = 0;
+    /// The size of a level.
     virtual Size size(int level) const noexcept = 0;
 
     /// Copies the texels of `box`, which lies inside the level, to `texels`: packed pixels of type(), rows
@@ -45,6 +46,7 @@ class Source {
 /// An image in memory, not owned.
 class MemorySource final : public Source {
   public:
+    /// `unassociated_alpha`: as Source::unassociated_alpha().
     explicit MemorySource(const ConstImageView& image, int unassociated_alpha = -1)
         : m_image(image), m_alpha(unassociated_alpha) {}
     PixelType type() const noexcept override { return m_image.type; }

@@ -26,6 +26,7 @@ struct BasicView {
     int width = 0, height = 0, channels = 0;
     std::ptrdiff_t pixel_stride = 0, row_stride = 0;
 
+    /// Channel 0 of pixel (x, y).
     Byte* at(std::ptrdiff_t x, std::ptrdiff_t y) const { return data + y * row_stride + x * pixel_stride; }
     /// Do pixels of a row follow each other without a gap?
     bool packed() const { return pixel_stride == std::ptrdiff_t{channels} * size_of(type); }
