@@ -31,6 +31,7 @@
 #include "anamorph/map/ellipsoid.h"
 #include "anamorph/map/feature_lines.h"
 #include "anamorph/map/features_file.h"
+#include "anamorph/map/lens.h"
 #include "anamorph/map/mesh_data.h"
 #include "anamorph/map/mesh_file.h"
 #include "anamorph/map/panorama.h"

@@ -36,6 +36,7 @@ namespace anamorph {
 
 /// A lens by its parameters.
 struct LensModel {
+    /// The models above.
     enum class Kind { none, ptlens, brown, three_de4, kb4 };
     Kind kind = Kind::none;
     /// In the order of names().
@@ -92,8 +93,10 @@ inline bool somewhere(bool condition) {
 
 /// shrink() for numbers that need more than an iteration; lens_formula.h has it for the others.
 Interval shrink(const LensTerms& lens, const Interval& value);
+/// The same with its rounding.
 template <class Real>
 Rounded<Real> shrink(const LensTerms& lens, const Rounded<Real>& value);
+/// The same for jets.
 template <class T, int N>
 Jet<T, N> shrink(const LensTerms& lens, const Jet<T, N>& value);
 
@@ -119,20 +122,22 @@ class Lens {
     const LensModel& model() const { return m_model; }
     const LensTerms& terms() const { return m_terms; }
 
-    /// The point of the ideal plane of one of the observed plane, and back: meaningful where inside() and sees() are
-    /// not negative.
+    /// The ideal point of an observed one. Meaningful, as is observed(), where inside() and sees() are not negative.
     template <class T>
     Point<T> ideal(const Point<T>& observed) const {
         return lens_formula::ideal_point(m_terms, observed);
     }
+    /// The observed point of an ideal one.
     template <class T>
     Point<T> observed(const Point<T>& ideal) const {
         return lens_formula::observed_point(m_terms, ideal);
     }
+    /// Not negative where an observed point has an ideal one.
     template <class T>
     T inside(const Point<T>& observed) const {
         return lens_formula::has_ideal(m_terms, observed);
     }
+    /// Not negative where an ideal point has an observed one.
     template <class T>
     T sees(const Point<T>& ideal) const {
         return lens_formula::has_observed(m_terms, ideal);
