@@ -1,0 +1,111 @@
+// SPDX-License-Identifier: Apache-2.0
+// .lens by stock programs: against the formula, against the panorama through the same lens, there and back.
+#include <OpenImageIO/imagebufalgo.h>
+
+#include <cmath>
+
+#include "host.h"
+
+namespace anamorph {
+namespace {
+
+using namespace testing_oiio;
+using testing::AllOf;
+using testing::HasSubstr;
+
+constexpr int kWidth = 192, kHeight = 128;
+
+class LensRecipe : public InFolder {
+  protected:
+    void SetUp() override {
+        InFolder::SetUp();
+        // Every pixel says where it is.
+        OIIO::ImageBuf ramp(OIIO::ImageSpec(kWidth, kHeight, 3, OIIO::TypeFloat));
+        for (int y = 0; y < kHeight; ++y)
+            for (int x = 0; x < kWidth; ++x) {
+                const float value[] = {static_cast<float>(x) + 0.5f, static_cast<float>(y) + 0.5f, 1};
+                ramp.setpixel(x, y, value);
+            }
+        write_image(ramp, "ramp.exr");
+    }
+};
+
+TEST_F(LensRecipe, IsTheModelsFormula) {
+    // PanoTools: radii in half of the smaller side, r (b r^2 + 1 - b), about a centre moved by d and e.
+    const std::vector<float> uv =
+        read_floats("ramp.exr.lens?lens=ptlens:b=-0.08,d=3,e=-2&output=stmap&tol=0.0001");
+    double worst = 0;
+    for (int y = 0; y < kHeight; ++y)
+        for (int x = 0; x < kWidth; ++x) {
+            const double u = x + 0.5 - kWidth / 2.0, v = y + 0.5 - kHeight / 2.0,
+                         r = std::hypot(u, v) / (kHeight / 2.0);
+            const double scale = -0.08 * r * r + 1.08;
+            const auto at = static_cast<std::size_t>(2 * (y * kWidth + x));
+            worst = std::max({worst, std::fabs(double{uv[at]} * kWidth - (u * scale + kWidth / 2.0 + 3)),
+                              std::fabs(double{uv[at + 1]} * kHeight - (v * scale + kHeight / 2.0 - 2))});
+        }
+    EXPECT_LT(worst, 1.5e-4);  // tol, and the rounding of an ST-map in float
+}
+
+// A panorama that leaves the projection alone does the same by way of rays.
+TEST_F(LensRecipe, IsThePanoramaThroughTheSameLens) {
+    for (const char* lens : {"brown:k1=-0.2,k2=0.05,p1=0.003,p2=-0.002,d=4", "3de4:k1=0.1,k2=0.03"})
+        for (const bool undistort : {true, false}) {
+            SCOPED_TRACE(std::string(lens) + (undistort ? " undistort" : " distort"));
+            const std::string flat =
+                "ramp.exr.lens?fov=84&output=stmap&tol=0.0001&lens=" + std::string(lens) +
+                (undistort ? "" : "&mode=distort");
+            const std::string pano =
+                "ramp.exr.pano?from=rectilinear&to=rectilinear&srcfov=84&fov=84&size=192x128&output=stmap&"
+                "tol=0.0001&" +
+                std::string(undistort ? "srclens=" : "lens=") + lens;
+            EXPECT_LT(largest_difference(read_floats(flat), read_floats(pano)), 5e-6);
+        }
+}
+
+TEST_F(LensRecipe, SizeAllKeepsAllAndComesBack) {
+    const std::string lens = "lens=brown:k1=-0.25,k2=0.06,p1=0.002&fov=70&filter=bilinear&wrap=clamp";
+    const Ran there = run("oiiotool 'ramp.exr.lens?" + lens + "&size=all' -o flat.exr");
+    ASSERT_EQ(there.status, 0) << there.text;
+    const Pixels flat = read_pixels("flat.exr");
+    EXPECT_GT(flat.spec.width, kWidth);
+    EXPECT_EQ(flat.spec.width % 2, 0);
+    EXPECT_GT(flat.spec.height, kHeight);
+    const Ran back = run("oiiotool 'flat.exr.lens?mode=distort&size=192x128&" + lens + "' -o back.exr");
+    ASSERT_EQ(back.status, 0) << back.text;
+    // What lies between pixels of the flat picture is interpolated, twice; along the edge, beyond the source too.
+    const std::vector<float> a = read_floats("ramp.exr"), b = read_floats("back.exr");
+    double worst = 0;
+    for (int y = 2; y < kHeight - 2; ++y)
+        for (int x = 2; x < kWidth - 2; ++x)
+            for (int c = 0; c < 2; ++c) {
+                const auto at = static_cast<std::size_t>(3 * (y * kWidth + x) + c);
+                worst = std::max(worst, std::fabs(double{a[at]} - b[at]));
+            }
+    EXPECT_LT(worst, 0.05);
+}
+
+TEST_F(LensRecipe, TheImageSaysItsLens) {
+    write_panorama("city.exr", 512, 256);
+    const Ran made =
+        run("oiiotool 'city.exr.pano?to=rectilinear&fov=84&size=192x128&lens=brown:k1=-0.1,k2=0.01' -o "
+            "plate.exr");
+    ASSERT_EQ(made.status, 0) << made.text;
+    EXPECT_EQ(read_pixels("plate.exr.lens").bytes,
+              read_pixels("plate.exr.lens?lens=brown:k1=-0.1,k2=0.01&fov=84").bytes);
+}
+
+TEST_F(LensRecipe, RefusesWhatItCannotDo) {
+    EXPECT_THAT(open_error("ramp.exr.lens"), HasSubstr("lens is not given"));
+    EXPECT_THAT(open_error("ramp.exr.lens?lens=none"), HasSubstr("lens=none: must be a lens"));
+    EXPECT_THAT(open_error("ramp.exr.lens?lens=brown:k1=0.1"), HasSubstr("fov is not given"));
+    EXPECT_THAT(open_error("ramp.exr.lens?lens=brown:k1=0.1&fov=180"), HasSubstr("fov=180"));
+    EXPECT_THAT(open_error("ramp.exr.lens?lens=ptlens:b=0.9"),
+                AllOf(HasSubstr("lens=ptlens:b=0.9"), HasSubstr("folds")));
+    EXPECT_THAT(open_error("ramp.exr.lens?lens=ptlens:b=nan"), HasSubstr("lens"));
+    EXPECT_THAT(open_error("ramp.exr.lens?lens=ptlens:b=-0.02&size=some"), HasSubstr("or all"));
+    EXPECT_THAT(open_error("ramp.exr.lens?lens=ptlens:b=-0.02&mode=both"), HasSubstr("undistort, distort"));
+}
+
+}  // namespace
+}  // namespace anamorph
