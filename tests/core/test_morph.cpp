@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <cstring>
+#include <limits>
 #include <random>
 #include <thread>
 
@@ -161,6 +162,26 @@ TEST(Morph, BitsDependOnNeitherCropNorThreads) {
                                 whole.pixels[static_cast<std::size_t>((y * kWidth + x) * channels + c)]);
             }
         }
+}
+
+TEST(Morph, BeyondThePictureThereIsNothing) {
+    // As in the last tiles of a file. Memory that was used before is not 0.
+    constexpr int kSmall = 70;
+    const FloatPicture a = noise(kSmall, kSmall, 1, 8), b = noise(kSmall, kSmall, 1, 9);
+    const MemorySource sa(a.source()), sb(b.source());
+    const Morph morph(face(), {{kSmall, kSmall}, {kSmall, kSmall}}, kSmall, kSmall, {});
+    for (int i = 0; i < 4; ++i) {
+        std::vector<std::vector<float>> used;
+        for (std::size_t size = 1000; size < 20000; size += 1000)
+            used.emplace_back(size, std::numeric_limits<float>::quiet_NaN());
+        used.clear();
+        FloatPicture drawn = draw(morph, {&sa, &sb}, 1, {0, 0, 100, 110});
+        for (int y = 0; y < 110; ++y)
+            for (int x = 0; x < 100; ++x)
+                if (x >= kSmall || y >= kSmall) {
+                    ASSERT_EQ(drawn.at(x, y, 0), 0) << x << " " << y;
+                }
+    }
 }
 
 TEST(Morph, PicturesOfAnotherSizeShowTheSame) {

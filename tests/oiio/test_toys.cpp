@@ -57,7 +57,7 @@ TEST_F(Toys, TheOperationIsARecipeAndAFunction) {
                             0.5 + 0.5 * std::sin(3.0 * (x / 6) + 5.0 * (y / 6) + c), 1e-6);
     const OIIO::ImageBuf call = apply("toy", {}, options({{"size", "48x24"}, {"side", "6"}}));
     EXPECT_EQ(bytes(call), read_pixels("x.toy?size=48x24&side=6").bytes);
-    EXPECT_THAT(open_error("x.toy?side=0"), HasSubstr("side=0: must be a number from 0.5 to 1000"));
+    EXPECT_THAT(open_error("x.toy?side=0"), HasSubstr("side=0: must be a number from 0.25 to 1000"));
 }
 
 }  // namespace

@@ -28,18 +28,24 @@ Parameter extent(const char* name, std::string value, double least, double most,
     return parameter;
 }
 
-// What the words of all operations mean.
-const std::vector<Word> kSchemes = {{"auto", "the fastest that holds tol"},
-                                    {"exact", "every pixel by the formula"},
-                                    {"blocks", "quadratic polynomials on blocks"},
-                                    {"residual", "linear maps and a table of what remains"}};
-const std::vector<Word> kOutputs = {
-    {"color", ""},
-    {"stmap",
-     "the source point (u, v) with v down, in 0 to 1 on the source, beyond that beyond its edges, (-1, -1) "
-     "where there is none"},
-    {"error", "its distance from the exact one in source pixels"},
-    {"bound", "the proven bound of that"}};
+// What the words of all operations mean. In functions, since tables may be made before main() begins.
+const std::vector<Word>& shared_schemes() {
+    static const std::vector<Word> words = {{"auto", "the fastest that holds tol"},
+                                            {"exact", "every pixel by the formula"},
+                                            {"blocks", "quadratic polynomials on blocks"},
+                                            {"residual", "linear maps and a table of what remains"}};
+    return words;
+}
+const std::vector<Word>& shared_outputs() {
+    static const std::vector<Word> words = {
+        {"color", ""},
+        {"stmap",
+         "the source point (u, v) with v down, in 0 to 1 on the source, beyond that beyond its edges, (-1, "
+         "-1) where there is none"},
+        {"error", "its distance from the exact one in source pixels"},
+        {"bound", "the proven bound of that"}};
+    return words;
+}
 
 std::vector<std::string> names_of(const std::vector<Word>& words) {
     std::vector<std::string> names;
@@ -142,13 +148,13 @@ Parameter wrap(const std::string& automatic) {
 Parameter scheme(const std::vector<Word>& words) {
     std::vector<Word> known = words;
     for (Word& word : known)
-        for (const Word& shared : kSchemes)
+        for (const Word& shared : shared_schemes())
             if (word.name == shared.name) word = shared;
     return choice("scheme", "auto", names_of(known), "how source points are found: " + meanings_of(known));
 }
 
 Parameter output(const std::vector<Word>& own) {
-    std::vector<Word> words = kOutputs;
+    std::vector<Word> words = shared_outputs();
     words.insert(words.end(), own.begin(), own.end());
     return choice("output", "color", names_of(words), "color, or per pixel: " + meanings_of(words));
 }
@@ -173,7 +179,7 @@ std::size_t chosen_index(const ParameterValues& values, std::string_view name) {
 
 Output chosen_output(const ParameterValues& values) {
     const std::size_t index = chosen_index(values, "output");
-    return index < kOutputs.size() ? static_cast<Output>(index) : Output::color;
+    return index < shared_outputs().size() ? static_cast<Output>(index) : Output::color;
 }
 
 }  // namespace anamorph::rows

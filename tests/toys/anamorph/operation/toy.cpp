@@ -64,7 +64,7 @@ class Toys final : public Pictures {
 ParameterTable make_table() {
     using namespace rows;
     return {size("width and height of the picture"), tile(), mip(),
-            number("side", "pixels", "8", 0.5, 1000, "side of a square")};
+            number("side", "pixels", "8", 0.25, 1000, "side of a square")};
 }
 
 }  // namespace
