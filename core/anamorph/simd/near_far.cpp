@@ -186,8 +186,8 @@ struct AxisError {
     V value, linear;
 };
 
-/// Relative interpolation error of (x0 + s)^-b, 0 < b <= 2, and of s times it, on [-1, 1]: near_far.cpp
-/// (approx) proves it.
+/// Relative interpolation error of (x0 + s)^-b, 0 < b <= 2, and of s times it, on [-1, 1]:
+/// approx/near_far_interpolation.cpp proves it.
 template <bool kAboveOne>
 HWY_INLINE AxisError BesideError(int k, V x) {
     const V one = Set(1);

@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: Apache-2.0
+// Proves the Lebesgue constant for nodes that are floats, by Markov's inequality.
+#include "anamorph/approx/near_far_chebyshev.h"
+
+#include <cmath>
+#include <numbers>
+
+#include "anamorph/approx/near_far_rounding.h"
+
+namespace anamorph::near_far {
+
+Chebyshev::Chebyshev(int degree) : k(degree) {
+    double node[kMaxDegree];
+    lebesgue = 0;
+    for (int i = 0; i < k; ++i) {
+        const double angle = (2 * i + 1) * std::numbers::pi / (2 * k);
+        // What is evaluated are floats; the interpolant is exact for them.
+        nodes[i] = static_cast<float>(std::cos(angle));
+        node[i] = nodes[i];
+        lebesgue += 1 / std::tan(angle / 2) / k;
+    }
+    // Nodes are rounded by u / 2 each, and Lagrange's polynomials have slopes below K^2 Lebesgue_K
+    // (Markov): the sum of K of them moves by K^3 u / 2 of itself, at most 256 u.
+    lebesgue *= 1 + 512 * kFloatUlp;
+    // Lagrange's polynomials, multiplied out.
+    for (int i = 0; i < k; ++i) {
+        double c[kMaxDegree] = {1};
+        int degree_so_far = 0;
+        for (int j = 0; j < k; ++j) {
+            if (j == i) continue;
+            const double scale = 1 / (node[i] - node[j]);
+            for (int m = ++degree_so_far; m >= 0; --m)
+                c[m] = scale * ((m > 0 ? c[m - 1] : 0) - (m < degree_so_far ? node[j] * c[m] : 0));
+        }
+        for (int m = 0; m < k; ++m) powers[m * k + i] = c[m];
+    }
+    for (int half = 0; half < 2; ++half) {
+        const double shift = half ? 0.5 : -0.5;
+        for (int n = 0; n < k; ++n) {
+            // (shift + s' / 2)^n
+            double binomial = 1;
+            for (int m = 0; m <= n; ++m) {
+                halves[half][m * k + n] = binomial * std::pow(shift, n - m) * std::pow(0.5, m);
+                binomial = binomial * (n - m) / (m + 1);
+            }
+            for (int m = n + 1; m < k; ++m) halves[half][m * k + n] = 0;
+        }
+    }
+}
+
+int degree_for(double tol) {
+    return tol >= 0.03 ? 4 : tol >= 2e-3 ? 5 : tol >= 2e-4 ? 6 : 8;
+}
+
+}  // namespace anamorph::near_far
