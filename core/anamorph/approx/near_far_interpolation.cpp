@@ -44,6 +44,24 @@
 
 namespace anamorph::near_far {
 
+// The greatest sum of weights, and of weighted displacements. Floats make less than twice as much of it: below
+// 2^126 neither a sum overflows nor its reciprocal comes out below 2^-126. A polynomial whose sum of sizes
+// overflows has no finite bound (far_rounding).
+constexpr double kMostSum = 0x1p125;
+// What comes out below 2^-126 (a factor times a power, a weight times a displacement or an error) is off by
+// that much. A line has less than ten such numbers; what is made of them multiplies them by a displacement's
+// distance and by Lebesgue_K^2 < 6 or sqrt(2) b half < 1449, less than 2^14 in all.
+constexpr double kUnderflow = 0x1p-112;
+// Underflow may move a pixel by this at most, in pixels: every bound is at least 4 u (base_rounding), and
+// kBoundRounding leaves 29 u of that, 2^-41.
+constexpr double kUnderflowMoves = 0x1p-44;
+
+bool Planner::floats_hold(const Known& known, double most, double reach) const {
+    const double lost = static_cast<double>(m_lines.size()) * (1 + known.farthest) * kUnderflow;
+    // Displacements are at most `offset` and their reach long. NaN is not held.
+    return (1 + known.offset) * most + reach < kMostSum && lost <= kUnderflowMoves * known.least;
+}
+
 Known Planner::look(int x0, int y0, int size, Candidates& lines, simd::LineBounds& bounds, FarSums& sums,
                     bool has_polynomial) const {
     Known known;
@@ -63,7 +81,6 @@ Known Planner::look(int x0, int y0, int size, Candidates& lines, simd::LineBound
     sums.move(known.center);
     known.offset = length_of(known.center);
     known.least = (bounds.least_sum + sums.least) * (1 - 2 * simd::kSumRounding);
-    known.finite = known.least > 1e-20 && known.least < HUGE_VAL && known.offset < HUGE_VAL;
     const simd::SpreadSums over = simd::bound_displacements(
         lines.table(), known.frame, center, static_cast<float>(0.25 * known.least),
         static_cast<float>(known.offset * node_sum_rounding()), bounds, lines.reach(), lines.error());
@@ -74,6 +91,7 @@ Known Planner::look(int x0, int y0, int size, Candidates& lines, simd::LineBound
     // errors and the rounding of what `center` was made of: weights, sums and the quotient.
     const double half = static_cast<double>(known.frame.half), b = m_map.weights().b;
     known.farthest = std::max(sums.farthest, over.farthest);
+    known.finite = floats_hold(known, sums.most + over.most, sums.reach + over.reach);
     const double rounding = center_rounding(sums.reach + over.reach, sums.near_reach + over.near_reach,
                                             sums.most + over.most, sums.slope + over.slope, known.offset);
     const double change =

@@ -14,6 +14,16 @@ namespace anamorph::near_far {
 
 namespace {
 
+// What floats hold of a line. A distance (before or behind, and beside) has a square below 2^127; that of a
+// point behind q is that of one before p, or less. A factor keeps its 24 bits. Whatever else is too large for
+// a float (the square of a displacement, a power near a line) makes a bound infinite or NaN, which holds no
+// tolerance; Planner::look says what becomes of sums that are too large or too small.
+constexpr float kMostDistance = 1e12f, kMostSlope = 1e9f;
+constexpr float kLeastFactor = 1e-25f, kMostFactor = 1e25f;
+// The least power of a distance, which has a relative error only if it is a normal float, from 2^-126
+// (1.2e-38) on. `farthest` is beyond all pixels of the region; that distances are rounded changes a power by
+// less than b (16 u + 1e-3 / 64) of it, less than a thousandth.
+constexpr double kLeastPower = 1e-36;
 // Cells are not cut below this.
 constexpr int kFloor = 4;
 // The part of the tolerance that interpolation may use; the rest is for rounding.
@@ -62,23 +72,21 @@ bool Planner::gather() {
     }
     const double a = m_map.weights().a, b = m_map.weights().b;
     m_unit = std::pow(unit, b);
-    // Where a power is less than floats hold, they have no bound in proportion. What else comes out too
-    // small, a product with a factor, is off by less than 2^-126, a million lines by 1e-32: nothing
-    // beside a sum above 1e-20.
-    if (!(std::pow(farthest, -b) > 1e-36)) return false;
+    if (!(std::pow(farthest, -b) > kLeastPower)) return false;
     const double log = std::max(std::log(farthest), -std::log(std::max<double>(a, simd::kLeastDistance)));
     m_constant = kFloatUlp * simd::weight_rounding(b, log);
     m_by_nearest = kFloatUlp * b;
     m_weights.log = static_cast<float>(log * (1 + kBoundRounding));
     m_lines.resize(m_map.size());
     for (std::size_t i = 0; i < m_map.size(); ++i)
-        if (!see(i, m_x, m_y, m_lines[i]) || !(m_slopes[i] < 1e9f)) return false;
+        if (!see(i, m_x, m_y, m_lines[i]) || !(m_slopes[i] < kMostSlope)) return false;
     return true;
 }
 
 bool Planner::see(std::size_t i, double x, double y, FieldLine& to) const {
     to = seen_from(m_map, i, m_options.shapes, x, y, m_reference.data(), m_unit);
-    return to.factor > 1e-25f && to.factor < 1e25f && std::fabs(to.before) < 1e12f;
+    return to.factor > kLeastFactor && to.factor < kMostFactor && std::fabs(to.before) < kMostDistance &&
+           std::fabs(to.beside) < kMostDistance;
 }
 
 void Planner::settle(int x0, int y0, int size, std::size_t depth, FarSums sums, bool has_polynomial) {

@@ -105,6 +105,8 @@ class Planner {
     // Far lines: near_far_interpolation.cpp.
     Known look(int x0, int y0, int size, Candidates& lines, simd::LineBounds& bounds, FarSums& sums,
                bool has_polynomial) const;
+    /// Can floats hold the cell's sums? `most`, `reach`: m and m r of all lines (simd::LineSums).
+    bool floats_hold(const Known& known, double most, double reach) const;
     /// Of the quotient, by interpolation and by rounding at the nodes.
     double quotient_error(const FarSums& sums, const Known& known) const;
     /// What adding up in floats at the nodes does to an interpolant.
