@@ -21,6 +21,15 @@ namespace anamorph {
 
 using namespace near_far;
 
+namespace {
+
+// A line's rates are rounded to floats, off by u of themselves or by 2^-126 where they are less than that,
+// four of them at most in a slope; then the slope itself is, by u. 2 u in all, and 84 times as much is
+// allowed.
+constexpr double kSlopeRounding = 1e-5, kSlopeUnderflow = 1e-12;
+
+}  // namespace
+
 struct NearFar::State {
     NearFarOptions options;
     Chebyshev chebyshev;
@@ -44,7 +53,7 @@ struct NearFar::State {
                 slope =
                     std::max(slope, length(l.right[c], l.right[c + 1]) + length(l.down[c], l.down[c + 1]));
             }
-            slopes.push_back(static_cast<float>(slope * (1 + 1e-5) + 1e-12));
+            slopes.push_back(static_cast<float>(slope * (1 + kSlopeRounding) + kSlopeUnderflow));
         }
     }
 

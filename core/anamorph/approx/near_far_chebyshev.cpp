@@ -9,6 +9,13 @@
 
 namespace anamorph::near_far {
 
+// By how much the Lebesgue constant grows when nodes, numbers in (-1, 1), are rounded by u / 2 each. A
+// polynomial of degree K - 1 and size M on [-1, 1] that is at most 1 at the rounded nodes is at most 1 +
+// K^2 M u / 2 at the roots of T_K (Markov), hence M <= Lebesgue_K (1 + K^2 M u / 2): with K = 8 and
+// Lebesgue_8 < 2.3, M <= Lebesgue_K (1 + 74 u). The rest of 512 u is room for the constant's own sum, in
+// double.
+constexpr double kNodesMove = 512 * kRoundingUnit;
+
 Chebyshev::Chebyshev(int degree) : k(degree) {
     double node[kMaxDegree];
     lebesgue = 0;
@@ -19,9 +26,7 @@ Chebyshev::Chebyshev(int degree) : k(degree) {
         node[i] = nodes[i];
         lebesgue += 1 / std::tan(angle / 2) / k;
     }
-    // Nodes are rounded by u / 2 each, and Lagrange's polynomials have slopes below K^2 Lebesgue_K
-    // (Markov): the sum of K of them moves by K^3 u / 2 of itself, at most 256 u.
-    lebesgue *= 1 + 512 * kFloatUlp;
+    lebesgue *= 1 + kNodesMove;
     // Lagrange's polynomials, multiplied out.
     for (int i = 0; i < k; ++i) {
         double c[kMaxDegree] = {1};

@@ -44,16 +44,16 @@
 
 namespace anamorph::near_far {
 
-// The greatest sum of weights, and of weighted displacements. Floats make less than twice as much of it: below
-// 2^126 neither a sum overflows nor its reciprocal comes out below 2^-126. A polynomial whose sum of sizes
-// overflows has no finite bound (far_rounding).
+// The greatest sum of weights, and of weighted displacements. Floats make less than twice as much of it:
+// below 2^126 neither a sum overflows nor its reciprocal comes out below 2^-126. A polynomial whose sum of
+// sizes overflows has no finite bound (far_rounding).
 constexpr double kMostSum = 0x1p125;
 // What comes out below 2^-126 (a factor times a power, a weight times a displacement or an error) is off by
 // that much. A line has less than ten such numbers; what is made of them multiplies them by a displacement's
 // distance and by Lebesgue_K^2 < 6 or sqrt(2) b half < 1449, less than 2^14 in all.
 constexpr double kUnderflow = 0x1p-112;
 // Underflow may move a pixel by this at most, in pixels: every bound is at least 4 u (base_rounding), and
-// kBoundRounding leaves 29 u of that, 2^-41.
+// kBoundRounding leaves 28 u of that, more than 2^-42.
 constexpr double kUnderflowMoves = 0x1p-44;
 
 bool Planner::floats_hold(const Known& known, double most, double reach) const {

@@ -24,6 +24,9 @@ constexpr float kLeastFactor = 1e-25f, kMostFactor = 1e25f;
 // (1.2e-38) on. `farthest` is beyond all pixels of the region; that distances are rounded changes a power by
 // less than b (16 u + 1e-3 / 64) of it, less than a thousandth.
 constexpr double kLeastPower = 1e-36;
+// Cells whose sum of weights interpolation changes by more are cut: there nothing is far. Any part of 1
+// would be proven, by the division by what is left of the sum.
+constexpr double kMostWeightError = 0.05;
 // Cells are not cut below this.
 constexpr int kFloor = 4;
 // The part of the tolerance that interpolation may use; the rest is for rounding.
@@ -74,8 +77,8 @@ bool Planner::gather() {
     m_unit = std::pow(unit, b);
     if (!(std::pow(farthest, -b) > kLeastPower)) return false;
     const double log = std::max(std::log(farthest), -std::log(std::max<double>(a, simd::kLeastDistance)));
-    m_constant = kFloatUlp * simd::weight_rounding(b, log);
-    m_by_nearest = kFloatUlp * b;
+    m_constant = kRoundingUnit * simd::weight_rounding(b, log);
+    m_by_nearest = kRoundingUnit * b;
     m_weights.log = static_cast<float>(log * (1 + kBoundRounding));
     m_lines.resize(m_map.size());
     for (std::size_t i = 0; i < m_map.size(); ++i)
@@ -144,7 +147,7 @@ bool Planner::emit(const Box& box, Candidates& lines, const simd::LineBounds& bo
                    const FarSums& sums, bool has_polynomial) {
     const int near = lines.near_count;
     const double off = sums.value / known.least;
-    if (!(off < 0.05)) return false;
+    if (!(off < kMostWeightError)) return false;
     const double half = static_cast<double>(known.frame.half);
     const NearRounding rounding = near_rounding(lines, bounds, known, sums);
     const double before = quotient_error(sums, known) + base_rounding(known, near);

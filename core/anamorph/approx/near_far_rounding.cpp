@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Proves what floats add to a cell's error, by counting roundings: u = 2^-24 (kFloatUlp) in proportion, each.
+// Proves what floats add to a cell's error, by counting roundings: each is off by u = 2^-24 (kRoundingUnit), in
+// proportion.
 //
 // Rounding: simd/near_far.h says what floats cost a line's sums. Near lines are seen from the cell's centre,
 // so that numbers are small. A relative error e_i of a near line's weight moves the quotient by e_i w_i |D_i
@@ -13,13 +14,21 @@
 #include <numbers>
 
 namespace anamorph::near_far {
+namespace {
+
+// What the sum of all weights less one may lack, in proportion to that one: the sum, in double, of n near
+// lines is off by n 2^-53 of itself, below a millionth for any n up to 2^32 (that of the far lines, in
+// floats, in proportion to itself: kBoundRounding).
+constexpr double kCancelled = 1e-6;
+
+}  // namespace
 
 double Planner::center_rounding(double reach, double near_reach, double most, double slope,
                                 double offset) const {
-    const double sums = (2 * simd::kSumRounding + 4 * kFloatUlp) * (reach + offset * most);
+    const double sums = (2 * simd::kSumRounding + 4 * kRoundingUnit) * (reach + offset * most);
     return m_chebyshev.lebesgue * m_chebyshev.lebesgue *
            (m_constant * reach + m_by_nearest * 11 * kHalfRegion * near_reach + sums +
-            10 * kFloatUlp * kHalfRegion * slope);
+            10 * kRoundingUnit * kHalfRegion * slope);
 }
 
 double Planner::scale() const {
@@ -37,12 +46,16 @@ double Planner::base_rounding(const Known& known, int near) const {
     // below 1 + |center| and rounded 3 times, slope x 4 times, the displacement once.
     const double placed =
         3 * (1 + known.offset) + 4 * scale() * static_cast<double>(known.frame.half) + value;
-    return kFloatUlp * (sums + std::numbers::sqrt2 * placed);
+    return kRoundingUnit * (sums + std::numbers::sqrt2 * placed);
 }
 
 double Planner::far_rounding(const Known& known, const float* size) const {
+    // A coefficient is rounded once; Horner's rule, K - 1 steps of a product and a sum, in t and then in s,
+    // rounds a term 4 (K - 1) times at most. s and t are exact: multiples of 1 / (2 half), a power of two.
+    // Of 4 K - 3 roundings up to 4 K + 4, 7 are room for those of `size`, K^2 additions, and of second
+    // order: (4 K)^2 u and 4 K K^2 u of a rounding, and for the coefficients' own, in double.
     const double moved = static_cast<double>(std::max(size[1] + size[2], size[3] + size[4]));
-    return kFloatUlp * (4 * m_chebyshev.k + 4) *
+    return kRoundingUnit * (4 * m_chebyshev.k + 4) *
            (moved + (known.spread + known.offset) * static_cast<double>(size[0])) / known.least;
 }
 
@@ -80,19 +93,19 @@ NearRounding Planner::near_rounding(Candidates& lines, const simd::LineBounds& b
             (light - (most <= much ? most * reach : 0)) / rest + (i == farthest_line ? second : farthest);
         const double part = std::min(1.0, most / known.least);
         const double between = reach + (rest > 0 ? std::min(mean, known.farthest) : known.farthest);
+        // l (1 - l) is at most a quarter.
         const double moved = std::min(part * (reach + known.spread), std::min(part, 0.25) * between);
         // The weight is most (nearest / d)^b at distance d, and with it 1 - l at most others / weight. An
         // error that falls with d is worst at the nearest distance, or with b >= 1 where that is as good
-        // as `moved`. The millionth keeps the difference from being nothing but rounding: `all` is off by
-        // less than that of the sum.
-        const double others = std::max(all - most, 0.0) + 1e-6 * most;
+        // as `moved`. Where no others and no `between` are left, `moved` is 0, and the ratio not 0 / 0.
+        const double others = std::max(all - most, 0.0) + kCancelled * most;
         const double ratio = std::max(most * moved / (others * between + 1e-300), 1.0);
         const double by = b == 2 ? std::sqrt(ratio) : b <= 1 ? ratio : std::pow(ratio, 1 / b);
         out.moved += moved;
         out.moved_by_place += moved / (nearest * by);
         out.nearest = std::min(out.nearest, nearest);
     }
-    out.displacements = kFloatUlp * (4 * (known.mean + known.offset) + 10 * half * slope);
+    out.displacements = kRoundingUnit * (4 * (known.mean + known.offset) + 10 * half * slope);
     return out;
 }
 
