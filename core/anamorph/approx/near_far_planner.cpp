@@ -151,7 +151,12 @@ bool Planner::emit(const Box& box, Candidates& lines, const simd::LineBounds& bo
     const double half = static_cast<double>(known.frame.half);
     const NearRounding rounding = near_rounding(lines, bounds, known, sums);
     const double before = quotient_error(sums, known) + base_rounding(known, near);
-    if (!(before + near_rounding(rounding, true, half) <= m_options.tol)) return false;
+    // The sum of weights is off by interpolation, and by near lines' weights, at once.
+    const auto with_near = [&](double error, bool fine_places) {
+        const NearError by_near = near_error(rounding, fine_places, half);
+        return (error + by_near.moved) / (1 - off - by_near.weight) * (1 + kBoundRounding);
+    };
+    if (!(with_near(before, true) <= m_options.tol)) return false;
 
     const bool any = has_polynomial || lines.far_count > 0;
     float coefficients[kCoefficients];
@@ -163,11 +168,8 @@ bool Planner::emit(const Box& box, Candidates& lines, const simd::LineBounds& bo
         simd::round_coefficients(polynomial, m_chebyshev.k, coefficients, sizes);
         whole += far_rounding(known, sizes);
     }
-    const auto bound_of = [&](bool fine) {
-        return (whole + near_rounding(rounding, fine, half)) / (1 - off) * (1 + kBoundRounding);
-    };
-    const bool fine = !(bound_of(false) <= m_options.tol);
-    const double bound = bound_of(fine);
+    const bool fine = !(with_near(whole, false) <= m_options.tol);
+    const double bound = with_near(whole, fine);
     if (!(bound <= m_options.tol)) return false;
 
     Cell cell{box, false, bound, known.frame, {}, m_region->coefficients.size(), m_region->lines.size(),

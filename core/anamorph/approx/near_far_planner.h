@@ -66,6 +66,12 @@ struct NearRounding {
     double moved = 0, moved_by_place = 0, nearest = HUGE_VAL, displacements = 0;
 };
 
+/// And what it adds up to: by how far it moves D, but for the sum of weights that is off, too; and by how
+/// much weights are off, in proportion, at most.
+struct NearError {
+    double moved, weight;
+};
+
 /// Plans one region.
 class Planner {
   public:
@@ -130,7 +136,7 @@ class Planner {
     /// l) times the distance of D_i from the mean of the others.
     NearRounding near_rounding(Candidates& lines, const simd::LineBounds& bounds, const Known& known,
                                const FarSums& far) const;
-    double near_rounding(const NearRounding& near, bool fine, double half) const;
+    NearError near_error(const NearRounding& near, bool fine, double half) const;
 
     const FeatureMap& m_map;
     const NearFarOptions& m_options;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Proves what floats add to a cell's error, by counting roundings: each is off by u = 2^-24 (kRoundingUnit), in
-// proportion.
+// Proves what floats add to a cell's error, by counting roundings: each is off by u = 2^-24 (kRoundingUnit),
+// in proportion.
 //
 // Rounding: simd/near_far.h says what floats cost a line's sums. Near lines are seen from the cell's centre,
 // so that numbers are small. A relative error e_i of a near line's weight moves the quotient by e_i w_i |D_i
@@ -20,6 +20,11 @@ namespace {
 // lines is off by n 2^-53 of itself, below a millionth for any n up to 2^32 (that of the far lines, in
 // floats, in proportion to itself: kBoundRounding).
 constexpr double kCancelled = 1e-6;
+
+// Where near lines' weights may be off by more in proportion, the cell is fine or cut. Up to there
+// 1 / (1 - e) covers all orders: with the distance off by d of itself, e = b d, a weight is off by a factor
+// of at most (1 + d)^b <= exp(e) <= 1 / (1 - e), and of at least (1 + d)^-b >= 1 - e.
+constexpr double kMostNearError = 0.25;
 
 }  // namespace
 
@@ -97,8 +102,9 @@ NearRounding Planner::near_rounding(Candidates& lines, const simd::LineBounds& b
         const double moved = std::min(part * (reach + known.spread), std::min(part, 0.25) * between);
         // The weight is most (nearest / d)^b at distance d, and with it 1 - l at most others / weight. An
         // error that falls with d is worst at the nearest distance, or with b >= 1 where that is as good
-        // as `moved`. Where no others and no `between` are left, `moved` is 0, and the ratio not 0 / 0.
-        const double others = std::max(all - most, 0.0) + kCancelled * most;
+        // as `moved`. `most` allows for twice the weight's rounding, which 1 - l has to take back, and for
+        // its own. Where no others and no `between` are left, `moved` is 0, and the ratio not 0 / 0.
+        const double others = std::max(all - most, 0.0) * (1 + 4 * m_constant) + kCancelled * most;
         const double ratio = std::max(most * moved / (others * between + 1e-300), 1.0);
         const double by = b == 2 ? std::sqrt(ratio) : b <= 1 ? ratio : std::pow(ratio, 1 / b);
         out.moved += moved;
@@ -109,14 +115,15 @@ NearRounding Planner::near_rounding(Candidates& lines, const simd::LineBounds& b
     return out;
 }
 
-double Planner::near_rounding(const NearRounding& near, bool fine, double half) const {
+NearError Planner::near_error(const NearRounding& near, bool fine, double half) const {
     const double place = m_by_nearest * (fine ? simd::kFineRounding : 11 * half);
     // Where distances are cut off, weights have no bound.
     constexpr auto kLeast = static_cast<double>(simd::kLeastDistance);
-    if (near.nearest <= kLeast && m_map.weights().a < kLeast) return HUGE_VAL;
+    if (near.nearest <= kLeast && m_map.weights().a < kLeast) return {HUGE_VAL, 0};
     const double worst = m_constant + place / near.nearest;
-    if (!(worst < 0.25)) return HUGE_VAL;
-    return (m_constant * near.moved + place * near.moved_by_place) / (1 - worst) + near.displacements;
+    if (!(worst < kMostNearError)) return {HUGE_VAL, 0};
+    return {(m_constant * near.moved + place * near.moved_by_place) / (1 - worst) + near.displacements,
+            worst};
 }
 
 }  // namespace anamorph::near_far
