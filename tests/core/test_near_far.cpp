@@ -312,6 +312,34 @@ TEST(NearFar, LinesAMillionPixelsAwayHold) {
         for (const double tol : kTols) expect_holds(map_of(features, {150, 140}, {1, b, 0.5}), tol);
 }
 
+TEST(NearFar, LinesWhoseDistanceHasNoSquareInFloatsHold) {
+    // A line that begins above the picture, so far away that the square of its distance is infinite as a
+    // float, and that weighs more than the one in the picture all the same.
+    const Features::Frame frame{150e-13, 140e-13};
+    const auto at = [](double x, double y) { return Point<double>{x * 1e-13, y * 1e-13}; };
+    for (const double distance : {1e19, 3e19, 1e21}) {
+        SCOPED_TRACE(distance);
+        Features features;
+        for (const int shape : {0, 1}) features.set_frame(shape, frame);
+        features.add_line({{at(20, 20), at(80, 30)}, {at(45, 52), at(98, 40)}}, 1e-12);
+        const Line away{at(0, distance), at(1e-9 * distance, distance)};
+        features.add_line({away, away});
+        // Exact blocks say what double makes of such places: more than the tolerance.
+        for (const double b : {0.25, 0.5, 1.0})
+            EXPECT_LE(measure(map_of(features, {150, 140}, {1, b, 0}), 0.1).over, 0) << "b " << b;
+    }
+}
+
+TEST(NearFar, SumsOfWeightsThatFloatsCannotHoldAreExact) {
+    for (const double a : {0.08, 0.09, 0.1, 0.11}) {
+        SCOPED_TRACE(a);
+        Features features;
+        features.add_line({{{10.5, 10}, {10.5, 118}}, {{90.5, 10}, {90.5, 118}}});
+        features.add_line({{{118.5, 10}, {118.5, 118}}, {{38.5, 10}, {38.5, 118}}});
+        expect_holds(map_of(features, {128, 128}, {a, 12, 0}, 0), 1);
+    }
+}
+
 TEST(NearFar, OddSymmetricMapsHold) {
     // Turned about the middle of the picture, and of its cells: every test at a midpoint sees the identity.
     for (const double middle : {64.0, 128.0, 100.0}) {

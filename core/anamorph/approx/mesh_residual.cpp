@@ -21,6 +21,20 @@ double curvature_of(const std::size_t (&element)[2]) {
     return curve(element[0]) * reach(element[1]) + reach(element[0]) * curve(element[1]);
 }
 
+/// u: what rounding to float changes, in proportion, at most.
+constexpr double kUnit = 0x1p-24;
+// How many u of an element its term is off by, at most, in the sum that ResidualTables::row makes. A
+// product has one sign and at most size 1 in the cell. Read from the table it is off by 1 u; a step of
+// linear interpolation adds u / 2 (its parameter, below 1, is rounded) and 3 u (a difference, a product and
+// a sum, of size 1 at most) and keeps what there was: 8 u after both. The element is rounded, and its
+// product with that, 2 u; its sum with 13 more, 13 u. 23 u in all; the rest is room for terms of second
+// order and for double.
+//
+// What is rounded at the end, once, is the offset of the point from the block's base. The block's form bounds
+// it but for the approximation's own error; `offset` is taken twice for that: it is at least a pixel, and the
+// tables' error (ResidualTables::bound) is below a thousandth of the elements' sum, which has room above.
+constexpr double kTermRoundings = 32;
+
 }  // namespace
 
 ResidualPatch::ResidualPatch(const Patch& patch) {
@@ -62,11 +76,9 @@ ResidualPatch::ResidualPatch(const Patch& patch) {
 }
 
 double ResidualPatch::float_rounding(const Bicubic& block) const {
-    // Elements and products are rounded once each, then interpolated both ways and summed: less than 32
-    // roundings of terms that are together at most their sum; and the offset from the base is rounded.
     const double offset = std::hypot(sum_of_magnitudes(block.x) - std::fabs(block.x[0][0]) + 1,
                                      sum_of_magnitudes(block.y) - std::fabs(block.y[0][0]) + 1);
-    return 0x1p-24 * (32 * std::max(triangles[0].sum, triangles[1].sum) + 2 * offset);
+    return kUnit * (kTermRoundings * std::max(triangles[0].sum, triangles[1].sum) + 2 * offset);
 }
 
 std::shared_ptr<const ResidualTables> ResidualTables::shared() {

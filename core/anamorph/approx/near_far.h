@@ -3,8 +3,9 @@
 //
 // A pixel's displacement is a quotient, sum of w_i D_i over sum of w_i (feature_lines.h), of sums over all
 // lines. On a cell of the picture the sums over the lines that are far from it become polynomials, K x K
-// Chebyshev interpolants; the few lines that are near are summed at every pixel. near_far.cpp proves the
-// bound; cells are cut into four until it keeps the tolerance, and the smallest fall back on double.
+// Chebyshev interpolants; the few lines that are near are summed at every pixel. cells are cut into
+// four until their bound (near_far.cpp says where it is proven) keeps the tolerance, and the smallest fall
+// back on double.
 //
 // Two shapes share one plan, since they share the weights: their blocks are the layers of one map.
 #pragma once

@@ -186,8 +186,8 @@ struct AxisError {
     V value, linear;
 };
 
-/// Relative interpolation error of (x0 + s)^-b, 0 < b <= 2, and of s times it, on [-1, 1]: near_far.cpp
-/// (approx) proves it.
+/// Relative interpolation error of (x0 + s)^-b, 0 < b <= 2, and of s times it, on [-1, 1]:
+/// approx/near_far_interpolation.cpp proves it.
 template <bool kAboveOne>
 HWY_INLINE AxisError BesideError(int k, V x) {
     const V one = Set(1);
@@ -242,6 +242,7 @@ HWY_INLINE void BoundLines(const LineTable& lines, const CellFrame& cell, const 
     const Floats d;
     const V x = Set(cell.x), y = Set(cell.y), half = Set(cell.half), zero = Set(0), one = Set(1);
     const V a = Set(weights.a), b = Set(weights.b), least_distance = Set(kLeastDistance);
+    // 1.41422 is above sqrt(2) by more than 70 u of it.
     const V diagonal = Set(cell.half * 1.41422f), constant = Set(lebesgue), infinite = Set(HUGE_VALF);
     const bool smooth = weights.b > 0 && weights.b <= 2, above_one = weights.b > 1;
     // Bounds of the second and third derivatives of (a + r)^-b along a line, times (r / half side)^2 and ^3
@@ -317,6 +318,7 @@ HWY_INLINE void BoundLines(const LineTable& lines, const CellFrame& cell, const 
                 const auto is_beside =
                     hn::And(hn::And(hn::Lt(before, hn::Neg(extent)), hn::Lt(behind, hn::Neg(extent))),
                             hn::Gt(hn::Abs(beside), extent));
+                // Instead of 0, which is divided by: a pole taken too near is on the safe side.
                 const V tiny = Set(cell.half * 1e-6f);
                 const auto pole = [&](V apart_by, V by) HWY_ATTR {
                     return hn::Max(hn::Mul(Set(kTight), hn::Div(apart_by, hn::Max(by, tiny))), one);
