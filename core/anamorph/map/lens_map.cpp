@@ -52,33 +52,44 @@ LensMap::LensMap(const Chart& observed, LensMode mode, const Size& covered, cons
 }
 
 Size LensMap::covering(const Chart& observed, LensMode mode, const Size& size) {
-    // A lens takes what it maps one to one, so a picture's outline goes to that of what it becomes.
+    // A lens takes what it maps one to one, so a picture's outline goes to that of what it becomes, or where the lens
+    // ends within the picture, its end does: in the direction of a side that lies beyond it, to the end itself.
     constexpr double kSlack = 1e-3;  // pixels
     const Lens& lens = *observed.lens();
+    const LensTerms& terms = lens.terms();
     const bool undistort = mode == LensMode::undistort;
     const double scale = observed.scale_x(), per = observed.units_per_pixel().value();
     const double half_width = 0.5 * size.width * per, half_height = 0.5 * size.height * per;
-    const auto on_side = [&](const Interval& s, bool upright, double side) {
-        const Point<Interval> p = upright ? Point<Interval>{Interval(side * half_width), s * half_height}
-                                          : Point<Interval>{s * half_width, Interval(side * half_height)};
-        return undistort ? lens.ideal(p) : lens.observed(p);
+    const double end = (undistort ? terms.ideal_end : terms.observed_end) * terms.unit.value();
+    const auto end_along = [&](const Constant& shift) {
+        return (end + (undistort ? 0 : std::fabs(shift.value()))) * scale;
     };
     double across = 0, down = 0;
     for (const double side : {-1.0, 1.0})
         for (const bool upright : {false, true}) {
-            const auto x = [&](const Interval& s) { return on_side(s, upright, side).x * scale; };
-            const auto y = [&](const Interval& s) { return on_side(s, upright, side).y * scale; };
+            const auto place = [&](const Interval& s) {
+                return upright ? Point<Interval>{Interval(side * half_width), s * half_height}
+                               : Point<Interval>{s * half_width, Interval(side * half_height)};
+            };
+            const auto beyond = [&](const Point<Interval>& p) {
+                return (undistort ? lens.inside(p) : lens.sees(p)).hi < 0;
+            };
+            const auto on_side = [&](const Interval& s) {
+                const Point<Interval> p = place(s);
+                if (beyond(p)) return Point<Interval>{Interval(0), Interval(0)};
+                return undistort ? lens.ideal(p) : lens.observed(p);
+            };
+            const auto x = [&](const Interval& s) { return on_side(s).x * scale; };
+            const auto y = [&](const Interval& s) { return on_side(s).y * scale; };
             across = std::max(across, largest_magnitude(x, kSlack));
             down = std::max(down, largest_magnitude(y, kSlack));
+            if (beyond(place({-1, 1}))) {
+                double& reach = upright ? across : down;
+                reach = std::max(reach, end_along(upright ? terms.shift_x : terms.shift_y));
+            }
         }
-    // Beyond its end a lens maps nothing.
-    const LensTerms& terms = lens.terms();
-    const double unit = terms.unit.value() * scale;
-    const double end_x = undistort ? terms.ideal_end * unit
-                                   : terms.observed_end * unit + std::fabs(terms.shift_x.value()) * scale;
-    const double end_y = undistort ? terms.ideal_end * unit
-                                   : terms.observed_end * unit + std::fabs(terms.shift_y.value()) * scale;
-    return {widened(size.width, std::min(across, end_x)), widened(size.height, std::min(down, end_y))};
+    return {widened(size.width, std::min(across, end_along(terms.shift_x))),
+            widened(size.height, std::min(down, end_along(terms.shift_y)))};
 }
 
 }  // namespace anamorph
