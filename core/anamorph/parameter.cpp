@@ -78,8 +78,8 @@ bool is_allowed(const Parameter& parameter, const std::string& value) {
         const bool low = parameter.above_minimum ? v > parameter.minimum : v >= parameter.minimum;
         return low && v <= parameter.maximum;
     };
-    const bool is_choice = std::find(parameter.choices.begin(), parameter.choices.end(), value) !=
-                           parameter.choices.end();
+    const bool is_choice =
+        std::find(parameter.choices.begin(), parameter.choices.end(), value) != parameter.choices.end();
     switch (parameter.type) {
         case ParameterType::number: {
             const std::optional<double> v = to_number(value);

@@ -274,9 +274,10 @@ TEST_F(Metadata, ARecipeKnowsWhatItReads) {
     for (const std::string view :
          {"to=equirectangular&size=64x32", "to=equirectangular&size=64x16",
           "to=equirectangular&size=60x60&fov=90", "to=cylindrical&size=64x30",
-          "to=rectilinear&size=50x40&fov=110", "to=rectilinear&size=50x40&lens=brown:k1=-0.05,d=2", "to=fisheye&size=40x40&fov=200", "to=equisolid&size=64x32",
-          "to=stereographic&size=40x40&fov=250", "to=mercator&size=60x40", "to=cubemap&size=16x96",
-          "to=cubemap3x2&size=48x32", "to=cubecross&size=64x48"}) {
+          "to=rectilinear&size=50x40&fov=110", "to=rectilinear&size=50x40&lens=brown:k1=-0.05,d=2",
+          "to=fisheye&size=40x40&fov=200", "to=equisolid&size=64x32", "to=stereographic&size=40x40&fov=250",
+          "to=mercator&size=60x40", "to=cubemap&size=16x96", "to=cubemap3x2&size=48x32",
+          "to=cubecross&size=64x48"}) {
         SCOPED_TRACE(view);
         const std::string recipe = "city.exr.pano?" + view;
         const std::size_t end = view.find('&'), fov = std::min(view.find("fov="), view.find("lens="));
