@@ -638,7 +638,7 @@ TEST(VtkDeform, WhatIsRefused) {
     const auto with = [&](double extent, double x, double kernel = 0, double enabled = 1) {
         return failure([=](Filter f) { f->SetDeformation(1, 0, 0, extent, 1, x, 0, 0, kernel, enabled); });
     };
-    EXPECT_THAT(with(0, 1), HasSubstr("deformation 1: extent=0: must be are"));
+    EXPECT_THAT(with(0, 1), HasSubstr("deformation 1: extent=0: must be"));
     EXPECT_THAT(with(-1, 1), HasSubstr("extent=-1"));
     EXPECT_THAT(with(kNan, 1), HasSubstr("extent=nan"));
     EXPECT_THAT(with(1, kInf), HasSubstr("vector=inf"));

@@ -154,7 +154,7 @@ const Operation& lens_operation() {
         &table,
         {"src"},
         1,
-        {"lens=ptlens:a=0.01,b=-0.08,c=0.02", {}},
+        {"fov=70&lens=brown:k1=-0.2,k2=0.05", {}},
         [](const OperationInput& input) -> std::unique_ptr<const Pictures> {
             return std::make_unique<LensPictures>(read_request(input.values, input.sources[0].facts));
         }};
