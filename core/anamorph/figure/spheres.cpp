@@ -12,6 +12,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 #include "anamorph/figure/outline_body.h"
@@ -116,7 +117,10 @@ SphereFill fill_with_spheres(const Ellipsoid& body, const SphereOptions& options
     if (options.most_spheres < 1)
         throw Error("most_spheres", std::to_string(options.most_spheres), "must be an integer of at least 1");
     SphereFill fill;
-    fill.deviation = options.tol;
+    // Doubles place no surface better, and the smallest of them does not grow.
+    const double largest =
+        std::max({std::fabs(body.axes[0]), std::fabs(body.axes[1]), std::fabs(body.axes[2])});
+    fill.deviation = std::max({options.tol, 0x1p-53 * largest, std::numeric_limits<double>::min()});
     while (!Fill(body, fill.deviation, static_cast<std::size_t>(options.most_spheres)).place(fill.spheres))
         fill.deviation *= 1.25;
     return fill;
