@@ -8,9 +8,13 @@ rm -f ./*.jpg
 "$PYTHON" "$examples/make_panorama.py" panorama.exr 512
 "$PYTHON" "$examples/make_faces.py" round.png long.png faces.csv
 cp "$examples/bulge.json" .
+lens="lens=brown:k1=-0.21,k2=0.05&fov=84"
+oiiotool "panorama.exr.pano?to=rectilinear&size=2048x1556&$lens" -o plate.exr
+oiiotool "panorama.exr.pano?to=rectilinear&size=600x400&pitch=-3&$lens" -o photo.jpg
+cp plate.exr taken.exr
 
 grep '^    oiiotool ' "$readme" >one_liners.sh
-[ "$(wc -l <one_liners.sh)" -eq 11 ]
+[ "$(wc -l <one_liners.sh)" -eq 15 ]
 bash -ex one_liners.sh
 for picture in view.jpg:480x360 planet.jpg:400x400 fisheye.jpg:400x400 cross.jpg:640x480 error.jpg:480x360 \
     warp.jpg:480x480 morph.jpg:480x480 lines.jpg:480x480; do
@@ -18,6 +22,11 @@ for picture in view.jpg:480x360 planet.jpg:400x400 fisheye.jpg:400x400 cross.jpg
     [ -s "$examples/pictures/${picture%:*}" ]
 done
 [ -s both.jpg ]
+[ -s straight.jpg ]
+# The distortion taken off and put on again, but for what is filtered twice; by way of a larger picture.
+iinfo flat.exr | grep -v 2048
+iinfo map.exr | tr -d ' ' | grep ":2048x1556,2channel"
+idiff -fail 0.02 -failpercent 1 -hardfail 20 -warn 20 plate.exr taken.exr  # the sun is 490
 [ "$(ls film.*.jpg | wc -l)" -eq 25 ]
 [ "$(ls step.*.jpg | wc -l)" -eq 5 ]
 # The film's ends are the pictures, but for what JPEG loses by writing them again.
