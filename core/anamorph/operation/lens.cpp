@@ -154,7 +154,7 @@ const Operation& lens_operation() {
         &table,
         {"src"},
         1,
-        {"fov=70&lens=brown:k1=-0.2,k2=0.05", {}},
+        {"fov=120&lens=kb4:k1=0.05,k2=0.01", {}},
         [](const OperationInput& input) -> std::unique_ptr<const Pictures> {
             return std::make_unique<LensPictures>(read_request(input.values, input.sources[0].facts));
         }};
