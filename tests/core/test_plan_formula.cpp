@@ -67,8 +67,9 @@ bool used_point(const FormulaPlan<Lens>& plan, const Block& block, int i, int j,
     int piece = 0;
     if (block.kind == Block::Kind::exact)
         return static_cast<const BlockMap&>(plan).exact(block, i + 0.5, j + 0.5, p, piece);
+    if (block.kind != Block::Kind::polynomial) return false;
     p = {block.base_x + double{px[i - block.box.x0]}, block.base_y + double{py[i - block.box.x0]}};
-    return block.kind == Block::Kind::polynomial;
+    return true;
 }
 
 void examine(const Lens& lens, const FormulaPlan<Lens>& plan, const Block& block, Findings& found) {
