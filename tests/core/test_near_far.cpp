@@ -465,8 +465,10 @@ TEST(NearFar, EveryInstructionSetGivesTheSameBits) {
 /// features alone.
 class Oracle {
   public:
-    Oracle(const Features& features, double size_x, double size_y, double t, const LineWeights& w)
-        : m_weights(w) {
+    /// `scale`: pixels for a unit of the features' lines.
+    Oracle(const Features& features, double size_x, double size_y, double t, const LineWeights& w,
+           double scale = 1)
+        : m_weights(w), m_scale(scale) {
         for (std::size_t i = 0; i < features.size(); ++i)
             add(features.line(i, 0), features.line(i, 1), static_cast<long double>(features.weight(i)), t);
         if (features.border_weight() > 0) {
@@ -505,16 +507,18 @@ class Oracle {
         long double px, py, qx, qy, shape[2][4], weight;
     };
     void add(const Line& from, const Line& to, long double weight, double t) {
-        const long double s = t, r = 1 - s;
+        const long double s = t * m_scale, r = (1 - static_cast<long double>(t)) * m_scale, u = m_scale;
         const auto mix = [&](double x, double y) { return r * x + s * y; };
         m_pairs.push_back({mix(from.p.x, to.p.x),
                            mix(from.p.y, to.p.y),
                            mix(from.q.x, to.q.x),
                            mix(from.q.y, to.q.y),
-                           {{from.p.x, from.p.y, from.q.x, from.q.y}, {to.p.x, to.p.y, to.q.x, to.q.y}},
+                           {{u * from.p.x, u * from.p.y, u * from.q.x, u * from.q.y},
+                            {u * to.p.x, u * to.p.y, u * to.q.x, u * to.q.y}},
                            weight});
     }
     LineWeights m_weights;
+    long double m_scale;
     std::vector<Pair> m_pairs;
 };
 
@@ -582,6 +586,38 @@ TEST(NearFar, NoPixelIsOverToleranceOrBoundByAnOracleOnAnyInstructionSet) {
                 }
         }
     simd::use_instruction_set("");
+}
+
+// A line of ten pixels so far away that rounding its ends to double turns what it says of the picture by
+// many pixels, though all that it says is a step aside.
+TEST(NearFar, LinesWhosePlaceIsRoundedInDoubleHold) {
+    const Size size{70, 40};
+    constexpr double kMixture = 0.3;
+    for (const double distance : {1e6, 1e9, 1e12})
+        for (const double b : {0.0, 0.5, 2.0})
+            for (const bool another : {false, true}) {
+                SCOPED_TRACE(testing::Message() << "distance " << distance << " b " << b
+                                                << (another ? " and a line in the picture" : ""));
+                const double scale = distance > 1e9 ? 1024 : 1;
+                Features features;
+                for (const int shape : {0, 1})
+                    features.set_frame(shape, {size.width / scale, size.height / scale});
+                const auto line = [&](double x, double y, double dx, double dy) {
+                    return Line{{x / scale, y / scale}, {(x + dx) / scale, (y + dy) / scale}};
+                };
+                const double x = 0.9 * distance, y = 0.3 * distance;
+                features.add_line({line(x, y, 8, 6), line(x + 5, y + 3, 8, 6)});
+                features.add_line({line(-y, x, 9, 5), line(4 - y, x + 1, 9, 5)});
+                if (another) features.add_line({line(10, 10, 30, 9), line(13, 11, 30, 8)});
+                const LineWeights w{1, b, 0.5};
+                const FeatureMap map(features, {size, size}, size, {1 - kMixture, kMixture}, w);
+                const auto truth =
+                    truth_of(Oracle(features, size.width, size.height, kMixture, w, scale), size);
+                for (const double tol : {1.0, 0.1, 1e-3, 1e-5}) {
+                    const Outcome o = against(truth, map, tol);
+                    EXPECT_LE(o.over, 0) << "error " << o.error << " bound " << o.bound << " tol " << tol;
+                }
+            }
 }
 
 TEST(NearFar, OneShapeAlone) {

@@ -127,14 +127,13 @@ class BoxBound {
     /// Fills in a line but for its weight. Returns a + dist, the most in the box.
     double look(std::size_t i, int shape, double x, double y, double radius, const Point<double>& reference) {
         const FeatureMap::TargetLine& line = m_map.line(i);
-        const FeatureMap::Rounding& rounding = m_map.rounding(i);
         const FeatureMap::Frame<double> at = m_map.frame(line, x, y);
         const double distance = m_map.distance(line, at);
         const double rho = std::hypot(at.along, at.beside) + radius;
         LineOnBox& to = m_lines[i];
-        to.off = 4 * (rounding.turn * rho + rounding.place +
-                      2 * kHalfUlp * (rho + std::fabs(x) + std::fabs(y) + 2 * radius + m_map.weights().a));
-        to.displaced = (3 + 2 * rounding.stretch) * to.off + 8 * rounding.place;
+        const LineOff off = line_off(m_map, i, rho, std::fabs(x) + std::fabs(y) + 2 * radius);
+        to.off = off.distance;
+        to.displaced = off.displacement;
         // Without any rounding.
         if (radius == 0 && distance == 0 && m_map.passes_through(i, x, y)) to.off = 0;
         to.nearest = std::max(distance - radius - 2 * to.off, m_map.weights().a);
@@ -144,7 +143,7 @@ class BoxBound {
         };
         const double dx = moved(d.origin.x, d.along_rate.x, d.beside_rate.x) - reference.x;
         const double dy = moved(d.origin.y, d.along_rate.y, d.beside_rate.y) - reference.y;
-        to.reach = std::hypot(dx, dy) + 2 * (1 + rounding.stretch) * radius + to.displaced;
+        to.reach = std::hypot(dx, dy) + 2 * (1 + m_map.rounding(i).stretch) * radius + to.displaced;
         return distance + radius + 2 * to.off;
     }
 
@@ -175,6 +174,16 @@ class BoxBound {
 };
 
 }  // namespace
+
+LineOff line_off(const FeatureMap& map, std::size_t i, double rho, double farthest) {
+    const FeatureMap::Rounding& rounding = map.rounding(i);
+    const double other = rounding.place + 2 * kHalfUlp * (rho + farthest + map.weights().a);
+    // A direction that is off moves no point of the line by more than it moves its end, and X, seen from p, by
+    // as much as it is away.
+    const double turned = rounding.turn * std::min(rho, map.line(i).length);
+    return {4 * (turned + other),
+            (3 + 2 * rounding.stretch) * 4 * (rounding.turn * rho + other) + 8 * rounding.place};
+}
 
 double exact_bound(const FeatureMap& map, const std::vector<int>& shapes, const Box& box) {
     return BoxBound(map, shapes).of(box);

@@ -8,6 +8,14 @@
 
 namespace anamorph {
 
+/// By how much a line as FeatureMap, in double, sees it is off at points of a box, in the target's pixels.
+struct LineOff {
+    double distance;      ///< a + dist
+    double displacement;  ///< what it says
+};
+/// `rho`: at least the points' distance from the line's p. `farthest`: at least |x| + |y| of each.
+LineOff line_off(const FeatureMap& map, std::size_t i, double rho, double farthest);
+
 /// The most by which FeatureMap, in double, is off from the lines' exact formula at the pixels of a box, for
 /// any of `shapes`, in pixels of their pictures. With a = 0 the map jumps where lines cross: where the
 /// distance of several from a pixel's centre is nothing but rounding the bound is as large as what they say

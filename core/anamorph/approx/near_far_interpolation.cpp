@@ -105,7 +105,9 @@ Known Planner::look(int x0, int y0, int size, Candidates& lines, simd::LineBound
 }
 
 double Planner::quotient_error(const FarSums& sums, const Known& known) const {
-    return (sums.error + known.spread * sums.value + known.offset * node_sum_rounding() * sums.most) /
+    const double places = m_map.weights().b * m_place * (sums.near_reach + known.spread * sums.near);
+    return (sums.error + known.spread * sums.value + known.offset * node_sum_rounding() * sums.most +
+            places) /
            known.least;
 }
 

@@ -83,7 +83,7 @@ bool Planner::gather() {
     m_lines.resize(m_map.size());
     for (std::size_t i = 0; i < m_map.size(); ++i)
         if (!see(i, m_x, m_y, m_lines[i]) || !(m_slopes[i] < kMostSlope)) return false;
-    return true;
+    return bound_doubles();
 }
 
 bool Planner::see(std::size_t i, double x, double y, FieldLine& to) const {

@@ -113,7 +113,7 @@ class Planner {
                bool has_polynomial) const;
     /// Can floats hold the cell's sums? `most`, `reach`: m and m r of all lines (simd::LineSums).
     bool floats_hold(const Known& known, double most, double reach) const;
-    /// Of the quotient, by interpolation and by rounding at the nodes.
+    /// Of the quotient, by interpolation, by rounding at the nodes and by far lines' places in double.
     double quotient_error(const FarSums& sums, const Known& known) const;
     /// What adding up in floats at the nodes does to an interpolant.
     double node_sum_rounding() const;
@@ -123,12 +123,14 @@ class Planner {
     void interpolate(const Candidates& lines, const CellFrame& frame, bool has_polynomial, double* to);
 
     // Rounding: near_far_rounding.cpp.
+    /// Fills in m_place and m_in_double for a region. False where lines are farther off than floats allow for.
+    bool bound_doubles();
     /// Of the displacement at the centre times the sum of weights, from sums over all lines: m r, m r / d, m,
     /// m times the displacement's change per pixel. Of what a polynomial adds up, interpolation makes
     /// Lebesgue_K^2 as much.
     double center_rounding(double reach, double near_reach, double most, double slope, double offset) const;
     double scale() const;
-    /// Of adding up, dividing and placing: what no cutting of cells reduces.
+    /// Of adding up, dividing and placing, and of the lines in double: what no cutting of cells reduces.
     double base_rounding(const Known& known, int near) const;
     /// Of a polynomial's coefficients and of Horner's rule: `size`, the sums of the coefficients' sizes.
     double far_rounding(const Known& known, const float* size) const;
@@ -149,6 +151,9 @@ class Planner {
     double m_unit = 1;        ///< of weights
     /// Relative errors of weights: by rounding, and by that of the place, per pixel and a + dist.
     double m_constant = 0, m_by_nearest = 0;
+    /// In double: by how much near lines are out of place, in the target's pixels, and by how much all that is
+    /// no line's distance moves a point, in pixels of the shapes.
+    double m_place = 0, m_in_double = 0;
     Vector m_reference{};  ///< displacements are relative to this
     std::vector<FieldLine> m_lines;
     std::vector<std::int32_t> m_far;

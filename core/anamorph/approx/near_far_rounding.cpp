@@ -7,11 +7,19 @@
 // - D| / W, which stays small on the line itself: there D is D_i. Where a line's place, as a float, is too
 // coarse for its a + r, the cell is fine: places are two floats (simd/near_far.h). Distances below 1e-6 are
 // cut off, so where a is less than that, cells that a line touches are exact.
+//
+// Lines are doubles to begin with, off from those that were given by what line_off (near_far_exact.h) says;
+// so is the view of one from a region's or a cell's centre. Whatever is off, it is a line again: all else is
+// proven for the map of the lines as double has them. Of that map, at a pixel, D is a mean of what the given
+// lines say, each off by `displacement`, with weights off by e_i in proportion, which moves it by the sum of
+// e_i l_i |D_i - D|: Planner::bound_doubles.
 #include "anamorph/approx/near_far_planner.h"
 
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+
+#include "anamorph/approx/near_far_exact.h"
 
 namespace anamorph::near_far {
 namespace {
@@ -26,7 +34,50 @@ constexpr double kCancelled = 1e-6;
 // of at most (1 + d)^b <= exp(e) <= 1 / (1 - e), and of at least (1 + d)^-b >= 1 - e.
 constexpr double kMostNearError = 0.25;
 
+// In double, a line nearer than this to a region counts by its place in pixels, one farther off by it in
+// proportion to its distance.
+constexpr double kNearRegion = kHalfRegion;
+// How far near lines may be out of place in double. With a + dist at least kPlaceApart, b times that over a +
+// dist is at most 16 / 100, of which 1 / (1 - e) makes less than the twice as much that line_off allows for;
+// where a + dist is less, near_error counts it among the rest. kPlaceApart has room for 90 times as much.
+constexpr double kMostPlace = 1e-5;
+// And far ones in proportion: kPlaceRelative has room for 10 units.
+constexpr double kMostFarPlace = 8 * kRoundingUnit;
+
 }  // namespace
+
+bool Planner::bound_doubles() {
+    const double radius = std::numbers::sqrt2 * kHalfRegion;
+    const double farthest = std::fabs(m_x) + std::fabs(m_y) + 2 * radius;
+    double displacement = 0, weight = 0, reach = 0;
+    m_place = 0;
+    for (std::size_t i = 0; i < m_lines.size(); ++i) {
+        const FeatureMap::TargetLine& line = m_map.line(i);
+        const FeatureMap::Frame<double> at = m_map.frame(line, m_x, m_y);
+        const double rho = std::sqrt(at.along * at.along + at.beside * at.beside) + radius;
+        const LineOff off = line_off(m_map, i, rho, farthest);
+        const double nearest = m_map.distance(line, at) - radius;
+        // Twice, as line_off says of itself.
+        double error = 2 * m_map.rounding(i).weight;
+        if (nearest < kNearRegion)
+            m_place = std::max(m_place, off.distance);
+        else if (off.distance <= kMostFarPlace * nearest)
+            error += m_map.weights().b * off.distance / nearest;
+        else
+            return false;
+        displacement = std::max(displacement, off.displacement);
+        weight = std::max(weight, error);
+        Vector from_reference;
+        for (std::size_t c = 0; c < kComponents; ++c)
+            from_reference[c] = static_cast<double>(m_lines[i].at[c]);
+        reach = std::max(reach, length_of(from_reference) + static_cast<double>(m_slopes[i]) * radius);
+    }
+    // No two of the D_i are farther apart than twice their reach. Where a region's centre comes from and
+    // the reference are made of numbers of that size, in fewer than 8 operations.
+    const double origin = length_of(m_region->origin) + scale() * farthest;
+    m_in_double = scale() * displacement + 2 * weight * reach + 8 * 0x1p-53 * origin;
+    return m_place <= kMostPlace;
+}
 
 double Planner::center_rounding(double reach, double near_reach, double most, double slope,
                                 double offset) const {
@@ -51,7 +102,7 @@ double Planner::base_rounding(const Known& known, int near) const {
     // below 1 + |center| and rounded 3 times, slope x 4 times, the displacement once.
     const double placed =
         3 * (1 + known.offset) + 4 * scale() * static_cast<double>(known.frame.half) + value;
-    return kRoundingUnit * (sums + std::numbers::sqrt2 * placed);
+    return kRoundingUnit * (sums + std::numbers::sqrt2 * placed) + m_in_double;
 }
 
 double Planner::far_rounding(const Known& known, const float* size) const {
@@ -116,7 +167,8 @@ NearRounding Planner::near_rounding(Candidates& lines, const simd::LineBounds& b
 }
 
 NearError Planner::near_error(const NearRounding& near, bool fine, double half) const {
-    const double place = m_by_nearest * (fine ? simd::kFineRounding : 11 * half);
+    const double place =
+        m_by_nearest * (fine ? simd::kFineRounding : 11 * half) + m_map.weights().b * m_place;
     // Where distances are cut off, weights have no bound.
     constexpr auto kLeast = static_cast<double>(simd::kLeastDistance);
     if (near.nearest <= kLeast && m_map.weights().a < kLeast) return {HUGE_VAL, 0};
