@@ -1,0 +1,331 @@
+// SPDX-License-Identifier: Apache-2.0
+// Projections against their closed formulas in long double, both ways, written in polar angles, azimuths and
+// elevations where the product computes with components of rays.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <numbers>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "anamorph/map/chart.h"
+
+namespace anamorph {
+namespace {
+
+using Real = long double;
+constexpr Real kPi = std::numbers::pi_v<Real>;
+constexpr Real kDegree = kPi / 180;
+constexpr double kTolerance = 2e-12;
+
+struct Vector {
+    Real x, y, z;
+};
+struct Plane {
+    Real x, y;
+};
+
+constexpr Plane kNoPoint{NAN, NAN};
+constexpr Vector kNoRay{NAN, NAN, NAN};
+
+Vector unit(const Vector& v) {
+    const Real n = std::sqrt(v.x * v.x + v.y * v.y + v.z * v.z);
+    return {v.x / n, v.y / n, v.z / n};
+}
+Vector of_angles(Real azimuth, Real elevation) {
+    return {std::sin(azimuth) * std::cos(elevation), std::sin(elevation),
+            std::cos(azimuth) * std::cos(elevation)};
+}
+Real azimuth_of(const Vector& v) {
+    return std::atan2(v.x, v.z);
+}
+Real elevation_of(const Vector& v) {
+    return std::atan2(v.y, std::hypot(v.x, v.z));
+}
+/// From the axis of sight.
+Vector of_polar(Real t, Real around) {
+    return {std::sin(t) * std::cos(around), std::sin(t) * std::sin(around), std::cos(t)};
+}
+Real polar_of(const Vector& v) {
+    return std::atan2(std::hypot(v.x, v.y), v.z);
+}
+Plane turned(Real radius, const Vector& v) {
+    const Real around = std::atan2(v.y, v.x);
+    return {radius * std::cos(around), radius * std::sin(around)};
+}
+
+/// A projection of one picture or of faces n x n pixels large, by its formulas in a plane that a face, or a
+/// whole picture without faces, fills from -half to half across.
+class Oracle {
+  public:
+    explicit Oracle(const Chart& chart, Real d)
+        : m_projection(chart.projection()), m_width(chart.width()), m_height(chart.height()), m_d(d) {
+        const Real h = static_cast<Real>(chart.fov()) / 2 * kDegree;
+        switch (m_projection) {
+            case Projection::pannini:
+                m_half = (d + 1) * std::sin(h) / (d + std::cos(h));
+                break;
+            case Projection::orthographic:
+                m_half = std::sin(h);
+                break;
+            case Projection::equisolid:
+                m_half = 2 * std::sin(h / 2);
+                break;
+            case Projection::hammer:
+                m_half = 4 * std::sin(h / 4);
+                break;
+            case Projection::eac:
+            case Projection::octahedral:
+                m_half = 1;
+                break;
+            default:
+                m_half = h;
+        }
+    }
+
+    /// Not a number outside of the picture's rim.
+    Vector ray(Real x, Real y) const {
+        switch (m_projection) {
+            case Projection::eac: {
+                const Real side = m_width / Real(3);
+                const int column = static_cast<int>(x / side), row = static_cast<int>(y / side);
+                const Real u = (x / side - column - 0.5L) * kPi / 2, v = (y / side - row - 0.5L) * kPi / 2;
+                // On a face tan u, tan v, 1: an elevation of tan v cos u, at the face's azimuth and u.
+                const Vector upper =
+                    of_angles((column - 1) * kPi / 2 + u, std::atan(std::tan(v) * std::cos(u)));
+                return row == 0 ? upper : lower_row(upper);
+            }
+            case Projection::dual_fisheye: {
+                const Real side = m_width / Real(2);
+                const bool front = x >= side;
+                const Real px = (x / side - front - 0.5L) * 2 * m_half, py = (y / side - 0.5L) * 2 * m_half;
+                const Real r = std::hypot(px, py);
+                if (r > std::min(m_half, kPi)) return kNoRay;
+                const Vector v = of_polar(r, std::atan2(py, px));
+                return front ? v : Vector{-v.x, v.y, -v.z};
+            }
+            default:
+                break;
+        }
+        const Real scale = m_width / (2 * m_half);
+        return of_plane((x - m_width / Real(2)) / scale, (y - m_height / Real(2)) / scale);
+    }
+
+    /// Not a number where a ray is not seen.
+    Plane point(const Vector& v) const {
+        switch (m_projection) {
+            case Projection::eac: {
+                const Real side = m_width / Real(3), eighth = kPi / 4;
+                const bool level = std::fabs(v.y) <= std::max(std::fabs(v.x), std::fabs(v.z)) &&
+                                   !(v.z < 0 && -v.z >= std::fabs(v.x));
+                const Vector w = level ? v : lower_row(v);
+                const int column = azimuth_of(w) < -eighth ? 0 : azimuth_of(w) > eighth ? 2 : 1;
+                const Real u = azimuth_of(w) - (column - 1) * kPi / 2;
+                const Real e = std::atan(std::tan(elevation_of(w)) / std::cos(u));
+                return {(column + 0.5L + u / (2 * eighth)) * side,
+                        ((level ? 0 : 1) + 0.5L + e / (2 * eighth)) * side};
+            }
+            case Projection::dual_fisheye: {
+                const Real side = m_width / Real(2);
+                const bool front = v.z > 0;
+                const Vector w = front ? v : Vector{-v.x, v.y, -v.z};
+                const Plane p = turned(polar_of(w), w);
+                return {(front + 0.5L + p.x / (2 * m_half)) * side, (0.5L + p.y / (2 * m_half)) * side};
+            }
+            default:
+                break;
+        }
+        const Plane p = in_plane(v);
+        const Real scale = m_width / (2 * m_half);
+        return {p.x * scale + m_width / Real(2), p.y * scale + m_height / Real(2)};
+    }
+
+  private:
+    /// eac: what goes on from below over behind to above stands as the upper row does from left to right; its
+    /// own inverse.
+    static Vector lower_row(const Vector& v) { return {-v.y, -v.x, -v.z}; }
+
+    Vector of_plane(Real x, Real y) const {
+        const Real r = std::hypot(x, y), around = std::atan2(y, x);
+        switch (m_projection) {
+            case Projection::orthographic:
+                return r > 1 ? kNoRay : of_polar(std::asin(r), around);
+            case Projection::equisolid:
+                return r > 2 ? kNoRay : of_polar(2 * std::asin(r / 2), around);
+            case Projection::sinusoidal:
+                if (std::fabs(y) > kPi / 2 || std::fabs(x) > m_half * std::cos(y)) return kNoRay;
+                return of_angles(x / std::cos(y), y);
+            case Projection::hammer: {
+                // Snyder (1987), p. 182, from the plane as it is published: sqrt(2) high each way.
+                const Real square = 1 - x * x / 16 - y * y / 4;
+                if (square < 0.5L) return kNoRay;
+                const Real z = std::sqrt(square);
+                return of_angles(2 * std::atan2(z * x, 2 * (2 * square - 1)), std::asin(z * y));
+            }
+            case Projection::pannini: {
+                const Real azimuth = pannini_azimuth(x);
+                return of_angles(azimuth, std::atan(y * (m_d + std::cos(azimuth)) / (m_d + 1)));
+            }
+            case Projection::octahedral: {
+                // The side of the picture that a corner is folded over.
+                const Real u = 2 * x / (2 * m_half), v = 2 * y / (2 * m_half),
+                           z = 1 - std::fabs(u) - std::fabs(v);
+                return unit(z >= 0 ? Vector{u, v, z}
+                                   : Vector{std::copysign(1 - std::fabs(v), u),
+                                            std::copysign(1 - std::fabs(u), v), z});
+            }
+            default:
+                return kNoRay;
+        }
+    }
+
+    Plane in_plane(const Vector& v) const {
+        const Real a = azimuth_of(v), e = elevation_of(v), t = polar_of(v);
+        switch (m_projection) {
+            case Projection::orthographic:
+                return t > kPi / 2 ? kNoPoint : turned(std::sin(t), v);
+            case Projection::equisolid:
+                return turned(2 * std::sin(t / 2), v);
+            case Projection::sinusoidal:
+                return {a * std::cos(e), e};
+            case Projection::hammer: {
+                const Real k = std::sqrt(1 + std::cos(e) * std::cos(a / 2)), root = std::sqrt(2.0L);
+                return {2 * root * std::cos(e) * std::sin(a / 2) / k, root * std::sin(e) / k};
+            }
+            case Projection::pannini: {
+                if (std::fabs(a) >= pannini_end()) return kNoPoint;
+                const Real s = (m_d + 1) / (m_d + std::cos(a));
+                return {s * std::sin(a), s * std::tan(e)};
+            }
+            case Projection::octahedral: {
+                const Real n = std::fabs(v.x) + std::fabs(v.y) + std::fabs(v.z), x = v.x / n, y = v.y / n;
+                if (v.z >= 0) return {x * m_half, y * m_half};
+                return {std::copysign(1 - std::fabs(y), x) * m_half,
+                        std::copysign(1 - std::fabs(x), y) * m_half};
+            }
+            default:
+                return kNoPoint;
+        }
+    }
+
+    /// Where X turns round, or has no end.
+    Real pannini_end() const { return std::acos(-(m_d > 1 ? 1 / m_d : m_d)); }
+    /// By halving: X rises with the azimuth.
+    Real pannini_azimuth(Real x) const {
+        Real low = -pannini_end(), high = -low;
+        for (int i = 0; i < 120; ++i) {
+            const Real middle = (low + high) / 2;
+            ((m_d + 1) * std::sin(middle) / (m_d + std::cos(middle)) < x ? low : high) = middle;
+        }
+        return (low + high) / 2;
+    }
+
+    Projection m_projection;
+    int m_width, m_height;
+    Real m_d, m_half = 1;
+};
+
+struct Case {
+    Projection projection;
+    int width, height;
+    double fov = 0, d = 1;
+};
+
+const Case kCases[] = {
+    {Projection::pannini, 30, 20, 150},
+    {Projection::pannini, 30, 20, 90, 0},
+    {Projection::pannini, 25, 31, 100, 0.5},
+    {Projection::pannini, 30, 20, 220, 1},
+    {Projection::pannini, 30, 20, 160, 7},
+    {Projection::eac, 36, 24},
+    {Projection::orthographic, 33, 33},
+    {Projection::orthographic, 32, 20, 70},
+    {Projection::sinusoidal, 40, 20},
+    {Projection::sinusoidal, 30, 30, 100},
+    {Projection::hammer, 40, 20},
+    {Projection::hammer, 31, 30, 140},
+    {Projection::dual_fisheye, 40, 20},
+    {Projection::dual_fisheye, 40, 20, 210},
+    {Projection::octahedral, 32, 32},
+    {Projection::equisolid, 31, 31, 360},
+    {Projection::equisolid, 30, 20, 100},
+};
+
+class Checked {
+  public:
+    Checked(const Chart& chart, const Oracle& oracle) : m_chart(chart), m_oracle(oracle) {}
+
+    void at(double x, double y) {
+        SCOPED_TRACE(testing::Message() << "pixel " << x << " " << y);
+        int piece = 0;
+        for (std::size_t i = 0; i < m_chart.pieces().size(); ++i) {
+            const Box& b = m_chart.pieces()[i].box;
+            if (x >= b.x0 && x < b.x1 && y >= b.y0 && y < b.y1) piece = static_cast<int>(i);
+        }
+        const Vector truth = m_oracle.ray(x, y);
+        const bool inside = m_chart.inside(x, y, piece) >= 0;
+        EXPECT_EQ(inside, !std::isnan(truth.x));
+        if (!inside) return;
+        const Ray<double> r = m_chart.ray(x, y, piece);
+        const Vector ray = unit({r.x, r.y, r.z});
+        // At its rim a picture's rays turn without end, of which z tells too little.
+        const double slack = std::min(m_chart.inside(x, y, piece), 1.0);
+        const double off = static_cast<double>(std::hypot(ray.x - truth.x, ray.y - truth.y, ray.z - truth.z));
+        EXPECT_LE(off, kTolerance / std::sqrt(std::max(slack, 1e-9)));
+        // Where the oracle sees the product's ray, unless another face shows its direction, too.
+        ++seen;
+        if (m_chart.piece_of(r) != piece) return;
+        const Plane back = m_oracle.point(ray);
+        EXPECT_LE(std::hypot(back.x - x, back.y - y), kTolerance * m_chart.width());
+    }
+
+    void toward(const Vector& v) {
+        SCOPED_TRACE(testing::Message() << "ray " << v.x << " " << v.y << " " << v.z);
+        const Ray<double> r{double(v.x), double(v.y), double(v.z)};
+        const int piece = m_chart.piece_of(r);
+        const Ray<double> local = transform(glm::transpose(m_chart.branch(piece).axes), r);
+        const Plane truth = m_oracle.point({r.x, r.y, r.z});
+        // Far out, where a point is all rounding, charts end somewhere.
+        if (std::hypot(truth.x, truth.y) > 100 * m_chart.width()) return;
+        EXPECT_EQ(m_chart.sees(local, piece) > 0, !std::isnan(truth.x));
+        if (std::isnan(truth.x)) return;
+        const Point<double> p = m_chart.point(r, piece);
+        EXPECT_LE(std::hypot(p.x - truth.x, p.y - truth.y),
+                  kTolerance * std::max<double>(std::hypot(truth.x, truth.y), m_chart.width()));
+        ++seen;
+    }
+
+    int seen = 0;
+
+  private:
+    const Chart& m_chart;
+    const Oracle& m_oracle;
+};
+
+TEST(ProjectionOracle, BothWays) {
+    constexpr unsigned kSeed = 11;
+    SCOPED_TRACE(testing::Message() << "seed " << kSeed);
+    std::mt19937 random(kSeed);
+    std::uniform_real_distribution<double> unit_range(0, 1);
+    std::normal_distribution<double> normal;
+    for (const Case& c : kCases) {
+        SCOPED_TRACE(testing::Message() << name_of(c.projection) << " fov " << c.fov << " d " << c.d);
+        const Chart chart(c.projection, c.width, c.height, c.fov, PixelSpacing::edges, "", c.d);
+        const Oracle oracle(chart, static_cast<Real>(c.d));
+        Checked checked(chart, oracle);
+        for (int j = 0; j < c.height; ++j)
+            for (int i = 0; i < c.width; ++i) checked.at(i + 0.5, j + 0.5);
+        EXPECT_GT(checked.seen, c.width * c.height / 2);
+        for (int i = 0; i < 1000; ++i)
+            checked.at(c.width * unit_range(random), c.height * unit_range(random));
+        checked.seen = 0;
+        for (int i = 0; i < 2000; ++i) checked.toward(unit({normal(random), normal(random), normal(random)}));
+        EXPECT_GT(checked.seen, 400);
+    }
+}
+
+}  // namespace
+}  // namespace anamorph
