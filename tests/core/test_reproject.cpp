@@ -134,6 +134,47 @@ std::vector<Case> cases() {
     return list;
 }
 
+/// As above, and where the chart has no ray a value that nothing may show.
+Picture paint_inside(const Chart& chart) {
+    Picture p = paint(chart, PixelType::float32, 1);
+    for (int y = 0; y < chart.height(); ++y)
+        for (int x = 0; x < chart.width(); ++x)
+            if (chart.inside(x + 0.5, y + 0.5) < 0) p.set(x, y, 0, 1e6f);
+    return p;
+}
+
+TEST(Reproject, RowsThatEndWithTheSphereGoOnBeyondTheSeam) {
+    const Chart views[] = {{Projection::rectilinear, 90, 70, 100}, {Projection::rectilinear, 17, 13, 100}};
+    for (const Projection projection : {Projection::sinusoidal, Projection::hammer})
+        for (const PixelSpacing spacing : {PixelSpacing::edges, PixelSpacing::centers})
+            for (const Chart& view : views)
+                for (const Filter filter :
+                     {Filter::nearest, Filter::bilinear, Filter::bicubic, Filter::antialias})
+                    for (const Orientation& look :
+                         {Orientation{180, 0, 0}, {175, 40, 30}, {-170, -60, 0}, {20, 85, 0}, {0, 0, 0}}) {
+                        SCOPED_TRACE(testing::Message()
+                                     << name_of(projection)
+                                     << (spacing == PixelSpacing::centers ? " centers" : "") << " to "
+                                     << view.width() << " pixels, filter " << int(filter) << " yaw "
+                                     << look.yaw << " pitch " << look.pitch);
+                        const Chart chart(projection, 256, 128, 0, spacing);
+                        const Picture source = paint_inside(chart);
+                        const MemorySource image(source.read());
+                        const Pyramid pyramid(image);
+                        ReprojectOptions options;
+                        options.filter = filter;
+                        const Picture got = draw(Reprojection(Panorama(chart, view, look), options), pyramid);
+                        double worst = 0;
+                        for (int y = 0; y < view.height(); ++y)
+                            for (int x = 0; x < view.width(); ++x) {
+                                const Ray<double> ray = transform(rotation(look), view.ray(x + 0.5, y + 0.5));
+                                worst = std::max(worst, std::fabs(double(got.at(x, y, 0) - sky(ray, 0))));
+                            }
+                        // Beyond an edge a texel is up to half of one out of place, where they are widest.
+                        EXPECT_LT(worst, view.width() > 50 ? 0.04 : 0.1);
+                    }
+}
+
 TEST(Reproject, SameBitsForCropsTilesThreadsAndOrder) {
     for (const Case& c : cases()) {
         SCOPED_TRACE(c.name);

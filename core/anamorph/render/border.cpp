@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <tuple>
+#include <utility>
 
 namespace anamorph {
 namespace {
@@ -72,11 +74,87 @@ TexelRun around_sphere(const Chart& chart, std::int64_t x, std::int64_t y, const
     return {{static_cast<int>(x), static_cast<int>(y)}, end - static_cast<int>(x)};
 }
 
+/// Does a full turn fill rows of this picture that are shorter than it is wide?
+bool has_rounded_edge(const Chart& chart) {
+    return chart.counted() == Counted::azimuth && chart.fov() == 360 && !chart.closed();
+}
+
+/// A level of a picture of the whole sphere whose rows end where the sphere does: symmetric, and convex.
+class RoundedEdge {
+  public:
+    RoundedEdge(const Chart& chart, const Size& level)
+        : m_chart(chart),
+          m_level(level),
+          m_kx(static_cast<double>(chart.width()) / level.width),
+          m_ky(static_cast<double>(chart.height()) / level.height) {}
+
+    /// The first and the end of the texels of a row that stand for themselves: their centres lie on the
+    /// sphere, or, of levels that were made by averaging what lies outside too, all of them does. None: 0, 0.
+    std::pair<int, int> row(int y) const {
+        int in = m_level.width / 2, out = m_level.width;
+        if (!stands(in, y)) return {0, 0};
+        while (out - in > 1) {
+            const int middle = in + (out - in) / 2;
+            (stands(middle, y) ? in : out) = middle;
+        }
+        return {m_level.width - out, out};
+    }
+
+    /// A rectangle that stands for itself: half of the height.
+    Box middle() const {
+        const int y0 = m_level.height / 4, y1 = m_level.height - y0;
+        const auto [a, b] = row(y0);
+        const auto [c, d] = row(y1 - 1);
+        const Box box{std::max(a, c), y0, std::min(b, d), y1};
+        if (!box.empty()) return box;
+        const int x = m_level.width / 2, y = m_level.height / 2;
+        return {x, y, x + 1, y + 1};
+    }
+
+    TexelRun resolve(std::int64_t x, std::int64_t y) const {
+        if (y >= 0 && y < m_level.height) {
+            const auto [first, end] = row(static_cast<int>(y));
+            if (x >= first && x < end)
+                return {{static_cast<int>(x), static_cast<int>(y)}, end - static_cast<int>(x)};
+        }
+        return {across(static_cast<double>(x), static_cast<double>(y))};
+    }
+
+  private:
+    bool on_sphere(double x, double y) const { return m_chart.inside(x * m_kx, y * m_ky) >= 0; }
+    bool stands(int x, int y) const {
+        if (m_level == Size{m_chart.width(), m_chart.height()}) return on_sphere(x + 0.5, y + 0.5);
+        return on_sphere(x, y) && on_sphere(x + 1, y) && on_sphere(x, y + 1) && on_sphere(x + 1, y + 1);
+    }
+
+    /// The formulas go on beyond the edge, around the sphere. Nothing where they end, or where the sphere
+    /// goes on and the picture does not.
+    Texel across(double x, double y) const {
+        const Point<double> p = m_chart.point(m_chart.ray((x + 0.5) * m_kx, (y + 0.5) * m_ky), 0);
+        const double row_of = std::floor(p.y / m_ky);
+        if (!(std::isfinite(p.x) && row_of >= 0 && row_of < m_level.height)) return {0, 0, true};
+        // The nearest row with texels, toward the middle.
+        int to = static_cast<int>(row_of);
+        auto [first, end] = row(to);
+        for (const int step = 2 * to < m_level.height ? 1 : -1; first == end;
+             std::tie(first, end) = row(to)) {
+            if (to == m_level.height / 2) return {0, 0, true};
+            to += step;
+        }
+        return {static_cast<int>(std::clamp(std::floor(p.x / m_kx), double(first), end - 1.0)), to};
+    }
+
+    const Chart& m_chart;
+    Size m_level;
+    double m_kx, m_ky;
+};
+
 }  // namespace
 
 Border::Border(const Chart& chart, Wrap wrap) : m_chart(chart), m_wrap(wrap) {}
 
 Box Border::interior(int piece, const Size& level) const noexcept {
+    if (m_wrap == Wrap::automatic && has_rounded_edge(m_chart)) return RoundedEdge(m_chart, level).middle();
     if (m_chart.pieces().size() == 1) return {0, 0, level.width, level.height};
     const Box& box = m_chart.pieces()[static_cast<std::size_t>(piece)].box;
     const int w = m_chart.width(), h = m_chart.height();
@@ -92,6 +170,10 @@ Box Border::interior(int piece, const Size& level) const noexcept {
 
 TexelRun Border::resolve_run(std::int64_t x, std::int64_t y, int piece, const Size& level,
                              int limit) const noexcept {
+    if (m_wrap == Wrap::automatic && has_rounded_edge(m_chart)) {
+        const TexelRun found = RoundedEdge(m_chart, level).resolve(x, y);
+        return {found.first, std::min(found.count, limit)};
+    }
     const Box box = interior(piece, level);
     const bool in_column = box.x0 <= x && x < box.x1, in_row = box.y0 <= y && y < box.y1;
     const auto run = [&](TexelRun r) { return TexelRun{r.first, std::min(r.count, limit)}; };

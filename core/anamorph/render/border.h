@@ -13,8 +13,9 @@
 namespace anamorph {
 
 /// automatic follows the chart (across +-180 degrees, over the poles, across cube edges) and is black
-/// elsewhere; the others are OpenImageIO's modes and treat the image, or each face of a cube, as a plain
-/// rectangle.
+/// elsewhere; where a full turn fills rows of different lengths (sinusoidal, Hammer), a row goes on at the
+/// nearest texel of the other side. The others are OpenImageIO's modes and treat the image, or each face of a
+/// cube, as a plain rectangle.
 enum class Wrap { automatic, black, clamp, periodic, mirror };
 
 /// A texel of a level, or none (black).
@@ -37,7 +38,8 @@ class Border {
 
     const Chart& chart() const noexcept { return m_chart; }
 
-    /// The rectangle of texels of a level that stand for themselves on `piece`.
+    /// A rectangle of texels of a level that stand for themselves on `piece`: all of them, but for pictures
+    /// with a round edge.
     Box interior(int piece, const Size& level) const noexcept;
 
     /// The texel that stands at (x, y), which may lie any distance outside the piece's interior.
