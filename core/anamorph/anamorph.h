@@ -3,8 +3,7 @@
 #pragma once
 
 #include "anamorph/approx/block.h"
-#include "anamorph/approx/formula_plan.h"
-#include "anamorph/approx/mesh_plan.h"
+#include "anamorph/approx/scheme.h"
 #include "anamorph/deform/deformation.h"
 #include "anamorph/deform/deformation_file.h"
 #include "anamorph/deform/deformed_surface.h"

@@ -9,7 +9,7 @@
 #include <random>
 #include <vector>
 
-#include "anamorph/render/filter.h"
+#include "anamorph/render/point_sampler.h"
 #include "anamorph/render/pyramid.h"
 
 namespace {

@@ -8,8 +8,8 @@
 #include <random>
 #include <thread>
 
-#include "anamorph/render/filter.h"
 #include "anamorph/render/pixel.h"
+#include "anamorph/render/point_sampler.h"
 #include "anamorph/render/pyramid.h"
 #include "anamorph/render/reproject.h"
 #include "anamorph/simd/block_sampler.h"

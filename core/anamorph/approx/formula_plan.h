@@ -8,13 +8,10 @@
 #pragma once
 
 #include "anamorph/approx/block.h"
+#include "anamorph/approx/scheme.h"
 #include "anamorph/map/formula_map.h"
 
 namespace anamorph {
-
-/// exact: every pixel by the formula. blocks: quadratic polynomials on blocks. residual: Kim's decomposition
-/// (3.1), one linear map and a bilinear table of residuals (4.3, 4.4). automatic: the fastest that holds.
-enum class Scheme { automatic, exact, blocks, residual };
 
 /// How a map is approximated.
 struct PlanOptions {

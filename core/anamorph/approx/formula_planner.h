@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <bit>
-#include <cstdio>
 #include <optional>
 
 #include "anamorph/approx/block_writer.h"
@@ -474,11 +473,7 @@ FormulaPlan<Map>::FormulaPlan(const Map& map, const PlanOptions& options)
     : BlockMap(map.target_size().width, map.target_size().height, map.target_pieces()),
       m_map(map),
       m_options(options) {
-    if (!(options.tol >= 0 && options.tol < HUGE_VAL)) {
-        char text[32];
-        std::snprintf(text, sizeof text, "%g", options.tol);
-        throw Error("tol", text, "must be 0 (exact) or a finite number of source pixels above it");
-    }
+    check_tol(options.tol);
 }
 
 template <class Map>

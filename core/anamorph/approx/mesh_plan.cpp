@@ -2,7 +2,6 @@
 #include "anamorph/approx/mesh_plan.h"
 
 #include <algorithm>
-#include <cstdio>
 #include <cstring>
 #include <functional>
 #include <limits>
@@ -179,13 +178,6 @@ class Planner {
 };
 
 }  // namespace
-
-void check_tol(double tol) {
-    if (tol >= 0 && tol < HUGE_VAL) return;
-    char text[32];
-    std::snprintf(text, sizeof text, "%g", tol);
-    throw Error("tol", text, "must be 0 (exact) or a finite number of source pixels above it");
-}
 
 std::int64_t WarpPlan::folded_pixels(const Box& box) const {
     std::int64_t count = 0;

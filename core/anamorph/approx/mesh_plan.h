@@ -8,20 +8,20 @@
 //   thirteen non-linear products of eq. 5.5 and 5.7 from tables read bilinearly (5.4).
 //
 // Point by point where that exceeds the tolerance or a cell has few pixels.
+//
+// It is no FormulaPlan: a mesh is a formula for each cell, whose edges blocks may not cross, and a patch is a
+// polynomial already, so that nothing is left to expand or enclose. Meshes that push are solved for, and
+// pairs of points triangulated: no single formula either. What these plans share is BlockWriter, which also
+// halves their blocks: in the middle, where FormulaPlan cuts at powers of two, which keep its blocks in line.
 #pragma once
 
 #include <memory>
 
 #include "anamorph/approx/block.h"
+#include "anamorph/approx/scheme.h"
 #include "anamorph/map/mesh.h"
 
 namespace anamorph {
-
-/// exact: every pixel in double. hermite: the bicubic patch in full at every pixel (5.3.5), in float.
-/// residual: a linear map for each of a cell's two triangles plus thirteen tabulated products (5.4 to 5.7).
-/// automatic: quadratics in its place where they will do, the fastest. Maps that are no bicubic patches
-/// (pairs of points, and meshes that push) know exact and automatic, and take the latter for the other two.
-enum class WarpScheme { automatic, exact, hermite, residual };
 
 /// The source points of a warp, in blocks, and where it folds.
 class WarpPlan : public BlockMap {
@@ -62,8 +62,5 @@ class MeshPlan final : public WarpPlan {
     double m_tol;
     std::shared_ptr<const ResidualTables> m_tables;
 };
-
-/// Throws Error unless tol is 0 or a finite number above it.
-void check_tol(double tol);
 
 }  // namespace anamorph

@@ -14,8 +14,7 @@
 
 #include "anamorph/approx/near_far_line.h"
 #include "anamorph/approx/near_far_planner.h"
-#include "anamorph/error.h"
-#include "anamorph/parameter.h"
+#include "anamorph/approx/scheme.h"
 
 namespace anamorph {
 
@@ -71,9 +70,7 @@ struct NearFar::State {
 };
 
 NearFar::NearFar(const FeatureMap& map, const NearFarOptions& options) : FeatureBlocks(map, options.shapes) {
-    if (!(options.tol >= 0 && options.tol < HUGE_VAL))
-        throw Error("tol", shortest(options.tol),
-                    "must be 0 (exact) or a finite number of source pixels above it");
+    check_tol(options.tol);
     m_state = std::make_unique<State>(map, options);
 }
 NearFar::~NearFar() = default;

@@ -5,6 +5,7 @@
 
 #include "anamorph/approx/near_far_mesh.h"
 #include "anamorph/map/features_file.h"
+#include "anamorph/operation/read_once.h"
 #include "anamorph/operation/rows.h"
 #include "anamorph/operation/solved.h"
 

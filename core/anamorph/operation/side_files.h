@@ -8,7 +8,6 @@
 #include <vector>
 
 #include "anamorph/geometry/size.h"
-#include "anamorph/operation/memo.h"
 
 namespace anamorph {
 
@@ -38,15 +37,5 @@ class SideFileReader {
     /// `key`: the parameter that names it, for messages. Throws Error, also where it is not a flat image.
     virtual std::unique_ptr<SideImage> image(const std::string& key, const std::string& name) const = 0;
 };
-
-/// What make() reads of a file. What has an identity is kept for the next who asks for the same; `how` tells
-/// readings of one file apart.
-template <class Value, class Make>
-std::shared_ptr<const Value> read_once(const SideFile& file, const std::string& how, const Make& make) {
-    constexpr std::size_t kKept = 4;
-    static auto& memo = *new Memo<const Value>(kKept);
-    const auto made = [&] { return std::make_shared<const Value>(make()); };
-    return file.identity.empty() ? made() : memo.get(how + "\n" + file.identity, made);
-}
 
 }  // namespace anamorph

@@ -2,6 +2,7 @@
 #include "anamorph/operation/warp.h"
 
 #include "anamorph/map/mesh_file.h"
+#include "anamorph/operation/read_once.h"
 #include "anamorph/operation/rows.h"
 #include "anamorph/operation/solved.h"
 #include "anamorph/text_file.h"

@@ -11,8 +11,8 @@
 
 #include "anamorph/approx/block.h"
 #include "anamorph/render/canvas.h"
-#include "anamorph/render/filter.h"
 #include "anamorph/render/footprint.h"
+#include "anamorph/render/point_sampler.h"
 #include "anamorph/render/window.h"
 
 namespace anamorph {

@@ -5,7 +5,7 @@
 
 #include <memory>
 
-#include "anamorph/approx/mesh_plan.h"
+#include "anamorph/approx/scheme.h"
 #include "anamorph/map/mesh_data.h"
 #include "anamorph/parallel_for.h"
 #include "anamorph/render/picture.h"

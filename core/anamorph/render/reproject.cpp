@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "anamorph/render/reproject.h"
 
+#include "anamorph/approx/panorama_plan.h"
+
 namespace anamorph {
 namespace {
 

@@ -4,7 +4,8 @@
 
 #include <memory>
 
-#include "anamorph/approx/panorama_plan.h"
+#include "anamorph/approx/scheme.h"
+#include "anamorph/map/panorama.h"
 #include "anamorph/parallel_for.h"
 #include "anamorph/render/picture.h"
 

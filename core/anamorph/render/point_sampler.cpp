@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "anamorph/render/filter.h"
+#include "anamorph/render/point_sampler.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: Apache-2.0
+// What maps can be asked for: how they are approximated, and their tolerance.
+#pragma once
+
+namespace anamorph {
+
+/// exact: every pixel by the formula. blocks: quadratic polynomials on blocks. residual: Kim's decomposition
+/// (3.1), one linear map and a bilinear table of residuals (4.3, 4.4). automatic: the fastest that holds.
+enum class Scheme { automatic, exact, blocks, residual };
+
+/// exact: every pixel in double. hermite: the bicubic patch in full at every pixel (5.3.5), in float.
+/// residual: a linear map for each of a cell's two triangles plus thirteen tabulated products (5.4 to 5.7).
+/// automatic: quadratics in its place where they will do, the fastest. Maps that are no bicubic patches
+/// (pairs of points, and meshes that push) know exact and automatic, and take the latter for the other two.
+enum class WarpScheme { automatic, exact, hermite, residual };
+
+/// Throws Error unless `tol`, in source pixels, is 0 (exact) or a finite number above it.
+void check_tol(double tol);
+
+}  // namespace anamorph
