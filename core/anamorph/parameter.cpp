@@ -346,7 +346,7 @@ RecipeName parse_recipe_name(std::string_view name) {
 
 std::string reference_page(const std::string& title, const ParameterTable& table) {
     std::string page =
-        "# " + title + "\n\n| key | default | unit | allowed | meaning |\n|---|---|---|---|---|\n";
+        "# " + title + "\n\n| key | default | unit | values | meaning |\n|---|---|---|---|---|\n";
     for (const Parameter& p : table) {
         const std::string key = p.alias.empty() ? "`" + p.name + "`" : "`" + p.name + "` (`" + p.alias + "`)";
         page += "| " + key + " | " + (p.default_value.empty() ? "" : "`" + p.default_value + "`") + " | " +
