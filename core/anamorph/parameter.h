@@ -100,7 +100,7 @@ class ParameterValues {
 /// The assignments of a recipe file's text. Throws Error naming the line.
 std::vector<Assignment> parse_recipe(std::string_view text);
 /// Longer recipe files are refused.
-constexpr std::size_t kMaxRecipeBytes = std::size_t{1} << 20;
+inline constexpr std::size_t kMaxRecipeBytes = std::size_t{1} << 20;
 
 /// A recipe name in its parts.
 struct RecipeName {

@@ -15,7 +15,7 @@ namespace anamorph {
 
 /// Is the part before the first `?` a name that ends in `extension` (".pano"), in any case of letters?
 bool has_extension(std::string_view name, std::string_view extension);
-constexpr std::string_view kBufferExtension = ".anabuf";
+inline constexpr std::string_view kBufferExtension = ".anabuf";
 
 /// Runs `body`; where it throws an Error that does not name the recipe, the recipe is named in front.
 template <class Body>
@@ -64,7 +64,7 @@ class RecipeReader {
     std::set<std::string> m_seen;
     std::string m_identity;
 };
-constexpr int kMaxDepth = 16;     ///< recipes that read from each other, one from the next
-constexpr int kMaxRecipes = 100;  ///< that one recipe reads from, directly or not
+inline constexpr int kMaxDepth = 16;     ///< recipes that read from each other, one from the next
+inline constexpr int kMaxRecipes = 100;  ///< that one recipe reads from, directly or not
 
 }  // namespace anamorph

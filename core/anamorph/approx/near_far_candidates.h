@@ -15,7 +15,7 @@ using simd::kComponents;
 using simd::LineTable;
 
 /// Room for a polynomial: K x K coefficients of 8 numbers.
-constexpr std::size_t kCoefficients = simd::kMaxDegree * simd::kMaxDegree * 8;
+inline constexpr std::size_t kCoefficients = simd::kMaxDegree * simd::kMaxDegree * 8;
 
 /// Lines and what is known of them over the cell at hand; one for each depth of the recursion.
 class Candidates {

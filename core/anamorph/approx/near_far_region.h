@@ -18,8 +18,8 @@ using simd::FieldLine;
 using simd::kComponents;
 using simd::kMaxDegree;
 
-constexpr auto kHalfRegion = static_cast<double>(simd::kRegionHalf);
-constexpr int kRegion = static_cast<int>(2 * kHalfRegion);
+inline constexpr auto kHalfRegion = static_cast<double>(simd::kRegionHalf);
+inline constexpr int kRegion = static_cast<int>(2 * kHalfRegion);
 
 using Vector = std::array<double, kComponents>;
 

@@ -7,7 +7,7 @@
 namespace anamorph::near_far {
 
 /// u: what rounding to float changes, in proportion, at most.
-constexpr auto kRoundingUnit = static_cast<double>(simd::kFloatRounding);
+inline constexpr auto kRoundingUnit = static_cast<double>(simd::kFloatRounding);
 /// What a bound itself is off by, in proportion. It is made of sums over lines (off by kSumRounding = 24 u
 /// each, in numerator and denominator), products of four of them at most, 8 (24) u = 192 u, and of fewer
 /// than 100 more operations on floats. And the nodes, off by u / 2 each, are the roots not of T_K
@@ -15,6 +15,6 @@ constexpr auto kRoundingUnit = static_cast<double>(simd::kFloatRounding);
 /// (T_K's slope), so that |p| <= K^2 Lebesgue_K u / 2 < 74 u. At a pole |p| / |T_K| is at most 74 u on the
 /// real axis, and 2 (74 u) / (rho - rho^(1 - 2 K)) < 118 u elsewhere, for rho > 1.37 and K >= 4
 /// (simd/near_far.cpp takes no end nearer than 1.05). In all 192 + 100 + 74 + 118 = 484 units.
-constexpr double kBoundRounding = 512 * kRoundingUnit;
+inline constexpr double kBoundRounding = 512 * kRoundingUnit;
 
 }  // namespace anamorph::near_far

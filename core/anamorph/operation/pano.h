@@ -33,7 +33,7 @@ struct ReprojectRequest {
 /// With one number, the width; the height is then the projection's own: half the width for a full
 /// equirectangular image, 90 degrees for a cylindrical one, square faces for cubes, else the width.
 ReprojectRequest read_reproject_request(const ParameterValues& values, const SourceFacts& source);
-constexpr int kMaxDefaultSize = 16384;
+inline constexpr int kMaxDefaultSize = 16384;
 
 /// The next level of a picture's pyramid: half the pixels each way (rounded down, at least 1), the same view;
 /// none after the last.

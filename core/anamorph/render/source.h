@@ -7,7 +7,7 @@
 
 namespace anamorph {
 
-constexpr int kMaxSide = 1 << 20;  ///< pixels of a picture, either way
+inline constexpr int kMaxSide = 1 << 20;  ///< pixels of a picture, either way
 
 /// The pixels of one image at one or more resolutions, level 0 the finest. Reading is thread safe.
 class Source {
