@@ -13,8 +13,33 @@
 //     that at most.
 // (3) Sums of n terms, the quotient and the product with the scale.
 //
-// All are bounded over a box from distances at its centre, twice as large as first order says; a box on which
-// (2) is much is cut in two.
+// All are bounded over a box from distances at its centre; a box on which (2) is much is cut in two.
+//
+// The factors. F = turn rho + place + 2 u (rho + |x| + |y| + a), L is the line's length, s its stretch.
+//
+// - 4 F for the place in the frame, and for a + dist (line_off). Its parts are, of the direction, turn rho;
+//   of p, sqrt(2) place; of what is computed, 3 u rho in along and in beside (a difference, a product, a
+//   sum), sqrt(2) times that together, 3 u rho for the length and 2 u (rho + a) for what is added and
+//   subtracted: below 10 u rho + 2 u a. With rho <= |x| + |y| + |p| and place >= 5 u times a coordinate of p
+//   that is 5 u (rho + |x| + |y|) + 2 u a + sqrt(2) place. In all less than 4 F / 1.4; what is left holds
+//   products of two.
+//
+// - (3 + 2 s) 4 F + 8 place for the displacement. The rates, as a matrix, are no longer than 3 + s, which the
+//   place in the frame is multiplied by, and off by sqrt(2) turn, times rho; they are multiplied and added up
+//   within 4 u (3 + s) rho; the origin is off by 4 place. With s >= 1, (3 + s) 4 F / 1.4 + 1.5 turn rho +
+//   4 u (3 + s) rho + 4 place is less.
+//
+// - 2 (1 + b) h / d for a weight at d = a + dist. Where it is below 1, x = h / d is below 1 / (2 + 2 b), and
+//   (1 - x)^-b - 1 <= e^y - 1 <= 1.3 y for y = b x / (1 - x) <= 1/2; 1 / (1 - x) <= (2 + 2 b) / (1 + 2 b)
+//   makes 1.3 y <= 2 (1 + b) x for any b. Where it is above 1 the distance is at most d + h <= 1.5 d.
+//
+// - Distances in the box lie within `radius` of the centre's, which is itself off by h, as is each: 2 h, and
+//   twice that from the nearest to the farthest.
+//
+// - 4 u (n + 4) of the mean's size: n + 1 roundings of numerator and denominator each, and 2 more, twice; and
+//   8 u of the pixel's place, which is added and scaled (2 u), four times.
+//
+// - 2 of all: parts of the sum of weights, l_i and the mean are those of weights that are off themselves.
 #include "anamorph/approx/near_far_exact.h"
 
 #include <algorithm>
@@ -178,8 +203,8 @@ class BoxBound {
 LineOff line_off(const FeatureMap& map, std::size_t i, double rho, double farthest) {
     const FeatureMap::Rounding& rounding = map.rounding(i);
     const double other = rounding.place + 2 * kHalfUlp * (rho + farthest + map.weights().a);
-    // A direction that is off moves no point of the line by more than it moves its end, and X, seen from p, by
-    // as much as it is away.
+    // A direction that is off moves no point of the line by more than its end, and X, seen from p, by as much
+    // as it is away.
     const double turned = rounding.turn * std::min(rho, map.line(i).length);
     return {4 * (turned + other),
             (3 + 2 * rounding.stretch) * 4 * (rounding.turn * rho + other) + 8 * rounding.place};
