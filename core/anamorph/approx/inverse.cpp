@@ -369,91 +369,118 @@ class Planner {
         return near;
     }
 
+    /// The map about the middle of a block, in its units: z + Q(z) + C(z) + higher terms, where M leads from
+    /// the block's parameters to source pixels.
+    struct Middle {
+        const MeshCell& cell;
+        Patch patch;
+        Point<double> at;    ///< source pixels
+        Bicubic powers;      ///< of the patch about it
+        Matrix to_source;    ///< M
+        Point<double> span;  ///< of the ball of radius 1, source pixels
+        Form<2> q[2];
+        Form<3> c[2];
+    };
+
     /// See inverse.h. The error is infinite where nothing is proven.
     LocalInverse invert() {
         LocalInverse result;
         const InversePlan::Preimages found = m_plan.preimages(m_x, m_y);
         if (found.count != 1) return result;
-        const Point<double> m = found.best.at;
         const MeshCell& cell = m_plan.cells()[static_cast<std::size_t>(found.best.cell)];
-        const Patch patch = m_mesh.patch(cell);
-        const Bicubic f = about(patch, m);
-
-        // The linear part: M leads from the block's parameters to source pixels.
+        Middle middle{cell, m_mesh.patch(cell), found.best.at, {}, {}, {}, {}, {}};
+        middle.powers = about(middle.patch, middle.at);
+        const Bicubic& f = middle.powers;
         const Matrix j{f.x[1][0], f.x[0][1], f.y[1][0], f.y[0][1]};
         if (j.determinant() == 0) return result;
         const Matrix ji = j.inverse();
-        const Matrix to_source{ji.a11 * m_hx, ji.a12 * m_hy, ji.a21 * m_hx, ji.a22 * m_hy};
-        const Point<double> span = to_source.span(1, 1);  // of the ball of radius 1, source pixels
+        middle.to_source = {ji.a11 * m_hx, ji.a12 * m_hy, ji.a21 * m_hx, ji.a22 * m_hy};
+        middle.span = middle.to_source.span(1, 1);
+        set_terms(middle);
 
-        // z + Q + C + higher terms, in units of the block.
-        const Form<1> a{to_source.a11, to_source.a12}, b{to_source.a21, to_source.a22};
-        const Form<2> aa = times(a, a), ab = times(a, b), bb = times(b, b);
-        const Form<3> aaa = times(aa, a), aab = times(aa, b), abb = times(a, bb), bbb = times(bb, b);
-        Form<2> q[2];
-        Form<3> c[2];
-        for (int k = 0; k < 2; ++k) {
-            const auto& g = k ? f.y : f.x;
-            const double unit = 1 / (k ? m_hy : m_hx);
-            for (std::size_t i = 0; i < 3; ++i)
-                q[k][i] = (g[2][0] * aa[i] + g[1][1] * ab[i] + g[0][2] * bb[i]) * unit;
-            for (std::size_t i = 0; i < 4; ++i)
-                c[k][i] = (g[3][0] * aaa[i] + g[2][1] * aab[i] + g[1][2] * abb[i] + g[0][3] * bbb[i]) * unit;
-        }
-        const Sizes full = sizes_of(f, span);
-        Sizes sizes = full;
-        sizes[0] = sizes[1] = 0;
-        sizes[2] = norm(q[0], q[1]);
-        sizes[3] = norm(c[0], c[1]);
-
-        // 2 Q(z, Q(z)) - C(z): the derivative of Q along Q.
+        // T(z) = 2 Q(z, Q(z)) - C(z): the derivative of Q along Q.
         Form<3> third[2];
         for (int k = 0; k < 2; ++k) {
+            const Form<2>* q = middle.q;
             const Form<1> ds{2 * q[k][0], q[k][1]}, dt{q[k][1], 2 * q[k][2]};
             const Form<3> p = times(ds, q[0]), r = times(dt, q[1]);
-            for (std::size_t i = 0; i < 4; ++i) third[k][i] = p[i] + r[i] - c[k][i];
+            for (std::size_t i = 0; i < 4; ++i) third[k][i] = p[i] + r[i] - middle.c[k][i];
         }
+        const Point<double>&m = middle.at, &span = middle.span;
+        // And of what follows, to a quadratic: 16 roundings of point and spans.
+        result.error = std::hypot(span.x, span.y) * inverse_error(middle, norm(third[0], third[1])) +
+                       16 * 0x1p-53 * (std::fabs(m.x) + std::fabs(m.y) + 4 * (span.x + span.y));
+        set_inverse(middle, third, result);
+        return result;
+    }
 
+    /// Q and C: the patch's own, of what M makes of z.
+    void set_terms(Middle& middle) const {
+        const Matrix& m = middle.to_source;
+        const Form<1> a{m.a11, m.a12}, b{m.a21, m.a22};
+        const Form<2> aa = times(a, a), ab = times(a, b), bb = times(b, b);
+        const Form<3> aaa = times(aa, a), aab = times(aa, b), abb = times(a, bb), bbb = times(bb, b);
+        for (int k = 0; k < 2; ++k) {
+            const auto& g = k ? middle.powers.y : middle.powers.x;
+            const double unit = 1 / (k ? m_hy : m_hx);
+            for (std::size_t i = 0; i < 3; ++i)
+                middle.q[k][i] = (g[2][0] * aa[i] + g[1][1] * ab[i] + g[0][2] * bb[i]) * unit;
+            for (std::size_t i = 0; i < 4; ++i)
+                middle.c[k][i] =
+                    (g[3][0] * aaa[i] + g[2][1] * aab[i] + g[1][2] * abb[i] + g[0][3] * bbb[i]) * unit;
+        }
+    }
+
+    /// How far z - Q + T is from the inverse, in units of the block; `third`: the size of T.
+    double inverse_error(const Middle& middle, double third) const {
+        const Sizes full = sizes_of(middle.powers, middle.span);
+        Sizes sizes = full;
+        sizes[0] = sizes[1] = 0;
+        sizes[2] = norm(middle.q[0], middle.q[1]);
+        sizes[3] = norm(middle.c[0], middle.c[1]);
         // The residual of z - Q + T: 2 Q(z, T) + Q(d) + C(z + d) - C(z) + higher(z + d), with d = T - Q.
-        const double t = norm(third[0], third[1]), d = sizes[2] + t;
-        const double residual = 2 * sizes[2] * t + sizes[2] * d * d +
+        const double d = sizes[2] + third;
+        const double residual = 2 * sizes[2] * third + sizes[2] * d * d +
                                 sizes[3] * (3 * d + 3 * d * d + d * d * d) + value_at(sizes, 4, 1 + d);
 
         // The middle's own error, and rounding.
-        const auto start_in = [&](double r) { return middle_error(cell, patch, m, f, span, r, full); };
+        const auto start_in = [&](double r) {
+            return middle_error(middle.cell, middle.patch, middle.at, middle.powers, middle.span, r, full);
+        };
         // A ball that holds block, approximation and every source point that a sheet may have.
         double radius = 1 + d;
         for (int i = 0; i < 3; ++i)
             radius = std::max(radius, 1 + 1.05 * (value_at(sizes, 2, radius) + start_in(radius)));
-        radius = std::max(radius, reach_of_sheets(m, to_source.inverse()));
-        if (!(radius < 8)) return result;
+        radius = std::max(radius, reach_of_sheets(middle.at, middle.to_source.inverse()));
+        if (!(radius < 8)) return HUGE_VAL;
         const double start = start_in(radius);
-        const std::optional<Step> step = step_to_neighbours(cell, f, m, span, radius, 1 + d);
-        if (!step) return result;
+        const std::optional<Step> step =
+            step_to_neighbours(middle.cell, middle.powers, middle.at, middle.span, radius, 1 + d);
+        if (!step) return HUGE_VAL;
         const double outside = value_at(step->sizes, 0, radius);
         // One root in the ball: the map less the identity takes it into itself and contracts.
         double wide = radius;
         if (outside > 0) wide = std::max(wide, 1 + 1.05 * (value_at(sizes, 2, radius) + outside + start));
-        if (wide > radius) return result;
+        if (wide > radius) return HUGE_VAL;
         const double contraction = slope_at(sizes, radius) + slope_at(step->sizes, radius);
         if (!(contraction <= 0.75) || !(1 + value_at(sizes, 2, radius) + outside + start <= radius))
-            return result;
+            return HUGE_VAL;
+        return (residual + step->most + start) / (1 - contraction);
+    }
 
-        const double error = (residual + step->most + start) / (1 - contraction);
-        // And of what follows, to a quadratic: 16 roundings of point and spans.
-        result.error = std::hypot(span.x, span.y) * error +
-                       16 * 0x1p-53 * (std::fabs(m.x) + std::fabs(m.y) + 4 * (span.x + span.y));
-        // z - Q + T, through M to source pixels.
+    /// z - Q + T, through M to source pixels.
+    static void set_inverse(const Middle& middle, const Form<3> (&third)[2], LocalInverse& result) {
+        const Matrix& m = middle.to_source;
         for (int k = 0; k < 2; ++k) {
             auto& to = k ? result.y : result.x;
-            const Form<1>& row = k ? b : a;
-            to[0][0] = k ? m.y : m.x;
+            const Form<1> row = k ? Form<1>{m.a21, m.a22} : Form<1>{m.a11, m.a12};
+            to[0][0] = k ? middle.at.y : middle.at.x;
             to[1][0] = row[0];
             to[0][1] = row[1];
-            for (std::size_t i = 0; i < 3; ++i) to[2 - i][i] = -(row[0] * q[0][i] + row[1] * q[1][i]);
+            for (std::size_t i = 0; i < 3; ++i)
+                to[2 - i][i] = -(row[0] * middle.q[0][i] + row[1] * middle.q[1][i]);
             for (std::size_t i = 0; i < 4; ++i) to[3 - i][i] = row[0] * third[0][i] + row[1] * third[1][i];
         }
-        return result;
     }
 
     /// A cell's map in powers of source pixels from a point.
