@@ -236,21 +236,110 @@ HWY_INLINE AxisError Both(const AxisError& s, const AxisError& t, V lebesgue) {
     return {value, linear};
 }
 
+/// A vector of lines as seen from a cell's centre.
+struct SeenLines {
+    V along_x, along_y, before, behind, beside;
+    V far;       ///< dist
+    V rounding;  ///< of their places
+    V nearest;   ///< a + dist, the least in the cell
+};
+
+/// What interpolating (a + dist)^-b on a cell is made of, the same for all lines.
+struct CellBounds {
+    HWY_INLINE CellBounds(const CellFrame& cell, const WeightParameters& weights, int degree, float lebesgue)
+        : k(degree), b(weights.b), a(Set(weights.a)), half(Set(cell.half)), constant(Set(lebesgue)) {
+        // 1.41422 is above sqrt(2) by more than 70 u of it.
+        diagonal = Set(cell.half * 1.41422f);
+        unit = Set(1 / cell.half);
+        tiny = Set(cell.half * 1e-6f);
+        // Bounds of the second and third derivatives of (a + r)^-b along a line, times (r / half side)^2 and
+        // ^3 over the function, times the interpolation's constant on both axes.
+        const float b1 = b < 1 ? HWY_MAX(b + 1, 2 / std::sqrt(2 - b)) : b + 1;
+        const float axes = third_error(k) * (1 + lebesgue);
+        jump = Set(jump_error(k) * b);
+        second = Set(axes * 3 * b * (b + 1));
+        third = Set(axes * b * (b + 2) * b1);
+    }
+
+    int k;
+    float b;
+    V a, half, constant, diagonal;
+    V unit;  ///< 1 / half
+    V tiny;  ///< in place of 0, which is divided by: a pole taken too near is on the safe side
+    V jump, second, third;
+};
+
+/// From anywhere but on the line itself: its ends' levels are jumps of the second derivative.
+HWY_INLINE AxisError JumpError(const CellBounds& c, const SeenLines& l, V extent) {
+    const V one = Set(1), infinite = Set(HUGE_VALF);
+    const V clear = hn::Sub(hn::Sub(l.far, c.diagonal), l.rounding);
+    const V apart = hn::Max(clear, Set(kPlaceApart)), size = hn::Div(c.half, apart),
+            size2 = hn::Mul(size, size);
+    const V larger = hn::Max(hn::Mul(l.along_x, l.along_x), hn::Mul(l.along_y, l.along_y));
+    const V jumps = hn::Add(hn::IfThenElseZero(hn::Lt(hn::Abs(l.before), extent), one),
+                            hn::IfThenElseZero(hn::Lt(hn::Abs(l.behind), extent), one));
+    const V jump = hn::Mul(hn::Mul(jumps, hn::Mul(size, hn::Div(c.half, l.nearest))),
+                           TimesPlus(larger, hn::Sub(one, c.constant), c.constant));
+    const V third = hn::Mul(size2, hn::Mul(size, c.third));
+    const V value = TimesPlus(jump, c.jump, third);
+    const V linear = TimesPlus(size2, c.second, value);
+    const auto is_apart = hn::Gt(clear, Set(kPlaceApart));
+    return {hn::IfThenElse(is_apart, value, infinite), hn::IfThenElse(is_apart, linear, infinite)};
+}
+
+/// Beside the line, by its pole along either axis.
+HWY_INLINE AxisError LineError(const CellBounds& c, const SeenLines& l, V hx, V hy) {
+    const V one = Set(1), distance = hn::Sub(hn::Add(c.a, hn::Abs(l.beside)), l.rounding);
+    const auto pole = [&](V apart_by, V by) HWY_ATTR {
+        return hn::Max(hn::Mul(Set(kTight), hn::Div(apart_by, hn::Max(by, c.tiny))), one);
+    };
+    const V xs = pole(hn::Sub(distance, hx), hy), xt = pole(hn::Sub(distance, hy), hx);
+    return c.b > 1 ? Both(BesideError<true>(c.k, xs), BesideError<true>(c.k, xt), c.constant)
+                   : Both(BesideError<false>(c.k, xs), BesideError<false>(c.k, xt), c.constant);
+}
+
+/// In closed form: beside the line, on one side of it, from end to end; or beyond an end, seen from
+/// everywhere in the cell.
+HWY_INLINE AxisError ClosedError(const CellBounds& c, const SeenLines& l, V hx, V hy, V extent) {
+    const V zero = Set(0), one = Set(1), infinite = Set(HUGE_VALF);
+    const auto is_beside =
+        hn::And(hn::And(hn::Lt(l.before, hn::Neg(extent)), hn::Lt(l.behind, hn::Neg(extent))),
+                hn::Gt(hn::Abs(l.beside), extent));
+    const AxisError by_line = LineError(c, l, hx, hy);
+    const auto is_beyond = hn::Gt(hn::Max(l.before, l.behind), extent);
+    const V z = hn::IfThenElse(hn::Gt(l.before, l.behind), l.before, hn::Neg(l.behind));
+    const V room = hn::Mul(l.rounding, c.unit), more = hn::Add(room, room);
+    const auto seen = [&](V at)
+                          HWY_ATTR { return hn::Max(hn::Sub(hn::Mul(hn::Abs(at), c.unit), room), zero); };
+    const V px = seen(TimesPlus(z, l.along_x, hn::Mul(l.beside, l.along_y)));
+    const V py = seen(TimesMinus(z, l.along_y, hn::Mul(l.beside, l.along_x)));
+    const V ex = hn::Max(hn::Sub(px, one), zero), ey = hn::Max(hn::Sub(py, one), zero);
+    const AxisError by_end = Both(EndError(c.k, px, ey, more), EndError(c.k, py, ex, more), c.constant);
+    const auto outside = hn::And(is_beyond, hn::Gt(hn::Max(px, py), Set(1.05f)));
+    const auto either = [&](V line, V end) HWY_ATTR {
+        return hn::IfThenElse(is_beside, line, hn::IfThenElse(outside, end, infinite));
+    };
+    return {either(by_line.value, by_end.value), either(by_line.linear, by_end.linear)};
+}
+
+/// Of interpolation on both axes.
+HWY_INLINE AxisError InterpolationError(const CellBounds& c, const SeenLines& l) {
+    if (!(c.b > 0)) return {Set(0), Set(0)};
+    const V hx = hn::Mul(c.half, hn::Abs(l.along_x)), hy = hn::Mul(c.half, hn::Abs(l.along_y));
+    const V extent = hn::Add(hn::Add(hx, hy), l.rounding);
+    const AxisError any = JumpError(c, l, extent);
+    if (!(c.b <= 2)) return any;
+    const AxisError closed = ClosedError(c, l, hx, hy, extent);
+    return {hn::Min(any.value, closed.value), hn::Min(any.linear, closed.linear)};
+}
+
 template <Exponent kExponent>
 HWY_INLINE void BoundLines(const LineTable& lines, const CellFrame& cell, const WeightParameters& weights,
                            int k, float lebesgue, LineBounds& out) {
     const Floats d;
-    const V x = Set(cell.x), y = Set(cell.y), half = Set(cell.half), zero = Set(0), one = Set(1);
-    const V a = Set(weights.a), b = Set(weights.b), least_distance = Set(kLeastDistance);
-    // 1.41422 is above sqrt(2) by more than 70 u of it.
-    const V diagonal = Set(cell.half * 1.41422f), constant = Set(lebesgue), infinite = Set(HUGE_VALF);
-    const bool smooth = weights.b > 0 && weights.b <= 2, above_one = weights.b > 1;
-    // Bounds of the second and third derivatives of (a + r)^-b along a line, times (r / half side)^2 and ^3
-    // over the function, times the interpolation's constant on both axes.
-    const float b1 = weights.b < 1 ? HWY_MAX(weights.b + 1, 2 / std::sqrt(2 - weights.b)) : weights.b + 1;
-    const float axes = third_error(k) * (1 + lebesgue);
-    const float third_of_weight = axes * weights.b * (weights.b + 2) * b1;
-    const float second_of_weight = axes * 3 * weights.b * (weights.b + 1);
+    const CellBounds c(cell, weights, k, lebesgue);
+    const V x = Set(cell.x), y = Set(cell.y), zero = Set(0);
+    const V b = Set(weights.b), least_distance = Set(kLeastDistance);
     const auto weight_margin =
         static_cast<float>(2 * kFloatRounding * weight_rounding(weights.b, weights.log));
     const V loose = Set(1 + weight_margin), tight = Set(1 - weight_margin), closed_form = Set(kLoose);
@@ -265,97 +354,46 @@ HWY_INLINE void BoundLines(const LineTable& lines, const CellFrame& cell, const 
     Wide sums[kSums], least_sum;
     for (int i = 0; i < lines.count; i += kLanes) {
         const auto field = [&](int f) HWY_ATTR { return hn::LoadU(d, lines.data + f * lines.stride + i); };
-        const V ux = field(LineTable::kAlongX), uy = field(LineTable::kAlongY);
+        SeenLines l;
+        l.along_x = field(LineTable::kAlongX);
+        l.along_y = field(LineTable::kAlongY);
         const V factor = hn::LoadU(d, lines.factor + i);
-        const V along = TimesPlus(ux, x, hn::Mul(uy, y));
-        const V before = hn::Sub(field(LineTable::kBefore), along);
-        const V behind = hn::Add(field(LineTable::kBehind), along);
-        const V beside = hn::Add(field(LineTable::kBeside), TimesMinus(ux, y, hn::Mul(uy, x)));
-        const V far = Distance(before, behind, beside);
+        const V along = TimesPlus(l.along_x, x, hn::Mul(l.along_y, y));
+        l.before = hn::Sub(field(LineTable::kBefore), along);
+        l.behind = hn::Add(field(LineTable::kBehind), along);
+        l.beside = hn::Add(field(LineTable::kBeside), TimesMinus(l.along_x, y, hn::Mul(l.along_y, x)));
+        l.far = Distance(l.before, l.behind, l.beside);
 
         // Distances change by no more than the way.
-        const V rounding = TimesPlus(far, Set(kPlaceRelative), Set(kPlaceApart));
-        const V nearest =
-            hn::Max(hn::Add(a, hn::Max(hn::Sub(hn::Sub(far, diagonal), rounding), zero)), least_distance);
-        const V farthest = hn::Add(a, hn::Add(hn::Add(far, diagonal), rounding));
-        const V most = hn::Mul(hn::Mul(factor, loose), Power<kExponent>(nearest, b));
+        l.rounding = TimesPlus(l.far, Set(kPlaceRelative), Set(kPlaceApart));
+        const V clear = hn::Max(hn::Sub(hn::Sub(l.far, c.diagonal), l.rounding), zero);
+        l.nearest = hn::Max(hn::Add(c.a, clear), least_distance);
+        const V farthest = hn::Add(c.a, hn::Add(hn::Add(l.far, c.diagonal), l.rounding));
+        const V most = hn::Mul(hn::Mul(factor, loose), Power<kExponent>(l.nearest, b));
         const V least = hn::Mul(hn::Mul(factor, tight), Power<kExponent>(farthest, b));
-        const V weight = hn::Mul(factor, Power<kExponent>(hn::Max(hn::Add(a, far), least_distance), b));
+        const V weight = hn::Mul(factor, Power<kExponent>(hn::Max(hn::Add(c.a, l.far), least_distance), b));
         hn::StoreU(most, d, out.most + i);
-        hn::StoreU(nearest, d, out.nearest + i);
+        hn::StoreU(l.nearest, d, out.nearest + i);
         hn::StoreU(least, d, out.least + i);
         least_sum.At(i) = hn::Add(least_sum.At(i), least);
         sums[0].At(i) = hn::Add(sums[0].At(i), weight);
-        for (int c = 0; c < kComponents; ++c) {
-            const V at = TimesPlus(field(LineTable::kRight + c), x,
-                                   TimesPlus(field(LineTable::kDown + c), y, field(LineTable::kAt + c)));
-            hn::StoreU(at, d, out.displacement[c] + i);
-            sums[c + 1].At(i) = TimesPlus(weight, at, sums[c + 1].At(i));
+        for (int n = 0; n < kComponents; ++n) {
+            const V at = TimesPlus(field(LineTable::kRight + n), x,
+                                   TimesPlus(field(LineTable::kDown + n), y, field(LineTable::kAt + n)));
+            hn::StoreU(at, d, out.displacement[n] + i);
+            sums[n + 1].At(i) = TimesPlus(weight, at, sums[n + 1].At(i));
         }
 
-        AxisError error{zero, zero};
-        if (weights.b > 0) {
-            // From anywhere but on the line itself: its ends' levels are jumps of the second derivative.
-            const V hx = hn::Mul(half, hn::Abs(ux)), hy = hn::Mul(half, hn::Abs(uy));
-            const V extent = hn::Add(hn::Add(hx, hy), rounding);
-            const V clear = hn::Sub(hn::Sub(far, diagonal), rounding);
-            const V apart = hn::Max(clear, Set(kPlaceApart)), size = hn::Div(half, apart),
-                    size2 = hn::Mul(size, size);
-            const V larger = hn::Max(hn::Mul(ux, ux), hn::Mul(uy, uy));
-            const V jumps = hn::Add(hn::IfThenElseZero(hn::Lt(hn::Abs(before), extent), one),
-                                    hn::IfThenElseZero(hn::Lt(hn::Abs(behind), extent), one));
-            const V jump = hn::Mul(hn::Mul(jumps, hn::Mul(size, hn::Div(half, nearest))),
-                                   TimesPlus(larger, hn::Sub(one, constant), constant));
-            const V third = hn::Mul(size2, hn::Mul(size, Set(third_of_weight)));
-            error.value = TimesPlus(jump, Set(jump_error(k) * weights.b), third);
-            error.linear = TimesPlus(size2, Set(second_of_weight), error.value);
-            const auto is_apart = hn::Gt(clear, Set(kPlaceApart));
-            error.value = hn::IfThenElse(is_apart, error.value, infinite);
-            error.linear = hn::IfThenElse(is_apart, error.linear, infinite);
-            if (smooth) {
-                // Beside the line, on one side of it, from end to end.
-                const V distance = hn::Sub(hn::Add(a, hn::Abs(beside)), rounding);
-                const auto is_beside =
-                    hn::And(hn::And(hn::Lt(before, hn::Neg(extent)), hn::Lt(behind, hn::Neg(extent))),
-                            hn::Gt(hn::Abs(beside), extent));
-                // Instead of 0, which is divided by: a pole taken too near is on the safe side.
-                const V tiny = Set(cell.half * 1e-6f);
-                const auto pole = [&](V apart_by, V by) HWY_ATTR {
-                    return hn::Max(hn::Mul(Set(kTight), hn::Div(apart_by, hn::Max(by, tiny))), one);
-                };
-                const V xs = pole(hn::Sub(distance, hx), hy), xt = pole(hn::Sub(distance, hy), hx);
-                const AxisError by_line =
-                    above_one ? Both(BesideError<true>(k, xs), BesideError<true>(k, xt), constant)
-                              : Both(BesideError<false>(k, xs), BesideError<false>(k, xt), constant);
-                // Beyond an end, seen from everywhere in the cell.
-                const V beyond = hn::Max(before, behind);
-                const auto is_beyond = hn::Gt(beyond, extent);
-                const V z = hn::IfThenElse(hn::Gt(before, behind), before, hn::Neg(behind));
-                const V unit = Set(1 / cell.half), room = hn::Mul(rounding, unit), more = hn::Add(room, room);
-                const V px = hn::Max(
-                    hn::Sub(hn::Mul(hn::Abs(TimesPlus(z, ux, hn::Mul(beside, uy))), unit), room), zero);
-                const V py = hn::Max(
-                    hn::Sub(hn::Mul(hn::Abs(TimesMinus(z, uy, hn::Mul(beside, ux))), unit), room), zero);
-                const V ex = hn::Max(hn::Sub(px, one), zero), ey = hn::Max(hn::Sub(py, one), zero);
-                const AxisError by_end = Both(EndError(k, px, ey, more), EndError(k, py, ex, more), constant);
-                const auto outside = hn::And(is_beyond, hn::Gt(hn::Max(px, py), Set(1.05f)));
-                const auto better = [&](V general, V line, V end) HWY_ATTR {
-                    const V closed = hn::IfThenElse(is_beside, line, hn::IfThenElse(outside, end, infinite));
-                    return hn::Min(general, closed);
-                };
-                error.value = better(error.value, by_line.value, by_end.value);
-                error.linear = better(error.linear, by_line.linear, by_end.linear);
-            }
-        }
-        error.value = hn::Add(error.value, hn::Add(rounded, hn::Div(misplaced, nearest)));
-        const V change = hn::Mul(TimesPlus(half, error.linear, displaced), field(LineTable::kSlope));
+        const AxisError error = InterpolationError(c, l);
+        const V value = hn::Add(error.value, hn::Add(rounded, hn::Div(misplaced, l.nearest)));
+        const V change = hn::Mul(TimesPlus(c.half, error.linear, displaced), field(LineTable::kSlope));
         // Lines of factor 0 fill up the last vector.
         const auto real = hn::Gt(factor, zero);
         const V whole = hn::Mul(most, closed_form);
-        hn::StoreU(hn::IfThenElse(real, hn::Mul(whole, error.value), zero), d, out.value + i);
+        hn::StoreU(hn::IfThenElse(real, hn::Mul(whole, value), zero), d, out.value + i);
         hn::StoreU(hn::IfThenElse(real, hn::Mul(whole, change), zero), d, out.linear + i);
     }
-    for (int c = 0; c < kSums; ++c) out.center[c] = static_cast<double>(sums[c].Sum());
+    for (int n = 0; n < kSums; ++n) out.center[n] = static_cast<double>(sums[n].Sum());
     out.least_sum = static_cast<double>(least_sum.Sum());
 }
 
