@@ -7,6 +7,7 @@
 #include <cmath>
 #include <memory>
 #include <numbers>
+#include <string>
 
 #include "anamorph/map/panorama.h"
 
@@ -27,6 +28,22 @@ struct View {
     LensModel lens = {};
     mutable std::shared_ptr<const class LensOracle> solved = {};
 };
+
+/// A picture through a lens; of a projection that may have it.
+inline View view_through(const std::string& lens, const Size& size, double fov) {
+    return {lens.starts_with("kb4") ? Projection::fisheye : Projection::rectilinear,
+            size.width,
+            size.height,
+            fov,
+            false,
+            LensModel::parse(lens)};
+}
+
+/// What is judged.
+inline Chart chart_of(const View& v) {
+    return Chart(v.projection, v.width, v.height, v.fov,
+                 v.centers ? PixelSpacing::centers : PixelSpacing::edges, "", 1, v.lens);
+}
 
 /// Radians per plane unit and all that: half the plane's width for half the field of view.
 inline Real half_plane(const View& v) {

@@ -15,6 +15,7 @@
 namespace anamorph {
 namespace {
 
+using oracle::chart_of;
 using oracle::LensOracle;
 using oracle::View;
 using testing::HasSubstr;
@@ -23,15 +24,8 @@ using Real = long double;
 constexpr unsigned kSeed = 1966;
 constexpr int kWidth = 1500, kHeight = 1000;
 
-/// A picture of 100 degrees through a lens; of a projection that may have it.
-View view_of(const std::string& text) {
-    const bool fisheye = text.starts_with("kb4");
-    View v{fisheye ? Projection::fisheye : Projection::rectilinear, kWidth, kHeight, 100};
-    v.lens = LensModel::parse(text);
-    return v;
-}
-Chart chart_of(const View& v) {
-    return Chart(v.projection, v.width, v.height, v.fov, PixelSpacing::edges, "", 1, v.lens);
+View view_of(const std::string& lens) {
+    return oracle::view_through(lens, {kWidth, kHeight}, 100);
 }
 
 const char* const kLenses[] = {"ptlens:a=0.01,b=-0.03,c=0.02",

@@ -16,20 +16,15 @@
 namespace anamorph {
 namespace {
 
+using oracle::chart_of;
 using oracle::LensOracle;
 using oracle::View;
 using Real = long double;
 
 constexpr Size kPicture = {310, 206};
 
-View view_of(const std::string& text) {
-    View view{text.starts_with("kb4") ? Projection::fisheye : Projection::rectilinear, kPicture.width,
-              kPicture.height, 80};
-    view.lens = LensModel::parse(text);
-    return view;
-}
-Chart chart_of(const View& v) {
-    return Chart(v.projection, v.width, v.height, v.fov, PixelSpacing::edges, "", 1, v.lens);
+View view_of(const std::string& lens) {
+    return oracle::view_through(lens, kPicture, 80);
 }
 
 const char* const kLenses[] = {"ptlens:a=0.01,b=-0.03,c=0.02",

@@ -18,17 +18,13 @@ namespace anamorph {
 namespace {
 
 using enum Projection;
+using oracle::chart_of;
 using oracle::Real;
 using oracle::Vector;
 using oracle::View;
 
 constexpr Projection kAll[] = {equirectangular, cylindrical, rectilinear, fisheye,    equisolid,
                                stereographic,   mercator,    cubemap,     cubemap3x2, cubecross};
-
-Chart chart_of(const View& v) {
-    return {v.projection, v.width, v.height, v.fov, v.centers ? PixelSpacing::centers : PixelSpacing::edges,
-            "",           1,       v.lens};
-}
 
 struct Scene {
     View source, target;

@@ -190,32 +190,29 @@ Point<T> undistorted(const LensTerms& lens, const Point<T>& v) {
     return lens.tangential ? settled(lens, v) : radially_undistorted(lens, v);
 }
 
-/// From the plane to the lens's own units, and about its centre; and back.
+/// Between the plane and the lens's own units (per_unit, unit).
 template <class T>
-Point<T> to_unit(const LensTerms& lens, const Point<T>& p) {
-    const auto per_unit = lens.per_unit.as<T>();
-    return {p.x * per_unit, p.y * per_unit};
+Point<T> times(const Point<T>& p, const Constant& scale) {
+    const auto k = scale.as<T>();
+    return {p.x * k, p.y * k};
 }
+/// A point of the observed plane in those units, about the lens's centre.
 template <class T>
 Point<T> centred(const LensTerms& lens, const Point<T>& observed) {
-    return to_unit(lens, Point<T>{observed.x - lens.shift_x.as<T>(), observed.y - lens.shift_y.as<T>()});
-}
-template <class T>
-Point<T> from_unit(const LensTerms& lens, const Point<T>& p) {
-    const auto unit = lens.unit.as<T>();
-    return {p.x * unit, p.y * unit};
+    return times(Point<T>{observed.x - lens.shift_x.as<T>(), observed.y - lens.shift_y.as<T>()},
+                 lens.per_unit);
 }
 
 /// The point of the ideal plane of one of the observed plane, and back.
 template <class T>
 Point<T> ideal_point(const LensTerms& lens, const Point<T>& observed) {
     const Point<T> p = centred(lens, observed);
-    return from_unit(lens, lens.to_observed ? undistorted(lens, p) : distorted(lens, p));
+    return times(lens.to_observed ? undistorted(lens, p) : distorted(lens, p), lens.unit);
 }
 template <class T>
 Point<T> observed_point(const LensTerms& lens, const Point<T>& ideal) {
-    const Point<T> p = to_unit(lens, ideal);
-    const Point<T> q = from_unit(lens, lens.to_observed ? distorted(lens, p) : undistorted(lens, p));
+    const Point<T> p = times(ideal, lens.per_unit);
+    const Point<T> q = times(lens.to_observed ? distorted(lens, p) : undistorted(lens, p), lens.unit);
     return {q.x + lens.shift_x.as<T>(), q.y + lens.shift_y.as<T>()};
 }
 
@@ -227,6 +224,6 @@ T has_ideal(const LensTerms& lens, const Point<T>& observed) {
 }
 template <class T>
 T has_observed(const LensTerms& lens, const Point<T>& ideal) {
-    const Point<T> p = to_unit(lens, ideal);
+    const Point<T> p = times(ideal, lens.per_unit);
     return lens.ideal_end * lens.ideal_end - (square(p.x) + square(p.y));
 }
