@@ -11,6 +11,7 @@
 
 #include "anamorph/operation/pano.h"
 #include "anamorph/operation/rows.h"
+#include "anamorph/render/reproject.h"
 
 namespace anamorph {
 namespace {
@@ -293,6 +294,61 @@ TEST(ReprojectRequest, Lenses) {
     EXPECT_EQ(request({}, says).source.lens()->model().text(), "ptlens:b=-0.01");
     EXPECT_EQ(request({{"from", "fisheye"}}, says).source.lens(), nullptr);
     EXPECT_EQ(request({{"srclens", "none"}}, says).source.lens(), nullptr);
+}
+
+/// What a request draws of noise.
+std::vector<float> drawn(const std::vector<Assignment>& assignments, const SourceFacts& facts) {
+    const ReprojectRequest r = request(assignments, facts);
+    std::mt19937 random(3);
+    std::uniform_real_distribution<float> value(0, 1);
+    std::vector<float> texels(static_cast<std::size_t>(facts.width) * static_cast<std::size_t>(facts.height));
+    for (float& t : texels) t = value(random);
+    const MemorySource source(packed_view(reinterpret_cast<const std::byte*>(texels.data()),
+                                          PixelType::float32, facts.width, facts.height, 1));
+    const Box all{0, 0, r.target.width(), r.target.height()};
+    std::vector<float> pixels(static_cast<std::size_t>(all.width()) * static_cast<std::size_t>(all.height()));
+    const ImageView view = packed_view(reinterpret_cast<std::byte*>(pixels.data()), PixelType::float32,
+                                       all.width(), all.height(), 1);
+    EXPECT_TRUE(Reprojection(r.map(), r.options).draw(&source, all, view));
+    return pixels;
+}
+
+TEST(ReprojectRequest, KeysThatChangeNothingChangeNoBits) {
+    const SourceFacts photo{300, 200, Projection::rectilinear}, fisheye{200, 200, Projection::fisheye};
+    const std::vector<Assignment> look = {
+        {"yaw", "12"}, {"pitch", "-7"}, {"roll", "3"}, {"size", "150x100"}, {"fov", "80"}};
+    const auto with = [&](std::vector<Assignment> more) {
+        more.insert(more.end(), look.begin(), look.end());
+        return more;
+    };
+    const std::vector<Assignment> level = {{"srcyaw", "0"}, {"srcpitch", "0"}, {"srcroll", "-0"}};
+    for (const char* tol : {"0.01", "0"}) {
+        const auto of_photo = [&](std::vector<Assignment> keys) {
+            keys.push_back({"tol", tol});
+            return drawn(with(keys), photo);
+        };
+        const std::vector<float> plain = of_photo({});
+        EXPECT_EQ(of_photo(level), plain);
+        for (const char* lens :
+             {"none", "ptlens", "ptlens:a=0,b=-0", "brown", "brown:k1=0,p2=0,d=0", "3de4"}) {
+            EXPECT_EQ(of_photo({{"lens", lens}}), plain) << lens;
+            EXPECT_EQ(of_photo({{"srclens", lens}}), plain) << lens;
+        }
+        EXPECT_NE(of_photo({{"lens", "ptlens:b=0.01"}}), plain);
+        EXPECT_NE(of_photo({{"srcroll", "0.5"}}), plain);
+
+        const auto of_fisheye = [&](std::vector<Assignment> keys) {
+            keys.insert(keys.end(), {{"to", "fisheye"}, {"srcfov", "180"}, {"tol", tol}});
+            return drawn(with(keys), fisheye);
+        };
+        const std::vector<float> round = of_fisheye({});
+        EXPECT_EQ(of_fisheye(level), round);
+        for (const char* lens : {"none", "kb4", "kb4:k1=0"}) {
+            EXPECT_EQ(of_fisheye({{"lens", lens}}), round) << lens;
+            EXPECT_EQ(of_fisheye({{"srclens", lens}}), round) << lens;
+        }
+    }
+    EXPECT_THAT(error_of([] { request({{"srclens", "ptlens"}}); }), HasSubstr("must be none for equirect"));
 }
 
 TEST(ReprojectRequest, ErrorsOfLenses) {
