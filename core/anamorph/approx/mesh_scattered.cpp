@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "anamorph/approx/block_writer.h"
+#include "anamorph/approx/folds.h"
 #include "anamorph/approx/hermite.h"
 
 namespace anamorph {
@@ -139,6 +140,19 @@ class Planner {
     }
     void region(const Box& box) {
         BlockWriter::for_blocks(box, [&](const Box& b) { place(b); });
+    }
+    /// The sign of the Jacobian's determinant at all pixels of a box, 0 where it is not certain.
+    int sign(const Box& box) {
+        if (!gather(Centres(box))) return 0;
+        int all = 0;
+        for (const Met& met : m_met) {
+            // A derivative sums up to 10 terms, each up to three times a coefficient. The restriction, in
+            // parameters of a part of the box, is as exact as the cubic on all of it.
+            const int one = sign_of_determinant(restricted(met.f, met.s, met.t), 48 * met.rounding);
+            if (one == 0 || (all != 0 && one != all)) return 0;
+            all = one;
+        }
+        return all;
     }
 
   private:
@@ -343,6 +357,15 @@ Jacobian ScatteredPlan::jacobian(double x, double y, int) const noexcept {
 float ScatteredPlan::folds(double x, double y) const noexcept {
     const Jacobian j = jacobian(x, y, 0);
     return (j.x_i * j.y_j - j.x_j * j.y_i) * m_map.orientation() < 0 ? 1.0f : 0.0f;
+}
+
+std::int64_t ScatteredPlan::folded_pixels(const Box& box) const {
+    Blocks unused;
+    Planner planner(m_map, m_tol, unused);
+    const int orientation = m_map.orientation() < 0 ? -1 : 1;
+    return count_folded(
+        box, [&](const Box& b) { return planner.sign(b) * orientation; },
+        [&](const Box& b) { return WarpPlan::folded_pixels(b); });
 }
 
 }  // namespace anamorph

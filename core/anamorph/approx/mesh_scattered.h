@@ -23,6 +23,7 @@ class ScatteredPlan final : public WarpPlan {
                       float* y) const noexcept override;
     Jacobian jacobian(double x, double y, int piece) const noexcept override;
     float folds(double x, double y) const noexcept override;
+    std::int64_t folded_pixels(const Box& box) const override;
 
   protected:
     void plan(const Box& box, int piece, Blocks& blocks) const override;
