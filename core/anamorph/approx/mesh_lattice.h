@@ -24,6 +24,11 @@ struct LineWeights {
     int first = 0, begin = 0, end = 4;
     double value[4] = {}, slope[4] = {};
 
+    /// Does one value alone count? Its weight is 1 then.
+    bool on_line() const { return end - begin == 1; }
+    /// The first line whose value counts.
+    int line() const { return first + begin; }
+
     LineWeights() = default;
     /// `lines` ascend; at least 4.
     LineWeights(std::span<const double> lines, double at);

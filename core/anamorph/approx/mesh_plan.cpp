@@ -257,12 +257,25 @@ void MeshPlan::computed(std::span<const Block> layers, const PointRows* to) cons
 /// The points of a part of a block of a lattice.
 void MeshPlan::lattice_rows(const Block& block, const Box& part, const PointRows& to) const noexcept {
     std::array<LineWeights, Block::kMaxSide> across;
-    for (int i = 0; i < part.width(); ++i)
-        across[static_cast<std::size_t>(i)] = {m_mesh.x_lines(), part.x0 + i + 0.5};
+    bool on_lines = true;
+    for (int i = 0; i < part.width(); ++i) {
+        LineWeights& weights = across[static_cast<std::size_t>(i)];
+        weights = {m_mesh.x_lines(), part.x0 + i + 0.5};
+        on_lines &= weights.on_line();
+    }
     for (int j = 0; j < part.height(); ++j) {
         const double at_y = part.y0 + j + 0.5;
         const LineWeights down(m_mesh.y_lines(), at_y);
         float *x = to.x + j * to.stride, *y = to.y + j * to.stride;
+        // What lattice_point says where every pixel of the row is a vertex.
+        if (const Point<double>* d = m_mesh.displacements(down.line()); on_lines && down.on_line()) {
+            for (int i = 0; i < part.width(); ++i) {
+                const Point<double>& at = d[across[static_cast<std::size_t>(i)].line()];
+                x[i] = static_cast<float>((part.x0 + i + 0.5) * m_mesh.scale().x + at.x - block.base_x);
+                y[i] = static_cast<float>(at_y * m_mesh.scale().y + at.y - block.base_y);
+            }
+            continue;
+        }
         for (int i = 0; i < part.width(); ++i) {
             const Point<double> p =
                 lattice_point(m_mesh, across[static_cast<std::size_t>(i)], down, part.x0 + i + 0.5, at_y);
