@@ -13,6 +13,21 @@
 namespace anamorph {
 namespace {
 
+/// Counts the folded pixels of a picture that shows them, and expects folded_fraction to say the same. Is it
+/// neither none nor all of them?
+bool expect_the_fraction_of_pixels(const WarpMap& map, int width, int height) {
+    MeshWarpOptions options;
+    options.folds = true;
+    const MeshWarp warp(map, 120, 90, width, height, options);
+    std::vector<float> folds(static_cast<std::size_t>(width) * static_cast<std::size_t>(height), -1);
+    EXPECT_TRUE(warp.draw(
+        nullptr, {0, 0, width, height},
+        packed_view(reinterpret_cast<std::byte*>(folds.data()), PixelType::float32, width, height, 1)));
+    const auto folded = std::count_if(folds.begin(), folds.end(), [](float f) { return f != 0; });
+    EXPECT_EQ(warp.folded_fraction(), double(folded) / (double(width) * height));
+    return folded > 0 && folded < width * height;
+}
+
 TEST(MeshFolds, TheFractionIsThatOfThePixels) {
     const unsigned seed = 31;
     SCOPED_TRACE(seed);
@@ -35,19 +50,44 @@ TEST(MeshFolds, TheFractionIsThatOfThePixels) {
                     {(trial % 5 == 0 ? 1 - x : x) + most * uniform(random), y + most * uniform(random)});
             }
         if (mesh.columns > 2) mesh.levels.push_back({{{1, 0}}, {}});
-        MeshWarpOptions options;
-        options.folds = true;
-        const MeshWarp warp({"mesh", mesh}, 120, 90, kWidth, kHeight, options);
-        std::vector<float> folds(kWidth * kHeight, -1);
-        ASSERT_TRUE(warp.draw(
-            nullptr, {0, 0, kWidth, kHeight},
-            packed_view(reinterpret_cast<std::byte*>(folds.data()), PixelType::float32, kWidth, kHeight, 1)));
-        const auto folded = std::count_if(folds.begin(), folds.end(), [](float f) { return f != 0; });
-        EXPECT_EQ(warp.folded_fraction(), double(folded) / (kWidth * kHeight));
-        folded_maps += folded > 0 && folded < kWidth * kHeight;
+        folded_maps += expect_the_fraction_of_pixels({"mesh", mesh}, kWidth, kHeight);
     }
     EXPECT_GT(folded_maps, 10);
     EXPECT_LT(folded_maps, 40);
+}
+
+TEST(MeshFolds, OfCellsAsSmallAsPixelsAndOfPoints) {
+    const unsigned seed = 32;
+    SCOPED_TRACE(seed);
+    std::mt19937 random(seed);
+    std::uniform_real_distribution<double> uniform(-1, 1);
+    int meshes = 0, points = 0;
+    for (int trial = 0; trial < 12; ++trial) {
+        SCOPED_TRACE(trial);
+        ControlMesh mesh;
+        mesh.units = Units::fractions;
+        mesh.columns = 40 + 9 * trial;
+        mesh.rows = 70;
+        for (int j = 0; j <= mesh.rows; ++j)
+            for (int i = 0; i <= mesh.columns; ++i) {
+                const double x = double(i) / mesh.columns, y = double(j) / mesh.rows, most = 0.001 * trial;
+                mesh.vertices.push_back(
+                    {(trial % 3 == 0 ? 1 - x : x) + most * uniform(random), y + most * uniform(random)});
+            }
+        meshes += expect_the_fraction_of_pixels({"mesh", mesh}, 201, 157);
+
+        ControlPoints pairs;
+        pairs.units = Units::fractions;
+        for (int i = 0; i < 3 + 8 * trial; ++i) {
+            const double x = 0.5 + 0.5 * uniform(random), y = 0.5 + 0.5 * uniform(random),
+                         most = 0.02 * trial;
+            pairs.pairs.push_back(
+                {x, y, (trial % 4 == 0 ? 1 - x : x) + most * uniform(random), y + most * uniform(random)});
+        }
+        points += expect_the_fraction_of_pixels({"points", pairs}, 201, 157);
+    }
+    EXPECT_GT(meshes, 5);
+    EXPECT_GT(points, 5);
 }
 
 // A panorama turned by a fifth, as an ST-map: u jumps from 1 to 0 at the seam, and only there the map runs

@@ -91,6 +91,8 @@ TEST(MeshWarp, SameBitsForAnyCutAndThreads) {
         pairs.pairs.push_back({x, y, x * 4 / 7 + random.between(-9, 9), y * 3 / 5.3 + random.between(-9, 9)});
     }
     const WarpMap points{"points", pairs};
+    // Cells as small as pixels.
+    const WarpMap dense{"dense", test::random_mesh(random, target, size, 400, 300, 0.4, true, 0)};
     MeshWarpOptions options;
     options.tol = 1.0 / 16;
     for (const WarpScheme scheme :
@@ -99,11 +101,12 @@ TEST(MeshWarp, SameBitsForAnyCutAndThreads) {
         expect_same_bits(pull, options, target, texels);
     }
     options.scheme = WarpScheme::automatic;
-    for (const WarpMap* map : {&push, &points}) expect_same_bits(*map, options, target, texels);
+    for (const WarpMap* map : {&push, &points, &dense}) expect_same_bits(*map, options, target, texels);
     for (const Output output : {Output::stmap, Output::error, Output::bound, Output::color}) {
         options.output = output;
         options.folds = output == Output::color;
-        for (const WarpMap* map : {&pull, &push, &points}) expect_same_bits(*map, options, target, texels);
+        for (const WarpMap* map : {&pull, &push, &points, &dense})
+            expect_same_bits(*map, options, target, texels);
     }
 }
 

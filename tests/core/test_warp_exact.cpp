@@ -6,6 +6,7 @@
 #include "anamorph/approx/inverse.h"
 #include "anamorph/approx/mesh_plan.h"
 #include "anamorph/approx/mesh_scattered.h"
+#include "anamorph/map/mesh_file.h"
 #include "mesh_cases.h"
 #include "warp_findings.h"
 #include "warp_oracles.h"
@@ -122,6 +123,55 @@ TEST(WarpExact, MoreCellsThanPixels) {
         // Uneven lines end early: from a narrow cell the map goes on far.
         EXPECT_LE(examine_mesh(mesh, WarpScheme::automatic, 0.01, 1).exact_bound, uneven ? 1e-6 : 1e-9);
     }
+}
+
+// ST-maps of as many pixels as the picture, and of fewer or more, with every pixel taken or every third; across
+// a seam too, where u jumps.
+TEST(WarpExact, DenseStMaps) {
+    constexpr unsigned kSeed = 578;
+    SCOPED_TRACE(::testing::Message() << "seed " << kSeed);
+    test::Random random(kSeed);
+    for (const Size& size : {kTarget, Size{177, 131}, Size{90, 70}, Size{300, 260}})
+        for (const int step : {1, 3})
+            for (const double jump : {0.0, 0.7}) {
+                SCOPED_TRACE(::testing::Message()
+                             << size.width << " wide, step " << step << ", jump " << jump);
+                std::vector<float> uv;
+                for (int y = 0; y < size.height; ++y)
+                    for (int x = 0; x < size.width; ++x) {
+                        const double u = (x + 0.5) / size.width + random.between(-0.01, 0.01) + jump;
+                        uv.push_back(static_cast<float>(jump > 0 ? u - std::floor(u) : u));
+                        uv.push_back(
+                            static_cast<float>((y + 0.5) / size.height + random.between(-0.01, 0.01)));
+                    }
+                const WarpMap map =
+                    mesh_from_stmap(uv.data(), size.width, size.height, 2, 2 * size.width, step, "st");
+                const ControlMesh& mesh = std::get<ControlMesh>(map.shape);
+                for (const double tol : kTols)
+                    for (const WarpScheme scheme : {WarpScheme::automatic, WarpScheme::exact})
+                        EXPECT_LE(examine_mesh(mesh, scheme, tol, 1).exact_bound, 1e-6);
+            }
+}
+
+// What an ST-map of the picture's own size says of a pixel is where that pixel's colour comes from.
+TEST(WarpExact, StMapsOfThePicturesSizeAreReadAsTheyStand) {
+    test::Random random(579);
+    std::vector<float> uv;
+    for (int i = 0; i < kTarget.width * kTarget.height; ++i) {
+        uv.push_back(static_cast<float>(random.between(0, 1)));
+        uv.push_back(static_cast<float>(random.between(0, 1)));
+    }
+    const WarpMap map =
+        mesh_from_stmap(uv.data(), kTarget.width, kTarget.height, 2, 2 * kTarget.width, 1, "st");
+    const MeshPlan plan(Mesh(std::get<ControlMesh>(map.shape), kTarget, kSource, 1), WarpScheme::automatic,
+                        0.01);
+    const auto truth = [&](double x, double y) {
+        const float* at =
+            &uv[2 * static_cast<std::size_t>(static_cast<int>(y) * kTarget.width + static_cast<int>(x))];
+        return test::RealPoint{test::Real(at[0]) * kSource.width, test::Real(at[1]) * kSource.height};
+    };
+    expect_bounds(plan, truth, 0.01);
+    EXPECT_EQ(plan.reached(serial_for).exact_fraction, 0);
 }
 
 TEST(WarpExact, HardMeshes) {

@@ -6,6 +6,7 @@
 #include <OpenImageIO/imagebufalgo.h>
 #include <OpenImageIO/imagecache.h>
 #include <OpenImageIO/thread.h>
+#include <malloc.h>
 
 #include <atomic>
 #include <chrono>
@@ -190,6 +191,43 @@ TEST_F(Ops, ThreadsDoNotChangeAnyBit) {
     const std::vector<std::byte> one = bytes(reproject(source, o, {}, 1));
     for (const int threads : {0, 2, 3, 7})
         EXPECT_EQ(bytes(reproject(source, o, {}, threads)), one) << threads;
+}
+
+/// Memory that comes and goes is not zero as long as this lives.
+class DirtyMemory {
+  public:
+    DirtyMemory() { ::mallopt(M_PERTURB, 0x5a); }
+    ~DirtyMemory() { ::mallopt(M_PERTURB, 0); }
+};
+
+TEST_F(Ops, ANewImageHasAValueEverywhere) {
+    const DirtyMemory dirty;
+    const ImageBuf source = panorama(256, 128);
+    // A cross has faces missing, a fisheye has corners without a source, and a roi may reach beyond the picture.
+    const ROI beyond(-20, 60, 30, 140), channel(10, 60, 30, 70, 0, 1, 1, 2);
+    for (const char* to : {"rectilinear", "fisheye", "cubecross"})
+        for (const ROI& roi : {ROI(), beyond, channel}) {
+            SCOPED_TRACE(std::string(to) + " " + (roi.defined() ? std::to_string(roi.chend) : "all"));
+            const ParamValueList o = options({{"to", to}, {"size", "120"}});
+            const ImageBuf made = reproject(source, o, roi);
+            ASSERT_FALSE(made.has_error()) << made.geterror();
+            ImageBuf filled(made.spec());
+            OIIO::ImageBufAlgo::zero(filled);
+            ASSERT_TRUE(reproject(filled, source, o, roi)) << filled.geterror();
+            EXPECT_EQ(bytes(made), bytes(filled));
+        }
+}
+
+TEST_F(Ops, ANewImageThatCannotBeFilledIsBlack) {
+    const DirtyMemory dirty;
+    write_panorama("s.exr", 256, 128);
+    ImageBuf cached("s.exr", 0, 0, OIIO::ImageCache::create(true));
+    ASSERT_TRUE(cached.read(0, 0, false));
+    run("truncate -s 2000 s.exr");
+    ImageBuf dst;
+    EXPECT_FALSE(reproject(dst, cached, options({{"size", "90x70"}})));
+    EXPECT_THAT(dst.geterror(), HasSubstr("s.exr"));
+    for (const std::byte b : bytes(dst)) ASSERT_EQ(b, std::byte{0});
 }
 
 TEST_F(Ops, OtherPixelTypesGoThroughFloat) {

@@ -111,7 +111,7 @@ inline double with_rounding(const Mesh& mesh, const Mesh::Rough& rough, const Bo
     return 1.4143 * (rough.data_error + 0x1p-53 * (terms * rough.size + 16 * place));
 }
 inline double rounding_of(const Mesh& mesh, const MeshCell& cell, const Patch& patch, double terms) {
-    return with_rounding(mesh, {mesh.data_error(cell, patch), size_of(patch)},
+    return with_rounding(mesh, {mesh.data_error(cell, patch), size_of(patch), {}, {}},
                          {patch.x0, patch.y0, patch.x1, patch.y1}, terms);
 }
 

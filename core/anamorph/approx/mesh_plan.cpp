@@ -3,11 +3,12 @@
 
 #include <algorithm>
 #include <cstring>
-#include <functional>
 #include <limits>
 
 #include "anamorph/approx/block_writer.h"
+#include "anamorph/approx/folds.h"
 #include "anamorph/approx/hermite.h"
+#include "anamorph/approx/mesh_lattice.h"
 #include "anamorph/approx/mesh_residual.h"
 
 namespace anamorph {
@@ -74,47 +75,34 @@ void each_cell_of(const Mesh& mesh, const Box& box, const Body& body) {
 
 /// Have cells so few pixels in a box that blocks are better off without them?
 bool has_small_cells(const Mesh& mesh, const Box& box) {
+    const auto cells_between = [](const std::vector<double>& lines, double from, double to) {
+        return 1.0 + Mesh::line_below(lines, to) - Mesh::line_below(lines, from);
+    };
     double cells = 0;
-    mesh.each_cell(box.x0 + 0.5, box.y0 + 0.5, box.x1 - 0.5, box.y1 - 0.5, [&](const MeshCell&) { ++cells; });
+    if (mesh.has_levels())
+        mesh.each_cell(box.x0 + 0.5, box.y0 + 0.5, box.x1 - 0.5, box.y1 - 0.5,
+                       [&](const MeshCell&) { ++cells; });
+    else
+        cells = cells_between(mesh.x_lines(), box.x0 + 0.5, box.x1 - 0.5) *
+                cells_between(mesh.y_lines(), box.y0 + 0.5, box.y1 - 0.5);
     return double(box.width()) * box.height() < BlockWriter::kFloorPixels * cells;
-}
-
-/// The sign of the Jacobian's determinant on a block: of a map in powers of parameters in [-1, 1], each of
-/// whose derivatives errs by at most `rounding`. 0 where it is not the same everywhere, as far as can be
-/// seen.
-int sign_of_determinant(const Bicubic& f, double rounding) {
-    // A derivative is c[1][0] (along s) or c[0][1] (along t), give or take the magnitudes of its other terms.
-    struct Range {
-        double middle, radius;
-    };
-    const auto range = [&](const double(&c)[4][4], bool along_s) {
-        Range r{along_s ? c[1][0] : c[0][1], rounding - std::fabs(along_s ? c[1][0] : c[0][1])};
-        for (int i = 0; i < 4; ++i)
-            for (int j = 0; j < 4; ++j) r.radius += (along_s ? i : j) * std::fabs(c[i][j]);
-        return r;
-    };
-    const auto times = [](const Range& a, const Range& b) {
-        const double radius =
-            std::fabs(a.middle) * b.radius + a.radius * std::fabs(b.middle) + a.radius * b.radius;
-        return Range{a.middle * b.middle, radius};
-    };
-    const Range forth = times(range(f.x, true), range(f.y, false)),
-                back = times(range(f.x, false), range(f.y, true));
-    const double middle = forth.middle - back.middle;
-    const double radius =
-        (forth.radius + back.radius) + 1e-14 * (std::fabs(forth.middle) + std::fabs(back.middle));
-    return middle > radius ? 1 : middle < -radius ? -1 : 0;
 }
 
 /// Plans one region; blocks are appended to `blocks`.
 class Planner {
   public:
-    Planner(const Mesh& mesh, WarpScheme scheme, double tol, const ResidualTables* tables, Blocks& blocks)
-        : m_mesh(mesh), m_scheme(scheme), m_tables(tables), m_writer(tol, blocks) {}
+    Planner(const Mesh& mesh, bool lattice, WarpScheme scheme, double tol, const ResidualTables* tables,
+            Blocks& blocks)
+        : m_mesh(mesh), m_lattice(lattice), m_scheme(scheme), m_tables(tables), m_writer(tol, blocks) {}
 
     /// Point by point, in whichever cells.
     void exact(const Box& box) {
         BlockWriter::for_blocks(box, [&](const Box& b) { m_writer.exact(b, exact_bound(b)); });
+    }
+
+    /// Point by point too, of a mesh that is a lattice, but in offsets that are floats.
+    void lattice(const Box& box) {
+        BlockWriter::for_blocks(box, [&](const Box& b) { place_lattice(b); });
     }
 
     void region(const Box& box) {
@@ -129,7 +117,8 @@ class Planner {
         constexpr double kHair = 1e-9;
         const Bounds all{box.x0 + 0.5 - kHair, box.y0 + 0.5 - kHair, box.x1 - 0.5 + kHair,
                          box.y1 - 0.5 + kHair};
-        if (!m_mesh.has_levels() && has_small_cells(m_mesh, box)) return exact_rounding(m_mesh, all);
+        if (m_lattice || (!m_mesh.has_levels() && has_small_cells(m_mesh, box)))
+            return exact_rounding(m_mesh, all);
         double bound = 0;
         m_mesh.each_cell(all.x0, all.y0, all.x1, all.y1, [&](const MeshCell& cell) {
             bound = std::max(bound, exact_rounding(m_mesh, cell, m_mesh.patch(cell)));
@@ -161,6 +150,22 @@ class Planner {
         m_writer.halve(box, box.width() >= box.height(), [&](const Box& b) { place(form, b); });
     }
 
+    /// The displacement is a sum whose weights sum to 1 and their magnitudes to at most 1.6^2 (mesh_lattice.h):
+    /// no farther from the middle of those of the vertices than 1.28 times their range. The offset from the
+    /// base is rounded to float, and twice more where it is read.
+    void place_lattice(const Box& b) {
+        const Bounds all{b.x0 + 0.5, b.y0 + 0.5, b.x1 - 0.5, b.y1 - 0.5};
+        const Mesh::Rough rough = m_mesh.rough(all.x0, all.y0, all.x1, all.y1);
+        const Point<double>& scale = m_mesh.scale();
+        const Point<double> middle{0.5 * (b.x0 + b.x1) * scale.x + 0.5 * (rough.low.x + rough.high.x),
+                                   0.5 * (b.y0 + b.y1) * scale.y + 0.5 * (rough.low.y + rough.high.y)};
+        const double x = 0.5 * b.width() * scale.x + 1.29 * (rough.high.x - rough.low.x) + 1,
+                     y = 0.5 * b.height() * scale.y + 1.29 * (rough.high.y - rough.low.y) + 1;
+        const double rounding = with_rounding(m_mesh, rough, all, kExactTerms);
+        if (!m_writer.computed(b, middle, std::hypot(x, y) * (3.03 * 0x1p-24) + rounding))
+            m_writer.exact(b, rounding);
+    }
+
     void place_residual(const CellForm& form, const Box& box) {
         const ResidualPatch residual(form.patch);
         BlockWriter::for_blocks(box, [&](const Box& b) {
@@ -172,6 +177,7 @@ class Planner {
     }
 
     const Mesh& m_mesh;
+    bool m_lattice;
     WarpScheme m_scheme;
     const ResidualTables* m_tables;
     BlockWriter m_writer;
@@ -193,23 +199,28 @@ MeshPlan::MeshPlan(Mesh mesh, WarpScheme scheme, double tol)
       m_tol(tol) {
     check_tol(tol);
     if (scheme == WarpScheme::residual && tol > 0) m_tables = ResidualTables::shared();
+    m_lattice = is_lattice(m_mesh) && has_small_cells(m_mesh, {0, 0, width(), height()});
 }
 
 void MeshPlan::plan(const Box& box, int, Blocks& blocks) const {
-    Planner planner(m_mesh, m_scheme, m_tol, m_tables.get(), blocks);
+    Planner planner(m_mesh, m_lattice, m_scheme, m_tol, m_tables.get(), blocks);
     if (m_tol == 0)
         planner.exact(box);
+    else if (m_lattice && m_scheme != WarpScheme::exact)
+        planner.lattice(box);
     else
         planner.region(box);
 }
 
 bool MeshPlan::exact(double x, double y, int, Point<double>& source_point, int& source_piece) const noexcept {
-    source_point = m_mesh.at(x, y);
+    source_point = m_lattice ? lattice_point(m_mesh, {m_mesh.x_lines(), x}, {m_mesh.y_lines(), y}, x, y)
+                             : m_mesh.at(x, y);
     source_piece = 0;
     return std::fabs(source_point.x) < kFarthest && std::fabs(source_point.y) < kFarthest;
 }
 
 Jacobian MeshPlan::jacobian(double x, double y, int) const noexcept {
+    if (m_lattice) return lattice_jacobian(m_mesh, {m_mesh.x_lines(), x}, {m_mesh.y_lines(), y});
     using J = Jet1<double>;
     const Point<J> p =
         m_mesh.at(m_mesh.patch(m_mesh.cell_at(x, y)), J::variable(x, 1, 0), J::variable(y, 0, 1));
@@ -217,8 +228,11 @@ Jacobian MeshPlan::jacobian(double x, double y, int) const noexcept {
 }
 
 float MeshPlan::folds(double x, double y) const noexcept {
-    const Jacobian j = jacobian(x, y, 0);
-    return (j.x_i * j.y_j - j.x_j * j.y_i) * m_mesh.orientation() < 0 ? 1.0f : 0.0f;
+    return folds(jacobian(x, y, 0)) ? 1.0f : 0.0f;
+}
+
+bool MeshPlan::folds(const Jacobian& j) const noexcept {
+    return (j.x_i * j.y_j - j.x_j * j.y_i) * m_mesh.orientation() < 0;
 }
 
 BlockPolynomial MeshPlan::bicubic(const Block& block) const noexcept {
@@ -226,10 +240,49 @@ BlockPolynomial MeshPlan::bicubic(const Block& block) const noexcept {
     return float_form(form.on(block.box), block);
 }
 
-/// A row of a block of the residual scheme.
+void MeshPlan::computed(std::span<const Block> layers, const PointRows* to) const noexcept {
+    if (!m_lattice) return WarpPlan::computed(layers, to);
+    const Block& block = layers.front();
+    lattice_rows(block, block.box, *to);
+}
+
+/// The points of a part of a block of a lattice.
+void MeshPlan::lattice_rows(const Block& block, const Box& part, const PointRows& to) const noexcept {
+    std::array<LineWeights, Block::kMaxSide> across;
+    bool on_lines = true;
+    for (int i = 0; i < part.width(); ++i) {
+        LineWeights& weights = across[static_cast<std::size_t>(i)];
+        weights = {m_mesh.x_lines(), part.x0 + i + 0.5};
+        on_lines &= weights.on_line();
+    }
+    for (int j = 0; j < part.height(); ++j) {
+        const double at_y = part.y0 + j + 0.5;
+        const LineWeights down(m_mesh.y_lines(), at_y);
+        float *x = to.x + j * to.stride, *y = to.y + j * to.stride;
+        // What lattice_point says where every pixel of the row is a vertex.
+        if (const Point<double>* d = m_mesh.displacements(down.line()); on_lines && down.on_line()) {
+            for (int i = 0; i < part.width(); ++i) {
+                const Point<double>& at = d[across[static_cast<std::size_t>(i)].line()];
+                x[i] = static_cast<float>((part.x0 + i + 0.5) * m_mesh.scale().x + at.x - block.base_x);
+                y[i] = static_cast<float>(at_y * m_mesh.scale().y + at.y - block.base_y);
+            }
+            continue;
+        }
+        for (int i = 0; i < part.width(); ++i) {
+            const Point<double> p =
+                lattice_point(m_mesh, across[static_cast<std::size_t>(i)], down, part.x0 + i + 0.5, at_y);
+            x[i] = static_cast<float>(p.x - block.base_x);
+            y[i] = static_cast<float>(p.y - block.base_y);
+        }
+    }
+}
+
+/// A row of a block of the residual scheme, or of a lattice.
 void MeshPlan::computed_row(const Block& block, int row, int begin, int end, float* x,
                             float* y) const noexcept {
     const Box& b = block.box;
+    if (m_lattice)
+        return lattice_rows(block, {b.x0 + begin, b.y0 + row, b.x0 + end, b.y0 + row + 1}, {x, y, 0});
     const CellForm form(m_mesh, m_mesh.leaf_at(b.x0 + 0.5, b.y0 + 0.5));
     const double step = 1 / (form.cell.x1 - form.cell.x0);
     const double first = (b.x0 + 0.5 - form.cell.x0) * step;
@@ -239,25 +292,29 @@ void MeshPlan::computed_row(const Block& block, int row, int begin, int end, flo
     m_tables->row(ResidualPatch(form.patch), {px, py, m_mesh.scale().x}, first, step, at_t, begin, end, x, y);
 }
 
+std::int64_t MeshPlan::folded_pixels_of_lattice(const Box& box) const {
+    std::vector<LineWeights> across;
+    for (int x = box.x0; x < box.x1; ++x) across.emplace_back(m_mesh.x_lines(), x + 0.5);
+    std::int64_t folded = 0;
+    for (int y = box.y0; y < box.y1; ++y) {
+        const LineWeights down(m_mesh.y_lines(), y + 0.5);
+        for (const LineWeights& at : across) folded += folds(lattice_jacobian(m_mesh, at, down));
+    }
+    return folded;
+}
+
 std::int64_t MeshPlan::folded_pixels(const Box& box) const {
+    if (m_lattice) return folded_pixels_of_lattice(box);
     if (has_small_cells(m_mesh, box)) return WarpPlan::folded_pixels(box);
+    const int orientation = m_mesh.orientation() < 0 ? -1 : 1;
     std::int64_t folded = 0;
     each_cell_of(m_mesh, box, [&](const MeshCell& cell, const Box& part) {
         const CellForm form(m_mesh, cell);
-        const std::function<std::int64_t(const Box&)> count = [&](const Box& b) -> std::int64_t {
-            // A derivative sums up to 16 terms, each up to three times a coefficient.
-            const double sign = sign_of_determinant(form.on(b), 48 * form.rounding) * m_mesh.orientation();
-            if (sign > 0) return 0;
-            if (sign < 0) return std::int64_t{b.width()} * b.height();
-            if (BlockWriter::below_floor(b)) return WarpPlan::folded_pixels(b);
-            Box first = b, second = b;
-            if (b.width() > b.height())
-                first.x1 = second.x0 = (b.x0 + b.x1) / 2;
-            else
-                first.y1 = second.y0 = (b.y0 + b.y1) / 2;
-            return count(first) + count(second);
+        // A derivative sums up to 16 terms, each up to three times a coefficient.
+        const auto sign = [&](const Box& b) {
+            return sign_of_determinant(form.on(b), 48 * form.rounding) * orientation;
         };
-        folded += count(part);
+        folded += count_folded(part, sign, [&](const Box& b) { return WarpPlan::folded_pixels(b); });
     });
     return folded;
 }

@@ -7,7 +7,8 @@
 // - residual: the plane through three vertices for each of a cell's two triangles, in double, plus the
 //   thirteen non-linear products of eq. 5.5 and 5.7 from tables read bilinearly (5.4).
 //
-// Point by point where that exceeds the tolerance or a cell has few pixels.
+// Point by point where that exceeds the tolerance or a cell has few pixels; where most cells have few and all
+// are of one level, as in dense ST-maps, by a sum over the vertices around (mesh_lattice.h).
 //
 // It is no FormulaPlan: a mesh is a formula for each cell, whose edges blocks may not cross, and a patch is a
 // polynomial already, so that nothing is left to expand or enclose. Meshes that push are solved for, and
@@ -50,6 +51,7 @@ class MeshPlan final : public WarpPlan {
     BlockPolynomial bicubic(const Block& block) const noexcept override;
     void computed_row(const Block& block, int row, int begin, int end, float* x,
                       float* y) const noexcept override;
+    void computed(std::span<const Block> layers, const PointRows* to) const noexcept override;
     float folds(double x, double y) const noexcept override;
     std::int64_t folded_pixels(const Box& box) const override;
 
@@ -57,9 +59,14 @@ class MeshPlan final : public WarpPlan {
     void plan(const Box& box, int piece, Blocks& blocks) const override;
 
   private:
+    bool folds(const Jacobian& jacobian) const noexcept;
+    std::int64_t folded_pixels_of_lattice(const Box& box) const;
+    void lattice_rows(const Block& block, const Box& part, const PointRows& to) const noexcept;
+
     Mesh m_mesh;
     WarpScheme m_scheme;
     double m_tol;
+    bool m_lattice = false;  ///< is the mesh read as one (mesh_lattice.h)?
     std::shared_ptr<const ResidualTables> m_tables;
 };
 

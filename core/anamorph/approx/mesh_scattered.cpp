@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "anamorph/approx/block_writer.h"
+#include "anamorph/approx/folds.h"
 #include "anamorph/approx/hermite.h"
 
 namespace anamorph {
@@ -72,8 +73,13 @@ class RowCubic {
         m_d2 = twice[0] / (2 * h * h);
         m_d3 = (twice[1] - twice[0]) / (6 * h * h * h);
     }
-    double operator()(double x) const {
-        return m_d0 + x * (m_d1 + (x - m_h) * (m_d2 + (x - 2 * m_h) * m_d3));
+    /// Its values at 0, 1, ... less a base.
+    void write(int count, double base, float* to) const {
+        const double h = m_h, d0 = m_d0, d1 = m_d1, d2 = m_d2, d3 = m_d3;
+        for (int i = 0; i < count; ++i) {
+            const double x = i;
+            to[i] = static_cast<float>(d0 + x * (d1 + (x - h) * (d2 + (x - 2 * h) * d3)) - base);
+        }
     }
 
   private:
@@ -139,6 +145,19 @@ class Planner {
     }
     void region(const Box& box) {
         BlockWriter::for_blocks(box, [&](const Box& b) { place(b); });
+    }
+    /// The sign of the Jacobian's determinant at all pixels of a box, 0 where it is not certain.
+    int sign(const Box& box) {
+        if (!gather(Centres(box))) return 0;
+        int all = 0;
+        for (const Met& met : m_met) {
+            // A derivative sums up to 10 terms, each up to three times a coefficient. The restriction, in
+            // parameters of a part of the box, is as exact as the cubic on all of it.
+            const int one = sign_of_determinant(restricted(met.f, met.s, met.t), 48 * met.rounding);
+            if (one == 0 || (all != 0 && one != all)) return 0;
+            all = one;
+        }
+        return all;
     }
 
   private:
@@ -302,8 +321,38 @@ BlockPolynomial ScatteredPlan::bicubic(const Block& block) const noexcept {
     return float_form(on(m_map, m_map.triangle_at(at.across.middle, at.down.middle), at), block);
 }
 
+/// A triangle that may hold pixels, and where it lies.
+struct ScatteredPlan::Near {
+    const CubicTriangle* triangle;
+    Bounds bounds;
+};
+
+std::vector<ScatteredPlan::Near> ScatteredPlan::near(const Bounds& centres) const {
+    std::vector<Near> found;
+    m_map.tree().each(centres, [&](std::int32_t n) {
+        const CubicTriangle& triangle = m_map.triangles()[static_cast<std::size_t>(n)];
+        found.push_back({&triangle, triangle.bounds()});
+    });
+    return found;
+}
+
+void ScatteredPlan::computed(std::span<const Block> layers, const PointRows* to) const noexcept {
+    const Block& block = layers.front();
+    const Box& b = block.box;
+    const std::vector<Near> triangles = near({b.x0 + 0.5, b.y0 + 0.5, b.x1 - 0.5, b.y1 - 0.5});
+    for (int j = 0; j < b.height(); ++j)
+        write_row(block, triangles, j, 0, b.width(), to->x + j * to->stride, to->y + j * to->stride);
+}
+
 void ScatteredPlan::computed_row(const Block& block, int row, int begin, int end, float* x,
                                  float* y) const noexcept {
+    const double down = block.box.y0 + row + 0.5;
+    write_row(block, near({block.box.x0 + begin + 0.5, down, block.box.x0 + end - 0.5, down}), row, begin,
+              end, x, y);
+}
+
+void ScatteredPlan::write_row(const Block& block, const std::vector<Near>& triangles, int row, int begin,
+                              int end, float* x, float* y) const noexcept {
     const int count = end - begin;
     const double first = block.box.x0 + begin + 0.5, down = block.box.y0 + row + 0.5;
     const auto put = [&](int i, const Point<double>& p) {
@@ -313,21 +362,20 @@ void ScatteredPlan::computed_row(const Block& block, int row, int begin, int end
     // How many triangles may hold a pixel, and whether one certainly does.
     std::array<int, Block::kMaxSide> claims{};
     std::array<bool, Block::kMaxSide> held{};
-    m_map.tree().each({first, down, first + count - 1, down}, [&](std::int32_t n) {
-        const CubicTriangle& triangle = m_map.triangles()[static_cast<std::size_t>(n)];
+    for (const Near& near : triangles) {
+        if (!near.bounds.meets({first, down, first + count - 1, down})) continue;
+        const CubicTriangle& triangle = *near.triangle;
         const Run run(triangle, first, down, count);
         for (int i = run.outer_begin; i < run.outer_end; ++i) ++claims[static_cast<std::size_t>(i)];
-        if (run.begin >= run.end) return;
+        if (run.begin >= run.end) continue;
         const double h = std::max(run.end - run.begin - 1, 1) / 3.0;
         RowValues places;
         for (std::size_t k = 0; k < 4; ++k) places.v[k] = first + run.begin + h * double(k);
         const Point<RowValues> f = m_map.at(triangle, places, RowValues(down));
-        const RowCubic at_x(f.x, h), at_y(f.y, h);
-        for (int i = run.begin; i < run.end; ++i) {
-            held[static_cast<std::size_t>(i)] = true;
-            put(i, {at_x(i - run.begin), at_y(i - run.begin)});
-        }
-    });
+        RowCubic(f.x, h).write(run.end - run.begin, block.base_x, x + run.begin);
+        RowCubic(f.y, h).write(run.end - run.begin, block.base_y, y + run.begin);
+        std::fill(held.begin() + run.begin, held.begin() + run.end, true);
+    }
     // On edges, by the rule for single points.
     for (int i = 0; i < count; ++i)
         if (claims[static_cast<std::size_t>(i)] != 1 || !held[static_cast<std::size_t>(i)])
@@ -343,6 +391,15 @@ Jacobian ScatteredPlan::jacobian(double x, double y, int) const noexcept {
 float ScatteredPlan::folds(double x, double y) const noexcept {
     const Jacobian j = jacobian(x, y, 0);
     return (j.x_i * j.y_j - j.x_j * j.y_i) * m_map.orientation() < 0 ? 1.0f : 0.0f;
+}
+
+std::int64_t ScatteredPlan::folded_pixels(const Box& box) const {
+    Blocks unused;
+    Planner planner(m_map, m_tol, unused);
+    const int orientation = m_map.orientation() < 0 ? -1 : 1;
+    return count_folded(
+        box, [&](const Box& b) { return planner.sign(b) * orientation; },
+        [&](const Box& b) { return WarpPlan::folded_pixels(b); });
 }
 
 }  // namespace anamorph

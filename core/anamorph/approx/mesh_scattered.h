@@ -21,13 +21,21 @@ class ScatteredPlan final : public WarpPlan {
     BlockPolynomial bicubic(const Block& block) const noexcept override;
     void computed_row(const Block& block, int row, int begin, int end, float* x,
                       float* y) const noexcept override;
+    void computed(std::span<const Block> layers, const PointRows* to) const noexcept override;
     Jacobian jacobian(double x, double y, int piece) const noexcept override;
     float folds(double x, double y) const noexcept override;
+    std::int64_t folded_pixels(const Box& box) const override;
 
   protected:
     void plan(const Box& box, int piece, Blocks& blocks) const override;
 
   private:
+    struct Near;
+    std::vector<Near> near(const Bounds& centres) const;
+    /// Pixels [begin, end) of a row of a computed block, by the triangles near it.
+    void write_row(const Block& block, const std::vector<Near>& triangles, int row, int begin, int end,
+                   float* x, float* y) const noexcept;
+
     Scattered m_map;
     WarpScheme m_scheme;
     double m_tol;

@@ -404,7 +404,7 @@ double Mesh::turned_area() const {
     return area;
 }
 
-int Mesh::line_below(const std::vector<double>& lines, double at) {
+int Mesh::line_below(std::span<const double> lines, double at) {
     const auto next = std::upper_bound(lines.begin() + 1, lines.end() - 1, at);
     return static_cast<int>(next - lines.begin()) - 1;
 }
@@ -562,12 +562,16 @@ double Mesh::data_error(const MeshCell& cell, const Patch& patch) const {
 Mesh::Rough Mesh::rough(double x0, double y0, double x1, double y1) const {
     const int c0 = std::max(line_below(m_x, x0) - 1, 0), c1 = std::min(line_below(m_x, x1) + 2, columns());
     const int r0 = std::max(line_below(m_y, y0) - 1, 0), r1 = std::min(line_below(m_y, y1) + 2, rows());
-    double d = 0, e = 0;
+    Point<double> low = m_values[index(c0, r0)], high = low;
+    float e = 0;
     for (int r = r0; r <= r1; ++r)
-        for (int c = c0; c <= c1; ++c) {
-            d = std::max(d, largest(m_values[index(c, r)]));
-            e = std::max(e, double{m_value_errors[index(c, r)]});
+        for (std::size_t i = index(c0, r); i <= index(c1, r); ++i) {
+            const Point<double>& f = m_values[i];
+            low = {std::min(low.x, f.x), std::min(low.y, f.y)};
+            high = {std::max(high.x, f.x), std::max(high.y, f.y)};
+            e = std::max(e, m_value_errors[i]);
         }
+    const double d = std::max(largest(low), largest(high));
     double shift = 0;
     const auto look = [&](const std::vector<double>& lines, int first, int last) {
         for (auto i = static_cast<std::size_t>(first); i < static_cast<std::size_t>(last); ++i) {
@@ -579,7 +583,7 @@ Mesh::Rough Mesh::rough(double x0, double y0, double x1, double y1) const {
     look(m_x, c0, c1);
     look(m_y, r0, r1);
     const double size = 36 * d, slopes = 24 * shift + 16 * 0x1p-53, parameters = 2 * 1.5 * 3 * shift;
-    return {(36 * e + size * (slopes + parameters)) * kSlack, size};
+    return {(36 * double{e} + size * (slopes + parameters)) * kSlack, size, low, high};
 }
 
 }  // namespace anamorph

@@ -15,6 +15,7 @@
 
 #include <array>
 #include <cstddef>
+#include <span>
 
 #include "anamorph/geometry/size.h"
 #include "anamorph/map/mesh_data.h"
@@ -93,9 +94,14 @@ class Mesh {
     /// elements of each are together: cheaper than cell by cell, and more.
     struct Rough {
         double data_error, size;
+        Point<double> low, high;  ///< of the displacements of their vertices and those around
     };
     Rough rough(double x0, double y0, double x1, double y1) const;
     bool has_levels() const { return !m_nodes.empty(); }
+    /// Of the vertices on a line of level 0, columns() + 1 of them.
+    const Point<double>* displacements(int row) const { return m_values.data() + index(0, row); }
+    /// The cell between two lines that a position falls into: [line, next line), the outermost at the ends.
+    static int line_below(std::span<const double> lines, double at);
 
     /// Calls body(cell) for the cells that meet [x0, x1] x [y0, y1], in rows of level 0.
     template <class Body>
@@ -145,8 +151,6 @@ class Mesh {
     };
     class Refiner;
 
-    /// The cell between two lines that a position falls into: [line, next line), the outermost at the ends.
-    static int line_below(const std::vector<double>& lines, double at);
     /// A line of the lattice of a level.
     static double line(const std::vector<double>& lines, int level, int number);
     MeshCell base_cell(int column, int row) const;

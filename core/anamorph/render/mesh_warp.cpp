@@ -5,12 +5,10 @@
 
 #include "anamorph/approx/inverse.h"
 #include "anamorph/approx/mesh_scattered.h"
+#include "anamorph/render/strips.h"
 
 namespace anamorph {
 namespace {
-
-// Rows that one thread counts at a time.
-constexpr int kRows = 16;
 
 std::unique_ptr<const WarpPlan> make_plan(const WarpMap& map, const Size& source, const Size& target,
                                           const MeshWarpOptions& options) {
@@ -29,16 +27,6 @@ void check_size(const char* name, int width, int height) {
     if (width < 1 || height < 1 || width > kMaxSide || height > kMaxSide)
         throw Error(name, std::to_string(width) + "x" + std::to_string(height),
                     "must be 1 to " + std::to_string(kMaxSide) + " pixels either way");
-}
-
-/// body(rows) for boxes of a few whole rows of `box`.
-void for_each_rows(const Box& box, const ParallelFor& parallel_for,
-                   const std::function<void(const Box&)>& body) {
-    if (box.empty()) return;
-    parallel_for((box.height() + kRows - 1) / kRows, [&](std::int64_t i) {
-        const int y = box.y0 + static_cast<int>(i) * kRows;
-        body({box.x0, y, box.x1, std::min(y + kRows, box.y1)});
-    });
 }
 
 }  // namespace
@@ -93,8 +81,8 @@ Reached MeshWarp::reached(const ParallelFor& parallel_for) const {
 double MeshWarp::folded_fraction(const ParallelFor& parallel_for) const {
     const Box whole{0, 0, width(), height()};
     std::atomic<std::int64_t> folded{0};
-    for_each_rows(whole, parallel_for,
-                  [&](const Box& rows) { folded += m_state->plan->folded_pixels(rows); });
+    for_each_square(whole, parallel_for,
+                    [&](const Box& square) { folded += m_state->plan->folded_pixels(square); });
     return static_cast<double>(folded) / (double(whole.width()) * whole.height());
 }
 

@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "anamorph/approx/mesh_lattice.h"
+
+#include <algorithm>
+
+namespace anamorph {
+
+LineWeights::LineWeights(std::span<const double> lines, double at) {
+    const int last = static_cast<int>(lines.size()) - 1, cell = Mesh::line_below(lines, at);
+    const auto line = [&](int i) { return lines[static_cast<std::size_t>(i)]; };
+    first = std::clamp(cell - 1, 0, last - 3);
+    const double width = line(cell + 1) - line(cell);
+    using J = Jet1<double>;
+    const auto basis = hermite_basis(J::variable((at - line(cell)) / width, 1, 0));
+    const auto add = [&](int i, const J& weight) {
+        value[i - first] += weight.c[0];
+        slope[i - first] += weight.c[1] / width;
+    };
+    // The secant at a line, eq. 5.8; at the border that line stands in for the missing one.
+    const auto add_secant = [&](int i, const J& weight) {
+        const int before = std::max(i - 1, 0), after = std::min(i + 1, last);
+        const J share = weight * (width / (line(after) - line(before)));
+        add(after, share);
+        add(before, -share);
+    };
+    add(cell, basis[0]);
+    add(cell + 1, basis[1]);
+    add_secant(cell, basis[2]);
+    add_secant(cell + 1, basis[3]);
+    while (begin < 3 && value[begin] == 0) ++begin;
+    while (end > begin + 1 && value[end - 1] == 0) --end;
+}
+
+namespace {
+
+/// The sum of weight i times at(i) for i in [begin, end).
+template <class At>
+Point<double> sum(const double* weights, int begin, int end, const At& at) {
+    Point<double> s{0, 0};
+    for (int i = begin; i < end; ++i) {
+        const Point<double>& p = at(i);
+        s.x += weights[i] * p.x;
+        s.y += weights[i] * p.y;
+    }
+    return s;
+}
+
+}  // namespace
+
+Point<double> lattice_point(const Mesh& mesh, const LineWeights& across, const LineWeights& down, double x,
+                            double y) {
+    const Point<double> d = sum(down.value, down.begin, down.end, [&](int j) {
+        const Point<double>* row = mesh.displacements(down.first + j) + across.first;
+        return sum(across.value, across.begin, across.end,
+                   [&](int i) -> const Point<double>& { return row[i]; });
+    });
+    return {x * mesh.scale().x + d.x, y * mesh.scale().y + d.y};
+}
+
+Jacobian lattice_jacobian(const Mesh& mesh, const LineWeights& across, const LineWeights& down) {
+    const auto along = [&](const double* weights, int begin, int end) {
+        return [&mesh, &across, &down, weights, begin, end](int j) {
+            const Point<double>* row = mesh.displacements(down.first + j) + across.first;
+            return sum(weights, begin, end, [&](int i) -> const Point<double>& { return row[i]; });
+        };
+    };
+    const Point<double> by_x = sum(down.value, down.begin, down.end, along(across.slope, 0, 4)),
+                        by_y = sum(down.slope, 0, 4, along(across.value, across.begin, across.end));
+    return {mesh.scale().x + by_x.x, by_x.y, by_y.x, mesh.scale().y + by_y.y};
+}
+
+}  // namespace anamorph
