@@ -12,7 +12,7 @@
 
 namespace anamorph {
 
-/// exact: every pixel by the formula. blocks: quadratic polynomials on blocks. residual: Kim's decomposition
+/// exact: every pixel by the formula. blocks: polynomials of degree 2 to 4 on blocks. residual: Kim's decomposition
 /// (3.1), one linear map and a bilinear table of residuals (4.3, 4.4). automatic: the fastest that holds.
 enum class Scheme { automatic, exact, blocks, residual };
 
@@ -41,6 +41,8 @@ class FormulaPlan : public BlockMap {
     bool truth(double x, double y, int piece, Point<long double>& source_point,
                int& source_piece) const noexcept override;
     Jacobian jacobian(double x, double y, int piece) const noexcept override;
+    BlockPolynomial bicubic(const Block& block) const noexcept override;
+    void exact_row(const Block& block, int row, ExactPoint* points) const noexcept override;
 
   protected:
     void plan(const Box& box, int piece, Blocks& blocks) const override;
