@@ -29,7 +29,9 @@ namespace anamorph::bench {
 namespace {
 
 constexpr double kDefaultTol = 0.01;
-constexpr double kTols[] = {1, 1.0 / 16, kDefaultTol, 0.001, 0};
+constexpr double kTols[] = {1, 1.0 / 16, kDefaultTol, 0.001, 1e-4, 1e-6, 0};
+// A residual table has few cells that hold less.
+constexpr double kLeastResidualTol = 0.001;
 constexpr Orientation kTurned{30, 20, 10};
 
 const std::pair<Scheme, const char*> kSchemes[] = {
@@ -211,6 +213,7 @@ class Scene {
         options.filter = Filter::bilinear;
         for (const double tol : tols)
             for (const auto& [scheme, name] : kSchemes) {
+                if (scheme == Scheme::residual && tol > 0 && tol < kLeastResidualTol) continue;
                 options.scheme = scheme;
                 options.tol = tol;
                 add_ours(view, name, options, m_pool, m_settings.threads);
@@ -606,9 +609,9 @@ double report_blocks(const std::string& view, const PanoramaPlan& plan, const ch
     const int width = plan.map().target().width();
     parallel_for(plan.regions(), [&](std::int64_t region) {
         for (const Block& block : plan.blocks(region)) {
-            if (block.kind != Block::Kind::polynomial) continue;
+            if (block.kind != Block::Kind::polynomial && block.kind != Block::Kind::bicubic) continue;
             double worst = 0;
-            for_points(plan.map(), block, [&](int i, int j, const Point<double>& p) {
+            for_points(plan, block, [&](int i, int j, const Point<double>& p) {
                 const Point<double>& q = truth[static_cast<std::size_t>(j) * static_cast<std::size_t>(width) +
                                                static_cast<std::size_t>(i)];
                 worst = std::max(worst, distance(plan.map().source(), p, q));

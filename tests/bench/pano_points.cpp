@@ -38,7 +38,7 @@ Points plan_points(const PanoramaPlan& plan, const ParallelFor& parallel_for) {
     Points points(pixels(plan.map()), {std::nan(""), std::nan("")});
     parallel_for(plan.regions(), [&](std::int64_t region) {
         for (const Block& block : plan.blocks(region))
-            for_points(plan.map(), block,
+            for_points(plan, block,
                        [&](int i, int j, const Point<double>& p) { at(plan.map(), points, i, j) = p; });
     });
     return points;

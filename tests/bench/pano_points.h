@@ -17,25 +17,38 @@ using Points = std::vector<Point<double>>;
 Points true_points(const Panorama& map, const ParallelFor& parallel_for);
 
 /// Calls `body(i, j, point)` for the pixels of a block. Polynomials are evaluated here as block.h states
-/// them, in plain float arithmetic, apart from the product's own loops; exact pixels by
-/// Panorama::exact<double>.
+/// them, in plain float arithmetic, apart from the product's own loops, those in double by the plan; exact
+/// pixels by Panorama::exact<double>.
 template <class Body>
-void for_points(const Panorama& map, const Block& block, const Body& body) {
+void for_points(const PanoramaPlan& plan, const Block& block, const Body& body) {
+    const Panorama& map = plan.map();
     const Box& box = block.box;
+    const bool bicubic = block.kind == Block::Kind::bicubic;
+    const BlockPolynomial polynomial = bicubic && !block.precise ? plan.bicubic(block) : quadratic_of(block);
+    std::vector<BlockMap::ExactPoint> row(static_cast<std::size_t>(box.width()));
     // s and t run from -1 to 1 over the pixel centres; a single one stands at 0.
     const auto along = [](int k, int count) {
         return count > 1 ? static_cast<float>(2 * k - (count - 1)) / static_cast<float>(count - 1) : 0.0f;
     };
-    const auto value = [](const float* c, float s, float t) {
-        return ((c[5] * t + c[2]) * t + c[0]) + s * ((c[4] * t + c[1]) + s * c[3]);
+    const auto value = [&](int first, float s, float t) {
+        float sum = 0;
+        for (int i = polynomial.degree; i >= 0; --i) {
+            float of_s = 0;
+            for (int j = polynomial.degree; j >= 0; --j) of_s = of_s * t + polynomial.c[j][first + i];
+            sum = sum * s + of_s;
+        }
+        return sum;
     };
-    for (int j = box.y0; j < box.y1; ++j)
+    for (int j = box.y0; j < box.y1; ++j) {
+        if (bicubic && block.precise) plan.exact_row(block, j - box.y0, row.data());
         for (int i = box.x0; i < box.x1; ++i) {
             Point<double> p{std::nan(""), std::nan("")};
-            if (block.kind == Block::Kind::polynomial) {
+            if (bicubic && block.precise) {
+                p = row[static_cast<std::size_t>(i - box.x0)].at;
+            } else if (block.kind == Block::Kind::polynomial || bicubic) {
                 const float s = along(i - box.x0, box.width()), t = along(j - box.y0, box.height());
-                p = {block.base_x + static_cast<double>(value(block.x, s, t)),
-                     block.base_y + static_cast<double>(value(block.y, s, t))};
+                p = {block.base_x + static_cast<double>(value(0, s, t)),
+                     block.base_y + static_cast<double>(value(4, s, t))};
             } else if (block.kind == Block::Kind::exact) {
                 int piece = 0;
                 Point<double> q{};
@@ -43,6 +56,7 @@ void for_points(const Panorama& map, const Block& block, const Body& body) {
             }
             body(i, j, p);
         }
+    }
 }
 
 /// The points that a plan leads to.

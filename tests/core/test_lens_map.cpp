@@ -9,8 +9,7 @@
 
 #include "anamorph/approx/lens_plan.h"
 #include "anamorph/error.h"
-#include "anamorph/render/block_reader.h"
-#include "anamorph/simd/block_sampler.h"
+#include "block_points.h"
 #include "panorama_oracle.h"
 
 namespace anamorph {
@@ -70,13 +69,12 @@ struct Findings {
 Findings examine(const LensPlan& plan, const Truth& truth) {
     Findings found;
     const Size source = plan.map().source_size();
-    float px[simd::kRowRoom], py[simd::kRowRoom];
     for (std::int64_t region = 0; region < plan.regions(); ++region)
         for (const Block& block : plan.blocks(region)) {
             found.bound = std::max(found.bound, block.bound);
-            const bool polynomial = block.kind != Block::Kind::exact && block.kind != Block::Kind::outside;
+            const bool polynomial = test::is_polynomial(block);
             for (int j = block.box.y0; j < block.box.y1; ++j) {
-                if (polynomial) block_row(plan, block, block.box, j, px, py);
+                const test::PolynomialRow row(plan, block, j);
                 for (int i = block.box.x0; i < block.box.x1; ++i) {
                     ++found.pixels;
                     found.exact += block.kind == Block::Kind::exact;
@@ -85,8 +83,7 @@ Findings examine(const LensPlan& plan, const Truth& truth) {
                     int piece = 0;
                     bool seen = polynomial;
                     if (polynomial)
-                        p = {block.base_x + double{px[i - block.box.x0]},
-                             block.base_y + double{py[i - block.box.x0]}};
+                        p = row.at(i);
                     else if (block.kind == Block::Kind::exact)
                         seen = static_cast<const BlockMap&>(plan).exact(block, i + 0.5, j + 0.5, p, piece);
                     constexpr double kFilter = 4;

@@ -8,9 +8,8 @@
 
 #include "anamorph/approx/panorama_plan.h"
 #include "anamorph/approx/taylor.h"
-#include "anamorph/render/block_reader.h"
 #include "anamorph/render/footprint.h"
-#include "anamorph/simd/block_sampler.h"
+#include "block_points.h"
 #include "draw_map.h"
 #include "panorama_oracle.h"
 
@@ -56,6 +55,7 @@ std::string words(const Scene& s) {
 
 struct Findings {
     std::int64_t pixels = 0, over_bound = 0, over_tol = 0, lost = 0;
+    std::int64_t cubic = 0, in_double = 0, thin = 0;  ///< blocks; of one row or column of pixels
     double worst = 0, worst_excess = -HUGE_VAL, worst_bound = 0;
     int worst_x = 0, worst_y = 0;
 };
@@ -100,9 +100,13 @@ Findings examine(const Scene& scene) {
     for (std::int64_t region = 0; region < plan.regions(); ++region)
         for (const Block& block : plan.blocks(region)) {
             const Piece& target = map.target().pieces()[static_cast<std::size_t>(block.piece)];
-            float px[simd::kRowRoom], py[simd::kRowRoom];
+            const bool polynomial = test::is_polynomial(block);
+            const bool cubic = block.kind == Block::Kind::bicubic;
+            found.cubic += cubic;
+            found.in_double += cubic && block.precise;
+            found.thin += cubic && (block.box.width() == 1 || block.box.height() == 1);
             for (int j = block.box.y0; j < block.box.y1; ++j) {
-                if (block.kind == Block::Kind::polynomial) block_row(plan, block, block.box, j, px, py);
+                const test::PolynomialRow row(plan, block, j);
                 for (int i = block.box.x0; i < block.box.x1; ++i) {
                     ++found.pixels;
                     Vector ray;
@@ -110,12 +114,11 @@ Findings examine(const Scene& scene) {
                     ray = oracle::turned_back(oracle::rotated(ray, scene.look), scene.held);
                     Point<double> used{};
                     int piece = block.source_piece;
-                    bool seen = block.kind == Block::Kind::polynomial;
+                    bool seen = polynomial;
                     if (block.kind == Block::Kind::exact)
                         seen = static_cast<const BlockMap&>(plan).exact(block, i + 0.5, j + 0.5, used, piece);
                     else if (seen)
-                        used = {block.base_x + double{px[i - block.box.x0]},
-                                block.base_y + double{py[i - block.box.x0]}};
+                        used = row.at(i);
                     if (!seen) {
                         for (const Piece& p : map.source().pieces())
                             found.lost +=
@@ -129,7 +132,7 @@ Findings examine(const Scene& scene) {
                     if (!(error <= block.bound)) ++found.over_bound;
                     // Nothing holds a tolerance where doubles are wider apart, far from the image, or at a
                     // pole.
-                    const bool held = block.bound <= scene.tol || block.kind == Block::Kind::polynomial;
+                    const bool held = block.bound <= scene.tol || polynomial;
                     if (scene.tol > 0 && held && !(error <= scene.tol)) ++found.over_tol;
                     if (!(error - block.bound <= found.worst_excess)) {
                         found.worst_excess = error - block.bound;
@@ -306,6 +309,35 @@ TEST(PanoramaTruth, TheWholePictureThroughALensIsUnderItsBounds) {
             const Findings found = expect_truth(scene);
             EXPECT_LE(found.worst_bound, std::max(scene.tol, 1e-4)) << words(scene);
         }
+}
+
+TEST(PanoramaTruth, CubicBlocksAreUnderTheirBounds) {
+    const View sources[] = {{equirectangular, 8192, 4096, 360}, {cylindrical, 8192, 2608, 360},
+                            {mercator, 4096, 4096, 360},        {fisheye, 3000, 3000, 180},
+                            {stereographic, 3000, 3000, 200},   {cubemap, 1024, 6144, 90}};
+    // Regions are 512 pixels wide: the last of a picture may be a single column, or row.
+    const View targets[] = {{rectilinear, 513, 65, 90},
+                            {rectilinear, 61, 513, 20},
+                            {equirectangular, 257, 129, 360},
+                            {fisheye, 200, 1, 150},
+                            {rectilinear, 1, 300, 1}};
+    Findings all;
+    for (const View& source : sources)
+        for (const View& target : targets)
+            for (const double tol : {1e-2, 1e-3, 1e-4, 1e-5, 1e-6}) {
+                Scene scene{source, target, {30, 20, 10}, tol};
+                for (const Scheme scheme : {Scheme::automatic, Scheme::blocks}) {
+                    scene.scheme = scheme;
+                    const Findings found = expect_truth(scene);
+                    EXPECT_LE(found.worst_bound, tol) << words(scene);
+                    all.cubic += found.cubic;
+                    all.in_double += found.in_double;
+                    all.thin += found.thin;
+                }
+            }
+    EXPECT_GT(all.cubic - all.in_double, 1000);
+    EXPECT_GT(all.in_double, 1000);
+    EXPECT_GT(all.thin, 0);
 }
 
 TEST(PanoramaTruth, HardViewsAreUnderTheirBounds) {

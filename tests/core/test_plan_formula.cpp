@@ -6,8 +6,7 @@
 #include <random>
 
 #include "anamorph/approx/formula_planner.h"
-#include "anamorph/render/block_reader.h"
-#include "anamorph/simd/block_sampler.h"
+#include "block_points.h"
 
 namespace anamorph {
 namespace {
@@ -62,28 +61,27 @@ struct Findings {
 };
 
 /// A pixel's point as a block gives it. False where it gives none.
-bool used_point(const FormulaPlan<Lens>& plan, const Block& block, int i, int j, const float* px,
-                const float* py, Point<double>& p) {
+bool used_point(const FormulaPlan<Lens>& plan, const Block& block, int i, int j,
+                const test::PolynomialRow& row, Point<double>& p) {
     int piece = 0;
     if (block.kind == Block::Kind::exact)
         return static_cast<const BlockMap&>(plan).exact(block, i + 0.5, j + 0.5, p, piece);
-    if (block.kind != Block::Kind::polynomial) return false;
-    p = {block.base_x + double{px[i - block.box.x0]}, block.base_y + double{py[i - block.box.x0]}};
+    if (!test::is_polynomial(block)) return false;
+    p = row.at(i);
     return true;
 }
 
 void examine(const Lens& lens, const FormulaPlan<Lens>& plan, const Block& block, Findings& found) {
     constexpr double kFilter = 4;
-    float px[simd::kRowRoom], py[simd::kRowRoom];
     const Size size = lens.source_size();
     for (int j = block.box.y0; j < block.box.y1; ++j) {
-        if (block.kind == Block::Kind::polynomial) block_row(plan, block, block.box, j, px, py);
+        const test::PolynomialRow row(plan, block, j);
         for (int i = block.box.x0; i < block.box.x1; ++i) {
             ++found.pixels;
             found.exact += block.kind == Block::Kind::exact;
             Point<double> p{};
             const Truth truth = truth_of(lens, i + 0.5L, j + 0.5L);
-            if (used_point(plan, block, i, j, px, py, p)) {
+            if (used_point(plan, block, i, j, row, p)) {
                 const auto error = static_cast<double>(std::hypot(p.x - truth.x, p.y - truth.y));
                 found.lost += !truth.seen;
                 found.worst = std::max(found.worst, error);

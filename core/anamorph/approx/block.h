@@ -18,7 +18,7 @@
 
 namespace anamorph {
 
-/// What a map keeps of a region for its computed blocks.
+/// What a map keeps of a region for its computed or bicubic blocks.
 struct RegionData {
     virtual ~RegionData() = default;
 };
@@ -38,13 +38,13 @@ struct Block {
 
     Box box;
     Kind kind = Kind::exact;
-    bool precise = false;  ///< exact blocks: in long double
+    bool precise = false;  ///< exact blocks: in long double; bicubic: in double, by BlockMap::exact_row
     int piece = 0;         ///< of the target, and the layer (BlockMap)
     int source_piece = 0;  ///< not for exact blocks, nor outside
     std::int32_t base_x = 0, base_y = 0;
     float x[6] = {}, y[6] = {};
     double bound = 0;  ///< of the distance to the exact source point, in source pixels
-    /// Computed blocks: the data of their region, if the map keeps any, and which record there is theirs.
+    /// Computed and bicubic blocks: the data of their region, if the map keeps any, and their record there.
     const RegionData* data = nullptr;
     int record = 0;
 };
@@ -154,7 +154,7 @@ class BlockMap {
         int piece = 0;
         bool seen = false;  ///< false where there is none
     };
-    /// The source points of row `row` (0 is the block's first) of an exact block.
+    /// The source points of row `row` (0 is the block's first) of an exact block, or a precise bicubic one.
     virtual void exact_row(const Block& block, int row, ExactPoint* points) const noexcept;
     /// Source pixels per target pixel at a target point.
     virtual Jacobian jacobian(double x, double y, int piece) const noexcept = 0;

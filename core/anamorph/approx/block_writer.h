@@ -62,7 +62,33 @@ class BlockWriter {
     bool polynomial(const Box& box, const double* x, const double* y, double error) {
         Block block;
         if (!start(box, Block::Kind::polynomial, x, y, block)) return false;
-        return finish(block, rounding(x, block.base_x), rounding(y, block.base_y), error);
+        return finish(block, rounding<6>(x, block.base_x), rounding<6>(y, block.base_y), error);
+    }
+
+    /// A bicubic block of total degree 3: coefficients degree by degree (EconomizedCubic), as the map will give
+    /// them, with the base.
+    bool cubic(const Box& box, const double* x, const double* y, double error) {
+        Block block;
+        if (!start(box, Block::Kind::bicubic, x, y, block)) return false;
+        return finish(block, rounding<10>(x, block.base_x), rounding<10>(y, block.base_y), error);
+    }
+    /// What rounding to float may cost it.
+    static double cubic_rounding(const double* x, const double* y) {
+        return point_rounding(rounding<10>(x, std::floor(x[0])), rounding<10>(y, std::floor(y[0])));
+    }
+    /// One of total degree 4 in double: as often rounded, but for what the sampler does, and once more as the
+    /// base is added.
+    bool precise(const Box& box, const double* x, const double* y, double error) {
+        Block block;
+        if (!start(box, Block::Kind::bicubic, x, y, block)) return false;
+        block.precise = true;
+        const auto in_double = [](const double* c, std::int32_t base) {
+            return 0x1p-29 * rounding<15>(c, base) + 0x1p-53 * (size(c, base) + std::fabs(double(base)));
+        };
+        block.bound = error + std::hypot(in_double(x, block.base_x), in_double(y, block.base_y));
+        if (!(block.bound <= m_tol)) return false;
+        m_blocks.push_back(block);
+        return true;
     }
 
     /// A bicubic block: coefficients of s^i t^j as the map will give them, with the base, and the quadratic
@@ -148,11 +174,12 @@ class BlockWriter {
         return true;
     }
 
-    /// What rounding to float may cost: of a quadratic,
-    static double rounding(const double* c, std::int32_t base) {
-        constexpr int kPower[6] = {0, 1, 1, 2, 2, 2};
+    /// What rounding to float may cost: of a polynomial of total degree 2, 3 or 4,
+    template <int Count>
+    static double rounding(const double* c, double base) {
+        constexpr int kPower[15] = {0, 1, 1, 2, 2, 2, 3, 3, 3, 3, 4, 4, 4, 4, 4};
         double sum = 0;
-        for (int i = 0; i < 6; ++i) sum += std::fabs(i ? c[i] : c[0] - base) * term_rounding(kPower[i]);
+        for (int i = 0; i < Count; ++i) sum += std::fabs(i ? c[i] : c[0] - base) * term_rounding(kPower[i]);
         return sum;
     }
     /// and of a bicubic.
@@ -161,6 +188,13 @@ class BlockWriter {
         for (int i = 0; i < 4; ++i)
             for (int j = 0; j < 4; ++j)
                 sum += std::fabs(i + j ? c[i][j] : c[0][0] - base) * term_rounding(i + j);
+        return sum;
+    }
+
+    /// The size of a polynomial of total degree 4.
+    static double size(const double* c, double base) {
+        double sum = std::fabs(c[0] - base);
+        for (int i = 1; i < 15; ++i) sum += std::fabs(c[i]);
         return sum;
     }
 

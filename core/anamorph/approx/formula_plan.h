@@ -38,6 +38,8 @@ class FormulaPlan : public BlockMap {
     bool truth(double x, double y, int piece, Point<long double>& source_point,
                int& source_piece) const noexcept override;
     Jacobian jacobian(double x, double y, int piece) const noexcept override;
+    BlockPolynomial bicubic(const Block& block) const noexcept override;
+    void exact_row(const Block& block, int row, ExactPoint* points) const noexcept override;
 
   protected:
     void plan(const Box& box, int piece, Blocks& blocks) const override;

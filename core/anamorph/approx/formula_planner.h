@@ -41,11 +41,14 @@ inline constexpr int kPrecisePixels = 64;
 // Long double is at most so many times more precise: 11 bits less those by which constants are known worse.
 inline constexpr double kPreciseGain = 512;
 
-// The part of the tolerance that a remainder may take up before a fresh one, over a smaller box, is worth its
-// cost.
-inline constexpr double kTailShare = 0.25;
-// The part of the tolerance that a remainder over a box may take up for its polynomial to serve parts of it.
-inline constexpr double kPartShare = 0.5;
+// A Taylor polynomial costs as much as so many exact pixels. A pixel whose polynomial is evaluated in double costs
+// such a part of one more than in float.
+inline constexpr double kPolynomialCost = 40, kDoubleCost = 0.3;
+// Blocks are not counted in more parts than this.
+inline constexpr int kMostParts = 256;
+// The part of the tolerance that a remainder over a box may take up for a polynomial on it; and for one that
+// serves parts of it.
+inline constexpr double kTailShare = 0.75, kPartShare = 0.5;
 
 inline int pixels_of(const Box& box) {
     return box.width() * box.height();
@@ -67,17 +70,71 @@ inline Box sub_box(const Box& box, bool vertical_cut, bool second) {
     return b;
 }
 
-/// Plans one piece of the target; blocks are appended to `blocks`.
+/// What a region's bicubic blocks are made of.
+struct Cubics : RegionData {
+    /// Beyond a quadratic: the coefficients of s^3, s^2 t, s t^2 and t^3.
+    struct Terms {
+        float x[4], y[4];
+    };
+    std::vector<Terms> terms;
+    /// Of precise ones all coefficients up to degree 4, as in Jet, less the base.
+    struct Precise {
+        double x[15], y[15];
+    };
+    std::vector<Precise> precise;
+};
+
+inline BlockPolynomial cubic_of(const Block& block) {
+    BlockPolynomial p = quadratic_of(block);
+    p.degree = 3;
+    const auto& cubics = static_cast<const Cubics&>(*block.data);
+    const Cubics::Terms& terms = cubics.terms[static_cast<std::size_t>(block.record)];
+    for (int j = 0; j < 4; ++j) {
+        p.c[j][3 - j] = terms.x[j];
+        p.c[j][7 - j] = terms.y[j];
+    }
+    return p;
+}
+
+/// A row of a precise block: by Horner's rule for t, then for s, as simd/block_sampler.cpp does in float.
+inline void precise_row(const Block& block, int row, BlockMap::ExactPoint* points) {
+    const auto& cubics = static_cast<const Cubics&>(*block.data);
+    const Cubics::Precise& c = cubics.precise[static_cast<std::size_t>(block.record)];
+    const auto step = [](int count) { return count > 1 ? 1.0 / (count - 1) : 0.0; };
+    const int width = block.box.width(), height = block.box.height();
+    const double t = (2 * row - (height - 1)) * step(height), per_pixel = step(width);
+    double x[5], y[5];
+    const auto on_row = [t](const double* of, double* to) {
+        to[0] = (((of[14] * t + of[9]) * t + of[5]) * t + of[2]) * t + of[0];
+        to[1] = ((of[13] * t + of[8]) * t + of[4]) * t + of[1];
+        to[2] = (of[12] * t + of[7]) * t + of[3];
+        to[3] = of[11] * t + of[6];
+        to[4] = of[10];
+    };
+    on_row(c.x, x);
+    on_row(c.y, y);
+    for (int i = 0; i < width; ++i) {
+        const double s = (2 * i - (width - 1)) * per_pixel;
+        points[i] = {{block.base_x + ((((x[4] * s + x[3]) * s + x[2]) * s + x[1]) * s + x[0]),
+                      block.base_y + ((((y[4] * s + y[3]) * s + y[2]) * s + y[1]) * s + y[0])},
+                     block.source_piece,
+                     true};
+    }
+}
+
+/// Plans one piece of the target; blocks are appended to `blocks`, and to `cubics` what they are made of.
 template <FormulaMap Map>
 class Planner {
     using Local = typename Map::Local;
 
   public:
-    Planner(const Map& map, const PlanOptions& options, const Box& region, int piece, Blocks& blocks)
+    Planner(const Map& map, const PlanOptions& options, const Box& region, int piece, Blocks& blocks,
+            Cubics& cubics)
         : m_map(map),
           m_options(options),
           m_piece(piece),
           m_blocks(blocks),
+          m_cubics(cubics),
           m_balance(kCredit * pixels_of(region)),
           m_margin(options.scheme == Scheme::residual ? 0 : 0.5) {}
 
@@ -103,8 +160,10 @@ class Planner {
   private:
     /// May a bound over the box pay? Where only the fastest way is asked for.
     bool worth_a_bound(const Box& box) const {
-        return m_options.scheme != Scheme::automatic || (pixels_of(box) >= kBoundPixels && m_balance >= 0);
+        return worth_a_polynomial() &&
+               (m_options.scheme != Scheme::automatic || pixels_of(box) >= kBoundPixels);
     }
+    bool worth_a_polynomial() const { return m_options.scheme != Scheme::automatic || m_balance >= 0; }
 
     Local local_about(const Box& box) const {
         return m_map.local_around(0.5 * (box.x0 + box.x1), 0.5 * (box.y0 + box.y1), m_piece);
@@ -200,36 +259,23 @@ class Planner {
         if (is_block ? tail_over(box, bound) < HUGE_VAL : serves(box, local, bound)) {
             bound.rounding = shared_rounding(box, local);
             for_boxes(box, 2 * kBlockWidth, 2 * kBlockHeight,
-                      [&](const Box& b) { place(b, expand(b, local, bound), local, bound); });
+                      [&](const Box& b) { place_parts(b, local, bound); });
         } else if (is_kept(p.x.c[0], p.y.c[0]))
             split(box, [&](const Box& b) { settle_blocks(b, local_about(b)); });
         else
             split(box, [&](const Box& b) { settle(b); });
     }
 
-    static double tail_over(const Box& box, const Bound& bound) {
-        const double hx = half(box.width()), hy = half(box.height());
+    static double tail_over(double hx, double hy, const Bound& bound) {
         return length(bound.x.over(hx, hy), bound.y.over(hx, hy));
     }
-
-    /// Is a remainder small enough for the blocks of a box? Tried on the one in its middle.
-    bool serves(const Box& box, const Local& local, const Bound& bound) const {
-        const int x0 = (box.x0 + box.x1) / 2, y0 = (box.y0 + box.y1) / 2;
-        const Box middle{x0, y0, std::min(x0 + kBlockWidth, box.x1), std::min(y0 + kBlockHeight, box.y1)};
-        const double tail = tail_over(middle, bound);
-        return tail < HUGE_VAL && small_tail(tail, Fit(taylor_of(middle, local)).error);
-    }
-
-    /// A block that misses the tolerance is cut until it holds it; what is left of the remainder by then
-    /// decides.
-    bool small_tail(double tail, double fit) const {
-        const double cut = fit > m_options.tol ? std::pow(m_options.tol / fit, 1.0 / 3) : 1;
-        return tail * std::pow(cut, 5) <= kTailShare * m_options.tol;
+    static double tail_over(const Box& box, const Bound& bound) {
+        return tail_over(half(box.width()), half(box.height()), bound);
     }
 
     struct Fit {
         Point<Jet<double, 4>> taylor;
-        Economized x, y;
+        EconomizedCubic x, y;
         double error;
 
         explicit Fit(const Point<Jet<double, 4>>& f)
@@ -242,13 +288,48 @@ class Planner {
                      J::variable(0.5 * (box.y0 + box.y1), 0, half(box.height())), local);
     }
 
+    /// Is a remainder small enough for the blocks of a box? Tried on the one in its middle. Halving the box
+    /// costs two bounds, and may save the blocks that are cut smaller only for what the intervals are wide.
+    bool serves(const Box& box, const Local& local, const Bound& bound) const {
+        const int x0 = (box.x0 + box.x1) / 2, y0 = (box.y0 + box.y1) / 2;
+        const Box middle{x0, y0, std::min(x0 + kBlockWidth, box.x1), std::min(y0 + kBlockHeight, box.y1)};
+        const double tail = tail_over(middle, bound);
+        if (!(tail < HUGE_VAL)) return false;
+        const double hx = half(middle.width()), hy = half(middle.height());
+        const double least = length(bound.x.about(hx, hy), bound.y.about(hx, hy));
+        const Fit fit(taylor_of(middle, local));
+        const double error = cheaper_in_double(middle, fit) ? 0 : fit.error;
+        const double blocks = pixels_of(box) / double{kBlockWidth * kBlockHeight};
+        return blocks * (parts(error, tail) - parts(error, least)) * kPolynomialCost <= 2 * kBoundCost;
+    }
+
+    /// Are cubics in float so many, for their error or their rounding, that one polynomial in double costs less?
+    bool cheaper_in_double(const Box& box, const Fit& fit) const {
+        const double finer = BlockWriter::cubic_rounding(fit.x.c, fit.y.c) / m_options.tol;
+        return kPolynomialCost * std::max(parts(fit.error, 0), finer * finer) >= kDoubleCost * pixels_of(box);
+    }
+
+    /// Into how many parts a block is cut until a cubic holds the tolerance: its error falls with the fourth
+    /// power of the side, the remainder with the fifth.
+    double parts(double fit, double tail) const {
+        double count = 1, side = 1;
+        while (
+            count < kMostParts &&
+            !(std::pow(side, 4) * std::max(fit + tail * side, tail * side / kTailShare) <= m_options.tol)) {
+            count *= 2;
+            side *= 0.70710678;
+        }
+        return count;
+    }
+
     /// A Taylor polynomial, and how far it is from the map anywhere in its box, remainder and rounding.
     struct Expansion {
         Box box;
         Point<Jet<double, 4>> taylor;
         double error;
     };
-    Expansion expand(const Box& box, const Local& local, const Bound& bound) const {
+    Expansion expand(const Box& box, const Local& local, const Bound& bound) {
+        m_balance -= kPolynomialCost;
         const double rounding = bound.rounding < HUGE_VAL
                                     ? bound.rounding
                                     : rounding_over(box, half(box.width()), half(box.height()), local);
@@ -265,30 +346,44 @@ class Planner {
         return Fit({part(e.taylor.x), part(e.taylor.y)});
     }
 
+    /// Places blocks about the middles of boxes over which the remainder is small enough for that.
+    void place_parts(const Box& box, const Local& local, const Bound& bound) {
+        if (!worth_a_polynomial()) return exact(box);
+        const double hx = half(box.width()), hy = half(box.height());
+        const double tail = tail_over(hx, hy, bound);
+        const bool is_block = box.width() <= kBlockWidth && box.height() <= kBlockHeight;
+        if (tail <= (is_block ? kTailShare : kPartShare) * m_options.tol)
+            return place(box, expand(box, local, bound), local, bound);
+        const bool vertical_cut = tail_over(0.5 * hx, hy, bound) <= tail_over(hx, 0.5 * hy, bound);
+        const bool renew =
+            pixels_of(box) <= kBlockWidth * kBlockHeight && parts(0, tail) * kPolynomialCost > 2 * kBoundCost;
+        halve(box, vertical_cut, kFloor, [&](const Box& b) {
+            if (renew && worth_a_bound(b))
+                settle_blocks(b, local_about(b));
+            else
+                place_parts(b, local, bound);
+        });
+    }
+
     /// Emits a part of an expansion's box as one polynomial block if that holds the tolerance, else halves it.
     void place(const Box& box, const Expansion& expansion, const Local& local, const Bound& bound) {
         if (box.width() > kBlockWidth || box.height() > kBlockHeight)
             return for_blocks(box, [&](const Box& b) { place(b, expansion, local, bound); });
         const Fit fit = fit_on(expansion, box);
-        if (emit_polynomial(box, m_map.source_piece(local), fit.x.c, fit.y.c, fit.error + expansion.error))
+        if (emit_fit(box, local, fit, expansion.error) || emit_precise(box, local, fit, expansion.error))
             return;
-        // One about its own middle has a smaller remainder: is it small enough for the box, or for its parts?
-        const double tail = tail_over(box, bound);
-        const bool holds = fit.error + tail <= m_options.tol;
-        if (box != expansion.box && tail < expansion.error && (holds || tail <= kPartShare * m_options.tol))
+        // About its own middle the remainder is smaller.
+        if (box != expansion.box && fit.error + expansion.error > m_options.tol &&
+            fit.error + tail_over(box, bound) <= m_options.tol)
             return place(box, expand(box, local, bound), local, bound);
-        // Halve the side along which more was dropped, with a new bound where that is to blame.
-        const auto dropped = [&](int i, int j) {
+        // Halve the side along which more was dropped, or rounded.
+        const bool rounded = fit.error + expansion.error <= m_options.tol;
+        const auto size = [&](int i, int j) {
             return std::fabs(fit.taylor.x.at(i, j)) + std::fabs(fit.taylor.y.at(i, j));
         };
-        const bool vertical_cut = dropped(3, 0) + dropped(2, 1) >= dropped(0, 3) + dropped(1, 2);
-        const bool renew = !small_tail(tail, fit.error);
-        halve(box, vertical_cut, kFloor, [&](const Box& b) {
-            if (renew && worth_a_bound(b))
-                settle_blocks(b, local_about(b));
-            else
-                place(b, expansion, local, bound);
-        });
+        const bool vertical_cut =
+            rounded ? size(1, 0) >= size(0, 1) : size(4, 0) + size(3, 1) >= size(0, 4) + size(1, 3);
+        halve(box, vertical_cut, kFloor, [&](const Box& b) { place(b, expansion, local, bound); });
     }
 
     /// Kim's table: bilinear cells between nodes on a regular grid, as wide as the second derivatives allow.
@@ -348,10 +443,53 @@ class Planner {
         halve(box, box.width() > box.height(), kResidualFloor, [&](const Box& b) { settle(b); });
     }
 
+    /// True when a polynomial of degree 2 or, where that does not, 3 keeps the tolerance, `error` away from the
+    /// map besides: then the block is appended.
+    bool emit_fit(const Box& box, const Local& local, const Fit& fit, double error) {
+        if (!(fit.error + error <= m_options.tol)) return false;
+        const int source_piece = m_map.source_piece(local);
+        const Economized x(fit.x), y(fit.y);
+        return emit_polynomial(box, source_piece, x.c, y.c, length(x.error, y.error) + error) ||
+               emit_cubic(box, source_piece, fit.x.c, fit.y.c, fit.error + error);
+    }
     /// True when the polynomial, off by `error` in double and evaluated in float, keeps the tolerance: then
     /// the block is appended.
     bool emit_polynomial(const Box& box, int source_piece, const double* cx, const double* cy, double error) {
         if (!BlockWriter(m_options.tol, m_blocks).polynomial(box, cx, cy, error)) return false;
+        finish(box, source_piece);
+        return true;
+    }
+    bool emit_cubic(const Box& box, int source_piece, const double* cx, const double* cy, double error) {
+        if (!BlockWriter(m_options.tol, m_blocks).cubic(box, cx, cy, error)) return false;
+        Cubics::Terms& terms = m_cubics.terms.emplace_back();
+        std::copy_n(cx + 6, 4, terms.x);
+        std::copy_n(cy + 6, 4, terms.y);
+        finish(box, source_piece);
+        m_blocks.back().data = &m_cubics;
+        m_blocks.back().record = static_cast<int>(m_cubics.terms.size()) - 1;
+        return true;
+    }
+    /// The Taylor polynomial as it is, in double, where cubics in float would be so many that this is cheaper.
+    bool emit_precise(const Box& box, const Local& local, const Fit& fit, double error) {
+        const double *x = fit.taylor.x.c, *y = fit.taylor.y.c;
+        // The base may come to stand a turn farther away.
+        error += 0x1p-53 * m_map.period();
+        if (!cheaper_in_double(box, fit) || !BlockWriter(m_options.tol, m_blocks).precise(box, x, y, error))
+            return false;
+        const Block& block = m_blocks.back();
+        Cubics::Precise& c = m_cubics.precise.emplace_back();
+        std::copy_n(x, 15, c.x);
+        std::copy_n(y, 15, c.y);
+        c.x[0] -= block.base_x;
+        c.y[0] -= block.base_y;
+        finish(box, m_map.source_piece(local));
+        m_balance -= kDoubleCost * pixels_of(box);
+        m_blocks.back().data = &m_cubics;
+        m_blocks.back().record = static_cast<int>(m_cubics.precise.size()) - 1;
+        return true;
+    }
+    /// What the writer does not know of a block.
+    void finish(const Box& box, int source_piece) {
         m_balance += pixels_of(box);
         Block& block = m_blocks.back();
         block.piece = m_piece;
@@ -359,7 +497,6 @@ class Planner {
         // The turn that brings the block's middle into the image.
         if (const int period = m_map.period(); period > 0)
             block.base_x -= static_cast<int>(std::floor(static_cast<double>(block.base_x) / period)) * period;
-        return true;
     }
 
     void emit(const Box& box, Block::Kind kind) {
@@ -413,7 +550,8 @@ class Planner {
     const PlanOptions& m_options;
     int m_piece;
     Blocks& m_blocks;
-    double m_balance;  ///< exact pixels saved less those that bounds would have paid for
+    Cubics& m_cubics;
+    double m_balance;  ///< exact pixels saved less those that bounds and polynomials would have paid for
     double m_margin;   ///< of what is enclosed of a box: from its edges to the nodes that blocks are made of
     std::optional<LinearPart> m_linear;
 };
@@ -481,7 +619,8 @@ void FormulaPlan<Map>::plan(const Box& box, int piece, Blocks& blocks) const {
     using namespace planner_detail;
     Blocks planned;
     planned.reserve(2 * kRegion * kRegion / (kBlockWidth * kBlockHeight));
-    Planner<Map> planner(m_map, m_options, box, piece, planned);
+    const auto cubics = std::make_shared<Cubics>();
+    Planner<Map> planner(m_map, m_options, box, piece, planned, *cubics);
     if (m_options.scheme == Scheme::exact || m_options.tol == 0)
         planner.exact(box);
     else
@@ -493,6 +632,18 @@ void FormulaPlan<Map>::plan(const Box& box, int piece, Blocks& blocks) const {
             exact.place(block);
         else
             blocks.push_back(block);
+    if (!cubics->terms.empty() || !cubics->precise.empty()) blocks.data = cubics;
+}
+
+template <class Map>
+BlockPolynomial FormulaPlan<Map>::bicubic(const Block& block) const noexcept {
+    return planner_detail::cubic_of(block);
+}
+
+template <class Map>
+void FormulaPlan<Map>::exact_row(const Block& block, int row, ExactPoint* points) const noexcept {
+    if (block.kind == Block::Kind::bicubic) return planner_detail::precise_row(block, row, points);
+    BlockMap::exact_row(block, row, points);
 }
 
 template <class Map>

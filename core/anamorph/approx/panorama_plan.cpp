@@ -9,7 +9,7 @@ namespace anamorph {
 template class FormulaPlan<Panorama>;
 
 void PanoramaPlan::exact_row(const Block& block, int row, ExactPoint* points) const noexcept {
-    if (block.precise) return BlockMap::exact_row(block, row, points);
+    if (block.precise) return FormulaPlan::exact_row(block, row, points);
     simd::ExactRow found;
     const int count = block.box.width();
     simd::exact_row(map().target(), map().source(), map().turn(), block.piece, block.box.x0 + 0.5,

@@ -16,13 +16,23 @@ namespace anamorph {
 template <int K>
 struct Remainder {
     double c[K + 1] = {};
+    double middle[K + 1] = {};  ///< of the coefficients' middles
 
     template <int N>
     explicit Remainder(const Jet<Interval, N>& jet) {
         static_assert(N >= K);
-        for (int j = 0; j <= K; ++j) c[j] = magnitude(jet.at(K - j, j));
+        for (int j = 0; j <= K; ++j) {
+            const Interval& a = jet.at(K - j, j);
+            c[j] = magnitude(a);
+            middle[j] = std::fabs(0.5 * (a.lo + a.hi));
+        }
     }
-    double over(double hx, double hy) const {
+    double over(double hx, double hy) const { return sum(c, hx, hy); }
+    /// What may be left of it over a much smaller box.
+    double about(double hx, double hy) const { return sum(middle, hx, hy); }
+
+  private:
+    static double sum(const double* c, double hx, double hy) {
         // Horner in hy with falling powers of hx.
         double sum = c[K], power = 1;
         for (int j = K - 1; j >= 0; --j) {
@@ -48,27 +58,38 @@ TaylorRounding taylor_rounding(const Map& map, const Interval& x, const Interval
     return {{p.x.error, p.y.error}, {p.x.computed_size(), p.y.computed_size()}};
 }
 
-/// The polynomial c[0] + c[1] s + c[2] t + c[3] s^2 + c[4] s t + c[5] t^2 nearest to a Taylor polynomial of
-/// degree 4 on [-1, 1]^2, found by dropping the products of Chebyshev polynomials above degree 2; `error`
-/// bounds what was dropped (each product is at most 1).
+/// The polynomial of total degree 3 nearest to a Taylor polynomial of degree 4 on [-1, 1]^2, found by dropping
+/// the products of Chebyshev polynomials of degree 4: coefficients degree by degree, those of s^k, s^(k-1) t, ...
+/// `error` bounds what was dropped (each product is at most 1).
+struct EconomizedCubic {
+    double c[10];
+    double error;
+
+    explicit EconomizedCubic(const Jet<double, 4>& f) {
+        const auto size = [&](int i, int j) { return std::fabs(f.at(i, j)); };
+        // s^4 = s^2 - 1/8 + T4 / 8, s^3 t = (3 s + T3) t / 4, s^2 t^2 = (s^2 + t^2) / 2 - 1/4 + T2(s) T2(t) / 4
+        for (int k = 0; k < 10; ++k) c[k] = f.c[k];
+        c[0] -= 0.125 * (f.at(4, 0) + f.at(0, 4)) + 0.25 * f.at(2, 2);
+        c[3] += f.at(4, 0) + 0.5 * f.at(2, 2);
+        c[4] += 0.75 * (f.at(3, 1) + f.at(1, 3));
+        c[5] += f.at(0, 4) + 0.5 * f.at(2, 2);
+        error = 0.125 * (size(4, 0) + size(0, 4)) + 0.25 * (size(3, 1) + size(1, 3) + size(2, 2));
+    }
+};
+
+/// The same of degree 2, c[0] + c[1] s + c[2] t + c[3] s^2 + c[4] s t + c[5] t^2, with the products of degree 3
+/// dropped as well.
 struct Economized {
     double c[6];
     double error;
 
-    explicit Economized(const Jet<double, 4>& f) {
-        const auto size = [&](int i, int j) { return std::fabs(f.at(i, j)); };
-        // s^3 = (3 T1 + T3) / 4, s^2 t = (1 + T2) t / 2, s^4 = (3 + 4 T2 + T4) / 8, s^2 t^2 = (1 + T2)(1 +
-        // T2) / 4
-        const double ss = 0.5 * (f.at(2, 0) + f.at(4, 0)) + 0.25 * f.at(2, 2);  // of T2(s)
-        const double tt = 0.5 * (f.at(0, 2) + f.at(0, 4)) + 0.25 * f.at(2, 2);  // of T2(t)
-        c[0] = f.at(0, 0) - 0.125 * (f.at(4, 0) + f.at(0, 4)) - 0.25 * f.at(2, 2);
-        c[1] = f.at(1, 0) + 0.75 * f.at(3, 0) + 0.5 * f.at(1, 2);
-        c[2] = f.at(0, 1) + 0.75 * f.at(0, 3) + 0.5 * f.at(2, 1);
-        c[3] = 2 * ss;
-        c[4] = f.at(1, 1) + 0.75 * (f.at(3, 1) + f.at(1, 3));
-        c[5] = 2 * tt;
-        error = 0.5 * (size(2, 1) + size(1, 2)) + 0.25 * (size(3, 0) + size(0, 3)) +
-                0.25 * (size(3, 1) + size(1, 3) + size(2, 2)) + 0.125 * (size(4, 0) + size(0, 4));
+    explicit Economized(const EconomizedCubic& f) {
+        // s^3 = (3 s + T3) / 4, s^2 t = (1 + T2(s)) t / 2
+        for (int k = 0; k < 6; ++k) c[k] = f.c[k];
+        c[1] += 0.75 * f.c[6] + 0.5 * f.c[8];
+        c[2] += 0.75 * f.c[9] + 0.5 * f.c[7];
+        error = f.error + 0.25 * (std::fabs(f.c[6]) + std::fabs(f.c[9])) +
+                0.5 * (std::fabs(f.c[7]) + std::fabs(f.c[8]));
     }
 };
 

@@ -32,7 +32,7 @@ Parameter extent(const char* name, std::string value, double least, double most,
 const std::vector<Word>& shared_schemes() {
     static const std::vector<Word> words = {{"auto", "the fastest that holds tol"},
                                             {"exact", "every pixel by the formula"},
-                                            {"blocks", "quadratic polynomials on blocks"},
+                                            {"blocks", "polynomials of degree 2 to 4 on blocks"},
                                             {"residual", "linear maps and a table of what remains"}};
     return words;
 }

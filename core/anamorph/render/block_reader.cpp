@@ -16,7 +16,7 @@ namespace {
 constexpr int kMaxRow = simd::kMaxRow;
 
 bool is_polynomial(const Block& block) {
-    return block.kind == Block::Kind::polynomial || block.kind == Block::Kind::bicubic;
+    return block.kind == Block::Kind::polynomial || (block.kind == Block::Kind::bicubic && !block.precise);
 }
 
 BlockPolynomial polynomial_of(const BlockMap& map, const Block& block) {
@@ -267,8 +267,10 @@ struct BlockReader::LevelPoints {
     /// The texel a point falls into, less the base, and how far into it. Whole texels apart: the rest loses
     /// at most half of 2^-24 texels in float, all of it where float would round it to the next texel.
     void split(double point, std::int32_t& texel, float& rest) const {
-        const double at = point * scale, floor = std::floor(at);
-        texel = static_cast<std::int32_t>(floor) - base;
+        const double at = point * scale;
+        const auto toward_zero = static_cast<std::int32_t>(at);
+        const std::int32_t floor = toward_zero - (at < toward_zero);
+        texel = floor - base;
         rest = std::min(static_cast<float>(at - floor), 0x1.fffffep-1f);
     }
 };
@@ -291,14 +293,16 @@ bool BlockReader::rows(const Block& block, const Box& part, const Row& row) {
                     row(x, j, std::min(kMaxRow, part.x1 - x), m_values.data(), 1);
             return true;
         case Block::Kind::polynomial:
+            return polynomial_rows(block, part, row);
         case Block::Kind::bicubic:
+            if (block.precise) break;
             return polynomial_rows(block, part, row);
         case Block::Kind::computed:
             return rows(block, points_of(block), part, row);
         case Block::Kind::exact:
             break;
     }
-    return exact_rows(block, part, row);
+    return rows_in_double(block, part, row);
 }
 
 bool BlockReader::draw(const Block& block, const Box& part, const Canvas& canvas, const Block* next) {
@@ -448,7 +452,8 @@ BlockPoints BlockReader::points_of(const Block& block) {
     return m_planes->points(0);
 }
 
-bool BlockReader::exact_rows(const Block& block, const Box& part, const Row& row) {
+/// Of exact blocks and of polynomials in double.
+bool BlockReader::rows_in_double(const Block& block, const Box& part, const Row& row) {
     // Positions of the whole block decide how it is read, whatever part of it is asked for.
     const int w = block.box.width();
     m_exact.resize(static_cast<std::size_t>(w) * static_cast<std::size_t>(block.box.height()));
@@ -502,6 +507,10 @@ bool BlockReader::rows_one_by_one(const Block& block, const BlockPoints& points,
             float* pixel = m_values.data() + (i - part.x0) * channels;
             Point<double> p{block.base_x + double(px[i - part.x0]), block.base_y + double(py[i - part.x0])};
             int piece = block.source_piece;
+            if (is_precise_polynomial(block))
+                p = m_exact[static_cast<std::size_t>((j - block.box.y0) * block.box.width() + i -
+                                                     block.box.x0)]
+                        .at;
             if (block.kind == Block::Kind::exact && !m_map.exact(block, i + 0.5, j + 0.5, p, piece))
                 std::fill_n(pixel, channels, 0.0f);
             else

@@ -45,16 +45,21 @@ class BlockPlanes {
 /// of kSamplerRounding; points from a table or in double lose less. The next power of two.
 inline constexpr double kLevelRounding = 0x1p-21;
 
+/// Is it a polynomial in double, whose points BlockMap::exact_row gives?
+inline bool is_precise_polynomial(const Block& block) {
+    return block.kind == Block::Kind::bicubic && block.precise;
+}
+
 /// The offsets from the base of a polynomial, bicubic or computed block for row j of `part` of it; room for
-/// simd::kRowRoom floats each. Nothing is written for other kinds.
+/// simd::kRowRoom floats each. Nothing is written for other kinds, nor for polynomials in double.
 void block_row(const BlockMap& map, const Block& block, const Box& part, int j, float* x, float* y);
 
 /// Reads one source through one map; one per thread. The bits of a pixel depend on its block and the source,
 /// not on the part of the block that is asked for.
 ///
 /// Where it reads. On the source itself the point sampled is within the block's bound of the exact one; that
-/// of an exact pixel is within 2^-23 texels of the point in double (its rest past a whole texel is rounded,
-/// and kSamplerRounding). On a coarser level of a pyramid kLevelRounding of that level's texels are added:
+/// of an exact pixel, or of a polynomial in double, is within 2^-23 texels of the point in double (its rest past
+/// a whole texel is rounded, and kSamplerRounding). On a coarser level of a pyramid kLevelRounding of that level's texels are added:
 /// what is left of a point past a whole texel is a float there too.
 ///
 /// What it averages. An antialiased pixel takes a footprint whose axes are the map's own, its steps from
@@ -97,7 +102,7 @@ class BlockReader {
     enum class Got { window, too_large, failed };
 
     bool polynomial_rows(const Block& block, const Box& part, const Row& row);
-    bool exact_rows(const Block& block, const Box& part, const Row& row);
+    bool rows_in_double(const Block& block, const Box& part, const Row& row);
     bool rows_one_by_one(const Block& block, const BlockPoints& points, const Box& part, const Row& row);
     bool sample_point(int i, int j, int target_piece, const Point<double>& p, int piece, float* pixel);
     void sample(const simd::Texels& texels, const simd::Offsets& offsets, PixelType type, int x, int y,
@@ -132,7 +137,7 @@ class BlockReader {
     FootprintChooser m_chooser;
     std::vector<float> m_values;
     std::optional<BlockPlanes> m_planes;
-    std::vector<BlockMap::ExactPoint> m_exact;
+    std::vector<BlockMap::ExactPoint> m_exact;  ///< of the block that rows_in_double() is at
 };
 
 }  // namespace anamorph

@@ -23,6 +23,10 @@ class PointRow {
             const std::ptrdiff_t at = (j - block.box.y0) * points.row_stride + part.x0 - block.box.x0;
             m_px = points.x + at;
             m_py = points.y + at;
+        } else if (is_precise_polynomial(block)) {
+            m_precise.resize(static_cast<std::size_t>(block.box.width()));
+            map.exact_row(block, j - block.box.y0, m_precise.data());
+            m_precise.erase(m_precise.begin(), m_precise.begin() + (part.x0 - block.box.x0));
         } else
             block_row(map, block, part, j, m_room[0], m_room[1]);
     }
@@ -34,7 +38,9 @@ class PointRow {
         if (m_block.kind == Block::Kind::exact)
             found.seen = m_map.exact(m_block, x(i), m_y, found.at, found.piece);
         else {
-            found.at = {m_block.base_x + double{m_px[i]}, m_block.base_y + double{m_py[i]}};
+            found.at = !m_precise.empty() ? m_precise[static_cast<std::size_t>(i)].at
+                                          : Point<double>{m_block.base_x + double{m_px[i]},
+                                                          m_block.base_y + double{m_py[i]}};
             found.seen = m_map.seen(x(i), m_y, m_block.piece);
         }
         return found;
@@ -46,6 +52,7 @@ class PointRow {
     double m_first, m_y;
     alignas(64) float m_room[2][simd::kRowRoom];
     const float *m_px = m_room[0], *m_py = m_room[1];
+    std::vector<BlockMap::ExactPoint> m_precise;
 };
 
 /// The distance from the truth at (x, y); the source's x is counted around one with azimuths.

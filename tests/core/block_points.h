@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: Apache-2.0
+// The source points that a block's polynomial gives its pixels.
+#pragma once
+
+#include <vector>
+
+#include "anamorph/render/block_reader.h"
+#include "anamorph/simd/block_sampler.h"
+
+namespace anamorph::test {
+
+inline bool is_polynomial(const Block& block) {
+    return block.kind == Block::Kind::polynomial || block.kind == Block::Kind::bicubic;
+}
+
+/// Row j of a block; nothing of those that are no polynomials.
+class PolynomialRow {
+  public:
+    PolynomialRow(const BlockMap& map, const Block& block, int j) : m_block(block) {
+        if (is_precise_polynomial(block)) {
+            m_points.resize(static_cast<std::size_t>(block.box.width()));
+            map.exact_row(block, j - block.box.y0, m_points.data());
+        } else if (is_polynomial(block))
+            block_row(map, block, block.box, j, m_x, m_y);
+    }
+    /// Of pixel i of the picture.
+    Point<double> at(int i) const {
+        const int k = i - m_block.box.x0;
+        if (!m_points.empty()) return m_points[static_cast<std::size_t>(k)].at;
+        return {m_block.base_x + double{m_x[k]}, m_block.base_y + double{m_y[k]}};
+    }
+
+  private:
+    const Block& m_block;
+    float m_x[simd::kRowRoom], m_y[simd::kRowRoom];
+    std::vector<BlockMap::ExactPoint> m_points;
+};
+
+}  // namespace anamorph::test
