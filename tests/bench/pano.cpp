@@ -35,7 +35,10 @@ constexpr double kLeastResidualTol = 0.001;
 constexpr Orientation kTurned{30, 20, 10};
 
 const std::pair<Scheme, const char*> kSchemes[] = {
-    {Scheme::automatic, "automatic"}, {Scheme::blocks, "blocks"}, {Scheme::residual, "residual"}};
+    {Scheme::automatic, "automatic"},
+    {Scheme::blocks, "blocks"},
+    {Scheme::residual, "residual"},
+    {Scheme::direct, "direct"}};
 
 /// A view to be measured.
 struct View {

@@ -17,7 +17,7 @@ using Points = std::vector<Point<double>>;
 Points true_points(const Panorama& map, const ParallelFor& parallel_for);
 
 /// Calls `body(i, j, point)` for the pixels of a block. Polynomials are evaluated here as block.h states
-/// them, in plain float arithmetic, apart from the product's own loops, those in double by the plan; exact
+/// them, in plain float arithmetic, apart from the product's own loops, those in double and direct ones by the plan; exact
 /// pixels by Panorama::exact<double>.
 template <class Body>
 void for_points(const PanoramaPlan& plan, const Block& block, const Body& body) {
@@ -26,6 +26,8 @@ void for_points(const PanoramaPlan& plan, const Block& block, const Body& body) 
     const bool bicubic = block.kind == Block::Kind::bicubic;
     const BlockPolynomial polynomial = bicubic && !block.precise ? plan.bicubic(block) : quadratic_of(block);
     std::vector<BlockMap::ExactPoint> row(static_cast<std::size_t>(box.width()));
+    const bool direct = block.kind == Block::Kind::computed;
+    std::vector<float> x(row.size() + 16), y(row.size() + 16);
     // s and t run from -1 to 1 over the pixel centres; a single one stands at 0.
     const auto along = [](int k, int count) {
         return count > 1 ? static_cast<float>(2 * k - (count - 1)) / static_cast<float>(count - 1) : 0.0f;
@@ -41,10 +43,14 @@ void for_points(const PanoramaPlan& plan, const Block& block, const Body& body) 
     };
     for (int j = box.y0; j < box.y1; ++j) {
         if (bicubic && block.precise) plan.exact_row(block, j - box.y0, row.data());
+        if (direct) plan.computed_row(block, j - box.y0, 0, box.width(), x.data(), y.data());
         for (int i = box.x0; i < box.x1; ++i) {
             Point<double> p{std::nan(""), std::nan("")};
             if (bicubic && block.precise) {
                 p = row[static_cast<std::size_t>(i - box.x0)].at;
+            } else if (direct) {
+                const auto k = static_cast<std::size_t>(i - box.x0);
+                p = {block.base_x + double{x[k]}, block.base_y + double{y[k]}};
             } else if (block.kind == Block::Kind::polynomial || bicubic) {
                 const float s = along(i - box.x0, box.width()), t = along(j - box.y0, box.height());
                 p = {block.base_x + static_cast<double>(value(0, s, t)),

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The source points that a block's polynomial gives its pixels.
+// The source points that a block gives its pixels.
 #pragma once
 
 #include <vector>
@@ -9,18 +9,19 @@
 
 namespace anamorph::test {
 
-inline bool is_polynomial(const Block& block) {
-    return block.kind == Block::Kind::polynomial || block.kind == Block::Kind::bicubic;
+/// By a polynomial, or in float by the formula.
+inline bool has_points(const Block& block) {
+    return block.kind != Block::Kind::exact && block.kind != Block::Kind::outside;
 }
 
-/// Row j of a block; nothing of those that are no polynomials.
-class PolynomialRow {
+/// Row j of a block; nothing of one that has none.
+class BlockRow {
   public:
-    PolynomialRow(const BlockMap& map, const Block& block, int j) : m_block(block) {
+    BlockRow(const BlockMap& map, const Block& block, int j) : m_block(block) {
         if (is_precise_polynomial(block)) {
             m_points.resize(static_cast<std::size_t>(block.box.width()));
             map.exact_row(block, j - block.box.y0, m_points.data());
-        } else if (is_polynomial(block))
+        } else if (has_points(block))
             block_row(map, block, block.box, j, m_x, m_y);
     }
     /// Of pixel i of the picture.

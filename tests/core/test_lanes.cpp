@@ -63,6 +63,15 @@ void Evaluate(int which, const S* a, const S* b, std::size_t count, S* out) {
             case 9:
                 r = scaled_sinh(x, s);
                 break;
+            case 10:
+                sine_versine(x, r, c);
+                break;
+            case 11:
+                sine_versine(x, s, r);
+                break;
+            case 12:
+                r = small_atan(x);
+                break;
             default:
                 r = x / y;
         }
@@ -86,9 +95,10 @@ HWY_EXPORT(EvaluateFloat);
 
 namespace {
 
-constexpr int kFunctions = 10;
+constexpr int kFunctions = 13;
 const char* const kNames[kFunctions] = {"sin",  "cos",   "atan2", "exp",      "log",
-                                        "tanh", "asinh", "hypot", "quotient", "sech"};
+                                        "tanh", "asinh", "hypot", "quotient", "sech",
+                                        "sine", "versine", "small atan"};
 constexpr unsigned kSeed = 4711;
 constexpr std::size_t kCount = 1 << 16;  // a multiple of any number of lanes
 
@@ -120,13 +130,19 @@ long double truth(int which, long double a, long double b, bool precise) {
             return std::sqrt(a * a + b * b);
         case 9:
             return std::max(1 / std::cosh(a), precise ? static_cast<long double>(kLeastScale) : 0x1p-100L);
+        case 10:
+            return std::sin(a);
+        case 11:
+            return 2 * std::sin(a / 2) * std::sin(a / 2);
+        case 12:
+            return std::atan(a);
         default:
             return a / b;
     }
 }
 
 /// What lanes.h states, in units of half the spacing relative to the value.
-constexpr double kStated[kFunctions] = {4, 4, 5, 3, 3, 8, 8, 3, 1, 5};
+constexpr double kStated[kFunctions] = {4, 4, 5, 3, 3, 8, 8, 3, 1, 5, 4, 4, 4};
 
 long double stated(int which, long double a, long double value, bool precise) {
     if (which < 2 && !precise) return 2 + std::fabs(a) / 2048;
@@ -162,6 +178,13 @@ void arguments(int which, std::mt19937& random, std::vector<S>& a, std::vector<S
             case 5:
             case 9:
                 a[i] = static_cast<S>(i % 3 == 0 ? u * 1e-6 : i % 2 ? u : u * (precise ? 700 : 85));
+                break;
+            case 10:
+            case 11:
+                a[i] = static_cast<S>((i % 2 ? u : u * 1e-5) * (M_PI / 4));
+                break;
+            case 12:
+                a[i] = static_cast<S>((i % 2 ? u : u * 1e-5) * (M_SQRT2 - 1));
                 break;
             default:
                 a[i] = static_cast<S>(i % 2 ? u : spread);

@@ -72,17 +72,17 @@ Findings examine(const LensPlan& plan, const Truth& truth) {
     for (std::int64_t region = 0; region < plan.regions(); ++region)
         for (const Block& block : plan.blocks(region)) {
             found.bound = std::max(found.bound, block.bound);
-            const bool polynomial = test::is_polynomial(block);
+            const bool drawn = test::has_points(block);
             for (int j = block.box.y0; j < block.box.y1; ++j) {
-                const test::PolynomialRow row(plan, block, j);
+                const test::BlockRow row(plan, block, j);
                 for (int i = block.box.x0; i < block.box.x1; ++i) {
                     ++found.pixels;
                     found.exact += block.kind == Block::Kind::exact;
                     const Point<Real> at = truth(i + 0.5L, j + 0.5L);
                     Point<double> p{};
                     int piece = 0;
-                    bool seen = polynomial;
-                    if (polynomial)
+                    bool seen = drawn;
+                    if (drawn)
                         p = row.at(i);
                     else if (block.kind == Block::Kind::exact)
                         seen = static_cast<const BlockMap&>(plan).exact(block, i + 0.5, j + 0.5, p, piece);

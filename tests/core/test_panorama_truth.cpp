@@ -100,13 +100,13 @@ Findings examine(const Scene& scene) {
     for (std::int64_t region = 0; region < plan.regions(); ++region)
         for (const Block& block : plan.blocks(region)) {
             const Piece& target = map.target().pieces()[static_cast<std::size_t>(block.piece)];
-            const bool polynomial = test::is_polynomial(block);
+            const bool drawn = test::has_points(block);
             const bool cubic = block.kind == Block::Kind::bicubic;
             found.cubic += cubic;
             found.in_double += cubic && block.precise;
             found.thin += cubic && (block.box.width() == 1 || block.box.height() == 1);
             for (int j = block.box.y0; j < block.box.y1; ++j) {
-                const test::PolynomialRow row(plan, block, j);
+                const test::BlockRow row(plan, block, j);
                 for (int i = block.box.x0; i < block.box.x1; ++i) {
                     ++found.pixels;
                     Vector ray;
@@ -114,7 +114,7 @@ Findings examine(const Scene& scene) {
                     ray = oracle::turned_back(oracle::rotated(ray, scene.look), scene.held);
                     Point<double> used{};
                     int piece = block.source_piece;
-                    bool seen = polynomial;
+                    bool seen = drawn;
                     if (block.kind == Block::Kind::exact)
                         seen = static_cast<const BlockMap&>(plan).exact(block, i + 0.5, j + 0.5, used, piece);
                     else if (seen)
@@ -132,7 +132,7 @@ Findings examine(const Scene& scene) {
                     if (!(error <= block.bound)) ++found.over_bound;
                     // Nothing holds a tolerance where doubles are wider apart, far from the image, or at a
                     // pole.
-                    const bool held = block.bound <= scene.tol || polynomial;
+                    const bool held = block.bound <= scene.tol || drawn;
                     if (scene.tol > 0 && held && !(error <= scene.tol)) ++found.over_tol;
                     if (!(error - block.bound <= found.worst_excess)) {
                         found.worst_excess = error - block.bound;
@@ -238,7 +238,8 @@ TEST(PanoramaTruth, NoPixelIsOverItsBound) {
             for (const Projection to : kAll) {
                 Scene scene{random.view(from, true), random.view(to, false), {}, kTols[random.integer(0, 4)]};
                 scene.look = {random.angle(), random.angle(), random.chance(0.5) ? 0 : random.angle()};
-                scene.scheme = random.chance(0.3)   ? Scheme::residual
+                scene.scheme = random.chance(0.2)   ? Scheme::residual
+                               : random.chance(0.3) ? Scheme::direct
                                : random.chance(0.5) ? Scheme::blocks
                                                     : Scheme::automatic;
                 if (scene.source.width > 8 && scene.source.height > 48 && random.chance(0.2))
@@ -267,6 +268,7 @@ TEST(PanoramaTruth, NoPixelIsOverItsBoundThroughLenses) {
                 scene.look = {random.angle(), random.angle(), random.chance(0.5) ? 0 : random.angle()};
                 if (random.chance(0.5)) scene.held = {random.angle(), random.angle(), random.angle()};
                 scene.scheme = random.chance(0.2)   ? Scheme::residual
+                               : random.chance(0.3) ? Scheme::direct
                                : random.chance(0.5) ? Scheme::blocks
                                                     : Scheme::automatic;
                 try {
@@ -304,7 +306,7 @@ TEST(PanoramaTruth, TheWholePictureThroughALensIsUnderItsBounds) {
         {lens({fisheye, 3000, 2000, 150}, "3de4:k1=-0.6"), lens(fish, "kb4:k1=-0.05"), {0, 10, 0}, 0.01},
     };
     for (Scene scene : scenes)
-        for (const Scheme scheme : {Scheme::automatic, Scheme::blocks, Scheme::residual}) {
+        for (const Scheme scheme : {Scheme::automatic, Scheme::blocks, Scheme::residual, Scheme::direct}) {
             scene.scheme = scheme;
             const Findings found = expect_truth(scene);
             EXPECT_LE(found.worst_bound, std::max(scene.tol, 1e-4)) << words(scene);

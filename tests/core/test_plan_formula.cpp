@@ -62,11 +62,11 @@ struct Findings {
 
 /// A pixel's point as a block gives it. False where it gives none.
 bool used_point(const FormulaPlan<Lens>& plan, const Block& block, int i, int j,
-                const test::PolynomialRow& row, Point<double>& p) {
+                const test::BlockRow& row, Point<double>& p) {
     int piece = 0;
     if (block.kind == Block::Kind::exact)
         return static_cast<const BlockMap&>(plan).exact(block, i + 0.5, j + 0.5, p, piece);
-    if (!test::is_polynomial(block)) return false;
+    if (!test::has_points(block)) return false;
     p = row.at(i);
     return true;
 }
@@ -75,7 +75,7 @@ void examine(const Lens& lens, const FormulaPlan<Lens>& plan, const Block& block
     constexpr double kFilter = 4;
     const Size size = lens.source_size();
     for (int j = block.box.y0; j < block.box.y1; ++j) {
-        const test::PolynomialRow row(plan, block, j);
+        const test::BlockRow row(plan, block, j);
         for (int i = block.box.x0; i < block.box.x1; ++i) {
             ++found.pixels;
             found.exact += block.kind == Block::Kind::exact;

@@ -44,6 +44,9 @@ class FormulaPlan : public BlockMap {
   protected:
     void plan(const Box& box, int piece, Blocks& blocks) const override;
 
+    /// Where a computed block is read.
+    static const typename Map::Local& place_of(const Block& block);
+
   private:
     Map m_map;
     PlanOptions m_options;

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <memory>
 #include <optional>
 
 #include "anamorph/approx/block_writer.h"
@@ -48,7 +49,15 @@ inline constexpr double kPolynomialCost = 40, kDoubleCost = 0.3;
 inline constexpr int kMostParts = 256;
 // The part of the tolerance that a remainder over a box may take up for a polynomial on it; and for one that
 // serves parts of it.
-inline constexpr double kTailShare = 0.75, kPartShare = 0.5;
+inline constexpr double kTailShare = 0.125, kPartShare = 0.25;
+
+// What a pixel of a polynomial saves, as a part of an exact pixel, where it could be direct instead.
+inline constexpr double kDirectSaving = 1.0 / 8;
+// A direct bound costs as much as so many exact pixels.
+inline constexpr int kDirectCost = 60;
+// The least pixels of a direct block, whose bases cost as much as some tens of them: where one bound serves all of a large
+// box, which is otherwise cut first, and in small ones.
+inline constexpr int kLargeBox = 128 * 128, kLeastDirect = 512, kLeastOfSmall = 128;
 
 inline int pixels_of(const Box& box) {
     return box.width() * box.height();
@@ -122,20 +131,27 @@ inline void precise_row(const Block& block, int row, BlockMap::ExactPoint* point
     }
 }
 
-/// Plans one piece of the target; blocks are appended to `blocks`, and to `cubics` what they are made of.
+/// And where direct blocks are read.
+template <class Local>
+struct Records : Cubics {
+    std::vector<Local> places;
+};
+
+/// Plans one piece of the target; blocks are appended to `blocks`, and to `records` what they are made of.
 template <FormulaMap Map>
 class Planner {
     using Local = typename Map::Local;
 
   public:
     Planner(const Map& map, const PlanOptions& options, const Box& region, int piece, Blocks& blocks,
-            Cubics& cubics)
+            Records<Local>& records)
         : m_map(map),
           m_options(options),
           m_piece(piece),
           m_blocks(blocks),
-          m_cubics(cubics),
+          m_records(records),
           m_balance(kCredit * pixels_of(region)),
+          m_over_direct(m_balance * kDirectSaving),
           m_margin(options.scheme == Scheme::residual ? 0 : 0.5) {}
 
     void exact(const Box& box) {
@@ -144,7 +160,7 @@ class Planner {
 
     /// Top-down: finds the branch of the map on which a large box lies, and settles it there.
     void settle(const Box& box) {
-        if (!worth_a_bound(box)) return exact(box);
+        if (!worth_a_bound(box)) return leave(box);
         const Local local = m_map.local_around(0.5 * (box.x0 + box.x1), 0.5 * (box.y0 + box.y1), m_piece);
         switch (cover(box, local)) {
             case Cover::outside:
@@ -152,8 +168,7 @@ class Planner {
             case Cover::mixed:
                 return split(box, [&](const Box& b) { settle(b); });
             case Cover::inside:
-                return m_options.scheme == Scheme::residual ? settle_residual(box, local)
-                                                            : settle_blocks(box, local);
+                return settle_inside(box, local);
         }
     }
 
@@ -161,9 +176,83 @@ class Planner {
     /// May a bound over the box pay? Where only the fastest way is asked for.
     bool worth_a_bound(const Box& box) const {
         return worth_a_polynomial() &&
-               (m_options.scheme != Scheme::automatic || pixels_of(box) >= kBoundPixels);
+               (m_options.scheme != Scheme::automatic || pixels_of(box) * saving() >= kBoundPixels);
     }
-    bool worth_a_polynomial() const { return m_options.scheme != Scheme::automatic || m_balance >= 0; }
+    bool worth_a_polynomial() const {
+        return m_options.scheme != Scheme::automatic || (m_direct ? m_over_direct : m_balance) >= 0;
+    }
+    /// What a polynomial's pixel saves, in exact pixels.
+    double saving() const { return m_direct ? kDirectSaving : 1; }
+    /// Bounds and polynomials are paid for by what they save over what there is without.
+    void pay(double exact_pixels) { (m_direct ? m_over_direct : m_balance) -= exact_pixels; }
+
+    /// A box that lies on one branch.
+    void settle_inside(const Box& box, const Local& local) {
+        if (m_options.scheme == Scheme::residual) return settle_residual(box, local);
+        if (m_options.scheme == Scheme::blocks) return settle_blocks(box, local);
+        const bool first = !m_direct && pixels_of(box) >= kLeastDirect;
+        const double error = first ? find_direct(box, local) : 0;
+        const bool by_blocks = m_options.scheme == Scheme::automatic;
+        // Intervals that are too wide for one bound are so for the other.
+        if (m_direct || pixels_of(box) <= kLeastDirect || (by_blocks && error < HUGE_VAL))
+            by_blocks ? settle_blocks(box, local) : leave(box);
+        else
+            split(box, [&](const Box& b) { settle(b); });
+        if (first) m_direct.reset();
+    }
+
+    /// Direct blocks that hold the tolerance: where they are read, their largest size, and their error.
+    struct Direct {
+        int place, width, height;
+        double error;
+    };
+    /// The largest that serve all of a box, if there are any. Returns the least error that was found.
+    double find_direct(const Box& box, const Local& local) {
+        Direct d{static_cast<int>(m_records.places.size()), kBlockWidth, kBlockHeight, 0};
+        if constexpr (DirectMap<Map>) {
+            const int least = pixels_of(box) > kLargeBox ? kLeastDirect : kLeastOfSmall;
+            for (double cut = 1; d.width * d.height >= least * cut * cut;) {
+                m_balance -= kDirectCost;
+                d.error = direct_error(box, d, local);
+                if (d.error <= m_options.tol) {
+                    m_records.places.push_back(local);
+                    m_direct = d;
+                    return d.error;
+                }
+                // A known error shrinks with the sides at most.
+                cut = d.error < HUGE_VAL ? d.error / m_options.tol : 1.5;
+                (d.width > d.height ? d.width : d.height) /= 2;
+            }
+        }
+        return d.error;
+    }
+    /// One bound serves all blocks of a box: of full size with their middles anywhere, and what the last ones lack.
+    double direct_error(const Box& box, const Direct& d, const Local& local) const
+    requires DirectMap<Map>
+    {
+        const auto middles = [](int from, int to, int most) {
+            const int full = std::min(to - from, most), last = (to - from - 1) % most + 1;
+            return Interval(from + 0.5 * std::min(full, last), to - 0.5 * std::min(full, last));
+        };
+        return m_map.direct_error(middles(box.x0, box.x1, d.width), middles(box.y0, box.y1, d.height),
+                                  half(std::min(box.width(), d.width)), half(std::min(box.height(), d.height)),
+                                  local);
+    }
+    /// What no polynomial serves.
+    void leave(const Box& box) {
+        if (!m_direct) return exact(box);
+        for_boxes(box, m_direct->width, m_direct->height, [&](const Box& b) { place_direct(b); });
+    }
+    void place_direct(const Box& box) {
+        const Local& local = m_records.places[static_cast<std::size_t>(m_direct->place)];
+        const Point<double> middle = m_map(0.5 * (box.x0 + box.x1), 0.5 * (box.y0 + box.y1), local);
+        if (!BlockWriter(m_options.tol, m_blocks).computed(box, middle, m_direct->error))
+            return emit(box, Block::Kind::exact);
+        m_balance += pixels_of(box) * (1 - kDirectSaving);
+        m_blocks.back().data = &m_records;
+        m_blocks.back().record = m_direct->place;
+        set_source(m_blocks.back(), m_map.source_piece(local));
+    }
 
     Local local_about(const Box& box) const {
         return m_map.local_around(0.5 * (box.x0 + box.x1), 0.5 * (box.y0 + box.y1), m_piece);
@@ -251,8 +340,8 @@ class Planner {
         return rounding <= kSharedRounding * m_options.tol ? rounding : HUGE_VAL;
     }
     void settle_blocks(const Box& box, const Local& local) {
-        if (!worth_a_bound(box)) return exact(box);
-        m_balance -= kBoundCost;
+        if (!worth_a_bound(box)) return leave(box);
+        pay(kBoundCost);
         const auto p = enclose<5>(box, local);
         Bound bound{Tail(p.x), Tail(p.y), HUGE_VAL};
         const bool is_block = box.width() <= kBlockWidth && box.height() <= kBlockHeight;
@@ -261,7 +350,7 @@ class Planner {
             for_boxes(box, 2 * kBlockWidth, 2 * kBlockHeight,
                       [&](const Box& b) { place_parts(b, local, bound); });
         } else if (is_kept(p.x.c[0], p.y.c[0]))
-            split(box, [&](const Box& b) { settle_blocks(b, local_about(b)); });
+            split(box, [&](const Box& b) { settle_inside(b, local_about(b)); });
         else
             split(box, [&](const Box& b) { settle(b); });
     }
@@ -304,7 +393,9 @@ class Planner {
     }
 
     /// Are cubics in float so many, for their error or their rounding, that one polynomial in double costs less?
+    /// Not where pixels may be direct.
     bool cheaper_in_double(const Box& box, const Fit& fit) const {
+        if (m_direct) return false;
         const double finer = BlockWriter::cubic_rounding(fit.x.c, fit.y.c) / m_options.tol;
         return kPolynomialCost * std::max(parts(fit.error, 0), finer * finer) >= kDoubleCost * pixels_of(box);
     }
@@ -329,7 +420,7 @@ class Planner {
         double error;
     };
     Expansion expand(const Box& box, const Local& local, const Bound& bound) {
-        m_balance -= kPolynomialCost;
+        pay(kPolynomialCost);
         const double rounding = bound.rounding < HUGE_VAL
                                     ? bound.rounding
                                     : rounding_over(box, half(box.width()), half(box.height()), local);
@@ -348,7 +439,7 @@ class Planner {
 
     /// Places blocks about the middles of boxes over which the remainder is small enough for that.
     void place_parts(const Box& box, const Local& local, const Bound& bound) {
-        if (!worth_a_polynomial()) return exact(box);
+        if (!worth_a_polynomial()) return leave(box);
         const double hx = half(box.width()), hy = half(box.height());
         const double tail = tail_over(hx, hy, bound);
         const bool is_block = box.width() <= kBlockWidth && box.height() <= kBlockHeight;
@@ -461,12 +552,12 @@ class Planner {
     }
     bool emit_cubic(const Box& box, int source_piece, const double* cx, const double* cy, double error) {
         if (!BlockWriter(m_options.tol, m_blocks).cubic(box, cx, cy, error)) return false;
-        Cubics::Terms& terms = m_cubics.terms.emplace_back();
+        Cubics::Terms& terms = m_records.terms.emplace_back();
         std::copy_n(cx + 6, 4, terms.x);
         std::copy_n(cy + 6, 4, terms.y);
         finish(box, source_piece);
-        m_blocks.back().data = &m_cubics;
-        m_blocks.back().record = static_cast<int>(m_cubics.terms.size()) - 1;
+        m_blocks.back().data = &m_records;
+        m_blocks.back().record = static_cast<int>(m_records.terms.size()) - 1;
         return true;
     }
     /// The Taylor polynomial as it is, in double, where cubics in float would be so many that this is cheaper.
@@ -477,21 +568,24 @@ class Planner {
         if (!cheaper_in_double(box, fit) || !BlockWriter(m_options.tol, m_blocks).precise(box, x, y, error))
             return false;
         const Block& block = m_blocks.back();
-        Cubics::Precise& c = m_cubics.precise.emplace_back();
+        Cubics::Precise& c = m_records.precise.emplace_back();
         std::copy_n(x, 15, c.x);
         std::copy_n(y, 15, c.y);
         c.x[0] -= block.base_x;
         c.y[0] -= block.base_y;
         finish(box, m_map.source_piece(local));
-        m_balance -= kDoubleCost * pixels_of(box);
-        m_blocks.back().data = &m_cubics;
-        m_blocks.back().record = static_cast<int>(m_cubics.precise.size()) - 1;
+        pay(kDoubleCost * pixels_of(box));
+        m_blocks.back().data = &m_records;
+        m_blocks.back().record = static_cast<int>(m_records.precise.size()) - 1;
         return true;
     }
     /// What the writer does not know of a block.
     void finish(const Box& box, int source_piece) {
-        m_balance += pixels_of(box);
-        Block& block = m_blocks.back();
+        if (m_direct) m_over_direct += pixels_of(box) * kDirectSaving;
+        m_balance += pixels_of(box) * (m_direct ? 1 - kDirectSaving : 1);
+        set_source(m_blocks.back(), source_piece);
+    }
+    void set_source(Block& block, int source_piece) const {
         block.piece = m_piece;
         block.source_piece = source_piece;
         // The turn that brings the block's middle into the image.
@@ -526,23 +620,23 @@ class Planner {
         halve(box, wide > high || (wide == high && box.width() > kFloor), kFloor, body);
     }
 
-    /// `body` on the halves of the box; where neither side can be cut above the floor, or everything in the
-    /// box came out exact, one exact block.
+    /// `body` on the halves of the box; where neither side can be cut above the floor, or no polynomial came out of it,
+    /// one block without.
     template <class Body>
     void halve(const Box& box, bool vertical_cut, int floor, const Body& body) {
         const std::size_t first = m_blocks.size();
         if (vertical_cut ? box.width() <= floor : box.height() <= floor) vertical_cut = !vertical_cut;
-        if (vertical_cut ? box.width() <= floor : box.height() <= floor) {
-            emit(box, Block::Kind::exact);
-            return;
-        }
+        if (vertical_cut ? box.width() <= floor : box.height() <= floor) return leave(box);
         body(sub_box(box, vertical_cut, false));
         body(sub_box(box, vertical_cut, true));
-        const auto is_exact = [](const Block& b) { return b.kind == Block::Kind::exact; };
-        if (box.width() <= kBlockWidth && box.height() <= kBlockHeight &&
-            std::all_of(m_blocks.begin() + static_cast<std::ptrdiff_t>(first), m_blocks.end(), is_exact)) {
+        const auto kind = m_direct ? Block::Kind::computed : Block::Kind::exact;
+        const auto is_left = [&](const Block& b) { return b.kind == kind; };
+        const int most_width = m_direct ? m_direct->width : kBlockWidth,
+                  most_height = m_direct ? m_direct->height : kBlockHeight;
+        if (box.width() <= most_width && box.height() <= most_height &&
+            std::all_of(m_blocks.begin() + static_cast<std::ptrdiff_t>(first), m_blocks.end(), is_left)) {
             m_blocks.resize(first);
-            emit(box, Block::Kind::exact);
+            leave(box);
         }
     }
 
@@ -550,10 +644,12 @@ class Planner {
     const PlanOptions& m_options;
     int m_piece;
     Blocks& m_blocks;
-    Cubics& m_cubics;
+    Records<Local>& m_records;
     double m_balance;  ///< exact pixels saved less those that bounds and polynomials would have paid for
+    double m_over_direct;  ///< the same over direct pixels, where those serve
     double m_margin;   ///< of what is enclosed of a box: from its edges to the nodes that blocks are made of
     std::optional<LinearPart> m_linear;
+    std::optional<Direct> m_direct;  ///< what may serve all of the box that is being settled
 };
 
 /// Gives exact blocks the bound of their rounding, and cuts out of them the pixels that need long double.
@@ -619,8 +715,8 @@ void FormulaPlan<Map>::plan(const Box& box, int piece, Blocks& blocks) const {
     using namespace planner_detail;
     Blocks planned;
     planned.reserve(2 * kRegion * kRegion / (kBlockWidth * kBlockHeight));
-    const auto cubics = std::make_shared<Cubics>();
-    Planner<Map> planner(m_map, m_options, box, piece, planned, *cubics);
+    const auto records = std::make_shared<Records<typename Map::Local>>();
+    Planner<Map> planner(m_map, m_options, box, piece, planned, *records);
     if (m_options.scheme == Scheme::exact || m_options.tol == 0)
         planner.exact(box);
     else
@@ -632,7 +728,7 @@ void FormulaPlan<Map>::plan(const Box& box, int piece, Blocks& blocks) const {
             exact.place(block);
         else
             blocks.push_back(block);
-    if (!cubics->terms.empty() || !cubics->precise.empty()) blocks.data = cubics;
+    if (!records->terms.empty() || !records->precise.empty() || !records->places.empty()) blocks.data = records;
 }
 
 template <class Map>
@@ -664,6 +760,12 @@ Jacobian FormulaPlan<Map>::jacobian(double x, double y, int piece) const noexcep
     using J = Jet1<double>;
     const Point<J> p = m_map(J::variable(x, 1, 0), J::variable(y, 0, 1), m_map.local_around(x, y, piece));
     return {p.x.c[1], p.y.c[1], p.x.c[2], p.y.c[2]};
+}
+
+template <class Map>
+const typename Map::Local& FormulaPlan<Map>::place_of(const Block& block) {
+    const auto& records = static_cast<const planner_detail::Records<typename Map::Local>&>(*block.data);
+    return records.places[static_cast<std::size_t>(block.record)];
 }
 
 }  // namespace anamorph

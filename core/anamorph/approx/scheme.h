@@ -4,9 +4,10 @@
 
 namespace anamorph {
 
-/// exact: every pixel by the formula. blocks: quadratic polynomials on blocks. residual: Kim's decomposition
-/// (3.1), one linear map and a bilinear table of residuals (4.3, 4.4). automatic: the fastest that holds.
-enum class Scheme { automatic, exact, blocks, residual };
+/// exact: every pixel by the formula. blocks: polynomials of degree 2 to 4 on blocks. residual: Kim's decomposition
+/// (3.1), one linear map and a bilinear table of residuals (4.3, 4.4). direct: every pixel by the formula in float,
+/// near the middle of its block (number/near.h). automatic: the fastest that holds.
+enum class Scheme { automatic, exact, blocks, residual, direct };
 
 /// exact: every pixel in double. hermite: the bicubic patch in full at every pixel (5.3.5), in float.
 /// residual: a linear map for each of a cell's two triangles plus thirteen tabulated products (5.4 to 5.7).

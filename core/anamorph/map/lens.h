@@ -30,6 +30,7 @@
 #include "anamorph/geometry/point.h"
 #include "anamorph/map/projection/facts.h"
 #include "anamorph/number/jet.h"
+#include "anamorph/number/near_bound.h"
 #include "anamorph/number/rounded.h"
 
 namespace anamorph {
@@ -100,7 +101,21 @@ Rounded<Real> shrink(const LensTerms& lens, const Rounded<Real>& value);
 template <class T, int N>
 Jet<T, N> shrink(const LensTerms& lens, const Jet<T, N>& value);
 
+/// Near a known value the root is not followed: there is no bound.
+inline NearBound shrink(const LensTerms&, const NearBound& value) {
+    return {value.base, rounded_detail::unbounded()};
+}
+inline NearBase shrink(const LensTerms&, const NearBase& value) {
+    return value;
+}
+
 /// And settled().
+inline Point<NearBound> settled(const LensTerms& lens, const Point<NearBound>& v) {
+    return {shrink(lens, v.x), shrink(lens, v.y)};
+}
+inline Point<NearBase> settled(const LensTerms&, const Point<NearBase>& v) {
+    return v;
+}
 Point<Interval> settled(const LensTerms& lens, const Point<Interval>& v);
 template <class Real>
 Point<Rounded<Real>> settled(const LensTerms& lens, const Point<Rounded<Real>>& v);

@@ -8,6 +8,7 @@
 
 #include "anamorph/map/chart.h"
 #include "anamorph/map/formula_map.h"
+#include "anamorph/number/near_bound.h"
 
 namespace anamorph {
 
@@ -82,6 +83,17 @@ class Panorama {
     /// infinite where it is not certain that there is one.
     template <class Real>
     double exact_error(const Interval& x, const Interval& y, int piece) const;
+
+    /// The map about a target point, read pixel by pixel in float (number/near.h): its source point, and the bases.
+    struct Direct {
+        Point<double> middle;
+        Bases bases;
+    };
+    Direct direct(double x, double y, const Local& local) const;
+    /// Bounds the error of what is read so, less the middle: for target points up to half_width and half_height from
+    /// a middle in the box x, y. Infinite or NaN where none is known.
+    double direct_error(const Interval& x, const Interval& y, double half_width, double half_height,
+                        const Local& local) const;
 
   private:
     /// The entries of a product of rotations to and from a local frame: each of its two angles may be off

@@ -14,6 +14,8 @@
 //   atan2                           5 m
 //   exp  log                        3 m      gradual underflow apart
 //   asinh                           8 m
+//   sine_versine(a, s, v)           4 m      |a| <= pi / 4; gradual underflow of v apart
+//   small_atan(a)                   4 m      |a| <= tan(pi / 8)
 //   scaled_sinh(a, s)               8 m      s; 5 m what is returned, gradual underflow apart
 //
 // NaN and infinities come out as IEEE has them for + - * / sqrt; the functions give NaN for NaN.
@@ -80,11 +82,11 @@ HWY_INLINE Lanes<D> polynomial(const Lanes<D>& x, const double (&c)[N]) {
     return sum;
 }
 
-/// The sine and cosine of a quarter of a turn around 0: minimax polynomials of degree 13 and 14 in double
-/// (the coefficients are those of fdlibm's kernels), 7 and 8 in float (Cephes').
+/// The sine of a and 1 - cos a within a quarter of a turn around 0: minimax polynomials of degree 13 and 14 in
+/// double (the coefficients are those of fdlibm's kernels), 7 and 8 in float (Cephes').
 template <class D>
-HWY_INLINE void sin_cos_of_eighths(const Lanes<D>& r, Lanes<D>& s, Lanes<D>& c) {
-    const Lanes<D> z = r * r;
+HWY_INLINE void sine_versine(const Lanes<D>& a, Lanes<D>& s, Lanes<D>& v) {
+    const Lanes<D> z = a * a;
     if constexpr (sizeof(hn::TFromD<D>) == 8) {
         constexpr double kSine[] = {-1.66666666666666324348e-01, 8.33333333332248946124e-03,
                                     -1.98412698298579493134e-04, 2.75573137070700676789e-06,
@@ -92,13 +94,13 @@ HWY_INLINE void sin_cos_of_eighths(const Lanes<D>& r, Lanes<D>& s, Lanes<D>& c) 
         constexpr double kCosine[] = {4.16666666666666019037e-02, -1.38888888888741095749e-03,
                                       2.48015872894767294178e-05, -2.75573143513906633035e-07,
                                       2.08757232129817482790e-09, -1.13596475577881948265e-11};
-        s = r + r * z * polynomial(z, kSine);
-        c = Lanes<D>(1) - (z * 0.5 - z * z * polynomial(z, kCosine));
+        s = a + a * z * polynomial(z, kSine);
+        v = z * 0.5 - z * z * polynomial(z, kCosine);
     } else {
         constexpr double kSine[] = {-1.6666654611e-1, 8.3321608736e-3, -1.9515295891e-4};
         constexpr double kCosine[] = {4.166664568298827e-2, -1.388731625493765e-3, 2.443315711809948e-5};
-        s = r + r * z * polynomial(z, kSine);
-        c = Lanes<D>(1) - (z * 0.5 - z * z * polynomial(z, kCosine));
+        s = a + a * z * polynomial(z, kSine);
+        v = z * 0.5 - z * z * polynomial(z, kCosine);
     }
 }
 
@@ -123,8 +125,9 @@ HWY_INLINE void sin_cos(const Lanes<D>& a, Lanes<D>& sine, Lanes<D>& cosine) {
     else
         r = ((a - quarters * 1.5703125) - quarters * 4.837512969970703125e-4) -
             quarters * 7.549789948768648e-8;
-    Lanes<D> s, c;
-    sin_cos_of_eighths(r, s, c);
+    Lanes<D> s, v;
+    sine_versine(r, s, v);
+    const Lanes<D> c = Lanes<D>(1) - v;
     const auto n = hn::ConvertTo(di, quarters.v);
     const LaneMask<D> odd = has_bit<D>(n, 1);
     const Lanes<D> plain_sine = select(odd, c, s), plain_cosine = select(odd, s, c);
@@ -132,8 +135,25 @@ HWY_INLINE void sin_cos(const Lanes<D>& a, Lanes<D>& sine, Lanes<D>& cosine) {
     cosine = select(has_bit<D>(hn::Add(n, hn::Set(di, 1)), 2), -plain_cosine, plain_cosine);
 }
 
+/// The angle whose tangent is t, within an eighth of a half turn around 0: fdlibm's polynomial and Cephes'.
+template <class D>
+HWY_INLINE Lanes<D> small_atan(const Lanes<D>& t) {
+    const Lanes<D> z = t * t;
+    if constexpr (sizeof(hn::TFromD<D>) == 8) {
+        constexpr double kArc[] = {
+            3.33333333333329318027e-01,  -1.99999999998764832476e-01, 1.42857142725034663711e-01,
+            -1.11111104054623557880e-01, 9.09088713343650656196e-02,  -7.69187620504482999495e-02,
+            6.66107313738753120669e-02,  -5.83357013379057348645e-02, 4.97687799461593236017e-02,
+            -3.65315727442169155270e-02, 1.62858201153657823623e-02};
+        return t - t * z * polynomial(z, kArc);
+    } else {
+        constexpr double kArc[] = {3.33329491539e-1, -1.99777106478e-1, 1.38776856032e-1, -8.05374449538e-2};
+        return t - t * z * polynomial(z, kArc);
+    }
+}
+
 /// The angle of (x, y). With p <= q the two magnitudes: atan(p / q), or beyond tan(pi / 8)
-/// pi / 4 + atan((p - q) / (p + q)); then by octant. The polynomials are fdlibm's and Cephes'.
+/// pi / 4 + atan((p - q) / (p + q)); then by octant.
 template <class D>
 HWY_INLINE Lanes<D> atan2(const Lanes<D>& y, const Lanes<D>& x) {
     using L = Lanes<D>;
@@ -143,19 +163,8 @@ HWY_INLINE Lanes<D> atan2(const Lanes<D>& y, const Lanes<D>& x) {
     const auto beyond = q * 0.41421356237309503 < p;
     const L over = select(beyond, p + q, q);
     // 0 / 0 is the angle 0.
-    const L t = select(is_zero(over), L(0), select(beyond, p - q, p) / over), z = t * t;
-    L angle;
-    if constexpr (sizeof(hn::TFromD<D>) == 8) {
-        constexpr double kArc[] = {
-            3.33333333333329318027e-01,  -1.99999999998764832476e-01, 1.42857142725034663711e-01,
-            -1.11111104054623557880e-01, 9.09088713343650656196e-02,  -7.69187620504482999495e-02,
-            6.66107313738753120669e-02,  -5.83357013379057348645e-02, 4.97687799461593236017e-02,
-            -3.65315727442169155270e-02, 1.62858201153657823623e-02};
-        angle = t - t * z * polynomial(z, kArc);
-    } else {
-        constexpr double kArc[] = {3.33329491539e-1, -1.99777106478e-1, 1.38776856032e-1, -8.05374449538e-2};
-        angle = t - t * z * polynomial(z, kArc);
-    }
+    const L t = select(is_zero(over), L(0), select(beyond, p - q, p) / over);
+    L angle = small_atan(t);
     constexpr double kHalfTurn = 3.14159265358979311600, kRest = 1.22464679914735317636e-16;
     // Multiples of pi / 4 in two parts: what double (or float) leaves out of the first comes with the angle.
     const double rest = sizeof(hn::TFromD<D>) == 8 ? kRest : kHalfTurn - static_cast<float>(kHalfTurn);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The number a formula is read with to learn what rounding does to it.
 //
-// Rounded<Real> stands for all evaluations of a formula in Real (double or long double) over a box: `range`
+// Rounded<Real> stands for all evaluations of a formula in Real (float, double or long double) over a box: `range`
 // encloses the exact values there, `error` bounds |computed - exact|. Each operation passes on its operands'
 // errors by its own derivative, largest over the box, and adds its own rounding.
 //
@@ -47,7 +47,8 @@ struct Rounded {
     /// What libm's functions may be off, relative to the value, as in number/interval.h.
     static constexpr double kLibm = 8 * kUnit;
     /// The largest underflow. (A double's is above long double's.)
-    static constexpr double kLeast = interval_detail::kSmallest;
+    static constexpr double kLeast =
+        std::is_same_v<Real, float> ? double{std::numeric_limits<float>::min()} : interval_detail::kSmallest;
     /// Jets have degree 4 at most. The longest sum in a coefficient, that of s^2 t^2, has 9 products; on its
     /// way each meets a product's rounding, at most 4 sums in its part, a weight's and 5 sums of parts. Then
     /// follow a difference and two products at most.
@@ -94,6 +95,9 @@ Rounded<Real> result(const Interval& range, double radius, double error, double 
     R r(range, radius * kUp, 0);
     const double rounding = unit * (r.size() + error);
     r.error = error + rounding > 0 || std::isnan(error + rounding) ? (error + rounding) * kUp + R::kLeast : 0;
+    // Beyond double's range intervals are infinite by themselves.
+    if (std::is_same_v<Real, float> && !(r.computed_size() < double{std::numeric_limits<float>::max()} / 4))
+        r.error = HUGE_VAL;
     return r;
 }
 
@@ -309,6 +313,15 @@ Rounded<Real> max(const Rounded<Real>& a, const Rounded<Real>& b) {
     return r;
 }
 
+/// A double that stands for a value at most `error` away, as formulas compute with it.
+template <class T>
+auto measured(double value, double error) {
+    if constexpr (requires { T::near(value, error); })
+        return T::near(value, error);
+    else
+        return value;
+}
+
 /// A constant of a formula: a number known better than double holds it, for every number that formulas are
 /// read with.
 class Constant {
@@ -332,29 +345,18 @@ class Constant {
     auto as() const {
         if constexpr (std::is_same_v<T, long double>)
             return m_precise;
-        else if constexpr (std::is_same_v<T, Rounded<double>>)
-            return T::near(m_value, m_error);
         else if constexpr (std::is_same_v<T, Rounded<long double>>) {
             // The double encloses; the long double computes.
             T constant = T::near(m_value, m_error);
             constant.error = m_precise_error;
             return constant;
         } else
-            return m_value;
+            return measured<T>(m_value, m_error);
     }
 
   private:
     long double m_precise = 0;
     double m_value = 0, m_precise_error = 0, m_error = 0;
 };
-
-/// A double that stands for a value at most `error` away, as formulas compute with it.
-template <class T>
-auto measured(double value, double error) {
-    if constexpr (std::is_same_v<T, Rounded<double>> || std::is_same_v<T, Rounded<long double>>)
-        return T::near(value, error);
-    else
-        return value;
-}
 
 }  // namespace anamorph

@@ -94,7 +94,7 @@ ParameterTable make_table() {
         tol(),
         choice("pixels", "edges", {"edges", "centers"},
                "where the source's field of view ends: at the edges of its outer pixels or at their centers"),
-        scheme({{"auto"}, {"exact"}, {"blocks"}, {"residual"}}),
+        scheme({{"auto"}, {"exact"}, {"blocks"}, {"residual"}, {"direct"}}),
         colorspace("color space to filter in; by default the source's own"),
         output(),
     };

@@ -24,7 +24,7 @@ BlockPolynomial polynomial_of(const BlockMap& map, const Block& block) {
 }
 
 simd::Polynomials on_block(const BlockPolynomial& p, const Block& block) {
-    return {p.c, p.degree, block.box.width(), block.box.height()};
+    return {p.c, p.degree, block.box.width(), block.box.height(), nullptr, nullptr, 0};
 }
 
 /// From the coefficients of a polynomial block.
@@ -125,8 +125,10 @@ class Steps {
     Box m_size;
 };
 
-/// The least and the greatest of the points of a cell in one coordinate; NaN where one is not finite.
-void range_over(const float* at, std::ptrdiff_t stride, int width, int height, double& low, double& high) {
+/// The least and the greatest of the values that value(j, i) gives for the pixels of a cell; NaN where one is not
+/// finite.
+template <class Value>
+void range_over(const Value& value, int width, int height, double& low, double& high) {
     // In lanes, so that the compiler need not keep the order of comparisons.
     constexpr int kLanes = 16;
     float least[kLanes], greatest[kLanes], nothing[kLanes] = {};
@@ -137,15 +139,34 @@ void range_over(const float* at, std::ptrdiff_t stride, int width, int height, d
         greatest[lane] = v > greatest[lane] ? v : greatest[lane];
         nothing[lane] += v - v;
     };
-    for (int j = 0; j < height; ++j, at += stride) {
+    for (int j = 0; j < height; ++j) {
         int i = 0;
         for (; i + kLanes <= width; i += kLanes)
-            for (int lane = 0; lane < kLanes; ++lane) take(at[i + lane], lane);
-        for (; i < width; ++i) take(at[i], 0);
+            for (int lane = 0; lane < kLanes; ++lane) take(value(j, i + lane), lane);
+        for (; i < width; ++i) take(value(j, i), 0);
     }
     const double zero = double{std::accumulate(nothing, nothing + kLanes, 0.0f)};
     low = *std::min_element(least, least + kLanes) + zero;
     high = *std::max_element(greatest, greatest + kLanes) + zero;
+}
+
+/// Are all steps of a block's points, `ahead` floats from one to the next, so near to the axis (x, y) of a footprint that
+/// each is like it? At once for all of them; false where that is not certain.
+bool all_alike(const BlockPoints& points, std::ptrdiff_t ahead, int width, int height, double x, double y) {
+    double worst = 0, longest = 0;
+    for (const auto& [at, axis] : {std::pair(points.x, x), std::pair(points.y, y)}) {
+        double low = 0, high = 0;
+        const float* const p = at;
+        const auto step = [p, ahead, stride = points.row_stride](int j, int i) {
+            return p[j * stride + i + ahead] - p[j * stride + i];
+        };
+        range_over(step, width, height, low, high);
+        worst += square(std::max(std::fabs(low - axis), std::fabs(high - axis)));
+        longest += square(std::max(std::fabs(low), std::fabs(high)));
+    }
+    const double length = square(x) + square(y);
+    return worst <= std::max(square(kFootprintOff), square(kFootprintShare) * length) ||
+           (length <= 1 && longest <= 1);
 }
 
 /// body(cell, jacobian) for the largest cells of a block, counted from its corner, that share a footprint:
@@ -306,26 +327,70 @@ bool BlockReader::rows(const Block& block, const Box& part, const Row& row) {
 }
 
 bool BlockReader::draw(const Block& block, const Box& part, const Canvas& canvas, const Block* next) {
-    if (is_polynomial(block) && canvas.packed() && m_source.unassociated_alpha() < 0) {
-        const Filtering f = filtering(jacobian_of(block));
-        const BlockPolynomial of_source = polynomial_of(m_map, block);
-        const LevelPolynomial polynomial(of_source, block, f.scale_x, f.scale_y);
-        Window window;
-        const Got got = shares_filter(of_source, block) ? polynomial_window(f, block, polynomial, window)
-                                                        : Got::too_large;
-        if (got == Got::failed) return false;
-        if (got == Got::window) {
-            simd::draw_block(texels_of(f, window, polynomial.base_x, polynomial.base_y),
-                             on_block(polynomial.p, block), part.x0 - block.box.x0, part.x1 - block.box.x0,
-                             part.y0 - block.box.y0, part.y1 - block.box.y0,
-                             canvas.scale_from(one_of(window.type)), canvas.type(),
-                             canvas.at(part.x0, part.y0), canvas.row_stride(), upcoming(next, f));
-            return true;
-        }
-    }
-    return rows(block, part, [&](int x, int y, int count, const float* values, float one) {
+    const bool straight = canvas.packed() && m_source.unassociated_alpha() < 0;
+    const Row store = [&](int x, int y, int count, const float* values, float one) {
         canvas.store(x, y, count, values, one);
-    });
+    };
+    if (block.kind == Block::Kind::computed) {
+        const BlockPoints points = points_of(block);
+        const Got got = straight ? draw_points(block, points, part, canvas, next) : Got::too_large;
+        return got == Got::too_large ? rows(block, points, part, store) : got == Got::window;
+    }
+    const Got got = straight && is_polynomial(block) ? draw_polynomial(block, part, canvas, next) : Got::too_large;
+    return got == Got::too_large ? rows(block, part, store) : got == Got::window;
+}
+
+/// Where all pixels of a block share a filter and a window.
+BlockReader::Got BlockReader::draw_polynomial(const Block& block, const Box& part, const Canvas& canvas,
+                                              const Block* next) {
+    const Filtering f = filtering(jacobian_of(block));
+    const BlockPolynomial of_source = polynomial_of(m_map, block);
+    if (!shares_filter(of_source, block)) return Got::too_large;
+    const LevelPolynomial polynomial(of_source, block, f.scale_x, f.scale_y);
+    Window window;
+    const Got got = polynomial_window(f, block, polynomial, window);
+    if (got == Got::window)
+        draw_window(f, block, on_block(polynomial.p, block), {polynomial.base_x, polynomial.base_y}, window, part,
+                    canvas, upcoming(next, f));
+    return got;
+}
+
+/// The same with its points at hand, read on the source itself.
+BlockReader::Got BlockReader::draw_points(const Block& block, const BlockPoints& points, const Box& part,
+                                          const Canvas& canvas, const Block* next) {
+    const int width = block.box.width(), height = block.box.height();
+    Filtering f = filtering({});
+    if (m_filter == Filter::antialias) {
+        if (width < 2 || height < 2) return Got::too_large;
+        const auto at = [&](int i, int j) {
+            const std::ptrdiff_t k = j * points.row_stride + i;
+            return Point<double>{points.x[k], points.y[k]};
+        };
+        const Jacobian j = Steps(at, block).jacobian(whole(block));
+        if (!all_alike(points, 1, width - 1, height, j.x_i, j.y_i) ||
+            !all_alike(points, points.row_stride, width, height - 1, j.x_j, j.y_j))
+            return Got::too_large;
+        f = filtering(j);
+        if (f.level > 0) return Got::too_large;
+    }
+    Range x, y;
+    if (!ranges_of(block, points, whole(block), x, y)) return Got::too_large;
+    Window window;
+    const Got got = window_of(f, block.source_piece, block.base_x, x, block.base_y, y, block.box, window);
+    if (got == Got::window)
+        draw_window(f, block, {nullptr, 0, width, height, points.x, points.y, points.row_stride},
+                    {block.base_x, block.base_y}, window, part, canvas,
+                    next && next->kind == block.kind ? upcoming_like(*next, f, x, y) : upcoming(next, f));
+    return got;
+}
+
+void BlockReader::draw_window(const Filtering& f, const Block& block, const simd::Polynomials& polynomials,
+                              const Point<std::int32_t>& base, const Window& window, const Box& part,
+                              const Canvas& canvas, const simd::Upcoming& upcoming) {
+    simd::draw_block(texels_of(f, window, base.x, base.y), polynomials, part.x0 - block.box.x0,
+                     part.x1 - block.box.x0, part.y0 - block.box.y0, part.y1 - block.box.y0,
+                     canvas.scale_from(one_of(window.type)), canvas.type(), canvas.at(part.x0, part.y0),
+                     canvas.row_stride(), upcoming);
 }
 
 // --- blocks by kind
@@ -382,17 +447,26 @@ bool BlockReader::for_each_footprint(const Block& block, const At& at, const Bod
                          [&](const Box& cell, const Jacobian& j) { return body(cell, filtering(j)); });
 }
 
+/// Of the points of a cell. False where they are too far away.
+bool BlockReader::ranges_of(const Block& block, const BlockPoints& points, const Box& cell, Range& x, Range& y) {
+    const std::ptrdiff_t first = cell.y0 * points.row_stride + cell.x0;
+    const auto range = [&](const float* at, Range& r) {
+        const float* const p = at + first;
+        range_over([p, stride = points.row_stride](int j, int i) { return p[j * stride + i]; }, cell.width(),
+                   cell.height(), r.low, r.high);
+    };
+    range(points.x, x);
+    range(points.y, y);
+    return is_near(block.base_x + x.low) && is_near(block.base_x + x.high) && is_near(block.base_y + y.low) &&
+           is_near(block.base_y + y.high);
+}
+
 bool BlockReader::points_cell(const Filtering& f, const Block& block, const BlockPoints& points,
                               const Box& cell, const Box& part, const Row& row) {
     const Box own = part_of(cell, block, part);
     if (own.empty()) return true;
     Range x, y;
-    const std::ptrdiff_t first = cell.y0 * points.row_stride + cell.x0;
-    range_over(points.x + first, points.row_stride, cell.width(), cell.height(), x.low, x.high);
-    range_over(points.y + first, points.row_stride, cell.width(), cell.height(), y.low, y.high);
-    const bool near = is_near(block.base_x + x.low) && is_near(block.base_x + x.high) &&
-                      is_near(block.base_y + y.low) && is_near(block.base_y + y.high);
-    if (!near) return rows_one_by_one(block, points, own, row);
+    if (!ranges_of(block, points, cell, x, y)) return rows_one_by_one(block, points, own, row);
     // On the source itself the block's offsets serve as they are, unless a cell lies apart from its base.
     if (f.level > 0 || !(cell == whole(block))) {
         const auto at = [&](int i, int j) {
@@ -573,10 +647,19 @@ BlockReader::Got BlockReader::window_of(const Filtering& f, int piece, std::int3
 
 /// Where the next block's texels stand in memory, if they do; filtered like this one's.
 simd::Upcoming BlockReader::upcoming(const Block* next, const Filtering& f) const {
-    const ConstImageView* view = m_source.view(f.level);
-    if (!next || !view || !is_polynomial(*next)) return {};
+    if (!next || !is_polynomial(*next)) return {};
     const LevelPolynomial p(quadratic_of(*next), *next, f.scale_x, f.scale_y);
-    const Span x(f, f.reach_x, p.base_x, p.x), y(f, f.reach_y, p.base_y, p.y);
+    return upcoming(f, Span(f, f.reach_x, p.base_x, p.x), Span(f, f.reach_y, p.base_y, p.y));
+}
+
+/// Where they would stand if the next block were moved from this one.
+simd::Upcoming BlockReader::upcoming_like(const Block& next, const Filtering& f, const Range& x, const Range& y) const {
+    return upcoming(f, Span(f, f.reach_x, next.base_x, x), Span(f, f.reach_y, next.base_y, y));
+}
+
+simd::Upcoming BlockReader::upcoming(const Filtering& f, const Span& x, const Span& y) const {
+    const ConstImageView* view = m_source.view(f.level);
+    if (!view) return {};
     if (!(x.first >= 0 && y.first >= 0 && x.last <= view->width && y.last <= view->height)) return {};
     return {view->at(static_cast<std::ptrdiff_t>(x.first), static_cast<std::ptrdiff_t>(y.first)),
             view->row_stride, static_cast<int>(y.last - y.first),

@@ -101,6 +101,13 @@ class BlockReader {
     struct Span;
     enum class Got { window, too_large, failed };
 
+    Got draw_polynomial(const Block& block, const Box& part, const Canvas& canvas, const Block* next);
+    Got draw_points(const Block& block, const BlockPoints& points, const Box& part, const Canvas& canvas,
+                    const Block* next);
+    static void draw_window(const Filtering& f, const Block& block, const simd::Polynomials& polynomials,
+                            const Point<std::int32_t>& base, const Window& window, const Box& part,
+                            const Canvas& canvas, const simd::Upcoming& upcoming);
+
     bool polynomial_rows(const Block& block, const Box& part, const Row& row);
     bool rows_in_double(const Block& block, const Box& part, const Row& row);
     bool rows_one_by_one(const Block& block, const BlockPoints& points, const Box& part, const Row& row);
@@ -111,6 +118,7 @@ class BlockReader {
 
     template <class At, class Body>
     bool for_each_footprint(const Block& block, const At& at, const Body& body) const;
+    static bool ranges_of(const Block& block, const BlockPoints& points, const Box& cell, Range& x, Range& y);
     bool points_cell(const Filtering& f, const Block& block, const BlockPoints& points, const Box& cell,
                      const Box& part, const Row& row);
     bool exact_cell(const Filtering& f, const Block& block, const Box& cell, const Box& part, const Row& row);
@@ -128,6 +136,8 @@ class BlockReader {
     static simd::Texels texels_of(const Filtering& f, const Window& window, std::int32_t base_x,
                                   std::int32_t base_y);
     simd::Upcoming upcoming(const Block* next, const Filtering& f) const;
+    simd::Upcoming upcoming_like(const Block& next, const Filtering& f, const Range& x, const Range& y) const;
+    simd::Upcoming upcoming(const Filtering& f, const Span& x, const Span& y) const;
 
     const BlockMap& m_map;
     const Source& m_source;

@@ -439,6 +439,27 @@ HWY_INLINE void FetchPart(const Upcoming& upcoming, int part, int parts) {
             hwy::Prefetch(upcoming.first + r * upcoming.row_stride + b);
 }
 
+/// A row's points, by polynomials or as they stand.
+struct RowPoints {
+    RowPolynomial polynomial;
+    const float *x, *y;
+
+    static const Polynomials& Nothing() {
+        static constexpr float kZero[1][8] = {};
+        static constexpr Polynomials kNothing{kZero, 0, 1, 1};
+        return kNothing;
+    }
+    HWY_INLINE RowPoints(const Polynomials& block, int row)
+        : polynomial(block.x ? Nothing() : block, block.x ? 0 : row),
+          x(block.x ? block.x + row * block.row_stride : nullptr),
+          y(block.x ? block.y + row * block.row_stride : nullptr) {}
+    HWY_INLINE void At(int i, hn::Vec<Floats>& to_x, hn::Vec<Floats>& to_y) const {
+        if (!x) return polynomial.At(i, to_x, to_y);
+        to_x = hn::LoadU(Floats(), x + i);
+        to_y = hn::LoadU(Floats(), y + i);
+    }
+};
+
 /// The common case without detours: one bilinear tap, three or four channels. Rows go through three stages,
 /// each one row ahead of the next: located, sampled, stored. Reading what was just written in pieces of
 /// another size would wait for those writes.
@@ -457,10 +478,10 @@ void DrawBilinear(const Texels& s, const Polynomials& block, int begin, int end,
     HWY_ALIGN float values[2][kRowRoom * kChannels];
 
     const auto locate = [&](int j) HWY_ATTR {
-        const RowPolynomial polynomial(block, j);
+        const RowPoints points(block, j);
         for (int i = 0; i < count; i += static_cast<int>(kLanes)) {
             hn::Vec<Floats> x, y;
-            polynomial.At(begin + i, x, y);
+            points.At(begin + i, x, y);
             Locate(hn::Add(x, shift_x), hn::Add(y, shift_y), row_step, pixel_step, i, positions[j & 1]);
         }
     };
@@ -500,8 +521,10 @@ void DrawTyped(const Texels& s, const Polynomials& block, int begin, int end, in
     std::vector<float> values(static_cast<size_t>(kMaxRow * s.channels + 16));
     for (int j = row_begin; j < row_end; ++j, to += row_stride) {
         FetchPart(upcoming, j - row_begin, row_end - row_begin);
-        BlockPoints(block, j, begin, end, x, y);
-        SampleTyped<T>(s, {x, y, end - begin}, values.data());
+        const ptrdiff_t given = j * block.row_stride + begin;
+        if (!block.x) BlockPoints(block, j, begin, end, x, y);
+        SampleTyped<T>(s, {block.x ? block.x + given : x, block.x ? block.y + given : y, end - begin},
+                       values.data());
         StoreRow(values.data(), (end - begin) * s.channels, scale, type, to);
     }
 }

@@ -17,11 +17,14 @@
 namespace anamorph::simd {
 
 /// The polynomials of a block for the source points of its pixels: [j][i] of s^i t^j for x, [j][4 + i] for y,
-/// s and t in [-1, 1] over the pixel centres; of a degree up to 3 in s and in t; and the block's size.
+/// s and t in [-1, 1] over the pixel centres; of a degree up to 3 in s and in t; and the block's size. Or the points
+/// themselves, row by row, with room for 16 more behind each.
 struct Polynomials {
     const float (*c)[8];
     int degree;
     int width, height;
+    const float *x = nullptr, *y = nullptr;
+    std::ptrdiff_t row_stride = 0;
 };
 
 /// The source points of pixels [begin, end) of row `row`: offsets from the block's base in texels. There is

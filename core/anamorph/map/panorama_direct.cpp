@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "anamorph/map/panorama.h"
+
+namespace anamorph {
+
+Panorama::Direct Panorama::direct(double x, double y, const Local& local) const {
+    Direct found;
+    found.bases.reserve(128);
+    WrittenBase::to = &found.bases;
+    const NearBase px(WrittenBase::written(x), NoRest()), py(WrittenBase::written(y), NoRest());
+    const Point<NearBase> p = (*this)(px, py, local);
+    WrittenBase::to = nullptr;
+    found.middle = {p.x.base.value, p.y.base.value};
+    return found;
+}
+
+double Panorama::direct_error(const Interval& x, const Interval& y, double half_width, double half_height,
+                              const Local& local) const {
+    using R = Rounded<float>;
+    const NearBound px(x, R(Interval(-half_width, half_width), 0, 0)),
+        py(y, R(Interval(-half_height, half_height), 0, 0));
+    const Point<NearBound> p = (*this)(px, py, local);
+    // The middle counts from the block's base, which is less than a pixel away, a hair aside. The sum is rounded, and
+    // once more when the sampler moves it by half a pixel (simd/block_sampler.h).
+    const R middle = rounded_detail::result<float>(Interval(-1, 2), 0, 0, R::kUnit);
+    const auto error = [&](const R& rest) {
+        const R offset = middle + rest;
+        return offset.error + R::kUnit * (offset.computed_size() + 1);
+    };
+    return std::hypot(error(p.x.rest), error(p.y.rest)) * rounded_detail::kUp;
+}
+
+}  // namespace anamorph

@@ -1,0 +1,170 @@
+// SPDX-License-Identifier: Apache-2.0
+// A number near a known one: a base, the same for all pixels of a block and computed once in double, and a small rest
+// of each pixel's own, computed in float. A formula's results differ from the base's by the rest alone, so what float
+// loses is relative to the size of the block, not of the picture.
+//
+// Every operation is an identity for the rests: with A = a + da and B = b + db
+//
+//   A B - a b = da B + a db        A / B - q = (da - q db) / B,  q = a / b       sqrt A - r = da / (r + sqrt A)
+//   sin A - s = c sin da - s (1 - cos da)     cos A - c = -s sin da - c (1 - cos da)
+//   angle of (X, Y) - that of (x, y) = atan((x dy - y dx) / (x X + y Y))
+//
+// Base and Rest are numbers. They are read in three pairs:
+//
+//   double                    no rest          the bases, written down in order (number/near_bound.h)
+//   read from there           lanes of float   a block's pixels (simd/direct_rows.cpp)
+//   Interval                  Rounded<float>   bounds |computed - exact| over all blocks of a box (near_bound.h)
+//
+// NearRest<Base, Rest> says what belongs to a pair: of(base), the base as a rest; off(rest, base, units), the rest
+// where the base was rounded by so many units of 2^-53 of another; choose(condition of bases, a, b). Rests offer
+// sine_versine(a, s, v), sin a and 1 - cos a for |a| <= pi / 4, and small_atan(a) for |a| <= tan(pi / 8).
+//
+// No include guard and no namespace, as in map/lens_formula.h: lanes are compiled for each instruction set.
+// ANAMORPH_INLINE says how.
+
+template <class Base, class Rest>
+struct NearRest;
+
+/// What is known of a condition at the base, and what holds for the pixels.
+template <class AtBase, class AtRest>
+struct NearCondition {
+    AtBase base;
+    AtRest rest;
+};
+template <class A, class B, class C, class D>
+ANAMORPH_INLINE auto both(const NearCondition<A, B>& a, const NearCondition<C, D>& b) {
+    return NearCondition<decltype(both(a.base, b.base)), decltype(both(a.rest, b.rest))>{
+        both(a.base, b.base), both(a.rest, b.rest)};
+}
+
+template <class Base, class Rest>
+struct Near {
+    using Pair = NearRest<Base, Rest>;
+
+    Base base;
+    Rest rest;
+
+    Near() = default;
+    ANAMORPH_INLINE Near(double k) : base(k), rest(0.0) {}  // NOLINT: a number is one without a rest
+    ANAMORPH_INLINE Near(const Base& b, const Rest& r) : base(b), rest(r) {}
+
+    /// A constant that is off by at most `error`, where that matters.
+    static Near near(double value, double error) requires requires { Pair::near(value, error); }
+    { return Pair::near(value, error); }
+
+    /// The number itself, as a rest.
+    ANAMORPH_INLINE Rest whole() const { return Pair::of(base) + rest; }
+
+    friend ANAMORPH_INLINE Near operator-(const Near& a) { return {-a.base, -a.rest}; }
+    friend ANAMORPH_INLINE Near operator+(const Near& a, const Near& b) {
+        const Base base = a.base + b.base;
+        return {base, Pair::off(a.rest + b.rest, base, 1)};
+    }
+    friend ANAMORPH_INLINE Near operator-(const Near& a, const Near& b) {
+        const Base base = a.base - b.base;
+        return {base, Pair::off(a.rest - b.rest, base, 1)};
+    }
+    friend ANAMORPH_INLINE Near operator*(const Near& a, const Near& b) {
+        const Base base = a.base * b.base;
+        return {base, Pair::off(a.rest * b.whole() + Pair::of(a.base) * b.rest, base, 1)};
+    }
+    friend ANAMORPH_INLINE Near operator/(const Near& a, const Near& b) {
+        const Base q = a.base / b.base;
+        // q b = a to within a rounding, of a's size or a little more.
+        return {q, Pair::off(a.rest - Pair::of(q) * b.rest, a.base, 2) / b.whole()};
+    }
+
+    friend ANAMORPH_INLINE Near operator+(const Near& a, double k) {
+        const Base base = a.base + Base(k);
+        return {base, Pair::off(a.rest, base, 1)};
+    }
+    friend ANAMORPH_INLINE Near operator+(double k, const Near& a) { return a + k; }
+    friend ANAMORPH_INLINE Near operator-(const Near& a, double k) {
+        const Base base = a.base - Base(k);
+        return {base, Pair::off(a.rest, base, 1)};
+    }
+    friend ANAMORPH_INLINE Near operator-(double k, const Near& a) {
+        const Base base = Base(k) - a.base;
+        return {base, Pair::off(-a.rest, base, 1)};
+    }
+    friend ANAMORPH_INLINE Near operator*(const Near& a, double k) {
+        const Base base = a.base * Base(k);
+        return {base, Pair::off(a.rest * Pair::of(Base(k)), base, 1)};
+    }
+    friend ANAMORPH_INLINE Near operator*(double k, const Near& a) { return a * k; }
+
+    friend ANAMORPH_INLINE Near square(const Near& a) {
+        const Base base = a.base * a.base;
+        return {base, Pair::off(a.rest * (a.whole() + Pair::of(a.base)), base, 1)};
+    }
+    friend ANAMORPH_INLINE Near sqrt(const Near& a) {
+        const Base root = sqrt(a.base);
+        const Rest rest = Pair::off(a.rest, a.base, 3);
+        return {root, rest / (Pair::of(root) + sqrt(a.whole()))};
+    }
+    friend ANAMORPH_INLINE void sin_cos(const Near& a, Near& sine, Near& cosine) {
+        Base s, c;
+        sin_cos(a.base, s, c);
+        Rest rs, rv;
+        sine_versine(a.rest, rs, rv);
+        const Rest of_s = Pair::of(s), of_c = Pair::of(c);
+        // Both are off by 8 units of libm, each of them of what its factor, at most 1, makes of it.
+        sine = {s, Pair::off(of_c * rs - of_s * rv, Base(1.0), 16)};
+        cosine = {c, Pair::off(-(of_s * rs + of_c * rv), Base(1.0), 16)};
+    }
+    friend ANAMORPH_INLINE Near atan2(const Near& y, const Near& x) {
+        const Base angle = atan2(y.base, x.base);
+        const Rest y0 = Pair::of(y.base), x0 = Pair::of(x.base);
+        const Rest across = x0 * y.rest - y0 * x.rest, along = x0 * x.whole() + y0 * y.whole();
+        return {angle, Pair::off(small_atan(across / along), angle, 8)};
+    }
+    /// With t = tanh a and T = tanh da: tanh A - t = T (1 - t^2) / (1 + t T), and with the two 1 / cosh, c and C,
+    /// 1 / cosh A - c = c (C - 1 - t T) / (1 + t T), C - 1 = -T^2 / (1 + C).
+    friend ANAMORPH_INLINE Near scaled_sinh(const Near& a, Near& s) {
+        Base t;
+        const Base c = scaled_sinh(a.base, t);
+        Rest rt;
+        const Rest rc = scaled_sinh(a.rest, rt);
+        const Rest of_c = Pair::of(c), turned = Pair::of(t) * rt, over = turned + Rest(1.0);
+        s = {t, Pair::off(rt * (of_c * of_c) / over, Base(1.0), 32)};
+        return {c, Pair::off(-(of_c * (rt * rt / (rc + Rest(1.0)) + turned) / over), c, 32)};
+    }
+    /// asinh A - asinh a = asinh(A r - a R), r and R the roots of 1 + a^2 and 1 + A^2; A r - a R = da r - a (R - r).
+    friend ANAMORPH_INLINE Near asinh(const Near& a) {
+        const Base root = sqrt(a.base * a.base + Base(1.0)), base = asinh(a.base);
+        const Rest of_a = Pair::of(a.base), of_root = Pair::of(root);
+        const Rest whole = a.whole(), other = sqrt(whole * whole + Rest(1.0));
+        const Rest grown = a.rest * (whole + of_a) / (other + of_root);
+        return {base, Pair::off(asinh(a.rest * of_root - of_a * grown), base, 32)};
+    }
+
+    friend ANAMORPH_INLINE auto is_negative(const Near& a) {
+        return NearCondition<decltype(is_negative(a.base)), decltype(is_negative(a.rest))>{
+            is_negative(a.base), is_negative(a.whole())};
+    }
+    friend ANAMORPH_INLINE auto is_zero(const Near& a) {
+        return NearCondition<decltype(is_zero(a.base)), decltype(is_zero(a.rest))>{is_zero(a.base),
+                                                                                   is_zero(a.whole())};
+    }
+    /// The base is what is chosen there. What is chosen elsewhere counts from it.
+    template <class AtBase, class AtRest>
+    friend ANAMORPH_INLINE Near select(const NearCondition<AtBase, AtRest>& where, const Near& a,
+                                       const Near& b) {
+        const Base apart = b.base - a.base;
+        const Rest from_a = Pair::off(b.rest + Pair::of(apart), apart, 1);
+        const Rest from_b = Pair::off(a.rest - Pair::of(apart), apart, 1);
+        return {Pair::choose(where.base, a.base, b.base),
+                Pair::choose(where.base, select(where.rest, a.rest, from_a),
+                             select(where.rest, from_b, b.rest))};
+    }
+    friend ANAMORPH_INLINE Near min(const Near& a, const Near& b) {
+        return select(is_negative(b - a), b, a);
+    }
+    friend ANAMORPH_INLINE Near max(const Near& a, const Near& b) {
+        return select(is_negative(a - b), b, a);
+    }
+    /// Where a root ends no bound is found, with or without a hair.
+    friend ANAMORPH_INLINE Near without_hair(const Near& a) { return a; }
+    /// Nor is one where squares underflow.
+    friend ANAMORPH_INLINE double enlarger(const Near&, const Near&) { return 1; }
+};

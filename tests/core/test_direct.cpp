@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: Apache-2.0
+// Blocks read pixel by pixel in float near their middles: the bases that are written down are the ones read, for
+// every projection and lens; the same bits on every instruction set and for every part of a block.
+#include <gtest/gtest.h>
+
+#include <cstring>
+#include <random>
+
+#include "anamorph/approx/panorama_plan.h"
+#include "anamorph/render/block_reader.h"
+#include "anamorph/simd/block_sampler.h"
+#include "projection_cases.h"
+
+namespace anamorph {
+namespace {
+
+/// The points of all direct blocks of a plan, in their order.
+std::vector<float> direct_points(const PanoramaPlan& plan) {
+    std::vector<float> points;
+    BlockPlanes planes(1);
+    for (std::int64_t r = 0; r < plan.regions(); ++r)
+        for (const Block& block : plan.blocks(r)) {
+            if (block.kind != Block::Kind::computed) continue;
+            plan.computed({&block, 1}, planes.rows());
+            const BlockPoints at = planes.points(0);
+            for (int j = 0; j < block.box.height(); ++j)
+                for (const float* row : {at.x, at.y})
+                    points.insert(points.end(), row + j * at.row_stride,
+                                  row + j * at.row_stride + block.box.width());
+        }
+    return points;
+}
+
+PanoramaPlan plan_of(const Panorama& map, double tol) {
+    PlanOptions options;
+    options.scheme = Scheme::direct;
+    options.tol = tol;
+    return {map, options};
+}
+
+TEST(Direct, GivesTheSameBitsOnEveryInstructionSet) {
+    for (const Projection source : kProjections)
+        for (const Projection target : kProjections) {
+            SCOPED_TRACE(testing::Message() << name_of(source) << " -> " << name_of(target));
+            const Panorama map(test::chart_of_width(source, 2048), test::chart_of_width(target, 96), {30, 20, 10});
+            std::vector<float> first;
+            for (const char* const* set = simd::instruction_sets(); *set; ++set) {
+                SCOPED_TRACE(*set);
+                ASSERT_TRUE(simd::use_instruction_set(*set));
+                const std::vector<float> points = direct_points(plan_of(map, 0.01));
+                if (first.empty()) first = points;
+                ASSERT_EQ(points.size(), first.size());
+                EXPECT_EQ(std::memcmp(points.data(), first.data(), points.size() * sizeof(float)), 0);
+            }
+            simd::use_instruction_set("");
+        }
+}
+
+TEST(Direct, ServesMostOfAView) {
+    // What is exact lies about poles, rims and edges of faces.
+    for (const Projection source : kProjections) {
+        const Panorama map(test::chart_of_width(source, 4096), {Projection::rectilinear, 1024, 1024, 90}, {30, 20, 10});
+        EXPECT_LT(plan_of(map, 0.01).reached(serial_for).exact_fraction, 0.3) << name_of(source);
+    }
+}
+
+TEST(Direct, RowsAndPartsAreThoseOfTheBlock) {
+    const Panorama map({Projection::equirectangular, 4096, 2048}, {Projection::fisheye, 900, 700, 180}, {150, 40, 0});
+    const PanoramaPlan plan = plan_of(map, 0.001);
+    BlockPlanes planes(1);
+    int blocks = 0;
+    for (std::int64_t r = 0; r < plan.regions(); ++r)
+        for (const Block& block : plan.blocks(r)) {
+            if (block.kind != Block::Kind::computed) continue;
+            ++blocks;
+            plan.computed({&block, 1}, planes.rows());
+            const BlockPoints whole = planes.points(0);
+            float x[simd::kRowRoom], y[simd::kRowRoom];
+            for (int j = 0; j < block.box.height(); ++j)
+                for (int begin = 0; begin < block.box.width(); begin += 7) {
+                    const int end = std::min(begin + 11, block.box.width());
+                    plan.computed_row(block, j, begin, end, x, y);
+                    for (int i = begin; i < end; ++i) {
+                        EXPECT_EQ(x[i - begin], whole.x[j * whole.row_stride + i]);
+                        EXPECT_EQ(y[i - begin], whole.y[j * whole.row_stride + i]);
+                    }
+                }
+        }
+    EXPECT_GT(blocks, 4);
+}
+
+}  // namespace
+}  // namespace anamorph
