@@ -34,11 +34,10 @@ constexpr double kTols[] = {1, 1.0 / 16, kDefaultTol, 0.001, 1e-4, 1e-6, 0};
 constexpr double kLeastResidualTol = 0.001;
 constexpr Orientation kTurned{30, 20, 10};
 
-const std::pair<Scheme, const char*> kSchemes[] = {
-    {Scheme::automatic, "automatic"},
-    {Scheme::blocks, "blocks"},
-    {Scheme::residual, "residual"},
-    {Scheme::direct, "direct"}};
+const std::pair<Scheme, const char*> kSchemes[] = {{Scheme::automatic, "automatic"},
+                                                   {Scheme::blocks, "blocks"},
+                                                   {Scheme::residual, "residual"},
+                                                   {Scheme::direct, "direct"}};
 
 /// A view to be measured.
 struct View {

@@ -42,7 +42,8 @@ TEST(Direct, GivesTheSameBitsOnEveryInstructionSet) {
     for (const Projection source : kProjections)
         for (const Projection target : kProjections) {
             SCOPED_TRACE(testing::Message() << name_of(source) << " -> " << name_of(target));
-            const Panorama map(test::chart_of_width(source, 2048), test::chart_of_width(target, 96), {30, 20, 10});
+            const Panorama map(test::chart_of_width(source, 2048), test::chart_of_width(target, 96),
+                               {30, 20, 10});
             std::vector<float> first;
             for (const char* const* set = simd::instruction_sets(); *set; ++set) {
                 SCOPED_TRACE(*set);
@@ -59,13 +60,15 @@ TEST(Direct, GivesTheSameBitsOnEveryInstructionSet) {
 TEST(Direct, ServesMostOfAView) {
     // What is exact lies about poles, rims and edges of faces.
     for (const Projection source : kProjections) {
-        const Panorama map(test::chart_of_width(source, 4096), {Projection::rectilinear, 1024, 1024, 90}, {30, 20, 10});
+        const Panorama map(test::chart_of_width(source, 4096), {Projection::rectilinear, 1024, 1024, 90},
+                           {30, 20, 10});
         EXPECT_LT(plan_of(map, 0.01).reached(serial_for).exact_fraction, 0.3) << name_of(source);
     }
 }
 
 TEST(Direct, RowsAndPartsAreThoseOfTheBlock) {
-    const Panorama map({Projection::equirectangular, 4096, 2048}, {Projection::fisheye, 900, 700, 180}, {150, 40, 0});
+    const Panorama map({Projection::equirectangular, 4096, 2048}, {Projection::fisheye, 900, 700, 180},
+                       {150, 40, 0});
     const PanoramaPlan plan = plan_of(map, 0.001);
     BlockPlanes planes(1);
     int blocks = 0;

@@ -96,9 +96,8 @@ HWY_EXPORT(EvaluateFloat);
 namespace {
 
 constexpr int kFunctions = 13;
-const char* const kNames[kFunctions] = {"sin",  "cos",   "atan2", "exp",      "log",
-                                        "tanh", "asinh", "hypot", "quotient", "sech",
-                                        "sine", "versine", "small atan"};
+const char* const kNames[kFunctions] = {"sin",   "cos",      "atan2", "exp",  "log",     "tanh",      "asinh",
+                                        "hypot", "quotient", "sech",  "sine", "versine", "small atan"};
 constexpr unsigned kSeed = 4711;
 constexpr std::size_t kCount = 1 << 16;  // a multiple of any number of lanes
 

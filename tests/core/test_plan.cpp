@@ -163,7 +163,8 @@ TEST(Plan, HoldsTheToleranceInHardViews) {
     };
     for (const View& view : views)
         for (const double tol : kTols)
-            for (const Scheme scheme : {Scheme::automatic, Scheme::blocks, Scheme::residual, Scheme::direct}) {
+            for (const Scheme scheme :
+                 {Scheme::automatic, Scheme::blocks, Scheme::residual, Scheme::direct}) {
                 SCOPED_TRACE(::testing::Message()
                              << name_of(view.source) << " -> " << name_of(view.target) << " fov "
                              << view.target_fov << " pitch " << view.look.pitch << " tol " << tol);

@@ -61,8 +61,8 @@ struct Findings {
 };
 
 /// A pixel's point as a block gives it. False where it gives none.
-bool used_point(const FormulaPlan<Lens>& plan, const Block& block, int i, int j,
-                const test::BlockRow& row, Point<double>& p) {
+bool used_point(const FormulaPlan<Lens>& plan, const Block& block, int i, int j, const test::BlockRow& row,
+                Point<double>& p) {
     int piece = 0;
     if (block.kind == Block::Kind::exact)
         return static_cast<const BlockMap&>(plan).exact(block, i + 0.5, j + 0.5, p, piece);

@@ -227,16 +227,14 @@ class Planner {
         return d.error;
     }
     /// One bound serves all blocks of a box: of full size with their middles anywhere, and what the last ones lack.
-    double direct_error(const Box& box, const Direct& d, const Local& local) const
-    requires DirectMap<Map>
-    {
+    double direct_error(const Box& box, const Direct& d, const Local& local) const requires DirectMap<Map> {
         const auto middles = [](int from, int to, int most) {
             const int full = std::min(to - from, most), last = (to - from - 1) % most + 1;
             return Interval(from + 0.5 * std::min(full, last), to - 0.5 * std::min(full, last));
         };
         return m_map.direct_error(middles(box.x0, box.x1, d.width), middles(box.y0, box.y1, d.height),
-                                  half(std::min(box.width(), d.width)), half(std::min(box.height(), d.height)),
-                                  local);
+                                  half(std::min(box.width(), d.width)),
+                                  half(std::min(box.height(), d.height)), local);
     }
     /// What no polynomial serves.
     void leave(const Box& box) {
@@ -645,9 +643,9 @@ class Planner {
     int m_piece;
     Blocks& m_blocks;
     Records<Local>& m_records;
-    double m_balance;  ///< exact pixels saved less those that bounds and polynomials would have paid for
+    double m_balance;      ///< exact pixels saved less those that bounds and polynomials would have paid for
     double m_over_direct;  ///< the same over direct pixels, where those serve
-    double m_margin;   ///< of what is enclosed of a box: from its edges to the nodes that blocks are made of
+    double m_margin;  ///< of what is enclosed of a box: from its edges to the nodes that blocks are made of
     std::optional<LinearPart> m_linear;
     std::optional<Direct> m_direct;  ///< what may serve all of the box that is being settled
 };
@@ -728,7 +726,8 @@ void FormulaPlan<Map>::plan(const Box& box, int piece, Blocks& blocks) const {
             exact.place(block);
         else
             blocks.push_back(block);
-    if (!records->terms.empty() || !records->precise.empty() || !records->places.empty()) blocks.data = records;
+    if (!records->terms.empty() || !records->precise.empty() || !records->places.empty())
+        blocks.data = records;
 }
 
 template <class Map>

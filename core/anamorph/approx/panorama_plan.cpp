@@ -26,11 +26,12 @@ void PanoramaPlan::direct_rows(const Block& block, const Box& part, const PointR
     const Panorama::Direct direct = map().direct(0.5 * (box.x0 + box.x1), 0.5 * (box.y0 + box.y1), local);
     // The block's base may be some turns away.
     const int period = map().period();
-    const double off = direct.middle.x - block.base_x, turns = period > 0 ? std::round(off / period) * period : 0;
+    const double off = direct.middle.x - block.base_x,
+                 turns = period > 0 ? std::round(off / period) * period : 0;
     const Point<float> middle{static_cast<float>(off - turns),
                               static_cast<float>(direct.middle.y - block.base_y)};
-    simd::direct_rows({map().target(), map().source(), local, direct.bases.data(), box.width(), box.height(), middle},
-                      part, to);
+    simd::direct_rows(
+        {map().target(), map().source(), local, direct.bases, box.width(), box.height(), middle}, part, to);
 }
 void PanoramaPlan::computed_row(const Block& block, int row, int begin, int end, float* x,
                                 float* y) const noexcept {

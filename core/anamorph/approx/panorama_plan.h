@@ -17,7 +17,8 @@ class PanoramaPlan final : public FormulaPlan<Panorama> {
     /// Exact pixels by vectors.
     void exact_row(const Block& block, int row, ExactPoint* points) const noexcept override;
     /// And direct ones.
-    void computed_row(const Block& block, int row, int begin, int end, float* x, float* y) const noexcept override;
+    void computed_row(const Block& block, int row, int begin, int end, float* x,
+                      float* y) const noexcept override;
     void computed(std::span<const Block> layers, const PointRows* to) const noexcept override;
 
   private:

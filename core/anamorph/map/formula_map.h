@@ -78,8 +78,8 @@ concept FormulaMap = requires(const Map& map, const typename Map::Local& local, 
 /// A map whose plan reads it in float near the middles of blocks as well (FormulaPlan's computed blocks), because
 /// lanes are compiled for it: simd/direct_rows.h.
 template <class Map>
-concept DirectMap = FormulaMap<Map> && requires(const Map& map, const typename Map::Local& local, double a,
-                                                const Interval& x) {
+concept DirectMap = FormulaMap<Map> &&
+    requires(const Map& map, const typename Map::Local& local, double a, const Interval& x) {
     /// Bounds the error over blocks of up to the given half sizes with middles in a box.
     { map.direct_error(x, x, a, a, local) } -> std::same_as<double>;
 };

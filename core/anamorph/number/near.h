@@ -19,6 +19,9 @@
 // where the base was rounded by so many units of 2^-53 of another; choose(condition of bases, a, b). Rests offer
 // sine_versine(a, s, v), sin a and 1 - cos a for |a| <= pi / 4, and small_atan(a) for |a| <= tan(pi / 8).
 //
+// Bases are read in the order in which they were written: that in which the compiler evaluates the operands of a formula,
+// which is the same for both as long as one compiler makes both. tests/core/test_direct.cpp reads every formula.
+//
 // No include guard and no namespace, as in map/lens_formula.h: lanes are compiled for each instruction set.
 // ANAMORPH_INLINE says how.
 
@@ -153,16 +156,12 @@ struct Near {
         const Base apart = b.base - a.base;
         const Rest from_a = Pair::off(b.rest + Pair::of(apart), apart, 1);
         const Rest from_b = Pair::off(a.rest - Pair::of(apart), apart, 1);
-        return {Pair::choose(where.base, a.base, b.base),
-                Pair::choose(where.base, select(where.rest, a.rest, from_a),
-                             select(where.rest, from_b, b.rest))};
+        return {
+            Pair::choose(where.base, a.base, b.base),
+            Pair::choose(where.base, select(where.rest, a.rest, from_a), select(where.rest, from_b, b.rest))};
     }
-    friend ANAMORPH_INLINE Near min(const Near& a, const Near& b) {
-        return select(is_negative(b - a), b, a);
-    }
-    friend ANAMORPH_INLINE Near max(const Near& a, const Near& b) {
-        return select(is_negative(a - b), b, a);
-    }
+    friend ANAMORPH_INLINE Near min(const Near& a, const Near& b) { return select(is_negative(b - a), b, a); }
+    friend ANAMORPH_INLINE Near max(const Near& a, const Near& b) { return select(is_negative(a - b), b, a); }
     /// Where a root ends no bound is found, with or without a hair.
     friend ANAMORPH_INLINE Near without_hair(const Near& a) { return a; }
     /// Nor is one where squares underflow.

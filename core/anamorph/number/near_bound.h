@@ -103,10 +103,18 @@ struct WrittenBase {
     }
 
     friend WrittenBase operator-(const WrittenBase& a) { return written(-a.value); }
-    friend WrittenBase operator+(const WrittenBase& a, const WrittenBase& b) { return written(a.value + b.value); }
-    friend WrittenBase operator-(const WrittenBase& a, const WrittenBase& b) { return written(a.value - b.value); }
-    friend WrittenBase operator*(const WrittenBase& a, const WrittenBase& b) { return written(a.value * b.value); }
-    friend WrittenBase operator/(const WrittenBase& a, const WrittenBase& b) { return written(a.value / b.value); }
+    friend WrittenBase operator+(const WrittenBase& a, const WrittenBase& b) {
+        return written(a.value + b.value);
+    }
+    friend WrittenBase operator-(const WrittenBase& a, const WrittenBase& b) {
+        return written(a.value - b.value);
+    }
+    friend WrittenBase operator*(const WrittenBase& a, const WrittenBase& b) {
+        return written(a.value * b.value);
+    }
+    friend WrittenBase operator/(const WrittenBase& a, const WrittenBase& b) {
+        return written(a.value / b.value);
+    }
     friend WrittenBase sqrt(const WrittenBase& a) { return written(std::sqrt(a.value)); }
     friend void sin_cos(const WrittenBase& a, WrittenBase& s, WrittenBase& c) {
         s = written(std::sin(a.value));

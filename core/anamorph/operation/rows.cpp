@@ -30,11 +30,12 @@ Parameter extent(const char* name, std::string value, double least, double most,
 
 // What the words of all operations mean. In functions, since tables may be made before main() begins.
 const std::vector<Word>& shared_schemes() {
-    static const std::vector<Word> words = {{"auto", "the fastest that holds tol"},
-                                            {"exact", "every pixel by the formula"},
-                                            {"blocks", "polynomials of degree 2 to 4 on blocks"},
-                                            {"residual", "linear maps and a table of what remains"},
-                                            {"direct", "every pixel by the formula in float, near the middle of its block"}};
+    static const std::vector<Word> words = {
+        {"auto", "the fastest that holds tol"},
+        {"exact", "every pixel by the formula"},
+        {"blocks", "polynomials of degree 2 to 4 on blocks"},
+        {"residual", "linear maps and a table of what remains"},
+        {"direct", "every pixel by the formula in float, near the middle of its block"}};
     return words;
 }
 const std::vector<Word>& shared_outputs() {

@@ -336,7 +336,8 @@ bool BlockReader::draw(const Block& block, const Box& part, const Canvas& canvas
         const Got got = straight ? draw_points(block, points, part, canvas, next) : Got::too_large;
         return got == Got::too_large ? rows(block, points, part, store) : got == Got::window;
     }
-    const Got got = straight && is_polynomial(block) ? draw_polynomial(block, part, canvas, next) : Got::too_large;
+    const Got got =
+        straight && is_polynomial(block) ? draw_polynomial(block, part, canvas, next) : Got::too_large;
     return got == Got::too_large ? rows(block, part, store) : got == Got::window;
 }
 
@@ -350,8 +351,8 @@ BlockReader::Got BlockReader::draw_polynomial(const Block& block, const Box& par
     Window window;
     const Got got = polynomial_window(f, block, polynomial, window);
     if (got == Got::window)
-        draw_window(f, block, on_block(polynomial.p, block), {polynomial.base_x, polynomial.base_y}, window, part,
-                    canvas, upcoming(next, f));
+        draw_window(f, block, on_block(polynomial.p, block), {polynomial.base_x, polynomial.base_y}, window,
+                    part, canvas, upcoming(next, f));
     return got;
 }
 
@@ -448,7 +449,8 @@ bool BlockReader::for_each_footprint(const Block& block, const At& at, const Bod
 }
 
 /// Of the points of a cell. False where they are too far away.
-bool BlockReader::ranges_of(const Block& block, const BlockPoints& points, const Box& cell, Range& x, Range& y) {
+bool BlockReader::ranges_of(const Block& block, const BlockPoints& points, const Box& cell, Range& x,
+                            Range& y) {
     const std::ptrdiff_t first = cell.y0 * points.row_stride + cell.x0;
     const auto range = [&](const float* at, Range& r) {
         const float* const p = at + first;
@@ -653,7 +655,8 @@ simd::Upcoming BlockReader::upcoming(const Block* next, const Filtering& f) cons
 }
 
 /// Where they would stand if the next block were moved from this one.
-simd::Upcoming BlockReader::upcoming_like(const Block& next, const Filtering& f, const Range& x, const Range& y) const {
+simd::Upcoming BlockReader::upcoming_like(const Block& next, const Filtering& f, const Range& x,
+                                          const Range& y) const {
     return upcoming(f, Span(f, f.reach_x, next.base_x, x), Span(f, f.reach_y, next.base_y, y));
 }
 

@@ -106,7 +106,7 @@ HWY_FLATTEN void TargetRays(const DirectBlock& block, float x, float y, int coun
     const Branch& branch = block.local.target;
     const Chart::Plane plane = block.target.plane(branch.piece);
     for (int i = 0; i < count; i += L::kCount) {
-        t_next = block.bases;
+        t_next = block.bases.data();
         const N px(ReadBase::next(), L(hn::Iota(D(), x + static_cast<float>(i))));
         const N py(ReadBase::next(), L(hn::Set(D(), y)));
         Point<N> p{(px - plane.cx) * plane.per_x + branch.centre_x,
@@ -138,7 +138,8 @@ HWY_FLATTEN void SourcePoints(const DirectBlock& block, const Rays& rays, int co
         Point<N> p = Projection::point(r, branch);
         if constexpr (Projection::lensed != Lensed::no)
             if (block.source.lens()) p = formulas::observed_point(block.source.lens()->terms(), p);
-        const N sx = (p.x - branch.centre_x) * plane.sx + plane.cx, sy = (p.y - branch.centre_y) * plane.sy + plane.cy;
+        const N sx = (p.x - branch.centre_x) * plane.sx + plane.cx,
+                sy = (p.y - branch.centre_y) * plane.sy + plane.cy;
         (L(hn::Set(D(), block.middle.x)) + sx.rest).store(x + i);
         (L(hn::Set(D(), block.middle.y)) + sy.rest).store(y + i);
     }
@@ -149,21 +150,22 @@ void ComputeDirectRow(const DirectBlock& block, int begin, int end, int row, flo
     const float left = static_cast<float>(begin) - 0.5f * static_cast<float>(block.width - 1);
     const float down = static_cast<float>(row) - 0.5f * static_cast<float>(block.height - 1);
     switch (block.target.projection()) {
-#define ANAMORPH_PROJECTION(name, Type)                                             \
-    case Projection::name:                                                          \
-        TargetRays<formulas::Type>(block, left, down, end - begin, rays);   \
+#define ANAMORPH_PROJECTION(name, Type)                                   \
+    case Projection::name:                                                \
+        TargetRays<formulas::Type>(block, left, down, end - begin, rays); \
         break;
 #include "anamorph/map/projection/list.h"
 #undef ANAMORPH_PROJECTION
     }
     switch (block.source.projection()) {
-#define ANAMORPH_PROJECTION(name, Type)                                     \
-    case Projection::name:                                                  \
+#define ANAMORPH_PROJECTION(name, Type)                               \
+    case Projection::name:                                            \
         SourcePoints<formulas::Type>(block, rays, end - begin, x, y); \
         break;
 #include "anamorph/map/projection/list.h"
 #undef ANAMORPH_PROJECTION
     }
+    HWY_DASSERT(t_next == block.bases.data() + block.bases.size());
 }
 
 void ComputeDirectRows(const DirectBlock& block, const Box& part, const PointRows& to) {

@@ -13,8 +13,8 @@ struct DirectBlock {
     const Chart& target;
     const Chart& source;
     const Panorama::Local& local;
-    /// As Panorama::direct_bases() wrote them down about the middle of the block.
-    const float* bases;
+    /// As Panorama::direct() wrote them down about the middle of the block.
+    const Bases& bases;
     int width, height;
     /// What is added to the rests: the source point of the middle of the block less the block's base.
     Point<float> middle;
