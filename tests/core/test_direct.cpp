@@ -3,8 +3,11 @@
 // every projection and lens; the same bits on every instruction set and for every part of a block.
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <cstring>
 #include <random>
+#include <string>
+#include <vector>
 
 #include "anamorph/approx/panorama_plan.h"
 #include "anamorph/render/block_reader.h"
@@ -36,6 +39,54 @@ PanoramaPlan plan_of(const Panorama& map, double tol) {
     options.scheme = Scheme::direct;
     options.tol = tol;
     return {map, options};
+}
+
+/// The number near `x` that is `off` from it.
+NearBound near(double x, double off) {
+    return {Interval(x), Rounded<float>(Interval(off), 0, 0)};
+}
+
+/// Is base and rest together the value, and its rounding bounded?
+void expect_encloses(const NearBound& found, double value, const std::string& words) {
+    const Interval whole = found.base + found.rest.range;
+    EXPECT_LE(whole.lo, value + 1e-12) << words;
+    EXPECT_GE(whole.hi, value - 1e-12) << words;
+    EXPECT_LT(whole.hi - whole.lo, 1e-9) << words;
+    EXPECT_LT(found.rest.error, 1e-6) << words;
+}
+
+TEST(Near, NumbersEncloseEveryProjection) {
+    constexpr unsigned kSeed = 404;
+    SCOPED_TRACE(testing::Message() << "seed " << kSeed);
+    std::mt19937 random(kSeed);
+    std::uniform_real_distribution<double> uniform(-1, 1);
+    for (const Projection projection : kProjections)
+        for (int i = 0; i < 200; ++i) {
+            Setting setting;
+            setting.half_width = 1;
+            setting.reach = 1000;
+            setting.centre_x = setting.centre_y = 0.5;
+            const double lift = projection == Projection::octahedral ? 0.45 : 0;
+            const double x = lift + 0.4 * uniform(random), y = lift + 0.4 * uniform(random);
+            const double dx = 0.03 * uniform(random), dy = 0.03 * uniform(random);
+            if (std::hypot(x, y) < 0.06) continue;                  // an axis
+            if (lift > 0 && std::fabs(1 - x - y) < 0.08) continue;  // its crease
+            const std::string words(name_of(projection));
+            with_projection(projection, [&](auto formulas) {
+                const Ray<double> from = formulas.ray(Point<double>{x, y}, setting),
+                                  to = formulas.ray(Point<double>{x + dx, y + dy}, setting);
+                const Ray<NearBound> ray = formulas.ray(Point<NearBound>{near(x, dx), near(y, dy)}, setting);
+                expect_encloses(ray.x, to.x, words + " ray x");
+                expect_encloses(ray.y, to.y, words + " ray y");
+                expect_encloses(ray.z, to.z, words + " ray z");
+                const Point<NearBound> p =
+                    formulas.point(Ray<NearBound>{near(from.x, to.x - from.x), near(from.y, to.y - from.y),
+                                                  near(from.z, to.z - from.z)},
+                                   setting);
+                expect_encloses(p.x, x + dx, words + " x");
+                expect_encloses(p.y, y + dy, words + " y");
+            });
+        }
 }
 
 TEST(Direct, GivesTheSameBitsOnEveryInstructionSet) {
