@@ -105,17 +105,20 @@ Jet<T, N> shrink(const LensTerms& lens, const Jet<T, N>& value);
 inline NearBound shrink(const LensTerms&, const NearBound& value) {
     return {value.base, rounded_detail::unbounded()};
 }
+/// So that no base is asked for.
 inline NearBase shrink(const LensTerms&, const NearBase& value) {
     return value;
 }
 
-/// And settled().
+/// As shrink(), of lenses with a tangential part.
 inline Point<NearBound> settled(const LensTerms& lens, const Point<NearBound>& v) {
     return {shrink(lens, v.x), shrink(lens, v.y)};
 }
+/// So that no base is asked for.
 inline Point<NearBase> settled(const LensTerms&, const Point<NearBase>& v) {
     return v;
 }
+/// And settled().
 Point<Interval> settled(const LensTerms& lens, const Point<Interval>& v);
 template <class Real>
 Point<Rounded<Real>> settled(const LensTerms& lens, const Point<Rounded<Real>>& v);

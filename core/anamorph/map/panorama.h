@@ -89,6 +89,7 @@ class Panorama {
         Point<double> middle;
         Bases bases;
     };
+    /// About (x, y).
     Direct direct(double x, double y, const Local& local) const;
     /// Bounds the error of what is read so, less the middle: for target points up to half_width and half_height from
     /// a middle in the box x, y. Infinite or NaN where none is known.

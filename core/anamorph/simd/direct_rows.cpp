@@ -13,7 +13,14 @@ namespace hn = hwy::HWY_NAMESPACE;
 
 #include "anamorph/number/lanes.h"
 using anamorph::both;  // of decisions at a base
+#ifdef ANAMORPH_SANITIZED
+// In one function each the formulas take minutes to compile.
+#define ANAMORPH_INLINE inline
+#define ANAMORPH_FLATTEN
+#else
 #define ANAMORPH_INLINE HWY_INLINE
+#define ANAMORPH_FLATTEN HWY_FLATTEN
+#endif
 #include "anamorph/number/near.h"
 #undef ANAMORPH_INLINE
 
@@ -102,7 +109,7 @@ HWY_INLINE Ray<N> Transformed(const glm::dmat3& m, const Ray<N>& ray) {
 
 /// Panorama::local_ray() of a row, `y` below the middle of the block, from `x` on.
 template <class Projection>
-HWY_FLATTEN void TargetRays(const DirectBlock& block, float x, float y, int count, Rays& rays) {
+ANAMORPH_FLATTEN void TargetRays(const DirectBlock& block, float x, float y, int count, Rays& rays) {
     const Branch& branch = block.local.target;
     const Chart::Plane plane = block.target.plane(branch.piece);
     for (int i = 0; i < count; i += L::kCount) {
@@ -126,7 +133,7 @@ HWY_FLATTEN void TargetRays(const DirectBlock& block, float x, float y, int coun
 
 /// Chart::local_point() of a row.
 template <class Projection>
-HWY_FLATTEN void SourcePoints(const DirectBlock& block, const Rays& rays, int count, float* x, float* y) {
+ANAMORPH_FLATTEN void SourcePoints(const DirectBlock& block, const Rays& rays, int count, float* x, float* y) {
     const Branch& branch = block.local.source;
     const Chart::Plane plane = block.source.plane(branch.piece);
     const float* const first = t_next;
