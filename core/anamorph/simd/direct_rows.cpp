@@ -133,7 +133,8 @@ ANAMORPH_FLATTEN void TargetRays(const DirectBlock& block, float x, float y, int
 
 /// Chart::local_point() of a row.
 template <class Projection>
-ANAMORPH_FLATTEN void SourcePoints(const DirectBlock& block, const Rays& rays, int count, float* x, float* y) {
+ANAMORPH_FLATTEN void SourcePoints(const DirectBlock& block, const Rays& rays, int count, float* x,
+                                   float* y) {
     const Branch& branch = block.local.source;
     const Chart::Plane plane = block.source.plane(branch.piece);
     const float* const first = t_next;
