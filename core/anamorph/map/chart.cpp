@@ -141,9 +141,6 @@ void Chart::set_scale(const std::string& prefix, const LensModel& lens) {
     const Lensed lensed = with_projection(m_projection, [](auto formulas) { return formulas.lensed; });
     m_lens =
         std::make_shared<const Lens>(lens, lensed, std::string(name_of(m_projection)), half, prefix + "lens");
-    // One whose numbers are all 0 distorts nothing.
-    if (std::all_of(lens.values.begin(), lens.values.end(), [](double value) { return value == 0; }))
-        m_lens.reset();
 }
 
 void Chart::set_branches() {
