@@ -13,12 +13,11 @@ namespace hn = hwy::HWY_NAMESPACE;
 
 #include "anamorph/number/lanes.h"
 using anamorph::both;  // of decisions at a base
+#define ANAMORPH_INLINE HWY_INLINE
 #ifdef ANAMORPH_SANITIZED
 // In one function each the formulas take minutes to compile.
-#define ANAMORPH_INLINE inline
 #define ANAMORPH_FLATTEN
 #else
-#define ANAMORPH_INLINE HWY_INLINE
 #define ANAMORPH_FLATTEN HWY_FLATTEN
 #endif
 #include "anamorph/number/near.h"
