@@ -60,16 +60,16 @@ struct Near {
 
     friend ANAMORPH_INLINE Near operator-(const Near& a) { return {-a.base, -a.rest}; }
     friend ANAMORPH_INLINE Near operator+(const Near& a, const Near& b) {
-        const Base base = a.base + b.base;
-        return {base, Pair::off(a.rest + b.rest, base, 1)};
+        const Base result = a.base + b.base;
+        return {result, Pair::off(a.rest + b.rest, result, 1)};
     }
     friend ANAMORPH_INLINE Near operator-(const Near& a, const Near& b) {
-        const Base base = a.base - b.base;
-        return {base, Pair::off(a.rest - b.rest, base, 1)};
+        const Base result = a.base - b.base;
+        return {result, Pair::off(a.rest - b.rest, result, 1)};
     }
     friend ANAMORPH_INLINE Near operator*(const Near& a, const Near& b) {
-        const Base base = a.base * b.base;
-        return {base, Pair::off(a.rest * b.whole() + Pair::of(a.base) * b.rest, base, 1)};
+        const Base result = a.base * b.base;
+        return {result, Pair::off(a.rest * b.whole() + Pair::of(a.base) * b.rest, result, 1)};
     }
     friend ANAMORPH_INLINE Near operator/(const Near& a, const Near& b) {
         const Base q = a.base / b.base;
@@ -78,32 +78,32 @@ struct Near {
     }
 
     friend ANAMORPH_INLINE Near operator+(const Near& a, double k) {
-        const Base base = a.base + Base(k);
-        return {base, Pair::off(a.rest, base, 1)};
+        const Base result = a.base + Base(k);
+        return {result, Pair::off(a.rest, result, 1)};
     }
     friend ANAMORPH_INLINE Near operator+(double k, const Near& a) { return a + k; }
     friend ANAMORPH_INLINE Near operator-(const Near& a, double k) {
-        const Base base = a.base - Base(k);
-        return {base, Pair::off(a.rest, base, 1)};
+        const Base result = a.base - Base(k);
+        return {result, Pair::off(a.rest, result, 1)};
     }
     friend ANAMORPH_INLINE Near operator-(double k, const Near& a) {
-        const Base base = Base(k) - a.base;
-        return {base, Pair::off(-a.rest, base, 1)};
+        const Base result = Base(k) - a.base;
+        return {result, Pair::off(-a.rest, result, 1)};
     }
     friend ANAMORPH_INLINE Near operator*(const Near& a, double k) {
-        const Base base = a.base * Base(k);
-        return {base, Pair::off(a.rest * Pair::of(Base(k)), base, 1)};
+        const Base result = a.base * Base(k);
+        return {result, Pair::off(a.rest * Pair::of(Base(k)), result, 1)};
     }
     friend ANAMORPH_INLINE Near operator*(double k, const Near& a) { return a * k; }
 
     friend ANAMORPH_INLINE Near square(const Near& a) {
-        const Base base = a.base * a.base;
-        return {base, Pair::off(a.rest * (a.whole() + Pair::of(a.base)), base, 1)};
+        const Base result = a.base * a.base;
+        return {result, Pair::off(a.rest * (a.whole() + Pair::of(a.base)), result, 1)};
     }
     friend ANAMORPH_INLINE Near sqrt(const Near& a) {
         const Base root = sqrt(a.base);
-        const Rest rest = Pair::off(a.rest, a.base, 3);
-        return {root, rest / (Pair::of(root) + sqrt(a.whole()))};
+        const Rest of_a = Pair::off(a.rest, a.base, 3);
+        return {root, of_a / (Pair::of(root) + sqrt(a.whole()))};
     }
     friend ANAMORPH_INLINE void sin_cos(const Near& a, Near& sine, Near& cosine) {
         Base s, c;
@@ -134,11 +134,11 @@ struct Near {
     }
     /// asinh A - asinh a = asinh(A r - a R), r and R the roots of 1 + a^2 and 1 + A^2; A r - a R = da r - a (R - r).
     friend ANAMORPH_INLINE Near asinh(const Near& a) {
-        const Base root = sqrt(a.base * a.base + Base(1.0)), base = asinh(a.base);
+        const Base root = sqrt(a.base * a.base + Base(1.0)), result = asinh(a.base);
         const Rest of_a = Pair::of(a.base), of_root = Pair::of(root);
         const Rest whole = a.whole(), other = sqrt(whole * whole + Rest(1.0));
         const Rest grown = a.rest * (whole + of_a) / (other + of_root);
-        return {base, Pair::off(asinh(a.rest * of_root - of_a * grown), base, 32)};
+        return {result, Pair::off(asinh(a.rest * of_root - of_a * grown), result, 32)};
     }
 
     friend ANAMORPH_INLINE auto is_negative(const Near& a) {
