@@ -7,6 +7,7 @@
 #include "anamorph/approx/panorama_plan.h"
 #include "anamorph/map/panorama.h"
 #include "anamorph/parallel_for.h"
+#include "anamorph/render/block_reader.h"
 
 namespace anamorph::bench {
 
@@ -25,9 +26,11 @@ void for_points(const PanoramaPlan& plan, const Block& block, const Body& body) 
     const Box& box = block.box;
     const bool bicubic = block.kind == Block::Kind::bicubic;
     const BlockPolynomial polynomial = bicubic && !block.precise ? plan.bicubic(block) : quadratic_of(block);
-    std::vector<BlockMap::ExactPoint> row(static_cast<std::size_t>(box.width()));
+    PointsInDouble row;
+    const bool precise = block.precise && block.kind != Block::Kind::exact;
     const bool direct = block.kind == Block::Kind::computed;
-    std::vector<float> x(row.size() + 16), y(row.size() + 16);
+    const auto room = static_cast<std::size_t>(box.width()) + 16;
+    std::vector<float> x(room), y(room);
     // s and t run from -1 to 1 over the pixel centres; a single one stands at 0.
     const auto along = [](int k, int count) {
         return count > 1 ? static_cast<float>(2 * k - (count - 1)) / static_cast<float>(count - 1) : 0.0f;
@@ -42,12 +45,14 @@ void for_points(const PanoramaPlan& plan, const Block& block, const Body& body) 
         return sum;
     };
     for (int j = box.y0; j < box.y1; ++j) {
-        if (bicubic && block.precise) plan.exact_row(block, j - box.y0, row.data());
-        if (direct) plan.computed_row(block, j - box.y0, 0, box.width(), x.data(), y.data());
+        if (precise)
+            row.read(plan, block, j - box.y0, j - box.y0 + 1);
+        else if (direct)
+            plan.computed_row(block, j - box.y0, 0, box.width(), x.data(), y.data());
         for (int i = box.x0; i < box.x1; ++i) {
             Point<double> p{std::nan(""), std::nan("")};
-            if (bicubic && block.precise) {
-                p = row[static_cast<std::size_t>(i - box.x0)].at;
+            if (precise) {
+                p = row.at(i - box.x0, 0);
             } else if (direct) {
                 const auto k = static_cast<std::size_t>(i - box.x0);
                 p = {block.base_x + double{x[k]}, block.base_y + double{y[k]}};

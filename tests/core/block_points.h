@@ -9,7 +9,7 @@
 
 namespace anamorph::test {
 
-/// By a polynomial, or in float by the formula.
+/// By a polynomial, or direct.
 inline bool has_points(const Block& block) {
     return block.kind != Block::Kind::exact && block.kind != Block::Kind::outside;
 }
@@ -18,23 +18,23 @@ inline bool has_points(const Block& block) {
 class BlockRow {
   public:
     BlockRow(const BlockMap& map, const Block& block, int j) : m_block(block) {
-        if (is_precise_polynomial(block)) {
-            m_points.resize(static_cast<std::size_t>(block.box.width()));
-            map.exact_row(block, j - block.box.y0, m_points.data());
-        } else if (has_points(block))
+        if (!has_points(block)) return;
+        if (in_double(block))
+            m_points.read(map, block, j - block.box.y0, j - block.box.y0 + 1);
+        else
             block_row(map, block, block.box, j, m_x, m_y);
     }
     /// Of pixel i of the picture.
     Point<double> at(int i) const {
         const int k = i - m_block.box.x0;
-        if (!m_points.empty()) return m_points[static_cast<std::size_t>(k)].at;
+        if (in_double(m_block)) return m_points.at(k, 0);
         return {m_block.base_x + double{m_x[k]}, m_block.base_y + double{m_y[k]}};
     }
 
   private:
     const Block& m_block;
     float m_x[simd::kRowRoom], m_y[simd::kRowRoom];
-    std::vector<BlockMap::ExactPoint> m_points;
+    PointsInDouble m_points;
 };
 
 }  // namespace anamorph::test

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Blocks read pixel by pixel in float near their middles: the bases that are written down are the ones read, for
+// Blocks read pixel by pixel near their middles, in float or in double: the bases that are written down are the ones read, for
 // every projection and lens; the same bits on every instruction set and for every part of a block.
 #include <gtest/gtest.h>
 
@@ -18,18 +18,26 @@ namespace anamorph {
 namespace {
 
 /// The points of all direct blocks of a plan, in their order.
-std::vector<float> direct_points(const PanoramaPlan& plan) {
-    std::vector<float> points;
+std::vector<double> direct_points(const PanoramaPlan& plan) {
+    std::vector<double> points;
     BlockPlanes planes(1);
+    PointsInDouble precise;
+    const auto take = [&](const Block& block, const auto& at) {
+        for (int j = 0; j < block.box.height(); ++j)
+            for (const auto* row : {at.x, at.y})
+                points.insert(points.end(), row + j * at.row_stride,
+                              row + j * at.row_stride + block.box.width());
+    };
     for (std::int64_t r = 0; r < plan.regions(); ++r)
         for (const Block& block : plan.blocks(r)) {
             if (block.kind != Block::Kind::computed) continue;
-            plan.computed({&block, 1}, planes.rows());
-            const BlockPoints at = planes.points(0);
-            for (int j = 0; j < block.box.height(); ++j)
-                for (const float* row : {at.x, at.y})
-                    points.insert(points.end(), row + j * at.row_stride,
-                                  row + j * at.row_stride + block.box.width());
+            if (block.precise) {
+                precise.read(plan, block, 0, block.box.height());
+                take(block, precise.points());
+            } else {
+                plan.computed({&block, 1}, planes.rows());
+                take(block, planes.points(0));
+            }
         }
     return points;
 }
@@ -41,21 +49,24 @@ PanoramaPlan plan_of(const Panorama& map, double tol) {
     return {map, options};
 }
 
-/// The number near `x` that is `off` from it.
-NearBound near(double x, double off) {
-    return {Interval(x), Rounded<float>(Interval(off), 0, 0)};
-}
+template <class Real>
+class Near : public testing::Test {};
+using Reals = testing::Types<float, double>;
+TYPED_TEST_SUITE(Near, Reals);
 
 /// Is base and rest together the value, and its rounding bounded?
-void expect_encloses(const NearBound& found, double value, const std::string& words) {
+template <class Real>
+void expect_encloses(const NearBound<Real>& found, double value, const std::string& words) {
     const Interval whole = found.base + found.rest.range;
     EXPECT_LE(whole.lo, value + 1e-12) << words;
     EXPECT_GE(whole.hi, value - 1e-12) << words;
     EXPECT_LT(whole.hi - whole.lo, 1e-9) << words;
-    EXPECT_LT(found.rest.error, 1e-6) << words;
+    const double most = std::is_same_v<Real, float> ? 1e-6 : 1e-12;
+    EXPECT_LT(found.rest.error, most) << words;
 }
 
-TEST(Near, NumbersEncloseEveryProjection) {
+TYPED_TEST(Near, NumbersEncloseEveryProjection) {
+    using Number = NearBound<TypeParam>;
     constexpr unsigned kSeed = 404;
     SCOPED_TRACE(testing::Message() << "seed " << kSeed);
     std::mt19937 random(kSeed);
@@ -75,13 +86,16 @@ TEST(Near, NumbersEncloseEveryProjection) {
             with_projection(projection, [&](auto formulas) {
                 const Ray<double> from = formulas.ray(Point<double>{x, y}, setting),
                                   to = formulas.ray(Point<double>{x + dx, y + dy}, setting);
-                const Ray<NearBound> ray = formulas.ray(Point<NearBound>{near(x, dx), near(y, dy)}, setting);
+                const auto near = [](double at, double off) {
+                    return Number{Interval(at), Rounded<TypeParam>(Interval(off), 0, 0)};
+                };
+                const Ray<Number> ray = formulas.ray(Point<Number>{near(x, dx), near(y, dy)}, setting);
                 expect_encloses(ray.x, to.x, words + " ray x");
                 expect_encloses(ray.y, to.y, words + " ray y");
                 expect_encloses(ray.z, to.z, words + " ray z");
-                const Point<NearBound> p =
-                    formulas.point(Ray<NearBound>{near(from.x, to.x - from.x), near(from.y, to.y - from.y),
-                                                  near(from.z, to.z - from.z)},
+                const Point<Number> p =
+                    formulas.point(Ray<Number>{near(from.x, to.x - from.x), near(from.y, to.y - from.y),
+                                               near(from.z, to.z - from.z)},
                                    setting);
                 expect_encloses(p.x, x + dx, words + " x");
                 expect_encloses(p.y, y + dy, words + " y");
@@ -89,20 +103,23 @@ TEST(Near, NumbersEncloseEveryProjection) {
         }
 }
 
-TEST(Direct, GivesTheSameBitsOnEveryInstructionSet) {
+class DirectTo : public testing::TestWithParam<double> {};
+INSTANTIATE_TEST_SUITE_P(FloatAndDouble, DirectTo, testing::Values(0.01, 1e-7));
+
+TEST_P(DirectTo, GivesTheSameBitsOnEveryInstructionSet) {
     for (const Projection source : kProjections)
         for (const Projection target : kProjections) {
             SCOPED_TRACE(testing::Message() << name_of(source) << " -> " << name_of(target));
             const Panorama map(test::chart_of_width(source, 2048), test::chart_of_width(target, 96),
                                {30, 20, 10});
-            std::vector<float> first;
+            std::vector<double> first;
             for (const char* const* set = simd::instruction_sets(); *set; ++set) {
                 SCOPED_TRACE(*set);
                 ASSERT_TRUE(simd::use_instruction_set(*set));
-                const std::vector<float> points = direct_points(plan_of(map, 0.01));
+                const std::vector<double> points = direct_points(plan_of(map, GetParam()));
                 if (first.empty()) first = points;
                 ASSERT_EQ(points.size(), first.size());
-                EXPECT_EQ(std::memcmp(points.data(), first.data(), points.size() * sizeof(float)), 0);
+                EXPECT_EQ(std::memcmp(points.data(), first.data(), points.size() * sizeof(double)), 0);
             }
             simd::use_instruction_set("");
         }
@@ -115,6 +132,47 @@ TEST(Direct, ServesMostOfAView) {
                            {30, 20, 10});
         EXPECT_LT(plan_of(map, 0.01).reached(serial_for).exact_fraction, 0.3) << name_of(source);
     }
+}
+
+TEST(Direct, ServesMostExactPixelsWithinABillionthOfOne) {
+    for (const Projection source : kProjections) {
+        const Panorama map(test::chart_of_width(source, 4096), {Projection::rectilinear, 1024, 1024, 90},
+                           {30, 20, 10});
+        const PanoramaPlan plan = plan_of(map, 0);
+        std::int64_t direct = 0;
+        for (std::int64_t r = 0; r < plan.regions(); ++r)
+            for (const Block& block : plan.blocks(r)) {
+                if (block.kind == Block::Kind::outside) continue;
+                EXPECT_TRUE(is_exact(block));
+                if (block.kind != Block::Kind::computed) continue;
+                EXPECT_LE(block.bound, 1e-9);
+                direct += std::int64_t{block.box.width()} * block.box.height();
+            }
+        EXPECT_GT(direct, 1024 * 1024 / 3) << name_of(source);
+    }
+}
+
+TEST(Direct, RowsInDoubleAreThoseOfTheBlock) {
+    const Panorama map({Projection::equirectangular, 4096, 2048}, {Projection::fisheye, 900, 700, 180},
+                       {150, 40, 0});
+    const PanoramaPlan plan = plan_of(map, 1e-8);
+    PointsInDouble whole, row;
+    int blocks = 0;
+    for (std::int64_t r = 0; r < plan.regions(); ++r)
+        for (const Block& block : plan.blocks(r)) {
+            if (block.kind != Block::Kind::computed || !block.precise) continue;
+            ++blocks;
+            whole.read(plan, block, 0, block.box.height());
+            for (int j = 0; j < block.box.height(); ++j) {
+                row.read(plan, block, j, j + 1);
+                for (int i = 0; i < block.box.width(); ++i) {
+                    EXPECT_EQ(row.at(i, 0).x, whole.at(i, j).x);
+                    EXPECT_EQ(row.at(i, 0).y, whole.at(i, j).y);
+                    EXPECT_EQ(row.piece(0)[i], block.source_piece);
+                }
+            }
+        }
+    EXPECT_GT(blocks, 4);
 }
 
 TEST(Direct, RowsAndPartsAreThoseOfTheBlock) {

@@ -111,7 +111,7 @@ Reached BlockMap::reached(const ParallelFor& parallel_for) const {
         std::int64_t pixels = 0;
         for (const Block& b : blocks(region)) {
             bound = std::max(bound, b.bound);
-            if (b.kind == Block::Kind::exact) pixels += std::int64_t{b.box.width()} * b.box.height();
+            if (is_exact(b)) pixels += std::int64_t{b.box.width()} * b.box.height();
         }
         const std::lock_guard lock(mutex);
         reached.max_error = std::max(reached.max_error, bound);
@@ -146,9 +146,17 @@ bool BlockMap::exact(const Block& block, double x, double y, Point<double>& sour
     return seen;
 }
 
-void BlockMap::exact_row(const Block& block, int row, ExactPoint* points) const noexcept {
-    for (int x = block.box.x0; x < block.box.x1; ++x, ++points)
-        points->seen = exact(block, x + 0.5, block.box.y0 + row + 0.5, points->at, points->piece);
+void BlockMap::exact_rows(const Block& block, int begin, int end, const DoubleRows& to) const noexcept {
+    for (int row = begin; row < end; ++row)
+        for (int i = 0; i < block.box.width(); ++i) {
+            Point<double> at{};
+            int piece = 0;
+            const bool seen = exact(block, block.box.x0 + i + 0.5, block.box.y0 + row + 0.5, at, piece);
+            const std::ptrdiff_t k = (row - begin) * to.stride + i;
+            to.x[k] = at.x;
+            to.y[k] = at.y;
+            to.piece[k] = seen ? piece : -1;
+        }
 }
 
 BlockPolynomial BlockMap::bicubic(const Block& block) const noexcept {

@@ -31,14 +31,15 @@ struct RegionData {
 /// pixels.
 struct Block {
     /// bicubic: the map gives the polynomial (BlockMap::bicubic); x and y hold a quadratic near it.
-    /// computed: the map gives the points as offsets from the base, row by row (BlockMap::computed_row).
+    /// computed: the map gives the points, row by row, as offsets from the base (BlockMap::computed_row), or in double.
     /// exact: point by point by the formula. outside: there are none.
     enum class Kind : std::uint8_t { polynomial, bicubic, computed, exact, outside };
     static constexpr int kMaxSide = 64;
 
     Box box;
     Kind kind = Kind::exact;
-    bool precise = false;  ///< exact blocks: in long double; bicubic: in double, by BlockMap::exact_row
+    bool precise =
+        false;  ///< exact blocks: in long double; bicubic and computed: in double, by BlockMap::exact_rows
     int piece = 0;         ///< of the target, and the layer (BlockMap)
     int source_piece = 0;  ///< not for exact blocks, nor outside
     std::int32_t base_x = 0, base_y = 0;
@@ -48,6 +49,16 @@ struct Block {
     const RegionData* data = nullptr;
     int record = 0;
 };
+
+/// Does each pixel of a block get its source point in double by the formula?
+inline bool is_exact(const Block& block) {
+    return block.kind == Block::Kind::exact || (block.kind == Block::Kind::computed && block.precise);
+}
+
+/// Are a block's source points in double, by BlockMap::exact_rows?
+inline bool in_double(const Block& block) {
+    return block.kind == Block::Kind::exact || block.precise;
+}
 
 /// The source points of a block less its base, evaluated in float by Block-wide loops: the sums of c[j][i]
 /// s^i t^j (x) and c[j][4 + i] s^i t^j (y), by Horner's rule for t, then for s.
@@ -59,7 +70,7 @@ struct BlockPolynomial {
 /// A block's x and y in that form.
 BlockPolynomial quadratic_of(const Block& block);
 
-/// What a picture reached: the largest proven bound in use and the fraction of pixels evaluated exactly.
+/// What a picture reached: the largest proven bound in use and the fraction of pixels evaluated exactly (is_exact).
 struct Reached {
     double max_error = 0;
     double exact_fraction = 0;
@@ -91,6 +102,13 @@ class SharedBlocks {
 struct PointRows {
     float *x, *y;
     std::ptrdiff_t stride;  ///< floats from row to row; behind each there is room for 16 more
+};
+
+/// Room for the source points of rows of pixels in double.
+struct DoubleRows {
+    double *x, *y;
+    std::int32_t* piece;    ///< of the source; -1 where there is no source point
+    std::ptrdiff_t stride;  ///< entries from row to row; behind each there is room for 16 more
 };
 
 /// How a map is laid out, and what is kept of it.
@@ -148,14 +166,8 @@ class BlockMap {
     /// The source point of a target point of an exact block.
     bool exact(const Block& block, double x, double y, Point<double>& source_point,
                int& source_piece) const noexcept;
-    /// The source point of a pixel of an exact block.
-    struct ExactPoint {
-        Point<double> at{};
-        int piece = 0;
-        bool seen = false;  ///< false where there is none
-    };
-    /// The source points of row `row` (0 is the block's first) of an exact block, or a precise bicubic one.
-    virtual void exact_row(const Block& block, int row, ExactPoint* points) const noexcept;
+    /// The source points of rows [begin, end) (0 is the block's first) of a block for which in_double() holds.
+    virtual void exact_rows(const Block& block, int begin, int end, const DoubleRows& to) const noexcept;
     /// Source pixels per target pixel at a target point.
     virtual Jacobian jacobian(double x, double y, int piece) const noexcept = 0;
     /// The polynomial of a bicubic block.

@@ -101,14 +101,16 @@ class BlockWriter {
     }
 
     /// A computed block whose base is `middle` rounded down. True when it keeps the tolerance: `error` holds
-    /// the rounding of offsets from the base, when they are stored and when the sampler moves them.
-    bool computed(const Box& box, const Point<double>& middle, double error) {
-        error += point_rounding(0, 0);
+    /// the rounding of offsets from the base, when they are stored and when the sampler moves them; or that of
+    /// points in double.
+    bool computed(const Box& box, const Point<double>& middle, double error, bool precise = false) {
+        if (!precise) error += point_rounding(0, 0);
         if (!(error <= m_tol && std::fabs(middle.x) < kFarthest && std::fabs(middle.y) < kFarthest))
             return false;
         Block block;
         block.box = box;
         block.kind = Block::Kind::computed;
+        block.precise = precise;
         block.base_x = static_cast<std::int32_t>(std::floor(middle.x));
         block.base_y = static_cast<std::int32_t>(std::floor(middle.y));
         block.bound = error;

@@ -39,7 +39,7 @@ class FormulaPlan : public BlockMap {
                int& source_piece) const noexcept override;
     Jacobian jacobian(double x, double y, int piece) const noexcept override;
     BlockPolynomial bicubic(const Block& block) const noexcept override;
-    void exact_row(const Block& block, int row, ExactPoint* points) const noexcept override;
+    void exact_rows(const Block& block, int begin, int end, const DoubleRows& to) const noexcept override;
 
   protected:
     void plan(const Box& box, int piece, Blocks& blocks) const override;

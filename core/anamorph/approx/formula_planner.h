@@ -51,13 +51,17 @@ inline constexpr int kMostParts = 256;
 // serves parts of it.
 inline constexpr double kTailShare = 0.125, kPartShare = 0.25;
 
-// What a pixel of a polynomial saves, as a part of an exact pixel, where it could be direct instead.
-inline constexpr double kDirectSaving = 1.0 / 8;
+// What a pixel of a polynomial saves, as a part of an exact pixel, where it could be direct instead, in float or in double.
+inline constexpr double kDirectSaving = 1.0 / 8, kPreciseSaving = 1.0 / 4;
+// Exact pixels may be direct, in double, up to this bound (source pixels).
+inline constexpr double kExactError = 1e-9;
 // A direct bound costs as much as so many exact pixels.
 inline constexpr int kDirectCost = 60;
 // The least pixels of a direct block, whose bases cost as much as some tens of them: where one bound serves all of a large
 // box, which is otherwise cut first, and in small ones.
 inline constexpr int kLargeBox = 128 * 128, kLeastDirect = 512, kLeastOfSmall = 128;
+// Float may yet serve the parts of a large box where its error is at most so many tolerances.
+inline constexpr double kNearby = 16;
 
 inline int pixels_of(const Box& box) {
     return box.width() * box.height();
@@ -105,8 +109,8 @@ inline BlockPolynomial cubic_of(const Block& block) {
     return p;
 }
 
-/// A row of a precise block: by Horner's rule for t, then for s, as simd/block_sampler.cpp does in float.
-inline void precise_row(const Block& block, int row, BlockMap::ExactPoint* points) {
+/// A row of a polynomial in double: by Horner's rule for t, then for s, as simd/block_sampler.cpp does in float.
+inline void precise_row(const Block& block, int row, double* to_x, double* to_y) {
     const auto& cubics = static_cast<const Cubics&>(*block.data);
     const Cubics::Precise& c = cubics.precise[static_cast<std::size_t>(block.record)];
     const auto step = [](int count) { return count > 1 ? 1.0 / (count - 1) : 0.0; };
@@ -124,10 +128,8 @@ inline void precise_row(const Block& block, int row, BlockMap::ExactPoint* point
     on_row(c.y, y);
     for (int i = 0; i < width; ++i) {
         const double s = (2 * i - (width - 1)) * per_pixel;
-        points[i] = {{block.base_x + ((((x[4] * s + x[3]) * s + x[2]) * s + x[1]) * s + x[0]),
-                      block.base_y + ((((y[4] * s + y[3]) * s + y[2]) * s + y[1]) * s + y[0])},
-                     block.source_piece,
-                     true};
+        to_x[i] = block.base_x + ((((x[4] * s + x[3]) * s + x[2]) * s + x[1]) * s + x[0]);
+        to_y[i] = block.base_y + ((((y[4] * s + y[3]) * s + y[2]) * s + y[1]) * s + y[0]);
     }
 }
 
@@ -150,10 +152,13 @@ class Planner {
           m_piece(piece),
           m_blocks(blocks),
           m_records(records),
+          m_exact(options.scheme == Scheme::exact || options.tol == 0),
+          m_goal(m_exact ? std::min(options.tol > 0 ? options.tol : kExactError, kExactError) : options.tol),
           m_balance(kCredit * pixels_of(region)),
-          m_over_direct(m_balance * kDirectSaving),
+          m_over_direct(m_balance),
           m_margin(options.scheme == Scheme::residual ? 0 : 0.5) {}
 
+    bool is_exact() const { return m_exact; }
     void exact(const Box& box) {
         for_blocks(box, [&](const Box& b) { emit(b, Block::Kind::exact); });
     }
@@ -173,26 +178,30 @@ class Planner {
     }
 
   private:
+    /// Is only the fastest way asked for?
+    bool is_free() const { return m_options.scheme == Scheme::automatic || m_exact; }
     /// May a bound over the box pay? Where only the fastest way is asked for.
     bool worth_a_bound(const Box& box) const {
-        return worth_a_polynomial() &&
-               (m_options.scheme != Scheme::automatic || pixels_of(box) * saving() >= kBoundPixels);
+        return worth_a_polynomial() && (!is_free() || pixels_of(box) * saving() >= kBoundPixels);
     }
-    bool worth_a_polynomial() const {
-        return m_options.scheme != Scheme::automatic || (m_direct ? m_over_direct : m_balance) >= 0;
-    }
+    bool worth_a_polynomial() const { return !is_free() || (m_direct ? m_over_direct : m_balance) >= 0; }
     /// What a polynomial's pixel saves, in exact pixels.
-    double saving() const { return m_direct ? kDirectSaving : 1; }
+    double saving() const { return m_direct ? m_direct->saving : 1; }
     /// Bounds and polynomials are paid for by what they save over what there is without.
-    void pay(double exact_pixels) { (m_direct ? m_over_direct : m_balance) -= exact_pixels; }
+    void pay(double exact_pixels) {
+        if (m_direct)
+            m_over_direct -= exact_pixels / m_direct->saving;
+        else
+            m_balance -= exact_pixels;
+    }
 
     /// A box that lies on one branch.
     void settle_inside(const Box& box, const Local& local) {
-        if (m_options.scheme == Scheme::residual) return settle_residual(box, local);
-        if (m_options.scheme == Scheme::blocks) return settle_blocks(box, local);
+        if (m_options.scheme == Scheme::residual && !m_exact) return settle_residual(box, local);
+        if (m_options.scheme == Scheme::blocks && !m_exact) return settle_blocks(box, local);
         const bool first = !m_direct && pixels_of(box) >= kLeastDirect;
         const double error = first ? find_direct(box, local) : 0;
-        const bool by_blocks = m_options.scheme == Scheme::automatic;
+        const bool by_blocks = m_options.scheme == Scheme::automatic && !m_exact;
         // Intervals that are too wide for one bound are so for the other.
         if (m_direct || pixels_of(box) <= kLeastDirect || (by_blocks && error < HUGE_VAL))
             by_blocks ? settle_blocks(box, local) : leave(box);
@@ -205,36 +214,55 @@ class Planner {
     struct Direct {
         int place, width, height;
         double error;
+        bool precise;   ///< in double
+        double saving;  ///< of a polynomial's pixel over one of theirs
     };
-    /// The largest that serve all of a box, if there are any. Returns the least error that was found.
+    /// The largest that serve all of a box, if there are any: in float, or else in double. Returns the least error that
+    /// was found.
     double find_direct(const Box& box, const Local& local) {
-        Direct d{static_cast<int>(m_records.places.size()), kBlockWidth, kBlockHeight, 0};
+        double error = 0;
         if constexpr (DirectMap<Map>) {
-            const int least = pixels_of(box) > kLargeBox ? kLeastDirect : kLeastOfSmall;
-            for (double cut = 1; d.width * d.height >= least * cut * cut;) {
-                m_balance -= kDirectCost;
-                d.error = direct_error(box, d, local);
-                if (d.error <= m_options.tol) {
-                    m_records.places.push_back(local);
-                    m_direct = d;
-                    return d.error;
-                }
-                // A known error shrinks with the sides at most.
-                cut = d.error < HUGE_VAL ? d.error / m_options.tol : 1.5;
-                (d.width > d.height ? d.width : d.height) /= 2;
+            if (!m_exact) error = find_direct_in<float>(box, local, kDirectSaving);
+            const bool in_parts = pixels_of(box) > kLargeBox && error <= kNearby * m_goal;
+            // Intervals that are too wide for float are so for double.
+            if (!m_direct && !in_parts && error < HUGE_VAL)
+                error = find_direct_in<double>(box, local, kPreciseSaving);
+        }
+        return error;
+    }
+    template <class Real>
+    double find_direct_in(const Box& box, const Local& local, double saving) {
+        Direct d{static_cast<int>(m_records.places.size()),
+                 kBlockWidth,
+                 kBlockHeight,
+                 0,
+                 std::is_same_v<Real, double>,
+                 saving};
+        const int least = pixels_of(box) > kLargeBox ? kLeastDirect : kLeastOfSmall;
+        for (double cut = 1; d.width * d.height >= least * cut * cut;) {
+            m_balance -= kDirectCost;
+            d.error = direct_error<Real>(box, d, local);
+            if (d.error <= m_goal) {
+                m_records.places.push_back(local);
+                m_direct = d;
+                return d.error;
             }
+            // A known error shrinks with the sides at most.
+            cut = d.error < HUGE_VAL ? d.error / m_goal : 1.5;
+            (d.width > d.height ? d.width : d.height) /= 2;
         }
         return d.error;
     }
     /// One bound serves all blocks of a box: of full size with their middles anywhere, and what the last ones lack.
-    double direct_error(const Box& box, const Direct& d, const Local& local) const requires DirectMap<Map> {
+    template <class Real>
+    double direct_error(const Box& box, const Direct& d, const Local& local) const {
         const auto middles = [](int from, int to, int most) {
             const int full = std::min(to - from, most), last = (to - from - 1) % most + 1;
             return Interval(from + 0.5 * std::min(full, last), to - 0.5 * std::min(full, last));
         };
-        return m_map.direct_error(middles(box.x0, box.x1, d.width), middles(box.y0, box.y1, d.height),
-                                  half(std::min(box.width(), d.width)),
-                                  half(std::min(box.height(), d.height)), local);
+        return m_map.template direct_error<Real>(
+            middles(box.x0, box.x1, d.width), middles(box.y0, box.y1, d.height),
+            half(std::min(box.width(), d.width)), half(std::min(box.height(), d.height)), local);
     }
     /// What no polynomial serves.
     void leave(const Box& box) {
@@ -244,9 +272,9 @@ class Planner {
     void place_direct(const Box& box) {
         const Local& local = m_records.places[static_cast<std::size_t>(m_direct->place)];
         const Point<double> middle = m_map(0.5 * (box.x0 + box.x1), 0.5 * (box.y0 + box.y1), local);
-        if (!BlockWriter(m_options.tol, m_blocks).computed(box, middle, m_direct->error))
+        if (!BlockWriter(m_goal, m_blocks).computed(box, middle, m_direct->error, m_direct->precise))
             return emit(box, Block::Kind::exact);
-        m_balance += pixels_of(box) * (1 - kDirectSaving);
+        m_balance += pixels_of(box) * (1 - m_direct->saving);
         m_blocks.back().data = &m_records;
         m_blocks.back().record = m_direct->place;
         set_source(m_blocks.back(), m_map.source_piece(local));
@@ -579,8 +607,8 @@ class Planner {
     }
     /// What the writer does not know of a block.
     void finish(const Box& box, int source_piece) {
-        if (m_direct) m_over_direct += pixels_of(box) * kDirectSaving;
-        m_balance += pixels_of(box) * (m_direct ? 1 - kDirectSaving : 1);
+        if (m_direct) m_over_direct += pixels_of(box);
+        m_balance += pixels_of(box) * (m_direct ? 1 - m_direct->saving : 1);
         set_source(m_blocks.back(), source_piece);
     }
     void set_source(Block& block, int source_piece) const {
@@ -643,8 +671,10 @@ class Planner {
     int m_piece;
     Blocks& m_blocks;
     Records<Local>& m_records;
+    bool m_exact;          ///< is every pixel evaluated by the formula in double?
+    double m_goal;         ///< bounds are not to exceed it
     double m_balance;      ///< exact pixels saved less those that bounds and polynomials would have paid for
-    double m_over_direct;  ///< the same over direct pixels, where those serve
+    double m_over_direct;  ///< the same in direct pixels, over those where they serve
     double m_margin;  ///< of what is enclosed of a box: from its edges to the nodes that blocks are made of
     std::optional<LinearPart> m_linear;
     std::optional<Direct> m_direct;  ///< what may serve all of the box that is being settled
@@ -715,7 +745,7 @@ void FormulaPlan<Map>::plan(const Box& box, int piece, Blocks& blocks) const {
     planned.reserve(2 * kRegion * kRegion / (kBlockWidth * kBlockHeight));
     const auto records = std::make_shared<Records<typename Map::Local>>();
     Planner<Map> planner(m_map, m_options, box, piece, planned, *records);
-    if (m_options.scheme == Scheme::exact || m_options.tol == 0)
+    if (planner.is_exact() && !DirectMap<Map>)
         planner.exact(box);
     else
         planner.settle(box);
@@ -736,9 +766,14 @@ BlockPolynomial FormulaPlan<Map>::bicubic(const Block& block) const noexcept {
 }
 
 template <class Map>
-void FormulaPlan<Map>::exact_row(const Block& block, int row, ExactPoint* points) const noexcept {
-    if (block.kind == Block::Kind::bicubic) return planner_detail::precise_row(block, row, points);
-    BlockMap::exact_row(block, row, points);
+void FormulaPlan<Map>::exact_rows(const Block& block, int begin, int end,
+                                  const DoubleRows& to) const noexcept {
+    if (block.kind != Block::Kind::bicubic) return BlockMap::exact_rows(block, begin, end, to);
+    for (int row = begin; row < end; ++row) {
+        const std::ptrdiff_t at = (row - begin) * to.stride;
+        planner_detail::precise_row(block, row, to.x + at, to.y + at);
+        std::fill_n(to.piece + at, block.box.width(), block.source_piece);
+    }
 }
 
 template <class Map>

@@ -9,29 +9,53 @@ namespace anamorph {
 
 template class FormulaPlan<Panorama>;
 
-void PanoramaPlan::exact_row(const Block& block, int row, ExactPoint* points) const noexcept {
-    if (block.precise) return FormulaPlan::exact_row(block, row, points);
+void PanoramaPlan::exact_rows(const Block& block, int begin, int end, const DoubleRows& to) const noexcept {
+    if (block.kind == Block::Kind::computed) return direct_rows(block, begin, end, to);
+    if (block.precise || block.kind != Block::Kind::exact)
+        return FormulaPlan::exact_rows(block, begin, end, to);
     simd::ExactRow found;
     const int count = block.box.width();
-    simd::exact_row(map().target(), map().source(), map().turn(), block.piece, block.box.x0 + 0.5,
-                    block.box.y0 + row + 0.5, count, found);
-    for (int i = 0; i < count; ++i)
-        points[i] = {{found.x[i], found.y[i]}, static_cast<int>(found.piece[i]), found.seen[i] != 0};
+    for (int row = begin; row < end; ++row) {
+        simd::exact_row(map().target(), map().source(), map().turn(), block.piece, block.box.x0 + 0.5,
+                        block.box.y0 + row + 0.5, count, found);
+        const std::ptrdiff_t at = (row - begin) * to.stride;
+        std::copy_n(found.x, count, to.x + at);
+        std::copy_n(found.y, count, to.y + at);
+        for (int i = 0; i < count; ++i)
+            to.piece[at + i] = found.seen[i] != 0 ? static_cast<std::int32_t>(found.piece[i]) : -1;
+    }
+}
+
+Panorama::Direct PanoramaPlan::direct(const Block& block) const {
+    const Box& box = block.box;
+    Panorama::Direct direct =
+        map().direct(0.5 * (box.x0 + box.x1), 0.5 * (box.y0 + box.y1), place_of(block));
+    // The block's base may be some turns away.
+    if (const int period = map().period(); period > 0)
+        direct.middle.x -= std::round((direct.middle.x - block.base_x) / period) * period;
+    return direct;
+}
+
+void PanoramaPlan::direct_rows(const Block& block, int begin, int end, const DoubleRows& to) const {
+    const Panorama::Direct found = direct(block);
+    const simd::DirectBlock<double> at{map().target(), map().source(), place_of(block), found.bases,
+                                       block.box.width(), block.box.height(), found.middle};
+    for (int row = begin; row < end; ++row) {
+        const std::ptrdiff_t k = (row - begin) * to.stride;
+        simd::direct_row(at, row, to.x + k, to.y + k);
+        std::fill_n(to.piece + k, block.box.width(), block.source_piece);
+    }
 }
 
 /// Of a part of a block, counted from its corner.
 void PanoramaPlan::direct_rows(const Block& block, const Box& part, const PointRows& to) const {
-    const Box& box = block.box;
-    const Panorama::Local& local = place_of(block);
-    const Panorama::Direct direct = map().direct(0.5 * (box.x0 + box.x1), 0.5 * (box.y0 + box.y1), local);
-    // The block's base may be some turns away.
-    const int period = map().period();
-    const double off = direct.middle.x - block.base_x,
-                 turns = period > 0 ? std::round(off / period) * period : 0;
-    const Point<float> middle{static_cast<float>(off - turns),
-                              static_cast<float>(direct.middle.y - block.base_y)};
-    simd::direct_rows(
-        {map().target(), map().source(), local, direct.bases, box.width(), box.height(), middle}, part, to);
+    const Panorama::Direct found = direct(block);
+    const std::vector<float> bases(found.bases.begin(), found.bases.end());
+    const Point<float> middle{static_cast<float>(found.middle.x - block.base_x),
+                              static_cast<float>(found.middle.y - block.base_y)};
+    simd::direct_rows({map().target(), map().source(), place_of(block), bases, block.box.width(),
+                       block.box.height(), middle},
+                      part, to);
 }
 void PanoramaPlan::computed_row(const Block& block, int row, int begin, int end, float* x,
                                 float* y) const noexcept {

@@ -14,15 +14,17 @@ class PanoramaPlan final : public FormulaPlan<Panorama> {
     using FormulaPlan::exact;
     using FormulaPlan::FormulaPlan;
 
-    /// Exact pixels by vectors.
-    void exact_row(const Block& block, int row, ExactPoint* points) const noexcept override;
-    /// And direct ones.
+    /// Exact pixels by vectors, and direct ones in double.
+    void exact_rows(const Block& block, int begin, int end, const DoubleRows& to) const noexcept override;
+    /// Direct ones in float.
     void computed_row(const Block& block, int row, int begin, int end, float* x,
                       float* y) const noexcept override;
     void computed(std::span<const Block> layers, const PointRows* to) const noexcept override;
 
   private:
+    Panorama::Direct direct(const Block& block) const;
     void direct_rows(const Block& block, const Box& part, const PointRows& to) const;
+    void direct_rows(const Block& block, int begin, int end, const DoubleRows& to) const;
 };
 
 }  // namespace anamorph

@@ -75,13 +75,14 @@ concept FormulaMap = requires(const Map& map, const typename Map::Local& local, 
     { map.template exact_error<long double>(x, x, piece) } -> std::same_as<double>;
 };
 
-/// A map whose plan reads it in float near the middles of blocks as well (FormulaPlan's computed blocks), because
+/// A map whose plan reads it pixel by pixel near the middles of blocks as well (FormulaPlan's computed blocks), because
 /// lanes are compiled for it: simd/direct_rows.h.
 template <class Map>
 concept DirectMap = FormulaMap<Map> &&
     requires(const Map& map, const typename Map::Local& local, double a, const Interval& x) {
-    /// Bounds the error over blocks of up to the given half sizes with middles in a box.
-    { map.direct_error(x, x, a, a, local) } -> std::same_as<double>;
+    /// Bounds the error over blocks of up to the given half sizes with middles in a box, read in float or in double.
+    { map.template direct_error<float>(x, x, a, a, local) } -> std::same_as<double>;
+    { map.template direct_error<double>(x, x, a, a, local) } -> std::same_as<double>;
 };
 
 /// What all maps of one flat picture to another have in common. `Formula`, derived from this, gives

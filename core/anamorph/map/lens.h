@@ -102,8 +102,9 @@ template <class T, int N>
 Jet<T, N> shrink(const LensTerms& lens, const Jet<T, N>& value);
 
 /// Near a known value the root is not followed: there is no bound.
-inline NearBound shrink(const LensTerms&, const NearBound& value) {
-    return {value.base, rounded_detail::unbounded()};
+template <class Real>
+NearBound<Real> shrink(const LensTerms&, const NearBound<Real>& value) {
+    return {value.base, rounded_detail::unbounded<Real>()};
 }
 /// So that no base is asked for.
 inline NearBase shrink(const LensTerms&, const NearBase& value) {
@@ -111,7 +112,8 @@ inline NearBase shrink(const LensTerms&, const NearBase& value) {
 }
 
 /// As shrink(), of lenses with a tangential part.
-inline Point<NearBound> settled(const LensTerms& lens, const Point<NearBound>& v) {
+template <class Real>
+Point<NearBound<Real>> settled(const LensTerms& lens, const Point<NearBound<Real>>& v) {
     return {shrink(lens, v.x), shrink(lens, v.y)};
 }
 /// So that no base is asked for.

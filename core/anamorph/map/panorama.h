@@ -84,15 +84,16 @@ class Panorama {
     template <class Real>
     double exact_error(const Interval& x, const Interval& y, int piece) const;
 
-    /// The map about a target point, read pixel by pixel in float (number/near.h): its source point, and the bases.
+    /// The map about a target point, read pixel by pixel (number/near.h): its source point, and the bases.
     struct Direct {
         Point<double> middle;
         Bases bases;
     };
     /// About (x, y).
     Direct direct(double x, double y, const Local& local) const;
-    /// Bounds the error of what is read so, less the middle: for target points up to half_width and half_height from
-    /// a middle in the box x, y. Infinite or NaN where none is known.
+    /// Bounds the error of what is read so in Real, float (less the middle) or double: for target points up to
+    /// half_width and half_height from a middle in the box x, y. Infinite or NaN where none is known.
+    template <class Real>
     double direct_error(const Interval& x, const Interval& y, double half_width, double half_height,
                         const Local& local) const;
 

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // A number near a known one: a base, the same for all pixels of a block and computed once in double, and a small rest
-// of each pixel's own, computed in float. A formula's results differ from the base's by the rest alone, so what float
-// loses is relative to the size of the block, not of the picture.
+// of each pixel's own, computed in float or double. A formula's results differ from the base's by the rest alone, so what
+// float loses is relative to the size of the block, not of the picture; and what functions of rests cost is little, since
+// they are small.
 //
 // Every operation is an identity for the rests: with A = a + da and B = b + db
 //
@@ -12,8 +13,8 @@
 // Base and Rest are numbers. They are read in three pairs:
 //
 //   double                    no rest          the bases, written down in order (number/near_bound.h)
-//   read from there           lanes of float   a block's pixels (simd/direct_rows.cpp)
-//   Interval                  Rounded<float>   bounds |computed - exact| over all blocks of a box (near_bound.h)
+//   read from there           lanes            a block's pixels (simd/direct_rows.cpp)
+//   Interval                  Rounded          bounds |computed - exact| over all blocks of a box (near_bound.h)
 //
 // NearRest<Base, Rest> says what belongs to a pair: of(base), the base as a rest; off(rest, base, units), the rest
 // where the base was rounded by so many units of 2^-53 of another; choose(condition of bases, a, b). Rests offer

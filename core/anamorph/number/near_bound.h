@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Numbers near a known one (number/near.h) as they are read before a block is drawn: to bound what float does to its
-// pixels, and to write down its bases.
+// Numbers near a known one (number/near.h) as they are read before a block is drawn: to bound what float or double does
+// to its pixels, and to write down its bases.
 #pragma once
 
 #include <vector>
@@ -17,48 +17,51 @@ namespace anamorph {
 
 namespace rounded_detail {
 
-/// Errors of what lanes.h has for rests, in units of 2^-24 of the value.
+/// Errors of what lanes.h has for rests, in units of Real of the value.
 inline constexpr double kRestUnits = 4;
 inline constexpr double kEighth = 0.785398163397448, kTangentOfSixteenth = 0.414213562373095;
 
-inline Rounded<float> unbounded() {
+template <class Real>
+Rounded<Real> unbounded() {
     return {Interval::all(), 0, HUGE_VAL};
 }
 
 }  // namespace rounded_detail
 
 /// sin a and 1 - cos a, |a| <= pi / 4; unbounded beyond.
-inline void sine_versine(const Rounded<float>& a, Rounded<float>& s, Rounded<float>& v) {
-    using R = Rounded<float>;
+template <class Real>
+void sine_versine(const Rounded<Real>& a, Rounded<Real>& s, Rounded<Real>& v) {
     const double most = magnitude(a.range) + a.error;
     if (!(most <= rounded_detail::kEighth)) {
-        s = v = rounded_detail::unbounded();
+        s = v = rounded_detail::unbounded<Real>();
         return;
     }
     const Interval sine = sin(a.range), half_sine = sin(a.range * 0.5);
     const Interval versine = square(half_sine) * 2.0;
-    const double unit = rounded_detail::kRestUnits * R::kUnit;
-    s = rounded_detail::result<float>(sine, 0, a.error + unit * (magnitude(sine) + a.error), 0);
+    const double unit = rounded_detail::kRestUnits * Rounded<Real>::kUnit;
+    s = rounded_detail::result<Real>(sine, 0, a.error + unit * (magnitude(sine) + a.error), 0);
     // |sin| <= most.
     const double moved = a.error * most;
-    v = rounded_detail::result<float>(versine, 0, moved + unit * (magnitude(versine) + moved), 0);
+    v = rounded_detail::result<Real>(versine, 0, moved + unit * (magnitude(versine) + moved), 0);
 }
 /// atan a, |a| <= tan(pi / 8); unbounded beyond.
-inline Rounded<float> small_atan(const Rounded<float>& a) {
+template <class Real>
+Rounded<Real> small_atan(const Rounded<Real>& a) {
     if (!(magnitude(a.range) + a.error <= rounded_detail::kTangentOfSixteenth))
-        return rounded_detail::unbounded();
+        return rounded_detail::unbounded<Real>();
     const Interval angle = atan2(a.range, Interval(1.0));
-    const double unit = rounded_detail::kRestUnits * Rounded<float>::kUnit;
-    return rounded_detail::result<float>(angle, 0, a.error + unit * (magnitude(angle) + a.error), 0);
+    const double unit = rounded_detail::kRestUnits * Rounded<Real>::kUnit;
+    return rounded_detail::result<Real>(angle, 0, a.error + unit * (magnitude(angle) + a.error), 0);
 }
 
-template <>
-struct NearRest<Interval, Rounded<float>> {
-    using R = Rounded<float>;
+template <class Real>
+struct NearRest<Interval, Rounded<Real>> {
+    using R = Rounded<Real>;
 
     static R of(const Interval& base) {
-        const bool kept = base.lo == base.hi && static_cast<double>(static_cast<float>(base.lo)) == base.lo;
-        return kept ? R(base.lo) : rounded_detail::result<float>(base, 0, 0, R::kUnit);
+        if (std::is_same_v<Real, double>) return R(base, 0, 0);
+        const bool kept = base.lo == base.hi && static_cast<double>(static_cast<Real>(base.lo)) == base.lo;
+        return kept ? R(base.lo) : rounded_detail::result<Real>(base, 0, 0, R::kUnit);
     }
     static R off(const R& rest, const Interval& base, double units) {
         const double by = units * 0x1p-53 * magnitude(base) * rounded_detail::kUp;
@@ -77,13 +80,14 @@ struct NearRest<Interval, Rounded<float>> {
     }
 };
 
-/// Bounds what float does to a formula that is read near known points.
-using NearBound = Near<Interval, Rounded<float>>;
+/// Bounds what Real, float or double, does to a formula that is read near known points.
+template <class Real>
+using NearBound = Near<Interval, Rounded<Real>>;
 
 // --- bases ---
 
-/// The bases of one reading of a formula, in order, each as the float that pixels are computed with.
-using Bases = std::vector<float>;
+/// The bases of one reading of a formula, in order.
+using Bases = std::vector<double>;
 
 /// A base in double. The result of every operation is written down where WrittenBase::to points; decisions as 1 or 0.
 struct WrittenBase {
@@ -94,11 +98,11 @@ struct WrittenBase {
     WrittenBase() = default;
     WrittenBase(double k) : value(k) {}  // NOLINT: a number is a constant
     static WrittenBase written(double value) {
-        to->push_back(static_cast<float>(value));
+        to->push_back(value);
         return value;
     }
     static bool written_decision(bool holds) {
-        to->push_back(holds ? 1.0f : 0.0f);
+        to->push_back(holds ? 1.0 : 0.0);
         return holds;
     }
 

@@ -9,6 +9,7 @@
 
 #include "anamorph/approx/block_writer.h"
 #include "anamorph/render/pixel.h"
+#include "anamorph/simd/split_points.h"
 
 namespace anamorph {
 namespace {
@@ -129,12 +130,13 @@ class Steps {
 /// finite.
 template <class Value>
 void range_over(const Value& value, int width, int height, double& low, double& high) {
+    using Real = decltype(value(0, 0));
     // In lanes, so that the compiler need not keep the order of comparisons.
-    constexpr int kLanes = 16;
-    float least[kLanes], greatest[kLanes], nothing[kLanes] = {};
-    std::fill_n(least, kLanes, HUGE_VALF);
-    std::fill_n(greatest, kLanes, -HUGE_VALF);
-    const auto take = [&](float v, int lane) {
+    constexpr int kLanes = 64 / sizeof(Real);
+    Real least[kLanes], greatest[kLanes], nothing[kLanes] = {};
+    std::fill_n(least, kLanes, std::numeric_limits<Real>::infinity());
+    std::fill_n(greatest, kLanes, -std::numeric_limits<Real>::infinity());
+    const auto take = [&](Real v, int lane) {
         least[lane] = v < least[lane] ? v : least[lane];
         greatest[lane] = v > greatest[lane] ? v : greatest[lane];
         nothing[lane] += v - v;
@@ -145,18 +147,20 @@ void range_over(const Value& value, int width, int height, double& low, double& 
             for (int lane = 0; lane < kLanes; ++lane) take(value(j, i + lane), lane);
         for (; i < width; ++i) take(value(j, i), 0);
     }
-    const double zero = double{std::accumulate(nothing, nothing + kLanes, 0.0f)};
+    const double zero = double{std::accumulate(nothing, nothing + kLanes, Real(0))};
     low = *std::min_element(least, least + kLanes) + zero;
     high = *std::max_element(greatest, greatest + kLanes) + zero;
 }
 
-/// Are all steps of a block's points, `ahead` floats from one to the next, so near to the axis (x, y) of a footprint that
+/// Are all steps of a block's points, `ahead` entries from one to the next, so near to the axis (x, y) of a footprint that
 /// each is like it? At once for all of them; false where that is not certain.
-bool all_alike(const BlockPoints& points, std::ptrdiff_t ahead, int width, int height, double x, double y) {
+template <class Real>
+bool all_alike(const PixelPoints<Real>& points, std::ptrdiff_t ahead, int width, int height, double x,
+               double y) {
     double worst = 0, longest = 0;
     for (const auto& [at, axis] : {std::pair(points.x, x), std::pair(points.y, y)}) {
         double low = 0, high = 0;
-        const float* const p = at;
+        const Real* const p = at;
         const auto step = [p, ahead, stride = points.row_stride](int j, int i) {
             return p[j * stride + i + ahead] - p[j * stride + i];
         };
@@ -201,7 +205,19 @@ Box part_of(const Box& cell, const Block& block, const Box& part) {
 
 }  // namespace
 
+void PointsInDouble::read(const BlockMap& map, const Block& block, int begin, int end) {
+    m_stride = block.box.width() + 16;
+    const auto room = static_cast<std::size_t>(m_stride) * static_cast<std::size_t>(end - begin);
+    if (m_x.size() < room) {
+        m_x.resize(room);
+        m_y.resize(room);
+        m_piece.resize(room);
+    }
+    map.exact_rows(block, begin, end, {m_x.data(), m_y.data(), m_piece.data(), m_stride});
+}
+
 void block_row(const BlockMap& map, const Block& block, const Box& part, int j, float* x, float* y) {
+    if (in_double(block)) return;
     const int row = j - block.box.y0, begin = part.x0 - block.box.x0, end = part.x1 - block.box.x0;
     if (is_polynomial(block)) {
         const BlockPolynomial p = polynomial_of(map, block);
@@ -284,16 +300,6 @@ struct BlockReader::LevelPoints {
         : scale(level_scale),
           base(static_cast<std::int32_t>(std::floor(least * scale))),
           range{0, greatest * scale - base} {}
-
-    /// The texel a point falls into, less the base, and how far into it. Whole texels apart: the rest loses
-    /// at most half of 2^-24 texels in float, all of it where float would round it to the next texel.
-    void split(double point, std::int32_t& texel, float& rest) const {
-        const double at = point * scale;
-        const auto toward_zero = static_cast<std::int32_t>(at);
-        const std::int32_t floor = toward_zero - (at < toward_zero);
-        texel = floor - base;
-        rest = std::min(static_cast<float>(at - floor), 0x1.fffffep-1f);
-    }
 };
 
 BlockReader::BlockReader(const BlockMap& map, const Source& source, const Border& border, Filter filter)
@@ -306,6 +312,10 @@ BlockReader::BlockReader(const BlockMap& map, const Source& source, const Border
       m_values(static_cast<std::size_t>(kMaxRow) * static_cast<std::size_t>(source.channels()) + 16) {}
 
 bool BlockReader::rows(const Block& block, const Box& part, const Row& row) {
+    if (in_double(block)) {
+        read_in_double(block);
+        return rows_in_double(block, part, row);
+    }
     switch (block.kind) {
         case Block::Kind::outside:
             std::fill(m_values.begin(), m_values.end(), 0.0f);
@@ -316,14 +326,13 @@ bool BlockReader::rows(const Block& block, const Box& part, const Row& row) {
         case Block::Kind::polynomial:
             return polynomial_rows(block, part, row);
         case Block::Kind::bicubic:
-            if (block.precise) break;
             return polynomial_rows(block, part, row);
         case Block::Kind::computed:
             return rows(block, points_of(block), part, row);
         case Block::Kind::exact:
             break;
     }
-    return rows_in_double(block, part, row);
+    return false;
 }
 
 bool BlockReader::draw(const Block& block, const Box& part, const Canvas& canvas, const Block* next) {
@@ -331,6 +340,11 @@ bool BlockReader::draw(const Block& block, const Box& part, const Canvas& canvas
     const Row store = [&](int x, int y, int count, const float* values, float one) {
         canvas.store(x, y, count, values, one);
     };
+    if (in_double(block)) {
+        const Got got =
+            read_in_double(block) && straight ? draw_in_double(block, part, canvas, next) : Got::too_large;
+        return got == Got::too_large ? rows_in_double(block, part, store) : got == Got::window;
+    }
     if (block.kind == Block::Kind::computed) {
         const BlockPoints points = points_of(block);
         const Got got = straight ? draw_points(block, points, part, canvas, next) : Got::too_large;
@@ -356,32 +370,74 @@ BlockReader::Got BlockReader::draw_polynomial(const Block& block, const Box& par
     return got;
 }
 
+/// The filter that serves all pixels of a block with these points. False where none does for certain.
+template <class Real>
+bool BlockReader::filtering_of(const Block& block, const PixelPoints<Real>& points, Filtering& f) const {
+    f = filtering({});
+    if (m_filter != Filter::antialias) return true;
+    const int width = block.box.width(), height = block.box.height();
+    if (width < 2 || height < 2) return false;
+    const auto at = [&](int i, int j) {
+        const std::ptrdiff_t k = j * points.row_stride + i;
+        return Point<double>{points.x[k], points.y[k]};
+    };
+    const Jacobian j = Steps(at, block).jacobian(whole(block));
+    if (!all_alike(points, 1, width - 1, height, j.x_i, j.y_i) ||
+        !all_alike(points, points.row_stride, width, height - 1, j.x_j, j.y_j))
+        return false;
+    f = filtering(j);
+    return true;
+}
+
 /// The same with its points at hand, read on the source itself.
 BlockReader::Got BlockReader::draw_points(const Block& block, const BlockPoints& points, const Box& part,
                                           const Canvas& canvas, const Block* next) {
-    const int width = block.box.width(), height = block.box.height();
-    Filtering f = filtering({});
-    if (m_filter == Filter::antialias) {
-        if (width < 2 || height < 2) return Got::too_large;
-        const auto at = [&](int i, int j) {
-            const std::ptrdiff_t k = j * points.row_stride + i;
-            return Point<double>{points.x[k], points.y[k]};
-        };
-        const Jacobian j = Steps(at, block).jacobian(whole(block));
-        if (!all_alike(points, 1, width - 1, height, j.x_i, j.y_i) ||
-            !all_alike(points, points.row_stride, width, height - 1, j.x_j, j.y_j))
-            return Got::too_large;
-        f = filtering(j);
-        if (f.level > 0) return Got::too_large;
-    }
+    Filtering f;
+    if (!filtering_of(block, points, f) || f.level > 0) return Got::too_large;
     Range x, y;
     if (!ranges_of(block, points, whole(block), x, y)) return Got::too_large;
     Window window;
     const Got got = window_of(f, block.source_piece, block.base_x, x, block.base_y, y, block.box, window);
     if (got == Got::window)
-        draw_window(f, block, {nullptr, 0, width, height, points.x, points.y, points.row_stride},
-                    {block.base_x, block.base_y}, window, part, canvas,
-                    next && next->kind == block.kind ? upcoming_like(*next, f, x, y) : upcoming(next, f));
+        draw_window(
+            f, block,
+            {nullptr, 0, block.box.width(), block.box.height(), points.x, points.y, points.row_stride},
+            {block.base_x, block.base_y}, window, part, canvas,
+            next && next->kind == block.kind ? upcoming_like(*next, f, x, y) : upcoming(next, f));
+    return got;
+}
+
+/// The same with points in double.
+BlockReader::Got BlockReader::draw_in_double(const Block& block, const Box& part, const Canvas& canvas,
+                                             const Block* next) {
+    const PixelPoints<double> points = m_exact.points();
+    Filtering f;
+    if (!filtering_of(block, points, f)) return Got::too_large;
+    Range range_x, range_y;
+    ranges_in_double(whole(block), range_x, range_y);
+    const LevelPoints x(range_x.low, range_x.high, f.scale_x), y(range_y.low, range_y.high, f.scale_y);
+    Window window;
+    const Got got = window_of(f, m_exact.piece(0)[0], x.base, x.range, y.base, y.range, block.box, window);
+    if (got != Got::window) return got;
+    const int width = block.box.width(), height = block.box.height();
+    const std::ptrdiff_t stride = simd::kRowRoom, room = stride * height;
+    m_texels.resize(2 * static_cast<std::size_t>(room));
+    m_rests.resize(2 * static_cast<std::size_t>(room));
+    for (int j = part.y0 - block.box.y0; j < part.y1 - block.box.y0; ++j) {
+        const std::ptrdiff_t from = j * points.row_stride, to = j * stride;
+        simd::split_points(points.x + from, width, x.scale, x.base, m_texels.data() + to,
+                           m_rests.data() + to);
+        simd::split_points(points.y + from, width, y.scale, y.base, m_texels.data() + room + to,
+                           m_rests.data() + room + to);
+    }
+    const auto moved = [](const Range& r, double by) { return Range{r.low - by, r.high - by}; };
+    const bool alike = next && in_double(*next) && next->kind == block.kind && f.level == 0;
+    draw_window(f, block,
+                {nullptr, 0, width, height, m_rests.data(), m_rests.data() + room, stride, m_texels.data(),
+                 m_texels.data() + room},
+                {x.base, y.base}, window, part, canvas,
+                alike ? upcoming_like(*next, f, moved(range_x, block.base_x), moved(range_y, block.base_y))
+                      : upcoming(next, f));
     return got;
 }
 
@@ -471,9 +527,14 @@ bool BlockReader::points_cell(const Filtering& f, const Block& block, const Bloc
     if (!ranges_of(block, points, cell, x, y)) return rows_one_by_one(block, points, own, row);
     // On the source itself the block's offsets serve as they are, unless a cell lies apart from its base.
     if (f.level > 0 || !(cell == whole(block))) {
-        const auto at = [&](int i, int j) {
-            const std::ptrdiff_t k = (j - block.box.y0) * points.row_stride + i - block.box.x0;
-            return Point<double>{block.base_x + double{points.x[k]}, block.base_y + double{points.y[k]}};
+        double px[simd::kRowRoom], py[simd::kRowRoom];
+        const auto at = [&](int j) {
+            const std::ptrdiff_t k = (j - block.box.y0) * points.row_stride + own.x0 - block.box.x0;
+            for (int i = 0; i < own.width(); ++i) {
+                px[i] = block.base_x + double{points.x[k + i]};
+                py[i] = block.base_y + double{points.y[k + i]};
+            }
+            return Point<const double*>{px, py};
         };
         const LevelPoints lx(block.base_x + x.low, block.base_x + x.high, f.scale_x),
             ly(block.base_y + y.low, block.base_y + y.high, f.scale_y);
@@ -492,12 +553,12 @@ bool BlockReader::points_cell(const Filtering& f, const Block& block, const Bloc
     return true;
 }
 
-/// The pixels of `own`, a part of a cell whose points lie in the given ranges; `at` gives their source
-/// points.
-template <class At>
-BlockReader::Got BlockReader::split_rows(const Filtering& f, int piece, const At& at, const LevelPoints& x,
-                                         const LevelPoints& y, const Box& cell, const Box& own,
-                                         const Row& row) {
+/// The pixels of `own`, a part of a cell whose points lie in the given ranges; `points` gives the source
+/// points of a row of them.
+template <class RowPoints>
+BlockReader::Got BlockReader::split_rows(const Filtering& f, int piece, const RowPoints& points,
+                                         const LevelPoints& x, const LevelPoints& y, const Box& cell,
+                                         const Box& own, const Row& row) {
     Window window;
     const Got got = window_of(f, piece, x.base, x.range, y.base, y.range, cell, window);
     if (got != Got::window) return got;
@@ -505,12 +566,9 @@ BlockReader::Got BlockReader::split_rows(const Filtering& f, int piece, const At
     alignas(64) float fx[simd::kRowRoom] = {}, fy[simd::kRowRoom] = {};
     alignas(64) std::int32_t ix[simd::kRowRoom] = {}, iy[simd::kRowRoom] = {};
     for (int j = own.y0; j < own.y1; ++j) {
-        for (int i = own.x0; i < own.x1; ++i) {
-            const Point<double> p = at(i, j);
-            const int k = i - own.x0;
-            x.split(p.x, ix[k], fx[k]);
-            y.split(p.y, iy[k], fy[k]);
-        }
+        const Point<const double*> at = points(j);
+        simd::split_points(at.x, own.width(), x.scale, x.base, ix, fx);
+        simd::split_points(at.y, own.width(), y.scale, y.base, iy, fy);
         sample(texels, {fx, fy, own.width(), ix, iy}, window.type, own.x0, j, row);
     }
     return Got::window;
@@ -528,41 +586,56 @@ BlockPoints BlockReader::points_of(const Block& block) {
     return m_planes->points(0);
 }
 
-/// Of exact blocks and of polynomials in double.
+/// Reads a block whose points are in double. Positions of the whole block decide how it is drawn, whatever part of it
+/// is asked for. False where its points are far away, on several pieces, or not all there.
+bool BlockReader::read_in_double(const Block& block) {
+    const int w = block.box.width(), h = block.box.height();
+    m_exact.read(m_map, block, 0, h);
+    const std::int32_t first = m_exact.piece(0)[0];
+    m_together = first >= 0;
+    for (int j = 0; j < h && m_together; ++j) {
+        const std::int32_t* const piece = m_exact.piece(j);
+        m_together = std::all_of(piece, piece + w, [&](std::int32_t p) { return p == first; });
+    }
+    Range x, y;
+    m_together = m_together && ranges_in_double(whole(block), x, y);
+    return m_together;
+}
+
 bool BlockReader::rows_in_double(const Block& block, const Box& part, const Row& row) {
-    // Positions of the whole block decide how it is read, whatever part of it is asked for.
-    const int w = block.box.width();
-    m_exact.resize(static_cast<std::size_t>(w) * static_cast<std::size_t>(block.box.height()));
-    for (int j = 0; j < block.box.height(); ++j) m_map.exact_row(block, j, m_exact.data() + j * w);
-    const auto near_first = [&](const BlockMap::ExactPoint& e) {
-        return e.seen && e.piece == m_exact[0].piece && is_near(e.at.x) && is_near(e.at.y);
-    };
-    const bool together = std::all_of(m_exact.begin(), m_exact.end(), near_first);
-    if (!together) return rows_one_by_one(block, {}, part, row);
-    const auto at = [&](int i, int j) -> const Point<double>& { return m_exact.data()[j * w + i].at; };
+    if (!m_together) return rows_one_by_one(block, {}, part, row);
+    const auto at = [&](int i, int j) { return m_exact.at(i, j); };
     return for_each_footprint(block, at, [&](const Box& cell, const Filtering& f) {
         return exact_cell(f, block, cell, part, row);
     });
+}
+
+/// Of the points of a cell that were read in double. False where they are too far away.
+bool BlockReader::ranges_in_double(const Box& cell, Range& x, Range& y) const {
+    const PixelPoints<double> points = m_exact.points();
+    const auto range = [&](const double* at, Range& r) {
+        r = {HUGE_VAL, -HUGE_VAL};
+        for (int j = cell.y0; j < cell.y1; ++j)
+            simd::extend_range(at + j * points.row_stride + cell.x0, cell.width(), r.low, r.high);
+        return is_near(r.low) && is_near(r.high);
+    };
+    const bool near_x = range(points.x, x);
+    return range(points.y, y) && near_x;
 }
 
 bool BlockReader::exact_cell(const Filtering& f, const Block& block, const Box& cell, const Box& part,
                              const Row& row) {
     const Box own = part_of(cell, block, part);
     if (own.empty()) return true;
-    const BlockMap::ExactPoint* points = m_exact.data();
-    const int w = block.box.width();
-    double x0 = HUGE_VAL, y0 = HUGE_VAL, x1 = -HUGE_VAL, y1 = -HUGE_VAL;
-    for (int j = cell.y0; j < cell.y1; ++j)
-        for (int i = cell.x0; i < cell.x1; ++i) {
-            const Point<double>& p = points[j * w + i].at;
-            x0 = std::min(x0, p.x);
-            x1 = std::max(x1, p.x);
-            y0 = std::min(y0, p.y);
-            y1 = std::max(y1, p.y);
-        }
-    const auto at = [&](int i, int j) { return points[(j - block.box.y0) * w + i - block.box.x0].at; };
-    const Got got = split_rows(f, points[0].piece, at, LevelPoints(x0, x1, f.scale_x),
-                               LevelPoints(y0, y1, f.scale_y), cell, own, row);
+    Range x, y;
+    ranges_in_double(cell, x, y);
+    const auto at = [&](int j) {
+        const PixelPoints<double> points = m_exact.points();
+        const std::ptrdiff_t k = (j - block.box.y0) * points.row_stride + own.x0 - block.box.x0;
+        return Point<const double*>{points.x + k, points.y + k};
+    };
+    const Got got = split_rows(f, m_exact.piece(0)[0], at, LevelPoints(x.low, x.high, f.scale_x),
+                               LevelPoints(y.low, y.high, f.scale_y), cell, own, row);
     return got == Got::too_large ? rows_one_by_one(block, {}, own, row) : got == Got::window;
 }
 
@@ -573,24 +646,25 @@ bool BlockReader::rows_one_by_one(const Block& block, const BlockPoints& points,
     alignas(64) float px[simd::kRowRoom] = {}, py[simd::kRowRoom] = {};
     bool ok = true;
     for (int j = part.y0; j < part.y1; ++j) {
+        const int k = j - block.box.y0, first = part.x0 - block.box.x0;
         if (points.x) {
-            const std::ptrdiff_t at = (j - block.box.y0) * points.row_stride + part.x0 - block.box.x0;
+            const std::ptrdiff_t at = k * points.row_stride + first;
             std::copy_n(points.x + at, part.width(), px);
             std::copy_n(points.y + at, part.width(), py);
         } else
             block_row(m_map, block, part, j, px, py);
-        for (int i = part.x0; i < part.x1; ++i) {
-            float* pixel = m_values.data() + (i - part.x0) * channels;
-            Point<double> p{block.base_x + double(px[i - part.x0]), block.base_y + double(py[i - part.x0])};
+        for (int i = 0; i < part.width(); ++i) {
+            float* pixel = m_values.data() + i * channels;
+            Point<double> p{block.base_x + double{px[i]}, block.base_y + double{py[i]}};
             int piece = block.source_piece;
-            if (is_precise_polynomial(block))
-                p = m_exact[static_cast<std::size_t>((j - block.box.y0) * block.box.width() + i -
-                                                     block.box.x0)]
-                        .at;
-            if (block.kind == Block::Kind::exact && !m_map.exact(block, i + 0.5, j + 0.5, p, piece))
+            if (in_double(block)) {
+                p = m_exact.at(first + i, k);
+                piece = m_exact.piece(k)[first + i];
+            }
+            if (piece < 0)
                 std::fill_n(pixel, channels, 0.0f);
             else
-                ok = sample_point(i, j, block.piece, p, piece, pixel) && ok;
+                ok = sample_point(part.x0 + i, j, block.piece, p, piece, pixel) && ok;
         }
         finish(part.x0, j, part.width(), 1, row);
     }

@@ -17,11 +17,14 @@
 
 namespace anamorph {
 
-/// Source points of all pixels of a block, row by row, as offsets from the block's base in source pixels.
-struct BlockPoints {
-    const float *x = nullptr, *y = nullptr;
-    std::ptrdiff_t row_stride = 0;  ///< floats; behind every row at least 16 more may be read
+/// Source points of all pixels of a block, row by row.
+template <class Real>
+struct PixelPoints {
+    const Real *x = nullptr, *y = nullptr;
+    std::ptrdiff_t row_stride = 0;  ///< entries; behind every row at least 16 more may be read
 };
+/// As offsets from the block's base in source pixels.
+using BlockPoints = PixelPoints<float>;
 
 /// Room for the points of the blocks that the layers of a map have in one place.
 class BlockPlanes {
@@ -45,20 +48,36 @@ class BlockPlanes {
 /// of kSamplerRounding; points from a table or in double lose less. The next power of two.
 inline constexpr double kLevelRounding = 0x1p-21;
 
-/// Is it a polynomial in double, whose points BlockMap::exact_row gives?
-inline bool is_precise_polynomial(const Block& block) {
-    return block.kind == Block::Kind::bicubic && block.precise;
-}
+/// The source points of a block's pixels in double.
+class PointsInDouble {
+  public:
+    /// Rows [begin, end) of a block for which in_double() holds, counted from its first.
+    void read(const BlockMap& map, const Block& block, int begin, int end);
+
+    /// From the first row on that was read.
+    PixelPoints<double> points() const { return {m_x.data(), m_y.data(), m_stride}; }
+    /// Of the source, for the k-th of those rows; -1 where there is no source point.
+    const std::int32_t* piece(int k) const { return m_piece.data() + k * m_stride; }
+    Point<double> at(int i, int k) const {
+        const std::ptrdiff_t n = k * m_stride + i;
+        return {m_x.data()[n], m_y.data()[n]};
+    }
+
+  private:
+    std::ptrdiff_t m_stride = 0;
+    std::vector<double> m_x, m_y;
+    std::vector<std::int32_t> m_piece;
+};
 
 /// The offsets from the base of a polynomial, bicubic or computed block for row j of `part` of it; room for
-/// simd::kRowRoom floats each. Nothing is written for other kinds, nor for polynomials in double.
+/// simd::kRowRoom floats each. Nothing is written for other kinds, nor for points in double.
 void block_row(const BlockMap& map, const Block& block, const Box& part, int j, float* x, float* y);
 
 /// Reads one source through one map; one per thread. The bits of a pixel depend on its block and the source,
 /// not on the part of the block that is asked for.
 ///
 /// Where it reads. On the source itself the point sampled is within the block's bound of the exact one; that
-/// of an exact pixel, or of a polynomial in double, is within 2^-23 texels of the point in double (its rest past
+/// of an exact pixel, or of another in double, is within 2^-23 texels of the point in double (its rest past
 /// a whole texel is rounded, and kSamplerRounding). On a coarser level of a pyramid kLevelRounding of that level's texels are added:
 /// what is left of a point past a whole texel is a float there too.
 ///
@@ -102,8 +121,11 @@ class BlockReader {
     enum class Got { window, too_large, failed };
 
     Got draw_polynomial(const Block& block, const Box& part, const Canvas& canvas, const Block* next);
+    template <class Real>
+    bool filtering_of(const Block& block, const PixelPoints<Real>& points, Filtering& f) const;
     Got draw_points(const Block& block, const BlockPoints& points, const Box& part, const Canvas& canvas,
                     const Block* next);
+    Got draw_in_double(const Block& block, const Box& part, const Canvas& canvas, const Block* next);
     static void draw_window(const Filtering& f, const Block& block, const simd::Polynomials& polynomials,
                             const Point<std::int32_t>& base, const Window& window, const Box& part,
                             const Canvas& canvas, const simd::Upcoming& upcoming);
@@ -121,10 +143,12 @@ class BlockReader {
     static bool ranges_of(const Block& block, const BlockPoints& points, const Box& cell, Range& x, Range& y);
     bool points_cell(const Filtering& f, const Block& block, const BlockPoints& points, const Box& cell,
                      const Box& part, const Row& row);
+    bool ranges_in_double(const Box& cell, Range& x, Range& y) const;
+    bool read_in_double(const Block& block);
     bool exact_cell(const Filtering& f, const Block& block, const Box& cell, const Box& part, const Row& row);
-    template <class At>
-    Got split_rows(const Filtering& f, int piece, const At& at, const LevelPoints& x, const LevelPoints& y,
-                   const Box& cell, const Box& own, const Row& row);
+    template <class RowPoints>
+    Got split_rows(const Filtering& f, int piece, const RowPoints& points, const LevelPoints& x,
+                   const LevelPoints& y, const Box& cell, const Box& own, const Row& row);
 
     bool shares_filter(const BlockPolynomial& polynomial, const Block& block) const;
     BlockPoints points_of(const Block& block);
@@ -147,7 +171,10 @@ class BlockReader {
     FootprintChooser m_chooser;
     std::vector<float> m_values;
     std::optional<BlockPlanes> m_planes;
-    std::vector<BlockMap::ExactPoint> m_exact;  ///< of the block that rows_in_double() is at
+    PointsInDouble m_exact;              ///< of the block that is being read
+    bool m_together = false;             ///< are all of them near and on one piece?
+    std::vector<std::int32_t> m_texels;  ///< the texels they fall into, and the rests
+    std::vector<float> m_rests;
 };
 
 }  // namespace anamorph

@@ -19,14 +19,12 @@ class PointRow {
     /// Row j of `part` of the block.
     PointRow(const BlockMap& map, const Block& block, const BlockPoints& points, const Box& part, int j)
         : m_map(map), m_block(block), m_first(part.x0 + 0.5), m_y(j + 0.5) {
-        if (block.kind == Block::Kind::computed) {
+        if (in_double(block)) {
+            m_exact.read(map, block, j - block.box.y0, j - block.box.y0 + 1);
+        } else if (block.kind == Block::Kind::computed) {
             const std::ptrdiff_t at = (j - block.box.y0) * points.row_stride + part.x0 - block.box.x0;
             m_px = points.x + at;
             m_py = points.y + at;
-        } else if (is_precise_polynomial(block)) {
-            m_precise.resize(static_cast<std::size_t>(block.box.width()));
-            map.exact_row(block, j - block.box.y0, m_precise.data());
-            m_precise.erase(m_precise.begin(), m_precise.begin() + (part.x0 - block.box.x0));
         } else
             block_row(map, block, part, j, m_room[0], m_room[1]);
     }
@@ -34,16 +32,16 @@ class PointRow {
     double x(int i) const { return m_first + i; }
     double y() const { return m_y; }
     Found operator()(int i) const {
-        Found found{{}, m_block.source_piece, false};
-        if (m_block.kind == Block::Kind::exact)
-            found.seen = m_map.exact(m_block, x(i), m_y, found.at, found.piece);
-        else {
-            found.at = !m_precise.empty() ? m_precise[static_cast<std::size_t>(i)].at
-                                          : Point<double>{m_block.base_x + double{m_px[i]},
-                                                          m_block.base_y + double{m_py[i]}};
-            found.seen = m_map.seen(x(i), m_y, m_block.piece);
+        if (in_double(m_block)) {
+            const auto k = static_cast<int>(m_first) - m_block.box.x0 + i;
+            const std::int32_t piece = m_exact.piece(0)[k];
+            const bool seen = m_block.kind == Block::Kind::exact ? piece >= 0
+                                                                 : m_map.seen(x(i), m_y, m_block.piece);
+            return {m_exact.at(k, 0), piece, seen};
         }
-        return found;
+        return {{m_block.base_x + double{m_px[i]}, m_block.base_y + double{m_py[i]}},
+                m_block.source_piece,
+                m_map.seen(x(i), m_y, m_block.piece)};
     }
 
   private:
@@ -52,7 +50,7 @@ class PointRow {
     double m_first, m_y;
     alignas(64) float m_room[2][simd::kRowRoom];
     const float *m_px = m_room[0], *m_py = m_room[1];
-    std::vector<BlockMap::ExactPoint> m_precise;
+    PointsInDouble m_exact;
 };
 
 /// The distance from the truth at (x, y); the source's x is counted around one with azimuths.

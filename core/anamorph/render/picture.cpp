@@ -97,9 +97,9 @@ class Painter {
         });
     }
 
-    /// The points of the blocks that all layers have in one place, if they are computed and wanted.
+    /// The points of the blocks that all layers have in one place, if they are computed in float and wanted.
     bool points_of(const BlockMap& map, std::span<const Block> layers, const BlockPlanes& to) const {
-        if (layers.front().kind != Block::Kind::computed) return false;
+        if (layers.front().kind != Block::Kind::computed || layers.front().precise) return false;
         if (!m_picture.shows_color() && m_picture.output == Output::bound) return false;
         map.computed(layers, to.rows());
         return true;

@@ -443,6 +443,7 @@ HWY_INLINE void FetchPart(const Upcoming& upcoming, int part, int parts) {
 struct RowPoints {
     RowPolynomial polynomial;
     const float *x, *y;
+    const int32_t *whole_x, *whole_y;
 
     static const Polynomials& Nothing() {
         static constexpr float kZero[1][8] = {};
@@ -452,7 +453,9 @@ struct RowPoints {
     HWY_INLINE RowPoints(const Polynomials& block, int row)
         : polynomial(block.x ? Nothing() : block, block.x ? 0 : row),
           x(block.x ? block.x + row * block.row_stride : nullptr),
-          y(block.x ? block.y + row * block.row_stride : nullptr) {}
+          y(block.x ? block.y + row * block.row_stride : nullptr),
+          whole_x(block.whole_x ? block.whole_x + row * block.row_stride : nullptr),
+          whole_y(block.whole_x ? block.whole_y + row * block.row_stride : nullptr) {}
     HWY_INLINE void At(int i, hn::Vec<Floats>& to_x, hn::Vec<Floats>& to_y) const {
         if (!x) return polynomial.At(i, to_x, to_y);
         to_x = hn::LoadU(Floats(), x + i);
@@ -482,7 +485,9 @@ void DrawBilinear(const Texels& s, const Polynomials& block, int begin, int end,
         for (int i = 0; i < count; i += static_cast<int>(kLanes)) {
             hn::Vec<Floats> x, y;
             points.At(begin + i, x, y);
-            Locate(hn::Add(x, shift_x), hn::Add(y, shift_y), row_step, pixel_step, i, positions[j & 1]);
+            Locate(hn::Add(x, shift_x), hn::Add(y, shift_y), row_step, pixel_step, i, positions[j & 1],
+                   points.whole_x ? points.whole_x + begin + i : nullptr,
+                   points.whole_x ? points.whole_y + begin + i : nullptr);
         }
     };
     const auto sample = [&](int j) HWY_ATTR {
@@ -523,7 +528,10 @@ void DrawTyped(const Texels& s, const Polynomials& block, int begin, int end, in
         FetchPart(upcoming, j - row_begin, row_end - row_begin);
         const ptrdiff_t given = j * block.row_stride + begin;
         if (!block.x) BlockPoints(block, j, begin, end, x, y);
-        SampleTyped<T>(s, {block.x ? block.x + given : x, block.x ? block.y + given : y, end - begin},
+        SampleTyped<T>(s,
+                       {block.x ? block.x + given : x, block.x ? block.y + given : y, end - begin,
+                        block.whole_x ? block.whole_x + given : nullptr,
+                        block.whole_x ? block.whole_y + given : nullptr},
                        values.data());
         StoreRow(values.data(), (end - begin) * s.channels, scale, type, to);
     }

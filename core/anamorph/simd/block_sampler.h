@@ -18,13 +18,14 @@ namespace anamorph::simd {
 
 /// The polynomials of a block for the source points of its pixels: [j][i] of s^i t^j for x, [j][4 + i] for y,
 /// s and t in [-1, 1] over the pixel centres; of a degree up to 3 in s and in t; and the block's size. Or the points
-/// themselves, row by row, with room for 16 more behind each.
+/// themselves, row by row, with room for 16 more behind each: offsets, to which whole texels may be added.
 struct Polynomials {
     const float (*c)[8];
     int degree;
     int width, height;
     const float *x = nullptr, *y = nullptr;
     std::ptrdiff_t row_stride = 0;
+    const std::int32_t *whole_x = nullptr, *whole_y = nullptr;
 };
 
 /// The source points of pixels [begin, end) of row `row`: offsets from the block's base in texels. There is

@@ -33,26 +33,30 @@ HWY_INLINE bool somewhere(const Number&) {
 #include "anamorph/map/projection/list.h"
 }  // namespace formulas
 
-using D = hn::CappedTag<float, Block::kMaxSide>;
-using L = Lanes<D>;
+template <class Real>
+using D = hn::CappedTag<Real, Block::kMaxSide>;
+template <class Real>
+using L = Lanes<D<Real>>;
 
 /// The bases that are still to be read. Once a row's formula stands in one function its reads are at known places.
-thread_local const float* t_next = nullptr;
+template <class Real>
+thread_local const Real* t_next = nullptr;
 
 /// A base: a constant, or one that was written down. Operations read their result in place of computing it.
+template <class Real>
 struct ReadBase {
-    float value = 0;
+    Real value = 0;
 
     ReadBase() = default;
-    HWY_INLINE ReadBase(double k) : value(static_cast<float>(k)) {}  // NOLINT: a number is a constant
-    static HWY_INLINE ReadBase next() { return known(*t_next++); }
-    static HWY_INLINE ReadBase known(float value) {
+    HWY_INLINE ReadBase(double k) : value(static_cast<Real>(k)) {}  // NOLINT: a number is a constant
+    static HWY_INLINE ReadBase next() { return known(*t_next<Real> ++); }
+    static HWY_INLINE ReadBase known(Real value) {
         ReadBase base;
         base.value = value;
         return base;
     }
 
-    HWY_INLINE L lanes() const { return L(hn::Set(D(), value)); }
+    HWY_INLINE L<Real> lanes() const { return L<Real>(hn::Set(D<Real>(), value)); }
 
     friend HWY_INLINE ReadBase operator-(const ReadBase&) { return next(); }
     friend HWY_INLINE ReadBase operator+(const ReadBase&, const ReadBase&) { return next(); }
@@ -70,60 +74,69 @@ struct ReadBase {
         s = next();
         return next();
     }
-    friend HWY_INLINE bool is_negative(const ReadBase&) { return *t_next++ != 0; }
-    friend HWY_INLINE bool is_zero(const ReadBase&) { return *t_next++ != 0; }
+    friend HWY_INLINE bool is_negative(const ReadBase&) { return *t_next<Real> ++ != 0; }
+    friend HWY_INLINE bool is_zero(const ReadBase&) { return *t_next<Real> ++ != 0; }
 };
 
-template <>
-struct NearRest<ReadBase, L> {
-    static HWY_INLINE L of(const ReadBase& base) { return base.lanes(); }
-    static HWY_INLINE L off(const L& rest, const ReadBase&, double) { return rest; }
-    static HWY_INLINE ReadBase choose(bool condition, const ReadBase& a, const ReadBase& b) {
-        return condition ? a : b;
-    }
-    static HWY_INLINE L choose(bool condition, const L& a, const L& b) { return condition ? a : b; }
+template <class Real>
+struct NearRest<ReadBase<Real>, L<Real>> {
+    using Base = ReadBase<Real>;
+    using Rest = L<Real>;
+    static HWY_INLINE Rest of(const Base& base) { return base.lanes(); }
+    static HWY_INLINE Rest off(const Rest& rest, const Base&, double) { return rest; }
+    static HWY_INLINE Base choose(bool condition, const Base& a, const Base& b) { return condition ? a : b; }
+    static HWY_INLINE Rest choose(bool condition, const Rest& a, const Rest& b) { return condition ? a : b; }
 };
 
-using N = Near<ReadBase, L>;
+template <class Real>
+using N = Near<ReadBase<Real>, L<Real>>;
 
 /// Lenses are not followed the way that is a root: there is no bound (map/lens.h).
-HWY_INLINE N shrink(const LensTerms&, const N& value) {
+template <class Real>
+HWY_INLINE N<Real> shrink(const LensTerms&, const N<Real>& value) {
     return value;
 }
-HWY_INLINE Point<N> settled(const LensTerms&, const Point<N>& v) {
+template <class Real>
+HWY_INLINE Point<N<Real>> settled(const LensTerms&, const Point<N<Real>>& v) {
     return v;
 }
 
 /// The local rays of a row: their bases, and the rests.
+template <class Real>
 struct Rays {
-    float x, y, z;
-    HWY_ALIGN float rest_x[Block::kMaxSide], rest_y[Block::kMaxSide], rest_z[Block::kMaxSide];
+    Real x, y, z;
+    HWY_ALIGN Real rest_x[Block::kMaxSide], rest_y[Block::kMaxSide], rest_z[Block::kMaxSide];
 };
 
 /// As transform() in geometry/point.h.
-HWY_INLINE Ray<N> Transformed(const glm::dmat3& m, const Ray<N>& ray) {
-    const auto row = [&](int i) HWY_ATTR -> N { return ray.x * m[0][i] + ray.y * m[1][i] + ray.z * m[2][i]; };
+template <class Real>
+HWY_INLINE Ray<N<Real>> Transformed(const glm::dmat3& m, const Ray<N<Real>>& ray) {
+    const auto row = [&](int i)
+                         HWY_ATTR -> N<Real> { return ray.x * m[0][i] + ray.y * m[1][i] + ray.z * m[2][i]; };
     return {row(0), row(1), row(2)};
 }
 
 /// Panorama::local_ray() of a row, `y` below the middle of the block, from `x` on.
-template <class Projection>
-ANAMORPH_FLATTEN void TargetRays(const DirectBlock& block, float x, float y, int count, Rays& rays) {
+template <class Projection, class Real>
+ANAMORPH_FLATTEN void TargetRays(const DirectBlock<Real>& block, Real x, Real y, int count,
+                                 Rays<Real>& rays) {
+    using Base = ReadBase<Real>;
+    using Rest = L<Real>;
     const Branch& branch = block.local.target;
     const Chart::Plane plane = block.target.plane(branch.piece);
-    for (int i = 0; i < count; i += L::kCount) {
-        t_next = block.bases.data();
-        const N px(ReadBase::next(), L(hn::Iota(D(), x + static_cast<float>(i))));
-        const N py(ReadBase::next(), L(hn::Set(D(), y)));
-        Point<N> p{(px - plane.cx) * plane.per_x + branch.centre_x,
-                   (py - plane.cy) * plane.per_y + branch.centre_y};
+    for (int i = 0; i < count; i += Rest::kCount) {
+        t_next<Real> = block.bases.data();
+        const N<Real> px(Base::next(), Rest(hn::Iota(D<Real>(), x + static_cast<Real>(i))));
+        const N<Real> py(Base::next(), Rest(hn::Set(D<Real>(), y)));
+        Point<N<Real>> p{(px - plane.cx) * plane.per_x + branch.centre_x,
+                         (py - plane.cy) * plane.per_y + branch.centre_y};
         if constexpr (Projection::lensed != Lensed::no)
             if (block.target.lens()) p = formulas::ideal_point(block.target.lens()->terms(), p);
-        const Ray<N> r = Transformed(block.local.rotation, Projection::ray(p, branch));
+        const Ray<N<Real>> r = Transformed(block.local.rotation, Projection::ray(p, branch));
         r.x.rest.store(rays.rest_x + i);
         r.y.rest.store(rays.rest_y + i);
         r.z.rest.store(rays.rest_z + i);
-        if (i + L::kCount < count) continue;
+        if (i + Rest::kCount < count) continue;
         rays.x = r.x.base.value;
         rays.y = r.y.base.value;
         rays.z = r.z.base.value;
@@ -131,31 +144,34 @@ ANAMORPH_FLATTEN void TargetRays(const DirectBlock& block, float x, float y, int
 }
 
 /// Chart::local_point() of a row.
-template <class Projection>
-ANAMORPH_FLATTEN void SourcePoints(const DirectBlock& block, const Rays& rays, int count, float* x,
-                                   float* y) {
+template <class Projection, class Real>
+ANAMORPH_FLATTEN void SourcePoints(const DirectBlock<Real>& block, const Rays<Real>& rays, int count, Real* x,
+                                   Real* y) {
+    using Base = ReadBase<Real>;
+    using Rest = L<Real>;
     const Branch& branch = block.local.source;
     const Chart::Plane plane = block.source.plane(branch.piece);
-    const float* const first = t_next;
-    for (int i = 0; i < count; i += L::kCount) {
-        t_next = first;
-        const Ray<N> r{{ReadBase::known(rays.x), L::load(rays.rest_x + i)},
-                       {ReadBase::known(rays.y), L::load(rays.rest_y + i)},
-                       {ReadBase::known(rays.z), L::load(rays.rest_z + i)}};
-        Point<N> p = Projection::point(r, branch);
+    const Real* const first = t_next<Real>;
+    for (int i = 0; i < count; i += Rest::kCount) {
+        t_next<Real> = first;
+        const Ray<N<Real>> r{{Base::known(rays.x), Rest::load(rays.rest_x + i)},
+                             {Base::known(rays.y), Rest::load(rays.rest_y + i)},
+                             {Base::known(rays.z), Rest::load(rays.rest_z + i)}};
+        Point<N<Real>> p = Projection::point(r, branch);
         if constexpr (Projection::lensed != Lensed::no)
             if (block.source.lens()) p = formulas::observed_point(block.source.lens()->terms(), p);
-        const N sx = (p.x - branch.centre_x) * plane.sx + plane.cx,
-                sy = (p.y - branch.centre_y) * plane.sy + plane.cy;
-        (L(hn::Set(D(), block.middle.x)) + sx.rest).store(x + i);
-        (L(hn::Set(D(), block.middle.y)) + sy.rest).store(y + i);
+        const N<Real> sx = (p.x - branch.centre_x) * plane.sx + plane.cx,
+                      sy = (p.y - branch.centre_y) * plane.sy + plane.cy;
+        (Rest(hn::Set(D<Real>(), block.middle.x)) + sx.rest).store(x + i);
+        (Rest(hn::Set(D<Real>(), block.middle.y)) + sy.rest).store(y + i);
     }
 }
 
-void ComputeDirectRow(const DirectBlock& block, int begin, int end, int row, float* x, float* y) {
-    Rays rays;
-    const float left = static_cast<float>(begin) - 0.5f * static_cast<float>(block.width - 1);
-    const float down = static_cast<float>(row) - 0.5f * static_cast<float>(block.height - 1);
+template <class Real>
+void ComputeDirectRow(const DirectBlock<Real>& block, int begin, int end, int row, Real* x, Real* y) {
+    Rays<Real> rays;
+    const Real left = static_cast<Real>(begin) - static_cast<Real>(0.5) * static_cast<Real>(block.width - 1);
+    const Real down = static_cast<Real>(row) - static_cast<Real>(0.5) * static_cast<Real>(block.height - 1);
     switch (block.target.projection()) {
 #define ANAMORPH_PROJECTION(name, Type)                                   \
     case Projection::name:                                                \
@@ -172,14 +188,17 @@ void ComputeDirectRow(const DirectBlock& block, int begin, int end, int row, flo
 #include "anamorph/map/projection/list.h"
 #undef ANAMORPH_PROJECTION
     }
-    HWY_DASSERT(t_next == block.bases.data() + block.bases.size());
+    HWY_DASSERT(t_next<Real> == block.bases.data() + block.bases.size());
 }
 
-void ComputeDirectRows(const DirectBlock& block, const Box& part, const PointRows& to) {
+void ComputeDirectRows(const DirectBlock<float>& block, const Box& part, const PointRows& to) {
     for (int row = part.y0; row < part.y1; ++row) {
         const std::ptrdiff_t at = (row - part.y0) * to.stride;
         ComputeDirectRow(block, part.x0, part.x1, row, to.x + at, to.y + at);
     }
+}
+void ComputePreciseRow(const DirectBlock<double>& block, int row, double* x, double* y) {
+    ComputeDirectRow(block, 0, block.width, row, x, y);
 }
 
 }  // namespace HWY_NAMESPACE
@@ -190,9 +209,13 @@ HWY_AFTER_NAMESPACE();
 namespace anamorph::simd {
 
 HWY_EXPORT(ComputeDirectRows);
+HWY_EXPORT(ComputePreciseRow);
 
-void direct_rows(const DirectBlock& block, const Box& part, const PointRows& to) {
+void direct_rows(const DirectBlock<float>& block, const Box& part, const PointRows& to) {
     HWY_DYNAMIC_DISPATCH(ComputeDirectRows)(block, part, to);
+}
+void direct_row(const DirectBlock<double>& block, int row, double* x, double* y) {
+    HWY_DYNAMIC_DISPATCH(ComputePreciseRow)(block, row, x, y);
 }
 
 }  // namespace anamorph::simd
