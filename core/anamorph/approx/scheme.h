@@ -5,8 +5,9 @@
 namespace anamorph {
 
 /// exact: every pixel by the formula. blocks: polynomials of degree 2 to 4 on blocks. residual: Kim's decomposition
-/// (3.1), one linear map and a bilinear table of residuals (4.3, 4.4). direct: every pixel by the formula in float,
-/// near the middle of its block (number/near.h). automatic: the fastest that holds.
+/// (3.1), one linear map and a bilinear table of residuals (4.3, 4.4). direct: every pixel by the formula, in float
+/// where that holds the tolerance, else in double, near the middle of its block (number/near.h). automatic: the fastest
+/// that holds.
 enum class Scheme { automatic, exact, blocks, residual, direct };
 
 /// exact: every pixel in double. hermite: the bicubic patch in full at every pixel (5.3.5), in float.
