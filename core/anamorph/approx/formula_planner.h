@@ -52,7 +52,7 @@ inline constexpr int kMostParts = 256;
 inline constexpr double kTailShare = 0.125, kPartShare = 0.25;
 
 // What a pixel of a polynomial saves, as a part of an exact pixel, where it could be direct instead, in float or in double.
-inline constexpr double kDirectSaving = 1.0 / 8, kPreciseSaving = 1.0 / 4;
+inline constexpr double kDirectSaving = 3.0 / 16, kPreciseSaving = 5.0 / 16;
 // Exact pixels may be direct, in double, up to this bound (source pixels).
 inline constexpr double kExactError = 1e-9;
 // A direct bound costs as much as so many exact pixels.
@@ -60,8 +60,6 @@ inline constexpr int kDirectCost = 60;
 // The least pixels of a direct block, whose bases cost as much as some tens of them: where one bound serves all of a large
 // box, which is otherwise cut first, and in small ones.
 inline constexpr int kLargeBox = 128 * 128, kLeastDirect = 512, kLeastOfSmall = 128;
-// Float may yet serve the parts of a large box where its error is at most so many tolerances.
-inline constexpr double kNearby = 16;
 
 inline int pixels_of(const Box& box) {
     return box.width() * box.height();
@@ -223,7 +221,9 @@ class Planner {
         double error = 0;
         if constexpr (DirectMap<Map>) {
             if (!m_exact) error = find_direct_in<float>(box, local, kDirectSaving);
-            const bool in_parts = pixels_of(box) > kLargeBox && error <= kNearby * m_goal;
+            // Float may yet serve parts of a box: a known error shrinks with the sides at most.
+            const double parts = pixels_of(box) / double{kBlockWidth * kBlockHeight};
+            const bool in_parts = parts > 1 && error <= m_goal * std::sqrt(parts);
             // Intervals that are too wide for float are so for double.
             if (!m_direct && !in_parts && error < HUGE_VAL)
                 error = find_direct_in<double>(box, local, kPreciseSaving);
