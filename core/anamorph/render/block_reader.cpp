@@ -336,7 +336,7 @@ bool BlockReader::rows(const Block& block, const Box& part, const Row& row) {
 }
 
 bool BlockReader::draw(const Block& block, const Box& part, const Canvas& canvas, const Block* next) {
-    const bool straight = canvas.packed() && m_source.unassociated_alpha() < 0;
+    const bool straight = m_source.unassociated_alpha() < 0;
     const Row store = [&](int x, int y, int count, const float* values, float one) {
         canvas.store(x, y, count, values, one);
     };
@@ -444,10 +444,20 @@ BlockReader::Got BlockReader::draw_in_double(const Block& block, const Box& part
 void BlockReader::draw_window(const Filtering& f, const Block& block, const simd::Polynomials& polynomials,
                               const Point<std::int32_t>& base, const Window& window, const Box& part,
                               const Canvas& canvas, const simd::Upcoming& upcoming) {
-    simd::draw_block(texels_of(f, window, base.x, base.y), polynomials, part.x0 - block.box.x0,
-                     part.x1 - block.box.x0, part.y0 - block.box.y0, part.y1 - block.box.y0,
-                     canvas.scale_from(one_of(window.type)), canvas.type(), canvas.at(part.x0, part.y0),
-                     canvas.row_stride(), upcoming);
+    const simd::Texels texels = texels_of(f, window, base.x, base.y);
+    const auto draw_to = [&](std::byte* to, std::ptrdiff_t row_stride) {
+        simd::draw_block(texels, polynomials, part.x0 - block.box.x0, part.x1 - block.box.x0,
+                         part.y0 - block.box.y0, part.y1 - block.box.y0,
+                         canvas.scale_from(one_of(window.type)), canvas.type(), to, row_stride, upcoming);
+    };
+    if (canvas.packed()) return draw_to(canvas.at(part.x0, part.y0), canvas.row_stride());
+    // Pixels with gaps have the same bits: they are drawn packed, and spread.
+    const std::ptrdiff_t pixel = std::ptrdiff_t{canvas.channels()} * size_of(canvas.type());
+    std::vector<std::byte> packed(static_cast<std::size_t>(pixel * part.width() * part.height()));
+    draw_to(packed.data(), pixel * part.width());
+    const std::byte* from = packed.data();
+    for (int y = part.y0; y < part.y1; ++y)
+        for (int x = part.x0; x < part.x1; ++x, from += pixel) std::copy_n(from, pixel, canvas.at(x, y));
 }
 
 // --- blocks by kind
@@ -767,7 +777,9 @@ BlockReader::Filtering BlockReader::filtering(const Jacobian& jacobian) const {
     f.tap_count = 0;
     for (int b = 0; b < footprint.taps_b; ++b)
         for (int a = 0; a < footprint.taps_a; ++a) {
-            const Point<double> o = tap_offset(footprint, jacobian, {f.scale_x, f.scale_y}, a, b);
+            Point<double> o = tap_offset(footprint, jacobian, {f.scale_x, f.scale_y}, a, b);
+            // Next to a point that is none a footprint has no direction; its taps stay in the middle.
+            if (std::isnan(o.x) || std::isnan(o.y)) o = {};
             f.taps[static_cast<std::size_t>(f.tap_count++)] = {static_cast<float>(o.x),
                                                                static_cast<float>(o.y)};
             f.reach_x = std::max(f.reach_x, std::fabs(o.x));

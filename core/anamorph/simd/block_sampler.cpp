@@ -11,107 +11,21 @@
 #include "hwy/foreach_target.h"  // must come before highway.h
 #include "hwy/highway.h"
 
+#include "anamorph/simd/block_rows-inl.h"
+
 HWY_BEFORE_NAMESPACE();
 namespace anamorph::simd {
 namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-// Coordinates: as many lanes as there are. Texels: four channels, or two neighbouring texels of them.
-using Floats = hn::CappedTag<float, 16>;
-using Ints = hn::RebindToSigned<Floats>;
-using Quad = hn::CappedTag<float, 4>;
-using Pair = hn::CappedTag<float, 8>;
-constexpr size_t kLanes = hn::MaxLanes(Floats());
-constexpr int kQuad = static_cast<int>(hn::MaxLanes(Quad()));  // 1 where Highway has no vectors
-
-/// s or t of pixel `i` of `count`: -1 at the first, 1 at the last, 0 when there is one.
-HWY_INLINE float step_of(int count) {
-    return count > 1 ? 1.0f / static_cast<float>(count - 1) : 0.0f;
-}
-
-/// The polynomials on one row, as polynomials in s.
-struct RowPolynomial {
-    hn::Vec<Floats> x0, x1, x2, x3, y0, y1, y2, y3, step;
-    float first;
-    bool cubic;
-
-    HWY_INLINE RowPolynomial(const Polynomials& block, int row) {
-        // Horner's rule for t, for all eight coefficients at once.
-        const hn::CappedTag<float, 8> d8;
-        const auto t = hn::Set(d8, static_cast<float>(2 * row - (block.height - 1)) * step_of(block.height));
-        HWY_ALIGN float c[8];
-        for (int lane = 0; lane < 8; lane += static_cast<int>(hn::MaxLanes(d8))) {
-            auto sum = hn::LoadU(d8, block.c[block.degree] + lane);
-            for (int j = block.degree - 1; j >= 0; --j)
-                sum = hn::MulAdd(sum, t, hn::LoadU(d8, block.c[j] + lane));
-            hn::Store(sum, d8, c + lane);
-        }
-        const Floats d;
-        x0 = hn::Set(d, c[0]);
-        x1 = hn::Set(d, c[1]);
-        x2 = hn::Set(d, c[2]);
-        x3 = hn::Set(d, c[3]);
-        y0 = hn::Set(d, c[4]);
-        y1 = hn::Set(d, c[5]);
-        y2 = hn::Set(d, c[6]);
-        y3 = hn::Set(d, c[7]);
-        step = hn::Set(d, step_of(block.width));
-        first = static_cast<float>(1 - block.width);
-        cubic = block.degree == 3;
-    }
-    /// The points of pixels i, i + 1, ...: pixel i stands 2 i - (width - 1) half steps from the middle.
-    HWY_INLINE void At(int i, hn::Vec<Floats>& x, hn::Vec<Floats>& y) const {
-        const Floats d;
-        const auto lanes = hn::Iota(d, 0.0f);
-        const auto s =
-            hn::Mul(hn::Add(hn::Add(lanes, lanes), hn::Set(d, first + static_cast<float>(2 * i))), step);
-        const auto qx = cubic ? hn::MulAdd(s, x3, x2) : x2, qy = cubic ? hn::MulAdd(s, y3, y2) : y2;
-        x = hn::MulAdd(s, hn::MulAdd(s, qx, x1), x0);
-        y = hn::MulAdd(s, hn::MulAdd(s, qy, y1), y0);
-    }
-};
-
 void BlockPoints(const Polynomials& block, int row, int begin, int end, float* HWY_RESTRICT out_x,
                  float* HWY_RESTRICT out_y) {
     const Floats d;
-    const RowPolynomial polynomial(block, row);
-    for (int i = begin; i < end; i += static_cast<int>(kLanes)) {
-        hn::Vec<Floats> x, y;
-        polynomial.At(i, x, y);
-        hn::StoreU(x, d, out_x + (i - begin));
-        hn::StoreU(y, d, out_y + (i - begin));
-    }
-}
-
-constexpr bool kHasPair = hn::MaxLanes(Pair()) == 8;  // two texels of up to four channels in one vector
-
-// Highway's own conversions of half where the processor has none cut off, and know no infinity.
-#if HWY_ARCH_X86 && HWY_TARGET <= HWY_AVX2
-constexpr bool kHasHalf = true;
-#else
-constexpr bool kHasHalf = false;
-#endif
-
-/// float_from_half (number/half.h) for as many halves from `p` as D has lanes.
-template <class D>
-HWY_INLINE hn::Vec<D> LoadHalves(D d, const hwy::float16_t* p) {
-    if constexpr (kHasHalf) {
-        return hn::PromoteTo(d, hn::LoadU(hn::Rebind<hwy::float16_t, D>(), p));
-    } else {
-        const hn::RebindToSigned<D> di;
-        const auto half =
-            hn::PromoteTo(di, hn::LoadU(hn::Rebind<uint16_t, D>(), reinterpret_cast<const uint16_t*>(p)));
-        const auto magnitude = hn::And(half, hn::Set(di, 0x7fff));
-        const auto sign = hn::ShiftLeft<16>(hn::Sub(half, magnitude));
-        const auto wide = hn::ShiftLeft<13>(magnitude);
-        const auto denormal = hn::BitCast(di, hn::Mul(hn::ConvertTo(d, magnitude), hn::Set(d, 0x1p-24f)));
-        const auto normal = hn::Add(wide, hn::Set(di, (127 - 15) << 23));
-        const auto special = hn::Or(wide, hn::Set(di, 0x7f800000));
-        const auto value =
-            hn::IfThenElse(hn::Lt(magnitude, hn::Set(di, 0x0400)), denormal,
-                           hn::IfThenElse(hn::Lt(magnitude, hn::Set(di, 0x7c00)), normal, special));
-        return hn::BitCast(d, hn::Or(sign, value));
-    }
+    const RowPoints points(block, HalfSteps(block), row);
+    points.ForEach(begin, end - begin, [&](int i, hn::Vec<Floats> x, hn::Vec<Floats> y) HWY_ATTR {
+        hn::StoreU(x, d, out_x + i);
+        hn::StoreU(y, d, out_y + i);
+    });
 }
 
 /// half_from_float (number/half.h) of a vector, to `to`.
@@ -141,45 +55,9 @@ HWY_INLINE void StoreHalves(hn::Vec<D> v, D d, hwy::float16_t* to) {
     }
 }
 
-/// As many channels from `p` as D has lanes, as floats.
-template <class D, class T>
-HWY_INLINE hn::Vec<D> LoadFloats(D d, const T* p) {
-    if constexpr (std::is_same_v<T, float>) {
-        return hn::LoadU(d, p);
-    } else if constexpr (std::is_same_v<T, hwy::float16_t>) {
-        return LoadHalves(d, p);
-    } else {
-        return hn::ConvertTo(d, hn::PromoteTo(hn::RebindToSigned<D>(), hn::LoadU(hn::Rebind<T, D>(), p)));
-    }
-}
 template <class T>
 HWY_INLINE hn::Vec<Quad> LoadQuad(const T* p) {
     return LoadFloats(Quad(), p);
-}
-
-/// Where taps fall: whole texels as an element offset, and the fractions.
-template <int kCount>
-struct Positions {
-    HWY_ALIGN int32_t offset[kCount];
-    HWY_ALIGN float fx[kCount], fy[kCount];
-};
-
-/// Texel (floor x, floor y) and the rest, for one vector of points, into lanes i, i + 1, ...
-template <int kCount>
-HWY_INLINE void Locate(hn::Vec<Floats> x, hn::Vec<Floats> y, hn::Vec<Ints> row, hn::Vec<Ints> pixel, int i,
-                       Positions<kCount>& p, const int32_t* whole_x = nullptr,
-                       const int32_t* whole_y = nullptr) {
-    const Floats d;
-    const Ints di;
-    const auto ix = hn::Floor(x), iy = hn::Floor(y);
-    hn::Store(hn::Sub(x, ix), d, p.fx + i);
-    hn::Store(hn::Sub(y, iy), d, p.fy + i);
-    auto tx = hn::ConvertTo(di, ix), ty = hn::ConvertTo(di, iy);
-    if (whole_x) {
-        tx = hn::Add(tx, hn::LoadU(di, whole_x));
-        ty = hn::Add(ty, hn::LoadU(di, whole_y));
-    }
-    hn::Store(hn::Add(hn::Mul(ty, row), hn::Mul(tx, pixel)), di, p.offset + i);
 }
 
 /// The same for `count` points from `first` on, moved by a tap and back by `shift`.
@@ -431,64 +309,27 @@ void StoreRow(const float* values, int count, float scale, PixelType type, std::
     }
 }
 
-/// Brings part `part` of `parts` of the texels near.
-HWY_INLINE void FetchPart(const Upcoming& upcoming, int part, int parts) {
-    const int first = upcoming.rows * part / parts, last = upcoming.rows * (part + 1) / parts;
-    for (int r = first; r < last; ++r)
-        for (int b = 0; b < upcoming.bytes; b += 64)
-            hwy::Prefetch(upcoming.first + r * upcoming.row_stride + b);
-}
-
-/// A row's points, by polynomials or as they stand.
-struct RowPoints {
-    RowPolynomial polynomial;
-    const float *x, *y;
-    const int32_t *whole_x, *whole_y;
-
-    static const Polynomials& Nothing() {
-        static constexpr float kZero[1][8] = {};
-        static constexpr Polynomials kNothing{kZero, 0, 1, 1};
-        return kNothing;
-    }
-    HWY_INLINE RowPoints(const Polynomials& block, int row)
-        : polynomial(block.x ? Nothing() : block, block.x ? 0 : row),
-          x(block.x ? block.x + row * block.row_stride : nullptr),
-          y(block.x ? block.y + row * block.row_stride : nullptr),
-          whole_x(block.whole_x ? block.whole_x + row * block.row_stride : nullptr),
-          whole_y(block.whole_x ? block.whole_y + row * block.row_stride : nullptr) {}
-    HWY_INLINE void At(int i, hn::Vec<Floats>& to_x, hn::Vec<Floats>& to_y) const {
-        if (!x) return polynomial.At(i, to_x, to_y);
-        to_x = hn::LoadU(Floats(), x + i);
-        to_y = hn::LoadU(Floats(), y + i);
-    }
-};
-
-/// The common case without detours: one bilinear tap, three or four channels. Rows go through three stages,
-/// each one row ahead of the next: located, sampled, stored. Reading what was just written in pieces of
-/// another size would wait for those writes.
+/// The common case without detours: one bilinear tap, three or four channels.
 template <class T, int kChannels>
-void DrawBilinear(const Texels& s, const Polynomials& block, int begin, int end, int row_begin, int row_end,
-                  float scale, PixelType type, std::byte* to, ptrdiff_t row_stride,
-                  const Upcoming& upcoming) {
+void DrawBilinear(const Drawing& to) {
     const Floats d;
     const Ints di;
+    const Texels& s = to.texels;
     const auto* origin = reinterpret_cast<const T*>(s.texels);
     const ptrdiff_t row = s.row_stride / static_cast<ptrdiff_t>(sizeof(T));
     const auto row_step = hn::Set(di, static_cast<int32_t>(row)), pixel_step = hn::Set(di, kChannels);
     const auto shift_x = hn::Set(d, s.taps[0].x - 0.5f), shift_y = hn::Set(d, s.taps[0].y - 0.5f);
-    const int count = end - begin;
+    const int count = to.end - to.begin;
+    const HalfSteps steps(to.block);
     Positions<kRowRoom> positions[2];
     HWY_ALIGN float values[2][kRowRoom * kChannels];
 
     const auto locate = [&](int j) HWY_ATTR {
-        const RowPoints points(block, j);
-        for (int i = 0; i < count; i += static_cast<int>(kLanes)) {
-            hn::Vec<Floats> x, y;
-            points.At(begin + i, x, y);
+        const RowPoints points(to.block, steps, j);
+        points.ForEach(to.begin, count, [&](int i, hn::Vec<Floats> x, hn::Vec<Floats> y) HWY_ATTR {
             Locate(hn::Add(x, shift_x), hn::Add(y, shift_y), row_step, pixel_step, i, positions[j & 1],
-                   points.whole_x ? points.whole_x + begin + i : nullptr,
-                   points.whole_x ? points.whole_y + begin + i : nullptr);
-        }
+                   points.WholeX(to.begin + i), points.WholeY(to.begin + i));
+        });
     };
     const auto sample = [&](int j) HWY_ATTR {
         const Positions<kRowRoom>& p = positions[j & 1];
@@ -499,59 +340,48 @@ void DrawBilinear(const Texels& s, const Polynomials& block, int begin, int end,
                        out + i * kChannels);
     };
     const auto store = [&](int j) HWY_ATTR {
-        StoreRow(values[j & 1], count * kChannels, scale, type, to + (j - row_begin) * row_stride);
+        StoreRow(values[j & 1], count * kChannels, to.scale, to.type,
+                 to.to + (j - to.row_begin) * to.row_stride);
     };
-    locate(row_begin);
-    for (int j = row_begin; j < row_end; ++j) {
-        FetchPart(upcoming, j - row_begin, row_end - row_begin);
-        if (j + 1 < row_end) locate(j + 1);
-        sample(j);
-        if (j > row_begin) store(j - 1);
-    }
-    store(row_end - 1);
+    InStages(to, locate, sample, store);
 }
 
 template <class T>
-void DrawTyped(const Texels& s, const Polynomials& block, int begin, int end, int row_begin, int row_end,
-               float scale, PixelType type, std::byte* to, ptrdiff_t row_stride, const Upcoming& upcoming) {
+void DrawTyped(const Drawing& to) {
+    const Texels& s = to.texels;
     if (s.kernel == Kernel::bilinear && s.tap_count == 1 && kQuad == 4) {
-        if (s.channels == 3)
-            return DrawBilinear<T, 3>(s, block, begin, end, row_begin, row_end, scale, type, to, row_stride,
-                                      upcoming);
-        if (s.channels == 4)
-            return DrawBilinear<T, 4>(s, block, begin, end, row_begin, row_end, scale, type, to, row_stride,
-                                      upcoming);
+        if (s.channels == 3) return DrawBilinear<T, 3>(to);
+        if (s.channels == 4) return DrawBilinear<T, 4>(to);
     }
+    const Polynomials& block = to.block;
+    const int count = to.end - to.begin;
+    Fetching fetching(to.upcoming, to.row_end - to.row_begin);
     HWY_ALIGN float x[kRowRoom], y[kRowRoom];
     std::vector<float> values(static_cast<size_t>(kMaxRow * s.channels + 16));
-    for (int j = row_begin; j < row_end; ++j, to += row_stride) {
-        FetchPart(upcoming, j - row_begin, row_end - row_begin);
-        const ptrdiff_t given = j * block.row_stride + begin;
-        if (!block.x) BlockPoints(block, j, begin, end, x, y);
+    std::byte* at = to.to;
+    for (int j = to.row_begin; j < to.row_end; ++j, at += to.row_stride) {
+        fetching.Fetch();
+        const ptrdiff_t given = j * block.row_stride + to.begin;
+        if (!block.x) BlockPoints(block, j, to.begin, to.end, x, y);
         SampleTyped<T>(s,
-                       {block.x ? block.x + given : x, block.x ? block.y + given : y, end - begin,
+                       {block.x ? block.x + given : x, block.x ? block.y + given : y, count,
                         block.whole_x ? block.whole_x + given : nullptr,
                         block.whole_x ? block.whole_y + given : nullptr},
                        values.data());
-        StoreRow(values.data(), (end - begin) * s.channels, scale, type, to);
+        StoreRow(values.data(), count * s.channels, to.scale, to.type, at);
     }
 }
 
-void DrawBlock(const Texels& s, const Polynomials& block, int begin, int end, int row_begin, int row_end,
-               float scale, PixelType type, std::byte* to, ptrdiff_t row_stride, const Upcoming& upcoming) {
-    const auto draw = [&](auto texel) {
-        DrawTyped<decltype(texel)>(s, block, begin, end, row_begin, row_end, scale, type, to, row_stride,
-                                   upcoming);
-    };
-    switch (s.type) {
+void DrawBlock(const Drawing& drawing) {
+    switch (drawing.texels.type) {
         case PixelType::uint8:
-            return draw(uint8_t{});
+            return DrawTyped<uint8_t>(drawing);
         case PixelType::uint16:
-            return draw(uint16_t{});
+            return DrawTyped<uint16_t>(drawing);
         case PixelType::half:
-            return draw(hwy::float16_t{});
+            return DrawTyped<hwy::float16_t>(drawing);
         case PixelType::float32:
-            return draw(float{});
+            return DrawTyped<float>(drawing);
     }
 }
 
@@ -574,8 +404,9 @@ void block_points(const Polynomials& block, int row, int begin, int end, float* 
 void draw_block(const Texels& texels, const Polynomials& block, int begin, int end, int row_begin,
                 int row_end, float scale, PixelType type, std::byte* to, std::ptrdiff_t row_stride,
                 const Upcoming& upcoming) {
-    HWY_DYNAMIC_DISPATCH(DrawBlock)
-    (texels, block, begin, end, row_begin, row_end, scale, type, to, row_stride, upcoming);
+    const Drawing drawing{texels, block, begin, end,        row_begin, row_end,
+                          scale,  type,  to,    row_stride, upcoming};
+    if (!draw_packed_block(drawing)) HWY_DYNAMIC_DISPATCH(DrawBlock)(drawing);
 }
 
 void sample_row(const Texels& texels, const Offsets& offsets, float* out) {

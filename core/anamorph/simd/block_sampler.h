@@ -6,7 +6,9 @@
 // rounding term of the block's bound (term_rounding in approx/block_writer.h). A point given as Offsets is
 // moved by half a texel, which rounds the sum once, by at most 2^-24 |x|, and by kSamplerRounding besides.
 // Where taps make up a pixel their places are the filter's, rounded to float. A filtered value differs from
-// the scalar path's by float rounding: at most 16 half-ULP of the largest texel read.
+// the scalar path's by float rounding: at most 16 half-ULP of the largest texel read. Bilinear pixels of three or four
+// channels that draw_block draws from uint8 to uint8 are filtered in whole numbers: before they are rounded to a level,
+// they differ by at most 1/32 level, of 255 (packed_blocks.h). That is an error of the value, not of the point.
 #pragma once
 
 #include <cstddef>

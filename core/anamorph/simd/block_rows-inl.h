@@ -1,0 +1,249 @@
+// SPDX-License-Identifier: Apache-2.0
+// What all loops over the rows of a block share: its points, where they fall among the texels, texels as floats, and
+// the order of work. Included once for every instruction set, as Highway's own headers are.
+#include <cstddef>
+#include <cstdint>
+#include <type_traits>
+
+#include "anamorph/simd/packed_blocks.h"
+#include "hwy/cache_control.h"
+#include "hwy/highway.h"
+
+#if defined(ANAMORPH_SIMD_BLOCK_ROWS_INL_H_) == defined(HWY_TARGET_TOGGLE)
+#ifdef ANAMORPH_SIMD_BLOCK_ROWS_INL_H_
+#undef ANAMORPH_SIMD_BLOCK_ROWS_INL_H_
+#else
+#define ANAMORPH_SIMD_BLOCK_ROWS_INL_H_
+#endif
+
+HWY_BEFORE_NAMESPACE();
+namespace anamorph::simd {
+namespace HWY_NAMESPACE {
+namespace hn = hwy::HWY_NAMESPACE;
+
+// Coordinates: as many lanes as there are. Texels: four channels, or two neighbouring texels of them.
+using Floats = hn::CappedTag<float, 16>;
+using Ints = hn::RebindToSigned<Floats>;
+using Quad = hn::CappedTag<float, 4>;
+using Pair = hn::CappedTag<float, 8>;
+constexpr size_t kLanes = hn::MaxLanes(Floats());
+constexpr int kQuad = static_cast<int>(hn::MaxLanes(Quad()));  // 1 where Highway has no vectors
+
+/// The steps of s and t from pixel to pixel, halved: -1 stands at the first pixel, 1 at the last, 0 where there is one.
+struct HalfSteps {
+    float s, t;
+
+    HWY_INLINE explicit HalfSteps(const Polynomials& block) : s(Of(block.width)), t(Of(block.height)) {}
+
+  private:
+    static HWY_INLINE float Of(int count) { return count > 1 ? 1.0f / static_cast<float>(count - 1) : 0.0f; }
+};
+
+/// The points of a row, by its polynomials in s or as they stand.
+struct RowPoints {
+    hn::Vec<Floats> x0, x1, x2, x3, y0, y1, y2, y3, step;
+    float first;
+    bool cubic;
+    const float *x = nullptr, *y = nullptr;
+    const int32_t *whole_x = nullptr, *whole_y = nullptr;
+
+    HWY_INLINE RowPoints(const Polynomials& block, const HalfSteps& steps, int row) {
+        const Floats d;
+        if (block.x) {
+            x = block.x + row * block.row_stride;
+            y = block.y + row * block.row_stride;
+            if (block.whole_x) {
+                whole_x = block.whole_x + row * block.row_stride;
+                whole_y = block.whole_y + row * block.row_stride;
+            }
+            x0 = x1 = x2 = x3 = y0 = y1 = y2 = y3 = step = hn::Zero(d);
+            first = 0;
+            cubic = false;
+            return;
+        }
+        // Horner's rule for t, for all eight coefficients at once.
+        const hn::CappedTag<float, 8> d8;
+        const auto t = hn::Set(d8, static_cast<float>(2 * row - (block.height - 1)) * steps.t);
+        HWY_ALIGN float c[8];
+        for (int lane = 0; lane < 8; lane += static_cast<int>(hn::MaxLanes(d8))) {
+            auto sum = hn::LoadU(d8, block.c[block.degree] + lane);
+            for (int j = block.degree - 1; j >= 0; --j)
+                sum = hn::MulAdd(sum, t, hn::LoadU(d8, block.c[j] + lane));
+            hn::Store(sum, d8, c + lane);
+        }
+        x0 = hn::Set(d, c[0]);
+        x1 = hn::Set(d, c[1]);
+        x2 = hn::Set(d, c[2]);
+        x3 = hn::Set(d, c[3]);
+        y0 = hn::Set(d, c[4]);
+        y1 = hn::Set(d, c[5]);
+        y2 = hn::Set(d, c[6]);
+        y3 = hn::Set(d, c[7]);
+        step = hn::Set(d, steps.s);
+        first = static_cast<float>(1 - block.width);
+        cubic = block.degree == 3;
+    }
+    /// Whole texels to be added from pixel i on, if there are any.
+    HWY_INLINE const int32_t* WholeX(int i) const { return whole_x ? whole_x + i : nullptr; }
+    HWY_INLINE const int32_t* WholeY(int i) const { return whole_y ? whole_y + i : nullptr; }
+    /// body(i, x, y) for the points of pixels begin + i, begin + i + 1, ... of `count`, a vector at a time.
+    template <class Body>
+    HWY_INLINE void ForEach(int begin, int count, const Body& body) const {
+        const Floats d;
+        constexpr int n = static_cast<int>(kLanes);
+        if (x) {
+            for (int i = 0; i < count; i += n)
+                body(i, hn::LoadU(d, x + begin + i), hn::LoadU(d, y + begin + i));
+            return;
+        }
+        // Pixel i stands 2 i - (width - 1) half steps from the middle, a whole number.
+        const auto lanes = hn::Iota(d, 0.0f);
+        auto half_steps = hn::Add(hn::Add(lanes, lanes), hn::Set(d, first + static_cast<float>(2 * begin)));
+        const auto on = hn::Set(d, static_cast<float>(2 * n));
+        if (cubic) {
+            for (int i = 0; i < count; i += n, half_steps = hn::Add(half_steps, on)) {
+                const auto s = hn::Mul(half_steps, step);
+                body(i, Value(s, x0, x1, hn::MulAdd(s, x3, x2)), Value(s, y0, y1, hn::MulAdd(s, y3, y2)));
+            }
+        } else {
+            for (int i = 0; i < count; i += n, half_steps = hn::Add(half_steps, on)) {
+                const auto s = hn::Mul(half_steps, step);
+                body(i, Value(s, x0, x1, x2), Value(s, y0, y1, y2));
+            }
+        }
+    }
+
+  private:
+    static HWY_INLINE hn::Vec<Floats> Value(hn::Vec<Floats> s, hn::Vec<Floats> c0, hn::Vec<Floats> c1,
+                                            hn::Vec<Floats> c2) {
+        return hn::MulAdd(s, hn::MulAdd(s, c2, c1), c0);
+    }
+};
+
+constexpr bool kHasPair = hn::MaxLanes(Pair()) == 8;  // two texels of up to four channels in one vector
+
+// Highway's own conversions of half where the processor has none cut off, and know no infinity.
+#if HWY_ARCH_X86 && HWY_TARGET <= HWY_AVX2
+constexpr bool kHasHalf = true;
+#else
+constexpr bool kHasHalf = false;
+#endif
+
+/// float_from_half (number/half.h) for as many halves from `p` as D has lanes.
+template <class D>
+HWY_INLINE hn::Vec<D> LoadHalves(D d, const hwy::float16_t* p) {
+    if constexpr (kHasHalf) {
+        return hn::PromoteTo(d, hn::LoadU(hn::Rebind<hwy::float16_t, D>(), p));
+    } else {
+        const hn::RebindToSigned<D> di;
+        const auto half =
+            hn::PromoteTo(di, hn::LoadU(hn::Rebind<uint16_t, D>(), reinterpret_cast<const uint16_t*>(p)));
+        const auto magnitude = hn::And(half, hn::Set(di, 0x7fff));
+        const auto sign = hn::ShiftLeft<16>(hn::Sub(half, magnitude));
+        const auto wide = hn::ShiftLeft<13>(magnitude);
+        const auto denormal = hn::BitCast(di, hn::Mul(hn::ConvertTo(d, magnitude), hn::Set(d, 0x1p-24f)));
+        const auto normal = hn::Add(wide, hn::Set(di, (127 - 15) << 23));
+        const auto special = hn::Or(wide, hn::Set(di, 0x7f800000));
+        const auto value =
+            hn::IfThenElse(hn::Lt(magnitude, hn::Set(di, 0x0400)), denormal,
+                           hn::IfThenElse(hn::Lt(magnitude, hn::Set(di, 0x7c00)), normal, special));
+        return hn::BitCast(d, hn::Or(sign, value));
+    }
+}
+
+/// As many channels from `p` as D has lanes, as floats.
+template <class D, class T>
+HWY_INLINE hn::Vec<D> LoadFloats(D d, const T* p) {
+    if constexpr (std::is_same_v<T, float>) {
+        return hn::LoadU(d, p);
+    } else if constexpr (std::is_same_v<T, hwy::float16_t>) {
+        return LoadHalves(d, p);
+    } else {
+        return hn::ConvertTo(d, hn::PromoteTo(hn::RebindToSigned<D>(), hn::LoadU(hn::Rebind<T, D>(), p)));
+    }
+}
+
+/// Where taps fall: whole texels as an element offset, and the fractions.
+template <int kCount>
+struct Positions {
+    HWY_ALIGN int32_t offset[kCount];
+    HWY_ALIGN float fx[kCount], fy[kCount];
+};
+
+/// Added to this number, whose last bit is worth 1, numbers between -2^22 and 2^22 are rounded to the nearest
+/// whole ones, and the bits count up from its own.
+constexpr float kUnit = 3 << 22;
+
+/// Such whole numbers to integers; anything else gives any integer.
+HWY_INLINE hn::Vec<Ints> ToInts(hn::Vec<Floats> v) {
+    const Ints di;
+    const auto unit = hn::Set(Floats(), kUnit);
+    return hn::Sub(hn::BitCast(di, hn::Add(v, unit)), hn::BitCast(di, unit));
+}
+
+/// The element offsets of texels (floor x, floor y), whole texels added where they are given, and the fractions.
+HWY_INLINE hn::Vec<Ints> OffsetsOf(hn::Vec<Floats> x, hn::Vec<Floats> y, hn::Vec<Ints> row,
+                                   hn::Vec<Ints> pixel, hn::Vec<Floats>& fx, hn::Vec<Floats>& fy,
+                                   const int32_t* whole_x = nullptr, const int32_t* whole_y = nullptr) {
+    const Ints di;
+    const auto ix = hn::Floor(x), iy = hn::Floor(y);
+    fx = hn::Sub(x, ix);
+    fy = hn::Sub(y, iy);
+    auto tx = ToInts(ix), ty = ToInts(iy);
+    if (whole_x) {
+        tx = hn::Add(tx, hn::LoadU(di, whole_x));
+        ty = hn::Add(ty, hn::LoadU(di, whole_y));
+    }
+    return hn::Add(hn::Mul(ty, row), hn::Mul(tx, pixel));
+}
+
+/// The same into lanes i, i + 1, ... of positions.
+template <int kCount>
+HWY_INLINE void Locate(hn::Vec<Floats> x, hn::Vec<Floats> y, hn::Vec<Ints> row, hn::Vec<Ints> pixel, int i,
+                       Positions<kCount>& p, const int32_t* whole_x = nullptr,
+                       const int32_t* whole_y = nullptr) {
+    hn::Vec<Floats> fx, fy;
+    hn::Store(OffsetsOf(x, y, row, pixel, fx, fy, whole_x, whole_y), Ints(), p.offset + i);
+    hn::Store(fx, Floats(), p.fx + i);
+    hn::Store(fy, Floats(), p.fy + i);
+}
+
+/// Brings texels near, a share of their rows with every row that is drawn.
+class Fetching {
+  public:
+    HWY_INLINE Fetching(const Upcoming& upcoming, int shares)
+        : m_upcoming(upcoming), m_share((upcoming.rows + shares - 1) / shares) {}
+    HWY_INLINE void Fetch() {
+        const int last = HWY_MIN(m_row + m_share, m_upcoming.rows);
+        for (; m_row < last; ++m_row)
+            for (int b = 0; b < m_upcoming.bytes; b += 64)
+                hwy::Prefetch(m_upcoming.first + m_row * m_upcoming.row_stride + b);
+    }
+
+  private:
+    const Upcoming& m_upcoming;
+    int m_share, m_row = 0;
+};
+
+/// Draws rows in three stages, each one row ahead of the next: located, sampled, stored. Reading what was just
+/// written in pieces of another size would wait for those writes.
+template <class Locating, class Sampling, class Storing>
+HWY_INLINE void InStages(const Drawing& drawing, const Locating& locate, const Sampling& sample,
+                         const Storing& store) {
+    const int begin = drawing.row_begin, end = drawing.row_end;
+    Fetching fetching(drawing.upcoming, end - begin);
+    locate(begin);
+    for (int j = begin; j < end; ++j) {
+        fetching.Fetch();
+        if (j + 1 < end) locate(j + 1);
+        sample(j);
+        if (j > begin) store(j - 1);
+    }
+    store(end - 1);
+}
+
+}  // namespace HWY_NAMESPACE
+}  // namespace anamorph::simd
+HWY_AFTER_NAMESPACE();
+
+#endif
