@@ -173,6 +173,24 @@ bool all_alike(const PixelPoints<Real>& points, std::ptrdiff_t ahead, int width,
            (length <= 1 && longest <= 1);
 }
 
+// Where there are more texels than this for a pixel, they are brought near one by one.
+constexpr double kApart = 8;
+
+// Cells of up to so many pixels whose texels lie too far apart are read pixel by pixel, larger ones are halved.
+constexpr int kSmallCell = 16;
+
+/// body(half) for the halves of a cell, cut across its longer side. False when any body was.
+template <class Body>
+bool for_halves(const Box& cell, const Body& body) {
+    Box first = cell, second = cell;
+    if (cell.width() >= cell.height())
+        first.x1 = second.x0 = (cell.x0 + cell.x1) / 2;
+    else
+        first.y1 = second.y0 = (cell.y0 + cell.y1) / 2;
+    const bool done = body(first);
+    return body(second) && done;
+}
+
 /// body(cell, jacobian) for the largest cells of a block, counted from its corner, that share a footprint:
 /// those in whose middle the map's derivative is like all their steps, and single pixels. False when any
 /// body was.
@@ -180,17 +198,15 @@ template <class Derivative, class Alike, class Body>
 bool for_each_cell(const Box& cell, const Derivative& derivative, const Alike& alike, const Body& body) {
     const Jacobian jacobian = derivative(cell);
     if ((cell.width() == 1 && cell.height() == 1) || alike(cell, jacobian)) return body(cell, jacobian);
-    Box first = cell, second = cell;
-    if (cell.width() >= cell.height())
-        first.x1 = second.x0 = (cell.x0 + cell.x1) / 2;
-    else
-        first.y1 = second.y0 = (cell.y0 + cell.y1) / 2;
-    const bool done = for_each_cell(first, derivative, alike, body);
-    return for_each_cell(second, derivative, alike, body) && done;
+    return for_halves(cell, [&](const Box& half) { return for_each_cell(half, derivative, alike, body); });
 }
 
 bool is_near(double at) {
     return std::fabs(at) < kFarthest;
+}
+
+double texels_in(const Box& box) {
+    return double(box.width()) * box.height();
 }
 
 Box whole(const Block& block) {
@@ -283,7 +299,7 @@ struct BlockReader::Span {
         first = base + std::floor(range.low - tap_reach) - support;
         last = base + std::floor(range.high + tap_reach) + support + 1;
     }
-    bool fits() const { return std::max(std::fabs(first), std::fabs(last)) < (1 << 30); }
+    bool fits() const { return std::fabs(first) < (1 << 30) && std::fabs(last) < (1 << 30); }
     double farthest_from(std::int32_t base) const {
         return std::max(std::fabs(first - base), std::fabs(last - base));
     }
@@ -341,8 +357,8 @@ bool BlockReader::draw(const Block& block, const Box& part, const Canvas& canvas
         canvas.store(x, y, count, values, one);
     };
     if (in_double(block)) {
-        const Got got =
-            read_in_double(block) && straight ? draw_in_double(block, part, canvas, next) : Got::too_large;
+        read_in_double(block);
+        const Got got = straight ? draw_in_double(block, part, canvas, next) : Got::too_large;
         return got == Got::too_large ? rows_in_double(block, part, store) : got == Got::window;
     }
     if (block.kind == Block::Kind::computed) {
@@ -412,9 +428,10 @@ BlockReader::Got BlockReader::draw_in_double(const Block& block, const Box& part
                                              const Block* next) {
     const PixelPoints<double> points = m_exact.points();
     Filtering f;
-    if (!filtering_of(block, points, f)) return Got::too_large;
     Range range_x, range_y;
-    ranges_in_double(whole(block), range_x, range_y);
+    if (!lie_together(whole(block)) || !ranges_in_double(whole(block), range_x, range_y) ||
+        !filtering_of(block, points, f))
+        return Got::too_large;
     const LevelPoints x(range_x.low, range_x.high, f.scale_x), y(range_y.low, range_y.high, f.scale_y);
     Window window;
     const Got got = window_of(f, m_exact.piece(0)[0], x.base, x.range, y.base, y.range, block.box, window);
@@ -444,7 +461,7 @@ BlockReader::Got BlockReader::draw_in_double(const Block& block, const Box& part
 void BlockReader::draw_window(const Filtering& f, const Block& block, const simd::Polynomials& polynomials,
                               const Point<std::int32_t>& base, const Window& window, const Box& part,
                               const Canvas& canvas, const simd::Upcoming& upcoming) {
-    const simd::Texels texels = texels_of(f, window, base.x, base.y);
+    const simd::Texels texels = texels_of(f, window, base.x, base.y, texels_in(block.box));
     const auto draw_to = [&](std::byte* to, std::ptrdiff_t row_stride) {
         simd::draw_block(texels, polynomials, part.x0 - block.box.x0, part.x1 - block.box.x0,
                          part.y0 - block.box.y0, part.y1 - block.box.y0,
@@ -476,8 +493,9 @@ bool BlockReader::polynomial_rows(const Block& block, const Box& part, const Row
     Window window;
     const Got got = polynomial_window(f, block, polynomial, window);
     if (got == Got::failed) return false;
-    if (got == Got::too_large) return rows_one_by_one(block, {}, part, row);
-    const simd::Texels texels = texels_of(f, window, polynomial.base_x, polynomial.base_y);
+    if (got == Got::too_large) return rows(block, points_of(block), part, row);
+    const simd::Texels texels =
+        texels_of(f, window, polynomial.base_x, polynomial.base_y, texels_in(block.box));
     alignas(64) float px[simd::kRowRoom], py[simd::kRowRoom];
     for (int j = part.y0; j < part.y1; ++j) {
         simd::block_points(on_block(polynomial.p, block), j - block.box.y0, part.x0 - block.box.x0,
@@ -534,7 +552,12 @@ bool BlockReader::points_cell(const Filtering& f, const Block& block, const Bloc
     const Box own = part_of(cell, block, part);
     if (own.empty()) return true;
     Range x, y;
-    if (!ranges_of(block, points, cell, x, y)) return rows_one_by_one(block, points, own, row);
+    const auto in_parts = [&] {
+        if (texels_in(cell) <= kSmallCell) return rows_one_by_one(block, points, own, row);
+        return for_halves(cell,
+                          [&](const Box& half) { return points_cell(f, block, points, half, part, row); });
+    };
+    if (!ranges_of(block, points, cell, x, y)) return in_parts();
     // On the source itself the block's offsets serve as they are, unless a cell lies apart from its base.
     if (f.level > 0 || !(cell == whole(block))) {
         double px[simd::kRowRoom], py[simd::kRowRoom];
@@ -549,13 +572,13 @@ bool BlockReader::points_cell(const Filtering& f, const Block& block, const Bloc
         const LevelPoints lx(block.base_x + x.low, block.base_x + x.high, f.scale_x),
             ly(block.base_y + y.low, block.base_y + y.high, f.scale_y);
         const Got got = split_rows(f, block.source_piece, at, lx, ly, cell, own, row);
-        return got == Got::too_large ? rows_one_by_one(block, points, own, row) : got == Got::window;
+        return got == Got::too_large ? in_parts() : got == Got::window;
     }
     Window window;
     const Got got = window_of(f, block.source_piece, block.base_x, x, block.base_y, y, cell, window);
-    if (got == Got::too_large) return rows_one_by_one(block, points, own, row);
+    if (got == Got::too_large) return in_parts();
     if (got == Got::failed) return false;
-    const simd::Texels texels = texels_of(f, window, block.base_x, block.base_y);
+    const simd::Texels texels = texels_of(f, window, block.base_x, block.base_y, texels_in(cell));
     for (int j = own.y0; j < own.y1; ++j) {
         const std::ptrdiff_t at = (j - block.box.y0) * points.row_stride + own.x0 - block.box.x0;
         sample(texels, {points.x + at, points.y + at, own.width()}, window.type, own.x0, j, row);
@@ -572,7 +595,7 @@ BlockReader::Got BlockReader::split_rows(const Filtering& f, int piece, const Ro
     Window window;
     const Got got = window_of(f, piece, x.base, x.range, y.base, y.range, cell, window);
     if (got != Got::window) return got;
-    const simd::Texels texels = texels_of(f, window, x.base, y.base);
+    const simd::Texels texels = texels_of(f, window, x.base, y.base, texels_in(cell));
     alignas(64) float fx[simd::kRowRoom] = {}, fy[simd::kRowRoom] = {};
     alignas(64) std::int32_t ix[simd::kRowRoom] = {}, iy[simd::kRowRoom] = {};
     for (int j = own.y0; j < own.y1; ++j) {
@@ -597,27 +620,33 @@ BlockPoints BlockReader::points_of(const Block& block) {
 }
 
 /// Reads a block whose points are in double. Positions of the whole block decide how it is drawn, whatever part of it
-/// is asked for. False where its points are far away, on several pieces, or not all there.
-bool BlockReader::read_in_double(const Block& block) {
-    const int w = block.box.width(), h = block.box.height();
-    m_exact.read(m_map, block, 0, h);
-    const std::int32_t first = m_exact.piece(0)[0];
-    m_together = first >= 0;
-    for (int j = 0; j < h && m_together; ++j) {
+/// is asked for.
+void BlockReader::read_in_double(const Block& block) {
+    m_exact.read(m_map, block, 0, block.box.height());
+}
+
+/// Do all pixels of a cell have source points, on one piece?
+bool BlockReader::lie_together(const Box& cell) const {
+    const std::int32_t first = m_exact.piece(cell.y0)[cell.x0];
+    for (int j = cell.y0; j < cell.y1; ++j) {
         const std::int32_t* const piece = m_exact.piece(j);
-        m_together = std::all_of(piece, piece + w, [&](std::int32_t p) { return p == first; });
+        if (!std::all_of(piece + cell.x0, piece + cell.x1, [&](std::int32_t p) { return p == first; }))
+            return false;
     }
-    Range x, y;
-    m_together = m_together && ranges_in_double(whole(block), x, y);
-    return m_together;
+    return first >= 0;
 }
 
 bool BlockReader::rows_in_double(const Block& block, const Box& part, const Row& row) {
-    if (!m_together) return rows_one_by_one(block, {}, part, row);
-    const auto at = [&](int i, int j) { return m_exact.at(i, j); };
-    return for_each_footprint(block, at, [&](const Box& cell, const Filtering& f) {
+    const auto body = [&](const Box& cell, const Filtering& f) {
         return exact_cell(f, block, cell, part, row);
-    });
+    };
+    if (m_filter != Filter::antialias) return body(whole(block), filtering({}));
+    // Steps go from source point to source point.
+    Range x, y;
+    if (!lie_together(whole(block)) || !ranges_in_double(whole(block), x, y))
+        return rows_one_by_one(block, {}, part, row);
+    return for_each_footprint(
+        block, [&](int i, int j) { return m_exact.at(i, j); }, body);
 }
 
 /// Of the points of a cell that were read in double. False where they are too far away.
@@ -637,16 +666,20 @@ bool BlockReader::exact_cell(const Filtering& f, const Block& block, const Box& 
                              const Row& row) {
     const Box own = part_of(cell, block, part);
     if (own.empty()) return true;
+    const auto in_parts = [&] {
+        if (texels_in(cell) <= kSmallCell) return rows_one_by_one(block, {}, own, row);
+        return for_halves(cell, [&](const Box& half) { return exact_cell(f, block, half, part, row); });
+    };
     Range x, y;
-    ranges_in_double(cell, x, y);
+    if (!lie_together(cell) || !ranges_in_double(cell, x, y)) return in_parts();
     const auto at = [&](int j) {
         const PixelPoints<double> points = m_exact.points();
         const std::ptrdiff_t k = (j - block.box.y0) * points.row_stride + own.x0 - block.box.x0;
         return Point<const double*>{points.x + k, points.y + k};
     };
-    const Got got = split_rows(f, m_exact.piece(0)[0], at, LevelPoints(x.low, x.high, f.scale_x),
+    const Got got = split_rows(f, m_exact.piece(cell.y0)[cell.x0], at, LevelPoints(x.low, x.high, f.scale_x),
                                LevelPoints(y.low, y.high, f.scale_y), cell, own, row);
-    return got == Got::too_large ? rows_one_by_one(block, {}, own, row) : got == Got::window;
+    return got == Got::too_large ? in_parts() : got == Got::window;
 }
 
 /// Each pixel with a window of its own: where a block's texels lie far apart.
@@ -714,17 +747,18 @@ BlockReader::Got BlockReader::window_of(const Filtering& f, int piece, std::int3
                                         const Range& range_x, std::int32_t base_y, const Range& range_y,
                                         const Box& block, Window& window) {
     const Span x(f, f.reach_x, base_x, range_x), y(f, f.reach_y, base_y, range_y);
-    // More texels than this per pixel are better fetched one pixel at a time.
-    constexpr double kMost = 32;
-    const double texels = (x.last - x.first) * (y.last - y.first);
-    const double pixels = double(block.width()) * block.height();
-    if (!(texels <= kMost * pixels + 4096) || !x.fits() || !y.fits()) return Got::too_large;
+    if (!x.fits() || !y.fits()) return Got::too_large;
     // Offsets are floats, which move half a texel without losing it, and count elements in 32 bits.
     constexpr double kMostOffset = 1 << 20;
     const double most_x = x.farthest_from(base_x), most_y = y.farthest_from(base_y);
     if (!(most_x <= kMostOffset && most_y <= kMostOffset)) return Got::too_large;
     const Box box{static_cast<int>(x.first), static_cast<int>(y.first), static_cast<int>(x.last),
                   static_cast<int>(y.last)};
+    // More texels than this per pixel are not copied.
+    constexpr double kMost = 32;
+    const double pixels = double(block.width()) * block.height();
+    if (texels_in(box) > kMost * pixels + 4096 && !m_reader.is_in_memory(f.level, piece, box))
+        return Got::too_large;
     if (!m_reader.get(f.level, piece, box, window)) return Got::failed;
     const double pixel = double(window.channels) * size_of(window.type);
     const double span = std::fabs(double(window.row_stride)) * most_y + pixel * most_x;
@@ -748,13 +782,15 @@ simd::Upcoming BlockReader::upcoming(const Filtering& f, const Span& x, const Sp
     const ConstImageView* view = m_source.view(f.level);
     if (!view) return {};
     if (!(x.first >= 0 && y.first >= 0 && x.last <= view->width && y.last <= view->height)) return {};
+    constexpr double kPixels = BlockWriter::kWidth * BlockWriter::kHeight;
+    if ((x.last - x.first) * (y.last - y.first) > kApart * kPixels) return {};
     return {view->at(static_cast<std::ptrdiff_t>(x.first), static_cast<std::ptrdiff_t>(y.first)),
             view->row_stride, static_cast<int>(y.last - y.first),
             static_cast<int>((x.last - x.first) * view->pixel_stride)};
 }
 
 simd::Texels BlockReader::texels_of(const Filtering& f, const Window& window, std::int32_t base_x,
-                                    std::int32_t base_y) {
+                                    std::int32_t base_y, double pixels) {
     const std::ptrdiff_t pixel = std::ptrdiff_t{window.channels} * size_of(window.type);
     return {window.texels + (base_y - window.box.y0) * window.row_stride + (base_x - window.box.x0) * pixel,
             window.row_stride,
@@ -762,7 +798,8 @@ simd::Texels BlockReader::texels_of(const Filtering& f, const Window& window, st
             window.channels,
             f.kernel,
             f.taps.data(),
-            f.tap_count};
+            f.tap_count,
+            texels_in(window.box) > kApart * pixels};
 }
 
 BlockReader::Filtering BlockReader::filtering(const Jacobian& jacobian) const {

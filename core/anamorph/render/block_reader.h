@@ -144,7 +144,8 @@ class BlockReader {
     bool points_cell(const Filtering& f, const Block& block, const BlockPoints& points, const Box& cell,
                      const Box& part, const Row& row);
     bool ranges_in_double(const Box& cell, Range& x, Range& y) const;
-    bool read_in_double(const Block& block);
+    void read_in_double(const Block& block);
+    bool lie_together(const Box& cell) const;
     bool exact_cell(const Filtering& f, const Block& block, const Box& cell, const Box& part, const Row& row);
     template <class RowPoints>
     Got split_rows(const Filtering& f, int piece, const RowPoints& points, const LevelPoints& x,
@@ -158,7 +159,7 @@ class BlockReader {
     Got window_of(const Filtering& f, int piece, std::int32_t base_x, const Range& range_x,
                   std::int32_t base_y, const Range& range_y, const Box& block, Window& window);
     static simd::Texels texels_of(const Filtering& f, const Window& window, std::int32_t base_x,
-                                  std::int32_t base_y);
+                                  std::int32_t base_y, double pixels);
     simd::Upcoming upcoming(const Block* next, const Filtering& f) const;
     simd::Upcoming upcoming_like(const Block& next, const Filtering& f, const Range& x, const Range& y) const;
     simd::Upcoming upcoming(const Filtering& f, const Span& x, const Span& y) const;
@@ -172,7 +173,6 @@ class BlockReader {
     std::vector<float> m_values;
     std::optional<BlockPlanes> m_planes;
     PointsInDouble m_exact;              ///< of the block that is being read
-    bool m_together = false;             ///< are all of them near and on one piece?
     std::vector<std::int32_t> m_texels;  ///< the texels they fall into, and the rests
     std::vector<float> m_rests;
 };

@@ -208,6 +208,18 @@ HWY_INLINE void Locate(hn::Vec<Floats> x, hn::Vec<Floats> y, hn::Vec<Ints> row, 
     hn::Store(fy, Floats(), p.fy + i);
 }
 
+/// Brings near the texels at these element offsets and those below, where they lie far apart.
+template <class T>
+HWY_INLINE void FetchApart(const Texels& s, const int32_t* offset, int count) {
+    if (!s.apart) return;
+    const auto* origin = reinterpret_cast<const T*>(s.texels);
+    for (int i = 0; i < count; ++i) {
+        const auto* texel = reinterpret_cast<const std::byte*>(origin + offset[i]);
+        hwy::Prefetch(texel);
+        hwy::Prefetch(texel + s.row_stride);
+    }
+}
+
 /// Brings texels near, a share of their rows with every row that is drawn.
 class Fetching {
   public:

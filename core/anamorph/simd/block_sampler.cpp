@@ -112,6 +112,7 @@ HWY_INLINE void SampleBilinear(const Texels& s, const Offsets& at, float* HWY_RE
     const int channels = kChannels ? kChannels : s.channels;
     Positions<kRowRoom> p;
     Locate(at, 0, at.count, s.taps[0], 0.5f, channels, static_cast<int32_t>(row), p);
+    FetchApart<T>(s, p.offset, at.count);
     for (int i = 0; i < at.count; ++i)
         for (int c = 0; c < channels; c += kQuad)
             hn::StoreU(Bilinear<T, kChannels>(origin + p.offset[i] + c, row, channels, p.fx[i], p.fy[i]), d,
@@ -330,6 +331,7 @@ void DrawBilinear(const Drawing& to) {
             Locate(hn::Add(x, shift_x), hn::Add(y, shift_y), row_step, pixel_step, i, positions[j & 1],
                    points.WholeX(to.begin + i), points.WholeY(to.begin + i));
         });
+        FetchApart<T>(s, positions[j & 1].offset, count);
     };
     const auto sample = [&](int j) HWY_ATTR {
         const Positions<kRowRoom>& p = positions[j & 1];

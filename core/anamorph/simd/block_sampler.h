@@ -57,6 +57,8 @@ struct Texels {
     /// At most kMaxTaps (one for nearest and bicubic).
     const Tap* taps = nullptr;
     int tap_count = 1;
+    /// Do neighbouring pixels read texels far apart? Then those of a row are brought near before they are read.
+    bool apart = false;
 };
 inline constexpr int kMaxTaps = 64;
 

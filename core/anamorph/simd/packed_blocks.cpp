@@ -213,6 +213,7 @@ void DrawBytes(const Drawing& to) {
         points.ForEach(to.begin, count, [&](int i, hn::Vec<Floats> x, hn::Vec<Floats> y) HWY_ATTR {
             weighing.Weigh(x, y, points.WholeX(to.begin + i), points.WholeY(to.begin + i), i, row);
         });
+        FetchApart<uint8_t>(s, row.offset, count);
         FillGroup(row.offset, count, kGroup);
     };
     const auto sample = [&](int j) HWY_ATTR {
@@ -339,6 +340,7 @@ void DrawFloats(const Drawing& to) {
             Locate(hn::Add(x, shift_x), hn::Add(y, shift_y), row_step, pixel_step, i, positions[j & 1],
                    points.WholeX(to.begin + i), points.WholeY(to.begin + i));
         });
+        FetchApart<T>(s, positions[j & 1].offset, count);
         FillGroup(positions[j & 1].offset, count, 8);
     };
     const auto sample = [&](int j) HWY_ATTR {
