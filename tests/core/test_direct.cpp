@@ -119,7 +119,9 @@ TEST_P(DirectTo, GivesTheSameBitsOnEveryInstructionSet) {
                 const std::vector<double> points = direct_points(plan_of(map, GetParam()));
                 if (first.empty()) first = points;
                 ASSERT_EQ(points.size(), first.size());
-                EXPECT_EQ(std::memcmp(points.data(), first.data(), points.size() * sizeof(double)), 0);
+                // Of two without a direct block there are no bits.
+                if (!points.empty())
+                    EXPECT_EQ(std::memcmp(points.data(), first.data(), points.size() * sizeof(double)), 0);
             }
             simd::use_instruction_set("");
         }

@@ -136,6 +136,38 @@ TEST(PackedBlocks, ValuesAreWithinTheStatedError) {
     });
 }
 
+TEST(PackedBlocks, WholeTexelsAreAddedToOffsets) {
+    SCOPED_TRACE(::testing::Message() << "seed " << kSeed);
+    on_every_set([] {
+        std::mt19937 random(kSeed);
+        for (const PixelType type : {PixelType::uint8, PixelType::uint16, PixelType::half})
+            for (const int channels : {3, 4, 5}) {
+                Case block(type, channels, 61, 32, random);
+                const std::vector<std::byte> wanted = block.draw();
+                std::vector<std::int32_t> whole_x, whole_y;
+                for (float& x : block.x) {
+                    whole_x.push_back(static_cast<std::int32_t>(x));
+                    x -= std::floor(x);
+                }
+                for (float& y : block.y) {
+                    whole_y.push_back(static_cast<std::int32_t>(y));
+                    y -= std::floor(y);
+                }
+                std::vector<std::byte> picture(wanted.size());
+                const simd::Texels from{block.texels.data(),    block.row_bytes(), type, channels,
+                                        simd::Kernel::bilinear, &block.tap,        1,    /*apart=*/true};
+                const simd::Polynomials points{
+                    nullptr,        0,     block.width,    block.height,  block.x.data(),
+                    block.y.data(), kRoom, whole_x.data(), whole_y.data()};
+                simd::draw_block(from, points, 0, block.width, 0, block.height, 1, type, picture.data(),
+                                 block.width * block.pixel_bytes());
+                simd::finish_stores();
+                // Multiples of 2^-13 are moved without rounding.
+                EXPECT_TRUE(picture == wanted) << static_cast<int>(type) << ' ' << channels;
+            }
+    });
+}
+
 TEST(PackedBlocks, WholeNumbersAreTheSameOnEveryInstructionSet) {
     SCOPED_TRACE(::testing::Message() << "seed " << kSeed);
     for (const int channels : {3, 4}) {
