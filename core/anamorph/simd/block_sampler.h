@@ -46,7 +46,8 @@ struct Tap {
 };
 
 /// What a block reads: `texels` points at the texel that offset (0, 0) falls into; all texels that the
-/// pixels' taps and the kernel need are there, and 64 bytes behind each row's last one may be read.
+/// pixels' taps and the kernel need are there, and 64 bytes behind each row's last one may be read. Bilinear
+/// pixels need the texel a tap falls into and its neighbours on every side, bicubic ones also the next.
 struct Texels {
     const std::byte* texels = nullptr;
     std::ptrdiff_t row_stride = 0;
