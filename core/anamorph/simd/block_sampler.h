@@ -85,8 +85,8 @@ struct Upcoming {
 };
 
 /// Samples pixels [begin, end) x [row_begin, row_end) of a block and stores them: block_points, sample_row
-/// and store_row in one. `to` points at pixel (begin, row_begin) of a picture with packed pixels. Meanwhile
-/// `upcoming` is brought near.
+/// and store_row in one, but for uint8 (see Errors). `to` points at pixel (begin, row_begin) of a picture with
+/// packed pixels. Meanwhile `upcoming` is brought near.
 void draw_block(const Texels& texels, const Polynomials& block, int begin, int end, int row_begin,
                 int row_end, float scale, PixelType type, std::byte* to, std::ptrdiff_t row_stride,
                 const Upcoming& upcoming = {});
