@@ -18,6 +18,7 @@
 #include <string>
 #include <utility>
 
+#include "anamorph/number/half.h"
 #include "anamorph/render/pyramid.h"
 #include "anamorph/render/reproject.h"
 #include "bench.h"
@@ -93,10 +94,19 @@ class Picture {
                 for (int c = 0; c < 3; ++c) {
                     const std::size_t k = first + static_cast<std::size_t>(3 * x + c);
                     const float v = value(x, y, c);
-                    if (m_type == PixelType::float32)
-                        m_memory.as<float>()[k] = v;
-                    else
-                        m_memory.as<std::uint8_t>()[k] = static_cast<std::uint8_t>(v * 255 + 0.5f);
+                    switch (m_type) {
+                        case PixelType::uint8:
+                            m_memory.as<std::uint8_t>()[k] = static_cast<std::uint8_t>(v * 255 + 0.5f);
+                            break;
+                        case PixelType::uint16:
+                            m_memory.as<std::uint16_t>()[k] = static_cast<std::uint16_t>(v * 65535 + 0.5f);
+                            break;
+                        case PixelType::half:
+                            m_memory.as<std::uint16_t>()[k] = half_from_float(v);
+                            break;
+                        case PixelType::float32:
+                            m_memory.as<float>()[k] = v;
+                    }
                 }
         });
     }
@@ -275,11 +285,47 @@ class Scene {
                  points_by(opencv_point)});
             add({&view, "opencv_remap", kNone, threads_count, [opencv] { opencv->remap(); },
                  points_by(opencv_point)});
+            if constexpr (!std::is_same_v<Texel, float>) {
+                opencv->fix_map();
+                add({&view, "opencv_fixed", kNone, threads_count, [opencv] { opencv->remap_fixed(); },
+                     points_by(opencv_point)});
+            }
         }
+        add_memory(view);
+    }
+
+    void add_memory(const View& view) {
         auto traffic =
             std::make_shared<Traffic>(view.plain, m_texels.bytes(), 3 * size_of(m_texels.type()), all());
-        add({&view, "memory", kNone, threads_count,
+        add({&view, "memory", kNone, m_settings.threads,
              [=, this] { traffic->copy(m_picture.bytes(), threads()); }});
+    }
+
+    /// The largest distance, in levels, of what is drawn from the bilinear values at the points that are read.
+    template <class Texel>
+    double value_error(const View& view, double tol) {
+        ReprojectOptions options;
+        options.filter = Filter::bilinear;
+        options.tol = tol;
+        draw_ours(view, m_source, options, target(view), all());
+        PlanOptions plan;
+        plan.tol = tol;
+        const Points points = plan_points(PanoramaPlan(view.map, plan), all());
+        const Texel *texels = m_texels.as<Texel>(), *drawn = m_picture.as<Texel>();
+        double worst = 0;
+        for (std::size_t k = 0; k < points.size(); ++k) {
+            if (!well_inside(m_chart, points[k])) continue;
+            const double x = points[k].x - 0.5, y = points[k].y - 0.5, ix = std::floor(x), iy = std::floor(y);
+            const double fx = x - ix, fy = y - iy;
+            const std::size_t row = 3 * static_cast<std::size_t>(m_chart.width());
+            const Texel* p = texels + static_cast<std::size_t>(iy) * row + 3 * static_cast<std::size_t>(ix);
+            for (std::size_t c = 0; c < 3; ++c) {
+                const double above = p[c] + fx * (double(p[c + 3]) - p[c]);
+                const double below = p[c + row] + fx * (double(p[c + row + 3]) - p[c + row]);
+                worst = std::max(worst, std::fabs(above + fy * (below - above) - drawn[3 * k + c]));
+            }
+        }
+        return worst;
     }
 
     /// Times all contenders together, then measures and checks their errors and adds their rows.
@@ -437,22 +483,61 @@ void run_bilinear(const Settings& settings, Report& report, const Chart& chart, 
                             report.find(turned, "automatic", kDefaultTol, threads));
 }
 
-// --- bilinear, uint8
+// --- bilinear, other types of pixels
 
-void run_uint8(const Settings& settings, Report& report) {
-    const std::string name = "equirect_uint8";
+constexpr double kFine = 1.0 / 256;
+
+/// Pixels of whole levels, whose values may be off by `most_error` of them.
+template <class Texel>
+void run_levels(const Settings& settings, Report& report, const std::string& name, PixelType type,
+                double most_error) {
     if (!settings.wants_case(name)) return;
-    constexpr double kFine = 1.0 / 256;
-    Scene scene(settings, report, equirectangular(source_width(settings)), PixelType::uint8, "pano");
+    Scene scene(settings, report, equirectangular(source_width(settings)), type, "pano");
     scene.add_view(name, settings.size, 90, {});
     const View& view = *scene.views().front();
     scene.add_schemes(view, {1, 1.0 / 16, kDefaultTol, kFine, 0.001, 0});
-    scene.add_rivals<std::uint8_t>(view);
+    scene.add_rivals<Texel>(view);
     scene.measure();
-    const Row* fine = report.find(name, "automatic", kFine, settings.threads);
+    const auto ours = [&](double tol) { return report.find(name, "automatic", tol, settings.threads); };
+    report.add_speed_target(name + ": times OpenCV's remap alone, map in float", 3,
+                            report.find(name, "opencv_remap"), ours(kDefaultTol));
+    report.add_speed_target(name + ": times OpenCV's remap alone, map in fixed point", 3,
+                            report.find(name, "opencv_fixed"), ours(kDefaultTol));
     report.add_speed_target(name + ": times OpenCV's remap alone, at tol 1/256", 1.3,
-                            report.find(name, "opencv_remap"), fine);
-    if (fine) report.add_limit(name + ": largest error at tol 1/256", kFine, fine->error.max);
+                            report.find(name, "opencv_remap"), ours(kFine));
+    report.add_speed_target(name + ": of the memory limit", 0.2, report.find(name, "memory"),
+                            ours(kDefaultTol));
+    if (ours(kFine)) report.add_limit(name + ": largest error at tol 1/256", kFine, ours(kFine)->error.max);
+    if (ours(kDefaultTol))
+        report.add_limit(name + ": largest error of a value, levels", most_error,
+                         scene.value_error<Texel>(view, kDefaultTol));
+}
+
+/// Half beside float, drawn in the same rounds: it is to be the quicker one.
+void run_half(const Settings& settings, Report& report) {
+    const std::string name = "equirect_half";
+    if (!settings.wants_case(name)) return;
+    Scene scene(settings, report, equirectangular(source_width(settings)), PixelType::half, "pano");
+    Scene wide(settings, report, equirectangular(source_width(settings)), PixelType::float32, "pano");
+    scene.add_view(name, settings.size, 90, {});
+    const View& view = *scene.views().front();
+    scene.add_schemes(view, {kDefaultTol});
+    ReprojectOptions options;
+    options.filter = Filter::bilinear;
+    scene.add({&view, "float", kNone, settings.threads, [&wide, &view, options] {
+                   draw_ours(view, wide.source(), options, wide.target(view), wide.threads());
+               }});
+    scene.add_memory(view);
+    scene.measure();
+    report.add_speed_target(name + ": times float's speed", 1, report.find(name, "float"),
+                            report.find(name, "automatic", kDefaultTol, settings.threads));
+}
+
+void run_types(const Settings& settings, Report& report) {
+    // Half a level of rounding, 1/32 of the weights; in uint16 what float leaves of values and of points.
+    run_levels<std::uint8_t>(settings, report, "equirect_uint8", PixelType::uint8, 0.5 + 1.0 / 32);
+    run_levels<std::uint16_t>(settings, report, "equirect_uint16", PixelType::uint16, 1);
+    run_half(settings, report);
 }
 
 // --- antialiased
@@ -589,7 +674,7 @@ void run(const Settings& settings, Report& report) {
     const int width = source_width(settings);
     run_bilinear(settings, report, equirectangular(width), "equirect");
     run_bilinear(settings, report, cylinder(width), "cylinder");
-    run_uint8(settings, report);
+    run_types(settings, report);
     run_antialias(settings, report);
 }
 

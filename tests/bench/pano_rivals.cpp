@@ -85,6 +85,7 @@ void draw_double(const PlainView& view, const Texel* source, Texel* picture,
 }
 template void draw_double(const PlainView&, const float*, float*, const ParallelFor&);
 template void draw_double(const PlainView&, const std::uint8_t*, std::uint8_t*, const ParallelFor&);
+template void draw_double(const PlainView&, const std::uint16_t*, std::uint16_t*, const ParallelFor&);
 
 PaddedSource::PaddedSource(const PlainView& view, const float* source, const ParallelFor& parallel_for)
     : texels(static_cast<std::size_t>(view.source_width + 2 * kColumns) *
@@ -144,13 +145,36 @@ void OpenCv<Texel>::compute_map() {
 }
 
 template <class Texel>
-void OpenCv<Texel>::remap() {
-    const int type = std::is_same_v<Texel, float> ? CV_32FC3 : CV_8UC3, n = m_view.size;
+template <class Map>
+void OpenCv<Texel>::remap_by(const Map& first, const Map& second) {
+    const int depth = std::is_same_v<Texel, float> ? CV_32F : sizeof(Texel) == 1 ? CV_8U : CV_16U;
+    const int type = CV_MAKETYPE(depth, 3), n = m_view.size;
     const cv::Mat from(m_view.source_height, m_view.source_width, type, const_cast<Texel*>(m_source));
     cv::Mat to(n, n, type, m_picture);
     cv::setNumThreads(m_threads);
-    cv::remap(from, to, cv::Mat(n, n, CV_32FC1, m_x.data()), cv::Mat(n, n, CV_32FC1, m_y.data()),
-              cv::INTER_LINEAR, cv::BORDER_WRAP);
+    cv::remap(from, to, first, second, cv::INTER_LINEAR, cv::BORDER_WRAP);
+}
+
+template <class Texel>
+void OpenCv<Texel>::remap() {
+    const int n = m_view.size;
+    remap_by(cv::Mat(n, n, CV_32FC1, m_x.data()), cv::Mat(n, n, CV_32FC1, m_y.data()));
+}
+
+template <class Texel>
+void OpenCv<Texel>::fix_map() {
+    const int n = m_view.size;
+    m_whole.resize(2 * m_x.size());
+    m_fraction.resize(m_x.size());
+    cv::Mat whole(n, n, CV_16SC2, m_whole.data()), fraction(n, n, CV_16UC1, m_fraction.data());
+    cv::convertMaps(cv::Mat(n, n, CV_32FC1, m_x.data()), cv::Mat(n, n, CV_32FC1, m_y.data()), whole, fraction,
+                    CV_16SC2);
+}
+
+template <class Texel>
+void OpenCv<Texel>::remap_fixed() {
+    const int n = m_view.size;
+    remap_by(cv::Mat(n, n, CV_16SC2, m_whole.data()), cv::Mat(n, n, CV_16UC1, m_fraction.data()));
 }
 
 #else
@@ -169,11 +193,16 @@ template <class Texel>
 void OpenCv<Texel>::compute_map() {}
 template <class Texel>
 void OpenCv<Texel>::remap() {}
+template <class Texel>
+void OpenCv<Texel>::fix_map() {}
+template <class Texel>
+void OpenCv<Texel>::remap_fixed() {}
 
 #endif
 
 template class OpenCv<float>;
 template class OpenCv<std::uint8_t>;
+template class OpenCv<std::uint16_t>;
 
 Traffic::Traffic(const PlainView& view, const std::byte* source, int texel_bytes,
                  const ParallelFor& parallel_for)

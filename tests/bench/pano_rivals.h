@@ -50,7 +50,7 @@ void draw_simd_exact(const PlainView& view, const PaddedSource& source, float* p
 std::vector<Point<float>> simd_exact_points(const PlainView& view);
 std::string simd_target();
 
-// (3) OpenCV: the map computed with double_point, then its remap; or its remap with the map given.
+// (3) OpenCV: the map computed with double_point, then its remap; or its remap with the map given, in float or fixed.
 bool have_opencv();
 template <class Texel>
 class OpenCv {
@@ -60,14 +60,22 @@ class OpenCv {
 
     void compute_map();
     void remap();
+    /// With the map in fixed point, as cv::convertMaps makes it of the last one computed.
+    void fix_map();
+    void remap_fixed();
 
   private:
+    template <class Map>
+    void remap_by(const Map& first, const Map& second);
+
     PlainView m_view;
     const Texel* m_source;
     Texel* m_picture;
     int m_threads;
     ParallelFor m_parallel_for;
     std::vector<float> m_x, m_y;
+    std::vector<std::int16_t> m_whole;
+    std::vector<std::uint16_t> m_fraction;
 };
 /// The source point that OpenCV uses: its map is rounded to 1/32 pixel (INTER_BITS = 5).
 Point<double> opencv_point(const PlainView& view, int i, int j);

@@ -51,8 +51,9 @@ struct Case {
         }
         // Multiples of 2^-13, so that moving them by half a texel rounds nothing; some stand on texels and between.
         const auto at = [&](int count) {
+            // Where every texel that a point falls into has neighbours, or its half next to them.
             const double v =
-                0.5 + static_cast<double>(random() % (8192U * static_cast<unsigned>(count - 1))) / 8192;
+                1 + static_cast<double>(random() % (8192U * static_cast<unsigned>(count - 2))) / 8192;
             return static_cast<float>(random() % 4 == 0 ? std::round(2 * v) / 2 : v);
         };
         for (int i = 0; i < kRoom * height; ++i) {

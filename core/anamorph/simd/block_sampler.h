@@ -47,7 +47,8 @@ struct Tap {
 };
 
 /// What a block reads: `texels` points at the texel that offset (0, 0) falls into; all texels that the
-/// pixels' taps and the kernel need are there, and 64 bytes behind each row's last one may be read.
+/// pixels' taps and the kernel need are there, and 64 bytes behind each row's last one may be read. Bilinear
+/// pixels need the texel a tap falls into and its neighbours on every side, bicubic ones also the next.
 struct Texels {
     const std::byte* texels = nullptr;
     std::ptrdiff_t row_stride = 0;
@@ -87,8 +88,8 @@ struct Upcoming {
 };
 
 /// Samples pixels [begin, end) x [row_begin, row_end) of a block and stores them: block_points, sample_row
-/// and store_row in one. `to` points at pixel (begin, row_begin) of a picture with packed pixels. Meanwhile
-/// `upcoming` is brought near.
+/// and store_row in one, but for uint8 (see Errors). `to` points at pixel (begin, row_begin) of a picture with
+/// packed pixels. Meanwhile `upcoming` is brought near.
 void draw_block(const Texels& texels, const Polynomials& block, int begin, int end, int row_begin,
                 int row_end, float scale, PixelType type, std::byte* to, std::ptrdiff_t row_stride,
                 const Upcoming& upcoming = {});

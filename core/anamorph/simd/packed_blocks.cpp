@@ -3,8 +3,8 @@
 #define HWY_TARGET_INCLUDE "anamorph/simd/packed_blocks.cpp"
 #include "anamorph/simd/packed_blocks.h"
 
-#include <algorithm>
 #include <cstring>
+#include <type_traits>
 
 #include "hwy/foreach_target.h"  // must come before highway.h
 #include "hwy/highway.h"
