@@ -210,6 +210,7 @@ class Planner {
     double find_direct(const Box& box, const Local& local) {
         Direct d{static_cast<int>(m_records.places.size()), kBlockWidth, kBlockHeight, 0};
         if constexpr (DirectMap<Map>) {
+            if (!m_map.may_be_direct()) return 0;
             const int least = pixels_of(box) > kLargeBox ? kLeastDirect : kLeastOfSmall;
             for (double cut = 1; d.width * d.height >= least * cut * cut;) {
                 m_balance -= kDirectCost;
@@ -384,6 +385,8 @@ class Planner {
         if (!(tail < HUGE_VAL)) return false;
         const double hx = half(middle.width()), hy = half(middle.height());
         const double least = length(bound.x.about(hx, hy), bound.y.about(hx, hy));
+        // As many as are counted are too many, whatever the middles say.
+        if (parts(0, tail) >= kMostParts) return false;
         const Fit fit(taylor_of(middle, local));
         const double error = cheaper_in_double(middle, fit) ? 0 : fit.error;
         const double blocks = pixels_of(box) / double{kBlockWidth * kBlockHeight};

@@ -89,6 +89,8 @@ class Panorama {
         Point<double> middle;
         Bases bases;
     };
+    /// Is no lens read the way that is a root?
+    bool may_be_direct() const;
     /// About (x, y).
     Direct direct(double x, double y, const Local& local) const;
     /// Bounds the error of what is read so, less the middle: for target points up to half_width and half_height from
