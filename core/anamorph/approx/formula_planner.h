@@ -33,6 +33,8 @@ inline constexpr double kCredit = 1.0 / 16;
 inline constexpr double kRearranged = (2 * (2 * 25 + 2 * 4) + 2 * 6 + 8 + 24) * 0x1p-53;
 // Blocks of a box share a bound of rounding up to this part of the tolerance; above, each has its own.
 inline constexpr double kSharedRounding = 1.0 / 64;
+// Smaller boxes have too few blocks for looking at their halves.
+inline constexpr int kBoxOfRoundings = 4 * BlockWriter::kWidth * BlockWriter::kHeight;
 
 // Where any pixel is exact, what rounding costs it need not be known better than this (source pixels).
 inline constexpr double kExactGoal = 1e-4;
@@ -332,11 +334,16 @@ class Planner {
         const auto t = taylor_rounding(m_map, across(box), down(box), half_width, half_height, local);
         return length(t.error.x + kRearranged * t.size.x, t.error.y + kRearranged * t.size.y);
     }
-    /// One for all blocks of a box where it is small.
+    /// One for all blocks of a box where it is small; found in parts where all of it is too much at once.
     double shared_rounding(const Box& box, const Local& local) const {
         const double rounding = rounding_over(box, half(std::min(2 * kBlockWidth, box.width())),
                                               half(std::min(2 * kBlockHeight, box.height())), local);
-        return rounding <= kSharedRounding * m_options.tol ? rounding : HUGE_VAL;
+        if (rounding <= kSharedRounding * m_options.tol) return rounding;
+        if (pixels_of(box) < kBoxOfRoundings) return HUGE_VAL;
+        const bool vertical_cut = box.width() >= box.height();
+        const double first = shared_rounding(sub_box(box, vertical_cut, false), local);
+        return first < HUGE_VAL ? std::max(first, shared_rounding(sub_box(box, vertical_cut, true), local))
+                                : HUGE_VAL;
     }
     void settle_blocks(const Box& box, const Local& local) {
         if (!worth_a_bound(box)) return leave(box);
