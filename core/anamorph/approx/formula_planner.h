@@ -33,6 +33,8 @@ inline constexpr double kCredit = 1.0 / 16;
 inline constexpr double kRearranged = (2 * (2 * 25 + 2 * 4) + 2 * 6 + 8 + 24) * 0x1p-53;
 // Blocks of a box share a bound of rounding up to this part of the tolerance; above, each has its own.
 inline constexpr double kSharedRounding = 1.0 / 64;
+// Smaller boxes have too few blocks for looking at their halves.
+inline constexpr int kBoxOfRoundings = 4 * BlockWriter::kWidth * BlockWriter::kHeight;
 
 // Where any pixel is exact, what rounding costs it need not be known better than this (source pixels).
 inline constexpr double kExactGoal = 1e-4;
@@ -157,6 +159,12 @@ class Planner {
           m_margin(options.scheme == Scheme::residual ? 0 : 0.5) {}
 
     bool is_exact() const { return m_exact; }
+    bool may_be_direct() const {
+        if constexpr (DirectMap<Map>)
+            return m_map.may_be_direct();
+        else
+            return false;
+    }
     void exact(const Box& box) {
         for_blocks(box, [&](const Box& b) { emit(b, Block::Kind::exact); });
     }
@@ -219,6 +227,7 @@ class Planner {
     /// was found.
     double find_direct(const Box& box, const Local& local) {
         double error = 0;
+        if (!may_be_direct()) return error;
         if constexpr (DirectMap<Map>) {
             if (!m_exact) error = find_direct_in<float>(box, local, kDirectSaving);
             // Float may yet serve parts of a box: a known error shrinks with the sides at most.
@@ -359,11 +368,16 @@ class Planner {
         const auto t = taylor_rounding(m_map, across(box), down(box), half_width, half_height, local);
         return length(t.error.x + kRearranged * t.size.x, t.error.y + kRearranged * t.size.y);
     }
-    /// One for all blocks of a box where it is small.
+    /// One for all blocks of a box where it is small; found in parts where all of it is too much at once.
     double shared_rounding(const Box& box, const Local& local) const {
         const double rounding = rounding_over(box, half(std::min(2 * kBlockWidth, box.width())),
                                               half(std::min(2 * kBlockHeight, box.height())), local);
-        return rounding <= kSharedRounding * m_options.tol ? rounding : HUGE_VAL;
+        if (rounding <= kSharedRounding * m_options.tol) return rounding;
+        if (pixels_of(box) < kBoxOfRoundings) return HUGE_VAL;
+        const bool vertical_cut = box.width() >= box.height();
+        const double first = shared_rounding(sub_box(box, vertical_cut, false), local);
+        return first < HUGE_VAL ? std::max(first, shared_rounding(sub_box(box, vertical_cut, true), local))
+                                : HUGE_VAL;
     }
     void settle_blocks(const Box& box, const Local& local) {
         if (!worth_a_bound(box)) return leave(box);
@@ -412,6 +426,8 @@ class Planner {
         if (!(tail < HUGE_VAL)) return false;
         const double hx = half(middle.width()), hy = half(middle.height());
         const double least = length(bound.x.about(hx, hy), bound.y.about(hx, hy));
+        // As many as are counted are too many, whatever the middles say.
+        if (parts(0, tail) >= kMostParts) return false;
         const Fit fit(taylor_of(middle, local));
         const double error = cheaper_in_double(middle, fit) ? 0 : fit.error;
         const double blocks = pixels_of(box) / double{kBlockWidth * kBlockHeight};
@@ -745,7 +761,7 @@ void FormulaPlan<Map>::plan(const Box& box, int piece, Blocks& blocks) const {
     planned.reserve(2 * kRegion * kRegion / (kBlockWidth * kBlockHeight));
     const auto records = std::make_shared<Records<typename Map::Local>>();
     Planner<Map> planner(m_map, m_options, box, piece, planned, *records);
-    if (planner.is_exact() && !DirectMap<Map>)
+    if (planner.is_exact() && !planner.may_be_direct())
         planner.exact(box);
     else
         planner.settle(box);

@@ -80,6 +80,8 @@ concept FormulaMap = requires(const Map& map, const typename Map::Local& local, 
 template <class Map>
 concept DirectMap = FormulaMap<Map> &&
     requires(const Map& map, const typename Map::Local& local, double a, const Interval& x) {
+    /// Does it read nothing that has no such bound anywhere?
+    { map.may_be_direct() } -> std::same_as<bool>;
     /// Bounds the error over blocks of up to the given half sizes with middles in a box, read in float or in double.
     { map.template direct_error<float>(x, x, a, a, local) } -> std::same_as<double>;
     { map.template direct_error<double>(x, x, a, a, local) } -> std::same_as<double>;

@@ -8,6 +8,7 @@
 #include <set>
 
 #include "anamorph/error.h"
+#include "anamorph/map/lens_table.h"
 #include "anamorph/parameter.h"
 
 namespace anamorph {
@@ -156,8 +157,9 @@ Lens::Lens(const LensModel& model, Lensed lensed, const std::string& projection,
     m_terms.shift_x = Constant(d);
     m_terms.shift_y = Constant(e);
     const auto in_units = [&](long double length) { return static_cast<double>(length / unit); };
-    const bool folds =
-        set_ends(in_units(std::hypot(plane.half_width + std::fabs(d), plane.half_height + std::fabs(e))));
+    const double corner =
+        in_units(std::hypot(plane.half_width + std::fabs(d), plane.half_height + std::fabs(e)));
+    const bool folds = set_ends(corner);
     // The circle in the picture's middle, about the lens's centre.
     const double asked = in_units(smaller + std::hypot(d, e));
     if (!(m_terms.observed_end >= asked * (1 - 1e-4))) {
@@ -169,6 +171,7 @@ Lens::Lens(const LensModel& model, Lensed lensed, const std::string& projection,
                         pixels(m_terms.observed_end) + " pixels: must not within " + pixels(asked) +
                         ", the circle that the picture holds");
     }
+    m_terms.table = std::make_shared<const LensTable>(m_terms, corner);
 }
 
 void Lens::set_terms() {
@@ -301,6 +304,16 @@ double least_slope(const LensTerms& lens, const Interval& t) {
 
 }  // namespace lens_detail
 
+LensCoefficients stretch_coefficients(const LensTerms& lens, const Interval& squared) {
+    return lens.table->stretch(squared);
+}
+LensCoefficients shrink_coefficients(const LensTerms& lens, const Interval& squared) {
+    return lens.table->shrink(squared);
+}
+double near_root(const LensTerms& lens, double value) {
+    return lens.table ? lens.table->near_root(value) : value * lens.slope;
+}
+
 Interval shrink(const LensTerms& lens, const Interval& value) {
     return Interval(1) / lens_formula::stretch_at(lens, lens_detail::radial_root(lens, value));
 }
@@ -317,11 +330,15 @@ Point<Interval> settled(const LensTerms& lens, const Point<Interval>& v) {
     const auto common = [](const Interval& a, const Interval& b) {
         return Interval(std::max(a.lo, b.lo), std::min(a.hi, b.hi));
     };
+    const auto size = [](const Point<Interval>& p) { return p.x.hi - p.x.lo + (p.y.hi - p.y.lo); };
     for (int i = 0; i < 6; ++i) {
         const Point<Interval> nearer = lens_formula::nearer(lens, v, box);
         const Point<Interval> smaller{common(box.x, nearer.x), common(box.y, nearer.y)};
         if (!(smaller.x.lo <= smaller.x.hi && smaller.y.lo <= smaller.y.hi)) break;
+        const double before = size(box);
         box = smaller;
+        // A step more would gain less still.
+        if (!(size(box) < 0.75 * before)) break;
     }
     return box;
 }

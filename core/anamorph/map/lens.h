@@ -22,7 +22,9 @@
 // 4 times the distance of the picture's farthest corner, and where that is 16 times as far in the ideal picture.
 #pragma once
 
+#include <algorithm>
 #include <limits>
+#include <memory>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -54,6 +56,8 @@ struct LensModel {
     double magnification() const;
 };
 
+class LensTable;
+
 /// What the formulas of a lens are read with.
 struct LensTerms {
     /// Which way the formula goes.
@@ -83,6 +87,9 @@ struct LensTerms {
     /// settled() ends with a step of at most kStill roundings of the end, or after kSteps.
     static constexpr double kStill = 512;
     static constexpr int kSteps = 72;
+
+    /// What intervals are read from (map/lens_table.h).
+    std::shared_ptr<const LensTable> table;
 };
 
 namespace lens_formula {
@@ -91,6 +98,21 @@ inline bool somewhere(bool condition) {
 }
 #include "anamorph/map/lens_formula.h"
 }  // namespace lens_formula
+
+/// Encloses the Taylor coefficients of S or of shrink(), by powers of what is added to the square of the distance from the
+/// centre, for all members.
+using LensCoefficients = lens_formula::Series<Interval, 5>;
+LensCoefficients stretch_coefficients(const LensTerms& lens, const Interval& squared);
+LensCoefficients shrink_coefficients(const LensTerms& lens, const Interval& squared);
+
+/// The root's first approximation for double, by the table.
+double near_root(const LensTerms& lens, double value);
+
+/// stretch_of() and shrink_of() for jets of intervals, by their coefficients.
+template <int N>
+Jet<Interval, N> stretch_of(const LensTerms& lens, const Point<Jet<Interval, N>>& u);
+template <int N>
+Jet<Interval, N> shrink_of(const LensTerms& lens, const Point<Jet<Interval, N>>& v);
 
 /// shrink() for numbers that need more than an iteration; lens_formula.h has it for the others.
 Interval shrink(const LensTerms& lens, const Interval& value);
@@ -126,6 +148,8 @@ template <class Real>
 Point<Rounded<Real>> settled(const LensTerms& lens, const Point<Rounded<Real>>& v);
 template <class T, int N>
 Point<Jet<T, N>> settled(const LensTerms& lens, const Point<Jet<T, N>>& v);
+template <int N>
+Point<Jet<Interval, N>> settled(const LensTerms& lens, const Point<Jet<Interval, N>>& v);
 
 /// The lens of a picture.
 class Lens {
@@ -319,24 +343,91 @@ Point<Rounded<Real>> settled(const LensTerms& lens, const Point<Rounded<Real>>& 
     return {R(u.x.range, HUGE_VAL, HUGE_VAL), R(u.y.range, HUGE_VAL, HUGE_VAL)};
 }
 
-/// Degree by degree: what F(u) lacks of v is the slope times what u lacks.
+namespace lens_detail {
+
+/// The parts of a jet up to degree K.
+template <int K, class T, int N>
+Jet<T, K> lowest(const Jet<T, N>& jet) {
+    Jet<T, K> part;
+    std::copy_n(jet.c, Jet<T, K>::kSize, part.c);
+    return part;
+}
+
+/// Degree by degree, from K on: what F(u) lacks of v is the slope times what u lacks.
+template <int K, class T, int N>
+void settle_from(const LensTerms& lens, const Point<Jet<T, N>>& v, const Slope<T>& slope,
+                 const T& determinant, Point<Jet<T, N>>& u) {
+    using J = Jet<T, N>;
+    const Point<Jet<T, K>> f =
+        lens_formula::distorted(lens, Point<Jet<T, K>>{lowest<K>(u.x), lowest<K>(u.y)});
+    for (int i = J::part(K); i < J::part(K + 1); ++i) {
+        const T x = v.x.c[i] - f.x.c[i], y = v.y.c[i] - f.y.c[i];
+        u.x.c[i] = (slope.yy * x - slope.xy * y) / determinant;
+        u.y.c[i] = (slope.xx * y - slope.xy * x) / determinant;
+    }
+    if constexpr (K < N) settle_from<K + 1>(lens, v, slope, determinant, u);
+}
+template <class T, int N>
+Point<Jet<T, N>> settled_by_degree(const LensTerms& lens, const Point<Jet<T, N>>& v,
+                                   const Point<T>& constant) {
+    const Slope<T> slope(lens, constant);
+    Point<Jet<T, N>> u{Jet<T, N>(constant.x), Jet<T, N>(constant.y)};
+    settle_from<1>(lens, v, slope, T(slope.xx * slope.yy - square(slope.xy)), u);
+    return u;
+}
+
+/// Is every coefficient of b one of a, above the constant part?
+template <int N>
+bool holds(const Jet<Interval, N>& a, const Jet<Interval, N>& b) {
+    for (int i = 1; i < a.kSize; ++i)
+        if (!(a.c[i].lo <= b.c[i].lo && b.c[i].hi <= a.c[i].hi)) return false;
+    return true;
+}
+/// Coefficients of b, in each degree with as much around as a and b are apart there at most.
+template <int N>
+Jet<Interval, N> with_room(const Jet<Interval, N>& a, const Jet<Interval, N>& b) {
+    using J = Jet<Interval, N>;
+    J wide = b;
+    for (int k = 1; k <= N; ++k) {
+        double apart = 0;
+        for (int i = J::part(k); i < J::part(k + 1); ++i)
+            apart = std::max({apart, std::fabs(a.c[i].lo - b.c[i].lo), std::fabs(a.c[i].hi - b.c[i].hi)});
+        for (int i = J::part(k); i < J::part(k + 1); ++i) wide.c[i] = {b.c[i].lo - apart, b.c[i].hi + apart};
+    }
+    return wide;
+}
+
+}  // namespace lens_detail
+
 template <class T, int N>
 Point<Jet<T, N>> settled(const LensTerms& lens, const Point<Jet<T, N>>& v) {
-    using J = Jet<T, N>;
     using lens_formula::settled;
-    const Point<T> constant = settled(lens, Point<T>{v.x.c[0], v.y.c[0]});
-    const lens_detail::Slope<T> slope(lens, constant);
-    const T determinant = slope.xx * slope.yy - square(slope.xy);
-    Point<J> u{J(constant.x), J(constant.y)};
-    for (int k = 1; k <= N; ++k) {
-        const Point<J> f = lens_formula::distorted(lens, u);
-        for (int i = J::part(k); i < J::part(k + 1); ++i) {
-            const T x = v.x.c[i] - f.x.c[i], y = v.y.c[i] - f.y.c[i];
-            u.x.c[i] = (slope.yy * x - slope.xy * y) / determinant;
-            u.y.c[i] = (slope.xx * y - slope.xy * x) / determinant;
-        }
+    return lens_detail::settled_by_degree(lens, v, settled(lens, Point<T>{v.x.c[0], v.y.c[0]}));
+}
+
+/// u is what nearer() maps to itself. With the constant parts known, the parts above of one member's jet are a point of
+/// a space of finite dimension, and nearer() is continuous there. A box of that space that it maps into itself for every
+/// member holds a fixed point (Brouwer), and there is only one: F(u) = v, solved degree by degree with an invertible
+/// slope.
+template <int N>
+Point<Jet<Interval, N>> settled(const LensTerms& lens, const Point<Jet<Interval, N>>& v) {
+    using J = Jet<Interval, N>;
+    using lens_detail::with_room;
+    const Point<Interval> constant = settled(lens, Point<Interval>{v.x.c[0], v.y.c[0]});
+    const auto about_constant = [&](Point<J> u) {
+        u.x.c[0] = constant.x;
+        u.y.c[0] = constant.y;
+        return u;
+    };
+    const auto nearer = [&](const Point<J>& u) { return about_constant(lens_formula::nearer(lens, v, u)); };
+    Point<J> from = about_constant(lens_formula::radially_undistorted(lens, v)), to = nearer(from);
+    for (int i = 0; i < 2; ++i) {
+        const Point<J> box{with_room(from.x, to.x), with_room(from.y, to.y)}, inner = nearer(box);
+        if (lens_detail::holds(box.x, inner.x) && lens_detail::holds(box.y, inner.y)) return inner;
+        from = to;
+        to = inner;
     }
-    return u;
+    return lens_detail::settled_by_degree(lens, v, constant);
 }
 
 template <class Real>
@@ -347,6 +438,32 @@ Rounded<Real> shrink(const LensTerms& lens, const Rounded<Real>& value) {
     constexpr int kDegree = static_cast<int>(R::kDegree);
     return lens_detail::compose(lens_detail::shrink_series<kDegree>(lens, root),
                                 R(Interval(0), value.radius, value.error));
+}
+
+namespace lens_detail {
+
+/// A function of the square of a point's distance from the centre, by its coefficients.
+template <int N>
+Jet<Interval, N> compose_squared(const LensCoefficients& function, Jet<Interval, N> squared) {
+    static_assert(N <= LensCoefficients::kDegree);
+    lens_formula::Series<Interval, N> series;
+    std::copy_n(function.c, N + 1, series.c);
+    squared.c[0] = Interval(0);
+    return compose(series, squared);
+}
+
+}  // namespace lens_detail
+
+template <int N>
+Jet<Interval, N> stretch_of(const LensTerms& lens, const Point<Jet<Interval, N>>& u) {
+    if (!lens.in_radius) return lens_formula::stretch_at(lens, lens_formula::radial_of(lens, u));
+    const Jet<Interval, N> squared = square(u.x) + square(u.y);
+    return lens_detail::compose_squared(stretch_coefficients(lens, squared.c[0]), squared);
+}
+template <int N>
+Jet<Interval, N> shrink_of(const LensTerms& lens, const Point<Jet<Interval, N>>& v) {
+    const Jet<Interval, N> squared = square(v.x) + square(v.y);
+    return lens_detail::compose_squared(shrink_coefficients(lens, squared.c[0]), squared);
 }
 
 template <class T, int N>

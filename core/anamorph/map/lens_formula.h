@@ -10,6 +10,8 @@
 /// A Taylor polynomial in one variable, of degree N.
 template <class T, int N>
 struct Series {
+    static constexpr int kDegree = N;
+
     T c[N + 1];
 
     Series() {
@@ -92,6 +94,12 @@ T radial_of(const LensTerms& lens, const Point<T>& u) {
     return select(centre, T(0), sqrt(T(select(centre, T(1), squared))));
 }
 
+/// S at a point.
+template <class T>
+T stretch_of(const LensTerms& lens, const Point<T>& u) {
+    return stretch_at(lens, radial_of(lens, u));
+}
+
 /// F's tangential part.
 template <class T>
 Point<T> tangential_at(const LensTerms& lens, const Point<T>& u) {
@@ -102,7 +110,7 @@ Point<T> tangential_at(const LensTerms& lens, const Point<T>& u) {
 /// F.
 template <class T>
 Point<T> distorted(const LensTerms& lens, const Point<T>& u) {
-    const T stretch = stretch_at(lens, radial_of(lens, u));
+    const T stretch = stretch_of(lens, u);
     const Point<T> radial{u.x * stretch, u.y * stretch};
     if (!lens.tangential) return radial;
     const Point<T> more = tangential_at(lens, u);
@@ -120,6 +128,11 @@ constexpr double unit_of() {
         return 0;
 }
 
+/// Where the iteration for it begins.
+template <class T>
+T near_root(const LensTerms& lens, const T& value) {
+    return T(value * lens.slope);
+}
 /// t with radial_at(t) = value, which rises up to the lens's end: Newton's iteration in a bracket. It ends where
 /// what is missing is within kResidual roundings, which is all that is relied upon. Each lane stands still from then
 /// on, so it does not depend on its neighbours.
@@ -131,7 +144,7 @@ T radial_root(const LensTerms& lens, const T& value) {
     const T goal = min(value, T(lens.value_end));
     const double unit = LensTerms::kResidual * unit_of<T>() * lens.condition;
     const T residual = (goal + LensTerms::kSmall * lens.value_end) * unit;
-    T low(0), high(lens.end), t = min(T(goal * lens.slope), high);
+    T low(0), high(lens.end), t = min(near_root(lens, goal), high);
     for (int i = 0; i < kMost; ++i) {
         const Series<T, 1> at = radial_at(lens, Series<T, 1>::variable(t));
         const T off = at.c[0] - goal;
@@ -154,10 +167,16 @@ T shrink(const LensTerms& lens, const T& value) {
     return T(1) / stretch_at(lens, radial_root(lens, value));
 }
 
+/// The same for a point.
+template <class T>
+T shrink_of(const LensTerms& lens, const Point<T>& v) {
+    return shrink(lens, radial_of(lens, v));
+}
+
 /// u whose radial part is v.
 template <class T>
 Point<T> radially_undistorted(const LensTerms& lens, const Point<T>& v) {
-    const T k = shrink(lens, radial_of(lens, v));
+    const T k = shrink_of(lens, v);
     return {v.x * k, v.y * k};
 }
 

@@ -89,6 +89,8 @@ class Panorama {
         Point<double> middle;
         Bases bases;
     };
+    /// Is no lens read the way that is a root?
+    bool may_be_direct() const;
     /// About (x, y).
     Direct direct(double x, double y, const Local& local) const;
     /// Bounds the error of what is read so in Real, float (less the middle) or double: for target points up to

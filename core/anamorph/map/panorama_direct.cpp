@@ -3,6 +3,11 @@
 
 namespace anamorph {
 
+bool Panorama::may_be_direct() const {
+    const Lens *target = m_target.lens(), *source = m_source.lens();
+    return !(target && target->terms().to_observed) && !(source && !source->terms().to_observed);
+}
+
 Panorama::Direct Panorama::direct(double x, double y, const Local& local) const {
     Direct found;
     found.bases.reserve(128);

@@ -1,0 +1,131 @@
+// SPDX-License-Identifier: Apache-2.0
+// The coefficients of lenses over rings enclose the derivatives of the root, found by halving in long double; panoramas
+// through lenses are blocks nearly everywhere, whichever way their formula goes.
+#include "anamorph/map/lens_table.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+
+#include "anamorph/approx/lens_plan.h"
+#include "anamorph/approx/panorama_plan.h"
+#include "panorama_oracle.h"
+
+namespace anamorph {
+namespace {
+
+using oracle::LensOracle;
+using oracle::View;
+using Real = long double;
+
+const char* const kLenses[] = {"ptlens:a=0.01,b=-0.03,c=0.02",
+                               "ptlens:b=-0.45",
+                               "ptlens:a=-0.2",
+                               "brown:k1=-0.2,k2=0.05,k3=-0.004",
+                               "brown:k1=0.1,k2=0.02,k3=0.001,k4=0.15,k5=0.01,k6=0.002",
+                               "3de4:k1=0.1,k2=0.03",
+                               "3de4:k1=-0.25",
+                               "kb4:k1=0.05,k2=-0.01,k3=0.002,k4=-0.0003"};
+
+/// The k-th divided difference of f over k + 1 points: its k-th derivative somewhere between them, over k!.
+template <class F>
+Real divided_difference(const F& f, Real from, Real step, int k) {
+    Real values[6];
+    for (int i = 0; i <= k; ++i) values[i] = f(from + step * i);
+    for (int order = 1; order <= k; ++order)
+        for (int i = 0; i + order <= k; ++i) values[i] = (values[i + 1] - values[i]) / (step * order);
+    return values[0];
+}
+
+/// Does every coefficient over an interval hold the divided differences of points of it?
+template <class F>
+void expect_encloses(const LensCoefficients& found, const Interval& squared, const F& f,
+                     const std::string& words) {
+    const Real width = Real(squared.hi) - squared.lo;
+    for (int k = 0; k <= 5; ++k) {
+        const Real step = width / std::max(k, 1);
+        const Real known = divided_difference(f, squared.lo, step, k);
+        // Values are off by some roundings, differences by as many times 2^k / (k! step^k).
+        Real off = 64 * 0x1p-64L * f(squared.lo);
+        for (int order = 1; order <= k; ++order) off *= 2 / (step * order);
+        EXPECT_LE(found.c[k].lo, known + off) << words << " coefficient " << k;
+        EXPECT_GE(found.c[k].hi, known - off) << words << " coefficient " << k;
+    }
+}
+
+TEST(LensTable, EnclosesDerivativesOfTheRoot) {
+    constexpr unsigned kSeed = 1971;
+    SCOPED_TRACE(testing::Message() << "seed " << kSeed);
+    std::mt19937 random(kSeed);
+    std::uniform_real_distribution<double> uniform(0, 1);
+    for (const char* text : kLenses) {
+        const View view = oracle::view_through(text, {1500, 1000}, 100);
+        const LensOracle truth(view);
+        const Chart chart = oracle::chart_of(view);
+        const LensTerms& terms = chart.lens()->terms();
+        const double reach = terms.to_observed ? terms.observed_end : terms.ideal_end;
+        int bounded = 0;
+        for (int i = 0; i < 300; ++i) {
+            // A ring as narrow as a block or as wide as a region of blocks, up to where the lens ends.
+            const double low = 0.02 + 0.9 * uniform(random),
+                         high = std::min(low * (1 + std::pow(10, -2 * uniform(random))), 0.97);
+            const Interval squared(low * low * reach * reach, high * high * reach * reach);
+            if (!(squared.hi > squared.lo * 1.001)) continue;
+            const auto shrink = [&](Real q) { return truth.root(std::sqrt(q)) / std::sqrt(q); };
+            const std::string words =
+                std::string(text) + " from " + std::to_string(low) + " to " + std::to_string(high);
+            const LensCoefficients found = shrink_coefficients(terms, squared);
+            expect_encloses(found, squared, shrink, words);
+            bounded += magnitude(found.c[5]) < HUGE_VAL;
+            if (!terms.in_radius || !(squared.hi < terms.end * terms.end)) continue;
+            const auto stretch = [&](Real q) { return truth.formula(std::sqrt(q)) / std::sqrt(q); };
+            expect_encloses(stretch_coefficients(terms, squared), squared, stretch, words + ", stretched");
+        }
+        EXPECT_GT(bounded, 200) << text;
+    }
+}
+
+// All of what the lens reaches, what lies beyond, and what is no interval at all.
+TEST(LensTable, TakesAnyInterval) {
+    for (const char* text : kLenses) {
+        const Chart chart = oracle::chart_of(oracle::view_through(text, {1500, 1000}, 100));
+        const LensTerms& terms = chart.lens()->terms();
+        const double reach = terms.to_observed ? terms.observed_end : terms.ideal_end;
+        for (const Interval& squared :
+             {Interval(0), Interval(0, reach * reach), Interval(0, 1e6 * reach * reach), Interval(1e6),
+              Interval::all(), Interval(NAN, NAN)}) {
+            const LensCoefficients found = shrink_coefficients(terms, squared);
+            const Real centre = 1 / Real(chart.lens()->model().magnification());
+            if (squared.contains(0)) {
+                EXPECT_LE(found.c[0].lo, centre + 1e-15L) << text;
+                EXPECT_GE(found.c[0].hi, centre - 1e-15L) << text;
+            }
+            EXPECT_FALSE(found.c[5].lo > found.c[5].hi) << text;
+        }
+    }
+}
+
+double exact_fraction_of(const BlockMap& plan) {
+    return plan.reached(serial_for).exact_fraction;
+}
+
+TEST(LensTable, PicturesThroughLensesAreBlocks) {
+    const Chart sphere(Projection::equirectangular, 4096, 2048), flat(Projection::rectilinear, 600, 600, 60);
+    const Size size{1024, 1024};
+    // What is exact lies about the centres of lenses that have powers of the distance itself, and about their ends.
+    constexpr double kMost = 0.15;
+    for (const char* text : {"ptlens:a=0.01,b=-0.03,c=0.02", "brown:k1=-0.2,k2=0.05,k3=-0.004",
+                             "brown:k1=-0.1,k2=0.02,p1=0.002,p2=-0.003", "3de4:k1=0.1,k2=0.03",
+                             "kb4:k1=0.05,k2=-0.01,k3=0.002,k4=-0.0003"}) {
+        SCOPED_TRACE(text);
+        const Chart observed = oracle::chart_of(oracle::view_through(text, size, 90));
+        EXPECT_LT(exact_fraction_of(PanoramaPlan(Panorama(sphere, observed, {30, 20, 10}), {})), kMost);
+        EXPECT_LT(exact_fraction_of(PanoramaPlan(Panorama(observed, flat, {30, 20, 10}), {})), kMost);
+        for (const LensMode mode : {LensMode::undistort, LensMode::distort})
+            EXPECT_LT(exact_fraction_of(LensPlan(LensMap(observed, mode, size, size, size), {})), kMost);
+    }
+}
+
+}  // namespace
+}  // namespace anamorph
