@@ -50,9 +50,13 @@ struct Block {
     int record = 0;
 };
 
-/// Does each pixel of a block get its source point in double by the formula?
+/// Computed blocks in double are as good as exact ones up to this bound (source pixels).
+inline constexpr double kExactError = 1e-9;
+
+/// Does each pixel of a block get its source point exactly: in double by the formula, or as good as that?
 inline bool is_exact(const Block& block) {
-    return block.kind == Block::Kind::exact || (block.kind == Block::Kind::computed && block.precise);
+    return block.kind == Block::Kind::exact ||
+           (block.kind == Block::Kind::computed && block.precise && block.bound <= kExactError);
 }
 
 /// Are a block's source points in double, by BlockMap::exact_rows?

@@ -55,13 +55,13 @@ inline constexpr double kTailShare = 0.125, kPartShare = 0.25;
 
 // What a pixel of a polynomial saves, as a part of an exact pixel, where it could be direct instead, in float or in double.
 inline constexpr double kDirectSaving = 3.0 / 16, kPreciseSaving = 5.0 / 16;
-// Exact pixels may be direct, in double, up to this bound (source pixels).
-inline constexpr double kExactError = 1e-9;
 // A direct bound costs as much as so many exact pixels.
 inline constexpr int kDirectCost = 60;
 // The least pixels of a direct block, whose bases cost as much as some tens of them: where one bound serves all of a large
 // box, which is otherwise cut first, and in small ones.
 inline constexpr int kLargeBox = 128 * 128, kLeastDirect = 512, kLeastOfSmall = 128;
+// By so much parts of a large box may be better than the whole.
+inline constexpr double kMuchBetter = 256;
 
 inline int pixels_of(const Box& box) {
     return box.width() * box.height();
@@ -230,9 +230,11 @@ class Planner {
         if (!may_be_direct()) return error;
         if constexpr (DirectMap<Map>) {
             if (!m_exact) error = find_direct_in<float>(box, local, kDirectSaving);
-            // Float may yet serve parts of a box: a known error shrinks with the sides at most.
+            // Float may yet serve parts of a box: a known error shrinks with the sides at most, but for one about an axis
+            // or a rim, most of whose parts are far better.
             const double parts = pixels_of(box) / double{kBlockWidth * kBlockHeight};
-            const bool in_parts = parts > 1 && error <= m_goal * std::sqrt(parts);
+            const bool large = pixels_of(box) > kLargeBox && error <= kMuchBetter * m_goal;
+            const bool in_parts = large || (parts > 1 && error <= m_goal * std::sqrt(parts));
             // Intervals that are too wide for float are so for double.
             if (!m_direct && !in_parts && error < HUGE_VAL)
                 error = find_direct_in<double>(box, local, kPreciseSaving);

@@ -16,6 +16,8 @@ constexpr int kDegree = Coefficients::kDegree;
 constexpr int kRingsToCorner = 64;
 constexpr double kWiderBeyond = 1.02, kWiderInRadius = 1.04;
 constexpr double kNearestInRadius = 0x1p-10;
+// What is narrower than this part of a ring is enclosed for itself.
+constexpr double kNarrow = 1.0 / 16;
 // A ring is enclosed in parts where that helps, halved so often.
 constexpr int kMostHalvings = 3;
 
@@ -138,6 +140,10 @@ Coefficients LensTable::direct(const Interval& squared, bool shrink) const {
 Coefficients LensTable::over(const Rings& rings, const Interval& squared) const {
     if (!(squared.lo <= squared.hi)) return direct(Interval::all(), rings.shrink);
     const std::size_t first = rings.index_of(squared.lo), last = rings.index_of(squared.hi);
+    if (squared.hi - squared.lo < kNarrow * (rings.ends[first + 1] - rings.ends[first])) {
+        const Coefficients there = direct(squared, rings.shrink);
+        if (is_bounded(there)) return there;
+    }
     Coefficients all = ring(rings, first).coefficients;
     for (std::size_t i = first + 1; i <= last; ++i) all = hull(all, ring(rings, i).coefficients);
     // At a ring's end they may be unbounded, but not where the box lies.
