@@ -28,8 +28,7 @@ void PanoramaPlan::exact_rows(const Block& block, int begin, int end, const Doub
 
 Panorama::Direct PanoramaPlan::direct(const Block& block) const {
     const Box& box = block.box;
-    Panorama::Direct direct =
-        map().direct(0.5 * (box.x0 + box.x1), 0.5 * (box.y0 + box.y1), place_of(block));
+    Panorama::Direct direct = map().direct(0.5 * (box.x0 + box.x1), 0.5 * (box.y0 + box.y1), place_of(block));
     // The block's base may be some turns away.
     if (const int period = map().period(); period > 0)
         direct.middle.x -= std::round((direct.middle.x - block.base_x) / period) * period;
@@ -38,7 +37,7 @@ Panorama::Direct PanoramaPlan::direct(const Block& block) const {
 
 void PanoramaPlan::direct_rows(const Block& block, int begin, int end, const DoubleRows& to) const {
     const Panorama::Direct found = direct(block);
-    const simd::DirectBlock<double> at{map().target(), map().source(), place_of(block), found.bases,
+    const simd::DirectBlock<double> at{map().target(),    map().source(),     place_of(block), found.bases,
                                        block.box.width(), block.box.height(), found.middle};
     for (int row = begin; row < end; ++row) {
         const std::ptrdiff_t k = (row - begin) * to.stride;

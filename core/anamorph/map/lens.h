@@ -99,18 +99,20 @@ inline bool somewhere(bool condition) {
 #include "anamorph/map/lens_formula.h"
 }  // namespace lens_formula
 
-/// Encloses the Taylor coefficients of S or of shrink(), by powers of what is added to the square of the distance from the
-/// centre, for all members.
+/// Taylor coefficients by powers of what is added to the square of the distance from the centre.
 using LensCoefficients = lens_formula::Series<Interval, 5>;
+/// Encloses those of S for all members.
 LensCoefficients stretch_coefficients(const LensTerms& lens, const Interval& squared);
+/// And those of shrink().
 LensCoefficients shrink_coefficients(const LensTerms& lens, const Interval& squared);
 
 /// The root's first approximation for double, by the table.
 double near_root(const LensTerms& lens, double value);
 
-/// stretch_of() and shrink_of() for jets of intervals, by their coefficients.
+/// stretch_of() for jets of intervals, by its coefficients.
 template <int N>
 Jet<Interval, N> stretch_of(const LensTerms& lens, const Point<Jet<Interval, N>>& u);
+/// And shrink_of().
 template <int N>
 Jet<Interval, N> shrink_of(const LensTerms& lens, const Point<Jet<Interval, N>>& v);
 
@@ -399,6 +401,7 @@ Jet<Interval, N> with_room(const Jet<Interval, N>& a, const Jet<Interval, N>& b)
 
 }  // namespace lens_detail
 
+/// Degree by degree above the constant parts.
 template <class T, int N>
 Point<Jet<T, N>> settled(const LensTerms& lens, const Point<Jet<T, N>>& v) {
     using lens_formula::settled;

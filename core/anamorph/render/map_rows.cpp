@@ -35,8 +35,8 @@ class PointRow {
         if (in_double(m_block)) {
             const auto k = static_cast<int>(m_first) - m_block.box.x0 + i;
             const std::int32_t piece = m_exact.piece(0)[k];
-            const bool seen = m_block.kind == Block::Kind::exact ? piece >= 0
-                                                                 : m_map.seen(x(i), m_y, m_block.piece);
+            const bool seen =
+                m_block.kind == Block::Kind::exact ? piece >= 0 : m_map.seen(x(i), m_y, m_block.piece);
             return {m_exact.at(k, 0), piece, seen};
         }
         return {{m_block.base_x + double{m_px[i]}, m_block.base_y + double{m_py[i]}},
