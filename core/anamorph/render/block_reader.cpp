@@ -754,11 +754,9 @@ BlockReader::Got BlockReader::window_of(const Filtering& f, int piece, std::int3
     if (!(most_x <= kMostOffset && most_y <= kMostOffset)) return Got::too_large;
     const Box box{static_cast<int>(x.first), static_cast<int>(y.first), static_cast<int>(x.last),
                   static_cast<int>(y.last)};
-    // More texels than this per pixel are not copied.
-    constexpr double kMost = 32;
-    const double pixels = double(block.width()) * block.height();
-    if (texels_in(box) > kMost * pixels + 4096 && !m_reader.is_in_memory(f.level, piece, box))
-        return Got::too_large;
+    // More texels than this per pixel are not copied, wherever they are: the bits of a picture do not depend on that.
+    constexpr double kMost = 128;
+    if (texels_in(box) > kMost * texels_in(block) + 4096) return Got::too_large;
     if (!m_reader.get(f.level, piece, box, window)) return Got::failed;
     const double pixel = double(window.channels) * size_of(window.type);
     const double span = std::fabs(double(window.row_stride)) * most_y + pixel * most_x;

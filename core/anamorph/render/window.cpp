@@ -149,28 +149,22 @@ void grow(std::vector<std::byte>& bytes, std::int64_t size) {
 
 }  // namespace
 
-/// The level that holds a box as it is to be read.
-const ConstImageView* WindowReader::in_memory(int level, int piece, const Box& box) const {
-    if (m_source.unassociated_alpha() >= 0 || !holds(m_border.interior(piece, m_source.size(level)), box))
-        return nullptr;
-    const ConstImageView* image = m_source.view(level);
-    return image && is_readable(*image) && has_slack(*image, box) ? image : nullptr;
-}
-
 bool WindowReader::get(int level, int piece, const Box& box, Window& window) noexcept try {
     const std::int64_t width = std::int64_t{box.x1} - box.x0, height = std::int64_t{box.y1} - box.y0;
-    if (width <= 0 || height <= 0) return false;
+    if (width <= 0 || height <= 0 || width > kMaxTexels || height > kMaxTexels || width * height > kMaxTexels)
+        return false;
     const int channels = m_source.channels(), alpha = m_source.unassociated_alpha();
     const PixelType type = m_source.type();
     const std::int64_t pixel = std::int64_t{channels} * size_of(type);
 
-    if (const ConstImageView* image = in_memory(level, piece, box)) {
+    const bool inside = holds(m_border.interior(piece, m_source.size(level)), box);
+    const ConstImageView* image = alpha < 0 && inside ? m_source.view(level) : nullptr;
+    if (image && is_readable(*image) && has_slack(*image, box)) {
         if (!m_source.prepare(level, box)) return false;
         window = {image->at(box.x0, box.y0), type, channels, image->row_stride, box};
         return true;
     }
 
-    if (width > kMaxTexels || height > kMaxTexels || width * height > kMaxTexels) return false;
     std::vector<std::byte>& raw = alpha < 0 ? m_texels : m_raw;
     grow(raw, height * width * pixel + Window::kSlack);
     if (!Gather(m_source, m_border, level, piece, box, raw.data(), width * pixel).run()) return false;

@@ -30,17 +30,12 @@ class WindowReader {
     /// The texels of `box` on `piece` of `level`; the box may reach over every edge. Points into the source
     /// when the box lies inside a level in memory (packed, not to be multiplied by alpha), else into memory
     /// of its own. With unassociated alpha the window is float with colour multiplied by alpha. False when
-    /// the source could not be read, or has to be copied and the box has more than kMaxTexels texels.
+    /// the source could not be read or the box has more than kMaxTexels texels.
     bool get(int level, int piece, const Box& box, Window& window) noexcept;
-
-    /// Would the window of that box point into the source?
-    bool is_in_memory(int level, int piece, const Box& box) const { return in_memory(level, piece, box); }
 
     static constexpr std::int64_t kMaxTexels = std::int64_t{1} << 24;
 
   private:
-    const ConstImageView* in_memory(int level, int piece, const Box& box) const;
-
     const Source& m_source;
     const Border& m_border;
     std::vector<std::byte> m_texels, m_raw;
