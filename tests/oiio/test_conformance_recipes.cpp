@@ -196,15 +196,19 @@ TEST_P(RecipeConformance, conformance_07_08_every_way_to_read_gives_the_same_bit
 TEST_P(RecipeConformance, conformance_10_data_windows_of_the_sources) {
     // A crop whose display window is the whole is the whole with black around it.
     const std::vector<std::string> images = {"city.exr", "town.exr"};
+    // Of names of their own: a file that is written again within a second is not seen to be another.
+    const std::vector<std::string> parts = {"part_a.exr", "part_b.exr"}, pads = {"pad_a.exr", "pad_b.exr"};
     for (std::size_t i = 0; i < sources(); ++i) {
-        const Ran ran = run("oiiotool " + images[i] + " --crop 100x40+30+25 -o part.exr");
+        const std::string& part = parts[i];
+        const std::string& pad = pads[i];
+        const Ran ran = run("oiiotool " + images[i] + " --crop 100x40+30+25 -o " + part);
         ASSERT_EQ(ran.status, 0) << ran.text;
-        OIIO::ImageBuf padded(ImageSpec(kWidth, kHeight, 3, TypeDesc::FLOAT)), crop("part.exr");
+        OIIO::ImageBuf padded(ImageSpec(kWidth, kHeight, 3, TypeDesc::FLOAT)), crop(part);
         ASSERT_TRUE(OIIO::ImageBufAlgo::paste(padded, 0, 0, 0, 0, crop)) << padded.geterror();
-        write_image(padded, "padded.exr");
+        write_image(padded, pad);
         std::vector<std::string> cropped = images, whole = images;
-        cropped[i] = "part.exr";
-        whole[i] = "padded.exr";
+        cropped[i] = part;
+        whole[i] = pad;
         EXPECT_TRUE(read_pixels(name_of(cropped)) == read_pixels(name_of(whole))) << images[i];
         // The first frame of a film is the first picture.
         const bool drawn = i == 0 || GetParam().frames == 1;
@@ -269,7 +273,7 @@ TEST_P(RecipeConformance, conformance_15_19_behind_a_cache_with_little_memory) {
     const auto cache = OIIO::ImageCache::create(true);
     const std::string inner = example(*find_operation("warp"), {"city.exr"}, {{"tile", "16"}});
     const std::string nested = example(*find_operation("morph"), {"n", name()},
-                                       {{"tile", "16"}, {"a", "(" + inner + ")"}, {"b", "(" + name() + ")"}});
+                                       {{"tile", "16"}, {"a", '(' + inner + ')'}, {"b", '(' + name() + ')'}});
     const std::vector<std::string> names = {name({{"tile", "16"}}), nested};
     std::vector<std::vector<float>> expected;
     for (const std::string& n : names) expected.push_back(read_floats(n));
