@@ -15,6 +15,7 @@
 
 #include "anamorph/deform/deformed_surface.h"
 #include "anamorph/simd/block_sampler.h"
+#include "each_instruction_set.h"
 
 namespace anamorph {
 namespace {
@@ -99,15 +100,6 @@ ParallelFor threads(std::int64_t count) {
     };
 }
 
-void on_every_instruction_set(const std::function<void()>& body) {
-    for (const char* const* set = simd::instruction_sets(); *set; ++set) {
-        SCOPED_TRACE(*set);
-        ASSERT_TRUE(simd::use_instruction_set(*set));
-        body();
-    }
-    simd::use_instruction_set("");
-}
-
 TEST(SurfaceSlopes, AreTheDerivativesOnEveryInstructionSetToTheBit) {
     std::vector<Deformation> list = bumps(3, 150, .01, .4);
     const std::vector<double> u = even(133), v = even(37);
@@ -118,7 +110,7 @@ TEST(SurfaceSlopes, AreTheDerivativesOnEveryInstructionSetToTheBit) {
     list[5].enabled = false;
     const DeformOptions options{0, 0x1p-40};
     std::vector<Given> first;
-    on_every_instruction_set([&] {
+    test::on_every_instruction_set([&] {
         const std::vector<Given> grid = given(DeformedGrid(u, v, options), points.size(), list);
         EXPECT_EQ(grid, given(DeformedPoints(points, options), points.size(), list));
         if (first.empty()) first = grid;
@@ -234,7 +226,7 @@ TEST(TurnedNormals, AreThoseOfMovedTangents) {
     const SurfaceSlopes slopes{251, 0, nullptr, by};
     double first[3][SurfaceSlopes::kMost], normals[3][SurfaceSlopes::kMost];
     bool is_first = true;
-    on_every_instruction_set([&] {
+    test::on_every_instruction_set([&] {
         std::copy(&start[0][0], &start[0][0] + 3 * SurfaceSlopes::kMost, &normals[0][0]);
         turn_normals(slopes, g, h, normals);
         if (is_first) std::copy(&normals[0][0], &normals[0][0] + 3 * SurfaceSlopes::kMost, &first[0][0]);

@@ -12,6 +12,7 @@
 #include "anamorph/render/reproject.h"
 #include "anamorph/render/source.h"
 #include "anamorph/simd/block_sampler.h"
+#include "each_instruction_set.h"
 #include "guarded_memory.h"
 
 namespace anamorph {
@@ -100,19 +101,9 @@ long double error_of(PixelType type, long double largest) {
     return in_float + (type == PixelType::uint16 ? 0.5L : 0x1p-11L * std::max(largest, 0x1p-13L));
 }
 
-template <class Body>
-void on_every_set(const Body& body) {
-    for (const char* const* set = simd::instruction_sets(); *set; ++set) {
-        SCOPED_TRACE(*set);
-        ASSERT_TRUE(simd::use_instruction_set(*set));
-        body();
-    }
-    simd::use_instruction_set("");
-}
-
 TEST(PackedBlocks, ValuesAreWithinTheStatedError) {
     SCOPED_TRACE(::testing::Message() << "seed " << kSeed);
-    on_every_set([] {
+    test::on_every_instruction_set([] {
         std::mt19937 random(kSeed);
         for (const PixelType type : {PixelType::uint8, PixelType::uint16, PixelType::half})
             for (const int channels : {1, 2, 3, 4, 5})
@@ -139,7 +130,7 @@ TEST(PackedBlocks, ValuesAreWithinTheStatedError) {
 
 TEST(PackedBlocks, WholeTexelsAreAddedToOffsets) {
     SCOPED_TRACE(::testing::Message() << "seed " << kSeed);
-    on_every_set([] {
+    test::on_every_instruction_set([] {
         std::mt19937 random(kSeed);
         for (const PixelType type : {PixelType::uint8, PixelType::uint16, PixelType::half})
             for (const int channels : {3, 4, 5}) {
@@ -173,7 +164,7 @@ TEST(PackedBlocks, WholeNumbersAreTheSameOnEveryInstructionSet) {
     SCOPED_TRACE(::testing::Message() << "seed " << kSeed);
     for (const int channels : {3, 4}) {
         std::vector<std::byte> first;
-        on_every_set([&] {
+        test::on_every_instruction_set([&] {
             std::mt19937 random(kSeed);
             const std::vector<std::byte> picture = Case(PixelType::uint8, channels, 61, 32, random).draw();
             if (first.empty()) first = picture;
@@ -183,7 +174,7 @@ TEST(PackedBlocks, WholeNumbersAreTheSameOnEveryInstructionSet) {
 }
 
 TEST(PackedBlocks, FlatPicturesStayFlat) {
-    on_every_set([] {
+    test::on_every_instruction_set([] {
         std::mt19937 random(kSeed);
         for (const int channels : {3, 4}) {
             Case block(PixelType::uint8, channels, 64, 32, random);
@@ -198,7 +189,7 @@ TEST(PackedBlocks, FlatPicturesStayFlat) {
 TEST(PackedBlocks, PartsHaveTheBitsOfTheWholeAndStayWithinTheirRows) {
     SCOPED_TRACE(::testing::Message() << "seed " << kSeed);
     const test::GuardedMemory memory;
-    on_every_set([&] {
+    test::on_every_instruction_set([&] {
         std::mt19937 random(kSeed);
         for (const PixelType type : {PixelType::uint8, PixelType::uint16, PixelType::half})
             for (const int channels : {3, 4}) {
@@ -222,7 +213,7 @@ TEST(PackedBlocks, PartsHaveTheBitsOfTheWholeAndStayWithinTheirRows) {
 TEST(PackedBlocks, TexelsAreReadNoFurtherThan64BytesBehindTheirRow) {
     std::mt19937 random(kSeed);
     const test::GuardedMemory memory(1 << 16);
-    on_every_set([&] {
+    test::on_every_instruction_set([&] {
         for (const PixelType type : {PixelType::uint8, PixelType::uint16, PixelType::half})
             for (const int channels : {3, 4}) {
                 Case block(type, channels, 64, 32, random);

@@ -9,19 +9,10 @@
 
 #include "anamorph/simd/block_sampler.h"
 #include "anamorph/simd/split_points.h"
+#include "each_instruction_set.h"
 
 namespace anamorph {
 namespace {
-
-template <class Body>
-void on_every_instruction_set(const Body& body) {
-    for (const char* const* set = simd::instruction_sets(); *set; ++set) {
-        SCOPED_TRACE(*set);
-        ASSERT_TRUE(simd::use_instruction_set(*set));
-        body();
-    }
-    simd::use_instruction_set("");
-}
 
 TEST(SplitPoints, WholeAndRestAreThePoint) {
     constexpr unsigned kSeed = 11;
@@ -38,7 +29,7 @@ TEST(SplitPoints, WholeAndRestAreThePoint) {
     points[3] = std::nextafter(-7.0, 0.0);
     points[4] = 9 - 0x1p-40;
     for (const double scale : {1.0, 0.25, 1 / 3.0})
-        on_every_instruction_set([&] {
+        test::on_every_instruction_set([&] {
             std::vector<std::int32_t> texels(kCount + 16);
             std::vector<float> rests(kCount + 16);
             simd::split_points(points.data(), kCount, scale, -12, texels.data(), rests.data());
@@ -54,7 +45,7 @@ TEST(SplitPoints, WholeAndRestAreThePoint) {
 
 TEST(ExtendRange, FindsTheEndsAndWhatIsNoNumber) {
     constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
-    on_every_instruction_set([&] {
+    test::on_every_instruction_set([&] {
         for (std::size_t count : {1U, 3U, 8U, 29U})
             for (std::size_t at = 0; at < count; ++at) {
                 std::vector<double> values(count, 2.5);

@@ -448,7 +448,9 @@ BlockReader::Got BlockReader::draw_in_double(const Block& block, const Box& part
                            m_rests.data() + room + to);
     }
     const auto moved = [](const Range& r, double by) { return Range{r.low - by, r.high - by}; };
-    const bool alike = next && in_double(*next) && next->kind == block.kind && f.level == 0;
+    // Exact blocks have no base to be moved by.
+    const bool alike =
+        next && next->precise && next->kind == block.kind && block.kind != Block::Kind::exact && f.level == 0;
     draw_window(f, block,
                 {nullptr, 0, width, height, m_rests.data(), m_rests.data() + room, stride, m_texels.data(),
                  m_texels.data() + room},

@@ -220,6 +220,36 @@ HWY_INLINE void FetchApart(const Texels& s, const int32_t* offset, int count) {
     }
 }
 
+/// Where the pixels of a drawing's rows fall among its texels, of one bilinear tap.
+template <class T, int kChannels>
+class RowLocator {
+  public:
+    HWY_INLINE explicit RowLocator(const Drawing& drawing)
+        : m_drawing(drawing),
+          m_steps(drawing.block),
+          m_row(hn::Set(Ints(),
+                        static_cast<int32_t>(drawing.texels.row_stride / static_cast<ptrdiff_t>(sizeof(T))))),
+          m_pixel(hn::Set(Ints(), kChannels)),
+          m_shift_x(hn::Set(Floats(), drawing.texels.taps[0].x - 0.5f)),
+          m_shift_y(hn::Set(Floats(), drawing.texels.taps[0].y - 0.5f)) {}
+
+    HWY_INLINE void Row(int j, Positions<kRowRoom>& to) const {
+        const int begin = m_drawing.begin, count = m_drawing.end - begin;
+        const RowPoints points(m_drawing.block, m_steps, j);
+        points.ForEach(begin, count, [&](int i, hn::Vec<Floats> x, hn::Vec<Floats> y) HWY_ATTR {
+            Locate(hn::Add(x, m_shift_x), hn::Add(y, m_shift_y), m_row, m_pixel, i, to,
+                   points.WholeX(begin + i), points.WholeY(begin + i));
+        });
+        FetchApart<T>(m_drawing.texels, to.offset, count);
+    }
+
+  private:
+    const Drawing& m_drawing;
+    HalfSteps m_steps;
+    hn::Vec<Ints> m_row, m_pixel;
+    hn::Vec<Floats> m_shift_x, m_shift_y;
+};
+
 /// Brings texels near, a share of their rows with every row that is drawn.
 class Fetching {
   public:

@@ -322,25 +322,16 @@ HWY_INLINE void SampleEight(const T* HWY_RESTRICT origin, ptrdiff_t row, const P
 
 template <class T, int kChannels>
 void DrawFloats(const Drawing& to) {
-    const Floats d;
-    const Ints di;
     const Texels& s = to.texels;
     const auto* origin = reinterpret_cast<const T*>(s.texels);
     const ptrdiff_t row = s.row_stride / static_cast<ptrdiff_t>(sizeof(T));
-    const auto row_step = hn::Set(di, static_cast<int32_t>(row)), pixel_step = hn::Set(di, kChannels);
-    const auto shift_x = hn::Set(d, s.taps[0].x - 0.5f), shift_y = hn::Set(d, s.taps[0].y - 0.5f);
     const int count = to.end - to.begin;
-    const HalfSteps steps(to.block);
+    const RowLocator<T, kChannels> locator(to);
     Positions<kRowRoom> positions[2];
     HWY_ALIGN T values[2][kRowRoom * kChannels + 32];
 
     const auto locate = [&](int j) HWY_ATTR {
-        const RowPoints points(to.block, steps, j);
-        points.ForEach(to.begin, count, [&](int i, hn::Vec<Floats> x, hn::Vec<Floats> y) HWY_ATTR {
-            Locate(hn::Add(x, shift_x), hn::Add(y, shift_y), row_step, pixel_step, i, positions[j & 1],
-                   points.WholeX(to.begin + i), points.WholeY(to.begin + i));
-        });
-        FetchApart<T>(s, positions[j & 1].offset, count);
+        locator.Row(j, positions[j & 1]);
         FillGroup(positions[j & 1].offset, count, 8);
     };
     const auto sample = [&](int j) HWY_ATTR {
