@@ -234,7 +234,7 @@ class Planner {
             // or a rim, most of whose parts are far better.
             const double parts = pixels_of(box) / double{kBlockWidth * kBlockHeight};
             const bool large = pixels_of(box) > kLargeBox && error <= kMuchBetter * m_goal;
-            const bool in_parts = large || (parts > 1 && error <= m_goal * std::sqrt(parts));
+            const bool in_parts = !m_exact && (large || (parts > 1 && error <= m_goal * std::sqrt(parts)));
             // Intervals that are too wide for float are so for double.
             if (!m_direct && !in_parts && error < HUGE_VAL)
                 error = find_direct_in<double>(box, local, kPreciseSaving);
