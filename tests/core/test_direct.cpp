@@ -12,6 +12,7 @@
 #include "anamorph/approx/panorama_plan.h"
 #include "anamorph/render/block_reader.h"
 #include "anamorph/simd/block_sampler.h"
+#include "panorama_oracle.h"
 #include "projection_cases.h"
 
 namespace anamorph {
@@ -47,6 +48,21 @@ PanoramaPlan plan_of(const Panorama& map, double tol) {
     options.scheme = Scheme::direct;
     options.tol = tol;
     return {map, options};
+}
+
+void expect_same_bits(const Panorama& map, double tol) {
+    std::vector<double> first;
+    for (const char* const* set = simd::instruction_sets(); *set; ++set) {
+        SCOPED_TRACE(*set);
+        ASSERT_TRUE(simd::use_instruction_set(*set));
+        const std::vector<double> points = direct_points(plan_of(map, tol));
+        if (first.empty()) first = points;
+        ASSERT_EQ(points.size(), first.size());
+        // Of two without a direct block there are no bits.
+        if (points.empty()) continue;
+        EXPECT_EQ(std::memcmp(points.data(), first.data(), points.size() * sizeof(double)), 0);
+    }
+    simd::use_instruction_set("");
 }
 
 template <class Real>
@@ -103,6 +119,54 @@ TYPED_TEST(Near, NumbersEncloseEveryProjection) {
         }
 }
 
+const char* const kLenses[] = {"ptlens:a=0.01,b=-0.03,c=0.02", "ptlens:b=-0.05",
+                               "brown:k1=-0.2,k2=0.05,k3=-0.004", "3de4:k1=0.1,k2=0.03",
+                               "kb4:k1=0.05,k2=-0.01,k3=0.002,k4=-0.0003"};
+
+// Both ways, against the radius found by halving and the formula, in long double.
+TYPED_TEST(Near, NumbersEncloseEveryLens) {
+    using Number = NearBound<TypeParam>;
+    constexpr unsigned kSeed = 405;
+    SCOPED_TRACE(testing::Message() << "seed " << kSeed);
+    std::mt19937 random(kSeed);
+    std::uniform_real_distribution<double> uniform(-1, 1);
+    for (const char* text : kLenses) {
+        const oracle::View view = oracle::view_through(text, {1000, 1000}, 90);
+        const oracle::LensOracle truth(view);
+        const Chart chart = oracle::chart_of(view);
+        const LensTerms& terms = chart.lens()->terms();
+        for (int i = 0; i < 200; ++i) {
+            const double x = 0.6 * uniform(random), y = 0.6 * uniform(random), dx = 0.01 * uniform(random),
+                         dy = 0.01 * uniform(random);
+            if (std::hypot(x, y) < 0.1) continue;
+            const auto near = [](double at, double off) {
+                return Number{Interval(at), Rounded<TypeParam>(Interval(off), 0, 0)};
+            };
+            // In the model's own unit.
+            const double unit = terms.unit.value();
+            const Point<Number> p{near(x * unit, dx * unit), near(y * unit, dy * unit)};
+            const long double px = static_cast<long double>(x) + dx, py = static_cast<long double>(y) + dy,
+                              r = std::hypot(px, py);
+            const long double by_formula = truth.formula(r) / r, by_root = truth.root(r) / r;
+            const auto expect = [&](const Point<Number>& found, long double by, const char* way) {
+                const std::string words = std::string(text) + way;
+                for (const auto& [number, value] : {std::pair(found.x, px), std::pair(found.y, py)}) {
+                    const Interval whole = number.base + number.rest.range;
+                    const double exact = static_cast<double>(value * by * unit);
+                    EXPECT_LE(whole.lo, exact + 1e-15) << words;
+                    EXPECT_GE(whole.hi, exact - 1e-15) << words;
+                    // Coefficients are those of a ring.
+                    EXPECT_LT(whole.hi - whole.lo, 0.01 * unit) << words;
+                    EXPECT_LT(number.rest.error, 1e-7 * unit) << words;
+                }
+            };
+            expect(lens_formula::ideal_point(terms, p), terms.to_observed ? by_root : by_formula, ", ideal");
+            expect(lens_formula::observed_point(terms, p), terms.to_observed ? by_formula : by_root,
+                   ", observed");
+        }
+    }
+}
+
 class DirectTo : public testing::TestWithParam<double> {};
 INSTANTIATE_TEST_SUITE_P(FloatAndDouble, DirectTo, testing::Values(0.01, 1e-7));
 
@@ -112,19 +176,28 @@ TEST_P(DirectTo, GivesTheSameBitsOnEveryInstructionSet) {
             SCOPED_TRACE(testing::Message() << name_of(source) << " -> " << name_of(target));
             const Panorama map(test::chart_of_width(source, 2048), test::chart_of_width(target, 96),
                                {30, 20, 10});
-            std::vector<double> first;
-            for (const char* const* set = simd::instruction_sets(); *set; ++set) {
-                SCOPED_TRACE(*set);
-                ASSERT_TRUE(simd::use_instruction_set(*set));
-                const std::vector<double> points = direct_points(plan_of(map, GetParam()));
-                if (first.empty()) first = points;
-                ASSERT_EQ(points.size(), first.size());
-                // Of two without a direct block there are no bits.
-                if (points.empty()) continue;
-                EXPECT_EQ(std::memcmp(points.data(), first.data(), points.size() * sizeof(double)), 0);
-            }
-            simd::use_instruction_set("");
+            expect_same_bits(map, GetParam());
         }
+}
+TEST_P(DirectTo, GivesTheSameBitsThroughLenses) {
+    for (const char* text : kLenses) {
+        SCOPED_TRACE(text);
+        const Chart observed = oracle::chart_of(oracle::view_through(text, {96, 96}, 90)),
+                    sphere(Projection::equirectangular, 2048, 1024);
+        expect_same_bits(Panorama(sphere, observed, {30, 20, 10}), GetParam());
+        expect_same_bits(Panorama(observed, Chart(Projection::rectilinear, 96, 96, 40), {30, 20, 10}),
+                         GetParam());
+    }
+}
+
+TEST(Direct, ServesMostOfAViewThroughALens) {
+    const Chart sphere(Projection::equirectangular, 4096, 2048);
+    for (const char* text : kLenses) {
+        const Chart observed = oracle::chart_of(oracle::view_through(text, {1024, 1024}, 90));
+        EXPECT_LT(plan_of(Panorama(sphere, observed, {30, 20, 10}), 0.01).reached(serial_for).exact_fraction,
+                  0.3)
+            << text;
+    }
 }
 
 TEST(Direct, ServesMostOfAView) {

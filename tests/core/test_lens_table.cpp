@@ -86,6 +86,51 @@ TEST(LensTable, EnclosesDerivativesOfTheRoot) {
     }
 }
 
+// What double computes of the root is as far off as is said at most, and its coefficients enclose the derivatives.
+TEST(LensTable, KnowsWhatDoubleComputes) {
+    constexpr unsigned kSeed = 1968;
+    SCOPED_TRACE(testing::Message() << "seed " << kSeed);
+    std::mt19937 random(kSeed);
+    std::uniform_real_distribution<double> uniform(0, 1);
+    for (const char* text : kLenses) {
+        const View view = oracle::view_through(text, {1500, 1000}, 100);
+        const LensOracle truth(view);
+        const Chart chart = oracle::chart_of(view);
+        const LensTerms& terms = chart.lens()->terms();
+        const auto shrink = [&](Real value) {
+            const Real r = terms.in_radius ? value : std::sqrt(value);
+            return truth.root(r) / r;
+        };
+        int inner = 0, close = 0;
+        for (int i = 0; i < 300; ++i) {
+            const double low = terms.value_end * std::pow(0.95 * uniform(random), 2) + 1e-4,
+                         high =
+                             std::min(low * (1 + std::pow(10, -4 * uniform(random))), 0.95 * terms.value_end);
+            if (!(high > low)) continue;
+            const std::string words =
+                std::string(text) + " from " + std::to_string(low) + " to " + std::to_string(high);
+            const ComputedSeries found = computed_shrink(terms, {low, high});
+            if (high > low * 1.001) expect_encloses(found.exact, {low, high}, shrink, words);
+            const double value = low + uniform(random) * (high - low);
+            const auto series = lens_detail::shrink_series<ComputedSeries::kDegree>(
+                terms, lens_formula::radial_root(terms, value));
+            // The oracle's own root is known to some roundings of long double.
+            const Real slack = 0x1p-60L * shrink(value);
+            EXPECT_LE(std::fabs(series.c[0] - shrink(value)), found.error[0] + slack) << words;
+            EXPECT_EQ(series.c[0], lens_formula::shrink(terms, value)) << words;
+            const Interval range = anamorph::shrink(terms, Interval(low, high));
+            EXPECT_LE(range.lo, shrink(value) + slack) << words;
+            EXPECT_GE(range.hi, shrink(value) - slack) << words;
+            // About within the picture, which reaches a quarter as far as the lens at most.
+            if (value > terms.value_end * (terms.in_radius ? 0.25 : 0.0625)) continue;
+            ++inner;
+            close += found.error[0] < 1e-11 && found.error[4] < 1e-6;
+        }
+        EXPECT_GT(close, 0.8 * inner) << text;
+        EXPECT_GT(inner, 50) << text;
+    }
+}
+
 // All of what the lens reaches, what lies beyond, and what is no interval at all.
 TEST(LensTable, TakesAnyInterval) {
     for (const char* text : kLenses) {
@@ -102,6 +147,10 @@ TEST(LensTable, TakesAnyInterval) {
                 EXPECT_GE(found.c[0].hi, centre - 1e-15L) << text;
             }
             EXPECT_FALSE(found.c[5].lo > found.c[5].hi) << text;
+            const Interval value = terms.in_radius && squared.lo >= 0 ? sqrt(squared) : squared;
+            const ComputedSeries computed = computed_shrink(terms, value);
+            const bool within = value.lo >= 0 && value.hi <= terms.value_end;
+            EXPECT_TRUE(within || !(computed.error[0] < HUGE_VAL)) << text;
         }
     }
 }

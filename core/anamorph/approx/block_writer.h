@@ -34,7 +34,8 @@ constexpr double term_rounding(int n) {
 
 /// And the whole of it for a point: that of a polynomial's terms in x and in y with the sampler's own.
 inline double point_rounding(double terms_x, double terms_y) {
-    return std::hypot(terms_x + simd::kSamplerRounding, terms_y + simd::kSamplerRounding);
+    const double x = terms_x + simd::kSamplerRounding, y = terms_y + simd::kSamplerRounding;
+    return std::sqrt(x * x + y * y);
 }
 
 /// Half the distance between the first and the last of a row of pixel centres.

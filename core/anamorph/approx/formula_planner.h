@@ -6,9 +6,11 @@
 #include <bit>
 #include <memory>
 #include <optional>
+#include <span>
 
 #include "anamorph/approx/block_writer.h"
 #include "anamorph/approx/formula_plan.h"
+#include "anamorph/approx/lens_jets.h"
 #include "anamorph/approx/residual.h"
 #include "anamorph/approx/taylor.h"
 
@@ -21,6 +23,8 @@ inline constexpr int kFloor = 8, kResidualFloor = 4;
 
 // A bound costs as much as so many exact pixels, and is not tried over boxes that it could not pay for.
 inline constexpr int kBoundCost = 170, kBoundPixels = 512;
+// And so many more for each further one at once.
+inline constexpr int kFurtherCost = 10;
 // Where only the fastest way is asked for, bounds may cost more than they have saved so far by this part of
 // the region's pixels.
 inline constexpr double kCredit = 1.0 / 16;
@@ -176,6 +180,7 @@ class Planner {
         switch (cover(box, local)) {
             case Cover::outside:
                 return emit(box, Block::Kind::outside);
+            case Cover::partial:
             case Cover::mixed:
                 return split(box, [&](const Box& b) { settle(b); });
             case Cover::inside:
@@ -201,16 +206,29 @@ class Planner {
             m_balance -= exact_pixels;
     }
 
+    // The Taylor polynomial of a block has degree 4; its remainder is bounded over large boxes.
+    using Tail = Remainder<5>;
+    using Taylor = Point<Jet<double, 4>>;
+    using Enclosed = Point<Jet<Interval, 5>>;
+
+    /// What is computed of several boxes at once.
+    struct Known {
+        Box box;
+        Enclosed enclosed;
+        Taylor middle;                 ///< of the block in the middle
+        std::optional<Taylor> itself;  ///< of the box, where it may be one polynomial's
+    };
+
     /// A box that lies on one branch.
-    void settle_inside(const Box& box, const Local& local) {
+    void settle_inside(const Box& box, const Local& local, const Known* known = nullptr) {
         if (m_options.scheme == Scheme::residual && !m_exact) return settle_residual(box, local);
-        if (m_options.scheme == Scheme::blocks && !m_exact) return settle_blocks(box, local);
+        if (m_options.scheme == Scheme::blocks && !m_exact) return settle_blocks(box, local, known);
         const bool first = !m_direct && pixels_of(box) >= kLeastDirect;
         const double error = first ? find_direct(box, local) : 0;
         const bool by_blocks = m_options.scheme == Scheme::automatic && !m_exact;
         // Intervals that are too wide for one bound are so for the other.
         if (m_direct || pixels_of(box) <= kLeastDirect || (by_blocks && error < HUGE_VAL))
-            by_blocks ? settle_blocks(box, local) : leave(box);
+            by_blocks ? settle_blocks(box, local, known) : leave(box);
         else
             split(box, [&](const Box& b) { settle(b); });
         if (first) m_direct.reset();
@@ -295,9 +313,6 @@ class Planner {
         return m_map.local_around(0.5 * (box.x0 + box.x1), 0.5 * (box.y0 + box.y1), m_piece);
     }
 
-    // The Taylor polynomial of a block has degree 4; its remainder is bounded over large boxes.
-    using Tail = Remainder<5>;
-
     /// The map's Taylor coefficients over a box, in pixels of the target.
     template <int N>
     Point<Jet<Interval, N>> enclose(const Box& box, const Local& local) const {
@@ -311,6 +326,9 @@ class Planner {
     /// Does every point of the box have a source point on one smooth branch of the map?
     Cover cover(const Box& box, const Local& local) const {
         const Cover found = m_map.cover(across(box), down(box), m_piece, local, m_options.across_seam);
+        // Where a formula goes on, its bounds hold for those points that count.
+        if (found == Cover::partial)
+            return m_options.cull && culled(box, local) == Cover::outside ? Cover::outside : Cover::mixed;
         return found == Cover::inside && m_options.cull ? culled(box, local) : found;
     }
 
@@ -381,20 +399,72 @@ class Planner {
         return first < HUGE_VAL ? std::max(first, shared_rounding(sub_box(box, vertical_cut, true), local))
                                 : HUGE_VAL;
     }
-    void settle_blocks(const Box& box, const Local& local) {
-        if (!worth_a_bound(box)) return leave(box);
-        pay(kBoundCost);
-        const auto p = enclose<5>(box, local);
+    void settle_blocks(const Box& box, const Local& local, const Known* known = nullptr) {
+        if (!known) {
+            if (!worth_a_bound(box)) return leave(box);
+            Known one;
+            know({&box, 1}, local, &one);
+            return settle_blocks(box, local, &one);
+        }
+        const Enclosed& p = known->enclosed;
         Bound bound{Tail(p.x), Tail(p.y), HUGE_VAL};
-        const bool is_block = box.width() <= kBlockWidth && box.height() <= kBlockHeight;
-        if (is_block ? tail_over(box, bound) < HUGE_VAL : serves(box, local, bound)) {
+        if (is_block(box) ? tail_over(box, bound) < HUGE_VAL : serves(box, known->middle, bound)) {
             bound.rounding = shared_rounding(box, local);
-            for_boxes(box, 2 * kBlockWidth, 2 * kBlockHeight,
-                      [&](const Box& b) { place_parts(b, local, bound); });
+            for_boxes(box, 4 * kBlockWidth, 4 * kBlockHeight,
+                      [&](const Box& b) { place_parts(b, local, bound, known); });
         } else if (is_kept(p.x.c[0], p.y.c[0]))
-            split(box, [&](const Box& b) { settle_inside(b, local_about(b)); });
+            settle_quarters(box);
         else
             split(box, [&](const Box& b) { settle(b); });
+    }
+    static bool is_block(const Box& box) {
+        return box.width() <= kBlockWidth && box.height() <= kBlockHeight;
+    }
+
+    /// What is in the quarters of a box that cannot be culled; in its halves where a side is at the floor, or quarters
+    /// could not pay for their bounds.
+    void settle_quarters(const Box& box) {
+        const Box quarter{box.x0, box.y0, box.x0 + box.width() / 2, box.y0 + box.height() / 2};
+        if (!worth_a_bound(quarter))
+            return split(box, [&](const Box& b) { settle_inside(b, local_about(b)); });
+        const Local local = local_about(box);
+        in_quarters(box, [&](std::span<const Box> parts) {
+            Known known[simd::kJets];
+            know(parts, local, known);
+            for (std::size_t i = 0; i < parts.size(); ++i) settle_inside(parts[i], local, &known[i]);
+        });
+    }
+    /// Of up to kJets boxes.
+    void know(std::span<const Box> boxes, const Local& local, Known* known) {
+        pay(kBoundCost + kFurtherCost * (static_cast<double>(boxes.size()) - 1));
+        Box middles[simd::kJets];
+        const auto enclosed = enclose_all(boxes, local);
+        bool single = true, blocks = true;
+        for (std::size_t i = 0; i < boxes.size(); ++i) {
+            known[i].box = boxes[i];
+            known[i].enclosed = {enclosed.x.at(static_cast<int>(i)), enclosed.y.at(static_cast<int>(i))};
+            middles[i] = middle_of(boxes[i]);
+            single = single && boxes[i].width() <= 2 * kBlockWidth && boxes[i].height() <= 2 * kBlockHeight;
+            blocks = blocks && is_block(boxes[i]);
+        }
+        Taylor taylors[simd::kJets];
+        if (!blocks) {
+            taylors_of({middles, boxes.size()}, local, taylors);
+            for (std::size_t i = 0; i < boxes.size(); ++i) known[i].middle = taylors[i];
+        }
+        if (!single || boxes.size() == 1) return;
+        taylors_of(boxes, local, taylors);
+        for (std::size_t i = 0; i < boxes.size(); ++i) known[i].itself = taylors[i];
+    }
+    Point<simd::BoundJets> enclose_all(std::span<const Box> boxes, const Local& local) const {
+        Interval x[simd::kJets], y[simd::kJets];
+        for (std::size_t i = 0; i < simd::kJets; ++i) {
+            const Box& box = boxes[std::min(i, boxes.size() - 1)];
+            x[i] = across(box);
+            y[i] = down(box);
+        }
+        return m_map(simd::BoundJets::variable(x, kOnes, kNone), simd::BoundJets::variable(y, kNone, kOnes),
+                     local);
     }
 
     static double tail_over(double hx, double hy, const Bound& bound) {
@@ -412,28 +482,47 @@ class Planner {
         explicit Fit(const Point<Jet<double, 4>>& f)
             : taylor(f), x(f.x), y(f.y), error(length(x.error, y.error)) {}
     };
-    /// The map's Taylor polynomial about the middle of a box, with offsets of -1 to 1 over its pixel centres.
-    Point<Jet<double, 4>> taylor_of(const Box& box, const Local& local) const {
-        using J = Jet<double, 4>;
-        return m_map(J::variable(0.5 * (box.x0 + box.x1), half(box.width()), 0),
-                     J::variable(0.5 * (box.y0 + box.y1), 0, half(box.height())), local);
+    /// The map's Taylor polynomials about the middles of up to kJets boxes, with offsets of -1 to 1 over their pixel
+    /// centres.
+    void taylors_of(std::span<const Box> boxes, const Local& local, Taylor* taylors) const {
+        double x[simd::kJets], y[simd::kJets], half_width[simd::kJets], half_height[simd::kJets];
+        for (std::size_t i = 0; i < simd::kJets; ++i) {
+            const Box& box = boxes[std::min(i, boxes.size() - 1)];
+            x[i] = 0.5 * (box.x0 + box.x1);
+            y[i] = 0.5 * (box.y0 + box.y1);
+            half_width[i] = half(box.width());
+            half_height[i] = half(box.height());
+        }
+        using J = simd::TaylorJets;
+        const Point<J> f =
+            m_map(J::variable(x, half_width, kNone), J::variable(y, kNone, half_height), local);
+        for (std::size_t i = 0; i < boxes.size(); ++i)
+            taylors[i] = {f.x.at(static_cast<int>(i)), f.y.at(static_cast<int>(i))};
+    }
+    Taylor taylor_of(const Box& box, const Local& local) const {
+        Taylor taylor;
+        taylors_of({&box, 1}, local, &taylor);
+        return taylor;
     }
 
     /// Is a remainder small enough for the blocks of a box? Tried on the one in its middle. Halving the box
     /// costs two bounds, and may save the blocks that are cut smaller only for what the intervals are wide.
-    bool serves(const Box& box, const Local& local, const Bound& bound) const {
-        const int x0 = (box.x0 + box.x1) / 2, y0 = (box.y0 + box.y1) / 2;
-        const Box middle{x0, y0, std::min(x0 + kBlockWidth, box.x1), std::min(y0 + kBlockHeight, box.y1)};
+    bool serves(const Box& box, const Taylor& in_middle, const Bound& bound) const {
+        const Box middle = middle_of(box);
         const double tail = tail_over(middle, bound);
         if (!(tail < HUGE_VAL)) return false;
         const double hx = half(middle.width()), hy = half(middle.height());
         const double least = length(bound.x.about(hx, hy), bound.y.about(hx, hy));
         // As many as are counted are too many, whatever the middles say.
         if (parts(0, tail) >= kMostParts) return false;
-        const Fit fit(taylor_of(middle, local));
+        const Fit fit(in_middle);
         const double error = cheaper_in_double(middle, fit) ? 0 : fit.error;
         const double blocks = pixels_of(box) / double{kBlockWidth * kBlockHeight};
         return blocks * (parts(error, tail) - parts(error, least)) * kPolynomialCost <= 2 * kBoundCost;
+    }
+    static Box middle_of(const Box& box) {
+        const int x0 = (box.x0 + box.x1) / 2, y0 = (box.y0 + box.y1) / 2;
+        return {x0, y0, std::min(x0 + kBlockWidth, box.x1), std::min(y0 + kBlockHeight, box.y1)};
     }
 
     /// Are cubics in float so many, for their error or their rounding, that one polynomial in double costs less?
@@ -448,9 +537,8 @@ class Planner {
     /// power of the side, the remainder with the fifth.
     double parts(double fit, double tail) const {
         double count = 1, side = 1;
-        while (
-            count < kMostParts &&
-            !(std::pow(side, 4) * std::max(fit + tail * side, tail * side / kTailShare) <= m_options.tol)) {
+        while (count < kMostParts &&
+               !(std::max(fit + tail * side, tail * side / kTailShare) <= m_options.tol * (count * count))) {
             count *= 2;
             side *= 0.70710678;
         }
@@ -463,12 +551,12 @@ class Planner {
         Point<Jet<double, 4>> taylor;
         double error;
     };
-    Expansion expand(const Box& box, const Local& local, const Bound& bound) {
+    Expansion expand(const Box& box, const Local& local, const Bound& bound, const Taylor& taylor) {
         pay(kPolynomialCost);
         const double rounding = bound.rounding < HUGE_VAL
                                     ? bound.rounding
                                     : rounding_over(box, half(box.width()), half(box.height()), local);
-        return {box, taylor_of(box, local), tail_over(box, bound) + rounding};
+        return {box, taylor, tail_over(box, bound) + rounding};
     }
     /// On a part of its box.
     static Fit fit_on(const Expansion& e, const Box& b) {
@@ -481,23 +569,63 @@ class Planner {
         return Fit({part(e.taylor.x), part(e.taylor.y)});
     }
 
-    /// Places blocks about the middles of boxes over which the remainder is small enough for that.
-    void place_parts(const Box& box, const Local& local, const Bound& bound) {
-        if (!worth_a_polynomial()) return leave(box);
-        const double hx = half(box.width()), hy = half(box.height());
-        const double tail = tail_over(hx, hy, bound);
-        const bool is_block = box.width() <= kBlockWidth && box.height() <= kBlockHeight;
-        if (tail <= (is_block ? kTailShare : kPartShare) * m_options.tol)
-            return place(box, expand(box, local, bound), local, bound);
-        const bool vertical_cut = tail_over(0.5 * hx, hy, bound) <= tail_over(hx, 0.5 * hy, bound);
-        const bool renew =
-            pixels_of(box) <= kBlockWidth * kBlockHeight && parts(0, tail) * kPolynomialCost > 2 * kBoundCost;
-        halve(box, vertical_cut, kFloor, [&](const Box& b) {
-            if (renew && worth_a_bound(b))
-                settle_blocks(b, local_about(b));
+    /// The parts of a box about whose middles a remainder is small enough for blocks, or where that comes to nothing.
+    struct Parts {
+        int width, height;
+        enum { placed, renewed, left } are;
+    };
+    Parts parts_of(const Box& box, const Bound& bound) const {
+        Parts p{std::min(box.width(), 2 * kBlockWidth), std::min(box.height(), 2 * kBlockHeight),
+                Parts::placed};
+        for (;;) {
+            const double hx = half(p.width), hy = half(p.height), tail = tail_over(hx, hy, bound);
+            const bool of_one = p.width <= kBlockWidth && p.height <= kBlockHeight;
+            if (tail <= (of_one ? kTailShare : kPartShare) * m_options.tol) return p;
+            p.are = p.width <= kFloor && p.height <= kFloor ? Parts::left : Parts::renewed;
+            const bool dear = parts(0, tail) * kPolynomialCost > 2 * kBoundCost;
+            if (p.are == Parts::left || (dear && p.width * p.height <= kBlockWidth * kBlockHeight)) return p;
+            bool vertical_cut = tail_over(0.5 * hx, hy, bound) <= tail_over(hx, 0.5 * hy, bound);
+            if (vertical_cut ? p.width <= kFloor : p.height <= kFloor) vertical_cut = !vertical_cut;
+            int& side = vertical_cut ? p.width : p.height;
+            side = static_cast<int>(std::bit_ceil(static_cast<unsigned>(side))) / 2;
+            p.are = Parts::placed;
+        }
+    }
+    /// Places blocks about the middles of such parts.
+    void place_parts(const Box& box, const Local& local, const Bound& bound, const Known* known) {
+        const Parts parts = parts_of(box, bound);
+        if (parts.are == Parts::left) return leave(box);
+        const bool small = parts.width <= kBlockWidth && parts.height <= kBlockHeight;
+        const auto place_all = [&](const Box& within) {
+            if (!worth_a_polynomial()) return leave(within);
+            if (parts.are == Parts::renewed)
+                for_boxes(within, parts.width, parts.height,
+                          [&](const Box& b) { worth_a_bound(b) ? settle_quarters(b) : leave(b); });
             else
-                place_parts(b, local, bound);
+                place_grid(within, parts, local, bound, known);
+        };
+        if (!small) return place_all(box);
+        for_blocks(box, [&](const Box& b) { unless_left(b, [&] { place_all(b); }); });
+    }
+    void place_grid(const Box& box, const Parts& parts, const Local& local, const Bound& bound,
+                    const Known* known) {
+        Box boxes[simd::kJets];
+        Taylor taylors[simd::kJets];
+        std::size_t count = 0;
+        const auto place_known = [&] {
+            if (count == 1 && known->itself && boxes[0] == known->box)
+                taylors[0] = *known->itself;
+            else if (count > 0)
+                taylors_of({boxes, count}, local, taylors);
+            for (std::size_t i = 0; i < count; ++i)
+                place(boxes[i], expand(boxes[i], local, bound, taylors[i]), local, bound);
+            count = 0;
+        };
+        for_boxes(box, parts.width, parts.height, [&](const Box& b) {
+            boxes[count++] = b;
+            if (count == simd::kJets) place_known();
         });
+        place_known();
     }
 
     /// Emits a part of an expansion's box as one polynomial block if that holds the tolerance, else halves it.
@@ -510,7 +638,7 @@ class Planner {
         // About its own middle the remainder is smaller.
         if (box != expansion.box && fit.error + expansion.error > m_options.tol &&
             fit.error + tail_over(box, bound) <= m_options.tol)
-            return place(box, expand(box, local, bound), local, bound);
+            return place(box, expand(box, local, bound, taylor_of(box, local)), local, bound);
         // Halve the side along which more was dropped, or rounded.
         const bool rounded = fit.error + expansion.error <= m_options.tol;
         const auto size = [&](int i, int j) {
@@ -668,11 +796,33 @@ class Planner {
     /// one block without.
     template <class Body>
     void halve(const Box& box, bool vertical_cut, int floor, const Body& body) {
-        const std::size_t first = m_blocks.size();
         if (vertical_cut ? box.width() <= floor : box.height() <= floor) vertical_cut = !vertical_cut;
         if (vertical_cut ? box.width() <= floor : box.height() <= floor) return leave(box);
-        body(sub_box(box, vertical_cut, false));
-        body(sub_box(box, vertical_cut, true));
+        unless_left(box, [&] {
+            body(sub_box(box, vertical_cut, false));
+            body(sub_box(box, vertical_cut, true));
+        });
+    }
+    /// The same for quarters, and `body` on all of them.
+    template <class Body>
+    void in_quarters(const Box& box, const Body& body) {
+        const bool across = box.width() > kFloor, down = box.height() > kFloor;
+        if (!across && !down) return leave(box);
+        Box parts[4];
+        std::size_t count = 0;
+        for (const bool lower : {false, true})
+            for (const bool right : {false, true}) {
+                if ((lower && !down) || (right && !across)) continue;
+                const Box row = down ? sub_box(box, false, lower) : box;
+                parts[count++] = across ? sub_box(row, true, right) : row;
+            }
+        unless_left(box, [&] { body(std::span<const Box>(parts, count)); });
+    }
+    /// One block without a polynomial, if nothing else comes of `body`.
+    template <class Body>
+    void unless_left(const Box& box, const Body& body) {
+        const std::size_t first = m_blocks.size();
+        body();
         const auto kind = m_direct ? Block::Kind::computed : Block::Kind::exact;
         const auto is_left = [&](const Block& b) { return b.kind == kind; };
         const int most_width = m_direct ? m_direct->width : kBlockWidth,
@@ -683,6 +833,8 @@ class Planner {
             leave(box);
         }
     }
+
+    static constexpr double kOnes[simd::kJets] = {1, 1, 1, 1}, kNone[simd::kJets] = {};
 
     const Map& m_map;
     const PlanOptions& m_options;

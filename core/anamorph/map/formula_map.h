@@ -30,8 +30,8 @@
 namespace anamorph {
 
 /// Whether the points of a box have source points on one smooth branch of a map: all of them do, none has a
-/// source point, or it is not known.
-enum class Cover { inside, outside, mixed };
+/// source point, those that have one do (and the map is smooth over all of the box), or it is not known.
+enum class Cover { inside, outside, partial, mixed };
 
 /// In which directions nothing of a source image lies beyond its edges.
 struct SourceEdges {

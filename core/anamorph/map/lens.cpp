@@ -154,8 +154,10 @@ Lens::Lens(const LensModel& model, Lensed lensed, const std::string& projection,
                       e = model.values[model.values.size() - 1] * plane.per_y;
     m_terms.unit = unit == 1 ? Constant(1, 0) : Constant(unit);
     m_terms.per_unit = unit == 1 ? Constant(1, 0) : Constant(1 / unit);
+    m_terms.has_unit = unit != 1;
     m_terms.shift_x = Constant(d);
     m_terms.shift_y = Constant(e);
+    m_terms.shifted = d != 0 || e != 0;
     const auto in_units = [&](long double length) { return static_cast<double>(length / unit); };
     const double corner =
         in_units(std::hypot(plane.half_width + std::fabs(d), plane.half_height + std::fabs(e)));
@@ -302,6 +304,34 @@ double least_slope(const LensTerms& lens, const Interval& t) {
     return lens_formula::radial_at(lens, Series<Interval, 1>::variable(t)).c[1].lo;
 }
 
+namespace {
+
+/// The coefficients about computed values that are off by `error` from those of an interval: their derivatives are the next
+/// ones.
+Series<Rounded<double>, ComputedSeries::kDegree> about_rounded(const ComputedSeries& series, double error) {
+    Series<Rounded<double>, ComputedSeries::kDegree> rounded;
+    for (int k = 0; k <= ComputedSeries::kDegree; ++k) {
+        const double moved = (k + 1) * magnitude(series.exact.c[k + 1]) * error;
+        rounded.c[k] = {series.exact.c[k], 0, (series.error[k] + moved) * rounded_detail::kUp};
+    }
+    return rounded;
+}
+
+}  // namespace
+
+std::optional<Rounded<double>> shrink_by_table(const LensTerms& lens, const Rounded<double>& value) {
+    using R = Rounded<double>;
+    if (!lens.table) return {};
+    // All that are computed are within.
+    const Interval around = value.range + Interval(-value.error, value.error);
+    const ComputedSeries series = computed_shrink(lens, {std::max(around.lo, 0.0), around.hi});
+    if (!(series.error[0] < HUGE_VAL && magnitude(series.exact.c[1]) < HUGE_VAL)) return {};
+    const Series<R, ComputedSeries::kDegree> rounded = about_rounded(series, value.error);
+    if (!value.is_jet()) return R(shrink(lens, value.range), 0, rounded.c[0].error);
+    if (!(rounded.c[ComputedSeries::kDegree].error < HUGE_VAL)) return {};
+    return compose(rounded, R(Interval(0), value.radius, value.error));
+}
+
 }  // namespace lens_detail
 
 LensCoefficients stretch_coefficients(const LensTerms& lens, const Interval& squared) {
@@ -310,11 +340,23 @@ LensCoefficients stretch_coefficients(const LensTerms& lens, const Interval& squ
 LensCoefficients shrink_coefficients(const LensTerms& lens, const Interval& squared) {
     return lens.table->shrink(squared);
 }
+ComputedSeries computed_shrink(const LensTerms& lens, const Interval& value) {
+    return lens.table ? lens.table->computed_shrink(value) : ComputedSeries::unbounded();
+}
 double near_root(const LensTerms& lens, double value) {
     return lens.table ? lens.table->near_root(value) : value * lens.slope;
 }
 
+/// By the mean value theorem from what double computes in the middle, where the table knows by how much that is off.
 Interval shrink(const LensTerms& lens, const Interval& value) {
+    const Interval within{std::max(value.lo, 0.0), value.hi};
+    const ComputedSeries series = computed_shrink(lens, within);
+    if (series.error[0] < HUGE_VAL && magnitude(series.exact.c[1]) < HUGE_VAL) {
+        const double middle = 0.5 * (within.lo + within.hi), there = lens_formula::shrink(lens, middle);
+        const Interval moved = Interval(there) + Interval(-series.error[0], series.error[0]) +
+                               series.exact.c[1] * (within - middle);
+        return {std::max(moved.lo, series.exact.c[0].lo), std::min(moved.hi, series.exact.c[0].hi)};
+    }
     return Interval(1) / lens_formula::stretch_at(lens, lens_detail::radial_root(lens, value));
 }
 

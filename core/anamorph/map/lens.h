@@ -25,6 +25,7 @@
 #include <algorithm>
 #include <limits>
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -64,6 +65,10 @@ struct LensTerms {
     bool to_observed = true;
     /// In units of the plane: the model's own unit, the other way round, and the centre.
     Constant unit, per_unit, shift_x, shift_y;
+    /// Is the unit another than the plane's?
+    bool has_unit = false;
+    /// Is the centre another than the picture's middle?
+    bool shifted = false;
 
     /// Is S a polynomial in r, not in r^2?
     bool in_radius = false;
@@ -84,9 +89,9 @@ struct LensTerms {
     /// becomes at the end.
     static constexpr double kResidual = 80, kOff = 32, kSmall = 0x1p-24;
     double condition = 1;
-    /// settled() ends with a step of at most kStill roundings of the end, or after kSteps.
+    /// settled() ends with a step of at most kStill roundings of the end, or after kSteps; before them come kFastSteps.
     static constexpr double kStill = 512;
-    static constexpr int kSteps = 72;
+    static constexpr int kSteps = 72, kFastSteps = 3;
 
     /// What intervals are read from (map/lens_table.h).
     std::shared_ptr<const LensTable> table;
@@ -105,6 +110,26 @@ using LensCoefficients = lens_formula::Series<Interval, 5>;
 LensCoefficients stretch_coefficients(const LensTerms& lens, const Interval& squared);
 /// And those of shrink().
 LensCoefficients shrink_coefficients(const LensTerms& lens, const Interval& squared);
+
+/// Taylor coefficients by powers of what is added to a value, and by how much double is off that computes them.
+struct ComputedSeries {
+    /// Of what double computes.
+    static constexpr int kDegree = 4;
+    /// Encloses the coefficients, and the next one.
+    LensCoefficients exact;
+    /// How far those that are computed are off.
+    double error[kDegree + 1] = {};
+
+    /// Where nothing is known.
+    static ComputedSeries unbounded() {
+        ComputedSeries series;
+        std::fill(std::begin(series.exact.c), std::end(series.exact.c), Interval::all());
+        std::fill(std::begin(series.error), std::end(series.error), HUGE_VAL);
+        return series;
+    }
+};
+/// Those of shrink() about any value of an interval.
+ComputedSeries computed_shrink(const LensTerms& lens, const Interval& value);
 
 /// The root's first approximation for double, by the table.
 double near_root(const LensTerms& lens, double value);
@@ -125,20 +150,16 @@ Rounded<Real> shrink(const LensTerms& lens, const Rounded<Real>& value);
 template <class T, int N>
 Jet<T, N> shrink(const LensTerms& lens, const Jet<T, N>& value);
 
-/// Near a known value the root is not followed: there is no bound.
+/// Near a known value by its Taylor polynomial there: the coefficients are bases, in falling order.
 template <class Real>
-NearBound<Real> shrink(const LensTerms&, const NearBound<Real>& value) {
-    return {value.base, rounded_detail::unbounded<Real>()};
-}
-/// So that no base is asked for.
-inline NearBase shrink(const LensTerms&, const NearBase& value) {
-    return value;
-}
+NearBound<Real> shrink(const LensTerms& lens, const NearBound<Real>& value);
+NearBase shrink(const LensTerms& lens, const NearBase& value);
 
-/// As shrink(), of lenses with a tangential part.
+/// Lenses with a tangential part are not followed: there is no bound.
 template <class Real>
-Point<NearBound<Real>> settled(const LensTerms& lens, const Point<NearBound<Real>>& v) {
-    return {shrink(lens, v.x), shrink(lens, v.y)};
+Point<NearBound<Real>> settled(const LensTerms&, const Point<NearBound<Real>>& v) {
+    const auto unbounded = rounded_detail::unbounded<Real>();
+    return {{v.x.base, unbounded}, {v.y.base, unbounded}};
 }
 /// So that no base is asked for.
 inline Point<NearBase> settled(const LensTerms&, const Point<NearBase>& v) {
@@ -241,6 +262,8 @@ template <class T>
 T radial_root(const LensTerms& lens, const T& value) {
     return lens_formula::radial_root(lens, value);
 }
+/// shrink() of what double computes, where the lens's table knows it.
+std::optional<Rounded<double>> shrink_by_table(const LensTerms& lens, const Rounded<double>& value);
 /// The least slope of radial_at() over an interval.
 double least_slope(const LensTerms& lens, const Interval& t);
 
@@ -267,25 +290,20 @@ J compose(const lens_formula::Series<T, N>& series, const J& n) {
     return sum;
 }
 
-/// The derivative of F, a symmetric matrix: S + 2 m.u along the diagonal, 2 S' u u^T with S' by |u|^2, and
-/// 2 (u m^T + m u^T).
-template <class T>
-struct Slope {
-    T xx, xy, yy;
-
-    Slope(const LensTerms& lens, const Point<T>& u) {
-        const T squared = square(u.x) + square(u.y);
-        const auto stretch = lens_formula::stretch_at(lens, lens_formula::Series<T, 1>::variable(squared));
-        const T along = stretch.c[0] + (u.x * lens.mx + u.y * lens.my) * 2.0;
-        xx = along + (stretch.c[1] * square(u.x) + u.x * lens.mx * 2.0) * 2.0;
-        yy = along + (stretch.c[1] * square(u.y) + u.y * lens.my * 2.0) * 2.0;
-        xy = (stretch.c[1] * (u.x * u.y) + u.x * lens.my + u.y * lens.mx) * 2.0;
+/// Of jets, whose products need not be added to.
+template <class T, int N, int Degree>
+Jet<T, N> compose(const lens_formula::Series<T, Degree>& series, const Jet<T, N>& n) {
+    Jet<T, N> sum(series.c[Degree]);
+    for (int k = Degree - 1; k >= 0; --k) {
+        sum = sum * n;
+        sum.c[0] = series.c[k];
     }
-};
+    return sum;
+}
 
 /// The largest sum of a row of magnitudes, as `of` has them.
 template <class T, class Of>
-double largest_row(const Slope<T>& slope, const Of& of) {
+double largest_row(const lens_formula::Slope<T>& slope, const Of& of) {
     return std::max(of(slope.xx), of(slope.yy)) + of(slope.xy);
 }
 
@@ -311,36 +329,80 @@ Point<Rounded<Real>> settled_values(const LensTerms& lens, const Point<Rounded<R
 
 }  // namespace lens_detail
 
-/// In norms (number/rounded.h), the larger of x and y: with J the slope at the constant parts, c the norm of its inverse
-/// and h that of what the slope is besides, the exact jets have n = J^-1 (v - (F(u + n) - F(u) - J n)) above their
-/// constants, so that |n| <= r wherever c (|v| + h r) <= r. What is computed has F(computed u) = v + rest; the slopes
-/// between the two are J and h at most, so it is off by c |rest| / (1 - c h).
+namespace lens_detail {
+
+/// In norms, the larger of x and y: no two points v are farther apart in radially_undistorted() than by so many times their
+/// distance. Its slope is s + 2 s' v v^T with s = shrink(|v|^2), both by their Taylor series.
+template <class R>
+double most_undistorted(const LensTerms& lens, const Point<R>& v) {
+    const R squared = square(v.x) + square(v.y);
+    const ComputedSeries series = computed_shrink(
+        lens, {std::max(squared.range.lo - squared.error, 0.0), squared.range.hi + squared.error});
+    const double off = squared.radius + squared.error;
+    double s = 0, by = 0;
+    for (int k = ComputedSeries::kDegree; k >= 0; --k) {
+        s = s * off + magnitude(series.exact.c[k]);
+        by = by * off + (k + 1) * magnitude(series.exact.c[k + 1]);
+    }
+    const double x = v.x.computed_size(), y = v.y.computed_size();
+    return (s + 2 * by * std::max(x, y) * (x + y)) * (1 + 0x1p-40);
+}
+/// And in tangential_at().
+template <class R>
+double most_tangential(const LensTerms& lens, const Point<R>& u) {
+    const double x = u.x.computed_size(), y = u.y.computed_size();
+    const double mx = std::fabs(lens.mx), my = std::fabs(lens.my);
+    return (2 * (mx * x + my * y) + 4 * std::max(mx * x, my * y) + 2 * (my * x + mx * y)) * (1 + 0x1p-40);
+}
+
+/// settled() of jets v, whose constant parts are u's, where nearer() maps `jet` into itself for all of `around`, as far
+/// around v as `off`.
+template <class Real>
+Point<Rounded<Real>> settled_within(const LensTerms& lens, const Point<Rounded<Real>>& v,
+                                    const Point<Rounded<Real>>& u, const Point<Rounded<Real>>& around,
+                                    const Point<Rounded<Real>>& jet, double off) {
+    using R = Rounded<Real>;
+    const Point<R> more = lens_formula::tangential_at(lens, jet);
+    const double back = most_undistorted(lens, Point<R>{around.x - more.x, around.y - more.y}),
+                 contraction = back * most_tangential(lens, jet), r = jet.x.radius;
+    const double c = back / (1 - contraction);
+    // Every degree of F is rounded once more, but for the constant part, which is off as u is. Slopes are rounded, those of
+    // the computed u are read, and the solution is rounded by less than 16 units of all of it.
+    const Point<R> f = lens_formula::distorted(lens, jet);
+    const lens_formula::Slope<R> at(lens, u);
+    const double size = largest_row(at, [](const R& k) { return k.computed_size(); });
+    const double rest =
+        R::kDegree * std::max(f.x.error, f.y.error) + std::max(v.x.error, v.y.error) +
+        size * std::max(u.x.error, u.y.error) +
+        (largest_row(at, [](const R& k) { return k.error; }) + 16 * R::kUnit * size * c * size) * r;
+    const double error = contraction < 0.5 && rest <= off ? c * rest * (1 + 0x1p-40) : HUGE_VAL;
+    return {R(u.x.range, r, error), R(u.y.range, r, error)};
+}
+
+}  // namespace lens_detail
+
+/// In norms (number/rounded.h), the larger of x and y. The exact u is what nearer() maps to itself, and so is what is
+/// computed for a v that is F of it, `rest` away: both lie in a ball of jets about the constant parts that nearer() maps
+/// into itself. With R and T what most_undistorted() and most_tangential() say there, they are apart by
+/// R (|rest| + T apart) at most, or R / (1 - R T) |rest|.
 template <class Real>
 Point<Rounded<Real>> settled(const LensTerms& lens, const Point<Rounded<Real>>& v) {
     using R = Rounded<Real>;
-    using lens_detail::largest_row;
     const Point<R> u =
         lens_detail::settled_values(lens, Point<R>{R(v.x.range, 0, v.x.error), R(v.y.range, 0, v.y.error)});
-    const double radius = std::max(v.x.radius, v.y.radius);
-    if (radius == 0) return u;
-    const lens_detail::Slope<R> at(lens, u);
-    const Interval determinant = at.xx.range * at.yy.range - square(at.xy.range);
-    const double c = largest_row(at, [](const R& k) { return magnitude(k.range); }) / determinant.lo;
-    double r = 1.25 * c * radius;
-    for (int i = 0; i < 4 && c > 0; ++i, r *= 1.25) {
-        const Point<R> jet{R(u.x.range, r, 0), R(u.y.range, r, 0)};
-        const lens_detail::Slope<R> slope(lens, jet);
-        const double h = largest_row(slope, [](const R& k) { return k.radius; });
-        if (!(c * (radius + h * r) <= r && c * h < 0.5)) continue;
-        // Every degree of F is rounded once more. Slopes are rounded, those of the computed u are read, and the solution
-        // is rounded by less than 16 units of all of it.
-        const Point<R> f = lens_formula::distorted(lens, jet);
-        const double size = largest_row(at, [](const R& k) { return k.computed_size(); });
-        const double rest =
-            R::kDegree * std::max(f.x.error, f.y.error) + std::max(v.x.error, v.y.error) +
-            (largest_row(at, [](const R& k) { return k.error; }) + 16 * R::kUnit * size * c * size) * r;
-        const double error = 1.25 * std::max({c * rest / (1 - c * h), u.x.error, u.y.error});
-        return {R(u.x.range, r, error), R(u.y.range, r, error)};
+    if (std::max(v.x.radius, v.y.radius) == 0) return u;
+    // Rounding is far less than this.
+    const double off = 0x1p-30 * lens.ideal_end;
+    const auto wide = [&](const R& a, double radius) {
+        return R(Interval(a.range.lo - off, a.range.hi + off), radius + off, 0);
+    };
+    const Point<R> around{wide(v.x, v.x.radius), wide(v.y, v.y.radius)};
+    Point<R> jet{wide(u.x, 0), wide(u.y, 0)};
+    for (int i = 0; i < 6; ++i) {
+        const Point<R> next = lens_formula::nearer(lens, around, jet);
+        const double r = std::max(next.x.radius, next.y.radius);
+        if (r <= jet.x.radius) return lens_detail::settled_within(lens, v, u, around, jet, off);
+        jet.x.radius = jet.y.radius = 1.05 * r;
     }
     return {R(u.x.range, HUGE_VAL, HUGE_VAL), R(u.y.range, HUGE_VAL, HUGE_VAL)};
 }
@@ -357,7 +419,7 @@ Jet<T, K> lowest(const Jet<T, N>& jet) {
 
 /// Degree by degree, from K on: what F(u) lacks of v is the slope times what u lacks.
 template <int K, class T, int N>
-void settle_from(const LensTerms& lens, const Point<Jet<T, N>>& v, const Slope<T>& slope,
+void settle_from(const LensTerms& lens, const Point<Jet<T, N>>& v, const lens_formula::Slope<T>& slope,
                  const T& determinant, Point<Jet<T, N>>& u) {
     using J = Jet<T, N>;
     const Point<Jet<T, K>> f =
@@ -372,7 +434,7 @@ void settle_from(const LensTerms& lens, const Point<Jet<T, N>>& v, const Slope<T
 template <class T, int N>
 Point<Jet<T, N>> settled_by_degree(const LensTerms& lens, const Point<Jet<T, N>>& v,
                                    const Point<T>& constant) {
-    const Slope<T> slope(lens, constant);
+    const lens_formula::Slope<T> slope(lens, constant);
     Point<Jet<T, N>> u{Jet<T, N>(constant.x), Jet<T, N>(constant.y)};
     settle_from<1>(lens, v, slope, T(slope.xx * slope.yy - square(slope.xy)), u);
     return u;
@@ -436,6 +498,8 @@ Point<Jet<Interval, N>> settled(const LensTerms& lens, const Point<Jet<Interval,
 template <class Real>
 Rounded<Real> shrink(const LensTerms& lens, const Rounded<Real>& value) {
     using R = Rounded<Real>;
+    if constexpr (std::is_same_v<Real, double>)
+        if (const auto found = lens_detail::shrink_by_table(lens, value)) return *found;
     const R root = lens_detail::radial_root(lens, R(value.range, 0, value.error));
     if (!value.is_jet()) return R(1) / lens_formula::stretch_at(lens, root);
     constexpr int kDegree = static_cast<int>(R::kDegree);
@@ -467,6 +531,37 @@ template <int N>
 Jet<Interval, N> shrink_of(const LensTerms& lens, const Point<Jet<Interval, N>>& v) {
     const Jet<Interval, N> squared = square(v.x) + square(v.y);
     return lens_detail::compose_squared(shrink_coefficients(lens, squared.c[0]), squared);
+}
+
+/// The Taylor polynomial about a base b, with c what encloses its next coefficient wherever the value may be: it is off by
+/// |c| |rest|^5 at most.
+template <class Real>
+NearBound<Real> shrink(const LensTerms& lens, const NearBound<Real>& value) {
+    using R = Rounded<Real>;
+    constexpr int kDegree = ComputedSeries::kDegree;
+    const R& rest = value.rest;
+    const double far = magnitude(rest.range) + rest.error;
+    const ComputedSeries at = computed_shrink(lens, value.base);
+    const Interval all = value.base + Interval(-far, far);
+    const Interval beyond = computed_shrink(lens, {std::max(all.lo, 0.0), all.hi}).exact.c[kDegree + 1];
+    Interval bases[kDegree + 1];
+    for (int k = 0; k <= kDegree; ++k) bases[k] = at.exact.c[k] + Interval(-at.error[k], at.error[k]);
+    NearBound<Real> found = NearBound<Real>::series(bases, rest);
+    // What the bases are off is at most so much of all of the sum.
+    double off = magnitude(beyond);
+    for (int k = kDegree; k >= 0; --k) off = off * far + at.error[k];
+    off *= 1 + 0x1p-40;
+    found.rest = {found.rest.range + Interval(-off, off), 0, found.rest.error + off};
+    return found;
+}
+/// The same as bases and the loop over a block's pixels have it.
+inline NearBase shrink(const LensTerms& lens, const NearBase& value) {
+    constexpr int kDegree = ComputedSeries::kDegree;
+    const auto series =
+        lens_detail::shrink_series<kDegree>(lens, lens_formula::radial_root(lens, value.base.value));
+    WrittenBase bases[kDegree + 1];
+    for (int k = kDegree; k >= 0; --k) bases[k] = WrittenBase::written(series.c[k]);
+    return NearBase::series(bases, value.rest);
 }
 
 template <class T, int N>

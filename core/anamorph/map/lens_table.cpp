@@ -55,6 +55,16 @@ bool is_loose(const Coefficients& all, const Coefficients& there, const Interval
     return (all.c[5].hi - all.c[5].lo) * r2 * r2 > size;
 }
 
+/// By the mean value theorem a coefficient, as a function of the place, is the middle's and its derivative times the
+/// distance; the derivative of coefficient k is k + 1 times the next one.
+Coefficients narrowed(Coefficients all, const Coefficients& there, const Interval& distance) {
+    for (int k = kDegree - 1; k >= 0; --k) {
+        const Interval moved = there.c[k] + all.c[k + 1] * distance * (k + 1.0);
+        if (magnitude(moved) < HUGE_VAL) all.c[k] = common(all.c[k], moved);
+    }
+    return all;
+}
+
 bool is_bounded(const Coefficients& c) {
     return std::all_of(std::begin(c.c), std::end(c.c),
                        [](const Interval& k) { return magnitude(k) < HUGE_VAL; });
@@ -97,16 +107,10 @@ const LensTable::Ring& LensTable::ring(const Rings& rings, std::size_t i) const 
     return found;
 }
 
-/// By the mean value theorem a coefficient, as a function of the place, is the middle's and its derivative times the
-/// distance; the derivative of coefficient k is k + 1 times the next one.
 Coefficients LensTable::enclosed(const Interval& squared, bool shrink, int halvings) const {
     const double middle = 0.5 * (squared.lo + squared.hi);
     const Coefficients there = direct(Interval(middle), shrink);
-    Coefficients all = direct(squared, shrink);
-    for (int k = kDegree - 1; k >= 0; --k) {
-        const Interval moved = there.c[k] + all.c[k + 1] * (squared - middle) * (k + 1.0);
-        if (magnitude(moved) < HUGE_VAL) all.c[k] = common(all.c[k], moved);
-    }
+    const Coefficients all = narrowed(direct(squared, shrink), there, squared - middle);
     if (halvings == 0 || !is_loose(all, there, squared)) return all;
     return hull(enclosed({squared.lo, middle}, shrink, halvings - 1),
                 enclosed({middle, squared.hi}, shrink, halvings - 1));
@@ -148,6 +152,40 @@ Coefficients LensTable::over(const Rings& rings, const Interval& squared) const 
     for (std::size_t i = first + 1; i <= last; ++i) all = hull(all, ring(rings, i).coefficients);
     // At a ring's end they may be unbounded, but not where the box lies.
     return is_bounded(all) ? all : direct(squared, rings.shrink);
+}
+
+Coefficients LensTable::shrink_at(const Interval& value) const {
+    return lens_detail::shrink_series<kDegree>(m_lens, lens_detail::radial_root(m_lens, value));
+}
+
+const ComputedSeries& LensTable::computed_in(std::size_t i) const {
+    Ring& found = m_shrink.rings[i];
+    std::call_once(found.computed_made, [&] {
+        const Interval squared(m_shrink.ends[i], m_shrink.ends[i + 1]);
+        const Interval value = m_lens.in_radius ? sqrt(squared) : squared;
+        const double middle = 0.5 * (value.lo + value.hi);
+        ComputedSeries& computed = found.computed;
+        computed.exact = narrowed(shrink_at(value), shrink_at(Interval(middle)), value - middle);
+        const auto rounded = lens_detail::shrink_series<ComputedSeries::kDegree>(
+            m_lens, lens_detail::radial_root(m_lens, Rounded<double>(value, 0, 0)));
+        for (int k = 0; k <= ComputedSeries::kDegree; ++k) computed.error[k] = rounded.c[k].error;
+    });
+    return found.computed;
+}
+
+ComputedSeries LensTable::computed_shrink(const Interval& value) const {
+    if (!(value.lo >= 0 && value.hi <= m_lens.value_end)) return ComputedSeries::unbounded();
+    const auto index_of = [&](double v) { return m_shrink.index_of(m_lens.in_radius ? v * v : v); };
+    // A square may be rounded into the next ring.
+    const std::size_t first = index_of(value.lo * (1 - 0x1p-50)), last = index_of(value.hi * (1 + 0x1p-50));
+    ComputedSeries all = computed_in(first);
+    for (std::size_t i = first + 1; i <= last; ++i) {
+        const ComputedSeries& more = computed_in(i);
+        all.exact = hull(all.exact, more.exact);
+        for (int k = 0; k <= ComputedSeries::kDegree; ++k)
+            all.error[k] = rounded_detail::larger(all.error[k], more.error[k]);
+    }
+    return all;
 }
 
 double LensTable::near_root(double value) const {

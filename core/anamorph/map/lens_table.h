@@ -26,13 +26,18 @@ class LensTable {
     Coefficients stretch(const Interval& squared) const { return over(m_stretch, squared); }
     Coefficients shrink(const Interval& squared) const { return over(m_shrink, squared); }
 
+    /// Of shrink() by powers of what is added to a value, and as double computes them: up to degree 4 by
+    /// shrink_series() from the root that it finds. Unbounded where that is not known.
+    ComputedSeries computed_shrink(const Interval& value) const;
+
     /// Near the root of radial_at(t) = value, in [0, end].
     double near_root(double value) const;
 
   private:
     struct Ring {
-        std::once_flag made;
+        std::once_flag made, computed_made;
         Coefficients coefficients;
+        ComputedSeries computed;
         double middle = 0, root[4] = {};  ///< by powers of what is added to a value in the middle
     };
     struct Rings {
@@ -44,8 +49,10 @@ class LensTable {
     };
     void cut(Rings& rings, double corner, double reach) const;
     const Ring& ring(const Rings& rings, std::size_t i) const;
+    const ComputedSeries& computed_in(std::size_t i) const;
     void make(Ring& ring, const Interval& squared, bool shrink) const;
     Coefficients enclosed(const Interval& squared, bool shrink, int halvings) const;
+    Coefficients shrink_at(const Interval& value) const;
     Coefficients direct(const Interval& squared, bool shrink) const;
     Coefficients over(const Rings& rings, const Interval& squared) const;
 

@@ -120,6 +120,14 @@ SourceEdges Panorama::source_edges() const {
     return {whole && !m_source.closed(), whole};
 }
 
+bool Panorama::ends_by_lens(const Ray<Interval>& ray, const Local& local) const {
+    // The lens's formula goes on behind its end; its root does not.
+    if (!m_source.lens() || !m_source.lens()->terms().to_observed) return false;
+    const Interval there = with_projection(m_source.projection(),
+                                           [&](auto formulas) { return formulas.sees(ray, local.source); });
+    return there.lo > 0;
+}
+
 Cover Panorama::cover(const Interval& x, const Interval& y, int piece, const Local& local,
                       bool across_seam) const {
     const auto one_signed = [](const Interval& a) { return a.lo > 0 || a.hi < 0; };
@@ -129,7 +137,8 @@ Cover Panorama::cover(const Interval& x, const Interval& y, int piece, const Loc
     const Ray<Interval> ray = local_ray(x, y, local);
     const Interval seen = m_source.sees(ray, local.source.piece);
     if (seen.hi < 0 && m_source.pieces().size() == 1) return Cover::outside;
-    if (!(seen.lo > 0) || !one_signed(m_source.crease(ray))) return Cover::mixed;
+    if (!one_signed(m_source.crease(ray))) return Cover::mixed;
+    if (!(seen.lo > 0)) return ends_by_lens(ray, local) ? Cover::partial : Cover::mixed;
     if (m_source.counted() == Counted::azimuth) {
         // The branch serves less than half a turn. It must not cross the far side where the image has an
         // edge.

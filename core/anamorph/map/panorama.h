@@ -89,7 +89,7 @@ class Panorama {
         Point<double> middle;
         Bases bases;
     };
-    /// Is no lens read the way that is a root?
+    /// Is no lens with a tangential part read the way that is a root?
     bool may_be_direct() const;
     /// About (x, y).
     Direct direct(double x, double y, const Local& local) const;
@@ -105,6 +105,9 @@ class Panorama {
     /// places of a row or column each; and the products of unit rows, 12 of them and as many sums, by less
     /// than 64 units.
     static constexpr double kLocalError = 6 * Heading::kError + 64 * 0x1p-53;
+
+    /// Does the source see all these local rays, but for its lens's end?
+    bool ends_by_lens(const Ray<Interval>& ray, const Local& local) const;
 
     /// The source's ray of a target point.
     template <class T>

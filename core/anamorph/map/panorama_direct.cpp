@@ -5,7 +5,10 @@ namespace anamorph {
 
 bool Panorama::may_be_direct() const {
     const Lens *target = m_target.lens(), *source = m_source.lens();
-    return !(target && target->terms().to_observed) && !(source && !source->terms().to_observed);
+    const auto settles = [](const LensTerms& terms, bool observed) {
+        return terms.tangential && terms.to_observed != observed;
+    };
+    return !(target && settles(target->terms(), false)) && !(source && settles(source->terms(), true));
 }
 
 Panorama::Direct Panorama::direct(double x, double y, const Local& local) const {

@@ -142,6 +142,14 @@ struct Near {
         return {result, Pair::off(asinh(a.rest * of_root - of_a * grown), result, 32)};
     }
 
+    /// c[0] + c[1] n + ..., by Horner's rule.
+    template <std::size_t Count>
+    static ANAMORPH_INLINE Near series(const Base (&c)[Count], const Rest& n) {
+        Rest sum = Pair::of(c[Count - 1]);
+        for (std::size_t k = Count - 2; k > 0; --k) sum = sum * n + Pair::of(c[k]);
+        return {c[0], sum * n};
+    }
+
     friend ANAMORPH_INLINE auto is_negative(const Near& a) {
         return NearCondition<decltype(is_negative(a.base)), decltype(is_negative(a.rest))>{
             is_negative(a.base), is_negative(a.whole())};

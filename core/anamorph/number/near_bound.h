@@ -57,6 +57,7 @@ Rounded<Real> small_atan(const Rounded<Real>& a) {
 template <class Real>
 struct NearRest<Interval, Rounded<Real>> {
     using R = Rounded<Real>;
+    static constexpr bool kBounds = true;
 
     static R of(const Interval& base) {
         if (std::is_same_v<Real, double>) return R(base, 0, 0);

@@ -14,10 +14,10 @@
 // and names no scalar type. A condition is a bool, or what the number needs in its place: a mask of a vector's
 // lanes, a Certainty of an interval. A branch that would save time is no use to a vector, so there is none.
 //
-// Numbers: double and long double (here), Interval (interval.h), Jet (jet.h), Lanes (lanes.h). Rounded (rounded.h), which
-// bounds rounding over a box, offers what projections ask for; Tracked (tracked.h) follows a single evaluation.
-// A new one, such as the float of a piece of hardware, gives the list above in its own namespace and works at once
-// in every formula; tests/core/test_numbers.cpp has a float of 24 bits as an example.
+// Numbers: double and long double (here), Interval (interval.h), Jet (jet.h), Lanes (lanes.h), four jets at once
+// (simd/jets.h). Rounded (rounded.h), which bounds rounding over a box, offers what projections ask for; Tracked (tracked.h)
+// follows a single evaluation. A new one, such as the float of a piece of hardware, gives the list above in its own
+// namespace and works at once in every formula; tests/core/test_numbers.cpp has a float of 24 bits as an example.
 #pragma once
 
 #include <algorithm>

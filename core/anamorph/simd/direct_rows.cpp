@@ -91,11 +91,14 @@ struct NearRest<ReadBase<Real>, L<Real>> {
 template <class Real>
 using N = Near<ReadBase<Real>, L<Real>>;
 
-/// Lenses are not followed the way that is a root: there is no bound (map/lens.h).
+/// As in map/lens.h.
 template <class Real>
 HWY_INLINE N<Real> shrink(const LensTerms&, const N<Real>& value) {
-    return value;
+    ReadBase<Real> bases[ComputedSeries::kDegree + 1];
+    for (int k = ComputedSeries::kDegree; k >= 0; --k) bases[k] = ReadBase<Real>::next();
+    return N<Real>::series(bases, value.rest);
 }
+/// No block is read so: there is no bound.
 template <class Real>
 HWY_INLINE Point<N<Real>> settled(const LensTerms&, const Point<N<Real>>& v) {
     return v;

@@ -1,0 +1,462 @@
+// SPDX-License-Identifier: Apache-2.0
+// Jets and their recurrences (number/jet.h), over any number.
+//
+// No include guard and no namespace: vectors need them compiled for each instruction set (simd/jets.cpp). Whoever includes
+// this says with ANAMORPH_UNROLLED how a function is written into its callers, and with ToldDegree<T> what jets of T are
+// told of their degree as polynomials: nothing where it is to be seen, or `degree`; and with kJetSteps<T, N> whether recurrences
+// are unrolled whole: a constant N, or not: the number N.
+
+template <class T, int N>
+struct Jet : ToldDegree<T> {
+    static constexpr int kDegree = N;
+    static constexpr int kSize = (N + 1) * (N + 2) / 2;
+    static constexpr bool kIsTold = !std::is_empty_v<ToldDegree<T>>;
+
+    /// Degree by degree; within degree k the coefficient of s^(k-j) t^j stands at k (k + 1) / 2 + j.
+    T c[kSize];
+
+    /// Zero; not yet anything, where degrees are told.
+    Jet() {
+        if constexpr (!kIsTold)
+            for (T& k : c) k = T(0);
+    }
+    Jet(const T& constant) : Jet() { c[0] = constant; }  // NOLINT: a number is a jet
+    template <class U>
+    requires(std::is_arithmetic_v<U> && !std::is_same_v<U, T>) Jet(U constant)  // NOLINT: a number is a jet
+        : Jet() {
+        c[0] = T(constant);
+    }
+
+    /// value + ds * s + dt * t
+    static Jet variable(const T& value, const T& ds, const T& dt) {
+        Jet r(value);
+        r.c[1] = ds;
+        r.c[2] = dt;
+        return r;
+    }
+
+    static constexpr int part(int degree) { return degree * (degree + 1) / 2; }
+    const T& at(int i, int j) const { return c[part(i + j) + j]; }
+    const T& value() const { return c[0]; }
+};
+
+namespace jet_detail {
+
+// Counts are constants where recurrences are unrolled, else plain numbers.
+template <int I>
+using CountOf = std::integral_constant<int, I>;
+
+template <int More, int I>
+constexpr CountOf<I + More> plus(CountOf<I>) {
+    return {};
+}
+template <int More>
+constexpr int plus(int count) {
+    return count + More;
+}
+template <int I, int J>
+constexpr CountOf<I + J> sum(CountOf<I>, CountOf<J>) {
+    return {};
+}
+constexpr int sum(int i, int j) {
+    return i + j;
+}
+template <int I, int J>
+constexpr CountOf<I - J> difference(CountOf<I>, CountOf<J>) {
+    return {};
+}
+constexpr int difference(int i, int j) {
+    return i - j;
+}
+template <int I>
+constexpr CountOf<I / 2> half(CountOf<I>) {
+    return {};
+}
+constexpr int half(int count) {
+    return count / 2;
+}
+
+/// body(0), ..., body(count - 1): each with its index as a constant where the count is one.
+template <int Count, class Body>
+ANAMORPH_UNROLLED inline void unroll(CountOf<Count>, const Body& body) {
+    [&]<int... I>(std::integer_sequence<int, I...>) ANAMORPH_UNROLLED {
+        (body(CountOf<I>{}), ...);
+    }
+    (std::make_integer_sequence<int, (Count > 0 ? Count : 0)>{});
+}
+template <class Body>
+ANAMORPH_UNROLLED inline void unroll(int count, const Body& body) {
+    for (int i = 0; i < count; ++i) body(i);
+}
+/// body(i) for 0 <= i <= a with 0 <= m - i <= b.
+template <int A, class Body>
+ANAMORPH_UNROLLED inline void each_split(CountOf<A>, int b, int m, const Body& body) {
+    unroll(CountOf<A + 1>{}, [&](auto i) ANAMORPH_UNROLLED {
+        if (m - i >= 0 && m - i <= b) body(i);
+    });
+}
+template <class Body>
+ANAMORPH_UNROLLED inline void each_split(int a, int b, int m, const Body& body) {
+    for (int i = std::max(0, m - b); i <= std::min(a, m); ++i) body(i);
+}
+
+/// A number that is all between two ends.
+template <class T>
+concept Enclosure = requires(const T& a) {
+    a.lo;
+    a.hi;
+};
+
+/// A sum of products.
+template <class T>
+struct ProductSum {
+    T sum;
+
+    ANAMORPH_UNROLLED ProductSum() : sum(0) {}
+    ANAMORPH_UNROLLED void add(const T& a, const T& b) { sum = sum + a * b; }
+    ANAMORPH_UNROLLED void add(const ProductSum& part, int weight) {
+        sum = sum + (weight == 1 ? part.sum : part.sum * T(weight));
+    }
+    const T& value() const { return sum; }
+};
+/// Of intervals (R: of double, or of a vector), in about as many steps as of numbers. With middles p, q and largest magnitudes P, Q of two
+/// factors, their product is within PQ - |p||q| of pq; so is a sum of them, with weights w, of the sum of w p q.
+/// Read here are s = 2 p and t = 2 q, sums of ends, which do not underflow.
+///
+/// Rounding, in units u = 2^-53 of G = sum |w| P Q, for N <= 6, when a coefficient has at most 16 products: s t w
+/// is off by 4 u of itself, and adding up by 16 u more, so that sum w s t and sum |w| |s| |t|, of 4 G at most, are
+/// off by 20 u of 4 G, and G by 18 u; the difference of sizes and the two ends by 4 u. 20 + 20 + 18 + 4 < 64 units;
+/// 128 are taken. What underflows is off by 2^-1022 at most, 16 products with weights up to 12 in three sums by
+/// less than 2^-1012: no more than the rest of the units where G is at least 2^-950. Where it is less, the sum is
+/// only known to be next to nothing.
+template <Enclosure T>
+struct ProductSum<T> {
+    using R = decltype(T::lo);
+    R middle, middle_size;  ///< sum w s t and sum |w s t|
+    R size;                 ///< G
+
+    ANAMORPH_UNROLLED ProductSum() : middle(0), middle_size(0), size(0) {}
+    ANAMORPH_UNROLLED void add(const T& a, const T& b) {
+        using std::abs;
+        const R product = (a.lo + a.hi) * (b.lo + b.hi);
+        middle = middle + product;
+        middle_size = middle_size + abs(product);
+        size = size + max(a.hi, R(-a.lo)) * max(b.hi, R(-b.lo));
+    }
+    ANAMORPH_UNROLLED void add(const ProductSum& part, int weight) {
+        middle = middle + part.middle * weight;
+        middle_size = middle_size + part.middle_size * std::abs(weight);
+        size = size + part.size * std::abs(weight);
+    }
+    /// Unbounded where a factor is, or nearly so.
+    ANAMORPH_UNROLLED T value() const {
+        const auto bounded = middle_size + size < R(0x1p1000);
+        const R radius =
+            select(size < R(0x1p-950), R(0x1p-940), R((size - middle_size * 0.25) + size * 0x1p-46));
+        const R centre = middle * 0.25;
+        return {select(bounded, R(centre - radius), R(-HUGE_VAL)),
+                select(bounded, R(centre + radius), R(HUGE_VAL))};
+    }
+};
+
+/// The degree of a jet as a polynomial: parts above are zero. Constants, lines and their squares are mostly zeros,
+/// and gain by its being known.
+template <class T, int N>
+int degree_of(const Jet<T, N>& jet) {
+    int degree = N;
+    if constexpr (requires { jet.degree; })
+        degree = jet.degree < N ? jet.degree : N;
+    else if constexpr (requires(bool known, const T& a) { known = is_zero(a); })
+        for (int last = Jet<T, N>::kSize - 1; last > 0 && is_zero(jet.c[last]); --last)
+            if (last == Jet<T, N>::part(degree)) --degree;
+    return degree;
+}
+
+template <class T, int N>
+void tell_degree(Jet<T, N>& jet, int degree) {
+    if constexpr (requires { jet.degree; }) jet.degree = degree < N ? degree : N;
+}
+
+/// How many coefficients are worth an operation of their own: of intervals, those of the degree.
+template <class T, int N>
+int terms(const Jet<T, N>& jet) {
+    return Enclosure<T> ? Jet<T, N>::part(degree_of(jet) + 1) : Jet<T, N>::kSize;
+}
+
+/// A jet as a factor of products.
+template <class T, int N>
+struct Factor {
+    const Jet<T, N>& jet;
+    int degree;
+
+    explicit Factor(const Jet<T, N>& known) : jet(known), degree(degree_of(known)) {}
+    /// A jet of which more parts are to come.
+    static Factor growing(const Jet<T, N>& jet) { return Factor(jet, N); }
+
+  private:
+    Factor(const Jet<T, N>& unknown, int any) : jet(unknown), degree(any) {}
+};
+
+/// Coefficient m of the part of degree k of sum_(first <= a <= last) weight(a) f_a g_(k-a).
+template <class K, class First, class Last, class T, int N, class Weight>
+ANAMORPH_UNROLLED inline T convolve(K k, First first, Last last, const Factor<T, N>& f, const Factor<T, N>& g,
+                                    int m, const Weight& weight) {
+    using J = Jet<T, N>;
+    static_assert(!Enclosure<T> || N <= 6);
+    if (first > last || k > f.degree + g.degree) return T(0);
+    ProductSum<T> sums;
+    unroll(plus<1>(difference(last, first)), [&](auto offset) ANAMORPH_UNROLLED {
+        const auto a = sum(first, offset);
+        const auto b = difference(k, a);
+        if (a > f.degree || b > g.degree) return;
+        ProductSum<T> part;
+        each_split(a, b, m, [&](int i) ANAMORPH_UNROLLED {
+            part.add(f.jet.c[J::part(a) + i], g.jet.c[J::part(b) + m - i]);
+        });
+        sums.add(part, weight(a));
+    });
+    return sums.value();
+}
+
+/// body(k, m) for the coefficients m of the parts of degree k = 1 ... N, part by part.
+template <class T, int N, class Body>
+ANAMORPH_UNROLLED inline void each_coefficient(const Body& body) {
+    unroll(kJetSteps<T, N>, [&](auto below) ANAMORPH_UNROLLED {
+        const auto k = plus<1>(below);
+        unroll(plus<1>(k), [&](auto m) ANAMORPH_UNROLLED { body(k, m); });
+    });
+}
+
+/// Solves q E g = w for the parts of g above the constant: k q_0 g_k = w_k - sum_(0<j<k) j g_j q_(k-j).
+template <class T, int N>
+inline void integrate_quotient(Jet<T, N>& g, const Jet<T, N>& w, const Jet<T, N>& q) {
+    const T inverse = T(1) / q.c[0];
+    T part_of[N + 1];
+    for (int k = 1; k <= N; ++k) part_of[k] = inverse / T(k);
+    const auto left = Factor<T, N>::growing(g);
+    const Factor<T, N> right(q);
+    each_coefficient<T, N>([&](auto k, auto m) ANAMORPH_UNROLLED {
+        const T known = convolve(k, kJetSteps<T, 1>, plus<-1>(k), left, right, m, [](int j) { return j; });
+        const int at = Jet<T, N>::part(k) + m;
+        g.c[at] = (w.c[at] - known) * part_of[k];
+    });
+}
+
+/// x E y - y E x, whose part of degree k is sum_a (k - 2 a) x_a y_(k-a).
+template <class T, int N>
+inline Jet<T, N> wronskian(const Jet<T, N>& x, const Jet<T, N>& y) {
+    Jet<T, N> r;
+    const Factor<T, N> left(x), right(y);
+    each_coefficient<T, N>([&](auto k, auto m) ANAMORPH_UNROLLED {
+        r.c[Jet<T, N>::part(k) + m] =
+            convolve(k, kJetSteps<T, 0>, k, left, right, m, [&](int a) { return k - 2 * a; });
+    });
+    tell_degree(r, left.degree + right.degree);
+    return r;
+}
+
+/// E f: the part of degree k times k.
+template <class T, int N>
+inline Jet<T, N> euler(const Jet<T, N>& f) {
+    Jet<T, N> r;
+    each_coefficient<T, N>([&](auto k, auto m) ANAMORPH_UNROLLED {
+        const int at = Jet<T, N>::part(k) + m;
+        r.c[at] = f.c[at] * T(k);
+    });
+    tell_degree(r, degree_of(f));
+    return r;
+}
+
+/// E u = v E a and E v = Sign * u E a: sine and cosine (Sign -1), or their hyperbolic twins (Sign 1).
+template <int Sign, class T, int N>
+inline void oscillate(Jet<T, N>& u, Jet<T, N>& v, const Jet<T, N>& a) {
+    const Factor<T, N> angle(a);
+    const auto sine = Factor<T, N>::growing(u), cosine = Factor<T, N>::growing(v);
+    each_coefficient<T, N>([&](auto k, auto m) ANAMORPH_UNROLLED {
+        const int at = Jet<T, N>::part(k) + m;
+        u.c[at] = convolve(k, kJetSteps<T, 1>, k, angle, cosine, m, [](int j) { return j; }) / T(k);
+        v.c[at] = convolve(k, kJetSteps<T, 1>, k, angle, sine, m, [](int j) { return Sign * j; }) / T(k);
+    });
+}
+
+}  // namespace jet_detail
+
+template <class T, int N>
+inline Jet<T, N> operator-(const Jet<T, N>& a) {
+    Jet<T, N> r;
+    jet_detail::tell_degree(r, jet_detail::degree_of(a));
+    for (int i = 0; i < Jet<T, N>::kSize; ++i) r.c[i] = -a.c[i];
+    return r;
+}
+template <class T, int N>
+inline Jet<T, N> operator+(const Jet<T, N>& a, const Jet<T, N>& b) {
+    Jet<T, N> r;
+    const int size = std::max(jet_detail::terms(a), jet_detail::terms(b));
+    jet_detail::tell_degree(r, std::max(jet_detail::degree_of(a), jet_detail::degree_of(b)));
+    for (int i = 0; i < size; ++i) r.c[i] = a.c[i] + b.c[i];
+    return r;
+}
+template <class T, int N>
+inline Jet<T, N> operator-(const Jet<T, N>& a, const Jet<T, N>& b) {
+    Jet<T, N> r;
+    const int size = std::max(jet_detail::terms(a), jet_detail::terms(b));
+    jet_detail::tell_degree(r, std::max(jet_detail::degree_of(a), jet_detail::degree_of(b)));
+    for (int i = 0; i < size; ++i) r.c[i] = a.c[i] - b.c[i];
+    return r;
+}
+template <class T, int N>
+inline Jet<T, N> operator*(const Jet<T, N>& a, const Jet<T, N>& b) {
+    Jet<T, N> r(a.c[0] * b.c[0]);
+    const jet_detail::Factor<T, N> left(a), right(b);
+    jet_detail::each_coefficient<T, N>([&](auto k, auto m) ANAMORPH_UNROLLED {
+        r.c[Jet<T, N>::part(k) + m] =
+            jet_detail::convolve(k, kJetSteps<T, 0>, k, left, right, m, [](int) { return 1; });
+    });
+    jet_detail::tell_degree(r, left.degree + right.degree);
+    return r;
+}
+template <class T, int N>
+inline Jet<T, N> operator*(const Jet<T, N>& a, double b) {
+    if (b == 1) return a;
+    Jet<T, N> r;
+    const int size = jet_detail::terms(a);
+    for (int i = 0; i < size; ++i) r.c[i] = a.c[i] * b;
+    return r;
+}
+template <class T, int N>
+requires(!std::is_arithmetic_v<T>) inline Jet<T, N> operator*(const Jet<T, N>& a, const T& b) {
+    Jet<T, N> r;
+    for (int i = 0; i < Jet<T, N>::kSize; ++i) r.c[i] = a.c[i] * b;
+    return r;
+}
+template <class T, int N>
+inline Jet<T, N> operator*(double a, const Jet<T, N>& b) {
+    return b * a;
+}
+template <class T, int N>
+inline Jet<T, N> operator+(const Jet<T, N>& a, double b) {
+    Jet<T, N> r = a;
+    r.c[0] = r.c[0] + T(b);
+    return r;
+}
+template <class T, int N>
+inline Jet<T, N> operator+(double a, const Jet<T, N>& b) {
+    return b + a;
+}
+template <class T, int N>
+inline Jet<T, N> operator-(const Jet<T, N>& a, double b) {
+    return a + (-b);
+}
+template <class T, int N>
+inline Jet<T, N> operator-(double a, const Jet<T, N>& b) {
+    return -b + a;
+}
+
+/// q with q g = f: g_0 q_k = f_k - sum_(j<k) q_j g_(k-j)
+template <class T, int N>
+inline Jet<T, N> operator/(const Jet<T, N>& f, const Jet<T, N>& g) {
+    const T inverse = T(1) / g.c[0];
+    Jet<T, N> q(f.c[0] * inverse);
+    const auto left = jet_detail::Factor<T, N>::growing(q);
+    const jet_detail::Factor<T, N> right(g);
+    jet_detail::each_coefficient<T, N>([&](auto k, auto m) ANAMORPH_UNROLLED {
+        const T known = jet_detail::convolve(k, kJetSteps<T, 0>, jet_detail::plus<-1>(k), left, right, m,
+                                             [](int) { return 1; });
+        const int at = Jet<T, N>::part(k) + m;
+        q.c[at] = (f.c[at] - known) * inverse;
+    });
+    return q;
+}
+
+/// a a, with a constant part that is never negative.
+template <class T, int N>
+inline Jet<T, N> square(const Jet<T, N>& a) {
+    Jet<T, N> r(square(a.c[0]));
+    const jet_detail::Factor<T, N> both(a);
+    jet_detail::each_coefficient<T, N>([&](auto k, auto m) ANAMORPH_UNROLLED {
+        // Each pair of different parts counts twice.
+        r.c[Jet<T, N>::part(k) + m] =
+            jet_detail::convolve(k, kJetSteps<T, 0>, jet_detail::half(k), both, both, m,
+                                 [&](int j) { return 2 * j == k ? 1 : 2; });
+    });
+    jet_detail::tell_degree(r, 2 * both.degree);
+    return r;
+}
+
+/// r with r r = f: 2 r_0 r_k = f_k - sum_(0<j<k) r_j r_(k-j)
+template <class T, int N>
+inline Jet<T, N> sqrt(const Jet<T, N>& f) {
+    using std::sqrt;
+    Jet<T, N> r(sqrt(f.c[0]));
+    const T inverse = T(0.5) / r.c[0];
+    const auto root = jet_detail::Factor<T, N>::growing(r);
+    jet_detail::each_coefficient<T, N>([&](auto k, auto m) ANAMORPH_UNROLLED {
+        const T known = jet_detail::convolve(k, kJetSteps<T, 1>, jet_detail::plus<-1>(k), root, root, m,
+                                             [](int) { return 1; });
+        const int at = Jet<T, N>::part(k) + m;
+        r.c[at] = (f.c[at] - known) * inverse;
+    });
+    return r;
+}
+
+template <class T, int N>
+inline void sin_cos(const Jet<T, N>& a, Jet<T, N>& s, Jet<T, N>& c) {
+    T sine, cosine;
+    sin_cos(a.c[0], sine, cosine);
+    s = Jet<T, N>(sine);
+    c = Jet<T, N>(cosine);
+    jet_detail::oscillate<-1>(s, c, a);
+}
+
+/// E g = g E a, so k g_k = sum_(0<j<=k) j a_j g_(k-j)
+template <class T, int N>
+inline Jet<T, N> exp(const Jet<T, N>& a) {
+    using std::exp;
+    Jet<T, N> g(exp(a.c[0]));
+    const jet_detail::Factor<T, N> exponent(a);
+    const auto power = jet_detail::Factor<T, N>::growing(g);
+    jet_detail::each_coefficient<T, N>([&](auto k, auto m) ANAMORPH_UNROLLED {
+        const int at = Jet<T, N>::part(k) + m;
+        g.c[at] =
+            jet_detail::convolve(k, kJetSteps<T, 1>, k, exponent, power, m, [](int j) { return j; }) / T(k);
+    });
+    return g;
+}
+
+/// a E g = E a
+template <class T, int N>
+inline Jet<T, N> log(const Jet<T, N>& a) {
+    using std::log;
+    Jet<T, N> g(log(a.c[0]));
+    jet_detail::integrate_quotient(g, jet_detail::euler(a), a);
+    return g;
+}
+
+/// Over cosh of a's constant part.
+template <class T, int N>
+inline T scaled_sinh(const Jet<T, N>& a, Jet<T, N>& s) {
+    T sine;
+    const T one = scaled_sinh(a.c[0], sine);
+    Jet<T, N> c(T(1));
+    s = Jet<T, N>(sine);
+    jet_detail::oscillate<1>(s, c, a);
+    return one;
+}
+
+/// E g sqrt(1 + a^2) = E a
+template <class T, int N>
+inline Jet<T, N> asinh(const Jet<T, N>& a) {
+    using std::asinh;
+    Jet<T, N> g(asinh(a.c[0]));
+    jet_detail::integrate_quotient(g, jet_detail::euler(a), sqrt(square(a) + 1.0));
+    return g;
+}
+
+/// (x^2 + y^2) E g = x E y - y E x
+template <class T, int N>
+inline Jet<T, N> atan2(const Jet<T, N>& y, const Jet<T, N>& x) {
+    using std::atan2;
+    Jet<T, N> g(atan2(y.c[0], x.c[0]));
+    jet_detail::integrate_quotient(g, jet_detail::wronskian(x, y), square(x) + square(y));
+    return g;
+}
