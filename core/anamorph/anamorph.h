@@ -12,6 +12,7 @@
 #include "anamorph/deform/plane_warp.h"
 #include "anamorph/error.h"
 #include "anamorph/figure/connected.h"
+#include "anamorph/figure/drawing.h"
 #include "anamorph/figure/frame.h"
 #include "anamorph/figure/frame_file.h"
 #include "anamorph/figure/level_of_detail.h"

@@ -10,10 +10,11 @@
 #include <map>
 #include <thread>
 
+#include "anamorph/figure/drawing.h"
 #include "anamorph/figure/frame_file.h"
+#include "anamorph/figure/language.h"
 #include "anamorph/parameter.h"
 #include "anamorph/version.h"
-#include "drawing.h"
 #include "frame_range.h"
 #include "progress.h"
 #include "script_source.h"
@@ -24,14 +25,17 @@ namespace anamorph::command {
 namespace {
 
 constexpr NumberRow kThreadsRow{"threads", 0, 0, 1024, NumberRow::closed, true};
+constexpr NumberRow kSizeRow{"size", 500, 1, 16384};
+constexpr NumberRow kPerspectiveRow{"perspective", NAN, 1e-3, 1e9};
 constexpr NumberRow kColumnsRow{"width", 80, 1, 4096, NumberRow::closed, true};
 
 /// What the command line says.
 struct Settings {
     ScriptSource source;
-    std::string output = "-", frames;
+    std::string output = "-", frames, word;
     DrawingOptions drawing;
-    double perspective = 0;
+    double size = kSizeRow.standard;  ///< of the window of 1000 units, in pixels
+    double perspective = 0;           ///< the distance from the eye to the middle of the window; 0: none
     int threads = static_cast<int>(kThreadsRow.standard), columns = static_cast<int>(kColumnsRow.standard);
     Characters characters = Characters::braille;
 };
@@ -76,6 +80,7 @@ class Command {
         add_picture("png", "Draw outlines as PNG");
         add_text();
         add_stats();
+        add_language();
     }
 
     int run(int argc, char** argv) {
@@ -159,9 +164,9 @@ class Command {
                        "number, which else goes before the ending");
         add_drawing(sub);
         DrawingOptions& d = m_settings.drawing;
-        add_number(sub, "--size", d.size, kSizeRow,
+        add_number(sub, "--size", m_settings.size, kSizeRow,
                    "Pixels (in PDF points) that the window of 1000 units is");
-        add_number(sub, "--tol", d.tol, kTolRow, "Maximum chord error, in pixels");
+        add_number(sub, "--tol", d.tol, kDrawingTolRow, "Maximum chord error, in pixels");
         add_number(sub, "--line-width", d.line_width, kLineWidthRow, "Width of lines, in pixels");
         add_number(sub, "--halo", d.halo, kHaloRow, "Gap on either side of a nearer line, in pixels");
         sub->add_flag("--colors", d.colors, "Lines in the colors of the bodies");
@@ -169,7 +174,7 @@ class Command {
 
     void add_text() {
         CLI::App* sub = add_subcommand("text", "Draw outlines with characters, for a terminal", [this] {
-            m_settings.drawing.size = text_size(m_settings.columns, m_settings.characters);
+            m_settings.size = text_size(m_settings.columns, m_settings.characters);
             m_settings.drawing.tol = 0.25;
             return draw_as("text");
         });
@@ -187,8 +192,8 @@ class Command {
     void add_drawing(CLI::App* sub) {
         add_frame_range(sub, "; by default the first of those");
         DrawingOptions& d = m_settings.drawing;
-        static const std::map<std::string, Hidden> hidden{
-            {"remove", Hidden::remove}, {"dash", Hidden::dash}, {"draw", Hidden::draw}};
+        static const std::map<std::string, HiddenLines> hidden{
+            {"remove", HiddenLines::remove}, {"dash", HiddenLines::dash}, {"draw", HiddenLines::draw}};
         sub->add_option("--hidden", d.hidden, "What becomes of hidden lines; draw: bodies are transparent")
             ->transform(CLI::CheckedTransformer(hidden))
             ->option_text("remove|dash|draw [remove]");
@@ -211,6 +216,19 @@ class Command {
     void add_stats() {
         add_subcommand("stats", "Count what is in a script, and time its performance",
                        [this] { return write_stats(); });
+    }
+
+    void add_language() {
+        CLI::App* sub =
+            m_app.add_subcommand("language", "The words of the language: their operands, meanings, examples");
+        sub->add_option("WORD", m_settings.word,
+                        "One of them, which may be shortened; by default a list of all");
+        sub->callback([this] {
+            m_run = [this] {
+                std::cout << language_page(m_settings.word);
+                return 0;
+            };
+        });
     }
 
     /// Prints what the script prints, out of the progress bar's way.
@@ -268,8 +286,14 @@ class Command {
                                : png_writer(m_settings.output, several);
     }
 
+    Drawing drawing_of(const FigureFrame& frame, const ParallelFor& parallel_for) const {
+        const glm::dvec2 page(m_settings.size);
+        View view = view_in(frame, page);
+        if (m_settings.perspective > 0) view.eye_distance = m_settings.perspective;
+        return draw(frame, view, page, m_settings.drawing, parallel_for);
+    }
+
     int draw_as(const std::string& format) {
-        if (m_settings.perspective > 0) m_settings.drawing.perspective = m_settings.perspective;
         std::unique_ptr<Performance> performance;
         FrameRange range;
         Progress progress([&] { return count_of(range, *performance); });
@@ -283,11 +307,11 @@ class Command {
         const auto draw_batch = [&] {
             std::vector<Drawing> drawings(batch.size());
             if (batch.size() == 1)
-                drawings[0] = draw(batch[0], m_settings.drawing, parallel_for);
+                drawings[0] = drawing_of(batch[0], parallel_for);
             else
                 parallel_for(static_cast<std::int64_t>(batch.size()), [&](std::int64_t i) {
                     const auto k = static_cast<std::size_t>(i);
-                    drawings[k] = draw(batch[k], m_settings.drawing, serial_for);
+                    drawings[k] = drawing_of(batch[k], serial_for);
                 });
             batch.clear();
             for (const Drawing& drawing : drawings) {

@@ -80,7 +80,7 @@ class PdfWriter : public DrawingWriter {
     void add(const Drawing& drawing) override {
         if (!m_surface)
             m_surface.reset(
-                cairo_pdf_surface_create_for_stream(write_to, &m_file, drawing.size, drawing.size));
+                cairo_pdf_surface_create_for_stream(write_to, &m_file, drawing.size.x, drawing.size.y));
         check(cairo_surface_status(m_surface.get()));
         draw_on(m_surface.get(), drawing);
         cairo_surface_show_page(m_surface.get());
@@ -102,8 +102,9 @@ class PngWriter : public DrawingWriter {
   public:
     PngWriter(std::string name, bool several) : m_name(std::move(name)), m_several(several) {}
     void add(const Drawing& drawing) override {
-        const int size = static_cast<int>(std::ceil(drawing.size));
-        const Surface surface(cairo_image_surface_create(CAIRO_FORMAT_RGB24, size, size));
+        const int width = static_cast<int>(std::ceil(drawing.size.x)),
+                  height = static_cast<int>(std::ceil(drawing.size.y));
+        const Surface surface(cairo_image_surface_create(CAIRO_FORMAT_RGB24, width, height));
         check(cairo_surface_status(surface.get()));
         draw_on(surface.get(), drawing);
         OutputFile file(m_several ? numbered_name(m_name, drawing.frame) : m_name);

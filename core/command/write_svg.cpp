@@ -90,11 +90,12 @@ void add_stroke(std::string& text, const Stroke& stroke, const Drawing& drawing)
 }
 
 std::string svg_of(const Drawing& drawing) {
-    std::string text, size;
-    add(size, drawing.size);
+    std::string text, width, height;
+    add(width, drawing.size.x);
+    add(height, drawing.size.y);
     add(text,
         "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"",
-        size, "\" height=\"", size, "\" viewBox=\"0 0 ", size, " ", size, "\">\n<title>frame ",
+        width, "\" height=\"", height, "\" viewBox=\"0 0 ", width, " ", height, "\">\n<title>frame ",
         std::to_string(drawing.frame),
         "</title>\n<rect width=\"100%\" height=\"100%\" fill=\"white\"/>\n<g fill=\"none\" "
         "stroke-linejoin=\"round\" stroke-linecap=\"round\" stroke-width=\"",

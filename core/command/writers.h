@@ -5,7 +5,7 @@
 #include <memory>
 #include <string>
 
-#include "drawing.h"
+#include "anamorph/figure/drawing.h"
 #include "output_file.h"
 
 namespace anamorph::command {

@@ -143,6 +143,14 @@ class Check(Case):
         result = self.run_program("check", self.write("p.n", "include pipe\nstop"))
         self.assertIn(b"there is no such file", result.stdout)
 
+    def test_the_language_says_of_itself_what_runs(self):
+        self.assertIn(b"bendby      ellipsoid joint ellipsoid angle axis\n", self.output("language"))
+        page = self.output("language", "bendb").decode()
+        self.assertIn("bendby ellipsoid joint", page)
+        script = page[page.index("For example:") + len("For example:\n\n"):]
+        self.assertEqual(self.output("check", "-", text=script), b"")
+        self.assertIn("\"fly\" is not a word", self.error("language", "fly"))
+
     def test_the_help_says_where_classic_is_not_the_original(self):
         text = " ".join(self.output("frames", "--help").decode().split())
         self.assertRegex(text, "abut and touch end in exact contact")

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "drawing.h"
+#include "anamorph/figure/drawing.h"
 
 #include <algorithm>
 #include <cmath>
@@ -10,7 +10,7 @@
 #include "anamorph/figure/outline.h"
 #include "anamorph/figure/skeleton.h"
 
-namespace anamorph::command {
+namespace anamorph {
 namespace {
 
 /// The rest is left for the rounding of numbers in a file (kTolRow).
@@ -27,18 +27,18 @@ bool has_extent(const std::vector<glm::dvec2>& points) {
     });
 }
 
-struct Box {
-    double low, high;  ///< both ways
+struct Corners {
+    glm::dvec2 low, high;
 };
 
 /// Cuts the segment from a to b to the box; false where nothing is left (Liang and Barsky).
-bool clip(glm::dvec2& a, glm::dvec2& b, const Box& box) {
+bool clip(glm::dvec2& a, glm::dvec2& b, const Corners& box) {
     double from = 0, to = 1;
     const glm::dvec2 d = b - a;
     for (int k = 0; k < 2; ++k)
         for (const double side : {1.0, -1.0}) {
             // side (a + s d - edge) <= 0
-            const double edge = side > 0 ? box.high : box.low;
+            const double edge = side > 0 ? box.high[k] : box.low[k];
             const double slope = side * d[k], room = side * (edge - a[k]);
             if (slope == 0) {
                 if (!(room >= 0)) return false;
@@ -57,13 +57,12 @@ bool clip(glm::dvec2& a, glm::dvec2& b, const Box& box) {
 
 class Page {
   public:
-    Page(const FigureFrame& frame, const DrawingOptions& options)
-        : m_frame(frame), m_options(options), m_view(view_of(frame, options.size / 1000)) {
-        if (options.perspective) m_view.eye_distance = *options.perspective;
+    Page(const FigureFrame& frame, const View& view, const glm::dvec2& size, const DrawingOptions& options)
+        : m_frame(frame), m_options(options), m_view(view) {
         const double margin = 2 * (options.line_width + options.halo) + 2;
-        m_box = {-margin, options.size + margin};
+        m_box = {glm::dvec2(-margin), size + margin};
         m_drawing.frame = frame.number;
-        m_drawing.size = options.size;
+        m_drawing.size = size;
         m_drawing.line_width = options.line_width;
         m_drawing.halo = options.halo;
         for (const Body& body : frame.bodies) m_shapes.push_back(body.shape);
@@ -80,9 +79,9 @@ class Page {
 
     void draw_outlines(const ParallelFor& parallel_for) {
         OutlineOptions options;
-        options.hide = m_options.hidden != Hidden::draw;
+        options.hide = m_options.hidden != HiddenLines::draw;
         options.crossings = m_options.crossings;
-        options.keep_hidden = m_options.hidden == Hidden::dash;
+        options.keep_hidden = m_options.hidden == HiddenLines::dash;
         options.tol = kShareOfTol * m_options.tol;
         const Outlines found = outlines(m_frame, m_view, options, parallel_for);
         const std::vector<Outline>& all = found.bodies;
@@ -117,14 +116,14 @@ class Page {
   private:
     void draw_outline(std::size_t i, const Outline& outline) {
         for (const Arc& arc : outline.visible) add_arc(StrokeKind::visible, i, outline, arc);
-        if (m_options.hidden == Hidden::dash)
+        if (m_options.hidden == HiddenLines::dash)
             for (const Arc& arc : outline.hidden) add_arc(StrokeKind::hidden, i, outline, arc);
     }
 
     void draw_crossing(const CrossingCurve& curve) {
         const auto i = static_cast<std::size_t>(curve.first);
         for (const Arc& arc : curve.visible) add_part(StrokeKind::visible, i, curve, arc);
-        if (m_options.hidden == Hidden::dash)
+        if (m_options.hidden == HiddenLines::dash)
             for (const Arc& arc : curve.hidden) add_part(StrokeKind::hidden, i, curve, arc);
     }
 
@@ -133,7 +132,7 @@ class Page {
     }
 
     void add_dot(std::size_t i, const glm::dvec2& at, double depth) {
-        if (std::min(at.x, at.y) < m_box.low || std::max(at.x, at.y) > m_box.high) return;
+        if (at.x < m_box.low.x || at.y < m_box.low.y || at.x > m_box.high.x || at.y > m_box.high.y) return;
         Stroke stroke = stroke_of(StrokeKind::dot, i);
         stroke.points.assign(1, at);
         stroke.depth = depth;
@@ -154,13 +153,13 @@ class Page {
             lines.push_back({o.limb(t), o.limb(t + std::numbers::pi), {}, {}});
             own.push_back({i});
         }
-        const bool hide = m_options.hidden != Hidden::draw;
+        const bool hide = m_options.hidden != HiddenLines::draw;
         hide_lines(lines, hide ? std::span<const Ellipsoid>(m_shapes) : std::span<const Ellipsoid>(), m_view,
                    own, parallel_for);
         for (std::size_t k = 0; k < lines.size(); ++k) {
             const auto i = static_cast<std::size_t>(bodies[k]);
             for (const Arc& part : lines[k].visible) add_line(StrokeKind::visible, i, lines[k], part);
-            if (m_options.hidden == Hidden::dash)
+            if (m_options.hidden == HiddenLines::dash)
                 for (const Arc& part : lines[k].hidden) add_line(StrokeKind::hidden, i, lines[k], part);
         }
     }
@@ -229,20 +228,21 @@ class Page {
         return stroke;
     }
 
-    glm::dvec2 on_page(const glm::dvec2& screen) const { return {screen.x, m_options.size - screen.y}; }
+    glm::dvec2 on_page(const glm::dvec2& screen) const { return {screen.x, m_drawing.size.y - screen.y}; }
 
     const FigureFrame& m_frame;
     const DrawingOptions& m_options;
-    View m_view;
-    Box m_box{};
+    const View& m_view;
+    Corners m_box{};
     std::vector<Ellipsoid> m_shapes;
     Drawing m_drawing;
 };
 
 }  // namespace
 
-Drawing draw(const FigureFrame& frame, const DrawingOptions& options, const ParallelFor& parallel_for) {
-    Page page(frame, options);
+Drawing draw(const FigureFrame& frame, const View& view, const glm::dvec2& size,
+             const DrawingOptions& options, const ParallelFor& parallel_for) {
+    Page page(frame, view, size, options);
     if (options.sticks == Sticks::none)
         page.draw_outlines(parallel_for);
     else
@@ -250,4 +250,4 @@ Drawing draw(const FigureFrame& frame, const DrawingOptions& options, const Para
     return page.take();
 }
 
-}  // namespace anamorph::command
+}  // namespace anamorph
