@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: Apache-2.0
+// How light falls on a body: the formula of RASEL, and the usual two.
+//
+// Directions are the observer's: x right, y up, z away. With the unit normal n, the unit direction l towards
+// the light, that towards the eye v, and the ambient share A, a colour is multiplied by
+//     rasel     A + (1 - A) (1 + n.l) / 2                   (Chapman 1986, section 2.9, with l = (0, 1, 0))
+//     lambert   A + (1 - A) max(0, n.l)
+//     blinn     the same, and specular max(0, n.h)^shininess of white is added, h = (l + v) / |l + v|.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <glm/vec3.hpp>
+
+namespace anamorph {
+
+/// The formula of the intensity.
+enum class Lighting { rasel, lambert, blinn };
+
+/// How bodies are lit.
+struct Light {
+    Lighting lighting = Lighting::rasel;
+    glm::dvec3 toward{0, 1, 0};  ///< the direction to the light, of length 1
+    double ambient = 0.3;        ///< 0 to 1
+    double specular = 0.3, shininess = 30;
+};
+
+/// A colour from 0 to 1 as it is seen where the surface has the unit normal `n` and the eye is in the direction
+/// `v`.
+inline glm::dvec3 lit(const glm::dvec3& color, const Light& light, const glm::dvec3& n, const glm::dvec3& v) {
+    const double cosine = glm::dot(n, light.toward);
+    const double direct = light.lighting == Lighting::rasel ? 0.5 * (1 + cosine) : std::max(0.0, cosine);
+    const glm::dvec3 diffuse = color * (light.ambient + (1 - light.ambient) * direct);
+    if (light.lighting != Lighting::blinn || !(cosine > 0)) return diffuse;
+    const glm::dvec3 half = light.toward + v;
+    const double length = glm::length(half);
+    if (!(length > 0)) return diffuse;
+    const double glance = std::max(0.0, glm::dot(n, half) / length);
+    return diffuse + glm::dvec3(light.specular * std::pow(glance, light.shininess));
+}
+
+}  // namespace anamorph
