@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: Apache-2.0
+// A picture on a surface in space, seen by a camera (Oka et al. 1987).
+//
+// The surface is cut into facets (facets.h) whose points are seen at most `tol` pixels from where they belong: a
+// distance on the screen, since near a silhouette a step on the screen is any distance on the picture. Each pixel shows
+// the nearest facet at its centre; with Filter::antialias, those at silhouettes and borders show what is seen at
+// kEdgeSamples^2 samples of them.
+#pragma once
+
+#include <glm/vec3.hpp>
+#include <memory>
+#include <mutex>
+#include <vector>
+
+#include "anamorph/drape/edges.h"
+#include "anamorph/parallel_for.h"
+#include "anamorph/render/canvas.h"
+#include "anamorph/render/picture.h"
+#include "anamorph/render/point_sampler.h"
+
+namespace anamorph {
+
+/// How light is added up.
+enum class DrapeShading {
+    none,
+    gouraud,  ///< intensities at the corners of facets, interpolated
+    phong     ///< normals at the corners of facets, interpolated
+};
+
+/// Lights at infinity, and what they do to a surface that is lit alike on both sides:
+/// color (ambient + diffuse sum |n . l|) + specular sum (n . h)^shininess, where a light is on the viewer's side.
+struct DrapeLighting {
+    DrapeShading shading = DrapeShading::none;
+    std::vector<glm::dvec3> lights = {{0, 0, 1}};  ///< directions towards them, of length 1
+    double ambient = 0.2, diffuse = 0.8, specular = 0, shininess = 20;
+};
+
+/// How the surface is made of facets.
+enum class DrapeScheme {
+    automatic,  ///< patches as large as the tolerance allows, without cracks
+    oka,        ///< blocks of the picture as parallelograms, nearer ones over farther ones (oka.h)
+    oka_z,      ///< the same with a depth for each pixel
+};
+
+/// What is drawn beside what every picture can show (Output): the depth ahead of the camera, infinite where nothing is
+/// seen; the surface's unit normal on the viewer's side, in space; the number of the patch; whether anything is seen.
+enum class DrapeOutput { shared, depth, normal, patch, coverage };
+
+/// How a drape is drawn.
+struct DrapeOptions {
+    DrapeScheme scheme = DrapeScheme::automatic;
+    double tol = 0.125;               ///< pixels on the screen; of oka and oka_z, what comes out
+    double block = 8, overlap = 0.5;  ///< OkaBlocks
+    Filter filter = Filter::antialias;
+    Wrap wrap = Wrap::clamp;
+    Output output = Output::color;
+    DrapeOutput own = DrapeOutput::shared;
+    DrapeLighting lighting;
+    std::vector<float> background;  ///< channel by channel; 0 for those that it lacks
+};
+
+/// A surface's patches, which views of it share.
+struct SharedTree {
+    explicit SharedTree(std::shared_ptr<const DrapedSurface> surface) : tree(std::move(surface)) {}
+    std::mutex mutex;
+    SurfaceTree tree;
+};
+
+/// A surface draped with a picture, ready to draw any box of the screen from any number of threads.
+class Drape {
+  public:
+    /// `picture`: its size in pixels. Throws Error where tol is less than the screen's grid allows, or takes too many
+    /// patches.
+    Drape(std::shared_ptr<SharedTree> surface, const Camera& camera, const Size& picture,
+          const DrapeOptions& options);
+
+    /// The largest bound of what the camera sees, or nearly so: pixels of the screen.
+    double max_error() const { return m_map->max_error(); }
+    /// Patches that the camera sees, or nearly so.
+    std::size_t patches() const { return m_map->facets().leaves.size(); }
+
+    /// Draws the pixels of `box`; the source is read for colour only. False when it could not be read.
+    bool draw(const Source* source, const Box& box, const ImageView& view,
+              const ParallelFor& parallel_for) const;
+
+  private:
+    /// A pixel on the facet that is seen there.
+    struct Spot;
+
+    Spot spot(const SeenPixels& pixels, int x, int y) const;
+    void weigh(Spot& spot, double x, double y) const;
+    bool draw_edges(const Source& source, const Box& box, const Canvas& canvas,
+                    const ParallelFor& parallel_for) const;
+    bool draw_edge(const EdgePixel& edge, const Source& source, const FootprintChooser& chooser,
+                   PointSampler& sampler, std::vector<float>& pixel) const;
+    /// A corner's normal on the viewer's side and the way from the eye to it, both of length 1 and in space.
+    struct Lit {
+        glm::dvec3 normal, ray;
+    };
+    Lit lit(const FacetCorner& corner) const;
+    glm::dvec3 normal(const Spot& spot) const;
+    double landing_error(const Spot& spot, int x, int y) const;
+    bool draw_values(const Box& box, const ImageView& view, const ParallelFor& parallel_for) const;
+    void put_values(const Spot& spot, int x, int y, float* to) const;
+    float light(const glm::dvec3& normal, const glm::dvec3& ray, float& highlight) const;
+    void light_pixel(const Spot& spot, float* pixel, int channels, int alpha) const;
+    void finish(const PixelRows& rows, int alpha) const;
+
+    std::shared_ptr<SharedTree> m_surface;
+    DrapeOptions m_options;
+    std::shared_ptr<const DrapeMap> m_map;
+    std::vector<Lit> m_lit;  ///< the corners, where they are needed
+    Picture m_picture;
+};
+
+}  // namespace anamorph

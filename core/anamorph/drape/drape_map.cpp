@@ -1,0 +1,216 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "anamorph/drape/drape_map.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "anamorph/simd/split_points.h"
+
+namespace anamorph {
+namespace {
+
+// Regions are squares that caches hold while they are drawn.
+constexpr int kSquare = 128;
+constexpr std::size_t kKeptRegions = 8;
+
+// Blocks of which only a part is seen are cut down to the least side.
+constexpr int kMostSide = 32, kLeastSide = 8;
+
+/// How many pixels of a box show something.
+int seen_in(const SeenPixels& pixels, const Box& box) {
+    int count = 0;
+    for (int y = box.y0; y < box.y1; ++y) {
+        const double* const facet = pixels.facet.data() + pixels.index(box.x0, y);
+        count += static_cast<int>(
+            std::count_if(facet, facet + box.width(), [](double f) { return f != SeenPixels::kNone; }));
+    }
+    return count;
+}
+
+/// body(box) for squares of at most `side`.
+template <class Body>
+void for_squares(const Box& box, int side, const Body& body) {
+    for (int y = box.y0; y < box.y1; y += side)
+        for (int x = box.x0; x < box.x1; x += side) body(intersection({x, y, x + side, y + side}, box));
+}
+
+}  // namespace
+
+std::unique_ptr<SeenPixels> SeenPool::take() {
+    const std::lock_guard lock(m_mutex);
+    if (m_free.empty()) return std::make_unique<SeenPixels>();
+    std::unique_ptr<SeenPixels> pixels = std::move(m_free.back());
+    m_free.pop_back();
+    return pixels;
+}
+
+void SeenPool::give_back(std::unique_ptr<SeenPixels> pixels) {
+    const std::lock_guard lock(m_mutex);
+    m_free.push_back(std::move(pixels));
+}
+
+DrapeMap::DrapeMap(Facets facets, const Camera& camera, const Size& picture, double tol)
+    : BlockMap(camera.screen().width, camera.screen().height,
+               {{0, 0, camera.screen().width, camera.screen().height}}, {1, kSquare, kKeptRegions}),
+      m_facets(std::move(facets)),
+      m_camera(camera),
+      m_picture(picture),
+      m_for_float(tol * kFloatShare),
+      m_raster(m_facets, camera.screen(), kSquare),
+      m_pool(std::make_shared<SeenPool>()) {
+    for (const FacetLeaf& leaf : m_facets.leaves)
+        m_max_error = std::max(m_max_error, leaf.bound + m_for_float);
+}
+
+void DrapeMap::plan(const Box& box, int, Blocks& blocks) const {
+    const auto region = std::make_shared<SeenRegion>(m_pool);
+    const Box screen{0, 0, width(), height()};
+    m_raster.draw(intersection({box.x0 - 1, box.y0 - 1, box.x1 + 1, box.y1 + 1}, screen), region->pixels());
+    blocks.data = region;
+    for_squares(box, kMostSide, [&](const Box& square) { cut(*region, square, blocks); });
+}
+
+/// Adds the blocks of a square: whole where all of it is seen, or nothing; else its quarters.
+void DrapeMap::cut(const SeenRegion& region, const Box& box, Blocks& blocks) const {
+    const int seen = seen_in(region.pixels(), box);
+    Block block;
+    block.box = box;
+    block.data = &region;
+    if (seen == 0) {
+        block.kind = Block::Kind::outside;
+        blocks.push_back(block);
+        return;
+    }
+    const int side = std::max(box.width(), box.height());
+    const bool whole = seen == box.width() * box.height();
+    if (!whole && side > kLeastSide) {
+        for_squares(box, (side + 1) / 2, [&](const Box& quarter) { cut(region, quarter, blocks); });
+        return;
+    }
+    block.kind = Block::Kind::computed;
+    block.bound = bound_of(region, box);
+    block.precise = !(whole && fits_float(region, box, block));
+    blocks.push_back(block);
+}
+
+/// The largest bound of the leaves that a box shows.
+double DrapeMap::bound_of(const SeenRegion& region, const Box& box) const {
+    double bound = 0;
+    for_leaves(region, box, [&](const FacetLeaf& leaf) { bound = std::max(bound, leaf.bound); });
+    return bound;
+}
+
+/// Gives a block a base to count its points from, and adds what is lost where they are floats: half of 2^-24 of their
+/// distance from the base, as fast as the surface moves on the screen. False where that is too much.
+bool DrapeMap::fits_float(const SeenRegion& region, const Box& box, Block& block) const {
+    double u[2] = {HUGE_VAL, -HUGE_VAL}, v[2] = {HUGE_VAL, -HUGE_VAL};
+    for (int y = box.y0; y < box.y1; ++y) {
+        const std::size_t at = region.pixels().index(box.x0, y);
+        simd::extend_range(region.pixels().u.data() + at, box.width(), u[0], u[1]);
+        simd::extend_range(region.pixels().v.data() + at, box.width(), v[0], v[1]);
+    }
+    block.base_x = static_cast<std::int32_t>(std::floor(u[0] * m_picture.width));
+    block.base_y = static_cast<std::int32_t>(std::floor(v[0] * m_picture.height));
+    const double reach_u = u[1] - u[0] + 1.0 / m_picture.width,
+                 reach_v = v[1] - v[0] + 1.0 / m_picture.height;
+    double lost = 0;
+    for_leaves(region, box, [&](const FacetLeaf& leaf) {
+        lost = std::max(lost, 0x1p-24 * (reach_u * leaf.by_u + reach_v * leaf.by_v));
+    });
+    if (!(lost <= m_for_float)) return false;
+    block.bound += lost;
+    return true;
+}
+
+/// body(leaf) for every leaf that a box shows.
+template <class Body>
+void DrapeMap::for_leaves(const SeenRegion& region, const Box& box, const Body& body) const {
+    double last = SeenPixels::kNone;
+    for (int y = box.y0; y < box.y1; ++y) {
+        const double* const facet = region.pixels().facet.data() + region.pixels().index(box.x0, y);
+        for (int i = 0; i < box.width(); ++i) {
+            if (facet[i] == last || facet[i] == SeenPixels::kNone) continue;
+            last = facet[i];
+            body(m_facets.leaves[m_facets.facets[static_cast<std::size_t>(last)].leaf]);
+        }
+    }
+}
+
+std::shared_ptr<const SeenRegion> DrapeMap::region_at(int x, int y) const {
+    const std::int64_t columns = (width() + kSquare - 1) / kSquare;
+    const auto kept = std::make_shared<SharedBlocks>(blocks(y / kSquare * columns + x / kSquare));
+    return {kept, static_cast<const SeenRegion*>((*kept)[0].data)};
+}
+
+bool DrapeMap::exact(double x, double y, int, Point<double>& source_point, int& source_piece) const noexcept {
+    const int i = std::clamp(static_cast<int>(std::floor(x)), 0, width() - 1),
+              j = std::clamp(static_cast<int>(std::floor(y)), 0, height() - 1);
+    const auto region = region_at(i, j);
+    const SeenPixels& pixels = region->pixels();
+    const std::size_t at = pixels.index(i, j);
+    source_piece = 0;
+    if (pixels.facet[at] == SeenPixels::kNone) return false;
+    source_point = {pixels.u[at] * m_picture.width, pixels.v[at] * m_picture.height};
+    return true;
+}
+
+void DrapeMap::exact_rows(const Block& block, int begin, int end, const DoubleRows& to) const noexcept {
+    const SeenPixels& pixels = static_cast<const SeenRegion*>(block.data)->pixels();
+    for (int row = begin; row < end; ++row) {
+        const std::size_t at = pixels.index(block.box.x0, block.box.y0 + row);
+        const std::ptrdiff_t first = (row - begin) * to.stride;
+        for (int i = 0; i < block.box.width(); ++i) {
+            const std::size_t k = at + static_cast<std::size_t>(i);
+            to.x[first + i] = pixels.u[k] * m_picture.width;
+            to.y[first + i] = pixels.v[k] * m_picture.height;
+            to.piece[first + i] = pixels.facet[k] == SeenPixels::kNone ? -1 : 0;
+        }
+    }
+}
+
+void DrapeMap::computed_row(const Block& block, int row, int begin, int end, float* x,
+                            float* y) const noexcept {
+    const SeenPixels& pixels = static_cast<const SeenRegion*>(block.data)->pixels();
+    const std::size_t at = pixels.index(block.box.x0 + begin, block.box.y0 + row);
+    const double *const u = pixels.u.data() + at, *const v = pixels.v.data() + at;
+    const double width = m_picture.width, height = m_picture.height, left = block.base_x, top = block.base_y;
+    for (int i = 0; i < end - begin; ++i) {
+        x[i] = static_cast<float>(u[i] * width - left);
+        y[i] = static_cast<float>(v[i] * height - top);
+    }
+}
+
+Jacobian DrapeMap::jacobian(double x, double y, int) const noexcept {
+    const int i = std::clamp(static_cast<int>(std::floor(x)), 0, width() - 1),
+              j = std::clamp(static_cast<int>(std::floor(y)), 0, height() - 1);
+    const auto region = region_at(i, j);
+    const double seen = region->pixels().facet[region->pixels().index(i, j)];
+    if (seen == SeenPixels::kNone) return {};
+    return jacobian_of(m_facets.facets[static_cast<std::size_t>(seen)], x, y);
+}
+
+/// Of its projective map.
+Jacobian DrapeMap::jacobian_of(const Facet& facet, double x, double y) const {
+    const double unit = std::ldexp(1.0, m_facets.grid_bits);
+    const double px = (x - width() / 2.0) * unit, py = (y - height() / 2.0) * unit;
+    // Weighted sums over the corners of 1, u and v, and their derivatives by x and y.
+    double w[3] = {}, u[3] = {}, v[3] = {};
+    for (int k = 0; k < 3; ++k) {
+        const FacetCorner &a = m_facets.corners[facet.corner[(k + 1) % 3]],
+                          &b = m_facets.corners[facet.corner[(k + 2) % 3]],
+                          &c = m_facets.corners[facet.corner[k]];
+        const double e[3] = {edge_function(a, b, px, py), -(b.y - a.y) * unit, (b.x - a.x) * unit};
+        for (int n = 0; n < 3; ++n) {
+            w[n] += e[n] * c.weight;
+            u[n] += e[n] * c.weight * c.u;
+            v[n] += e[n] * c.weight * c.v;
+        }
+    }
+    const auto derivative = [&](const double* s, int n, double scale) {
+        return (s[n] - s[0] / w[0] * w[n]) / w[0] * scale;
+    };
+    return {derivative(u, 1, m_picture.width), derivative(v, 1, m_picture.height),
+            derivative(u, 2, m_picture.width), derivative(v, 2, m_picture.height)};
+}
+
+}  // namespace anamorph

@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: Apache-2.0
+// A draped picture as a pull map: once it is known which facet each pixel of the screen shows, the rest is reading a
+// source at points, as any map of blocks does.
+#pragma once
+
+#include <memory>
+#include <mutex>
+#include <vector>
+
+#include "anamorph/approx/block.h"
+#include "anamorph/drape/facet_raster.h"
+
+namespace anamorph {
+
+/// Room for what is seen in regions, used again for others.
+class SeenPool {
+  public:
+    std::unique_ptr<SeenPixels> take();
+    void give_back(std::unique_ptr<SeenPixels> pixels);
+
+  private:
+    std::mutex m_mutex;
+    std::vector<std::unique_ptr<SeenPixels>> m_free;
+};
+
+/// What is seen in a region.
+class SeenRegion final : public RegionData {
+  public:
+    explicit SeenRegion(std::shared_ptr<SeenPool> pool) : m_pool(std::move(pool)), m_pixels(m_pool->take()) {}
+    ~SeenRegion() override { m_pool->give_back(std::move(m_pixels)); }
+    SeenRegion(const SeenRegion&) = delete;
+    SeenRegion& operator=(const SeenRegion&) = delete;
+
+    /// Of the region, and one pixel more on each side that has one.
+    SeenPixels& pixels() { return *m_pixels; }
+    const SeenPixels& pixels() const { return *m_pixels; }
+
+  private:
+    std::shared_ptr<SeenPool> m_pool;
+    std::unique_ptr<SeenPixels> m_pixels;
+};
+
+/// Points in pixels of a picture of `picture` pixels that lies on the surface. Pixels of the screen where nothing is
+/// seen have none. A block's bound is a distance on the screen, in pixels.
+class DrapeMap final : public BlockMap {
+  public:
+    /// Bounds of facets leave kFloatShare of `tol` to points in float; blocks for which that is too little have theirs in
+    /// double.
+    DrapeMap(Facets facets, const Camera& camera, const Size& picture, double tol);
+
+    const Facets& facets() const { return m_facets; }
+    const Camera& camera() const { return m_camera; }
+    const Size& picture() const { return m_picture; }
+    /// No block's bound is larger.
+    double max_error() const { return m_max_error; }
+
+    /// What is seen about a pixel of the screen.
+    std::shared_ptr<const SeenRegion> region_at(int x, int y) const;
+    const FacetRaster& raster() const { return m_raster; }
+    /// Pixels of the picture per pixel of the screen, at a point of a facet's plane.
+    Jacobian jacobian_of(const Facet& facet, double x, double y) const;
+
+    bool exact(double x, double y, int piece, Point<double>& source_point,
+               int& source_piece) const noexcept override;
+    void exact_rows(const Block& block, int begin, int end, const DoubleRows& to) const noexcept override;
+    Jacobian jacobian(double x, double y, int piece) const noexcept override;
+    void computed_row(const Block& block, int row, int begin, int end, float* x,
+                      float* y) const noexcept override;
+
+  protected:
+    void plan(const Box& box, int piece, Blocks& blocks) const override;
+
+  private:
+    void cut(const SeenRegion& region, const Box& box, Blocks& blocks) const;
+    double bound_of(const SeenRegion& region, const Box& box) const;
+    bool fits_float(const SeenRegion& region, const Box& box, Block& block) const;
+    template <class Body>
+    void for_leaves(const SeenRegion& region, const Box& box, const Body& body) const;
+
+    Facets m_facets;
+    Camera m_camera;
+    Size m_picture;
+    double m_for_float, m_max_error = 0;
+    FacetRaster m_raster;
+    std::shared_ptr<SeenPool> m_pool;
+};
+
+}  // namespace anamorph

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: Apache-2.0
+// A surface in space on which a picture lies (Oka 1987, section 2: f), once continuously differentiable, and twice but
+// on curves.
+#pragma once
+
+#include <array>
+#include <glm/vec3.hpp>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "anamorph/deform/deformation.h"
+#include "anamorph/map/surface/shape.h"
+#include "anamorph/number/interval.h"
+#include "anamorph/number/jet.h"
+
+namespace anamorph {
+
+/// Position and its derivatives by u and v.
+struct SurfaceFrame {
+    glm::dvec3 position, by_u, by_v;
+};
+
+/// Taylor coefficients of x, y and z over a box of (u, v): position, first and second derivatives.
+using SurfaceRange = std::array<Jet<Interval, 2>, 3>;
+
+/// Thread safe.
+class DrapedSurface {
+  public:
+    virtual ~DrapedSurface() = default;
+    virtual glm::dvec3 position(double u, double v) const noexcept = 0;
+    /// How far position() may be from the exact point, coordinate by coordinate, at most.
+    virtual double rounding(double u, double v) const noexcept = 0;
+    virtual SurfaceFrame frame(double u, double v) const noexcept = 0;
+    /// As exactly as is known: what errors are measured against.
+    virtual std::array<long double, 3> truth(long double u, long double v) const noexcept = 0;
+    /// Encloses the Taylor coefficients at every point of the box; those of the second degree wherever they exist.
+    virtual SurfaceRange range(const Interval& u, const Interval& v) const noexcept = 0;
+};
+
+/// The names of surfaces, in the order of map/surface/list.h.
+const std::vector<std::string>& surface_names();
+
+/// One of them, moved by deformations, whose (u, v) run from 0 to 1 with v up (Oka 1987, eq. 4.1). Throws Error on a
+/// deformation that check_deformation refuses.
+std::shared_ptr<const DrapedSurface> make_surface(std::size_t which, const SurfaceShape& shape,
+                                                  const std::vector<Deformation>& deformations = {});
+
+}  // namespace anamorph

@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "anamorph/map/surface/shape.h"
+
+namespace anamorph::surfaces {
+
+/// A sphere of `radius` about the origin: the picture covers `angle` of longitude, and all latitudes.
+class Sphere {
+  public:
+    explicit Sphere(const SurfaceShape& shape)
+        : m_turn(shape.angle * (kPi / 180)), m_radius(shape.radius > 0 ? shape.radius : 0.5) {}
+
+    template <class T>
+    SurfacePoint<T> point(const T& u, const T& v) const {
+        T s, c, up, out;
+        sin_cos(T((u - 0.5) * m_turn), s, c);
+        sin_cos(T((0.5 - v) * kPi), up, out);
+        out = out * m_radius;
+        return {out * s, up * m_radius, out * c};
+    }
+
+  private:
+    double m_turn, m_radius;
+};
+
+}  // namespace anamorph::surfaces

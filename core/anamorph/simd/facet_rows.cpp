@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: Apache-2.0
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "anamorph/simd/facet_rows.cpp"
+#include "anamorph/simd/facet_rows.h"
+
+#include "hwy/foreach_target.h"  // must come before highway.h
+#include "hwy/highway.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace anamorph::simd {
+namespace HWY_NAMESPACE {
+namespace hn = hwy::HWY_NAMESPACE;
+
+// Products and sums are rounded one by one, so that sets with and without fused operations agree. Sums of e_i times
+// what is not negative lose a few units of 2^-53, and e_i themselves are exact.
+void DrawFacet(const FacetSetup& f, int width, int height, const FacetPlanes& to) {
+    const hn::CappedTag<double, 16> d;
+    using V = hn::Vec<decltype(d)>;
+    const int lanes = static_cast<int>(hn::Lanes(d));
+    const V end = hn::Set(d, width);
+    const auto sum = [&](const V& a, const V& b, const V& c, const double* of) HWY_ATTR {
+        return hn::Add(hn::Add(hn::Mul(a, hn::Set(d, of[0])), hn::Mul(b, hn::Set(d, of[1]))),
+                       hn::Mul(c, hn::Set(d, of[2])));
+    };
+    for (int j = 0; j < height; ++j) {
+        const std::ptrdiff_t row = j * to.stride;
+        const auto edge = [&](int k, const V& column) HWY_ATTR {
+            return hn::Add(hn::Set(d, f.e[k] + j * f.down[k]), hn::Mul(column, hn::Set(d, f.right[k])));
+        };
+        for (int i = 0; i < width; i += lanes) {
+            const V column = hn::Iota(d, i);
+            const V a = edge(0, column), b = edge(1, column), c = edge(2, column);
+            auto in = hn::And(hn::Ge(a, hn::Set(d, f.least[0])), hn::Ge(b, hn::Set(d, f.least[1])));
+            in = hn::And(hn::And(in, hn::Ge(c, hn::Set(d, f.least[2]))), hn::Lt(column, end));
+            if (hn::AllFalse(d, in)) continue;
+            double* const nearness = to.nearness + row + i;
+            const V near = sum(a, b, c, f.nearness);
+            in = hn::And(in, hn::Gt(near, hn::LoadU(d, nearness)));
+            if (hn::AllFalse(d, in)) continue;
+            const V scale = hn::Div(hn::Set(d, 1), sum(a, b, c, f.weight));
+            hn::BlendedStore(near, in, d, nearness);
+            hn::BlendedStore(hn::Mul(sum(a, b, c, f.u), scale), in, d, to.u + row + i);
+            hn::BlendedStore(hn::Mul(sum(a, b, c, f.v), scale), in, d, to.v + row + i);
+            hn::BlendedStore(hn::Set(d, f.id), in, d, to.id + row + i);
+        }
+    }
+}
+
+}  // namespace HWY_NAMESPACE
+}  // namespace anamorph::simd
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace anamorph::simd {
+
+HWY_EXPORT(DrawFacet);
+
+void draw_facet(const FacetSetup& facet, int width, int height, const FacetPlanes& to) {
+    HWY_DYNAMIC_DISPATCH(DrawFacet)(facet, width, height, to);
+}
+
+}  // namespace anamorph::simd
+#endif
