@@ -113,6 +113,15 @@ else
     echo "(no film.mp4: ffmpeg is not installed)"
 fi
 
+# The same picture as a page that is turned, and raised by a list of deformations before the camera.
+page="$a.drape?surface=page_turn&direction=-25&radius=0.12&shading=phong&light=0.3,0.4,1&fov=35&camera=0.3,-0.7,2&background=0.1,0.1,0.1"
+echo "page.0000.jpg to page.0024.jpg: $page&turn={FRAME_NUMBER/24}"
+oiiotool --frames 0-24 "$page&turn={FRAME_NUMBER/24}" -o page.%04d.jpg
+cp ../../../examples/relief.csv .
+relief="round.png.drape?deform=relief.csv&shading=phong&light=-0.6,0.5,1&ambient=0.35&fov=40&camera=0.8,0.3,1.2"
+echo "relief.jpg: $relief"
+oiiotool "$relief" -o relief.jpg
+
 # Ellipsoids that walk by a script of NUDES: outlines with hidden lines removed.
 cp ../../../examples/figures/walker.nudes .
 echo "walker.png, walker.pdf: walker.nudes"
@@ -120,7 +129,7 @@ echo "walker.png, walker.pdf: walker.nudes"
 ../../release/core/command/anamorph-figure pdf walker.nudes --frame all -o walker.pdf
 
 # Speed against error of all operations: one table and one plot each.
-for op in pano warp morph; do
+for op in pano warp morph drape; do
     table="speed_vs_error_$op"
     size=1024 cases=()
     if [ "$op" = morph ]; then
@@ -136,5 +145,5 @@ done
 
 /usr/bin/python3 ../../../examples/contact_sheet.py contact_sheet.png panorama.png rectilinear.png rolled.png fisheye.png \
     little_planet.png cylindrical.png mercator.png cube_faces.png error.png round.png warp.jpg \
-    warp_error.png "$a" lines.jpg film.0024.jpg walker.png
+    warp_error.png "$a" lines.jpg film.0024.jpg page.0012.jpg relief.jpg walker.png
 echo "done: $out"

@@ -205,8 +205,9 @@ ImageSpec picture_spec(const ImageSpec* source, const PictureRequest& picture) {
     spec.format = oiio_type(pixel_type(spec.format));
     const bool color = picture.pixels == PixelKind::color;
     if (!color)
-        set_channels(spec, picture.pixels == PixelKind::point ? std::vector<std::string>{"R", "G"}
-                                                              : std::vector<std::string>{"Y"});
+        set_channels(spec, picture.pixels == PixelKind::point    ? std::vector<std::string>{"R", "G"}
+                           : picture.pixels == PixelKind::vector ? std::vector<std::string>{"R", "G", "B"}
+                                                                 : std::vector<std::string>{"Y"});
     else if (!source)
         set_channels(spec, picture.channels);
     check_size(spec);

@@ -8,8 +8,10 @@
 #include <cstdint>
 #include <memory>
 
+#include "anamorph/file_names.h"
 #include "anamorph/image_source.h"
 #include "anamorph/metadata.h"
+#include "anamorph/operation/drape.h"
 #include "anamorph/operation/morph.h"
 #include "anamorph/operation/pano.h"
 #include "anamorph/operation/warp.h"
@@ -68,14 +70,21 @@ ParameterValues values_of(const Operation& operation, const OIIO::ParamValueList
     return values;
 }
 
-/// The files that the options name.
-SideFiles side_files_of(const Operation& operation, const ParameterValues& values) {
+/// The files that the options name, and those that these name.
+struct NamedFiles {
     SideFiles files;
+    LinkedFiles linked;
+};
+NamedFiles files_of(const Operation& operation, const ParameterValues& values) {
+    NamedFiles named;
+    SideFiles& files = named.files;
     for (const Parameter& p : *operation.parameters) {
         const bool names_a_file = p.type == ParameterType::image || p.type == ParameterType::file;
         if (names_a_file && values.given(p.name)) files[p.name] = {values.text(p.name), ""};
     }
-    return files;
+    if (operation.linked) named.linked = operation.linked(values, files, side_file_reader());
+    for (const LinkedFile& file : named.linked) files[file.key] = {file.name, ""};
+    return named;
 }
 
 /// Asks for huge pages behind memory that is written next: a page fault costs as much as drawing 500 pixels.
@@ -158,6 +167,26 @@ void fill(ImageBuf& dst, const SolvedPicture& picture, const SourceStacks& stack
     }
 }
 
+/// Adds the images among linked files; the keys of those that cannot be opened, which are null.
+std::vector<std::string> open_linked(const LinkedFiles& linked, std::vector<std::unique_ptr<Source>>& images,
+                                     std::vector<ImageSpec>& specs) {
+    std::vector<std::string> missing;
+    for (const LinkedFile& file : linked) {
+        if (!file.image) continue;
+        images.emplace_back();
+        specs.emplace_back();
+        try {
+            check_file_name(file.key, file.name);
+            auto image = std::make_unique<CacheSource>(OIIO::ImageCache::create(true), file.name, 0, 0);
+            specs.back() = image->spec();
+            images.back() = std::move(image);
+        } catch (const Error&) {
+            missing.push_back(file.key);
+        }
+    }
+    return missing;
+}
+
 void check_count(const Operation& operation, std::size_t sources) {
     const std::size_t least = operation.least_sources, most = operation.sources.size();
     if (sources >= least && sources <= most) return;
@@ -178,9 +207,12 @@ void run(const Operation& operation, ImageBuf& dst, const std::vector<const Imag
         known.push_back(source_image(upright(src->spec())));
     }
     const ParameterValues values = values_of(operation, options, dst);
-    const SideFiles files = side_files_of(operation, values);
+    const NamedFiles named = files_of(operation, values);
+    std::vector<std::unique_ptr<Source>> images;
+    for (const ImageBuf* src : sources) images.push_back(source_of(*src));
+    const std::vector<std::string> missing = open_linked(named.linked, images, specs);
     const std::unique_ptr<const Pictures> pictures =
-        operation.read({values, known, files, side_file_reader()});
+        operation.read({values, known, named.files, side_file_reader(), missing});
     const PictureRequest request = *pictures->picture(0, 0);
     const ImageSpec first = sources.empty() ? ImageSpec() : upright(specs[0]);
     const ImageSpec spec = picture_spec(sources.empty() ? nullptr : &first, request);
@@ -188,8 +220,6 @@ void run(const Operation& operation, ImageBuf& dst, const std::vector<const Imag
     const std::unique_ptr<const SolvedPicture> picture = request.solve();
     const Attributes reached = picture->reached(parallel_for);
 
-    std::vector<std::unique_ptr<Source>> images;
-    for (const ImageBuf* src : sources) images.push_back(source_of(*src));
     const SourceStacks stacks = make_source_stacks(std::move(images), specs, pictures->faces(),
                                                    filtering_space(values, request.pixels));
     const bool unwritten = prepare(dst, spec, roi);
@@ -250,6 +280,11 @@ bool mesh_warp(ImageBuf& dst, const ImageBuf& src, const OIIO::ParamValueList& o
     return run_in_place(warp_operation(), "mesh_warp", dst, {&src}, options, roi, nthreads);
 }
 
+bool drape(ImageBuf& dst, const ImageBuf& texture, const OIIO::ParamValueList& options, ROI roi,
+           int nthreads) {
+    return run_in_place(drape_operation(), "drape", dst, {&texture}, options, roi, nthreads);
+}
+
 bool morph(ImageBuf& dst, const ImageBuf& a, const ImageBuf& b, const OIIO::ParamValueList& options, ROI roi,
            int nthreads) {
     return morph(dst, {&a, &b}, options, roi, nthreads);
@@ -269,6 +304,12 @@ ImageBuf reproject(const ImageBuf& src, const OIIO::ParamValueList& options, ROI
 ImageBuf mesh_warp(const ImageBuf& src, const OIIO::ParamValueList& options, ROI roi, int nthreads) {
     ImageBuf result;
     mesh_warp(result, src, options, roi, nthreads);
+    return result;
+}
+
+ImageBuf drape(const ImageBuf& texture, const OIIO::ParamValueList& options, ROI roi, int nthreads) {
+    ImageBuf result;
+    drape(result, texture, options, roi, nthreads);
     return result;
 }
 

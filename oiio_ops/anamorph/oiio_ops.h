@@ -40,6 +40,13 @@ bool mesh_warp(OIIO::ImageBuf& dst, const OIIO::ImageBuf& src, const OIIO::Param
 OIIO::ImageBuf mesh_warp(const OIIO::ImageBuf& src, const OIIO::ParamValueList& options = {},
                          OIIO::ROI roi = {}, int nthreads = 0);
 
+/// A picture laid on a surface in space and seen by a camera: the operation drape (surface, camera, deform, ...).
+/// anamorph:max_error is in pixels of the result; anamorph:patches tells how many patches were drawn.
+bool drape(OIIO::ImageBuf& dst, const OIIO::ImageBuf& texture, const OIIO::ParamValueList& options = {},
+           OIIO::ROI roi = {}, int nthreads = 0);
+OIIO::ImageBuf drape(const OIIO::ImageBuf& texture, const OIIO::ParamValueList& options = {},
+                     OIIO::ROI roi = {}, int nthreads = 0);
+
 /// A step of the way from one picture to another along features that correspond to each other: the operation
 /// morph (features, t, ...). The picture is like `a` in type, metadata and, without `size`, in size.
 bool morph(OIIO::ImageBuf& dst, const OIIO::ImageBuf& a, const OIIO::ImageBuf& b,

@@ -80,6 +80,11 @@ class FileReader final : public SideFileReader {
         return text;
     }
 
+    bool exists(const std::string& name) const override {
+        std::error_code failure;
+        return fs::is_regular_file(name, failure);
+    }
+
     std::unique_ptr<SideImage> image(const std::string& key, const std::string& name) const override {
         return std::make_unique<OiioImage>(key, name);
     }

@@ -47,8 +47,10 @@ SourceStacks make_source_stacks(std::vector<std::unique_ptr<Source>> images,
                                 const std::string& colorspace) {
     SourceStacks stacks;
     for (std::size_t i = 0; i < images.size(); ++i)
-        stacks.push_back(std::make_unique<const SourceStack>(std::move(images[i]), specs[i],
-                                                             i == 0 ? faces : SourceFaces{}, colorspace));
+        stacks.push_back(images[i]
+                             ? std::make_unique<const SourceStack>(std::move(images[i]), specs[i],
+                                                                   i == 0 ? faces : SourceFaces{}, colorspace)
+                             : nullptr);
     return stacks;
 }
 
@@ -57,10 +59,10 @@ namespace {
 void draw_in_space(const SolvedPicture& picture, const SourceStacks& stacks, const Box& box,
                    const ImageView& view, const ParallelFor& parallel_for) {
     std::vector<const Source*> tops;
-    for (const auto& stack : stacks) tops.push_back(&stack->top());
+    for (const auto& stack : stacks) tops.push_back(stack ? &stack->top() : nullptr);
     if (picture.draw(tops, box, view, parallel_for)) return;
     for (const auto& stack : stacks)
-        if (const std::string error = stack->error(); !error.empty()) throw Error(error);
+        if (const std::string error = stack ? stack->error() : ""; !error.empty()) throw Error(error);
     throw Error("a source cannot be read");
 }
 
@@ -68,7 +70,7 @@ void draw_in_space(const SolvedPicture& picture, const SourceStacks& stacks, con
 
 void draw_picture(const SolvedPicture& picture, const SourceStacks& stacks, const Box& box,
                   const ImageView& view, const ParallelFor& parallel_for) {
-    const WorkingSpace* space = stacks.empty() ? nullptr : stacks[0]->space();
+    const WorkingSpace* space = stacks.empty() || !stacks[0] ? nullptr : stacks[0]->space();
     if (!space) return draw_in_space(picture, stacks, box, view, parallel_for);
     // In float and the working space, then back, row by row.
     const std::size_t row = static_cast<std::size_t>(box.width()) * static_cast<std::size_t>(view.channels);

@@ -37,7 +37,8 @@ class SourceStack {
     const Source* m_top;
 };
 
-/// The sources of a picture, as many as the operation takes; `faces` are the first one's.
+/// The sources of a picture, as many as the operation takes, null where one is missing; `faces` are the first
+/// one's.
 using SourceStacks = std::vector<std::unique_ptr<const SourceStack>>;
 SourceStacks make_source_stacks(std::vector<std::unique_ptr<Source>> images,
                                 const std::vector<OIIO::ImageSpec>& specs, const SourceFaces& faces,

@@ -50,7 +50,10 @@ void explain_to_oiiotool(const std::string& name, const std::string& reason) {
 
 std::string joined_extensions() {
     std::string text;
-    for (const Operation* operation : operations()) text += "." + operation->name + ", ";
+    for (const Operation* operation : operations()) {
+        text += "." + operation->name + ", ";
+        for (const std::string& ending : operation->endings) text += "." + ending + ", ";
+    }
     return text + std::string(kBufferExtension);
 }
 
@@ -311,6 +314,25 @@ class BufferOutput final : public ImageOutput {
 };
 
 }  // namespace
+
+/// As OpenImageIO reads them: names one after the other, and null after the last.
+struct Extensions {
+    static constexpr std::size_t kMost = 64;
+    const char* names[kMost] = {};
+
+    Extensions() {
+        std::size_t count = 0;
+        const auto add = [&](const std::string& name) {
+            if (count + 1 < kMost) names[count++] = name.c_str();
+        };
+        static const std::string buffers(kBufferExtension.substr(1));
+        for (const Operation* operation : operations()) add(operation->name);
+        add(buffers);
+        for (const Operation* operation : operations())
+            for (const std::string& ending : operation->endings) add(ending);
+    }
+};
+
 }  // namespace anamorph
 
 OIIO_PLUGIN_EXPORTS_BEGIN
@@ -325,11 +347,7 @@ OIIO_EXPORT const char* anamorph_recipes_imageio_library_version() {
 OIIO_EXPORT OIIO::ImageInput* anamorph_recipes_input_imageio_create() {
     return new anamorph::FileInput;
 }
-OIIO_EXPORT const char* anamorph_recipes_input_extensions[] = {
-#define ANAMORPH_OPERATION(name) #name,
-#include "anamorph/operation/list.h"
-#undef ANAMORPH_OPERATION
-    "anabuf", nullptr};
+OIIO_EXPORT anamorph::Extensions anamorph_recipes_input_extensions;
 
 OIIO_EXPORT OIIO::ImageOutput* anamorph_recipes_output_imageio_create() {
     return new anamorph::BufferOutput;

@@ -8,6 +8,7 @@
 #include <fstream>
 
 #include "anamorph/file_names.h"
+#include "anamorph/side_files.h"
 #include "buffer_store.h"
 
 namespace anamorph {
@@ -68,12 +69,21 @@ std::string state_of(const std::string& name) {
     return state + "\n";
 }
 
+/// Is it the name of a file that the operation draws as it stands?
+bool ends_as_main_file(const Operation& operation, std::string_view name) {
+    return std::any_of(operation.endings.begin(), operation.endings.end(), [&](const std::string& ending) {
+        std::string dotted = ".";
+        dotted += ending;
+        return has_extension(name, dotted);
+    });
+}
+
 /// The values of a recipe, and the files that they name; nothing is known of those yet.
 Recipe read_recipe(const Operation& operation, const std::string& name,
                    const std::vector<Assignment>& config) {
     RecipeName parsed = parse_recipe_name(name);
     parsed.base = without_detours(parsed.base);
-    Recipe recipe{&operation, ParameterValues(*operation.parameters), {}, {}};
+    Recipe recipe{&operation, ParameterValues(*operation.parameters), {}, {}, {}};
     // Takes the values of one place; files there are relative to `folder`.
     const auto take = [&](const std::vector<Assignment>& place, const fs::path& folder) {
         ParameterValues own(*operation.parameters);
@@ -84,13 +94,16 @@ Recipe read_recipe(const Operation& operation, const std::string& name,
             const std::string& file = own.text(p.name);
             const bool in_memory = has_extension(file, kBufferExtension);
             const std::string path = (folder / std::string(base_of(file))).string();
-            recipe.files[p.name].name =
-                in_memory ? file : without_detours(path) + file.substr(base_of(file).size());
+            recipe.files[p.name] = {
+                in_memory ? file : without_detours(path) + file.substr(base_of(file).size()), "",
+                p.type == ParameterType::image};
         }
         recipe.values.assign(place);
     };
+    // A name may be that of the file that is drawn.
+    const bool as_it_stands = ends_as_main_file(operation, parsed.base);
     std::string text;
-    if (read_recipe_file(parsed.base, text)) {
+    if (!as_it_stands && read_recipe_file(parsed.base, text)) {
         try {
             take(parse_recipe(text), fs::path(parsed.base).parent_path());
         } catch (const Error& e) {
@@ -99,11 +112,23 @@ Recipe read_recipe(const Operation& operation, const std::string& name,
     }
     take(parsed.assignments, {});
     take(config, {});
-    const bool draws_one = !operation.sources.empty();
-    if (draws_one && !recipe.files.count(operation.sources[0]))
-        recipe.files[operation.sources[0]].name =
-            parsed.base.substr(0, parsed.base.size() - operation.name.size() - 1);
+    if (as_it_stands) {
+        if (recipe.values.given(operation.main_file))
+            throw Error(operation.main_file, printable(recipe.values.text(operation.main_file)),
+                        "must not be given with the name of a file that is drawn itself");
+        recipe.files[operation.main_file].name = parsed.base;
+    }
+    const std::string first = operation.sources.empty() ? operation.main_file : operation.sources[0];
+    if (!first.empty() && !recipe.files.count(first))
+        recipe.files[first] = {parsed.base.substr(0, parsed.base.size() - operation.name.size() - 1), "",
+                               first != operation.main_file};
     for (const auto& [key, file] : recipe.files) check_file_name(key, file.name);
+    if (operation.linked)
+        for (const LinkedFile& file : operation.linked(recipe.values, recipe.files, side_file_reader())) {
+            check_file_name(file.key, file.name);
+            recipe.files[file.key] = {file.name, "", file.image};
+            if (file.image) recipe.linked_images.push_back(file.key);
+        }
     return recipe;
 }
 
@@ -119,7 +144,8 @@ bool has_extension(std::string_view name, std::string_view extension) {
 
 const Operation* operation_of(std::string_view name) {
     for (const Operation* operation : operations())
-        if (has_extension(name, "." + operation->name)) return operation;
+        if (has_extension(name, "." + operation->name) || ends_as_main_file(*operation, name))
+            return operation;
     return nullptr;
 }
 
@@ -131,7 +157,7 @@ Recipe RecipeReader::load(const std::string& name, const std::vector<Assignment>
     recipe.identity = operation->name + "\n" + recipe.values.key();
     for (auto& [key, file] : recipe.files) {
         m_way = {normal(name)};
-        file.identity = identity_of(file.name);
+        file.identity = identity_of(file);
         recipe.identity += key + "=" + file.name + "\n" + file.identity;
     }
     return recipe;
@@ -149,19 +175,20 @@ const Recipe& RecipeReader::nested(const Operation& operation, const std::string
 }
 
 /// The states of a file and of all that it is made of.
-const std::string& RecipeReader::identity_of(const std::string& file) {
-    const auto found = m_identities.find(normal(file));
+const std::string& RecipeReader::identity_of(const SideFile& file) {
+    const std::string known = (file.image ? "image " : "file ") + normal(file.name);
+    const auto found = m_identities.find(known);
     if (found != m_identities.end()) return found->second;
     m_seen.clear();
     m_identity.clear();
     visit(file);
-    return m_identities.emplace(normal(file), m_identity).first->second;
+    return m_identities.emplace(known, m_identity).first->second;
 }
 
 /// Walks the files that a file is made of, each once.
-void RecipeReader::visit(const std::string& file) {
-    const std::string name = normal(file);
-    const Operation* operation = operation_of(file);
+void RecipeReader::visit(const SideFile& file) {
+    const std::string name = normal(file.name);
+    const Operation* operation = file.image ? operation_of(file.name) : nullptr;
     const bool again = std::find(m_way.begin(), m_way.end(), name) != m_way.end();
     m_way.push_back(name);
     if (operation && again) {
@@ -171,12 +198,12 @@ void RecipeReader::visit(const std::string& file) {
     }
     if (operation && static_cast<int>(m_way.size()) > kMaxDepth)
         throw Error("recipes nest too deep: must be at most " + std::to_string(kMaxDepth));
-    if (m_seen.insert(name).second) {
+    if (m_seen.insert((operation ? "recipe " : "") + name).second) {
         const auto [state, is_new] = m_states.try_emplace(name);
-        if (is_new) state->second = state_of(file);
+        if (is_new) state->second = state_of(file.name);
         m_identity += state->second;
         if (operation)
-            for (const auto& [key, used] : nested(*operation, file).files) visit(used.name);
+            for (const auto& [key, used] : nested(*operation, file.name).files) visit(used);
     }
     m_way.pop_back();
 }

@@ -29,7 +29,7 @@ decltype(auto) in_recipe(std::string_view name, const Body& body) {
     }
 }
 
-/// The operation whose recipes have such a name, or null.
+/// The operation whose recipes have such a name, or that draws files of such a name, or null.
 const Operation* operation_of(std::string_view name);
 
 struct Recipe {
@@ -38,6 +38,7 @@ struct Recipe {
     /// The sources and side files by key, each with the folder it stands in. Identities tell states of the
     /// file, and of all that it is made of where it is a recipe, apart: names, times of writing (ns), sizes.
     SideFiles files;
+    std::vector<std::string> linked_images;  ///< keys of files that are drawn as well, in their order
     std::string identity;  ///< the same text, the same picture: values, and identities of files
 };
 
@@ -47,14 +48,15 @@ class RecipeReader {
     /// The recipe file if there is one, overridden by the name's arguments, overridden by `config`. A
     /// relative
     /// file name in a file is relative to that file's folder, else to the working folder; the first source is
-    /// by default the recipe's name without its extension. Follows the recipes that the recipe reads from.
+    /// by default the recipe's name without its extension; a
+    /// name may also be that of a file that an operation draws as it stands. Follows the recipes that the recipe reads from.
     /// Throws Error, also on a cycle, and beyond kMaxDepth and kMaxRecipes.
     Recipe load(const std::string& name, const std::vector<Assignment>& config = {});
 
   private:
     const Recipe& nested(const Operation& operation, const std::string& name);
-    const std::string& identity_of(const std::string& file);
-    void visit(const std::string& file);
+    const std::string& identity_of(const SideFile& file);
+    void visit(const SideFile& file);
 
     std::map<std::string, Recipe> m_nested;           ///< by name, those that others read from
     std::map<std::string, std::string> m_identities;  ///< of files, by name

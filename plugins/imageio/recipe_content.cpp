@@ -131,7 +131,16 @@ class RecipeContent final : public Content {
             identity += file.identity;
         }
         if (!specs.empty()) m_source = upright(specs[0]);
-        m_pictures = recipe.operation->read({values, known, recipe.files, side_file_reader()});
+        std::vector<std::string> missing;
+        for (const std::string& key : recipe.linked_images) {
+            const SideFile& file = recipe.files.at(key);
+            identity += file.identity;
+            std::unique_ptr<CacheSource> image = open_or_none(file, opening);
+            if (!image) missing.push_back(key);
+            specs.push_back(image ? image->spec() : ImageSpec());
+            images.push_back(std::move(image));
+        }
+        m_pictures = recipe.operation->read({values, known, recipe.files, side_file_reader(), missing});
         m_key = operation_key(*recipe.operation, values, known, recipe.files);
         m_tile = tile_of(values);
         const PictureRequest first = level(0, 0).request;
@@ -190,6 +199,14 @@ class RecipeContent final : public Content {
         return std::make_unique<CacheSource>(
             shared_cache(), cached_name(file.name, file.identity), file.name,
             [&](int level) { return level < content->levels(0) ? content->spec(0, level) : ImageSpec(); });
+    }
+
+    std::unique_ptr<CacheSource> open_or_none(const SideFile& file, Opening& opening) {
+        try {
+            return open_source(file, opening);
+        } catch (const Error&) {
+            return nullptr;
+        }
     }
 
     /// Those that are given, in their order.

@@ -55,10 +55,11 @@ class ExamplePictures {
 
     /// Pixels of a part of a picture, as float; its sources are of noise.
     std::vector<float> draw(const PictureRequest& request, const Box& box) const {
-        const int channels = request.pixels == PixelKind::point   ? 2
-                             : request.pixels == PixelKind::value ? 1
-                             : m_sources.empty()                  ? static_cast<int>(request.channels.size())
-                                                                  : kChannels;
+        const int channels = request.pixels == PixelKind::point    ? 2
+                             : request.pixels == PixelKind::vector ? 3
+                             : request.pixels == PixelKind::value  ? 1
+                             : m_sources.empty()                   ? static_cast<int>(request.channels.size())
+                                                                   : kChannels;
         std::vector<std::vector<float>> texels;
         std::vector<MemorySource> images;
         for (std::size_t i = 0; i < m_sources.size(); ++i) texels.push_back(noise(i));

@@ -323,8 +323,9 @@ void expect_near(const std::vector<float>& a, const std::vector<float>& b, const
 
 TEST(ReprojectRequest, KeysThatChangeNothingChangeNoBits) {
     const SourceFacts photo{300, 200, Projection::rectilinear}, fisheye{200, 200, Projection::fisheye};
-    const std::vector<Assignment> look = {
-        {"yaw", "12"}, {"pitch", "-7"}, {"roll", "3"}, {"size", "150x100"}, {"fov", "80"}};
+    // Bilinear: other blocks may have other footprints, whose axes are only near the map's own.
+    const std::vector<Assignment> look = {{"yaw", "12"},       {"pitch", "-7"}, {"roll", "3"},
+                                          {"size", "150x100"}, {"fov", "80"},   {"filter", "bilinear"}};
     const auto with = [&](std::vector<Assignment> more) {
         more.insert(more.end(), look.begin(), look.end());
         return more;

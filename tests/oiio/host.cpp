@@ -242,12 +242,13 @@ void read_from_threads(OIIO::ImageCache& cache, const std::vector<std::string>& 
                 const std::size_t n = random() % names.size();
                 const int x = static_cast<int>(random() % unsigned(width)),
                           y = static_cast<int>(random() % unsigned(height));
-                float pixel[3] = {};
+                const std::size_t channels = expected[n].size() / static_cast<std::size_t>(width * height);
+                std::vector<float> pixel(channels);
                 if (!cache.get_pixels(OIIO::ustring(names[n]), 0, 0, x, x + 1, y, y + 1, 0, 1,
-                                      OIIO::TypeFloat, pixel))
+                                      OIIO::TypeFloat, pixel.data()))
                     ++failed;
-                else if (!std::equal(pixel, pixel + 3,
-                                     &expected[n][static_cast<std::size_t>((y * width + x) * 3)]))
+                else if (!std::equal(pixel.begin(), pixel.end(),
+                                     &expected[n][static_cast<std::size_t>(y * width + x) * channels]))
                     ++wrong;
             }
         });

@@ -104,6 +104,7 @@ TEST_F(Metadata, WhatTheWarpMakesUntrueIsDropped) {
         reproject(image, options({{"size", "8"}})),
         mesh_warp(image, options({{"mesh", "grid.json"}})),
         morph(image, image, options({{"features", "lines.csv"}})),
+        drape(image, options({{"surface", "cylinder"}})),
     };
     for (const ImageBuf& picture : pictures) {
         ASSERT_FALSE(picture.has_error()) << picture.geterror();
@@ -184,6 +185,8 @@ TEST_P(Orientations, SourcesAreReadUpright) {
         const auto w = options({{"mesh", "grid.json"}, {"colorspace", "linear"}});
         EXPECT_EQ(bytes(mesh_warp(stored, w)), bytes(mesh_warp(upright, w)));
         EXPECT_EQ(mesh_warp(stored, w).spec().get_int_attribute("Orientation"), 1);
+        const auto d = options({{"surface", "page_turn"}, {"direction", "20"}, {"camera", "0.1,0.2,2"}});
+        EXPECT_EQ(bytes(drape(stored, d)), bytes(drape(upright, d)));
     }
 }
 

@@ -61,7 +61,7 @@ Ends ends_of(const Parameter& p) {
         case ParameterType::toggle:
             return {Values{"0", "1"}, Values{"-1", "2", "true"}};
         case ParameterType::choice:
-            return {p.choices, Values{"", "none", p.choices.front().substr(1)}};
+            return {p.choices, Values{"", "nonesuch", p.choices.front().substr(1)}};
         default:
             return {};
     }
@@ -96,6 +96,11 @@ class ParameterEnds : public InFolder {
         if (key == "from" && faces.columns > 0) sources[0] = value + ".exr";
         if (key == "to" && faces.columns > 0)
             add("size", std::to_string(2 * faces.columns) + "x" + std::to_string(2 * faces.rows));
+        if (key == "frame") {
+            write_text("long.nudes",
+                       "figure f 1 e\nellipsoid e 200 300 100\nrepeat 0 1000000 spinby f e e 1 z\nstop\n");
+            add("script", "long.nudes");
+        }
         if (key == "picture") {
             for (const Assignment& a : pictures_to(value)) arguments.push_back(a);
         }

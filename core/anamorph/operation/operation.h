@@ -60,15 +60,15 @@ class SolvedPicture {
     virtual ~SolvedPicture() = default;
     /// What was reached over the whole picture.
     virtual Attributes reached(const ParallelFor& parallel_for) const = 0;
-    /// Fills `view` with the pixels of `box`; sources are read for colour only. False when one could not be
-    /// read.
+    /// Fills `view` with the pixels of `box`; sources are read for colour only. After those given come linked
+    /// images, null where one is missing. False when a source could not be read.
     virtual bool draw(const std::vector<const Source*>& sources, const Box& box, const ImageView& view,
                       const ParallelFor& parallel_for) const = 0;
 };
 
 /// What the channels of a picture hold: colour, the first source's channels and type; a source point (u, v);
-/// one value.
-enum class PixelKind { color, point, value };
+/// a vector of space (x, y, z); one value.
+enum class PixelKind { color, point, vector, value };
 
 /// A picture before it is solved.
 struct PictureRequest {
@@ -102,6 +102,7 @@ struct OperationInput {
     const std::vector<SourceImage>& sources;  ///< those given, in the order of their keys
     const SideFiles& files;
     const SideFileReader& reader;
+    std::vector<std::string> missing = {};  ///< keys of linked images that cannot be opened
 };
 
 /// A small recipe: its arguments besides the sources, and the text of the files that they name.
@@ -109,6 +110,15 @@ struct Example {
     std::string arguments;
     std::vector<std::pair<std::string, std::string>> files;
 };
+
+/// A file that is known of once others are read.
+struct LinkedFile {
+    std::string key;  ///< under which it is among the side files; not the name of a parameter
+    std::string name;
+    bool image = false;  ///< it is drawn: the picture's sources go on with it
+};
+/// In the order in which they are named.
+using LinkedFiles = std::vector<LinkedFile>;
 
 /// An entry of the registry.
 struct Operation {
@@ -120,6 +130,14 @@ struct Operation {
     Example example;  ///< for sources of any kind that are as large
     /// Throws Error.
     std::unique_ptr<const Pictures> (*read)(const OperationInput& input);
+
+    /// The key of the side file that is by default the recipe's name without its ending; may be none.
+    std::string main_file = {};
+    /// Of files that are drawn as they stand, as that side file: "n" of walk.n?frame=3.
+    std::vector<std::string> endings = {};
+    /// The files that these name; the picture changes with them. May be null. Throws Error.
+    LinkedFiles (*linked)(const ParameterValues& values, const SideFiles& files,
+                          const SideFileReader& reader) = nullptr;
 };
 
 /// All operations, in the order of list.h.

@@ -103,6 +103,12 @@ Parameter numbers(const char* name, double least, const std::string& doc) {
     return parameter;
 }
 
+Parameter toggle(const char* name, const char* value, const std::string& doc) {
+    Parameter parameter = row(name, ParameterType::toggle, doc);
+    parameter.default_value = std::string(value);
+    return parameter;
+}
+
 Parameter text(const char* name, const std::string& doc) {
     return row(name, ParameterType::text, doc);
 }
@@ -124,9 +130,7 @@ Parameter tile() {
 }
 
 Parameter mip() {
-    Parameter parameter = row("mip", ParameterType::toggle, "1: the picture has MIP levels");
-    parameter.default_value = std::string("0");
-    return parameter;
+    return toggle("mip", "0", "1: the picture has MIP levels");
 }
 
 Parameter tol() {
@@ -170,6 +174,15 @@ Size size_of(const ParameterValues& values, const Size& natural) {
         size.height = static_cast<int>(std::clamp(height, 1.0, double{kMaxSide}));
     }
     return size;
+}
+
+glm::dvec3 three_numbers(const ParameterValues& values, std::string_view name, double least, double most) {
+    const std::vector<double> v = values.numbers(name);
+    const auto allowed = [&](double x) { return x >= least && x <= most; };
+    if (v.size() != 3 || !std::all_of(v.begin(), v.end(), allowed))
+        throw Error(std::string(name), printable(values.text(name)),
+                    "must be three numbers from " + shortest(least) + " to " + shortest(most));
+    return {v[0], v[1], v[2]};
 }
 
 std::size_t chosen_index(const ParameterValues& values, std::string_view name) {

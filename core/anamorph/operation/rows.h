@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <glm/vec3.hpp>
 #include <limits>
 #include <string>
 #include <string_view>
@@ -24,6 +25,7 @@ Parameter number(const char* name, const char* unit, std::string value, double l
 Parameter above(Parameter number);
 Parameter whole(const char* name, const char* unit, std::string value, int least, int most,
                 const std::string& doc);
+Parameter toggle(const char* name, const char* value, const std::string& doc);
 Parameter numbers(const char* name, double least, const std::string& doc);
 Parameter text(const char* name, const std::string& doc);
 Parameter image(const char* name, const std::string& doc);
@@ -53,6 +55,9 @@ Parameter output(const std::vector<Word>& own = {});
 /// Width and height asked for by `size`: those of `natural` where none is, its shape where only a width is
 /// given.
 Size size_of(const ParameterValues& values, const Size& natural);
+
+/// A row of numbers that must be three, each from `least` to `most`. Throws Error.
+glm::dvec3 three_numbers(const ParameterValues& values, std::string_view name, double least, double most);
 
 /// Which of its choices a row has.
 std::size_t chosen_index(const ParameterValues& values, std::string_view name);

@@ -14,6 +14,7 @@ namespace anamorph {
 /// With an identity, which tells its states apart, what was read of a file is kept.
 struct SideFile {
     std::string name, identity;
+    bool image = false;  ///< it is opened as an image, and so may be a recipe
 };
 using SideFiles = std::map<std::string, SideFile>;  ///< by key; those that were given
 
@@ -34,6 +35,11 @@ class SideFileReader {
     virtual ~SideFileReader() = default;
     /// The whole of a text file. Throws Error, also where it is longer than text_file::kMostBytes.
     virtual std::string text(const std::string& name) const = 0;
+    /// Is there a file of that name?
+    virtual bool exists(const std::string& name) const {
+        static_cast<void>(name);
+        return false;
+    }
     /// `key`: the parameter that names it, for messages. Throws Error, also where it is not a flat image.
     virtual std::unique_ptr<SideImage> image(const std::string& key, const std::string& name) const = 0;
 };

@@ -1,0 +1,390 @@
+// SPDX-License-Identifier: Apache-2.0
+// Figures of ellipsoids, performed from scripts of NUDES: a film whose subimages are the frames.
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <filesystem>
+#include <limits>
+#include <mutex>
+
+#include "anamorph/figure/figure_picture.h"
+#include "anamorph/figure/performance.h"
+#include "anamorph/figure/rotation.h"
+#include "anamorph/figure/script.h"
+#include "anamorph/operation/operation.h"
+#include "anamorph/operation/read_once.h"
+#include "anamorph/operation/rows.h"
+
+namespace anamorph {
+namespace {
+
+constexpr int kSide = 1000;
+constexpr int kMostFrames = 1'000'000;
+// A host that asks how many subimages there are looks at each.
+constexpr int kMostSubimages = 100'000;
+// Of the angles and places that users set.
+constexpr double kFar = 1e9;
+// Chords of outlines, in pixels.
+constexpr double kChordError = 0.02;
+
+ParameterTable make_table() {
+    using namespace rows;
+    return {
+        file("script",
+             "the script of NUDES; by default the recipe's name without .figure, and of a name that ends "
+             "in .n or .nudes that file itself"),
+        file("library", "a file of figures without stop, included ahead of the script"),
+        choice(
+            "dialect", "classic", {"classic", "strict"},
+            "classic: as the programs of 2003 ran scripts, but abut and touch end in exact contact; strict: "
+            "as the language is documented"),
+        whole("frame", "", "", 0, kMostFrames,
+              "the frame of the script that is drawn, 0 the figures at rest; by default all that it shows, "
+              "each a "
+              "subimage"),
+        rows::size("width and height of the picture, or its width alone; by default 1000x1000, a pixel for "
+                   "each unit "
+                   "of the script's window, which is as large as fits"),
+        tile(),
+        mip(),
+        choice("style", "shaded", {"shaded", "outline", "stick", "depth", "id", "uv", "textured"},
+               "shaded, bodies in their colors; outline, without hidden lines; stick, from joint to joint; "
+               "depth, "
+               "from the eye, without perspective from the plane through the place, in units, 1e30 where "
+               "there is no "
+               "body; id, 1 for the first body, 0 for none; uv, the point of a body's texture, (-1, -1) for "
+               "none; textured, shaded, with the pictures that the script names"),
+        toggle("antialias", "1",
+               "of styles shaded and textured: pixels are the mean of 16 x 16 samples; 0: what is in their "
+               "middle"),
+        choice("lighting", "rasel", {"rasel", "lambert", "blinn"},
+               "of styles shaded and textured: rasel, soft from one pole of a body to the other; lambert; "
+               "blinn, with "
+               "highlights"),
+        numbers("light", -kInfinity,
+                "x,y,z: the direction to the light, x to the right, y up, z away; by default 0,1,0, and for "
+                "lambert "
+                "and blinn -1,2,-2"),
+        number("ambient", "", "0.3", 0, 1, "the share of light that comes from everywhere"),
+        number("specular", "", "0.3", 0, 1, "of blinn: how strong highlights are"),
+        number("shininess", "", "30", 0, 10000, "of blinn: how narrow they are"),
+        numbers("camera", -kInfinity,
+                "x,y,z in degrees: how space is turned before it is seen, as the script's observe does, in "
+                "its place"),
+        numbers("place", -kInfinity, "x,y,z: what is seen in the middle, in place of the script's place"),
+        number("perspective", "units", "", 0.01, kFar,
+               "distance of the eye from the place; by default no perspective"),
+        number("zoom", "", "1", 1e-6, 1e6, "magnifies about the middle"),
+        numbers("background", 0, "red,green,blue, 0 to 255; by default transparent"),
+        number("line_width", "pixels", "1.5", 0.01, 1000, "of styles outline and stick"),
+        toggle("line_colors", "0", "of styles outline and stick: 1, lines in the colors of the bodies"),
+        choice(
+            "mapping", "latlong", {"latlong", "mirrored", "linear", "octahedral"},
+            "of styles uv and textured, how a texture lies on a body: latlong, once around, the seam at the "
+            "back; "
+            "mirrored, over "
+            "the front and again over the back; linear, stripes stay straight; octahedral, without a pole"),
+        filter(),
+    };
+}
+
+// --- Scripts -----------------------------------------------------------------------------------------------
+
+/// What a script includes lies beside it.
+std::string beside(const std::string& script, const std::string& name) {
+    return (std::filesystem::path(script).parent_path() / name).string();
+}
+
+const SideFile& script_of(const SideFiles& files) {
+    const auto found = files.find("script");
+    if (found == files.end()) throw Error("script is not given: must be the name of a script of NUDES");
+    return found->second;
+}
+
+std::optional<std::string> text_or_none(const SideFileReader& reader, const std::string& name) {
+    try {
+        return reader.text(name);
+    } catch (const Error&) {
+        return std::nullopt;
+    }
+}
+
+/// `on_include(name)` hears of what the script and its libraries include.
+Script read_script(const ParameterValues& values, const SideFiles& files, const SideFileReader& reader,
+                   const std::function<void(const std::string& file)>& on_include = {}) {
+    const SideFile& script = script_of(files);
+    ScriptOptions options;
+    options.dialect = rows::chosen<Dialect>(values, "dialect");
+    const auto library = files.find("library");
+    if (library != files.end()) options.libraries = {library->second.name};
+    options.include = [&](const std::string& name) {
+        const bool is_library = library != files.end() && name == library->second.name;
+        const std::string file = is_library ? name : beside(script.name, name);
+        if (on_include && !is_library) on_include(file);
+        return text_or_none(reader, file);
+    };
+    const std::string name = std::filesystem::path(script.name).filename().string();
+    return parse_script(reader.text(script.name), name, options);
+}
+
+/// The file beside the script that a name means: that name, or one with the ending of a picture.
+std::string picture_beside(const std::string& script, const std::string& name, const SideFileReader& reader) {
+    const std::string file = beside(script, name);
+    if (reader.exists(file)) return file;
+    for (const char* ending : {".exr", ".tif", ".tx", ".png", ".jpg", ".ppm"}) {
+        std::string known = file;
+        known += ending;
+        if (reader.exists(known)) return known;
+    }
+    return file;
+}
+
+bool is_textured(const ParameterValues& values) {
+    return rows::chosen<FigureStyle>(values, "style") == FigureStyle::textured;
+}
+
+const char* const kTextureKey = "texture/";
+
+/// What scripts include, and, where they are drawn, their textures in the order of the program.
+LinkedFiles linked_files(const ParameterValues& values, const SideFiles& files,
+                         const SideFileReader& reader) {
+    LinkedFiles linked;
+    const Script script = read_script(values, files, reader, [&](const std::string& file) {
+        linked.push_back({"script/" + file, file});
+    });
+    if (!is_textured(values)) return linked;
+    for (const std::string& name : script.program.images)
+        linked.push_back({kTextureKey + name, picture_beside(script_of(files).name, name, reader), true});
+    return linked;
+}
+
+/// A performance that threads share.
+class Film {
+  public:
+    explicit Film(Program program) : m_performance(std::make_unique<Performance>(std::move(program))) {
+        m_first = m_performance->first_frame();
+        m_step = m_performance->frame_step();
+    }
+
+    /// The frames that are shown; 1, that at rest, where there are none.
+    int count() const {
+        const std::lock_guard lock(*m_mutex);
+        return std::max(1, m_performance->frame_count());
+    }
+    /// The number of the i-th of these.
+    int number(int i) const {
+        const std::lock_guard lock(*m_mutex);
+        return m_performance->frame_count() > 0 ? m_first + i * m_step : 0;
+    }
+    FigureFrame frame(int number) const {
+        const std::lock_guard lock(*m_mutex);
+        return m_performance->frame(number);
+    }
+    const std::vector<std::string>& images() const { return m_performance->program().images; }
+
+  private:
+    std::unique_ptr<std::mutex> m_mutex = std::make_unique<std::mutex>();
+    std::unique_ptr<Performance> m_performance;
+    int m_first = 1, m_step = 1;
+};
+
+std::shared_ptr<const Film> read_film(const OperationInput& input) {
+    // Of all files that the program is made of.
+    std::string identity;
+    for (const auto& [key, file] : input.files) identity += key + "\n" + file.identity + "\n";
+    const SideFile& script = script_of(input.files);
+    const std::string how = "figure " + input.values.text("dialect") + "\n" + identity;
+    return read_once<Film>(script, how, [&] {
+        Script read = read_script(input.values, input.files, input.reader);
+        for (const Diagnostic& d : read.diagnostics)
+            if (d.severity == Severity::error) throw Error(d.text());
+        return Film(std::move(read.program));
+    });
+}
+
+// --- Pictures ----------------------------------------------------------------------------------------------
+
+/// Where they are given.
+std::optional<glm::dvec3> three(const ParameterValues& values, const char* name, double least, double most) {
+    if (!values.given(name)) return std::nullopt;
+    return rows::three_numbers(values, name, least, most);
+}
+
+/// What is asked for, but the frame.
+struct FigureRequest {
+    Size size;
+    FigureLook look;
+    std::optional<glm::dvec3> camera, place;
+    double zoom = 1, eye_distance = HUGE_VAL;
+    std::string missing;  ///< textures
+
+    View view_of(const FigureFrame& frame, const Size& of) const {
+        View view = view_in(frame, {of.width, of.height});
+        if (camera) view.rotation = glm::mat3_cast(turn_xyz(*camera));
+        if (place) view.center = *place;
+        view.scale *= zoom;
+        view.eye_distance = eye_distance;
+        return view;
+    }
+};
+
+Light read_light(const ParameterValues& values) {
+    Light light;
+    light.lighting = rows::chosen<Lighting>(values, "lighting");
+    glm::dvec3 toward = light.lighting == Lighting::rasel ? glm::dvec3(0, 1, 0) : glm::dvec3(-1, 2, -2);
+    if (const auto given = three(values, "light", -kFar, kFar)) toward = *given;
+    const double size = std::max({std::fabs(toward.x), std::fabs(toward.y), std::fabs(toward.z)});
+    if (size == 0) throw Error("light", printable(values.text("light")), "must not be 0,0,0");
+    light.toward = glm::normalize(toward / size);
+    light.ambient = values.number("ambient");
+    light.specular = values.number("specular");
+    light.shininess = values.number("shininess");
+    return light;
+}
+
+FigureRequest read_request(const ParameterValues& values) {
+    FigureRequest request;
+    request.size = rows::size_of(values, {kSide, kSide});
+    FigureLook& look = request.look;
+    look.style = rows::chosen<FigureStyle>(values, "style");
+    look.light = read_light(values);
+    look.antialias = values.toggle("antialias");
+    if (const auto color = three(values, "background", 0, 255)) look.background = *color / 255.0;
+    look.mapping = rows::chosen<BodyMapping>(values, "mapping");
+    look.filter = rows::chosen<Filter>(values, "filter");
+    look.lines.tol = kChordError;
+    look.lines.line_width = values.number("line_width");
+    look.lines.colors = values.toggle("line_colors");
+    request.camera = three(values, "camera", -kFar, kFar);
+    request.place = three(values, "place", -kFar, kFar);
+    request.zoom = values.number("zoom");
+    if (values.given("perspective")) request.eye_distance = values.number("perspective");
+    return request;
+}
+
+class SolvedFigure final : public SolvedPicture {
+  public:
+    SolvedFigure(FigurePicture picture, FigureStyle style) : m_picture(std::move(picture)), m_style(style) {}
+
+    /// Rays meet the bodies themselves; only curved lines are made of chords.
+    Attributes reached(const ParallelFor&) const override {
+        const bool chords = m_style == FigureStyle::outline;
+        return {{"anamorph:max_error", chords ? kChordError : 0.0},
+                {"anamorph:exact_fraction", chords ? 0.0 : 1.0}};
+    }
+    bool draw(const std::vector<const Source*>& sources, const Box& box, const ImageView& view,
+              const ParallelFor& parallel_for) const override {
+        m_picture.draw(box, view, parallel_for, sources);
+        return true;
+    }
+
+  private:
+    FigurePicture m_picture;
+    FigureStyle m_style;
+};
+
+class Figures final : public Pictures {
+  public:
+    Figures(FigureRequest request, std::shared_ptr<const Film> film, std::optional<int> frame)
+        : m_request(std::move(request)), m_film(std::move(film)), m_frame(frame) {
+        if (m_frame) return;
+        m_frames = m_film->count();
+        if (m_frames > kMostSubimages)
+            throw Error("frame is not given and the script shows " + std::to_string(m_frames) +
+                        " frames: must be given where there are more than " + std::to_string(kMostSubimages));
+    }
+
+    int frames() const override { return m_frames; }
+
+    std::optional<PictureRequest> picture(int frame, int level) const override {
+        const std::optional<Size> size = level_size(m_request.size, level);
+        if (!size) return {};
+        PictureRequest picture;
+        picture.size = *size;
+        const int number = m_frame ? *m_frame : m_film->number(frame);
+        describe(picture, number);
+        picture.solve = [request = m_request, film = m_film, number, size = *size, level] {
+            FigureFrame scene = film->frame(number);
+            FigureRequest r = request;
+            r.look.lines.line_width = std::ldexp(r.look.lines.line_width, -level);
+            const View view = r.view_of(scene, size);
+            return std::make_unique<SolvedFigure>(FigurePicture(std::move(scene), view, size, r.look),
+                                                  r.look.style);
+        };
+        return picture;
+    }
+
+  private:
+    void describe(PictureRequest& picture, int number) const {
+        switch (m_request.look.style) {
+            case FigureStyle::depth:
+                picture.channels = {"Z"};
+                break;
+            case FigureStyle::id:
+                picture.channels = {"id"};
+                break;
+            case FigureStyle::uv:
+                picture.pixels = PixelKind::point;
+                break;
+            default:
+                picture.channels = {"R", "G", "B", "A"};
+                picture.says.push_back({"oiio:ColorSpace", std::string("sRGB")});
+        }
+        const bool chords = m_request.look.style == FigureStyle::outline;
+        picture.says.push_back({"anamorph:tol", chords ? kChordError : 0.0});
+        picture.says.push_back({"anamorph:frame", number});
+        if (!m_request.missing.empty())
+            picture.says.push_back({"anamorph:missing_textures", m_request.missing});
+    }
+
+    FigureRequest m_request;
+    std::shared_ptr<const Film> m_film;
+    std::optional<int> m_frame;
+    int m_frames = 1;
+};
+
+std::unique_ptr<const Pictures> read_figures(const OperationInput& input) {
+    FigureRequest request = read_request(input.values);
+    std::optional<int> frame;
+    if (input.values.given("frame")) frame = input.values.whole("frame");
+    const std::shared_ptr<const Film> film = read_film(input);
+    if (is_textured(input.values)) request.look.textures = film->images();
+    for (const std::string& key : input.missing)
+        request.missing += (request.missing.empty() ? "" : ", ") + key.substr(std::strlen(kTextureKey));
+    return std::make_unique<Figures>(std::move(request), film, frame);
+}
+
+const char* const kExampleScript = R"(* A doll that waves.
+figure doll 4 body head left right
+ellipsoid body  130 190  90
+ellipsoid head   85 100  85
+ellipsoid left   45 150  45
+ellipsoid right  45 150  45
+joint neck   body    0 175 0   head   0 -90 0
+joint lshldr body -120 130 0   left   0 140 0
+joint rshldr body  120 130 0   right  0 140 0
+repeat 0 1 moveto doll body 500 420 500
+repeat 0 1 colour body 200 60 50
+repeat 0 1 bendby right rshldr world 150 z
+stop
+)";
+
+}  // namespace
+
+const Operation& figure_operation() {
+    static const ParameterTable table = make_table();
+    static const Operation operation{
+        .name = "figure",
+        .title = "Figures of ellipsoids, performed from a script of NUDES",
+        .parameters = &table,
+        .sources = {},
+        .least_sources = 0,
+        .example = {"script=doll.nudes&size=48x24", {{"doll.nudes", kExampleScript}}},
+        .read = read_figures,
+        .main_file = "script",
+        .endings = {"n", "nudes"},
+        .linked = linked_files};
+    return operation;
+}
+
+}  // namespace anamorph

@@ -1,0 +1,666 @@
+// SPDX-License-Identifier: Apache-2.0
+// Pictures on surfaces: the tolerance on the screen, no holes, and hard cases.
+#include "anamorph/drape/drape.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+#include <random>
+
+#include "anamorph/drape/oka.h"
+#include "anamorph/simd/facet_rows.h"
+#include "drape_oracle.h"
+#include "each_instruction_set.h"
+
+namespace anamorph {
+namespace {
+
+using test::Real;
+
+std::size_t number_of(const std::string& surface) {
+    const auto& names = surface_names();
+    return static_cast<std::size_t>(std::find(names.begin(), names.end(), surface) - names.begin());
+}
+
+/// A surface, and from where it is seen.
+struct Scene {
+    std::string surface = "plane";
+    SurfaceShape shape = {};
+    CameraPose pose = {};
+    Size screen = {160, 120};
+    std::vector<Deformation> deformations = {};
+    Size picture = {64, 64};
+};
+
+/// What a scene shows.
+class Shown {
+  public:
+    explicit Shown(const Scene& scene, DrapeOptions options = {}) : m_scene(scene), m_options(options) {
+        m_tree = std::make_shared<SharedTree>(
+            make_surface(number_of(scene.surface), scene.shape, scene.deformations));
+    }
+    std::vector<float> values(Output output, DrapeOutput own = DrapeOutput::shared) {
+        m_options.output = output;
+        m_options.own = own;
+        const int channels = own == DrapeOutput::normal                              ? 3
+                             : output == Output::stmap && own == DrapeOutput::shared ? 2
+                                                                                     : 1;
+        return draw(nullptr, channels);
+    }
+    std::vector<float> coverage() { return values(Output::color, DrapeOutput::coverage); }
+    std::vector<float> draw(const Source* source, int channels) {
+        const Size& s = m_scene.screen;
+        std::vector<float> pixels(static_cast<std::size_t>(s.width * s.height * channels));
+        const Drape drape(m_tree, camera(), m_scene.picture, m_options);
+        EXPECT_TRUE(drape.draw(source, {0, 0, s.width, s.height},
+                               packed_view(reinterpret_cast<std::byte*>(pixels.data()), PixelType::float32,
+                                           s.width, s.height, channels),
+                               serial_for));
+        return pixels;
+    }
+    Camera camera() const { return {m_scene.pose, glm::dmat3(1.0), glm::dvec3(0.0), m_scene.screen}; }
+    const std::shared_ptr<SharedTree>& tree() const { return m_tree; }
+
+  private:
+    Scene m_scene;
+    DrapeOptions m_options;
+    std::shared_ptr<SharedTree> m_tree;
+};
+
+/// Every surface, from in front, aslant, near by and in parallel.
+std::vector<Scene> scenes() {
+    std::vector<CameraPose> poses(4);
+    poses[1].position = {1.1, 0.7, 1.3};
+    poses[2].position = {0.15, 0.1, 0.75};
+    poses[2].target = {0.3, 0.2, 0};
+    poses[2].fov = 100;
+    poses[3].position = {-1, 2, 1};
+    poses[3].perspective = false;
+    poses[3].extent = 1.6;
+    std::vector<Scene> all;
+    for (const std::string& name : surface_names())
+        for (const CameraPose& pose : poses) {
+            Scene scene{name};
+            scene.pose = pose;
+            scene.shape.aspect = 1.25;
+            scene.shape.angle = name == "cylinder" ? 200 : 360;
+            scene.shape.direction = 33;
+            scene.shape.phase = 0.3;
+            all.push_back(scene);
+        }
+    return all;
+}
+
+TEST(DrapedSurface, PositionsAreThoseOfFormulasWrittenOutAnotherWay) {
+    constexpr unsigned kSeed = 3;
+    SCOPED_TRACE(testing::Message() << "seed " << kSeed);
+    std::mt19937 random(kSeed);
+    std::uniform_real_distribution<double> uniform(0, 1);
+    for (const std::string& name : surface_names())
+        for (int i = 0; i < 300; ++i) {
+            SurfaceShape shape;
+            shape.aspect = 0.5 + uniform(random);
+            shape.radius = i % 2 ? 0 : 0.05 + uniform(random);
+            shape.angle = 10 + 350 * uniform(random);
+            shape.direction = 360 * uniform(random);
+            shape.turn = uniform(random);
+            shape.phase = uniform(random);
+            const double u = uniform(random), v = uniform(random);
+            const auto surface = make_surface(number_of(name), shape);
+            const test::Vector truth = test::oracle_surface(name, shape, u, v);
+            const glm::dvec3 p = surface->position(u, v);
+            const auto exact = surface->truth(u, v);
+            for (int k = 0; k < 3; ++k) {
+                EXPECT_NEAR(p[k], static_cast<double>(truth[static_cast<std::size_t>(k)]), 1e-14) << name;
+                EXPECT_NEAR(static_cast<double>(exact[static_cast<std::size_t>(k)]),
+                            static_cast<double>(truth[static_cast<std::size_t>(k)]), 1e-14)
+                    << name;
+            }
+        }
+}
+
+TEST(DrapedSurface, RangesHoldPositionsAndDifferences) {
+    constexpr unsigned kSeed = 4;
+    SCOPED_TRACE(testing::Message() << "seed " << kSeed);
+    std::mt19937 random(kSeed);
+    std::uniform_real_distribution<double> uniform(0, 1);
+    for (const Scene& scene : scenes())
+        for (int i = 0; i < 40; ++i) {
+            const auto surface = make_surface(number_of(scene.surface), scene.shape);
+            const double side = std::ldexp(1.0, -1 - i % 8), u = (1 - side) * uniform(random),
+                         v = (1 - side) * uniform(random);
+            const SurfaceRange range = surface->range({u, u + side}, {v, v + side});
+            const auto at = [&](Real s, Real t) {
+                return test::oracle_surface(scene.surface, scene.shape, s, t);
+            };
+            const Real h = side / 64;
+            for (int n = 0; n < 20; ++n) {
+                const Real s = u + h + (side - 2 * h) * Real(uniform(random)),
+                           t = v + h + (side - 2 * h) * Real(uniform(random));
+                for (std::size_t k = 0; k < 3; ++k) {
+                    const Real c = at(s, t)[k];
+                    // Divided differences lie in the hull of the derivatives.
+                    const Real difference[6] = {c,
+                                                (at(s + h, t)[k] - at(s - h, t)[k]) / (2 * h),
+                                                (at(s, t + h)[k] - at(s, t - h)[k]) / (2 * h),
+                                                (at(s + h, t)[k] - 2 * c + at(s - h, t)[k]) / (2 * h * h),
+                                                (at(s + h, t + h)[k] - at(s + h, t - h)[k] -
+                                                 at(s - h, t + h)[k] + at(s - h, t - h)[k]) /
+                                                    (4 * h * h),
+                                                (at(s, t + h)[k] - 2 * c + at(s, t - h)[k]) / (2 * h * h)};
+                    for (int d = 0; d < 6; ++d) {
+                        const Real slack = 1e-15L / (d < 1 ? 1 : d < 3 ? h : h * h);
+                        EXPECT_LE(range[k].c[d].lo - slack, difference[d]) << scene.surface << d;
+                        EXPECT_GE(range[k].c[d].hi + slack, difference[d]) << scene.surface << d;
+                    }
+                }
+            }
+        }
+}
+
+TEST(DrapedSurface, RangesHoldDifferencesOfWendlandsKernelAboutItsCentre) {
+    constexpr unsigned kSeed = 5;
+    SCOPED_TRACE(testing::Message() << "seed " << kSeed);
+    std::mt19937 random(kSeed);
+    std::uniform_real_distribution<double> uniform(0, 1);
+    const Deformation d{{0, 0, 1}, {0.5, 0.5}, {0.2, 0.3}, DeformationKernel::wendland_c2};
+    const auto surface = make_surface(number_of("plane"), {}, {d});
+    const auto height = [&](Real u, Real v) {
+        const Real r = std::hypot((u - 0.5L) / Real(d.extent.x), (v - 0.5L) / Real(d.extent.y));
+        return r < 1 ? 1 - 10 * r * r + 20 * r * r * r - 15 * r * r * r * r + 4 * r * r * r * r * r : 0;
+    };
+    for (int i = 0; i < 2000; ++i) {
+        const double side = std::ldexp(1.0, -2 - i % 6),
+                     u = 0.5 - side * (0.9 * uniform(random)) + 0.1 * (i % 3 - 1),
+                     v = 0.5 - side * (0.9 * uniform(random)) + 0.15 * (i / 3 % 3 - 1);
+        const SurfaceRange range = surface->range({u, u + side}, {v, v + side});
+        const Real h = side / 32, s = u + h + (side - 2 * h) * Real(uniform(random)),
+                   t = v + h + (side - 2 * h) * Real(uniform(random));
+        const Real c = height(s, t);
+        const Real difference[6] = {
+            c,
+            (height(s + h, t) - height(s - h, t)) / (2 * h),
+            (height(s, t + h) - height(s, t - h)) / (2 * h),
+            (height(s + h, t) - 2 * c + height(s - h, t)) / (2 * h * h),
+            (height(s + h, t + h) - height(s + h, t - h) - height(s - h, t + h) + height(s - h, t - h)) /
+                (4 * h * h),
+            (height(s, t + h) - 2 * c + height(s, t - h)) / (2 * h * h)};
+        for (int k = 0; k < 6; ++k) {
+            EXPECT_LE(range[2].c[k].lo - 1e-12L, difference[k]) << k;
+            EXPECT_GE(range[2].c[k].hi + 1e-12L, difference[k]) << k;
+            EXPECT_LT(range[2].c[k].hi - range[2].c[k].lo, 5000) << k;
+        }
+    }
+}
+
+/// The points that a picture shows are seen where they are drawn: at most `tol`, and what the bound says, away; and
+/// output=error says so, to within `agree`. Returns the number of pixels.
+int expect_points_in_place(Shown& shown, const Scene& scene, double tol, double agree = 1e-6) {
+    const std::vector<float> points = shown.values(Output::stmap), bounds = shown.values(Output::bound),
+                             errors = shown.values(Output::error), covered = shown.coverage();
+    const DrapeMap map(cut_into_facets(shown.tree()->tree, shown.camera(), tol), shown.camera(),
+                       scene.picture, tol);
+    int seen = 0, over = 0;
+    for (int y = 0; y < scene.screen.height; ++y)
+        for (int x = 0; x < scene.screen.width; ++x) {
+            const auto k = static_cast<std::size_t>(y * scene.screen.width + x);
+            Point<double> p{};
+            int piece = 0;
+            EXPECT_EQ(map.exact(x + 0.5, y + 0.5, 0, p, piece), covered[k] == 1);
+            if (covered[k] == 0) {
+                EXPECT_EQ(points[2 * k], -1);
+                continue;
+            }
+            ++seen;
+            const double u = p.x / scene.picture.width, v = p.y / scene.picture.height;
+            const test::OracleSight at = test::oracle_sight(
+                scene.pose, scene.screen, test::oracle_surface(scene.surface, scene.shape, u, v));
+            const double error = static_cast<double>(std::hypot(at.x - (x + 0.5L), at.y - (y + 0.5L)));
+            over += !(error <= bounds[k]) || !(bounds[k] <= tol) ||
+                    !(std::fabs(error - errors[k]) <= agree) || !(std::fabs(u - points[2 * k]) <= 1e-7) ||
+                    !(std::fabs(v - points[2 * k + 1]) <= 1e-7);
+        }
+    EXPECT_EQ(over, 0) << scene.surface;
+    return seen;
+}
+
+TEST(Drape, EveryPointIsSeenWithinTheTolerance) {
+    for (const double tol : {0.5, 0.125, 0.02, 0.002})
+        for (const Scene& scene : scenes()) {
+            // The finest takes as many patches as there are pixels: from one place.
+            if (tol < 0.02 && scene.pose.position.x != 1.1) continue;
+            DrapeOptions options;
+            options.tol = tol;
+            Shown shown(scene, options);
+            EXPECT_GT(expect_points_in_place(shown, scene, tol), 500) << scene.surface;
+        }
+}
+
+TEST(Drape, AnalyticSilhouettesAreCoveredWithoutHoles) {
+    // A sphere is seen exactly where the ray through a pixel passes within its radius: but for a tolerance.
+    for (const double tol : {1.0, 0.125, 0.01})
+        for (const Size& screen : {Size{96, 96}, Size{333, 250}}) {
+            Scene scene{"sphere"};
+            scene.shape.angle = 360;
+            scene.pose.position = {0.4, 0.9, 1.5};
+            scene.pose.target = {0.1, 0, 0};
+            scene.screen = screen;
+            DrapeOptions options;
+            options.tol = tol;
+            const std::vector<float> covered = Shown(scene, options).coverage();
+            const glm::dvec3 ahead = glm::normalize(scene.pose.target - scene.pose.position),
+                             right = glm::normalize(glm::cross(ahead, scene.pose.up)),
+                             up = glm::cross(right, ahead);
+            const double focal = screen.width / (2 * std::tan(scene.pose.fov * kPi / 360));
+            int wrong = 0;
+            for (int y = 0; y < screen.height; ++y)
+                for (int x = 0; x < screen.width; ++x) {
+                    // The largest and the least distance from the axis of the ray, within the tolerance.
+                    const auto inside = [&](double radius) {
+                        const glm::dvec3 ray =
+                            glm::normalize(ahead * focal + right * (x + 0.5 - screen.width / 2.0) -
+                                           up * (y + 0.5 - screen.height / 2.0));
+                        const glm::dvec3 from = scene.pose.position;
+                        return glm::length(glm::cross(ray, from)) < radius;
+                    };
+                    // A pixel is at most this wide at the sphere.
+                    const double margin = tol * 2.2 / focal;
+                    const float is = covered[static_cast<std::size_t>(y * screen.width + x)];
+                    wrong += inside(0.5 - margin) && is != 1;
+                    wrong += !inside(0.5 + margin) && is != 0;
+                }
+            EXPECT_EQ(wrong, 0) << tol;
+        }
+}
+
+TEST(Drape, FromInsideThereIsNoHole) {
+    // At any zoom: fields of view from 150 to .01 degrees.
+    for (const double fov : {150.0, 60.0, 3.0, 0.01})
+        for (const double tol : {1.0, 0.125, 0.01}) {
+            Scene scene{"sphere"};
+            scene.shape.angle = 360;
+            scene.pose.position = {0.1, -0.05, 0.2};
+            scene.pose.target = {0.7, 0.3, -0.4};
+            scene.pose.fov = fov;
+            DrapeOptions options;
+            options.tol = tol;
+            const std::vector<float> covered = Shown(scene, options).coverage();
+            EXPECT_EQ(std::count(covered.begin(), covered.end(), 0.0f), 0) << fov << " " << tol;
+        }
+}
+
+TEST(Drape, ASurfaceSeenWholeHidesWhatIsBehindIt) {
+    // Height fields over the sheet: every ray that meets the frame's inside meets the surface, so that there is no hole.
+    for (const std::string name : {"waves", "ripples", "plane"})
+        for (const double tol : {0.5, 0.05}) {
+            Scene scene{name};
+            scene.pose.position = {0.2, 0.3, 1.2};
+            scene.pose.fov = 20;
+            scene.shape.direction = 20;
+            DrapeOptions options;
+            options.tol = tol;
+            const std::vector<float> covered = Shown(scene, options).coverage();
+            EXPECT_EQ(std::count(covered.begin(), covered.end(), 0.0f), 0) << name;
+        }
+}
+
+TEST(Drape, SheetsCloseTogetherStayInTheirOrder) {
+    // A page turned flat over itself, at a distance of 2e-6.
+    Scene scene{"page_turn"};
+    scene.shape.radius = 1e-6;
+    scene.shape.turn = 0.4;
+    scene.pose.position = {0, 0, 1.5};
+    const std::vector<float> points = Shown(scene).values(Output::stmap),
+                             depth = Shown(scene).values(Output::color, DrapeOutput::depth);
+    int turned = 0;
+    for (std::size_t k = 0; k < depth.size(); ++k) {
+        const double x = (static_cast<double>(k % 160) + 0.5 - 80) * 2 * 1.5 * std::tan(20 * kPi / 180) / 160;
+        // The line is at .1, and what lies right of it comes to lie left of it, down to -.3.
+        if (points[2 * k] < 0 || x > 0.09 || x < -0.29) continue;
+        ++turned;
+        EXPECT_NEAR(points[2 * k], 0.5 + 0.1 + (0.1 - x), 1e-3);
+    }
+    EXPECT_GT(turned, 2000);
+}
+
+TEST(Drape, HardCasesAreDrawn) {
+    const auto covered = [](const Scene& scene) {
+        const std::vector<float> all = Shown(scene).coverage();
+        return std::count(all.begin(), all.end(), 1.0f);
+    };
+    Scene edge_on;
+    edge_on.pose.position = {2, 0, 0};
+    EXPECT_LE(covered(edge_on), 160);
+    Scene behind;
+    behind.pose.position = {0, 0, -2};
+    behind.pose.target = {0, 0, -3};
+    EXPECT_EQ(covered(behind), 0);
+    // The plane reaches behind the camera, and is clipped there, not mirrored: it ends at the horizon.
+    Scene ground;
+    ground.pose.position = {0, -0.2, 0.05};
+    ground.pose.target = {0, 0.3, 0.05};
+    ground.pose.up = {0, 0, 1};
+    ground.pose.fov = 90;
+    const std::vector<float> below = Shown(ground).coverage();
+    EXPECT_EQ(std::count(below.begin(), below.begin() + 160 * 60, 1.0f), 0);
+    EXPECT_EQ(std::count(below.begin() + 160 * 100, below.end(), 1.0f), 160 * 20);
+    Scene torus{"torus"};
+    torus.shape.tube = 0.8;  // it meets itself
+    EXPECT_GT(covered(torus), 5000);
+    Scene far;
+    far.deformations = {{{0, 0, 1e12}, {0.5, 0.5}, {0.1, 0.1}}};
+    far.screen = {40, 30};
+    EXPECT_GE(covered(far), 0);
+    Scene needle;
+    needle.deformations = {{{0, 0, 0.1}, {0.5, 0.5}, {1e-12, 1e-12}}};
+    EXPECT_GT(covered(needle), 1000);
+    for (const Size& picture : {Size{1, 1}, Size{1, 30000}}) {
+        Scene strip{"cylinder"};
+        strip.picture = picture;
+        const std::vector<float> texels(static_cast<std::size_t>(picture.width * picture.height), 0.5f);
+        const MemorySource source(packed_view(reinterpret_cast<const std::byte*>(texels.data()),
+                                              PixelType::float32, picture.width, picture.height, 1));
+        DrapeOptions options;
+        options.filter = Filter::bilinear;
+        const std::vector<float> drawn = Shown(strip, options).draw(&source, 1);
+        for (const float value : drawn) EXPECT_TRUE(value == 0 || std::fabs(value - 0.5f) < 1e-6f) << value;
+    }
+}
+
+TEST(Drape, ErrorsOfParallelogramsGoAsTheSquareOfTheirSide) {
+    // Oka 1987, (2.10): the slope of log(error) over log(d) is 2.
+    for (const std::string name : {"cylinder", "sphere", "ripples"}) {
+        Scene scene{name};
+        scene.shape.angle = 150;
+        scene.picture = {512, 512};
+        scene.screen = {512, 512};
+        scene.pose.position = {0.1, 0.2, 2};
+        std::vector<double> worst;
+        for (const double side : {4.0, 8.0, 16.0, 32.0}) {
+            DrapeOptions options;
+            options.scheme = DrapeScheme::oka_z;
+            options.block = side;
+            Shown shown(scene, options);
+            const std::vector<float> errors = shown.values(Output::error),
+                                     bounds = shown.values(Output::bound);
+            worst.push_back(*std::max_element(errors.begin(), errors.end()));
+            for (std::size_t k = 0; k < errors.size(); ++k) EXPECT_LE(errors[k], bounds[k] + 1e-4);
+        }
+        const double slope = std::log2(worst.back() / worst.front()) / 3;
+        EXPECT_NEAR(slope, 2, 0.25) << name << " " << worst.front() << " " << worst.back();
+    }
+}
+
+TEST(Drape, ShadingFollowsTheNormals) {
+    // A sphere lit from the camera: the normal at a pixel is the point itself over the radius.
+    Scene scene{"sphere"};
+    scene.shape.angle = 360;
+    scene.pose.perspective = false;
+    scene.pose.extent = 1.2;
+    scene.pose.position = {0, 0, 5};
+    const std::vector<float> normals = Shown(scene).values(Output::color, DrapeOutput::normal),
+                             covered = Shown(scene).coverage();
+    const std::vector<float> texels(64 * 64 * 3, 1);
+    const MemorySource source(
+        packed_view(reinterpret_cast<const std::byte*>(texels.data()), PixelType::float32, 64, 64, 3));
+    for (const DrapeShading shading : {DrapeShading::gouraud, DrapeShading::phong}) {
+        DrapeOptions options;
+        options.lighting = {shading, {{0, 0, 1}}, 0.1, 0.6, 0.2, 8};
+        const std::vector<float> lit = Shown(scene, options).draw(&source, 3);
+        for (int y = 0; y < 120; ++y)
+            for (int x = 0; x < 160; ++x) {
+                const auto k = static_cast<std::size_t>(y * 160 + x);
+                const double px = (x + 0.5 - 80) * 1.2 / 160, py = -(y + 0.5 - 60) * 1.2 / 160;
+                const double pz = std::sqrt(std::max(0.0, 0.25 - px * px - py * py));
+                if (covered[k] == 0 || pz < 0.05) continue;
+                EXPECT_NEAR(normals[3 * k], px / 0.5, 0.01);
+                EXPECT_NEAR(normals[3 * k + 1], py / 0.5, 0.01);
+                EXPECT_NEAR(normals[3 * k + 2], pz / 0.5, 0.02);
+                const double n_l = pz / 0.5;
+                EXPECT_NEAR(lit[3 * k], 0.1 + 0.6 * n_l + 0.2 * std::pow(n_l, 8), 0.03);
+            }
+    }
+}
+
+TEST(Drape, FacetsAreTheSameOnEveryInstructionSet) {
+    Scene scene{"torus"};
+    scene.pose.position = {1.1, 0.7, 1.3};
+    std::vector<std::vector<float>> maps;
+    test::on_every_instruction_set([&] { maps.push_back(Shown(scene).values(Output::stmap)); });
+    for (const std::vector<float>& map : maps) EXPECT_TRUE(map == maps.front());
+}
+
+TEST(Drape, AConstantPictureStaysConstant) {
+    const std::vector<float> texels(64 * 64, 0.75f);
+    const MemorySource source(
+        packed_view(reinterpret_cast<const std::byte*>(texels.data()), PixelType::float32, 64, 64, 1));
+    for (const Filter filter : {Filter::nearest, Filter::bilinear, Filter::antialias})
+        for (const Scene& scene : scenes()) {
+            DrapeOptions options;
+            options.filter = filter;
+            Shown shown(scene, options);
+            const std::vector<float> drawn = shown.draw(&source, 1), covered = shown.coverage();
+            const int width = scene.screen.width, height = scene.screen.height;
+            int slits = 0;
+            for (int y = 0; y < height; ++y)
+                for (int x = 0; x < width; ++x) {
+                    const auto at = [&](int i, int j) {
+                        return covered[static_cast<std::size_t>(std::clamp(j, 0, height - 1) * width +
+                                                                std::clamp(i, 0, width - 1))];
+                    };
+                    const float value = drawn[static_cast<std::size_t>(y * width + x)];
+                    // Edge pixels of an antialiased picture are covered in part, and so are those that see a slit
+                    // between two sheets.
+                    const bool edge = at(x - 1, y) != at(x, y) || at(x + 1, y) != at(x, y) ||
+                                      at(x, y - 1) != at(x, y) || at(x, y + 1) != at(x, y);
+                    const bool whole = std::fabs(value - 0.75f * at(x, y)) <= 1e-5f;
+                    EXPECT_TRUE(whole || (filter == Filter::antialias && value >= 0 && value < 0.75f))
+                        << scene.surface << " " << value;
+                    slits += !whole && !edge;
+                }
+            EXPECT_LE(slits, 5) << scene.surface;
+        }
+}
+
+TEST(Drape, EdgesAreCoveredAsFarAsTheSilhouetteSays) {
+    // A sphere seen in parallel is a disc. Against 64 x 64 samples of it; a pixel's samples are 8 x 8, and the silhouette
+    // may be off by the tolerance.
+    Scene scene{"sphere"};
+    scene.shape.angle = 360;
+    scene.pose.perspective = false;
+    scene.pose.extent = 1.3;
+    scene.pose.position = {0.03, 0.02, 5};
+    scene.pose.target = {0.03, 0.02, 0};
+    DrapeOptions options;
+    options.tol = 0.02;
+    options.background = {0.25f};
+    const std::vector<float> texels(64 * 64, 1.0f);
+    const MemorySource source(
+        packed_view(reinterpret_cast<const std::byte*>(texels.data()), PixelType::float32, 64, 64, 1));
+    const std::vector<float> drawn = Shown(scene, options).draw(&source, 1);
+    const double unit = 160 / 1.3, radius = 0.5 * unit;
+    double sum = 0, worst = 0;
+    int edges = 0;
+    for (int y = 0; y < 120; ++y)
+        for (int x = 0; x < 160; ++x) {
+            int inside = 0;
+            for (int j = 0; j < 64; ++j)
+                for (int i = 0; i < 64; ++i)
+                    inside += std::hypot(x + (i + 0.5) / 64 - 80 + 0.03 * unit,
+                                         y + (j + 0.5) / 64 - 60 - 0.02 * unit) < radius;
+            const double truth = 0.25 + 0.75 * inside / 4096;
+            const double off = std::fabs(drawn[static_cast<std::size_t>(y * 160 + x)] - truth);
+            worst = std::max(worst, off);
+            if (inside > 0 && inside < 4096) {
+                sum += off;
+                ++edges;
+            }
+        }
+    EXPECT_GT(edges, 300);
+    // A row or column of samples, and the tolerance.
+    EXPECT_LT(worst, 0.75 * (1.0 / 8 + 0.03));
+    EXPECT_LT(sum / edges, 0.75 * 0.03);
+}
+
+TEST(Drape, FacetsMeetAlongWholeEdgesAlsoNextToWhatIsHidden) {
+    constexpr unsigned kSeed = 12;
+    SCOPED_TRACE(testing::Message() << "seed " << kSeed);
+    std::mt19937 random(kSeed);
+    std::uniform_real_distribution<double> uniform(0, 1);
+    for (int i = 0; i < 150; ++i) {
+        Scene scene;
+        for (int n = 0; n < 6; ++n)
+            scene.deformations.push_back(
+                {{0, 0, uniform(random) - 0.5},
+                 {uniform(random), uniform(random)},
+                 {0.02 + 0.2 * uniform(random), 0.02 + 0.2 * uniform(random)},
+                 n % 2 ? DeformationKernel::gaussian : DeformationKernel::wendland_c2});
+        scene.pose.position = {uniform(random) - 0.5, uniform(random) - 0.5, 0.6 + uniform(random)};
+        scene.pose.target = {uniform(random) - 0.5, uniform(random) - 0.5, 0};
+        const Shown shown(scene);
+        const Facets facets = cut_into_facets(shown.tree()->tree, shown.camera(), 4);
+        // Edges along u or v that a single facet has: (line, from) to the other end.
+        std::map<std::array<double, 4>, int> uses;
+        for (const Facet& facet : facets.facets)
+            for (int k = 0; k < 3; ++k) {
+                const FacetCorner &p = facets.corners[facet.corner[k]],
+                                  &q = facets.corners[facet.corner[(k + 1) % 3]];
+                if (p.u == q.u) ++uses[{0, p.u, std::min(p.v, q.v), std::max(p.v, q.v)}];
+                if (p.v == q.v) ++uses[{1, p.v, std::min(p.u, q.u), std::max(p.u, q.u)}];
+            }
+        std::vector<std::array<double, 4>> single;
+        for (const auto& [edge, count] : uses)
+            if (count == 1) single.push_back(edge);
+        for (std::size_t k = 1; k < single.size(); ++k) {
+            const auto &before = single[k - 1], &edge = single[k];
+            const bool same_line = before[0] == edge[0] && before[1] == edge[1];
+            EXPECT_FALSE(same_line && before[3] > edge[2])
+                << i << ": a crack at " << edge[1] << ", " << edge[2];
+        }
+    }
+}
+
+TEST(Drape, WhatIsSeenFromVeryNearIsDrawnOrRefused) {
+    Scene scene;
+    scene.pose.perspective = false;
+    scene.pose.extent = 1e-6;
+    scene.screen = {64, 64};
+    Shown near(scene);
+    EXPECT_EQ(expect_points_in_place(near, scene, 0.125), 64 * 64);
+    // What double loses of a wave of this amplitude is seen.
+    scene.surface = "waves";
+    scene.shape.amplitude = 1000;
+    scene.shape.wavelength = 0.01;
+    scene.shape.phase = 1000;
+    scene.pose.position = {0.0005, 0.001, 0};
+    scene.pose.up = {0, 0, 1};
+    scene.pose.extent = 1e-9;
+    EXPECT_THROW(Shown(scene).coverage(), Error);
+    scene.pose.extent = 1e-3;
+    Shown shown(scene);
+    expect_points_in_place(shown, scene, 0.125, 1e-3);
+}
+
+TEST(Drape, NarrowDeformationsAreDrawn) {
+    for (const glm::dvec2 extent :
+         {glm::dvec2(1e-7, 1000), glm::dvec2(1e-12, 1000), glm::dvec2(1e-12, 1e-12)}) {
+        Scene scene;
+        scene.deformations = {{{0, 0, 0.5}, {0.5, 0.5}, extent}};
+        scene.pose.position = {0.3, 0.3, 1.5};
+        scene.screen = {64, 64};
+        const std::vector<float> covered = Shown(scene).coverage();
+        EXPECT_GT(std::count(covered.begin(), covered.end(), 1.0f), 500);
+    }
+    Scene dense{"ripples"};
+    dense.shape.amplitude = 1000;
+    dense.shape.wavelength = 0.01;
+    dense.pose.position = {0.3, 0.3, 1.5};
+    try {
+        Shown(dense).coverage();
+        ADD_FAILURE() << "four million patches";
+    } catch (const Error& error) {
+        EXPECT_THAT(error.what(), testing::HasSubstr("tol=0.125: takes more than"));
+    }
+}
+
+TEST(Drape, EdgesMixWhatIsMultipliedWithItsAlpha) {
+    std::vector<float> texels;
+    for (int i = 0; i < 64 * 64; ++i) texels.insert(texels.end(), {0.4f, 0.4f, 0.4f, 0.5f});
+    const MemorySource source(
+        packed_view(reinterpret_cast<const std::byte*>(texels.data()), PixelType::float32, 64, 64, 4), 3);
+    Scene scene{"sphere"};
+    scene.shape.angle = 360;
+    scene.pose.position = {0.2, 0.3, 2.5};
+    for (const std::vector<float>& background :
+         {std::vector<float>{1, 1, 1, 0}, std::vector<float>{1, 1, 1}, std::vector<float>{1, 1, 1, 0.5f}}) {
+        DrapeOptions options;
+        options.background = background;
+        for (const float value : Shown(scene, options).draw(&source, 4)) EXPECT_LE(value, 1.00001f);
+    }
+}
+
+TEST(Drape, BoundsOfParallelogramsHoldForWideOverlaps) {
+    Scene scene{"page_turn"};
+    scene.pose.position = {0.3, 0.3, 2};
+    for (const auto& [block, overlap] : {std::pair(1.0, 64.0), std::pair(2.0, 20.0), std::pair(8.0, 0.5)}) {
+        DrapeOptions options;
+        options.scheme = DrapeScheme::oka_z;
+        options.block = block;
+        options.overlap = overlap;
+        Shown shown(scene, options);
+        const std::vector<float> errors = shown.values(Output::error), bounds = shown.values(Output::bound);
+        int over = 0;
+        for (std::size_t k = 0; k < errors.size(); ++k) over += !(errors[k] <= bounds[k] * 1.00001f);
+        EXPECT_EQ(over, 0) << block << " " << overlap;
+    }
+}
+
+TEST(Drape, JacobiansAreTheStepsFromPixelToPixel) {
+    Scene scene;
+    scene.pose.position = {0.5, -0.6, 1.4};
+    scene.pose.fov = 20;
+    const Shown shown(scene);
+    const DrapeMap map(cut_into_facets(shown.tree()->tree, shown.camera(), 0.125), shown.camera(),
+                       scene.picture, 0.125);
+    for (int y = 10; y < 110; y += 9)
+        for (int x = 10; x < 150; x += 9) {
+            const auto at = [&](int i, int j) {
+                Point<double> p{};
+                int piece = 0;
+                EXPECT_TRUE(map.exact(i + 0.5, j + 0.5, 0, p, piece));
+                return p;
+            };
+            const Point<double> across = (at(x + 1, y) - at(x - 1, y)) * 0.5,
+                                down = (at(x, y + 1) - at(x, y - 1)) * 0.5;
+            const Jacobian j = map.jacobian(x + 0.5, y + 0.5, 0);
+            EXPECT_NEAR(j.x_i, across.x, 1e-4);
+            EXPECT_NEAR(j.y_i, across.y, 1e-4);
+            EXPECT_NEAR(j.x_j, down.x, 1e-4);
+            EXPECT_NEAR(j.y_j, down.y, 1e-4);
+        }
+}
+
+TEST(Drape, RefusesWhatIsNoCamera) {
+    CameraPose pose;
+    pose.position = pose.target;
+    const auto make = [&] { Camera(pose, glm::dmat3(1.0), glm::dvec3(0.0), {10, 10}); };
+    EXPECT_THROW(make(), Error);
+    pose = {};
+    pose.up = {0, 0, 1};
+    EXPECT_THROW(make(), Error);
+    DrapeOptions options;
+    options.tol = 1e-9;
+    EXPECT_THROW(Shown(Scene{}, options).coverage(), Error);
+    options.scheme = DrapeScheme::oka;
+    options.block = 0.25;
+    Scene large;
+    large.picture = {4096, 4096};
+    EXPECT_THROW(Shown(large, options).coverage(), Error);
+}
+
+}  // namespace
+}  // namespace anamorph

@@ -1,0 +1,183 @@
+// SPDX-License-Identifier: Apache-2.0
+// What the table of figures makes of its values.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <map>
+
+#include "anamorph/operation/operation.h"
+
+namespace anamorph {
+namespace {
+
+using testing::AllOf;
+using testing::HasSubstr;
+
+const char* const kScript = R"(figure doll 2 body head
+ellipsoid body  130 190  90
+ellipsoid head   85 100  85
+joint neck   body    0 175 0   head   30 -90 0
+repeat 0 1 moveto doll body 500 420 500
+linear 0 4 spinby doll body body 80 z
+view 1 4
+stop
+)";
+
+class Texts final : public SideFileReader {
+  public:
+    std::map<std::string, std::string> files = {{"a/doll.n", kScript}};
+    std::string text(const std::string& name) const override {
+        const auto found = files.find(name);
+        if (found == files.end()) throw Error("there is no file " + name);
+        return found->second;
+    }
+    std::unique_ptr<SideImage> image(const std::string&, const std::string& name) const override {
+        throw Error("there is no image " + name);
+    }
+};
+
+std::unique_ptr<const Pictures> read(const std::vector<Assignment>& more, const Texts& texts = {}) {
+    const Operation& operation = *find_operation("figure");
+    ParameterValues values(*operation.parameters);
+    values.assign(more);
+    SideFiles files = {{"script", {"a/doll.n", ""}}};
+    if (values.given("library")) files["library"] = {values.text("library"), ""};
+    return operation.read({values, {}, files, texts});
+}
+
+std::vector<float> draw(const PictureRequest& request) {
+    const int channels = request.pixels == PixelKind::point ? 2 : static_cast<int>(request.channels.size());
+    const Box box = {0, 0, request.size.width, request.size.height};
+    std::vector<float> pixels(static_cast<std::size_t>(box.width() * box.height() * channels));
+    request.solve()->draw({}, box,
+                          packed_view(reinterpret_cast<std::byte*>(pixels.data()), PixelType::float32,
+                                      box.width(), box.height(), channels),
+                          serial_for);
+    return pixels;
+}
+
+std::vector<float> drawn(std::vector<Assignment> more, const Texts& texts = {}) {
+    more.push_back({"size", "64x48"});
+    more.push_back({"frame", "2"});
+    return draw(*read(more, texts)->picture(0, 0));
+}
+
+std::string error_of(const std::vector<Assignment>& more, const Texts& texts = {}) {
+    try {
+        const auto pictures = read(more, texts);
+        pictures->picture(0, 0)->solve();
+    } catch (const Error& e) {
+        return e.what();
+    }
+    return "no error";
+}
+
+/// Of 64 x 48 pixels with so many channels.
+void expect_like(const std::vector<float>& a, const std::vector<float>& b) {
+    ASSERT_EQ(a.size(), b.size());
+    for (std::size_t i = 0; i < a.size(); ++i) ASSERT_NEAR(a[i], b[i], 1.01f / 128);
+}
+
+TEST(FigureOperation, FramesAreThoseThatTheScriptShows) {
+    const auto film = read({});
+    EXPECT_EQ(film->frames(), 3);
+    const auto number = [](const PictureRequest& request) {
+        for (const Attribute& a : request.says)
+            if (a.name == "anamorph:frame") return std::get<int>(a.value);
+        return -1;
+    };
+    for (int i = 0; i < 3; ++i) {
+        const PictureRequest picture = *film->picture(i, 4);
+        EXPECT_EQ(number(picture), i + 2);
+        EXPECT_EQ(picture.size, (Size{62, 62}));
+        const auto alone = read({{"frame", std::to_string(i + 2)}});
+        EXPECT_EQ(alone->frames(), 1);
+        EXPECT_EQ(draw(picture), draw(*alone->picture(0, 4)));
+    }
+    EXPECT_NE(draw(*film->picture(0, 4)), draw(*film->picture(1, 4)));
+    // Frames that are not shown can be asked for, those that are not performed cannot.
+    EXPECT_EQ(error_of({{"frame", "0"}}), "no error");
+    EXPECT_THAT(error_of({{"frame", "5"}}), HasSubstr("frame=5: must be an integer from 0 to 4"));
+    Texts still;
+    still.files["a/doll.n"] = "figure f 1 e\nellipsoid e 1 2 3\nstop\n";
+    EXPECT_EQ(read({}, still)->frames(), 1);
+    EXPECT_EQ(number(*read({}, still)->picture(0, 0)), 0);
+    still.files["a/doll.n"] = "figure f 1 e\nellipsoid e 1 2 3\nrepeat 0 100001 spinby f e e 1 x\nstop\n";
+    EXPECT_THAT(error_of({}, still), HasSubstr("frame is not given and the script shows 100001 frames"));
+}
+
+TEST(FigureOperation, StylesHaveTheirChannels) {
+    using Names = std::vector<std::string>;
+    const auto channels = [](const char* style) { return read({{"style", style}})->picture(0, 0)->channels; };
+    for (const char* style : {"shaded", "outline", "stick"})
+        EXPECT_EQ(channels(style), (Names{"R", "G", "B", "A"}));
+    EXPECT_EQ(channels("depth"), Names{"Z"});
+    EXPECT_EQ(channels("id"), Names{"id"});
+    EXPECT_EQ(read({{"style", "uv"}})->picture(0, 0)->pixels, PixelKind::point);
+}
+
+TEST(FigureOperation, ViewsAreWhatTheScriptCouldSay) {
+    Texts turned, moved;
+    turned.files["a/doll.n"] = "repeat 0 2 observe 10 20 30\n" + std::string(kScript);
+    moved.files["a/doll.n"] = "repeat 0 2 place 400 450 500\n" + std::string(kScript);
+    for (const char* style : {"shaded", "outline", "stick", "depth", "id"}) {
+        SCOPED_TRACE(style);
+        EXPECT_EQ(drawn({{"style", style}, {"camera", "10,20,30"}}), drawn({{"style", style}}, turned));
+        EXPECT_EQ(drawn({{"style", style}, {"place", "400,450,500"}}), drawn({{"style", style}}, moved));
+    }
+    EXPECT_NE(drawn({{"camera", "10,20,30"}}), drawn({}));
+    EXPECT_NE(drawn({{"perspective", "800"}}), drawn({}));
+    // From very far away there is no perspective.
+    expect_like(drawn({{"perspective", "1e9"}, {"style", "id"}}), drawn({{"style", "id"}}));
+}
+
+TEST(FigureOperation, ZoomAndLevelsAreSizes) {
+    const std::vector<float> large =
+        draw(*read({{"size", "128x96"}, {"frame", "2"}, {"style", "id"}})->picture(0, 0));
+    const std::vector<float> zoomed = drawn({{"zoom", "2"}, {"style", "id"}});
+    for (int y = 0; y < 48; ++y)
+        for (int x = 0; x < 64; ++x)
+            EXPECT_EQ(zoomed[static_cast<std::size_t>(y * 64 + x)],
+                      large[static_cast<std::size_t>((y + 24) * 128 + x + 32)]);
+    // A level is what the mean of the one before comes close to.
+    const std::vector<float> small = drawn({});
+    const std::vector<float> level = draw(*read({{"size", "128x96"}, {"frame", "2"}})->picture(0, 1));
+    EXPECT_EQ(level, small);
+}
+
+TEST(FigureOperation, ALibraryIsIncluded) {
+    Texts texts;
+    const std::string all = kScript;
+    const std::size_t movements = all.find("repeat");
+    texts.files["lib/dolls.n"] = all.substr(0, movements);
+    texts.files["a/doll.n"] = all.substr(movements);
+    EXPECT_EQ(drawn({{"library", "lib/dolls.n"}}, texts), drawn({}));
+    texts.files["a/dolls.n"] = texts.files["lib/dolls.n"];
+    texts.files["a/doll.n"] = "include dolls.n\n" + all.substr(movements);
+    EXPECT_EQ(drawn({}, texts), drawn({}));
+    // What is included is known before anything is performed.
+    const Operation& operation = *find_operation("figure");
+    const ParameterValues values(*operation.parameters);
+    const LinkedFiles linked = operation.linked(values, {{"script", {"a/doll.n", ""}}}, texts);
+    ASSERT_EQ(linked.size(), 1u);
+    EXPECT_EQ(linked[0].name, "a/dolls.n");
+}
+
+TEST(FigureOperation, WhatIsWrongIsNamed) {
+    EXPECT_THAT(error_of({{"camera", "1,2"}}), AllOf(HasSubstr("camera=1,2"), HasSubstr("three numbers")));
+    EXPECT_THAT(error_of({{"camera", "1,2,1e300"}}), HasSubstr("must be three numbers from -1e+09 to 1e+09"));
+    EXPECT_THAT(error_of({{"place", "1"}}), HasSubstr("place=1"));
+    EXPECT_THAT(error_of({{"light", "0,0,0"}}), HasSubstr("light=0,0,0: must not be 0,0,0"));
+    EXPECT_THAT(error_of({{"background", "0,0,256"}}), HasSubstr("must be three numbers from 0 to 255"));
+    Texts wrong;
+    wrong.files["a/doll.n"] = "figure f 1 e\nelipsoid e 1 2 3\nstop\n";
+    EXPECT_THAT(error_of({}, wrong), HasSubstr("doll.n:2:1: error"));
+    wrong.files.clear();
+    EXPECT_THAT(error_of({}, wrong), HasSubstr("a/doll.n"));
+    wrong.files["a/doll.n"] = "include none.n\n" + std::string(kScript);
+    EXPECT_THAT(error_of({}, wrong), AllOf(HasSubstr("doll.n:1"), HasSubstr("none.n")));
+}
+
+}  // namespace
+}  // namespace anamorph
