@@ -82,6 +82,48 @@ HWY_INLINE Lanes<D> polynomial(const Lanes<D>& x, const double (&c)[N]) {
     return sum;
 }
 
+/// Integers in lanes.
+template <class D>
+using WholeLanes = hn::Vec<hn::RebindToSigned<D>>;
+
+/// A number below 2^51 (double) or 2^22 (float) plus this has its nearest integer in its last bits, ties to
+/// even. Conversions of doubles to integers are slow before AVX-512.
+template <class D>
+constexpr double kIntegerShift = sizeof(hn::TFromD<D>) == 8 ? 0x1.8p52 : 0x1.8p23;
+
+template <class D>
+HWY_INLINE WholeLanes<D> shift_bits() {
+    return hn::BitCast(hn::RebindToSigned<D>(), Lanes<D>(kIntegerShift<D>).v);
+}
+
+/// The integer nearest to a; `rounded` is the same as a number.
+template <class D>
+HWY_INLINE WholeLanes<D> nearest_integer(const Lanes<D>& a, Lanes<D>& rounded) {
+    const Lanes<D> shifted = a + Lanes<D>(kIntegerShift<D>);
+    rounded = shifted - Lanes<D>(kIntegerShift<D>);
+    return hn::Sub(hn::BitCast(hn::RebindToSigned<D>(), shifted.v), shift_bits<D>());
+}
+
+/// An integer as small, as a number.
+template <class D>
+HWY_INLINE Lanes<D> number_of(const WholeLanes<D>& n) {
+    return Lanes<D>(hn::BitCast(D(), hn::Add(n, shift_bits<D>()))) - Lanes<D>(kIntegerShift<D>);
+}
+
+/// a 2^n for n from -2044 to 2046 (double), -252 to 254 (float), in two steps, of which neither leaves the
+/// range.
+template <class D>
+HWY_INLINE Lanes<D> times_power_of_two(const Lanes<D>& a, const WholeLanes<D>& n) {
+    const hn::RebindToUnsigned<D> du;
+    constexpr bool kDouble = sizeof(hn::TFromD<D>) == 8;
+    constexpr int kBits = kDouble ? 52 : 23, kBias = kDouble ? 1023 : 127;
+    const auto bits = [](auto exponent)
+                          HWY_ATTR { return Lanes<D>(hn::BitCast(D(), hn::ShiftLeft<kBits>(exponent))); };
+    const auto both_biased = hn::Add(hn::BitCast(du, n), hn::Set(du, 2 * kBias));
+    const auto half_biased = hn::ShiftRight<1>(both_biased);
+    return a * bits(half_biased) * bits(hn::Sub(both_biased, half_biased));
+}
+
 /// The sine of a and 1 - cos a within a quarter of a turn around 0: minimax polynomials of degree 13 and 14 in
 /// double (the coefficients are those of fdlibm's kernels), 7 and 8 in float (Cephes').
 template <class D>
@@ -117,8 +159,8 @@ HWY_INLINE LaneMask<D> has_bit(hn::Vec<hn::RebindToSigned<D>> n, int bit) {
 template <class D>
 HWY_INLINE void sin_cos(const Lanes<D>& a, Lanes<D>& sine, Lanes<D>& cosine) {
     const hn::RebindToSigned<D> di;
-    const Lanes<D> quarters(hn::Round((a * 0.63661977236758134308).v));
-    Lanes<D> r;
+    Lanes<D> quarters, r;
+    const auto n = nearest_integer(a * Lanes<D>(0.63661977236758134308), quarters);
     if constexpr (sizeof(hn::TFromD<D>) == 8)
         r = ((a - quarters * 1.57079632673412561417e+00) - quarters * 6.07710050630396597660e-11) -
             quarters * 2.02226624879595063154e-21;
@@ -128,7 +170,6 @@ HWY_INLINE void sin_cos(const Lanes<D>& a, Lanes<D>& sine, Lanes<D>& cosine) {
     Lanes<D> s, v;
     sine_versine(r, s, v);
     const Lanes<D> c = Lanes<D>(1) - v;
-    const auto n = hn::ConvertTo(di, quarters.v);
     const LaneMask<D> odd = has_bit<D>(n, 1);
     const Lanes<D> plain_sine = select(odd, c, s), plain_cosine = select(odd, s, c);
     sine = select(has_bit<D>(n, 2), -plain_sine, plain_sine);
@@ -175,16 +216,6 @@ HWY_INLINE Lanes<D> atan2(const Lanes<D>& y, const Lanes<D>& x) {
     return L(hn::CopySign(angle.v, y.v));
 }
 
-/// 2^n for whole n from -1022 to 1023 (double), -126 to 127 (float).
-template <class D>
-HWY_INLINE Lanes<D> power_of_two(const Lanes<D>& n) {
-    const hn::RebindToSigned<D> di;
-    constexpr int kBits = sizeof(hn::TFromD<D>) == 8 ? 52 : 23,
-                  kBias = sizeof(hn::TFromD<D>) == 8 ? 1023 : 127;
-    const auto exponent = hn::Add(hn::ConvertTo(di, n.v), hn::Set(di, kBias));
-    return Lanes<D>(hn::BitCast(D(), hn::ShiftLeft<kBits>(exponent)));
-}
-
 /// With a = n log 2 + r: e^r = 1 + r + r c / (2 - c), c = r - r^2 P(r^2) (fdlibm's e_exp), times 2^n in two
 /// steps, so that neither leaves the range.
 template <class D>
@@ -193,7 +224,8 @@ HWY_INLINE Lanes<D> exp(const Lanes<D>& a) {
     constexpr bool kDouble = sizeof(hn::TFromD<D>) == 8;
     constexpr double kMost = kDouble ? 710 : 89, kLeast = kDouble ? -746 : -104;
     const L x = select(a < L(kLeast), L(kLeast), select(L(kMost) < a, L(kMost), a));
-    const L n(hn::Round((x * 1.44269504088896338700).v));
+    L n;
+    const auto whole = nearest_integer(x * L(1.44269504088896338700), n);
     const L high = x - n * (kDouble ? 6.93147180369123816490e-01 : 0.693359375);
     const L low = n * (kDouble ? 1.90821492927058770002e-10 : -2.12194440e-4);
     const L r = high - low, z = r * r;
@@ -202,8 +234,7 @@ HWY_INLINE Lanes<D> exp(const Lanes<D>& a) {
                              4.13813679705723846039e-08};
     const L c = r - z * polynomial(z, kP);
     const L value = L(1) - ((low - r * c / (L(2) - c)) - high);
-    const L half(hn::Floor((n * 0.5).v));
-    return value * power_of_two(half) * power_of_two(n - half);
+    return times_power_of_two(value, whole);
 }
 
 /// With a = 2^n m, m around 1, f = m - 1 and s = f / (2 + f): log m = f - s (f - R(s^2)) and so on (fdlibm's
@@ -225,7 +256,7 @@ HWY_INLINE Lanes<D> log(const Lanes<D>& a) {
         hn::Set(di, kDouble ? static_cast<Int>(0x3fe6a09e667f3bcc) : static_cast<Int>(0x3f3504f3));
     const auto n = hn::ShiftRight<kBits>(hn::Sub(bits, offset));
     const L m(hn::BitCast(d, hn::Sub(bits, hn::ShiftLeft<kBits>(n))));
-    const L exponent = L(hn::ConvertTo(d, n)) - select(tiny, L(kDouble ? 54 : 25), L(0));
+    const L exponent = number_of<D>(n) - select(tiny, L(kDouble ? 54 : 25), L(0));
     constexpr double kR[] = {6.666666666666735130e-01, 3.999999999940941908e-01, 2.857142874366239149e-01,
                              2.222219843214978396e-01, 1.818357216161805012e-01, 1.531383769920937332e-01,
                              1.479819860511658591e-01};
