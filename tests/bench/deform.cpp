@@ -7,8 +7,8 @@
 // points and points_edit: the same of DeformedPoints. memory: as many bytes copied as fixed reads and writes.
 //
 // With normals: the same planes, normals (0, 0, 1) that turn along. double: the plain loop, that of a bump
-// giving both derivatives from its value. grid, points: DeformedGrid and DeformedPoints filled and drawn, and
-// their slopes, which turn the normals. grid_edit, points_edit: the same after one bump that reaches 250 to
+// giving both derivatives from its value. grid: a DeformedGrid filled and drawn, and its slopes, which turn
+// the normals. points: the same of DeformedPoints, at once. grid_edit, points_edit: the same after one bump that reaches 250 to
 // 300 points has changed. Errors are those of a component of a normal.
 //
 // A blend of 10 shapes of as many points, weights from -0.3 to 0.4. double: the plain loop. blend: inbetween.
@@ -24,6 +24,7 @@
 #include <glm/geometric.hpp>
 #include <random>
 #include <string>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -253,16 +254,22 @@ template <class Surface>
 class WithNormals {
   public:
     WithNormals(Surface surface, std::vector<Deformation> list, const float* base, float* out, float* normals)
-        : m_surface(std::move(surface)),
+        : m_undeformed(std::move(surface)),
+          m_surface(m_undeformed),
           m_list(std::move(list)),
           m_base(base),
           m_out(out),
-          m_normals(normals) {
-        m_surface.apply(difference({}, m_list));
-    }
+          m_normals(normals) {}
+    /// All points and normals anew.
     void draw() {
-        m_surface.write(m_base, m_out);
-        draw_normals(nullptr);
+        if constexpr (std::is_same_v<Surface, DeformedPoints>) {
+            m_surface.write_with_slopes(m_list, m_base, m_out, turn_normals_to());
+        } else {
+            m_surface = m_undeformed;
+            m_surface.apply(difference({}, m_list));
+            m_surface.write(m_base, m_out);
+            m_surface.slopes(m_list, nullptr, turn_normals_to());
+        }
     }
     /// Changes the last bump, there and back.
     void edit() {
@@ -271,21 +278,22 @@ class WithNormals {
         const std::vector<DeformationChange> changes{{before, m_list.back()}};
         m_surface.apply(changes);
         m_surface.update(m_base, m_out);
-        draw_normals(&changes);
+        m_surface.slopes(m_list, &changes, turn_normals_to());
     }
 
   private:
-    void draw_normals(const std::vector<DeformationChange>* changes) {
-        m_surface.slopes(m_list, changes, [&](const SurfaceSlopes& slopes) {
+    TakeSlopes turn_normals_to() {
+        return [this](const SurfaceSlopes& slopes) {
             double normals[3][SurfaceSlopes::kMost] = {};
             std::fill_n(normals[2], slopes.count, 1.0);
             turn_normals(slopes, {1, 0, 0}, {0, 1, 0}, normals);
             for (int k = 0; k < slopes.count; ++k)
                 for (int c = 0; c < 3; ++c)
                     m_normals[3 * slopes.point(k) + c] = static_cast<float>(normals[c][k]);
-        });
+        };
     }
 
+    const Surface m_undeformed;
     Surface m_surface;
     std::vector<Deformation> m_list;
     const float* m_base;

@@ -48,6 +48,27 @@ std::vector<Given> given(const Surface& surface, std::size_t points, const std::
     return result;
 }
 
+/// All that points give when they are written in the same pass.
+std::vector<Given> given_and_written(DeformedPoints& surface, std::size_t points,
+                                     const std::vector<Deformation>& list, const ParallelFor& parallel_for,
+                                     std::vector<double>& out, std::vector<double>& displacement) {
+    std::vector<Given> result(points);
+    std::mutex guard;
+    const std::vector<double> base(3 * points, 0.7);
+    out.assign(3 * points, -1);
+    displacement.assign(3 * points, -1);
+    const auto take = [&](const SurfaceSlopes& slopes) {
+        const std::lock_guard<std::mutex> lock(guard);
+        for (int k = 0; k < slopes.count; ++k) {
+            Given& to = result.at(static_cast<std::size_t>(slopes.point(k)));
+            ++to.count;
+            for (std::size_t c = 0; c < 6; ++c) to.by[c] = slopes.by[c][k];
+        }
+    };
+    surface.write_with_slopes(list, base.data(), out.data(), take, parallel_for, displacement.data());
+    return result;
+}
+
 std::vector<Deformation> bumps(unsigned seed, std::size_t count, double least_extent, double most_extent) {
     std::mt19937 random(seed);
     const auto number = [&](double least, double most) {
@@ -185,6 +206,39 @@ TEST(SurfaceSlopes, OfAnEditAreThoseOfThePointsItReaches) {
     const std::vector<DeformationChange> none;
     for (const Given& g : given(DeformedGrid(u, v), points.size(), list, &none)) EXPECT_EQ(g.count, 0);
     for (const Given& g : given(DeformedPoints(points), points.size(), list, &none)) EXPECT_EQ(g.count, 0);
+}
+
+TEST(SurfaceSlopes, WrittenWithPointsAreTheSameBits) {
+    const std::vector<glm::dvec2> points = grid_points(even(171), even(45));
+    const std::vector<Deformation> list = bumps(11, 90, .02, .3), others = bumps(12, 40, .02, .3);
+    DeformedPoints apart(points);
+    apart.apply(difference({}, list));
+    const std::vector<double> base(3 * points.size(), 0.7);
+    std::vector<double> out(base.size()), displacement(base.size());
+    apart.write(base.data(), out.data(), serial_for, displacement.data());
+    const std::vector<Given> slopes = given(apart, points.size(), list);
+    test::on_every_instruction_set([&] {
+        DeformedPoints together(points);
+        // What was drawn or taken before leaves no trace.
+        std::vector<double> out_together = out, displacement_together;
+        together.apply(difference({}, others));
+        together.write(base.data(), out_together.data());
+        together.apply(DeformationChange{others[3], others[4]});
+        EXPECT_EQ(
+            given_and_written(together, points.size(), list, threads(3), out_together, displacement_together),
+            slopes);
+        EXPECT_EQ(out_together, out);
+        EXPECT_EQ(displacement_together, displacement);
+        EXPECT_EQ(together.error_bound(), apart.error_bound());
+        // Edits go on from there.
+        together.apply(DeformationChange{list[0], std::nullopt});
+        together.update(base.data(), out_together.data());
+        DeformedPoints fresh(points);
+        fresh.apply(difference({}, std::vector<Deformation>(list.begin() + 1, list.end())));
+        std::vector<double> out_fresh(base.size());
+        fresh.write(base.data(), out_fresh.data());
+        EXPECT_EQ(out_together, out_fresh);
+    });
 }
 
 TEST(SurfaceSlopes, HardListsAndPoints) {

@@ -80,9 +80,7 @@ class MeshOf final : public DeformedMesh {
             changes = difference({}, list);
         }
         m_list = list;
-        const double middle = m_settings.normals ? begin + (end - begin) * 0.5 : end;
-        const vtkIdType written = move_points(changes, execution.stage(begin, middle));
-        if (m_settings.normals) update_normals(changes, out, execution.stage(middle, end));
+        const vtkIdType written = draw(changes, out, execution, begin, end);
         hand_out(out);
         return written;
     }
@@ -145,73 +143,100 @@ class MeshOf final : public DeformedMesh {
         array->Modified();
     }
 
-    vtkIdType move_points(const std::vector<DeformationChange>& changes, const ParallelFor& parallel_for) {
+    /// Brings points and normals up to date; the number of points that were written. mesh: a shallow copy of
+    /// the undeformed one.
+    vtkIdType draw(const std::vector<DeformationChange>& changes, vtkPointSet* mesh, Execution& execution,
+                   double begin, double end) {
         const bool all = !m_points;
         if (!all && changes.empty()) return 0;
-        if (all) {
+        begin_points();
+        if (m_settings.normals) begin_normals(mesh);
+        vtkIdType written = static_cast<vtkIdType>(size());
+        auto* scattered = std::get_if<DeformedPoints>(&m_surface);
+        if (scattered && all && m_settings.normals) {
+            scattered->write_with_slopes(m_list, m_base->GetPointer(0), m_points->GetPointer(0),
+                                         normals_writer(), execution.stage(begin, end), displacement());
+        } else {
+            const double middle = m_settings.normals ? begin + (end - begin) * 0.5 : end;
+            written = move_points(changes, all, execution.stage(begin, middle));
+            if (m_settings.normals) turn_normals(changes, all, execution.stage(middle, end));
+        }
+        keep_unmoved();
+        return written;
+    }
+
+    /// Makes room for points, and for displacements if they are wanted.
+    void begin_points() {
+        if (!m_points) {
             m_points = new_array(size());
             if (m_settings.displacement) m_displacement = new_array(size());
         }
         own(m_points);
         if (m_displacement) own(m_displacement);
-        T* const points = m_points->GetPointer(0);
-        T* const displacement = m_displacement ? m_displacement->GetPointer(0) : nullptr;
+    }
+    T* displacement() const { return m_displacement ? m_displacement->GetPointer(0) : nullptr; }
+
+    /// Makes room for normals.
+    void begin_normals(vtkPointSet* mesh) {
+        if (!m_normals) {
+            m_given = mesh->GetPointData()->GetNormals();
+            if (m_given && (m_given->GetNumberOfComponents() != 3 ||
+                            m_given->GetNumberOfTuples() != static_cast<vtkIdType>(size())))
+                m_given = nullptr;
+            if (!m_surface_normals)
+                m_surface_normals.emplace(mesh, m_parameters,
+                                          m_settings.on_plane ? &m_settings.plane : nullptr, m_given);
+            m_normals = new_array(size());
+            m_normals->SetName(m_given && m_given->GetName() ? m_given->GetName() : "Normals");
+        }
+        own(m_normals);
+    }
+    anamorph::TakeSlopes normals_writer() {
+        return [this, to = m_normals->GetPointer(0)](const anamorph::SurfaceSlopes& slopes) {
+            m_surface_normals->write(slopes, to);
+        };
+    }
+
+    vtkIdType move_points(const std::vector<DeformationChange>& changes, bool all,
+                          const ParallelFor& parallel_for) {
         const T* const base = m_base->GetPointer(0);
-        vtkIdType written = static_cast<vtkIdType>(size());
+        T* const points = m_points->GetPointer(0);
+        const auto everything = static_cast<vtkIdType>(size());
         if (auto* grid = std::get_if<DeformedGrid>(&m_surface)) {
             grid->apply(changes);
             if (all) {
-                grid->write(base, points, parallel_for, displacement);
-            } else {
-                const anamorph::GridPart part = grid->update(base, points, parallel_for, displacement);
-                written = part.empty() ? 0
-                                       : vtkIdType{part.column_end - part.column_begin} *
-                                             (part.row_end - part.row_begin);
+                grid->write(base, points, parallel_for, displacement());
+                return everything;
             }
-        } else {
-            auto& cells = std::get<DeformedPoints>(m_surface);
-            cells.apply(changes);
-            if (all)
-                cells.write(base, points, parallel_for, displacement);
-            else
-                written = cells.update(base, points, parallel_for, displacement);
+            const anamorph::GridPart part = grid->update(base, points, parallel_for, displacement());
+            if (part.empty()) return 0;
+            return vtkIdType{part.column_end - part.column_begin} * (part.row_end - part.row_begin);
         }
-        for (const vtkIdType i : m_unmoved) {
-            std::copy(base + 3 * i, base + 3 * i + 3, points + 3 * i);
-            if (displacement) std::fill(displacement + 3 * i, displacement + 3 * i + 3, T(0));
-        }
-        return written;
+        auto& scattered = std::get<DeformedPoints>(m_surface);
+        scattered.apply(changes);
+        if (!all) return scattered.update(base, points, parallel_for, displacement());
+        scattered.write(base, points, parallel_for, displacement());
+        return everything;
     }
 
-    /// mesh: a shallow copy of the undeformed one.
-    void update_normals(const std::vector<DeformationChange>& changes, vtkPointSet* mesh,
-                        const ParallelFor& parallel_for) {
-        const bool all = !m_normals;
-        if (!all && changes.empty()) return;
-        vtkDataArray* given = mesh->GetPointData()->GetNormals();
-        if (given && (given->GetNumberOfComponents() != 3 ||
-                      given->GetNumberOfTuples() != static_cast<vtkIdType>(size())))
-            given = nullptr;
-        if (!m_surface_normals)
-            m_surface_normals.emplace(mesh, m_parameters, m_settings.on_plane ? &m_settings.plane : nullptr,
-                                      given);
-        if (all) {
-            m_normals = new_array(size());
-            m_normals->SetName(given && given->GetName() ? given->GetName() : "Normals");
-        }
-        own(m_normals);
-        T* const normals = m_normals->GetPointer(0);
-        const auto write = [&](const anamorph::SurfaceSlopes& slopes) {
-            m_surface_normals->write(slopes, normals);
-        };
+    void turn_normals(const std::vector<DeformationChange>& changes, bool all,
+                      const ParallelFor& parallel_for) {
+        const auto take = normals_writer();
         if (const auto* grid = std::get_if<DeformedGrid>(&m_surface))
-            grid->slopes(m_list, all ? nullptr : &changes, write, parallel_for);
+            grid->slopes(m_list, all ? nullptr : &changes, take, parallel_for);
         else
-            std::get<DeformedPoints>(m_surface).slopes(m_list, all ? nullptr : &changes, write, parallel_for);
+            std::get<DeformedPoints>(m_surface).slopes(m_list, all ? nullptr : &changes, take, parallel_for);
+    }
+
+    /// Points whose parameters are not finite stay as they were, normals and all.
+    void keep_unmoved() {
         for (const vtkIdType i : m_unmoved) {
+            std::copy_n(m_base->GetPointer(3 * i), 3, m_points->GetPointer(3 * i));
+            if (m_displacement) std::fill_n(m_displacement->GetPointer(3 * i), 3, T(0));
+            if (!m_normals) continue;
             double n[3] = {};
-            if (given) given->GetTuple(i, n);
-            for (int c = 0; c < 3; ++c) normals[3 * i + c] = static_cast<T>(n[c]);
+            if (m_given) m_given->GetTuple(i, n);
+            for (int c = 0; c < 3; ++c) m_normals->GetPointer(3 * i)[c] = static_cast<T>(n[c]);
         }
     }
 
@@ -235,7 +260,8 @@ class MeshOf final : public DeformedMesh {
     std::vector<vtkIdType> m_unmoved;  ///< points whose parameters are not finite
     std::variant<std::monostate, DeformedGrid, DeformedPoints> m_surface;
     std::optional<SurfaceNormals> m_surface_normals;
-    std::vector<Deformation> m_list;  ///< that the surface and the arrays are of
+    vtkSmartPointer<vtkDataArray> m_given;  ///< the undeformed mesh's normals, or null
+    std::vector<Deformation> m_list;        ///< that the surface and the arrays are of
     vtkSmartPointer<Array> m_points, m_displacement, m_normals;
 };
 

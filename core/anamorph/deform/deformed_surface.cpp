@@ -458,9 +458,17 @@ simd::PointTerm point_term(const Term& from, const DisplacementSum& sum) {
                          {1 / d.extent.x, 1 / d.extent.y},
                          sum.reach(d.kernel),
                          {},
+                         {},
                          d.kernel == DeformationKernel::gaussian};
+    set_units(from, 1, term.vector);
     set_units(from, sum.options().resolution, term.units);
     return term;
+}
+std::vector<simd::PointTerm> point_terms(std::span<const DeformationChange> changes,
+                                         const DisplacementSum& sum) {
+    std::vector<simd::PointTerm> terms;
+    for (const Term& from : terms_of(changes)) terms.push_back(point_term(from, sum));
+    return terms;
 }
 
 /// Does a term move points with coordinates from `least` to `most`? The arithmetic of simd::deform_points,
@@ -468,17 +476,6 @@ simd::PointTerm point_term(const Term& from, const DisplacementSum& sum) {
 bool reaches(const simd::PointTerm& term, int axis, double least, double most) {
     return (most - term.center[axis]) * term.inverse_extent[axis] >= -term.reach &&
            (least - term.center[axis]) * term.inverse_extent[axis] <= term.reach;
-}
-
-/// Terms for derivatives: with V for units.
-std::vector<simd::PointTerm> slope_terms(const std::vector<DeformationChange>& changes,
-                                         const DisplacementSum& sum) {
-    std::vector<simd::PointTerm> terms;
-    for (const Term& from : terms_of(changes)) {
-        terms.push_back(point_term(from, sum));
-        set_units(from, 1, terms.back().units);
-    }
-    return terms;
 }
 
 /// The derivatives at `count` points, a multiple of simd::kPointBlock.
@@ -586,9 +583,9 @@ void DeformedPoints::slopes(const std::vector<Deformation>& list,
                             const std::vector<DeformationChange>* changes, const TakeSlopes& take,
                             const ParallelFor& parallel_for) const {
     const std::vector<DeformationChange> all = difference({}, list);
-    const std::vector<simd::PointTerm> terms = slope_terms(all, m_sum);
+    const std::vector<simd::PointTerm> terms = point_terms(all, m_sum);
     std::vector<simd::PointTerm> visiting;
-    if (changes) visiting = slope_terms(*changes, m_sum);
+    if (changes) visiting = point_terms(*changes, m_sum);
     constexpr std::size_t kMost = SurfaceSlopes::kMost;
     each_cell(visiting, !changes, terms, parallel_for,
               [&](const Cell& cell, const std::vector<const simd::PointTerm*>& near) {
@@ -604,31 +601,64 @@ void DeformedPoints::slopes(const std::vector<Deformation>& list,
 }
 
 template <class T>
+std::int64_t DeformedPoints::write_slots(std::size_t begin, std::size_t end, const T* base, T* out,
+                                         T* displacement) const {
+    const double resolution = m_sum.options().resolution;
+    std::int64_t points = 0;
+    for (std::size_t slot = begin; slot < end && m_point[slot] >= 0; ++slot, ++points)
+        for (std::size_t c = 0; c < 3; ++c) {
+            const std::size_t k = 3 * static_cast<std::size_t>(m_point[slot]) + c;
+            const double start = base ? static_cast<double>(base[k]) : 0;
+            const double moved = static_cast<double>(m_sums[c][slot]) * resolution;
+            out[k] = static_cast<T>(moved + start);
+            if (displacement) displacement[k] = static_cast<T>(moved);
+        }
+    return points;
+}
+
+template <class T>
 std::int64_t DeformedPoints::draw(bool all, const T* base, T* out, const ParallelFor& parallel_for,
                                   T* displacement) {
-    std::vector<simd::PointTerm> terms;
-    for (const Term& from : terms_of(m_pending)) terms.push_back(point_term(from, m_sum));
+    const std::vector<simd::PointTerm> terms = point_terms(m_pending, m_sum);
     std::atomic<std::int64_t> written = 0;
-    const double resolution = m_sum.options().resolution;
     const auto draw_cell = [&](const Cell& cell, const std::vector<const simd::PointTerm*>& near) {
         std::int64_t* const sums[3] = {&m_sums[0][cell.begin], &m_sums[1][cell.begin],
                                        &m_sums[2][cell.begin]};
         simd::deform_points(near.data(), near.size(), &m_u[cell.begin], &m_v[cell.begin],
                             cell.end - cell.begin, sums);
-        std::int64_t points = 0;
-        for (std::size_t slot = cell.begin; slot < cell.end && m_point[slot] >= 0; ++slot, ++points)
-            for (std::size_t c = 0; c < 3; ++c) {
-                const std::size_t k = 3 * static_cast<std::size_t>(m_point[slot]) + c;
-                const double start = base ? static_cast<double>(base[k]) : 0;
-                const double moved = static_cast<double>(m_sums[c][slot]) * resolution;
-                out[k] = static_cast<T>(moved + start);
-                if (displacement) displacement[k] = static_cast<T>(moved);
-            }
-        written += points;
+        written += write_slots(cell.begin, cell.end, base, out, displacement);
     };
     if (all || !terms.empty()) each_cell(terms, all, terms, parallel_for, draw_cell);
     m_pending.clear();
     return written;
+}
+
+template <class T>
+void DeformedPoints::write_with_slopes(const std::vector<Deformation>& list, const T* base, T* out,
+                                       const TakeSlopes& take, const ParallelFor& parallel_for,
+                                       T* displacement) {
+    const std::vector<DeformationChange> changes = difference({}, list);
+    DisplacementSum sum(m_sum.options());
+    sum.apply(changes);
+    m_sum = sum;
+    m_pending.clear();
+    const std::vector<simd::PointTerm> terms = point_terms(changes, m_sum);
+    constexpr std::size_t kMost = SurfaceSlopes::kMost;
+    each_cell({}, true, terms, parallel_for,
+              [&](const Cell& cell, const std::vector<const simd::PointTerm*>& near) {
+                  double by[6][kMost];
+                  for (std::size_t at = cell.begin; at < cell.end; at += kMost) {
+                      const std::size_t slots = std::min(kMost, cell.end - at);
+                      std::int64_t* sums[3];
+                      double* slopes[6];
+                      for (int c = 0; c < 3; ++c) std::fill_n(sums[c] = &m_sums[c][at], slots, 0);
+                      for (int c = 0; c < 6; ++c) std::fill_n(slopes[c] = by[c], slots, 0.0);
+                      simd::deform_points_with_slopes(near.data(), near.size(), &m_u[at], &m_v[at], slots,
+                                                      sums, slopes);
+                      const std::int64_t points = write_slots(at, at + slots, base, out, displacement);
+                      if (points > 0) take({static_cast<int>(points), 0, &m_point[at], by});
+                  }
+              });
 }
 
 template <class T>
@@ -645,6 +675,10 @@ template std::int64_t DeformedPoints::update(const float*, float*, const Paralle
 template std::int64_t DeformedPoints::update(const double*, double*, const ParallelFor&, double*);
 template void DeformedPoints::write(const float*, float*, const ParallelFor&, float*);
 template void DeformedPoints::write(const double*, double*, const ParallelFor&, double*);
+template void DeformedPoints::write_with_slopes(const std::vector<Deformation>&, const float*, float*,
+                                                const TakeSlopes&, const ParallelFor&, float*);
+template void DeformedPoints::write_with_slopes(const std::vector<Deformation>&, const double*, double*,
+                                                const TakeSlopes&, const ParallelFor&, double*);
 
 // --- Normals
 
@@ -750,7 +784,7 @@ void displacement_jets(const std::vector<Deformation>& list, std::span<const glm
     const std::vector<DeformationChange> changes = difference({}, list);
     sum.apply(changes);
     const std::vector<Term> all = terms_of(changes);
-    const std::vector<simd::PointTerm> terms = slope_terms(changes, sum);
+    const std::vector<simd::PointTerm> terms = point_terms(changes, sum);
     each_chunk(points, terms, parallel_for, [&](const Chunk& chunk) {
         for (std::size_t i = chunk.begin; i < chunk.end; ++i) {
             const glm::dvec2 p = points[i];
@@ -772,7 +806,7 @@ void deformed_normals(const std::vector<Deformation>& list, std::span<const glm:
     DisplacementSum sum(options);
     const std::vector<DeformationChange> changes = difference({}, list);
     sum.apply(changes);
-    const std::vector<simd::PointTerm> terms = slope_terms(changes, sum);
+    const std::vector<simd::PointTerm> terms = point_terms(changes, sum);
     each_chunk(points, terms, parallel_for, [&](const Chunk& chunk) {
         std::vector<const simd::PointTerm*> near;
         for (const std::size_t k : chunk.near) near.push_back(&terms[k]);

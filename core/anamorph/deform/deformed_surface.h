@@ -198,6 +198,13 @@ class DeformedPoints {
     void write(const T* base, T* out, const ParallelFor& parallel_for = serial_for,
                T* displacement = nullptr);
 
+    /// Writes all points, deformed by a list and by no changes that were taken before, and gives `take` the
+    /// derivatives at all points. The same bits as write() and slopes(), and faster.
+    template <class T>
+    void write_with_slopes(const std::vector<Deformation>& list, const T* base, T* out,
+                           const TakeSlopes& take, const ParallelFor& parallel_for = serial_for,
+                           T* displacement = nullptr);
+
     double error_bound() const { return m_sum.error_bound(); }
 
     /// It works as in DeformedGrid.
@@ -211,6 +218,10 @@ class DeformedPoints {
     };
     template <class T>
     std::int64_t draw(bool all, const T* base, T* out, const ParallelFor& parallel_for, T* displacement);
+    /// Writes the points of a cell's slots; how many they are.
+    template <class T>
+    std::int64_t write_slots(std::size_t begin, std::size_t end, const T* base, T* out,
+                             T* displacement) const;
     /// Calls body(cell, near) for cells with points, unless `all` only for those that a term of `visiting`
     /// reaches; near: the terms of `terms` that reach it.
     void each_cell(

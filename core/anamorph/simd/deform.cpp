@@ -286,30 +286,6 @@ struct AtPoints {
                          hn::Le(abs(y).v, hn::Set(D(), term.reach)))} {}
 };
 
-void DeformPoints(const PointTerm* const* terms, std::size_t term_count, const double* u, const double* v,
-                  std::size_t count, std::int64_t* const* sums) {
-    const D d;
-    const DI di;
-    for (std::size_t i = 0; i < count; i += static_cast<std::size_t>(kLanes)) {
-        const L pu = L::load(u + i), pv = L::load(v + i);
-        VI sum[3];
-        for (int c = 0; c < 3; ++c) sum[c] = hn::LoadU(di, sums[c] + i);
-        std::size_t added = 0;
-        for (std::size_t k = 0; k < term_count; ++k) {
-            const PointTerm& term = *terms[k];
-            const AtPoints at(term, pu, pv);
-            if (hn::AllFalse(d, at.inside.m)) continue;
-            // Factors and products as on grids, so that a point gets the same bits there and here.
-            const L across = FactorOf<L>(at.across, at.x), row = FactorOf<L>(at.down, at.y);
-            const L f = ZeroUnless(at.inside, term.gaussian ? across : wendland_of(across + row));
-            const L down = ZeroUnless(at.inside, term.gaussian ? row : L(1.0));
-            for (int c = 0; c < 3; ++c) sum[c] = AddRounded(sum[c], (L(term.units[c]) * down).v, f.v);
-            ++added;
-        }
-        for (int c = 0; c < 3; ++c) hn::StoreU(WithoutRounders(sum[c], added), di, sums[c] + i);
-    }
-}
-
 /// Adds V dF/du and V dF/dv of a term with these factors.
 HWY_INLINE void AddSlopes(const Slope& across, const Slope& down, bool gaussian, const double (&vector)[3],
                           L (&sum)[6]) {
@@ -341,21 +317,66 @@ void AddRowSlopes(const RowTerm* terms, std::size_t term_count, std::size_t coun
     }
 }
 
-void AddPointSlopes(const PointTerm* const* terms, std::size_t term_count, const double* u, const double* v,
-                    std::size_t count, double* const* sums) {
+HWY_INLINE const L& ValueOf(const L& a) {
+    return a;
+}
+HWY_INLINE const L& ValueOf(const Slope& a) {
+    return a.value;
+}
+
+/// Adds terms at points to displacements, to slopes, or to both.
+template <bool kSums, bool kSlopes>
+HWY_INLINE void AddAtPoints(const PointTerm* const* terms, std::size_t term_count, const double* u,
+                            const double* v, std::size_t count, std::int64_t* const* sums,
+                            double* const* slopes) {
+    using Factor = std::conditional_t<kSlopes, Slope, L>;
+    const D d;
+    const DI di;
     for (std::size_t i = 0; i < count; i += static_cast<std::size_t>(kLanes)) {
         const L pu = L::load(u + i), pv = L::load(v + i);
-        L sum[6];
-        for (int c = 0; c < 6; ++c) sum[c] = L::load(sums[c] + i);
+        VI sum[3];
+        L slope[6];
+        if constexpr (kSums)
+            for (int c = 0; c < 3; ++c) sum[c] = hn::LoadU(di, sums[c] + i);
+        if constexpr (kSlopes)
+            for (int c = 0; c < 6; ++c) slope[c] = L::load(slopes[c] + i);
+        std::size_t added = 0;
         for (std::size_t k = 0; k < term_count; ++k) {
-            const AtPoints at(*terms[k], pu, pv);
-            if (hn::AllFalse(D(), at.inside.m)) continue;
-            Slope across = FactorOf<Slope>(at.across, at.x);
-            if (terms[k]->gaussian) across = ZeroUnless(at.inside, across);
-            AddSlopes(across, FactorOf<Slope>(at.down, at.y), terms[k]->gaussian, terms[k]->units, sum);
+            const PointTerm& term = *terms[k];
+            const AtPoints at(term, pu, pv);
+            if (hn::AllFalse(d, at.inside.m)) continue;
+            Factor across = FactorOf<Factor>(at.across, at.x);
+            const Factor down = FactorOf<Factor>(at.down, at.y);
+            if (term.gaussian) across = ZeroUnless(at.inside, across);
+            if constexpr (kSums) {
+                // Products as on grids, so that a point gets the same bits there and here.
+                const L f = term.gaussian
+                                ? ValueOf(across)
+                                : ZeroUnless(at.inside, wendland_of(ValueOf(across) + ValueOf(down)));
+                const L weight = term.gaussian ? ZeroUnless(at.inside, ValueOf(down)) : L(1.0);
+                for (int c = 0; c < 3; ++c) sum[c] = AddRounded(sum[c], (L(term.units[c]) * weight).v, f.v);
+                ++added;
+            }
+            if constexpr (kSlopes) AddSlopes(across, down, term.gaussian, term.vector, slope);
         }
-        for (int c = 0; c < 6; ++c) sum[c].store(sums[c] + i);
+        if constexpr (kSums)
+            for (int c = 0; c < 3; ++c) hn::StoreU(WithoutRounders(sum[c], added), di, sums[c] + i);
+        if constexpr (kSlopes)
+            for (int c = 0; c < 6; ++c) slope[c].store(slopes[c] + i);
     }
+}
+void DeformPoints(const PointTerm* const* terms, std::size_t term_count, const double* u, const double* v,
+                  std::size_t count, std::int64_t* const* sums) {
+    AddAtPoints<true, false>(terms, term_count, u, v, count, sums, nullptr);
+}
+void AddPointSlopes(const PointTerm* const* terms, std::size_t term_count, const double* u, const double* v,
+                    std::size_t count, double* const* slopes) {
+    AddAtPoints<false, true>(terms, term_count, u, v, count, nullptr, slopes);
+}
+void DeformPointsWithSlopes(const PointTerm* const* terms, std::size_t term_count, const double* u,
+                            const double* v, std::size_t count, std::int64_t* const* sums,
+                            double* const* slopes) {
+    AddAtPoints<true, true>(terms, term_count, u, v, count, sums, slopes);
 }
 
 /// The vector of length 1 in the same direction; 0 where the length is 0 or not finite.
@@ -501,6 +522,7 @@ HWY_EXPORT(CornerNormals);
 HWY_EXPORT(DeformBandFloat);
 HWY_EXPORT(DeformBandDouble);
 HWY_EXPORT(DeformPoints);
+HWY_EXPORT(DeformPointsWithSlopes);
 HWY_EXPORT(BlendFloat);
 HWY_EXPORT(BlendDouble);
 HWY_EXPORT(BlendMaskedFloat);
@@ -532,6 +554,11 @@ void deform_band(const GridBand<double>& band) {
 void deform_points(const PointTerm* const* terms, std::size_t term_count, const double* u, const double* v,
                    std::size_t count, std::int64_t* const sums[3]) {
     HWY_DYNAMIC_DISPATCH(DeformPoints)(terms, term_count, u, v, count, sums);
+}
+void deform_points_with_slopes(const PointTerm* const* terms, std::size_t term_count, const double* u,
+                               const double* v, std::size_t count, std::int64_t* const sums[3],
+                               double* const slopes[6]) {
+    HWY_DYNAMIC_DISPATCH(DeformPointsWithSlopes)(terms, term_count, u, v, count, sums, slopes);
 }
 void blend(const float* const* shapes, const double* weights, std::size_t shape_count, std::size_t count,
            float* out) {

@@ -71,12 +71,21 @@ void deform_band(const GridBand<double>& band);
 struct PointTerm {
     double center[2], inverse_extent[2];
     double reach;
-    double units[3];
+    double vector[3];
+    double units[3];  ///< V / resolution
     bool gaussian;
 };
 /// Adds terms to sums[c][i] of points (u[i], v[i]). count: a multiple of kPointBlock; NaN points get nothing.
 void deform_points(const PointTerm* const* terms, std::size_t term_count, const double* u, const double* v,
                    std::size_t count, std::int64_t* const sums[3]);
+/// Adds V dF/du to slopes[0], slopes[1] and slopes[2], V dF/dv to slopes[3], slopes[4] and slopes[5], term
+/// after term; all instruction sets give the same bits.
+void add_point_slopes(const PointTerm* const* terms, std::size_t term_count, const double* u, const double* v,
+                      std::size_t count, double* const slopes[6]);
+/// Both at once, with the same bits.
+void deform_points_with_slopes(const PointTerm* const* terms, std::size_t term_count, const double* u,
+                               const double* v, std::size_t count, std::int64_t* const sums[3],
+                               double* const slopes[6]);
 
 /// A deformation over a stretch of one row of a grid, with the derivatives of its factors (axis_factors).
 struct RowTerm {
@@ -85,12 +94,8 @@ struct RowTerm {
     double vector[3];
     bool gaussian;
 };
-/// Adds V dF/du to sums[0], sums[1] and sums[2], V dF/dv to sums[3], sums[4] and sums[5], term after term;
-/// all instruction sets give the same bits. count: a multiple of kPointBlock.
-void add_row_slopes(const RowTerm* terms, std::size_t term_count, std::size_t count, double* const sums[6]);
-/// The same at single points, with V for units, and the same bits.
-void add_point_slopes(const PointTerm* const* terms, std::size_t term_count, const double* u, const double* v,
-                      std::size_t count, double* const sums[6]);
+/// Adds to slopes as add_point_slopes does, with the same bits. count: a multiple of kPointBlock.
+void add_row_slopes(const RowTerm* terms, std::size_t term_count, std::size_t count, double* const slopes[6]);
 
 /// Unit normals: normals[c][i], of any length, become those of the surface that is displaced with the
 /// derivatives slopes[0..2][i] by u and slopes[3..5][i] by v (turned_normal). gradients: of u and of v. What
