@@ -48,20 +48,19 @@ std::optional<FrameRange> parse_frame_range(std::string_view text) {
     return text.empty() ? std::optional(range) : std::nullopt;
 }
 
-int FrameRange::count(Performance& performance) const {
-    return all ? performance.frame_count() : (last - first) / step + 1;
+int FrameRange::count(Motion& motion) const {
+    return all ? motion.frame_count() : (last - first) / step + 1;
 }
 
-void FrameRange::for_each(Performance& performance,
-                          const std::function<void(const FigureFrame&)>& body) const {
+void FrameRange::for_each(Motion& motion, const std::function<void(const FigureFrame&)>& body) const {
     if (all) {
-        performance.for_each_frame([&](const FigureFrame& frame) {
+        motion.for_each_frame([&](const FigureFrame& frame) {
             body(frame);
             return true;
         });
         return;
     }
-    for (long long f = first; f <= last; f += step) body(performance.frame(static_cast<int>(f)));
+    for (long long f = first; f <= last; f += step) body(motion.frame(static_cast<int>(f)));
 }
 
 std::string numbered_name(const std::string& pattern, int number) {

@@ -7,7 +7,7 @@
 #include <string>
 #include <string_view>
 
-#include "anamorph/figure/performance.h"
+#include "anamorph/figure/motion.h"
 
 namespace anamorph::command {
 
@@ -17,10 +17,10 @@ struct FrameRange {
     int first = 1, last = 1, step = 1;
 
     bool several() const { return all || last > first; }
-    /// The number of frames; for `all` it asks the performance.
-    int count(Performance& performance) const;
+    /// The number of frames; for `all` it asks the motion.
+    int count(Motion& motion) const;
     /// Calls body for the frames in order. Throws Error where one is not performed.
-    void for_each(Performance& performance, const std::function<void(const FigureFrame&)>& body) const;
+    void for_each(Motion& motion, const std::function<void(const FigureFrame&)>& body) const;
 };
 
 std::optional<FrameRange> parse_frame_range(std::string_view text);

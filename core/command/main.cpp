@@ -6,15 +6,21 @@
 #include <chrono>
 #include <cmath>
 #include <exception>
+#include <filesystem>
 #include <iostream>
 #include <map>
 #include <thread>
 
 #include "anamorph/figure/drawing.h"
+#include "anamorph/figure/figure_picture.h"
+#include "anamorph/figure/fit.h"
 #include "anamorph/figure/frame_file.h"
 #include "anamorph/figure/language.h"
+#include "anamorph/figure/motion_file.h"
+#include "anamorph/figure/scene_file.h"
 #include "anamorph/parameter.h"
 #include "anamorph/version.h"
+#include "film_writer.h"
 #include "frame_range.h"
 #include "progress.h"
 #include "script_source.h"
@@ -27,6 +33,7 @@ namespace {
 constexpr NumberRow kThreadsRow{"threads", 0, 0, 1024, NumberRow::closed, true};
 constexpr NumberRow kSizeRow{"size", 500, 1, 16384};
 constexpr NumberRow kPerspectiveRow{"perspective", NAN, 1e-3, 1e9};
+constexpr NumberRow kFramesPerSecondRow{"fps", NAN, 0.01, 1000};
 constexpr NumberRow kColumnsRow{"width", 80, 1, 4096, NumberRow::closed, true};
 
 /// What the command line says.
@@ -36,6 +43,9 @@ struct Settings {
     DrawingOptions drawing;
     double size = kSizeRow.standard;  ///< of the window of 1000 units, in pixels
     double perspective = 0;           ///< the distance from the eye to the middle of the window; 0: none
+    bool fit = false;                 ///< the view
+    FigureLook look;                  ///< of films
+    double frames_per_second = 0;     ///< 0: the motion's own
     int threads = static_cast<int>(kThreadsRow.standard), columns = static_cast<int>(kColumnsRow.standard);
     Characters characters = Characters::braille;
 };
@@ -79,6 +89,9 @@ class Command {
         add_picture("pdf", "Draw outlines as PDF, a page for each frame");
         add_picture("png", "Draw outlines as PNG");
         add_text();
+        add_film();
+        add_scene("gltf", "Write the figures with their motion as glTF 2.0 (.glb)", " (the default)");
+        add_scene("obj", "Write a frame's figures as Wavefront OBJ", "; by default the first of those");
         add_stats();
         add_language();
     }
@@ -105,7 +118,10 @@ class Command {
 
     CLI::App* add_subcommand(const char* name, const char* what, std::function<int()> run) {
         CLI::App* sub = m_app.add_subcommand(name, what);
-        sub->add_option("SCRIPT", m_settings.source.path, "The script; - is the standard input")->required();
+        sub->add_option("SCRIPT", m_settings.source.path,
+                        "The script, or a motion (.bvh), a crystal structure (.cif) or frames (.3); - is the "
+                        "standard input: a script")
+            ->required();
         static const std::map<std::string, Dialect> dialects{{"classic", Dialect::classic},
                                                              {"strict", Dialect::strict}};
         sub->add_option("--dialect", m_settings.source.dialect,
@@ -191,6 +207,7 @@ class Command {
     /// What all pictures have.
     void add_drawing(CLI::App* sub) {
         add_frame_range(sub, "; by default the first of those");
+        add_view(sub);
         DrawingOptions& d = m_settings.drawing;
         static const std::map<std::string, HiddenLines> hidden{
             {"remove", HiddenLines::remove}, {"dash", HiddenLines::dash}, {"draw", HiddenLines::draw}};
@@ -207,10 +224,46 @@ class Command {
                       "Draw the curves, too, in which bodies pass through each other");
         add_number(sub, "--lod", d.lod, kLevelOfDetailRow,
                    "Bodies no wider, in pixels, are drawn as dots and lines");
+    }
+
+    /// How figures are seen, and on how many threads.
+    void add_view(CLI::App* sub) {
         add_number(sub, "--perspective", m_settings.perspective, kPerspectiveRow,
                    "In perspective, seen from so many units before the middle of the window");
+        sub->add_flag("--fit", m_settings.fit,
+                      "The figures fill the picture; of several frames, those of all");
         add_number(sub, "--threads", m_settings.threads, kThreadsRow,
                    "Threads; 0 is as many as there are processors");
+    }
+
+    void add_film() {
+        CLI::App* sub = add_subcommand("film", "Draw bodies in their colors, shaded, as a film by ffmpeg",
+                                       [this] { return write_film(); });
+        add_output(sub,
+                   "Where to: a film by ffmpeg (.mp4, .mov, .mkv, .webm, .avi, .gif), or numbered pictures "
+                   "(.png), which a film becomes where there is no ffmpeg");
+        add_frame_range(sub, " (the default)");
+        add_view(sub);
+        add_number(sub, "--size", m_settings.size, kSizeRow, "Pixels that the window of 1000 units is");
+        add_number(sub, "--fps", m_settings.frames_per_second, kFramesPerSecondRow,
+                   "Frames a second; by default those of a .bvh file, 25 of scripts");
+        static const std::map<std::string, FigureStyle> styles{{"shaded", FigureStyle::shaded},
+                                                               {"outline", FigureStyle::outline},
+                                                               {"stick", FigureStyle::stick}};
+        sub->add_option("--style", m_settings.look.style, "What is drawn")
+            ->transform(CLI::CheckedTransformer(styles))
+            ->option_text("shaded|outline|stick [shaded]");
+        static const std::map<std::string, Lighting> lightings{
+            {"rasel", Lighting::rasel}, {"lambert", Lighting::lambert}, {"blinn", Lighting::blinn}};
+        sub->add_option("--lighting", m_settings.look.light.lighting, "How bodies are shaded")
+            ->transform(CLI::CheckedTransformer(lightings))
+            ->option_text("rasel|lambert|blinn [rasel]");
+    }
+
+    void add_scene(const std::string& format, const char* what, const char* standard) {
+        CLI::App* sub = add_subcommand(format.c_str(), what, [this, format] { return write_scene(format); });
+        add_output(sub, "Where to; - is the standard output");
+        add_frame_range(sub, standard);
     }
 
     void add_stats() {
@@ -232,28 +285,37 @@ class Command {
     }
 
     /// Prints what the script prints, out of the progress bar's way.
-    Performance perform(Progress& progress) const {
+    std::unique_ptr<Motion> perform(Progress& progress) const {
         PerformanceOptions options;
         options.message = [&progress](const std::string& line) {
             progress.clear();
             std::cerr << one_line(line) << "\n";
         };
-        return Performance(read_program(m_settings.source), options);
+        return open_motion(m_settings.source, options);
     }
 
     FrameRange range_or(const char* standard) const {
         return *parse_frame_range(m_settings.frames.empty() ? standard : m_settings.frames);
     }
 
-    static int count_of(const FrameRange& range, Performance& performance) {
+    static int count_of(const FrameRange& range, Motion& motion) {
         try {
-            return range.count(performance);
+            return range.count(motion);
         } catch (const std::exception&) {
             return 0;  // what is wrong is told when the frame's turn comes
         }
     }
 
+    int thread_count() const {
+        return m_settings.threads > 0 ? m_settings.threads
+                                      : std::max<int>(std::thread::hardware_concurrency(), 1);
+    }
+
     int check() const {
+        if (is_motion_file(m_settings.source.path)) {
+            open_motion(m_settings.source, {});
+            return 0;
+        }
         const Script script = read_script(m_settings.source);
         for (const Diagnostic& d : script.diagnostics) std::cout << d.text() << "\n";
         return script.ok() ? 0 : 1;
@@ -261,12 +323,12 @@ class Command {
 
     int write_frames() const {
         const FrameRange range = range_or("all");
-        std::unique_ptr<Performance> performance;
-        Progress progress([&] { return count_of(range, *performance); });
-        performance = std::make_unique<Performance>(perform(progress));
+        std::unique_ptr<Motion> motion;
+        Progress progress([&] { return count_of(range, *motion); });
+        motion = perform(progress);
         OutputFile file(m_settings.output);
         FigureFrame last;
-        range.for_each(*performance, [&](const FigureFrame& frame) {
+        range.for_each(*motion, [&](const FigureFrame& frame) {
             file.write(frame_text(frame));
             last = frame;
             progress.advance();
@@ -286,32 +348,50 @@ class Command {
                                : png_writer(m_settings.output, several);
     }
 
-    Drawing drawing_of(const FigureFrame& frame, const ParallelFor& parallel_for) const {
-        const glm::dvec2 page(m_settings.size);
+    View view_for(const FigureFrame& frame, const glm::dvec2& page) const {
         View view = view_in(frame, page);
         if (m_settings.perspective > 0) view.eye_distance = m_settings.perspective;
+        return view;
+    }
+
+    /// What all frames of a range are in, where it is to be known.
+    SeenExtent extent_of(const FrameRange& range, Motion& motion) const {
+        SeenExtent extent;
+        const glm::dvec2 page(m_settings.size);
+        if (m_settings.fit)
+            range.for_each(motion, [&](const FigureFrame& frame) {
+                add_seen_extent(frame, view_for(frame, page), extent);
+            });
+        return extent;
+    }
+
+    Drawing drawing_of(const FigureFrame& frame, const SeenExtent& extent,
+                       const ParallelFor& parallel_for) const {
+        const glm::dvec2 page(m_settings.size);
+        View view = view_for(frame, page);
+        fit_view(view, extent, page);
         return draw(frame, view, page, m_settings.drawing, parallel_for);
     }
 
     int draw_as(const std::string& format) {
-        std::unique_ptr<Performance> performance;
+        std::unique_ptr<Motion> motion;
         FrameRange range;
-        Progress progress([&] { return count_of(range, *performance); });
-        performance = std::make_unique<Performance>(perform(progress));
-        range = range_or(std::to_string(performance->first_frame()).c_str());
+        Progress progress([&] { return count_of(range, *motion); });
+        motion = perform(progress);
+        range = range_or(std::to_string(motion->first_frame()).c_str());
         const std::unique_ptr<DrawingWriter> out = writer(format, range.several());
-        const int threads = m_settings.threads > 0 ? m_settings.threads
-                                                   : std::max<int>(std::thread::hardware_concurrency(), 1);
+        const int threads = thread_count();
         const ParallelFor parallel_for = threads_for(threads);
+        const SeenExtent extent = extent_of(range, *motion);
         std::vector<FigureFrame> batch;
         const auto draw_batch = [&] {
             std::vector<Drawing> drawings(batch.size());
             if (batch.size() == 1)
-                drawings[0] = drawing_of(batch[0], parallel_for);
+                drawings[0] = drawing_of(batch[0], extent, parallel_for);
             else
                 parallel_for(static_cast<std::int64_t>(batch.size()), [&](std::int64_t i) {
                     const auto k = static_cast<std::size_t>(i);
-                    drawings[k] = drawing_of(batch[k], serial_for);
+                    drawings[k] = drawing_of(batch[k], extent, serial_for);
                 });
             batch.clear();
             for (const Drawing& drawing : drawings) {
@@ -320,7 +400,7 @@ class Command {
             }
         };
         bool any = false;
-        range.for_each(*performance, [&](const FigureFrame& frame) {
+        range.for_each(*motion, [&](const FigureFrame& frame) {
             any = true;
             batch.push_back(frame);
             if (batch.size() == 4 * static_cast<std::size_t>(threads)) draw_batch();
@@ -331,24 +411,98 @@ class Command {
         return 0;
     }
 
+    std::unique_ptr<FilmWriter> film_writer(int side, double frames_per_second) const {
+        const std::string& name = m_settings.output;
+        if (name == "-") throw Error("--output must be the name of a file");
+        const std::filesystem::path path(name);
+        if (path.extension() == ".png") return png_frames_writer(name, side, side);
+        if (has_ffmpeg()) return ffmpeg_writer(name, side, side, frames_per_second);
+        const std::string pictures = (path.parent_path() / path.stem()).string() + ".png";
+        std::cerr << "anamorph-figure: ffmpeg is not there: frames become pictures, "
+                  << numbered_name(pictures, 1) << " and so on\n";
+        return png_frames_writer(pictures, side, side);
+    }
+
+    FilmFrame film_frame(const FigureFrame& frame, const SeenExtent& extent, int side,
+                         const ParallelFor& parallel_for) const {
+        const glm::dvec2 page(side);
+        View view = view_for(frame, page);
+        fit_view(view, extent, page);
+        FigureLook look = m_settings.look;
+        look.background = glm::dvec3(1.0);
+        const FigurePicture picture(frame, view, {side, side}, look, parallel_for);
+        const int channels = channels_of(look.style);
+        std::vector<float> pixels(static_cast<std::size_t>(side) * static_cast<std::size_t>(side) *
+                                  static_cast<std::size_t>(channels));
+        picture.draw({0, 0, side, side},
+                     packed_view(reinterpret_cast<std::byte*>(pixels.data()), PixelType::float32, side, side,
+                                 channels),
+                     parallel_for);
+        FilmFrame film{frame.number, {}};
+        for (std::size_t i = 0; i < pixels.size(); i += static_cast<std::size_t>(channels))
+            for (std::size_t c = 0; c < 3; ++c)
+                film.pixels.push_back(
+                    static_cast<std::uint8_t>(std::lround(std::clamp(pixels[i + c], 0.0f, 1.0f) * 255)));
+        return film;
+    }
+
+    int write_film() {
+        std::unique_ptr<Motion> motion;
+        const FrameRange range = range_or("all");
+        Progress progress([&] { return count_of(range, *motion); });
+        motion = perform(progress);
+        m_settings.look.light.toward = usual_light(m_settings.look.light.lighting);
+        const int side = static_cast<int>(std::lround(m_settings.size));
+        const double rate =
+            m_settings.frames_per_second > 0 ? m_settings.frames_per_second : motion->frames_per_second();
+        const SeenExtent extent = extent_of(range, *motion);
+        const ParallelFor parallel_for = threads_for(thread_count());
+        std::unique_ptr<FilmWriter> out;
+        range.for_each(*motion, [&](const FigureFrame& frame) {
+            if (!out) out = film_writer(side, rate);
+            out->add(film_frame(frame, extent, side, parallel_for));
+            progress.advance();
+        });
+        if (!out) throw Error(m_settings.source.path + " shows no frame");
+        out->finish();
+        return 0;
+    }
+
+    int write_scene(const std::string& format) const {
+        const bool is_obj = format == "obj";
+        std::unique_ptr<Motion> motion;
+        FrameRange range;
+        Progress progress([&] { return count_of(range, *motion); });
+        motion = perform(progress);
+        range = range_or(is_obj ? std::to_string(motion->first_frame()).c_str() : "all");
+        if (is_obj && range.several()) throw Error("--frame", m_settings.frames, "must be one frame for OBJ");
+        std::vector<FigureFrame> frames;
+        range.for_each(*motion, [&](const FigureFrame& frame) {
+            frames.push_back(frame);
+            progress.advance();
+        });
+        if (frames.empty()) throw Error(m_settings.source.path + " shows no frame");
+        OutputFile file(m_settings.output);
+        file.write(is_obj ? obj_file(frames[0]) : glb_file(frames, motion->frames_per_second()));
+        file.close();
+        return 0;
+    }
+
     int write_stats() const {
         using Clock = std::chrono::steady_clock;
         const auto start = Clock::now();
-        std::unique_ptr<Performance> performance;
-        Progress progress([&] { return count_of(FrameRange{true}, *performance); });
-        performance = std::make_unique<Performance>(perform(progress));
+        std::unique_ptr<Motion> motion;
+        Progress progress([&] { return count_of(FrameRange{true}, *motion); });
+        motion = perform(progress);
         const auto parsed = Clock::now();
         int frames = 0;
-        performance->for_each_frame([&](const FigureFrame&) {
+        motion->for_each_frame([&](const FigureFrame&) {
             ++frames;
             progress.advance();
             return true;
         });
         const auto performed = Clock::now();
         progress.clear();
-        const Program& p = performance->program();
-        std::size_t actions = 0;
-        for (const Subroutine& s : p.subroutines) actions += s.movements.size();
         const auto say = [](const char* name, const std::string& value) {
             std::cout << name << std::string(15 - std::string_view(name).size(), ' ') << value << "\n";
         };
@@ -356,11 +510,21 @@ class Command {
             return shortest(std::round(std::chrono::duration<double, std::micro>(d).count()) / 1000);
         };
         say("frames", std::to_string(frames));
-        say("figures", std::to_string(p.figures.size() - 2));  // without `every` and `world`
-        say("ellipsoids", std::to_string(p.ellipsoids.size() - 1));
-        say("joints", std::to_string(p.joints.size()));
-        say("subroutines", std::to_string(p.subroutines.size() - 1));
-        say("actions", std::to_string(actions));
+        if (const auto* performance = dynamic_cast<const Performance*>(motion.get())) {
+            const Program& p = performance->program();
+            std::size_t actions = 0;
+            for (const Subroutine& subroutine : p.subroutines) actions += subroutine.movements.size();
+            say("figures", std::to_string(p.figures.size() - 2));  // without `every` and `world`
+            say("ellipsoids", std::to_string(p.ellipsoids.size() - 1));
+            say("joints", std::to_string(p.joints.size()));
+            say("subroutines", std::to_string(p.subroutines.size() - 1));
+            say("actions", std::to_string(actions));
+        } else {
+            const FigureFrame frame = motion->frame(0);
+            say("figures", std::to_string(frame.figures.size()));
+            say("ellipsoids", std::to_string(frame.bodies.size()));
+            say("joints", std::to_string(frame.joints.size()));
+        }
         say("parsed in", milliseconds(parsed - start) + " ms");
         say("performed in", milliseconds(performed - parsed) + " ms");
         return 0;

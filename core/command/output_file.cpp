@@ -162,6 +162,11 @@ void OutputFile::write(std::string_view text) {
     if (m_impl->buffer.size() >= Impl::kBlock) m_impl->flush();
 }
 
+std::string OutputFile::path() const {
+    if (m_impl->name == "-") throw Error("--output=-: must be the name of a file");
+    return m_impl->beside.empty() ? m_impl->place.string() : m_impl->beside;
+}
+
 void OutputFile::close() {
     m_impl->finish();
 }

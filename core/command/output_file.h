@@ -20,6 +20,8 @@ class OutputFile {
     OutputFile& operator=(const OutputFile&) = delete;
 
     void write(std::string_view text);
+    /// The file, for another program to write it instead. Throws Error for the standard output.
+    std::string path() const;
     void close();
 
   private:

@@ -7,28 +7,30 @@
 #include <iostream>
 
 #include "anamorph/error.h"
+#include "anamorph/figure/motion_file.h"
+#include "anamorph/text_file.h"
 
 namespace anamorph::command {
 namespace {
 
-/// At most one byte more than a script may have: the parser says what is wrong with it.
-std::string read_all(std::istream& in, const std::string& name) {
+/// At most one byte more than a file may have: the parser says what is wrong with it.
+std::string read_all(std::istream& in, const std::string& name, std::size_t most = kMaxScriptText) {
     std::string text;
     char block[1 << 16];
-    while (text.size() <= kMaxScriptText && in.read(block, sizeof block).gcount() > 0)
+    while (text.size() <= most && in.read(block, sizeof block).gcount() > 0)
         text.append(block, static_cast<std::size_t>(in.gcount()));
     if (in.bad()) throw Error("cannot read " + name);
     return text;
 }
 
 /// `any`: pipes and devices, too.
-std::optional<std::string> read_file(const std::string& path, bool any) {
+std::optional<std::string> read_file(const std::string& path, bool any, std::size_t most = kMaxScriptText) {
     std::error_code error;
     if (any ? std::filesystem::is_directory(path, error) : !std::filesystem::is_regular_file(path, error))
         return std::nullopt;
     std::ifstream in(path, std::ios::binary);
     if (!in) return std::nullopt;
-    return read_all(in, path);
+    return read_all(in, path, most);
 }
 
 }  // namespace
@@ -52,11 +54,16 @@ Script read_script(const ScriptSource& source) {
     return parse_script(*text, source.path, options);
 }
 
-Program read_program(const ScriptSource& source) {
+std::unique_ptr<Motion> open_motion(const ScriptSource& source, const PerformanceOptions& options) {
+    if (is_motion_file(source.path)) {
+        const std::optional<std::string> text = read_file(source.path, true, text_file::kMostBytes);
+        if (!text) throw Error("cannot read " + source.path);
+        return read_motion(*text, source.path);
+    }
     Script script = read_script(source);
     for (const Diagnostic& d : script.diagnostics)
         if (d.severity == Severity::error) throw Error(d.text());
-    return std::move(script.program);
+    return std::make_unique<Performance>(std::move(script.program), options);
 }
 
 }  // namespace anamorph::command

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// Scripts from files.
+// Scripts and motions from files.
 #pragma once
 
+#include <memory>
 #include <string>
 #include <vector>
 
+#include "anamorph/figure/performance.h"
 #include "anamorph/figure/script.h"
 
 namespace anamorph::command {
@@ -19,7 +21,8 @@ struct ScriptSource {
 /// read, not for what a script says.
 Script read_script(const ScriptSource& source);
 
-/// The program of a script without errors. Throws Error with the first error's text.
-Program read_program(const ScriptSource& source);
+/// A script without errors, performed, or a motion by the ending of its name (motion_file.h). Throws Error
+/// with the first error's text.
+std::unique_ptr<Motion> open_motion(const ScriptSource& source, const PerformanceOptions& options);
 
 }  // namespace anamorph::command

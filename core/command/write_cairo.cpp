@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // PDF and PNG, by cairo.
+#include "film_writer.h"
 #include "frame_range.h"
 #include "writers.h"
 
@@ -8,6 +9,7 @@
 #include <cairo.h>
 
 #include <cmath>
+#include <cstring>
 #include <numbers>
 #endif
 
@@ -117,7 +119,37 @@ class PngWriter : public DrawingWriter {
     bool m_several;
 };
 
+class PngFramesWriter : public FilmWriter {
+  public:
+    PngFramesWriter(std::string name, int width, int height)
+        : m_name(std::move(name)), m_width(width), m_height(height) {}
+    void add(const FilmFrame& frame) override {
+        const Surface surface(cairo_image_surface_create(CAIRO_FORMAT_RGB24, m_width, m_height));
+        check(cairo_surface_status(surface.get()));
+        unsigned char* row = cairo_image_surface_get_data(surface.get());
+        const std::uint8_t* from = frame.pixels.data();
+        for (int y = 0; y < m_height; ++y, row += cairo_image_surface_get_stride(surface.get()))
+            for (int x = 0; x < m_width; ++x, from += 3) {
+                const std::uint32_t pixel =
+                    std::uint32_t{from[0]} << 16 | std::uint32_t{from[1]} << 8 | from[2];
+                std::memcpy(row + 4 * x, &pixel, sizeof pixel);
+            }
+        cairo_surface_mark_dirty(surface.get());
+        OutputFile file(numbered_name(m_name, frame.number));
+        check(cairo_surface_write_to_png_stream(surface.get(), write_to, &file));
+        file.close();
+    }
+
+  private:
+    std::string m_name;
+    int m_width, m_height;
+};
+
 }  // namespace
+
+std::unique_ptr<FilmWriter> png_frames_writer(const std::string& name, int width, int height) {
+    return std::make_unique<PngFramesWriter>(name, width, height);
+}
 
 std::unique_ptr<DrawingWriter> pdf_writer(const std::string& name) {
     return std::make_unique<PdfWriter>(name);
@@ -128,6 +160,10 @@ std::unique_ptr<DrawingWriter> png_writer(const std::string& name, bool several)
 }
 
 #else
+
+std::unique_ptr<FilmWriter> png_frames_writer(const std::string&, int, int) {
+    throw Error("this anamorph-figure was built without cairo, which writes PNG");
+}
 
 std::unique_ptr<DrawingWriter> pdf_writer(const std::string&) {
     throw Error("this anamorph-figure was built without cairo, which draws PDF");

@@ -1,9 +1,11 @@
 # SPDX-License-Identifier: Apache-2.0
 """anamorph-figure: what it writes is read back and compared with what the scripts mean, worked out by hand."""
+import json
 import math
 import os
 import random
 import re
+import shutil
 import signal
 import struct
 import subprocess
@@ -357,6 +359,181 @@ class Pictures(Case):
         data = self.read("w.png")
         self.assertEqual(data[:8], b"\x89PNG\r\n\x1a\n")
         self.assertEqual(struct.unpack(">II", data[16:24]), (100, 100))
+
+
+    def test_fit_fills_the_page_but_for_its_margin(self):
+        for options in ((), ("--perspective", "3000")):
+            points = [p for _, path, _ in self.paths(NEAR_AND_FAR, "--fit", "--size", "400", "--tol", "0.01", *options)
+                      for p in path]
+            x, y = zip(*points)
+            self.assertAlmostEqual(min(x), 20, delta=0.02)
+            self.assertAlmostEqual(max(x), 380, delta=0.02)
+            self.assertAlmostEqual(min(y) + max(y), 400, delta=0.04)
+        # Of several frames, those of all.
+        moving = ("figure f 1 b\nellipsoid b 10 10 10\nrepeat 0 1 moveto f b 100 500 500\n"
+                  "linear 1 3 moveto f b 300 500 500\nstop\n")
+        self.output("svg", "-", "--fit", "--frame", "all", "-o", self.path("m.svg"), text=moving)
+        seen = []
+        for frame in (1, 3):
+            text = self.read("m.%04d.svg" % frame).decode()
+            seen += [float(n) for d in re.findall(r' d="([^"]*)"', text) for n in re.findall(r"-?[\d.]+", d)[::2]]
+        self.assertAlmostEqual(min(seen), 25, delta=0.3)
+        self.assertAlmostEqual(max(seen), 475, delta=0.3)
+
+
+class Scenes(Case):
+    """Figures for other programs, read back with nothing but the formats' definitions."""
+
+    def glb(self, *arguments, text=None):
+        data = self.output("gltf", *arguments, text=text)
+        magic, version, size, json_size, json_kind = struct.unpack_from("<4sIII4s", data)
+        self.assertEqual((magic, version, size, json_kind), (b"glTF", 2, len(data), b"JSON"))
+        scene = json.loads(data[20:20 + json_size])
+        binary_size, binary_kind = struct.unpack_from("<I4s", data, 20 + json_size)
+        self.assertEqual((binary_kind, binary_size), (b"BIN\0", len(data) - 28 - json_size))
+        return scene, data[28 + json_size:]
+
+    def numbers(self, scene, binary, accessor):
+        accessor = scene["accessors"][accessor]
+        view = scene["bufferViews"][accessor["bufferView"]]
+        width = {"SCALAR": 1, "VEC3": 3, "VEC4": 4}[accessor["type"]]
+        kind = {5126: "f", 5123: "H"}[accessor["componentType"]]
+        flat = struct.unpack_from("<%d%s" % (width * accessor["count"], kind), binary, view["byteOffset"])
+        rows = [flat[i:i + width] for i in range(0, len(flat), width)]
+        for c, (low, high) in enumerate(zip(accessor.get("min", ()), accessor.get("max", ()))):
+            self.assertEqual((low, high), (min(r[c] for r in rows), max(r[c] for r in rows)))
+        return rows
+
+    def test_gltf_has_the_frames(self):
+        script = ("figure f 2 a b\nellipsoid a 50 100 25\nellipsoid b 10 10 10\njoint j a 0 100 0 b 0 -10 0\n"
+                  "repeat 0 1 moveto f a 500 250 100\nlinear 1 3 moveby f world 0 0 200\n"
+                  "repeat 0 3 bendby b j world 90 z\nrepeat 0 1 colour a 255 0 0\nstop\n")
+        scene, binary = self.glb("-", text=script)
+        nodes = {node["name"]: node for node in scene["nodes"]}
+        # In metres, right-handed: z is turned round.
+        for got, wanted in zip(nodes["a"]["translation"], (1, 0.5, -0.2)):
+            self.assertAlmostEqual(got, wanted, places=6)
+        for got, wanted in zip(nodes["a"]["scale"], (0.1, 0.2, 0.05)):
+            self.assertAlmostEqual(got, wanted, places=6)
+        self.assertEqual(nodes["f"]["children"], [scene["nodes"].index(nodes["a"]), scene["nodes"].index(nodes["b"])])
+        tracks = {}
+        animation = scene["animations"][0]
+        for channel in animation["channels"]:
+            sampler = animation["samplers"][channel["sampler"]]
+            times = [t for t, in self.numbers(scene, binary, sampler["input"])]
+            self.assertEqual(len(times), 3)
+            self.assertAlmostEqual(times[2], 2 / 25, places=6)
+            name = scene["nodes"][channel["target"]["node"]]["name"]
+            tracks[name, channel["target"]["path"]] = self.numbers(scene, binary, sampler["output"])
+        self.assertEqual(set(tracks), {("a", "translation"), ("b", "translation"), ("b", "rotation")})
+        self.assertAlmostEqual(tracks["a", "translation"][2][2], -0.6, places=6)
+        # b turns by 90 degrees a frame; q and the next one are on one side, and |q| is 1.
+        turns = tracks["b", "rotation"]
+        for q, r in zip(turns, turns[1:]):
+            self.assertAlmostEqual(sum(a * b for a, b in zip(q, r)), math.sqrt(0.5), places=6)
+        # The mesh is the unit sphere, its corners against the clock from outside.
+        primitive = scene["meshes"][nodes["a"]["mesh"]]["primitives"][0]
+        points = self.numbers(scene, binary, primitive["attributes"]["POSITION"])
+        corners = [i for i, in self.numbers(scene, binary, primitive["indices"])]
+        for point in points:
+            self.assertAlmostEqual(math.hypot(*point), 1, places=6)
+        volume = 0
+        for k in range(0, len(corners), 3):
+            (a, b, c), (d, e, f), (g, h, i) = (points[corner] for corner in corners[k:k + 3])
+            signed = a * (e * i - f * h) - b * (d * i - f * g) + c * (d * h - e * g)
+            self.assertGreater(signed, 0)
+            volume += signed / 6
+        self.assertAlmostEqual(volume, 4 / 3 * math.pi, delta=0.05)
+        color = scene["materials"][primitive["material"]]["pbrMetallicRoughness"]["baseColorFactor"]
+        self.assertEqual(color, [1, 0, 0, 1])
+
+    def test_obj_has_the_bodies(self):
+        text = self.output("obj", "-", text=NEAR_AND_FAR).decode()
+        objects = text.split("\no ")[1:]
+        self.assertEqual([o.split("\n", 1)[0] for o in objects], ["near", "far"])
+        first = 1
+        for part, center in zip(objects, ((500, 500, -200), (600, 500, -800))):
+            rows = [line.split() for line in part.splitlines()]
+            points = [tuple(map(float, r[1:4])) for r in rows if r[0] == "v"]
+            normals = [tuple(map(float, r[1:])) for r in rows if r[0] == "vn"]
+            for point, normal in zip(points, normals):
+                self.assertAlmostEqual(math.dist(point, center), 100, places=9)
+                for p, n, c in zip(point, normal, center):
+                    self.assertAlmostEqual(p, c + 100 * n, places=9)
+            corners = [int(c.split("//")[0]) for r in rows if r[0] == "f" for c in r[1:]]
+            self.assertEqual((min(corners), max(corners)), (first, first + len(points) - 1))
+            first += len(points)
+
+    def test_other_programs_read_them(self):
+        if not shutil.which("assimp"):
+            self.skipTest("assimp is not there")
+        self.output("gltf", WALKER, "-o", self.path("walk.glb"))
+        self.output("obj", WALKER, "-o", self.path("walk.obj"))
+        for name, wanted in (("walk.glb", ("Animations:           1", "Meshes:               4")), ("walk.obj", ("Meshes:               17",))):
+            result = subprocess.run(["assimp", "info", self.path(name)], capture_output=True, timeout=100, text=True)
+            self.assertEqual(result.returncode, 0, result.stdout)
+            for line in wanted:
+                self.assertIn(line.split(), [row.split() for row in result.stdout.splitlines()])
+
+
+class Film(Case):
+    def test_ffmpeg_makes_a_film_of_all_frames(self):
+        if not shutil.which("ffprobe"):
+            self.skipTest("ffmpeg is not there")
+        self.output("film", WALKER, "-o", self.path("walk.mp4"), "--size", "101", "--frame", "1-12", "--fps", "12.5")
+        said = subprocess.run(["ffprobe", "-v", "error", "-count_frames", "-show_entries",
+                               "stream=width,height,nb_read_frames,r_frame_rate", "-of", "default=nw=1", self.path("walk.mp4")],
+                              capture_output=True, text=True, timeout=100).stdout.split()
+        self.assertEqual(sorted(said), ["height=102", "nb_read_frames=12", "r_frame_rate=25/2", "width=102"])
+        self.assertEqual(os.listdir(self.folder), ["walk.mp4"])
+
+    @unittest.skipUnless(CAIRO, "built without cairo")
+    def test_without_ffmpeg_frames_are_pictures(self):
+        empty = self.path("empty")
+        os.mkdir(empty)
+        result = subprocess.run([PROGRAM, "film", WALKER, "-o", self.path("walk.mp4"), "--size", "40", "--frame", "3-4"],
+                                capture_output=True, timeout=100, env={"PATH": empty})
+        self.assertEqual(result.returncode, 0, result.stderr)
+        self.assertIn(b"ffmpeg is not there", result.stderr)
+        self.assertEqual(sorted(os.listdir(self.folder)), ["empty", "walk.0003.png", "walk.0004.png"])
+        self.output("film", WALKER, "-o", self.path("p.png"), "--size", "40", "--frame", "3")
+        self.assertEqual(self.read("p.0003.png"), self.read("walk.0003.png"))
+
+    def test_what_cannot_be_written_is_said(self):
+        self.assertIn("--output", self.error("film", WALKER))
+        if shutil.which("ffmpeg"):
+            self.assertIn("must end in .mp4", self.error("film", WALKER, "-o", self.path("walk.txt")))
+        self.assertEqual(os.listdir(self.folder), [])
+
+
+class Motions(Case):
+    ARM = ("HIERARCHY ROOT arm { OFFSET 0 0 0 CHANNELS 3 Zrotation Xrotation Yrotation\n"
+           "End Site { OFFSET 0 10 0 } } MOTION Frames: 2 Frame Time: 0.1\n0 0 0\n90 0 0\n")
+
+    def test_a_motion_goes_wherever_scripts_go(self):
+        path = self.write("arm.bvh", self.ARM)
+        self.assertEqual(self.output("check", path), b"")
+        self.assertIn(b"ellipsoids     1\n", self.output("stats", path))
+        frames = self.output("frames", path).decode().splitlines()
+        self.assertEqual(len([line for line in frames if "arm" in line]), 2)
+        again = self.write("arm.3", "\n".join(frames) + "\n")
+        self.assertEqual(self.output("frames", again).decode().splitlines(), frames)
+        self.output("svg", path, "--frame", "2", "-o", self.path("arm.svg"))
+        self.assertIn("line 2", self.error("check", self.write("bad.bvh", self.ARM.replace("End Site", "Nob"))))
+        self.assertIn("cannot read", self.error("check", self.path("none.cif")))
+
+    def test_every_script_of_the_tutorial_runs(self):
+        with open(os.path.dirname(WALKER) + "/README.md", encoding="utf-8") as file:
+            scripts = re.findall(r"```nudes\n(.*?)```", file.read(), re.DOTALL)
+        self.assertEqual(len(scripts), 5)
+        for script in scripts:
+            for dialect in ("classic", "strict"):
+                self.assertEqual(self.output("check", "-", "--dialect", dialect, text=script), b"")
+                self.output("svg", "-", "--dialect", dialect, "--frame", "1", text=script)
+        # The walker of the fourth goes 4 times 70 units ahead, standing on the ground.
+        frames = self.output("frames", "-", text=scripts[3]).decode().split("\n")
+        bodies = [line.split() for line in frames if " body " in line + " "]
+        self.assertEqual(int(bodies[-1][3]) - int(bodies[0][3]), 2800)
 
 
 class WholeFiles(Case):

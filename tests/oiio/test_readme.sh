@@ -7,14 +7,14 @@ examples="$ANAMORPH_SOURCE_DIR/examples"
 rm -f ./*.jpg ./*.png
 "$PYTHON" "$examples/make_panorama.py" panorama.exr 512
 "$PYTHON" "$examples/make_faces.py" round.png long.png faces.csv
-cp "$examples/bulge.json" "$examples/figures/walker.nudes" .
+cp "$examples/bulge.json" "$examples/figures/walker.nudes" "$examples/figures/benzene.cif" .
 lens="lens=brown:k1=-0.21,k2=0.05&fov=84"
 oiiotool "panorama.exr.pano?to=rectilinear&size=2048x1556&$lens" -o plate.exr
 oiiotool "panorama.exr.pano?to=rectilinear&size=600x400&pitch=-3&$lens" -o photo.jpg
 cp plate.exr taken.exr
 
 grep '^    oiiotool ' "$readme" >one_liners.sh
-[ "$(wc -l <one_liners.sh)" -eq 19 ]
+[ "$(wc -l <one_liners.sh)" -eq 20 ]
 bash -ex one_liners.sh
 for picture in view.jpg:480x360 planet.jpg:400x400 fisheye.jpg:400x400 cross.jpg:640x480 error.jpg:480x360 \
     warp.jpg:480x480 morph.jpg:480x480 lines.jpg:480x480 turn.jpg:480x480; do
@@ -24,6 +24,7 @@ done
 iinfo walker.png | tr -d ' ' | grep ":512x512,4channel,uint8png"
 [ -s "$examples/pictures/walker.png" ]
 iinfo outline.png | tr -d ' ' | grep ":1000x1000,4channel"
+iinfo benzene.png | tr -d ' ' | grep ":1000x1000,4channel"
 [ "$(ls walk.*.png | wc -l)" -eq 49 ]
 [ -s both.jpg ]
 [ -s straight.jpg ]

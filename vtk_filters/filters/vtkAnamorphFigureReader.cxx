@@ -5,11 +5,15 @@
 #include <cmath>
 #include <filesystem>
 #include <fstream>
+#include <iterator>
+#include <memory>
 #include <optional>
 
 #include "anamorph/error.h"
+#include "anamorph/figure/motion_file.h"
 #include "anamorph/figure/performance.h"
 #include "anamorph/figure/script.h"
+#include "anamorph/text_file.h"
 #include "execution.h"
 #include "figure_data.h"
 #include "vtkDataObject.h"
@@ -24,21 +28,21 @@ vtkObjectFactoryNewMacro(vtkAnamorphFigureReader);
 namespace {
 
 using anamorph::Error;
-using anamorph::Performance;
+using anamorph::Motion;
 using Executive = vtkStreamingDemandDrivenPipeline;
 
 constexpr int kMostLibraries = 1 << 16;
 constexpr int kMostSteps = 1000000;  ///< that are listed one by one
 
-/// A text of up to the size that a script may have, and a byte: the parser says what is wrong with more.
-std::optional<std::string> read_text(const std::string& path) {
+/// A text of up to the size that a file may have, and a byte: the parser says what is wrong with more.
+std::optional<std::string> read_text(const std::string& path, std::size_t most = anamorph::kMaxScriptText) {
     std::error_code ignored;
     if (std::filesystem::is_directory(path, ignored)) return std::nullopt;
     std::ifstream in(path, std::ios::binary);
     if (!in) return std::nullopt;
     std::string text;
     char block[1 << 16];
-    while (text.size() <= anamorph::kMaxScriptText && in.read(block, sizeof block).gcount() > 0)
+    while (text.size() <= most && in.read(block, sizeof block).gcount() > 0)
         text.append(block, static_cast<std::size_t>(in.gcount()));
     return text;
 }
@@ -69,13 +73,33 @@ std::string errors_of(const anamorph::Script& script) {
     return others > 0 ? first + " (and " + std::to_string(others) + " more)" : first;
 }
 
+/// A motion from a file that is no script. Throws Error.
+std::unique_ptr<Motion> read_motion_file(const std::string& path) {
+    const std::optional<std::string> text = read_text(path, anamorph::text_file::kMostBytes);
+    if (!text) throw Error("FileName", path, "there is no such file that can be read");
+    return anamorph::read_motion(*text, path);
+}
+
+/// The script that a file is, performed, or its motion. Throws Error.
+std::unique_ptr<Motion> open_motion(const std::string& path, const std::vector<std::string>& libraries,
+                                    anamorph::Dialect dialect) {
+    if (path.empty()) throw Error("FileName", "", "must be the name of a script");
+    if (anamorph::is_motion_file(path)) return read_motion_file(path);
+    std::vector<std::string> named;
+    std::copy_if(libraries.begin(), libraries.end(), std::back_inserter(named),
+                 [](const std::string& name) { return !name.empty(); });
+    anamorph::Script script = read_script(path, named, dialect);
+    if (!script.ok()) throw Error(errors_of(script));
+    return std::make_unique<anamorph::Performance>(std::move(script.program));
+}
+
 }  // namespace
 
 struct vtkAnamorphFigureReader::Play {
-    explicit Play(anamorph::Program program) : performance(std::move(program)) {
-        first = performance.first_frame();
-        step = performance.frame_step();
-        count = performance.frame_count();
+    explicit Play(std::unique_ptr<Motion> from) : motion(std::move(from)) {
+        first = motion->first_frame();
+        step = motion->frame_step();
+        count = motion->frame_count();
     }
 
     /// The last frame shown at or before a time; 0 where none is shown.
@@ -85,7 +109,7 @@ struct vtkAnamorphFigureReader::Play {
         return first + step * static_cast<int>(index > 0 ? std::min(index, count - 1.0) : 0.0);
     }
 
-    Performance performance;
+    std::unique_ptr<Motion> motion;
     int first = 0, step = 1, count = 0;
     vtkMTimeType since = 0;
 };
@@ -109,6 +133,7 @@ int vtkAnamorphFigureReader::CanReadFile(const char* name) {
         char head[4096];
         in.read(head, sizeof head);
         if (std::find(head, head + in.gcount(), '\0') != head + in.gcount()) return 0;
+        if (anamorph::is_motion_file(name)) return read_motion_file(name) != nullptr;
         const anamorph::Script script = read_script(name, {}, anamorph::Dialect::classic);
         return script.ok() || script.program.ellipsoids.size() > 1;
     } catch (const std::exception&) {
@@ -146,19 +171,13 @@ void vtkAnamorphFigureReader::AddLibrary(const char* name) {
     this->SetLibrary(this->GetNumberOfLibraries(), name);
 }
 
-/// Reads the script if that has not been done since the last change. Throws Error.
+/// Reads the file if that has not been done since the last change. Throws Error.
 void vtkAnamorphFigureReader::Prepare() {
     if (this->Current && this->Current->since == this->GetMTime()) return;
     this->Current = nullptr;
-    if (this->FileName.empty()) throw Error("FileName", "", "must be the name of a script");
-    std::vector<std::string> libraries;
-    for (const std::string& name : this->Libraries)
-        if (!name.empty()) libraries.push_back(name);
-    anamorph::Script script =
-        read_script(this->FileName, libraries,
-                    this->Dialect == STRICT ? anamorph::Dialect::strict : anamorph::Dialect::classic);
-    if (!script.ok()) throw Error(errors_of(script));
-    this->Current = std::make_unique<Play>(std::move(script.program));
+    this->Current = std::make_unique<Play>(
+        open_motion(this->FileName, this->Libraries,
+                    this->Dialect == STRICT ? anamorph::Dialect::strict : anamorph::Dialect::classic));
     this->Current->since = this->GetMTime();
 }
 
@@ -194,8 +213,8 @@ int vtkAnamorphFigureReader::RequestData(vtkInformation*, vtkInformationVector**
                                             ? information->Get(Executive::UPDATE_TIME_STEP())
                                             : play.first);
         if (information->Get(Executive::UPDATE_PIECE_NUMBER()) <= 0)
-            anamorph_vtk::write_figures(play.performance.frame(frame), this->Joints,
-                                        this->OutputPointsPrecision, output);
+            anamorph_vtk::write_figures(play.motion->frame(frame), this->Joints, this->OutputPointsPrecision,
+                                        output);
         if (play.count > 0) output->GetInformation()->Set(vtkDataObject::DATA_TIME_STEP(), frame);
     };
     return anamorph_vtk::guarded(this, perform, {output});

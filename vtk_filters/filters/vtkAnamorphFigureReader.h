@@ -19,6 +19,9 @@
  * asked for, in any order, and is the same to the bit. A script that shows no frame is the figures at rest,
  * without times.
  *
+ * Motions (.bvh) and crystal structures (.cif) become ellipsoids in the same window, and frames that were
+ * written (.3) are read back.
+ *
  * The file is read again after Modified(). All is in the first piece; others are empty.
  */
 #ifndef vtkAnamorphFigureReader_h
@@ -41,12 +44,13 @@ class ANAMORPHFILTERS_EXPORT vtkAnamorphFigureReader : public vtkPolyDataAlgorit
     enum { CLASSIC, STRICT };
 
     ///@{
-    /** The script. What it includes is looked for in its folder. */
+    /** The script, whose includes are looked for in its folder, or a motion: .bvh, .cif, .3. */
     void SetFileName(const char* name);
     const char* GetFileName() { return this->FileName.c_str(); }
     ///@}
 
-    /** 1 if the file is a text that can be read as a script (with errors, if it declares ellipsoids). */
+    /** 1 if the file is a motion, or a text that can be read as a script (with errors, if it declares
+     * ellipsoids). */
     virtual int CanReadFile(const char* name);
 
     ///@{

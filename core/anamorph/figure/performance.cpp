@@ -297,11 +297,6 @@ int Performance::last_frame() {
     return std::max(last, 0) / frame_step() * frame_step();
 }
 
-int Performance::frame_count() {
-    const long long first = first_frame(), last = last_frame();
-    return last < first ? 0 : static_cast<int>((last - first) / frame_step() + 1);
-}
-
 FigureFrame Performance::frame(int number) {
     if (number < 0 || !m_impl->reaches(number))
         throw Error("frame", std::to_string(number),
@@ -316,6 +311,10 @@ void Performance::for_each_frame(const std::function<bool(const FigureFrame&)>& 
     const long long stop = view ? static_cast<long long>((*view)[1]) * m_impl->speed : kLargestFrame;
     for (long long f = first_frame(); f <= stop && m_impl->reaches(static_cast<int>(f)); f += step)
         if (!body(frame(static_cast<int>(f)))) return;
+}
+
+const std::vector<std::string>& Performance::images() const {
+    return m_impl->program.images;
 }
 
 const Program& Performance::program() const {

@@ -28,6 +28,7 @@
 #include <string>
 
 #include "anamorph/figure/frame.h"
+#include "anamorph/figure/motion.h"
 #include "anamorph/figure/program.h"
 
 namespace anamorph {
@@ -39,29 +40,23 @@ struct PerformanceOptions {
     std::size_t memory = std::size_t{32} << 20;  ///< bytes of states kept
 };
 
-/// A performance must not be used by two threads at once.
-class Performance {
+/// Where frame numbers of the script are variables, asking for the last one performs it. Frames may be asked
+/// for up to the last that the script performs, shown or not; frame() throws Error, too, naming the line of
+/// the script where performing it fails.
+class Performance final : public Motion {
   public:
     /// `program`: that of a script without errors.
     explicit Performance(Program program, PerformanceOptions options = {});
-    ~Performance();
+    ~Performance() override;
     Performance(Performance&&) noexcept;
     Performance& operator=(Performance&&) noexcept;
 
-    /// The frames shown: first_frame() + i frame_step() up to last_frame(), none when last < first. Where
-    /// frame numbers of the script are variables, asking for the last one performs it.
-    int first_frame() const;
-    int last_frame();
-    int frame_step() const;
-    /// The number of frames that are shown.
-    int frame_count();
-
-    /// Any frame from 0 to the last that the script performs, shown or not. Throws Error: outside of these,
-    /// or naming the line of the script where performing it fails.
-    FigureFrame frame(int number);
-
-    /// The frames shown, in order, until `body` returns false.
-    void for_each_frame(const std::function<bool(const FigureFrame&)>& body);
+    int first_frame() const override;
+    int last_frame() override;
+    int frame_step() const override;
+    FigureFrame frame(int number) override;
+    void for_each_frame(const std::function<bool(const FigureFrame&)>& body) override;
+    const std::vector<std::string>& images() const override;
 
     const Program& program() const;
 

@@ -26,6 +26,12 @@ struct Light {
     double specular = 0.3, shininess = 30;
 };
 
+/// The direction that light comes from unless another is asked for: from above, as RASEL has it, or from before
+/// the figures, over the observer's left shoulder.
+inline glm::dvec3 usual_light(Lighting lighting) {
+    return lighting == Lighting::rasel ? glm::dvec3(0, 1, 0) : glm::normalize(glm::dvec3(-1, 2, -2));
+}
+
 /// A colour from 0 to 1 as it is seen where the surface has the unit normal `n` and the eye is in the direction
 /// `v`.
 inline glm::dvec3 lit(const glm::dvec3& color, const Light& light, const glm::dvec3& n, const glm::dvec3& v) {

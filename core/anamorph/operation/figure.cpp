@@ -8,6 +8,8 @@
 #include <mutex>
 
 #include "anamorph/figure/figure_picture.h"
+#include "anamorph/figure/fit.h"
+#include "anamorph/figure/motion_file.h"
 #include "anamorph/figure/performance.h"
 #include "anamorph/figure/rotation.h"
 #include "anamorph/figure/script.h"
@@ -31,8 +33,9 @@ ParameterTable make_table() {
     using namespace rows;
     return {
         file("script",
-             "the script of NUDES; by default the recipe's name without .figure, and of a name that ends "
-             "in .n or .nudes that file itself"),
+             "the script of NUDES, or a motion (.bvh), a crystal structure (.cif) or frames (.3); by default "
+             "the recipe's name without .figure, and of a name that ends in .n, .nudes, .bvh or .cif that "
+             "file itself"),
         file("library", "a file of figures without stop, included ahead of the script"),
         choice(
             "dialect", "classic", {"classic", "strict"},
@@ -74,6 +77,8 @@ ParameterTable make_table() {
         numbers("place", -kInfinity, "x,y,z: what is seen in the middle, in place of the script's place"),
         number("perspective", "units", "", 0.01, kFar,
                "distance of the eye from the place; by default no perspective"),
+        toggle("fit", "0",
+               "1: the figures fill the picture; without frame, those of all frames that are shown"),
         number("zoom", "", "1", 1e-6, 1e6, "magnifies about the middle"),
         numbers("background", 0, "red,green,blue, 0 to 255; by default transparent"),
         number("line_width", "pixels", "1.5", 0.01, 1000, "of styles outline and stick"),
@@ -101,6 +106,10 @@ const SideFile& script_of(const SideFiles& files) {
     return found->second;
 }
 
+std::string short_name(const SideFile& file) {
+    return std::filesystem::path(file.name).filename().string();
+}
+
 std::optional<std::string> text_or_none(const SideFileReader& reader, const std::string& name) {
     try {
         return reader.text(name);
@@ -123,8 +132,7 @@ Script read_script(const ParameterValues& values, const SideFiles& files, const 
         if (on_include && !is_library) on_include(file);
         return text_or_none(reader, file);
     };
-    const std::string name = std::filesystem::path(script.name).filename().string();
-    return parse_script(reader.text(script.name), name, options);
+    return parse_script(reader.text(script.name), short_name(script), options);
 }
 
 /// The file beside the script that a name means: that name, or one with the ending of a picture.
@@ -149,57 +157,68 @@ const char* const kTextureKey = "texture/";
 LinkedFiles linked_files(const ParameterValues& values, const SideFiles& files,
                          const SideFileReader& reader) {
     LinkedFiles linked;
-    const Script script = read_script(values, files, reader, [&](const std::string& file) {
-        linked.push_back({"script/" + file, file});
+    const SideFile& file = script_of(files);
+    if (is_motion_file(file.name)) {
+        if (!is_textured(values)) return linked;
+        for (const std::string& name : read_motion(reader.text(file.name), short_name(file))->images())
+            linked.push_back({kTextureKey + name, picture_beside(file.name, name, reader), true});
+        return linked;
+    }
+    const Script script = read_script(values, files, reader, [&](const std::string& included) {
+        linked.push_back({"script/" + included, included});
     });
     if (!is_textured(values)) return linked;
     for (const std::string& name : script.program.images)
-        linked.push_back({kTextureKey + name, picture_beside(script_of(files).name, name, reader), true});
+        linked.push_back({kTextureKey + name, picture_beside(file.name, name, reader), true});
     return linked;
 }
 
-/// A performance that threads share.
+/// A motion that threads share.
 class Film {
   public:
-    explicit Film(Program program) : m_performance(std::make_unique<Performance>(std::move(program))) {
-        m_first = m_performance->first_frame();
-        m_step = m_performance->frame_step();
+    explicit Film(std::unique_ptr<Motion> motion) : m_motion(std::move(motion)) {
+        m_first = m_motion->first_frame();
+        m_step = m_motion->frame_step();
     }
 
     /// The frames that are shown; 1, that at rest, where there are none.
     int count() const {
         const std::lock_guard lock(*m_mutex);
-        return std::max(1, m_performance->frame_count());
+        return std::max(1, m_motion->frame_count());
     }
     /// The number of the i-th of these.
     int number(int i) const {
         const std::lock_guard lock(*m_mutex);
-        return m_performance->frame_count() > 0 ? m_first + i * m_step : 0;
+        return m_motion->frame_count() > 0 ? m_first + i * m_step : 0;
     }
     FigureFrame frame(int number) const {
         const std::lock_guard lock(*m_mutex);
-        return m_performance->frame(number);
+        return m_motion->frame(number);
     }
-    const std::vector<std::string>& images() const { return m_performance->program().images; }
+    const std::vector<std::string>& images() const { return m_motion->images(); }
 
   private:
     std::unique_ptr<std::mutex> m_mutex = std::make_unique<std::mutex>();
-    std::unique_ptr<Performance> m_performance;
+    std::unique_ptr<Motion> m_motion;
     int m_first = 1, m_step = 1;
 };
 
+std::unique_ptr<Motion> open_motion(const OperationInput& input) {
+    const SideFile& file = script_of(input.files);
+    if (is_motion_file(file.name)) return read_motion(input.reader.text(file.name), short_name(file));
+    Script read = read_script(input.values, input.files, input.reader);
+    for (const Diagnostic& d : read.diagnostics)
+        if (d.severity == Severity::error) throw Error(d.text());
+    return std::make_unique<Performance>(std::move(read.program));
+}
+
 std::shared_ptr<const Film> read_film(const OperationInput& input) {
-    // Of all files that the program is made of.
+    // Of all files that the motion is made of.
     std::string identity;
     for (const auto& [key, file] : input.files) identity += key + "\n" + file.identity + "\n";
     const SideFile& script = script_of(input.files);
     const std::string how = "figure " + input.values.text("dialect") + "\n" + identity;
-    return read_once<Film>(script, how, [&] {
-        Script read = read_script(input.values, input.files, input.reader);
-        for (const Diagnostic& d : read.diagnostics)
-            if (d.severity == Severity::error) throw Error(d.text());
-        return Film(std::move(read.program));
-    });
+    return read_once<Film>(script, how, [&] { return Film(open_motion(input)); });
 }
 
 // --- Pictures ----------------------------------------------------------------------------------------------
@@ -216,26 +235,35 @@ struct FigureRequest {
     FigureLook look;
     std::optional<glm::dvec3> camera, place;
     double zoom = 1, eye_distance = HUGE_VAL;
+    bool fit = false;
     std::string missing;  ///< textures
 
-    View view_of(const FigureFrame& frame, const Size& of) const {
-        View view = view_in(frame, {of.width, of.height});
+    /// `extent`: that the view is fitted to, where it is.
+    View view_of(const FigureFrame& frame, const SeenExtent& extent, const Size& of) const {
+        const glm::dvec2 page(of.width, of.height);
+        View view = view_in(frame, page);
         if (camera) view.rotation = glm::mat3_cast(turn_xyz(*camera));
         if (place) view.center = *place;
-        view.scale *= zoom;
         view.eye_distance = eye_distance;
+        if (fit) fit_view(view, extent, page);
+        view.middle = 0.5 * page + zoom * (view.middle - 0.5 * page);
+        view.scale *= zoom;
         return view;
+    }
+    void add_extent(const FigureFrame& frame, SeenExtent& extent) const {
+        add_seen_extent(frame, view_of(frame, SeenExtent(), size), extent);
     }
 };
 
 Light read_light(const ParameterValues& values) {
     Light light;
     light.lighting = rows::chosen<Lighting>(values, "lighting");
-    glm::dvec3 toward = light.lighting == Lighting::rasel ? glm::dvec3(0, 1, 0) : glm::dvec3(-1, 2, -2);
-    if (const auto given = three(values, "light", -kFar, kFar)) toward = *given;
-    const double size = std::max({std::fabs(toward.x), std::fabs(toward.y), std::fabs(toward.z)});
-    if (size == 0) throw Error("light", printable(values.text("light")), "must not be 0,0,0");
-    light.toward = glm::normalize(toward / size);
+    light.toward = usual_light(light.lighting);
+    if (const auto given = three(values, "light", -kFar, kFar)) {
+        const double size = std::max({std::fabs(given->x), std::fabs(given->y), std::fabs(given->z)});
+        if (size == 0) throw Error("light", printable(values.text("light")), "must not be 0,0,0");
+        light.toward = glm::normalize(*given / size);
+    }
     light.ambient = values.number("ambient");
     light.specular = values.number("specular");
     light.shininess = values.number("shininess");
@@ -257,6 +285,7 @@ FigureRequest read_request(const ParameterValues& values) {
     look.lines.colors = values.toggle("line_colors");
     request.camera = three(values, "camera", -kFar, kFar);
     request.place = three(values, "place", -kFar, kFar);
+    request.fit = values.toggle("fit");
     request.zoom = values.number("zoom");
     if (values.given("perspective")) request.eye_distance = values.number("perspective");
     return request;
@@ -287,11 +316,15 @@ class Figures final : public Pictures {
   public:
     Figures(FigureRequest request, std::shared_ptr<const Film> film, std::optional<int> frame)
         : m_request(std::move(request)), m_film(std::move(film)), m_frame(frame) {
-        if (m_frame) return;
-        m_frames = m_film->count();
+        if (!m_frame) m_frames = m_film->count();
         if (m_frames > kMostSubimages)
             throw Error("frame is not given and the script shows " + std::to_string(m_frames) +
                         " frames: must be given where there are more than " + std::to_string(kMostSubimages));
+        if (!m_request.fit) return;
+        SeenExtent extent;
+        for (int i = 0; i < m_frames; ++i)
+            m_request.add_extent(m_film->frame(m_frame ? *m_frame : m_film->number(i)), extent);
+        m_extent = std::make_shared<const SeenExtent>(extent);
     }
 
     int frames() const override { return m_frames; }
@@ -303,11 +336,11 @@ class Figures final : public Pictures {
         picture.size = *size;
         const int number = m_frame ? *m_frame : m_film->number(frame);
         describe(picture, number);
-        picture.solve = [request = m_request, film = m_film, number, size = *size, level] {
+        picture.solve = [request = m_request, film = m_film, extent = m_extent, number, size = *size, level] {
             FigureFrame scene = film->frame(number);
             FigureRequest r = request;
             r.look.lines.line_width = std::ldexp(r.look.lines.line_width, -level);
-            const View view = r.view_of(scene, size);
+            const View view = r.view_of(scene, *extent, size);
             return std::make_unique<SolvedFigure>(FigurePicture(std::move(scene), view, size, r.look),
                                                   r.look.style);
         };
@@ -341,6 +374,7 @@ class Figures final : public Pictures {
     std::shared_ptr<const Film> m_film;
     std::optional<int> m_frame;
     int m_frames = 1;
+    std::shared_ptr<const SeenExtent> m_extent = std::make_shared<const SeenExtent>();
 };
 
 std::unique_ptr<const Pictures> read_figures(const OperationInput& input) {
@@ -382,7 +416,7 @@ const Operation& figure_operation() {
         .example = {"script=doll.nudes&size=48x24", {{"doll.nudes", kExampleScript}}},
         .read = read_figures,
         .main_file = "script",
-        .endings = {"n", "nudes"},
+        .endings = {"n", "nudes", "bvh", "cif"},
         .linked = linked_files};
     return operation;
 }

@@ -1,0 +1,430 @@
+// SPDX-License-Identifier: Apache-2.0
+// gemmi reads such files too, but its headers (0.5.7) do not compile as C++20.
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <glm/matrix.hpp>
+#include <map>
+#include <numbers>
+#include <optional>
+
+#include "anamorph/figure/eigenvectors.h"
+#include "anamorph/figure/elements.h"
+#include "anamorph/figure/motion_file.h"
+#include "anamorph/figure/rotation.h"
+#include "anamorph/parameter.h"
+#include "anamorph/text_file.h"
+
+namespace anamorph {
+namespace {
+
+constexpr std::size_t kMostAtoms = 20000, kMostBonds = 500000;
+constexpr double kWindow = 1000, kFilled = 0.9;
+/// The ellipsoid x^T U^-1 x = s^2 holds half of a Gaussian in three dimensions.
+constexpr double kHalfProbability = 1.5381722544550522;
+/// Of atoms without displacement, and what bonds may be longer than radii; Angstrom.
+constexpr double kPlainRadius = 0.15, kBondSlack = 0.4;
+
+// --- The file ----------------------------------------------------------------------------------------------
+
+enum class TokenKind { end, data, loop, tag, value, other };
+
+struct Token {
+    TokenKind kind = TokenKind::end;
+    std::string text;     ///< of tags in small letters
+    bool quoted = false;  ///< "." and "?" then are themselves
+    int line = 0;
+};
+
+/// Tokens of CIF 1.1.
+class Tokens {
+  public:
+    explicit Tokens(std::string_view text) : m_text(text) {}
+
+    Token next() {
+        skip_blanks();
+        Token token;
+        token.line = m_line;
+        if (m_at == m_text.size()) return token;
+        const char c = m_text[m_at];
+        if (c == ';' && (m_at == 0 || m_text[m_at - 1] == '\n'))
+            token = text_field();
+        else if (c == '\'' || c == '"')
+            token = quoted(c);
+        else
+            token = word();
+        return token;
+    }
+
+  private:
+    static bool is_blank(char c) { return c == ' ' || (c >= '\t' && c <= '\r') || c == '\0'; }
+
+    void skip_blanks() {
+        while (m_at < m_text.size()) {
+            if (m_text[m_at] == '#')
+                m_at = std::min(m_text.find('\n', m_at), m_text.size());
+            else if (is_blank(m_text[m_at]))
+                m_line += m_text[m_at++] == '\n';
+            else
+                return;
+        }
+    }
+    Token text_field() {
+        const std::size_t end = m_text.find("\n;", m_at);
+        const std::size_t stop = std::min(end, m_text.size());
+        Token token{TokenKind::value, std::string(m_text.substr(m_at + 1, stop - m_at - 1)), true, m_line};
+        m_line += static_cast<int>(std::count(token.text.begin(), token.text.end(), '\n'));
+        m_line += end != std::string_view::npos;
+        m_at = end == std::string_view::npos ? m_text.size() : end + 2;
+        return token;
+    }
+    /// A quote ends a text only before a blank; a text does not go beyond its line.
+    Token quoted(char quote) {
+        std::size_t end = m_at + 1;
+        while (end < m_text.size() && m_text[end] != '\n' &&
+               !(m_text[end] == quote && (end + 1 == m_text.size() || is_blank(m_text[end + 1]))))
+            ++end;
+        Token token{TokenKind::value, std::string(m_text.substr(m_at + 1, end - m_at - 1)), true, m_line};
+        m_at = std::min(end + (end < m_text.size() && m_text[end] == quote), m_text.size());
+        return token;
+    }
+    Token word() {
+        std::size_t end = m_at;
+        while (end < m_text.size() && !is_blank(m_text[end])) ++end;
+        Token token{TokenKind::value, std::string(m_text.substr(m_at, end - m_at)), false, m_line};
+        m_at = end;
+        std::string lower = token.text;
+        for (char& c : lower) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+        if (lower[0] == '_') {
+            token.kind = TokenKind::tag;
+            token.text = lower;
+        } else if (lower.starts_with("data_")) {
+            token.kind = TokenKind::data;
+        } else if (lower == "loop_") {
+            token.kind = TokenKind::loop;
+        } else if (lower.starts_with("save_") || lower == "global_" || lower == "stop_") {
+            token.kind = TokenKind::other;
+        }
+        return token;
+    }
+
+    std::string_view m_text;
+    std::size_t m_at = 0;
+    int m_line = 1;
+};
+
+/// Values of one tag.
+struct Column {
+    std::vector<std::string> values;  ///< empty where a value is unknown
+    int line = 0;
+};
+/// The first structure's tags.
+using CifBlock = std::map<std::string, Column>;
+
+std::string known(const Token& token) {
+    return !token.quoted && (token.text == "." || token.text == "?") ? std::string() : token.text;
+}
+
+/// The tags of a loop and their values, row by row; `token` is the one behind `loop_`, and then behind it.
+void read_loop(Tokens& tokens, Token& token, CifBlock& block, std::string_view file) {
+    std::vector<std::string> tags;
+    for (; token.kind == TokenKind::tag; token = tokens.next()) tags.push_back(token.text);
+    std::vector<Column*> columns;
+    for (const std::string& tag : tags) {
+        Column& column = block[tag];
+        column = {{}, token.line};
+        columns.push_back(&column);
+    }
+    std::size_t count = 0;
+    for (; token.kind == TokenKind::value; token = tokens.next(), ++count)
+        if (!columns.empty()) columns[count % columns.size()]->values.push_back(known(token));
+    // Faults elsewhere in a file do not matter.
+    const bool matters = std::any_of(tags.begin(), tags.end(),
+                                     [](const std::string& tag) { return tag.starts_with("_atom_site_"); });
+    if (matters && count % columns.size() != 0)
+        text_file::fail(file, "line " + std::to_string(token.line),
+                        "a loop of " + std::to_string(tags.size()) + " tags ends after " +
+                            std::to_string(count) + " values: must have whole rows");
+}
+
+CifBlock read_block(std::string_view text, std::string_view file) {
+    Tokens tokens(text);
+    CifBlock block;
+    Token token = tokens.next();
+    while (token.kind != TokenKind::end) {
+        if (token.kind == TokenKind::data) {
+            if (block.contains("_atom_site_fract_x")) break;
+            block.clear();
+            token = tokens.next();
+        } else if (token.kind == TokenKind::loop) {
+            token = tokens.next();
+            read_loop(tokens, token, block, file);
+        } else if (token.kind == TokenKind::tag) {
+            const std::string tag = token.text;
+            const int line = token.line;
+            token = tokens.next();
+            if (token.kind != TokenKind::value)
+                text_file::fail(file, "line " + std::to_string(line), tag + " has no value");
+            block[tag] = {{known(token)}, line};
+            token = tokens.next();
+        } else {
+            token = tokens.next();
+        }
+    }
+    return block;
+}
+
+// --- The structure -----------------------------------------------------------------------------------------
+
+struct Atom {
+    std::string label;
+    const ChemicalElement* element = nullptr;
+    Ellipsoid shape;  ///< Angstrom, right-handed
+};
+
+class Structure {
+  public:
+    Structure(std::string_view text, std::string_view file) : m_file(file) {
+        text_file::check_size(text, file);
+        m_block = read_block(text, file);
+        read_cell();
+        read_displacements();
+        read_atoms();
+    }
+
+    std::vector<Atom> atoms;
+
+  private:
+    const Column* find(const std::string& tag) const {
+        const auto found = m_block.find(tag);
+        return found == m_block.end() ? nullptr : &found->second;
+    }
+    /// A number, without the uncertainty behind it: 1.234(5), or as some programs write it 1.234+5.
+    double number(const std::string& tag, std::size_t row, double most) const {
+        const Column& column = m_block.at(tag);
+        std::string_view rest = column.values[row];
+        double value = 0;
+        const bool read = text_file::take_number(rest, value);
+        if (!read || !(rest.empty() || rest[0] == '(' || rest[0] == '+') || !(std::fabs(value) <= most))
+            text_file::fail(m_file, "line " + std::to_string(column.line),
+                            tag + "=" + text_file::excerpt(column.values[row]) + ": must be a number from " +
+                                shortest(-most) + " to " + shortest(most));
+        return value;
+    }
+    std::optional<double> number_if_given(const std::string& tag, std::size_t row, double most) const {
+        const Column* column = find(tag);
+        if (!column || row >= column->values.size() || column->values[row].empty()) return std::nullopt;
+        return number(tag, row, most);
+    }
+
+    /// The matrix that takes fractions of the cell to Angstrom: a along x, b in the x-y-plane.
+    void read_cell() {
+        double length[3], cosine[3], sine[3];
+        static constexpr const char* kLengths[] = {"_cell_length_a", "_cell_length_b", "_cell_length_c"};
+        static constexpr const char* kAngles[] = {"_cell_angle_alpha", "_cell_angle_beta",
+                                                  "_cell_angle_gamma"};
+        for (int c = 0; c < 3; ++c) {
+            for (const char* tag : {kLengths[c], kAngles[c]})
+                if (!number_if_given(tag, 0, 1e6)) text_file::fail(m_file, tag, "is missing");
+            length[c] = number(kLengths[c], 0, 1e6);
+            const double angle = number(kAngles[c], 0, 180) * kDegree;
+            cosine[c] = std::cos(angle);
+            sine[c] = std::sin(angle);
+            if (!(length[c] > 0)) text_file::fail(m_file, kLengths[c], "must be above 0");
+        }
+        const double skew = (cosine[0] - cosine[1] * cosine[2]) / sine[2];
+        const double height = std::sqrt(sine[1] * sine[1] - skew * skew);
+        if (!(sine[2] > 1e-6 && height > 1e-6))
+            text_file::fail(m_file, "_cell_angle_alpha", "the angles of the cell must span a volume");
+        m_cell = {{length[0], 0, 0},
+                  {length[1] * cosine[2], length[1] * sine[2], 0},
+                  length[2] * glm::dvec3(cosine[1], skew, height)};
+    }
+
+    /// By label: U of the anisotropic atoms, in the axes of the cell, Angstrom^2. B = 8 pi^2 U.
+    void read_displacements() {
+        const Column* labels = find("_atom_site_aniso_label");
+        if (!labels) return;
+        static constexpr const char* kPairs[] = {"11", "22", "33", "12", "13", "23"};
+        for (std::size_t row = 0; row < labels->values.size(); ++row) {
+            std::array<double, 6> u{};
+            bool all = true;
+            for (std::size_t k = 0; k < 6; ++k) {
+                auto value = number_if_given(std::string("_atom_site_aniso_u_") + kPairs[k], row, 1e6);
+                if (!value) {
+                    value = number_if_given(std::string("_atom_site_aniso_b_") + kPairs[k], row, 1e6);
+                    if (value) *value /= kEightPiSquared;
+                }
+                all = all && value;
+                u[k] = value.value_or(0);
+            }
+            if (all) m_aniso[labels->values[row]] = u;
+        }
+    }
+
+    void read_atoms() {
+        static constexpr const char* kPlaces[] = {"_atom_site_fract_x", "_atom_site_fract_y",
+                                                  "_atom_site_fract_z"};
+        const Column *x = find(kPlaces[0]), *labels = find("_atom_site_label");
+        if (!x || !find(kPlaces[1]) || !find(kPlaces[2]) || !labels)
+            text_file::fail(m_file, "", "has no loop of _atom_site_label and _atom_site_fract_x, y and z");
+        const std::size_t rows = x->values.size();
+        if (rows > kMostAtoms || labels->values.size() != rows)
+            text_file::fail(m_file, kPlaces[0], "must have up to 20000 values, and as many labels");
+        for (std::size_t row = 0; row < rows; ++row) {
+            glm::dvec3 place;
+            bool is_known = true;
+            for (int c = 0; c < 3; ++c) {
+                const auto value = number_if_given(kPlaces[c], row, 1e3);
+                is_known = is_known && value;
+                place[c] = value.value_or(0);
+            }
+            if (!is_known) continue;
+            Atom atom;
+            atom.label = labels->values[row];
+            atom.element = element_of(row);
+            atom.shape = displacement_of(row, atom.label);
+            atom.shape.center = m_cell * place;
+            atoms.push_back(std::move(atom));
+        }
+        if (atoms.empty()) text_file::fail(m_file, "", "has no atom whose place is known");
+    }
+
+    const ChemicalElement* element_of(std::size_t row) const {
+        const Column* types = find("_atom_site_type_symbol");
+        const bool typed = types && row < types->values.size() && !types->values[row].empty();
+        const std::string& text = typed ? types->values[row] : m_block.at("_atom_site_label").values[row];
+        std::string symbol;
+        for (const char c : text.substr(0, 2)) {
+            if (!std::isalpha(static_cast<unsigned char>(c))) break;
+            const auto letter = static_cast<unsigned char>(c);
+            symbol += static_cast<char>(symbol.empty() ? std::toupper(letter) : std::tolower(letter));
+        }
+        const ChemicalElement* element = find_element(symbol);
+        return element || symbol.empty() ? element : find_element(symbol.substr(0, 1));
+    }
+
+    /// Of U in the axes of the cell, whose lengths are those of the reciprocal cell: A N U N^T A^T.
+    Ellipsoid displacement_of(std::size_t row, const std::string& label) const {
+        Ellipsoid shape;
+        const auto aniso = m_aniso.find(label);
+        if (aniso == m_aniso.end()) {
+            auto u = number_if_given("_atom_site_u_iso_or_equiv", row, 1e6);
+            if (!u) {
+                u = number_if_given("_atom_site_b_iso_or_equiv", row, 1e6);
+                if (u) *u /= kEightPiSquared;
+            }
+            shape.axes = glm::dvec3(u && *u > 0 ? kHalfProbability * std::sqrt(*u) : kPlainRadius);
+            return shape;
+        }
+        const std::array<double, 6>& u = aniso->second;
+        const glm::dmat3 reciprocal = glm::transpose(glm::inverse(m_cell));
+        glm::dmat3 scaled = m_cell;
+        for (int c = 0; c < 3; ++c) scaled[c] *= glm::length(reciprocal[c]);
+        const glm::dmat3 tensor({u[0], u[3], u[4]}, {u[3], u[1], u[5]}, {u[4], u[5], u[2]});
+        const glm::dmat3 cartesian = scaled * tensor * glm::transpose(scaled);
+        shape.rotation = eigenvectors(cartesian);
+        // Where U is not positive definite the ellipsoid is flat.
+        for (int c = 0; c < 3; ++c) {
+            const glm::dvec3 axis = shape.rotation[c];
+            shape.axes[c] = kHalfProbability * std::sqrt(std::max(glm::dot(axis, cartesian * axis), 0.0));
+        }
+        return shape;
+    }
+
+    static constexpr double kEightPiSquared = 8 * std::numbers::pi * std::numbers::pi;
+
+    std::string_view m_file;
+    CifBlock m_block;
+    glm::dmat3 m_cell{1.0};
+    std::map<std::string, std::array<double, 6>> m_aniso;
+};
+
+// --- The frame ---------------------------------------------------------------------------------------------
+
+/// From Angstrom to the window, mirrored.
+class Fit {
+  public:
+    explicit Fit(const std::vector<Atom>& atoms) {
+        glm::dvec3 least(HUGE_VAL), most(-HUGE_VAL);
+        for (const Atom& atom : atoms) {
+            const Ellipsoid& e = atom.shape;
+            const glm::dvec3 reach(std::max({e.axes.x, e.axes.y, e.axes.z}));
+            least = glm::min(least, e.center - reach);
+            most = glm::max(most, e.center + reach);
+        }
+        m_scale = kFilled * kWindow / std::max({most.x - least.x, most.y - least.y, 1e-9});
+        m_middle = 0.5 * (least + most);
+    }
+    glm::dvec3 point(const glm::dvec3& p) const {
+        const glm::dvec3 q = m_scale * (p - m_middle);
+        return {kWindow / 2 + q.x, kWindow / 2 + q.y, kWindow / 2 - q.z};
+    }
+    Ellipsoid ellipsoid(const Ellipsoid& e) const {
+        Ellipsoid shape{point(e.center), m_scale * e.axes, {}};
+        for (int k = 0; k < 3; ++k)
+            shape.rotation[k] = glm::dvec3(e.rotation[k].x, e.rotation[k].y, -e.rotation[k].z);
+        if (glm::determinant(shape.rotation) < 0) shape.rotation[2] = -shape.rotation[2];
+        return shape;
+    }
+
+  private:
+    double m_scale = 1;
+    glm::dvec3 m_middle{0.0};
+};
+
+class CrystalMotion final : public Motion {
+  public:
+    CrystalMotion(std::string_view text, std::string_view name) {
+        const std::vector<Atom> atoms = Structure(text, name).atoms;
+        const Fit fit(atoms);
+        m_frame.number = 1;
+        m_frame.figures = {"structure"};
+        for (const Atom& atom : atoms) {
+            Body body;
+            body.name = atom.label;
+            body.shape = fit.ellipsoid(atom.shape);
+            if (atom.element) body.color = atom.element->color;
+            m_frame.bodies.push_back(std::move(body));
+        }
+        for (std::size_t i = 0; i < atoms.size(); ++i)
+            for (std::size_t j = i + 1; j < atoms.size(); ++j)
+                if (are_bonded(atoms[i], atoms[j])) {
+                    if (m_frame.joints.size() == kMostBonds)
+                        text_file::fail(name, "",
+                                        "atoms lie so close together that there are over 500000 bonds");
+                    m_frame.joints.push_back(
+                        {atoms[i].label + "-" + atoms[j].label, static_cast<int>(i), static_cast<int>(j),
+                         fit.point(0.5 * (atoms[i].shape.center + atoms[j].shape.center))});
+                }
+    }
+
+    int last_frame() override { return 1; }
+    FigureFrame frame(int number) override {
+        if (number < 0 || number > 1)
+            throw Error("frame", std::to_string(number), "must be 0 or 1: a structure has one frame");
+        FigureFrame frame = m_frame;
+        frame.number = number;
+        return frame;
+    }
+
+  private:
+    static bool are_bonded(const Atom& a, const Atom& b) {
+        if (!a.element || !b.element) return false;
+        const double most = a.element->covalent_radius + b.element->covalent_radius + kBondSlack;
+        const glm::dvec3 d = a.shape.center - b.shape.center;
+        return glm::dot(d, d) < most * most;
+    }
+
+    FigureFrame m_frame;
+};
+
+}  // namespace
+
+std::unique_ptr<Motion> read_cif(std::string_view text, std::string_view name) {
+    return std::make_unique<CrystalMotion>(text, name);
+}
+
+}  // namespace anamorph

@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "anamorph/figure/motion.h"
+
+namespace anamorph {
+
+int Motion::frame_count() {
+    const long long first = first_frame(), last = last_frame();
+    return last < first ? 0 : static_cast<int>((last - first) / frame_step() + 1);
+}
+
+void Motion::for_each_frame(const std::function<bool(const FigureFrame&)>& body) {
+    const long long last = last_frame(), step = frame_step();
+    for (long long f = first_frame(); f <= last; f += step)
+        if (!body(frame(static_cast<int>(f)))) return;
+}
+
+const std::vector<std::string>& Motion::images() const {
+    static const std::vector<std::string> none;
+    return none;
+}
+
+}  // namespace anamorph
