@@ -1,66 +1,31 @@
 // SPDX-License-Identifier: Apache-2.0
-// Every formula of map/projection/, of deformations and of feature lines, read with every number; and with one that
-// the library does not know: the float of 24 bits that pixel shaders of 2003 had.
-#include "anamorph/number/number.h"
+// Every formula of map/projection/, of deformations, of feature lines and of meshes, read with every number, those of
+// hardware among them.
+#include "anamorph/number/number_format.h"
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <random>
 
 #include "anamorph/deform/deformation.h"
 #include "anamorph/map/feature_lines.h"
+#include "anamorph/map/mesh.h"
+#include "anamorph/map/panorama.h"
 #include "projection_cases.h"
-
-namespace anamorph::test {
-
-/// 1 bit of sign, 7 of exponent, 16 of fraction; rounded to nearest after every operation.
-struct Float24 {
-    double value = 0;
-
-    Float24() = default;
-    Float24(double exact) {  // NOLINT: a number is one, rounded
-        int exponent = 0;
-        const double fraction = std::frexp(exact, &exponent);
-        value = std::ldexp(std::nearbyint(std::ldexp(fraction, 17)), exponent - 17);
-        if (exponent < -62) value = 0;
-        if (exponent > 64) value = std::copysign(HUGE_VAL, exact);
-    }
-    friend Float24 operator-(Float24 a) { return -a.value; }
-    friend Float24 operator+(Float24 a, Float24 b) { return a.value + b.value; }
-    friend Float24 operator-(Float24 a, Float24 b) { return a.value - b.value; }
-    friend Float24 operator*(Float24 a, Float24 b) { return a.value * b.value; }
-    friend Float24 operator/(Float24 a, Float24 b) { return a.value / b.value; }
-    friend Float24 square(Float24 a) { return a * a; }
-    friend Float24 sqrt(Float24 a) { return std::sqrt(a.value); }
-    friend Float24 root(Float24 a) { return std::sqrt(a.value); }
-    friend void sin_cos(Float24 a, Float24& s, Float24& c) { s = std::sin(a.value), c = std::cos(a.value); }
-    friend Float24 atan2(Float24 b, Float24 a) { return std::atan2(b.value, a.value); }
-    friend Float24 exp(Float24 a) { return std::exp(a.value); }
-    friend Float24 log(Float24 a) { return std::log(a.value); }
-    friend Float24 asinh(Float24 a) { return std::asinh(a.value); }
-    friend Float24 min(Float24 a, Float24 b) { return std::min(a.value, b.value); }
-    friend Float24 max(Float24 a, Float24 b) { return std::max(a.value, b.value); }
-    friend bool is_zero(Float24 a) { return a.value == 0; }
-    friend bool is_negative(Float24 a) { return a.value < 0; }
-    friend Float24 without_hair(Float24 a) { return a.value < 0 && a.value > -1e-3 ? Float24(0) : a; }
-    friend Float24 scaled_sinh(Float24 a, Float24& s) {
-        s = std::tanh(a.value);
-        return 1 / std::cosh(a.value);
-    }
-    friend double enlarger(Float24, Float24) { return 1; }
-};
-
-}  // namespace anamorph::test
 
 namespace anamorph {
 namespace {
 
-using test::Float24;
+using Float16 = FormatNumber<kFloat16>;
+using Float24 = FormatNumber<kFloat24>;
+using Float32 = FormatNumber<kFloat32>;
+using Fixed32 = FormatNumber<kFixed32>;
 
 static_assert(FormulaNumber<double> && FormulaNumber<long double> && FormulaNumber<Interval>);
 static_assert(FormulaNumber<Jet<double, 4>> && FormulaNumber<Jet<Interval, 2>>);
-static_assert(FormulaNumber<Float24>);
+static_assert(FormulaNumber<Float16> && FormulaNumber<Float24> && FormulaNumber<Fixed32>);
 
 double middle(double a) {
     return a;
@@ -71,7 +36,8 @@ double middle(long double a) {
 double middle(const Interval& a) {
     return 0.5 * (a.lo + a.hi);
 }
-double middle(Float24 a) {
+template <NumberFormat kFormat>
+double middle(const FormatNumber<kFormat>& a) {
     return a.value;
 }
 template <class Real>
@@ -83,15 +49,24 @@ double middle(const Jet<T, N>& a) {
     return middle(a.c[0]);
 }
 
+constexpr double close_of(const void*) {
+    return 1e-9;
+}
+template <NumberFormat kFormat>
+constexpr double close_of(const FormatNumber<kFormat>*) {
+    return kFormat == kFloat16 ? 0.1 : kFormat == kFloat32 ? 2e-5 : 2e-3;
+}
+
 template <class T>
 class Numbers : public testing::Test {
   public:
     /// Of the size of the number's own rounding.
-    static constexpr double kClose = std::is_same_v<T, Float24> ? 2e-3 : 1e-9;
+    static constexpr double kClose = close_of(static_cast<T*>(nullptr));
 };
 
-using AllNumbers = testing::Types<double, long double, Interval, Rounded<double>, Jet<double, 1>,
-                                  Jet<double, 4>, Jet<Interval, 1>, Jet<Interval, 3>, Float24>;
+using AllNumbers =
+    testing::Types<double, long double, Interval, Rounded<double>, Jet<double, 1>, Jet<double, 4>,
+                   Jet<Interval, 1>, Jet<Interval, 3>, Float16, Float24, Float32, Fixed32>;
 TYPED_TEST_SUITE(Numbers, AllNumbers);
 
 TYPED_TEST(Numbers, ReadEveryProjection) {
@@ -152,8 +127,8 @@ TYPED_TEST(Numbers, ReadEveryLens) {
 template <class T>
 class FormulaNumbers : public Numbers<T> {};
 // Bounds of rounding are asked of projections only.
-using DeformationNumbers =
-    testing::Types<double, long double, Interval, Jet<double, 2>, Jet<Interval, 2>, Float24>;
+using DeformationNumbers = testing::Types<double, long double, Interval, Jet<double, 2>, Jet<Interval, 2>,
+                                          Float16, Float24, Float32, Fixed32>;
 TYPED_TEST_SUITE(FormulaNumbers, DeformationNumbers);
 
 TYPED_TEST(FormulaNumbers, ReadKernelsOfDeformations) {
@@ -162,6 +137,26 @@ TYPED_TEST(FormulaNumbers, ReadKernelsOfDeformations) {
         EXPECT_NEAR(middle(gaussian_of(T(squared))), std::exp(-squared), TestFixture::kClose);
         const double r = std::sqrt(squared);
         EXPECT_NEAR(middle(wendland_of(T(squared))), std::pow(1 - r, 4) * (4 * r + 1), TestFixture::kClose);
+    }
+}
+
+TYPED_TEST(FormulaNumbers, ReadHermitePatches) {
+    using T = TypeParam;
+    const std::array<double, 4> exact = hermite_basis(0.3);
+    const std::array<T, 4> basis = hermite_basis(T(0.3));
+    for (std::size_t i = 0; i < 4; ++i) EXPECT_NEAR(middle(basis[i]), exact[i], TestFixture::kClose);
+}
+
+TYPED_TEST(FormulaNumbers, ReadPanoramas) {
+    using T = TypeParam;
+    const Panorama map(Chart(Projection::cylindrical, 200, 60), Chart(Projection::rectilinear, 64, 64, 90),
+                       {10, 5});
+    for (const double x : {20.5, 40.5}) {
+        const auto local = map.local_around(x, 30.5, 0);
+        const Point<double> exact = map(x, 30.5, local);
+        const Point<T> p = map(T(x), T(30.5), local);
+        EXPECT_NEAR(middle(p.x), exact.x, 100 * TestFixture::kClose);
+        EXPECT_NEAR(middle(p.y), exact.y, 100 * TestFixture::kClose);
     }
 }
 

@@ -1,0 +1,122 @@
+// SPDX-License-Identifier: Apache-2.0
+// Number formats of graphics hardware: small floats, two's-complement fixed point, normalised texels; and a number that
+// is rounded to its format after every operation, with which the formulas of map/ and approx/ are read (number.h).
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+
+#include "anamorph/number/number.h"
+
+namespace anamorph {
+
+/// How a value is stored. Rounding is to nearest, ties to even.
+struct NumberFormat {
+    enum class Kind : std::uint8_t {
+        floating,   ///< 1 bit of sign, `bits` of exponent, `fraction` bits behind a leading 1
+        fixed,      ///< two's complement of `bits` bits, `fraction` of them behind the point
+        normalised  ///< k / (2^bits - 1), k from 0 to 2^bits - 1
+    };
+    Kind kind;
+    int bits, fraction = 0;
+    bool wraps = false;       ///< fixed: what lies beyond the range loses its upper bits; else it saturates
+    bool subnormals = false;  ///< floating: numbers below 2^(2 - 2^(bits - 1)) are kept; else they are 0
+
+    bool operator==(const NumberFormat&) const = default;
+};
+
+inline constexpr NumberFormat kFloat16{NumberFormat::Kind::floating, 5, 10, false, true};
+/// Of pixel shaders of 2003: 1, 7 and 16 bits.
+inline constexpr NumberFormat kFloat24{NumberFormat::Kind::floating, 7, 16};
+inline constexpr NumberFormat kFloat32{NumberFormat::Kind::floating, 8, 23, false, true};
+/// -8 to 8 in steps of 2^-12: pixel shaders before floats.
+inline constexpr NumberFormat kFixed16{NumberFormat::Kind::fixed, 16, 12};
+inline constexpr NumberFormat kFixed32{NumberFormat::Kind::fixed, 32, 16};
+/// A component of D3DFMT_V8U8, V16U16 and G16R16: -1 to 1 - 2^-7, -1 to 1 - 2^-15, and 0 to 1.
+inline constexpr NumberFormat kSigned8{NumberFormat::Kind::fixed, 8, 7};
+inline constexpr NumberFormat kSigned16{NumberFormat::Kind::fixed, 16, 15};
+inline constexpr NumberFormat kUnsigned16{NumberFormat::Kind::normalised, 16};
+
+/// Throws Error naming `parameter`: must be one of float16, float24, float32, fixed16, fixed32, V8U8, V16U16, G16R16.
+NumberFormat number_format_from_name(std::string_view name, const std::string& parameter);
+/// One of those names.
+std::string name_of(const NumberFormat& format);
+
+/// The largest number of the format.
+double largest(const NumberFormat& format);
+
+/// The nearest number of the format. Sets `beyond` where the value rounds to none of its range, or is NaN: fixed and
+/// normalised formats then give the nearest end (wrapped: what is left of it; NaN: 0), floating ones infinity or NaN.
+double nearest(const NumberFormat& format, double value, bool& beyond);
+inline double nearest(const NumberFormat& format, double value) {
+    bool beyond = false;
+    return nearest(format, value, beyond);
+}
+
+/// A number that is rounded to its format after every operation. Sums, products, quotients and roots of formats of up to
+/// 24 significant bits are correctly rounded: double holds more than twice as many, and two.
+template <NumberFormat kFormat>
+struct FormatNumber {
+    /// Was it, or a number that it is made of, beyond the range?
+    bool beyond = false;
+    double value = 0;
+
+    FormatNumber() = default;
+    FormatNumber(double exact)
+        : value(nearest(kFormat, exact, beyond)) {}  // NOLINT: a number is one, rounded
+
+    /// Of an exact result of `operands`.
+    template <class... Operands>
+    static FormatNumber made_of(double exact, const Operands&... operands) {
+        FormatNumber made(exact);
+        made.beyond = (made.beyond || ... || operands.beyond);
+        return made;
+    }
+
+    friend FormatNumber operator-(FormatNumber a) { return made_of(-a.value, a); }
+    friend FormatNumber operator+(FormatNumber a, FormatNumber b) { return made_of(a.value + b.value, a, b); }
+    friend FormatNumber operator-(FormatNumber a, FormatNumber b) { return made_of(a.value - b.value, a, b); }
+    friend FormatNumber operator*(FormatNumber a, FormatNumber b) { return made_of(a.value * b.value, a, b); }
+    friend FormatNumber operator/(FormatNumber a, FormatNumber b) { return made_of(a.value / b.value, a, b); }
+    friend FormatNumber square(FormatNumber a) { return a * a; }
+    friend FormatNumber sqrt(FormatNumber a) { return made_of(std::sqrt(a.value), a); }
+    friend FormatNumber root(FormatNumber a) { return sqrt(a); }
+    friend void sin_cos(FormatNumber a, FormatNumber& s, FormatNumber& c) {
+        s = made_of(std::sin(a.value), a);
+        c = made_of(std::cos(a.value), a);
+    }
+    friend FormatNumber atan2(FormatNumber b, FormatNumber a) {
+        return made_of(std::atan2(b.value, a.value), a, b);
+    }
+    friend FormatNumber exp(FormatNumber a) { return made_of(std::exp(a.value), a); }
+    friend FormatNumber log(FormatNumber a) { return made_of(std::log(a.value), a); }
+    friend FormatNumber asinh(FormatNumber a) { return made_of(std::asinh(a.value), a); }
+    friend FormatNumber min(FormatNumber a, FormatNumber b) { return b.value < a.value ? b : a; }
+    friend FormatNumber max(FormatNumber a, FormatNumber b) { return a.value < b.value ? b : a; }
+    friend bool is_zero(FormatNumber a) { return a.value == 0; }
+    friend bool is_negative(FormatNumber a) { return a.value < 0; }
+    /// A hair is 128 units of rounding.
+    friend FormatNumber without_hair(FormatNumber a) {
+        const bool hair = a.value < 0 && a.value > -std::ldexp(1.0, 6 - kFormat.fraction);
+        return hair ? made_of(0, a) : a;
+    }
+    friend FormatNumber scaled_sinh(FormatNumber a, FormatNumber& s) {
+        s = made_of(std::tanh(a.value), a);
+        return made_of(1 / std::cosh(a.value), a);
+    }
+    friend double enlarger(FormatNumber, FormatNumber) { return 1; }
+};
+
+/// body(FormatNumber<format>()) of a format in which hardware computes: float16, float24, fixed16, fixed32, and float32 in
+/// place of all others.
+template <class Body>
+decltype(auto) with_format(const NumberFormat& format, const Body& body) {
+    if (format == kFloat16) return body(FormatNumber<kFloat16>());
+    if (format == kFloat24) return body(FormatNumber<kFloat24>());
+    if (format == kFixed16) return body(FormatNumber<kFixed16>());
+    if (format == kFixed32) return body(FormatNumber<kFixed32>());
+    return body(FormatNumber<kFloat32>());
+}
+
+}  // namespace anamorph
