@@ -680,8 +680,8 @@ class Planner {
         double x[4], y[4], stored = 0;
         for (int i = 0; i < 4; ++i) {
             const double px = i & 1 ? box.x1 : box.x0, py = i & 2 ? box.y1 : box.y0;
-            const Point<double> f = m_map(px, py, local), l = (*m_linear)(px, py);
-            const double nx = static_cast<float>(f.x - l.x), ny = static_cast<float>(f.y - l.y);
+            const Point<double> l = (*m_linear)(px, py), n = residual_at(m_map, *m_linear, local, px, py);
+            const double nx = static_cast<float>(n.x), ny = static_cast<float>(n.y);
             stored = std::max(stored, std::fabs(nx) + std::fabs(ny));
             x[i] = l.x + nx;
             y[i] = l.y + ny;

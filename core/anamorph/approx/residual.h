@@ -21,9 +21,10 @@ struct LinearPart {
     double cx, cy;
     Point<double> origin, right, down;
 
-    Point<double> operator()(double x, double y) const {
-        return {origin.x + right.x * (x - cx) + down.x * (y - cy),
-                origin.y + right.y * (x - cx) + down.y * (y - cy)};
+    template <class T>
+    Point<T> operator()(const T& x, const T& y) const {
+        return {(x - cx) * right.x + origin.x + (y - cy) * down.x,
+                (x - cx) * right.y + origin.y + (y - cy) * down.y};
     }
 };
 
@@ -47,6 +48,14 @@ LinearPart linear_part(const Map& map, int piece) {
     part.down = {p.x.c[2], p.y.c[2]};
     return part;
 }
+
+/// The residual (4.4) at a target point, in source pixels: what the map, read around `local`, is beyond its linear part.
+template <class Map>
+Point<double> residual_at(const Map& map, const LinearPart& linear, const typename Map::Local& local,
+                          double x, double y) {
+    return map(x, y, local) - linear(x, y);
+}
+
 /// The minimax coefficients where the paper derives them: a level view of a cylinder.
 LinearPart linear_part(const Panorama& map, int piece);
 

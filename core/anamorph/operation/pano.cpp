@@ -6,6 +6,7 @@
 #include <functional>
 #include <map>
 
+#include "anamorph/machine/machine_text.h"
 #include "anamorph/operation/panorama_attributes.h"
 #include "anamorph/operation/rows.h"
 #include "anamorph/operation/solved.h"
@@ -94,7 +95,10 @@ ParameterTable make_table() {
         tol(),
         choice("pixels", "edges", {"edges", "centers"},
                "where the source's field of view ends: at the edges of its outer pixels or at their centers"),
-        scheme({{"auto"}, {"exact"}, {"blocks"}, {"residual"}, {"direct"}}),
+        scheme({{"auto"}, {"exact"}, {"blocks"}, {"residual"}, {"direct"}, {"hardware"}}),
+        text("machine",
+             "of scheme hardware: embm-2003, the bump mapping of Kim 2003, or what differs from it as JSON, "
+             "{\"size\": 64, \"texel\": \"V8U8\"}; by default embm-2003"),
         colorspace("color space to filter in; by default the source's own"),
         output(),
     };
@@ -148,6 +152,13 @@ LensModel lens_of(const ParameterValues& values, const std::string& name) {
     return values.given(name) ? LensModel::parse(values.text(name), name) : LensModel{};
 }
 
+/// Of scheme hardware. What is said of a machine is checked with the other schemes too.
+std::optional<BumpUnit> machine_of(const ParameterValues& values) {
+    const BumpUnit unit = values.given("machine") ? bump_unit_from_text(values.text("machine")) : BumpUnit{};
+    if (values.text("scheme") != "hardware") return {};
+    return unit;
+}
+
 }  // namespace
 
 ReprojectRequest read_reproject_request(const ParameterValues& values, const SourceFacts& facts) {
@@ -179,7 +190,8 @@ ReprojectRequest read_reproject_request(const ParameterValues& values, const Sou
     }
 
     ReprojectOptions options;
-    options.scheme = chosen<Scheme>(values, "scheme");
+    const std::optional<BumpUnit> machine = machine_of(values);
+    if (!machine) options.scheme = chosen<Scheme>(values, "scheme");
     options.tol = values.number("tol");
     options.filter = chosen<Filter>(values, "filter");
     options.wrap = chosen<Wrap>(values, "wrap");
@@ -189,7 +201,8 @@ ReprojectRequest read_reproject_request(const ParameterValues& values, const Sou
             {values.number("yaw"), values.number("pitch"), values.number("roll")},
             {values.number("srcyaw"), values.number("srcpitch"), values.number("srcroll")},
             options,
-            reason};
+            reason,
+            machine};
 }
 
 std::optional<Chart> half_size(const Chart& chart) {
@@ -201,6 +214,27 @@ std::optional<Chart> half_size(const Chart& chart) {
 }
 
 namespace {
+
+/// A panorama drawn by a bump unit.
+class BumpedPicture {
+  public:
+    BumpedPicture(const ReprojectRequest& request)
+        : m_plan(std::make_shared<BumpedPanorama>(request.map(), *request.machine)) {
+        m_picture.maps = {{m_plan, {{Border(request.source, request.options.wrap)}}}};
+        m_picture.filter = request.options.filter;
+        m_picture.output = request.options.output;
+    }
+    const Picture& picture() const { return m_picture; }
+
+    static Attributes saturated(const BumpedPicture& bumped, const ParallelFor& parallel_for) {
+        return {{"anamorph:saturated_pixels", double(bumped.m_plan->saturated_pixels(parallel_for))},
+                {"anamorph:saturated_texels", bumped.m_plan->saturated_texels()}};
+    }
+
+  private:
+    std::shared_ptr<const BumpedPanorama> m_plan;
+    Picture m_picture;
+};
 
 class Panos final : public Pictures {
   public:
@@ -220,7 +254,10 @@ class Panos final : public Pictures {
         picture.says.push_back({"anamorph:tol", request.options.tol});
         picture.says.push_back({"anamorph:from", std::string(name_of(request.source.projection())) + " (" +
                                                      request.source_reason + ")"});
-        picture.solve = [request] {
+        picture.solve = [request]() -> std::unique_ptr<const SolvedPicture> {
+            if (request.machine)
+                return std::make_unique<Solved<BumpedPicture>>(BumpedPicture(request),
+                                                               BumpedPicture::saturated);
             return std::make_unique<Solved<Reprojection>>(Reprojection(request.map(), request.options));
         };
         return picture;

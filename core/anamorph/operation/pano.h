@@ -6,6 +6,7 @@
 #include <string>
 #include <string_view>
 
+#include "anamorph/machine/bump_unit.h"
 #include "anamorph/operation/operation.h"
 #include "anamorph/render/reproject.h"
 
@@ -21,6 +22,8 @@ struct ReprojectRequest {
     ReprojectOptions options;
     /// Why the source is taken for what it is: "given", "assumed from the 2:1 shape" ...
     std::string source_reason;
+    /// Of scheme hardware: what draws it, in place of options.scheme and tol.
+    std::optional<BumpUnit> machine = {};
 
     Panorama map() const { return Panorama(source, target, orientation, held); }
 };

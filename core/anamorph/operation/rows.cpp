@@ -35,8 +35,9 @@ const std::vector<Word>& shared_schemes() {
         {"exact", "every pixel by the formula"},
         {"blocks", "polynomials of degree 2 to 4 on blocks"},
         {"residual", "linear maps and a table of what remains"},
-        {"direct",
-         "every pixel by the formula, in float where that holds tol, near the middle of its block"}};
+        {"direct", "every pixel by the formula, in float where that holds tol, near the middle of its block"},
+        {"hardware",
+         "as the number formats and the stages of a machine make it, with the error that comes out"}};
     return words;
 }
 const std::vector<Word>& shared_outputs() {

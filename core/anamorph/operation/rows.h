@@ -46,7 +46,7 @@ struct Word {
 Parameter filter();
 /// In the order of anamorph::Wrap. `automatic`: what that is here, "is black".
 Parameter wrap(const std::string& automatic);
-/// In the order of the operation's enumeration. The words auto, exact, blocks and residual mean the same
+/// In the order of the operation's enumeration. The words auto, exact, blocks, residual and hardware mean the same
 /// everywhere and need no meaning here.
 Parameter scheme(const std::vector<Word>& words);
 /// The words that all operations share, in the order of anamorph::Output, then the operation's own.

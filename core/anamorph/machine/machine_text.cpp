@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "anamorph/machine/machine_text.h"
+
+#include <cctype>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "anamorph/json_file.h"
+#include "anamorph/parameter.h"
+
+namespace anamorph {
+namespace {
+
+using text_file::Json;
+
+/// The members of an object. Errors name the parameter and the key.
+class MachineMembers {
+  public:
+    /// Throws Error unless `text` is `preset`, an object without members, or an object.
+    MachineMembers(std::string_view text, const std::string& preset) : m_json(Json::object()) {
+        if (text == preset) return;
+        if (!text_file::trimmed(text).starts_with('{'))
+            throw Error("machine", printable(text), "must be " + preset + " or an object of JSON, {...}");
+        m_json = text_file::parse_json(text, "machine");
+    }
+
+    void read(const NumberRow& row, int& value) {
+        if (const Json* json = member(row.name)) {
+            if (!json->is_number()) refuse(row.name, *json, row.range());
+            const double number = json->get<double>();
+            if (!row.holds(number)) refuse(row.name, *json, row.range());
+            value = static_cast<int>(number);
+        }
+    }
+    void read(const char* key, bool& value) {
+        if (const Json* json = member(key)) {
+            if (!json->is_boolean()) refuse(key, *json, "true or false");
+            value = json->get<bool>();
+        }
+    }
+    /// One of `formats`.
+    void read(const char* key, NumberFormat& value, const std::vector<NumberFormat>& formats) {
+        std::map<std::string, NumberFormat> words;
+        for (const NumberFormat& format : formats) words[name_of(format)] = format;
+        read(key, value, words);
+    }
+    template <class Value>
+    void read(const char* key, Value& value, const std::map<std::string, Value>& words) {
+        if (const Json* json = member(key)) {
+            const auto found = json->is_string() ? words.find(json->get<std::string>()) : words.end();
+            if (found == words.end()) {
+                std::string names;
+                for (const auto& [name, meaning] : words) names += (names.empty() ? "" : ", ") + name;
+                refuse(key, *json, "one of " + names);
+            }
+            value = found->second;
+        }
+    }
+    /// After all were read: throws Error where there are others.
+    void finish() const {
+        std::string names;
+        for (const std::string& key : m_known) names += (names.empty() ? "" : ", ") + key;
+        for (const auto& item : m_json.items())
+            if (std::find(m_known.begin(), m_known.end(), item.key()) == m_known.end())
+                throw Error("machine: \"" + text_file::excerpt(item.key()) +
+                            "\": no such key; the keys are " + names);
+    }
+
+  private:
+    const Json* member(const char* key) {
+        m_known.emplace_back(key);
+        const auto found = m_json.find(key);
+        return found == m_json.end() ? nullptr : &*found;
+    }
+    [[noreturn]] static void refuse(const std::string& key, const Json& value, const std::string& rule) {
+        throw Error("machine: " + key,
+                    text_file::excerpt(value.dump(-1, ' ', true, Json::error_handler_t::replace)),
+                    "must be " + rule);
+    }
+
+    Json m_json;
+    std::vector<std::string> m_known;
+};
+
+const std::vector<NumberFormat>& arithmetics() {
+    static const std::vector<NumberFormat> all = {kFloat16, kFloat24, kFloat32, kFixed16, kFixed32};
+    return all;
+}
+
+}  // namespace
+
+BumpUnit bump_unit_from_text(std::string_view text) {
+    BumpUnit unit;
+    MachineMembers members(text, kBumpPreset);
+    members.read(kBumpSizeRow, unit.size);
+    members.read("texel", unit.texel, {kSigned8, kSigned16, kFloat16, kFloat32});
+    members.read("scaled", unit.scaled);
+    members.read(kBumpWeightRow, unit.weight_bits);
+    members.read("edge", unit.edge, {{"clamp", BumpUnit::Edge::clamp}, {"border", BumpUnit::Edge::border}});
+    members.read("arithmetic", unit.arithmetic, arithmetics());
+    members.read(kBumpAddressRow, unit.address_bits);
+    members.read(kTextureSideRow, unit.texture_side);
+    members.finish();
+    return unit;
+}
+
+}  // namespace anamorph

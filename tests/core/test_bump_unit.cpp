@@ -1,0 +1,274 @@
+// SPDX-License-Identifier: Apache-2.0
+// The bump unit: the errors that Kim 2003, section 4.6, published, and how they depend on the bump map.
+#include "anamorph/machine/bump_unit.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <map>
+#include <numbers>
+
+#include "anamorph/error.h"
+#include "anamorph/machine/machine_text.h"
+#include "anamorph/operation/pano.h"
+
+namespace anamorph {
+namespace {
+
+constexpr int kScreen = 512;
+
+/// A cylinder of 360 degrees and 2 tan 45 degrees high, up to 3e-7 of that, seen level with 90 degrees.
+Panorama published_view() {
+    return Panorama(Chart(Projection::cylindrical, 355, 113),
+                    Chart(Projection::rectilinear, kScreen, kScreen, 90));
+}
+
+/// The same from the formulas of section 4.2, written out another way.
+Point<double> exact_coordinates(int i, int j) {
+    const double x = (2 * i + 1.0) / kScreen - 1, y = (2 * j + 1.0) / kScreen - 1;
+    const double radius = std::hypot(1.0, x);
+    return {0.5 + std::asin(x / radius) / (2 * std::numbers::pi), 0.5 + 0.5 * y / radius};
+}
+
+struct Errors {
+    double mean, max;
+};
+
+/// Distances (eq. 4.6) in texture coordinates, before or after they are read back.
+Errors errors_of(const BumpUnit& unit, bool read_back) {
+    const BumpStage stage(published_view(), 0, unit);
+    const ReadBack back;
+    double sum = 0, most = 0;
+    for (int j = 0; j < kScreen; ++j)
+        for (int i = 0; i < kScreen; ++i) {
+            const UnitCoordinates used = stage((i + 0.5) / kScreen, (j + 0.5) / kScreen);
+            const Point<double> exact = exact_coordinates(i, j), at = read_back ? back(used.at) : used.at;
+            const double error = std::hypot(at.x - exact.x, at.y - exact.y);
+            EXPECT_FALSE(used.beyond);
+            sum += error;
+            most = std::max(most, error);
+        }
+    return {sum / (kScreen * kScreen), most};
+}
+
+/// Section 4.6: 256 x 256, 16 bits, 90 degrees, 512 x 512, read back by G16R16: 8.66e-6 and 9.9e-4.
+TEST(BumpUnit, PublishedErrorsComeOut) {
+    const Errors bumped = errors_of(BumpUnit{}, true);
+    EXPECT_GE(bumped.mean, 5e-6);
+    EXPECT_LE(bumped.mean, 1.3e-5);
+    EXPECT_GE(bumped.max, 8e-4);
+    EXPECT_LE(bumped.max, 1.2e-3);
+    BumpUnit linear;
+    linear.size = 0;
+    const Errors without = errors_of(linear, true);
+    EXPECT_NEAR(without.mean, 0.023, 0.0005);
+    EXPECT_NEAR(without.max, 0.074, 0.001);
+}
+
+/// Where the published maximum comes from: it is that of reading back at the texture's upper and lower edge, half a texel
+/// of 256. Before, it is half of that, of the bump map's edge; with a border of one texel it is a hundredth of it.
+TEST(BumpUnit, ABorderOfOneTexelTakesTheMaximumAway) {
+    BumpUnit unit;
+    const Errors clamped = errors_of(unit, false);
+    unit.edge = BumpUnit::Edge::border;
+    const Errors bordered = errors_of(unit, false);
+    EXPECT_GT(errors_of(unit, true).max, 8e-4);
+    EXPECT_LT(clamped.max, 6e-4);
+    EXPECT_GT(clamped.max, 1e-4);
+    EXPECT_LT(bordered.max, clamped.max / 20);
+}
+
+/// Texels of float: the error is that of linear interpolation, which falls by four when the size doubles, and no more
+/// than h^2 / 8 (|f_ss| + |f_tt|) of the residuals' derivatives. Beyond 256 nothing of it is seen through the read-back.
+TEST(BumpUnit, BilinearErrorFallsWithTheSquareOfTheSize) {
+    BumpUnit unit;
+    unit.texel = kFloat32;
+    unit.weight_bits = 23;
+    unit.edge = BumpUnit::Edge::border;
+    double last = 0;
+    for (const int size : {34, 66, 130, 258}) {
+        unit.size = size;
+        const Errors errors = errors_of(unit, false);
+        // By x': theta'' = -x' / (pi (1 + x'^2)^2), at most .104; v'' = y' (2 x'^2 - 1) / (2 (1 + x'^2)^(5/2)), at most .5.
+        const double h = 2.0 / (size - 2);
+        EXPECT_LE(errors.max, h * h / 8 * std::hypot(0.104, 0.5) + 1e-6) << size;
+        if (last > 0) EXPECT_NEAR(last / errors.mean, 4, 0.5) << size;
+        last = errors.mean;
+    }
+    BumpUnit small, large;
+    large.size = 1024;
+    EXPECT_LT(errors_of(small, true).mean, 1.25 * errors_of(large, true).mean);
+    small.size = 32;
+    EXPECT_GT(errors_of(small, true).mean, 4 * errors_of(large, true).mean);
+}
+
+/// Eight bits serve when they are scaled (4.4.3), and are steps of 2^-7 of texture coordinates when they are not.
+TEST(BumpUnit, FewBitsNeedScaling) {
+    BumpUnit unit;
+    unit.edge = BumpUnit::Edge::border;
+    const double sixteen = errors_of(unit, false).mean;
+    unit.texel = kSigned8;
+    const double scaled = errors_of(unit, false).mean;
+    unit.scaled = false;
+    const double plain = errors_of(unit, false).mean;
+    EXPECT_GT(plain, 2e-4);
+    EXPECT_LT(plain, std::ldexp(1, -7));
+    EXPECT_LT(scaled, plain / 4);
+    EXPECT_LT(sixteen, scaled / 4);
+}
+
+TEST(BumpUnit, PrecisionOfArithmeticIsSeen) {
+    BumpUnit unit;
+    unit.edge = BumpUnit::Edge::border;
+    double last = 0;
+    for (const NumberFormat& format : {kFloat32, kFloat24, kFloat16}) {
+        unit.arithmetic = format;
+        const double mean = errors_of(unit, false).mean;
+        EXPECT_GT(mean, last) << name_of(format);
+        last = mean;
+    }
+    EXPECT_GT(last, 5e-5);
+    EXPECT_LT(last, std::ldexp(1, -10));
+}
+
+/// Every pixel's distance from the exact point is within the bound of its block.
+TEST(BumpUnit, BoundsHoldAndThePictureSaysWhatWasReached) {
+    const Panorama map(Chart(Projection::equirectangular, 400, 200),
+                       Chart(Projection::rectilinear, 100, 80, 70), {170, 20, 5});
+    BumpUnit unit;
+    unit.size = 16;
+    const BumpedPanorama bumped(map, unit);
+    const Reached reached = bumped.reached(serial_for);
+    EXPECT_EQ(reached.exact_fraction, 0);
+    EXPECT_GT(reached.max_error, 0.001);
+    EXPECT_LT(reached.max_error, 3);
+    double most = 0;
+    for (const Block& block : bumped.blocks(0)) {
+        std::vector<double> x(80), y(80);
+        std::vector<std::int32_t> piece(80);
+        for (int row = 0; row < block.box.height(); ++row) {
+            bumped.exact_rows(block, row, row + 1, {x.data(), y.data(), piece.data(), 80});
+            for (int i = 0; i < block.box.width(); ++i) {
+                Point<long double> exact{};
+                int source_piece = 0;
+                ASSERT_TRUE(map.exact<long double>(block.box.x0 + i + 0.5, block.box.y0 + row + 0.5, 0, exact,
+                                                   source_piece));
+                // The view is across the seam.
+                const auto k = static_cast<std::size_t>(i);
+                const double across = std::remainder(x[k] - double(exact.x), 400.0);
+                const double off = std::hypot(across, y[k] - double(exact.y));
+                EXPECT_LE(off, block.bound);
+                most = std::max(most, off);
+            }
+        }
+    }
+    EXPECT_NEAR(most, reached.max_error, 1e-6);
+}
+
+TEST(BumpUnit, SaturationIsCounted) {
+    // Beside the pole the linear part is steep, and does not last: residuals are many turns.
+    const Panorama map(Chart(Projection::equirectangular, 400, 200),
+                       Chart(Projection::rectilinear, 64, 64, 90), {0, 89.99, 0});
+    BumpUnit unit;
+    unit.scaled = false;
+    const BumpedPanorama sixteen(map, unit);
+    EXPECT_EQ(sixteen.saturated_pixels(serial_for), 0);
+    unit.arithmetic = kFixed16;
+    const BumpedPanorama fixed(map, unit);
+    EXPECT_GT(fixed.saturated_pixels(serial_for), 1000);
+    EXPECT_EQ(BumpedPanorama(published_view(), unit).saturated_pixels(serial_for), 0);
+}
+
+/// The attributes of a picture that the operation pano makes of a source of 400 x 200.
+std::map<std::string, double> reached_by(const std::vector<Assignment>& more) {
+    struct NoFiles final : SideFileReader {
+        std::string text(const std::string& name) const override { throw Error("there is no file " + name); }
+        std::unique_ptr<SideImage> image(const std::string&, const std::string& name) const override {
+            throw Error("there is no image " + name);
+        }
+    };
+    const Operation& pano = *find_operation("pano");
+    ParameterValues values(*pano.parameters);
+    values.assign({{"from", "equirectangular"}, {"size", "64x48"}, {"fov", "80"}, {"scheme", "hardware"}});
+    values.assign(more);
+    SourceImage source;
+    source.facts.width = 400;
+    source.facts.height = 200;
+    const NoFiles files;
+    std::map<std::string, double> numbers;
+    for (const Attribute& a :
+         pano.read({values, {source}, {}, files})->picture(0, 0)->solve()->reached(serial_for))
+        numbers[a.name] =
+            std::holds_alternative<int>(a.value) ? std::get<int>(a.value) : std::get<double>(a.value);
+    return numbers;
+}
+
+TEST(BumpUnit, IsASchemeOfPanoramas) {
+    auto standard = reached_by({}), preset = reached_by({{"machine", "embm-2003"}});
+    EXPECT_EQ(standard, preset);
+    EXPECT_GT(standard["anamorph:max_error"], 1e-3);
+    EXPECT_LT(standard["anamorph:max_error"], 0.1);
+    EXPECT_EQ(standard["anamorph:exact_fraction"], 0);
+    EXPECT_EQ(standard["anamorph:saturated_pixels"], 0);
+    EXPECT_GT(reached_by({{"machine", "{\"size\": 0}"}})["anamorph:max_error"], 5);
+    auto looking_up = reached_by({{"pitch", "89.99"}, {"machine", "{\"arithmetic\": \"fixed16\"}"}});
+    EXPECT_GT(looking_up["anamorph:saturated_pixels"], 100);
+    EXPECT_GT(reached_by({{"scheme", "exact"}, {"machine", "{\"size\": 0}"}})["anamorph:exact_fraction"],
+              0.99);
+    EXPECT_THROW(reached_by({{"scheme", "exact"}, {"machine", "new"}}), Error);
+}
+
+TEST(BumpUnit, RefusesWhatItCannotRepresent) {
+    const auto message = [](const Chart& source, const BumpUnit& unit) -> std::string {
+        try {
+            const BumpedPanorama bumped(Panorama(source, Chart(Projection::rectilinear, 8, 8, 90)), unit);
+        } catch (const Error& e) {
+            return e.what();
+        }
+        return "";
+    };
+    BumpUnit unit;
+    unit.texture_side = 256;
+    EXPECT_EQ(message(Chart(Projection::equirectangular, 512, 256), unit),
+              "machine: a source of 512x256 does not fit its textures: must be at most 256 either way");
+    EXPECT_EQ(message(Chart(Projection::cubemap, 64, 384), unit),
+              "machine: the source must be one image and no cube map; its projection is cubemap");
+}
+
+TEST(MachineText, SaysWhatIsWrong) {
+    const auto message = [](const char* text) -> std::string {
+        try {
+            bump_unit_from_text(text);
+        } catch (const Error& e) {
+            return e.what();
+        }
+        return "";
+    };
+    EXPECT_EQ(message("embm-2003"), "");
+    EXPECT_EQ(message("{}"), "");
+    EXPECT_EQ(message("embm"), "machine=embm: must be embm-2003 or an object of JSON, {...}");
+    EXPECT_EQ(message(""), "machine=: must be embm-2003 or an object of JSON, {...}");
+    EXPECT_EQ(message("{\"size\": 4097}"), "machine: size=4097: must be an integer from 0 to 4096");
+    EXPECT_EQ(message("{\"size\": 1.5}"), "machine: size=1.5: must be an integer from 0 to 4096");
+    EXPECT_EQ(message("{\"size\": \"a\"}"), "machine: size=\"a\": must be an integer from 0 to 4096");
+    EXPECT_EQ(message("{\"texel\": \"R8\"}"),
+              "machine: texel=\"R8\": must be one of V16U16, V8U8, float16, float32");
+    EXPECT_EQ(message("{\"scaled\": 1}"), "machine: scaled=1: must be true or false");
+    EXPECT_NE(message("{\"sise\": 1}").find("\"sise\": no such key; the keys are size, texel"),
+              std::string::npos);
+    EXPECT_NE(message("{").find("is no JSON"), std::string::npos);
+    const BumpUnit unit = bump_unit_from_text(
+        R"({"size": 64, "texel": "V8U8", "scaled": false, "weight_bits": 5, "edge": "border",
+            "arithmetic": "fixed16", "address_bits": 4, "texture_side": 1024})");
+    EXPECT_EQ(unit.size, 64);
+    EXPECT_EQ(unit.texel, kSigned8);
+    EXPECT_FALSE(unit.scaled);
+    EXPECT_EQ(unit.weight_bits, 5);
+    EXPECT_EQ(unit.edge, BumpUnit::Edge::border);
+    EXPECT_EQ(unit.arithmetic, kFixed16);
+    EXPECT_EQ(unit.address_bits, 4);
+    EXPECT_EQ(unit.texture_side, 1024);
+}
+
+}  // namespace
+}  // namespace anamorph
