@@ -15,6 +15,7 @@ cp plate.exr taken.exr
 
 grep '^    oiiotool ' "$readme" >one_liners.sh
 [ "$(wc -l <one_liners.sh)" -eq 20 ]
+[ "$(wc -l <one_liners.sh)" -eq 21 ]
 bash -ex one_liners.sh
 for picture in view.jpg:480x360 planet.jpg:400x400 fisheye.jpg:400x400 cross.jpg:640x480 error.jpg:480x360 \
     warp.jpg:480x480 morph.jpg:480x480 lines.jpg:480x480 turn.jpg:480x480; do
@@ -27,6 +28,8 @@ iinfo outline.png | tr -d ' ' | grep ":1000x1000,4channel"
 iinfo benzene.png | tr -d ' ' | grep ":1000x1000,4channel"
 [ "$(ls walk.*.png | wc -l)" -eq 49 ]
 [ -s both.jpg ]
+iinfo hardware.exr | tr -d ' ' | grep ":480x360,"
+[ -s shaded.png ]
 [ -s straight.jpg ]
 # The distortion taken off and put on again, but for what is filtered twice; by way of a larger picture.
 iinfo flat.exr | grep -v 2048

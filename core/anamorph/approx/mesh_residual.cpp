@@ -81,6 +81,13 @@ double ResidualPatch::float_rounding(const Bicubic& block) const {
     return kUnit * (kTermRoundings * std::max(triangles[0].sum, triangles[1].sum) + 2 * offset);
 }
 
+std::array<double, ResidualPatch::kProducts> residual_products(double s, double t) {
+    const auto a = hermite_basis(s), b = hermite_basis(t);
+    std::array<double, ResidualPatch::kProducts> products;
+    for (std::size_t k = 0; k < products.size(); ++k) products[k] = a[kElements[k][0]] * b[kElements[k][1]];
+    return products;
+}
+
 std::shared_ptr<const ResidualTables> ResidualTables::shared() {
     static const std::shared_ptr<const ResidualTables> tables(new ResidualTables);
     return tables;
@@ -90,9 +97,9 @@ ResidualTables::ResidualTables() : m_products(std::size_t{kCells + 1} * (kCells 
     float* to = m_products.data();
     for (int t = 0; t <= kCells; ++t)
         for (int s = 0; s <= kCells; ++s, to += 16) {
-            const auto a = hermite_basis(double(s) / kCells), b = hermite_basis(double(t) / kCells);
+            const auto products = residual_products(double(s) / kCells, double(t) / kCells);
             for (std::size_t k = 0; k < ResidualPatch::kProducts; ++k)
-                to[k] = static_cast<float>(a[kElements[k][0]] * b[kElements[k][1]]);
+                to[k] = static_cast<float>(products[k]);
         }
 }
 

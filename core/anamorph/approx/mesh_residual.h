@@ -3,6 +3,7 @@
 // which is the sum of thirteen products of Hermite basis functions, read from tables.
 #pragma once
 
+#include <array>
 #include <memory>
 #include <vector>
 
@@ -30,7 +31,10 @@ struct ResidualPatch {
     double float_rounding(const Bicubic& block) const;
 };
 
-/// The fourteen products a_i(s) a_j(t) on a grid of kCells x kCells cells.
+/// The fourteen products a_i(s) a_j(t) of basis functions (eq. 5.3), in the order of ResidualPatch.
+std::array<double, ResidualPatch::kProducts> residual_products(double s, double t);
+
+/// These products on a grid of kCells x kCells cells.
 class ResidualTables {
   public:
     static constexpr int kCells = 256;

@@ -105,4 +105,17 @@ BumpUnit bump_unit_from_text(std::string_view text) {
     return unit;
 }
 
+ShaderUnit shader_unit_from_text(std::string_view text) {
+    ShaderUnit unit;
+    MachineMembers members(text, kShaderPreset);
+    members.read("arithmetic", unit.arithmetic, arithmetics());
+    members.read("texel", unit.texel, {kSigned8, kSigned16, kFloat16, kFloat32});
+    members.read(kTableSizeRow, unit.table_size);
+    members.read(kTableWeightRow, unit.weight_bits);
+    members.read(kShaderAddressRow, unit.address_bits);
+    members.read(kShaderTextureRow, unit.texture_side);
+    members.finish();
+    return unit;
+}
+
 }  // namespace anamorph

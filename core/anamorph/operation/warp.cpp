@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "anamorph/operation/warp.h"
 
+#include "anamorph/machine/machine_text.h"
 #include "anamorph/map/mesh_file.h"
 #include "anamorph/operation/read_once.h"
 #include "anamorph/operation/rows.h"
@@ -39,10 +40,25 @@ ParameterTable make_table() {
         filter(),
         wrap("is black"),
         tol(),
-        scheme({{"auto"}, {"exact"}, {"hermite", "the mesh's bicubic patches in float"}, {"residual"}}),
+        scheme({{"auto"},
+                {"exact"},
+                {"hermite", "the mesh's bicubic patches in float"},
+                {"residual"},
+                {"hardware"}}),
+        text("machine",
+             "of scheme hardware: ps20, the pixel shader of Kim 2003, or what differs from it as JSON, "
+             "{\"table_size\": 32, \"arithmetic\": \"fixed16\"}; by default ps20"),
         colorspace("color space to filter in; by default the source's own"),
         output({{"folds", "not 0 where the warp folds"}}),
     };
+}
+
+/// Of scheme hardware. What is said of a machine is checked with the other schemes too.
+std::optional<ShaderUnit> machine_of(const ParameterValues& values) {
+    const ShaderUnit unit =
+        values.given("machine") ? shader_unit_from_text(values.text("machine")) : ShaderUnit{};
+    if (values.text("scheme") != "hardware") return {};
+    return unit;
 }
 
 /// Divides a position in an image by its size.
@@ -63,7 +79,8 @@ WarpRequest read_warp_request(const ParameterValues& values, const Size& source)
     request.source = source;
     request.target = warp_target(values, source);
     MeshWarpOptions& options = request.options;
-    options.scheme = chosen<WarpScheme>(values, "scheme");
+    request.machine = machine_of(values);
+    if (!request.machine) options.scheme = chosen<WarpScheme>(values, "scheme");
     options.tol = values.number("tol");
     options.filter = chosen<Filter>(values, "filter");
     options.wrap = chosen<Wrap>(values, "wrap");
@@ -160,6 +177,36 @@ Attributes folded(const MeshWarp& warp, const ParallelFor& parallel_for) {
     return {{"anamorph:folded_fraction", warp.folded_fraction(parallel_for)}};
 }
 
+/// A warp drawn by a pixel-shader unit.
+class ShadedPicture {
+  public:
+    ShadedPicture(const WarpMap& map, const WarpRequest& request) {
+        const ControlMesh* mesh = std::get_if<ControlMesh>(&map.shape);
+        if (!mesh || mesh->direction == Direction::push)
+            throw Error("machine: " + std::string(kShaderPreset) +
+                        " draws meshes that pull, and no other warps");
+        const MeshWarpOptions& options = request.options;
+        check_tol(options.tol);
+        m_warp = std::make_shared<ShadedWarp>(
+            Mesh(*mesh, request.target, request.source, options.amount, map.name), *request.machine);
+        const Chart flat(Projection::rectilinear, request.source.width, request.source.height);
+        m_picture.maps = {{m_warp, {{Border(flat, options.wrap)}}}};
+        m_picture.filter = options.filter;
+        m_picture.output = options.output;
+        if (options.folds)
+            m_picture.value = [p = m_warp.get()](double x, double y) { return p->exact_plan().folds(x, y); };
+    }
+    const Picture& picture() const { return m_picture; }
+
+    static Attributes saturated(const ShadedPicture& shaded, const ParallelFor& parallel_for) {
+        return {{"anamorph:saturated_pixels", double(shaded.m_warp->saturated_pixels(parallel_for))}};
+    }
+
+  private:
+    std::shared_ptr<const ShadedWarp> m_warp;
+    Picture m_picture;
+};
+
 class Warps final : public Pictures {
   public:
     Warps(const WarpRequest& request, std::shared_ptr<const WarpMap> map)
@@ -175,11 +222,16 @@ class Warps final : public Pictures {
         picture.pixels = request.options.folds ? PixelKind::value : pixels_of(request.options.output);
         picture.says = {{"anamorph:tol", request.options.tol}};
         // Positions in pixels are pixels of the finest level.
-        picture.solve = [request, level, map = m_map, whole = m_request] {
+        picture.solve = [request, level, map = m_map,
+                         whole = m_request]() -> std::unique_ptr<const SolvedPicture> {
+            const WarpMap& given = *map;
+            const WarpMap here = level > 0 ? in_fractions(given, whole.source, whole.target) : given;
+            if (request.machine)
+                return std::make_unique<Solved<ShadedPicture>>(ShadedPicture(here, request),
+                                                               ShadedPicture::saturated);
             return std::make_unique<Solved<MeshWarp>>(
-                MeshWarp(level > 0 ? in_fractions(*map, whole.source, whole.target) : *map,
-                         whole.source.width, whole.source.height, request.target.width, request.target.height,
-                         request.options),
+                MeshWarp(here, whole.source.width, whole.source.height, request.target.width,
+                         request.target.height, request.options),
                 folded);
         };
         return picture;

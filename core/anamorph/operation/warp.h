@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "anamorph/geometry/size.h"
+#include "anamorph/machine/shaded_warp.h"
 #include "anamorph/operation/operation.h"
 #include "anamorph/render/mesh_warp.h"
 
@@ -18,6 +19,8 @@ struct WarpRequest {
     MeshWarpOptions options;
     int step = 1;                        ///< of an ST-map: every step-th pixel is a vertex
     std::optional<Direction> direction;  ///< unless as the mesh says
+    /// Of scheme hardware: what draws it, in place of options.scheme and tol.
+    std::optional<ShaderUnit> machine = {};
 };
 
 /// Reads a table's values. Without `size` the picture has the source's; with one number, the source's shape.

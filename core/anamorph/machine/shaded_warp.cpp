@@ -1,0 +1,123 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "anamorph/machine/shaded_warp.h"
+
+#include <algorithm>
+
+#include "anamorph/approx/mesh_residual.h"
+#include "anamorph/machine/shader_run.h"
+
+namespace anamorph {
+
+const char* const kHermiteShader = R"(ps_2_0
+dcl t0.xy                ; linear texture coordinates
+dcl t1.xy                ; where in the cell
+dcl_2d s0                ; the picture
+dcl_2d s1                ; products of basis functions
+dcl_2d s2
+dcl_2d s3
+dcl_2d s4
+texld r1, t1, s1
+texld r2, t1, s2
+texld r3, t1, s3
+texld r4, t1, s4
+dp4 r5.x, r1, c0         ; the perturbation of u, in four parts
+dp4 r6.x, r2, c1
+dp4 r7.x, r3, c2
+dp4 r8.x, r4, c3
+dp4 r5.y, r1, c4         ; of v
+dp4 r6.y, r2, c5
+dp4 r7.y, r3, c6
+dp4 r8.y, r4, c7
+add r5.xy, r5, r6
+add r7.xy, r7, r8
+add r5.xy, r5, r7
+add r5.xy, r5, t0
+texld r0, r5, s0
+mov oC0, r0
+)";
+
+namespace {
+
+/// The products four by four; texels stand from edge to edge of the cell.
+std::vector<MachineTexture<4>> product_textures(const ShaderUnit& unit) {
+    constexpr std::size_t kTextures = 4;
+    std::vector<std::vector<MachineTexture<4>::Texel>> texels(kTextures);
+    for (int j = 0; j < unit.table_size; ++j)
+        for (int i = 0; i < unit.table_size; ++i) {
+            const double last = unit.table_size - 1;
+            const auto products = residual_products(i / last, j / last);
+            for (std::size_t k = 0; k < kTextures; ++k) {
+                MachineTexture<4>::Texel& texel = texels[k].emplace_back();
+                for (std::size_t c = 0; c < 4; ++c)
+                    texel[c] = 4 * k + c < products.size() ? nearest(unit.texel, products[4 * k + c]) : 0;
+            }
+        }
+    std::vector<MachineTexture<4>> all;
+    for (auto& t : texels) all.emplace_back(unit.table_size, unit.weight_bits, std::move(t));
+    return all;
+}
+
+const Mesh& checked(const Mesh& mesh, const ShaderUnit& unit) {
+    check_texture_side(mesh.to(), unit.texture_side);
+    return mesh;
+}
+
+}  // namespace
+
+ShadedWarp::ShadedWarp(const Mesh& mesh, const ShaderUnit& unit)
+    : ShadedWarp(std::make_shared<MeshPlan>(checked(mesh, unit), WarpScheme::exact, 0), unit) {}
+
+ShadedWarp::ShadedWarp(std::shared_ptr<const MeshPlan> plan, const ShaderUnit& unit)
+    : MachineMap(plan, {{0, 0, plan->width(), plan->height()}}, plan->mesh().to(), HUGE_VAL,
+                 unit.address_bits),
+      m_plan(std::move(plan)),
+      m_unit(unit),
+      m_program(assemble_shader(kHermiteShader, "hermite")),
+      m_products(product_textures(unit)) {}
+
+UnitCoordinates ShadedWarp::coordinates(int x, int y, int) const {
+    return with_format(m_unit.arithmetic,
+                       [&](auto number) { return run<decltype(number)>(x + 0.5, y + 0.5); });
+}
+
+/// Draws one pixel, and returns where the program reads the picture.
+template <class T>
+UnitCoordinates ShadedWarp::run(double x, double y) const {
+    const Mesh& mesh = m_plan->mesh();
+    const Patch patch = mesh.patch(mesh.cell_at(x, y));
+    const ResidualPatch residual(patch);
+    const double s = (x - patch.x0) / (patch.x1 - patch.x0), t = (y - patch.y0) / (patch.y1 - patch.y0);
+    const ResidualPatch::Triangle& plane = residual.triangles[s + t <= 1 ? 0 : 1];
+    const double width = mesh.to().width, height = mesh.to().height, last = m_unit.table_size - 1;
+    ShaderInputs<T> inputs(m_program);
+    inputs.coordinates[0] = {
+        T((x * mesh.scale().x + plane.origin.x + plane.right.x * s + plane.down.x * t) / width),
+        T((y * mesh.scale().y + plane.origin.y + plane.right.y * s + plane.down.y * t) / height), T(), T()};
+    inputs.coordinates[1] = {T((s * last + 0.5) / (last + 1)), T((t * last + 0.5) / (last + 1)), T(), T()};
+    for (std::size_t k = 0; k < 16; ++k) {
+        inputs.constants[k / 4][k % 4] = T(double{plane.x[k]} / width);
+        inputs.constants[4 + k / 4][k % 4] = T(double{plane.y[k]} / height);
+    }
+    UnitCoordinates found{};
+    ShaderMachine<T> machine(m_program, inputs);
+    machine.run([&](int number, const T& u, const T& v) {
+        if (number == 0) {
+            found = {{u.value, v.value}, u.beyond || v.beyond};
+            return ShaderVector<T>{};
+        }
+        const double size = m_unit.table_size;
+        return m_products[static_cast<std::size_t>(number - 1)].template read<T>(u.value * size,
+                                                                                 v.value * size);
+    });
+    return found;
+}
+
+double ShadedWarp::rounding(const Box& box, int) const {
+    double most = 0;
+    for (const std::int64_t region : m_plan->regions_in(box))
+        for (const Block& block : m_plan->blocks(region))
+            if (!intersection(block.box, box).empty()) most = std::max(most, block.bound);
+    return most;
+}
+
+}  // namespace anamorph

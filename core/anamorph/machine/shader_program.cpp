@@ -1,0 +1,403 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "anamorph/machine/shader_program.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <set>
+
+#include "anamorph/parameter.h"
+#include "anamorph/text_file.h"
+
+namespace anamorph {
+namespace {
+
+struct OpcodeFacts {
+    const char* name;
+    ShaderOpcode opcode;
+    std::size_t sources;
+};
+constexpr OpcodeFacts kOpcodes[] = {
+    {"texld", ShaderOpcode::texld, 2}, {"mov", ShaderOpcode::mov, 1}, {"add", ShaderOpcode::add, 2},
+    {"mul", ShaderOpcode::mul, 2},     {"mad", ShaderOpcode::mad, 3}, {"dp3", ShaderOpcode::dp3, 2},
+    {"dp4", ShaderOpcode::dp4, 2},     {"rcp", ShaderOpcode::rcp, 1}, {"rsq", ShaderOpcode::rsq, 1},
+    {"min", ShaderOpcode::min, 2},     {"max", ShaderOpcode::max, 2}, {"cmp", ShaderOpcode::cmp, 3}};
+
+const OpcodeFacts& facts_of(ShaderOpcode opcode) {
+    return *std::find_if(std::begin(kOpcodes), std::end(kOpcodes),
+                         [&](const OpcodeFacts& f) { return f.opcode == opcode; });
+}
+
+struct BankFacts {
+    const char* name;
+    ShaderBank bank;
+    int count;
+};
+constexpr BankFacts kBanks[] = {{"r", ShaderBank::temporary, ShaderProgram::kTemporaries},
+                                {"c", ShaderBank::constant, ShaderProgram::kConstants},
+                                {"t", ShaderBank::coordinate, ShaderProgram::kCoordinates},
+                                {"v", ShaderBank::color, ShaderProgram::kColors},
+                                {"s", ShaderBank::sampler, ShaderProgram::kSamplers},
+                                {"oC", ShaderBank::output, ShaderProgram::kOutputs}};
+
+constexpr std::size_t kBankCount = std::size(kBanks);
+constexpr std::string_view kSwizzles[] = {"xyzw", "yzxw", "zxyw", "wzyx"};
+
+std::string quoted(std::string_view text) {
+    return "\"" + printable(text) + "\"";
+}
+
+[[noreturn]] void refuse(std::string_view word, const std::string& rule) {
+    throw Error(quoted(word) + ": " + rule);
+}
+
+/// "xw" of "ra"; none where there is another letter.
+std::optional<std::string> in_xyzw(std::string_view letters) {
+    std::string all;
+    for (const char letter : letters) {
+        const std::size_t at = std::string_view("xyzwrgba").find(letter);
+        if (at == std::string_view::npos) return {};
+        all += "xyzw"[at % 4];
+    }
+    return all;
+}
+
+std::string register_name(ShaderBank bank, int number) {
+    return kBanks[static_cast<std::size_t>(bank)].name + std::to_string(number);
+}
+
+/// ".xy", or nothing for all four.
+std::string mask_text(std::uint8_t mask) {
+    if (mask == 15) return "";
+    std::string text = ".";
+    for (std::size_t c = 0; c < 4; ++c)
+        if (mask >> c & 1) text += "xyzw"[c];
+    return text;
+}
+
+/// r5.xy in its parts.
+struct RegisterText {
+    ShaderBank bank;
+    int number;
+    std::string components;  ///< in x, y, z, w; empty where there are none
+};
+
+RegisterText parse_register(std::string_view word) {
+    const std::size_t point = word.find('.');
+    const std::string_view name = word.substr(0, point);
+    for (const BankFacts& bank : kBanks) {
+        if (!name.starts_with(bank.name)) continue;
+        const std::string_view digits = name.substr(std::string_view(bank.name).size());
+        if (digits.empty() || digits.size() > 2 ||
+            digits.find_first_not_of("0123456789") != std::string_view::npos)
+            continue;
+        const int number = std::stoi(std::string(digits));
+        if (number >= bank.count)
+            refuse(word, "must be " + std::string(bank.name) + "0 to " + bank.name +
+                             std::to_string(bank.count - 1));
+        if (point == std::string_view::npos) return {bank.bank, number, ""};
+        const auto components = in_xyzw(word.substr(point + 1));
+        if (!components || components->empty() || components->size() > 4)
+            refuse(word, "must have x, y, z, w or r, g, b, a behind the point");
+        return {bank.bank, number, *components};
+    }
+    refuse(word, "no such register; there are r, c, t, v, s and oC with a number");
+}
+
+std::uint8_t mask_of(std::string_view word, const std::string& components) {
+    if (components.empty()) return 15;
+    std::uint8_t mask = 0;
+    int last = -1;
+    for (const char letter : components) {
+        const int at = static_cast<int>(std::string_view("xyzw").find(letter));
+        if (at <= last) refuse(word, "components of a mask must be in the order x, y, z, w");
+        mask = static_cast<std::uint8_t>(mask | 1 << at);
+        last = at;
+    }
+    return mask;
+}
+
+std::array<std::uint8_t, 4> swizzle_of(std::string_view word, const std::string& components) {
+    const std::string full = components.size() == 1 ? std::string(4, components[0])
+                             : components.empty()   ? "xyzw"
+                                                    : components;
+    if (components.size() > 1 &&
+        std::find(std::begin(kSwizzles), std::end(kSwizzles), full) == std::end(kSwizzles))
+        refuse(word, "a swizzle must be one component, or xyzw, yzxw, zxyw or wzyx");
+    std::array<std::uint8_t, 4> swizzle{};
+    for (std::size_t i = 0; i < 4; ++i)
+        swizzle[i] = static_cast<std::uint8_t>(std::string_view("xyzw").find(full[i]));
+    return swizzle;
+}
+
+/// Which components of its sources an instruction reads, before swizzles, for the components that it writes.
+std::uint8_t components_read(const ShaderInstruction& i) {
+    switch (i.opcode) {
+        case ShaderOpcode::texld:
+            return 3;
+        case ShaderOpcode::dp3:
+            return 7;
+        case ShaderOpcode::dp4:
+            return 15;
+        default:
+            return i.mask;
+    }
+}
+
+/// Reads a text line by line.
+class Assembler {
+  public:
+    void line(std::string_view text) {
+        text = text_file::trimmed(text.substr(0, std::min(text.find(';'), text.find("//"))));
+        if (text.empty()) return;
+        const std::size_t end = text.find_first_of(" \t");
+        const std::string_view word = text.substr(0, end);
+        std::vector<std::string_view> operands;
+        if (end != std::string_view::npos)
+            operands = text_file::fields_of(text_file::trimmed(text.substr(end)));
+        if (!m_versioned) {
+            if (text != "ps_2_0" && text != "ps.2.0") refuse(text, "the first line must be ps_2_0");
+            m_versioned = true;
+        } else if (word == "dcl" || word.starts_with("dcl_"))
+            declare(word, operands);
+        else if (word == "def")
+            define(operands);
+        else
+            instruct(word, operands);
+    }
+
+    ShaderProgram finish() {
+        if (!m_versioned) throw Error("is empty: the first line must be ps_2_0");
+        if (written(ShaderBank::output, 0) != 15)
+            throw Error("no instruction writes all of oC0: the program must");
+        return std::move(m_program);
+    }
+
+  private:
+    void expect(const std::vector<std::string_view>& operands, std::size_t count,
+                std::string_view word) const {
+        if (operands.size() != count)
+            refuse(word, "must have " + std::to_string(count) + " operands, and has " +
+                             std::to_string(operands.size()));
+    }
+    void expect_ahead(std::string_view word) const {
+        if (!m_program.instructions.empty()) refuse(word, "must stand before the first instruction");
+    }
+
+    void declare(std::string_view word, const std::vector<std::string_view>& operands) {
+        expect_ahead(word);
+        expect(operands, 1, word);
+        const RegisterText r = parse_register(operands[0]);
+        if (word == "dcl_2d") {
+            if (r.bank != ShaderBank::sampler || !r.components.empty())
+                refuse(operands[0], "must be s0 to s15");
+            if (m_program.samplers >> r.number & 1) refuse(operands[0], "is declared twice");
+            m_program.samplers |= 1u << r.number;
+            return;
+        }
+        if (word != "dcl" && word != "dcl_pp")
+            refuse(word, "must be dcl or dcl_2d: there are no other textures");
+        if (r.bank != ShaderBank::coordinate && r.bank != ShaderBank::color)
+            refuse(operands[0], "must be t0 to t7, v0 or v1");
+        std::uint8_t& mask = written(r.bank, r.number);
+        if (mask != 0) refuse(operands[0], "is declared twice");
+        mask = mask_of(operands[0], r.components);
+        const auto number = static_cast<std::size_t>(r.number);
+        (r.bank == ShaderBank::coordinate ? m_program.coordinates[number] : m_program.colors[number]) = mask;
+    }
+
+    void define(const std::vector<std::string_view>& operands) {
+        expect_ahead("def");
+        expect(operands, 5, "def");
+        const RegisterText r = parse_register(operands[0]);
+        if (r.bank != ShaderBank::constant || !r.components.empty()) refuse(operands[0], "must be c0 to c31");
+        if (!m_defined.insert(r.number).second) refuse(operands[0], "is defined twice");
+        ShaderConstant constant{r.number, {}};
+        for (std::size_t i = 0; i < 4; ++i) {
+            std::string_view text = operands[i + 1];
+            if (!text_file::take_number(text, constant.value[i]) || !text.empty() ||
+                !std::isfinite(constant.value[i]))
+                refuse(operands[i + 1], "must be a finite number");
+        }
+        m_program.constants.push_back(constant);
+    }
+
+    void instruct(std::string_view word, const std::vector<std::string_view>& operands) {
+        ShaderInstruction made;
+        const std::size_t end = std::min(word.find('_'), word.size());
+        const auto* facts = std::find_if(std::begin(kOpcodes), std::end(kOpcodes),
+                                         [&](const OpcodeFacts& f) { return word.substr(0, end) == f.name; });
+        if (facts == std::end(kOpcodes)) refuse(word, "no such instruction; there are " + opcode_names());
+        made.opcode = facts->opcode;
+        for (std::string_view rest = word.substr(end); !rest.empty();) {
+            const std::size_t next = std::min(rest.find('_', 1), rest.size());
+            const std::string_view modifier = rest.substr(0, next);
+            if (modifier != "_sat" && modifier != "_pp")
+                refuse(word, "must have _sat and _pp at most behind it");
+            (modifier == "_sat" ? made.saturated : made.partial) = true;
+            rest.remove_prefix(next);
+        }
+        expect(operands, facts->sources + 1, word);
+        read_destination(made, operands[0]);
+        for (std::size_t i = 0; i < facts->sources; ++i)
+            made.sources[i] =
+                read_source(made, operands[i + 1], made.opcode == ShaderOpcode::texld && i == 1);
+        check_reads(made, facts->sources);
+        count(made);
+        track(made, facts->sources);
+        m_program.instructions.push_back(made);
+    }
+
+    static std::string opcode_names() {
+        std::string names;
+        for (const OpcodeFacts& f : kOpcodes) names += (names.empty() ? "" : ", ") + std::string(f.name);
+        return names;
+    }
+
+    static void read_destination(ShaderInstruction& made, std::string_view word) {
+        const RegisterText r = parse_register(word);
+        if (r.bank != ShaderBank::temporary && r.bank != ShaderBank::output)
+            refuse(word, "must be a register that can be written, r0 to r11 or oC0 to oC3");
+        made.bank = r.bank;
+        made.number = r.number;
+        made.mask = mask_of(word, r.components);
+        if (made.opcode == ShaderOpcode::texld && (r.bank != ShaderBank::temporary || made.mask != 15))
+            refuse(word, "what texld writes must be all of a register r0 to r11");
+        if (r.bank == ShaderBank::output &&
+            (made.mask != 15 || made.opcode != ShaderOpcode::mov || made.saturated))
+            refuse(word, "must be written by mov, all of it");
+    }
+
+    ShaderSource read_source(const ShaderInstruction& made, std::string_view word, bool is_texture) const {
+        ShaderSource source;
+        std::string_view name = word;
+        if (name.starts_with('-')) {
+            source.negated = true;
+            name = text_file::trimmed(name.substr(1));
+        }
+        const RegisterText r = parse_register(name);
+        source.bank = r.bank;
+        source.number = r.number;
+        source.swizzle = swizzle_of(word, r.components);
+        const bool is_sampler = r.bank == ShaderBank::sampler, reads = made.opcode == ShaderOpcode::texld;
+        if (is_texture != is_sampler)
+            refuse(word, is_texture ? "must be a texture, s0 to s15" : "a texture can be read by texld only");
+        if (r.bank == ShaderBank::output) refuse(word, "cannot be read");
+        if (reads && (source.negated || !r.components.empty() || r.bank == ShaderBank::constant ||
+                      r.bank == ShaderBank::color))
+            refuse(word, "texld must have a register r or t and a texture, without swizzle and minus");
+        if (is_sampler && (m_program.samplers >> r.number & 1) == 0)
+            refuse(word, "must be declared by dcl_2d");
+        const bool root = made.opcode == ShaderOpcode::rcp || made.opcode == ShaderOpcode::rsq;
+        if (root && r.components.size() != 1) refuse(word, "must be one component, as in r0.x");
+        return source;
+    }
+
+    /// Is all that an instruction reads there, and can it be read at once?
+    void check_reads(const ShaderInstruction& made, std::size_t sources) {
+        std::set<int> constants, coordinates;
+        for (std::size_t k = 0; k < sources; ++k) {
+            const ShaderSource& s = made.sources[k];
+            if (s.bank == ShaderBank::constant) constants.insert(s.number);
+            if (s.bank == ShaderBank::coordinate) coordinates.insert(s.number);
+            if (s.bank == ShaderBank::constant || s.bank == ShaderBank::sampler) continue;
+            for (std::size_t i = 0; i < 4; ++i) {
+                if ((components_read(made) >> i & 1) == 0) continue;
+                if ((written(s.bank, s.number) >> s.swizzle[i] & 1) == 0)
+                    refuse(register_name(s.bank, s.number) + "." + "xyzw"[s.swizzle[i]],
+                           s.bank == ShaderBank::temporary ? "is read before it is written"
+                                                           : "must be declared by dcl");
+            }
+        }
+        if (constants.size() > 2) throw Error("an instruction can read two different constants at most");
+        if (coordinates.size() > 1) throw Error("an instruction can read one of t0 to t7 at most");
+    }
+
+    void count(const ShaderInstruction& made) {
+        const bool reads = made.opcode == ShaderOpcode::texld;
+        int& so_far = reads ? m_program.texture : m_program.arithmetic;
+        const int most = reads ? ShaderProgram::kMostTexture : ShaderProgram::kMostArithmetic;
+        if (++so_far > most)
+            throw Error("is one instruction too many: a program can have " + std::to_string(most) +
+                        (reads ? " texture instructions" : " arithmetic instructions"));
+    }
+
+    /// What has been written, and by how many textures that were read one by the other.
+    void track(const ShaderInstruction& made, std::size_t sources) {
+        int depth = made.mask == 15 || made.bank == ShaderBank::output
+                        ? 0
+                        : m_depth[static_cast<std::size_t>(made.number)];
+        for (std::size_t k = 0; k < sources; ++k)
+            if (made.sources[k].bank == ShaderBank::temporary)
+                depth = std::max(depth, m_depth[static_cast<std::size_t>(made.sources[k].number)]);
+        if (made.opcode == ShaderOpcode::texld && ++depth > ShaderProgram::kMostDepth)
+            throw Error("a texture can be read by what was read of textures " +
+                        std::to_string(ShaderProgram::kMostDepth - 1) + " times in a row at most");
+        if (made.bank == ShaderBank::temporary) m_depth[static_cast<std::size_t>(made.number)] = depth;
+        std::uint8_t& mask = written(made.bank, made.number);
+        mask = static_cast<std::uint8_t>(mask | made.mask);
+    }
+
+    std::uint8_t& written(ShaderBank bank, int number) {
+        return m_written[static_cast<std::size_t>(bank)][static_cast<std::size_t>(number)];
+    }
+
+    ShaderProgram m_program;
+    bool m_versioned = false;
+    std::set<int> m_defined;
+    std::array<std::array<std::uint8_t, ShaderProgram::kConstants>, kBankCount> m_written{};
+    std::array<int, ShaderProgram::kTemporaries> m_depth{};
+};
+
+std::string text_of(const ShaderSource& source) {
+    std::string text = source.negated ? "-" : "";
+    text += register_name(source.bank, source.number);
+    std::string swizzle;
+    for (const std::uint8_t from : source.swizzle) swizzle += "xyzw"[from];
+    if (swizzle == std::string(4, swizzle[0])) return text + "." + swizzle[0];
+    return swizzle == "xyzw" ? text : text + "." + swizzle;
+}
+
+}  // namespace
+
+ShaderProgram assemble_shader(std::string_view text, const std::string& name) {
+    text_file::check_size(text, name);
+    Assembler assembler;
+    for (std::size_t number = 1; !text.empty(); ++number) {
+        const std::size_t end = text.find('\n');
+        text_file::in_entry(name, "line " + std::to_string(number),
+                            [&] { assembler.line(text.substr(0, end)); });
+        text.remove_prefix(end == std::string_view::npos ? text.size() : end + 1);
+    }
+    ShaderProgram program;
+    text_file::in_entry(name, "", [&] { program = assembler.finish(); });
+    return program;
+}
+
+std::string shader_listing(const ShaderProgram& program) {
+    std::string text = "ps_2_0\n";
+    const auto declare = [&](const char* bank, const auto& masks) {
+        for (std::size_t n = 0; n < masks.size(); ++n)
+            if (masks[n] != 0)
+                text += "dcl " + std::string(bank) + std::to_string(n) + mask_text(masks[n]) + "\n";
+    };
+    declare("t", program.coordinates);
+    declare("v", program.colors);
+    for (int n = 0; n < ShaderProgram::kSamplers; ++n)
+        if (program.samplers >> n & 1) text += "dcl_2d s" + std::to_string(n) + "\n";
+    for (const ShaderConstant& c : program.constants) {
+        text += "def c" + std::to_string(c.number);
+        for (const double value : c.value) text += ", " + shortest(value);
+        text += "\n";
+    }
+    for (const ShaderInstruction& i : program.instructions) {
+        const OpcodeFacts& facts = facts_of(i.opcode);
+        text += std::string(facts.name) + (i.saturated ? "_sat" : "") + (i.partial ? "_pp" : "") + " " +
+                register_name(i.bank, i.number) + mask_text(i.mask);
+        for (std::size_t k = 0; k < facts.sources; ++k) text += ", " + text_of(i.sources[k]);
+        text += "\n";
+    }
+    return text;
+}
+
+}  // namespace anamorph

@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: Apache-2.0
+// Programs of pixel shader 2.0, as far as Kim 2003 (5.4 and appendix A) needs the profile: the assembler.
+//
+//   ps_2_0
+//   dcl t0.xy              a coordinate that is interpolated over the triangle: t0 to t7; colors v0, v1
+//   dcl_2d s0              a texture: s0 to s15
+//   def c0, 1, 2, 3, 4     a constant: c0 to c31
+//   texld r0, t0, s0       reads a texture
+//   mad_sat r0.xy, -r1, c0.x, r2.wzyx
+//
+// Instructions: texld; mov, add, mul, mad, dp3, dp4, rcp, rsq, min, max, cmp, with _sat (to 0..1) and _pp (16 bits), a mask
+// behind the destination, and sources with a minus and one of the swizzles of the profile: a single component, or xyzw,
+// yzxw, zxyw, wzyx. x, y, z, w are also r, g, b, a. What stands behind ; or // is a comment. Results go to oC0 to oC3.
+//
+// The profile's limits: 64 arithmetic and 32 texture instructions, textures read by what was read of textures at most 3
+// times in a row, r0 to r11, two different constants and one coordinate in an instruction.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace anamorph {
+
+enum class ShaderOpcode : std::uint8_t { texld, mov, add, mul, mad, dp3, dp4, rcp, rsq, min, max, cmp };
+
+/// Kinds of registers: r, c, t, v, s, oC.
+enum class ShaderBank : std::uint8_t { temporary, constant, coordinate, color, sampler, output };
+
+struct ShaderSource {
+    ShaderBank bank = ShaderBank::temporary;
+    int number = 0;
+    bool negated = false;
+    std::array<std::uint8_t, 4> swizzle{0, 1, 2, 3};  ///< where each component is taken from
+};
+
+struct ShaderInstruction {
+    ShaderOpcode opcode = ShaderOpcode::mov;
+    bool saturated = false, partial = false;  ///< _sat, _pp
+    ShaderBank bank = ShaderBank::temporary;  ///< of the destination
+    int number = 0;
+    std::uint8_t mask = 15;  ///< bit i: component i is written
+    std::array<ShaderSource, 3> sources{};
+};
+
+struct ShaderConstant {
+    int number;
+    std::array<double, 4> value;
+};
+
+/// What a text was assembled to. Every component that an instruction reads has been written, declared or is a constant.
+struct ShaderProgram {
+    static constexpr int kMostArithmetic = 64, kMostTexture = 32, kMostDepth = 4;
+    static constexpr int kTemporaries = 12, kConstants = 32, kCoordinates = 8, kColors = 2, kSamplers = 16,
+                         kOutputs = 4;
+
+    std::vector<ShaderInstruction> instructions;
+    std::vector<ShaderConstant> constants;
+    std::uint32_t samplers = 0;  ///< bit i: number i is declared
+    /// Bit i: component i is declared.
+    std::array<std::uint8_t, kCoordinates> coordinates{};
+    std::array<std::uint8_t, kColors> colors{};
+    int arithmetic = 0, texture = 0;  ///< instructions of either kind
+};
+
+/// Throws Error "name: line 3: what is wrong".
+ShaderProgram assemble_shader(std::string_view text, const std::string& name);
+
+/// A program as text again, which assembles to the same.
+std::string shader_listing(const ShaderProgram& program);
+
+}  // namespace anamorph

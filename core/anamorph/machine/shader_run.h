@@ -1,0 +1,119 @@
+// SPDX-License-Identifier: Apache-2.0
+// Pixel shaders, run with the numbers of the hardware: the interpreter of what shader_program.h assembles.
+#pragma once
+
+#include "anamorph/machine/shader_program.h"
+#include "anamorph/number/number_format.h"
+
+namespace anamorph {
+
+/// Four components of a register, numbers T (FormatNumber).
+template <class T>
+using ShaderVector = std::array<T, 4>;
+
+/// What a program is given beside textures.
+template <class T>
+struct ShaderInputs {
+    /// The program's own constants are set; all else is 0.
+    explicit ShaderInputs(const ShaderProgram& program) {
+        for (const ShaderConstant& c : program.constants)
+            for (std::size_t i = 0; i < 4; ++i)
+                constants[static_cast<std::size_t>(c.number)][i] = T(c.value[i]);
+    }
+    std::array<ShaderVector<T>, ShaderProgram::kConstants> constants{};
+    std::array<ShaderVector<T>, ShaderProgram::kCoordinates> coordinates{};
+    std::array<ShaderVector<T>, ShaderProgram::kColors> colors{};
+};
+
+template <class T>
+class ShaderMachine {
+  public:
+    using Vector = ShaderVector<T>;
+
+    ShaderMachine(const ShaderProgram& program, const ShaderInputs<T>& inputs)
+        : m_program(program), m_inputs(inputs) {}
+
+    /// Runs the program once. sample(number, u, v) -> ShaderVector<T> reads texture s`number`. Returns oC0.
+    template <class Sample>
+    Vector run(const Sample& sample) {
+        for (const ShaderInstruction& i : m_program.instructions) {
+            if (i.opcode == ShaderOpcode::texld) {
+                const Vector at = read(i.sources[0]);
+                write(i, sample(i.sources[1].number, at[0], at[1]));
+            } else {
+                write(i, computed(i));
+            }
+        }
+        return m_outputs[0];
+    }
+
+  private:
+    Vector read(const ShaderSource& source) const {
+        const auto n = static_cast<std::size_t>(source.number);
+        const Vector& from = source.bank == ShaderBank::temporary    ? m_temporaries[n]
+                             : source.bank == ShaderBank::constant   ? m_inputs.constants[n]
+                             : source.bank == ShaderBank::coordinate ? m_inputs.coordinates[n]
+                                                                     : m_inputs.colors[n];
+        Vector vector;
+        for (std::size_t i = 0; i < 4; ++i) {
+            const T& value = from[source.swizzle[i]];
+            vector[i] = source.negated ? -value : value;
+        }
+        return vector;
+    }
+
+    /// All components, of which the mask takes some.
+    Vector computed(const ShaderInstruction& i) const {
+        const Vector a = read(i.sources[0]), b = read(i.sources[1]), c = read(i.sources[2]);
+        Vector result;
+        for (std::size_t k = 0; k < 4; ++k)
+            if (i.mask >> k & 1) result[k] = component(i.opcode, a, b, c, k);
+        return result;
+    }
+    static T component(ShaderOpcode opcode, const Vector& a, const Vector& b, const Vector& c,
+                       std::size_t k) {
+        switch (opcode) {
+            case ShaderOpcode::add:
+                return a[k] + b[k];
+            case ShaderOpcode::mul:
+                return a[k] * b[k];
+            case ShaderOpcode::mad:
+                return a[k] * b[k] + c[k];
+            case ShaderOpcode::dp3:
+                return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+            case ShaderOpcode::dp4:
+                return a[0] * b[0] + a[1] * b[1] + a[2] * b[2] + a[3] * b[3];
+            case ShaderOpcode::rcp:
+                return T(1.0) / a[k];
+            case ShaderOpcode::rsq:
+                return T(1.0) / sqrt(max(a[k], -a[k]));
+            case ShaderOpcode::min:
+                return min(a[k], b[k]);
+            case ShaderOpcode::max:
+                return max(a[k], b[k]);
+            case ShaderOpcode::cmp:
+                return a[k].value >= 0 ? b[k] : c[k];
+            default:
+                return a[k];
+        }
+    }
+
+    void write(const ShaderInstruction& i, const Vector& result) {
+        const auto n = static_cast<std::size_t>(i.number);
+        Vector& to = i.bank == ShaderBank::output ? m_outputs[n] : m_temporaries[n];
+        for (std::size_t k = 0; k < 4; ++k) {
+            if ((i.mask >> k & 1) == 0) continue;
+            to[k] = result[k];
+            if (i.partial) to[k] = T::made_of(nearest(kFloat16, to[k].value), to[k]);
+            // NaN is 0 then.
+            if (i.saturated) to[k] = T::made_of(to[k].value > 0 ? std::min(to[k].value, 1.0) : 0.0, to[k]);
+        }
+    }
+
+    const ShaderProgram& m_program;
+    const ShaderInputs<T>& m_inputs;
+    std::array<Vector, ShaderProgram::kTemporaries> m_temporaries{};
+    std::array<Vector, ShaderProgram::kOutputs> m_outputs{};
+};
+
+}  // namespace anamorph
