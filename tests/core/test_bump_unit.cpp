@@ -246,8 +246,10 @@ TEST(MachineText, SaysWhatIsWrong) {
     };
     EXPECT_EQ(message("embm-2003"), "");
     EXPECT_EQ(message("{}"), "");
-    EXPECT_EQ(message("embm"), "machine=embm: must be embm-2003 or an object of JSON, {...}");
-    EXPECT_EQ(message(""), "machine=: must be embm-2003 or an object of JSON, {...}");
+    EXPECT_EQ(message("embm"),
+              "machine=embm: must be embm-2003, embm-2003:key=value,key=value or an object of JSON, {...}");
+    EXPECT_EQ(message(""),
+              "machine=: must be embm-2003, embm-2003:key=value,key=value or an object of JSON, {...}");
     EXPECT_EQ(message("{\"size\": 4097}"), "machine: size=4097: must be an integer from 0 to 4096");
     EXPECT_EQ(message("{\"size\": 1.5}"), "machine: size=1.5: must be an integer from 0 to 4096");
     EXPECT_EQ(message("{\"size\": \"a\"}"), "machine: size=\"a\": must be an integer from 0 to 4096");
@@ -257,6 +259,13 @@ TEST(MachineText, SaysWhatIsWrong) {
     EXPECT_NE(message("{\"sise\": 1}").find("\"sise\": no such key; the keys are size, texel"),
               std::string::npos);
     EXPECT_NE(message("{").find("is no JSON"), std::string::npos);
+    EXPECT_EQ(message("embm-2003:size=2,size=3"), "machine=size=3: must be key=value, each key once");
+    EXPECT_EQ(message("embm-2003:size"), "machine=size: must be key=value, each key once");
+    EXPECT_EQ(message("embm-2003:size=x"), "machine: size=\"x\": must be an integer from 0 to 4096");
+    EXPECT_EQ(message("embm-2003:scaled=1"), "machine: scaled=1.0: must be true or false");
+    EXPECT_EQ(message("embm-2003:texel=V8U8,scaled=false,size=64"), "");
+    EXPECT_EQ(bump_unit_from_text("embm-2003:texel=V8U8,size=64").size, 64);
+    EXPECT_EQ(bump_unit_from_text("embm-2003:texel=V8U8,size=64").texel, kSigned8);
     const BumpUnit unit = bump_unit_from_text(
         R"({"size": 64, "texel": "V8U8", "scaled": false, "weight_bits": 5, "edge": "border",
             "arithmetic": "fixed16", "address_bits": 4, "texture_side": 1024})");

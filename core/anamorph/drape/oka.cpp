@@ -13,11 +13,6 @@ namespace {
 
 constexpr int kMostBlocks = 1 << 22;
 
-/// A block's linear map: x, y and depth of a point of the screen, its centre's, and what they gain by u and by v.
-struct LinearMap {
-    glm::dvec3 centre, by_u, by_v;
-};
-
 class BlockMaker {
   public:
     BlockMaker(const DrapedSurface& surface, const Camera& camera, const Size& picture,
@@ -30,65 +25,43 @@ class BlockMaker {
     }
 
     Facets make() {
-        const auto count = [&](int pixels) { return static_cast<int>(std::ceil(pixels / m_blocks.side)); };
-        if (double(count(m_picture.width)) * count(m_picture.height) > kMostBlocks)
-            throw Error("block", shortest(m_blocks.side),
-                        "makes more than " + std::to_string(kMostBlocks) + " blocks; must be larger");
-        for (int j = 0; j < count(m_picture.height); ++j)
-            for (int i = 0; i < count(m_picture.width); ++i) add(i, j);
+        const Size count = oka_block_count(m_picture, m_blocks);
+        for (int j = 0; j < count.height; ++j)
+            for (int i = 0; i < count.width; ++i) add(i, j);
         return std::move(m_made);
     }
 
   private:
-    /// Where a point of the picture is seen, and its depth. False where it is not in front of the camera.
-    bool seen(double u, double v, glm::dvec3& at) const {
-        const glm::dvec3 p = m_camera.in_frame(m_surface.position(u, v));
-        const Point<double> on_screen = m_camera.seen(p);
-        at = {on_screen.x, on_screen.y, p.z};
-        return p.z >= m_camera.near() && std::isfinite(at.x + at.y + at.z);
-    }
-
     void add(int i, int j) {
-        const double u = (i + 0.5) * m_side.x, v = (j + 0.5) * m_side.y;
-        LinearMap map;
-        glm::dvec3 left, right, above, below;
-        if (!seen(u, v, map.centre) || !seen(u - m_side.x, v, left) || !seen(u + m_side.x, v, right) ||
-            !seen(u, v - m_side.y, above) || !seen(u, v + m_side.y, below))
-            return;
-        map.by_u = (right - left) / (2 * m_side.x);
-        map.by_v = (below - above) / (2 * m_side.y);
-        // The block and its share of the common area, within the picture.
-        const double wide_u = m_blocks.overlap / 2 / m_picture.width,
-                     wide_v = m_blocks.overlap / 2 / m_picture.height;
-        const double u0 = std::max(0.0, i * m_side.x - wide_u),
-                     u1 = std::min(1.0, (i + 1) * m_side.x + wide_u),
-                     v0 = std::max(0.0, j * m_side.y - wide_v),
-                     v1 = std::min(1.0, (j + 1) * m_side.y + wide_v);
-        const double corners[4][2] = {{u0, v0}, {u1, v0}, {u1, v1}, {u0, v1}};
+        OkaBlock map;
+        if (!oka_block(m_surface, m_camera, m_picture, m_blocks, i, j, map)) return;
+        const double corners[4][2] = {{map.u0, map.v0}, {map.u1, map.v0}, {map.u1, map.v1}, {map.u0, map.v1}};
         const auto first = static_cast<std::uint32_t>(m_made.corners.size());
         for (const auto& [s, t] : corners)
-            if (!add_corner(map, s, t, s - u, t - v)) {
+            if (!add_corner(map, s, t)) {
                 m_made.corners.resize(first);
                 return;
             }
         const auto leaf = static_cast<std::uint32_t>(m_made.leaves.size());
-        m_made.leaves.push_back({SurfacePatch::kNone, bound(u, v, wide_u, wide_v),
-                                 glm::length(glm::dvec2(map.by_u)), glm::length(glm::dvec2(map.by_v))});
+        m_made.leaves.push_back({SurfacePatch::kNone, bound(map), glm::length(glm::dvec2(map.by_u)),
+                                 glm::length(glm::dvec2(map.by_v))});
         m_made.facets.push_back({{first, first + 1, first + 2}, leaf});
         m_made.facets.push_back({{first, first + 2, first + 3}, leaf});
     }
     /// False where it is too far off the screen.
-    bool add_corner(const LinearMap& map, double u, double v, double from_u, double from_v) {
-        const glm::dvec3 at = map.centre + from_u * map.by_u + from_v * map.by_v;
+    bool add_corner(const OkaBlock& map, double u, double v) {
+        const glm::dvec3 at = map.centre + (u - map.u) * map.by_u + (v - map.v) * map.by_v;
         const double x = std::nearbyint(at.x * m_unit), y = std::nearbyint(at.y * m_unit);
         if (!(std::max(std::fabs(x), std::fabs(y)) <= kMostGrid)) return false;
         m_made.corners.push_back({x, y, 1, -(m_blocks.linear_depth ? at.z : map.centre.z), u, v});
         return true;
     }
 
-    double bound(double u, double v, double wide_u, double wide_v) const {
+    double bound(const OkaBlock& map) const {
         using J = Jet<Interval, 2>;
-        const double h = m_side.x / 2 + wide_u, k = m_side.y / 2 + wide_v;
+        const double u = map.u, v = map.v;
+        const double h = m_side.x / 2 + m_blocks.overlap / 2 / m_picture.width,
+                     k = m_side.y / 2 + m_blocks.overlap / 2 / m_picture.height;
         const double reach_u = std::max(m_side.x, h), reach_v = std::max(m_side.y, k);
         const SurfaceRange f = m_surface.range({u - reach_u, u + reach_u}, {v - reach_v, v + reach_v});
         J in_frame[3];
@@ -114,6 +87,41 @@ class BlockMaker {
 };
 
 }  // namespace
+
+Size oka_block_count(const Size& picture, const OkaBlocks& blocks) {
+    const auto count = [&](int pixels) { return std::ceil(pixels / blocks.side); };
+    if (count(picture.width) * count(picture.height) > kMostBlocks)
+        throw Error("block", shortest(blocks.side),
+                    "makes more than " + std::to_string(kMostBlocks) + " blocks; must be larger");
+    return {static_cast<int>(count(picture.width)), static_cast<int>(count(picture.height))};
+}
+
+bool oka_block(const DrapedSurface& surface, const Camera& camera, const Size& picture,
+               const OkaBlocks& blocks, int i, int j, OkaBlock& block) {
+    // Where a point of the picture is seen, and its depth.
+    const auto seen = [&](double u, double v, glm::dvec3& at) {
+        const glm::dvec3 p = camera.in_frame(surface.position(u, v));
+        const Point<double> on_screen = camera.seen(p);
+        at = {on_screen.x, on_screen.y, p.z};
+        return p.z >= camera.near() && std::isfinite(at.x + at.y + at.z);
+    };
+    const double side_u = blocks.side / picture.width, side_v = blocks.side / picture.height;
+    const double u = (i + 0.5) * side_u, v = (j + 0.5) * side_v;
+    glm::dvec3 left, right, above, below;
+    if (!seen(u, v, block.centre) || !seen(u - side_u, v, left) || !seen(u + side_u, v, right) ||
+        !seen(u, v - side_v, above) || !seen(u, v + side_v, below))
+        return false;
+    block.u = u;
+    block.v = v;
+    block.by_u = (right - left) / (2 * side_u);
+    block.by_v = (below - above) / (2 * side_v);
+    const double wide_u = blocks.overlap / 2 / picture.width, wide_v = blocks.overlap / 2 / picture.height;
+    block.u0 = std::max(0.0, i * side_u - wide_u);
+    block.u1 = std::min(1.0, (i + 1) * side_u + wide_u);
+    block.v0 = std::max(0.0, j * side_v - wide_v);
+    block.v1 = std::min(1.0, (j + 1) * side_v + wide_v);
+    return true;
+}
 
 Facets oka_facets(const DrapedSurface& surface, const Camera& camera, const Size& picture,
                   const OkaBlocks& blocks) {

@@ -15,6 +15,20 @@ struct OkaBlocks {
     bool linear_depth = false;
 };
 
+/// A block of the picture and its linear map: x, y (pixels from the middle of the screen) and depth of its centre, and what
+/// they gain by u and by v.
+struct OkaBlock {
+    double u, v;            ///< its centre
+    double u0, u1, v0, v1;  ///< its rectangle and its share of the common area, within the picture
+    glm::dvec3 centre, by_u, by_v;
+};
+
+/// Blocks across and down a picture. Throws Error where there are more than four million.
+Size oka_block_count(const Size& picture, const OkaBlocks& blocks);
+/// Block (i, j). False where one of its points is not in front of the camera.
+bool oka_block(const DrapedSurface& surface, const Camera& camera, const Size& picture,
+               const OkaBlocks& blocks, int i, int j, OkaBlock& block);
+
 /// Two facets for each parallelogram: the block's linear map (2.8), whose matrix comes from central differences
 /// (2.4 to 2.7) over the block's side, on the block and half of the common area around it. Neighbours need not meet, and
 /// the tolerance is what comes out: a block's bound is, axis by axis, by Taylor's formula (2.9),

@@ -20,17 +20,22 @@ class MachineMembers {
     /// Throws Error unless `text` is `preset`, an object without members, or an object.
     MachineMembers(std::string_view text, const std::string& preset) : m_json(Json::object()) {
         if (text == preset) return;
+        if (text.starts_with(preset + ":")) {
+            read_list(text.substr(preset.size() + 1));
+            return;
+        }
         if (!text_file::trimmed(text).starts_with('{'))
-            throw Error("machine", printable(text), "must be " + preset + " or an object of JSON, {...}");
+            throw Error(
+                "machine", printable(text),
+                "must be " + preset + ", " + preset + ":key=value,key=value or an object of JSON, {...}");
         m_json = text_file::parse_json(text, "machine");
     }
 
-    void read(const NumberRow& row, int& value) {
+    template <class Number>
+    void read(const NumberRow& row, Number& value) {
         if (const Json* json = member(row.name)) {
-            if (!json->is_number()) refuse(row.name, *json, row.range());
-            const double number = json->get<double>();
-            if (!row.holds(number)) refuse(row.name, *json, row.range());
-            value = static_cast<int>(number);
+            if (!json->is_number() || !row.holds(json->get<double>())) refuse(row.name, *json, row.range());
+            value = static_cast<Number>(json->get<double>());
         }
     }
     void read(const char* key, bool& value) {
@@ -68,6 +73,25 @@ class MachineMembers {
     }
 
   private:
+    /// key=value,key=value: numbers, true, false and words.
+    void read_list(std::string_view list) {
+        for (const std::string_view field : text_file::fields_of(list)) {
+            const std::size_t sign = field.find('=');
+            const std::string key(field.substr(0, sign));
+            if (sign == std::string_view::npos || m_json.contains(key))
+                throw Error("machine", printable(field), "must be key=value, each key once");
+            const std::string_view value = field.substr(sign + 1);
+            std::string_view rest = value;
+            double number = 0;
+            if (text_file::take_number(rest, number) && rest.empty())
+                m_json[key] = number;
+            else if (value == "true" || value == "false")
+                m_json[key] = value == "true";
+            else
+                m_json[key] = std::string(value);
+        }
+    }
+
     const Json* member(const char* key) {
         m_known.emplace_back(key);
         const auto found = m_json.find(key);
@@ -116,6 +140,27 @@ ShaderUnit shader_unit_from_text(std::string_view text) {
     members.read(kShaderTextureRow, unit.texture_side);
     members.finish();
     return unit;
+}
+
+BlockMachine block_machine_from_text(std::string_view text) {
+    BlockMachine machine;
+    MachineMembers members(text, kBlockPreset);
+    members.read(kClockRow, machine.clock_mhz);
+    members.read(kProcessorsRow, machine.processors);
+    members.read(kMultipliersRow, machine.multipliers);
+    members.read(kDivisionRow, machine.division_cycles);
+    members.read(kSurfaceRow, machine.surface_multiplies);
+    members.read(kHostRow, machine.host_cycles);
+    members.read(kSetupRow, machine.block_cycles);
+    members.read(kSegmentCyclesRow, machine.segment_cycles);
+    members.read(kSegmentRow, machine.segment);
+    members.read(kPixelUnitsRow, machine.pixel_units);
+    members.read(kAddressBitsRow, machine.address_bits);
+    members.read(kFractionBitsRow, machine.fraction_bits);
+    members.read(kOkaBlockRow, machine.block);
+    members.read(kOkaOverlapRow, machine.overlap);
+    members.finish();
+    return machine;
 }
 
 }  // namespace anamorph

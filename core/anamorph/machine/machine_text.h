@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// Machines as users name them: by a preset, or by an object of JSON that says what differs from it,
-// {"size": 64, "texel": "V8U8"}.
+// Machines as users name them: by a preset, embm-2003; with what differs from it, embm-2003:size=64,texel=V8U8; or that alone
+// as an object of JSON, {"size": 64, "texel": "V8U8"}.
 #pragma once
 
 #include <string_view>
 
+#include "anamorph/machine/block_machine.h"
 #include "anamorph/machine/bump_unit.h"
 #include "anamorph/machine/shaded_warp.h"
 
@@ -13,7 +14,7 @@ namespace anamorph {
 /// Of the hardware of Kim 2003, chapter 4.
 inline constexpr const char* kBumpPreset = "embm-2003";
 
-/// `text`: kBumpPreset, or JSON with any of size, texel, scaled, weight_bits, edge, arithmetic, address_bits and
+/// `text`: as above, with any of size, texel, scaled, weight_bits, edge, arithmetic, address_bits and
 /// texture_side. Throws Error naming `machine` and the key.
 BumpUnit bump_unit_from_text(std::string_view text);
 
@@ -22,5 +23,11 @@ inline constexpr const char* kShaderPreset = "ps20";
 
 /// The same, with kShaderPreset, arithmetic, texel, table_size, weight_bits, address_bits and texture_side.
 ShaderUnit shader_unit_from_text(std::string_view text);
+
+/// Of Oka 1987, section 3.
+inline constexpr const char* kBlockPreset = "oka-1987";
+
+/// The same, with kBlockPreset and the names of the rows of block_machine.h.
+BlockMachine block_machine_from_text(std::string_view text);
 
 }  // namespace anamorph

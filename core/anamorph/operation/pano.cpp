@@ -97,8 +97,8 @@ ParameterTable make_table() {
                "where the source's field of view ends: at the edges of its outer pixels or at their centers"),
         scheme({{"auto"}, {"exact"}, {"blocks"}, {"residual"}, {"direct"}, {"hardware"}}),
         text("machine",
-             "of scheme hardware: embm-2003, the bump mapping of Kim 2003, or what differs from it as JSON, "
-             "{\"size\": 64, \"texel\": \"V8U8\"}; by default embm-2003"),
+             "of scheme hardware: embm-2003, the bump mapping of Kim 2003, and what differs from it, "
+             "embm-2003:size=64,texel=V8U8 or {\"size\": 64, \"texel\": \"V8U8\"}; by default embm-2003"),
         colorspace("color space to filter in; by default the source's own"),
         output(),
     };

@@ -46,8 +46,9 @@ ParameterTable make_table() {
                 {"residual"},
                 {"hardware"}}),
         text("machine",
-             "of scheme hardware: ps20, the pixel shader of Kim 2003, or what differs from it as JSON, "
-             "{\"table_size\": 32, \"arithmetic\": \"fixed16\"}; by default ps20"),
+             "of scheme hardware: ps20, the pixel shader of Kim 2003, and what differs from it, "
+             "ps20:table_size=32,arithmetic=fixed16 or {\"table_size\": 32, \"arithmetic\": \"fixed16\"}; by "
+             "default ps20"),
         colorspace("color space to filter in; by default the source's own"),
         output({{"folds", "not 0 where the warp folds"}}),
     };

@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: Apache-2.0
+// The machine of Oka et al. 1987, section 3 and Fig. 3.2: a host computer and micro-coded processors make a linear map for
+// each block of the picture, an address controller visits the pixels of the block on the screen, segment by segment, and a
+// pixel processor interpolates four texels for each. Buffers are double: all work at once, each on another frame.
+//
+// The machine draws a real drape: blocks are those of drape/oka.h, its addresses fixed-point numbers. How long it takes is
+// counted: blocks, segments and pixels that are visited, and no others.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "anamorph/drape/oka.h"
+#include "anamorph/geometry/box.h"
+#include "anamorph/number/number_format.h"
+#include "anamorph/number_row.h"
+
+namespace anamorph {
+
+inline constexpr NumberRow kClockRow{"clock_mhz", 10, 0.001, 1e6};
+inline constexpr NumberRow kProcessorsRow{"processors", 2, 1, 4096, NumberRow::closed, true};
+inline constexpr NumberRow kMultipliersRow{"multipliers", 1, 1, 4096, NumberRow::closed, true};
+inline constexpr NumberRow kDivisionRow{"division_cycles", 16, 1, 10000, NumberRow::closed, true};
+inline constexpr NumberRow kSurfaceRow{"surface_multiplies", 20, 0, 1000000, NumberRow::closed, true};
+inline constexpr NumberRow kHostRow{"host_cycles", 20000, 0, 1e9, NumberRow::closed, true};
+inline constexpr NumberRow kSetupRow{"block_cycles", 8, 0, 10000, NumberRow::closed, true};
+inline constexpr NumberRow kSegmentCyclesRow{"segment_cycles", 4, 1, 10000, NumberRow::closed, true};
+inline constexpr NumberRow kSegmentRow{"segment", 8, 1, 256, NumberRow::closed, true};
+inline constexpr NumberRow kPixelUnitsRow{"pixel_units", 1, 1, 4096, NumberRow::closed, true};
+inline constexpr NumberRow kAddressBitsRow{"address_bits", 24, 2, 36, NumberRow::closed, true};
+inline constexpr NumberRow kFractionBitsRow{"fraction_bits", 12, 0, 30, NumberRow::closed, true};
+inline constexpr NumberRow kOkaBlockRow{"block", 8, 0.25, 4096};
+inline constexpr NumberRow kOkaOverlapRow{"overlap", 0.5, 0, 16};
+
+/// What the machine is made of. By default a picture of 512 x 512 in blocks of 8 x 8 takes less than 33 ms a frame.
+struct BlockMachine {
+    double clock_mhz = kClockRow.standard;
+    int processors = static_cast<int>(kProcessorsRow.standard);
+    int multipliers = static_cast<int>(kMultipliersRow.standard);  ///< of each processor
+    int division_cycles = static_cast<int>(kDivisionRow.standard);
+    int surface_multiplies = static_cast<int>(kSurfaceRow.standard);  ///< products for a point of the surface
+    int host_cycles = static_cast<int>(kHostRow.standard);            ///< a frame
+    int block_cycles = static_cast<int>(kSetupRow.standard);          ///< the address controller's, a block
+    int segment_cycles = static_cast<int>(kSegmentCyclesRow.standard);
+    int segment = static_cast<int>(kSegmentRow.standard);  ///< side of a segment of the screen, pixels
+    int pixel_units =
+        static_cast<int>(kPixelUnitsRow.standard);  ///< pixels that the pixel processor makes in a cycle
+    int address_bits =
+        static_cast<int>(kAddressBitsRow.standard);  ///< of an address, in texels, two's complement
+    int fraction_bits = static_cast<int>(kFractionBitsRow.standard);          ///< of these, behind the point
+    double block = kOkaBlockRow.standard, overlap = kOkaOverlapRow.standard;  ///< OkaBlocks
+};
+
+/// What a frame visits.
+struct BlockCounts {
+    std::int64_t blocks = 0;  ///< for which the processors make a map
+    std::int64_t segments = 0, pixels = 0;
+    std::int64_t saturated = 0;  ///< of the pixels, those whose address was beyond the range
+};
+
+/// A frame as the machine draws it: for each pixel of the screen, row by row, the address in texels, of the block that was
+/// drawn last, and whether any was.
+struct BlockFrame {
+    BlockCounts counts;
+    Size screen;
+    std::vector<Point<double>> addresses;
+    std::vector<std::uint8_t> seen;
+};
+
+/// Draws blocks from the farthest to the nearest, as their centres are. Throws Error where there are more than four million
+/// blocks.
+BlockFrame run_block_machine(const BlockMachine& machine, const DrapedSurface& surface, const Camera& camera,
+                             const Size& picture);
+
+/// A stage and what it does in a frame.
+struct MachineStage {
+    std::string name;
+    double cycles;
+    double bytes;  ///< that it reads and writes, of memories for blocks and images
+};
+
+/// How long frames take. Stages work at once, so that the slowest one sets the rate.
+struct MachineSchedule {
+    BlockCounts counts;
+    double clock_mhz = 0;
+    std::vector<MachineStage> stages;
+
+    const MachineStage& bottleneck() const;
+    double frame_ms() const { return bottleneck().cycles / (clock_mhz * 1000); }
+    /// The part of a frame's time that a stage works.
+    double utilisation(const MachineStage& stage) const { return stage.cycles / bottleneck().cycles; }
+};
+
+/// Bytes of a pixel and of a texel, and of a block's data.
+inline constexpr double kBytesOfPixel = 3, kBytesOfBlock = 24;
+
+MachineSchedule schedule_of(const BlockMachine& machine, const BlockCounts& counts, const Size& screen);
+
+/// A line for each stage: stage,cycles,ms,utilisation,bytes.
+std::string schedule_csv(const MachineSchedule& schedule);
+/// Some frames on their way through the stages: a bar for each stage and frame, over time.
+std::string schedule_svg(const MachineSchedule& schedule);
+
+}  // namespace anamorph

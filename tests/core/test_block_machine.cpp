@@ -1,0 +1,170 @@
+// SPDX-License-Identifier: Apache-2.0
+// The machine of 1987: what it visits of a plane at rest is known by hand; what it draws, by the surface's formula.
+#include "anamorph/machine/block_machine.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "anamorph/machine/machine_text.h"
+#include "drape_oracle.h"
+
+namespace anamorph {
+namespace {
+
+CameraPose parallel_pose() {
+    CameraPose pose;
+    pose.perspective = false;
+    pose.extent = 1;
+    return pose;
+}
+
+std::shared_ptr<const DrapedSurface> surface_called(const std::string& name) {
+    const auto& names = surface_names();
+    const auto at = std::find(names.begin(), names.end(), name) - names.begin();
+    return make_surface(static_cast<std::size_t>(at), SurfaceShape{});
+}
+
+BlockFrame frame_of(const BlockMachine& machine, const std::string& surface, const CameraPose& pose,
+                    int screen, int picture) {
+    const Camera camera(pose, glm::dmat3(1.0), glm::dvec3(0.0), {screen, screen});
+    return run_block_machine(machine, *surface_called(surface), camera, {picture, picture});
+}
+
+/// A picture of n x n in blocks of d on a screen of n x n: each of (n / d)^2 blocks is seen with w more pixels of each
+/// side that has a neighbour, w = round(overlap / 2). Along an axis n + 2 w (n / d - 1) pixels are visited, and of segments
+/// as large as blocks one for each, and where w > 0 both neighbours.
+TEST(BlockMachine, VisitsOfAPlaneAtRestWhatIsKnownByHand) {
+    for (const int n : {64, 256})
+        for (const int d : {4, 8, 16})
+            for (const double overlap : {0.0, 0.5, 2.0, 4.0}) {
+                BlockMachine machine;
+                machine.block = machine.segment = d;
+                machine.overlap = overlap;
+                const BlockFrame frame = frame_of(machine, "plane", parallel_pose(), n, n);
+                const std::int64_t k = n / d, w = overlap >= 2 ? std::int64_t(overlap / 2) : 0;
+                const std::int64_t along = n + 2 * w * (k - 1), segments = w > 0 ? 3 * k - 2 : k;
+                EXPECT_EQ(frame.counts.blocks, k * k);
+                EXPECT_EQ(frame.counts.pixels, along * along) << d << " " << overlap;
+                EXPECT_EQ(frame.counts.segments, segments * segments) << d << " " << overlap;
+                EXPECT_EQ(frame.counts.saturated, 0);
+                for (int j = 0; j < n; ++j)
+                    for (int i = 0; i < n; ++i) {
+                        const auto at = static_cast<std::size_t>(j * n + i);
+                        ASSERT_TRUE(frame.seen[at]);
+                        ASSERT_NEAR(frame.addresses[at].x, i + 0.5, 1e-9);
+                        ASSERT_NEAR(frame.addresses[at].y, j + 0.5, 1e-9);
+                    }
+            }
+}
+
+/// Smaller segments: (d / s)^2 for each block where they divide it.
+TEST(BlockMachine, SegmentsDivideBlocks) {
+    BlockMachine machine;
+    machine.segment = 2;
+    EXPECT_EQ(frame_of(machine, "plane", parallel_pose(), 64, 64).counts.segments, 64 * 16);
+    machine.segment = 64;
+    EXPECT_EQ(frame_of(machine, "plane", parallel_pose(), 64, 64).counts.segments, 64);
+}
+
+/// The default: 512 x 512 in blocks of 8 in 33 ms; smaller blocks bind the processors, larger pictures the pixel processor.
+TEST(BlockMachine, TheScheduleIsThatOfTheCounts) {
+    const auto schedule = [](double block, int n) {
+        BlockMachine machine;
+        machine.block = block;
+        const BlockFrame frame = frame_of(machine, "plane", parallel_pose(), n, n);
+        return schedule_of(machine, frame.counts, frame.screen);
+    };
+    const MachineSchedule standard = schedule(8, 512);
+    EXPECT_LE(standard.frame_ms(), 33);
+    // 4096 blocks on two processors, 41 products and two divisions of 16 cycles each.
+    EXPECT_EQ(standard.stages[1].cycles, 2048 * (41 + 32));
+    EXPECT_EQ(standard.stages[2].cycles, 4096 * (8 + 4));
+    EXPECT_EQ(standard.stages[3].cycles, 512 * 512);
+    EXPECT_EQ(standard.stages[3].bytes, 512 * 512 * 5 * 3);
+    EXPECT_EQ(standard.bottleneck().name, "pixel processor");
+    const MachineSchedule small = schedule(4, 512), large = schedule(8, 1024);
+    EXPECT_EQ(small.bottleneck().name, "micro-coded processors");
+    EXPECT_GT(small.frame_ms(), 33);
+    EXPECT_EQ(large.bottleneck().name, "pixel processor");
+    EXPECT_NEAR(large.frame_ms(), 1024 * 1024 / 1e4, 1e-9);
+    for (const MachineSchedule& s : {standard, small, large})
+        for (const MachineStage& stage : s.stages) {
+            EXPECT_GE(s.utilisation(stage), 0);
+            EXPECT_LE(s.utilisation(stage), 1);
+        }
+    const std::string csv = schedule_csv(standard);
+    EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 6);
+    EXPECT_NE(csv.find("pixel processor,262144,26.2144,1,3932160\n"), std::string::npos) << csv;
+    const std::string svg = schedule_svg(standard);
+    EXPECT_NE(svg.find("26.214 ms a frame, 38.15 frames a second; the bottleneck is the pixel processor"),
+              std::string::npos);
+    EXPECT_TRUE(svg.ends_with("</svg>\n"));
+}
+
+/// Where the surface is seen at an address, less the pixel's centre: O(d^2), and what fixed point adds.
+double worst_of(const BlockMachine& machine, const std::string& surface, int n) {
+    CameraPose pose;
+    pose.position = {0.3, 0.2, 3};
+    const BlockFrame frame = frame_of(machine, surface, pose, n, n);
+    double worst = 0;
+    for (int j = 0; j < n; ++j)
+        for (int i = 0; i < n; ++i) {
+            const auto at = static_cast<std::size_t>(j * n + i);
+            if (!frame.seen[at]) continue;
+            const test::OracleSight sight =
+                test::oracle_sight(pose, {n, n},
+                                   test::oracle_surface(surface, SurfaceShape{}, frame.addresses[at].x / n,
+                                                        frame.addresses[at].y / n));
+            worst = std::max(worst, double(std::hypot(sight.x - i - 0.5L, sight.y - j - 0.5L)));
+        }
+    return worst;
+}
+
+TEST(BlockMachine, AddressesLeadToTheirPixels) {
+    BlockMachine machine;
+    machine.address_bits = 36;
+    machine.fraction_bits = 24;
+    const double eight = worst_of(machine, "waves", 256);
+    EXPECT_LT(eight, 1.5);
+    machine.block = 4;
+    const double four = worst_of(machine, "waves", 256);
+    EXPECT_LT(four, 0.4 * eight);
+    // Four bits behind the point: steps are off by 1/32, and that grows to the block's sides.
+    machine.address_bits = 16;
+    machine.fraction_bits = 4;
+    const double coarse = worst_of(machine, "waves", 256);
+    EXPECT_GT(coarse, 2 * four);
+    EXPECT_LT(coarse, 1);
+}
+
+TEST(BlockMachine, AddressesThatDoNotFitSaturateAndAreCounted) {
+    BlockMachine machine;
+    machine.address_bits = 16;
+    machine.fraction_bits = 8;
+    const BlockFrame frame = frame_of(machine, "plane", parallel_pose(), 256, 256);
+    // -128 to 128: three quarters of the picture are beyond.
+    EXPECT_EQ(frame.counts.pixels - frame.counts.saturated, 128 * 128);
+    EXPECT_EQ(frame.addresses.back().x, 128 - 1.0 / 256);
+}
+
+TEST(BlockMachine, WhatIsNotSeenIsNotVisited) {
+    CameraPose away;
+    away.target = {0, 0, 10};
+    const BlockFrame behind = frame_of(BlockMachine{}, "plane", away, 64, 64);
+    EXPECT_EQ(behind.counts.blocks, 0);
+    EXPECT_EQ(behind.counts.pixels, 0);
+    CameraPose aside = parallel_pose();
+    aside.position = {5, 0, 2};
+    aside.target = {5, 0, 0};
+    const BlockFrame beside = frame_of(BlockMachine{}, "plane", aside, 64, 64);
+    EXPECT_EQ(beside.counts.blocks, 64);
+    EXPECT_EQ(beside.counts.segments, 0);
+    // On edge.
+    CameraPose flat = parallel_pose();
+    flat.position = {2, 0, 0};
+    EXPECT_EQ(frame_of(BlockMachine{}, "plane", flat, 64, 64).counts.pixels, 0);
+}
+
+}  // namespace
+}  // namespace anamorph
