@@ -142,7 +142,7 @@ SourceFacts facts_of(const ImageSpec& spec) {
 }
 
 SourceImage source_image(const ImageSpec& spec) {
-    return {facts_of(spec), spec.nchannels, spec.get_string_attribute("oiio:ColorSpace")};
+    return {facts_of(spec), spec.nchannels, spec.get_string_attribute("oiio:ColorSpace"), spec.alpha_channel};
 }
 
 std::vector<Assignment> assignments_of(const OIIO::ParamValueList& options, const std::string& prefix) {

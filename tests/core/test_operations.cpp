@@ -213,6 +213,7 @@ TEST(OperationKey, DiffersWithEveryKeyOfEveryOperation) {
             EXPECT_TRUE(with([](SourceImage& s) { s.facts.fov = 100; }));
             EXPECT_TRUE(with([](SourceImage& s) { s.channels = 4; }));
             EXPECT_TRUE(with([](SourceImage& s) { s.color_space = "linear"; }));
+            EXPECT_TRUE(with([](SourceImage& s) { s.alpha = 3; }));
         }
     }
 }

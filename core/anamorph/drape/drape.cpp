@@ -193,7 +193,7 @@ float Drape::light(const glm::dvec3& n, const glm::dvec3& ray, float& highlight)
     return static_cast<float>(l.ambient + l.diffuse * diffuse);
 }
 
-void Drape::light_pixel(const Spot& spot, float* pixel, int channels, int alpha) const {
+void Drape::light_pixel(const Spot& spot, float* pixel, int channels, const AlphaChannel& alpha) const {
     float share = 0, highlight = 0;
     glm::dvec3 ray(0.0);
     for (int k = 0; k < 3; ++k) {
@@ -207,39 +207,123 @@ void Drape::light_pixel(const Spot& spot, float* pixel, int channels, int alpha)
     }
     if (m_options.lighting.shading == DrapeShading::phong)
         share = light(normal(spot), glm::normalize(ray), highlight);
+    // What is not there does not shine.
+    if (alpha.exists() && alpha.multiplied) highlight *= pixel[alpha.channel];
     for (int c = 0; c < channels; ++c)
-        if (c != alpha) pixel[c] = pixel[c] * share + highlight;
+        if (c != alpha.channel) pixel[c] = pixel[c] * share + highlight;
 }
 
-/// Light, and the background where nothing is seen.
-void Drape::finish(const PixelRows& rows, int alpha) const {
-    const bool lit = m_options.lighting.shading != DrapeShading::none;
+struct Drape::Layers {
+    const Source& source;
+    const Source* backdrop;
+    AlphaChannel alpha;  ///< of the source, and so of the picture
+
+    bool has_backdrop(const DrapeOptions& options) const { return backdrop || !options.background.empty(); }
+    /// Behind a picture of these options.
+    std::unique_ptr<Backdrop> make_backdrop(const DrapeOptions& options, const Size& screen) const {
+        return std::make_unique<Backdrop>(options.background, backdrop, options.backdrop_alpha, screen,
+                                          options.filter, source.channels(), alpha);
+    }
+};
+
+/// Light, and what is behind.
+bool Drape::finish(const PixelRows& rows, const Layers& layers) const {
+    const bool lit = m_options.lighting.shading != DrapeShading::none,
+               behind = layers.has_backdrop(m_options);
+    const AlphaChannel& alpha = layers.alpha;
+    const int channels = rows.channels;
+    const auto backdrop = layers.make_backdrop(m_options, {m_map->width(), m_map->height()});
+    std::vector<float> under(static_cast<std::size_t>(channels));
+    bool ok = true;
     for_regions(*m_map, rows.box, [&](const SeenPixels& pixels, const Box& part) {
         for (int y = part.y0; y < part.y1; ++y)
             for (int x = part.x0; x < part.x1; ++x) {
                 float* const pixel = rows.at(x, y);
                 const bool seen = pixels.facet[pixels.index(x, y)] != SeenPixels::kNone;
-                if (seen && lit) light_pixel(spot(pixels, x, y), pixel, rows.channels, alpha);
-                if (!seen)
-                    for (std::size_t c = 0;
-                         c < m_options.background.size() && c < static_cast<std::size_t>(rows.channels); ++c)
-                        pixel[c] = m_options.background[c];
+                if (seen && lit) light_pixel(spot(pixels, x, y), pixel, channels, alpha);
+                if (!behind || (seen && !alpha.exists())) continue;
+                if (alpha.straight()) associate_alpha(pixel, channels, alpha.channel);
+                if (!seen) std::fill_n(pixel, channels, 0.0f);
+                ok = backdrop->at(x, y, under.data()) && ok;
+                lay_over(pixel, under.data(), channels, alpha.channel, 0, pixel);
+                if (alpha.straight()) unassociate_alpha(pixel, channels, alpha.channel);
             }
     });
+    return ok;
 }
 
-/// Draws edge pixels again: each part by itself, and nothing where nothing is seen.
-bool Drape::draw_edges(const Source& source, const Box& box, const Canvas& canvas,
+class Drape::EdgePainter {
+  public:
+    EdgePainter(const Drape& drape, const Layers& layers)
+        : m_drape(drape),
+          m_layers(layers),
+          m_chooser(layers.source),
+          m_sampler(layers.source, drape.m_picture.maps.front().layers.front().border),
+          m_part(static_cast<std::size_t>(layers.source.channels()) + 16),
+          m_under(m_part) {
+        if (layers.has_backdrop(drape.m_options))
+            m_backdrop = layers.make_backdrop(drape.m_options, {drape.m_map->width(), drape.m_map->height()});
+    }
+
+    /// Each part by itself, and behind them what is behind the surface. False when a source could not be read.
+    bool draw(const EdgePixel& edge, float* pixel) {
+        const int channels = m_layers.source.channels();
+        const AlphaChannel& alpha = m_layers.alpha;
+        std::fill_n(pixel, channels, 0.0f);
+        float covered = 0;
+        bool ok = true;
+        for (const EdgePart& part : edge.parts) {
+            ok = read(part) && ok;
+            const auto share = static_cast<float>(part.share);
+            covered += share;
+            for (int c = 0; c < channels; ++c) pixel[c] += share * m_part[static_cast<std::size_t>(c)];
+        }
+        if (m_backdrop) {
+            ok = m_backdrop->at(edge.x, edge.y, m_under.data()) && ok;
+            lay_over(pixel, m_under.data(), channels, alpha.channel, covered, pixel);
+        }
+        if (alpha.straight()) unassociate_alpha(pixel, channels, alpha.channel);
+        return ok;
+    }
+
+  private:
+    /// What a part shows, multiplied with its alpha.
+    bool read(const EdgePart& part) {
+        const int channels = m_layers.source.channels();
+        const AlphaChannel& alpha = m_layers.alpha;
+        const DrapeMap& map = *m_drape.m_map;
+        Spot spot{&map.facets().facets[part.facet], part.u, part.v};
+        m_drape.weigh(spot, part.x, part.y);
+        const Jacobian jacobian = map.jacobian_of(*spot.facet, part.x, part.y);
+        const Size& size = map.picture();
+        const bool ok = m_sampler.sample(m_chooser(jacobian), jacobian, 0, part.u * size.width,
+                                         part.v * size.height, m_part.data());
+        if (m_drape.m_options.lighting.shading == DrapeShading::none) return ok;
+        if (alpha.straight()) unassociate_alpha(m_part.data(), channels, alpha.channel);
+        m_drape.light_pixel(spot, m_part.data(), channels, alpha);
+        if (alpha.straight()) associate_alpha(m_part.data(), channels, alpha.channel);
+        return ok;
+    }
+
+    const Drape& m_drape;
+    const Layers& m_layers;
+    FootprintChooser m_chooser;
+    PointSampler m_sampler;
+    std::unique_ptr<Backdrop> m_backdrop;
+    std::vector<float> m_part, m_under;
+};
+
+/// Draws edge pixels again, by what is seen at their samples.
+bool Drape::draw_edges(const Layers& layers, const Box& box, const Canvas& canvas,
                        const ParallelFor& parallel_for) const {
     std::atomic<bool> ok{true};
     const std::vector<std::int64_t> regions = m_map->regions_in(box);
     parallel_for(static_cast<std::int64_t>(regions.size()), [&](std::int64_t i) {
         const Box part = intersection(m_map->region_box(regions[static_cast<std::size_t>(i)]), box);
-        const FootprintChooser chooser(source);
-        PointSampler sampler(source, m_picture.maps.front().layers.front().border);
+        EdgePainter painter(*this, layers);
         std::vector<float> pixel(static_cast<std::size_t>(canvas.channels()) + 16);
         for (const EdgePixel& edge : edges_in(*m_map, *m_map->region_at(part.x0, part.y0), part)) {
-            if (!draw_edge(edge, source, chooser, sampler, pixel)) ok = false;
+            if (!painter.draw(edge, pixel.data())) ok = false;
             canvas.store(edge.x, edge.y, 1, pixel.data());
         }
         simd::finish_stores();
@@ -247,51 +331,23 @@ bool Drape::draw_edges(const Source& source, const Box& box, const Canvas& canva
     return ok;
 }
 
-bool Drape::draw_edge(const EdgePixel& edge, const Source& source, const FootprintChooser& chooser,
-                      PointSampler& sampler, std::vector<float>& pixel) const {
-    const int channels = source.channels(), alpha = source.unassociated_alpha();
-    std::fill(pixel.begin(), pixel.end(), 0.0f);
-    std::vector<float> one(pixel.size());
-    // What is not multiplied with its alpha yet is, before it is mixed.
-    const auto mix = [&](float share) {
-        if (alpha >= 0) associate_alpha(one.data(), channels, alpha);
-        for (std::size_t c = 0; c < static_cast<std::size_t>(channels); ++c) pixel[c] += share * one[c];
-    };
-    float rest = 1;
-    bool ok = true;
-    for (const EdgePart& part : edge.parts) {
-        Spot spot{&m_map->facets().facets[part.facet], part.u, part.v};
-        weigh(spot, part.x, part.y);
-        const Jacobian jacobian = m_map->jacobian_of(*spot.facet, part.x, part.y);
-        const Size& size = m_map->picture();
-        ok = sampler.sample(chooser(jacobian), jacobian, 0, part.u * size.width, part.v * size.height,
-                            one.data()) &&
-             ok;
-        if (alpha >= 0) unassociate_alpha(one.data(), channels, alpha);
-        if (m_options.lighting.shading != DrapeShading::none) light_pixel(spot, one.data(), channels, alpha);
-        mix(static_cast<float>(part.share));
-        rest -= static_cast<float>(part.share);
-    }
-    std::fill(one.begin(), one.end(), 0.0f);
-    const std::size_t count = std::min(m_options.background.size(), static_cast<std::size_t>(channels));
-    std::copy_n(m_options.background.begin(), count, one.begin());
-    mix(std::max(0.0f, rest));
-    if (alpha >= 0) unassociate_alpha(pixel.data(), channels, alpha);
-    return ok;
-}
-
-bool Drape::draw(const Source* source, const Box& box, const ImageView& view,
-                 const ParallelFor& parallel_for) const {
+bool Drape::draw(const Source* source, const Box& box, const ImageView& view, const ParallelFor& parallel_for,
+                 const Source* backdrop) const {
     if (m_options.own != DrapeOutput::shared || m_options.output != Output::color)
         return draw_values(box, view, parallel_for);
+    if (!source) return m_picture.draw({source}, box, view, parallel_for);
+    const int straight = source->unassociated_alpha();
+    const Layers layers{*source, backdrop, {straight >= 0 ? straight : m_options.alpha, straight < 0}};
     Picture picture = m_picture;
-    const int alpha = source ? source->unassociated_alpha() : -1;
-    if (m_options.lighting.shading != DrapeShading::none || !m_options.background.empty())
-        picture.overlay = [this, alpha](const PixelRows& rows) { finish(rows, alpha); };
+    std::atomic<bool> ok{true};
+    if (m_options.lighting.shading != DrapeShading::none || layers.has_backdrop(m_options))
+        picture.overlay = [&](const PixelRows& rows) {
+            if (!finish(rows, layers)) ok = false;
+        };
     if (!picture.draw({source}, box, view, parallel_for)) return false;
     const Box inside = intersection(box, {0, 0, m_map->width(), m_map->height()});
-    return m_options.filter != Filter::antialias ||
-           draw_edges(*source, inside, Canvas(view, box), parallel_for);
+    return ok && (m_options.filter != Filter::antialias ||
+                  draw_edges(layers, inside, Canvas(view, box), parallel_for));
 }
 
 }  // namespace anamorph

@@ -12,6 +12,7 @@
 #include <mutex>
 #include <vector>
 
+#include "anamorph/drape/backdrop.h"
 #include "anamorph/drape/edges.h"
 #include "anamorph/parallel_for.h"
 #include "anamorph/render/canvas.h"
@@ -56,7 +57,9 @@ struct DrapeOptions {
     Output output = Output::color;
     DrapeOutput own = DrapeOutput::shared;
     DrapeLighting lighting;
-    std::vector<float> background;  ///< channel by channel; 0 for those that it lacks
+    std::vector<float> background;  ///< channel by channel; 0 for those that it lacks, and 1 for alpha
+    int alpha = -1;                 ///< the channel of the picture's alpha, multiplied in or not, or -1
+    int backdrop_alpha = -1;        ///< the same of the picture behind
 };
 
 /// A surface's patches, which views of it share.
@@ -79,9 +82,10 @@ class Drape {
     /// Patches that the camera sees, or nearly so.
     std::size_t patches() const { return m_map->facets().leaves.size(); }
 
-    /// Draws the pixels of `box`; the source is read for colour only. False when it could not be read.
-    bool draw(const Source* source, const Box& box, const ImageView& view,
-              const ParallelFor& parallel_for) const;
+    /// Draws the pixels of `box`; sources are read for colour only. `backdrop`: a picture that fills the screen behind the
+    /// surface and over the background. False when one could not be read.
+    bool draw(const Source* source, const Box& box, const ImageView& view, const ParallelFor& parallel_for,
+              const Source* backdrop = nullptr) const;
 
   private:
     /// A pixel on the facet that is seen there.
@@ -89,10 +93,12 @@ class Drape {
 
     Spot spot(const SeenPixels& pixels, int x, int y) const;
     void weigh(Spot& spot, double x, double y) const;
-    bool draw_edges(const Source& source, const Box& box, const Canvas& canvas,
+    /// What the pixels of a picture in colour are made of.
+    struct Layers;
+    bool draw_edges(const Layers& layers, const Box& box, const Canvas& canvas,
                     const ParallelFor& parallel_for) const;
-    bool draw_edge(const EdgePixel& edge, const Source& source, const FootprintChooser& chooser,
-                   PointSampler& sampler, std::vector<float>& pixel) const;
+    /// Draws edge pixels; one per thread.
+    class EdgePainter;
     /// A corner's normal on the viewer's side and the way from the eye to it, both of length 1 and in space.
     struct Lit {
         glm::dvec3 normal, ray;
@@ -103,8 +109,8 @@ class Drape {
     bool draw_values(const Box& box, const ImageView& view, const ParallelFor& parallel_for) const;
     void put_values(const Spot& spot, int x, int y, float* to) const;
     float light(const glm::dvec3& normal, const glm::dvec3& ray, float& highlight) const;
-    void light_pixel(const Spot& spot, float* pixel, int channels, int alpha) const;
-    void finish(const PixelRows& rows, int alpha) const;
+    void light_pixel(const Spot& spot, float* pixel, int channels, const AlphaChannel& alpha) const;
+    bool finish(const PixelRows& rows, const Layers& layers) const;
 
     std::shared_ptr<SharedTree> m_surface;
     DrapeOptions m_options;

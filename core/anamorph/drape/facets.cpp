@@ -228,7 +228,7 @@ class FacetMaker {
             const std::int32_t index = open.back();
             open.pop_back();
             const SurfacePatch& patch = m_tree.patch(index);
-            if (m_view.hidden(patch)) {
+            if (patch.missing || m_view.hidden(patch)) {
                 m_hidden.push_back(index);
                 continue;
             }

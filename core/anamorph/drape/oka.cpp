@@ -70,8 +70,10 @@ class BlockMaker {
                           f[2] * m_camera.matrix()[2][i] + m_camera.offset()[i];
         const auto off = [&](const J& coordinate) {
             const J g = (m_camera.perspective() ? coordinate / in_frame[2] : coordinate) * m_camera.focal();
-            const double uu = 2 * magnitude(g.c[3]), uv = magnitude(g.c[4]), vv = 2 * magnitude(g.c[5]);
-            return (h * m_side.x * uu + k * m_side.y * vv + h * h * uu + 2 * h * k * uv + k * k * vv) / 2;
+            const auto half = [](const Interval& a) { return (a.hi - a.lo) / 2; };
+            const double differences = h * m_side.x * half(g.c[3]) + k * m_side.y * half(g.c[5]);
+            return differences + magnitude(g.c[3] * Interval(0, h * h) + g.c[4] * Interval(-h * k, h * k) +
+                                           g.c[5] * Interval(0, k * k));
         };
         const double size = std::hypot(off(in_frame[0]), off(in_frame[1])) + grid_error(m_made.grid_bits);
         return std::isnan(size) ? HUGE_VAL : size;

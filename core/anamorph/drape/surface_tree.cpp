@@ -76,6 +76,15 @@ SurfacePatch SurfaceTree::bounded(std::uint64_t iu, std::uint64_t iv, int level_
     patch.level_u = static_cast<std::uint8_t>(level_u);
     patch.level_v = static_cast<std::uint8_t>(level_v);
     const double u = patch.u0(), v = patch.v0(), width = patch.side_u(), height = patch.side_v();
+    const Certainty missing = m_surface->missing({u, u + width}, {v, v + height});
+    patch.missing = missing == Certainty::yes;
+    if (missing != Certainty::no) {
+        // Nothing is said of a patch with a part that is missing: it is cut until it is whole or missing.
+        patch.position.radius = patch.by_u.radius = patch.by_v.radius = patch.by_uu.radius =
+            patch.by_uv.radius = patch.by_vv.radius = glm::dvec3(HUGE_VAL);
+        patch.across = (level_u <= level_v && level_u < kMostLevels) || level_v == kMostLevels;
+        return patch;
+    }
     const SurfaceRange range = m_surface->range({u, u + width}, {v, v + height});
     // A Taylor coefficient of degree 2 along one variable is half of the derivative.
     patch.position = range_of(range, 0, 1);

@@ -25,6 +25,7 @@ struct SurfacePatch {
     std::uint64_t iu = 0, iv = 0;
     std::uint8_t level_u = 0, level_v = 0;
     bool across = false;            ///< it is halved along u
+    bool missing = false;           ///< there is no surface
     std::int32_t children = kNone;  ///< the first of two that follow each other
     VectorRange position, by_u, by_v, by_uu, by_uv, by_vv;
     double rounding = 0;  ///< of positions on it, DrapedSurface::rounding

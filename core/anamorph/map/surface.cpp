@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "anamorph/deform/deformation_reach.h"
 #include "anamorph/map/surface/cylinder.h"
 #include "anamorph/map/surface/page_turn.h"
 #include "anamorph/map/surface/plane.h"
@@ -49,19 +50,112 @@ Jet<Interval, 2> influence_of(const Deformation& d, const Jet<Interval, 2>& u, c
                                                       : influence(d, u, v);
 }
 
-/// A formula, moved by deformations, read with the numbers that a DrapedSurface is read with.
-template <class Formula>
-class FormulaSurface final : public DrapedSurface {
+/// What is added up, read with the numbers that a DrapedSurface is read with. Jets are of u and v, the variables
+/// themselves.
+class SurfacePart {
   public:
-    FormulaSurface(const SurfaceShape& shape, const std::vector<Deformation>& deformations)
-        : m_formula(shape) {
-        for (Deformation d : deformations) {
-            check_deformation(d);
-            // Its v is counted up. Differences from a centre are exact near by, and one from 1 would not be.
-            d.center.y = 1 - d.center.y;
-            if (d.enabled) m_deformations.push_back(d);
-        }
+    virtual ~SurfacePart() = default;
+    virtual SurfacePoint<double> point(const double& u, const double& v) const = 0;
+    virtual SurfacePoint<long double> point(const long double& u, const long double& v) const = 0;
+    virtual SurfacePoint<Interval> point(const Interval& u, const Interval& v) const = 0;
+    virtual SurfacePoint<Jet<double, 1>> point(const Jet<double, 1>& u, const Jet<double, 1>& v) const = 0;
+    virtual SurfacePoint<Jet<Interval, 2>> point(const Jet<Interval, 2>& u,
+                                                 const Jet<Interval, 2>& v) const = 0;
+};
+
+/// Reads `Reader::read`, a template, with those.
+template <class Reader>
+class ReadPart final : public SurfacePart {
+  public:
+    explicit ReadPart(Reader reader) : m_reader(std::move(reader)) {}
+    SurfacePoint<double> point(const double& u, const double& v) const override {
+        return m_reader.read(u, v);
     }
+    SurfacePoint<long double> point(const long double& u, const long double& v) const override {
+        return m_reader.read(u, v);
+    }
+    SurfacePoint<Interval> point(const Interval& u, const Interval& v) const override {
+        return m_reader.read(u, v);
+    }
+    SurfacePoint<Jet<double, 1>> point(const Jet<double, 1>& u, const Jet<double, 1>& v) const override {
+        return m_reader.read(u, v);
+    }
+    SurfacePoint<Jet<Interval, 2>> point(const Jet<Interval, 2>& u,
+                                         const Jet<Interval, 2>& v) const override {
+        return m_reader.read(u, v);
+    }
+
+  private:
+    Reader m_reader;
+};
+
+template <class Formula>
+concept HasNormal = requires(const Formula& formula) {
+    formula.normal(0.0, 0.0);
+};
+
+/// p + k q.
+template <class T>
+SurfacePoint<T> plus(const SurfacePoint<T>& p, const SurfacePoint<T>& q, const T& k) {
+    return {p.x + k * q.x, p.y + k * q.y, p.z + k * q.z};
+}
+
+/// A formula, raised along its normal.
+template <class Formula>
+struct FormulaReader {
+    Formula formula;
+    std::shared_ptr<const SampledField> heights;
+    double scale;
+
+    template <class T>
+    SurfacePoint<T> read(const T& u, const T& v) const {
+        const SurfacePoint<T> p = formula.point(u, v);
+        if constexpr (HasNormal<Formula>)
+            if (heights) {
+                T height(0.0);
+                heights->read(u, v, &height);
+                return plus(p, formula.normal(u, v), T(height * scale));
+            }
+        return p;
+    }
+};
+
+struct PositionsReader {
+    std::shared_ptr<const SampledField> positions;
+
+    template <class T>
+    SurfacePoint<T> read(const T& u, const T& v) const {
+        std::array<T, 3> p{T(0.0), T(0.0), T(0.0)};
+        positions->read(u, v, p.data());
+        return {p[0], p[1], p[2]};
+    }
+};
+
+/// The box of a number's constant part.
+Interval box_of(const Interval& a) {
+    return a;
+}
+Interval box_of(double a) {
+    return a;
+}
+template <class T, int N>
+Interval box_of(const Jet<T, N>& a) {
+    return box_of(a.c[0]);
+}
+
+/// What is not known but for its size, where a number says so.
+void add_unknown(double&, double) {}
+void add_unknown(Jet<double, 1>&, double) {}
+void add_unknown(Interval& a, double size) {
+    a = a + Interval(-size, size);
+}
+void add_unknown(Jet<Interval, 2>& a, double size) {
+    for (Interval& c : a.c) add_unknown(c, size);
+}
+
+class SummedSurface final : public DrapedSurface {
+  public:
+    explicit SummedSurface(const SurfaceSum& sum);
 
     glm::dvec3 position(double u, double v) const noexcept override {
         const SurfacePoint<double> p = point(u, v);
@@ -80,7 +174,8 @@ class FormulaSurface final : public DrapedSurface {
         return {part(0), part(1), part(2)};
     }
     std::array<long double, 3> truth(long double u, long double v) const noexcept override {
-        const SurfacePoint<long double> p = point(u, v);
+        SurfacePoint<long double> p = sum_of_parts(u, v);
+        for (const Deformation& d : m_deformations) p = moved(p, d, u, v);
         return {p.x, p.y, p.z};
     }
     SurfaceRange range(const Interval& u, const Interval& v) const noexcept override {
@@ -88,28 +183,87 @@ class FormulaSurface final : public DrapedSurface {
         const SurfacePoint<J> p = point(J::variable(u, 1.0, 0.0), J::variable(v, 0.0, 1.0));
         return {p.x, p.y, p.z};
     }
+    Certainty missing(const Interval& u, const Interval& v) const noexcept override {
+        Certainty all = Certainty::no;
+        for (const auto& field : m_fields)
+            if (const Certainty one = field->missing(u, v); one != Certainty::no)
+                all = all == Certainty::yes ? all : one;
+        return all;
+    }
 
   private:
     template <class T>
+    SurfacePoint<T> sum_of_parts(const T& u, const T& v) const {
+        SurfacePoint<T> sum = m_parts[0]->point(u, v);
+        if (m_weights[0] != 1) sum = {sum.x * m_weights[0], sum.y * m_weights[0], sum.z * m_weights[0]};
+        for (std::size_t i = 1; i < m_parts.size(); ++i)
+            sum = plus(sum, m_parts[i]->point(u, v), T(m_weights[i]));
+        return sum;
+    }
+    template <class T>
+    static SurfacePoint<T> moved(const SurfacePoint<T>& p, const Deformation& d, const T& u, const T& v) {
+        const T share = influence_of(d, u, v);
+        return {p.x + share * d.vector.x, p.y + share * d.vector.y, p.z + share * d.vector.z};
+    }
+    template <class T>
     SurfacePoint<T> point(const T& u, const T& v) const {
-        SurfacePoint<T> p = m_formula.point(u, v);
-        for (const Deformation& d : m_deformations) {
-            const T share = influence_of(d, u, v);
-            p = {p.x + share * d.vector.x, p.y + share * d.vector.y, p.z + share * d.vector.z};
-        }
+        SurfacePoint<T> p = sum_of_parts(u, v);
+        std::size_t near = 0;
+        m_reach.each_near(box_of(u), box_of(v), [&](std::size_t i) {
+            p = moved(p, m_deformations[i], u, v);
+            ++near;
+        });
+        if (near == m_deformations.size()) return p;
+        add_unknown(p.x, m_reach.far().x);
+        add_unknown(p.y, m_reach.far().y);
+        add_unknown(p.z, m_reach.far().z);
         return p;
     }
 
-    Formula m_formula;
+    std::vector<std::unique_ptr<SurfacePart>> m_parts;
+    std::vector<double> m_weights;
+    std::vector<std::shared_ptr<const SampledField>> m_fields;
     std::vector<Deformation> m_deformations;  ///< with v down
+    DeformationReach m_reach;
 };
 
-using Make = std::shared_ptr<const DrapedSurface> (*)(const SurfaceShape&, const std::vector<Deformation>&);
+using MakePart = std::unique_ptr<SurfacePart> (*)(const SurfaceSum&);
 
 template <class Formula>
-std::shared_ptr<const DrapedSurface> make(const SurfaceShape& shape,
-                                          const std::vector<Deformation>& deformations) {
-    return std::make_shared<FormulaSurface<Formula>>(shape, deformations);
+std::unique_ptr<SurfacePart> make_part(const SurfaceSum& sum) {
+    using Reader = FormulaReader<Formula>;
+    return std::make_unique<ReadPart<Reader>>(Reader{Formula(sum.shape), sum.heights, sum.height_scale});
+}
+
+std::unique_ptr<SurfacePart> make_part_of(std::size_t which, const SurfaceSum& sum) {
+    static const std::vector<MakePart> makers = {
+#define ANAMORPH_SURFACE(name, Type) make_part<surfaces::Type>,
+#include "anamorph/map/surface/list.h"
+#undef ANAMORPH_SURFACE
+    };
+    if (which < makers.size()) return makers[which](sum);
+    return std::make_unique<ReadPart<PositionsReader>>(PositionsReader{sum.positions});
+}
+
+/// Those that are enabled, checked, with v counted up as it is down here. Differences from a centre are exact near by,
+/// and one from 1 would not be.
+std::vector<Deformation> enabled(std::vector<Deformation> list) {
+    for (Deformation& d : list) {
+        check_deformation(d);
+        d.center.y = 1 - d.center.y;
+    }
+    std::erase_if(list, [](const Deformation& d) { return !d.enabled; });
+    return list;
+}
+
+SummedSurface::SummedSurface(const SurfaceSum& sum)
+    : m_deformations(enabled(sum.deformations)), m_reach(m_deformations) {
+    for (const SurfaceSum::Part& part : sum.parts) {
+        m_parts.push_back(make_part_of(part.which, sum));
+        m_weights.push_back(part.weight);
+    }
+    for (const auto& field : {sum.positions, sum.heights})
+        if (field) m_fields.push_back(field);
 }
 
 }  // namespace
@@ -123,14 +277,26 @@ const std::vector<std::string>& surface_names() {
     return names;
 }
 
-std::shared_ptr<const DrapedSurface> make_surface(std::size_t which, const SurfaceShape& shape,
-                                                  const std::vector<Deformation>& deformations) {
-    static const std::vector<Make> makers = {
-#define ANAMORPH_SURFACE(name, Type) make<surfaces::Type>,
+bool has_smooth_normals(std::size_t which) {
+    static const std::vector<bool> smooth = {
+#define ANAMORPH_SURFACE(name, Type) HasNormal<surfaces::Type>,
 #include "anamorph/map/surface/list.h"
 #undef ANAMORPH_SURFACE
     };
-    return makers[which](shape, deformations);
+    return which < smooth.size() && smooth[which];
+}
+
+std::shared_ptr<const DrapedSurface> make_surface(const SurfaceSum& sum) {
+    return std::make_shared<SummedSurface>(sum);
+}
+
+std::shared_ptr<const DrapedSurface> make_surface(std::size_t which, const SurfaceShape& shape,
+                                                  const std::vector<Deformation>& deformations) {
+    SurfaceSum sum;
+    sum.parts = {{which, 1}};
+    sum.shape = shape;
+    sum.deformations = deformations;
+    return make_surface(sum);
 }
 
 }  // namespace anamorph

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "anamorph/deform/deformation.h"
+#include "anamorph/map/sampled_field.h"
 #include "anamorph/map/surface/shape.h"
 #include "anamorph/number/interval.h"
 #include "anamorph/number/jet.h"
@@ -34,15 +35,39 @@ class DrapedSurface {
     virtual SurfaceFrame frame(double u, double v) const noexcept = 0;
     /// As exactly as is known: what errors are measured against.
     virtual std::array<long double, 3> truth(long double u, long double v) const noexcept = 0;
-    /// Encloses the Taylor coefficients at every point of the box; those of the second degree wherever they exist.
+    /// Encloses the Taylor coefficients at every point of the box that is not missing; those of the second degree wherever
+    /// they exist.
     virtual SurfaceRange range(const Interval& u, const Interval& v) const noexcept = 0;
+    /// Is there no surface over a box (SampledField::missing)?
+    virtual Certainty missing(const Interval& u, const Interval& v) const noexcept = 0;
 };
 
 /// The names of surfaces, in the order of map/surface/list.h.
 const std::vector<std::string>& surface_names();
+/// Has it normals that are once continuously differentiable, along which a relief can be raised?
+bool has_smooth_normals(std::size_t which);
 
-/// One of them, moved by deformations, whose (u, v) run from 0 to 1 with v up (Oka 1987, eq. 4.1). Throws Error on a
-/// deformation that check_deformation refuses.
+/// A surface as a sum of others (Oka 1987, eq. 4.3), each raised along its own normal, moved by deformations (eq. 4.1).
+struct SurfaceSum {
+    struct Part {
+        std::size_t which = 0;  ///< of surface_names(), or one past the last: `positions`
+        double weight = 1;
+        bool operator==(const Part&) const = default;
+    };
+    std::vector<Part> parts = {{}};
+    SurfaceShape shape = {};
+    std::shared_ptr<const SampledField> positions = {};  ///< x, y and z
+    std::shared_ptr<const SampledField> heights = {};    ///< of parts that has_smooth_normals() allows
+    double height_scale = 0;                             ///< of those of weight 1
+    std::vector<Deformation> deformations = {};          ///< u and v run from 0 to 1 with v up
+
+    bool operator==(const SurfaceSum&) const = default;
+};
+
+/// Throws Error on a deformation that check_deformation refuses.
+std::shared_ptr<const DrapedSurface> make_surface(const SurfaceSum& sum);
+
+/// A single one, with deformations.
 std::shared_ptr<const DrapedSurface> make_surface(std::size_t which, const SurfaceShape& shape,
                                                   const std::vector<Deformation>& deformations = {});
 

@@ -6,8 +6,9 @@
 #include <array>
 #include <cmath>
 
-#include "anamorph/deform/deformation_file.h"
+#include "anamorph/deform/key_frames_file.h"
 #include "anamorph/drape/drape.h"
+#include "anamorph/operation/drape_surface.h"
 #include "anamorph/operation/rows.h"
 #include "anamorph/operation/solved.h"
 
@@ -17,6 +18,8 @@ namespace {
 using rows::chosen;
 
 constexpr double kFarthest = 1e6;
+// A host that asks how many subimages there are looks at each.
+constexpr int kMostFrames = 100'000;
 
 Parameter vector(const char* name, std::string value, const std::string& doc) {
     Parameter row = rows::numbers(name, -rows::kInfinity, doc);
@@ -26,32 +29,18 @@ Parameter vector(const char* name, std::string value, const std::string& doc) {
 
 ParameterTable make_table() {
     using namespace rows;
-    return {
-        image("src", "the picture that is draped; by default the recipe's name without .drape"),
-        choice("surface", "plane", surface_names(),
-               "undeformed the picture is 1 high, about the origin, in the plane z = 0, with x to the right "
-               "and y up. "
-               "cylinder: about the y axis; sphere: about the origin, with all latitudes; torus: about the y "
-               "axis; "
-               "page_turn: a sheet curls round a cylinder that rolls over it; waves, ripples: plane and "
-               "circular"),
-        number("angle", "degrees", "180", 0.01, 360,
-               "of cylinder, sphere and torus, the part of a turn that is covered"),
-        number("radius", "", "", 0.001, 1000,
-               "of the surface; by default 0.5 (sphere, torus), 0.1 (page_turn), and for a cylinder such "
-               "that the "
-               "picture keeps its width"),
-        number("tube", "", "0.2", 0.001, 1000, "radius of a torus's tube"),
-        number("amplitude", "", "0.05", -1000, 1000, "of waves and ripples"),
-        number("wavelength", "", "0.5", 0.01, 1000, "of waves and ripples"),
-        number("phase", "turns", "0", -1000, 1000, "of waves and ripples"),
-        number(
-            "direction", "degrees", "0", -360, 360,
-            "counterclockwise from the x axis: where waves go, and where the part of a page that turns lies"),
-        number("turn", "", "0.5", 0, 1, "how far a page is turned"),
-        file("deform",
-             "a list of deformations, JSON or CSV, that move the surface; their u and v run from 0 to 1, v "
-             "up"),
+    ParameterTable table = {
+        image("src", "the picture that is draped; by default the recipe's name without .drape")};
+    const ParameterTable others = {
+        whole("frames", "", "", 1, kMostFrames,
+              "as many subimages, frames 0, 1 and so on of `keys`; by default up to the last key frame, and "
+              "1 without keys"),
+        whole("frame", "", "", 0, kMostFrames, "one frame alone"),
+        file(
+            "keys",
+            "key frames of any numbers here, JSON: {\"keys\": {\"turn\": [[0, 0.1], [24, 0.9]]}}, each a "
+            "frame and its "
+            "numbers; optional \"interpolation\": step, linear, catmull_rom, or monotone_cubic, the default"),
         vector("rotate", "0,0,0", "degrees about the x, the y and the z axis, in this order"),
         number("scale", "", "1", 0.001, 1000, "of the surface, after it is rotated"),
         vector("move", "0,0,0", "of the surface, after that"),
@@ -88,13 +77,22 @@ ParameterTable make_table() {
         number("diffuse", "", "0.8", 0, 1000, "share of the colour that light adds"),
         number("specular", "", "0", 0, 1000, "highlights that light adds"),
         number("shininess", "", "20", 0, 100000, "of highlights, the exponent"),
-        vector("background", "", "values of the channels where nothing is seen; by default 0"),
+        vector("background", "",
+               "values of the channels behind the surface and where its picture's alpha lets through; by "
+               "default 0, "
+               "and 1 for alpha"),
+        image("backdrop",
+              "a picture behind the surface and over the background, as large as the screen; with as many "
+              "colors, with alpha or without"),
         colorspace("color space to filter in; by default the source's own"),
         output({{"depth", "the distance ahead of the camera, infinite where nothing is seen"},
                 {"normal", "the unit normal on the viewer's side"},
                 {"patch", "the number of the patch of the surface that is drawn, -1 where none is"},
                 {"coverage", "1 where the surface is seen, else 0"}}),
     };
+    for (const ParameterTable& rows : {drape_surface_rows(), others})
+        table.insert(table.end(), rows.begin(), rows.end());
+    return table;
 }
 
 glm::dvec3 vector_of(const ParameterValues& values, const char* name) {
@@ -115,20 +113,6 @@ std::vector<glm::dvec3> lights_of(const ParameterValues& values) {
         lights.push_back(glm::normalize(light / largest));
     }
     return lights;
-}
-
-SurfaceShape shape_of(const ParameterValues& values, double aspect) {
-    SurfaceShape shape;
-    shape.aspect = aspect;
-    shape.angle = values.number("angle");
-    if (values.given("radius")) shape.radius = values.number("radius");
-    shape.tube = values.number("tube");
-    shape.amplitude = values.number("amplitude");
-    shape.wavelength = values.number("wavelength");
-    shape.phase = values.number("phase");
-    shape.direction = values.number("direction");
-    shape.turn = values.number("turn");
-    return shape;
 }
 
 CameraPose pose_of(const ParameterValues& values, double aspect) {
@@ -161,15 +145,6 @@ glm::dmat3 matrix_of(const ParameterValues& values) {
     return matrix;
 }
 
-struct DrapeRequest {
-    std::shared_ptr<SharedTree> surface;
-    CameraPose pose;
-    glm::dmat3 matrix;
-    glm::dvec3 offset;
-    Size source, target;
-    DrapeOptions options;
-};
-
 DrapeOptions options_of(const ParameterValues& values) {
     DrapeOptions options;
     options.scheme = chosen<DrapeScheme>(values, "scheme");
@@ -197,26 +172,116 @@ DrapeOptions options_of(const ParameterValues& values) {
     return options;
 }
 
-DrapeRequest read_request(const OperationInput& input) {
-    const ParameterValues& values = input.values;
-    const Size source = input.sources[0].size();
-    const double aspect = static_cast<double>(source.width) / source.height;
-    std::vector<Deformation> deformations;
-    if (const auto file = input.files.find("deform"); file != input.files.end())
-        deformations = parse_deformations_file(input.reader.text(file->second.name), file->second.name);
-    DrapeRequest request;
-    request.surface = std::make_shared<SharedTree>(
-        make_surface(rows::chosen_index(values, "surface"), shape_of(values, aspect), deformations));
-    request.pose = pose_of(values, aspect);
-    request.matrix = matrix_of(values);
-    request.offset = vector_of(values, "move");
-    request.source = source;
-    request.target = rows::size_of(values, source);
-    request.options = options_of(values);
-    // What does not depend on the size of the picture is checked now.
-    Camera(request.pose, request.matrix, request.offset, request.target);
-    return request;
+/// The colors of the backdrop go with those of the picture.
+void check_backdrop(const std::vector<SourceImage>& sources, const ParameterValues& values) {
+    if (sources.size() < 2) return;
+    const auto colors = [](const SourceImage& image) { return image.channels - (image.alpha >= 0 ? 1 : 0); };
+    const int has = colors(sources[1]), wanted = colors(sources[0]);
+    if (has != wanted)
+        throw Error("backdrop has " + std::to_string(has) + " channels besides alpha and src " +
+                    std::to_string(wanted) + ": must have as many");
+    check_color_space(sources[1], "backdrop", sources[0], "src", values);
 }
+
+/// What is asked for, at any frame.
+class DrapeRequest {
+  public:
+    explicit DrapeRequest(const OperationInput& input)
+        : m_values(input.values),
+          m_source(input.sources[0].size()),
+          m_alpha(input.sources[0].alpha),
+          m_backdrop_alpha(input.sources.size() > 1 ? input.sources[1].alpha : -1),
+          m_surfaces(std::make_shared<DrapeSurfaces>(input, aspect())) {
+        check_backdrop(input.sources, input.values);
+        if (const auto file = input.files.find("keys"); file != input.files.end())
+            read_keys(input.reader.text(file->second.name), file->second.name);
+        choose_frames();
+        // What does not depend on the size of the picture is checked now.
+        for (int i = 0; i < m_frames; ++i) check(number_of(i));
+    }
+
+    int frames() const { return m_frames; }
+    /// The number of the i-th of these.
+    int number_of(int i) const { return m_first + i; }
+    bool is_film() const { return m_frames > 1 || !m_keys.empty(); }
+
+    /// A frame's values.
+    ParameterValues values_at(int frame) const {
+        ParameterValues values = m_values;
+        for (const NamedKeyFrames& keys : m_keys) {
+            std::string text;
+            for (const double number : keys.frames.at(frame))
+                text += (text.empty() ? "" : ",") + shortest(number);
+            values.assign({{keys.name, text}});
+        }
+        return values;
+    }
+    Size target(const ParameterValues& values) const { return rows::size_of(values, m_source); }
+    DrapeOptions options(const ParameterValues& values) const {
+        DrapeOptions options = options_of(values);
+        options.alpha = m_alpha;
+        options.backdrop_alpha = m_backdrop_alpha;
+        return options;
+    }
+    const std::string& missing() const { return m_surfaces->missing(); }
+
+    Camera camera(const ParameterValues& values, const Size& screen) const {
+        return {pose_of(values, aspect()), matrix_of(values), vector_of(values, "move"), screen};
+    }
+    Drape drape(const ParameterValues& values, const Size& screen) const {
+        return {m_surfaces->tree_of(m_surfaces->sum_of(values)), camera(values, screen), m_source,
+                options(values)};
+    }
+
+  private:
+    double aspect() const { return static_cast<double>(m_source.width) / m_source.height; }
+
+    void read_keys(const std::string& text, const std::string& name) {
+        m_keys = parse_key_frames_json(text, name);
+        for (const NamedKeyFrames& keys : m_keys) {
+            const ParameterTable& table = m_values.table();
+            const auto row = std::find_if(table.begin(), table.end(),
+                                          [&](const Parameter& p) { return p.name == keys.name; });
+            const bool number = row != table.end() &&
+                                (row->type == ParameterType::number || row->type == ParameterType::numbers);
+            if (!number || keys.name == "height_smooth")
+                throw Error("keys", printable(keys.name),
+                            "must be keys of numbers other than whole ones and height_smooth");
+        }
+    }
+    void choose_frames() {
+        if (m_values.given("frame") && m_values.given("frames"))
+            throw Error("frame", m_values.text("frame"), "must not be given together with frames");
+        double last = 0;
+        for (const NamedKeyFrames& keys : m_keys) last = std::max(last, keys.frames.times().back());
+        if (m_values.given("frame"))
+            m_first = m_values.whole("frame");
+        else if (m_values.given("frames"))
+            m_frames = m_values.whole("frames");
+        else if (last + 1 <= kMostFrames)
+            m_frames = static_cast<int>(last) + 1;
+        else
+            throw Error("frames is not given and the last key frame is " + shortest(last) +
+                        ": must be given where that is above " + std::to_string(kMostFrames - 1));
+    }
+    void check(int frame) const {
+        try {
+            const ParameterValues values = values_at(frame);
+            m_surfaces->sum_of(values);
+            camera(values, target(values));
+            options(values);
+        } catch (const Error& error) {
+            if (m_keys.empty()) throw;
+            throw Error("frame " + std::to_string(frame) + ": " + error.what());
+        }
+    }
+
+    ParameterValues m_values;
+    Size m_source;
+    int m_alpha, m_backdrop_alpha, m_frames = 1, m_first = 0;
+    std::vector<NamedKeyFrames> m_keys;
+    std::shared_ptr<const DrapeSurfaces> m_surfaces;
+};
 
 PixelKind pixels_of(const DrapeOptions& options) {
     if (options.own == DrapeOutput::shared) return pixels_of(options.output);
@@ -226,8 +291,7 @@ PixelKind pixels_of(const DrapeOptions& options) {
 /// A drape of the first source.
 class SolvedDrape final : public SolvedPicture {
   public:
-    explicit SolvedDrape(const DrapeRequest& r, const Size& size)
-        : m_drape(r.surface, Camera(r.pose, r.matrix, r.offset, size), r.source, r.options) {}
+    explicit SolvedDrape(Drape drape) : m_drape(std::move(drape)) {}
 
     Attributes reached(const ParallelFor&) const override {
         return {{"anamorph:max_error", m_drape.max_error()},
@@ -236,7 +300,8 @@ class SolvedDrape final : public SolvedPicture {
     }
     bool draw(const std::vector<const Source*>& sources, const Box& box, const ImageView& view,
               const ParallelFor& parallel_for) const override {
-        return m_drape.draw(sources.empty() ? nullptr : sources[0], box, view, parallel_for);
+        const auto source = [&](std::size_t i) { return i < sources.size() ? sources[i] : nullptr; };
+        return m_drape.draw(source(0), box, view, parallel_for, source(1));
     }
 
   private:
@@ -245,38 +310,46 @@ class SolvedDrape final : public SolvedPicture {
 
 class Drapes final : public Pictures {
   public:
-    explicit Drapes(DrapeRequest request) : m_request(std::move(request)) {}
+    explicit Drapes(std::shared_ptr<const DrapeRequest> request) : m_request(std::move(request)) {}
 
-    std::optional<PictureRequest> picture(int, int level) const override {
-        const std::optional<Size> size = level_size(m_request.target, level);
+    int frames() const override { return m_request->frames(); }
+
+    std::optional<PictureRequest> picture(int frame, int level) const override {
+        const int number = m_request->number_of(frame);
+        const ParameterValues values = m_request->values_at(number);
+        const std::optional<Size> size = level_size(m_request->target(values), level);
         if (!size) return {};
+        const DrapeOptions options = m_request->options(values);
         PictureRequest picture;
         picture.size = *size;
-        picture.pixels = pixels_of(m_request.options);
-        picture.says = {{"anamorph:tol", m_request.options.tol}};
-        picture.solve = [request = m_request, size = *size] {
-            return std::make_unique<SolvedDrape>(request, size);
+        picture.pixels = pixels_of(options);
+        picture.says = {{"anamorph:tol", options.tol}};
+        if (m_request->is_film()) picture.says.push_back({"anamorph:frame", number});
+        if (!m_request->missing().empty()) picture.says.push_back({"anamorph:missing", m_request->missing()});
+        picture.solve = [request = m_request, values, size = *size] {
+            return std::make_unique<SolvedDrape>(request->drape(values, size));
         };
         return picture;
     }
 
   private:
-    DrapeRequest m_request;
+    std::shared_ptr<const DrapeRequest> m_request;
 };
 
 }  // namespace
 
 const Operation& drape_operation() {
     static const ParameterTable table = make_table();
-    static const Operation operation{"drape",
-                                     "A picture laid on a surface in space",
-                                     &table,
-                                     {"src"},
-                                     1,
-                                     {"surface=cylinder&angle=120&camera=0.4,0.3,2.5", {}},
-                                     [](const OperationInput& input) -> std::unique_ptr<const Pictures> {
-                                         return std::make_unique<Drapes>(read_request(input));
-                                     }};
+    static const Operation operation{
+        "drape",
+        "A picture laid on a surface in space",
+        &table,
+        {"src", "backdrop"},
+        1,
+        {"surface=cylinder&angle=120&camera=0.4,0.3,2.5", {}},
+        [](const OperationInput& input) -> std::unique_ptr<const Pictures> {
+            return std::make_unique<Drapes>(std::make_shared<DrapeRequest>(input));
+        }};
     return operation;
 }
 

@@ -170,10 +170,7 @@ void check_alike(const std::vector<SourceImage>& sources, const ParameterValues&
         if (other.channels != a.channels)
             throw Error("picture " + key + " has " + std::to_string(other.channels) + " channels and a has " +
                         std::to_string(a.channels) + ": must have as many");
-        const std::string &space = other.color_space, &space_a = a.color_space;
-        if (!values.given("colorspace") && !space.empty() && !space_a.empty() && space != space_a)
-            throw Error("picture " + key + " is in color space \"" + printable(space) + "\" and a in \"" +
-                        printable(space_a) + "\": must be the same, or colorspace be given");
+        check_color_space(other, "picture " + key, a, "a", values);
     }
 }
 

@@ -40,12 +40,21 @@ std::string operation_key(const Operation& operation, const ParameterValues& val
         if (facts.projection) key += std::string(name_of(*facts.projection)) + " as " + facts.said_by;
         if (facts.fov) key += " fov=" + shortest(*facts.fov);
         if (facts.lens) key += " lens=" + facts.lens->text();
+        if (image.alpha >= 0) key += " alpha=" + std::to_string(image.alpha);
         key += "\n";
     }
     for (const auto& [name, file] : files)
         if (std::find(operation.sources.begin(), operation.sources.end(), name) == operation.sources.end())
             key += name + "=" + file.name + "\n" + file.identity + "\n";
     return key;
+}
+
+void check_color_space(const SourceImage& image, const std::string& name, const SourceImage& first,
+                       const std::string& first_name, const ParameterValues& values) {
+    const std::string &space = image.color_space, &wanted = first.color_space;
+    if (!values.given("colorspace") && !space.empty() && !wanted.empty() && space != wanted)
+        throw Error(name + " is in color space \"" + printable(space) + "\" and " + first_name + " in \"" +
+                    printable(wanted) + "\": must be the same, or colorspace be given");
 }
 
 std::optional<Size> level_size(const Size& size, int level) {

@@ -42,6 +42,7 @@ struct SourceImage {
     SourceFacts facts;
     int channels = 0;
     std::string color_space;
+    int alpha = -1;  ///< the channel of alpha, whether colours are multiplied with it or not
 
     Size size() const { return {facts.width, facts.height}; }
 };
@@ -152,6 +153,11 @@ std::string operation_names();
 /// Made of all that `read` is given: the same text, the same pictures. The sources' pixels are none of it.
 std::string operation_key(const Operation& operation, const ParameterValues& values,
                           const std::vector<SourceImage>& sources, const SideFiles& files);
+
+/// What is mixed with colours of `first` has to be in their colour space, unless another is asked for. `name`: of the
+/// image, for messages. Throws Error.
+void check_color_space(const SourceImage& image, const std::string& name, const SourceImage& first,
+                       const std::string& first_name, const ParameterValues& values);
 
 /// Half the pixels each way, `level` times, rounded down, at least 1; none past the level of one pixel.
 std::optional<Size> level_size(const Size& size, int level);

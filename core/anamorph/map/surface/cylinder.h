@@ -18,6 +18,12 @@ class Cylinder {
         sin_cos(T((u - 0.5) * m_turn), s, c);
         return {s * m_radius, plane_y(v), c * m_radius};
     }
+    template <class T>
+    SurfacePoint<T> normal(const T& u, const T&) const {
+        T s, c;
+        sin_cos(T((u - 0.5) * m_turn), s, c);
+        return {s, T(0.0), c};
+    }
 
   private:
     double m_turn, m_radius;

@@ -14,6 +14,10 @@ class Plane {
     SurfacePoint<T> point(const T& u, const T& v) const {
         return {plane_x(m_shape, u), plane_y(v), T(0.0)};
     }
+    template <class T>
+    SurfacePoint<T> normal(const T&, const T&) const {
+        return {T(0.0), T(0.0), T(1.0)};
+    }
 
   private:
     SurfaceShape m_shape;

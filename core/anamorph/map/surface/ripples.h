@@ -20,6 +20,16 @@ class Ripples {
         sin_cos(T(distance * m_waves - m_shape.phase * (2 * kPi)), s, c);
         return {x, y, s * m_shape.amplitude};
     }
+    template <class T>
+    SurfacePoint<T> normal(const T& u, const T& v) const {
+        const T x = plane_x(m_shape, u), y = plane_y(v);
+        const double round = m_shape.wavelength / 8;
+        const T distance = sqrt(T(square(x) + square(y) + round * round));
+        T s, c;
+        sin_cos(T(distance * m_waves - m_shape.phase * (2 * kPi)), s, c);
+        const T slope = c * (m_shape.amplitude * m_waves) / distance;
+        return normal_of_slopes(T(slope * x), T(slope * y));
+    }
 
   private:
     SurfaceShape m_shape;

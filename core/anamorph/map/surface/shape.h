@@ -22,6 +22,8 @@ struct SurfaceShape {
     double phase = 0;      ///< turns
     double direction = 0;  ///< degrees from the x axis, counterclockwise
     double turn = 0.5;     ///< 0 to 1
+
+    bool operator==(const SurfaceShape&) const = default;
 };
 
 /// A point of a surface.
@@ -38,6 +40,13 @@ T plane_x(const SurfaceShape& shape, const T& u) {
 template <class T>
 T plane_y(const T& v) {
     return 0.5 - v;
+}
+
+/// The unit normal, towards the viewer, of a height over the plane that rises by these slopes along x and y.
+template <class T>
+SurfacePoint<T> normal_of_slopes(const T& along_x, const T& along_y) {
+    const T size = sqrt(T(square(along_x) + square(along_y) + 1.0));
+    return {-along_x / size, -along_y / size, T(1.0) / size};
 }
 
 }  // namespace anamorph

@@ -13,14 +13,23 @@ class Sphere {
 
     template <class T>
     SurfacePoint<T> point(const T& u, const T& v) const {
-        T s, c, up, out;
-        sin_cos(T((u - 0.5) * m_turn), s, c);
-        sin_cos(T((0.5 - v) * kPi), up, out);
-        out = out * m_radius;
-        return {out * s, up * m_radius, out * c};
+        return at_radius(u, v, m_radius);
+    }
+    template <class T>
+    SurfacePoint<T> normal(const T& u, const T& v) const {
+        return at_radius(u, v, 1);
     }
 
   private:
+    template <class T>
+    SurfacePoint<T> at_radius(const T& u, const T& v, double radius) const {
+        T s, c, up, out;
+        sin_cos(T((u - 0.5) * m_turn), s, c);
+        sin_cos(T((0.5 - v) * kPi), up, out);
+        out = out * radius;
+        return {out * s, up * radius, out * c};
+    }
+
     double m_turn, m_radius;
 };
 

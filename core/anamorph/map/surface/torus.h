@@ -22,6 +22,14 @@ class Torus {
         const T from_axis = out * m_tube + m_radius;
         return {from_axis * s, up * m_tube, from_axis * c};
     }
+    /// Away from the middle of the tube.
+    template <class T>
+    SurfacePoint<T> normal(const T& u, const T& v) const {
+        T s, c, up, out;
+        sin_cos(T((u - 0.5) * m_turn), s, c);
+        sin_cos(T((0.5 - v) * (2 * kPi)), up, out);
+        return {out * s, up, out * c};
+    }
 
   private:
     double m_turn, m_radius, m_tube;

@@ -22,6 +22,13 @@ class Waves {
         sin_cos(T(x * m_across + y * m_up - m_shape.phase * (2 * kPi)), s, c);
         return {x, y, s * m_shape.amplitude};
     }
+    template <class T>
+    SurfacePoint<T> normal(const T& u, const T& v) const {
+        T s, c;
+        sin_cos(T(plane_x(m_shape, u) * m_across + plane_y(v) * m_up - m_shape.phase * (2 * kPi)), s, c);
+        const T slope = c * m_shape.amplitude;
+        return normal_of_slopes(T(slope * m_across), T(slope * m_up));
+    }
 
   private:
     SurfaceShape m_shape;

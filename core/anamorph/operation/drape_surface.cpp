@@ -1,0 +1,215 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "anamorph/operation/drape_surface.h"
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+#include <utility>
+
+#include "anamorph/deform/deformation_file.h"
+#include "anamorph/operation/read_once.h"
+#include "anamorph/operation/rows.h"
+
+namespace anamorph {
+namespace {
+
+// Weights are from minus this to this.
+constexpr double kMostWeight = 1e6;
+
+/// Formulas, and what is read from a file.
+std::vector<std::string> surfaces() {
+    std::vector<std::string> names = surface_names();
+    names.push_back("positions");
+    return names;
+}
+
+SurfaceShape shape_of(const ParameterValues& values, double aspect) {
+    SurfaceShape shape;
+    shape.aspect = aspect;
+    shape.angle = values.number("angle");
+    if (values.given("radius")) shape.radius = values.number("radius");
+    shape.tube = values.number("tube");
+    shape.amplitude = values.number("amplitude");
+    shape.wavelength = values.number("wavelength");
+    shape.phase = values.number("phase");
+    shape.direction = values.number("direction");
+    shape.turn = values.number("turn");
+    return shape;
+}
+
+/// The names in `blend`.
+std::vector<std::string> blended(const ParameterValues& values) {
+    std::vector<std::string> names;
+    if (!values.given("blend")) return names;
+    std::stringstream list(values.text("blend"));
+    for (std::string name; std::getline(list, name, ',');) names.push_back(name);
+    return names;
+}
+
+/// The surface and those that it is blended with, with weights of sum 1.
+std::vector<SurfaceSum::Part> parts_of(const ParameterValues& values) {
+    const std::vector<std::string> names = surfaces(), blend = blended(values);
+    const std::vector<double> weights =
+        values.given("weights") ? values.numbers("weights") : std::vector<double>{};
+    if (weights.size() != blend.size())
+        throw Error("weights", std::to_string(weights.size()) + " numbers",
+                    "must be as many as surfaces in blend, " + std::to_string(blend.size()));
+    std::vector<SurfaceSum::Part> parts = {{rows::chosen_index(values, "surface"), 1}};
+    for (std::size_t i = 0; i < blend.size(); ++i) {
+        const auto found = std::find(names.begin(), names.end(), blend[i]);
+        if (found == names.end())
+            throw Error("blend", printable(blend[i]), "must be names of surfaces, separated by commas");
+        if (!(std::fabs(weights[i]) <= kMostWeight))
+            throw Error("weights", shortest(weights[i]), "must be numbers from -1e6 to 1e6");
+        parts[0].weight -= weights[i];
+        parts.push_back({static_cast<std::size_t>(found - names.begin()), weights[i]});
+    }
+    return parts;
+}
+
+/// The first channels of an image, 1 to 3 of them.
+std::vector<float> texels_of(const SideFile& file, const char* key, const SideFileReader& reader,
+                             int channels, Size& size) {
+    const std::unique_ptr<SideImage> image = reader.image(key, file.name);
+    size = image->size();
+    if (image->channels() < channels)
+        throw Error(
+            key, printable(file.name),
+            "has " + std::to_string(image->channels()) + " channels: must have " + std::to_string(channels));
+    if (std::int64_t{size.width} * size.height > SampledField::kMostTexels)
+        throw Error(key, printable(file.name),
+                    "has " + std::to_string(size.width) + "x" + std::to_string(size.height) +
+                        " pixels: must have at most " + std::to_string(SampledField::kMostTexels));
+    return image->read(channels);
+}
+
+std::shared_ptr<const SampledField> read_positions(const SideFile& file, const SideFileReader& reader) {
+    return read_once<SampledField>(file, "positions", [&] {
+        Size size;
+        const std::vector<float> texels = texels_of(file, "positions", reader, 3, size);
+        return SampledField(texels, size, 3);
+    });
+}
+
+/// Heights are brightness, smoothed.
+std::shared_ptr<const SampledField> read_heights(const SideFile& file, double sigma,
+                                                 const SideFileReader& reader) {
+    return read_once<SampledField>(file, "height " + shortest(sigma), [&] {
+        const int channels = std::clamp(reader.image("height", file.name)->channels(), 1, 3);
+        Size size;
+        const std::vector<float> texels = texels_of(file, "height", reader, channels, size);
+        std::vector<float> heights(texels.size() / static_cast<std::size_t>(channels));
+        for (std::size_t i = 0; i < texels.size(); ++i)
+            heights[i / static_cast<std::size_t>(channels)] += texels[i] / static_cast<float>(channels);
+        return SampledField(smoothed(heights, size, sigma), size, 1);
+    });
+}
+
+/// What is missing of a surface, in words.
+std::string missing_of(const char* key, const SampledField& field) {
+    if (field.missing_texels() == 0) return "";
+    return std::to_string(field.missing_texels()) + " texels of " + key + ", the first at " +
+           std::to_string(field.first_missing().x) + "," + std::to_string(field.first_missing().y);
+}
+
+}  // namespace
+
+ParameterTable drape_surface_rows() {
+    using namespace rows;
+    return {
+        choice("surface", "plane", surfaces(),
+               "undeformed the picture is 1 high, about the origin, in the plane z = 0, with x to the right "
+               "and y up. "
+               "cylinder: about the y axis; sphere: about the origin, with all latitudes; torus: about the y "
+               "axis; "
+               "page_turn: a sheet curls round a cylinder that rolls over it; waves, ripples: plane and "
+               "circular; positions: as the picture `positions` says"),
+        text("blend", "names of surfaces, separated by commas, that the surface is blended with, by weights"),
+        numbers("weights", -kInfinity,
+                "one for each surface of blend; what they lack to 1 is the weight of surface itself, and any "
+                "may be "
+                "negative or above 1"),
+        image("positions",
+              "of surface=positions: a picture whose first three channels are x, y and z, over the whole of "
+              "the "
+              "draped picture, interpolated by smooth cubics"),
+        image("height",
+              "a picture by whose brightness, the mean of up to three channels, the surface is raised along "
+              "its "
+              "normal, interpolated by smooth cubics"),
+        number("height_scale", "", "0.1", -1000, 1000, "how high brightness 1 is"),
+        number("height_smooth", "texels", "1", 0, 100,
+               "heights are smoothed by a Gaussian of that standard deviation; 0: not"),
+        number("angle", "degrees", "180", 0.01, 360,
+               "of cylinder, sphere and torus, the part of a turn that is covered"),
+        number("radius", "", "", 0.001, 1000,
+               "of the surface; by default 0.5 (sphere, torus), 0.1 (page_turn), and for a cylinder such "
+               "that the "
+               "picture keeps its width"),
+        number("tube", "", "0.2", 0.001, 1000, "radius of a torus's tube"),
+        number("amplitude", "", "0.05", -1000, 1000, "of waves and ripples"),
+        number("wavelength", "", "0.5", 0.01, 1000, "of waves and ripples"),
+        number("phase", "turns", "0", -1000, 1000, "of waves and ripples"),
+        number(
+            "direction", "degrees", "0", -360, 360,
+            "counterclockwise from the x axis: where waves go, and where the part of a page that turns lies"),
+        number("turn", "", "0.5", 0, 1, "how far a page is turned"),
+        file("deform",
+             "a list of deformations, JSON or CSV, that move the surface; their u and v run from 0 to 1, v "
+             "up"),
+    };
+}
+
+DrapeSurfaces::DrapeSurfaces(const OperationInput& input, double aspect) : m_aspect(aspect) {
+    const auto file = [&](const char* key) {
+        const auto found = input.files.find(key);
+        return found == input.files.end() ? nullptr : &found->second;
+    };
+    const auto keep = [&](const char* key, std::shared_ptr<const SampledField> field) {
+        if (const std::string what = missing_of(key, *field); !what.empty())
+            m_missing += (m_missing.empty() ? "" : "; ") + what;
+        return field;
+    };
+    if (const SideFile* positions = file("positions"))
+        m_files.positions = keep("positions", read_positions(*positions, input.reader));
+    if (const SideFile* heights = file("height"))
+        m_files.heights =
+            keep("height", read_heights(*heights, input.values.number("height_smooth"), input.reader));
+    if (const SideFile* list = file("deform"))
+        m_files.deformations = parse_deformations_file(input.reader.text(list->name), list->name);
+}
+
+SurfaceSum DrapeSurfaces::sum_of(const ParameterValues& values) const {
+    SurfaceSum sum = m_files;
+    sum.parts = parts_of(values);
+    sum.shape = shape_of(values, m_aspect);
+    sum.height_scale = values.number("height_scale");
+    const bool sampled = std::any_of(sum.parts.begin(), sum.parts.end(), [](const SurfaceSum::Part& part) {
+        return part.which == surface_names().size();
+    });
+    if (sampled && !sum.positions) throw Error("positions is not given: must be a picture of x, y and z");
+    if (!sampled && sum.positions)
+        throw Error("positions is given: surface must be positions, or blend name it");
+    for (const SurfaceSum::Part& part : sum.parts)
+        if (sum.heights && !has_smooth_normals(part.which))
+            throw Error("height is given: surface must not be " + surfaces()[part.which] +
+                        ", whose normals turn abruptly");
+    return sum;
+}
+
+std::shared_ptr<SharedTree> DrapeSurfaces::tree_of(const SurfaceSum& sum) const {
+    constexpr std::size_t kKept = 4;
+    const std::lock_guard lock(m_kept->mutex);
+    auto& trees = m_kept->trees;
+    const auto known =
+        std::find_if(trees.begin(), trees.end(), [&](const auto& kept) { return kept.first == sum; });
+    if (known != trees.end()) {
+        std::rotate(trees.begin(), known, known + 1);
+        return trees.front().second;
+    }
+    trees.insert(trees.begin(), {sum, std::make_shared<SharedTree>(make_surface(sum))});
+    if (trees.size() > kKept) trees.pop_back();
+    return trees.front().second;
+}
+
+}  // namespace anamorph

@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: Apache-2.0
+// The surfaces of the operation drape: their parameters and files.
+#pragma once
+
+#include <memory>
+#include <mutex>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "anamorph/drape/drape.h"
+#include "anamorph/operation/operation.h"
+
+namespace anamorph {
+
+/// The rows of a surface, but for how it is turned and moved.
+ParameterTable drape_surface_rows();
+
+/// What an operation's files say of a surface, read once for all its frames.
+class DrapeSurfaces {
+  public:
+    /// `aspect`: width over height of the picture. Throws Error.
+    DrapeSurfaces(const OperationInput& input, double aspect);
+
+    /// What in the files is no number, in words; empty where there is nothing.
+    const std::string& missing() const { return m_missing; }
+    /// The surface of a frame's values. Throws Error.
+    SurfaceSum sum_of(const ParameterValues& values) const;
+    /// Its patches, which frames share as long as the surface stays.
+    std::shared_ptr<SharedTree> tree_of(const SurfaceSum& sum) const;
+
+  private:
+    struct Kept {
+        std::mutex mutex;
+        std::vector<std::pair<SurfaceSum, std::shared_ptr<SharedTree>>> trees;  ///< the last one first
+    };
+
+    double m_aspect;
+    SurfaceSum m_files;
+    std::string m_missing;
+    std::unique_ptr<Kept> m_kept = std::make_unique<Kept>();
+};
+
+}  // namespace anamorph

@@ -1,0 +1,412 @@
+// SPDX-License-Identifier: Apache-2.0
+// Surfaces that are sampled, raised, summed and moved by many deformations: their formulas, their bounds, and that pictures
+// on them keep the tolerance.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <random>
+
+#include "anamorph/deform/deformation_reach.h"
+#include "drape_oracle.h"
+#include "drape_scene.h"
+
+namespace anamorph {
+namespace {
+
+using test::number_of;
+using test::Real;
+using test::Scene;
+using test::Shown;
+using test::Vector;
+
+constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
+
+/// The cubic of Catmull and Rom through numbers at the middles of texels, Lagrange's form of each quarter: along a line of
+/// any numbers, which goes on straight at its ends.
+Real cubic_along(const std::function<Real(int)>& texel, int count, Real place) {
+    const std::function<Real(int)> at = [&](int i) -> Real {
+        if (count == 1) return texel(0);
+        if (i < 0) return texel(0) + i * (texel(1) - texel(0));
+        if (i >= count) return texel(count - 1) + (i - count + 1) * (texel(count - 1) - texel(count - 2));
+        return texel(i);
+    };
+    const Real x = place * count - Real(0.5);
+    const int i = std::clamp(static_cast<int>(std::floor(x)), -1, count - 1);
+    const Real t = x - i, a = at(i - 1), b = at(i), c = at(i + 1), d = at(i + 2);
+    return b + t / 2 * (c - a + t * (2 * a - 5 * b + 4 * c - d + t * (3 * (b - c) + d - a)));
+}
+
+/// A field of texels, interpolated in long double.
+struct OracleField {
+    std::vector<float> texels;
+    Size size;
+    int channels;
+
+    Real operator()(int channel, Real u, Real v) const {
+        return cubic_along(
+            [&](int j) {
+                return cubic_along(
+                    [&](int i) {
+                        return Real(
+                            texels[static_cast<std::size_t>((j * size.width + i) * channels + channel)]);
+                    },
+                    size.width, u);
+            },
+            size.height, v);
+    }
+};
+
+OracleField noise(std::mt19937& random, const Size& size, int channels) {
+    std::uniform_real_distribution<float> uniform(-1, 1);
+    OracleField field{{}, size, channels};
+    for (int i = 0; i < size.width * size.height * channels; ++i) field.texels.push_back(uniform(random));
+    return field;
+}
+
+constexpr Size kSizes[] = {{1, 1}, {1, 9}, {2, 3}, {7, 5}, {40, 61}, {200, 3}};
+
+TEST(SampledField, IsTheCubicOfCatmullAndRom) {
+    constexpr unsigned kSeed = 21;
+    SCOPED_TRACE(testing::Message() << "seed " << kSeed);
+    std::mt19937 random(kSeed);
+    std::uniform_real_distribution<double> uniform(0, 1);
+    for (const Size& size : kSizes)
+        for (const int channels : {1, 3}) {
+            const OracleField oracle = noise(random, size, channels);
+            const SampledField field(oracle.texels, size, channels);
+            for (int i = 0; i < 300; ++i) {
+                const double u = i == 0 ? 0 : i == 1 ? 1 : uniform(random), v = i < 2 ? i : uniform(random);
+                double is[3];
+                Interval about[3];
+                field.read(u, v, is);
+                field.read(Interval(u), Interval(v), about);
+                for (int c = 0; c < channels; ++c) {
+                    const Real truth = oracle(c, u, v);
+                    // Texels that go on at the edges are floats.
+                    EXPECT_NEAR(is[c], static_cast<double>(truth), 1e-6);
+                    EXPECT_TRUE(about[c].contains(is[c]));
+                    EXPECT_LT(about[c].hi - about[c].lo, 1e-10);
+                }
+            }
+        }
+}
+
+TEST(SampledField, RangesHoldValuesAndDifferences) {
+    constexpr unsigned kSeed = 22;
+    SCOPED_TRACE(testing::Message() << "seed " << kSeed);
+    std::mt19937 random(kSeed);
+    std::uniform_real_distribution<double> uniform(0, 1);
+    using J = Jet<Interval, 2>;
+    for (const Size& size : kSizes) {
+        const OracleField oracle = noise(random, size, 1);
+        const SampledField field(oracle.texels, size, 1);
+        for (int n = 0; n < 400; ++n) {
+            const double side_u = std::ldexp(1.0, -(n % 12)), side_v = std::ldexp(1.0, -(n / 12 % 12)),
+                         u = (1 - side_u) * uniform(random), v = (1 - side_v) * uniform(random);
+            J range;
+            field.read(J::variable({u, u + side_u}, 1.0, 0.0), J::variable({v, v + side_v}, 0.0, 1.0),
+                       &range);
+            const Real h = side_u / 64, k = side_v / 64;
+            for (int m = 0; m < 10; ++m) {
+                const Real s = u + h + (side_u - 2 * h) * Real(uniform(random)),
+                           t = v + k + (side_v - 2 * k) * Real(uniform(random));
+                const auto f = [&](int i, int j) { return oracle(0, s + i * h, t + j * k); };
+                const Real is[6] = {f(0, 0),
+                                    (f(1, 0) - f(-1, 0)) / (2 * h),
+                                    (f(0, 1) - f(0, -1)) / (2 * k),
+                                    (f(1, 0) - 2 * f(0, 0) + f(-1, 0)) / (2 * h * h),
+                                    (f(1, 1) - f(1, -1) - f(-1, 1) + f(-1, -1)) / (4 * h * k),
+                                    (f(0, 1) - 2 * f(0, 0) + f(0, -1)) / (2 * k * k)};
+                const Real steps[6] = {1, h, k, h * h, h * k, k * k};
+                for (int c = 0; c < 6; ++c) {
+                    // Texels that go on at the edges are floats.
+                    const Real slack = 2e-6L / steps[c];
+                    EXPECT_LE(range.c[c].lo - slack, is[c]) << c << " " << side_u << " " << side_v;
+                    EXPECT_GE(range.c[c].hi + slack, is[c]) << c << " " << side_u << " " << side_v;
+                }
+            }
+        }
+    }
+}
+
+TEST(SampledField, RangesOfAPlaneAreThoseOfAPlane) {
+    // What is linear does not bend, over any box, whatever its slope.
+    const Size size{50, 30};
+    std::vector<float> texels;
+    for (int y = 0; y < size.height; ++y)
+        for (int x = 0; x < size.width; ++x) texels.push_back(static_cast<float>(3 * x - 2 * y));
+    const SampledField field(texels, size, 1);
+    using J = Jet<Interval, 2>;
+    for (const double side : {1.0, 0.5, 0.11, 0.01, 1e-4, 1e-9}) {
+        J range;
+        field.read(J::variable({0.3, 0.3 + side * 0.7}, 1.0, 0.0),
+                   J::variable({0.2, 0.2 + side * 0.8}, 0.0, 1.0), &range);
+        EXPECT_NEAR(range.c[1].lo, 150, 1e-6);
+        EXPECT_NEAR(range.c[1].hi, 150, 1e-6);
+        EXPECT_NEAR(range.c[2].lo, -60, 1e-6);
+        EXPECT_LT(magnitude(range.c[3]), 1e-3);
+        EXPECT_LT(magnitude(range.c[4]), 1e-3);
+        EXPECT_LT(magnitude(range.c[5]), 1e-3);
+    }
+}
+
+TEST(SampledField, SmoothingKeepsMeansAndLeavesOutWhatIsNoNumber) {
+    std::vector<float> texels(41 * 31, 0.5f);
+    EXPECT_THAT(smoothed(texels, {41, 31}, 3), testing::Each(testing::FloatNear(0.5f, 1e-6f)));
+    texels[15 * 41 + 20] = kNaN;
+    const std::vector<float> with = smoothed(texels, {41, 31}, 3);
+    for (std::size_t i = 0; i < with.size(); ++i)
+        if (i == 15 * 41 + 20)
+            EXPECT_TRUE(std::isnan(with[i]));
+        else
+            EXPECT_NEAR(with[i], 0.5f, 1e-6f);
+    // A single bright texel becomes the Gaussian.
+    std::vector<float> point(41 * 31, 0.0f);
+    point[15 * 41 + 20] = 1;
+    const std::vector<float> spread = smoothed(point, {41, 31}, 2);
+    EXPECT_NEAR(spread[15 * 41 + 23] / spread[15 * 41 + 20], std::exp(-9 / 8.0), 1e-4);
+}
+
+/// The points of a picture on a surface are seen within the tolerance. Returns the number of pixels that show it.
+int expect_in_place(const Scene& scene, double tol, const std::function<Vector(Real, Real)>& surface) {
+    DrapeOptions options;
+    options.tol = tol;
+    const std::vector<float> points = Shown(scene, options).values(Output::stmap);
+    int seen = 0, over = 0;
+    for (int y = 0; y < scene.screen.height; ++y)
+        for (int x = 0; x < scene.screen.width; ++x) {
+            const auto k = static_cast<std::size_t>(y * scene.screen.width + x);
+            if (points[2 * k] < 0) continue;
+            ++seen;
+            const test::OracleSight at =
+                test::oracle_sight(scene.pose, scene.screen, surface(points[2 * k], points[2 * k + 1]));
+            // Points are floats: 2^-25 of a picture that is a few hundred pixels large, on steep surfaces.
+            over += !(std::hypot(at.x - (x + 0.5L), at.y - (y + 0.5L)) <= tol + 2e-3L);
+        }
+    EXPECT_EQ(over, 0);
+    return seen;
+}
+
+TEST(DrapedSurface, SampledPositionsAreSeenWithinTheTolerance) {
+    constexpr unsigned kSeed = 23;
+    SCOPED_TRACE(testing::Message() << "seed " << kSeed);
+    std::mt19937 random(kSeed);
+    std::uniform_real_distribution<float> uniform(-0.02f, 0.02f);
+    for (const Size& size : {Size{30, 20}, Size{3, 40}, Size{1, 1}}) {
+        // Half a cylinder, crumpled.
+        OracleField field{{}, size, 3};
+        for (int y = 0; y < size.height; ++y)
+            for (int x = 0; x < size.width; ++x) {
+                const double turn = ((x + 0.5) / size.width - 0.5) * kPi;
+                field.texels.insert(field.texels.end(),
+                                    {static_cast<float>(0.5 * std::sin(turn)) + uniform(random),
+                                     static_cast<float>(0.5 - (y + 0.5) / size.height) + uniform(random),
+                                     static_cast<float>(0.5 * std::cos(turn)) + uniform(random)});
+            }
+        SurfaceSum sum;
+        sum.parts = {{surface_names().size(), 1}};
+        sum.positions = std::make_shared<SampledField>(field.texels, size, 3);
+        for (const double tol : {1.0, 0.125, 0.02}) {
+            Scene scene;
+            scene.own = make_surface(sum);
+            scene.pose.position = {0.5, 0.6, 1.6};
+            const int seen = expect_in_place(scene, tol, [&](Real u, Real v) {
+                return Vector{field(0, u, v), field(1, u, v), field(2, u, v)};
+            });
+            EXPECT_GE(seen, size.width > 1 ? 3000 : 0);
+        }
+    }
+}
+
+/// A surface's unit normal on the side that it is raised to, by differences.
+Vector oracle_normal(const std::string& name, const SurfaceShape& shape, Real u, Real v) {
+    const auto at = [&](Real s, Real t) { return test::oracle_surface(name, shape, s, t); };
+    constexpr Real h = 1e-6L;
+    const Vector a = at(u - h, v), b = at(u + h, v), c = at(u, v - h), d = at(u, v + h);
+    const Real s[3] = {b[0] - a[0], b[1] - a[1], b[2] - a[2]}, t[3] = {d[0] - c[0], d[1] - c[1], d[2] - c[2]};
+    // v runs down, so that t x s is towards the viewer of the flat picture, and outwards from bodies.
+    Vector n{t[1] * s[2] - t[2] * s[1], t[2] * s[0] - t[0] * s[2], t[0] * s[1] - t[1] * s[0]};
+    const Real size = std::hypot(std::hypot(n[0], n[1]), n[2]);
+    for (Real& x : n) x /= size;
+    return n;
+}
+
+TEST(DrapedSurface, ReliefsAreRaisedAlongTheNormal) {
+    constexpr unsigned kSeed = 24;
+    SCOPED_TRACE(testing::Message() << "seed " << kSeed);
+    std::mt19937 random(kSeed);
+    std::uniform_real_distribution<double> uniform(0.02, 0.98);
+    const OracleField heights = noise(random, {9, 11}, 1);
+    SurfaceSum sum;
+    sum.heights = std::make_shared<SampledField>(heights.texels, heights.size, 1);
+    sum.height_scale = 0.04;
+    sum.shape.angle = 300;
+    sum.shape.aspect = 1.2;
+    sum.shape.direction = 30;
+    for (std::size_t which = 0; which < surface_names().size(); ++which) {
+        const std::string& name = surface_names()[which];
+        EXPECT_EQ(has_smooth_normals(which), name != "page_turn");
+        if (!has_smooth_normals(which)) continue;
+        sum.parts = {{which, 1}};
+        const auto point = [&](Real u, Real v) {
+            Vector p = test::oracle_surface(name, sum.shape, u, v);
+            const Vector n = oracle_normal(name, sum.shape, u, v);
+            for (std::size_t k = 0; k < 3; ++k) p[k] += Real(sum.height_scale) * heights(0, u, v) * n[k];
+            return p;
+        };
+        const auto surface = make_surface(sum);
+        for (int i = 0; i < 100; ++i) {
+            const double u = uniform(random), v = uniform(random);
+            const glm::dvec3 p = surface->position(u, v);
+            for (int k = 0; k < 3; ++k)
+                EXPECT_NEAR(p[k], static_cast<double>(point(u, v)[static_cast<std::size_t>(k)]), 1e-7)
+                    << name;
+        }
+        Scene scene;
+        scene.own = surface;
+        scene.pose.position = {0.5, 0.6, 1.6};
+        EXPECT_GT(expect_in_place(scene, 0.125, point), 2000) << name;
+    }
+}
+
+TEST(DrapedSurface, SumsAreThoseOfTheirPartsPointByPoint) {
+    SurfaceSum sum;
+    sum.shape.angle = 360;
+    sum.shape.direction = 20;
+    const std::vector<std::string> names = {"plane", "sphere", "page_turn", "torus"};
+    const double weights[] = {0.7, 0.5, 0.3, -0.5};
+    sum.parts.clear();
+    for (std::size_t i = 0; i < names.size(); ++i) sum.parts.push_back({number_of(names[i]), weights[i]});
+    const auto point = [&](Real u, Real v) {
+        Vector p{};
+        for (std::size_t i = 0; i < names.size(); ++i)
+            for (std::size_t k = 0; k < 3; ++k)
+                p[k] += weights[i] * test::oracle_surface(names[i], sum.shape, u, v)[k];
+        return p;
+    };
+    Scene scene;
+    scene.own = make_surface(sum);
+    scene.pose.position = {0.5, 0.6, 1.9};
+    for (const double tol : {0.5, 0.05}) EXPECT_GT(expect_in_place(scene, tol, point), 2000);
+}
+
+TEST(Drape, WhatIsNoNumberIsAHoleAndNoMore) {
+    // A plane of 20 x 20 samples that fills the screen, one of which is missing: up to two texels about it.
+    const Size size{20, 20};
+    for (const float bad : {kNaN, HUGE_VALF, 1e13f}) {
+        std::vector<float> texels;
+        for (int y = 0; y < 20; ++y)
+            for (int x = 0; x < 20; ++x)
+                texels.insert(texels.end(), {(x + 0.5f) / 20 - 0.5f, 0.5f - (y + 0.5f) / 20, 0});
+        texels[3 * (8 * 20 + 12) + 1] = bad;
+        SurfaceSum sum;
+        sum.parts = {{surface_names().size(), 1}};
+        const auto field = std::make_shared<SampledField>(texels, size, 3);
+        EXPECT_EQ(field->missing_texels(), 1u);
+        EXPECT_EQ(field->first_missing().x, 12);
+        EXPECT_EQ(field->first_missing().y, 8);
+        sum.positions = field;
+        Scene scene;
+        scene.own = make_surface(sum);
+        scene.pose.perspective = false;
+        scene.pose.extent = 1;
+        scene.screen = {200, 200};
+        for (const double tol : {1.0, 0.05}) {
+            DrapeOptions options;
+            options.tol = tol;
+            const std::vector<float> covered = Shown(scene, options).coverage();
+            int holes = 0, wrong = 0;
+            for (int y = 1; y < 199; ++y)
+                for (int x = 1; x < 199; ++x) {
+                    const double from =
+                        std::max(std::fabs((x + 0.5) / 10 - 12.5), std::fabs((y + 0.5) / 10 - 8.5));
+                    const bool hole = covered[static_cast<std::size_t>(y * 200 + x)] == 0;
+                    holes += hole;
+                    // A little of the neighbouring cells goes with it.
+                    wrong += from < 1.9 ? !hole : from > 2.2 ? hole : 0;
+                }
+            EXPECT_EQ(wrong, 0);
+            EXPECT_GT(holes, 1400);
+        }
+    }
+}
+
+TEST(Drape, ASurfaceThatIsMissingIsNotSeen) {
+    const std::vector<float> texels(3 * 16, kNaN);
+    SurfaceSum sum;
+    sum.parts = {{surface_names().size(), 1}};
+    sum.positions = std::make_shared<SampledField>(texels, Size{4, 4}, 3);
+    Scene scene;
+    scene.own = make_surface(sum);
+    EXPECT_THAT(Shown(scene).coverage(), testing::Each(0.0f));
+}
+
+TEST(DeformationReach, WhatIsFarAddsNoMoreThanItSays) {
+    constexpr unsigned kSeed = 25;
+    SCOPED_TRACE(testing::Message() << "seed " << kSeed);
+    std::mt19937 random(kSeed);
+    std::uniform_real_distribution<double> uniform(0, 1);
+    std::vector<Deformation> list(200);
+    for (Deformation& d : list) {
+        d.center = {uniform(random), uniform(random)};
+        d.extent = {std::exp(-12 * uniform(random)), std::exp(-12 * uniform(random))};
+        d.vector = {uniform(random), -uniform(random), 1e3 * uniform(random)};
+        if (uniform(random) < 0.3) d.kernel = DeformationKernel::wendland_c2;
+    }
+    const DeformationReach reach(list);
+    using J = Jet<long double, 2>;
+    double sharpest = 0;
+    for (int i = 0; i < 2000; ++i) {
+        const Deformation& about = list[static_cast<std::size_t>(i) % list.size()];
+        // Also just beyond the boxes of some.
+        const double far = i % 3 ? 9 : 30,
+                     u = about.center.x + far * about.extent.x * (uniform(random) - 0.5),
+                     v = about.center.y + far * about.extent.y * (uniform(random) - 0.5);
+        std::vector<bool> near(list.size());
+        reach.each_near(Interval(u), Interval(v), [&](std::size_t k) { near[k] = true; });
+        std::array<long double, 6> rest{};
+        for (std::size_t k = 0; k < list.size(); ++k) {
+            if (near[k]) continue;
+            const Deformation& d = list[k];
+            const J x = (J::variable(u, 1, 0) - J(d.center.x)) * J(1 / Real(d.extent.x)),
+                    y = (J::variable(v, 0, 1) - J(d.center.y)) * J(1 / Real(d.extent.y));
+            if (d.kernel == DeformationKernel::wendland_c2) {
+                EXPECT_GE(std::hypot(x.c[0], y.c[0]), 1);
+                continue;
+            }
+            const J f = exp(-(x * x + y * y));
+            for (std::size_t c = 0; c < 6; ++c) rest[c] += std::fabs(d.vector.z * f.c[c]);
+        }
+        for (const long double r : rest) {
+            EXPECT_LE(r, reach.far().z);
+            sharpest = std::max(sharpest, static_cast<double>(r) / reach.far().z);
+        }
+    }
+    EXPECT_LT(reach.far().z, 1e-20);
+    EXPECT_GT(sharpest, 0) << "nothing was far";
+}
+
+TEST(DeformationReach, FewOfManyAreNear) {
+    std::mt19937 random(26);
+    std::uniform_real_distribution<double> uniform(0, 1);
+    std::vector<Deformation> list(1000);
+    for (Deformation& d : list) {
+        d.center = {uniform(random), uniform(random)};
+        d.extent = glm::dvec2(0.003);
+        d.vector = {0, 0, 1};
+    }
+    const DeformationReach reach(list);
+    int near = 0;
+    for (int i = 0; i < 100; ++i)
+        reach.each_near(Interval(uniform(random)), Interval(uniform(random)), [&](std::size_t) { ++near; });
+    // Each is reached by a box of .06 x .06: some four at a point.
+    EXPECT_LT(near, 100 * 20);
+    EXPECT_GT(near, 100);
+}
+
+}  // namespace
+}  // namespace anamorph
