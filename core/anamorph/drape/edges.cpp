@@ -37,6 +37,15 @@ class Seen {
     std::uint32_t leaf(double facet) const {
         return m_map.facets().facets[static_cast<std::size_t>(facet)].leaf;
     }
+    /// Have two facets a corner in common?
+    bool touch(double a, double b) const {
+        const auto& facets = m_map.facets().facets;
+        const auto& p = facets[static_cast<std::size_t>(a)].corner;
+        const auto& q = facets[static_cast<std::size_t>(b)].corner;
+        return std::any_of(std::begin(p), std::end(p), [&](std::uint32_t corner) {
+            return corner == q[0] || corner == q[1] || corner == q[2];
+        });
+    }
     Step step(int x, int y, int dx, int dy) const {
         const std::size_t a = m_pixels.index(x, y), b = m_pixels.index(x + dx, y + dy);
         return {m_pixels.u[b] - m_pixels.u[a], m_pixels.v[b] - m_pixels.v[a]};
@@ -47,7 +56,7 @@ class Seen {
         const double here = facet(x, y), there = facet(x + dx, y + dy);
         if (here == there) return false;
         if (here == SeenPixels::kNone || there == SeenPixels::kNone) return true;
-        if (leaf(here) == leaf(there)) return false;
+        if (leaf(here) == leaf(there) || touch(here, there)) return false;
         const auto jacobian = [&](double f) {
             return m_map.jacobian_of(m_map.facets().facets[static_cast<std::size_t>(f)], x + dx / 2.0 + 0.5,
                                      y + dy / 2.0 + 0.5);
@@ -106,17 +115,21 @@ std::vector<EdgePixel> edges_in(const DrapeMap& map, const SeenRegion& region, c
     for (int top = on_grid(part.y0); top < part.y1; top += kCell)
         for (int left = on_grid(part.x0); left < part.x1; left += kCell) {
             const Box cell = intersection({left, top, left + kCell, top + kCell}, part);
-            bool drawn = false;
+            const std::size_t first = edges.size();
+            Box around{cell.x1, cell.y1, cell.x0, cell.y0};
             for (int y = cell.y0; y < cell.y1; ++y)
                 for (int x = cell.x0; x < cell.x1; ++x) {
                     if (!seen.edge_at(x, y)) continue;
-                    if (!drawn)
-                        map.raster().draw({cell.x0 * kEdgeSamples, cell.y0 * kEdgeSamples,
-                                           cell.x1 * kEdgeSamples, cell.y1 * kEdgeSamples},
-                                          samples, kEdgeSamples);
-                    drawn = true;
-                    edges.push_back({x, y, parts_of(map, samples, x, y)});
+                    edges.push_back({x, y, {}});
+                    around = {std::min(around.x0, x), std::min(around.y0, y), std::max(around.x1, x + 1),
+                              std::max(around.y1, y + 1)};
                 }
+            if (edges.size() == first) continue;
+            map.raster().draw({around.x0 * kEdgeSamples, around.y0 * kEdgeSamples, around.x1 * kEdgeSamples,
+                               around.y1 * kEdgeSamples},
+                              samples, kEdgeSamples);
+            for (std::size_t i = first; i < edges.size(); ++i)
+                edges[i].parts = parts_of(map, samples, edges[i].x, edges[i].y);
         }
     return edges;
 }

@@ -34,15 +34,16 @@ double longest(const VectorRange& r) {
     return std::sqrt(squared);
 }
 
-/// By the mean value theorem: the surface is near the middle of the patch, as far as its slopes let it.
-void tighten(VectorRange& position, const SurfaceRange& middle, const SurfacePatch& patch) {
-    const VectorRange centre = range_of(middle, 0, 1);
+/// By the mean value theorem: the surface is near the middle of the patch, as far as its slopes let it. `middle`: where
+/// that is, `off` or less away.
+void tighten(VectorRange& position, const glm::dvec3& middle, double off, const SurfacePatch& patch) {
     for (int i = 0; i < 3; ++i) {
         const double along_u = (std::fabs(patch.by_u.middle[i]) + patch.by_u.radius[i]) * patch.side_u() / 2,
                      along_v = (std::fabs(patch.by_v.middle[i]) + patch.by_v.radius[i]) * patch.side_v() / 2;
-        const double radius = centre.radius[i] + (along_u + along_v) * (1 + kRounding);
+        const double radius =
+            off + (along_u + along_v + std::fabs(middle[i])) * kRounding + along_u + along_v;
         if (!(radius < position.radius[i])) continue;
-        position.middle[i] = centre.middle[i];
+        position.middle[i] = middle[i];
         position.radius[i] = radius;
     }
 }
@@ -93,12 +94,12 @@ SurfacePatch SurfaceTree::bounded(std::uint64_t iu, std::uint64_t iv, int level_
     patch.by_uu = range_of(range, 3, 2);
     patch.by_uv = range_of(range, 4, 1);
     patch.by_vv = range_of(range, 5, 2);
-    tighten(patch.position, m_surface->range(u + width / 2, v + height / 2), patch);
     // It grows with the magnitudes that a formula meets, which are largest at corners.
+    patch.rounding = m_surface->rounding(u + width / 2, v + height / 2);
+    tighten(patch.position, m_surface->position(u + width / 2, v + height / 2), patch.rounding, patch);
     for (const double s : {u, u + width})
         for (const double t : {v, v + height})
             patch.rounding = std::max(patch.rounding, m_surface->rounding(s, t));
-    patch.rounding = std::max(patch.rounding, m_surface->rounding(u + width / 2, v + height / 2));
     // Across the direction that bends more; where neither bends, or that is not known, across the longer side.
     const double bends_u = longest(patch.by_uu) * width * width,
                  bends_v = longest(patch.by_vv) * height * height;

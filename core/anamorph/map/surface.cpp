@@ -2,6 +2,8 @@
 #include "anamorph/map/surface.h"
 
 #include <algorithm>
+#include <cmath>
+#include <glm/common.hpp>
 
 #include "anamorph/deform/deformation_reach.h"
 #include "anamorph/map/surface/cylinder.h"
@@ -39,6 +41,57 @@ Jet<Interval, 2> wendland_range(const Deformation& d, const Interval& u, const I
     return f;
 }
 
+/// What encloses g(x) = e^(-x^2), g' = -2 x g and g''/2 = (2 x^2 - 1) g over an interval: their values at its ends and at
+/// the extrema within, +-1/sqrt(2) of g', and 0 and +-sqrt(3/2) of g''.
+struct GaussianRange {
+    Interval value, slope, bend;
+
+    explicit GaussianRange(const Interval& x) {
+        *this = at(x.lo);
+        const GaussianRange end = at(x.hi);
+        value = hull(value, end.value);
+        slope = hull(slope, end.slope);
+        bend = hull(bend, end.bend);
+        // A little beyond the numbers below, and beyond where they are met.
+        const auto meets = [&](double place) { return x.lo <= place + 1e-12 && x.hi >= place - 1e-12; };
+        if (meets(0)) {
+            value = hull(value, 1);
+            bend = hull(bend, -1);
+        }
+        if (meets(-std::sqrt(0.5))) slope.hi = std::max(slope.hi, 0.857763884961);
+        if (meets(std::sqrt(0.5))) slope.lo = std::min(slope.lo, -0.857763884961);
+        if (meets(-std::sqrt(1.5)) || meets(std::sqrt(1.5))) bend.hi = std::max(bend.hi, 0.446260320297);
+    }
+
+  private:
+    GaussianRange() = default;
+    static GaussianRange at(double x) {
+        GaussianRange r;
+        // The square is half a unit of 2^-52 off, which the exponential multiplies by itself.
+        const double squared = x * x, g = std::exp(-squared);
+        r.value = g > 4 * interval_detail::kSmallest
+                      ? interval_detail::widen(g, g, (squared + 16) * interval_detail::kUlp)
+                      : Interval(0, 8 * interval_detail::kSmallest);
+        r.slope = r.value * (-2 * x);
+        r.bend = r.value * Interval(2 * squared - 1 - (squared + 1) * 0x1p-50,
+                                    2 * squared - 1 + (squared + 1) * 0x1p-50);
+        return r;
+    }
+};
+
+/// What influence() encloses over a box of (u, v), for the Gaussian, a product of two of one variable.
+Jet<Interval, 2> gaussian_range(const Deformation& d, const Interval& u, const Interval& v) {
+    const Interval a = Interval(1) / Interval(d.extent.x), b = Interval(1) / Interval(d.extent.y);
+    const GaussianRange x((u - d.center.x) * a), y((v - d.center.y) * b);
+    Jet<Interval, 2> f(x.value * y.value);
+    f.c[1] = x.slope * y.value * a;
+    f.c[2] = x.value * y.slope * b;
+    f.c[3] = x.bend * y.value * square(a);
+    f.c[4] = x.slope * y.slope * (a * b);
+    f.c[5] = x.value * y.bend * square(b);
+    return f;
+}
+
 /// influence(), and what encloses it.
 template <class T>
 T influence_of(const Deformation& d, const T& u, const T& v) {
@@ -47,7 +100,7 @@ T influence_of(const Deformation& d, const T& u, const T& v) {
 /// Of the variables u and v themselves.
 Jet<Interval, 2> influence_of(const Deformation& d, const Jet<Interval, 2>& u, const Jet<Interval, 2>& v) {
     return d.kernel == DeformationKernel::wendland_c2 ? wendland_range(d, u.value(), v.value())
-                                                      : influence(d, u, v);
+                                                      : gaussian_range(d, u.value(), v.value());
 }
 
 /// What is added up, read with the numbers that a DrapedSurface is read with. Jets are of u and v, the variables
@@ -144,13 +197,20 @@ Interval box_of(const Jet<T, N>& a) {
 }
 
 /// What is not known but for its size, where a number says so.
-void add_unknown(double&, double) {}
-void add_unknown(Jet<double, 1>&, double) {}
-void add_unknown(Interval& a, double size) {
-    a = a + Interval(-size, size);
+template <class T>
+void add_unknown(SurfacePoint<T>&, const glm::dvec3&) {}
+Interval unknown(double size) {
+    return {-size, size};
 }
-void add_unknown(Jet<Interval, 2>& a, double size) {
-    for (Interval& c : a.c) add_unknown(c, size);
+void add_unknown(SurfacePoint<Interval>& p, const glm::dvec3& size) {
+    p = {p.x + unknown(size.x), p.y + unknown(size.y), p.z + unknown(size.z)};
+}
+void add_unknown(SurfacePoint<Jet<Interval, 2>>& p, const glm::dvec3& size) {
+    for (int k = 0; k < Jet<Interval, 2>::kSize; ++k) {
+        p.x.c[k] += unknown(size.x);
+        p.y.c[k] += unknown(size.y);
+        p.z.c[k] += unknown(size.z);
+    }
 }
 
 class SummedSurface final : public DrapedSurface {
@@ -203,7 +263,8 @@ class SummedSurface final : public DrapedSurface {
     template <class T>
     static SurfacePoint<T> moved(const SurfacePoint<T>& p, const Deformation& d, const T& u, const T& v) {
         const T share = influence_of(d, u, v);
-        return {p.x + share * d.vector.x, p.y + share * d.vector.y, p.z + share * d.vector.z};
+        const auto add = [&](const T& a, double k) { return k == 0 ? a : T(a + share * k); };
+        return {add(p.x, d.vector.x), add(p.y, d.vector.y), add(p.z, d.vector.z)};
     }
     template <class T>
     SurfacePoint<T> point(const T& u, const T& v) const {
@@ -213,10 +274,23 @@ class SummedSurface final : public DrapedSurface {
             p = moved(p, m_deformations[i], u, v);
             ++near;
         });
-        if (near == m_deformations.size()) return p;
-        add_unknown(p.x, m_reach.far().x);
-        add_unknown(p.y, m_reach.far().y);
-        add_unknown(p.z, m_reach.far().z);
+        if (near < m_deformations.size()) add_unknown(p, m_reach.far());
+        return p;
+    }
+    /// How far point() in double may be from the exact point, for rounding() alone: where deformations are concerned, the
+    /// point itself is not known. x and y of a kernel are off by 3 units of 2^-53 of themselves, r^2 by 8, and, with what
+    /// exp or the polynomial lose, F by less than 16 (r^2 + 1) F; each sum, by one unit of what is added up.
+    SurfacePoint<Interval> point(const Interval& u, const Interval& v) const {
+        SurfacePoint<Interval> p = sum_of_parts(u, v);
+        glm::dvec3 lost(0.0), added(magnitude(p.x), magnitude(p.y), magnitude(p.z));
+        m_reach.each_near(u, v, [&](std::size_t i) {
+            const Deformation& d = m_deformations[i];
+            const double x = (u.lo - d.center.x) / d.extent.x, y = (v.lo - d.center.y) / d.extent.y;
+            const glm::dvec3 moved = glm::abs(d.vector) * kernel_value(d.kernel, x, y);
+            added += moved;
+            lost += added + moved * (16 * (x * x + y * y + 1));
+        });
+        add_unknown(p, lost * 0x1p-53 + m_reach.far());
         return p;
     }
 

@@ -1,0 +1,142 @@
+// SPDX-License-Identifier: Apache-2.0
+// Pictures on surfaces, in stock hosts: what lies behind them, surfaces from files, and films.
+#include <OpenImageIO/imagebufalgo.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "anamorph/oiio_ops.h"
+#include "host.h"
+
+namespace anamorph {
+namespace {
+
+using namespace testing_oiio;
+using OIIO::ImageBuf;
+using OIIO::ImageSpec;
+using testing::HasSubstr;
+
+class DrapeFiles : public InFolder {
+  protected:
+    void SetUp() override {
+        InFolder::SetUp();
+        OIIO::ImageCache::create(true)->invalidate_all(true);
+        write_panorama("page.exr", 48, 32);
+    }
+};
+
+ImageBuf plain(int width, int height, const std::vector<float>& color) {
+    ImageBuf image(ImageSpec(width, height, static_cast<int>(color.size()), OIIO::TypeFloat));
+    OIIO::ImageBufAlgo::fill(image, color);
+    return image;
+}
+
+/// A picture of numbers by a function of the texel.
+template <class Value>
+void write_samples(const std::string& name, int width, int height, int channels, const Value& value) {
+    ImageBuf image(ImageSpec(width, height, channels, OIIO::TypeFloat));
+    for (int y = 0; y < height; ++y)
+        for (int x = 0; x < width; ++x) {
+            float numbers[3];
+            value(x, y, numbers);
+            image.setpixel(x, y, numbers);
+        }
+    write_image(image, name);
+}
+
+TEST_F(DrapeFiles, AlphaLiesOverBackgroundAndBackdrop) {
+    // The flat picture fills the screen: .25 at alpha .5 over what is behind.
+    write_image(plain(20, 10, {0.25f, 0.25f, 0.25f, 0.5f}), "veil.exr");
+    write_image(plain(7, 5, {0.5f, 0.5f, 0.5f}), "wall.exr");
+    const auto middle = [](const std::string& name) {
+        const std::vector<float> all = read_floats(name);
+        const float* at = &all[(5 * 20 + 10) * 4];
+        return std::vector<float>(at, at + 4);
+    };
+    EXPECT_THAT(middle("veil.exr.drape"), testing::ElementsAre(0.25f, 0.25f, 0.25f, 0.5f));
+    EXPECT_THAT(middle("veil.exr.drape?background=1,0.5,0"), testing::ElementsAre(0.75f, 0.5f, 0.25f, 1.0f));
+    EXPECT_THAT(middle("veil.exr.drape?backdrop=wall.exr"), testing::ElementsAre(0.5f, 0.5f, 0.5f, 1.0f));
+    const ImageBuf veil("veil.exr"), wall("wall.exr");
+    EXPECT_EQ(bytes(apply("drape", {&veil, &wall}, {})),
+              read_pixels("veil.exr.drape?backdrop=wall.exr").bytes);
+    write_image(plain(7, 5, {0.5f}), "gray.exr");
+    EXPECT_THAT(open_error("veil.exr.drape?backdrop=gray.exr"),
+                HasSubstr("backdrop has 1 channels besides alpha"));
+}
+
+TEST_F(DrapeFiles, SampledSurfacesAreThoseOfTheirFormulas) {
+    // Heights of a plane, and the positions of one: the same picture as the plane moved.
+    write_samples("flat.exr", 12, 8, 3, [](int x, int y, float* p) {
+        p[0] = 1.5f * ((static_cast<float>(x) + 0.5f) / 12 - 0.5f);
+        p[1] = 0.5f - (static_cast<float>(y) + 0.5f) / 8;
+        p[2] = 0.25f;
+    });
+    write_image(plain(9, 9, {0.5f}), "half.exr");
+    const std::string look = "&camera=0.3,0.4,2&output=stmap&tol=0.01";
+    const std::vector<float> moved = read_floats("page.exr.drape?move=0,0,0.25" + look);
+    EXPECT_LT(
+        largest_difference(read_floats("page.exr.drape?surface=positions&positions=flat.exr" + look), moved),
+        1e-3);
+    EXPECT_LT(
+        largest_difference(read_floats("page.exr.drape?height=half.exr&height_scale=0.5" + look), moved),
+        1e-3);
+    // Half of a plane at 0 and half of one at .5.
+    write_samples("far.exr", 2, 2, 3, [](int x, int y, float* p) {
+        p[0] = 1.5f * (static_cast<float>(x) / 2 - 0.25f);
+        p[1] = 0.25f - static_cast<float>(y) / 2;
+        p[2] = 0.5f;
+    });
+    EXPECT_LT(largest_difference(
+                  read_floats("page.exr.drape?blend=positions&weights=0.5&positions=far.exr" + look), moved),
+              1e-3);
+}
+
+TEST_F(DrapeFiles, WhatIsNoNumberIsNamed) {
+    write_samples("bad.exr", 16, 16, 3, [](int x, int y, float* p) {
+        p[0] = (static_cast<float>(x) + 0.5f) / 16 - 0.5f;
+        p[1] = 0.5f - (static_cast<float>(y) + 0.5f) / 16;
+        p[2] = x == 9 && y == 4 ? std::numeric_limits<float>::quiet_NaN() : 0;
+    });
+    const std::string name = "page.exr.drape?surface=positions&positions=bad.exr";
+    EXPECT_EQ(read_pixels(name).spec.get_string_attribute("anamorph:missing"),
+              "1 texels of positions, the first at 9,4");
+    const std::vector<float> covered = read_floats(name + "&output=coverage&size=64");
+    const auto holes = std::count(covered.begin(), covered.end(), 0.0f);
+    EXPECT_GT(holes, 100);
+    EXPECT_LT(holes, 64 * 43 / 2);
+}
+
+TEST_F(DrapeFiles, SaysWhatDoesNotGoTogether) {
+    write_image(plain(9, 9, {0.5f}), "half.exr");
+    for (const auto& [arguments, error] : std::initializer_list<std::pair<const char*, const char*>>{
+             {"surface=positions", "positions is not given"},
+             {"positions=page.exr", "positions is given: surface must be positions"},
+             {"surface=positions&positions=half.exr", "has 1 channels: must have 3"},
+             {"surface=page_turn&height=half.exr", "whose normals turn abruptly"},
+             {"blend=sphere", "weights=0 numbers: must be as many as surfaces in blend, 1"},
+             {"blend=cube&weights=1", "blend=cube: must be names of surfaces"},
+             {"height=none.exr", "none.exr"},
+             {"keys=none.json", "none.json"}})
+        EXPECT_THAT(open_error(std::string("page.exr.drape?") + arguments), HasSubstr(error)) << arguments;
+}
+
+TEST_F(DrapeFiles, KeyFramesAreAFilm) {
+    write_text("turn.json", R"({"keys": {"turn": [[0, 0.1], [3, 0.7]]}, "interpolation": "linear"})");
+    const std::string film = "page.exr.drape?surface=page_turn&keys=turn.json";
+    const auto input = open(film);
+    int frames = 0;
+    for (; input->seek_subimage(frames, 0); ++frames)
+        EXPECT_EQ(input->spec().get_int_attribute("anamorph:frame"), frames);
+    EXPECT_EQ(frames, 4);
+    EXPECT_EQ(read_pixels(film + "&frame=1"), read_pixels("page.exr.drape?surface=page_turn&turn=0.3"));
+    const Ran ran = run("oiiotool '" + film + "' --sisplit -o:all=1 f.%04d.exr");
+    ASSERT_EQ(ran.status, 0) << ran.text;
+    EXPECT_EQ(read_floats("f.0002.exr"), read_floats(film + "&frame=1"));
+    const ImageBuf page("page.exr");
+    EXPECT_EQ(bytes(drape(page, options({{"surface", "page_turn"}, {"keys", "turn.json"}, {"frame", "3"}}))),
+              read_pixels(film + "&frame=3").bytes);
+}
+
+}  // namespace
+}  // namespace anamorph
