@@ -92,7 +92,9 @@ TEST(BumpUnit, BilinearErrorFallsWithTheSquareOfTheSize) {
         // By x': theta'' = -x' / (pi (1 + x'^2)^2), at most .104; v'' = y' (2 x'^2 - 1) / (2 (1 + x'^2)^(5/2)), at most .5.
         const double h = 2.0 / (size - 2);
         EXPECT_LE(errors.max, h * h / 8 * std::hypot(0.104, 0.5) + 1e-6) << size;
-        if (last > 0) EXPECT_NEAR(last / errors.mean, 4, 0.5) << size;
+        if (last > 0) {
+            EXPECT_NEAR(last / errors.mean, 4, 0.5) << size;
+        }
         last = errors.mean;
     }
     BumpUnit small, large;

@@ -11,6 +11,7 @@
 #include "anamorph/parameter.h"
 #include "execution.h"
 #include "figure_data.h"
+#include "vtkDataObject.h"
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"
 #include "vtkPolyData.h"
@@ -63,7 +64,8 @@ anamorph::View vtkAnamorphFigureAlgorithm::ViewOf(vtkPolyData* figures) const {
 
 int vtkAnamorphFigureAlgorithm::RequestData(vtkInformation*, vtkInformationVector** inputs,
                                             vtkInformationVector* outputs) {
-    vtkPolyData *input = vtkPolyData::GetData(inputs[0]), *output = vtkPolyData::GetData(outputs);
+    vtkPolyData* input = vtkPolyData::GetData(inputs[0]);
+    vtkDataObject* output = vtkDataObject::GetData(outputs);
     const auto draw = [&] {
         anamorph_vtk::Execution execution(this);
         this->Draw(input, output, execution);

@@ -69,9 +69,9 @@ class ANAMORPHFILTERS_EXPORT vtkAnamorphFigureAlgorithm : public vtkPolyDataAlgo
 
     /// The view of these ellipsoids. Throws anamorph::Error naming the property that is out of its range.
     anamorph::View ViewOf(vtkPolyData* figures) const;
-    /// Throws anamorph::Error.
-    /// Writes the output. What it throws becomes an error message and an empty output.
-    virtual void Draw(vtkPolyData* input, vtkPolyData* output, anamorph_vtk::Execution& execution) = 0;
+    /// Writes the output, which is of the type that the filter says. What it throws becomes an error message and
+    /// an empty output.
+    virtual void Draw(vtkPolyData* input, vtkDataObject* output, anamorph_vtk::Execution& execution) = 0;
 
     int RequestData(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
 

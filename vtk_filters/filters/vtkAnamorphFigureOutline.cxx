@@ -71,7 +71,7 @@ void cut_out(const std::vector<anamorph::Connection>& connections, std::vector<O
 vtkAnamorphFigureOutline::vtkAnamorphFigureOutline() = default;
 vtkAnamorphFigureOutline::~vtkAnamorphFigureOutline() = default;
 
-void vtkAnamorphFigureOutline::Draw(vtkPolyData* input, vtkPolyData* output,
+void vtkAnamorphFigureOutline::Draw(vtkPolyData* input, vtkDataObject* output,
                                     anamorph_vtk::Execution& execution) {
     anamorph::kOutlineTolRow.check(this->Tolerance, "Tolerance");
     const anamorph_vtk::Bodies bodies(input);
@@ -126,7 +126,7 @@ void vtkAnamorphFigureOutline::Draw(vtkPolyData* input, vtkPolyData* output,
                 return std::vector<glm::dvec3>{glm::mix(stroke.line.from, stroke.line.to, arc.begin),
                                                glm::mix(stroke.line.from, stroke.line.to, arc.end)};
             });
-    writer.write(output);
+    writer.write(vtkPolyData::SafeDownCast(output));
 }
 
 void vtkAnamorphFigureOutline::PrintSelf(ostream& os, vtkIndent indent) {

@@ -67,7 +67,7 @@ class ANAMORPHFILTERS_EXPORT vtkAnamorphFigureOutline : public vtkAnamorphFigure
     vtkAnamorphFigureOutline();
     ~vtkAnamorphFigureOutline() override;
 
-    void Draw(vtkPolyData* input, vtkPolyData* output, anamorph_vtk::Execution& execution) override;
+    void Draw(vtkPolyData* input, vtkDataObject* output, anamorph_vtk::Execution& execution) override;
 
   private:
     vtkAnamorphFigureOutline(const vtkAnamorphFigureOutline&) = delete;

@@ -38,7 +38,7 @@ std::vector<Stick> sticks_from_joint_to_joint(const Bodies& bodies) {
 vtkAnamorphFigureSkeleton::vtkAnamorphFigureSkeleton() = default;
 vtkAnamorphFigureSkeleton::~vtkAnamorphFigureSkeleton() = default;
 
-void vtkAnamorphFigureSkeleton::Draw(vtkPolyData* input, vtkPolyData* output,
+void vtkAnamorphFigureSkeleton::Draw(vtkPolyData* input, vtkDataObject* output,
                                      anamorph_vtk::Execution& execution) {
     anamorph::kLevelOfDetailRow.check(this->LevelOfDetail, "LevelOfDetail");
     anamorph::kSphereTolRow.check(this->Tolerance, "Tolerance");
@@ -78,7 +78,7 @@ void vtkAnamorphFigureSkeleton::Draw(vtkPolyData* input, vtkPolyData* output,
             if (is_more_than_a_dot(body)) add({stick.from, stick.to}, body, 0);
         }
     }
-    writer.write(output);
+    writer.write(vtkPolyData::SafeDownCast(output));
 }
 
 void vtkAnamorphFigureSkeleton::PrintSelf(ostream& os, vtkIndent indent) {

@@ -60,7 +60,7 @@ class ANAMORPHFILTERS_EXPORT vtkAnamorphFigureSkeleton : public vtkAnamorphFigur
     vtkAnamorphFigureSkeleton();
     ~vtkAnamorphFigureSkeleton() override;
 
-    void Draw(vtkPolyData* input, vtkPolyData* output, anamorph_vtk::Execution& execution) override;
+    void Draw(vtkPolyData* input, vtkDataObject* output, anamorph_vtk::Execution& execution) override;
 
   private:
     vtkAnamorphFigureSkeleton(const vtkAnamorphFigureSkeleton&) = delete;

@@ -1,0 +1,159 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "vtkAnamorphFigureImage.h"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "anamorph/error.h"
+#include "anamorph/figure/figure_picture.h"
+#include "execution.h"
+#include "figure_data.h"
+#include "figure_lines.h"
+#include "vtkFloatArray.h"
+#include "vtkImageData.h"
+#include "vtkInformation.h"
+#include "vtkInformationVector.h"
+#include "vtkIntArray.h"
+#include "vtkNew.h"
+#include "vtkObjectFactory.h"
+#include "vtkPointData.h"
+#include "vtkPolyData.h"
+#include "vtkStreamingDemandDrivenPipeline.h"
+#include "vtkUnsignedCharArray.h"
+
+vtkObjectFactoryNewMacro(vtkAnamorphFigureImage);
+
+namespace {
+
+using anamorph::FigureStyle;
+
+constexpr int kMostSide = 1 << 16;
+
+/// The bodies of a data set as a frame, in their colors.
+anamorph::FigureFrame frame_of(vtkPolyData* data, const anamorph_vtk::Bodies& bodies) {
+    anamorph::FigureFrame frame;
+    auto* colors = vtkUnsignedCharArray::SafeDownCast(data->GetPointData()->GetArray("Color"));
+    if (colors &&
+        (colors->GetNumberOfComponents() < 3 || colors->GetNumberOfTuples() != data->GetNumberOfPoints()))
+        colors = nullptr;
+    for (std::size_t i = 0; i < bodies.shapes.size(); ++i) {
+        anamorph::Body body;
+        body.shape = bodies.shapes[i];
+        body.name = bodies.names[i];
+        if (colors)
+            for (int c = 0; c < 3; ++c) body.color[c] = colors->GetTypedComponent(bodies.ids[i], c);
+        frame.bodies.push_back(std::move(body));
+    }
+    frame.joints = bodies.joints;
+    return frame;
+}
+
+/// An array of so many components, which becomes the image's scalars.
+template <class Array>
+Array* new_scalars(vtkImageData* image, const char* name, int components) {
+    vtkNew<Array> array;
+    array->SetName(name);
+    array->SetNumberOfComponents(components);
+    array->SetNumberOfTuples(image->GetNumberOfPoints());
+    image->GetPointData()->SetScalars(array);
+    return array;
+}
+
+unsigned char byte_of(double value) {
+    return static_cast<unsigned char>(std::lround(255 * std::min(std::max(value, 0.0), 1.0)));
+}
+
+/// Red, green, blue and alpha of a pixel, whose color is multiplied by its alpha.
+void write_color(const float* from, unsigned char* to) {
+    const double alpha = from[3];
+    for (int c = 0; c < 3; ++c) to[c] = alpha > 0 ? byte_of(from[c] / alpha) : 0;
+    to[3] = byte_of(alpha);
+}
+
+}  // namespace
+
+vtkAnamorphFigureImage::vtkAnamorphFigureImage() = default;
+vtkAnamorphFigureImage::~vtkAnamorphFigureImage() = default;
+
+vtkImageData* vtkAnamorphFigureImage::GetOutput() {
+    return vtkImageData::SafeDownCast(this->GetOutputDataObject(0));
+}
+
+int vtkAnamorphFigureImage::FillOutputPortInformation(int, vtkInformation* information) {
+    information->Set(vtkDataObject::DATA_TYPE_NAME(), "vtkImageData");
+    return 1;
+}
+
+int vtkAnamorphFigureImage::RequestInformation(vtkInformation*, vtkInformationVector**,
+                                               vtkInformationVector* outputs) {
+    vtkInformation* output = outputs->GetInformationObject(0);
+    const int extent[6] = {0, this->ViewSize[0] - 1, 0, this->ViewSize[1] - 1, 0, 0};
+    output->Set(vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT(), extent, 6);
+    const double spacing[3] = {1, 1, 1}, origin[3] = {0, 0, 0};
+    output->Set(vtkDataObject::SPACING(), spacing, 3);
+    output->Set(vtkDataObject::ORIGIN(), origin, 3);
+    return 1;
+}
+
+void vtkAnamorphFigureImage::Draw(vtkPolyData* input, vtkDataObject* output,
+                                  anamorph_vtk::Execution& execution) {
+    static constexpr FigureStyle kStyles[] = {FigureStyle::shaded, FigureStyle::outline, FigureStyle::stick,
+                                              FigureStyle::depth, FigureStyle::id};
+    anamorph::View view = this->ViewOf(input);
+    const int width = this->ViewSize[0], height = this->ViewSize[1];
+    if (width > kMostSide || height > kMostSide)
+        throw anamorph::Error("ViewSize", std::to_string(std::max(width, height)),
+                              "must be an integer from 1 to " + std::to_string(kMostSide));
+    view.middle += 0.5 * glm::dvec2(width, height);
+    anamorph::FigureLook look;
+    look.style = kStyles[this->Style];
+    look.light.lighting = static_cast<anamorph::Lighting>(this->Lighting);
+    look.light.toward = anamorph::usual_light(look.light.lighting);
+    look.antialias = this->Antialias;
+    const anamorph_vtk::Bodies bodies(input);
+    const anamorph::FigurePicture picture(frame_of(input, bodies), view, {width, height}, look,
+                                          execution.stage(0, 0.3));
+    const int channels = anamorph::channels_of(look.style);
+    std::vector<float> pixels(static_cast<std::size_t>(width) * static_cast<std::size_t>(height) *
+                              static_cast<std::size_t>(channels));
+    picture.draw({0, 0, width, height},
+                 anamorph::packed_view(reinterpret_cast<std::byte*>(pixels.data()),
+                                       anamorph::PixelType::float32, width, height, channels),
+                 execution.stage(0.3, 0.9));
+    auto* image = vtkImageData::SafeDownCast(output);
+    image->SetExtent(0, width - 1, 0, height - 1, 0, 0);
+    image->SetOrigin(0, 0, 0);
+    image->SetSpacing(1, 1, 1);
+    // Rows from the bottom up.
+    const auto each_pixel = [&](const auto& write) {
+        for (int y = 0; y < height; ++y)
+            for (int x = 0; x < width; ++x)
+                write(vtkIdType{y} * width + x,
+                      &pixels[(static_cast<std::size_t>(height - 1 - y) * static_cast<std::size_t>(width) +
+                               static_cast<std::size_t>(x)) *
+                              static_cast<std::size_t>(channels)]);
+    };
+    if (this->Style == DEPTH) {
+        float* to = new_scalars<vtkFloatArray>(image, "Depth", 1)->GetPointer(0);
+        each_pixel([&](vtkIdType i, const float* from) { to[i] = *from; });
+    } else if (this->Style == BODY_ID) {
+        int* to = new_scalars<vtkIntArray>(image, "BodyId", 1)->GetPointer(0);
+        each_pixel([&](vtkIdType i, const float* from) {
+            const auto body = static_cast<std::size_t>(*from);
+            to[i] = body == 0 ? -1 : static_cast<int>(bodies.ids[body - 1]);
+        });
+    } else {
+        unsigned char* to = new_scalars<vtkUnsignedCharArray>(image, "Colors", 4)->GetPointer(0);
+        each_pixel([&](vtkIdType i, const float* from) { write_color(from, to + 4 * i); });
+    }
+}
+
+void vtkAnamorphFigureImage::PrintSelf(ostream& os, vtkIndent indent) {
+    this->Superclass::PrintSelf(os, indent);
+    static const char* const styles[] = {"shaded", "outline", "stick", "depth", "body id"};
+    static const char* const lightings[] = {"rasel", "lambert", "blinn"};
+    os << indent << "Style: " << styles[this->Style] << "\n"
+       << indent << "Lighting: " << lightings[this->Lighting] << "\n"
+       << indent << "Antialias: " << this->Antialias << "\n";
+}
