@@ -5,6 +5,7 @@ import struct
 import subprocess
 import tempfile
 import unittest
+import xml.etree.ElementTree as xml
 
 PROGRAM = os.environ["ANAMORPH_MACHINE"]
 
@@ -77,6 +78,26 @@ class Machine(unittest.TestCase):
         _, out, _ = run("run", "-", "--size", "8", "--texture", "s2=" + path, text=text)
         self.assertEqual([p[0] for p in pixels(out)[3]], [0, 0.25, 0.75, 1.25, 1.75, 2.25, 2.75, 3])
 
+    def test_schedules(self):
+        def schedule(*arguments):
+            status, out, error = run("schedule", *arguments)
+            self.assertEqual((status, error), (0, ""))
+            rows = [line.split(",") for line in out.decode().split("\n")[1:-1]]
+            return {row[0]: [float(cell) for cell in row[1:]] for row in rows}
+        table = schedule()
+        self.assertEqual(table["micro-coded processors"][0], 2048 * 73)
+        self.assertEqual(table["pixel processor"], [512 * 512, 26.2144, 1, 512 * 512 * 15])
+        self.assertEqual(max(row[2] for row in table.values()), 1)
+        small = schedule("--machine", "oka-1987:block=4")
+        self.assertEqual(small["micro-coded processors"][2], 1)
+        large = schedule("--picture", "1024", "--size", "1024")
+        self.assertEqual(large["pixel processor"][2], 1)
+        self.assertGreater(large["pixel processor"][1], 100)
+        path = os.path.join(self.folder, "timeline.svg")
+        self.assertEqual(run("schedule", "--surface", "sphere", "-o", path)[0], 0)
+        bars = [e for e in xml.parse(path).getroot() if e.tag.endswith("rect") and len(e) == 1]
+        self.assertEqual(len(bars), 5 * 4)
+
     def test_what_is_wrong_is_one_line(self):
         good = self.write("good.ps", b"ps_2_0\ndcl t0\ndcl_2d s0\ntexld r0, t0, s0\nmov oC0, r0\n")
         bad = self.write("bad.ps", b"ps_2_0\nmov oC0, c0\nfrob r0\n")
@@ -97,6 +118,12 @@ class Machine(unittest.TestCase):
                 (["run", good, "--size", "nan"], "--size=nan: must be N or NxM"),
                 (["run", good, "--constant", "c0=1,2"], "must have four numbers"),
                 (["run", good, "--arithmetic", "V8U8"], "--arithmetic=V8U8: must be one of float16"),
+                (["schedule", "--surface", "cube"], "--surface=cube: must be one of plane, "),
+                (["schedule", "--machine", "oka"], "machine=oka: must be oka-1987, "),
+                (["schedule", "--machine", "oka-1987:block=0.01"], "machine: block=0.01: must be a number from 0.25"),
+                (["schedule", "--picture", "16384", "--machine", "oka-1987:block=0.25"],
+                 "block=0.25: makes more than 4194304 blocks"),
+                (["schedule", "--picture", "0"], "--picture=0: must be N or NxM"),
                 (["run", good, "--weight-bits", "24"], "24")):
             if "--constant" in arguments or "--size" in arguments:
                 arguments = arguments + ["--texture", "s0=" + self.write("one.pfm", picture([[(0, 0, 0)]]))]

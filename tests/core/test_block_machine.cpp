@@ -5,8 +5,10 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <map>
 
 #include "anamorph/machine/machine_text.h"
+#include "anamorph/operation/operation.h"
 #include "drape_oracle.h"
 
 namespace anamorph {
@@ -51,7 +53,7 @@ TEST(BlockMachine, VisitsOfAPlaneAtRestWhatIsKnownByHand) {
                 for (int j = 0; j < n; ++j)
                     for (int i = 0; i < n; ++i) {
                         const auto at = static_cast<std::size_t>(j * n + i);
-                        ASSERT_TRUE(frame.seen[at]);
+                        ASSERT_NE(frame.block[at], BlockFrame::kNone);
                         ASSERT_NEAR(frame.addresses[at].x, i + 0.5, 1e-9);
                         ASSERT_NEAR(frame.addresses[at].y, j + 0.5, 1e-9);
                     }
@@ -111,7 +113,7 @@ double worst_of(const BlockMachine& machine, const std::string& surface, int n) 
     for (int j = 0; j < n; ++j)
         for (int i = 0; i < n; ++i) {
             const auto at = static_cast<std::size_t>(j * n + i);
-            if (!frame.seen[at]) continue;
+            if (frame.block[at] == BlockFrame::kNone) continue;
             const test::OracleSight sight =
                 test::oracle_sight(pose, {n, n},
                                    test::oracle_surface(surface, SurfaceShape{}, frame.addresses[at].x / n,
@@ -164,6 +166,62 @@ TEST(BlockMachine, WhatIsNotSeenIsNotVisited) {
     CameraPose flat = parallel_pose();
     flat.position = {2, 0, 0};
     EXPECT_EQ(frame_of(BlockMachine{}, "plane", flat, 64, 64).counts.pixels, 0);
+}
+
+/// The attributes of a picture that the operation drape makes of a source of 128 x 128.
+std::map<std::string, double> reached_by_drape(const std::vector<Assignment>& more) {
+    struct NoFiles final : SideFileReader {
+        std::string text(const std::string& name) const override { throw Error("there is no file " + name); }
+        std::unique_ptr<SideImage> image(const std::string&, const std::string& name) const override {
+            throw Error("there is no image " + name);
+        }
+    };
+    const Operation& drape = *find_operation("drape");
+    ParameterValues values(*drape.parameters);
+    values.assign({{"surface", "waves"}, {"scheme", "hardware"}});
+    values.assign(more);
+    SourceImage source;
+    source.facts.width = source.facts.height = 128;
+    const NoFiles files;
+    std::map<std::string, double> numbers;
+    for (const Attribute& a :
+         drape.read({values, {source}, {}, files})->picture(0, 0)->solve()->reached(serial_for)) {
+        if (std::holds_alternative<int>(a.value)) numbers[a.name] = std::get<int>(a.value);
+        if (std::holds_alternative<double>(a.value)) numbers[a.name] = std::get<double>(a.value);
+    }
+    return numbers;
+}
+
+TEST(BlockMachine, IsASchemeOfDrapes) {
+    auto standard = reached_by_drape({});
+    EXPECT_EQ(standard, reached_by_drape({{"machine", "oka-1987"}}));
+    EXPECT_EQ(standard["anamorph:patches"], 256);
+    EXPECT_GT(standard["anamorph:max_error"], 0.05);
+    EXPECT_LT(standard["anamorph:max_error"], 3);
+    EXPECT_EQ(standard["anamorph:saturated_pixels"], 0);
+    // 128 x 128 pixels at least, less than the host's 20000 cycles at 10 MHz.
+    EXPECT_NEAR(standard["anamorph:frame_ms"], 2, 1e-9);
+    auto fine = reached_by_drape({{"machine", "oka-1987:block=2"}});
+    EXPECT_LT(fine["anamorph:max_error"], standard["anamorph:max_error"] / 2);
+    EXPECT_GT(reached_by_drape(
+                  {{"machine", "oka-1987:address_bits=16,fraction_bits=9"}})["anamorph:saturated_pixels"],
+              100);
+    const auto message = [](const std::vector<Assignment>& more) -> std::string {
+        try {
+            reached_by_drape(more);
+        } catch (const Error& e) {
+            return e.what();
+        }
+        return "";
+    };
+    EXPECT_EQ(message({{"shading", "phong"}}), "shading=phong: must be none with scheme=hardware");
+    EXPECT_EQ(message({{"output", "depth"}}),
+              "output=depth: must be color, stmap, error or bound with scheme=hardware");
+    EXPECT_EQ(message({{"background", "1"}}), "background=1: must not be given with scheme=hardware");
+    EXPECT_EQ(message({{"machine", "ps20"}}),
+              "machine=ps20: must be oka-1987, oka-1987:key=value,key=value or an object of JSON, {...}");
+    EXPECT_EQ(message({{"machine", "oka-1987:processors=0"}}),
+              "machine: processors=0.0: must be an integer from 1 to 4096");
 }
 
 }  // namespace

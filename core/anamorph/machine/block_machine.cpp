@@ -5,10 +5,14 @@
 #include <charconv>
 #include <cmath>
 
+#include "anamorph/error.h"
 #include "anamorph/parameter.h"
 
 namespace anamorph {
 namespace {
+
+// Of the output image memory.
+constexpr int kMostPixels = 1 << 28;
 
 /// Products for a block beside the surface's: affine transformation 9, projection 2, differences 4 (2.4 to 2.7), inverse 6
 /// (2.11). And divisions: by the depth, by the determinant.
@@ -107,6 +111,8 @@ class Drawer {
     void draw(const OkaBlock& block) {
         const BlockOnScreen on_screen(block, m_picture, m_frame.screen);
         if (on_screen.is_flat()) return;
+        const double(&b)[4] = on_screen.inverse();
+        m_frame.steps.push_back({b[0], b[2], b[1], b[3]});
         set_addresses(on_screen);
         const PixelRange columns = on_screen.columns(m_frame.screen), rows = on_screen.rows(m_frame.screen);
         if (columns.last < columns.first || rows.last < rows.first) return;
@@ -138,12 +144,10 @@ class Drawer {
                 if (!block.holds(block.texel(x, y))) continue;
                 bool beyond = m_beyond;
                 const double dx = x - m_x, dy = y - m_y;
-                const std::size_t k =
-                    static_cast<std::size_t>(y) * static_cast<std::size_t>(m_frame.screen.width) +
-                    static_cast<std::size_t>(x);
+                const std::size_t k = m_frame.index(x, y);
                 m_frame.addresses[k] = {nearest(m_format, m_at.x + dx * m_step[0] + dy * m_step[1], beyond),
                                         nearest(m_format, m_at.y + dx * m_step[2] + dy * m_step[3], beyond)};
-                m_frame.seen[k] = 1;
+                m_frame.block[k] = static_cast<std::int32_t>(m_frame.steps.size()) - 1;
                 ++m_frame.counts.pixels;
                 m_frame.counts.saturated += beyond;
             }
@@ -181,10 +185,14 @@ BlockFrame run_block_machine(const BlockMachine& machine, const DrapedSurface& s
                      [](const OkaBlock& a, const OkaBlock& b) { return a.centre.z > b.centre.z; });
     BlockFrame frame;
     frame.screen = camera.screen();
+    if (double(frame.screen.width) * frame.screen.height > kMostPixels)
+        throw Error("machine: a picture of " + std::to_string(frame.screen.width) + "x" +
+                    std::to_string(frame.screen.height) + " does not fit its memory: must have at most " +
+                    std::to_string(kMostPixels) + " pixels");
     const std::size_t pixels =
         static_cast<std::size_t>(frame.screen.width) * static_cast<std::size_t>(frame.screen.height);
     frame.addresses.resize(pixels);
-    frame.seen.resize(pixels);
+    frame.block.resize(pixels, BlockFrame::kNone);
     frame.counts.blocks = static_cast<std::int64_t>(blocks.size());
     Drawer drawer(machine, picture, frame);
     for (const OkaBlock& block : blocks) drawer.draw(block);

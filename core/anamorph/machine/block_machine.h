@@ -59,13 +59,21 @@ struct BlockCounts {
     std::int64_t saturated = 0;  ///< of the pixels, those whose address was beyond the range
 };
 
-/// A frame as the machine draws it: for each pixel of the screen, row by row, the address in texels, of the block that was
-/// drawn last, and whether any was.
+/// A frame as the machine draws it: for each pixel of the screen, row by row, which block was drawn last, and its address
+/// there, in texels.
 struct BlockFrame {
+    static constexpr std::int32_t kNone = -1;
+
     BlockCounts counts;
     Size screen;
+    std::vector<std::int32_t> block;  ///< kNone where none was drawn
     std::vector<Point<double>> addresses;
-    std::vector<std::uint8_t> seen;
+    std::vector<Jacobian> steps;  ///< of the blocks, before they were rounded
+
+    std::size_t index(int x, int y) const {
+        return static_cast<std::size_t>(y) * static_cast<std::size_t>(screen.width) +
+               static_cast<std::size_t>(x);
+    }
 };
 
 /// Draws blocks from the farthest to the nearest, as their centres are. Throws Error where there are more than four million

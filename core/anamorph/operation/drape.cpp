@@ -8,6 +8,8 @@
 
 #include "anamorph/deform/key_frames_file.h"
 #include "anamorph/drape/drape.h"
+#include "anamorph/machine/block_machine_map.h"
+#include "anamorph/machine/machine_text.h"
 #include "anamorph/operation/drape_surface.h"
 #include "anamorph/operation/rows.h"
 #include "anamorph/operation/solved.h"
@@ -65,7 +67,11 @@ ParameterTable make_table() {
              {"oka",
               "blocks of the picture as parallelograms, the nearer over the farther, with the tolerance that "
               "comes out (Oka 1987)"},
-             {"oka-z", "the same with a depth for each pixel"}}),
+             {"oka-z", "the same with a depth for each pixel"},
+             {"hardware"}}),
+        text("machine",
+             "of scheme hardware: oka-1987, the machine of Oka 1987, and what differs from it, "
+             "oka-1987:block=4,fraction_bits=8 or {\"block\": 4, \"fraction_bits\": 8}; by default oka-1987"),
         number("block", "pixels", "8", 0.25, 4096,
                "of oka and oka-z: side of a block, in pixels of the source"),
         number("overlap", "pixels", "0.5", 0, 64,
@@ -147,7 +153,7 @@ glm::dmat3 matrix_of(const ParameterValues& values) {
 
 DrapeOptions options_of(const ParameterValues& values) {
     DrapeOptions options;
-    options.scheme = chosen<DrapeScheme>(values, "scheme");
+    if (values.text("scheme") != "hardware") options.scheme = chosen<DrapeScheme>(values, "scheme");
     options.block = values.number("block");
     options.overlap = values.number("overlap");
     options.tol = values.number("tol");
@@ -170,6 +176,22 @@ DrapeOptions options_of(const ParameterValues& values) {
         for (const double value : values.numbers("background"))
             options.background.push_back(static_cast<float>(value));
     return options;
+}
+
+/// Of scheme hardware, which draws the bare picture. What is said of a machine is checked with the other schemes too.
+std::optional<BlockMachine> machine_of(const ParameterValues& values, const DrapeOptions& options) {
+    const BlockMachine machine =
+        values.given("machine") ? block_machine_from_text(values.text("machine")) : BlockMachine{};
+    if (values.text("scheme") != "hardware") return {};
+    if (options.lighting.shading != DrapeShading::none)
+        throw Error("shading", values.text("shading"), "must be none with scheme=hardware");
+    if (options.own != DrapeOutput::shared)
+        throw Error("output", values.text("output"),
+                    "must be color, stmap, error or bound with scheme=hardware");
+    for (const char* name : {"background", "backdrop"})
+        if (values.given(name))
+            throw Error(name, printable(values.text(name)), "must not be given with scheme=hardware");
+    return machine;
 }
 
 /// The colors of the backdrop go with those of the picture.
@@ -228,6 +250,15 @@ class DrapeRequest {
     Camera camera(const ParameterValues& values, const Size& screen) const {
         return {pose_of(values, aspect()), matrix_of(values), vector_of(values, "move"), screen};
     }
+    /// Of scheme hardware.
+    std::optional<BlockMachine> machine(const ParameterValues& values) const {
+        return machine_of(values, options(values));
+    }
+    const Size& source() const { return m_source; }
+    std::shared_ptr<const DrapedSurface> surface(const ParameterValues& values) const {
+        const auto tree = m_surfaces->tree_of(m_surfaces->sum_of(values));
+        return {tree, &tree->tree.surface()};
+    }
     Drape drape(const ParameterValues& values, const Size& screen) const {
         return {m_surfaces->tree_of(m_surfaces->sum_of(values)), camera(values, screen), m_source,
                 options(values)};
@@ -269,7 +300,7 @@ class DrapeRequest {
             const ParameterValues values = values_at(frame);
             m_surfaces->sum_of(values);
             camera(values, target(values));
-            options(values);
+            machine(values);
         } catch (const Error& error) {
             if (m_keys.empty()) throw;
             throw Error("frame " + std::to_string(frame) + ": " + error.what());
@@ -308,6 +339,45 @@ class SolvedDrape final : public SolvedPicture {
     Drape m_drape;
 };
 
+/// A drape of the first source by the machine of 1987.
+class SolvedByBlocks final : public SolvedPicture {
+  public:
+    SolvedByBlocks(const DrapeRequest& request, const ParameterValues& values, const Size& size)
+        : m_map(std::make_shared<BlockMachineMap>(*request.machine(values), request.surface(values),
+                                                  request.camera(values, size), request.source())),
+          m_schedule(schedule_of(*request.machine(values), m_map->frame().counts, size)) {
+        const DrapeOptions options = request.options(values);
+        const Chart flat(Projection::rectilinear, request.source().width, request.source().height);
+        m_picture.maps = {{m_map, {{Border(flat, options.wrap)}}}};
+        m_picture.filter = options.filter;
+        m_picture.output = options.output;
+        if (options.output == Output::error)
+            m_picture.value = [map = m_map.get()](double x, double y) {
+                return static_cast<float>(
+                    map->landing_error(static_cast<int>(std::floor(x)), static_cast<int>(std::floor(y))));
+            };
+    }
+
+    Attributes reached(const ParallelFor& parallel_for) const override {
+        const BlockCounts& counts = m_schedule.counts;
+        return {{"anamorph:max_error", m_picture.reached(parallel_for).max_error},
+                {"anamorph:exact_fraction", 0.0},
+                {"anamorph:patches", static_cast<int>(counts.blocks)},
+                {"anamorph:saturated_pixels", static_cast<double>(counts.saturated)},
+                {"anamorph:frame_ms", m_schedule.frame_ms()},
+                {"anamorph:bottleneck", m_schedule.bottleneck().name}};
+    }
+    bool draw(const std::vector<const Source*>& sources, const Box& box, const ImageView& view,
+              const ParallelFor& parallel_for) const override {
+        return m_picture.draw({sources[0]}, box, view, parallel_for);
+    }
+
+  private:
+    std::shared_ptr<const BlockMachineMap> m_map;
+    MachineSchedule m_schedule;
+    Picture m_picture;
+};
+
 class Drapes final : public Pictures {
   public:
     explicit Drapes(std::shared_ptr<const DrapeRequest> request) : m_request(std::move(request)) {}
@@ -326,7 +396,9 @@ class Drapes final : public Pictures {
         picture.says = {{"anamorph:tol", options.tol}};
         if (m_request->is_film()) picture.says.push_back({"anamorph:frame", number});
         if (!m_request->missing().empty()) picture.says.push_back({"anamorph:missing", m_request->missing()});
-        picture.solve = [request = m_request, values, size = *size] {
+        picture.solve = [request = m_request, values,
+                         size = *size]() -> std::unique_ptr<const SolvedPicture> {
+            if (request->machine(values)) return std::make_unique<SolvedByBlocks>(*request, values, size);
             return std::make_unique<SolvedDrape>(request->drape(values, size));
         };
         return picture;

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// anamorph-machine: programs of pixel shaders assembled and run.
+// anamorph-machine: programs of pixel shaders assembled and run, and the schedule of the machine of 1987.
 #include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cmath>
 #include <exception>
 #include <filesystem>
 #include <fstream>
@@ -8,6 +10,7 @@
 #include <iostream>
 #include <map>
 
+#include "anamorph/machine/machine_text.h"
 #include "anamorph/machine/machine_texture.h"
 #include "anamorph/machine/shader_run.h"
 #include "anamorph/parameter.h"
@@ -24,6 +27,7 @@ struct Settings {
     std::string program, output = "-", arithmetic = "float24", size = "512";
     std::vector<std::string> textures, constants;
     int weight_bits = 8;
+    std::string machine = kBlockPreset, surface = "plane", picture = "512";
 };
 
 /// At most kMostRead bytes.
@@ -58,13 +62,13 @@ std::pair<int, std::string> assigned(const std::string& text, char bank, int cou
 }
 
 /// "512" or "512x256".
-Size size_of(const std::string& text) {
+Size size_of(const std::string& text, const char* option) {
     const std::size_t by = text.find('x');
     const auto side = [&](std::string_view part) {
         double value = 0;
         if (!text_file::take_number(part, value) || !part.empty() || !(value >= 1) ||
             value > FloatPicture::kMostSide || value != static_cast<int>(value))
-            throw Error("--size", printable(text),
+            throw Error(option, printable(text),
                         "must be N or NxM, integers from 1 to " + std::to_string(FloatPicture::kMostSide));
         return static_cast<int>(value);
     };
@@ -97,6 +101,7 @@ class Command {
             ->required();
         add_output(assemble);
         add_run();
+        add_schedule();
     }
 
     int run(int argc, char** argv) {
@@ -153,6 +158,45 @@ class Command {
         sub->footer("t0 to t7 are (x, y, 0, 1), from 0 to 1 over the picture, x right, y down.");
     }
 
+    void add_schedule() {
+        CLI::App* sub = add_subcommand(
+            "schedule",
+            "What a frame of the machine of 1987 costs, stage by stage: a table, or a timeline (.svg)",
+            [this] { schedule(); });
+        add_output(sub);
+        sub->add_option("--machine", m_settings.machine, "Its parameters, as in recipes of .drape")
+            ->option_text("TEXT [oka-1987]");
+        sub->add_option("--surface", m_settings.surface, "That the picture lies on, in front of the camera")
+            ->option_text("NAME [plane]");
+        sub->add_option("--picture", m_settings.picture, "Width and height of the picture")
+            ->option_text("NxM [512]");
+        sub->add_option("--size", m_settings.size, "Width and height of the screen")
+            ->option_text("NxM [512]");
+    }
+
+    void schedule() const {
+        const BlockMachine machine = block_machine_from_text(m_settings.machine);
+        const auto& names = surface_names();
+        const auto found = std::find(names.begin(), names.end(), m_settings.surface);
+        if (found == names.end()) {
+            std::string known;
+            for (const std::string& name : names) known += (known.empty() ? "" : ", ") + name;
+            throw Error("--surface", printable(m_settings.surface), "must be one of " + known);
+        }
+        const Size screen = size_of(m_settings.size, "--size"),
+                   picture = size_of(m_settings.picture, "--picture");
+        SurfaceShape shape;
+        shape.aspect = double(picture.width) / picture.height;
+        // The flat picture fills the width, as it does by default in .drape.
+        CameraPose pose;
+        pose.position = {0, 0, shape.aspect / (2 * std::tan(pose.fov * (kPi / 360)))};
+        const Camera camera(pose, glm::dmat3(1.0), glm::dvec3(0.0), screen);
+        const auto surface = make_surface(static_cast<std::size_t>(found - names.begin()), shape);
+        const BlockFrame frame = run_block_machine(machine, *surface, camera, picture);
+        const MachineSchedule made = schedule_of(machine, frame.counts, screen);
+        write(text_file::ends_with(m_settings.output, ".svg") ? schedule_svg(made) : schedule_csv(made));
+    }
+
     void write(const std::string& text) const {
         OutputFile file(m_settings.output);
         file.write(text);
@@ -204,7 +248,7 @@ class Command {
 
     template <class T>
     FloatPicture drawn(const ShaderProgram& program, const std::map<int, MachineTexture<4>>& textures) const {
-        const Size size = size_of(m_settings.size);
+        const Size size = size_of(m_settings.size, "--size");
         FloatPicture picture{size.width, size.height, {}};
         ShaderInputs<T> inputs = inputs_of<T>(program);
         const auto sample = [&](int number, const T& u, const T& v) {

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: Apache-2.0
+// What the machine of 1987 draws, as a pull map.
+#pragma once
+
+#include <memory>
+
+#include "anamorph/approx/block.h"
+#include "anamorph/machine/block_machine.h"
+
+namespace anamorph {
+
+/// Source points are the machine's addresses, in pixels of the picture. Pixels of the screen where nothing is seen have none.
+/// A block's bound is the largest distance on the screen, in pixels, of what its pixels show from where it belongs: each is
+/// measured, in double.
+class BlockMachineMap final : public BlockMap {
+  public:
+    /// Throws Error where there are more than four million blocks.
+    BlockMachineMap(const BlockMachine& machine, std::shared_ptr<const DrapedSurface> surface,
+                    const Camera& camera, const Size& picture);
+
+    const BlockFrame& frame() const { return m_frame; }
+    /// Of a pixel, 0 where nothing is seen.
+    double landing_error(int x, int y) const;
+
+    bool exact(double x, double y, int piece, Point<double>& source_point,
+               int& source_piece) const noexcept override;
+    Jacobian jacobian(double x, double y, int piece) const noexcept override;
+    void exact_rows(const Block& block, int begin, int end, const DoubleRows& to) const noexcept override;
+
+  protected:
+    void plan(const Box& box, int piece, Blocks& blocks) const override;
+
+  private:
+    std::size_t pixel_at(double x, double y) const;
+
+    std::shared_ptr<const DrapedSurface> m_surface;
+    Camera m_camera;
+    Size m_picture;
+    BlockFrame m_frame;
+};
+
+}  // namespace anamorph
