@@ -46,6 +46,8 @@
 #include "anamorph/operation/side_files.h"
 #include "anamorph/parallel_for.h"
 #include "anamorph/parameter.h"
+#include "anamorph/projector/projected_triangles.h"
+#include "anamorph/projector/projector.h"
 #include "anamorph/render/border.h"
 #include "anamorph/render/filter.h"
 #include "anamorph/render/mesh_warp.h"

@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: Apache-2.0
+// The triangles of a scene cut so that texture coordinates, interpolated linearly across each, paint it with a panorama
+// (Kim 2003, chapter 4) within a tolerance that is proven (edge_rule.h), and cut along seams, faces and the panorama's
+// borders. Every triangle is cut by itself, and neighbours fit: what is painted has no cracks. Where the panorama's border goes
+// through, what is beside it may have corners more on a side than its neighbour, in line but for rounding.
+#pragma once
+
+#include <array>
+#include <atomic>
+#include <cstdint>
+#include <functional>
+#include <vector>
+
+#include "anamorph/projector/edge_rule.h"
+#include "anamorph/projector/projector_rows.h"
+
+namespace anamorph {
+
+/// How a scene is painted.
+struct ProjectionOptions {
+    double tol = kProjectionTolRow.standard;
+    /// In units of the scene: edges as short as this are not split any further. About 2^-20 of the scene serves points in
+    /// float.
+    double smallest = 0;
+    /// Are points of the scene kept in float? New ones are rounded to it.
+    bool single = false;
+    /// Is something between the projector and a point? Called from several threads at once.
+    std::function<bool(const glm::dvec3& point)> hidden = {};
+    /// More triangles than this are refused.
+    std::int64_t most_triangles = std::int64_t{1} << 23;
+};
+
+/// What becomes of a piece of a triangle.
+enum class Painting {
+    painted,      ///< it shows the panorama, with texels that are meant
+    outside,      ///< it lies beside the panorama
+    hidden,       ///< something stands between it and the projector
+    no_direction  ///< it is next to the centre, or at the end of an axis where texels have no limit
+};
+
+/// A corner of a piece.
+struct PaintedCorner {
+    glm::dvec3 weights{0.0};  ///< of the triangle's corners; exactly 0 of those that it is opposite of
+    glm::dvec3 point{0.0};    ///< in the scene
+    Point<double> texel{};    ///< in pixels of the panorama, where painted
+};
+
+/// A piece of a triangle, as its triangle is turned.
+struct PaintedTriangle {
+    std::array<PaintedCorner, 3> corners;
+    Painting painting = Painting::no_direction;
+};
+
+/// What was done, of one triangle or of all.
+struct PaintedCounts {
+    std::int64_t painted = 0, outside = 0, hidden = 0, no_direction = 0;
+    /// The largest bound in use, in texels: proven, but for the rounding of double. Of triangles about a pole, of their
+    /// directions.
+    double max_error = 0;
+
+    PaintedCounts& operator+=(const PaintedCounts& other);
+};
+
+/// Paints triangles.
+class ScenePainter {
+  public:
+    /// Throws Error.
+    ScenePainter(const Projector& projector, const ProjectionOptions& options);
+
+    /// Appends the pieces of a triangle. May be called from several threads at once; throws Error where there are too many
+    /// triangles, of all calls together.
+    PaintedCounts paint(const std::array<glm::dvec3, 3>& triangle, std::vector<PaintedTriangle>& to) const;
+
+    const Projector& projector() const { return m_projector; }
+
+  private:
+    Projector m_projector;
+    ProjectionOptions m_options;
+    EdgeRule m_rule;
+    mutable std::atomic<std::int64_t> m_count{0};
+};
+
+}  // namespace anamorph

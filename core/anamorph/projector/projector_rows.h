@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: Apache-2.0
+// The numbers that users set of a projector (projector.h, projected_triangles.h).
+#pragma once
+
+#include "anamorph/number_row.h"
+
+namespace anamorph {
+
+/// How far from the truth a point of the scene may be painted, in texels of the panorama.
+inline constexpr NumberRow kProjectionTolRow{"projection_tol", 0.125, 0, 1e6, NumberRow::above_least};
+/// Of the panorama, in texels.
+inline constexpr NumberRow kPanoramaWidthRow{"panorama_width", 4096, 1, 1 << 24, NumberRow::closed, true};
+inline constexpr NumberRow kPanoramaHeightRow{"panorama_height", 2048, 1, 1 << 24, NumberRow::closed, true};
+/// Degrees, of the panorama's width or of each of its faces; 0: what its projection has by default.
+inline constexpr NumberRow kFieldOfViewRow{"field_of_view", 0, 0, 360};
+/// Pannini's d.
+inline constexpr NumberRow kPanniniDistanceRow{"pannini_distance", 1, 0, 1000};
+
+inline constexpr NumberRow kProjectorRows[] = {kProjectionTolRow, kPanoramaWidthRow, kPanoramaHeightRow,
+                                               kFieldOfViewRow, kPanniniDistanceRow};
+
+}  // namespace anamorph
