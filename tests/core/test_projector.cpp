@@ -487,6 +487,25 @@ TEST(ProjectedTriangles, WhatIsHiddenIsNotPaintedDownToATexel) {
     EXPECT_NEAR(lit, 2 * (1 + 0.21), 2 * 2 * texel);
 }
 
+TEST(ProjectedTriangles, ShadowsOfAnyShapeEndInNeedlesToo) {
+    const std::vector<Triangle> walls{{glm::dvec3(-2, -2, -2), {2, -2, -2}, {2, 2, -2}},
+                                      {glm::dvec3(-2, -2, -2), {2, 2, -2}, {-2, 2, -2}},
+                                      {glm::dvec3(-2, -2, -2), {2, -2, -2}, {0.1, -1.9999, -2}}};
+    for (const int width : {45, 90, 180, 360, 1440}) {
+        SCOPED_TRACE(width);
+        const Chart chart(Projection::equirectangular, width, width / 2);
+        ProjectionOptions options{.tol = 1, .smallest = 4e-6, .single = true, .most_triangles = 200000};
+        // Borders that corners of halves lie on, a round one, and one that has no shape at all.
+        options.hidden = [](const glm::dvec3& p) { return std::fabs(p.x) < 1 && std::fabs(p.y) < 1; };
+        EXPECT_GT(paint(chart, {}, walls, options).counts.hidden, 0);
+        options.hidden = [](const glm::dvec3& p) { return std::hypot(p.x - 0.3, p.y) < 0.5; };
+        EXPECT_GT(paint(chart, {}, walls, options).counts.painted, 0);
+        if (width > 180) continue;
+        options.hidden = [](const glm::dvec3& p) { return std::fmod(std::fabs(p.x * 1e4), 1.0) < 0.5; };
+        EXPECT_GT(paint(chart, {}, walls, options).counts.hidden, 0);
+    }
+}
+
 TEST(ProjectedTriangles, RoundedToFloatCornersFitAndAreFloats) {
     const Chart chart(Projection::equirectangular, 400, 200);
     std::mt19937 random(13);

@@ -17,14 +17,32 @@ struct SceneCorner {
     bool hidden = false;
 };
 
-/// A triangle to be cut, and what the rule says of the sides from each corner to the next.
-struct SceneTriangle {
-    std::array<SceneCorner, 3> corners;
-    std::array<EdgeFinding, 3> sides;
-};
-
 bool wants_split(const EdgeFinding& side) {
     return side.verdict == EdgeVerdict::split || side.verdict == EdgeVerdict::cut;
+}
+
+/// What the rule says of a side, and whether it is split, be it for a shadow.
+struct SceneSide {
+    EdgeFinding finding;
+    bool split = false;
+};
+
+/// A triangle to be cut, with its sides from each corner to the next.
+struct SceneTriangle {
+    std::array<SceneCorner, 3> corners;
+    std::array<SceneSide, 3> sides;
+    /// What holds for all of it: of its longest side, or that of a triangle that it is part of. It is then split for its
+    /// neighbours and for shadows alone.
+    std::optional<EdgeFinding> known = {};
+};
+
+/// The place of a triangle's longest side.
+std::size_t longest_of(const std::array<SceneCorner, 3>& c) {
+    std::size_t longest = 0;
+    const auto length = [&](std::size_t i) { return glm::length(c[(i + 1) % 3].point - c[i].point); };
+    for (std::size_t i = 1; i < 3; ++i)
+        if (length(i) > length(longest)) longest = i;
+    return longest;
 }
 
 /// The cutting of one triangle.
@@ -42,11 +60,12 @@ class Cutting {
             corner.point = triangle[static_cast<std::size_t>(i)];
         }
         if (!is_finite(triangle)) {
-            paint({whole.corners, {}});
+            paint(whole);
             return m_counts;
         }
         for (SceneCorner& corner : whole.corners) corner.hidden = is_hidden(corner.point);
-        push(whole.corners);
+        const auto& c = whole.corners;
+        push(c, {side(c[0], c[1]), side(c[1], c[2]), side(c[2], c[0])}, {});
         while (!m_open.empty()) {
             const SceneTriangle next = m_open.back();
             m_open.pop_back();
@@ -65,14 +84,29 @@ class Cutting {
     bool is_hidden(const glm::dvec3& point) const { return m_options.hidden && m_options.hidden(point); }
 
     /// What the rule says of a side. One that is hidden at one end only is split down to a texel.
-    EdgeFinding side(const SceneCorner& a, const SceneCorner& b) const {
-        EdgeFinding found = EdgeRule::in_order(a.point, b.point) ? m_rule.judge(a.point, b.point)
-                                                                 : m_rule.judge(b.point, a.point);
-        const bool settled = found.verdict == EdgeVerdict::bounded;
-        if (settled && a.hidden != b.hidden && texels_along(a.point, b.point) > 1 &&
-            glm::length(b.point - a.point) > m_options.smallest)
-            found = {EdgeVerdict::split};
-        return found;
+    SceneSide side(const SceneCorner& a, const SceneCorner& b) const {
+        const EdgeFinding found = EdgeRule::in_order(a.point, b.point) ? m_rule.judge(a.point, b.point)
+                                                                       : m_rule.judge(b.point, a.point);
+        return {found, wants_split(found) || (found.verdict == EdgeVerdict::bounded && shadow_ends(a, b))};
+    }
+
+    /// Does a shadow end on a side, somewhere in more than a texel?
+    bool shadow_ends(const SceneCorner& a, const SceneCorner& b) const {
+        return a.hidden != b.hidden && texels_along(a.point, b.point) > 1 &&
+               glm::length(b.point - a.point) > m_options.smallest;
+    }
+
+    /// A side within a triangle. Where all is known of that, only a shadow splits it, and not in a sliver: halves of its
+    /// sides could take turns without end.
+    SceneSide inner_side(const SceneTriangle& in, const SceneCorner& a, const SceneCorner& b) const {
+        if (!in.known) return side(a, b);
+        const auto& c = in.corners;
+        const std::size_t i = longest_of(c);
+        const glm::dvec3 along = c[(i + 1) % 3].point - c[i].point, foot = c[(i + 2) % 3].point - c[i].point;
+        const double height = glm::length(glm::cross(along, foot)) / glm::length(along);
+        const bool sliver = !(height * m_projector.panorama().pixels_per_radian() >
+                              0.5 * glm::length(m_projector.ray(a.point)));
+        return {*in.known, in.known->verdict == EdgeVerdict::bounded && !sliver && shadow_ends(a, b)};
     }
 
     /// About how many texels of the panorama's middle an edge takes.
@@ -81,8 +115,15 @@ class Cutting {
         return 2 * glm::length(b - a) / distance * m_projector.panorama().pixels_per_radian();
     }
 
-    void push(const std::array<SceneCorner, 3>& c) {
-        m_open.push_back({c, {side(c[0], c[1]), side(c[1], c[2]), side(c[2], c[0])}});
+    void push(const std::array<SceneCorner, 3>& c, const std::array<SceneSide, 3>& sides,
+              const std::optional<EdgeFinding>& known) {
+        SceneTriangle next{c, sides, known};
+        const EdgeFinding& longest = sides[longest_of(c)].finding;
+        bool cut = false;
+        for (const SceneSide& s : sides) cut = cut || s.finding.verdict == EdgeVerdict::cut;
+        if (!known && !cut && !wants_split(longest) && longest.verdict != EdgeVerdict::hopeless)
+            next.known = longest;
+        m_open.push_back(next);
     }
 
     double rounded(double x) const { return m_options.single ? double{static_cast<float>(x)} : x; }
@@ -102,13 +143,13 @@ class Cutting {
     }
 
     void split_or_paint(const SceneTriangle& triangle) {
-        const auto& [c, sides] = triangle;
+        const auto& c = triangle.corners;
         std::array<std::optional<SceneCorner>, 3> middle;
         int splits = 0;
         for (std::size_t i = 0; i < 3; ++i) {
             const SceneCorner &a = c[i], &b = c[(i + 1) % 3];
-            if (!wants_split(sides[i])) continue;
-            const SceneCorner new_corner = between(a, b, sides[i]);
+            if (!triangle.sides[i].split) continue;
+            const SceneCorner new_corner = between(a, b, triangle.sides[i].finding);
             // Rounded, it may be one of the ends.
             if (new_corner.point == a.point || new_corner.point == b.point) continue;
             middle[i] = new_corner;
@@ -117,16 +158,22 @@ class Cutting {
         if (splits == 0)
             paint(triangle);
         else
-            split(c, middle, splits);
+            split(triangle, middle, splits);
     }
 
     /// Into 2, 3 or 4, turned as before.
-    void split(const std::array<SceneCorner, 3>& c, const std::array<std::optional<SceneCorner>, 3>& middle,
+    void split(const SceneTriangle& from, const std::array<std::optional<SceneCorner>, 3>& middle,
                int splits) {
         count(splits);
+        const auto& c = from.corners;
+        const auto inner = [&](const SceneCorner& a, const SceneCorner& b) { return inner_side(from, a, b); };
         if (splits == 3) {
             const SceneCorner &p = *middle[0], &q = *middle[1], &r = *middle[2];
-            for (const auto& t : {std::array{c[0], p, r}, {p, c[1], q}, {r, q, c[2]}, {p, q, r}}) push(t);
+            const SceneSide pq = inner(p, q), qr = inner(q, r), rp = inner(r, p);
+            push({c[0], p, r}, {side(c[0], p), rp, side(r, c[0])}, from.known);
+            push({p, c[1], q}, {side(p, c[1]), side(c[1], q), pq}, from.known);
+            push({r, q, c[2]}, {qr, side(q, c[2]), side(c[2], r)}, from.known);
+            push({p, q, r}, {pq, qr, rp}, from.known);
             return;
         }
         // Turned so that the side from corner 0 to corner 1 is split, and of two, that from 2 to 0.
@@ -134,19 +181,25 @@ class Cutting {
         while (!(middle[first] && (splits == 1 || middle[(first + 2) % 3]))) ++first;
         const SceneCorner &a = c[first], &b = c[(first + 1) % 3], &d = c[(first + 2) % 3],
                           &p = *middle[first];
+        const SceneSide &bd = from.sides[(first + 1) % 3], &da = from.sides[(first + 2) % 3];
+        const SceneSide ap = side(a, p), pb = side(p, b);
         if (splits == 1) {
-            push({a, p, d});
-            push({p, b, d});
+            const SceneSide pd = inner(p, d);
+            push({a, p, d}, {ap, pd, da}, from.known);
+            push({p, b, d}, {pb, bd, pd}, from.known);
             return;
         }
         const SceneCorner& r = *middle[(first + 2) % 3];
-        push({a, p, r});
+        const SceneSide ra = side(r, a), dr = side(d, r), pr = inner(p, r);
+        push({a, p, r}, {ap, pr, ra}, from.known);
         if (glm::length(r.point - b.point) <= glm::length(p.point - d.point)) {
-            push({p, b, r});
-            push({b, d, r});
+            const SceneSide br = inner(b, r);
+            push({p, b, r}, {pb, br, pr}, from.known);
+            push({b, d, r}, {bd, dr, br}, from.known);
         } else {
-            push({p, b, d});
-            push({p, d, r});
+            const SceneSide pd = inner(p, d);
+            push({p, b, d}, {pb, bd, pd}, from.known);
+            push({p, d, r}, {pd, dr, pr}, from.known);
         }
     }
 
@@ -156,27 +209,21 @@ class Cutting {
                         "takes more than " + std::to_string(m_options.most_triangles) + " triangles");
     }
 
-    /// The longest side speaks for all of a triangle that is not split.
+    /// A triangle of which nothing is known has sides that are as short as they may be.
     void paint(const SceneTriangle& triangle) {
         const auto& c = triangle.corners;
-        std::size_t longest = 0;
-        const auto length = [&](std::size_t i) { return glm::length(c[(i + 1) % 3].point - c[i].point); };
-        for (std::size_t i = 1; i < 3; ++i)
-            if (length(i) > length(longest)) longest = i;
-        const EdgeFinding& side = triangle.sides[longest];
         PaintedTriangle piece;
         for (std::size_t i = 0; i < 3; ++i) piece.corners[i] = {c[i].weights, c[i].point};
-        if (side.verdict == EdgeVerdict::outside) return put(piece, Painting::outside);
-        // Sides that are still to be split are as short as they may be.
-        bool settled = true;
-        for (const EdgeFinding& s : triangle.sides)
-            settled = settled && s.verdict != EdgeVerdict::hopeless && !wants_split(s);
-        if (!settled || !set_texels(piece, side.verdict == EdgeVerdict::tiny))
-            return put(piece, Painting::no_direction);
+        bool settled = triangle.known.has_value();
+        for (const SceneSide& s : triangle.sides)
+            settled = settled && s.finding.verdict != EdgeVerdict::hopeless;
+        if (!settled) return put(piece, Painting::no_direction);
+        const bool tiny = triangle.known->verdict == EdgeVerdict::tiny;
+        if (triangle.known->verdict == EdgeVerdict::outside) return put(piece, Painting::outside);
+        if (!set_texels(piece, tiny)) return put(piece, Painting::no_direction);
         for (const SceneCorner& corner : c)
             if (corner.hidden) return put(piece, Painting::hidden);
-        m_counts.max_error =
-            std::max(m_counts.max_error, side.verdict == EdgeVerdict::tiny ? m_options.tol : side.bound);
+        m_counts.max_error = std::max(m_counts.max_error, tiny ? m_options.tol : triangle.known->bound);
         clip(piece);
     }
 
