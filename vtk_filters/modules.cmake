@@ -5,8 +5,8 @@
 if(ANAMORPH_TOOLKIT STREQUAL "PARAVIEW")
     set(find_toolkit "find_package(ParaView REQUIRED COMPONENTS RemotingCore RemotingServerManager)")
 else()
-    set(find_toolkit "find_package(VTK 9.1 REQUIRED COMPONENTS CommonExecutionModel FiltersGeneral
-             FiltersSources IOImage ImagingCore ParallelCore WrappingPythonCore Python)")
+    set(find_toolkit "find_package(VTK 9.1 REQUIRED COMPONENTS CommonExecutionModel FiltersCore FiltersGeneral
+             FiltersGeometry FiltersSources IOImage ImagingCore ParallelCore WrappingPythonCore Python)")
 endif()
 file(WRITE ${PROJECT_BINARY_DIR}/AnamorphToolkit.cmake "# SPDX-License-Identifier: Apache-2.0\n${find_toolkit}\n")
 include(${PROJECT_BINARY_DIR}/AnamorphToolkit.cmake)

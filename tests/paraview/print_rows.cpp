@@ -6,6 +6,7 @@
 #include "anamorph/deform/deform_rows.h"
 #include "anamorph/figure/figure_rows.h"
 #include "anamorph/parameter.h"
+#include "anamorph/projector/projector_rows.h"
 
 namespace {
 
@@ -21,4 +22,5 @@ void print(const anamorph::NumberRow& row) {
 int main() {
     for (const anamorph::NumberRow& row : anamorph::kDeformRows) print(row);
     for (const anamorph::NumberRow& row : anamorph::kFigureRows) print(row);
+    for (const anamorph::NumberRow& row : anamorph::kProjectorRows) print(row);
 }

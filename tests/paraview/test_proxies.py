@@ -15,16 +15,18 @@ from paraview.vtk.vtkFiltersSources import vtkPlaneSource
 from paraview.vtk.vtkImagingCore import vtkRTAnalyticSource
 
 LoadPlugin(os.environ["ANAMORPH_PLUGIN"], remote=False, ns=globals())
-PAPERS = ("Oka 1987", "Chapman 1986")
+PAPERS = ("Oka 1987", "Chapman 1986", "Kim 2003")
 # What a panel has no use for: other ways to set the same, and what the host sets.
 NO_PROPERTY = {
     "vtkAnamorphDeform": {"SetController", "SetDeformationList", "SetDeformationEnabled", "SetTableConnection"},
     "vtkAnamorphInbetween": {"SetKey"},
+    "vtkAnamorphPanoramaProjection": {"SetController"},
     "vtkAnamorphReliefSource": {"SetSize"},
 }
 # The core's rows of numbers, by name. Properties have the name of their row but for these.
 ROW_OF = {("vtkAnamorphFigureGeometry", "Tolerance"): "surface_tol", ("vtkAnamorphFigureOutline", "Tolerance"): "outline_tol",
-          ("vtkAnamorphFigureSkeleton", "Tolerance"): "sphere_tol"}
+          ("vtkAnamorphFigureSkeleton", "Tolerance"): "sphere_tol",
+          ("vtkAnamorphPanoramaProjection", "Tolerance"): "projection_tol"}
 # Numbers that the panel has in a table, where they have no range of their own.
 IN_TABLES = {"extent"}
 # What depends on the input is refused when the filter executes; the least value is in the XML all the same.
@@ -192,6 +194,10 @@ def with_input(cls):
         plane.Update()
         for _ in range(2 if cls is anamorph.vtkAnamorphInbetween else 1):
             new.AddInputDataObject(plane.GetOutput())
+        if cls is anamorph.vtkAnamorphPanoramaProjection:
+            # Of the largest panorama too, few triangles.
+            new.SetPosition(0, 0, 1)
+            new.SetTolerance(1000)
     return new
 
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-# Run by mpiexec: every rank deforms a part of a surface, and has the bits that the whole has.
+# Run by mpiexec: every rank deforms a part of a surface, or throws a panorama onto it, and has the bits that the whole has.
 # Argument: how many ranks there have to be.
 import os
 import sys
@@ -56,6 +56,39 @@ def deformed(mesh, with_controller, has_table):
             for i in range(after.GetNumberOfPoints())}, deform
 
 
+def painted(mesh, with_controller):
+    """The triangles that are painted by a projector beside a ball, with their texture coordinates."""
+    projection = anamorph.vtkAnamorphPanoramaProjection()
+    projection.SetInputData(mesh)
+    projection.SetPosition(0.1, 0.2, 1.5)
+    projection.SetPanoramaWidth(512)
+    projection.SetPanoramaHeight(256)
+    if not with_controller:
+        projection.SetController(None)
+    projection.Update()
+    after, rest = projection.GetOutputDataObject(0), projection.GetOutputDataObject(1)
+    texels = after.GetPointData().GetTCoords()
+    corners = [after.GetPoint(i) + texels.GetTuple(i) for i in range(after.GetNumberOfPoints())]
+    ids = vtkIdList()
+    triangles = []
+    for cell in range(after.GetNumberOfCells()):
+        after.GetCellPoints(cell, ids)
+        triangles.append(tuple(corners[ids.GetId(k)] for k in range(3)))
+    return sorted(triangles), rest.GetNumberOfCells()
+
+
+def check_painted(mesh, part, controller):
+    """What all ranks paint is what one paints: ranks hide from each other what is behind them."""
+    (whole, hidden), (here, hidden_here) = painted(mesh, False), painted(part, True)
+    assert whole and hidden, (len(whole), hidden)
+    assert set(here) <= set(whole), "other triangles than those of the whole"
+    sums = vtkDoubleArray(), vtkDoubleArray()
+    for value in (len(here), hidden_here):
+        sums[0].InsertNextValue(value)
+    controller.AllReduce(sums[0], sums[1], 2)  # a sum
+    assert [sums[1].GetValue(i) for i in range(2)] == [len(whole), hidden], (len(whole), hidden)
+
+
 def main():
     controller = vtkMultiProcessController.GetGlobalController()
     rank, ranks = controller.GetLocalProcessId(), controller.GetNumberOfProcesses()
@@ -78,6 +111,7 @@ def main():
             assert getattr(deform, name)() == getattr(serial, name)(), name
         for point, moved in points.items():
             assert moved == whole[point], (point, moved, whole[point])
+    check_painted(mesh, part, controller)
     print("rank", rank, "of", ranks, "agrees at", len(points), "points", flush=True)
 
 

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: Apache-2.0
+// A mesh made of pieces of another one's triangles, with its arrays.
+#pragma once
+
+#include <array>
+#include <map>
+#include <vector>
+
+#include "anamorph/geometry/size.h"
+#include "anamorph/projector/projected_triangles.h"
+#include "vtkSmartPointer.h"
+#include "vtkType.h"
+
+class vtkDoubleArray;
+class vtkPolyData;
+
+namespace anamorph_vtk {
+
+/// Corners that come from the same corners of the scene, at the same place and with the same texel, become one point.
+/// Point arrays are interpolated, but for ids and ghosts, cell arrays copied.
+class PaintedMesh {
+  public:
+    /// The scene is made of triangles. With `size`, that of the panorama in texels, points get texture coordinates.
+    PaintedMesh(vtkPolyData* scene, const anamorph::Size* size);
+
+    /// A piece of a triangle with these corners.
+    void add(const anamorph::PaintedTriangle& piece, vtkIdType cell, const std::array<vtkIdType, 3>& corners);
+    /// Hands all over to `out`.
+    void finish(vtkPolyData* out);
+
+  private:
+    vtkIdType point_of(const anamorph::PaintedCorner& corner, vtkIdType cell,
+                       const std::array<vtkIdType, 3>& corners);
+
+    /// Up to three corners of the scene (-1: none; of a point within a triangle, its cell), the place and the texel.
+    struct Key {
+        std::array<vtkIdType, 3> from;
+        std::array<double, 5> at;
+        auto operator<=>(const Key&) const = default;
+    };
+
+    vtkPolyData* m_scene;
+    const anamorph::Size* m_size;
+    vtkSmartPointer<vtkPolyData> m_mesh;
+    vtkSmartPointer<vtkDoubleArray> m_texels;
+    std::map<Key, vtkIdType> m_points;
+};
+
+}  // namespace anamorph_vtk

@@ -1,0 +1,336 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "vtkAnamorphPanoramaProjection.h"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "anamorph/error.h"
+#include "anamorph/geometry/size.h"
+#include "anamorph/projector/projected_triangles.h"
+#include "automatic_plane.h"
+#include "execution.h"
+#include "painted_mesh.h"
+#include "scene_shadow.h"
+#include "vtkCellArray.h"
+#include "vtkCellData.h"
+#include "vtkCommunicator.h"
+#include "vtkCompositeDataIterator.h"
+#include "vtkDataObjectTree.h"
+#include "vtkDataSet.h"
+#include "vtkDataSetSurfaceFilter.h"
+#include "vtkDoubleArray.h"
+#include "vtkFieldData.h"
+#include "vtkIdList.h"
+#include "vtkInformation.h"
+#include "vtkInformationVector.h"
+#include "vtkMultiProcessController.h"
+#include "vtkNew.h"
+#include "vtkObjectFactory.h"
+#include "vtkPolyData.h"
+#include "vtkStreamingDemandDrivenPipeline.h"
+#include "vtkTriangleFilter.h"
+#include "vtkUnsignedCharArray.h"
+
+vtkObjectFactoryNewMacro(vtkAnamorphPanoramaProjection);
+
+namespace {
+
+using anamorph::PaintedTriangle;
+using anamorph::Painting;
+using anamorph_vtk::distributed;
+using anamorph_vtk::TriangleList;
+
+static_assert(std::size(anamorph::kProjections) == vtkAnamorphPanoramaProjection::OCTAHEDRAL + 1);
+
+/// The surface of a data set, in triangles.
+vtkSmartPointer<vtkPolyData> triangles_of(vtkDataSet* data) {
+    vtkSmartPointer<vtkPolyData> surface = vtkPolyData::SafeDownCast(data);
+    if (!surface && data->GetNumberOfCells() > 0) {
+        const auto copy = vtkSmartPointer<vtkDataSet>::Take(data->NewInstance());
+        copy->ShallowCopy(data);
+        vtkNew<vtkDataSetSurfaceFilter> filter;
+        filter->SetInputData(copy);
+        filter->Update();
+        surface = filter->GetOutput();
+    }
+    if (!surface || surface->GetNumberOfCells() == 0) return vtkSmartPointer<vtkPolyData>::New();
+    vtkNew<vtkPolyData> copy;
+    copy->ShallowCopy(surface);
+    vtkNew<vtkTriangleFilter> filter;
+    filter->SetInputData(copy);
+    filter->PassVertsOff();
+    filter->PassLinesOff();
+    filter->Update();
+    return filter->GetOutput();
+}
+
+/// The data sets of an input, in order.
+std::vector<vtkDataSet*> leaves_of(vtkDataObject* input) {
+    std::vector<vtkDataSet*> leaves;
+    if (auto* tree = vtkDataObjectTree::SafeDownCast(input)) {
+        const auto iterator = vtkSmartPointer<vtkCompositeDataIterator>::Take(tree->NewIterator());
+        for (iterator->InitTraversal(); !iterator->IsDoneWithTraversal(); iterator->GoToNextItem())
+            if (auto* leaf = vtkDataSet::SafeDownCast(iterator->GetCurrentDataObject()))
+                leaves.push_back(leaf);
+    } else if (auto* data = vtkDataSet::SafeDownCast(input))
+        leaves.push_back(data);
+    return leaves;
+}
+
+/// Puts meshes in the places of the data sets of a tree, or gives the one to a mesh.
+void hand_out(vtkDataObject* input, const std::vector<vtkSmartPointer<vtkPolyData>>& meshes,
+              vtkDataObject* output) {
+    auto* tree = vtkDataObjectTree::SafeDownCast(input);
+    if (!tree) {
+        if (!meshes.empty()) output->ShallowCopy(meshes[0]);
+        return;
+    }
+    auto* copies = vtkDataObjectTree::SafeDownCast(output);
+    copies->CopyStructure(tree);
+    if (vtkFieldData* fields = tree->GetFieldData()) copies->GetFieldData()->PassData(fields);
+    std::size_t next = 0;
+    const auto iterator = vtkSmartPointer<vtkCompositeDataIterator>::Take(tree->NewIterator());
+    for (iterator->InitTraversal(); !iterator->IsDoneWithTraversal(); iterator->GoToNextItem())
+        if (vtkDataSet::SafeDownCast(iterator->GetCurrentDataObject()))
+            copies->SetDataSet(iterator, meshes[next++]);
+}
+
+void add_field_value(vtkDataObject* object, const char* name, double value) {
+    vtkNew<vtkDoubleArray> array;
+    array->SetName(name);
+    array->InsertNextValue(value);
+    object->GetFieldData()->AddArray(array);
+}
+
+glm::dvec3 vector(const double* v) {
+    return {v[0], v[1], v[2]};
+}
+
+}  // namespace
+
+vtkAnamorphPanoramaProjection::vtkAnamorphPanoramaProjection()
+    : Controller(vtkMultiProcessController::GetGlobalController()) {
+    this->SetNumberOfInputPorts(2);
+    this->SetNumberOfOutputPorts(2);
+}
+
+vtkAnamorphPanoramaProjection::~vtkAnamorphPanoramaProjection() {
+    this->SetLens(nullptr);
+}
+
+void vtkAnamorphPanoramaProjection::PrintSelf(ostream& os, vtkIndent indent) {
+    this->Superclass::PrintSelf(os, indent);
+    const auto write = [&](const char* name, const double* v) {
+        os << indent << name << ": " << v[0] << " " << v[1] << " " << v[2] << "\n";
+    };
+    os << indent << "Projection: " << anamorph::name_of(anamorph::kProjections[this->Projection]) << "\n"
+       << indent << "PanoramaWidth: " << this->PanoramaWidth << "\n"
+       << indent << "PanoramaHeight: " << this->PanoramaHeight << "\n"
+       << indent << "FieldOfView: " << this->FieldOfView << "\n"
+       << indent << "PanniniDistance: " << this->PanniniDistance << "\n"
+       << indent << "Lens: " << (this->Lens ? this->Lens : "(none)") << "\n";
+    write("Position", this->Position);
+    write("Direction", this->Direction);
+    write("ViewUp", this->ViewUp);
+    os << indent << "Tolerance: " << this->Tolerance << "\n"
+       << indent << "Occlusion: " << this->Occlusion << "\n"
+       << indent << "Controller: " << this->Controller.Get() << "\n";
+}
+
+void vtkAnamorphPanoramaProjection::SetController(vtkMultiProcessController* controller) {
+    if (controller == this->Controller) return;
+    this->Controller = controller;
+    this->Modified();
+}
+
+vtkMultiProcessController* vtkAnamorphPanoramaProjection::GetController() {
+    return this->Controller;
+}
+
+int vtkAnamorphPanoramaProjection::FillInputPortInformation(int port, vtkInformation* info) {
+    // Trees first: the pipeline then leaves the leaves to us, as they hide each other.
+    info->Remove(INPUT_REQUIRED_DATA_TYPE());
+    info->Append(INPUT_REQUIRED_DATA_TYPE(), "vtkDataObjectTree");
+    info->Append(INPUT_REQUIRED_DATA_TYPE(), "vtkDataSet");
+    if (port == 1) info->Set(INPUT_IS_OPTIONAL(), 1);
+    return 1;
+}
+
+int vtkAnamorphPanoramaProjection::FillOutputPortInformation(int, vtkInformation* info) {
+    info->Set(vtkDataObject::DATA_TYPE_NAME(), "vtkDataObject");
+    return 1;
+}
+
+int vtkAnamorphPanoramaProjection::RequestDataObject(vtkInformation*, vtkInformationVector** inputs,
+                                                     vtkInformationVector* outputs) {
+    vtkDataObject* input = vtkDataObject::GetData(inputs[0]);
+    if (!input) return 0;
+    const bool tree = vtkDataObjectTree::SafeDownCast(input) != nullptr;
+    const std::string wanted = tree ? input->GetClassName() : "vtkPolyData";
+    for (int port = 0; port < 2; ++port) {
+        vtkInformation* info = outputs->GetInformationObject(port);
+        vtkDataObject* output = info->Get(vtkDataObject::DATA_OBJECT());
+        if (output && wanted == output->GetClassName()) continue;
+        info->Set(vtkDataObject::DATA_OBJECT(),
+                  vtkSmartPointer<vtkDataObject>::Take(tree ? input->NewInstance() : vtkPolyData::New()));
+    }
+    return 1;
+}
+
+int vtkAnamorphPanoramaProjection::RequestUpdateExtent(vtkInformation*, vtkInformationVector** inputs,
+                                                       vtkInformationVector*) {
+    using Pipeline = vtkStreamingDemandDrivenPipeline;
+    // The surface of a volume is not that of its pieces.
+    vtkInformation* input = inputs[0]->GetInformationObject(0);
+    if (input && input->Get(Pipeline::UPDATE_NUMBER_OF_PIECES()) > 1 &&
+        !vtkPolyData::SafeDownCast(input->Get(vtkDataObject::DATA_OBJECT())))
+        input->Set(Pipeline::UPDATE_NUMBER_OF_GHOST_LEVELS(),
+                   input->Get(Pipeline::UPDATE_NUMBER_OF_GHOST_LEVELS()) + 1);
+    return 1;
+}
+
+/// One execution of the filter, step by step.
+struct vtkAnamorphPanoramaProjection::Run {
+    vtkAnamorphPanoramaProjection& filter;
+    anamorph_vtk::Execution execution{&filter};
+    std::vector<vtkSmartPointer<vtkPolyData>> scene = {}, painted = {}, rest = {};
+    std::optional<anamorph_vtk::SceneShadow> shadow = {};
+    std::unique_ptr<anamorph::ScenePainter> painter = {};
+
+    void take_scene(vtkDataObject* input, vtkDataObject* occluders);
+    void cast_shadows(const std::vector<vtkSmartPointer<vtkPolyData>>& occluders);
+    void make_painter();
+    /// The size of the scene that all ranks have and the way to the projector: lengths compare with it.
+    double scene_size() const;
+    void paint(vtkPolyData* mesh, double begin, double end);
+    void hand_over(vtkPolyData* mesh, const std::vector<std::vector<PaintedTriangle>>& pieces,
+                   const anamorph::PaintedCounts& counts);
+};
+
+void vtkAnamorphPanoramaProjection::Run::take_scene(vtkDataObject* input, vtkDataObject* occluders) {
+    for (vtkDataSet* leaf : leaves_of(input)) scene.push_back(triangles_of(leaf));
+    if (!filter.Occlusion) return;
+    std::vector<vtkSmartPointer<vtkPolyData>> all = scene;
+    for (vtkDataSet* leaf : leaves_of(occluders)) all.push_back(triangles_of(leaf));
+    cast_shadows(all);
+}
+
+void vtkAnamorphPanoramaProjection::Run::cast_shadows(
+    const std::vector<vtkSmartPointer<vtkPolyData>>& occluders) {
+    TriangleList triangles;
+    for (vtkPolyData* mesh : occluders) anamorph_vtk::append_triangles(mesh, triangles);
+    if (distributed(filter.Controller)) triangles = anamorph_vtk::of_all_ranks(triangles, filter.Controller);
+    shadow.emplace(triangles, vector(filter.Position));
+}
+
+double vtkAnamorphPanoramaProjection::Run::scene_size() const {
+    // Less the least, and the most: both are found as maxima.
+    double far[6];
+    for (int i = 0; i < 3; ++i) far[i] = -(far[3 + i] = filter.Position[i]);
+    for (vtkPolyData* mesh : scene)
+        for (vtkIdType p = 0; p < mesh->GetNumberOfPoints(); ++p) {
+            double x[3];
+            mesh->GetPoint(p, x);
+            for (int i = 0; i < 3 && std::isfinite(x[0] + x[1] + x[2]); ++i) {
+                far[i] = std::max(far[i], -x[i]);
+                far[3 + i] = std::max(far[3 + i], x[i]);
+            }
+        }
+    if (distributed(filter.Controller)) {
+        double all[6];
+        filter.Controller->AllReduce(far, all, 6, vtkCommunicator::MAX_OP);
+        std::copy(all, all + 6, far);
+    }
+    return std::max({far[0] + far[3], far[1] + far[4], far[2] + far[5]});
+}
+
+void vtkAnamorphPanoramaProjection::Run::make_painter() {
+    const auto lens =
+        filter.Lens && *filter.Lens ? anamorph::LensModel::parse(filter.Lens) : anamorph::LensModel{};
+    const anamorph::Chart panorama(anamorph::kProjections[filter.Projection], filter.PanoramaWidth,
+                                   filter.PanoramaHeight, filter.FieldOfView, anamorph::PixelSpacing::edges,
+                                   "panorama ", filter.PanniniDistance, lens);
+    const anamorph::Projector projector(
+        panorama, {vector(filter.Position), vector(filter.Direction), vector(filter.ViewUp)});
+    anamorph::ProjectionOptions options;
+    options.tol = filter.Tolerance;
+    options.smallest = std::min(scene_size(), 1e300) * 0x1p-22;
+    for (vtkPolyData* mesh : scene)
+        options.single =
+            options.single || (mesh->GetPoints() && mesh->GetPoints()->GetDataType() == VTK_FLOAT);
+    if (shadow) options.hidden = [this](const glm::dvec3& point) { return shadow->hides(point); };
+    painter = std::make_unique<anamorph::ScenePainter>(projector, options);
+}
+
+void vtkAnamorphPanoramaProjection::Run::paint(vtkPolyData* mesh, double begin, double end) {
+    const vtkIdType cells = mesh->GetNumberOfPolys();
+    std::vector<std::vector<PaintedTriangle>> pieces(static_cast<std::size_t>(cells));
+    std::vector<anamorph::PaintedCounts> counts(static_cast<std::size_t>(cells));
+    const double middle = begin + (end - begin) * 0.75;
+    vtkCellArray* polygons = mesh->GetPolys();
+    const auto paint_cell = [&](std::int64_t cell) {
+        vtkNew<vtkIdList> ids;
+        polygons->GetCellAtId(cell, ids);
+        std::array<glm::dvec3, 3> corners;
+        for (std::size_t i = 0; i < 3; ++i)
+            mesh->GetPoints()->GetPoint(ids->GetId(static_cast<int>(i)), &corners[i].x);
+        const auto at = static_cast<std::size_t>(cell);
+        counts[at] = painter->paint(corners, pieces[at]);
+    };
+    if (cells > 0) execution.stage(begin, middle)(cells, paint_cell);
+    anamorph::PaintedCounts sum;
+    for (const anamorph::PaintedCounts& one : counts) sum += one;
+    hand_over(mesh, pieces, sum);
+    execution.progress(end);
+}
+
+void vtkAnamorphPanoramaProjection::Run::hand_over(vtkPolyData* mesh,
+                                                   const std::vector<std::vector<PaintedTriangle>>& pieces,
+                                                   const anamorph::PaintedCounts& counts) {
+    const anamorph::Size size{filter.PanoramaWidth, filter.PanoramaHeight};
+    anamorph_vtk::PaintedMesh with(mesh, &size), without(mesh, nullptr);
+    vtkNew<vtkUnsignedCharArray> why;
+    why->SetName("Painting");
+    for (std::size_t cell = 0; cell < pieces.size(); ++cell) {
+        const auto id = static_cast<vtkIdType>(cell);
+        vtkIdType count = 0;
+        const vtkIdType* ids = nullptr;
+        mesh->GetPolys()->GetCellAtId(id, count, ids);
+        const std::array<vtkIdType, 3> corners{ids[0], ids[1], ids[2]};
+        for (const PaintedTriangle& piece : pieces[cell]) {
+            const bool is_painted = piece.painting == Painting::painted;
+            (is_painted ? with : without).add(piece, id, corners);
+            if (!is_painted) why->InsertNextValue(static_cast<unsigned char>(piece.painting));
+        }
+    }
+    for (auto* to : {&painted, &rest}) {
+        to->push_back(vtkSmartPointer<vtkPolyData>::New());
+        (to == &painted ? with : without).finish(to->back());
+        add_field_value(to->back(), "anamorph:tol", filter.Tolerance);
+        add_field_value(to->back(), "anamorph:max_error", counts.max_error);
+        add_field_value(to->back(), "anamorph:no_direction", static_cast<double>(counts.no_direction));
+    }
+    rest.back()->GetCellData()->AddArray(why);
+}
+
+int vtkAnamorphPanoramaProjection::RequestData(vtkInformation*, vtkInformationVector** inputs,
+                                               vtkInformationVector* outputs) {
+    vtkDataObject* input = vtkDataObject::GetData(inputs[0]);
+    const auto execute = [&] {
+        Run run{*this};
+        run.take_scene(input, vtkDataObject::GetData(inputs[1]));
+        run.make_painter();
+        const double share = 1.0 / static_cast<double>(std::max<std::size_t>(run.scene.size(), 1));
+        for (std::size_t i = 0; i < run.scene.size(); ++i)
+            run.paint(run.scene[i], share * static_cast<double>(i), share * static_cast<double>(i + 1));
+        hand_out(input, run.painted, vtkDataObject::GetData(outputs, 0));
+        hand_out(input, run.rest, vtkDataObject::GetData(outputs, 1));
+    };
+    return anamorph_vtk::guarded(this, execute,
+                                 {vtkDataObject::GetData(outputs, 0), vtkDataObject::GetData(outputs, 1)});
+}
