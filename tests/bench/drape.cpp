@@ -3,7 +3,7 @@
 //
 // Pictures and screens are square and of the same size, three channels of floats, bilinear. A frame is cut and drawn anew
 // each time, as for a camera that moves; the bounds of the surface's patches, which do not depend on it, are kept. oka and
-// oka-z are the paper's, with blocks of `block` pixels; `auto` holds a tolerance. Errors are measured in long double at
+// oka-z are the paper's, with blocks of `block` pixels; `auto` holds a tolerance; `exact` polishes its points. Errors are measured in long double at
 // every pixel.
 #include <algorithm>
 #include <cmath>
@@ -49,10 +49,16 @@ std::vector<Case> cases() {
         d.extent = glm::dvec2(0.03 + 0.1 * uniform(random));
         d.vector = {0, 0, 0.1 * uniform(random) - 0.03};
     }
+    std::vector<float> heights(256 * 256);
+    for (float& h : heights) h = static_cast<float>(uniform(random));
+    SurfaceSum relief;
+    relief.heights = std::make_shared<SampledField>(smoothed(heights, {256, 256}, 4), Size{256, 256}, 1);
+    relief.height_scale = 0.3;
     return {{"cylinder", surface_of("cylinder", {})},
             {"sphere", surface_of("sphere", whole)},
             {"page_turn", surface_of("page_turn", page)},
-            {"gaussians", surface_of("plane", {}, bumps)}};
+            {"gaussians", surface_of("plane", {}, bumps)},
+            {"relief", std::make_shared<SharedTree>(make_surface(relief))}};
 }
 
 /// Draws one case's frames.
@@ -121,6 +127,9 @@ std::vector<Way> ways() {
         options.tol = tol;
         all.push_back({"auto", options});
     }
+    options.tol = kTols[1];
+    options.scheme = DrapeScheme::exact;
+    all.push_back({"exact", options});
     for (const double block : kBlocks) {
         options.block = block;
         options.scheme = DrapeScheme::oka;

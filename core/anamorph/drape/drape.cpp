@@ -42,7 +42,7 @@ void for_regions(const DrapeMap& map, const Box& box, const Body& body) {
 /// A pixel's facet, and the weights of its corners in space.
 struct Drape::Spot {
     const Facet* facet = nullptr;  ///< null where nothing is seen
-    double u = 0, v = 0, nearness = 0;
+    double u = 0, v = 0, nearness = 0, bound = 0;
     double weight[3] = {};
 };
 
@@ -50,14 +50,19 @@ Drape::Drape(std::shared_ptr<SharedTree> surface, const Camera& camera, const Si
              const DrapeOptions& options)
     : m_surface(std::move(surface)),
       m_options(options),
-      m_map(std::make_shared<DrapeMap>(facets_of(*m_surface, camera, picture, options), camera, picture,
-                                       options.tol)) {
+      m_map(std::make_shared<DrapeMap>(
+          facets_of(*m_surface, camera, picture, options), camera, picture, options.tol,
+          options.scheme == DrapeScheme::exact ? m_surface->tree.shared_surface() : nullptr)) {
     if (options.lighting.shading != DrapeShading::none || options.own == DrapeOutput::normal)
         for (const FacetCorner& corner : m_map->facets().corners) m_lit.push_back(lit(corner));
     const Chart flat(Projection::rectilinear, picture.width, picture.height);
     m_picture.maps = {{m_map, {{Border(flat, options.wrap)}}}};
     m_picture.filter = options.filter;
     m_picture.output = options.output;
+}
+
+Reached Drape::reached(const ParallelFor& parallel_for) const {
+    return m_map->exact_points() ? m_map->reached(parallel_for) : Reached{max_error(), 0};
 }
 
 Drape::Lit Drape::lit(const FacetCorner& corner) const {
@@ -79,6 +84,7 @@ Drape::Spot Drape::spot(const SeenPixels& pixels, int x, int y) const {
     spot.u = pixels.u[at];
     spot.v = pixels.v[at];
     spot.nearness = pixels.nearness[at];
+    spot.bound = m_map->bound_at(pixels, at);
     weigh(spot, x + 0.5, y + 0.5);
     return spot;
 }
@@ -156,7 +162,7 @@ void Drape::put_values(const Spot& spot, int x, int y, float* to) const {
             *to = seen ? static_cast<float>(landing_error(spot, x, y)) : 0;
             return;
         default:
-            *to = seen ? static_cast<float>(m_map->facets().leaves[spot.facet->leaf].bound) : 0;
+            *to = seen ? static_cast<float>(spot.bound) : 0;
     }
 }
 

@@ -39,8 +39,9 @@ struct DrapeLighting {
 /// How the surface is made of facets.
 enum class DrapeScheme {
     automatic,  ///< patches as large as the tolerance allows, without cracks
-    oka,        ///< blocks of the picture as parallelograms, nearer ones over farther ones (oka.h)
-    oka_z,      ///< the same with a depth for each pixel
+    exact,  ///< the same, and each pixel's point is that of the surface itself but for rounding (polish.h)
+    oka,    ///< blocks of the picture as parallelograms, nearer ones over farther ones (oka.h)
+    oka_z,  ///< the same with a depth for each pixel
 };
 
 /// What is drawn beside what every picture can show (Output): the depth ahead of the camera, infinite where nothing is
@@ -77,7 +78,8 @@ class Drape {
     Drape(std::shared_ptr<SharedTree> surface, const Camera& camera, const Size& picture,
           const DrapeOptions& options);
 
-    /// The largest bound of what the camera sees, or nearly so: pixels of the screen.
+    /// The largest bound of what the camera sees, or nearly so, in pixels of the screen, and how much is exact.
+    Reached reached(const ParallelFor& parallel_for) const;
     double max_error() const { return m_map->max_error(); }
     /// Patches that the camera sees, or nearly so.
     std::size_t patches() const { return m_map->facets().leaves.size(); }

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "anamorph/drape/polish.h"
 #include "anamorph/simd/split_points.h"
 
 namespace anamorph {
@@ -13,7 +14,7 @@ namespace {
 constexpr int kSquare = 128;
 constexpr std::size_t kKeptRegions = 8;
 
-// Blocks of which only a part is seen are cut down to the least side.
+// Blocks of which only a part is seen, or only a part exactly, are cut down to the least side.
 constexpr int kMostSide = 32, kLeastSide = 8;
 
 /// How many pixels of a box show something.
@@ -49,13 +50,15 @@ void SeenPool::give_back(std::unique_ptr<SeenPixels> pixels) {
     m_free.push_back(std::move(pixels));
 }
 
-DrapeMap::DrapeMap(Facets facets, const Camera& camera, const Size& picture, double tol)
+DrapeMap::DrapeMap(Facets facets, const Camera& camera, const Size& picture, double tol,
+                   std::shared_ptr<const DrapedSurface> surface)
     : BlockMap(camera.screen().width, camera.screen().height,
                {{0, 0, camera.screen().width, camera.screen().height}}, {1, kSquare, kKeptRegions}),
       m_facets(std::move(facets)),
       m_camera(camera),
       m_picture(picture),
       m_for_float(tol * kFloatShare),
+      m_surface(std::move(surface)),
       m_raster(m_facets, camera.screen(), kSquare),
       m_pool(std::make_shared<SeenPool>()) {
     for (const FacetLeaf& leaf : m_facets.leaves)
@@ -66,8 +69,34 @@ void DrapeMap::plan(const Box& box, int, Blocks& blocks) const {
     const auto region = std::make_shared<SeenRegion>(m_pool);
     const Box screen{0, 0, width(), height()};
     m_raster.draw(intersection({box.x0 - 1, box.y0 - 1, box.x1 + 1, box.y1 + 1}, screen), region->pixels());
+    if (m_surface) polish(box, region->pixels());
     blocks.data = region;
     for_squares(box, kMostSide, [&](const Box& square) { cut(*region, square, blocks); });
+}
+
+/// Moves the points of a box to those that are seen at the middles of their pixels.
+void DrapeMap::polish(const Box& box, SeenPixels& pixels) const {
+    const PointPolish to(*m_surface, m_camera);
+    pixels.bound.assign(pixels.facet.size(), 0);
+    for (int y = box.y0; y < box.y1; ++y)
+        for (int x = box.x0; x < box.x1; ++x) {
+            const std::size_t at = pixels.index(x, y);
+            if (pixels.facet[at] == SeenPixels::kNone) continue;
+            const auto& facet = m_facets.facets[static_cast<std::size_t>(pixels.facet[at])];
+            pixels.bound[at] = m_facets.leaves[facet.leaf].bound;
+            const PointPolish::Polished p =
+                to.polish(x + 0.5 - width() / 2.0, y + 0.5 - height() / 2.0, pixels.u[at], pixels.v[at]);
+            if (!(p.bound < pixels.bound[at])) continue;
+            pixels.u[at] = p.u;
+            pixels.v[at] = p.v;
+            pixels.nearness[at] = p.nearness;
+            pixels.bound[at] = p.bound;
+        }
+}
+
+double DrapeMap::bound_at(const SeenPixels& pixels, std::size_t at) const {
+    if (!pixels.bound.empty()) return pixels.bound[at];
+    return m_facets.leaves[m_facets.facets[static_cast<std::size_t>(pixels.facet[at])].leaf].bound;
 }
 
 /// Adds the blocks of a square: whole where all of it is seen, or nothing; else its quarters.
@@ -83,19 +112,26 @@ void DrapeMap::cut(const SeenRegion& region, const Box& box, Blocks& blocks) con
     }
     const int side = std::max(box.width(), box.height());
     const bool whole = seen == box.width() * box.height();
-    if (!whole && side > kLeastSide) {
+    block.bound = bound_of(region, box);
+    const bool alike = whole && !(m_surface && block.bound > kExactError);
+    if (!alike && side > kLeastSide) {
         for_squares(box, (side + 1) / 2, [&](const Box& quarter) { cut(region, quarter, blocks); });
         return;
     }
     block.kind = Block::Kind::computed;
-    block.bound = bound_of(region, box);
-    block.precise = !(whole && fits_float(region, box, block));
+    block.precise = m_surface || !(whole && fits_float(region, box, block));
     blocks.push_back(block);
 }
 
-/// The largest bound of the leaves that a box shows.
+/// The largest bound of what a box shows.
 double DrapeMap::bound_of(const SeenRegion& region, const Box& box) const {
     double bound = 0;
+    const SeenPixels& pixels = region.pixels();
+    if (!pixels.bound.empty()) {
+        for (int y = box.y0; y < box.y1; ++y)
+            for (int x = box.x0; x < box.x1; ++x) bound = std::max(bound, pixels.bound[pixels.index(x, y)]);
+        return bound;
+    }
     for_leaves(region, box, [&](const FacetLeaf& leaf) { bound = std::max(bound, leaf.bound); });
     return bound;
 }

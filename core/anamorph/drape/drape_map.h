@@ -45,14 +45,21 @@ class SeenRegion final : public RegionData {
 class DrapeMap final : public BlockMap {
   public:
     /// Bounds of facets leave kFloatShare of `tol` to points in float; blocks for which that is too little have theirs in
-    /// double.
-    DrapeMap(Facets facets, const Camera& camera, const Size& picture, double tol);
+    /// double. With `surface`, that of the facets, each pixel's point is that of the surface itself (PointPolish), where
+    /// that can be told.
+    DrapeMap(Facets facets, const Camera& camera, const Size& picture, double tol,
+             std::shared_ptr<const DrapedSurface> surface = nullptr);
 
     const Facets& facets() const { return m_facets; }
     const Camera& camera() const { return m_camera; }
     const Size& picture() const { return m_picture; }
     /// No block's bound is larger.
     double max_error() const { return m_max_error; }
+
+    /// Has each pixel a point of its own?
+    bool exact_points() const { return m_surface != nullptr; }
+    /// The bound of what is seen at a place of SeenPixels.
+    double bound_at(const SeenPixels& pixels, std::size_t at) const;
 
     /// What is seen about a pixel of the screen.
     std::shared_ptr<const SeenRegion> region_at(int x, int y) const;
@@ -71,6 +78,7 @@ class DrapeMap final : public BlockMap {
     void plan(const Box& box, int piece, Blocks& blocks) const override;
 
   private:
+    void polish(const Box& box, SeenPixels& pixels) const;
     void cut(const SeenRegion& region, const Box& box, Blocks& blocks) const;
     double bound_of(const SeenRegion& region, const Box& box) const;
     bool fits_float(const SeenRegion& region, const Box& box, Block& block) const;
@@ -81,6 +89,7 @@ class DrapeMap final : public BlockMap {
     Camera m_camera;
     Size m_picture;
     double m_for_float, m_max_error = 0;
+    std::shared_ptr<const DrapedSurface> m_surface;
     FacetRaster m_raster;
     std::shared_ptr<SeenPool> m_pool;
 };

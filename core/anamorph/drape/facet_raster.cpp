@@ -25,6 +25,7 @@ void SeenPixels::clear(const Box& pixels) {
     u.resize(room);
     v.resize(room);
     facet.assign(room, kNone);
+    bound.clear();
 }
 
 FacetRaster::FacetRaster(const Facets& facets, const Size& screen, int square)

@@ -22,6 +22,7 @@ struct SeenPixels {
     std::ptrdiff_t stride = 0;
     std::vector<double> nearness, u, v;  ///< u and v in 0 to 1
     std::vector<double> facet;           ///< its number, or kNone
+    std::vector<double> bound;           ///< of points that have one of their own (DrapeMap), else empty
 
     /// From now on those of this box, in which nothing is seen.
     void clear(const Box& pixels);

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <string>
 
+#include "anamorph/drape/seen_range.h"
 #include "anamorph/error.h"
 #include "anamorph/parameter.h"
 
@@ -64,18 +65,14 @@ class BlockMaker {
                      k = m_side.y / 2 + m_blocks.overlap / 2 / m_picture.height;
         const double reach_u = std::max(m_side.x, h), reach_v = std::max(m_side.y, k);
         const SurfaceRange f = m_surface.range({u - reach_u, u + reach_u}, {v - reach_v, v + reach_v});
-        J in_frame[3];
-        for (int i = 0; i < 3; ++i)
-            in_frame[i] = f[0] * m_camera.matrix()[0][i] + f[1] * m_camera.matrix()[1][i] +
-                          f[2] * m_camera.matrix()[2][i] + m_camera.offset()[i];
-        const auto off = [&](const J& coordinate) {
-            const J g = (m_camera.perspective() ? coordinate / in_frame[2] : coordinate) * m_camera.focal();
+        const auto seen = seen_range(m_camera, f);
+        const auto off = [&](const J& g) {
             const auto half = [](const Interval& a) { return (a.hi - a.lo) / 2; };
             const double differences = h * m_side.x * half(g.c[3]) + k * m_side.y * half(g.c[5]);
             return differences + magnitude(g.c[3] * Interval(0, h * h) + g.c[4] * Interval(-h * k, h * k) +
                                            g.c[5] * Interval(0, k * k));
         };
-        const double size = std::hypot(off(in_frame[0]), off(in_frame[1])) + grid_error(m_made.grid_bits);
+        const double size = std::hypot(off(seen[0]), off(seen[1])) + grid_error(m_made.grid_bits);
         return std::isnan(size) ? HUGE_VAL : size;
     }
 

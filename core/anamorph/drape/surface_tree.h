@@ -45,6 +45,7 @@ class SurfaceTree {
     explicit SurfaceTree(std::shared_ptr<const DrapedSurface> surface);
 
     const DrapedSurface& surface() const { return *m_surface; }
+    const std::shared_ptr<const DrapedSurface>& shared_surface() const { return m_surface; }
     /// Patch 0 is the whole surface. References last.
     const SurfacePatch& patch(std::int32_t index) const { return m_patches[static_cast<std::size_t>(index)]; }
     std::size_t size() const { return m_patches.size(); }

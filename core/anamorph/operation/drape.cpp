@@ -64,6 +64,7 @@ ParameterTable make_table() {
                "how far, on the screen, a point of the picture may be drawn from where it belongs"),
         scheme(
             {{"auto"},
+             {"exact"},
              {"oka",
               "blocks of the picture as parallelograms, the nearer over the farther, with the tolerance that "
               "comes out (Oka 1987)"},
@@ -324,9 +325,10 @@ class SolvedDrape final : public SolvedPicture {
   public:
     explicit SolvedDrape(Drape drape) : m_drape(std::move(drape)) {}
 
-    Attributes reached(const ParallelFor&) const override {
-        return {{"anamorph:max_error", m_drape.max_error()},
-                {"anamorph:exact_fraction", 0.0},
+    Attributes reached(const ParallelFor& parallel_for) const override {
+        const Reached reached = m_drape.reached(parallel_for);
+        return {{"anamorph:max_error", reached.max_error},
+                {"anamorph:exact_fraction", reached.exact_fraction},
                 {"anamorph:patches", static_cast<int>(m_drape.patches())}};
     }
     bool draw(const std::vector<const Source*>& sources, const Box& box, const ImageView& view,
