@@ -159,7 +159,7 @@ TEST(VtkPanoramaProjection, EveryProjectionPaintsARoom) {
         filter->SetInputData(room());
         filter->SetProjection(projection);
         const bool faces[] = {projection == Filter::CUBEMAP, projection == Filter::CUBECROSS,
-                              projection == Filter::CUBEMAP3X2 || projection == Filter::EAC,
+                              projection == Filter::CUBEMAP_3X2 || projection == Filter::EAC,
                               projection == Filter::OCTAHEDRAL};
         filter->SetPanoramaWidth(faces[0] ? 100 : faces[1] ? 400 : faces[2] ? 300 : 400);
         filter->SetPanoramaHeight(faces[0] ? 600 : faces[1] ? 300 : faces[2] ? 200 : faces[3] ? 400 : 200);

@@ -51,7 +51,7 @@ class ANAMORPHFILTERS_EXPORT vtkAnamorphPanoramaProjection : public vtkDataObjec
         STEREOGRAPHIC,
         MERCATOR,
         CUBEMAP,
-        CUBEMAP3X2,
+        CUBEMAP_3X2,
         CUBECROSS,
         EAC,
         PANNINI,

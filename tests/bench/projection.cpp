@@ -1,0 +1,143 @@
+// SPDX-License-Identifier: Apache-2.0
+// Panoramas thrown onto a scene: speed and error.
+//
+// A room of 12 triangles about a projector that is not in its middle, 4096 x 2048 texels. triangles: cut to a tolerance; the
+// time is that of a triangle that is painted. vertices: texture coordinates of a grid's vertices (of about as many
+// triangles as the table's size across, squared), without a tolerance, as vtkTextureMapToSphere and vtkProjectedTexture
+// compute them; the time is that of a triangle. Errors are measured in long double at three points of each triangle, about poles
+// as directions. ratio_to_exact: against a texel for every point, by the formula.
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <string>
+#include <vector>
+
+#include "anamorph/projector/projected_triangles.h"
+#include "bench.h"
+
+namespace anamorph::bench {
+namespace {
+
+using SceneTriangles = std::vector<std::array<glm::dvec3, 3>>;
+
+const ProjectorPose kPose{{0.2, 0.1, -0.3}, {0.3, -0.1, -1}, {0.1, 1, 0.2}};
+
+/// A cube from -1 to 1, every side of it as a grid of quads.
+SceneTriangles room_of(int quads) {
+    SceneTriangles room;
+    for (int axis = 0; axis < 3; ++axis)
+        for (const double side : {-1.0, 1.0})
+            for (int j = 0; j < quads; ++j)
+                for (int i = 0; i < quads; ++i) {
+                    const auto corner = [&](int s, int t) {
+                        glm::dvec3 p;
+                        p[axis] = side;
+                        p[(axis + 1) % 3] = 2.0 * (i + s) / quads - 1;
+                        p[(axis + 2) % 3] = 2.0 * (j + t) / quads - 1;
+                        return p;
+                    };
+                    room.push_back({corner(0, 0), corner(1, 0), corner(1, 1)});
+                    room.push_back({corner(0, 0), corner(1, 1), corner(0, 1)});
+                }
+    return room;
+}
+
+/// Between a ray and that of a texel, in texels of the panorama's middle.
+long double turned(const long double (&ray)[3], long double u, long double v, int width, int height) {
+    constexpr long double kPi = std::numbers::pi_v<long double>;
+    const long double a = (u / width - 0.5L) * 2 * kPi, e = (v / height - 0.5L) * kPi,
+                      n = std::sqrt(ray[0] * ray[0] + ray[1] * ray[1] + ray[2] * ray[2]);
+    const long double x = ray[0] / n - std::sin(a) * std::cos(e), y = ray[1] / n - std::sin(e),
+                      z = ray[2] / n - std::cos(a) * std::cos(e);
+    return std::sqrt(x * x + y * y + z * z) * width / (2 * kPi);
+}
+
+/// The formula of an equirectangular panorama in long double, against what is interpolated.
+Accuracy accuracy(const Projector& projector, const std::vector<PaintedTriangle>& pieces) {
+    constexpr long double kPi = std::numbers::pi_v<long double>;
+    const double shares[][3] = {{0.6, 0.2, 0.2}, {0.2, 0.6, 0.2}, {1. / 3, 1. / 3, 1. / 3}};
+    const int width = projector.panorama().width(), height = projector.panorama().height();
+    std::vector<float> errors;
+    for (const PaintedTriangle& piece : pieces)
+        for (const auto& share : shares) {
+            long double r[3] = {}, u = 0, v = 0;
+            for (std::size_t k = 0; k < 3; ++k) {
+                const PaintedCorner& c = piece.corners[k];
+                for (int i = 0; i < 3; ++i)
+                    for (int d = 0; d < 3; ++d)
+                        r[i] += share[k] * projector.frame()[i][d] *
+                                (static_cast<long double>(c.point[d]) - projector.pose().position[d]);
+                u += share[k] * c.texel.x;
+                v += share[k] * c.texel.y;
+            }
+            const long double x = (std::atan2(r[0], r[2]) / (2 * kPi) + 0.5L) * width;
+            const long double y = (std::atan2(r[1], std::hypot(r[0], r[2])) / kPi + 0.5L) * height;
+            long double across = std::fabs(x - u);
+            if (across > width / 2.0L) across = width - across;
+            errors.push_back(
+                static_cast<float>(std::min(std::hypot(across, y - v), turned(r, u, v, width, height))));
+        }
+    return accuracy_of(errors);
+}
+
+/// Texels at the corners, and nothing else.
+std::vector<PaintedTriangle> by_vertices(const Projector& projector, const SceneTriangles& scene) {
+    std::vector<PaintedTriangle> pieces;
+    for (const auto& triangle : scene) {
+        PaintedTriangle piece;
+        for (std::size_t k = 0; k < 3; ++k) {
+            piece.corners[k].point = triangle[k];
+            projector.receive(triangle[k], piece.corners[k].texel);
+        }
+        pieces.push_back(piece);
+    }
+    return pieces;
+}
+
+void run(const Settings& settings, Report& report) {
+    if (!settings.wants_case("room")) return;
+    const Projector projector(Chart(Projection::equirectangular, 4096, 2048), kPose);
+    const SceneTriangles room = room_of(1), grid = room_of(std::max(2, settings.size / 16));
+    std::vector<PaintedTriangle> vertices;
+    struct Tolerance {
+        double tol;
+        std::vector<PaintedTriangle> pieces = {};
+        PaintedCounts counts = {};
+    };
+    std::vector<Tolerance> tolerances{{8}, {2}, {0.5}};
+    std::vector<Timed> timed{{[&] { vertices = by_vertices(projector, grid); }}};
+    for (Tolerance& t : tolerances)
+        timed.push_back({[&] {
+            const ScenePainter painter(projector, {.tol = t.tol});
+            t.pieces.clear();
+            t.counts = {};
+            for (const auto& triangle : room) t.counts += painter.paint(triangle, t.pieces);
+        }});
+    const std::vector<Times> times = time_interleaved(timed, settings.rounds);
+    const auto add = [&](const std::string& scheme, double tol, const Times& time,
+                         const std::vector<PaintedTriangle>& pieces, double bound) {
+        if (!settings.wants_scheme(scheme)) return;
+        Row row;
+        row.op = "projection";
+        row.case_name = "room";
+        row.scheme = scheme;
+        row.tol_px = tol;
+        row.size = static_cast<int>(pieces.size());
+        row.ns_per_px = time.median / static_cast<double>(pieces.size());
+        row.best_ns_per_px = time.best / static_cast<double>(pieces.size());
+        row.ratio_to_exact = times[0].median / static_cast<double>(vertices.size()) / row.ns_per_px;
+        row.error = accuracy(projector, pieces);
+        row.bound_px = bound;
+        report.add(row);
+    };
+    add("vertices", kNone, times[0], vertices, kNone);
+    for (std::size_t i = 0; i < tolerances.size(); ++i)
+        add("triangles", tolerances[i].tol, times[i + 1], tolerances[i].pieces,
+            tolerances[i].counts.max_error);
+}
+
+const RegisterOp registered({"projection", run, nullptr});
+
+}  // namespace
+}  // namespace anamorph::bench
