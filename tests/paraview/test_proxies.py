@@ -195,7 +195,8 @@ def with_input(cls):
         for _ in range(2 if cls is anamorph.vtkAnamorphInbetween else 1):
             new.AddInputDataObject(plane.GetOutput())
         if cls is anamorph.vtkAnamorphPanoramaProjection:
-            # Of the largest panorama too, few triangles.
+            # Of the largest panorama too, few triangles; square, as the last of the projections needs it.
+            new.SetPanoramaHeight(4096)
             new.SetPosition(0, 0, 1)
             new.SetTolerance(1000)
     return new
