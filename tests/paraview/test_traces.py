@@ -136,8 +136,15 @@ def figures_performed():
         apply(drawn, CameraParallelProjection=1, CameraParallelScale=200)
 
 
+def a_panorama_thrown_onto_a_plane():
+    projection = AnamorphPanoramaProjection(registrationName="result", Input=upright_plane())
+    apply(projection, Position=[.1, .4, .1], Tolerance=2)
+    apply(projection, Projection=1, PanoramaWidth=600, PanoramaHeight=200, Direction=[1, 0, .2], Occlusion=0)
+
+
 SESSIONS = [texture_coordinates_after_the_plane, a_bump_in_texture_coordinates, handles_and_then_the_plane, another_row,
-            files_and_a_table, surfaces_in_between, a_relief_of_a_file, a_relief_of_the_pipeline, figures_performed]
+            files_and_a_table, surfaces_in_between, a_relief_of_a_file, a_relief_of_the_pipeline, figures_performed,
+            a_panorama_thrown_onto_a_plane]
 
 
 # ---- What is compared ----
