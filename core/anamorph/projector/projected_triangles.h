@@ -58,6 +58,7 @@ struct PaintedCounts {
     /// directions.
     double max_error = 0;
 
+    /// Adds up, and keeps the larger error.
     PaintedCounts& operator+=(const PaintedCounts& other);
 };
 
