@@ -3,8 +3,8 @@
 //
 // Pictures and screens are square and of the same size, three channels of floats, bilinear. A frame is cut and drawn anew
 // each time, as for a camera that moves; the bounds of the surface's patches, which do not depend on it, are kept. oka and
-// oka-z are the paper's, with blocks of `block` pixels; `auto` holds a tolerance; `exact` polishes its points. Errors are measured in long double at
-// every pixel.
+// oka-z are the paper's, with blocks of `block` pixels; `auto` holds a tolerance; `exact` finds each pixel's own point. Errors
+// are measured in long double at every pixel.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
