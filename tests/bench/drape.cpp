@@ -155,8 +155,9 @@ void measure(const Settings& settings, Report& report, const Case& c, Drawing& d
         row.threads = settings.threads;
         row.ratio_to_exact = kNone;
         row.error = drawing.error(c, way.options);
-        row.bound_px = drawing.drape(c, way.options).max_error();
-        row.exact_fraction = 0;
+        const Reached reached = drawing.drape(c, way.options).reached(serial_for);
+        row.bound_px = reached.max_error;
+        row.exact_fraction = reached.exact_fraction;
         rows.push_back(row);
     }
     const std::vector<Times> times = time_interleaved(timed, settings.rounds);

@@ -104,7 +104,7 @@ int SampledField::cell_at(double place, int size) {
 void SampledField::pad(const std::vector<float>& texels) {
     const int w = m_size.width, h = m_size.height;
     m_texels.resize(offset(0, h + 4));
-    const auto row_of = static_cast<std::size_t>(w * m_channels);
+    const auto row_of = static_cast<std::size_t>(w) * static_cast<std::size_t>(m_channels);
     for (int y = 0; y < h; ++y)
         std::copy_n(texels.begin() + static_cast<std::ptrdiff_t>(row_of) * y, row_of, texel(2, y + 2));
     // From `last` on, whose neighbour within is `before`.
@@ -138,7 +138,7 @@ void SampledField::find_missing() {
             std::fill_n(numbers, m_channels, std::numeric_limits<float>::quiet_NaN());
             const bool own = x >= 2 && x < m_size.width + 2 && y >= 2 && y < m_size.height + 2;
             if (own && m_missing_texels++ == 0) m_first_missing = {x - 2, y - 2};
-            const auto columns = static_cast<std::size_t>(m_size.width + 1);
+            const auto columns = static_cast<std::size_t>(m_size.width) + 1;
             m_missing.resize(columns * static_cast<std::size_t>(m_size.height + 1), Certainty::no);
             for (int row = std::max(0, y - 3); row <= std::min(m_size.height, y); ++row)
                 for (int column = std::max(0, x - 3); column <= std::min(m_size.width, x); ++column)
@@ -211,7 +211,7 @@ void SampledField::add_cell(int column, int row, const Part& part, Hull* hulls) 
         for (int j = 0; j < 4; ++j)
             for (int i = 0; i < 4; ++i) {
                 const double number = texel(column + i, row + j)[c];
-                cell[static_cast<std::size_t>(4 * j + i)] = number;
+                cell.data()[4 * j + i] = number;
                 largest = std::max(largest, std::fabs(number));
             }
         // Extrapolated, each of six linear steps multiplies by that.
@@ -330,7 +330,7 @@ std::vector<float> smoothed(const std::vector<float>& texels, const Size& size, 
         for (int i = 0; i < count; ++i) {
             double total = 0;
             for (int k = std::max(-reach, -i); k <= std::min(reach, count - 1 - i); ++k)
-                total += kernel[static_cast<std::size_t>(k + reach)] * line[static_cast<std::size_t>(i + k)];
+                total += kernel.data()[k + reach] * line.data()[i + k];
             of[first + static_cast<std::size_t>(i) * step] = total;
         }
     };
