@@ -200,10 +200,17 @@ SpacePoint between(const SpacePoint& a, double from_a, const SpacePoint& b, doub
     return {a.p + s * (b.p - a.p), a.u + s * (b.u - a.u), a.v + s * (b.v - a.v)};
 }
 
+// Bounds of so many patches take seconds; of more, minutes.
+constexpr std::size_t kLeastLimit = std::size_t{1} << 16, kMostLimit = std::size_t{1} << 20;
+
 class FacetMaker {
   public:
-    FacetMaker(SurfaceTree& tree, const Camera& camera, double tol, std::size_t most_leaves)
-        : m_tree(tree), m_camera(camera), m_view(camera), m_tol(tol), m_most_leaves(most_leaves) {
+    FacetMaker(SurfaceTree& tree, const Camera& camera, double tol)
+        : m_tree(tree), m_camera(camera), m_view(camera), m_tol(tol) {
+        const Size& screen = camera.screen();
+        const std::size_t pixels =
+            static_cast<std::size_t>(screen.width) * static_cast<std::size_t>(screen.height);
+        m_most_leaves = std::clamp(2 * pixels, kLeastLimit, kMostLimit);
         m_made.grid_bits = grid_bits_of(camera.screen());
         m_made.inverse_depth = camera.perspective();
         m_unit = std::ldexp(1.0, m_made.grid_bits);
@@ -367,7 +374,7 @@ class FacetMaker {
     const Camera& m_camera;
     PatchView m_view;
     double m_tol;
-    std::size_t m_most_leaves;
+    std::size_t m_most_leaves = 0;
     std::vector<std::int32_t> m_hidden;  ///< patches that were met and are not on the screen
     double m_unit = 1, m_wanted = 0, m_guard = 0;
     Facets m_made;
@@ -390,8 +397,8 @@ double grid_error(int bits) {
     return std::ldexp(0.7072, -bits);
 }
 
-Facets cut_into_facets(SurfaceTree& tree, const Camera& camera, double tol, std::size_t most_leaves) {
-    return FacetMaker(tree, camera, tol, most_leaves).make();
+Facets cut_into_facets(SurfaceTree& tree, const Camera& camera, double tol) {
+    return FacetMaker(tree, camera, tol).make();
 }
 
 }  // namespace anamorph

@@ -72,8 +72,8 @@ double grid_error(int bits);
 inline constexpr double kFloatShare = 1.0 / 64;
 
 /// Cuts what the camera sees so that every bound, with its share for points in float, is at most `tol` pixels. Throws
-/// Error where tol is less than the grid or double allow, or takes more than `most_leaves` patches.
-Facets cut_into_facets(SurfaceTree& tree, const Camera& camera, double tol,
-                       std::size_t most_leaves = 1u << 20);
+/// Error where tol is less than the grid or double allow, or takes more patches than there are half pixels (of large
+/// pictures more than 2^20, of small ones more than 2^16).
+Facets cut_into_facets(SurfaceTree& tree, const Camera& camera, double tol);
 
 }  // namespace anamorph
