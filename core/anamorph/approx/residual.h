@@ -21,8 +21,9 @@ struct LinearPart {
     double cx, cy;
     Point<double> origin, right, down;
 
+    Point<double> operator()(double x, double y) const { return at(x, y); }
     template <class T>
-    Point<T> operator()(const T& x, const T& y) const {
+    Point<T> at(const T& x, const T& y) const {
         return {(x - cx) * right.x + origin.x + (y - cy) * down.x,
                 (x - cx) * right.y + origin.y + (y - cy) * down.y};
     }

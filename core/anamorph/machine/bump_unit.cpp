@@ -95,7 +95,7 @@ void BumpStage::make_bumps(const Panorama& map, int piece, const LinearPart& lin
 UnitCoordinates BumpStage::operator()(double s, double t) const {
     return with_format(m_unit.arithmetic, [&](auto number) {
         using T = decltype(number);
-        Point<T> at = m_linear(T(2 * s - 1), T(2 * t - 1));
+        Point<T> at = m_linear.at(T(2 * s - 1), T(2 * t - 1));
         if (m_bumps) {
             const T across(s), down(t);
             const auto bump =
