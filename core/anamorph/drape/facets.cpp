@@ -207,10 +207,10 @@ class FacetMaker {
   public:
     FacetMaker(SurfaceTree& tree, const Camera& camera, double tol)
         : m_tree(tree), m_camera(camera), m_view(camera), m_tol(tol) {
+        // A bending surface takes about as many patches as it has pixels over the tolerance.
         const Size& screen = camera.screen();
-        const std::size_t pixels =
-            static_cast<std::size_t>(screen.width) * static_cast<std::size_t>(screen.height);
-        m_most_leaves = std::clamp(2 * pixels, kLeastLimit, kMostLimit);
+        const double likely = 2.0 * screen.width * screen.height / std::min(tol, 1.0);
+        m_most_leaves = std::clamp(static_cast<std::size_t>(std::min(likely, 1e9)), kLeastLimit, kMostLimit);
         m_made.grid_bits = grid_bits_of(camera.screen());
         m_made.inverse_depth = camera.perspective();
         m_unit = std::ldexp(1.0, m_made.grid_bits);

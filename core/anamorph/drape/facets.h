@@ -72,8 +72,8 @@ double grid_error(int bits);
 inline constexpr double kFloatShare = 1.0 / 64;
 
 /// Cuts what the camera sees so that every bound, with its share for points in float, is at most `tol` pixels. Throws
-/// Error where tol is less than the grid or double allow, or takes more patches than there are half pixels (of large
-/// pictures more than 2^20, of small ones more than 2^16).
+/// Error where tol is less than the grid or double allow, or takes more patches than twice the pixels over tol (at least
+/// 2^16, at most 2^20).
 Facets cut_into_facets(SurfaceTree& tree, const Camera& camera, double tol);
 
 }  // namespace anamorph
