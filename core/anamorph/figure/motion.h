@@ -18,6 +18,7 @@ class Motion {
 
     /// The frames shown: first_frame() + i frame_step() up to last_frame(), none when last < first.
     virtual int first_frame() const { return 1; }
+    /// The last that is shown.
     virtual int last_frame() = 0;
     virtual int frame_step() const { return 1; }
     /// The number of frames that are shown.
@@ -29,6 +30,7 @@ class Motion {
     /// The frames shown, in order, until `body` returns false.
     virtual void for_each_frame(const std::function<bool(const FigureFrame&)>& body);
 
+    /// How fast the frames are meant to be shown.
     virtual double frames_per_second() const { return 25; }
     /// The names of the pictures that bodies may have for textures.
     virtual const std::vector<std::string>& images() const;

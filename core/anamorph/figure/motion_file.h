@@ -28,7 +28,9 @@ bool is_motion_file(std::string_view name);
 /// Reads the text of a file, by the ending of its name. Throws Error naming the file and the line or entry.
 std::unique_ptr<Motion> read_motion(std::string_view text, std::string_view name);
 
+/// The same, of BVH whatever the name.
 std::unique_ptr<Motion> read_bvh(std::string_view text, std::string_view name);
+/// The same, of CIF.
 std::unique_ptr<Motion> read_cif(std::string_view text, std::string_view name);
 
 }  // namespace anamorph

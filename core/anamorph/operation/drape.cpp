@@ -35,7 +35,8 @@ ParameterTable make_table() {
         image("src", "the picture that is draped; by default the recipe's name without .drape")};
     const ParameterTable others = {
         whole("frames", "", "", 1, kMostFrames,
-              "as many subimages, frames 0, 1 and so on of `keys`; by default up to the last key frame, and "
+              "as many subimages, frames 0, 1 and so on of the key frames; by default up to the last key "
+              "frame, and "
               "1 without keys"),
         whole("frame", "", "", 0, kMostFrames, "one frame alone"),
         file(

@@ -123,7 +123,7 @@ ParameterTable drape_surface_rows() {
                "cylinder: about the y axis; sphere: about the origin, with all latitudes; torus: about the y "
                "axis; "
                "page_turn: a sheet curls round a cylinder that rolls over it; waves, ripples: plane and "
-               "circular; positions: as the picture `positions` says"),
+               "circular; positions: of the picture that the key positions names"),
         text("blend", "names of surfaces, separated by commas, that the surface is blended with, by weights"),
         numbers("weights", -kInfinity,
                 "one for each surface of blend; what they lack to 1 is the weight of surface itself, and any "
