@@ -236,7 +236,7 @@ void write_cell_data(const std::vector<Grid>& grids, vtkIdType triangles, vtkPol
 vtkAnamorphFigureGeometry::vtkAnamorphFigureGeometry() = default;
 vtkAnamorphFigureGeometry::~vtkAnamorphFigureGeometry() = default;
 
-void vtkAnamorphFigureGeometry::Draw(vtkPolyData* input, vtkPolyData* output,
+void vtkAnamorphFigureGeometry::Draw(vtkPolyData* input, vtkDataObject* data,
                                      anamorph_vtk::Execution& execution) {
     anamorph::kSurfaceTolRow.check(this->Tolerance, "Tolerance");
     const anamorph_vtk::FigureData figures(input);
@@ -255,6 +255,7 @@ void vtkAnamorphFigureGeometry::Draw(vtkPolyData* input, vtkPolyData* output,
                     triangles = grids.empty() ? 0 : grids.back().end_triangle();
     execution.progress(0.1);
     const auto parallel_for = execution.stage(0.1, 0.9);
+    auto* output = vtkPolyData::SafeDownCast(data);
     if (this->OutputPointsPrecision == DOUBLE_PRECISION)
         tessellate<double>(grids, points, triangles, output, parallel_for);
     else

@@ -61,7 +61,7 @@ class ANAMORPHFILTERS_EXPORT vtkAnamorphFigureGeometry : public vtkAnamorphFigur
     vtkAnamorphFigureGeometry();
     ~vtkAnamorphFigureGeometry() override;
 
-    void Draw(vtkPolyData* input, vtkPolyData* output, anamorph_vtk::Execution& execution) override;
+    void Draw(vtkPolyData* input, vtkDataObject* data, anamorph_vtk::Execution& execution) override;
 
   private:
     vtkAnamorphFigureGeometry(const vtkAnamorphFigureGeometry&) = delete;
