@@ -9,6 +9,7 @@
 #include <functional>
 #include <optional>
 
+#include "anamorph/operation/operation.h"
 #include "drape_oracle.h"
 #include "drape_scene.h"
 
@@ -20,6 +21,14 @@ using test::Real;
 using test::Scene;
 using test::Shown;
 using test::Vector;
+
+class NoFiles final : public SideFileReader {
+  public:
+    std::string text(const std::string& name) const override { throw Error("there is no file " + name); }
+    std::unique_ptr<SideImage> image(const std::string&, const std::string& name) const override {
+        throw Error("there is no image " + name);
+    }
+};
 
 /// The map of a scene with points of their own.
 DrapeMap exact_map(const Scene& scene, const Shown& shown, const Camera& camera, double tol) {
@@ -185,6 +194,37 @@ TEST(DrapeExact, SaysHowMuchIsExact) {
     const Drape drape(shown.tree(), shown.camera(), scene.picture, options);
     EXPECT_EQ(drape.reached(serial_for).exact_fraction, 1);
     EXPECT_LE(drape.reached(serial_for).max_error, kExactError);
+}
+
+TEST(DrapeExact, StartsThatAreOffMuchMoreOneWayAreCertifiedToo) {
+    // Some starts of this view are off along v a thousand times more than along u.
+    const Operation& operation = *find_operation("drape");
+    ParameterValues values(*operation.parameters);
+    values.assign({{"surface", "sphere"},
+                   {"angle", "238.01434427194636"},
+                   {"radius", "0.75663636518251898"},
+                   {"scale", "1.0434308451960836"},
+                   {"scheme", "exact"},
+                   {"size", "134x70"},
+                   {"tol", "0.125"},
+                   {"move", "0.18385474966938101,-0.053147391787501976,0.035253114827887504"},
+                   {"camera", "0.023839545238308116,0.48206524582351601,0.10340418296712837"},
+                   {"target", "-0.040293802956459672,0.1562146424685763,-0.1804183116087715"},
+                   {"fov", "98.348685860373621"},
+                   {"output", "bound"}});
+    SourceImage source;
+    source.facts.width = 77;
+    source.facts.height = 68;
+    source.channels = 3;
+    const NoFiles none;
+    const auto pictures = operation.read({values, {source}, {}, none});
+    const Box pixel{41, 48, 42, 49};
+    float bound = -1;
+    const auto solved = pictures->picture(0, 0)->solve();
+    solved->draw({}, pixel, packed_view(reinterpret_cast<std::byte*>(&bound), PixelType::float32, 1, 1, 1),
+                 serial_for);
+    EXPECT_GE(bound, 0);
+    EXPECT_LE(bound, 1e-9f);
 }
 
 }  // namespace

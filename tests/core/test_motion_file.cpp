@@ -113,7 +113,7 @@ TEST(Bvh, SaysWhatIsWrongAndWhere) {
     // A frame more than the file says.
     EXPECT_EQ(with("Frames: 2", "Frames: 1"), "none");
     EXPECT_THAT(with("Frames: 2", "Frames: -1"), HasSubstr("the number of frames must be an integer from 0"));
-    EXPECT_THAT(with("0.04", "0"), HasSubstr("the time of a frame must be above 0"));
+    EXPECT_THAT(with("0.04", "0"), HasSubstr("the time of a frame must be at least 1e-6 seconds"));
     EXPECT_THAT(with("0.04", "nan"), HasSubstr("the time of a frame"));
     EXPECT_THAT(with("10 20", "inf 20"), HasSubstr("the value of a channel"));
     EXPECT_THAT(with("CHANNELS 3", "CHANNELS 9"), HasSubstr("an integer from 0 to 6"));
@@ -212,7 +212,8 @@ TEST(Crystal, SaysWhatIsWrong) {
         return error_of(text, "test.cif");
     };
     EXPECT_EQ(with("_cell_length_b 12", ""), "test.cif: _cell_length_b: is missing");
-    EXPECT_THAT(with("_cell_length_b 12", "_cell_length_b -1"), HasSubstr("must be above 0"));
+    EXPECT_THAT(with("_cell_length_b 12", "_cell_length_b -1"), HasSubstr("must be at least 0.1"));
+    EXPECT_THAT(with("_cell_length_b 12", "_cell_length_b 1e-160"), HasSubstr("must be at least 0.1"));
     EXPECT_THAT(with("_cell_length_b 12", "_cell_length_b twelve"),
                 HasSubstr("line 3: _cell_length_b=twelve"));
     EXPECT_THAT(with("110", "0"), HasSubstr("angles of the cell must span a volume"));

@@ -506,6 +506,18 @@ TEST(ProjectedTriangles, ShadowsOfAnyShapeEndInNeedlesToo) {
     }
 }
 
+TEST(ProjectedTriangles, WhatLiesInTheSeamIsPaintedOnce) {
+    // A triangle in the plane of the seam, behind the projector's middle.
+    const Chart chart(Projection::equirectangular, 64, 32);
+    const Triangle triangle{{{0, 0, 1}, {0, 1, 1}, {0, 0, 2}}};
+    const Painted painted = paint(chart, {}, {triangle}, {.tol = 0.5, .smallest = 1e-4});
+    EXPECT_EQ(painted.counts.outside, 0);
+    double covered = 0;
+    for (const PaintedTriangle& piece : painted.pieces)
+        covered += area(piece.corners[0].point, piece.corners[1].point, piece.corners[2].point);
+    EXPECT_NEAR(covered, area(triangle[0], triangle[1], triangle[2]), 1e-12);
+}
+
 TEST(ProjectedTriangles, RoundedToFloatCornersFitAndAreFloats) {
     const Chart chart(Projection::equirectangular, 400, 200);
     std::mt19937 random(13);

@@ -48,13 +48,12 @@ bool PointPolish::is_single(const Step& s, double u0, double v0, double u1, doub
     const auto seen = seen_range(m_camera, m_surface.range({std::min(u0, u1), std::max(u0, u1)},
                                                            {std::min(v0, v1), std::max(v0, v1)}));
     const Interval &x_u = seen[0].c[1], &x_v = seen[0].c[2], &y_u = seen[1].c[1], &y_v = seen[1].c[2];
-    // The rows of 1 - Y g', u and v in units of the box: its sides weigh the columns.
-    const double h = std::max(std::fabs(u1 - u0), 0x1p-48), k = std::max(std::fabs(v1 - v0), 0x1p-48);
-    const Interval uu = Interval(1) - (s.u_x * x_u + s.u_y * y_u), uv = s.u_x * x_v + s.u_y * y_v,
-                   vu = s.v_x * x_u + s.v_y * y_u, vv = Interval(1) - (s.v_x * x_v + s.v_y * y_v);
-    const double row_u = magnitude(uu) + magnitude(uv) * (k / h),
-                 row_v = magnitude(vv) + magnitude(vu) * (h / k);
-    return std::max(row_u, row_v) < 1;
+    // 1 - Y g' contracts in some weighted maximum norm, and the box has one root at most, where the matrix of its
+    // magnitudes has a spectral radius below 1.
+    const double uu = magnitude(Interval(1) - (s.u_x * x_u + s.u_y * y_u)),
+                 uv = magnitude(s.u_x * x_v + s.u_y * y_v), vu = magnitude(s.v_x * x_u + s.v_y * y_u),
+                 vv = magnitude(Interval(1) - (s.v_x * x_v + s.v_y * y_v));
+    return uu < 1 && vv < 1 && (1 - uu) * (1 - vv) * (1 - 0x1p-40) > uv * vu;
 }
 
 PointPolish::Polished PointPolish::polish(double x, double y, double u, double v) const noexcept {

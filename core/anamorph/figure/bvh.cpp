@@ -173,7 +173,7 @@ class BvhMotion final : public Motion {
         if (static_cast<double>(m_frames) * static_cast<double>(m_joints.size()) > kMostPoses)
             words.fail("frames times joints must be at most 5e7");
         m_frame_time = words.number("the time of a frame");
-        if (!(m_frame_time > 0)) words.fail("the time of a frame must be above 0");
+        if (!(m_frame_time >= 1e-6)) words.fail("the time of a frame must be at least 1e-6 seconds");
         // Some programs write a frame more than they say; it is passed over.
         for (std::size_t i = 0; i < static_cast<std::size_t>(m_frames) * m_channels; ++i)
             m_values.push_back(words.number("the value of a channel"));

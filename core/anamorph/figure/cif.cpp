@@ -22,6 +22,8 @@ namespace {
 
 constexpr std::size_t kMostAtoms = 20000, kMostBonds = 500000;
 constexpr double kWindow = 1000, kFilled = 0.9;
+/// Of a cell's edge, in Angstrom.
+constexpr double kLeastLength = 0.1;
 /// The ellipsoid x^T U^-1 x = s^2 holds half of a Gaussian in three dimensions.
 constexpr double kHalfProbability = 1.5381722544550522;
 /// Of atoms without displacement, and what bonds may be longer than radii; Angstrom.
@@ -232,7 +234,7 @@ class Structure {
             const double angle = number(kAngles[c], 0, 180) * kDegree;
             cosine[c] = std::cos(angle);
             sine[c] = std::sin(angle);
-            if (!(length[c] > 0)) text_file::fail(m_file, kLengths[c], "must be above 0");
+            if (!(length[c] >= kLeastLength)) text_file::fail(m_file, kLengths[c], "must be at least 0.1");
         }
         const double skew = (cosine[0] - cosine[1] * cosine[2]) / sine[2];
         const double height = std::sqrt(sine[1] * sine[1] - skew * skew);

@@ -87,8 +87,8 @@ ParameterTable make_table() {
         number("shininess", "", "20", 0, 100000, "of highlights, the exponent"),
         vector("background", "",
                "values of the channels behind the surface and where its picture's alpha lets through; by "
-               "default 0, "
-               "and 1 for alpha"),
+               "default "
+               "nothing, 0 in every channel; where it is given for the colors alone, alpha is 1"),
         image("backdrop",
               "a picture behind the surface and over the background, as large as the screen; with as many "
               "colors, with alpha or without"),

@@ -293,6 +293,16 @@ class Cutting {
     Polygon cut_at(int border, const Polygon& polygon, Polygon& beyond) const {
         Polygon kept;
         const double near = on_border();
+        const auto any = [&](const auto& is) {
+            return std::any_of(polygon.begin(), polygon.end(),
+                               [&](const PaintedCorner& c) { return is(within(border, c.texel)); });
+        };
+        // What lies in the border is within it.
+        if (!any([&](double at) { return at < -near; })) return polygon;
+        if (!any([&](double at) { return at > near; })) {
+            beyond = polygon;
+            return {};
+        }
         for (std::size_t i = 0; i < polygon.size(); ++i) {
             const PaintedCorner &a = polygon[i], &b = polygon[(i + 1) % polygon.size()];
             const double at_a = within(border, a.texel), at_b = within(border, b.texel);
