@@ -8,6 +8,7 @@
 
 #include "anamorph/deform/key_frames_file.h"
 #include "anamorph/drape/drape.h"
+#include "anamorph/drape/drape_rows.h"
 #include "anamorph/machine/block_machine_map.h"
 #include "anamorph/machine/machine_text.h"
 #include "anamorph/operation/drape_surface.h"
@@ -61,7 +62,7 @@ ParameterTable make_table() {
         mip(),
         filter(),
         wrap("goes on as at the edge"),
-        number("tol", "pixels", "0.125", 0.001, 1000,
+        number("tol", "pixels", kDrapeTolRow,
                "how far, on the screen, a point of the picture may be drawn from where it belongs"),
         scheme(
             {{"auto"},

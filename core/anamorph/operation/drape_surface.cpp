@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "anamorph/deform/deformation_file.h"
+#include "anamorph/drape/drape_rows.h"
 #include "anamorph/operation/read_once.h"
 #include "anamorph/operation/rows.h"
 
@@ -140,20 +141,20 @@ ParameterTable drape_surface_rows() {
         number("height_scale", "", "0.1", -1000, 1000, "how high brightness 1 is"),
         number("height_smooth", "texels", "1", 0, 100,
                "heights are smoothed by a Gaussian of that standard deviation; 0: not"),
-        number("angle", "degrees", "180", 0.01, 360,
+        number("angle", "degrees", kDrapeAngleRow,
                "of cylinder, sphere and torus, the part of a turn that is covered"),
-        number("radius", "", "", 0.001, 1000,
+        number("radius", "", kDrapeRadiusRow,
                "of the surface; by default 0.5 (sphere, torus), 0.1 (page_turn), and for a cylinder such "
                "that the "
                "picture keeps its width"),
-        number("tube", "", "0.2", 0.001, 1000, "radius of a torus's tube"),
-        number("amplitude", "", "0.05", -1000, 1000, "of waves and ripples"),
-        number("wavelength", "", "0.5", 0.01, 1000, "of waves and ripples"),
-        number("phase", "turns", "0", -1000, 1000, "of waves and ripples"),
+        number("tube", "", kDrapeTubeRow, "radius of a torus's tube"),
+        number("amplitude", "", kDrapeAmplitudeRow, "of waves and ripples"),
+        number("wavelength", "", kDrapeWavelengthRow, "of waves and ripples"),
+        number("phase", "turns", kDrapePhaseRow, "of waves and ripples"),
         number(
-            "direction", "degrees", "0", -360, 360,
+            "direction", "degrees", kDrapeDirectionRow,
             "counterclockwise from the x axis: where waves go, and where the part of a page that turns lies"),
-        number("turn", "", "0.5", 0, 1, "how far a page is turned"),
+        number("turn", "", kDrapeTurnRow, "how far a page is turned"),
         file("deform",
              "a list of deformations, JSON or CSV, that move the surface; their u and v run from 0 to 1, v "
              "up"),

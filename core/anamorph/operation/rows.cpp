@@ -85,6 +85,11 @@ Parameter number(const char* name, const char* unit, std::string value, double l
     return parameter;
 }
 
+Parameter number(const char* name, const char* unit, const NumberRow& shared, const std::string& doc) {
+    return number(name, unit, std::isnan(shared.standard) ? "" : shortest(shared.standard), shared.least,
+                  shared.most, doc);
+}
+
 Parameter above(Parameter number) {
     number.above_minimum = true;
     return number;

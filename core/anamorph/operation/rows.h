@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "anamorph/geometry/size.h"
+#include "anamorph/number_row.h"
 #include "anamorph/parameter.h"
 #include "anamorph/render/picture.h"
 
@@ -21,6 +22,8 @@ Parameter choice(const char* name, std::string value, std::vector<std::string> c
                  const std::string& doc);
 Parameter number(const char* name, const char* unit, std::string value, double least, double most,
                  const std::string& doc);
+/// With the default and the range of a row that other hosts share.
+Parameter number(const char* name, const char* unit, const NumberRow& shared, const std::string& doc);
 /// The same without the minimum itself.
 Parameter above(Parameter number);
 Parameter whole(const char* name, const char* unit, std::string value, int least, int most,

@@ -1,0 +1,562 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <vtkAnamorphDrape.h>  // first: it stands alone
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <vtkDoubleArray.h>
+#include <vtkImageData.h>
+#include <vtkInformation.h>
+#include <vtkPointData.h>
+#include <vtkSOADataArrayTemplate.h>
+#include <vtkSmartPointer.h>
+#include <vtkStreamingDemandDrivenPipeline.h>
+
+#include <cmath>
+#include <cstring>
+#include <random>
+
+#include "anamorph/map/surface.h"
+#include "anamorph/operation/operation.h"
+#include "anamorph/operation/side_files.h"
+#include "anamorph/render/pyramid.h"
+#include "support.h"
+
+namespace {
+
+using testing::HasSubstr;
+using Drape = vtkAnamorphDrape;
+using Picture = vtkSmartPointer<vtkImageData>;
+
+/// Random numbers, of whole ones all but 0, which hides what it is the alpha of.
+Picture picture(int width, int height, int type = VTK_UNSIGNED_CHAR, int components = 3) {
+    std::mt19937 random(5);
+    auto image = Picture::New();
+    image->SetExtent(-3, width - 4, 7, height + 6, 2, 2);
+    image->AllocateScalars(type, components);
+    vtkDataArray* pixels = image->GetPointData()->GetScalars();
+    const double most = type == VTK_FLOAT ? 1 : pixels->GetDataTypeMax();
+    std::uniform_real_distribution<double> value(type == VTK_FLOAT ? 0.1 : 1, most);
+    for (vtkIdType i = 0; i < pixels->GetNumberOfTuples(); ++i)
+        for (int c = 0; c < components; ++c) {
+            const double v = value(random);
+            pixels->SetComponent(i, c, type == VTK_FLOAT ? static_cast<float>(v) : std::floor(v));
+        }
+    return image;
+}
+
+vtkDataArray* drawn(Drape* filter) {
+    filter->Update();
+    return filter->GetOutput()->GetPointData()->GetScalars();
+}
+
+std::vector<double> drawn_numbers(Drape* filter) {
+    return numbers(drawn(filter));
+}
+
+/// The view in which a flat texture fills the image, pixel on pixel.
+void look_straight(Drape* filter, int width, int height) {
+    filter->SetViewSize(width, height);
+    filter->CameraParallelProjectionOn();
+    filter->SetCameraParallelScale(0.5);
+}
+
+TEST(VtkDrape, APlaneSeenStraightOnGivesTheTextureBack) {
+    for (const int type : {VTK_UNSIGNED_CHAR, VTK_UNSIGNED_SHORT, VTK_FLOAT})
+        for (const int components : {1, 2, 3, 4}) {
+            SCOPED_TRACE(testing::Message() << type << " " << components);
+            const Picture texture = picture(37, 23, type, components);
+            vtkNew<Drape> filter;
+            Errors errors(filter);
+            filter->SetInputData(texture);
+            look_straight(filter, 37, 23);
+            filter->SetFilter(Drape::NEAREST);
+            vtkDataArray* seen = drawn(filter);
+            ASSERT_EQ(errors.text(), "");
+            ASSERT_TRUE(seen);
+            EXPECT_STREQ(seen->GetName(), "Colors");
+            EXPECT_EQ(seen->GetDataType(), type);
+            const std::vector<double> wanted = numbers(texture->GetPointData()->GetScalars()),
+                                      found = numbers(seen);
+            ASSERT_EQ(found.size(), wanted.size());
+            // Color is multiplied by alpha while it is read: a rounding of float or two.
+            for (std::size_t i = 0; i < wanted.size(); ++i)
+                ASSERT_NEAR(found[i], wanted[i], type == VTK_FLOAT ? 1e-6 : 0) << i;
+            EXPECT_LT(filter->GetMaxError(), 0.125);
+        }
+}
+
+TEST(VtkDrape, AntialiasedWholePixelsAreThoseOfTheTexture) {
+    const Picture texture = picture(40, 40, VTK_UNSIGNED_CHAR, 3);
+    vtkNew<Drape> filter;
+    filter->SetInputData(texture);
+    look_straight(filter, 40, 40);
+    const std::vector<double> wanted = numbers(texture->GetPointData()->GetScalars()),
+                              found = drawn_numbers(filter);
+    // Points are within 1/64 of the tolerance, 0.002 pixels; neighbours differ by up to 254 either way.
+    for (std::size_t i = 0; i < wanted.size(); ++i) ASSERT_NEAR(found[i], wanted[i], 2) << i;
+}
+
+TEST(VtkDrape, ASphereHasTheSilhouetteTheDepthAndTheNormalsOfASphere) {
+    constexpr int kSide = 100;
+    constexpr double kPixel = 1.2 / kSide;
+    vtkNew<Drape> filter;
+    filter->SetInputData(picture(64, 64));
+    filter->SetSurface(Drape::SPHERE);
+    filter->SetAngle(360);
+    filter->SetViewSize(kSide, kSide);
+    filter->CameraParallelProjectionOn();
+    filter->SetCameraParallelScale(0.6);
+    filter->SetStyle(Drape::DEPTH);
+    const std::vector<double> depth = drawn_numbers(filter);
+    filter->SetStyle(Drape::NORMAL);
+    const std::vector<double> normals = drawn_numbers(filter);
+    ASSERT_EQ(depth.size(), std::size_t{kSide * kSide});
+    ASSERT_EQ(normals.size(), 3 * depth.size());
+    for (int y = 0; y < kSide; ++y)
+        for (int x = 0; x < kSide; ++x) {
+            SCOPED_TRACE(testing::Message() << x << " " << y);
+            const auto i = static_cast<std::size_t>(y * kSide + x);
+            const double px = (x + 0.5 - kSide / 2) * kPixel, py = (y + 0.5 - kSide / 2) * kPixel,
+                         r = std::hypot(px, py);
+            if (r > 0.5 + 0.125 * kPixel) {
+                ASSERT_EQ(static_cast<float>(depth[i]), 1e30f);
+            }
+            if (r < 0.5 - 0.125 * kPixel) {
+                ASSERT_LT(depth[i], 2);
+            }
+            // A sphere rises by r / pz per unit; a point is within 0.125 pixels along the screen.
+            if (r > 0.4) continue;
+            const double pz = std::sqrt(0.25 - r * r);
+            ASSERT_NEAR(depth[i], 2 - pz, 2 * 0.125 * kPixel * (1 + r / pz));
+            const double dot =
+                (normals[3 * i] * px + normals[3 * i + 1] * py + normals[3 * i + 2] * pz) / 0.5;
+            ASSERT_GT(dot, 0.99);  // within 8 degrees: normals of patches' corners, interpolated
+        }
+}
+
+TEST(VtkDrape, TextureCoordinatesGoUpAndAreThoseOfThePlane) {
+    vtkNew<Drape> filter;
+    filter->SetInputData(picture(20, 10));  // 2 wide and 1 high
+    filter->SetStyle(Drape::TEXTURE_COORDINATES);
+    look_straight(filter, 40, 40);  // sees the middle half
+    vtkDataArray* seen = drawn(filter);
+    EXPECT_STREQ(seen->GetName(), "TextureCoordinates");
+    const std::vector<double> found = numbers(seen);
+    for (int y = 0; y < 40; ++y)
+        for (int x = 0; x < 40; ++x) {
+            const auto i = static_cast<std::size_t>(2 * (y * 40 + x));
+            ASSERT_NEAR(found[i], 0.25 + 0.5 * (x + 0.5) / 40, 1e-4);
+            ASSERT_NEAR(found[i + 1], (y + 0.5) / 40, 1e-4);
+        }
+    filter->SetCameraParallelScale(1);
+    EXPECT_EQ(drawn(filter)->GetComponent(0, 0), -1);
+    EXPECT_EQ(drawn(filter)->GetComponent(0, 1), -1);
+}
+
+// ---- The core's operation, through the same numbers ----
+
+struct NoFiles final : anamorph::SideFileReader {
+    std::string text(const std::string& name) const override { throw anamorph::Error("no file " + name); }
+    std::unique_ptr<anamorph::SideImage> image(const std::string&, const std::string& name) const override {
+        throw anamorph::Error("no image " + name);
+    }
+};
+
+/// What the operation draws of a texture of unsigned char, with rows that go down; `Value`: of its pixels.
+template <class Value>
+std::vector<Value> by_operation(vtkImageData* texture, const std::vector<anamorph::Assignment>& arguments,
+                                const anamorph::Size& screen, int channels) {
+    int size[3];
+    texture->GetDimensions(size);
+    const int components = texture->GetNumberOfScalarComponents();
+    const auto* from = static_cast<const unsigned char*>(texture->GetScalarPointer());
+    std::vector<unsigned char> texels;
+    for (int y = size[1] - 1; y >= 0; --y)
+        texels.insert(texels.end(), from + y * size[0] * components, from + (y + 1) * size[0] * components);
+    const anamorph::MemorySource memory(
+        anamorph::packed_view(reinterpret_cast<const std::byte*>(texels.data()), anamorph::PixelType::uint8,
+                              size[0], size[1], components),
+        components == 4 ? 3 : -1);
+    const anamorph::Pyramid pyramid(memory);
+    const anamorph::Operation& drape = *anamorph::find_operation("drape");
+    anamorph::ParameterValues values(*drape.parameters);
+    values.assign(arguments);
+    anamorph::SourceImage source;
+    source.facts.width = size[0];
+    source.facts.height = size[1];
+    source.channels = components;
+    source.alpha = components == 4 ? 3 : -1;
+    const NoFiles files;
+    std::vector<Value> pixels(static_cast<std::size_t>(screen.width * screen.height * channels));
+    const auto type = sizeof(Value) == 1 ? anamorph::PixelType::uint8 : anamorph::PixelType::float32;
+    EXPECT_TRUE(drape.read({values, {source}, {}, files})
+                    ->picture(0, 0)
+                    ->solve()
+                    ->draw({&pyramid}, {0, 0, screen.width, screen.height},
+                           anamorph::packed_view(reinterpret_cast<std::byte*>(pixels.data()), type,
+                                                 screen.width, screen.height, channels),
+                           anamorph::serial_for));
+    return pixels;
+}
+
+/// The same rows from the last one up.
+template <class Value>
+std::vector<double> turned_over(const std::vector<Value>& pixels, std::size_t row) {
+    std::vector<double> result;
+    for (std::size_t end = pixels.size(); end > 0; end -= row)
+        for (std::size_t i = end - row; i < end; ++i) result.push_back(static_cast<double>(pixels[i]));
+    return result;
+}
+
+TEST(VtkDrape, EverySurfaceHasThePixelsOfTheOperation) {
+    const std::vector<std::string>& surfaces = anamorph::surface_names();
+    ASSERT_EQ(surfaces.size(), std::size_t{Drape::RIPPLES + 1});
+    const anamorph::Size screen{90, 60};
+    const char* const filters[] = {"nearest", "bilinear", "bicubic", "antialias"};
+    const char* const outputs[] = {"color", "stmap", "depth", "normal"};
+    const int channels[] = {0, 2, 1, 3};
+    for (std::size_t s = 0; s < surfaces.size(); ++s)
+        for (const bool parallel : {false, true})
+            for (int i = 0; i < 7; ++i) {
+                const int output = i < 4 ? 0 : i - 3, style = i < 4 ? i : 3, components = i % 2 ? 4 : 3;
+                SCOPED_TRACE(testing::Message() << surfaces[s] << " " << parallel << " " << i);
+                const Picture texture = picture(80, 50, VTK_UNSIGNED_CHAR, components);
+                vtkNew<Drape> filter;
+                filter->SetInputData(texture);
+                filter->SetSurface(static_cast<int>(s));
+                filter->SetAngle(222);
+                filter->SetRadius(0.3);
+                filter->SetTube(0.13);
+                filter->SetAmplitude(0.07);
+                filter->SetWavelength(0.4);
+                filter->SetPhase(0.3);
+                filter->SetDirection(33);
+                filter->SetTurn(0.6);
+                filter->SetViewSize(screen.width, screen.height);
+                filter->SetCameraPosition(0.9, 0.7, 1.5);
+                filter->SetCameraFocalPoint(0.1, 0, 0);
+                filter->SetCameraViewUp(0.1, 1, 0);
+                filter->SetCameraViewAngle(47);
+                filter->SetCameraParallelProjection(parallel);
+                filter->SetCameraParallelScale(0.7);
+                filter->SetTolerance(0.25);
+                filter->SetBackground(0.2, 0.4, 0.6, 0.5);
+                filter->SetFilter(style);
+                filter->SetStyle(output);
+                const double half = anamorph::kPi / 360,
+                             fov = std::atan(90.0 / 60.0 * std::tan(47 * half)) / half;
+                std::vector<anamorph::Assignment> arguments = {
+                    {"surface", surfaces[s]},
+                    {"angle", "222"},
+                    {"radius", "0.3"},
+                    {"tube", "0.13"},
+                    {"amplitude", "0.07"},
+                    {"wavelength", "0.4"},
+                    {"phase", "0.3"},
+                    {"direction", "33"},
+                    {"turn", "0.6"},
+                    {"size", "90x60"},
+                    {"camera", "0.9,0.7,1.5"},
+                    {"target", "0.1,0,0"},
+                    {"up", "0.1,1,0"},
+                    {"tol", "0.25"},
+                    {"filter", filters[style]},
+                    {"output", outputs[output]},
+                    {"background", components == 4 ? "0.2,0.4,0.6,0.5" : "0.2,0.4,0.6"}};
+                if (parallel) {
+                    arguments.push_back({"view", "parallel"});
+                    arguments.push_back({"extent", anamorph::shortest(2 * 0.7 * (90.0 / 60.0))});
+                } else {
+                    arguments.push_back({"fov", anamorph::shortest(fov)});
+                }
+                const std::vector<double> found = drawn_numbers(filter);
+                if (output == Drape::COLOR) {
+                    ASSERT_EQ(found,
+                              turned_over(by_operation<unsigned char>(texture, arguments, screen, components),
+                                          static_cast<std::size_t>(90 * components)));
+                    continue;
+                }
+                std::vector<double> wanted =
+                    turned_over(by_operation<float>(texture, arguments, screen, channels[output]),
+                                static_cast<std::size_t>(90 * channels[output]));
+                for (std::size_t k = 0; k < wanted.size(); ++k) {
+                    if (output == Drape::DEPTH && std::isinf(wanted[k])) wanted[k] = 1e30f;
+                    if (output == Drape::TEXTURE_COORDINATES && k % 2 == 1 && wanted[k] >= 0)
+                        wanted[k] = 1 - static_cast<float>(wanted[k]);
+                }
+                ASSERT_EQ(found, wanted);
+            }
+}
+
+// ---- What every filter holds ----
+
+TEST(VtkDrape, WhatCannotBeDoneIsAnErrorThatNamesTheProperty) {
+    const auto error = [](const std::function<void(Drape*)>& set) {
+        return errors_of<Drape>(picture(8, 8), set);
+    };
+    EXPECT_EQ(error([](Drape*) {}), "");
+    EXPECT_THAT(errors_of<Drape>(nullptr), HasSubstr("0 connections"));
+    const std::pair<const char*, void (Drape::*)(double)> numbers_of[] = {
+        {"Angle", &Drape::SetAngle},
+        {"Radius", &Drape::SetRadius},
+        {"Tube", &Drape::SetTube},
+        {"Amplitude", &Drape::SetAmplitude},
+        {"Wavelength", &Drape::SetWavelength},
+        {"Phase", &Drape::SetPhase},
+        {"Direction", &Drape::SetDirection},
+        {"Turn", &Drape::SetTurn},
+        {"Tolerance", &Drape::SetTolerance},
+        {"CameraParallelScale", &Drape::SetCameraParallelScale},
+        {"CameraViewAngle", &Drape::SetCameraViewAngle}};
+    for (const auto& [name, set] : numbers_of) {
+        for (const double value : {kNan, kInf, 1e12, -1e12}) {
+            if (set == &Drape::SetRadius && !std::isnan(value)) continue;  // clamped
+            EXPECT_THAT(error([value, set = set](Drape* f) { (f->*set)(value); }),
+                        HasSubstr(std::string(name) + "="))
+                << value;
+        }
+    }
+    EXPECT_THAT(error([](Drape* f) { f->SetRadius(1e-6); }), HasSubstr("Radius=1e-06: must be"));
+    EXPECT_THAT(error([](Drape* f) { f->SetBackground(0, kNan, 0, 0); }), HasSubstr("Background=nan"));
+    EXPECT_THAT(error([](Drape* f) { f->SetCameraPosition(0, kNan, 2); }), HasSubstr("CameraPosition=nan"));
+    EXPECT_THAT(error([](Drape* f) { f->SetCameraPosition(0, 0, 0); }),
+                HasSubstr("CameraPosition=0,0,0: must be away"));
+    EXPECT_THAT(error([](Drape* f) { f->SetCameraFocalPoint(1e12, 0, 0); }), HasSubstr("CameraFocalPoint="));
+    EXPECT_THAT(error([](Drape* f) { f->SetCameraViewUp(0, 0, 0); }), HasSubstr("CameraViewUp=0,0,0"));
+    EXPECT_THAT(error([](Drape* f) { f->SetCameraViewUp(0, 0, 1); }), HasSubstr("CameraViewUp=0,0,1"));
+    EXPECT_THAT(error([](Drape* f) { f->SetViewSize(0, 10); }), HasSubstr("ViewSize=0"));
+    EXPECT_THAT(error([](Drape* f) { f->SetViewSize(10, 100000); }), HasSubstr("ViewSize=100000"));
+    // Too fine for the grid of a picture as wide as this.
+    EXPECT_THAT(error([](Drape* f) {
+                    f->SetViewSize(65536, 1);
+                    f->SetTolerance(0.001);
+                }),
+                HasSubstr("Tolerance=0.001: must be at least"));
+}
+
+TEST(VtkDrape, ATextureThatCannotBeReadIsAnError) {
+    EXPECT_THAT(errors_of<Drape>(vtkNew<vtkImageData>()), HasSubstr("the texture has no pixels"));
+    EXPECT_THAT(errors_of<Drape>(picture(4, 4, VTK_DOUBLE)), HasSubstr("of type double"));
+    EXPECT_THAT(errors_of<Drape>(picture(4, 4, VTK_FLOAT, 5)), HasSubstr("5 components"));
+    vtkNew<vtkImageData> volume;
+    volume->SetDimensions(3, 3, 3);
+    volume->AllocateScalars(VTK_FLOAT, 1);
+    EXPECT_THAT(errors_of<Drape>(volume), HasSubstr("3 slices"));
+    vtkNew<vtkImageData> bare;
+    bare->SetDimensions(3, 3, 1);
+    EXPECT_THAT(errors_of<Drape>(bare), HasSubstr("no point array"));
+    const Picture short_one = picture(4, 4);
+    short_one->GetPointData()->GetScalars()->SetNumberOfTuples(3);
+    EXPECT_THAT(errors_of<Drape>(short_one), HasSubstr("no point array"));
+}
+
+TEST(VtkDrape, NumbersThatAreNoneStayInTheirTexels) {
+    const Picture texture = picture(16, 16, VTK_FLOAT, 1);
+    texture->GetPointData()->GetScalars()->SetComponent(5 * 16 + 3, 0, kNan);
+    vtkNew<Drape> filter;
+    Errors errors(filter);
+    filter->SetInputData(texture);
+    filter->SetFilter(Drape::BILINEAR);
+    look_straight(filter, 16, 16);
+    const std::vector<double> seen = drawn_numbers(filter);
+    EXPECT_EQ(errors.text(), "");
+    for (int y = 0; y < 16; ++y)
+        for (int x = 0; x < 16; ++x)
+            if (std::abs(x - 3) > 1 || std::abs(y - 5) > 1) {
+                ASSERT_TRUE(std::isfinite(seen[static_cast<std::size_t>(16 * y + x)])) << x << " " << y;
+            }
+}
+
+TEST(VtkDrape, OtherArraysAndLayoutsAreRead) {
+    const Picture texture = picture(12, 9, VTK_UNSIGNED_CHAR, 3);
+    vtkNew<Drape> filter;
+    filter->SetInputData(texture);
+    filter->SetSurface(Drape::WAVES);
+    filter->SetViewSize(50, 40);
+    const std::vector<double> wanted = drawn_numbers(filter);
+    vtkDataArray* from = texture->GetPointData()->GetScalars();
+    vtkNew<vtkSOADataArrayTemplate<unsigned char>> planes;
+    planes->SetName("Planes");
+    planes->SetNumberOfComponents(3);
+    planes->SetNumberOfTuples(from->GetNumberOfTuples());
+    for (vtkIdType i = 0; i < from->GetNumberOfTuples(); ++i)
+        for (int c = 0; c < 3; ++c) planes->SetComponent(i, c, from->GetComponent(i, c));
+    texture->GetPointData()->SetScalars(nullptr);
+    texture->GetPointData()->AddArray(planes);
+    filter->SetInputArrayToProcess(0, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, "Planes");
+    filter->Modified();
+    EXPECT_EQ(drawn_numbers(filter), wanted);
+}
+
+TEST(VtkDrape, PartsOfTheImageAreThoseOfTheWhole) {
+    vtkNew<Drape> filter;
+    Errors errors(filter);
+    filter->SetInputData(picture(30, 20));
+    filter->SetSurface(Drape::PAGE_TURN);
+    filter->SetViewSize(70, 50);
+    vtkNew<vtkImageData> whole;
+    drawn(filter);
+    whole->DeepCopy(filter->GetOutput());
+    const auto compare = [&] {
+        int e[6];
+        vtkImageData* part = filter->GetOutput();
+        part->GetExtent(e);
+        for (int y = e[2]; y <= e[3]; ++y)
+            for (int x = e[0]; x <= e[1]; ++x)
+                for (int c = 0; c < 3; ++c)
+                    ASSERT_EQ(part->GetScalarComponentAsDouble(x, y, 0, c),
+                              whole->GetScalarComponentAsDouble(x, y, 0, c));
+    };
+    const int extent[6] = {11, 53, 20, 31, 0, 0};
+    filter->Modified();
+    filter->UpdateExtent(extent);
+    EXPECT_EQ(filter->GetOutput()->GetNumberOfPoints(), 43 * 12);
+    compare();
+    for (int piece = 0; piece < 3; ++piece) {
+        filter->Modified();
+        filter->UpdatePiece(piece, 3, 1);
+        EXPECT_LT(filter->GetOutput()->GetNumberOfPoints(), 70 * 50);
+        compare();
+    }
+    EXPECT_EQ(errors.text(), "");
+}
+
+TEST(VtkDrape, AViewDoesNotDependOnThoseBefore) {
+    vtkNew<Drape> filter;
+    filter->SetInputData(picture(30, 20));
+    filter->SetSurface(Drape::TORUS);
+    filter->SetViewSize(70, 50);
+    const std::vector<double> wanted = drawn_numbers(filter);
+    filter->SetCameraPosition(0.4, 0.5, 0.6);
+    EXPECT_NE(drawn_numbers(filter), wanted);
+    filter->SetTube(0.1);
+    drawn(filter);
+    filter->SetTube(0.2);
+    filter->SetCameraPosition(0, 0, 2);
+    EXPECT_EQ(drawn_numbers(filter), wanted);
+    EXPECT_GT(filter->GetMaxError(), 0);
+    EXPECT_LE(filter->GetMaxError(), filter->GetTolerance());
+    Errors errors(filter);
+    filter->SetAngle(kNan);
+    filter->Update();
+    EXPECT_EQ(filter->GetMaxError(), 0);
+}
+
+TEST(VtkDrape, ScalarsAreAnnounced) {
+    vtkNew<Drape> filter;
+    vtkNew<vtkImageData> texture;
+    texture->DeepCopy(picture(8, 8, VTK_UNSIGNED_SHORT, 4));
+    texture->SetSpacing(3, 4, 5);
+    texture->SetOrigin(3, 4, 5);
+    filter->SetInputData(texture);
+    const std::pair<int, int> types[] = {
+        {VTK_UNSIGNED_SHORT, 4}, {VTK_FLOAT, 2}, {VTK_FLOAT, 1}, {VTK_FLOAT, 3}};
+    for (int output = Drape::COLOR; output <= Drape::NORMAL; ++output) {
+        filter->SetStyle(output);
+        filter->UpdateInformation();
+        vtkInformation* information = filter->GetOutputInformation(0);
+        EXPECT_EQ(vtkImageData::GetScalarType(information), types[output].first);
+        EXPECT_EQ(vtkImageData::GetNumberOfScalarComponents(information), types[output].second);
+        filter->Update();
+        EXPECT_EQ(filter->GetOutput()->GetScalarType(), types[output].first);
+        EXPECT_EQ(filter->GetOutput()->GetSpacing()[0], 1);
+        EXPECT_EQ(filter->GetOutput()->GetOrigin()[1], 0);
+    }
+}
+
+TEST(VtkDrape, TheSameBitsForAnyThreadsAndTheInputStays) {
+    const Picture texture = picture(90, 70, VTK_UNSIGNED_CHAR, 4);
+    const std::vector<double> before = numbers(texture->GetPointData()->GetScalars());
+    vtkNew<Drape> filter;
+    filter->SetInputData(texture);
+    filter->SetSurface(Drape::RIPPLES);
+    filter->SetViewSize(300, 200);
+    const std::vector<double> wanted = drawn_numbers(filter);
+    for_any_threads([&] {
+        filter->Modified();
+        ASSERT_EQ(drawn_numbers(filter), wanted);
+    });
+    EXPECT_EQ(numbers(texture->GetPointData()->GetScalars()), before);
+}
+
+TEST(VtkDrape, ProgressRisesTo1AndAbortLeavesNothing) {
+    vtkNew<Drape> filter;
+    vtkNew<ProgressObserver> progress;
+    filter->AddObserver(vtkCommand::ProgressEvent, progress);
+    filter->SetInputData(picture(50, 50));
+    filter->SetSurface(Drape::SPHERE);
+    filter->Update();
+    ASSERT_GE(progress->reports.size(), 4u);
+    EXPECT_TRUE(std::is_sorted(progress->reports.begin(), progress->reports.end()));
+    EXPECT_EQ(progress->reports.back(), 1);
+    progress->algorithm = filter;
+    progress->abort_at = 0.3;
+    filter->Modified();
+    filter->Update();
+    EXPECT_EQ(filter->GetOutput()->GetNumberOfPoints(), 0);
+    progress->abort_at = -1;
+    filter->SetAbortExecute(0);
+    filter->Modified();
+    filter->Update();
+    EXPECT_EQ(filter->GetOutput()->GetNumberOfPoints(), 500 * 500);
+}
+
+TEST(VtkDrape, UpdatesOnlyAfterAChangeOfAValue) {
+    vtkNew<Drape> filter;
+    filter->SetInputData(picture(4, 4));
+    expect_modified_by<Drape>(filter, {[](Drape* f) { f->SetSurface(Drape::CYLINDER); },
+                                       [](Drape* f) { f->SetAngle(90); },
+                                       [](Drape* f) { f->SetRadius(0.4); },
+                                       [](Drape* f) { f->SetTube(0.1); },
+                                       [](Drape* f) { f->SetAmplitude(0.1); },
+                                       [](Drape* f) { f->SetWavelength(0.1); },
+                                       [](Drape* f) { f->SetPhase(0.1); },
+                                       [](Drape* f) { f->SetDirection(5); },
+                                       [](Drape* f) { f->SetTurn(0.1); },
+                                       [](Drape* f) { f->SetViewSize(30, 20); },
+                                       [](Drape* f) { f->SetCameraPosition(0, 1, 2); },
+                                       [](Drape* f) { f->SetCameraFocalPoint(0, 0.1, 0); },
+                                       [](Drape* f) { f->SetCameraViewUp(0.1, 1, 0); },
+                                       [](Drape* f) { f->CameraParallelProjectionOn(); },
+                                       [](Drape* f) { f->SetCameraParallelScale(0.7); },
+                                       [](Drape* f) { f->SetCameraViewAngle(40); },
+                                       [](Drape* f) { f->SetTolerance(0.5); },
+                                       [](Drape* f) { f->SetFilter(Drape::BICUBIC); },
+                                       [](Drape* f) { f->SetBackground(1, 0, 0, 1); },
+                                       [](Drape* f) { f->SetStyle(Drape::DEPTH); }});
+    filter->SetSurface(99);
+    EXPECT_EQ(filter->GetSurface(), Drape::RIPPLES);
+    expect_executed_once(filter);
+}
+
+TEST(VtkDrape, PrintsItsState) {
+    vtkNew<Drape> filter;
+    filter->SetSurface(Drape::PAGE_TURN);
+    expect_printed(filter, {"Surface: page_turn",
+                            "Angle: 180",
+                            "Radius: 0",
+                            "Tube: 0.2",
+                            "Amplitude: 0.05",
+                            "Wavelength: 0.5",
+                            "Phase: 0",
+                            "Direction: 0",
+                            "Turn: 0.5",
+                            "ViewSize: 500 500",
+                            "CameraPosition: 0 0 2",
+                            "CameraFocalPoint: 0 0 0",
+                            "CameraViewUp: 0 1 0",
+                            "CameraParallelProjection: 0",
+                            "CameraParallelScale: 0.5",
+                            "CameraViewAngle: 30",
+                            "Tolerance: 0.125",
+                            "Filter: antialias",
+                            "Background: 0 0 0 0",
+                            "Style: color",
+                            "MaxError: 0"});
+}
+
+TEST(VtkDrape, FactoriesMayOverrideIt) {
+    expect_overridden<vtkAnamorphDrape>("vtkAnamorphDrape");
+}
+
+}  // namespace

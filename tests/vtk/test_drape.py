@@ -1,0 +1,32 @@
+# SPDX-License-Identifier: Apache-2.0
+# vtkAnamorphDrape from Python: every property set and read, and a picture on a sphere.
+import anamorph
+from vtkmodules.vtkCommonDataModel import vtkImageData
+
+drape = anamorph.vtkAnamorphDrape()
+for name, value in [("Surface", drape.TORUS), ("Angle", 90.5), ("Radius", 0.4), ("Tube", 0.1), ("Amplitude", 0.2),
+                    ("Wavelength", 0.3), ("Phase", 0.4), ("Direction", 30), ("Turn", 0.7), ("ViewSize", (30, 20)),
+                    ("CameraPosition", (1, 2, 3)), ("CameraFocalPoint", (0, 1, 0)), ("CameraViewUp", (0, 1, 1)),
+                    ("CameraParallelProjection", True), ("CameraParallelScale", 0.8), ("CameraViewAngle", 50),
+                    ("Tolerance", 0.5), ("Filter", drape.BICUBIC), ("Background", (0.1, 0.2, 0.3, 1)),
+                    ("Style", drape.DEPTH)]:
+    getattr(drape, "Set" + name)(value)
+    assert getattr(drape, "Get" + name)() == value, name
+assert "torus" in str(drape)
+
+image = vtkImageData()
+image.SetDimensions(8, 8, 1)
+image.AllocateScalars(3, 3)  # unsigned char
+for c, value in enumerate((200, 100, 50)):
+    image.GetPointData().GetScalars().FillComponent(c, value)
+drape = anamorph.vtkAnamorphDrape()
+drape.SetInputData(image)
+drape.SetSurface(drape.SPHERE)
+drape.SetAngle(360)
+drape.SetViewSize(41, 31)
+drape.Update()
+seen = drape.GetOutput()
+assert seen.GetDimensions() == (41, 31, 1)
+assert [seen.GetScalarComponentAsDouble(20, 15, 0, c) for c in range(3)] == [200, 100, 50]
+assert seen.GetScalarComponentAsDouble(0, 0, 0, 0) == 0
+assert 0 < drape.GetMaxError() <= drape.GetTolerance()
