@@ -4,6 +4,7 @@
 #include <iostream>
 
 #include "anamorph/deform/deform_rows.h"
+#include "anamorph/drape/drape_rows.h"
 #include "anamorph/figure/figure_rows.h"
 #include "anamorph/parameter.h"
 #include "anamorph/projector/projector_rows.h"
@@ -21,6 +22,7 @@ void print(const anamorph::NumberRow& row) {
 
 int main() {
     for (const anamorph::NumberRow& row : anamorph::kDeformRows) print(row);
+    for (const anamorph::NumberRow& row : anamorph::kDrapeRows) print(row);
     for (const anamorph::NumberRow& row : anamorph::kFigureRows) print(row);
     for (const anamorph::NumberRow& row : anamorph::kProjectorRows) print(row);
 }

@@ -26,7 +26,11 @@ NO_PROPERTY = {
 # The core's rows of numbers, by name. Properties have the name of their row but for these.
 ROW_OF = {("vtkAnamorphFigureGeometry", "Tolerance"): "surface_tol", ("vtkAnamorphFigureOutline", "Tolerance"): "outline_tol",
           ("vtkAnamorphFigureSkeleton", "Tolerance"): "sphere_tol",
-          ("vtkAnamorphPanoramaProjection", "Tolerance"): "projection_tol"}
+          ("vtkAnamorphPanoramaProjection", "Tolerance"): "projection_tol",
+          ("vtkAnamorphDrape", "Tolerance"): "drape_tol",
+          ("vtkAnamorphDrape", "CameraParallelScale"): "drape_parallel_scale",
+          **{("vtkAnamorphDrape", name): "drape_" + name.lower()
+             for name in ("Angle", "Tube", "Amplitude", "Wavelength", "Phase", "Direction", "Turn")}}
 # Numbers that the panel has in a table, where they have no range of their own.
 IN_TABLES = {"extent"}
 # What depends on the input is refused when the filter executes; the least value is in the XML all the same.
@@ -171,7 +175,7 @@ def check_whole(element, rows):
 def with_input(cls):
     """A new object that has what it needs to execute, seen by a camera."""
     new = cls()
-    if cls is anamorph.vtkAnamorphReliefSource:
+    if cls in (anamorph.vtkAnamorphReliefSource, anamorph.vtkAnamorphDrape):
         picture = vtkRTAnalyticSource()
         picture.SetWholeExtent(0, 9, 0, 9, 0, 0)
         picture.Update()

@@ -120,6 +120,16 @@ def a_relief_of_the_pipeline():
     apply(relief, HeightScale=.01, Smoothing=1, Resolution=[9, 0])
 
 
+def a_picture_on_a_surface():
+    picture = Wavelet(WholeExtent=[0, 20, 0, 10, 0, 0])
+    picture.UpdatePipeline()
+    drape = AnamorphDrape(registrationName="result", Input=picture)
+    apply(drape, Surface=2, Angle=300, Radius=.4, ViewSize=[60, 40], CameraPosition=[.3, .4, 2])
+    apply(drape, Surface=4, Turn=.3, Direction=20, CameraViewAngle=40, Tolerance=.5, Filter=1, Background=[1, .5, 0, 1])
+    apply(drape, Surface=5, Amplitude=.1, Wavelength=.3, Phase=.2, CameraFocalPoint=[.1, 0, 0], CameraViewUp=[.1, 1, 0])
+    apply(drape, Surface=3, Tube=.1, Style=2, CameraParallelProjection=1, CameraParallelScale=.7)
+
+
 def figures_performed():
     figures = AnamorphFigureReader(registrationName="figures", FileName=os.path.abspath("figure.nudes"))
     figures.UpdatePipeline()
@@ -143,14 +153,14 @@ def a_panorama_thrown_onto_a_plane():
 
 
 SESSIONS = [texture_coordinates_after_the_plane, a_bump_in_texture_coordinates, handles_and_then_the_plane, another_row,
-            files_and_a_table, surfaces_in_between, a_relief_of_a_file, a_relief_of_the_pipeline, figures_performed,
-            a_panorama_thrown_onto_a_plane]
+            files_and_a_table, surfaces_in_between, a_relief_of_a_file, a_relief_of_the_pipeline,
+            a_picture_on_a_surface, figures_performed, a_panorama_thrown_onto_a_plane]
 
 
 # ---- What is compared ----
 
 def bits_of(data):
-    """Of all arrays and points of a data set."""
+    """Of all arrays and points of a data set; of an image, how many points there are."""
     found = []
     for fields in (data.GetPointData(), data.GetCellData(), data.GetFieldData()):
         for i in range(fields.GetNumberOfArrays()):
@@ -158,8 +168,8 @@ def bits_of(data):
             values = [array.GetVariantValue(k).ToString() for k in range(array.GetNumberOfValues())] \
                 if array.IsA("vtkStringArray") else surfaces.vtk_to_numpy(array).tobytes()
             found.append((array.GetName(), values))
-    points = data.GetPoints()
-    found.append(("points", surfaces.vtk_to_numpy(points.GetData()).tobytes() if points else b""))
+    points = data.GetPoints() if data.IsA("vtkPointSet") else None
+    found.append(("points", surfaces.vtk_to_numpy(points.GetData()).tobytes() if points else data.GetNumberOfPoints()))
     found.append(("cells", data.GetNumberOfCells()))
     return found
 
