@@ -100,9 +100,9 @@ TEST(VtkFigureImage, OutlinesAndSticks) {
         double alpha = 0;
         for (int y = 0; y < 80; ++y)
             for (int x = 0; x < 100; ++x) alpha += value(lines, x, y, 3) / 255;
-        // Lines of 1.5 pixels: around a circle of radius 8, or along its diameter.
+        // Lines of 1 pixel: around a circle of radius 8, or along its diameter.
         const double length = style == Image::OUTLINE ? 2 * 3.14159265 * 8 : 16;
-        EXPECT_NEAR(alpha, 1.5 * length, 3) << style;
+        EXPECT_NEAR(alpha, length, 1) << style;
     }
 }
 
