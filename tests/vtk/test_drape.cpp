@@ -208,83 +208,96 @@ std::vector<double> turned_over(const std::vector<Value>& pixels, std::size_t ro
     return result;
 }
 
+const anamorph::Size kScreen{90, 60};
+const char* const kFilters[] = {"nearest", "bilinear", "bicubic", "antialias"};
+const char* const kStyles[] = {"color", "stmap", "depth", "normal"};
+
+/// What is drawn of a surface.
+struct Case {
+    int surface;
+    bool parallel;
+    int filter, style, components;
+};
+
+void set(Drape* filter, const Case& c) {
+    filter->SetSurface(c.surface);
+    filter->SetAngle(222);
+    filter->SetRadius(0.3);
+    filter->SetTube(0.13);
+    filter->SetAmplitude(0.07);
+    filter->SetWavelength(0.4);
+    filter->SetPhase(0.3);
+    filter->SetDirection(33);
+    filter->SetTurn(0.6);
+    filter->SetViewSize(kScreen.width, kScreen.height);
+    filter->SetCameraPosition(0.9, 0.7, 1.5);
+    filter->SetCameraFocalPoint(0.1, 0, 0);
+    filter->SetCameraViewUp(0.1, 1, 0);
+    filter->SetCameraViewAngle(47);
+    filter->SetCameraParallelProjection(c.parallel);
+    filter->SetCameraParallelScale(0.7);
+    filter->SetTolerance(0.25);
+    filter->SetBackground(0.2, 0.4, 0.6, 0.5);
+    filter->SetFilter(c.filter);
+    filter->SetStyle(c.style);
+}
+
+std::vector<anamorph::Assignment> arguments_of(const Case& c) {
+    // The operation's views have a width, VTK's a height.
+    const double half = anamorph::kPi / 360, aspect = 90.0 / 60.0,
+                 fov = std::atan(aspect * std::tan(47 * half)) / half;
+    return {{"surface", anamorph::surface_names()[static_cast<std::size_t>(c.surface)]},
+            {"angle", "222"},
+            {"radius", "0.3"},
+            {"tube", "0.13"},
+            {"amplitude", "0.07"},
+            {"wavelength", "0.4"},
+            {"phase", "0.3"},
+            {"direction", "33"},
+            {"turn", "0.6"},
+            {"size", "90x60"},
+            {"camera", "0.9,0.7,1.5"},
+            {"target", "0.1,0,0"},
+            {"up", "0.1,1,0"},
+            {"view", c.parallel ? "parallel" : "perspective"},
+            {"fov", anamorph::shortest(fov)},
+            {"extent", anamorph::shortest(2 * 0.7 * aspect)},
+            {"tol", "0.25"},
+            {"filter", kFilters[c.filter]},
+            {"output", kStyles[c.style]},
+            {"background", c.components == 4 ? "0.2,0.4,0.6,0.5" : "0.2,0.4,0.6"}};
+}
+
+/// What the operation draws, as VTK says it.
+std::vector<double> wanted_of(const Case& c, vtkImageData* texture) {
+    const int channels[] = {c.components, 2, 1, 3};
+    const int count = channels[c.style];
+    const auto row = static_cast<std::size_t>(kScreen.width * count);
+    if (c.style == Drape::COLOR)
+        return turned_over(by_operation<unsigned char>(texture, arguments_of(c), kScreen, count), row);
+    std::vector<double> wanted =
+        turned_over(by_operation<float>(texture, arguments_of(c), kScreen, count), row);
+    for (std::size_t k = 0; k < wanted.size(); ++k) {
+        if (c.style == Drape::DEPTH && std::isinf(wanted[k])) wanted[k] = 1e30f;
+        if (c.style == Drape::TEXTURE_COORDINATES && k % 2 == 1 && wanted[k] >= 0)
+            wanted[k] = 1 - static_cast<float>(wanted[k]);
+    }
+    return wanted;
+}
+
 TEST(VtkDrape, EverySurfaceHasThePixelsOfTheOperation) {
-    const std::vector<std::string>& surfaces = anamorph::surface_names();
-    ASSERT_EQ(surfaces.size(), std::size_t{Drape::RIPPLES + 1});
-    const anamorph::Size screen{90, 60};
-    const char* const filters[] = {"nearest", "bilinear", "bicubic", "antialias"};
-    const char* const outputs[] = {"color", "stmap", "depth", "normal"};
-    const int channels[] = {0, 2, 1, 3};
-    for (std::size_t s = 0; s < surfaces.size(); ++s)
+    ASSERT_EQ(anamorph::surface_names().size(), std::size_t{Drape::RIPPLES + 1});
+    for (int surface = Drape::PLANE; surface <= Drape::RIPPLES; ++surface)
         for (const bool parallel : {false, true})
             for (int i = 0; i < 7; ++i) {
-                const int output = i < 4 ? 0 : i - 3, style = i < 4 ? i : 3, components = i % 2 ? 4 : 3;
-                SCOPED_TRACE(testing::Message() << surfaces[s] << " " << parallel << " " << i);
-                const Picture texture = picture(80, 50, VTK_UNSIGNED_CHAR, components);
+                SCOPED_TRACE(testing::Message() << surface << " " << parallel << " " << i);
+                // Colors by each filter, then what else is drawn.
+                const Case c{surface, parallel, i < 4 ? i : 3, i < 4 ? 0 : i - 3, i % 2 ? 4 : 3};
+                const Picture texture = picture(80, 50, VTK_UNSIGNED_CHAR, c.components);
                 vtkNew<Drape> filter;
                 filter->SetInputData(texture);
-                filter->SetSurface(static_cast<int>(s));
-                filter->SetAngle(222);
-                filter->SetRadius(0.3);
-                filter->SetTube(0.13);
-                filter->SetAmplitude(0.07);
-                filter->SetWavelength(0.4);
-                filter->SetPhase(0.3);
-                filter->SetDirection(33);
-                filter->SetTurn(0.6);
-                filter->SetViewSize(screen.width, screen.height);
-                filter->SetCameraPosition(0.9, 0.7, 1.5);
-                filter->SetCameraFocalPoint(0.1, 0, 0);
-                filter->SetCameraViewUp(0.1, 1, 0);
-                filter->SetCameraViewAngle(47);
-                filter->SetCameraParallelProjection(parallel);
-                filter->SetCameraParallelScale(0.7);
-                filter->SetTolerance(0.25);
-                filter->SetBackground(0.2, 0.4, 0.6, 0.5);
-                filter->SetFilter(style);
-                filter->SetStyle(output);
-                const double half = anamorph::kPi / 360,
-                             fov = std::atan(90.0 / 60.0 * std::tan(47 * half)) / half;
-                std::vector<anamorph::Assignment> arguments = {
-                    {"surface", surfaces[s]},
-                    {"angle", "222"},
-                    {"radius", "0.3"},
-                    {"tube", "0.13"},
-                    {"amplitude", "0.07"},
-                    {"wavelength", "0.4"},
-                    {"phase", "0.3"},
-                    {"direction", "33"},
-                    {"turn", "0.6"},
-                    {"size", "90x60"},
-                    {"camera", "0.9,0.7,1.5"},
-                    {"target", "0.1,0,0"},
-                    {"up", "0.1,1,0"},
-                    {"tol", "0.25"},
-                    {"filter", filters[style]},
-                    {"output", outputs[output]},
-                    {"background", components == 4 ? "0.2,0.4,0.6,0.5" : "0.2,0.4,0.6"}};
-                if (parallel) {
-                    arguments.push_back({"view", "parallel"});
-                    arguments.push_back({"extent", anamorph::shortest(2 * 0.7 * (90.0 / 60.0))});
-                } else {
-                    arguments.push_back({"fov", anamorph::shortest(fov)});
-                }
-                const std::vector<double> found = drawn_numbers(filter);
-                if (output == Drape::COLOR) {
-                    ASSERT_EQ(found,
-                              turned_over(by_operation<unsigned char>(texture, arguments, screen, components),
-                                          static_cast<std::size_t>(90 * components)));
-                    continue;
-                }
-                std::vector<double> wanted =
-                    turned_over(by_operation<float>(texture, arguments, screen, channels[output]),
-                                static_cast<std::size_t>(90 * channels[output]));
-                for (std::size_t k = 0; k < wanted.size(); ++k) {
-                    if (output == Drape::DEPTH && std::isinf(wanted[k])) wanted[k] = 1e30f;
-                    if (output == Drape::TEXTURE_COORDINATES && k % 2 == 1 && wanted[k] >= 0)
-                        wanted[k] = 1 - static_cast<float>(wanted[k]);
-                }
-                ASSERT_EQ(found, wanted);
+                set(filter, c);
+                ASSERT_EQ(drawn_numbers(filter), wanted_of(c, texture));
             }
 }
 
