@@ -506,6 +506,37 @@ TEST(ProjectedTriangles, ShadowsOfAnyShapeEndInNeedlesToo) {
     }
 }
 
+TEST(ProjectedTriangles, PiecesAboutACubesCornerStayOnTheirFace) {
+    const unsigned seed = 17;
+    SCOPED_TRACE(seed);
+    std::mt19937 random(seed);
+    const Chart chart(Projection::cubemap, 32, 192, 90);
+    std::vector<Triangle> scene = {{{{-0.61920320702185982, 0.393099212360285, -1.6485710778796032},
+                                     {-1.6223429353068104, 0.67043409741391558, -0.37121399593011017},
+                                     {-0.82666285582012655, 1.4901324170410757, -1.3840469860977733}}},
+                                   {{{-1, 0.5, -1}, {-1, 1.5, -1}, {0, 1, -1}}}};
+    std::uniform_real_distribution<double> off(-0.7, 0.7);
+    for (int k = 0; k < 300; ++k) {
+        Triangle triangle;
+        for (glm::dvec3& corner : triangle) corner = {-1 + off(random), 1 + off(random), -1 + off(random)};
+        scene.push_back(triangle);
+    }
+    const Painted painted = paint(chart, {}, scene, {.tol = 0.125, .smallest = 1e-6});
+    expect_within(chart, {}, painted, 0.125, random);
+    // A point's own face is one of those in whose direction it lies most, but for rounding of corners.
+    const Projector projector(chart);
+    for_samples(painted, random, 20, [&](const Exact& exact_point, const Point<Real>& texel) {
+        const glm::dvec3 point(static_cast<double>(exact_point.x), static_cast<double>(exact_point.y),
+                               static_cast<double>(exact_point.z));
+        Point<double> own{};
+        ASSERT_EQ(projector.receive(point, own), Received::texel);
+        if (std::hypot(own.x - texel.x, own.y - texel.y) <= 0.125L) return;
+        double axes[3] = {std::fabs(point.x), std::fabs(point.y), std::fabs(point.z)};
+        std::sort(axes, axes + 3);
+        EXPECT_LE(axes[2] - axes[1], 1e-5 * axes[2]) << point.x << " " << point.y << " " << point.z;
+    });
+}
+
 TEST(ProjectedTriangles, WhatLiesInTheSeamIsPaintedOnce) {
     // A triangle in the plane of the seam, behind the projector's middle.
     const Chart chart(Projection::equirectangular, 64, 32);

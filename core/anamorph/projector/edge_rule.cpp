@@ -136,12 +136,26 @@ double EdgeRule::crossing(const glm::dvec3& a, const glm::dvec3& b) const {
     }
     const double crease = root(chart.crease(ray_of(a)), chart.crease(ray_of(b)));
     if (crease > 0 && crease < 1) return crease;
-    const auto i = static_cast<std::size_t>(chart.piece_of(ray_of(a))),
-               j = static_cast<std::size_t>(chart.piece_of(ray_of(b)));
-    if (i == j) return -1;
-    const glm::dvec3 normal = chart.pieces()[i].toward - chart.pieces()[j].toward;
-    const double t = root(glm::dot(normal, a), glm::dot(normal, b));
-    return t > 0 && t < 1 ? t : -1;
+    // An end on a border is on several faces: the first crossing from any of them to any of the other end's.
+    const std::vector<std::size_t> from = faces_at(a), to = faces_at(b);
+    double first = -1;
+    for (const std::size_t i : from)
+        for (const std::size_t j : to) {
+            const glm::dvec3 normal = chart.pieces()[i].toward - chart.pieces()[j].toward;
+            const double t = root(glm::dot(normal, a), glm::dot(normal, b));
+            if (t > 0 && t < 1 && (first < 0 || t < first)) first = t;
+        }
+    return first;
+}
+
+std::vector<std::size_t> EdgeRule::faces_at(const glm::dvec3& ray) const {
+    const auto& pieces = m_projector.panorama().pieces();
+    double most = -HUGE_VAL;
+    for (const auto& piece : pieces) most = std::max(most, glm::dot(piece.toward, ray));
+    std::vector<std::size_t> faces;
+    for (std::size_t i = 0; i < pieces.size(); ++i)
+        if (glm::dot(pieces[i].toward, ray) >= most - m_on_plane * glm::length(ray)) faces.push_back(i);
+    return faces;
 }
 
 EdgeFinding EdgeRule::judge_ball(const glm::dvec3& centre, double radius, double edge) const {

@@ -23,6 +23,8 @@
 // Seams, borders of faces and creases are plane in space. Edges are split on them, and every triangle is then on one side.
 #pragma once
 
+#include <vector>
+
 #include "anamorph/projector/projector.h"
 
 namespace anamorph {
@@ -62,6 +64,8 @@ class EdgeRule {
   private:
     /// The place on the way from a to b where a seam, a border of faces or a crease is crossed; -1 where none is.
     double crossing(const glm::dvec3& a, const glm::dvec3& b) const;
+    /// The faces that a ray is on: several on their borders.
+    std::vector<std::size_t> faces_at(const glm::dvec3& ray) const;
     EdgeFinding judge_ball(const glm::dvec3& centre, double radius, double edge) const;
 
     const Projector& m_projector;
