@@ -207,7 +207,7 @@ class BvhMotion final : public Motion {
     }
 
   private:
-    /// Eq. of a chain: a joint's turn is its parent's times its own, its position the parent's plus the
+    /// A joint's turn is its parent's times its own, its position the parent's plus the
     /// turned offset, in place of which position channels come.
     std::vector<Posed> pose(int number) const {
         static constexpr glm::dvec3 kAxes[3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
