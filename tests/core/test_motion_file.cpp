@@ -114,6 +114,7 @@ TEST(Bvh, SaysWhatIsWrongAndWhere) {
     EXPECT_EQ(with("Frames: 2", "Frames: 1"), "none");
     EXPECT_THAT(with("Frames: 2", "Frames: -1"), HasSubstr("the number of frames must be an integer from 0"));
     EXPECT_THAT(with("0.04", "0"), HasSubstr("the time of a frame must be at least 1e-6 seconds"));
+    EXPECT_THAT(with("0.04", "1e-320"), HasSubstr("the time of a frame"));
     EXPECT_THAT(with("0.04", "nan"), HasSubstr("the time of a frame"));
     EXPECT_THAT(with("10 20", "inf 20"), HasSubstr("the value of a channel"));
     EXPECT_THAT(with("CHANNELS 3", "CHANNELS 9"), HasSubstr("an integer from 0 to 6"));

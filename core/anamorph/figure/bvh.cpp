@@ -6,6 +6,7 @@
 
 #include "anamorph/figure/motion_file.h"
 #include "anamorph/figure/rotation.h"
+#include "anamorph/figure/window_fit.h"
 #include "anamorph/text_file.h"
 
 namespace anamorph {
@@ -14,8 +15,6 @@ namespace {
 constexpr int kMostJoints = 10000;
 constexpr int kMostFrames = 1'000'000;
 constexpr double kMostPoses = 5e7;
-/// The share of the window that the motion fills.
-constexpr double kWindow = 1000, kFilled = 0.9;
 /// Half the width of a bone: a share of its length, within shares of the skeleton's size.
 constexpr double kWidth = 0.14, kLeastWidth = 0.008, kMostWidth = 0.05;
 /// Half the length of a bone's ellipsoid, so that neighbours overlap at their joint.
@@ -199,7 +198,7 @@ class BvhMotion final : public Motion {
             if (bone.before >= 0) {
                 const auto at = static_cast<std::size_t>(bone.from);
                 frame.joints.push_back({m_joints[at].name, bone.before, static_cast<int>(frame.bodies.size()),
-                                        in_window(posed[at].position)});
+                                        m_window.point(posed[at].position)});
             }
             frame.bodies.push_back(std::move(body));
         }
@@ -280,24 +279,14 @@ class BvhMotion final : public Motion {
                 least = glm::min(least, p.position);
                 most = glm::max(most, p.position);
             }
-        m_scale = kFilled * kWindow / std::max({most.x - least.x, most.y - least.y, 1e-9});
-        m_middle = 0.5 * (least + most);
-    }
-    glm::dvec3 in_window(const glm::dvec3& p) const {
-        const glm::dvec3 q = m_scale * (p - m_middle);
-        return {kWindow / 2 + q.x, kWindow / 2 + q.y, kWindow / 2 - q.z};
+        m_window = WindowFit(least, most);
     }
     Ellipsoid ellipsoid_of(const Bone& bone, const std::vector<Posed>& posed) const {
         const Posed &from = posed[static_cast<std::size_t>(bone.from)],
                     &to = posed[static_cast<std::size_t>(bone.to)];
-        Ellipsoid shape;
-        shape.center = in_window(0.5 * (from.position + to.position));
-        shape.axes = m_scale * glm::dvec3(bone.half_width, bone.half_length, bone.half_width);
-        const glm::dmat3 turned = glm::mat3_cast(from.turn * bone.along);
-        // Mirrored, with the last axis the other way, so that it stays a turn.
-        for (int k = 0; k < 3; ++k)
-            shape.rotation[k] = (k == 2 ? -1.0 : 1.0) * glm::dvec3(turned[k].x, turned[k].y, -turned[k].z);
-        return shape;
+        return m_window.ellipsoid({0.5 * (from.position + to.position),
+                                   {bone.half_width, bone.half_length, bone.half_width},
+                                   glm::mat3_cast(from.turn * bone.along)});
     }
 
     std::vector<BvhJoint> m_joints;
@@ -306,8 +295,7 @@ class BvhMotion final : public Motion {
     int m_frames = 0;
     double m_frame_time = 0;
     std::vector<double> m_values;
-    double m_scale = 1;
-    glm::dvec3 m_middle{0.0};
+    WindowFit m_window;
 };
 
 }  // namespace

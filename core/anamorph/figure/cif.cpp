@@ -14,6 +14,7 @@
 #include "anamorph/figure/elements.h"
 #include "anamorph/figure/motion_file.h"
 #include "anamorph/figure/rotation.h"
+#include "anamorph/figure/window_fit.h"
 #include "anamorph/parameter.h"
 #include "anamorph/text_file.h"
 
@@ -21,7 +22,6 @@ namespace anamorph {
 namespace {
 
 constexpr std::size_t kMostAtoms = 20000, kMostBonds = 500000;
-constexpr double kWindow = 1000, kFilled = 0.9;
 /// Of a cell's edge, in Angstrom.
 constexpr double kLeastLength = 0.1;
 /// The ellipsoid x^T U^-1 x = s^2 holds half of a Gaussian in three dimensions.
@@ -346,42 +346,23 @@ class Structure {
 
 // --- The frame ---------------------------------------------------------------------------------------------
 
-/// From Angstrom to the window, mirrored.
-class Fit {
-  public:
-    explicit Fit(const std::vector<Atom>& atoms) {
-        glm::dvec3 least(HUGE_VAL), most(-HUGE_VAL);
-        for (const Atom& atom : atoms) {
-            const Ellipsoid& e = atom.shape;
-            const glm::dvec3 reach(std::max({e.axes.x, e.axes.y, e.axes.z}));
-            least = glm::min(least, e.center - reach);
-            most = glm::max(most, e.center + reach);
-        }
-        m_scale = kFilled * kWindow / std::max({most.x - least.x, most.y - least.y, 1e-9});
-        m_middle = 0.5 * (least + most);
+/// From Angstrom to the window.
+WindowFit fit_of(const std::vector<Atom>& atoms) {
+    glm::dvec3 least(HUGE_VAL), most(-HUGE_VAL);
+    for (const Atom& atom : atoms) {
+        const Ellipsoid& e = atom.shape;
+        const glm::dvec3 reach(std::max({e.axes.x, e.axes.y, e.axes.z}));
+        least = glm::min(least, e.center - reach);
+        most = glm::max(most, e.center + reach);
     }
-    glm::dvec3 point(const glm::dvec3& p) const {
-        const glm::dvec3 q = m_scale * (p - m_middle);
-        return {kWindow / 2 + q.x, kWindow / 2 + q.y, kWindow / 2 - q.z};
-    }
-    Ellipsoid ellipsoid(const Ellipsoid& e) const {
-        Ellipsoid shape{point(e.center), m_scale * e.axes, {}};
-        for (int k = 0; k < 3; ++k)
-            shape.rotation[k] = glm::dvec3(e.rotation[k].x, e.rotation[k].y, -e.rotation[k].z);
-        if (glm::determinant(shape.rotation) < 0) shape.rotation[2] = -shape.rotation[2];
-        return shape;
-    }
-
-  private:
-    double m_scale = 1;
-    glm::dvec3 m_middle{0.0};
-};
+    return {least, most};
+}
 
 class CrystalMotion final : public Motion {
   public:
     CrystalMotion(std::string_view text, std::string_view name) {
         const std::vector<Atom> atoms = Structure(text, name).atoms;
-        const Fit fit(atoms);
+        const WindowFit fit = fit_of(atoms);
         m_frame.number = 1;
         m_frame.figures = {"structure"};
         for (const Atom& atom : atoms) {

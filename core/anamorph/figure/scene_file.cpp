@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "anamorph/error.h"
+#include "anamorph/figure/window_fit.h"
 #include "anamorph/parameter.h"
 #include "anamorph/version.h"
 
@@ -58,21 +59,6 @@ struct UnitSphere {
             }
     }
 };
-
-/// An ellipsoid in right-handed space.
-struct Placed {
-    glm::dvec3 center, axes;
-    glm::dmat3 rotation;
-};
-
-Placed placed(const Ellipsoid& e) {
-    Placed p{{e.center.x, e.center.y, -e.center.z}, e.axes, {}};
-    // Mirrored, with the last axis the other way, so that it stays a turn.
-    for (int k = 0; k < 3; ++k)
-        p.rotation[k] =
-            (k == 2 ? -1.0 : 1.0) * glm::dvec3(e.rotation[k].x, e.rotation[k].y, -e.rotation[k].z);
-    return p;
-}
 
 float as_float(double value) {
     const auto narrow = static_cast<float>(value);
@@ -145,7 +131,7 @@ Track track_of(std::span<const FigureFrame> frames, std::size_t body) {
     Track track;
     glm::dquat before(1, 0, 0, 0);
     for (const FigureFrame& frame : frames) {
-        const Placed p = placed(frame.bodies[body].shape);
+        const Ellipsoid p = mirrored(frame.bodies[body].shape);
         const glm::dvec3 center = kMetresPerUnit * p.center, axes = kMetresPerUnit * p.axes;
         glm::dquat turn = glm::normalize(glm::quat_cast(p.rotation));
         // q and -q are the same turn; the nearer one is the shorter way.
@@ -306,7 +292,7 @@ std::string obj_file(const FigureFrame& frame) {
     };
     std::size_t first = 1;
     for (const Body& body : frame.bodies) {
-        const Placed p = placed(body.shape);
+        const Ellipsoid p = mirrored(body.shape);
         text += "o " + body.name + "\n";
         for (const glm::dvec3& point : sphere.points) {
             row("v", p.center + p.rotation * (p.axes * point));
