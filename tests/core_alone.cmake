@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 # The core configures, builds and passes its tests with no host library to be found, and reads no host header.
-# Needs: SOURCE_DIR, WORK_DIR (emptied), CXX_COMPILER, WERROR, CTEST_COMMAND.
+# Needs: SOURCE_DIR, BINARY_DIR (of the build with hosts), WORK_DIR (emptied), CXX_COMPILER, WERROR, CTEST_COMMAND.
 
 include(${CMAKE_CURRENT_LIST_DIR}/run_command.cmake)
 
@@ -27,5 +27,23 @@ foreach(list ${lists})
     endif()
 endforeach()
 
+# Programs that are those of the build with hosts, byte for byte, are tested there.
+set(same TRUE)
+foreach(program tests/core/anamorph_core_tests core/command/anamorph core/command/anamorph-figure
+                core/command/anamorph-machine)
+    if(NOT EXISTS ${WORK_DIR}/${program})
+        message(FATAL_ERROR "${WORK_DIR}/${program} was not built")
+    endif()
+    execute_process(COMMAND ${CMAKE_COMMAND} -E compare_files ${WORK_DIR}/${program} ${BINARY_DIR}/${program}
+                    RESULT_VARIABLE differs OUTPUT_QUIET ERROR_QUIET)
+    if(differs)
+        message(STATUS "${program} differs from that of the build with hosts")
+        set(same FALSE)
+    endif()
+endforeach()
+if(same)
+    message(STATUS "The programs are those of the build with hosts.")
+    return()
+endif()
 run(${CTEST_COMMAND} --test-dir ${WORK_DIR} --output-on-failure --no-tests=error --parallel 2)
 message(STATUS "${text}")
