@@ -12,7 +12,8 @@ log_dir=build/log
 mkdir -p "$log_dir"
 jobs="$(nproc)"
 fuzz_seconds=5
-export CMAKE_CXX_COMPILER_LAUNCHER=ccache  # the core is built twice: with its hosts, and alone
+export CMAKE_CXX_COMPILER_LAUNCHER=ccache  # the core is built with its hosts, alone, and for VTK and ParaView
+export ANAMORPH_WERROR=ON                  # in the demo as well, so that the tests need not build it all again
 
 # step NAME COMMAND...: quiet when it succeeds; prints its log and ends the run when it fails.
 step() {
