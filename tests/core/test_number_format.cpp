@@ -65,9 +65,25 @@ void expect_nearest(const NumberFormat& format, const std::vector<Stored>& all, 
         ASSERT_NEAR(nearest(format, double(middle) + hair, beyond), double(above), near) << double(middle);
         ASSERT_FALSE(beyond);
         if (is_double) {
-            ASSERT_EQ(nearest(format, double(middle)), double(all[i].even ? below : above)) << double(middle);
+            const double tie = double(middle);
+            ASSERT_EQ(nearest(format, tie), double(all[i].even ? below : above)) << tie;
+            ASSERT_EQ(nearest(format, std::nextafter(tie, -HUGE_VAL)), double(below)) << tie;
+            ASSERT_EQ(nearest(format, std::nextafter(tie, HUGE_VAL)), double(above)) << tie;
         }
     }
+}
+
+/// k of the nearest k / most to a value that is not negative, in whole numbers: value is m 2^-e.
+long exact_normalised(double value, long most) {
+    int exponent = 0;
+    const auto m = static_cast<__int128>(std::ldexp(std::frexp(value, &exponent), 53));
+    const int e = 53 - exponent;
+    // k + 1/2 is one of (2 k + 1) 2^e.
+    const __int128 twice = 2 * m * most, unit = static_cast<__int128>(1) << e;
+    const auto below = static_cast<long>(twice / unit);  // floor(2 value most)
+    const bool tie = twice % unit == 0 && below % 2 == 1;
+    const long k = (below + 1) / 2;
+    return tie && k % 2 == 1 ? k - 1 : k;
 }
 
 TEST(NumberFormat, RoundsToTheNearestOfAllItsValues) {
@@ -78,6 +94,42 @@ TEST(NumberFormat, RoundsToTheNearestOfAllItsValues) {
     expect_nearest(kFloat16, half_values());
     for (int exponent = -62; exponent <= 63; ++exponent)
         expect_nearest(kFloat24, some_float24_values(exponent), 2);
+}
+
+/// Texels' middles are no doubles: the doubles beside them round to where they lie.
+TEST(NumberFormat, NormalisedRoundAsWholeNumbersSayBesideEveryTie) {
+    for (const int bits : {1, 2, 5, 8, 10, 12, 16}) {
+        const NumberFormat format{NumberFormat::Kind::normalised, bits};
+        const long most = (1L << bits) - 1;
+        for (long k = 0; k <= most; ++k) {
+            const double tie = (static_cast<double>(k) + 0.5) / static_cast<double>(most);
+            double value = std::nextafter(std::nextafter(tie, 0), 0);
+            for (int i = 0; i < 5; ++i, value = std::nextafter(value, 2)) {
+                bool beyond = false;
+                const long wanted = exact_normalised(value, most);
+                const double got = nearest(format, value, beyond);
+                ASSERT_EQ(got, static_cast<double>(std::min(wanted, most)) / static_cast<double>(most))
+                    << bits << " bits, beside " << k << " and a half: " << value;
+                ASSERT_EQ(beyond, wanted > most) << value;
+            }
+        }
+        // -1/2 of a step is a tie, too: it is 0, and what lies beyond it is no texel.
+        const double half = -0.5 / static_cast<double>(most);
+        for (const double value : {std::nextafter(half, -1), half, std::nextafter(half, 0)}) {
+            bool beyond = false;
+            EXPECT_EQ(nearest(format, value, beyond), 0);
+            EXPECT_EQ(beyond, std::fma(value, static_cast<double>(most), 0.5) < 0) << bits << " " << value;
+        }
+    }
+}
+
+TEST(NumberFormat, TwosComplementHasOneZero) {
+    for (const NumberFormat& f : {kSigned8, kSigned16, kFixed16, kFixed32}) {
+        EXPECT_FALSE(std::signbit(nearest(f, -0.0))) << name_of(f);
+        EXPECT_FALSE(std::signbit(nearest(f, -1e-12))) << name_of(f);
+        EXPECT_FALSE(std::signbit(nearest(f, -1e-320))) << name_of(f);
+    }
+    EXPECT_EQ((FormatNumber<kFixed16>(1.0) / FormatNumber<kFixed16>(-0.00001)).value, largest(kFixed16));
 }
 
 TEST(NumberFormat, FloatIsTheProcessorsFloat) {

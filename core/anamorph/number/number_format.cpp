@@ -31,7 +31,8 @@ double nearest_float(const NumberFormat& format, double value, bool& beyond) {
 }
 
 double nearest_fixed(const NumberFormat& format, double value, bool& beyond) {
-    const double units = std::nearbyint(std::ldexp(value, format.fraction));
+    // Two's complement has one zero.
+    const double units = std::nearbyint(std::ldexp(value, format.fraction)) + 0.0;
     const double half = std::ldexp(1.0, format.bits - 1);
     if (units >= -half && units < half) return std::ldexp(units, -format.fraction);
     beyond = true;
@@ -46,7 +47,13 @@ double nearest_fixed(const NumberFormat& format, double value, bool& beyond) {
 }
 
 double nearest_normalised(const NumberFormat& format, double value, bool& beyond) {
-    const double most = std::ldexp(1.0, format.bits) - 1, k = std::nearbyint(value * most);
+    // A product that was rounded to the middle of two integers may have come from either side of it: its rest says from which.
+    const double most = std::ldexp(1.0, format.bits) - 1, product = value * most;
+    double k = std::nearbyint(product);
+    if (std::fabs(product - k) == 0.5) {
+        const double rest = std::fma(value, most, -product);
+        if (rest != 0) k = product + std::copysign(0.5, rest);
+    }
     if (k >= 0 && k <= most) return std::fabs(k) / most;
     beyond = true;
     return k > most ? 1 : 0;
