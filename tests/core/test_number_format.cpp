@@ -132,6 +132,39 @@ TEST(NumberFormat, TwosComplementHasOneZero) {
     EXPECT_EQ((FormatNumber<kFixed16>(1.0) / FormatNumber<kFixed16>(-0.00001)).value, largest(kFixed16));
 }
 
+/// Fixed point of 32 bits, 16 of them behind the point, in whole numbers.
+TEST(NumberFormat, Fixed32IsRoundedOnceAsWholeNumbersAre) {
+    using Fixed32 = FormatNumber<kFixed32>;
+    constexpr unsigned kSeed = 19;
+    SCOPED_TRACE(testing::Message() << "seed " << kSeed);
+    std::mt19937_64 random(kSeed);
+    // Of n / d, which is not negative, ties to even.
+    const auto rounded = [](__int128 n, __int128 d) {
+        const __int128 twice = 2 * (n % d);
+        __int128 k = n / d;
+        if (twice > d || (twice == d && k % 2 == 1)) ++k;
+        return k;
+    };
+    for (int i = 0; i < 20000; ++i) {
+        // Of any size.
+        const auto a = static_cast<std::int64_t>(random() % (1u << 31) >> random() % 31),
+                   b = static_cast<std::int64_t>(random() % (1u << 31) >> random() % 31) + 1;
+        const Fixed32 x(std::ldexp(double(a), -16)), y(std::ldexp(double(b), -16));
+        const auto expect = [&](const Fixed32& got, __int128 wanted) {
+            ASSERT_EQ(got.beyond, wanted > 0x7fffffff) << a << " " << b;
+            ASSERT_EQ(std::ldexp(got.value, 16), double(std::min<__int128>(wanted, 0x7fffffff)))
+                << a << " " << b;
+        };
+        expect(x * y, rounded(static_cast<__int128>(a) * b, 1 << 16));
+        expect(x / y, rounded(static_cast<__int128>(a) << 16, b));
+        // The root's square is nearest: k - 1/2 and k + 1/2 lie beside it.
+        const auto k = static_cast<__int128>(std::ldexp(sqrt(x).value, 16)), four = static_cast<__int128>(a)
+                                                                                    << 18;
+        ASSERT_LE((2 * k - 1) * (k > 0 ? 2 * k - 1 : 0), four) << a;
+        ASSERT_GE((2 * k + 1) * (2 * k + 1), four) << a;
+    }
+}
+
 TEST(NumberFormat, FloatIsTheProcessorsFloat) {
     constexpr unsigned kSeed = 7;
     SCOPED_TRACE(testing::Message() << "seed " << kSeed);

@@ -3,6 +3,7 @@
 // is rounded to its format after every operation, with which the formulas of map/ and approx/ are read (number.h).
 #pragma once
 
+#include <bit>
 #include <cstdint>
 #include <string>
 #include <string_view>
@@ -46,16 +47,85 @@ std::string name_of(const NumberFormat& format);
 /// The largest number of the format.
 double largest(const NumberFormat& format);
 
+namespace format_detail {
+
+/// Units of what lies beyond the range of a fixed format.
+double beyond_fixed(const NumberFormat& format, double units, bool& beyond);
+double nearest_normalised(const NumberFormat& format, double value, bool& beyond);
+
+/// 2^exponent, from 2^-1022 to 2^1023.
+constexpr double power_of_2(int exponent) {
+    return std::bit_cast<double>(static_cast<std::uint64_t>(exponent + 1023) << 52);
+}
+
+/// The nearest integer, ties to even, of a size of at most 2^51: the sum has no bits behind the point.
+inline double nearest_integer(double value) {
+    constexpr double kShift = 0x1.8p52;
+    return value + kShift - kShift;
+}
+
+inline double nearest_float(const NumberFormat& format, double value, bool& beyond) {
+    constexpr int kDoubleFraction = 52;
+    const int bias = (1 << (format.bits - 1)) - 1, least = 1 - bias;
+    const double size = std::fabs(value), smallest = power_of_2(least);
+    if (std::isnan(value)) {
+        beyond = true;
+        return value;
+    }
+    double rounded = 0;
+    if (size < smallest) {
+        // Multiples of the least binade's last place.
+        const double place = power_of_2(least - format.fraction), shift = 0x1.8p52 * place;
+        rounded = size + shift - shift;
+        if (rounded < smallest && !format.subnormals) rounded = 0;
+    } else {
+        // What is cut off carries into the bits above it where it is more than half of their last one, or half and
+        // that one is odd.
+        const int cut = kDoubleFraction - format.fraction;
+        auto bits = std::bit_cast<std::uint64_t>(size);
+        bits += (std::uint64_t{1} << (cut - 1)) - 1 + (bits >> cut & 1);
+        rounded = std::bit_cast<double>(bits >> cut << cut);
+    }
+    if (rounded >= power_of_2(bias + 1)) {
+        beyond = true;
+        rounded = std::numeric_limits<double>::infinity();
+    }
+    return std::copysign(rounded, value);
+}
+
+inline double nearest_fixed(const NumberFormat& format, double value, bool& beyond) {
+    const double half = power_of_2(format.bits - 1), unit = power_of_2(-format.fraction),
+                 exact = value * power_of_2(format.fraction);
+    // Two's complement has one zero, which 0 added to the other makes.
+    if (exact >= -half - 1 && exact <= half) {
+        const double units = nearest_integer(exact) + 0.0;
+        if (units >= -half && units < half) return units * unit;
+    }
+    return beyond_fixed(format, exact, beyond) * unit;
+}
+
+}  // namespace format_detail
+
 /// The nearest number of the format. Sets `beyond` where the value rounds to none of its range, or is NaN: fixed and
 /// normalised formats then give the nearest end (wrapped: what is left of it; NaN: 0), floating ones infinity or NaN.
-double nearest(const NumberFormat& format, double value, bool& beyond);
+inline double nearest(const NumberFormat& format, double value, bool& beyond) {
+    switch (format.kind) {
+        case NumberFormat::Kind::floating:
+            return format_detail::nearest_float(format, value, beyond);
+        case NumberFormat::Kind::fixed:
+            return format_detail::nearest_fixed(format, value, beyond);
+        default:
+            return format_detail::nearest_normalised(format, value, beyond);
+    }
+}
 inline double nearest(const NumberFormat& format, double value) {
     bool beyond = false;
     return nearest(format, value, beyond);
 }
 
 /// A number that is rounded to its format after every operation. Sums, products, quotients and roots of formats of up to
-/// 24 significant bits are correctly rounded: double holds more than twice as many, and two.
+/// 24 significant bits are correctly rounded: double holds more than twice as many, and two. So are kFixed32's: exact ones of
+/// its range are farther from a tie than double's rounding, 2^-32 and 2^-39.
 template <NumberFormat kFormat>
 struct FormatNumber {
     /// Was it, or a number that it is made of, beyond the range?
