@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """anamorph-machine: programs are assembled and run, and what they draw is what they say, worked out by hand."""
+import csv
 import os
+import re
 import struct
 import subprocess
 import tempfile
@@ -82,21 +84,49 @@ class Machine(unittest.TestCase):
         def schedule(*arguments):
             status, out, error = run("schedule", *arguments)
             self.assertEqual((status, error), (0, ""))
-            rows = [line.split(",") for line in out.decode().split("\n")[1:-1]]
-            return {row[0]: [float(cell) for cell in row[1:]] for row in rows}
+            rows = list(csv.DictReader(out.decode().splitlines()))
+            self.assertEqual(list(rows[0]), ["stage", "cycles", "ms", "utilisation", "starved_ms", "blocked_ms",
+                                             "bytes_read", "bytes_written", "buffer_bytes"])
+            table = {row.pop("stage"): {name: float(cell) for name, cell in row.items()} for row in rows}
+            frame = max(row["ms"] for row in table.values())
+            for row in table.values():
+                self.assertLessEqual(row["utilisation"], 1)
+                self.assertAlmostEqual(row["ms"] + row["starved_ms"] + row["blocked_ms"], frame)
+            self.assertEqual(table["address controller"]["bytes_read"], table["micro-coded processors"]["bytes_written"])
+            return table
         table = schedule()
-        self.assertEqual(table["micro-coded processors"][0], 2048 * 73)
-        self.assertEqual(table["pixel processor"], [512 * 512, 26.2144, 1, 512 * 512 * 15])
-        self.assertEqual(max(row[2] for row in table.values()), 1)
+        self.assertEqual(table["micro-coded processors"]["cycles"], 2048 * 73)
+        self.assertEqual(table["pixel processor"],
+                         {"cycles": 512 * 512, "ms": 26.2144, "utilisation": 1, "starved_ms": 0, "blocked_ms": 0,
+                          "bytes_read": 512 * 512 * 12, "bytes_written": 512 * 512 * 3, "buffer_bytes": 512 * 512 * 6})
         small = schedule("--machine", "oka-1987:block=4")
-        self.assertEqual(small["micro-coded processors"][2], 1)
+        self.assertEqual(small["micro-coded processors"]["utilisation"], 1)
+        self.assertGreater(small["pixel processor"]["starved_ms"], 30)
         large = schedule("--picture", "1024", "--size", "1024")
-        self.assertEqual(large["pixel processor"][2], 1)
-        self.assertGreater(large["pixel processor"][1], 100)
+        self.assertEqual(large["pixel processor"]["utilisation"], 1)
+        self.assertGreater(large["pixel processor"]["ms"], 100)
+
+    def test_the_timeline_says_what_frames_do_and_when(self):
         path = os.path.join(self.folder, "timeline.svg")
         self.assertEqual(run("schedule", "--surface", "sphere", "-o", path)[0], 0)
-        bars = [e for e in xml.parse(path).getroot() if e.tag.endswith("rect") and len(e) == 1]
-        self.assertEqual(len(bars), 5 * 4)
+        svg = xml.parse(path).getroot()
+        titles = [e.text for e in svg.iter() if e.tag.endswith("title")]
+        for stage in ("host computer", "micro-coded processors", "address controller", "pixel processor", "output",
+                      "programs", "block data memory", "output image memory"):
+            for frame in range(1, 6):
+                self.assertEqual(sum(t.startswith("%s: frame %d, " % (stage, frame)) for t in titles), 1, stage)
+        self.assertTrue(any(t.startswith("micro-coded processors: waits for ") for t in titles))
+        words = [e.text for e in svg.iter() if e.tag.endswith("text")]
+        self.assertIn("time since the start, ms", words)
+        ticks = [float(w) for w in words if re.fullmatch(r"[0-9.]+", w)]
+        self.assertEqual(ticks[0], 0)
+        self.assertGreater(len(ticks), 4)
+        steps = {round(b - a, 6) for a, b in zip(ticks, ticks[1:])}
+        self.assertEqual(len(steps), 1)
+        # Nothing stands beside the picture.
+        for rect in svg.iter("{http://www.w3.org/2000/svg}rect"):
+            if rect.get("x"):
+                self.assertLessEqual(float(rect.get("x")) + float(rect.get("width")), float(svg.get("width")))
 
     def test_what_is_wrong_is_one_line(self):
         good = self.write("good.ps", b"ps_2_0\ndcl t0\ndcl_2d s0\ntexld r0, t0, s0\nmov oC0, r0\n")

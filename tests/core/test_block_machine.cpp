@@ -69,41 +69,6 @@ TEST(BlockMachine, SegmentsDivideBlocks) {
     EXPECT_EQ(frame_of(machine, "plane", parallel_pose(), 64, 64).counts.segments, 64);
 }
 
-/// The default: 512 x 512 in blocks of 8 in 33 ms; smaller blocks bind the processors, larger pictures the pixel processor.
-TEST(BlockMachine, TheScheduleIsThatOfTheCounts) {
-    const auto schedule = [](double block, int n) {
-        BlockMachine machine;
-        machine.block = block;
-        const BlockFrame frame = frame_of(machine, "plane", parallel_pose(), n, n);
-        return schedule_of(machine, frame.counts, frame.screen);
-    };
-    const MachineSchedule standard = schedule(8, 512);
-    EXPECT_LE(standard.frame_ms(), 33);
-    // 4096 blocks on two processors, 41 products and two divisions of 16 cycles each.
-    EXPECT_EQ(standard.stages[1].cycles, 2048 * (41 + 32));
-    EXPECT_EQ(standard.stages[2].cycles, 4096 * (8 + 4));
-    EXPECT_EQ(standard.stages[3].cycles, 512 * 512);
-    EXPECT_EQ(standard.stages[3].bytes, 512 * 512 * 5 * 3);
-    EXPECT_EQ(standard.bottleneck().name, "pixel processor");
-    const MachineSchedule small = schedule(4, 512), large = schedule(8, 1024);
-    EXPECT_EQ(small.bottleneck().name, "micro-coded processors");
-    EXPECT_GT(small.frame_ms(), 33);
-    EXPECT_EQ(large.bottleneck().name, "pixel processor");
-    EXPECT_NEAR(large.frame_ms(), 1024 * 1024 / 1e4, 1e-9);
-    for (const MachineSchedule& s : {standard, small, large})
-        for (const MachineStage& stage : s.stages) {
-            EXPECT_GE(s.utilisation(stage), 0);
-            EXPECT_LE(s.utilisation(stage), 1);
-        }
-    const std::string csv = schedule_csv(standard);
-    EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 6);
-    EXPECT_NE(csv.find("pixel processor,262144,26.2144,1,3932160\n"), std::string::npos) << csv;
-    const std::string svg = schedule_svg(standard);
-    EXPECT_NE(svg.find("26.214 ms a frame, 38.15 frames a second; the bottleneck is the pixel processor"),
-              std::string::npos);
-    EXPECT_TRUE(svg.ends_with("</svg>\n"));
-}
-
 /// Where the surface is seen at an address, less the pixel's centre: O(d^2), and what fixed point adds.
 double worst_of(const BlockMachine& machine, const std::string& surface, int n) {
     CameraPose pose;
@@ -144,10 +109,16 @@ TEST(BlockMachine, AddressesThatDoNotFitSaturateAndAreCounted) {
     BlockMachine machine;
     machine.address_bits = 16;
     machine.fraction_bits = 8;
-    const BlockFrame frame = frame_of(machine, "plane", parallel_pose(), 256, 256);
-    // -128 to 128: three quarters of the picture are beyond.
-    EXPECT_EQ(frame.counts.pixels - frame.counts.saturated, 128 * 128);
-    EXPECT_EQ(frame.addresses.back().x, 128 - 1.0 / 256);
+    // -128 to 128: three quarters of the picture are beyond. Blocks that share pixels visit these again, and a pixel
+    // counts once.
+    for (const double overlap : {0.0, 0.5, 4.0, 8.0}) {
+        machine.overlap = overlap;
+        const BlockFrame frame = frame_of(machine, "plane", parallel_pose(), 256, 256);
+        // A block whose reference address saturates is wrong in all of its pixels, its share of the common area too.
+        const int right = 128 - (overlap >= 2 ? static_cast<int>(overlap / 2) : 0);
+        EXPECT_EQ(frame.counts.saturated, 256 * 256 - right * right) << overlap;
+        EXPECT_EQ(frame.addresses.back().x, 128 - 1.0 / 256);
+    }
 }
 
 TEST(BlockMachine, WhatIsNotSeenIsNotVisited) {

@@ -2,21 +2,16 @@
 #include "anamorph/machine/block_machine.h"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
+#include <string>
 
 #include "anamorph/error.h"
-#include "anamorph/parameter.h"
 
 namespace anamorph {
 namespace {
 
 // Of the output image memory.
 constexpr int kMostPixels = 1 << 28;
-
-/// Products for a block beside the surface's: affine transformation 9, projection 2, differences 4 (2.4 to 2.7), inverse 6
-/// (2.11). And divisions: by the depth, by the determinant.
-constexpr int kMultiplies = 9 + 2 + 4 + 6, kDivisions = 2;
 
 /// Pixels whose centres lie in [low, high], of a row of `count`.
 struct PixelRange {
@@ -148,8 +143,8 @@ class Drawer {
                 m_frame.addresses[k] = {nearest(m_format, m_at.x + dx * m_step[0] + dy * m_step[1], beyond),
                                         nearest(m_format, m_at.y + dx * m_step[2] + dy * m_step[3], beyond)};
                 m_frame.block[k] = static_cast<std::int32_t>(m_frame.steps.size()) - 1;
+                m_frame.beyond[k] = beyond;
                 ++m_frame.counts.pixels;
-                m_frame.counts.saturated += beyond;
             }
     }
 
@@ -162,12 +157,6 @@ class Drawer {
     double m_step[4] = {};
     bool m_beyond = false;
 };
-
-/// With so many digits behind the point, whatever the locale.
-std::string rounded(double value, int digits) {
-    char text[64];
-    return {text, std::to_chars(text, text + sizeof text, value, std::chars_format::fixed, digits).ptr};
-}
 
 }  // namespace
 
@@ -192,76 +181,13 @@ BlockFrame run_block_machine(const BlockMachine& machine, const DrapedSurface& s
     const std::size_t pixels =
         static_cast<std::size_t>(frame.screen.width) * static_cast<std::size_t>(frame.screen.height);
     frame.addresses.resize(pixels);
+    frame.beyond.resize(pixels);
     frame.block.resize(pixels, BlockFrame::kNone);
     frame.counts.blocks = static_cast<std::int64_t>(blocks.size());
     Drawer drawer(machine, picture, frame);
     for (const OkaBlock& block : blocks) drawer.draw(block);
+    frame.counts.saturated = std::count(frame.beyond.begin(), frame.beyond.end(), true);
     return frame;
-}
-
-const MachineStage& MachineSchedule::bottleneck() const {
-    return *std::max_element(stages.begin(), stages.end(), [](const MachineStage& a, const MachineStage& b) {
-        return a.cycles < b.cycles;
-    });
-}
-
-MachineSchedule schedule_of(const BlockMachine& machine, const BlockCounts& counts, const Size& screen) {
-    const double blocks = double(counts.blocks), pixels = double(counts.pixels);
-    const double products = std::ceil(double(machine.surface_multiplies + kMultiplies) / machine.multipliers);
-    const double of_processor = std::ceil(blocks / machine.processors);
-    const double scanned = double(screen.width) * screen.height;
-    MachineSchedule schedule;
-    schedule.counts = counts;
-    schedule.clock_mhz = machine.clock_mhz;
-    schedule.stages = {
-        {"host computer", double(machine.host_cycles), 0},
-        {"micro-coded processors", of_processor * (products + double(kDivisions) * machine.division_cycles),
-         blocks * kBytesOfBlock},
-        {"address controller",
-         blocks * machine.block_cycles + double(counts.segments) * machine.segment_cycles,
-         blocks * kBytesOfBlock},
-        // Four texels are read, a pixel is written.
-        {"pixel processor", std::ceil(pixels / machine.pixel_units), pixels * 5 * kBytesOfPixel},
-        {"output", scanned, scanned * kBytesOfPixel}};
-    return schedule;
-}
-
-std::string schedule_csv(const MachineSchedule& schedule) {
-    std::string text = "stage,cycles,ms,utilisation,bytes\n";
-    for (const MachineStage& stage : schedule.stages)
-        text += stage.name + "," + shortest(stage.cycles) + "," +
-                shortest(stage.cycles / (schedule.clock_mhz * 1000)) + "," +
-                shortest(schedule.utilisation(stage)) + "," + shortest(stage.bytes) + "\n";
-    return text;
-}
-
-std::string schedule_svg(const MachineSchedule& schedule) {
-    constexpr int kFrames = 4, kLeft = 170, kRow = 28, kWidth = 640;
-    constexpr const char* kColors[kFrames] = {"#4477aa", "#ee6677", "#228833", "#ccbb44"};
-    // A stage takes frame f in the f-th period after the stage before it has made it.
-    const std::size_t count = schedule.stages.size();
-    const double period = double(kWidth) / double(count + kFrames - 1);
-    const int height = static_cast<int>(count) * kRow + 50;
-    std::string text =
-        "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"" + std::to_string(kLeft + kWidth + 10) +
-        "\" height=\"" + std::to_string(height) +
-        "\" font-family=\"sans-serif\" font-size=\"12\">\n<rect width=\"100%\" height=\"100%\" "
-        "fill=\"white\"/>\n";
-    for (std::size_t s = 0; s < count; ++s) {
-        const MachineStage& stage = schedule.stages[s];
-        const std::string y = std::to_string(static_cast<int>(s) * kRow + 10);
-        text += "<text x=\"8\" y=\"" + std::to_string(static_cast<int>(s) * kRow + 24) + "\">" + stage.name +
-                "</text>\n";
-        for (int f = 0; f < kFrames; ++f)
-            text += "<rect x=\"" + rounded(kLeft + (double(s) + f) * period, 2) + "\" y=\"" + y +
-                    "\" width=\"" + rounded(schedule.utilisation(stage) * period, 2) +
-                    "\" height=\"20\" fill=\"" + kColors[f] + "\"><title>frame " + std::to_string(f) + ": " +
-                    shortest(stage.cycles) + " cycles</title></rect>\n";
-    }
-    text += "<text x=\"8\" y=\"" + std::to_string(height - 14) + "\">" + rounded(schedule.frame_ms(), 3) +
-            " ms a frame, " + rounded(1000 / schedule.frame_ms(), 2) +
-            " frames a second; the bottleneck is the " + schedule.bottleneck().name + "</text>\n</svg>\n";
-    return text;
 }
 
 }  // namespace anamorph

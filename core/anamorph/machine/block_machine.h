@@ -1,14 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // The machine of Oka et al. 1987, section 3 and Fig. 3.2: a host computer and micro-coded processors make a linear map for
 // each block of the picture, an address controller visits the pixels of the block on the screen, segment by segment, and a
-// pixel processor interpolates four texels for each. Buffers are double: all work at once, each on another frame.
+// pixel processor interpolates four texels for each.
 //
-// The machine draws a real drape: blocks are those of drape/oka.h, its addresses fixed-point numbers. How long it takes is
-// counted: blocks, segments and pixels that are visited, and no others.
+// The machine draws a real drape: blocks are those of drape/oka.h, its addresses fixed-point numbers. What it visits is
+// counted: blocks, segments and pixels, and no others; how long that takes is block_schedule.h's.
 #pragma once
 
 #include <cstdint>
-#include <string>
 #include <vector>
 
 #include "anamorph/drape/oka.h"
@@ -55,8 +54,9 @@ struct BlockMachine {
 /// What a frame visits.
 struct BlockCounts {
     std::int64_t blocks = 0;  ///< for which the processors make a map
-    std::int64_t segments = 0, pixels = 0;
-    std::int64_t saturated = 0;  ///< of the pixels, those whose address was beyond the range
+    std::int64_t segments = 0;
+    std::int64_t pixels = 0;     ///< again for every block that is drawn over the ones before
+    std::int64_t saturated = 0;  ///< pixels of the screen whose address, the last one, was beyond the range
 };
 
 /// A frame as the machine draws it: for each pixel of the screen, row by row, which block was drawn last, and its address
@@ -68,6 +68,7 @@ struct BlockFrame {
     Size screen;
     std::vector<std::int32_t> block;  ///< kNone where none was drawn
     std::vector<Point<double>> addresses;
+    std::vector<bool> beyond;     ///< the address was beyond the range, and saturated
     std::vector<Jacobian> steps;  ///< of the blocks, before they were rounded
 
     std::size_t index(int x, int y) const {
@@ -80,34 +81,5 @@ struct BlockFrame {
 /// blocks.
 BlockFrame run_block_machine(const BlockMachine& machine, const DrapedSurface& surface, const Camera& camera,
                              const Size& picture);
-
-/// A stage and what it does in a frame.
-struct MachineStage {
-    std::string name;
-    double cycles;
-    double bytes;  ///< that it reads and writes, of memories for blocks and images
-};
-
-/// How long frames take. Stages work at once, so that the slowest one sets the rate.
-struct MachineSchedule {
-    BlockCounts counts;
-    double clock_mhz = 0;
-    std::vector<MachineStage> stages;
-
-    const MachineStage& bottleneck() const;
-    double frame_ms() const { return bottleneck().cycles / (clock_mhz * 1000); }
-    /// The part of a frame's time that a stage works.
-    double utilisation(const MachineStage& stage) const { return stage.cycles / bottleneck().cycles; }
-};
-
-/// Bytes of a pixel and of a texel, and of a block's data.
-inline constexpr double kBytesOfPixel = 3, kBytesOfBlock = 24;
-
-MachineSchedule schedule_of(const BlockMachine& machine, const BlockCounts& counts, const Size& screen);
-
-/// A line for each stage: stage,cycles,ms,utilisation,bytes.
-std::string schedule_csv(const MachineSchedule& schedule);
-/// Some frames on their way through the stages: a bar for each stage and frame, over time.
-std::string schedule_svg(const MachineSchedule& schedule);
 
 }  // namespace anamorph

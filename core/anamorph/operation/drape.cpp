@@ -10,6 +10,7 @@
 #include "anamorph/drape/drape.h"
 #include "anamorph/drape/drape_rows.h"
 #include "anamorph/machine/block_machine_map.h"
+#include "anamorph/machine/block_schedule.h"
 #include "anamorph/machine/machine_text.h"
 #include "anamorph/operation/drape_surface.h"
 #include "anamorph/operation/rows.h"

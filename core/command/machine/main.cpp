@@ -2,6 +2,7 @@
 // anamorph-machine: programs of pixel shaders assembled and run, and the schedule of the machine of 1987.
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <exception>
 #include <filesystem>
@@ -10,6 +11,7 @@
 #include <iostream>
 #include <map>
 
+#include "anamorph/machine/block_schedule.h"
 #include "anamorph/machine/machine_text.h"
 #include "anamorph/machine/machine_texture.h"
 #include "anamorph/machine/shader_run.h"

@@ -1,0 +1,252 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "anamorph/machine/block_schedule.h"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+
+#include "anamorph/parameter.h"
+
+namespace anamorph {
+namespace {
+
+/// Products for a block beside the surface's: affine transformation 9, projection 2, differences 4 (2.4 to 2.7), inverse 6
+/// (2.11). And divisions: by the depth, by the determinant.
+constexpr int kMultiplies = 9 + 2 + 4 + 6, kDivisions = 2;
+
+std::vector<MachineStage> stages_of(const BlockMachine& machine, const BlockCounts& counts,
+                                    const Size& screen) {
+    const double blocks = double(counts.blocks), pixels = double(counts.pixels);
+    const double products = std::ceil(double(machine.surface_multiplies + kMultiplies) / machine.multipliers);
+    const double of_processor = std::ceil(blocks / machine.processors);
+    const double scanned = double(screen.width) * screen.height, image = scanned * kBytesOfPixel;
+    return {
+        {"host computer", double(machine.host_cycles), 0, 0, "programs", 0},
+        {"micro-coded processors", of_processor * (products + double(kDivisions) * machine.division_cycles),
+         0, blocks * kBytesOfBlock, "block data memory", 2 * blocks * kBytesOfBlock},
+        {"address controller",
+         blocks * machine.block_cycles + double(counts.segments) * machine.segment_cycles,
+         blocks * kBytesOfBlock, 0, "", 0},
+        // Four texels are read, a pixel is written.
+        {"pixel processor", std::ceil(pixels / machine.pixel_units), pixels * 4 * kBytesOfPixel,
+         pixels * kBytesOfPixel, "output image memory", 2 * image},
+        {"output", scanned, image, 0, "", 0}};
+}
+
+/// Of the two that draw, each frame.
+double drawing_cycles(const std::vector<MachineStage>& stages) {
+    return std::max(stages[MachineSchedule::controller].cycles, stages[MachineSchedule::pixels].cycles);
+}
+
+/// What stages wait once the buffers have filled: those before the slowest one for room behind them, those after it for what
+/// it makes. Of the two that draw, the faster one waits for the other, too: the queue between them is full, or empty.
+void set_waits(std::vector<MachineStage>& stages) {
+    using S = MachineSchedule;
+    const double drawing = drawing_cycles(stages);
+    double period = 0;
+    for (const MachineStage& stage : stages) period = std::max(period, stage.cycles);
+    bool after = false;
+    for (std::size_t s = 0; s < stages.size(); ++s) {
+        const bool draws = s == S::controller || s == S::pixels;
+        const double busy = draws ? drawing : stages[s].cycles;
+        after = after || busy == period;
+        (after ? stages[s].starved : stages[s].blocked) = period - busy;
+    }
+    stages[S::controller].blocked += drawing - stages[S::controller].cycles;
+    stages[S::pixels].starved += drawing - stages[S::pixels].cycles;
+}
+
+/// Follows frames through the stages.
+class FrameRun {
+  public:
+    explicit FrameRun(MachineSchedule& schedule) : m_schedule(schedule) {
+        for (std::size_t f = 0; f < MachineSchedule::kFrames; ++f) add_frame(f);
+    }
+
+  private:
+    using S = MachineSchedule;
+
+    /// When a stage is done with a frame; at the start it is with those before the first.
+    double done(S::Place stage, std::size_t frame, std::size_t before = 0) const {
+        return frame < before ? 0 : m_schedule.frames[frame - before][stage].end;
+    }
+
+    /// A stage begins when it is done with the frame before, what it reads is there, and the half of the buffer that it
+    /// fills is free again, which has held the frame before the last.
+    void add_frame(std::size_t f) {
+        m_schedule.frames.emplace_back(std::size_t{S::kStages});
+        visit(S::host, f, 0, done(S::processors, f, 2));
+        visit(S::processors, f, done(S::host, f), done(S::pixels, f, 2));
+        for (const S::Place drawing : {S::controller, S::pixels}) {
+            visit(drawing, f, done(S::processors, f), done(S::output, f, 2));
+            m_schedule.frames[f][drawing].end =
+                m_schedule.frames[f][drawing].begin + drawing_cycles(m_schedule.stages);
+        }
+        visit(S::output, f, done(S::pixels, f), 0);
+    }
+    void visit(S::Place place, std::size_t f, double input, double room) {
+        const double ready = done(place, f, 1), fed = std::max(ready, input), begin = std::max(fed, room);
+        m_schedule.frames[f][place] = {ready, fed, begin, begin + m_schedule.stages[place].cycles};
+    }
+
+    MachineSchedule& m_schedule;
+};
+
+/// With so many digits behind the point, whatever the locale.
+std::string rounded(double value, int digits) {
+    char text[64];
+    return {text, std::to_chars(text, text + sizeof text, value, std::chars_format::fixed, digits).ptr};
+}
+
+/// The timeline of the first frames: a row for each stage, and below it one for each half of the buffer that it fills.
+class Timeline {
+  public:
+    explicit Timeline(const MachineSchedule& schedule)
+        : m_schedule(schedule), m_end(schedule.frames[kShown - 1][MachineSchedule::output].end) {}
+
+    std::string draw() {
+        add_keys();
+        for (std::size_t s = 0; s < m_schedule.stages.size(); ++s) {
+            add_stage(s);
+            if (!m_schedule.stages[s].buffer.empty()) add_buffer(s);
+        }
+        add_axis();
+        add_text(8, m_y + 56,
+                 rounded(m_schedule.frame_ms(), 3) + " ms a frame, " +
+                     rounded(1000 / m_schedule.frame_ms(), 2) + " frames a second; the bottleneck is the " +
+                     m_schedule.bottleneck().name);
+        return "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"" + std::to_string(kLeft + kWidth + 30) +
+               "\" height=\"" + rounded(m_y + 70, 0) +
+               "\" font-family=\"sans-serif\" font-size=\"12\">\n<defs><pattern id=\"blocked\" width=\"6\" "
+               "height=\"6\" patternUnits=\"userSpaceOnUse\" patternTransform=\"rotate(45)\">"
+               "<path d=\"M0 0V6\" stroke=\"#888\" stroke-width=\"3\"/></pattern></defs>\n"
+               "<rect width=\"100%\" height=\"100%\" fill=\"white\"/>\n" +
+               m_text + "</svg>\n";
+    }
+
+  private:
+    static constexpr std::size_t kShown = 5;
+    static constexpr int kLeft = 190, kWidth = 720;
+    static constexpr const char* kColors[kShown] = {"#4477aa", "#ee6677", "#228833", "#ccbb44", "#aa3377"};
+    static constexpr const char *kStarved = "#dddddd", *kBlocked = "url(#blocked)";
+
+    double across(double cycles) const { return kLeft + cycles / m_end * kWidth; }
+
+    void add_text(double x, double y, const std::string& what, const char* more = "") {
+        m_text +=
+            "<text x=\"" + rounded(x, 1) + "\" y=\"" + rounded(y, 1) + "\"" + more + ">" + what + "</text>\n";
+    }
+    void add_rect(double x, double width, double y, double height, const std::string& fill,
+                  const std::string& title) {
+        m_text += "<rect x=\"" + rounded(x, 2) + "\" y=\"" + rounded(y, 1) + "\" width=\"" +
+                  rounded(width, 2) + "\" height=\"" + rounded(height, 1) + "\" fill=\"" + fill +
+                  "\"><title>" + title + "</title></rect>\n";
+    }
+    /// From one time to another; nothing where they are the same.
+    void add_bar(double from, double to, double y, double height, const std::string& fill,
+                 const std::string& what) {
+        if (to > from)
+            add_rect(across(from), across(to) - across(from), y, height, fill,
+                     what + ", " + rounded(m_schedule.ms(from), 3) + " to " + rounded(m_schedule.ms(to), 3) +
+                         " ms");
+    }
+    static std::string frame_text(std::size_t f) { return "frame " + std::to_string(f + 1); }
+
+    void add_keys() {
+        double x = kLeft;
+        const auto key = [&](const std::string& fill, const std::string& what, double width) {
+            add_rect(x, 14, 10, 14, fill, what);
+            add_text(x + 20, 22, what);
+            x += width;
+        };
+        for (std::size_t f = 0; f < kShown; ++f) key(kColors[f], frame_text(f), 85);
+        key(kStarved, "waits for input", 130);
+        key(kBlocked, "waits for room", 130);
+    }
+
+    void add_stage(std::size_t s) {
+        const MachineStage& stage = m_schedule.stages[s];
+        add_text(8, m_y + 15, stage.name);
+        for (std::size_t f = 0; f < kShown; ++f) {
+            const MachineVisit& visit = m_schedule.frames[f][s];
+            const double worked = visit.begin + stage.cycles;
+            add_bar(visit.ready, visit.fed, m_y, 20, kStarved, stage.name + ": waits for input");
+            add_bar(visit.fed, visit.begin, m_y, 20, kBlocked, stage.name + ": waits for room");
+            add_bar(visit.begin, worked, m_y, 20, kColors[f], stage.name + ": " + frame_text(f));
+            const bool full = s == MachineSchedule::controller;
+            add_bar(worked, visit.end, m_y, 20, full ? kBlocked : kStarved,
+                    stage.name + (full ? ": waits for room, in all" : ": waits for input, in all"));
+        }
+        m_y += 26;
+    }
+
+    /// A half holds a frame from when it is begun until the next stage is done with it.
+    void add_buffer(std::size_t s) {
+        add_text(20, m_y + 12, m_schedule.stages[s].buffer, " fill=\"#555555\" font-size=\"11\"");
+        for (std::size_t f = 0; f < kShown; ++f)
+            add_bar(m_schedule.frames[f][s].begin, m_schedule.frames[f][s + 1].end,
+                    m_y + (f % 2 == 0 ? 0 : 9), 7, kColors[f],
+                    m_schedule.stages[s].buffer + ": " + frame_text(f));
+        m_y += 24;
+    }
+
+    /// Milliseconds by 1, 2 or 5 times a power of ten, ten ticks at most.
+    void add_axis() {
+        const double whole = m_schedule.ms(m_end);
+        double step = std::pow(10, std::floor(std::log10(whole / 10)));
+        for (const double by : {2.0, 2.5, 2.0})
+            if (whole / step > 10) step *= by;
+        const double y = m_y + 4;
+        m_text += "<path d=\"M" + std::to_string(kLeft) + " " + rounded(y, 1) + "H" +
+                  std::to_string(kLeft + kWidth) + "\" stroke=\"black\"/>\n";
+        for (int i = 0; i * step <= whole; ++i) {
+            const double x = kLeft + i * step / whole * kWidth;
+            m_text += "<path d=\"M" + rounded(x, 1) + " 30V" + rounded(y + 5, 1) +
+                      "\" stroke=\"black\" stroke-opacity=\".3\"/>\n";
+            add_text(x, y + 18, shortest(static_cast<float>(i * step)), " text-anchor=\"middle\"");
+        }
+        add_text(kLeft + kWidth / 2.0, y + 34, "time since the start, ms", " text-anchor=\"middle\"");
+    }
+
+    const MachineSchedule& m_schedule;
+    double m_end, m_y = 38;
+    std::string m_text;
+};
+
+}  // namespace
+
+const MachineStage& MachineSchedule::bottleneck() const {
+    return *std::max_element(stages.begin(), stages.end(), [](const MachineStage& a, const MachineStage& b) {
+        return a.cycles < b.cycles;
+    });
+}
+
+MachineSchedule schedule_of(const BlockMachine& machine, const BlockCounts& counts, const Size& screen) {
+    MachineSchedule schedule;
+    schedule.counts = counts;
+    schedule.clock_mhz = machine.clock_mhz;
+    schedule.stages = stages_of(machine, counts, screen);
+    set_waits(schedule.stages);
+    FrameRun{schedule};
+    return schedule;
+}
+
+std::string schedule_csv(const MachineSchedule& schedule) {
+    std::string text =
+        "stage,cycles,ms,utilisation,starved_ms,blocked_ms,bytes_read,bytes_written,buffer_bytes\n";
+    for (const MachineStage& stage : schedule.stages) {
+        text += stage.name;
+        for (const double value : {stage.cycles, schedule.ms(stage.cycles), schedule.utilisation(stage),
+                                   schedule.ms(stage.starved), schedule.ms(stage.blocked), stage.bytes_read,
+                                   stage.bytes_written, stage.buffer_bytes})
+            text += "," + shortest(value);
+        text += "\n";
+    }
+    return text;
+}
+
+std::string schedule_svg(const MachineSchedule& schedule) {
+    return Timeline(schedule).draw();
+}
+
+}  // namespace anamorph

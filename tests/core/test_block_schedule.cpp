@@ -1,0 +1,159 @@
+// SPDX-License-Identifier: Apache-2.0
+// How long the machine of 1987 takes: counts known by hand, and what holds for every schedule.
+#include "anamorph/machine/block_schedule.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <random>
+#include <string>
+
+namespace anamorph {
+namespace {
+
+using S = MachineSchedule;
+
+/// A plane at rest on a screen of n x n, as large as its picture, in blocks of d and segments as large: each is visited once.
+MachineSchedule plane_at_rest(int d, int n) {
+    BlockMachine machine;
+    machine.block = machine.segment = d;
+    const std::int64_t blocks = std::int64_t{n / d} * (n / d);
+    return schedule_of(machine, {blocks, blocks, std::int64_t{n} * n, 0}, {n, n});
+}
+
+/// The default: 512 x 512 in blocks of 8 in 33 ms; smaller blocks bind the processors, larger pictures the pixel processor.
+TEST(BlockSchedule, IsThatOfTheCounts) {
+    const MachineSchedule standard = plane_at_rest(8, 512);
+    EXPECT_LE(standard.frame_ms(), 33);
+    // 4096 blocks on two processors, 41 products and two divisions of 16 cycles each.
+    EXPECT_EQ(standard.stages[S::processors].cycles, 2048 * (41 + 32));
+    EXPECT_EQ(standard.stages[S::controller].cycles, 4096 * (8 + 4));
+    EXPECT_EQ(standard.stages[S::pixels].cycles, 512 * 512);
+    EXPECT_EQ(standard.bottleneck().name, "pixel processor");
+    const MachineSchedule small = plane_at_rest(4, 512), large = plane_at_rest(8, 1024);
+    EXPECT_EQ(small.bottleneck().name, "micro-coded processors");
+    EXPECT_GT(small.frame_ms(), 33);
+    EXPECT_EQ(large.bottleneck().name, "pixel processor");
+    EXPECT_NEAR(large.frame_ms(), 1024 * 1024 / 1e4, 1e-9);
+}
+
+/// Where the pixel processor is the slowest, all before it wait for room; where the processors are, all after them for input.
+TEST(BlockSchedule, SaysWhatStagesWaitFor) {
+    const MachineSchedule pixels = plane_at_rest(8, 512);
+    EXPECT_EQ(pixels.stages[S::host].blocked, 512 * 512 - 20000);
+    EXPECT_EQ(pixels.stages[S::processors].blocked, 512 * 512 - 2048 * 73);
+    EXPECT_EQ(pixels.stages[S::controller].blocked, 512 * 512 - 4096 * 12);
+    const MachineSchedule processors = plane_at_rest(4, 512);
+    const double period = 8192 * 73;
+    EXPECT_EQ(processors.stages[S::host].blocked, period - 20000);
+    EXPECT_EQ(processors.stages[S::pixels].starved, period - 512 * 512);
+    // The controller waits for the next frame's blocks, and within a frame for the pixel processor.
+    EXPECT_EQ(processors.stages[S::controller].starved, period - 512 * 512);
+    EXPECT_EQ(processors.stages[S::controller].blocked, 512 * 512 - 16384 * 12);
+    EXPECT_EQ(processors.stages[S::output].starved, period - 512 * 512);
+}
+
+TEST(BlockSchedule, WhatIsReadIsWhatIsVisited) {
+    BlockMachine machine;
+    const BlockCounts counts{1000, 5000, 70000, 0};
+    const MachineSchedule s = schedule_of(machine, counts, {300, 200});
+    EXPECT_EQ(s.stages[S::processors].bytes_written, 1000 * 24);
+    EXPECT_EQ(s.stages[S::controller].bytes_read, s.stages[S::processors].bytes_written);
+    EXPECT_EQ(s.stages[S::processors].buffer_bytes, 2 * s.stages[S::processors].bytes_written);
+    // Four texels for a pixel, of three bytes.
+    EXPECT_EQ(s.stages[S::pixels].bytes_read, 70000 * 12);
+    EXPECT_EQ(s.stages[S::pixels].bytes_written, 70000 * 3);
+    EXPECT_EQ(s.stages[S::pixels].buffer_bytes, 2 * 300 * 200 * 3);
+    EXPECT_EQ(s.stages[S::output].bytes_read, 300 * 200 * 3);
+}
+
+TEST(BlockSchedule, NoStageWorksMoreThanThereIsTime) {
+    constexpr unsigned kSeed = 29;
+    SCOPED_TRACE(testing::Message() << "seed " << kSeed);
+    std::mt19937 random(kSeed);
+    const auto any = [&](int least, int most) {
+        return std::uniform_int_distribution<int>(least, most)(random);
+    };
+    for (int i = 0; i < 2000; ++i) {
+        BlockMachine machine;
+        machine.processors = any(1, 5);
+        machine.multipliers = any(1, 60);
+        machine.division_cycles = any(1, 40);
+        machine.host_cycles = any(0, 200000);
+        machine.pixel_units = any(1, 5);
+        machine.segment_cycles = any(1, 60);
+        const BlockCounts counts{any(0, 9000), any(0, 20000), any(0, 600000), 0};
+        const Size screen{any(1, 700), any(1, 700)};
+        const MachineSchedule s = schedule_of(machine, counts, screen);
+        const double period = s.bottleneck().cycles;
+        for (const MachineStage& stage : s.stages) {
+            ASSERT_LE(s.utilisation(stage), 1);
+            ASSERT_GE(std::min({stage.cycles, stage.starved, stage.blocked}), 0);
+            ASSERT_EQ(stage.cycles + stage.starved + stage.blocked, period) << stage.name;
+        }
+        for (std::size_t f = 0; f < S::kFrames; ++f)
+            for (std::size_t k = 0; k < S::kStages; ++k) {
+                const MachineVisit& visit = s.frames[f][k];
+                ASSERT_LE(visit.ready, visit.fed);
+                ASSERT_LE(visit.fed, visit.begin);
+                ASSERT_LE(visit.begin + s.stages[k].cycles, visit.end);
+                // One frame at a time.
+                if (f > 0) {
+                    ASSERT_GE(visit.begin, s.frames[f - 1][k].end);
+                }
+                // After the buffer was filled, and not into a half that is still being read.
+                if (k > 0 && k != S::pixels) {
+                    ASSERT_GE(visit.begin, s.frames[f][k - 1].end);
+                }
+                if (f > 1 && k + 1 < S::kStages && k != S::controller) {
+                    ASSERT_GE(visit.begin, s.frames[f - 2][k + 1].end);
+                }
+            }
+    }
+}
+
+/// Frames that are followed one by one come to wait what the table says, and to leave the machine once a period.
+TEST(BlockSchedule, FramesComeToTheTable) {
+    for (const auto& [host, blocks, segments, pixels] : {std::array{1000, 100, 200, 50000},
+                                                         {200000, 100, 200, 50000},
+                                                         {1000, 9000, 200, 50000},
+                                                         {1000, 100, 60000, 50000},
+                                                         {1000, 2000, 4000, 20000}}) {
+        BlockMachine machine;
+        machine.host_cycles = host;
+        const MachineSchedule s = schedule_of(machine, {blocks, segments, pixels, 0}, {150, 100});
+        const std::size_t last = S::kFrames - 1;
+        const double period = s.bottleneck().cycles;
+        for (std::size_t k = 0; k < S::kStages; ++k) {
+            const MachineVisit& visit = s.frames[last][k];
+            const double within = visit.end - visit.begin - s.stages[k].cycles;
+            EXPECT_EQ(visit.end - s.frames[last - 1][k].end, period) << s.stages[k].name;
+            EXPECT_EQ(visit.fed - visit.ready + (k == S::pixels ? within : 0), s.stages[k].starved)
+                << s.stages[k].name << " " << period;
+            EXPECT_EQ(visit.begin - visit.fed + (k == S::controller ? within : 0), s.stages[k].blocked)
+                << s.stages[k].name << " " << period;
+        }
+    }
+}
+
+TEST(BlockSchedule, IsATableAndATimeline) {
+    const MachineSchedule standard = plane_at_rest(8, 512);
+    const std::string csv = schedule_csv(standard);
+    EXPECT_TRUE(csv.starts_with(
+        "stage,cycles,ms,utilisation,starved_ms,blocked_ms,bytes_read,bytes_written,buffer_bytes\n"));
+    EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 6);
+    EXPECT_NE(csv.find("\npixel processor,262144,26.2144,1,0,0,3145728,786432,1572864\n"), std::string::npos)
+        << csv;
+    const std::string svg = schedule_svg(standard);
+    EXPECT_NE(svg.find("26.214 ms a frame, 38.15 frames a second; the bottleneck is the pixel processor"),
+              std::string::npos);
+    EXPECT_NE(svg.find("time since the start, ms"), std::string::npos);
+    // Five frames: 2 and 14.9504 ms, then 26.2144 ms to draw each of them, and the last one is put out.
+    EXPECT_NE(svg.find("output: frame 5, 148.022 to 174.237 ms"), std::string::npos) << svg;
+    EXPECT_NE(svg.find(">160</text>"), std::string::npos);
+    EXPECT_TRUE(svg.ends_with("</svg>\n"));
+}
+
+}  // namespace
+}  // namespace anamorph
