@@ -130,6 +130,7 @@ class Machine(unittest.TestCase):
 
     def test_what_is_wrong_is_one_line(self):
         good = self.write("good.ps", b"ps_2_0\ndcl t0\ndcl_2d s0\ntexld r0, t0, s0\nmov oC0, r0\n")
+        defines = self.write("defines.ps", b"ps_2_0\ndef c1, 0, 0, 0, 0\nmov oC0, c1\n")
         bad = self.write("bad.ps", b"ps_2_0\nmov oC0, c0\nfrob r0\n")
         wide = self.write("wide.pfm", picture([[(0, 0, 0)] * 2]))
         short = self.write("short.pfm", picture([[(0, 0, 0)]])[:-1])
@@ -147,6 +148,7 @@ class Machine(unittest.TestCase):
                 (["run", good, "--size", "0"], "--size=0: must be N or NxM"),
                 (["run", good, "--size", "nan"], "--size=nan: must be N or NxM"),
                 (["run", good, "--constant", "c0=1,2"], "must have four numbers"),
+                (["run", defines, "--constant", "c1=1,2,3,4"], "--constant=c1=1,2,3,4: must be none that the program defines"),
                 (["run", good, "--arithmetic", "V8U8"], "--arithmetic=V8U8: must be one of float16"),
                 (["schedule", "--surface", "cube"], "--surface=cube: must be one of plane, "),
                 (["schedule", "--machine", "oka"], "machine=oka: must be oka-1987, "),

@@ -7,14 +7,14 @@ examples="$ANAMORPH_SOURCE_DIR/examples"
 rm -f ./*.jpg ./*.png
 "$PYTHON" "$examples/make_panorama.py" panorama.exr 512
 "$PYTHON" "$examples/make_faces.py" round.png long.png faces.csv
-cp "$examples/bulge.json" "$examples/figures/walker.nudes" "$examples/figures/benzene.cif" .
+cp "$examples/bulge.json" "$examples/swirl.ps" "$examples/figures/walker.nudes" "$examples/figures/benzene.cif" .
 lens="lens=brown:k1=-0.21,k2=0.05&fov=84"
 oiiotool "panorama.exr.pano?to=rectilinear&size=2048x1556&$lens" -o plate.exr
 oiiotool "panorama.exr.pano?to=rectilinear&size=600x400&pitch=-3&$lens" -o photo.jpg
 cp plate.exr taken.exr
 
 grep '^    oiiotool ' "$readme" >one_liners.sh
-[ "$(wc -l <one_liners.sh)" -eq 23 ]
+[ "$(wc -l <one_liners.sh)" -eq 24 ]
 bash -ex one_liners.sh
 for picture in view.jpg:480x360 planet.jpg:400x400 fisheye.jpg:400x400 cross.jpg:640x480 error.jpg:480x360 \
     warp.jpg:480x480 morph.jpg:480x480 lines.jpg:480x480 turn.jpg:480x480; do
@@ -29,6 +29,7 @@ iinfo benzene.png | tr -d ' ' | grep ":1000x1000,4channel"
 [ -s both.jpg ]
 iinfo hardware.exr | tr -d ' ' | grep ":480x360,"
 [ -s shaded.png ]
+[ -s swirled.png ]
 [ -s straight.jpg ]
 # The distortion taken off and put on again, but for what is filtered twice; by way of a larger picture.
 iinfo flat.exr | grep -v 2048

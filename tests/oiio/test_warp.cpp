@@ -3,8 +3,10 @@
 #include <OpenImageIO/imagebufalgo.h>
 #include <OpenImageIO/imagecache.h>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <tuple>
 
 #include "anamorph/oiio_ops.h"
 #include "host.h"
@@ -280,12 +282,45 @@ TEST_F(Warp, RecipesOfAllKindsNest) {
     EXPECT_EQ(read_floats("n.morph").size(), 8u * 8 * 3);
 }
 
+/// A negative of the mean of a pixel and the one above it, by the stock program, in every type and number of channels.
+TEST_F(Warp, ProgramsOfTheUsersRunInOiiotool) {
+    write_text("negative.ps",
+               "ps_2_0\ndef c0, 1, 1, 1, 1\ndef c1, 0.5, 0, 0, 0\ndcl t0.xy\ndcl_2d s0\n"
+               "mov r1.x, c1.y\nmov r1.y, -c8.w         ; a pixel up\nadd r1.xy, t0, r1\n"
+               "texld r2, t0, s0\ntexld r3, r1, s0\nadd r2, r2, r3\nmad r2, -r2, c1.x, c0\nmov oC0, r2\n");
+    for (const auto& [name, type, channels] : {std::tuple{"grey.tif", TypeDesc::UINT8, 1},
+                                               {"rgb.exr", TypeDesc::FLOAT, 3},
+                                               {"rgba.tif", TypeDesc::UINT16, 4}}) {
+        SCOPED_TRACE(name);
+        write_panorama(name, 96, 64, type, channels);
+        const Ran made =
+            run("oiiotool '" + std::string(name) +
+                ".warp?scheme=hardware&wrap=clamp&filter=bilinear&program=negative.ps' -o out.exr");
+        ASSERT_EQ(made.status, 0) << made.text;
+        const ImageBuf source = read(name), out = read("out.exr");
+        ASSERT_EQ(out.nchannels(), channels);
+        // A level of the source's type, and two units of float24 of numbers up to the picture's.
+        const double near = type == TypeDesc::UINT8 ? 0.004 : 0.001;
+        for (int y = 0; y < 64; ++y)
+            for (int x = 0; x < 96; ++x)
+                for (int c = 0; c < channels; ++c) {
+                    const double mean = 0.5 * (source.getchannel(x, y, 0, c) +
+                                               source.getchannel(x, std::max(y - 1, 0), 0, c));
+                    const double wanted = type == TypeDesc::FLOAT ? 1 - mean : std::clamp(1 - mean, 0.0, 1.0);
+                    ASSERT_NEAR(out.getchannel(x, y, 0, c), wanted, near) << x << " " << y;
+                }
+    }
+}
+
 TEST_F(Warp, WhatFailsFailsWithStatus1AndALine) {
     write_text("short.json", R"({"columns": 2, "rows": 1, "vertices": [[0, 0], [1, 1]]})");
     write_text("cut.json", kMesh.substr(0, kMesh.size() / 2));
     write_text("nan.json", R"({"columns": 1, "rows": 1, "vertices": [[0, 0], [1, 1], [NaN, 2], [3, 3]]})");
     write_text("text.json", R"({"columns": 1, "rows": 1, "vertices": [[0, 0], ["a", 1], [1, 2], [3, 3]]})");
     write_text("empty.json", "");
+    write_text("twice.json", R"({"columns": 1, "rows": 1, "rows": 2})");
+    write_text("bad.ps", "ps_2_0\n; a comment\nfrob r0\n");
+    write_text("good.ps", "ps_2_0\nmov oC0, c0\n");
     write_text("bad.csv", "x,y,u,v\n1,2,3\n");
     write_text("huge.json", "{");
     fs::resize_file("huge.json", 100 << 20);
@@ -296,6 +331,11 @@ TEST_F(Warp, WhatFailsFailsWithStatus1AndALine) {
         {"city.exr.warp", "mesh is not given"},
         {"city.exr.warp?mesh=none.json", "none.json\" does not exist"},
         {"city.exr.warp?mesh=none.exr", "none.exr"},
+        {"city.exr.warp?mesh=twice.json", "twice.json: \"rows\" is given twice"},
+        {"city.exr.warp?scheme=hardware&program=none.ps", "none.ps\" does not exist"},
+        {"city.exr.warp?scheme=hardware&program=bad.ps", "bad.ps: line 3: \"frob\": no such instruction"},
+        {"city.exr.warp?scheme=hardware&program=good.ps&output=error", "output=error: must be color"},
+        {"city.exr.warp?scheme=exact&mesh=grid.json&program=good.ps", "must be given with scheme=hardware"},
         {"city.exr.warp?points=none.csv", "none.csv\" does not exist"},
         {"city.exr.warp?mesh=grid.json&points=points.csv", "must not be given together with mesh"},
         {"city.exr.warp?mesh=grid.json&step=2", "step=2: must be given with ST-maps only"},

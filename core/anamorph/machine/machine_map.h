@@ -43,10 +43,12 @@ class MachineMap : public BlockMap {
 
     void plan(const Box& box, int piece, Blocks& blocks) const override;
 
+    /// Where the source is read, in its pixels.
+    Point<double> source_point(const UnitCoordinates& coordinates) const;
+
   private:
     struct Region;
 
-    Point<double> source_point(const UnitCoordinates& coordinates) const;
     double distance(const Point<double>& used, const Point<double>& exact) const;
     Block measured(const Box& box, int piece, std::int64_t& saturated) const;
 

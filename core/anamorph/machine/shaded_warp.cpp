@@ -36,6 +36,13 @@ texld r0, r5, s0
 mov oC0, r0
 )";
 
+bool reads_picture_once(const ShaderProgram& program) {
+    return std::count_if(program.instructions.begin(), program.instructions.end(),
+                         [](const ShaderInstruction& i) {
+                             return i.opcode == ShaderOpcode::texld && i.sources[1].number == 0;
+                         }) == 1;
+}
+
 namespace {
 
 /// The products four by four; texels stand from edge to edge of the cell.
@@ -65,51 +72,84 @@ const Mesh& checked(const Mesh& mesh, const ShaderUnit& unit) {
 }  // namespace
 
 ShadedWarp::ShadedWarp(const Mesh& mesh, const ShaderUnit& unit)
-    : ShadedWarp(std::make_shared<MeshPlan>(checked(mesh, unit), WarpScheme::exact, 0), unit) {}
+    : ShadedWarp(mesh, unit, assemble_shader(kHermiteShader, "hermite", kWarpSlots)) {}
 
-ShadedWarp::ShadedWarp(std::shared_ptr<const MeshPlan> plan, const ShaderUnit& unit)
+ShadedWarp::ShadedWarp(const Mesh& mesh, const ShaderUnit& unit, ShaderProgram program)
+    : ShadedWarp(std::make_shared<MeshPlan>(checked(mesh, unit), WarpScheme::exact, 0), unit,
+                 std::move(program)) {}
+
+ShadedWarp::ShadedWarp(std::shared_ptr<const MeshPlan> plan, const ShaderUnit& unit, ShaderProgram program)
     : MachineMap(plan, {{0, 0, plan->width(), plan->height()}}, plan->mesh().to(), HUGE_VAL,
                  unit.address_bits),
       m_plan(std::move(plan)),
       m_unit(unit),
-      m_program(assemble_shader(kHermiteShader, "hermite")),
+      m_program(std::move(program)),
       m_products(product_textures(unit)) {}
 
-UnitCoordinates ShadedWarp::coordinates(int x, int y, int) const {
-    return with_format(m_unit.arithmetic,
-                       [&](auto number) { return run<decltype(number)>(x + 0.5, y + 0.5); });
-}
-
-/// Draws one pixel, and returns where the program reads the picture.
+/// What kWarpSlots says, at a point.
 template <class T>
-UnitCoordinates ShadedWarp::run(double x, double y) const {
+ShaderInputs<T> ShadedWarp::inputs(double x, double y) const {
     const Mesh& mesh = m_plan->mesh();
     const Patch patch = mesh.patch(mesh.cell_at(x, y));
     const ResidualPatch residual(patch);
     const double s = (x - patch.x0) / (patch.x1 - patch.x0), t = (y - patch.y0) / (patch.y1 - patch.y0);
     const ResidualPatch::Triangle& plane = residual.triangles[s + t <= 1 ? 0 : 1];
     const double width = mesh.to().width, height = mesh.to().height, last = m_unit.table_size - 1;
-    ShaderInputs<T> inputs(m_program);
-    inputs.coordinates[0] = {
+    ShaderInputs<T> given(m_program);
+    given.coordinates[0] = {
         T((x * mesh.scale().x + plane.origin.x + plane.right.x * s + plane.down.x * t) / width),
-        T((y * mesh.scale().y + plane.origin.y + plane.right.y * s + plane.down.y * t) / height), T(), T()};
-    inputs.coordinates[1] = {T((s * last + 0.5) / (last + 1)), T((t * last + 0.5) / (last + 1)), T(), T()};
-    for (std::size_t k = 0; k < 16; ++k) {
-        inputs.constants[k / 4][k % 4] = T(double{plane.x[k]} / width);
-        inputs.constants[4 + k / 4][k % 4] = T(double{plane.y[k]} / height);
-    }
-    UnitCoordinates found{};
-    ShaderMachine<T> machine(m_program, inputs);
-    machine.run([&](int number, const T& u, const T& v) {
-        if (number == 0) {
-            found = {{u.value, v.value}, u.beyond || v.beyond};
-            return ShaderVector<T>{};
+        T((y * mesh.scale().y + plane.origin.y + plane.right.y * s + plane.down.y * t) / height), T(0.0),
+        T(1.0)};
+    given.coordinates[1] = {T((s * last + 0.5) / (last + 1)), T((t * last + 0.5) / (last + 1)), T(0.0),
+                            T(1.0)};
+    for (std::size_t k = 0; k < 4; ++k) {
+        std::array<double, 4> of_u{}, of_v{};
+        for (std::size_t i = 0; i < 4; ++i) {
+            of_u[i] = double{plane.x[4 * k + i]} / width;
+            of_v[i] = double{plane.y[4 * k + i]} / height;
         }
+        given.give(k, of_u);
+        given.give(4 + k, of_v);
+    }
+    const double across = mesh.from().width, down = mesh.from().height;
+    given.give(8, {width, height, 1 / width, 1 / height});
+    given.give(9, {across, down, 1 / across, 1 / down});
+    return given;
+}
+
+/// Runs the program for a pixel. read(u, v) -> ShaderVector<T> reads the picture.
+template <class T, class Read>
+ShaderVector<T> ShadedWarp::run(int x, int y, const Read& read) const {
+    const ShaderInputs<T> given = inputs<T>(x + 0.5, y + 0.5);
+    return ShaderMachine<T>(m_program, given).run([&](int number, const T& u, const T& v) {
+        if (number == 0) return read(u, v);
         const double size = m_unit.table_size;
         return m_products[static_cast<std::size_t>(number - 1)].template read<T>(u.value * size,
                                                                                  v.value * size);
     });
-    return found;
+}
+
+UnitCoordinates ShadedWarp::coordinates(int x, int y, int) const {
+    return with_format(m_unit.arithmetic, [&](auto number) {
+        using T = decltype(number);
+        UnitCoordinates found{};
+        run<T>(x, y, [&](const T& u, const T& v) {
+            found = {{u.value, v.value}, u.beyond || v.beyond};
+            return ShaderVector<T>{};
+        });
+        return found;
+    });
+}
+
+std::array<double, 4> ShadedWarp::color(int x, int y, const ReadPicture& read) const {
+    return with_format(m_unit.arithmetic, [&](auto number) {
+        using T = decltype(number);
+        const ShaderVector<T> made = run<T>(x, y, [&](const T& u, const T& v) {
+            const std::array<double, 4> at = read(source_point({{u.value, v.value}, false}));
+            return ShaderVector<T>{T(at[0]), T(at[1]), T(at[2]), T(at[3])};
+        });
+        return std::array<double, 4>{made[0].value, made[1].value, made[2].value, made[3].value};
+    });
 }
 
 double ShadedWarp::rounding(const Box& box, int) const {

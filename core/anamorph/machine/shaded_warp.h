@@ -3,13 +3,15 @@
 // coordinates, which a program perturbs by thirteen products of Hermite basis functions, read from textures.
 #pragma once
 
+#include <array>
+#include <functional>
 #include <memory>
 #include <vector>
 
 #include "anamorph/approx/mesh_plan.h"
 #include "anamorph/machine/machine_map.h"
 #include "anamorph/machine/machine_texture.h"
-#include "anamorph/machine/shader_program.h"
+#include "anamorph/machine/shader_run.h"
 #include "anamorph/number/number_format.h"
 #include "anamorph/number_row.h"
 
@@ -30,8 +32,16 @@ struct ShaderUnit {
     int texture_side = static_cast<int>(kShaderTextureRow.standard);  ///< larger sources do not fit
 };
 
-/// The program. t0 are the linear texture coordinates, t1 the cell's s and t, s0 is the picture, s1 to s4 are the products,
-/// c0 to c3 and c4 to c7 their factors for u and for v (eq. 5.5 and 5.7). The picture is read last.
+/// What a program of a warp finds, at a pixel's centre: t0 = (u, v, 0, 1), the linear texture coordinates; t1 = (s, t, 0, 1),
+/// where in the tables of products the cell's s and t are; s0, the picture; s1 to s4, the products; c0 to c3 and c4 to c7,
+/// their factors for u and for v (eq. 5.5 and 5.7); c8 and c9 = (width, height, 1 / width, 1 / height) of the source and of
+/// the picture that is drawn. All other constants are 0 or the program's own, which go before these.
+inline constexpr ShaderSlots kWarpSlots{5, 2, 0};
+
+/// Does a program of a warp read the picture once? Only then is it a map, to where it does.
+bool reads_picture_once(const ShaderProgram& program);
+
+/// Our program. The picture is read last.
 extern const char* const kHermiteShader;
 
 /// A mesh warp as a pixel-shader unit draws it.
@@ -39,18 +49,26 @@ class ShadedWarp final : public MachineMap {
   public:
     /// Throws Error naming `machine` where the source is larger than the unit's textures.
     ShadedWarp(const Mesh& mesh, const ShaderUnit& unit);
+    /// The same by another program, which was assembled for kWarpSlots.
+    ShadedWarp(const Mesh& mesh, const ShaderUnit& unit, ShaderProgram program);
 
     /// The exact map.
     const MeshPlan& exact_plan() const { return *m_plan; }
+    /// The picture's four components at a point of the source, in its pixels.
+    using ReadPicture = std::function<std::array<double, 4>(const Point<double>& at)>;
+    /// What the program makes of the pixel whose left upper corner is (x, y): oC0.
+    std::array<double, 4> color(int x, int y, const ReadPicture& read) const;
 
   protected:
     UnitCoordinates coordinates(int x, int y, int piece) const override;
     double rounding(const Box& box, int piece) const override;
 
   private:
-    ShadedWarp(std::shared_ptr<const MeshPlan> plan, const ShaderUnit& unit);
+    ShadedWarp(std::shared_ptr<const MeshPlan> plan, const ShaderUnit& unit, ShaderProgram program);
     template <class T>
-    UnitCoordinates run(double x, double y) const;
+    ShaderInputs<T> inputs(double x, double y) const;
+    template <class T, class Read>
+    ShaderVector<T> run(int x, int y, const Read& read) const;
 
     std::shared_ptr<const MeshPlan> m_plan;
     ShaderUnit m_unit;

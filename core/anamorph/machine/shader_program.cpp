@@ -147,6 +147,8 @@ std::uint8_t components_read(const ShaderInstruction& i) {
 /// Reads a text line by line.
 class Assembler {
   public:
+    explicit Assembler(const ShaderSlots& slots) : m_slots(slots) {}
+
     void line(std::string_view text) {
         text = text_file::trimmed(text.substr(0, std::min(text.find(';'), text.find("//"))));
         if (text.empty()) return;
@@ -184,6 +186,14 @@ class Assembler {
         if (!m_program.instructions.empty()) refuse(word, "must stand before the first instruction");
     }
 
+    /// `count`: of the registers of its kind that whoever runs the program fills.
+    static void expect_given(const RegisterText& r, int count, std::string_view word) {
+        if (r.number < count) return;
+        refuse(word, count == 0 ? "is not given to this program"
+                                : "is not given to this program: must be " + register_name(r.bank, 0) +
+                                      " to " + register_name(r.bank, count - 1));
+    }
+
     void declare(std::string_view word, const std::vector<std::string_view>& operands) {
         expect_ahead(word);
         expect(operands, 1, word);
@@ -191,6 +201,7 @@ class Assembler {
         if (word == "dcl_2d") {
             if (r.bank != ShaderBank::sampler || !r.components.empty())
                 refuse(operands[0], "must be s0 to s15");
+            expect_given(r, m_slots.samplers, operands[0]);
             if (m_program.samplers >> r.number & 1) refuse(operands[0], "is declared twice");
             m_program.samplers |= 1u << r.number;
             return;
@@ -199,6 +210,7 @@ class Assembler {
             refuse(word, "must be dcl or dcl_2d: there are no other textures");
         if (r.bank != ShaderBank::coordinate && r.bank != ShaderBank::color)
             refuse(operands[0], "must be t0 to t7, v0 or v1");
+        expect_given(r, r.bank == ShaderBank::coordinate ? m_slots.coordinates : m_slots.colors, operands[0]);
         std::uint8_t& mask = written(r.bank, r.number);
         if (mask != 0) refuse(operands[0], "is declared twice");
         mask = mask_of(operands[0], r.components);
@@ -342,6 +354,7 @@ class Assembler {
         return m_written[static_cast<std::size_t>(bank)][static_cast<std::size_t>(number)];
     }
 
+    ShaderSlots m_slots;
     ShaderProgram m_program;
     bool m_versioned = false;
     std::set<int> m_defined;
@@ -360,9 +373,9 @@ std::string text_of(const ShaderSource& source) {
 
 }  // namespace
 
-ShaderProgram assemble_shader(std::string_view text, const std::string& name) {
+ShaderProgram assemble_shader(std::string_view text, const std::string& name, const ShaderSlots& slots) {
     text_file::check_size(text, name);
-    Assembler assembler;
+    Assembler assembler(slots);
     for (std::size_t number = 1; !text.empty(); ++number) {
         const std::size_t end = text.find('\n');
         text_file::in_entry(name, "line " + std::to_string(number),

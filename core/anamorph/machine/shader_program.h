@@ -65,8 +65,14 @@ struct ShaderProgram {
     int arithmetic = 0, texture = 0;  ///< instructions of either kind
 };
 
-/// Throws Error "name: line 3: what is wrong".
-ShaderProgram assemble_shader(std::string_view text, const std::string& name);
+/// How many textures, coordinates and colors whoever runs a program gives it.
+struct ShaderSlots {
+    int samplers = ShaderProgram::kSamplers, coordinates = ShaderProgram::kCoordinates,
+        colors = ShaderProgram::kColors;
+};
+
+/// Throws Error "name: line 3: what is wrong", also where others than those of `slots` are declared.
+ShaderProgram assemble_shader(std::string_view text, const std::string& name, const ShaderSlots& slots = {});
 
 /// A program as text again, which assembles to the same.
 std::string shader_listing(const ShaderProgram& program);

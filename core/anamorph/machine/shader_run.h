@@ -16,13 +16,25 @@ template <class T>
 struct ShaderInputs {
     /// The program's own constants are set; all else is 0.
     explicit ShaderInputs(const ShaderProgram& program) {
-        for (const ShaderConstant& c : program.constants)
-            for (std::size_t i = 0; i < 4; ++i)
-                constants[static_cast<std::size_t>(c.number)][i] = T(c.value[i]);
+        for (const ShaderConstant& c : program.constants) {
+            const auto n = static_cast<std::size_t>(c.number);
+            for (std::size_t i = 0; i < 4; ++i) constants[n][i] = T(c.value[i]);
+            m_defined |= 1u << n;
+        }
     }
+    /// Is constant n the program's own?
+    bool defines(std::size_t n) const { return m_defined >> n & 1; }
+    /// Sets constant n, unless it is the program's own.
+    void give(std::size_t n, const std::array<double, 4>& value) {
+        for (std::size_t i = 0; i < 4 && !defines(n); ++i) constants[n][i] = T(value[i]);
+    }
+
     std::array<ShaderVector<T>, ShaderProgram::kConstants> constants{};
     std::array<ShaderVector<T>, ShaderProgram::kCoordinates> coordinates{};
     std::array<ShaderVector<T>, ShaderProgram::kColors> colors{};
+
+  private:
+    std::uint32_t m_defined = 0;  ///< bit n: constant n
 };
 
 template <class T>

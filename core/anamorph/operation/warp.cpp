@@ -5,6 +5,7 @@
 #include "anamorph/map/mesh_file.h"
 #include "anamorph/operation/read_once.h"
 #include "anamorph/operation/rows.h"
+#include "anamorph/operation/shaded_picture.h"
 #include "anamorph/operation/solved.h"
 #include "anamorph/text_file.h"
 
@@ -49,6 +50,9 @@ ParameterTable make_table() {
              "of scheme hardware: ps20, the pixel shader of Kim 2003, and what differs from it, "
              "ps20:table_size=32,arithmetic=fixed16 or {\"table_size\": 32, \"arithmetic\": \"fixed16\"}; by "
              "default ps20"),
+        file("program",
+             "of scheme hardware: a program of pixel shader 2.0 that is run for each pixel in place of ours; "
+             "it needs no mesh"),
         colorspace("color space to filter in; by default the source's own"),
         output({{"folds", "not 0 where the warp folds"}}),
     };
@@ -151,19 +155,29 @@ std::shared_ptr<const WarpMap> read_points(const SideFile& file, const SideFileR
                               [&] { return parse_warp_file(reader.text(file.name), file.name); });
 }
 
+/// A mesh of one cell, the picture as it stands.
+std::shared_ptr<const WarpMap> unmoved() {
+    ControlMesh mesh;
+    mesh.columns = mesh.rows = 1;
+    mesh.units = Units::fractions;
+    mesh.vertices = {{0, 0}, {1, 0}, {0, 1}, {1, 1}};
+    return std::make_shared<WarpMap>(WarpMap{"mesh", mesh});
+}
+
 /// The mesh or the points that were asked for.
 std::shared_ptr<const WarpMap> read_map(const WarpRequest& request, const OperationInput& input) {
     const auto mesh = input.files.find("mesh"), points = input.files.find("points");
     const bool has_mesh = mesh != input.files.end(), has_points = points != input.files.end();
     if (has_mesh && has_points)
         throw Error("points", printable(points->second.name), "must not be given together with mesh");
-    if (!has_mesh && !has_points)
+    const bool has_none = !has_mesh && !has_points;
+    if (has_none && !request.program)
         throw Error("mesh is not given: must be a mesh (.json) or an ST-map (an image), or points be given");
-    const SideFile& file = has_mesh ? mesh->second : points->second;
-    std::shared_ptr<const WarpMap> map =
-        has_mesh ? read_mesh(file, request.step, input.reader) : read_points(file, input.reader);
+    std::shared_ptr<const WarpMap> map = has_none   ? unmoved()
+                                         : has_mesh ? read_mesh(mesh->second, request.step, input.reader)
+                                                    : read_points(points->second, input.reader);
     if (has_points && std::holds_alternative<ControlMesh>(map->shape))
-        throw Error("points", printable(file.name), "the file holds a mesh: must be given as mesh");
+        throw Error("points", printable(points->second.name), "the file holds a mesh: must be given as mesh");
     if (request.direction) {
         auto turned = std::make_shared<WarpMap>(*map);
         auto* shape = std::get_if<ControlMesh>(&turned->shape);
@@ -177,36 +191,6 @@ std::shared_ptr<const WarpMap> read_map(const WarpRequest& request, const Operat
 Attributes folded(const MeshWarp& warp, const ParallelFor& parallel_for) {
     return {{"anamorph:folded_fraction", warp.folded_fraction(parallel_for)}};
 }
-
-/// A warp drawn by a pixel-shader unit.
-class ShadedPicture {
-  public:
-    ShadedPicture(const WarpMap& map, const WarpRequest& request) {
-        const ControlMesh* mesh = std::get_if<ControlMesh>(&map.shape);
-        if (!mesh || mesh->direction == Direction::push)
-            throw Error("machine: " + std::string(kShaderPreset) +
-                        " draws meshes that pull, and no other warps");
-        const MeshWarpOptions& options = request.options;
-        check_tol(options.tol);
-        m_warp = std::make_shared<ShadedWarp>(
-            Mesh(*mesh, request.target, request.source, options.amount, map.name), *request.machine);
-        const Chart flat(Projection::rectilinear, request.source.width, request.source.height);
-        m_picture.maps = {{m_warp, {{Border(flat, options.wrap)}}}};
-        m_picture.filter = options.filter;
-        m_picture.output = options.output;
-        if (options.folds)
-            m_picture.value = [p = m_warp.get()](double x, double y) { return p->exact_plan().folds(x, y); };
-    }
-    const Picture& picture() const { return m_picture; }
-
-    static Attributes saturated(const ShadedPicture& shaded, const ParallelFor& parallel_for) {
-        return {{"anamorph:saturated_pixels", double(shaded.m_warp->saturated_pixels(parallel_for))}};
-    }
-
-  private:
-    std::shared_ptr<const ShadedWarp> m_warp;
-    Picture m_picture;
-};
 
 class Warps final : public Pictures {
   public:
@@ -227,9 +211,7 @@ class Warps final : public Pictures {
                          whole = m_request]() -> std::unique_ptr<const SolvedPicture> {
             const WarpMap& given = *map;
             const WarpMap here = level > 0 ? in_fractions(given, whole.source, whole.target) : given;
-            if (request.machine)
-                return std::make_unique<Solved<ShadedPicture>>(ShadedPicture(here, request),
-                                                               ShadedPicture::saturated);
+            if (request.machine) return shaded_picture(here, request);
             return std::make_unique<Solved<MeshWarp>>(
                 MeshWarp(here, whole.source.width, whole.source.height, request.target.width,
                          request.target.height, request.options),
@@ -248,6 +230,7 @@ const char* const kExampleMesh = R"({"columns": 2, "rows": 2, "units": "fraction
 
 std::unique_ptr<const Pictures> read_warps(const OperationInput& input) {
     WarpRequest request = read_warp_request(input.values, input.sources[0].size());
+    request.program = read_shader(input);
     const std::shared_ptr<const WarpMap> map = read_map(request, input);
     // An ST-map is as large as its picture.
     const auto* mesh = std::get_if<ControlMesh>(&map->shape);

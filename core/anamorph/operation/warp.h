@@ -21,6 +21,7 @@ struct WarpRequest {
     std::optional<Direction> direction;  ///< unless as the mesh says
     /// Of scheme hardware: what draws it, in place of options.scheme and tol.
     std::optional<ShaderUnit> machine = {};
+    std::optional<ShaderProgram> program = {};  ///< of the user's, in place of ours
 };
 
 /// Reads a table's values. Without `size` the picture has the source's; with one number, the source's shape.

@@ -242,8 +242,12 @@ class Command {
             const auto [number, list] = assigned(text, 'c', ShaderProgram::kConstants);
             const std::vector<std::string_view> fields = text_file::fields_of(list);
             if (fields.size() != 4) throw Error("--constant", printable(text), "must have four numbers");
-            for (std::size_t i = 0; i < 4; ++i)
-                inputs.constants[static_cast<std::size_t>(number)][i] = T(text_file::number(fields[i]));
+            const auto n = static_cast<std::size_t>(number);
+            if (inputs.defines(n))
+                throw Error("--constant", printable(text), "must be none that the program defines");
+            std::array<double, 4> value{};
+            for (std::size_t i = 0; i < 4; ++i) value[i] = text_file::number(fields[i]);
+            inputs.give(n, value);
         }
         return inputs;
     }

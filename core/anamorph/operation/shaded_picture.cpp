@@ -1,0 +1,143 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "anamorph/operation/shaded_picture.h"
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+
+#include "anamorph/machine/machine_text.h"
+#include "anamorph/operation/solved.h"
+#include "anamorph/render/canvas.h"
+#include "anamorph/render/pixel.h"
+#include "anamorph/render/point_sampler.h"
+#include "anamorph/render/strips.h"
+
+namespace anamorph {
+namespace {
+
+std::shared_ptr<const ShadedWarp> shaded_warp(const WarpMap& map, const WarpRequest& request) {
+    const ControlMesh* mesh = std::get_if<ControlMesh>(&map.shape);
+    if (!mesh || mesh->direction == Direction::push)
+        throw Error("machine: " + std::string(kShaderPreset) + " draws meshes that pull, and no other warps");
+    check_tol(request.options.tol);
+    const Mesh made(*mesh, request.target, request.source, request.options.amount, map.name);
+    return request.program ? std::make_shared<ShadedWarp>(made, *request.machine, *request.program)
+                           : std::make_shared<ShadedWarp>(made, *request.machine);
+}
+
+Border border_of(const WarpRequest& request) {
+    return {Chart(Projection::rectilinear, request.source.width, request.source.height),
+            request.options.wrap};
+}
+
+/// A warp drawn by a pixel-shader unit.
+class ShadedPicture {
+  public:
+    ShadedPicture(const WarpMap& map, const WarpRequest& request) : m_warp(shaded_warp(map, request)) {
+        const MeshWarpOptions& options = request.options;
+        m_picture.maps = {{m_warp, {{border_of(request)}}}};
+        m_picture.filter = options.filter;
+        m_picture.output = options.output;
+        if (options.folds)
+            m_picture.value = [p = m_warp.get()](double x, double y) { return p->exact_plan().folds(x, y); };
+    }
+    const Picture& picture() const { return m_picture; }
+
+    static Attributes saturated(const ShadedPicture& shaded, const ParallelFor& parallel_for) {
+        return {{"anamorph:saturated_pixels", double(shaded.m_warp->saturated_pixels(parallel_for))}};
+    }
+
+  private:
+    std::shared_ptr<const ShadedWarp> m_warp;
+    Picture m_picture;
+};
+
+/// The colors that a program of the user's makes.
+class ProgrammedPicture final : public SolvedPicture {
+  public:
+    ProgrammedPicture(const WarpMap& map, const WarpRequest& request)
+        : m_warp(shaded_warp(map, request)),
+          m_border(border_of(request)),
+          m_filter(request.options.filter),
+          m_is_map(reads_picture_once(*request.program)) {}
+
+    Attributes reached(const ParallelFor& parallel_for) const override {
+        if (!m_is_map) return {{"anamorph:exact_fraction", 0.0}};
+        return {{"anamorph:max_error", m_warp->reached(parallel_for).max_error},
+                {"anamorph:exact_fraction", 0.0},
+                {"anamorph:saturated_pixels", double(m_warp->saturated_pixels(parallel_for))}};
+    }
+    bool draw(const std::vector<const Source*>& sources, const Box& box, const ImageView& view,
+              const ParallelFor& parallel_for) const override {
+        const Source* source = sources.empty() ? nullptr : sources[0];
+        if (!source) throw Error("a picture in colour needs a source");
+        const Canvas canvas(view, box);
+        const Box whole{0, 0, m_warp->width(), m_warp->height()};
+        if (!m_warp->covers(box)) canvas.fill(box, 0);
+        std::atomic<bool> ok{true};
+        for_each_square(intersection(box, whole), parallel_for, [&](const Box& square) {
+            if (!draw_square(*source, square, canvas)) ok = false;
+            simd::finish_stores();
+        });
+        return ok;
+    }
+
+  private:
+    bool draw_square(const Source& source, const Box& square, const Canvas& canvas) const {
+        const auto channels = static_cast<std::size_t>(source.channels());
+        PointSampler sampler(source, m_border);
+        bool ok = true;
+        const auto read = [&](const Point<double>& at) {
+            float pixel[4];
+            if (!sampler.sample(m_filter, 0, 0, at.x, at.y, pixel)) ok = false;
+            std::array<double, 4> components{0, 0, 0, 1};
+            std::copy_n(pixel, channels, components.begin());
+            return components;
+        };
+        float row[simd::kMaxRow * 4 + 16] = {};
+        for (int y = square.y0; y < square.y1; ++y)
+            for (int x = square.x0; x < square.x1; x += simd::kMaxRow) {
+                const int count = std::min(simd::kMaxRow, square.x1 - x);
+                for (int i = 0; i < count; ++i) {
+                    const std::array<double, 4> color = m_warp->color(x + i, y, read);
+                    float* to = row + static_cast<std::size_t>(i) * channels;
+                    for (std::size_t c = 0; c < channels; ++c) to[c] = static_cast<float>(color[c]);
+                    if (source.unassociated_alpha() >= 0)
+                        unassociate_alpha(to, source.channels(), source.unassociated_alpha());
+                }
+                canvas.store(x, y, count, row);
+            }
+        return ok;
+    }
+
+    std::shared_ptr<const ShadedWarp> m_warp;
+    Border m_border;
+    Filter m_filter;
+    bool m_is_map;
+};
+
+}  // namespace
+
+std::optional<ShaderProgram> read_shader(const OperationInput& input) {
+    const auto file = input.files.find("program");
+    if (file == input.files.end()) return {};
+    const std::string& name = file->second.name;
+    ShaderProgram program = assemble_shader(input.reader.text(name), name, kWarpSlots);
+    if (input.values.text("scheme") != "hardware")
+        throw Error("program", printable(name), "must be given with scheme=hardware only");
+    if (input.sources[0].channels > 4)
+        throw Error("src has " + std::to_string(input.sources[0].channels) +
+                    " channels: must have at most 4 with program");
+    if (input.values.text("output") != "color" && !reads_picture_once(program))
+        throw Error("output", input.values.text("output"),
+                    "must be color with a program that does not read s0 exactly once");
+    return program;
+}
+
+std::unique_ptr<const SolvedPicture> shaded_picture(const WarpMap& map, const WarpRequest& request) {
+    const bool is_color = !request.options.folds && request.options.output == Output::color;
+    if (request.program && is_color) return std::make_unique<ProgrammedPicture>(map, request);
+    return std::make_unique<Solved<ShadedPicture>>(ShadedPicture(map, request), ShadedPicture::saturated);
+}
+
+}  // namespace anamorph
