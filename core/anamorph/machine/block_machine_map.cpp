@@ -22,7 +22,8 @@ double BlockMachineMap::landing_error(int x, int y) const {
     const glm::dvec3 p =
         m_camera.in_frame(m_surface->position(address.x / m_picture.width, address.y / m_picture.height));
     const Point<double> seen = m_camera.seen(p);
-    const double off = std::hypot(seen.x - (x + 0.5 - 0.5 * width()), seen.y - (y + 0.5 - 0.5 * height()));
+    const double across = seen.x - (x + 0.5 - 0.5 * width()), down = seen.y - (y + 0.5 - 0.5 * height());
+    const double off = std::sqrt(across * across + down * down);
     return p.z >= m_camera.near() && std::isfinite(off) ? off : HUGE_VAL;
 }
 

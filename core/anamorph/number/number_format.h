@@ -64,7 +64,8 @@ inline double nearest_integer(double value) {
     return value + kShift - kShift;
 }
 
-inline double nearest_float(const NumberFormat& format, double value, bool& beyond) {
+// Inlined so that a format known to the compiler costs nothing (nearest_of).
+[[gnu::always_inline]] inline double nearest_float(const NumberFormat& format, double value, bool& beyond) {
     constexpr int kDoubleFraction = 52;
     const int bias = (1 << (format.bits - 1)) - 1, least = 1 - bias;
     const double size = std::fabs(value), smallest = power_of_2(least);
@@ -93,7 +94,7 @@ inline double nearest_float(const NumberFormat& format, double value, bool& beyo
     return std::copysign(rounded, value);
 }
 
-inline double nearest_fixed(const NumberFormat& format, double value, bool& beyond) {
+[[gnu::always_inline]] inline double nearest_fixed(const NumberFormat& format, double value, bool& beyond) {
     const double half = power_of_2(format.bits - 1), unit = power_of_2(-format.fraction),
                  exact = value * power_of_2(format.fraction);
     // Two's complement has one zero, which 0 added to the other makes.
@@ -108,7 +109,7 @@ inline double nearest_fixed(const NumberFormat& format, double value, bool& beyo
 
 /// The nearest number of the format. Sets `beyond` where the value rounds to none of its range, or is NaN: fixed and
 /// normalised formats then give the nearest end (wrapped: what is left of it; NaN: 0), floating ones infinity or NaN.
-inline double nearest(const NumberFormat& format, double value, bool& beyond) {
+[[gnu::always_inline]] inline double nearest(const NumberFormat& format, double value, bool& beyond) {
     switch (format.kind) {
         case NumberFormat::Kind::floating:
             return format_detail::nearest_float(format, value, beyond);
@@ -123,6 +124,12 @@ inline double nearest(const NumberFormat& format, double value) {
     return nearest(format, value, beyond);
 }
 
+/// The same of a format that the compiler knows.
+template <NumberFormat kFormat>
+double nearest_of(double value, bool& beyond) {
+    return nearest(kFormat, value, beyond);
+}
+
 /// A number that is rounded to its format after every operation. Sums, products, quotients and roots of formats of up to
 /// 24 significant bits are correctly rounded: double holds more than twice as many, and two. So are kFixed32's: exact ones of
 /// its range are farther from a tie than double's rounding, 2^-32 and 2^-39.
@@ -134,7 +141,7 @@ struct FormatNumber {
 
     FormatNumber() = default;
     FormatNumber(double exact)
-        : value(nearest(kFormat, exact, beyond)) {}  // NOLINT: a number is one, rounded
+        : value(nearest_of<kFormat>(exact, beyond)) {}  // NOLINT: a number is one, rounded
 
     /// Of an exact result of `operands`.
     template <class... Operands>
