@@ -18,7 +18,7 @@ import matplotlib.pyplot as plt
 from whole_file import whole_file
 
 COLUMNS = ("op case scheme tol_px size threads ns_per_px ratio_to_exact mean_error_px p99_error_px "
-           "max_error_px bound_px exact_fraction").split()
+           "max_error_px bound_px exact_fraction cycles frames_per_second").split()
 ROUNDING = 1e-9  # source pixels
 
 

@@ -38,6 +38,7 @@ struct Row {
     double ratio_to_exact = 0;  ///< how many times faster than the plain double loop of the same case
     Accuracy error;
     double bound_px = kNone, exact_fraction = kNone;
+    double cycles = kNone, frames_per_second = kNone;  ///< of a machine that is modelled
 };
 
 /// A promise about the table: `reached` is to be at least (or at most) `wanted`.

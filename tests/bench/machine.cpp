@@ -6,7 +6,7 @@
 // `read_back` is clamped and read through a texture of 16 bits, as the paper did. Scheme `exact` is the formula.
 //
 // `shader-NxN` are warps by meshes of N x N cells, drawn by the pixel shader with tables of so many texels and registers of
-// a format; errors in pixels of 256 x 256 or less.
+// a format; errors in pixels of 256 x 256 or less. `blocks-N` are drapes by the machine of 1987 (block_machine.cpp).
 #include <algorithm>
 #include <cmath>
 #include <memory>
@@ -16,6 +16,7 @@
 #include "anamorph/machine/bump_unit.h"
 #include "anamorph/machine/shaded_warp.h"
 #include "bench.h"
+#include "block_machine.h"
 
 namespace anamorph::bench {
 namespace {
@@ -209,6 +210,7 @@ void measure_shader(const Settings& settings, Report& report, int cells) {
 }
 
 void run(const Settings& settings, Report& report) {
+    for (const int side : {512, 1024}) measure_blocks(settings, report, side);
     for (const int cells : {4, 12}) measure_shader(settings, report, cells);
     for (const MachineCase& which : kCases)
         if (settings.wants_case(which.name)) measure(settings, report, which);

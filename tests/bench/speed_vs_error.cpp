@@ -87,11 +87,12 @@ Settings parse(int argc, char** argv) {
 void write_csv(std::ostream& out, const Report& report) {
     out << "op,case,scheme,tol_px,size,threads,ns_per_px,ratio_to_exact,mean_error_px,p99_error_px,max_error_"
            "px,"
-           "bound_px,exact_fraction\n";
+           "bound_px,exact_fraction,cycles,frames_per_second\n";
     for (const Row& r : report.rows)
         out << r.op << ',' << r.case_name << ',' << r.scheme << ',' << r.tol_px << ',' << r.size << ','
             << r.threads << ',' << r.ns_per_px << ',' << r.ratio_to_exact << ',' << r.error.mean << ','
-            << r.error.p99 << ',' << r.error.max << ',' << r.bound_px << ',' << r.exact_fraction << '\n';
+            << r.error.p99 << ',' << r.error.max << ',' << r.bound_px << ',' << r.exact_fraction << ','
+            << r.cycles << ',' << r.frames_per_second << '\n';
 }
 
 void print_head() {
