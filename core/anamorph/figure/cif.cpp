@@ -10,6 +10,7 @@
 #include <numbers>
 #include <optional>
 
+#include "anamorph/figure/cif_symmetry.h"
 #include "anamorph/figure/eigenvectors.h"
 #include "anamorph/figure/elements.h"
 #include "anamorph/figure/motion_file.h"
@@ -21,13 +22,16 @@
 namespace anamorph {
 namespace {
 
-constexpr std::size_t kMostAtoms = 20000, kMostBonds = 500000;
+constexpr std::size_t kMostAtoms = 20000, kMostBonds = 500000, kMostOperations = 1000;
 /// Of a cell's edge, in Angstrom.
 constexpr double kLeastLength = 0.1;
 /// The ellipsoid x^T U^-1 x = s^2 holds half of a Gaussian in three dimensions.
 constexpr double kHalfProbability = 1.5381722544550522;
 /// Of atoms without displacement, and what bonds may be longer than radii; Angstrom.
 constexpr double kPlainRadius = 0.15, kBondSlack = 0.4;
+
+/// The tags of the operations of symmetry, the newer one first.
+constexpr std::string_view kOperations[] = {"_space_group_symop_operation_xyz", "_symmetry_equiv_pos_as_xyz"};
 
 // --- The file ----------------------------------------------------------------------------------------------
 
@@ -143,8 +147,10 @@ void read_loop(Tokens& tokens, Token& token, CifBlock& block, std::string_view f
     for (; token.kind == TokenKind::value; token = tokens.next(), ++count)
         if (!columns.empty()) columns[count % columns.size()]->values.push_back(known(token));
     // Faults elsewhere in a file do not matter.
-    const bool matters = std::any_of(tags.begin(), tags.end(),
-                                     [](const std::string& tag) { return tag.starts_with("_atom_site_"); });
+    const bool matters = std::any_of(tags.begin(), tags.end(), [](const std::string& tag) {
+        return tag.starts_with("_atom_site_") ||
+               std::count(std::begin(kOperations), std::end(kOperations), tag);
+    });
     if (matters && count % columns.size() != 0)
         text_file::fail(file, "line " + std::to_string(token.line),
                         "a loop of " + std::to_string(tags.size()) + " tags ends after " +
@@ -183,7 +189,12 @@ CifBlock read_block(std::string_view text, std::string_view file) {
 struct Atom {
     std::string label;
     const ChemicalElement* element = nullptr;
-    Ellipsoid shape;  ///< Angstrom, right-handed
+    Ellipsoid shape;                   ///< Angstrom, right-handed
+    glm::dvec3 place{0.0};             ///< in fractions of the cell
+    std::optional<glm::dmat3> tensor;  ///< mean square displacement, where it is anisotropic
+
+    /// How far its bonds reach.
+    double bond_radius() const { return element ? element->covalent_radius + 0.5 * kBondSlack : 0; }
 };
 
 class Structure {
@@ -194,9 +205,15 @@ class Structure {
         read_cell();
         read_displacements();
         read_atoms();
+        const std::vector<SymmetryOperation> operations = read_operations();
+        if (operations.size() > 1)
+            expand(operations);
+        else
+            find_bonds();
     }
 
     std::vector<Atom> atoms;
+    std::vector<CrystalBond> bonds;
 
   private:
     const Column* find(const std::string& tag) const {
@@ -287,7 +304,8 @@ class Structure {
             Atom atom;
             atom.label = labels->values[row];
             atom.element = element_of(row);
-            atom.shape = displacement_of(row, atom.label);
+            atom.place = place;
+            set_displacement(atom, row);
             atom.shape.center = m_cell * place;
             atoms.push_back(std::move(atom));
         }
@@ -309,31 +327,96 @@ class Structure {
     }
 
     /// Of U in the axes of the cell, whose lengths are those of the reciprocal cell: A N U N^T A^T.
-    Ellipsoid displacement_of(std::size_t row, const std::string& label) const {
-        Ellipsoid shape;
-        const auto aniso = m_aniso.find(label);
+    void set_displacement(Atom& atom, std::size_t row) const {
+        const auto aniso = m_aniso.find(atom.label);
         if (aniso == m_aniso.end()) {
             auto u = number_if_given("_atom_site_u_iso_or_equiv", row, 1e6);
             if (!u) {
                 u = number_if_given("_atom_site_b_iso_or_equiv", row, 1e6);
                 if (u) *u /= kEightPiSquared;
             }
-            shape.axes = glm::dvec3(u && *u > 0 ? kHalfProbability * std::sqrt(*u) : kPlainRadius);
-            return shape;
+            atom.shape.axes = glm::dvec3(u && *u > 0 ? kHalfProbability * std::sqrt(*u) : kPlainRadius);
+            return;
         }
         const std::array<double, 6>& u = aniso->second;
         const glm::dmat3 reciprocal = glm::transpose(glm::inverse(m_cell));
         glm::dmat3 scaled = m_cell;
         for (int c = 0; c < 3; ++c) scaled[c] *= glm::length(reciprocal[c]);
         const glm::dmat3 tensor({u[0], u[3], u[4]}, {u[3], u[1], u[5]}, {u[4], u[5], u[2]});
-        const glm::dmat3 cartesian = scaled * tensor * glm::transpose(scaled);
-        shape.rotation = eigenvectors(cartesian);
+        set_tensor(atom, scaled * tensor * glm::transpose(scaled));
+    }
+
+    static void set_tensor(Atom& atom, const glm::dmat3& tensor) {
+        atom.tensor = tensor;
+        atom.shape.rotation = eigenvectors(tensor);
         // Where U is not positive definite the ellipsoid is flat.
         for (int c = 0; c < 3; ++c) {
-            const glm::dvec3 axis = shape.rotation[c];
-            shape.axes[c] = kHalfProbability * std::sqrt(std::max(glm::dot(axis, cartesian * axis), 0.0));
+            const glm::dvec3 axis = atom.shape.rotation[c];
+            atom.shape.axes[c] = kHalfProbability * std::sqrt(std::max(glm::dot(axis, tensor * axis), 0.0));
         }
-        return shape;
+    }
+
+    /// x,y,z and the others, in the order of the file.
+    std::vector<SymmetryOperation> read_operations() const {
+        std::vector<SymmetryOperation> operations{{}};
+        const Column* column = find(std::string(kOperations[0]));
+        const std::string_view tag = kOperations[column ? 0 : 1];
+        if (!column) column = find(std::string(tag));
+        if (!column) return operations;
+        if (column->values.size() > kMostOperations)
+            text_file::fail(m_file, std::string(tag), "must have up to 1000 values");
+        for (const std::string& text : column->values)
+            text_file::in_entry(
+                m_file, "line " + std::to_string(column->line) + ": " + std::string(tag), [&] {
+                    if (text.empty()) return;
+                    const SymmetryOperation operation = symmetry_operation(text);
+                    const bool same = operation.turn == glm::dmat3(1.0) && operation.shift == glm::dvec3(0.0);
+                    if (!same) operations.push_back(operation);
+                });
+        return operations;
+    }
+
+    /// All atoms of the cell, and their bonds.
+    void expand(const std::vector<SymmetryOperation>& operations) {
+        std::vector<glm::dvec3> places;
+        std::vector<double> radii;
+        for (const Atom& atom : atoms) {
+            places.push_back(atom.place);
+            radii.push_back(atom.bond_radius());
+        }
+        Crystal crystal;
+        text_file::in_entry(m_file, "", [&] {
+            crystal = crystal_of(places, radii, operations, m_cell, {kMostAtoms, kMostBonds});
+        });
+        std::vector<Atom> all;
+        for (const CrystalSite& site : crystal.sites) {
+            Atom atom = atoms[site.atom];
+            atom.place = site.place;
+            if (site.operation > 0) atom.label += "_" + std::to_string(site.operation + 1);
+            if (site.operation > 0 && atom.tensor) {
+                const glm::dmat3 turn = m_cell * operations[site.operation].turn * glm::inverse(m_cell);
+                set_tensor(atom, turn * *atom.tensor * glm::transpose(turn));
+            }
+            atom.shape.center = m_cell * atom.place;
+            all.push_back(std::move(atom));
+        }
+        atoms = std::move(all);
+        bonds = std::move(crystal.bonds);
+    }
+
+    /// Those between the atoms as they are listed.
+    void find_bonds() {
+        for (std::size_t i = 0; i < atoms.size(); ++i)
+            for (std::size_t j = i + 1; j < atoms.size(); ++j) {
+                const Atom &a = atoms[i], &b = atoms[j];
+                const double most = a.bond_radius() + b.bond_radius();
+                const glm::dvec3 d = a.shape.center - b.shape.center;
+                if (!a.element || !b.element || !(glm::dot(d, d) < most * most)) continue;
+                if (bonds.size() == kMostBonds)
+                    text_file::fail(m_file, "",
+                                    "atoms lie so close together that there are over 500000 bonds");
+                bonds.push_back({i, j});
+            }
     }
 
     static constexpr double kEightPiSquared = 8 * std::numbers::pi * std::numbers::pi;
@@ -361,7 +444,8 @@ WindowFit fit_of(const std::vector<Atom>& atoms) {
 class CrystalMotion final : public Motion {
   public:
     CrystalMotion(std::string_view text, std::string_view name) {
-        const std::vector<Atom> atoms = Structure(text, name).atoms;
+        const Structure structure(text, name);
+        const std::vector<Atom>& atoms = structure.atoms;
         const WindowFit fit = fit_of(atoms);
         m_frame.number = 1;
         m_frame.figures = {"structure"};
@@ -372,16 +456,12 @@ class CrystalMotion final : public Motion {
             if (atom.element) body.color = atom.element->color;
             m_frame.bodies.push_back(std::move(body));
         }
-        for (std::size_t i = 0; i < atoms.size(); ++i)
-            for (std::size_t j = i + 1; j < atoms.size(); ++j)
-                if (are_bonded(atoms[i], atoms[j])) {
-                    if (m_frame.joints.size() == kMostBonds)
-                        text_file::fail(name, "",
-                                        "atoms lie so close together that there are over 500000 bonds");
-                    m_frame.joints.push_back(
-                        {atoms[i].label + "-" + atoms[j].label, static_cast<int>(i), static_cast<int>(j),
-                         fit.point(0.5 * (atoms[i].shape.center + atoms[j].shape.center))});
-                }
+        for (const CrystalBond& bond : structure.bonds) {
+            const Atom &a = atoms[bond.first], &b = atoms[bond.second];
+            m_frame.joints.push_back({a.label + "-" + b.label, static_cast<int>(bond.first),
+                                      static_cast<int>(bond.second),
+                                      fit.point(0.5 * (a.shape.center + b.shape.center))});
+        }
     }
 
     int last_frame() override { return 1; }
@@ -394,13 +474,6 @@ class CrystalMotion final : public Motion {
     }
 
   private:
-    static bool are_bonded(const Atom& a, const Atom& b) {
-        if (!a.element || !b.element) return false;
-        const double most = a.element->covalent_radius + b.element->covalent_radius + kBondSlack;
-        const glm::dvec3 d = a.shape.center - b.shape.center;
-        return glm::dot(d, d) < most * most;
-    }
-
     FigureFrame m_frame;
 };
 
