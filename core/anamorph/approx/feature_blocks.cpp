@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "anamorph/approx/feature_blocks.h"
 
+#include <algorithm>
 #include <utility>
 
 #include "anamorph/approx/near_far_exact.h"
+#include "anamorph/simd/feature_rows.h"
 
 namespace anamorph {
 
@@ -29,6 +31,16 @@ bool FeatureBlocks::truth(double x, double y, int piece, Point<long double>& sou
     source_point = m_map(static_cast<long double>(x), static_cast<long double>(y), shape(piece));
     source_piece = 0;
     return true;
+}
+
+void FeatureBlocks::exact_rows(const Block& block, int begin, int end, const DoubleRows& to) const noexcept {
+    const Box& box = block.box;
+    for (int row = begin; row < end; ++row) {
+        const std::ptrdiff_t at = (row - begin) * to.stride;
+        simd::feature_row(m_map, shape(block.piece), box.x0 + 0.5, box.y0 + row + 0.5, box.width(), to.x + at,
+                          to.y + at);
+        std::fill_n(to.piece + at, box.width(), 0);
+    }
 }
 
 Jacobian FeatureBlocks::jacobian(double x, double y, int piece) const noexcept {

@@ -12,6 +12,7 @@ namespace anamorph {
 
 class FeatureBlocks : public BlockMap {
   public:
+    using BlockMap::exact;
     /// The shapes that the layers show.
     const std::vector<int>& shapes() const { return m_shapes; }
 
@@ -20,6 +21,7 @@ class FeatureBlocks : public BlockMap {
     bool seen(double x, double y, int piece) const noexcept override;
     bool truth(double x, double y, int piece, Point<long double>& source_point,
                int& source_piece) const noexcept override;
+    void exact_rows(const Block& block, int begin, int end, const DoubleRows& to) const noexcept override;
     Jacobian jacobian(double x, double y, int piece) const noexcept override;
 
   protected:

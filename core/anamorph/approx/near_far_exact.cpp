@@ -36,6 +36,9 @@
 // - Distances in the box lie within `radius` of the centre's, which is itself off by h, as is each: 2 h, and
 //   twice that from the nearest to the farthest.
 //
+// - 2 power_rounding (simd/feature_rows.h) for powers that vectors make of logarithms, of the line's greatest
+//   distance over the least of any line; as FeatureMap makes them they are in the constant.
+//
 // - 4 u (n + 4) of the mean's size: n + 1 roundings of numerator and denominator each, and 2 more, twice; and
 //   8 u of the pixel's place, which is added and scaled (2 u), four times.
 //
@@ -44,6 +47,8 @@
 
 #include <algorithm>
 #include <cmath>
+
+#include "anamorph/simd/feature_rows.h"
 
 namespace anamorph {
 namespace {
@@ -57,8 +62,14 @@ struct LineOnBox {
     double off;            ///< h
     double displaced;      ///< by how much its displacement is off
     double nearest, most;  ///< a + dist and the weight, at the box's nearest point
+    double powers = 0;     ///< by how much its weight is off, in proportion, as a power
     double reach;          ///< the greatest distance of its displacement from the reference
 };
+
+// Of two roundings more than hypot's, which is nothing beside the factors; what overflows has no bound.
+double length(double x, double y) {
+    return std::sqrt(x * x + y * y);
+}
 
 class BoxBound {
   public:
@@ -83,7 +94,15 @@ class BoxBound {
         double places = 0, weights = 0;
     };
 
-    double power(double distance, double unit) const { return std::pow(distance / unit, -m_map.weights().b); }
+    double power(double distance, double unit) const {
+        return feature_detail::inverse_power(distance / unit, m_map.weights().b);
+    }
+
+    /// x^(1 / b)
+    double root(double x) const {
+        const double b = m_map.weights().b;
+        return b == 2 ? std::sqrt(x) : b == 1 ? x : std::pow(x, 1 / b);
+    }
 
     Parts bound(const Box& box) {
         Parts worst;
@@ -104,6 +123,8 @@ class BoxBound {
         double unit = HUGE_VAL;
         for (std::size_t i = 0; i < m_lines.size(); ++i)
             unit = std::min(unit, look(i, shape, x, y, radius, reference));
+
+        bound_powers(radius);
 
         double least = 0, all = 0, moment = 0, farthest = 0, displaced = 0;
         int boundless = 0;
@@ -143,7 +164,7 @@ class BoxBound {
             weights += part * between * moved(i, std::max(others, 0.0), unit);
         }
         const double to_source = std::max(scale.x, scale.y);
-        const double size = std::hypot(reference.x, reference.y) + std::min(mean, farthest);
+        const double size = length(reference.x, reference.y) + std::min(mean, farthest);
         const double sums = 4 * kHalfUlp * (static_cast<double>(m_lines.size()) + 4) * size +
                             8 * kHalfUlp * (std::fabs(x) + std::fabs(y) + 2 * radius);
         return {2 * to_source * (std::min(displaced, mean_displaced) + sums), 2 * to_source * weights};
@@ -154,7 +175,7 @@ class BoxBound {
         const FeatureMap::TargetLine& line = m_map.line(i);
         const FeatureMap::Frame<double> at = m_map.frame(line, x, y);
         const double distance = m_map.distance(line, at);
-        const double rho = std::hypot(at.along, at.beside) + radius;
+        const double rho = length(at.along, at.beside) + radius;
         LineOnBox& to = m_lines[i];
         const LineOff off = line_off(m_map, i, rho, std::fabs(x) + std::fabs(y) + 2 * radius);
         to.off = off.distance;
@@ -168,15 +189,27 @@ class BoxBound {
         };
         const double dx = moved(d.origin.x, d.along_rate.x, d.beside_rate.x) - reference.x;
         const double dy = moved(d.origin.y, d.along_rate.y, d.beside_rate.y) - reference.y;
-        to.reach = std::hypot(dx, dy) + 2 * (1 + m_map.rounding(i).stretch) * radius + to.displaced;
+        to.reach = length(dx, dy) + 2 * (1 + m_map.rounding(i).stretch) * radius + to.displaced;
         return distance + radius + 2 * to.off;
+    }
+
+    void bound_powers(double radius) {
+        const double b = m_map.weights().b;
+        if (b == 0 || b == 0.5 || b == 1 || b == 2) return;
+        double nearest = HUGE_VAL;
+        for (const LineOnBox& l : m_lines) nearest = std::min(nearest, l.nearest);
+        for (LineOnBox& l : m_lines) {
+            const double ratio = (l.nearest + 2 * radius + 4 * l.off) / nearest;
+            const double log = ratio > 0 ? b * std::log(ratio) : HUGE_VAL;
+            l.powers = 2 * kHalfUlp * simd::power_rounding(std::min(log, simd::kMostPowerLog));
+        }
     }
 
     /// The greatest product of a weight's error in proportion and of 1 - l over the box, as (2) says.
     double moved(std::size_t i, double others, double unit) const {
         const LineOnBox& l = m_lines[i];
         const double b = m_map.weights().b, factor = m_map.line(i).factor;
-        const double constant = 2 * m_map.rounding(i).weight;
+        const double constant = 2 * m_map.rounding(i).weight + l.powers;
         if (b == 0 || (l.nearest == 0 && l.off == 0)) return std::min(1.0, constant);
         const double unknown = 2 * (1 + b) * l.off;
         const auto rest = [&](double distance) {
@@ -185,7 +218,7 @@ class BoxBound {
         // unknown / d falls and 1 - l grows until it may be 1, at `turn`: as a product the greatest at one of
         // the ends.
         const double from = std::max(l.nearest, unknown);
-        const double turn = others > 0 ? unit * std::pow(others / factor, -1 / b) : HUGE_VAL;
+        const double turn = others > 0 ? unit * root(factor / others) : HUGE_VAL;
         double worst = from < turn ? unknown / from * rest(from) : unknown / from;
         if (b >= 1 && from < turn) worst = unknown / turn;
         // Nearer than `unknown`, 1 - l is at most what it is there, with the error of the distance.

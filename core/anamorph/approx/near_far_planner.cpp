@@ -28,18 +28,20 @@ constexpr double kLeastPower = 1e-36;
 // would be proven, by the division by what is left of the sum.
 constexpr double kMostWeightError = 0.05;
 // Cells are not cut below this.
-constexpr int kFloor = 4;
-// The part of the tolerance that interpolation may use; the rest is for rounding.
-constexpr double kInterpolationShare = 0.9;
-// Of the smallest cells where that leaves too little for the near lines' rounding.
-constexpr double kSmallestShare = 0.45;
+constexpr int kFloor = 8;
+// The parts of the tolerance that interpolation may use, one after the other; the rest is for rounding.
+constexpr double kInterpolationShares[] = {0.9, 0.55};
+// And in the smallest cells, before they fall back on double.
+constexpr double kSmallestShares[] = {0.2, 0};
+// Where rounding takes more of it on a large cell even without near lines, smaller ones seldom hold it.
+constexpr double kMostRoundingShare = 0.3;
 // And the part of what is left of it that a cell uses up for lines that are far already from a cell to be
 // cut.
 constexpr double kParentShare = 0.25;
 
 /// How many near lines a cell of this size may have before it is cut (measured).
 int most_near(int size) {
-    return size >= 64 ? 3 : size >= 32 ? 10 : 16;
+    return size >= 64 ? 6 : size >= 32 ? 16 : 64;
 }
 
 }  // namespace
@@ -106,15 +108,17 @@ void Planner::settle(int x0, int y0, int size, std::size_t depth, FarSums sums, 
                emit(box, lines, bounds, known, all, has_polynomial);
     };
     if (known.finite && size <= Block::kMaxSide) {
-        if (fits(kInterpolationShare)) return;
-        if (lines.near_count <= most_near(size) && base_rounding(known, lines.near_count) > m_options.tol)
-            return exact(x0, y0, size);
+        if (base_rounding(known, 0) > kMostRoundingShare * m_options.tol) return exact(x0, y0, size);
+        for (const double share : kInterpolationShares)
+            if (fits(share)) return;
     }
     if (size <= kFloor) {
-        if (!known.finite || !fits(kSmallestShare)) exact(x0, y0, size);
+        const bool held =
+            known.finite && std::any_of(std::begin(kSmallestShares), std::end(kSmallestShares), fits);
+        if (!held) exact(x0, y0, size);
         return;
     }
-    divide(x0, y0, size, depth, bounds, known, sums, kParentShare * budget(kInterpolationShare),
+    divide(x0, y0, size, depth, bounds, known, sums, kParentShare * budget(kInterpolationShares[0]),
            has_polynomial);
 }
 
