@@ -2,8 +2,8 @@
 // Mesh warps: speed against error.
 //
 // Source and picture are square and of one size, three channels, bilinear. Cases: a 12 x 12 mesh that pulls
-// (in float and in 8 bits), the same with a level more in some cells, the first one pushing, and pairs of
-// points. Every scheme draws a fresh MeshWarp each time, planning included. `double` is the loop that one
+// (in float and in 8 bits), the same with a level more in some cells, the first one pushing, pairs of
+// points, and the first one as an ST-map, pixel by pixel. Every scheme draws a fresh MeshWarp each time, planning included. `double` is the loop that one
 // writes in an afternoon: the patch at every pixel in double, then four texels. Rivals: warp_rivals.h.
 //
 // Errors are distances of the source points used from the map in long double (of the inverse and of points:
@@ -15,6 +15,7 @@
 #include <mutex>
 #include <random>
 
+#include "anamorph/map/mesh_file.h"
 #include "anamorph/map/scattered.h"
 #include "anamorph/render/block_reader.h"
 #include "anamorph/render/mesh_warp.h"
@@ -87,6 +88,19 @@ ControlPoints moved_points(int size) {
     return points;
 }
 
+/// The map of a mesh as an ST-map of a picture of `size` pixels each way.
+WarpMap as_stmap(const ControlMesh& control, int size) {
+    const Mesh mesh(control, {size, size}, {size, size}, 1);
+    std::vector<float> uv;
+    for (int y = 0; y < size; ++y)
+        for (int x = 0; x < size; ++x) {
+            const Point<double> p = mesh.at(x + 0.5, y + 0.5);
+            uv.push_back(static_cast<float>(p.x / size));
+            uv.push_back(static_cast<float>(p.y / size));
+        }
+    return mesh_from_stmap(std::move(uv), size, size, "stmap");
+}
+
 /// One case: a map, its truth, and pixels.
 struct Scene {
     std::string name;
@@ -118,7 +132,8 @@ struct Scene {
     Box box() const { return {0, 0, size, size}; }
     MeshWarp warp(const MeshWarpOptions& options) const { return {map, size, size, size, size, options}; }
     const ControlMesh* mesh() const { return std::get_if<ControlMesh>(&map.shape); }
-    bool pulls() const { return mesh() && mesh()->direction == Direction::pull; }
+    bool is_stmap() const { return mesh() && mesh()->samples; }
+    bool pulls() const { return mesh() && mesh()->direction == Direction::pull && !is_stmap(); }
     Mesh pull_mesh() const { return Mesh(*mesh(), {size, size}, {size, size}, 1); }
 
   private:
@@ -264,11 +279,14 @@ class Bench {
              },
              nullptr, 0, 1});
         const Mesh mesh = scene.pulls() ? scene.pull_mesh() : Mesh(moved_mesh(16), {16, 16}, {16, 16}, 1);
+        // A mesh with a vertex for each pixel is more than VTK's grid is asked to hold.
+        const auto is_rival = [&](const Rival& r) { return !scene.is_stmap() || r.scheme != "vtk_reslice"; };
         if (with_rivals)
             for (Rival& rival :
                  warp_rivals({&mesh, &scene.truth, scene.source(), scene.target(), m_settings.threads}))
-                add({rival.scheme, kNone, rival.draw,
-                     [this, &scene, point = rival.point] { return points_by(scene, point); }});
+                if (is_rival(rival))
+                    add({rival.scheme, kNone, rival.draw,
+                         [this, &scene, point = rival.point] { return points_by(scene, point); }});
         add_rows(scene, contenders);
     }
 
@@ -344,6 +362,12 @@ void run(const Settings& settings, Report& report) {
                   false);
     bench.measure("mesh_12_push", {"mesh", push}, PixelType::float32, false);
     bench.measure("points_144", {"points", moved_points(settings.size)}, PixelType::float32, false);
+    bench.measure("stmap_step_1", as_stmap(mesh, settings.size), PixelType::float32, true);
+    const Row* stmap = report.find("stmap_step_1", "automatic", 0.01);
+    report.add_speed_target("warp stmap_step_1: x OpenCV remap, map given", 1 / 1.2,
+                            report.find("stmap_step_1", "opencv_remap"), stmap);
+    report.add_speed_target("warp stmap_step_1: x st_warp, triangle, map given", 1,
+                            report.find("stmap_step_1", "oiio_st_warp"), stmap);
     for (const std::string name : {"mesh_12", "mesh_12_u8"}) {
         const Row* own = report.find(name, "automatic", 1.0 / 16);
         const auto target = [&](double wanted, const char* scheme, const char* whom) {

@@ -33,40 +33,20 @@ LineWeights::LineWeights(std::span<const double> lines, double at) {
 
 namespace {
 
-/// The sum of weight i times at(i) for i in [begin, end).
-template <class At>
-Point<double> sum(const double* weights, int begin, int end, const At& at) {
-    Point<double> s{0, 0};
-    for (int i = begin; i < end; ++i) {
-        const Point<double>& p = at(i);
-        s.x += weights[i] * p.x;
-        s.y += weights[i] * p.y;
-    }
-    return s;
+auto vertices_of(const Mesh& mesh) {
+    return [&mesh](int column, int row) { return mesh.displacements(row)[column]; };
 }
 
 }  // namespace
 
 Point<double> lattice_point(const Mesh& mesh, const LineWeights& across, const LineWeights& down, double x,
                             double y) {
-    const Point<double> d = sum(down.value, down.begin, down.end, [&](int j) {
-        const Point<double>* row = mesh.displacements(down.first + j) + across.first;
-        return sum(across.value, across.begin, across.end,
-                   [&](int i) -> const Point<double>& { return row[i]; });
-    });
+    const Point<double> d = lattice_displacement(vertices_of(mesh), across, down);
     return {x * mesh.scale().x + d.x, y * mesh.scale().y + d.y};
 }
 
 Jacobian lattice_jacobian(const Mesh& mesh, const LineWeights& across, const LineWeights& down) {
-    const auto along = [&](const double* weights, int begin, int end) {
-        return [&mesh, &across, &down, weights, begin, end](int j) {
-            const Point<double>* row = mesh.displacements(down.first + j) + across.first;
-            return sum(weights, begin, end, [&](int i) -> const Point<double>& { return row[i]; });
-        };
-    };
-    const Point<double> by_x = sum(down.value, down.begin, down.end, along(across.slope, 0, 4)),
-                        by_y = sum(down.slope, 0, 4, along(across.value, across.begin, across.end));
-    return {mesh.scale().x + by_x.x, by_x.y, by_y.x, mesh.scale().y + by_y.y};
+    return lattice_jacobian(vertices_of(mesh), mesh.scale(), across, down);
 }
 
 }  // namespace anamorph

@@ -45,4 +45,44 @@ Point<double> lattice_point(const Mesh& mesh, const LineWeights& across, const L
 /// Its derivatives.
 Jacobian lattice_jacobian(const Mesh& mesh, const LineWeights& across, const LineWeights& down);
 
+namespace lattice_detail {
+
+/// The sum of weight i times at(i) for i in [begin, end).
+template <class At>
+Point<double> sum(const double* weights, int begin, int end, const At& at) {
+    Point<double> s{0, 0};
+    for (int i = begin; i < end; ++i) {
+        const Point<double> p = at(i);
+        s.x += weights[i] * p.x;
+        s.y += weights[i] * p.y;
+    }
+    return s;
+}
+
+}  // namespace lattice_detail
+
+/// The displacement of a lattice whose vertices are displaced by at(column, row).
+template <class At>
+Point<double> lattice_displacement(const At& at, const LineWeights& across, const LineWeights& down) {
+    using lattice_detail::sum;
+    return sum(down.value, down.begin, down.end, [&](int j) {
+        return sum(across.value, across.begin, across.end,
+                   [&](int i) { return at(across.first + i, down.first + j); });
+    });
+}
+/// The derivatives of its map, `scale` being those of the identity.
+template <class At>
+Jacobian lattice_jacobian(const At& at, const Point<double>& scale, const LineWeights& across,
+                          const LineWeights& down) {
+    using lattice_detail::sum;
+    const auto along = [&](const double* weights, int begin, int end) {
+        return [&at, &across, &down, weights, begin, end](int j) {
+            return sum(weights, begin, end, [&](int i) { return at(across.first + i, down.first + j); });
+        };
+    };
+    const Point<double> by_x = sum(down.value, down.begin, down.end, along(across.slope, 0, 4)),
+                        by_y = sum(down.slope, 0, 4, along(across.value, across.begin, across.end));
+    return {scale.x + by_x.x, by_x.y, by_y.x, scale.y + by_y.y};
+}
+
 }  // namespace anamorph

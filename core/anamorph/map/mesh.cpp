@@ -291,10 +291,10 @@ Mesh::Mesh(const ControlMesh& mesh, const Size& from, const Size& to, double amo
     check_count(name, "columns", mesh.columns, 1, ControlMesh::kMaxCells);
     check_count(name, "rows", mesh.rows, 1, ControlMesh::kMaxCells);
     const int across = mesh.columns + 1, down = mesh.rows + 1;
-    if (mesh.vertices.size() != static_cast<std::size_t>(across) * static_cast<std::size_t>(down))
-        throw Error(name + ": vertices", std::to_string(mesh.vertices.size()) + " positions",
+    if (mesh.vertex_count() != static_cast<std::size_t>(across) * static_cast<std::size_t>(down))
+        throw Error(name + ": vertices", std::to_string(mesh.vertex_count()) + " positions",
                     "must be " + std::to_string(across) + " x " + std::to_string(down));
-    check_count(name, "vertices", static_cast<double>(mesh.vertices.size()), 4, ControlMesh::kMaxVertices);
+    check_count(name, "vertices", static_cast<double>(mesh.vertex_count()), 4, ControlMesh::kMaxVertices);
     check_count(name, "levels", static_cast<double>(mesh.levels.size()), 0, ControlMesh::kMaxLevels);
     if (!std::isfinite(amount)) throw Error("amount", text_of(amount), "must be a finite number");
     m_scale = {static_cast<double>(to.width) / from.width, static_cast<double>(to.height) / from.height};
@@ -310,11 +310,11 @@ Mesh::Mesh(const ControlMesh& mesh, const Size& from, const Size& to, double amo
     // Displacements at the given vertices, then at the lines added around them.
     m_values.resize(m_x.size() * m_y.size());
     m_value_errors.resize(m_values.size());
-    auto given = mesh.vertices.begin();
+    std::size_t given = 0;
     for (int r = before_y; r < before_y + down; ++r)
         for (int c = before_x; c < before_x + across; ++c)
             set_value(c, r,
-                      displacement(*given++, mesh.units, m_x[static_cast<std::size_t>(c)],
+                      displacement(mesh.vertex(given++), mesh.units, m_x[static_cast<std::size_t>(c)],
                                    m_y[static_cast<std::size_t>(r)], amount,
                                    [&] { return name + ": vertex " + text_of(c - before_x, r - before_y); }));
     extend(before_x, before_y, across, down);

@@ -7,6 +7,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <string>
 #include <variant>
 #include <vector>
@@ -22,6 +23,12 @@ enum class Units { pixels, fractions };
 /// the mesh lies in the source image, and its vertices, which one drags, say where in the target they go.
 enum class Direction { pull, push };
 
+/// The pixels of an ST-map: u and v of each, in fractions, row by row from the top left.
+struct StSamples {
+    std::vector<float> uv;
+    double most = 0;  ///< the largest magnitude of any of them
+};
+
 /// A rectangular mesh of columns x rows cells, any of which may be subdivided into four, to any depth.
 struct ControlMesh {
     static constexpr int kMaxCells = 8192;        ///< columns and rows, each
@@ -36,6 +43,14 @@ struct ControlMesh {
     int columns = 1, rows = 1;
     /// (columns + 1) (rows + 1) of them, row by row from the top left.
     std::vector<Point<double>> vertices;
+    /// The same as an ST-map that is taken pixel for pixel has it; then `vertices` is empty.
+    std::shared_ptr<const StSamples> samples;
+    /// Vertices that are given, in `vertices` or in `samples`.
+    std::size_t vertex_count() const { return samples ? samples->uv.size() / 2 : vertices.size(); }
+    /// Vertex i of level 0, from the top left.
+    Point<double> vertex(std::size_t i) const {
+        return samples ? Point<double>{samples->uv[2 * i], samples->uv[2 * i + 1]} : vertices[i];
+    }
     /// Where the lines of the mesh stand: columns + 1 and rows + 1 ascending positions. When empty, the
     /// lines are spread evenly from edge to edge of the image. Between the outermost lines and the edges
     /// the map goes on linearly.

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "anamorph/json_file.h"
+#include "anamorph/simd/sample_rows.h"
 
 namespace anamorph {
 namespace {
@@ -213,20 +214,11 @@ WarpMap parse_warp_file(std::string_view text, std::string_view name) {
     return text_file::ends_with(name, ".csv") ? parse_points_csv(text, name) : parse_mesh_json(text, name);
 }
 
-WarpMap mesh_from_stmap(const float* uv, int width, int height, std::ptrdiff_t pixel_stride,
-                        std::ptrdiff_t row_stride, int step, std::string_view name) {
-    if (width < 2 || height < 2)
-        throw Error(excerpt(name), std::to_string(width) + "x" + std::to_string(height),
-                    "an ST-map has at least 2 pixels either way");
-    if (step < 1) throw Error("step", std::to_string(step), "must be an integer of at least 1");
-    // Every step-th pixel, and the last.
-    const auto taken = [&](int size) {
-        std::vector<int> pixels;
-        for (std::int64_t i = 0; i < size - 1; i += step) pixels.push_back(static_cast<int>(i));
-        pixels.push_back(size - 1);
-        return pixels;
-    };
-    const std::vector<int> columns = taken(width), rows = taken(height);
+namespace {
+
+/// The mesh of some columns and rows of an ST-map, but for its vertices.
+ControlMesh stmap_lines(int width, int height, const std::vector<int>& columns, const std::vector<int>& rows,
+                        std::string_view name) {
     ControlMesh mesh;
     mesh.units = Units::fractions;
     mesh.width = width;
@@ -241,15 +233,64 @@ WarpMap mesh_from_stmap(const float* uv, int width, int height, std::ptrdiff_t p
                         std::to_string(ControlMesh::kMaxCells) + " cells either way: take a larger step");
     for (const int x : columns) mesh.x_lines.push_back((x + 0.5) / width);
     for (const int y : rows) mesh.y_lines.push_back((y + 0.5) / height);
+    return mesh;
+}
+
+/// Every step-th pixel of a row, and the last.
+std::vector<int> pixels_taken(int size, int step) {
+    std::vector<int> pixels;
+    for (std::int64_t i = 0; i < size - 1; i += step) pixels.push_back(static_cast<int>(i));
+    pixels.push_back(size - 1);
+    return pixels;
+}
+
+void check_stmap(int width, int height, int step, std::string_view name) {
+    if (width < 2 || height < 2)
+        throw Error(excerpt(name), std::to_string(width) + "x" + std::to_string(height),
+                    "an ST-map has at least 2 pixels either way");
+    if (step < 1) throw Error("step", std::to_string(step), "must be an integer of at least 1");
+}
+
+void check_finite(const float* at, int x, int y, std::string_view name) {
+    if (!std::isfinite(at[0]) || !std::isfinite(at[1]))
+        throw Error(excerpt(name) + ": pixel [" + std::to_string(x) + ", " + std::to_string(y) + "]",
+                    std::to_string(at[0]) + "," + std::to_string(at[1]), "must be finite numbers");
+}
+
+}  // namespace
+
+WarpMap mesh_from_stmap(const float* uv, int width, int height, std::ptrdiff_t pixel_stride,
+                        std::ptrdiff_t row_stride, int step, std::string_view name) {
+    check_stmap(width, height, step, name);
+    const std::vector<int> columns = pixels_taken(width, step), rows = pixels_taken(height, step);
+    ControlMesh mesh = stmap_lines(width, height, columns, rows, name);
     mesh.vertices.reserve(columns.size() * rows.size());
     for (const int y : rows)
         for (const int x : columns) {
             const float* at = uv + y * row_stride + x * pixel_stride;
-            if (!std::isfinite(at[0]) || !std::isfinite(at[1]))
-                throw Error(excerpt(name) + ": pixel [" + std::to_string(x) + ", " + std::to_string(y) + "]",
-                            std::to_string(at[0]) + "," + std::to_string(at[1]), "must be finite numbers");
+            check_finite(at, x, y, name);
             mesh.vertices.push_back({at[0], at[1]});
         }
+    return {excerpt(name), std::move(mesh)};
+}
+
+WarpMap mesh_from_stmap(std::vector<float> uv, int width, int height, std::string_view name) {
+    check_stmap(width, height, 1, name);
+    ControlMesh mesh = stmap_lines(width, height, pixels_taken(width, 1), pixels_taken(height, 1), name);
+    const std::size_t numbers = 2 * static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
+    if (uv.size() != numbers)
+        throw Error(excerpt(name), std::to_string(uv.size()) + " numbers",
+                    "must be " + std::to_string(numbers));
+    simd::SampleRange range;
+    simd::extend_range(uv.data(), static_cast<std::ptrdiff_t>(numbers / 2), range);
+    // Which one it is takes longer to find.
+    if (!(range.most() < HUGE_VAL))
+        for (int y = 0; y < height; ++y)
+            for (int x = 0; x < width; ++x)
+                check_finite(&uv[2 * (static_cast<std::size_t>(y) * static_cast<std::size_t>(width) +
+                                      static_cast<std::size_t>(x))],
+                             x, y, name);
+    mesh.samples = std::make_shared<StSamples>(StSamples{std::move(uv), range.most()});
     return {excerpt(name), std::move(mesh)};
 }
 

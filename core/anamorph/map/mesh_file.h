@@ -29,6 +29,7 @@
 
 #include <cstddef>
 #include <string_view>
+#include <vector>
 
 #include "anamorph/map/mesh_data.h"
 
@@ -47,5 +48,7 @@ WarpMap parse_warp_file(std::string_view text, std::string_view name);
 /// floats apart. Every `step`-th pixel is taken, and the last of each row and column; 1 takes all.
 WarpMap mesh_from_stmap(const float* uv, int width, int height, std::ptrdiff_t pixel_stride,
                         std::ptrdiff_t row_stride, int step, std::string_view name);
+/// The same of every pixel of an ST-map of two channels, without gaps, which it keeps.
+WarpMap mesh_from_stmap(std::vector<float> uv, int width, int height, std::string_view name);
 
 }  // namespace anamorph

@@ -135,7 +135,8 @@ WarpMap read_stmap(const std::string& name, int step, const SideFileReader& read
         throw Error("step", std::to_string(step),
                     what + " of " + shape + " makes too many vertices: must make at most " +
                         std::to_string(ControlMesh::kMaxVertices));
-    const std::vector<float> uv = image->read(2);
+    std::vector<float> uv = image->read(2);
+    if (step == 1) return mesh_from_stmap(std::move(uv), size.width, size.height, name);
     return mesh_from_stmap(uv.data(), size.width, size.height, 2, std::ptrdiff_t{2} * size.width, step, name);
 }
 

@@ -5,6 +5,7 @@
 
 #include "anamorph/approx/inverse.h"
 #include "anamorph/approx/mesh_scattered.h"
+#include "anamorph/approx/stmap_plan.h"
 #include "anamorph/render/strips.h"
 
 namespace anamorph {
@@ -19,6 +20,9 @@ std::unique_ptr<const WarpPlan> make_plan(const WarpMap& map, const Size& source
     if (mesh.direction == Direction::push)
         return std::make_unique<InversePlan>(Mesh(mesh, source, target, options.amount, map.name),
                                              options.scheme, options.tol, map.name);
+    if (StMapPlan::serves(mesh, target))
+        return std::make_unique<StMapPlan>(mesh, target, source, options.amount, options.scheme, options.tol,
+                                           map.name);
     return std::make_unique<MeshPlan>(Mesh(mesh, target, source, options.amount, map.name), options.scheme,
                                       options.tol);
 }
