@@ -46,6 +46,7 @@
 #include "anamorph/operation/side_files.h"
 #include "anamorph/parallel_for.h"
 #include "anamorph/parameter.h"
+#include "anamorph/projector/occluders.h"
 #include "anamorph/projector/projected_triangles.h"
 #include "anamorph/projector/projector.h"
 #include "anamorph/render/border.h"

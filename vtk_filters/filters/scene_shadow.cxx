@@ -1,16 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "scene_shadow.h"
 
-#include <algorithm>
 #include <cmath>
 
 #include "vtkCellArray.h"
-#include "vtkGenericCell.h"
 #include "vtkMultiProcessController.h"
-#include "vtkNew.h"
-#include "vtkPoints.h"
 #include "vtkPolyData.h"
-#include "vtkStaticCellLocator.h"
 
 namespace anamorph_vtk {
 
@@ -46,37 +41,6 @@ TriangleList of_all_ranks(const TriangleList& own, vtkMultiProcessController* co
     controller->AllGatherV(&mine[0].x, &all[0].x, count, counts.data(), offsets.data());
     all.pop_back();
     return all;
-}
-
-SceneShadow::SceneShadow(const TriangleList& triangles, const glm::dvec3& projector)
-    : m_projector(projector), m_mesh(vtkSmartPointer<vtkPolyData>::New()) {
-    if (triangles.empty()) return;
-    vtkNew<vtkPoints> points;
-    points->SetDataTypeToDouble();
-    points->SetNumberOfPoints(static_cast<vtkIdType>(triangles.size()));
-    vtkNew<vtkCellArray> cells;
-    for (std::size_t i = 0; i < triangles.size(); ++i) {
-        const auto id = static_cast<vtkIdType>(i);
-        points->SetPoint(id, &triangles[i].x);
-        if (i % 3 == 0) cells->InsertNextCell({id, id + 1, id + 2});
-    }
-    m_mesh->SetPoints(points);
-    m_mesh->SetPolys(cells);
-    m_locator = vtkSmartPointer<vtkStaticCellLocator>::New();
-    m_locator->SetDataSet(m_mesh);
-    m_locator->BuildLocator();
-}
-
-SceneShadow::~SceneShadow() = default;
-
-bool SceneShadow::hides(const glm::dvec3& point) const {
-    if (!m_locator) return false;
-    const glm::dvec3 end = point - (point - m_projector) * kTouching;
-    vtkNew<vtkGenericCell> cell;
-    double t = 0, x[3], parameters[3];
-    int part = 0;
-    vtkIdType hit = -1;
-    return m_locator->IntersectWithLine(&m_projector.x, &end.x, 0, t, x, parameters, part, hit, cell) != 0;
 }
 
 }  // namespace anamorph_vtk

@@ -199,7 +199,7 @@ struct vtkAnamorphPanoramaProjection::Run {
     vtkAnamorphPanoramaProjection& filter;
     anamorph_vtk::Execution execution{&filter};
     std::vector<vtkSmartPointer<vtkPolyData>> scene = {}, painted = {}, rest = {};
-    std::optional<anamorph_vtk::SceneShadow> shadow = {};
+    std::optional<anamorph::Occluders> shadow = {};
     std::unique_ptr<anamorph::ScenePainter> painter = {};
 
     void take_scene(vtkDataObject* input, vtkDataObject* occluders);
@@ -263,7 +263,7 @@ void vtkAnamorphPanoramaProjection::Run::make_painter() {
     for (vtkPolyData* mesh : scene)
         options.single =
             options.single || (mesh->GetPoints() && mesh->GetPoints()->GetDataType() == VTK_FLOAT);
-    if (shadow) options.hidden = [this](const glm::dvec3& point) { return shadow->hides(point); };
+    if (shadow) options.occluders = &*shadow;
     painter = std::make_unique<anamorph::ScenePainter>(projector, options);
 }
 

@@ -18,9 +18,10 @@
  * copied; lines and vertices are dropped.
  *
  * With Occlusion, what lies behind something else as seen by the projector is not painted: the input hides itself, and so
- * does what comes in on the second input. A ray to every corner tells; sides with one end in a shadow are cut down to a
- * texel, and a triangle is painted if all of its corners are lit. What is smaller than the triangles may be missed. What is
- * nearer to a point than 2^-16 of its distance does not hide it.
+ * does what comes in on the second input. Triangles are cut along the borders of shadows and at their corners, wherever they
+ * lie in a cell, however small they are: what is left on the wrong side is narrower than an eighth of Tolerance, or of a texel
+ * if that is less. Where borders of many shadows meet, what is smaller than Tolerance or a texel is not divided and counts as
+ * hidden. What is nearer to a point than 2^-16 of its distance does not hide it.
  *
  * Field arrays on both outputs: "anamorph:tol"; "anamorph:max_error", the largest bound in use, in texels;
  * "anamorph:no_direction", the number of triangles without one. They count what this rank has of a leaf.

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "anamorph/projector/edge_rule.h"
 
+#include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
-#include <optional>
+#include <glm/vec2.hpp>
+#include <numbers>
 
 namespace anamorph {
 namespace {
@@ -12,73 +14,152 @@ using IntervalJet = Jet2<Interval>;
 
 // What a handful of roundings may take from a bound that is made of a few operations.
 constexpr double kHair = 1 + 1e-9;
-// Wider balls are not worth a bound.
+// Wider cones are not worth a bound.
 constexpr double kWidest = 0.5;
 
 Ray<double> ray_of(const glm::dvec3& v) {
     return {v.x, v.y, v.z};
 }
 
-/// What is read of the panorama over a cone of rays: (c + s e_1 + t e_2) for |s|, |t| <= rho.
+/// All rays within a tangent of `rho` of the middle of some.
 class Cone {
   public:
-    Cone(const glm::dvec3& middle, double rho) : m_c(glm::normalize(middle)), m_rho(rho * kHair) {
-        const glm::dvec3 other = std::fabs(m_c.y) < 0.5 ? glm::dvec3(0, 1, 0) : glm::dvec3(1, 0, 0);
-        m_e = glm::normalize(glm::cross(other, m_c));
-        m_f = glm::cross(m_c, m_e);
+    explicit Cone(const std::array<glm::dvec3, 3>& rays) {
+        std::array<glm::dvec3, 3> units;
+        for (std::size_t i = 0; i < 3; ++i) m_c += units[i] = glm::normalize(rays[i]);
+        m_c = glm::normalize(m_c);
+        for (const glm::dvec3& u : units) {
+            const double along = glm::dot(u, m_c);
+            const double off = along > 0 ? glm::length(u - along * m_c) / along : HUGE_VAL;
+            if (!(off <= m_rho)) m_rho = off;
+        }
+        m_rho *= kHair;
     }
 
     const glm::dvec3& middle() const { return m_c; }
+    double rho() const { return m_rho; }
 
-    /// The rays turned by a matrix, with derivatives along e_1 and e_2.
-    Ray<IntervalJet> jets(const glm::dmat3& turn) const {
-        const glm::dvec3 c = turn * m_c, e = turn * m_e, f = turn * m_f;
-        const Interval off(-m_rho, m_rho);
+  private:
+    glm::dvec3 m_c{0.0};
+    double m_rho = 0;
+};
+
+/// A triangle of rays from the middle of its longest side's opposite corner: r = origin + s e + t f. It is an edge where e
+/// and f are along it.
+struct RayTriangle {
+    std::array<glm::dvec3, 3> rays;
+    glm::dvec3 e, f;
+
+    explicit RayTriangle(const std::array<glm::dvec3, 3>& corners) : rays(corners) {
+        std::size_t top = 0;
+        double most = -1;
+        for (std::size_t i = 0; i < 3; ++i) {
+            const double side = glm::length(corners[(i + 1) % 3] - corners[(i + 2) % 3]);
+            if (side > most) most = side, top = i;
+        }
+        e = corners[(top + 1) % 3] - corners[top];
+        f = corners[(top + 2) % 3] - corners[top];
+    }
+
+    /// All of its rays turned by a matrix, with derivatives along e and f. What is as near to a plane of axes as
+    /// `on_plane` of a ray lies in it. The box about them is larger by `wider`.
+    Ray<IntervalJet> jets(const glm::dmat3& turn, double on_plane, double wider) const {
+        std::array<glm::dvec3, 3> r;
+        double size = 0;
+        for (std::size_t i = 0; i < 3; ++i) {
+            r[i] = turn * rays[i];
+            size = std::max(size, glm::length(r[i]));
+        }
+        const glm::dvec3 along = turn * e, across = turn * f;
         IntervalJet part[3];
         for (int i = 0; i < 3; ++i) {
-            // The frame is off by a few roundings of 1.
-            part[i].c[0] = Interval(c[i]) + off * e[i] + off * f[i] + Interval(-kFrame, kFrame);
-            part[i].c[1] = Interval(e[i] - kFrame, e[i] + kFrame);
-            part[i].c[2] = Interval(f[i] - kFrame, f[i] + kFrame);
+            // The frame is off by a few roundings of the largest.
+            const double hair = 64 * 0x1p-53 * size;
+            double low = std::min({r[0][i], r[1][i], r[2][i]}) - hair;
+            double high = std::max({r[0][i], r[1][i], r[2][i]}) + hair;
+            const double more = wider * (high - low);
+            if (low < 0 && low >= -on_plane * size) low = 0;
+            if (high > 0 && high <= on_plane * size) high = std::max(0.0, low);
+            if (low != 0) low -= more;
+            if (high != 0) high += more;
+            part[i].c[0] = {std::min(low, high), high};
+            part[i].c[1] = {along[i] - hair, along[i] + hair};
+            part[i].c[2] = {across[i] - hair, across[i] + hair};
         }
         return {part[0], part[1], part[2]};
     }
-
-    /// Whether v . r may be positive for one of the rays.
-    bool may_be_above(const glm::dvec3& v) const {
-        return glm::dot(v, m_c) + glm::length(v) * (m_rho + kFrame) >= 0;
-    }
-
-  private:
-    static constexpr double kFrame = 64 * 0x1p-53;
-    glm::dvec3 m_c, m_e, m_f;
-    double m_rho;
 };
 
-/// Bounds of the first and second derivatives of a jet, along any unit vector.
-struct Slopes {
-    double first, second;
+/// Eq. (2) for one coordinate: its form at the corners, and what it may be off anywhere.
+struct Bend {
+    double e, f, g;  ///< twice the form of e, f and their difference
+    double off;
 };
-Slopes slopes_of(const IntervalJet& jet) {
-    const double ss = 2 * magnitude(jet.c[3]), st = magnitude(jet.c[4]), tt = 2 * magnitude(jet.c[5]);
-    return {std::hypot(magnitude(jet.c[1]), magnitude(jet.c[2])), std::max(ss, tt) + st};
+Bend bend_of(const IntervalJet& jet) {
+    const Interval ee = jet.c[3] * 2.0, ef = jet.c[4], ff = jet.c[5] * 2.0;
+    const auto middle = [](const Interval& i) { return 0.5 * i.lo + 0.5 * i.hi; };
+    const auto radius = [&](const Interval& i) { return std::max(i.hi - middle(i), middle(i) - i.lo); };
+    return {middle(ee), middle(ff), middle(ee) + middle(ff) - 2 * middle(ef),
+            (radius(ee) + 2 * radius(ef) + radius(ff)) / 8};
 }
 
-/// What is read over a cone: whether it is all beside the panorama, and bounds of derivatives where there are any.
+/// The most of (l_0 l_1 e + l_0 l_2 f + l_1 l_2 g) / 2 and of its negative over all weights: at the middle of a side, or
+/// where its derivatives are 0.
+double most_within(double e, double f, double g) {
+    double most = std::max({std::fabs(e), std::fabs(f), std::fabs(g)}) / 8;
+    const double a = g * (e + f - g), b = f * (e + g - f), c = e * (f + g - e), sum = a + b + c;
+    // The weights of the stationary point are as a : b : c.
+    if (a * sum > 0 && b * sum > 0 && c * sum > 0) {
+        const double l0 = a / sum, l1 = b / sum, l2 = c / sum;
+        most = std::max(most, std::fabs(l0 * l1 * e + l0 * l2 * f + l1 * l2 * g) / 2);
+    }
+    return most;
+}
+
+/// A bound of what interpolation is off across a triangle, by eq. (2).
+double bound_of(const Point<IntervalJet>& p) {
+    const Bend x = bend_of(p.x), y = bend_of(p.y);
+    // A vector is no longer than its parts in directions that are 22.5 degrees apart say.
+    constexpr int kDirections = 8;
+    double most = 0;
+    for (int i = 0; i < kDirections; ++i) {
+        const double angle = std::numbers::pi * i / kDirections, c = std::cos(angle), s = std::sin(angle);
+        most = std::max(most, most_within(c * x.e + s * y.e, c * x.f + s * y.f, c * x.g + s * y.g));
+    }
+    const double sum = most / std::cos(std::numbers::pi / (2 * kDirections)) + std::hypot(x.off, y.off);
+    return sum * kHair;
+}
+
+/// Times a power of 2, so that the longest part is from 1 to 2. False where a ray has no direction then.
+bool to_common_scale(std::array<glm::dvec3, 3>& rays) {
+    double most = 0;
+    for (const glm::dvec3& r : rays) most = std::max({most, std::fabs(r.x), std::fabs(r.y), std::fabs(r.z)});
+    if (!(most > 0 && most < HUGE_VAL)) return false;
+    const int exponent = -std::ilogb(most);
+    for (glm::dvec3& r : rays) {
+        r = {std::ldexp(r.x, exponent), std::ldexp(r.y, exponent), std::ldexp(r.z, exponent)};
+        if (!(glm::length(r) > 0)) return false;
+    }
+    return true;
+}
+
+/// What is read over a triangle: whether it is all beside the panorama, and a bound where there is one.
 struct Reading {
     bool outside = false, smooth = false;
-    Slopes x{}, y{};
+    double bound = 0;
 };
 
 bool beside(const Interval& range, double size) {
     return range.hi < 0 || range.lo > size;
 }
 
-Reading read(const Chart& chart, const Cone& cone, const Branch& branch) {
-    const Ray<IntervalJet> local = cone.jets(glm::transpose(branch.axes));
+Reading read(const Chart& chart, const RayTriangle& triangle, const Branch& branch, double on_plane,
+             double wider) {
+    const bool faces = chart.pieces().size() > 1;
+    const Ray<IntervalJet> local = triangle.jets(glm::transpose(branch.axes), faces ? on_plane : 0, wider);
     const Ray<Interval> range{local.x.c[0], local.y.c[0], local.z.c[0]};
     Reading reading;
-    if (chart.pieces().size() == 1 && chart.sees(range, branch.piece).hi < 0) {
+    if (!faces && chart.sees(range, branch.piece).hi < 0) {
         reading.outside = true;
         return reading;
     }
@@ -87,30 +168,10 @@ Reading read(const Chart& chart, const Cone& cone, const Branch& branch) {
     const bool one_branch = chart.counted() != Counted::azimuth || range.z.lo > 0;
     reading.outside = one_branch && ((!chart.closed() && beside(p.x.c[0], chart.width())) ||
                                      beside(p.y.c[0], chart.height()));
-    reading.x = slopes_of(p.x);
-    reading.y = slopes_of(p.y);
-    const double sum = reading.x.first + reading.x.second + reading.y.first + reading.y.second;
-    const bool seen = chart.pieces().size() > 1 || chart.sees(range, branch.piece).lo > 0;
-    reading.smooth = one_branch && seen && std::isfinite(sum);
+    const bool seen = faces || chart.sees(range, branch.piece).lo > 0;
+    reading.bound = bound_of(p);
+    reading.smooth = one_branch && seen && std::isfinite(reading.bound);
     return reading;
-}
-
-/// The branches that rays of a cone may be read on: of each piece that they may meet, and sides of creases.
-std::vector<Branch> branches_over(const Chart& chart, const Cone& cone) {
-    const Ray<double> middle = ray_of(cone.middle());
-    if (chart.pieces().size() == 1) return {chart.branch_around(middle)};
-    const int best = chart.piece_of(middle);
-    std::vector<Branch> branches;
-    for (int i = 0; i < static_cast<int>(chart.pieces().size()); ++i) {
-        const auto& pieces = chart.pieces();
-        const glm::dvec3 toward =
-            pieces[static_cast<std::size_t>(i)].toward - pieces[static_cast<std::size_t>(best)].toward;
-        if (i == best)
-            branches.push_back(chart.branch_around(middle));
-        else if (cone.may_be_above(toward))
-            branches.push_back(chart.branch(i));
-    }
-    return branches;
 }
 
 }  // namespace
@@ -158,32 +219,63 @@ std::vector<std::size_t> EdgeRule::faces_at(const glm::dvec3& ray) const {
     return faces;
 }
 
-EdgeFinding EdgeRule::judge_ball(const glm::dvec3& centre, double radius, double edge) const {
-    const double distance = glm::length(centre);
-    const double rho = radius / std::sqrt(std::max(0.0, (distance - radius) * (distance + radius))) * kHair;
-    if (!(rho <= kWidest)) return {EdgeVerdict::split};
+std::vector<Branch> EdgeRule::branches(const glm::dvec3& a, const glm::dvec3& b) const {
     const Chart& chart = m_projector.panorama();
-    const Cone cone(centre, rho);
+    const glm::dvec3 middle = 0.5 * (a + b);
+    std::vector<Branch> found;
+    if (chart.pieces().size() == 1)
+        found.push_back(branch_between({a, b, b}, middle));
+    else
+        for (const std::size_t face : faces_at(middle)) {
+            const int piece = static_cast<int>(face);
+            found.push_back(piece == chart.piece_of(ray_of(middle)) ? chart.branch_around(ray_of(middle))
+                                                                    : chart.branch(piece));
+        }
+    return found;
+}
+
+Branch EdgeRule::branch_between(const std::array<glm::dvec3, 3>& rays, const glm::dvec3& middle) const {
+    const Chart& chart = m_projector.panorama();
+    if (chart.counted() != Counted::azimuth) return chart.branch_around(ray_of(middle));
+    // Half way between the azimuths that are farthest apart: part of an edge is then never farther from it than all.
+    glm::dvec2 azimuths[3], half(0.0);
+    double least = HUGE_VAL;
+    for (std::size_t i = 0; i < 3; ++i) {
+        const double size = std::hypot(rays[i].x, rays[i].z);
+        azimuths[i] = size > 0 ? glm::dvec2(rays[i].x, rays[i].z) / size : glm::dvec2(0.0);
+    }
+    for (std::size_t i = 0; i < 3; ++i) {
+        const glm::dvec2 &p = azimuths[i], &q = azimuths[(i + 1) % 3];
+        if (glm::dot(p, q) >= least) continue;
+        least = glm::dot(p, q);
+        half = p + q;
+    }
+    return chart.branch_around(Ray<double>{half.x, 0, half.y});
+}
+
+EdgeFinding EdgeRule::judge_rays(std::array<glm::dvec3, 3> rays, const std::vector<Branch>& branches,
+                                 double share, double wider) const {
+    const Chart& chart = m_projector.panorama();
+    if (!to_common_scale(rays)) return {EdgeVerdict::split};
+    const Cone cone(rays);
+    if (!(cone.rho() <= kWidest)) return {EdgeVerdict::split};
     // Directions in the cone have no more forward than that of its middle and rho.
-    if (cone.middle().z + rho < m_projector.least_forward() - 1e-9) return {EdgeVerdict::outside};
-    const double near = (distance - radius) / kHair;
-    const double turned = std::sqrt(1 + rho * rho) / near, bent = (1 + 2 * rho) / (near * near);
+    if (cone.middle().z + cone.rho() < m_projector.least_forward() - 1e-9) return {EdgeVerdict::outside};
+    const RayTriangle triangle(rays);
     bool outside = true, smooth = true;
     double most = 0;
-    for (const Branch& branch : branches_over(chart, cone)) {
-        const Reading reading = read(chart, cone, branch);
+    for (const Branch& branch : branches) {
+        const Reading reading = read(chart, triangle, branch, m_on_plane, wider);
         if (reading.outside) continue;
         outside = false;
         smooth = smooth && reading.smooth;
-        // Eq. (2), then (1).
-        const auto off = [&](const Slopes& s) {
-            return (s.second * turned * turned + s.first * bent) * edge * edge / 6;
-        };
-        most = std::max(most, std::hypot(off(reading.x), off(reading.y)) * kHair);
+        most = std::max(most, reading.bound);
     }
     if (outside) return {EdgeVerdict::outside};
-    if (smooth && most <= m_tol) return {EdgeVerdict::bounded, most};
-    if (4 * rho * chart.pixels_per_radian() <= m_tol) return {EdgeVerdict::tiny};
+    if (smooth && most <= share * m_tol) return {EdgeVerdict::bounded, most};
+    // Faces have no poles, and more texels to a radian at their corners.
+    const double reach = chart.pieces().size() > 1 ? 16 : 4;
+    if (reach * cone.rho() * chart.pixels_per_radian() <= share * m_tol) return {EdgeVerdict::tiny};
     return {EdgeVerdict::split};
 }
 
@@ -193,9 +285,36 @@ EdgeFinding EdgeRule::judge(const glm::dvec3& a, const glm::dvec3& b) const {
     if (!(edge < HUGE_VAL)) return {};
     const double at = crossing(from, to);
     if (at > 0) return edge > m_smallest ? EdgeFinding{EdgeVerdict::cut, 0, at} : EdgeFinding{};
-    const EdgeFinding found = judge_ball(0.5 * (from + to), std::sqrt(0.75) * edge * kHair, edge * kHair);
+    const EdgeFinding found = judge_rays({from, to, from}, branches(from, to), kShare, kWider);
     if (found.verdict == EdgeVerdict::split && !(edge > m_smallest)) return {};
     return found;
+}
+
+EdgeFinding EdgeRule::judge(const std::array<glm::dvec3, 3>& corners) const {
+    std::array<glm::dvec3, 3> rays;
+    for (std::size_t i = 0; i < 3; ++i) rays[i] = m_projector.ray(corners[i]);
+    return judge_rays(rays, {branch_between(rays, middle_of(rays))}, 1, 0);
+}
+
+std::optional<glm::dvec3> EdgeRule::axis_in(const std::array<glm::dvec3, 3>& corners) const {
+    if (m_projector.panorama().counted() != Counted::azimuth) return {};
+    std::array<glm::dvec3, 3> rays;
+    for (std::size_t i = 0; i < 3; ++i) rays[i] = m_projector.ray(corners[i]);
+    if (!to_common_scale(rays)) return {};
+    // Weights by areas as seen along the axis.
+    glm::dvec3 weights;
+    for (std::size_t i = 0; i < 3; ++i) {
+        const glm::dvec3 &p = rays[(i + 1) % 3], &q = rays[(i + 2) % 3];
+        weights[static_cast<int>(i)] = p.x * q.z - p.z * q.x;
+    }
+    weights /= weights.x + weights.y + weights.z;
+    for (int i = 0; i < 3; ++i)
+        if (!(weights[i] > 1e-9)) return {};
+    return weights;
+}
+
+glm::dvec3 EdgeRule::middle_of(const std::array<glm::dvec3, 3>& rays) {
+    return scaled_ray(rays[0] / 3.0 + rays[1] / 3.0 + rays[2] / 3.0);
 }
 
 }  // namespace anamorph

@@ -1,49 +1,53 @@
 // SPDX-License-Identifier: Apache-2.0
 // Whether an edge of a scene that receives a panorama (projector.h) is short enough, by the edge alone: neighbours that
-// share an edge split it in the same places, whatever process or thread they are in, and no crack opens between them.
+// share an edge split it in the same places, whatever process or thread they are in, and no crack opens between them. And
+// what is proven of a triangle with such sides.
 //
 // Texture coordinates are interpolated linearly in space (what a rasterizer does with perspective correction). Let F be the
-// map from space to the panorama, q = sum l_i q_i a point of a flat triangle whose longest side is h, and K a bound of
-// |F''[d, d]| for all unit vectors d wherever the triangle is. Taylor's formula about q gives
-//     |sum l_i F(q_i) - F(q)| <= K/2 sum l_i |q_i - q|^2 = K/2 sum_(i<j) l_i l_j |q_i - q_j|^2 <= K h^2 / 6,           (1)
-// as sum_(i<j) l_i l_j <= 1/3. All of the triangle is no farther than h from both ends of its longest side, and so no
-// farther than R = sqrt(3)/2 h from its middle: K is bounded over that ball, and then (1) holds for every triangle that has
-// this edge as its longest one.
+// map from space to the panorama, q = sum l_i q_i a point of a flat triangle. Taylor's formula about q gives
+//     sum l_i F(q_i) - F(q) = sum l_i A_i[q_i - q, q_i - q] / 2,                                                          (1)
+// where A_i is a mean of F'' on the way from q to q_i. Let H be any form within which F'' differs by a form D at most,
+// wherever the triangle is. As sum l_i H[q_i - q, q_i - q] = sum_(i<j) l_i l_j H[q_i - q_j, q_i - q_j], the length of (1) is
+//     | sum_(i<j) l_i l_j H[q_i - q_j, q_i - q_j] | / 2 + sum l_i D_i[q_i - q, q_i - q] / 2.                              (2)
+// The formula is read as a jet of intervals (number/jet.h) over a box about the triangle, along its shorter sides e and f,
+// with q = q_0 + s e + t f: that gives F''[e, e], F''[e, f], F''[f, f] as intervals, H by their middles and D by half their
+// widths. The first sum of (2) is largest at the middle of a side or where its derivatives are 0. In the second one, the mean
+// of (s_i - s)^2 is l_1 (1 - l_1) <= 1/4, that of (t_i - t)^2 too, and that of their product is no more by Cauchy and Schwarz:
+// it is (D_ee + 2 D_ef + D_ff) / 8 at most.
 //
-// F depends on the direction alone. With unit vectors e_1, e_2 across the way to the middle of the ball, which is D away,
-// a point at z along that way and (X, Y) across it has the direction of (p, 1), p = (X, Y) / z, and F(q) = G(p). G is read
-// as a jet of intervals (number/jet.h) over |p| <= rho = R / sqrt(D^2 - R^2). Along d = (d_p, d_z), with z >= D - R,
-//     p' = (d_p - p d_z) / z,  |p'| <= sqrt(1 + rho^2) / (D - R),
-//     p'' = -2 p' d_z / z,     |p''| <= (1 + 2 rho) / (D - R)^2,   as |d_p d_z| <= 1/2,
-//     |F''[d, d]| <= |G''| |p'|^2 + |G'| |p''|.                                                                        (2)
+// An edge is judged as the triangle that it is when two corners fall together, by a share of the tolerance. Triangles with
+// such sides mostly hold it, as they have little more in their middle; those that do not are split within.
 //
-// Where G has no such bound (at poles and axes), edges are split until what they may be off as directions, 4 rho at most
-// in a fan of triangles about a pole, is less than the tolerance at the panorama's middle.
+// Where F'' has no such bound (at poles and axes), edges are split until what they may be off as directions, 4 rho at most
+// in a fan of triangles about a pole within a tangent of rho, is less than the tolerance at the panorama's middle.
 //
 // Seams, borders of faces and creases are plane in space. Edges are split on them, and every triangle is then on one side.
 #pragma once
 
+#include <array>
+#include <optional>
 #include <vector>
 
 #include "anamorph/projector/projector.h"
 
 namespace anamorph {
 
-/// What is known of every triangle whose longest side is an edge.
+/// What is known of an edge or a triangle.
 enum class EdgeVerdict {
-    bounded,  ///< it is off by the bound at most
-    outside,  ///< no point of it is on the panorama
-    tiny,  ///< as seen from the centre it is smaller than the tolerance, and there is a pole or an axis in it
-    hopeless,  ///< it is as short as an edge may be, and next to the centre; or it is not finite
-    split,     ///< it has to be split in the middle
+    bounded,   ///< it is off by the bound at most
+    outside,   ///< no point of it is on the panorama
+    tiny,      ///< as seen from the centre it is smaller than the tolerance, with a pole or an axis in it
+    hopeless,  ///< an edge that is as short as one may be, and next to the centre; or it is not finite
+    split,     ///< it has to be split, an edge in the middle
     cut        ///< it has to be split at `at`
 };
 
-/// An edge's verdict.
+/// A verdict.
 struct EdgeFinding {
     EdgeVerdict verdict = EdgeVerdict::hopeless;
-    double bound = 0;  ///< in texels, where bounded; proven
-    double at = 0.5;   ///< from the end that was given first
+    double bound = 0;     ///< in texels, where bounded; proven
+    double at = 0.5;      ///< from the end that was given first
+    bool shadow = false;  ///< is it cut at the border of a shadow?
 };
 
 /// The rule.
@@ -56,6 +60,14 @@ class EdgeRule {
     /// Of the edge from a to b. Both orders find the same, bit by bit, if they come as in_order() says.
     EdgeFinding judge(const glm::dvec3& a, const glm::dvec3& b) const;
 
+    /// Of a triangle whose sides have been judged. It is never cut or hopeless.
+    EdgeFinding judge(const std::array<glm::dvec3, 3>& corners) const;
+
+    /// Weights of the point of a triangle on the axis that azimuths are counted about, if that goes through within.
+    std::optional<glm::dvec3> axis_in(const std::array<glm::dvec3, 3>& corners) const;
+
+    /// The middle of a triangle's rays, scaled (scaled_ray): it is read on the piece of the panorama that this is on.
+    static glm::dvec3 middle_of(const std::array<glm::dvec3, 3>& rays);
     /// Whether a is first of the two.
     static bool in_order(const glm::dvec3& a, const glm::dvec3& b);
     /// How far from a plane, relative to its distance, a ray is taken to lie in it.
@@ -66,7 +78,17 @@ class EdgeRule {
     double crossing(const glm::dvec3& a, const glm::dvec3& b) const;
     /// The faces that a ray is on: several on their borders.
     std::vector<std::size_t> faces_at(const glm::dvec3& ray) const;
-    EdgeFinding judge_ball(const glm::dvec3& centre, double radius, double edge) const;
+    /// The branches that an edge may be read on: those of the faces that its middle is on.
+    std::vector<Branch> branches(const glm::dvec3& a, const glm::dvec3& b) const;
+    /// The branch about the middle of rays, or half way between their azimuths where those are counted.
+    Branch branch_between(const std::array<glm::dvec3, 3>& rays, const glm::dvec3& middle) const;
+    EdgeFinding judge_rays(std::array<glm::dvec3, 3> rays, const std::vector<Branch>& branches, double share,
+                           double wider) const;
+
+    /// Of the tolerance, for edges.
+    static constexpr double kShare = 0.9;
+    /// Boxes about edges are as much larger, so that triangles along them do not just fail.
+    static constexpr double kWider = 0.02;
 
     const Projector& m_projector;
     double m_tol, m_smallest, m_on_plane;

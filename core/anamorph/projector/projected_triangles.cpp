@@ -14,36 +14,18 @@ namespace {
 /// A corner before its triangle is painted.
 struct SceneCorner {
     glm::dvec3 weights{0.0}, point{0.0};
-    bool hidden = false;
 };
 
 bool wants_split(const EdgeFinding& side) {
     return side.verdict == EdgeVerdict::split || side.verdict == EdgeVerdict::cut;
 }
 
-/// What the rule says of a side, and whether it is split, be it for a shadow.
-struct SceneSide {
-    EdgeFinding finding;
-    bool split = false;
-};
-
-/// A triangle to be cut, with its sides from each corner to the next.
+/// A triangle to be cut, with what the rule says of its sides from each corner to the next.
 struct SceneTriangle {
     std::array<SceneCorner, 3> corners;
-    std::array<SceneSide, 3> sides;
-    /// What holds for all of it: of its longest side, or that of a triangle that it is part of. It is then split for its
-    /// neighbours and for shadows alone.
-    std::optional<EdgeFinding> known = {};
+    std::array<EdgeFinding, 3> sides;
+    int depth = 0;  ///< of how many splits it comes
 };
-
-/// The place of a triangle's longest side.
-std::size_t longest_of(const std::array<SceneCorner, 3>& c) {
-    std::size_t longest = 0;
-    const auto length = [&](std::size_t i) { return glm::length(c[(i + 1) % 3].point - c[i].point); };
-    for (std::size_t i = 1; i < 3; ++i)
-        if (length(i) > length(longest)) longest = i;
-    return longest;
-}
 
 /// The cutting of one triangle.
 class Cutting {
@@ -60,15 +42,16 @@ class Cutting {
             corner.point = triangle[static_cast<std::size_t>(i)];
         }
         if (!is_finite(triangle)) {
-            paint(whole);
+            put(piece_of(whole.corners), Painting::no_direction);
             return m_counts;
         }
-        for (SceneCorner& corner : whole.corners) corner.hidden = is_hidden(corner.point);
+        m_shadows = m_options.occluders && m_options.occluders->may_hide(triangle);
         const auto& c = whole.corners;
-        push(c, {side(c[0], c[1]), side(c[1], c[2]), side(c[2], c[0])}, {});
+        push(c, {side(c[0], c[1]), side(c[1], c[2]), side(c[2], c[0])});
         while (!m_open.empty()) {
             const SceneTriangle next = m_open.back();
             m_open.pop_back();
+            m_depth = next.depth;
             split_or_paint(next);
         }
         return m_counts;
@@ -81,33 +64,26 @@ class Cutting {
         return true;
     }
 
-    bool is_hidden(const glm::dvec3& point) const { return m_options.hidden && m_options.hidden(point); }
-
-    /// What the rule says of a side. One that is hidden at one end only is split down to a texel.
-    SceneSide side(const SceneCorner& a, const SceneCorner& b) const {
-        const EdgeFinding found = EdgeRule::in_order(a.point, b.point) ? m_rule.judge(a.point, b.point)
-                                                                       : m_rule.judge(b.point, a.point);
-        return {found, wants_split(found) || (found.verdict == EdgeVerdict::bounded && shadow_ends(a, b))};
+    /// What the rule says of a side. One that is short enough is cut where a shadow begins or ends.
+    EdgeFinding side(const SceneCorner& a, const SceneCorner& b) const {
+        const bool ordered = EdgeRule::in_order(a.point, b.point);
+        const glm::dvec3 &first = ordered ? a.point : b.point, &last = ordered ? b.point : a.point;
+        const EdgeFinding found = m_rule.judge(first, last);
+        const double length = glm::length(b.point - a.point);
+        if (!m_shadows || found.verdict != EdgeVerdict::bounded || !(length > 2 * m_options.smallest))
+            return found;
+        const ShadowScale scale = shadow_scale();
+        const double hair =
+            std::max({scale.thin / texels_along(first, last), 2 * m_options.smallest / length, 0x1p-30});
+        const double at = m_options.occluders->border(first, last, hair, scale);
+        return at > 0 ? EdgeFinding{EdgeVerdict::cut, found.bound, at, true} : found;
     }
 
-    /// Does a shadow end on a side, somewhere in more than a texel?
-    bool shadow_ends(const SceneCorner& a, const SceneCorner& b) const {
-        return a.hidden != b.hidden && texels_along(a.point, b.point) > 1 &&
-               glm::length(b.point - a.point) > m_options.smallest;
+    ShadowScale shadow_scale() const {
+        return {m_projector.panorama().pixels_per_radian(), least_shadow() / 32, m_rule.on_plane()};
     }
-
-    /// A side within a triangle. Where all is known of that, only a shadow splits it, and not in a sliver: halves of its
-    /// sides could take turns without end.
-    SceneSide inner_side(const SceneTriangle& in, const SceneCorner& a, const SceneCorner& b) const {
-        if (!in.known) return side(a, b);
-        const auto& c = in.corners;
-        const std::size_t i = longest_of(c);
-        const glm::dvec3 along = c[(i + 1) % 3].point - c[i].point, foot = c[(i + 2) % 3].point - c[i].point;
-        const double height = glm::length(glm::cross(along, foot)) / glm::length(along);
-        const bool sliver = !(height * m_projector.panorama().pixels_per_radian() >
-                              0.5 * glm::length(m_projector.ray(a.point)));
-        return {*in.known, in.known->verdict == EdgeVerdict::bounded && !sliver && shadow_ends(a, b)};
-    }
+    /// Triangles that are no larger, in texels, are not split for shadows.
+    double least_shadow() const { return std::min(m_options.tol, 1.0); }
 
     /// About how many texels of the panorama's middle an edge takes.
     double texels_along(const glm::dvec3& a, const glm::dvec3& b) const {
@@ -115,15 +91,8 @@ class Cutting {
         return 2 * glm::length(b - a) / distance * m_projector.panorama().pixels_per_radian();
     }
 
-    void push(const std::array<SceneCorner, 3>& c, const std::array<SceneSide, 3>& sides,
-              const std::optional<EdgeFinding>& known) {
-        SceneTriangle next{c, sides, known};
-        const EdgeFinding& longest = sides[longest_of(c)].finding;
-        bool cut = false;
-        for (const SceneSide& s : sides) cut = cut || s.finding.verdict == EdgeVerdict::cut;
-        if (!known && !cut && !wants_split(longest) && longest.verdict != EdgeVerdict::hopeless)
-            next.known = longest;
-        m_open.push_back(next);
+    void push(const std::array<SceneCorner, 3>& c, const std::array<EdgeFinding, 3>& sides) {
+        m_open.push_back({c, sides, m_depth + 1});
     }
 
     double rounded(double x) const { return m_options.single ? double{static_cast<float>(x)} : x; }
@@ -138,7 +107,6 @@ class Cutting {
             corner.point[i] = rounded(first.point[i] * (1 - t) + last.point[i] * t);
             corner.weights[i] = first.weights[i] * (1 - t) + last.weights[i] * t;
         }
-        corner.hidden = is_hidden(corner.point);
         return corner;
     }
 
@@ -148,17 +116,30 @@ class Cutting {
         int splits = 0;
         for (std::size_t i = 0; i < 3; ++i) {
             const SceneCorner &a = c[i], &b = c[(i + 1) % 3];
-            if (!triangle.sides[i].split) continue;
-            const SceneCorner new_corner = between(a, b, triangle.sides[i].finding);
+            if (!wants_split(triangle.sides[i]) || triangle.depth > kDeepest) continue;
+            const SceneCorner new_corner = between(a, b, triangle.sides[i]);
             // Rounded, it may be one of the ends.
             if (new_corner.point == a.point || new_corner.point == b.point) continue;
             middle[i] = new_corner;
             ++splits;
         }
         if (splits == 0)
-            paint(triangle);
-        else
+            settle(triangle);
+        else if (!split_at_corner(triangle))
             split(triangle, middle, splits);
+    }
+
+    /// Where shadows alone split a triangle, at a corner of one within: cut at its sides first, a needle of shadow would
+    /// take many small steps.
+    bool split_at_corner(const SceneTriangle& triangle) {
+        bool shadow = false;
+        for (const EdgeFinding& s : triangle.sides) {
+            if (wants_split(s) && !s.shadow) return false;
+            shadow = shadow || s.shadow;
+        }
+        if (!shadow) return false;
+        const ShadowCover cover = m_options.occluders->cover(points_of(triangle.corners), shadow_scale());
+        return cover.share == ShadowCover::both && cover.has_corner && split_within(triangle, cover.corner);
     }
 
     /// Into 2, 3 or 4, turned as before.
@@ -166,14 +147,13 @@ class Cutting {
                int splits) {
         count(splits);
         const auto& c = from.corners;
-        const auto inner = [&](const SceneCorner& a, const SceneCorner& b) { return inner_side(from, a, b); };
         if (splits == 3) {
             const SceneCorner &p = *middle[0], &q = *middle[1], &r = *middle[2];
-            const SceneSide pq = inner(p, q), qr = inner(q, r), rp = inner(r, p);
-            push({c[0], p, r}, {side(c[0], p), rp, side(r, c[0])}, from.known);
-            push({p, c[1], q}, {side(p, c[1]), side(c[1], q), pq}, from.known);
-            push({r, q, c[2]}, {qr, side(q, c[2]), side(c[2], r)}, from.known);
-            push({p, q, r}, {pq, qr, rp}, from.known);
+            const EdgeFinding pq = side(p, q), qr = side(q, r), rp = side(r, p);
+            push({c[0], p, r}, {side(c[0], p), rp, side(r, c[0])});
+            push({p, c[1], q}, {side(p, c[1]), side(c[1], q), pq});
+            push({r, q, c[2]}, {qr, side(q, c[2]), side(c[2], r)});
+            push({p, q, r}, {pq, qr, rp});
             return;
         }
         // Turned so that the side from corner 0 to corner 1 is split, and of two, that from 2 to 0.
@@ -181,26 +161,47 @@ class Cutting {
         while (!(middle[first] && (splits == 1 || middle[(first + 2) % 3]))) ++first;
         const SceneCorner &a = c[first], &b = c[(first + 1) % 3], &d = c[(first + 2) % 3],
                           &p = *middle[first];
-        const SceneSide &bd = from.sides[(first + 1) % 3], &da = from.sides[(first + 2) % 3];
-        const SceneSide ap = side(a, p), pb = side(p, b);
+        const EdgeFinding &bd = from.sides[(first + 1) % 3], &da = from.sides[(first + 2) % 3];
+        const EdgeFinding ap = side(a, p), pb = side(p, b);
         if (splits == 1) {
-            const SceneSide pd = inner(p, d);
-            push({a, p, d}, {ap, pd, da}, from.known);
-            push({p, b, d}, {pb, bd, pd}, from.known);
+            const EdgeFinding pd = side(p, d);
+            push({a, p, d}, {ap, pd, da});
+            push({p, b, d}, {pb, bd, pd});
             return;
         }
         const SceneCorner& r = *middle[(first + 2) % 3];
-        const SceneSide ra = side(r, a), dr = side(d, r), pr = inner(p, r);
-        push({a, p, r}, {ap, pr, ra}, from.known);
+        const EdgeFinding ra = side(r, a), dr = side(d, r), pr = side(p, r);
+        push({a, p, r}, {ap, pr, ra});
         if (glm::length(r.point - b.point) <= glm::length(p.point - d.point)) {
-            const SceneSide br = inner(b, r);
-            push({p, b, r}, {pb, br, pr}, from.known);
-            push({b, d, r}, {bd, dr, br}, from.known);
+            const EdgeFinding br = side(b, r);
+            push({p, b, r}, {pb, br, pr});
+            push({b, d, r}, {bd, dr, br});
         } else {
-            const SceneSide pd = inner(p, d);
-            push({p, b, d}, {pb, bd, pd}, from.known);
-            push({p, d, r}, {pd, dr, pr}, from.known);
+            const EdgeFinding pd = side(p, d);
+            push({p, b, d}, {pb, bd, pd});
+            push({p, d, r}, {pd, dr, pr});
         }
+    }
+
+    /// Into 3 about a point within; false where rounding leaves no room for it.
+    bool split_within(const SceneTriangle& from, const glm::dvec3& weights) {
+        const auto& c = from.corners;
+        if (from.depth > kDeepest) return false;
+        SceneCorner m;
+        for (std::size_t k = 0; k < 3; ++k) {
+            m.weights += c[k].weights * weights[static_cast<int>(k)];
+            m.point += c[k].point * weights[static_cast<int>(k)];
+        }
+        for (int i = 0; i < 3; ++i) m.point[i] = rounded(m.point[i]);
+        const glm::dvec3 normal = glm::cross(c[1].point - c[0].point, c[2].point - c[0].point);
+        for (std::size_t k = 0; k < 3; ++k)
+            if (!(glm::dot(glm::cross(c[(k + 1) % 3].point - c[k].point, m.point - c[k].point), normal) > 0))
+                return false;
+        count(2);
+        const EdgeFinding to[] = {side(c[0], m), side(c[1], m), side(c[2], m)};
+        for (std::size_t k = 0; k < 3; ++k)
+            push({c[k], c[(k + 1) % 3], m}, {from.sides[k], to[(k + 1) % 3], to[k]});
+        return true;
     }
 
     void count(int more) {
@@ -209,22 +210,63 @@ class Cutting {
                         "takes more than " + std::to_string(m_options.most_triangles) + " triangles");
     }
 
-    /// A triangle of which nothing is known has sides that are as short as they may be.
-    void paint(const SceneTriangle& triangle) {
-        const auto& c = triangle.corners;
+    static PaintedTriangle piece_of(const std::array<SceneCorner, 3>& c) {
         PaintedTriangle piece;
         for (std::size_t i = 0; i < 3; ++i) piece.corners[i] = {c[i].weights, c[i].point};
-        bool settled = triangle.known.has_value();
-        for (const SceneSide& s : triangle.sides)
-            settled = settled && s.finding.verdict != EdgeVerdict::hopeless;
-        if (!settled) return put(piece, Painting::no_direction);
-        const bool tiny = triangle.known->verdict == EdgeVerdict::tiny;
-        if (triangle.known->verdict == EdgeVerdict::outside) return put(piece, Painting::outside);
+        return piece;
+    }
+
+    double longest_side(const std::array<SceneCorner, 3>& c) const {
+        double longest = 0;
+        for (std::size_t i = 0; i < 3; ++i)
+            longest = std::max(longest, glm::length(c[(i + 1) % 3].point - c[i].point));
+        return longest;
+    }
+
+    static double twice_area(const std::array<SceneCorner, 3>& c) {
+        return glm::length(glm::cross(c[1].point - c[0].point, c[2].point - c[0].point));
+    }
+
+    /// A triangle with sides that are short enough, or as short as they may be.
+    void settle(const SceneTriangle& triangle) {
+        const auto& c = triangle.corners;
+        PaintedTriangle piece = piece_of(c);
+        for (std::size_t i = 0; i < 3; ++i) {
+            if (triangle.sides[i].verdict != EdgeVerdict::hopeless) continue;
+            // What is lost about such a side is as small as it is.
+            glm::dvec3 near(0.45);
+            near[static_cast<int>((i + 2) % 3)] = 0.1;
+            const double least = m_options.smallest * m_options.smallest;
+            if (twice_area(c) > least && split_within(triangle, near)) return;
+            return put(piece, Painting::no_direction);
+        }
+        const EdgeFinding found = m_rule.judge(points_of(c));
+        if (found.verdict == EdgeVerdict::split) {
+            const glm::dvec3 at = m_rule.axis_in(points_of(c)).value_or(glm::dvec3(1. / 3));
+            if (longest_side(c) > m_options.smallest && split_within(triangle, at)) return;
+            return put(piece, Painting::no_direction);
+        }
+        const bool tiny = found.verdict == EdgeVerdict::tiny;
+        if (found.verdict == EdgeVerdict::outside) return put(piece, Painting::outside);
         if (!set_texels(piece, tiny)) return put(piece, Painting::no_direction);
-        for (const SceneCorner& corner : c)
-            if (corner.hidden) return put(piece, Painting::hidden);
-        m_counts.max_error = std::max(m_counts.max_error, tiny ? m_options.tol : triangle.known->bound);
+        const ShadowCover cover =
+            m_shadows ? m_options.occluders->cover(points_of(c), shadow_scale()) : ShadowCover{};
+        if (cover.share == ShadowCover::both) {
+            double seen = 0;
+            for (std::size_t i = 0; i < 3; ++i)
+                seen = std::max(seen, texels_along(c[i].point, c[(i + 1) % 3].point));
+            if (!tiny && seen > least_shadow() && longest_side(c) > m_options.smallest &&
+                split_within(triangle, cover.corner))
+                return;
+        }
+        // What is partly hidden and too small to split counts as hidden.
+        if (cover.share != ShadowCover::lit) return put(piece, Painting::hidden);
+        m_counts.max_error = std::max(m_counts.max_error, tiny ? m_options.tol : found.bound);
         clip(piece);
+    }
+
+    static std::array<glm::dvec3, 3> points_of(const std::array<SceneCorner, 3>& c) {
+        return {c[0].point, c[1].point, c[2].point};
     }
 
     /// The corners' texels, on the piece of the panorama and on the side of the seam where the triangle's middle is. False
@@ -233,9 +275,9 @@ class Cutting {
         const Chart& chart = m_projector.panorama();
         std::array<glm::dvec3, 3> rays;
         for (std::size_t i = 0; i < 3; ++i) rays[i] = scaled_ray(m_projector.ray(piece.corners[i].point));
-        const glm::dvec3 middle =
-            scaled_ray(m_projector.ray(piece.corners[0].point) + m_projector.ray(piece.corners[1].point) +
-                       m_projector.ray(piece.corners[2].point));
+        const glm::dvec3 middle = EdgeRule::middle_of({m_projector.ray(piece.corners[0].point),
+                                                       m_projector.ray(piece.corners[1].point),
+                                                       m_projector.ray(piece.corners[2].point)});
         const int on = chart.piece_of(Ray<double>{middle.x, middle.y, middle.z});
         const bool azimuth = chart.counted() == Counted::azimuth;
         for (std::size_t i = 0; i < 3; ++i) {
@@ -367,6 +409,10 @@ class Cutting {
     std::atomic<std::int64_t>& m_count;
     std::vector<PaintedTriangle>& m_to;
     std::vector<SceneTriangle> m_open;
+    /// Halving as often as this takes any side to the rounding of its ends.
+    static constexpr int kDeepest = 100;
+    int m_depth = -1;
+    bool m_shadows = false;
     PaintedCounts m_counts;
 };
 

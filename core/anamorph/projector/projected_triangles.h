@@ -8,10 +8,10 @@
 #include <array>
 #include <atomic>
 #include <cstdint>
-#include <functional>
 #include <vector>
 
 #include "anamorph/projector/edge_rule.h"
+#include "anamorph/projector/occluders.h"
 #include "anamorph/projector/projector_rows.h"
 
 namespace anamorph {
@@ -24,8 +24,11 @@ struct ProjectionOptions {
     double smallest = 0;
     /// Are points of the scene kept in float? New ones are rounded to it.
     bool single = false;
-    /// Is something between the projector and a point? Called from several threads at once.
-    std::function<bool(const glm::dvec3& point)> hidden = {};
+    /// What stands between the projector and the scene: the scene itself, too, if it is to hide itself. It has to live as
+    /// long as the painter. Triangles are cut along the borders of its shadows; what is left on the wrong side is narrower
+    /// than an eighth of the tolerance, or of a texel if that is less, and what has no simpler shape is hidden as soon as
+    /// it is smaller than the tolerance, or a texel.
+    const Occluders* occluders = nullptr;
     /// More triangles than this are refused.
     std::int64_t most_triangles = std::int64_t{1} << 23;
 };

@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: Apache-2.0
+// What stands between a projector and a scene, as triangles: where along an edge a shadow begins or ends, and how much of a
+// triangle lies in shadows.
+//
+// With rays r from the centre, a triangle v_1, v_2, v_3 hides what is in its pyramid, (v_i x v_j) . r >= 0 for its three
+// sides as it is turned to the centre, and beyond its plane, n . r (1 - kTouching) >= n . v_1: four conditions that are linear in
+// r. An edge is in the shadow of a triangle over one stretch, and the part of another triangle that is in it is convex. Two
+// triangles that share a side read it with the same numbers, and leave no gap.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <glm/vec3.hpp>
+#include <vector>
+
+namespace anamorph {
+
+/// What is too small to count in shadows, as seen from the centre.
+struct ShadowScale {
+    double per_radian = 1;  ///< texels
+    double thin = 0;        ///< in texels: narrower strips of light or shadow are left where they are
+    double on_plane = 0;    ///< relative to its distance, a ray as near to a plane as this lies in it
+};
+
+/// How much of a triangle is in shadows.
+struct ShadowCover {
+    /// none, all, or some of it.
+    enum Share { lit, hidden, both } share = lit;
+    /// Where it is both: weights of a point within the triangle, a corner of a shadow if there is one.
+    glm::dvec3 corner{1. / 3};
+    bool has_corner = false;  ///< is it one?
+};
+
+/// Triangles that hide what is behind them from a point.
+class Occluders {
+  public:
+    /// As near to a point as this, relative to its distance from the centre, nothing hides it: a surface does not hide
+    /// itself, nor what touches it.
+    static constexpr double kTouching = 0x1p-16;
+
+    /// Three corners each. Those that are not finite, or seen edge-on, hide nothing.
+    Occluders(const std::vector<glm::dvec3>& corners, const glm::dvec3& centre);
+
+    /// Is a point hidden?
+    bool hides(const glm::dvec3& point) const;
+    /// False if nothing hides any of a triangle.
+    bool may_hide(const std::array<glm::dvec3, 3>& triangle) const;
+    /// The first place on the way from a to b, from 0 to 1, where a shadow begins or ends; -1 where there is none.
+    /// Stretches shorter than `hair` do not count.
+    double border(const glm::dvec3& a, const glm::dvec3& b, double hair, const ShadowScale& scale) const;
+    /// Of a triangle.
+    ShadowCover cover(const std::array<glm::dvec3, 3>& triangle, const ShadowScale& scale) const;
+
+  private:
+    struct Occluder {
+        std::array<glm::dvec3, 4> normals;
+        double depth;
+        double value(std::size_t k, const glm::dvec3& ray) const;
+    };
+    struct Node {
+        glm::dvec3 low, high;
+        std::int32_t begin, end, right;  ///< of its occluders; its second half, or 0; the first one is next
+    };
+    /// normal . r + offset >= 0
+    struct HalfSpace {
+        glm::dvec3 normal;
+        double offset;
+    };
+
+    void build(std::vector<std::array<glm::dvec3, 3>>& triangles, std::size_t begin, std::size_t end);
+    static bool meets(const Node& node, const std::vector<HalfSpace>& region);
+    /// Those that may be in a convex region, until `body` returns false.
+    void for_each_in(const std::vector<HalfSpace>& region,
+                     const std::function<bool(const Occluder&)>& body) const;
+    static std::vector<HalfSpace> region_before(const std::array<glm::dvec3, 3>& rays);
+    static std::vector<HalfSpace> region_before(const glm::dvec3& a, const glm::dvec3& b);
+
+    friend class ShadowParts;
+
+    glm::dvec3 m_centre;
+    std::vector<Occluder> m_occluders;
+    std::vector<Node> m_nodes;
+};
+
+}  // namespace anamorph
