@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // Prints the core's rows of numbers, one a line, for tests in other languages: name, default, ends, which of them
-// are refused, and whether the number is an integer.
+// are refused, and whether the number is an integer. Choices are lines that start with "menu": name, values.
 #include <iostream>
+#include <string>
 
 #include "anamorph/deform/deform_rows.h"
 #include "anamorph/drape/drape_rows.h"
 #include "anamorph/figure/figure_rows.h"
+#include "anamorph/operation/operation.h"
 #include "anamorph/parameter.h"
 #include "anamorph/projector/projector_rows.h"
 
@@ -18,11 +20,26 @@ void print(const anamorph::NumberRow& row) {
               << (row.ends == anamorph::NumberRow::between) << ' ' << row.integer << '\n';
 }
 
+/// The numbers that have a default, and the choices, of an operation.
+void print(const anamorph::Operation& operation) {
+    for (const anamorph::Parameter& row : *operation.parameters) {
+        const std::string name = operation.name + "_" + row.name;
+        if (row.type == anamorph::ParameterType::number && !row.default_value.empty())
+            std::cout << name << ' ' << row.default_value << ' ' << anamorph::shortest(row.minimum) << ' '
+                      << anamorph::shortest(row.maximum) << ' ' << row.above_minimum << " 0 0\n";
+        if (row.type != anamorph::ParameterType::choice) continue;
+        std::cout << "menu " << name;
+        for (const std::string& word : row.choices) std::cout << ' ' << word;
+        std::cout << '\n';
+    }
+}
+
 }  // namespace
 
 int main() {
     for (const anamorph::NumberRow& row : anamorph::kDeformRows) print(row);
-    for (const anamorph::NumberRow& row : anamorph::kDrapeRows) print(row);
+    print(*anamorph::find_operation("drape"));
+    print(anamorph::kDrapeParallelScaleRow);
     for (const anamorph::NumberRow& row : anamorph::kFigureRows) print(row);
     for (const anamorph::NumberRow& row : anamorph::kProjectorRows) print(row);
 }

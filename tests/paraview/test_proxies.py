@@ -18,6 +18,7 @@ LoadPlugin(os.environ["ANAMORPH_PLUGIN"], remote=False, ns=globals())
 PAPERS = ("Oka 1987", "Chapman 1986", "Kim 2003")
 # What a panel has no use for: other ways to set the same, and what the host sets.
 NO_PROPERTY = {
+    "vtkAnamorphDrape": {"SetBlendWeight", "SetPositionsConnection", "SetHeightConnection", "SetDeformationsConnection"},
     "vtkAnamorphDeform": {"SetController", "SetDeformationList", "SetDeformationEnabled", "SetTableConnection"},
     "vtkAnamorphInbetween": {"SetKey"},
     "vtkAnamorphPanoramaProjection": {"SetController"},
@@ -28,9 +29,12 @@ ROW_OF = {("vtkAnamorphFigureGeometry", "Tolerance"): "surface_tol", ("vtkAnamor
           ("vtkAnamorphFigureSkeleton", "Tolerance"): "sphere_tol",
           ("vtkAnamorphPanoramaProjection", "Tolerance"): "projection_tol",
           ("vtkAnamorphDrape", "Tolerance"): "drape_tol",
-          ("vtkAnamorphDrape", "CameraParallelScale"): "drape_parallel_scale",
-          **{("vtkAnamorphDrape", name): "drape_" + name.lower()
-             for name in ("Angle", "Tube", "Amplitude", "Wavelength", "Phase", "Direction", "Turn")}}
+          ("vtkAnamorphDrape", "CameraParallelScale"): "drape_parallel_scale"}
+# Classes whose properties are an operation's parameters, under the same names.
+OPERATION_OF = {"vtkAnamorphDrape": "drape"}
+# Parameters of those that are no property, as VTK has its own words for them, or does without.
+NOT_OFFERED = {"drape_fov", "drape_scale", "drape_block", "drape_overlap",
+               "drape_view", "drape_wrap", "drape_scheme", "drape_output"}
 # Numbers that the panel has in a table, where they have no range of their own.
 IN_TABLES = {"extent"}
 # What depends on the input is refused when the filter executes; the least value is in the XML all the same.
@@ -77,11 +81,13 @@ def check_defaults(element):
     compared = 0
     for p in properties(element):
         command, default = p.get("command"), p.get("default_values")
-        if not (command or "").startswith("Set") or default is None:
+        if not (command or "").startswith("Set") or default is None or command == "SetInputArrayToProcess":
             continue
         if p.get("repeat_command"):
-            assert default == "none", (name, p.get("name"))
-            assert getattr(new, "G" + p.get("set_number_command")[1:])() == 0, (name, p.get("name"))
+            shown = [] if default == "none" else numbers(default.split())
+            count, size = getattr(new, "G" + p.get("set_number_command")[1:])(), int(p.get("number_of_elements_per_command"))
+            kept = [v for i in range(count) for v in numbers(getattr(new, "G" + command[1:])(i))] if shown else []
+            assert kept == shown and count * size == len(shown), (name, p.get("name"), kept, shown)
         elif p.tag == "StringVectorProperty":
             assert (getattr(new, "G" + command[1:])() or "") == default, (name, p.get("name"))
         else:
@@ -103,15 +109,19 @@ def check_parameters(element):
 
 
 def core_rows():
-    """What the core says of its numbers: default, least, most (None: no end or a far one), both as a panel shows them."""
-    rows = {}
+    """What the core says of its numbers: default, least, most (None: no end or a far one), both as a panel shows them; of
+    its choices, their values."""
+    rows, menus = {}, {}
     for line in subprocess.run([os.environ["ANAMORPH_ROWS"]], capture_output=True, check=True, text=True).stdout.splitlines():
         name, *texts = line.split()
+        if name == "menu":
+            menus[texts[0]] = texts[1:]
+            continue
         standard, least, most, above, below, integer = (float(text) for text in texts)
         rows[name] = {"default": standard, "min": least + 0.001 * above if abs(least) < FAR else None,
                       "max": most - 0.001 * below if abs(most) < FAR else None, "integer": bool(integer)}
-    assert len(rows) >= 9, rows
-    return rows
+    assert len(rows) >= 9 and menus, rows
+    return rows, menus
 
 
 def domain_of(p):
@@ -119,12 +129,28 @@ def domain_of(p):
     return found[0] if found else None
 
 
+def give(new, command, values):
+    """Calls a setter of several numbers, or of a list of them."""
+    setter = getattr(new, command)
+    try:
+        setter(*values)
+    except TypeError:
+        setter(values)
+
+
+def row_of(element, name, rows):
+    """The name of a property's row, whether there is one or not."""
+    cls, snake = element.get("class"), re.sub("(?<!^)([A-Z])", r"_\1", name).lower()
+    operation = f"{OPERATION_OF.get(cls)}_{snake}"
+    return ROW_OF.get((cls, name), operation if operation in rows else snake)
+
+
 def clamped_to(cls, command, size, number):
     """The least and the most that a setter makes of what is far out; None where it keeps that."""
     ends = []
     for far in (-2**31, 2**31 - 1) if number is int else (-1e300, 1e300):
         new = cls()
-        getattr(new, command)(*[far] * size)
+        give(new, command, [far] * size)
         value = numbers(getattr(new, "G" + command[1:])())[0]
         ends.append(None if value == far else value)
     return ends
@@ -144,7 +170,7 @@ def check_menu(cls, command, entries):
         assert text in OTHER_WORDS or words & named[value], (cls.__name__, command, text, named[value])
 
 
-def check_whole(element, rows):
+def check_whole(element, rows, menus):
     """Every number has the default, the range and the type of its row in the core, or else the range of its class, no more
     and no less. Returns the rows that were compared."""
     cls, seen = getattr(anamorph, element.get("class")), set()
@@ -155,10 +181,15 @@ def check_whole(element, rows):
         where = (element.get("name"), name)
         if domain.tag == "EnumerationDomain":
             check_menu(cls, command, list(domain))
+            menu = row_of(element, name, menus)
+            if menu in menus:
+                seen.add(menu)
+                words = [entry.get("text").lower().replace(" ", "_") for entry in domain]
+                assert words == menus[menu], (where, words, menus[menu])
             continue
         number = int if domain.tag == "IntRangeDomain" else float
         shown = {end: float(domain.get(end)) if domain.get(end) else None for end in ("min", "max")}
-        row = ROW_OF.get((element.get("class"), name), re.sub("(?<!^)([A-Z])", r"_\1", name).lower())
+        row = row_of(element, name, rows)
         if row in rows:
             seen.add(row)
             assert shown == {end: rows[row][end] for end in ("min", "max")}, (where, shown, rows[row])
@@ -213,7 +244,7 @@ def is_taken(cls, command, value, perspective):
     new.GetExecutive().AddObserver("ErrorEvent", lambda *_: errors.append(1))
     if perspective:
         new.SetCameraParallelProjection(False)
-    getattr(new, command)(*value)
+    give(new, command, value)
     kept = numbers(getattr(new, "G" + command[1:])()) == [float(v) for v in value]
     if kept:
         new.Update()
@@ -250,7 +281,7 @@ def check_ranges(element):
     return ends
 
 
-rows, compared_rows = core_rows(), set()
+(rows, menus), compared_rows = core_rows(), set()
 found = list(proxies())
 assert len(found) >= 4, found
 manager = servermanager.ProxyManager()
@@ -269,8 +300,9 @@ for group, element in found:
     assert element.find("Hints/ShowInMenu").get("category") == "Anamorph", name
     compared, own = check_defaults(element), check_parameters(element)
     assert compared >= 4 and own >= 4, (name, compared, own)
-    compared_rows |= check_whole(element, rows)
+    compared_rows |= check_whole(element, rows, menus)
     ends = check_ranges(element)
     assert ends >= 2, (name, ends)
     print(name, ":", compared, "defaults,", own, "parameters,", ends, "ends of ranges")
-assert compared_rows == set(rows) - IN_TABLES, (compared_rows, set(rows))
+wanted_rows = (set(rows) | set(menus)) - IN_TABLES - NOT_OFFERED
+assert compared_rows == wanted_rows, compared_rows ^ wanted_rows

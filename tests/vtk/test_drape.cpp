@@ -4,15 +4,23 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <vtkDoubleArray.h>
+#include <vtkFieldData.h>
+#include <vtkFloatArray.h>
 #include <vtkImageData.h>
 #include <vtkInformation.h>
 #include <vtkPointData.h>
+#include <vtkPoints.h>
 #include <vtkSOADataArrayTemplate.h>
 #include <vtkSmartPointer.h>
 #include <vtkStreamingDemandDrivenPipeline.h>
+#include <vtkStringArray.h>
+#include <vtkStructuredGrid.h>
+#include <vtkTable.h>
+#include <vtkUnsignedCharArray.h>
 
 #include <cmath>
 #include <cstring>
+#include <map>
 #include <random>
 
 #include "anamorph/map/surface.h"
@@ -155,17 +163,44 @@ TEST(VtkDrape, TextureCoordinatesGoUpAndAreThoseOfThePlane) {
 
 // ---- The core's operation, through the same numbers ----
 
-struct NoFiles final : anamorph::SideFileReader {
-    std::string text(const std::string& name) const override { throw anamorph::Error("no file " + name); }
+/// A file as numbers whose rows go down, or as text.
+struct File {
+    anamorph::Size size{};
+    int channels = 0;
+    std::vector<float> values = {};
+    std::string text = {};
+};
+
+/// Side files by key, under the key's name.
+struct Files final : anamorph::SideFileReader {
+    struct Image final : anamorph::SideImage {
+        explicit Image(const File& of) : file(of) {}
+        anamorph::Size size() const override { return file.size; }
+        int channels() const override { return file.channels; }
+        std::vector<float> read(int count) override {
+            std::vector<float> some;
+            for (std::size_t i = 0; i < file.values.size(); ++i)
+                if (static_cast<int>(i) % file.channels < count) some.push_back(file.values[i]);
+            return some;
+        }
+        const File& file;
+    };
+    std::string text(const std::string& name) const override { return all.at(name).text; }
     std::unique_ptr<anamorph::SideImage> image(const std::string&, const std::string& name) const override {
-        throw anamorph::Error("no image " + name);
+        return std::make_unique<Image>(all.at(name));
     }
+    anamorph::SideFiles names() const {
+        anamorph::SideFiles names;
+        for (const auto& [key, file] : all) names[key] = {key, "", file.channels > 0};
+        return names;
+    }
+    std::map<std::string, File> all;
 };
 
 /// What the operation draws of a texture of unsigned char, with rows that go down; `Value`: of its pixels.
 template <class Value>
 std::vector<Value> by_operation(vtkImageData* texture, const std::vector<anamorph::Assignment>& arguments,
-                                const anamorph::Size& screen, int channels) {
+                                const anamorph::Size& screen, int channels, const Files& files = {}) {
     int size[3];
     texture->GetDimensions(size);
     const int components = texture->GetNumberOfScalarComponents();
@@ -186,10 +221,9 @@ std::vector<Value> by_operation(vtkImageData* texture, const std::vector<anamorp
     source.facts.height = size[1];
     source.channels = components;
     source.alpha = components == 4 ? 3 : -1;
-    const NoFiles files;
     std::vector<Value> pixels(static_cast<std::size_t>(screen.width * screen.height * channels));
     const auto type = sizeof(Value) == 1 ? anamorph::PixelType::uint8 : anamorph::PixelType::float32;
-    EXPECT_TRUE(drape.read({values, {source}, {}, files})
+    EXPECT_TRUE(drape.read({values, {source}, files.names(), files})
                     ->picture(0, 0)
                     ->solve()
                     ->draw({&pyramid}, {0, 0, screen.width, screen.height},
@@ -242,10 +276,14 @@ void set(Drape* filter, const Case& c) {
     filter->SetStyle(c.style);
 }
 
+/// The operation's views have a width, VTK's a height.
+std::string fov_of(double view_angle, double aspect) {
+    const double half = anamorph::kPi / 360;
+    return anamorph::shortest(std::atan(aspect * std::tan(view_angle * half)) / half);
+}
+
 std::vector<anamorph::Assignment> arguments_of(const Case& c) {
-    // The operation's views have a width, VTK's a height.
-    const double half = anamorph::kPi / 360, aspect = 90.0 / 60.0,
-                 fov = std::atan(aspect * std::tan(47 * half)) / half;
+    const double aspect = 90.0 / 60.0;
     return {{"surface", anamorph::surface_names()[static_cast<std::size_t>(c.surface)]},
             {"angle", "222"},
             {"radius", "0.3"},
@@ -260,7 +298,7 @@ std::vector<anamorph::Assignment> arguments_of(const Case& c) {
             {"target", "0.1,0,0"},
             {"up", "0.1,1,0"},
             {"view", c.parallel ? "parallel" : "perspective"},
-            {"fov", anamorph::shortest(fov)},
+            {"fov", fov_of(47, aspect)},
             {"extent", anamorph::shortest(2 * 0.7 * aspect)},
             {"tol", "0.25"},
             {"filter", kFilters[c.filter]},
@@ -301,6 +339,276 @@ TEST(VtkDrape, EverySurfaceHasThePixelsOfTheOperation) {
             }
 }
 
+// ---- Light, sampled surfaces, reliefs, blends, deformations ----
+
+/// What is set of a filter, and the same as the operation's arguments and files.
+struct Scene {
+    std::function<void(Drape*)> set;
+    std::vector<anamorph::Assignment> arguments;
+    Files files = {};
+};
+
+/// The filter's pixels are the operation's, from a camera of VTK's view angle on a square.
+void expect_pixels_of_operation(const Scene& scene) {
+    const Picture texture = picture(40, 32, VTK_UNSIGNED_CHAR, 3);
+    vtkNew<Drape> filter;
+    Errors errors(filter);
+    filter->SetInputData(texture);
+    filter->SetViewSize(64, 64);
+    filter->SetCameraPosition(0.5, 0.6, 1.7);
+    scene.set(filter);
+    const std::vector<double> seen = drawn_numbers(filter);
+    ASSERT_EQ(errors.text(), "");
+    std::vector<anamorph::Assignment> arguments = scene.arguments;
+    arguments.insert(arguments.end(), {{"size", "64x64"}, {"camera", "0.5,0.6,1.7"}, {"fov", fov_of(30, 1)}});
+    const std::vector<double> wanted = turned_over(
+        by_operation<unsigned char>(texture, arguments, {64, 64}, 3, scene.files), std::size_t{64 * 3});
+    ASSERT_EQ(seen, wanted);
+    EXPECT_GT(std::count_if(seen.begin(), seen.end(), [](double v) { return v > 0; }), 1000);
+}
+
+/// The texels of an image whose rows go up, as numbers of a file; whole ones as fractions of 255.
+File file_of(vtkImageData* image) {
+    int size[3];
+    image->GetDimensions(size);
+    vtkDataArray* array = image->GetPointData()->GetScalars();
+    File file{{size[0], size[1]}, array->GetNumberOfComponents(), {}, {}};
+    for (int y = size[1] - 1; y >= 0; --y)
+        for (int x = 0; x < size[0]; ++x)
+            for (int c = 0; c < file.channels; ++c) {
+                const auto value = static_cast<float>(array->GetComponent(y * size[0] + x, c));
+                file.values.push_back(array->GetDataType() == VTK_UNSIGNED_CHAR ? value / 255.0f : value);
+            }
+    return file;
+}
+
+/// A saddle over the whole of the texture as an image of positions.
+Picture saddle(int width, int height, int type = VTK_FLOAT) {
+    auto image = Picture::New();
+    image->SetDimensions(width, height, 1);
+    image->AllocateScalars(type, 3);
+    for (int y = 0; y < height; ++y)
+        for (int x = 0; x < width; ++x) {
+            const double u = (x + 0.5) / width - 0.5, v = (y + 0.5) / height - 0.5,
+                         p[3] = {1.1 * u, 0.9 * v, 0.4 * (u * u - v * v)};
+            for (int c = 0; c < 3; ++c) image->SetScalarComponentFromDouble(x, y, 0, c, p[c]);
+        }
+    return image;
+}
+
+/// The same as points, in the plane of the first two indices or the last two.
+vtkSmartPointer<vtkStructuredGrid> grid_of(vtkImageData* positions, bool last = false) {
+    int size[3];
+    positions->GetDimensions(size);
+    auto grid = vtkSmartPointer<vtkStructuredGrid>::New();
+    last ? grid->SetDimensions(1, size[0], size[1]) : grid->SetDimensions(size[0], size[1], 1);
+    vtkNew<vtkPoints> points;
+    vtkDataArray* array = positions->GetPointData()->GetScalars();
+    for (vtkIdType i = 0; i < array->GetNumberOfTuples(); ++i) points->InsertNextPoint(array->GetTuple3(i));
+    grid->SetPoints(points);
+    return grid;
+}
+
+/// Deformations as columns of a table, and the same as a file.
+const char* const kBumps =
+    "center_u,center_v,extent_u,extent_v,x,y,z\n0.4,0.6,0.2,0.3,0.05,0,0.2\n0.7,0.3,0.1,0.1,0,0,-0.15\n";
+
+vtkSmartPointer<vtkTable> table_of_bumps() {
+    const double bumps[2][7] = {{0.4, 0.6, 0.2, 0.3, 0.05, 0, 0.2}, {0.7, 0.3, 0.1, 0.1, 0, 0, -0.15}};
+    const char* const names[] = {"center_u", "center_v", "extent_u", "extent_v", "x", "y", "z"};
+    auto table = vtkSmartPointer<vtkTable>::New();
+    for (int c = 0; c < 7; ++c) {
+        vtkNew<vtkDoubleArray> column;
+        column->SetName(names[c]);
+        for (const auto& bump : bumps) column->InsertNextValue(bump[c]);
+        table->AddColumn(column);
+    }
+    return table;
+}
+
+File bumps_as_file() {
+    return {{},
+            0,
+            {},
+            R"({"deformations": [{"vector": [0.05, 0, 0.2], "center": [0.4, 0.6], "extent": [0.2, 0.3]},
+                                 {"vector": [0, 0, -0.15], "center": [0.7, 0.3], "extent": [0.1, 0.1]}]})"};
+}
+
+TEST(VtkDrape, ShadingHasThePixelsOfTheOperation) {
+    for (const auto& [shading, word] : {std::pair{Drape::GOURAUD, "gouraud"}, {Drape::PHONG, "phong"}})
+        for (const int surface : {Drape::SPHERE, Drape::PAGE_TURN, Drape::RIPPLES}) {
+            SCOPED_TRACE(testing::Message() << word << " " << surface);
+            const int chosen = shading;
+            expect_pixels_of_operation({[=](Drape* f) {
+                                            f->SetSurface(surface);
+                                            f->SetShading(chosen);
+                                            f->SetNumberOfLights(2);
+                                            f->SetLight(0, 1, 2, 3);
+                                            f->SetLight(1, -3e5, 0, 1e5);
+                                            f->SetAmbient(0.1);
+                                            f->SetDiffuse(0.5);
+                                            f->SetSpecular(0.4);
+                                            f->SetShininess(9);
+                                        },
+                                        {{"surface", anamorph::surface_names()[std::size_t(surface)]},
+                                         {"shading", word},
+                                         {"light", "1,2,3,-3e5,0,1e5"},
+                                         {"ambient", "0.1"},
+                                         {"diffuse", "0.5"},
+                                         {"specular", "0.4"},
+                                         {"shininess", "9"}}});
+        }
+}
+
+TEST(VtkDrape, ASampledSurfaceHasThePixelsOfTheOperation) {
+    for (const int type : {VTK_FLOAT, VTK_DOUBLE})
+        for (int as = 0; as < 3; ++as) {
+            SCOPED_TRACE(testing::Message() << type << " " << as);
+            const Picture positions = saddle(9, 7, type);
+            vtkSmartPointer<vtkDataObject> input = positions;
+            if (as > 0) input = grid_of(positions, as == 2);
+            Scene scene{[&](Drape* f) {
+                            f->SetInputData(1, input);
+                            f->SetSurface(Drape::POSITIONS);
+                        },
+                        {{"surface", "positions"}, {"positions", "positions"}}};
+            scene.files.all["positions"] = file_of(positions);
+            expect_pixels_of_operation(scene);
+        }
+}
+
+TEST(VtkDrape, AnInputThatNoSurfaceNamesIsNotLookedAt) {
+    expect_pixels_of_operation({[&](Drape* f) { f->SetInputData(1, vtkNew<vtkStructuredGrid>()); }, {}});
+}
+
+TEST(VtkDrape, ReliefsHaveThePixelsOfTheOperation) {
+    for (const int type : {VTK_UNSIGNED_CHAR, VTK_FLOAT})
+        for (const int components : {1, 2, 4}) {
+            SCOPED_TRACE(testing::Message() << type << " " << components);
+            const Picture heights = picture(17, 13, type, components);
+            Scene scene{[&](Drape* f) {
+                            f->SetInputData(2, heights);
+                            f->SetSurface(Drape::CYLINDER);
+                            f->SetHeightScale(0.2);
+                            f->SetHeightSmooth(1.5);
+                        },
+                        {{"surface", "cylinder"},
+                         {"height", "height"},
+                         {"height_scale", "0.2"},
+                         {"height_smooth", "1.5"}}};
+            scene.files.all["height"] = file_of(heights);
+            expect_pixels_of_operation(scene);
+        }
+}
+
+TEST(VtkDrape, DeformationsOfATableOrAFileHaveThePixelsOfTheOperation) {
+    const Folder folder;
+    const std::string name = folder.write("bumps.csv", kBumps);
+    for (const bool by_table : {true, false}) {
+        SCOPED_TRACE(by_table);
+        Scene scene{[&](Drape* f) {
+                        if (by_table)
+                            f->SetInputData(3, table_of_bumps());
+                        else
+                            f->SetDeformationFileName(name.c_str());
+                    },
+                    {{"deform", "deform"}}};
+        scene.files.all["deform"] = bumps_as_file();
+        expect_pixels_of_operation(scene);
+    }
+}
+
+TEST(VtkDrape, BlendsHaveThePixelsOfTheOperation) {
+    const Picture positions = saddle(9, 7), heights = picture(17, 13);
+    Scene sampled{[&](Drape* f) {
+                      f->SetSurface(Drape::SPHERE);
+                      f->SetBlendWeight(Drape::POSITIONS, 0.7);
+                      f->SetBlendWeight(Drape::PAGE_TURN, -0.2);
+                      f->SetBlendWeight(Drape::SPHERE, 5);  // it counts for nothing
+                      f->SetInputData(1, positions);
+                      f->SetInputData(3, table_of_bumps());
+                      f->SetShading(Drape::PHONG);
+                  },
+                  {{"surface", "sphere"},
+                   {"blend", "page_turn,positions"},
+                   {"weights", "-0.2,0.7"},
+                   {"positions", "positions"},
+                   {"deform", "deform"},
+                   {"shading", "phong"}}};
+    sampled.files.all = {{"positions", file_of(positions)}, {"deform", bumps_as_file()}};
+    expect_pixels_of_operation(sampled);
+    Scene relief{[&](Drape* f) {
+                     f->SetBlendWeight(Drape::TORUS, 0.3);
+                     f->SetBlendWeight(Drape::WAVES, 0.5);
+                     f->SetInputData(2, heights);
+                     f->SetInputData(3, table_of_bumps());
+                     f->SetShading(Drape::GOURAUD);
+                 },
+                 {{"blend", "torus,waves"},
+                  {"weights", "0.3,0.5"},
+                  {"height", "height"},
+                  {"deform", "deform"},
+                  {"shading", "gouraud"}}};
+    relief.files.all = {{"height", file_of(heights)}, {"deform", bumps_as_file()}};
+    expect_pixels_of_operation(relief);
+}
+
+TEST(VtkDrape, ANewPictureOrListOfAnInputIsSeen) {
+    const Folder folder;
+    const Picture heights = picture(17, 13, VTK_FLOAT, 1);
+    vtkNew<Drape> filter;
+    filter->SetInputData(picture(30, 20));
+    filter->SetInputData(2, heights);
+    filter->SetDeformationFileName(folder.write("bumps.csv", kBumps).c_str());
+    filter->SetCameraPosition(1, 0, 2);
+    std::vector<std::vector<double>> seen = {drawn_numbers(filter)};
+    heights->GetPointData()->GetScalars()->SetComponent(100, 0, 5);
+    heights->GetPointData()->GetScalars()->Modified();
+    seen.push_back(drawn_numbers(filter));
+    filter->SetHeightSmooth(3);
+    seen.push_back(drawn_numbers(filter));
+    folder.write("bumps.csv", "0.5,0.5,0.2,0.2,0,0,0.3\n");
+    filter->Modified();
+    seen.push_back(drawn_numbers(filter));
+    for (std::size_t i = 1; i < seen.size(); ++i) EXPECT_NE(seen[i], seen[i - 1]) << i;
+}
+
+TEST(VtkDrape, HiddenPointsAndSuchThatAreNoNumbersAreHolesThatAreNamed) {
+    const Picture positions = saddle(30, 30);
+    const vtkSmartPointer<vtkStructuredGrid> grid = grid_of(positions);
+    vtkNew<Drape> filter;
+    Errors errors(filter);
+    filter->SetInputData(picture(30, 30));
+    filter->SetSurface(Drape::POSITIONS);
+    filter->SetInputData(1, grid);
+    filter->SetViewSize(100, 100);
+    filter->SetStyle(Drape::DEPTH);
+    const auto holes = [&] {
+        const std::vector<double> seen = drawn_numbers(filter);
+        return std::count_if(seen.begin(), seen.end(), [](double depth) { return depth > 1e29; });
+    };
+    const auto whole = holes();
+    EXPECT_FALSE(filter->GetOutput()->GetFieldData()->GetAbstractArray("anamorph:missing"));
+    const auto expect_hole = [&](const char* missing) {
+        // Cubics that the texel is part of: 4 x 4 cells of a thirtieth of the surface.
+        const auto more = holes() - whole;
+        EXPECT_GT(more, 30);
+        EXPECT_LT(more, 400);
+        auto* array = vtkStringArray::SafeDownCast(
+            filter->GetOutput()->GetFieldData()->GetAbstractArray("anamorph:missing"));
+        ASSERT_TRUE(array);
+        EXPECT_EQ(array->GetValue(0), missing);
+    };
+    grid->BlankPoint(12 * 30 + 17);
+    grid->Modified();
+    expect_hole("1 texels of positions, the first at 17,17");
+    positions->SetScalarComponentFromDouble(5, 20, 0, 1, kNan);
+    positions->Modified();
+    filter->SetInputData(1, positions);
+    expect_hole("1 texels of positions, the first at 5,9");
+    EXPECT_EQ(errors.text(), "");
+}
+
 // ---- What every filter holds ----
 
 TEST(VtkDrape, WhatCannotBeDoneIsAnErrorThatNamesTheProperty) {
@@ -339,6 +647,12 @@ TEST(VtkDrape, WhatCannotBeDoneIsAnErrorThatNamesTheProperty) {
     EXPECT_THAT(error([](Drape* f) { f->SetCameraViewUp(0, 0, 1); }), HasSubstr("CameraViewUp=0,0,1"));
     EXPECT_THAT(error([](Drape* f) { f->SetViewSize(0, 10); }), HasSubstr("ViewSize=0"));
     EXPECT_THAT(error([](Drape* f) { f->SetViewSize(10, 100000); }), HasSubstr("ViewSize=100000"));
+    EXPECT_THAT(error([](Drape* f) { f->SetShininess(-1); }), HasSubstr("Shininess=-1: must be"));
+    EXPECT_THAT(error([](Drape* f) { f->SetLight(0, 0, kNan, 1); }), HasSubstr("Light="));
+    EXPECT_THAT(error([](Drape* f) { f->SetLight(0, 0, 0, 0); }), HasSubstr("Light=0,0,0: must be"));
+    EXPECT_THAT(error([](Drape* f) { f->SetBlendWeight(Drape::SPHERE, kNan); }), HasSubstr("BlendWeights="));
+    EXPECT_THAT(error([](Drape* f) { f->SetBlendWeight(Drape::SPHERE, 1e7); }),
+                HasSubstr("BlendWeights=1e+07"));
     // Too fine for the grid of a picture as wide as this.
     EXPECT_THAT(error([](Drape* f) {
                     f->SetViewSize(65536, 1);
@@ -361,6 +675,70 @@ TEST(VtkDrape, ATextureThatCannotBeReadIsAnError) {
     const Picture short_one = picture(4, 4);
     short_one->GetPointData()->GetScalars()->SetNumberOfTuples(3);
     EXPECT_THAT(errors_of<Drape>(short_one), HasSubstr("no point array"));
+}
+
+TEST(VtkDrape, WhatIsNotInAListIsAnErrorAndChangesNothing) {
+    vtkNew<Drape> filter;
+    Errors errors(filter);
+    const vtkMTimeType before = filter->GetMTime();
+    const std::pair<std::function<void()>, const char*> calls[] = {
+        {[&] { filter->SetLight(1, 0, 0, 1); }, "light 1 is not in the list, which has 1"},
+        {[&] { EXPECT_FALSE(filter->GetLight(-1)); }, "light -1 is not"},
+        {[&] { filter->SetNumberOfLights(-1); }, "NumberOfLights=-1: must be"},
+        {[&] { filter->SetNumberOfLights(1 << 30); }, "must be an integer from 0 to"},
+        {[&] { filter->SetBlendWeight(-1, 1); }, "surface=-1: must be"},
+        {[&] { filter->SetBlendWeight(8, 1); }, "surface=8: must be an integer from 0 to 7"}};
+    for (const auto& [call, text] : calls) {
+        errors.clear();
+        call();
+        EXPECT_THAT(errors.text(), HasSubstr(text));
+    }
+    EXPECT_EQ(filter->GetMTime(), before);
+}
+
+TEST(VtkDrape, WhatOtherInputsLackIsAnError) {
+    const auto error = [](const std::function<void(Drape*)>& set) {
+        return errors_of<Drape>(picture(8, 8), set);
+    };
+    EXPECT_THAT(error([](Drape* f) { f->SetSurface(Drape::POSITIONS); }),
+                HasSubstr("positions is not given"));
+    EXPECT_THAT(error([](Drape* f) { f->SetBlendWeight(Drape::POSITIONS, 0.5); }),
+                HasSubstr("positions is not given"));
+    const auto positions = [&](vtkDataObject* data) {
+        return error([data](Drape* f) {
+            f->SetSurface(Drape::POSITIONS);
+            f->SetInputData(1, data);
+        });
+    };
+    EXPECT_THAT(positions(vtkNew<vtkStructuredGrid>()), HasSubstr("the input Positions has no points"));
+    EXPECT_THAT(positions(vtkNew<vtkImageData>()), HasSubstr("the input Positions has no points"));
+    EXPECT_THAT(positions(vtkNew<vtkTable>()), HasSubstr("vtkTable"));
+    EXPECT_THAT(positions(picture(4, 4, VTK_UNSIGNED_CHAR, 3)), HasSubstr("of type unsigned char"));
+    EXPECT_THAT(positions(picture(4, 4, VTK_FLOAT, 2)), HasSubstr("has 2 channels: must have 3"));
+    vtkNew<vtkImageData> volume;
+    volume->SetDimensions(3, 3, 3);
+    volume->AllocateScalars(VTK_FLOAT, 3);
+    EXPECT_THAT(positions(volume), HasSubstr("several layers"));
+    const auto height = [&](vtkDataObject* data, int surface) {
+        return error([=](Drape* f) {
+            f->SetSurface(surface);
+            f->SetInputData(2, data);
+        });
+    };
+    EXPECT_EQ(height(picture(4, 4), Drape::PLANE), "");
+    EXPECT_THAT(height(picture(4, 4), Drape::PAGE_TURN), HasSubstr("surface must not be page_turn"));
+    EXPECT_THAT(height(vtkNew<vtkImageData>(), Drape::PLANE), HasSubstr("the input Height has no points"));
+    vtkNew<vtkImageData> bare;
+    bare->SetDimensions(3, 3, 1);
+    EXPECT_THAT(height(bare, Drape::PLANE), HasSubstr("the input Height has no point array"));
+    EXPECT_THAT(error([](Drape* f) { f->SetDeformationFileName("/no/such.json"); }),
+                HasSubstr("/no/such.json: cannot be read"));
+    const vtkSmartPointer<vtkTable> table = table_of_bumps();
+    table->GetColumn(2)->SetVariantValue(1, 0);
+    EXPECT_THAT(error([&](Drape* f) { f->SetInputData(3, table); }), HasSubstr("deformation 1: extent=0"));
+    table->RemoveColumnByName("z");
+    EXPECT_THAT(error([&](Drape* f) { f->SetInputData(3, table); }), HasSubstr("no column z"));
+    EXPECT_EQ(error([&](Drape* f) { f->SetInputData(3, vtkNew<vtkTable>()); }), "");
 }
 
 TEST(VtkDrape, NumbersThatAreNoneStayInTheirTexels) {
@@ -517,28 +895,44 @@ TEST(VtkDrape, ProgressRisesTo1AndAbortLeavesNothing) {
 TEST(VtkDrape, UpdatesOnlyAfterAChangeOfAValue) {
     vtkNew<Drape> filter;
     filter->SetInputData(picture(4, 4));
-    expect_modified_by<Drape>(filter, {[](Drape* f) { f->SetSurface(Drape::CYLINDER); },
-                                       [](Drape* f) { f->SetAngle(90); },
-                                       [](Drape* f) { f->SetRadius(0.4); },
-                                       [](Drape* f) { f->SetTube(0.1); },
-                                       [](Drape* f) { f->SetAmplitude(0.1); },
-                                       [](Drape* f) { f->SetWavelength(0.1); },
-                                       [](Drape* f) { f->SetPhase(0.1); },
-                                       [](Drape* f) { f->SetDirection(5); },
-                                       [](Drape* f) { f->SetTurn(0.1); },
-                                       [](Drape* f) { f->SetViewSize(30, 20); },
-                                       [](Drape* f) { f->SetCameraPosition(0, 1, 2); },
-                                       [](Drape* f) { f->SetCameraFocalPoint(0, 0.1, 0); },
-                                       [](Drape* f) { f->SetCameraViewUp(0.1, 1, 0); },
-                                       [](Drape* f) { f->CameraParallelProjectionOn(); },
-                                       [](Drape* f) { f->SetCameraParallelScale(0.7); },
-                                       [](Drape* f) { f->SetCameraViewAngle(40); },
-                                       [](Drape* f) { f->SetTolerance(0.5); },
-                                       [](Drape* f) { f->SetFilter(Drape::BICUBIC); },
-                                       [](Drape* f) { f->SetBackground(1, 0, 0, 1); },
-                                       [](Drape* f) { f->SetStyle(Drape::DEPTH); }});
+    expect_modified_by<Drape>(filter,
+                              {[](Drape* f) { f->SetSurface(Drape::CYLINDER); },
+                               [](Drape* f) { f->SetAngle(90); },
+                               [](Drape* f) { f->SetRadius(0.4); },
+                               [](Drape* f) { f->SetTube(0.1); },
+                               [](Drape* f) { f->SetAmplitude(0.1); },
+                               [](Drape* f) { f->SetWavelength(0.1); },
+                               [](Drape* f) { f->SetPhase(0.1); },
+                               [](Drape* f) { f->SetDirection(5); },
+                               [](Drape* f) { f->SetTurn(0.1); },
+                               [](Drape* f) { f->SetViewSize(30, 20); },
+                               [](Drape* f) { f->SetCameraPosition(0, 1, 2); },
+                               [](Drape* f) { f->SetCameraFocalPoint(0, 0.1, 0); },
+                               [](Drape* f) { f->SetCameraViewUp(0.1, 1, 0); },
+                               [](Drape* f) { f->CameraParallelProjectionOn(); },
+                               [](Drape* f) { f->SetCameraParallelScale(0.7); },
+                               [](Drape* f) { f->SetCameraViewAngle(40); },
+                               [](Drape* f) { f->SetTolerance(0.5); },
+                               [](Drape* f) { f->SetFilter(Drape::BICUBIC); },
+                               [](Drape* f) { f->SetBackground(1, 0, 0, 1); },
+                               [](Drape* f) { f->SetStyle(Drape::DEPTH); },
+                               [](Drape* f) { f->SetBlendWeight(Drape::PLANE, 0.1); },
+                               [](Drape* f) { f->SetHeightScale(0.3); },
+                               [](Drape* f) { f->SetHeightSmooth(0.3); },
+                               [](Drape* f) { f->SetDeformationFileName("none.csv"); },
+                               [](Drape* f) { f->SetDeformationFileName(nullptr); },
+                               [](Drape* f) { f->SetShading(Drape::PHONG); },
+                               [](Drape* f) { f->SetNumberOfLights(2); },
+                               [](Drape* f) { f->SetLight(1, 1, 0, 0); },
+                               [](Drape* f) { f->SetAmbient(0.3); },
+                               [](Drape* f) { f->SetDiffuse(0.3); },
+                               [](Drape* f) { f->SetSpecular(0.3); },
+                               [](Drape* f) { f->SetShininess(3); },
+                               [](Drape* f) { f->SetPositionsConnection(f->GetInputConnection(0, 0)); },
+                               [](Drape* f) { f->SetHeightConnection(f->GetInputConnection(0, 0)); }});
     filter->SetSurface(99);
-    EXPECT_EQ(filter->GetSurface(), Drape::RIPPLES);
+    EXPECT_EQ(filter->GetSurface(), Drape::POSITIONS);
+    filter->SetSurface(Drape::SPHERE);
     expect_executed_once(filter);
 }
 
@@ -564,6 +958,16 @@ TEST(VtkDrape, PrintsItsState) {
                             "Tolerance: 0.125",
                             "Filter: antialias",
                             "Background: 0 0 0 0",
+                            "BlendWeights: 0 0 0 0 0 0 0 0",
+                            "HeightScale: 0.1",
+                            "HeightSmooth: 1",
+                            "DeformationFileName: (none)",
+                            "Shading: none",
+                            "Light: 0 0 1",
+                            "Ambient: 0.2",
+                            "Diffuse: 0.8",
+                            "Specular: 0",
+                            "Shininess: 20",
                             "Style: color",
                             "MaxError: 0"});
 }

@@ -2,29 +2,42 @@
 #include "vtkAnamorphDrape.h"
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
+#include <glm/geometric.hpp>
 #include <glm/mat3x3.hpp>
+#include <map>
+#include <sstream>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "anamorph/drape/drape.h"
 #include "anamorph/drape/drape_rows.h"
 #include "anamorph/error.h"
 #include "anamorph/figure/figure_rows.h"
 #include "anamorph/map/surface.h"
+#include "anamorph/operation/drape.h"
+#include "anamorph/operation/drape_surface.h"
+#include "anamorph/operation/rows.h"
 #include "anamorph/parameter.h"
 #include "anamorph/render/pyramid.h"
 #include "anamorph/render/source.h"
+#include "drape_inputs.h"
 #include "execution.h"
 #include "vtkDataArray.h"
 #include "vtkDataSetAttributes.h"
+#include "vtkFieldData.h"
 #include "vtkImageData.h"
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"
+#include "vtkNew.h"
 #include "vtkObjectFactory.h"
 #include "vtkPointData.h"
 #include "vtkSmartPointer.h"
 #include "vtkStreamingDemandDrivenPipeline.h"
+#include "vtkStringArray.h"
+#include "vtkTable.h"
 
 vtkObjectFactoryNewMacro(vtkAnamorphDrape);
 
@@ -35,20 +48,17 @@ using anamorph::PixelType;
 using Executive = vtkStreamingDemandDrivenPipeline;
 
 constexpr int kMostViewSize = 1 << 16;
+constexpr int kMostLights = 1024;
 constexpr float kFar = 1e30f;  ///< the depth where nothing is seen
 constexpr anamorph::NumberRow kCoordinateRow{"coordinate", 0, -1e6, 1e6};
 
-const char* const kFilters[] = {"nearest", "bilinear", "bicubic", "antialias"};
 const char* const kStyles[] = {"color", "texture coordinates", "depth", "normal"};
 
-/// The same error, naming the property of the filter that the core's parameter comes from.
-Error of_property(const Error& error) {
-    const std::pair<const char*, const char*> names[] = {
-        {"camera", "CameraPosition"}, {"up", "CameraViewUp"}, {"tol", "Tolerance"}};
-    for (const auto& [parameter, property] : names)
-        if (error.parameter() == parameter)
-            return Error(property + std::string(error.what()).substr(error.parameter().size()));
-    return error;
+/// One of the choices of a row of the operation's table.
+const std::string& word_of(const char* row, int choice) {
+    for (const anamorph::Parameter& parameter : *anamorph::drape_operation().parameters)
+        if (parameter.name == row) return parameter.choices[static_cast<std::size_t>(choice)];
+    throw Error(std::string("there is no row ") + row);
 }
 
 glm::dvec3 point(const char* name, const double* v) {
@@ -150,37 +160,152 @@ void say_as_vtk(int style, float* values, vtkIdType pixels) {
     }
 }
 
-anamorph::DrapeOptions options_of(int style, int filter, double tolerance, const double* background,
-                                  int components) {
-    anamorph::kDrapeTolRow.check(tolerance, "Tolerance");
-    anamorph::DrapeOptions options;
-    options.tol = tolerance;
-    options.filter = static_cast<anamorph::Filter>(filter);
-    if (style == vtkAnamorphDrape::TEXTURE_COORDINATES) options.output = anamorph::Output::stmap;
-    if (style == vtkAnamorphDrape::DEPTH) options.own = anamorph::DrapeOutput::depth;
-    if (style == vtkAnamorphDrape::NORMAL) options.own = anamorph::DrapeOutput::normal;
-    for (int c = 0; c < 4; ++c)
-        if (!std::isfinite(background[c]))
-            throw Error("Background", anamorph::shortest(background[c]), "must be finite numbers");
-    options.alpha = alpha_of(components);
-    for (int c = 0; c < components; ++c)
-        options.background.push_back(static_cast<float>(background[c == options.alpha ? 3 : c]));
-    return options;
+/// Directions of length 1.
+std::vector<glm::dvec3> lights_of(const std::vector<double>& numbers) {
+    std::vector<glm::dvec3> lights;
+    for (std::size_t i = 0; i + 2 < numbers.size(); i += 3) {
+        const glm::dvec3 light(numbers[i], numbers[i + 1], numbers[i + 2]);
+        const double largest = std::max({std::fabs(light.x), std::fabs(light.y), std::fabs(light.z)});
+        if (largest == 0) throw Error("light", "0,0,0", "must be a direction");
+        lights.push_back(glm::normalize(light / largest));
+    }
+    return lights;
+}
+
+void add_missing(const std::string& text, vtkDataObject* output) {
+    vtkNew<vtkStringArray> array;
+    array->SetName("anamorph:missing");
+    array->InsertNextValue(text);
+    output->GetFieldData()->AddArray(array);
+}
+
+/// "height_smooth" as "HeightSmooth".
+std::string property_of(const std::string& row) {
+    static const std::map<std::string, std::string> kOthers = {{"camera", "CameraPosition"},
+                                                               {"up", "CameraViewUp"},
+                                                               {"tol", "Tolerance"},
+                                                               {"light", "Light"},
+                                                               {"weights", "BlendWeights"}};
+    if (const auto other = kOthers.find(row); other != kOthers.end()) return other->second;
+    std::string name;
+    bool first = true;
+    for (const char c : row) {
+        if (c != '_') name += first ? static_cast<char>(std::toupper(static_cast<unsigned char>(c))) : c;
+        first = c == '_';
+    }
+    return name;
+}
+
+/// The same error, naming the property of the filter that the core's parameter comes from.
+Error of_property(const Error& error) {
+    const std::string& row = error.parameter();
+    if (row.empty() || std::isupper(static_cast<unsigned char>(row[0]))) return error;
+    return Error(property_of(row) + std::string(error.what()).substr(row.size()));
 }
 
 }  // namespace
 
+/// What inputs and files say of surfaces, and the patches of the last ones.
 struct vtkAnamorphDrape::Kept {
-    anamorph::SurfaceSum sum;
-    std::shared_ptr<anamorph::SharedTree> tree;
+    std::string key;
+    anamorph::DrapeSurfaces surfaces;
 };
 
+struct vtkAnamorphDrape::Number {
+    const char* name;
+    const char* row;
+    double vtkAnamorphDrape::*value;
+};
+
+const std::vector<vtkAnamorphDrape::Number>& vtkAnamorphDrape::Numbers() {
+    using Self = vtkAnamorphDrape;
+    static const std::vector<Number> all = {{"Angle", "angle", &Self::Angle},
+                                            {"Radius", "radius", &Self::Radius},
+                                            {"Tube", "tube", &Self::Tube},
+                                            {"Amplitude", "amplitude", &Self::Amplitude},
+                                            {"Wavelength", "wavelength", &Self::Wavelength},
+                                            {"Phase", "phase", &Self::Phase},
+                                            {"Direction", "direction", &Self::Direction},
+                                            {"Turn", "turn", &Self::Turn},
+                                            {"HeightScale", "height_scale", &Self::HeightScale},
+                                            {"HeightSmooth", "height_smooth", &Self::HeightSmooth},
+                                            {"Tolerance", "tol", &Self::Tolerance},
+                                            {"Ambient", "ambient", &Self::Ambient},
+                                            {"Diffuse", "diffuse", &Self::Diffuse},
+                                            {"Specular", "specular", &Self::Specular},
+                                            {"Shininess", "shininess", &Self::Shininess}};
+    return all;
+}
+
 vtkAnamorphDrape::vtkAnamorphDrape() {
-    this->SetInputArrayToProcess(0, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS,
-                                 vtkDataSetAttributes::SCALARS);
+    this->SetNumberOfInputPorts(4);
+    for (int i = 0; i < 3; ++i)
+        this->SetInputArrayToProcess(i, i, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS,
+                                     vtkDataSetAttributes::SCALARS);
+    // 0 stands for what has no default of its own.
+    const anamorph::ParameterValues defaults(*anamorph::drape_operation().parameters);
+    for (const Number& number : Numbers())
+        this->*number.value = defaults.text(number.row).empty() ? 0 : defaults.number(number.row);
+    this->SetNumberOfLights(1);
 }
 
 vtkAnamorphDrape::~vtkAnamorphDrape() = default;
+
+void vtkAnamorphDrape::SetBlendWeight(int surface, double weight) {
+    if (surface < PLANE || surface > POSITIONS) {
+        vtkErrorMacro(<< "surface=" << surface << ": must be an integer from " << int{PLANE} << " to "
+                      << int{POSITIONS});
+        return;
+    }
+    double weights[8];
+    std::copy_n(this->BlendWeights, 8, weights);
+    weights[surface] = weight;
+    this->SetBlendWeights(weights);
+}
+
+void vtkAnamorphDrape::SetDeformationFileName(const char* name) {
+    const std::string given = name ? name : "";
+    if (given == this->DeformationFileName) return;
+    this->DeformationFileName = given;
+    this->Modified();
+}
+
+void vtkAnamorphDrape::SetNumberOfLights(int count) {
+    if (count < 0 || count > kMostLights) {
+        vtkErrorMacro(<< "NumberOfLights=" << count << ": must be an integer from 0 to " << kMostLights);
+        return;
+    }
+    if (count == this->GetNumberOfLights()) return;
+    this->Lights.resize(static_cast<std::size_t>(count), {0, 0, 1});
+    this->Modified();
+}
+
+bool vtkAnamorphDrape::IsLight(int index) {
+    if (index >= 0 && index < this->GetNumberOfLights()) return true;
+    vtkErrorMacro(<< "light " << index << " is not in the list, which has " << this->GetNumberOfLights());
+    return false;
+}
+
+void vtkAnamorphDrape::SetLight(int index, double x, double y, double z) {
+    if (!this->IsLight(index)) return;
+    const std::array<double, 3> light = {x, y, z};
+    std::array<double, 3>& place = this->Lights[static_cast<std::size_t>(index)];
+    if (place == light) return;
+    place = light;
+    this->Modified();
+}
+
+double* vtkAnamorphDrape::GetLight(int index) {
+    return this->IsLight(index) ? this->Lights[static_cast<std::size_t>(index)].data() : nullptr;
+}
+
+int vtkAnamorphDrape::FillInputPortInformation(int port, vtkInformation* info) {
+    constexpr const char* kTypes[] = {"vtkImageData", "vtkStructuredGrid", "vtkImageData", "vtkTable"};
+    info->Set(INPUT_REQUIRED_DATA_TYPE(), kTypes[port]);
+    if (port == 1) info->Append(INPUT_REQUIRED_DATA_TYPE(), "vtkImageData");
+    if (port > 0) info->Set(INPUT_IS_OPTIONAL(), 1);
+    return 1;
+}
 
 /// Throws anamorph::Error.
 anamorph::Size vtkAnamorphDrape::Screen() const {
@@ -193,24 +318,93 @@ anamorph::Size vtkAnamorphDrape::Screen() const {
     return {this->ViewSize[0], this->ViewSize[1]};
 }
 
-/// The patches of the surface of a texture whose width is `aspect` times its height. Throws anamorph::Error.
-std::shared_ptr<anamorph::SharedTree> vtkAnamorphDrape::TreeOf(double aspect) {
-    if (this->Radius != 0) anamorph::kDrapeRadiusRow.check(this->Radius, "Radius");
-    anamorph::kDrapeAngleRow.check(this->Angle, "Angle");
-    anamorph::kDrapeTubeRow.check(this->Tube, "Tube");
-    anamorph::kDrapeAmplitudeRow.check(this->Amplitude, "Amplitude");
-    anamorph::kDrapeWavelengthRow.check(this->Wavelength, "Wavelength");
-    anamorph::kDrapePhaseRow.check(this->Phase, "Phase");
-    anamorph::kDrapeDirectionRow.check(this->Direction, "Direction");
-    anamorph::kDrapeTurnRow.check(this->Turn, "Turn");
-    anamorph::SurfaceSum sum;
-    sum.parts = {{static_cast<std::size_t>(this->Surface), 1}};
-    sum.shape = {aspect,           this->Radius, this->Angle,     this->Tube, this->Amplitude,
-                 this->Wavelength, this->Phase,  this->Direction, this->Turn};
-    if (!this->KeptSurface || this->KeptSurface->sum != sum)
-        this->KeptSurface.reset(
-            new Kept{sum, std::make_shared<anamorph::SharedTree>(anamorph::make_surface(sum))});
-    return this->KeptSurface->tree;
+bool vtkAnamorphDrape::UsesPositions() const {
+    return this->Surface == POSITIONS || this->BlendWeights[POSITIONS] != 0;
+}
+
+/// The properties as the operation's values, checked by its table. Throws anamorph::Error.
+anamorph::ParameterValues vtkAnamorphDrape::Values() const {
+    std::vector<anamorph::Assignment> said = {{"surface", word_of("surface", this->Surface)},
+                                              {"filter", word_of("filter", this->Filter)},
+                                              {"shading", word_of("shading", this->Shading)}};
+    for (const Number& number : Numbers())
+        if (number.value != &vtkAnamorphDrape::Radius || this->Radius != 0)
+            said.push_back({number.row, anamorph::shortest(this->*number.value)});
+    const auto add = [](std::string& list, const std::string& more) {
+        list += (list.empty() ? "" : ",") + more;
+    };
+    std::string blend, weights, lights;
+    for (int surface = PLANE; surface <= POSITIONS; ++surface)
+        if (surface != this->Surface && this->BlendWeights[surface] != 0) {
+            add(blend, word_of("surface", surface));
+            add(weights, anamorph::shortest(this->BlendWeights[surface]));
+        }
+    if (!blend.empty()) said.insert(said.end(), {{"blend", blend}, {"weights", weights}});
+    for (const auto& light : this->Lights)
+        for (const double number : light) add(lights, anamorph::shortest(number));
+    if (!lights.empty()) said.push_back({"light", lights});
+    anamorph::ParameterValues values(*anamorph::drape_operation().parameters);
+    values.assign(said);
+    return values;
+}
+
+/// The surfaces of a texture whose width is `aspect` times its height. Throws anamorph::Error.
+const anamorph::DrapeSurfaces& vtkAnamorphDrape::SurfacesOf(const anamorph::ParameterValues& values,
+                                                            vtkInformationVector** inputs, double aspect) {
+    auto* positions = vtkDataSet::GetData(inputs[1]);
+    auto* heights = vtkImageData::GetData(inputs[2]);
+    if (!this->UsesPositions()) positions = nullptr;
+    std::vector<anamorph_vtk::Numbers> bumps = anamorph_vtk::numbers_in(vtkTable::GetData(inputs[3]));
+    if (!this->DeformationFileName.empty()) {
+        const auto more = anamorph_vtk::read_deformations(this->DeformationFileName);
+        bumps.insert(bumps.end(), more.begin(), more.end());
+    }
+    // Arrays are chosen by what modifies the filter, not the data.
+    vtkDataArray* arrays[] = {positions ? this->GetInputArrayToProcess(1, inputs) : nullptr,
+                              heights ? this->GetInputArrayToProcess(2, inputs) : nullptr};
+    std::ostringstream key;
+    key << anamorph::shortest(aspect) << " " << values.text("height_smooth");
+    for (vtkObject* object : {static_cast<vtkObject*>(positions), static_cast<vtkObject*>(heights),
+                              static_cast<vtkObject*>(arrays[0]), static_cast<vtkObject*>(arrays[1])})
+        key << " " << object << " " << (object ? object->GetMTime() : 0);
+    for (const anamorph_vtk::Numbers& bump : bumps)
+        for (const double number : bump) key << " " << anamorph::shortest(number);
+    if (!this->KeptSurfaces || this->KeptSurfaces->key != key.str()) {
+        this->KeptSurfaces.reset();
+        anamorph_vtk::DrapeInputs files;
+        if (positions) files.put_positions(positions, arrays[0]);
+        if (heights) files.put_heights(heights, arrays[1]);
+        files.put_deformations(bumps);
+        this->KeptSurfaces.reset(
+            new Kept{key.str(), anamorph::DrapeSurfaces({values, {}, files.files(), files}, aspect)});
+    }
+    return this->KeptSurfaces->surfaces;
+}
+
+/// Throws anamorph::Error.
+anamorph::DrapeOptions vtkAnamorphDrape::Options(const anamorph::ParameterValues& values,
+                                                 int components) const {
+    anamorph::DrapeOptions options;
+    options.tol = values.number("tol");
+    options.filter = anamorph::rows::chosen<anamorph::Filter>(values, "filter");
+    if (this->Style == TEXTURE_COORDINATES) options.output = anamorph::Output::stmap;
+    if (this->Style == DEPTH) options.own = anamorph::DrapeOutput::depth;
+    if (this->Style == NORMAL) options.own = anamorph::DrapeOutput::normal;
+    options.lighting = {anamorph::rows::chosen<anamorph::DrapeShading>(values, "shading"),
+                        lights_of(this->Lights.empty() ? std::vector<double>{} : values.numbers("light")),
+                        values.number("ambient"),
+                        values.number("diffuse"),
+                        values.number("specular"),
+                        values.number("shininess")};
+    for (int c = 0; c < 4; ++c)
+        if (!std::isfinite(this->Background[c]))
+            throw Error("Background", anamorph::shortest(this->Background[c]), "must be finite numbers");
+    options.alpha = alpha_of(components);
+    // Nothing behind is what the core draws fastest.
+    const bool nothing = std::all_of(this->Background, this->Background + 4, [](double v) { return v == 0; });
+    for (int c = 0; c < components && !nothing; ++c)
+        options.background.push_back(static_cast<float>(this->Background[c == options.alpha ? 3 : c]));
+    return options;
 }
 
 /// Throws anamorph::Error.
@@ -255,19 +449,21 @@ int vtkAnamorphDrape::RequestInformation(vtkInformation*, vtkInformationVector**
 
 int vtkAnamorphDrape::RequestUpdateExtent(vtkInformation*, vtkInformationVector** inputs,
                                           vtkInformationVector*) {
-    vtkInformation* texture = inputs[0]->GetInformationObject(0);
-    if (!texture || !texture->Has(Executive::WHOLE_EXTENT())) return 1;
-    // All of it, which is no piece as the pipeline would cut it.
-    texture->Set(Executive::UPDATE_PIECE_NUMBER(), 0);
-    texture->Set(Executive::UPDATE_NUMBER_OF_PIECES(), 1);
-    texture->Set(Executive::UPDATE_NUMBER_OF_GHOST_LEVELS(), 0);
-    texture->Set(Executive::UPDATE_EXTENT(), texture->Get(Executive::WHOLE_EXTENT()), 6);
+    for (int port = 0; port < this->GetNumberOfInputPorts(); ++port) {
+        vtkInformation* input = inputs[port]->GetInformationObject(0);
+        if (!input) continue;
+        // All of it, which is no piece as the pipeline would cut it.
+        input->Set(Executive::UPDATE_PIECE_NUMBER(), 0);
+        input->Set(Executive::UPDATE_NUMBER_OF_PIECES(), 1);
+        input->Set(Executive::UPDATE_NUMBER_OF_GHOST_LEVELS(), 0);
+        if (input->Has(Executive::WHOLE_EXTENT()))
+            input->Set(Executive::UPDATE_EXTENT(), input->Get(Executive::WHOLE_EXTENT()), 6);
+    }
     return 1;
 }
 
 int vtkAnamorphDrape::RequestData(vtkInformation*, vtkInformationVector** inputs,
                                   vtkInformationVector* outputs) {
-    vtkImageData* texture = vtkImageData::GetData(inputs[0]);
     vtkImageData* output = vtkImageData::GetData(outputs);
     output->Initialize();
     this->MaxError = 0;
@@ -275,7 +471,7 @@ int vtkAnamorphDrape::RequestData(vtkInformation*, vtkInformationVector** inputs
         try {
             int asked[6];
             outputs->GetInformationObject(0)->Get(Executive::UPDATE_EXTENT(), asked);
-            this->Draw(texture, this->GetInputArrayToProcess(0, inputs), asked, output);
+            this->Draw(inputs, asked, output);
         } catch (const Error& error) {
             throw of_property(error);
         }
@@ -284,18 +480,19 @@ int vtkAnamorphDrape::RequestData(vtkInformation*, vtkInformationVector** inputs
 }
 
 /// Draws the pixels of an extent of the image.
-void vtkAnamorphDrape::Draw(vtkImageData* texture, vtkDataArray* texels, const int* extent,
-                            vtkImageData* output) {
+void vtkAnamorphDrape::Draw(vtkInformationVector** inputs, const int* extent, vtkImageData* output) {
     if (extent[0] > extent[1] || extent[2] > extent[3]) return;
     const anamorph::Size screen = this->Screen();
-    const Texture pixels(texture, texels);
+    const Texture pixels(vtkImageData::GetData(inputs[0]), this->GetInputArrayToProcess(0, inputs));
     const int channels = pixels.view().channels;
-    const anamorph::DrapeOptions options =
-        options_of(this->Style, this->Filter, this->Tolerance, this->Background, channels);
+    const anamorph::ParameterValues values = this->Values();
     anamorph_vtk::Execution execution(this);
     execution.progress(0.01);
-    const anamorph::Drape drape(this->TreeOf(static_cast<double>(pixels.size().width) / pixels.size().height),
-                                this->CameraOf(screen), pixels.size(), options);
+    const anamorph::DrapeSurfaces& surfaces =
+        this->SurfacesOf(values, inputs, static_cast<double>(pixels.size().width) / pixels.size().height);
+    execution.progress(0.1);
+    const anamorph::Drape drape(surfaces.tree_of(surfaces.sum_of(values)), this->CameraOf(screen),
+                                pixels.size(), this->Options(values, channels));
     execution.progress(0.3);
 
     const Drawn drawn = drawn_by(this->Style, pixels.type(), channels);
@@ -319,6 +516,7 @@ void vtkAnamorphDrape::Draw(vtkImageData* texture, vtkDataArray* texels, const i
         throw Error("the texture cannot be read");
     if (this->Style != COLOR)
         say_as_vtk(this->Style, static_cast<float*>(array->GetVoidPointer(0)), array->GetNumberOfTuples());
+    if (!surfaces.missing().empty()) add_missing(surfaces.missing(), output);
     this->MaxError = drape.max_error();
 }
 
@@ -329,15 +527,11 @@ void vtkAnamorphDrape::PrintSelf(ostream& os, vtkIndent indent) {
         for (int i = 0; i < count; ++i) os << " " << v[i];
         os << "\n";
     };
-    os << indent << "Surface: " << anamorph::surface_names()[static_cast<std::size_t>(this->Surface)] << "\n"
-       << indent << "Angle: " << this->Angle << "\n"
-       << indent << "Radius: " << this->Radius << "\n"
-       << indent << "Tube: " << this->Tube << "\n"
-       << indent << "Amplitude: " << this->Amplitude << "\n"
-       << indent << "Wavelength: " << this->Wavelength << "\n"
-       << indent << "Phase: " << this->Phase << "\n"
-       << indent << "Direction: " << this->Direction << "\n"
-       << indent << "Turn: " << this->Turn << "\n"
+    os << indent << "Surface: " << word_of("surface", this->Surface) << "\n";
+    print("BlendWeights", this->BlendWeights, 8);
+    for (const Number& number : Numbers()) print(number.name, &(this->*number.value), 1);
+    os << indent << "DeformationFileName: "
+       << (this->DeformationFileName.empty() ? "(none)" : this->DeformationFileName) << "\n"
        << indent << "ViewSize: " << this->ViewSize[0] << " " << this->ViewSize[1] << "\n";
     print("CameraPosition", this->CameraPosition, 3);
     print("CameraFocalPoint", this->CameraFocalPoint, 3);
@@ -345,9 +539,10 @@ void vtkAnamorphDrape::PrintSelf(ostream& os, vtkIndent indent) {
     os << indent << "CameraParallelProjection: " << this->CameraParallelProjection << "\n"
        << indent << "CameraParallelScale: " << this->CameraParallelScale << "\n"
        << indent << "CameraViewAngle: " << this->CameraViewAngle << "\n"
-       << indent << "Tolerance: " << this->Tolerance << "\n"
-       << indent << "Filter: " << kFilters[this->Filter] << "\n";
+       << indent << "Filter: " << word_of("filter", this->Filter) << "\n";
     print("Background", this->Background, 4);
+    os << indent << "Shading: " << word_of("shading", this->Shading) << "\n";
+    for (const auto& light : this->Lights) print("Light", light.data(), 3);
     os << indent << "Style: " << kStyles[this->Style] << "\n"
        << indent << "MaxError: " << this->MaxError << "\n";
 }

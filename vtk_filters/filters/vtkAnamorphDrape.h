@@ -11,6 +11,16 @@
  * pixels are square. The surface is cut into patches whose points are seen within Tolerance pixels from where
  * they belong, which is proven, and without cracks. Patches are kept for other views of the same surface.
  *
+ * Three more inputs are optional. Positions, port 1: a surface that is sampled, one layer of points over the whole of
+ * the texture, interpolated by smooth cubics; the points of a vtkStructuredGrid, or an array of three components, float
+ * or double, of a vtkImageData (SetInputArrayToProcess(1, 1, ...); by default the scalars). Rows go up, as the
+ * texture's. Height, port 2: a vtkImageData by whose brightness, the mean of up to three components of an array
+ * (SetInputArrayToProcess(2, 2, ...)), surfaces with smooth normals are raised along these: floating point as it is,
+ * whole numbers as fractions of the largest of their type. Deformations, port 3: a table of bumps that
+ * move the surface, with the columns of vtkAnamorphDeformationList; u and v run from 0 to 1 over the texture. Hidden
+ * points, and such that are no numbers, are holes; then the field array "anamorph:missing" says how many, and where
+ * the first is, in rows counted from the uppermost.
+ *
  * The output is an image of ViewSize pixels, the first at the lower left, with one array of its points: Colors
  * (components and type of the texture); TextureCoordinates (float, as VTK's, (-1, -1) where nothing is seen);
  * Depth (float: the distance ahead of the camera, 1e30 where nothing is seen); or Normals (float: of the
@@ -23,11 +33,16 @@
 #include "AnamorphFiltersModule.h"  // for the export macro
 #include "vtkImageAlgorithm.h"
 
+#include <array>   // for a light
 #include <memory>  // for the surface that is kept
+#include <string>  // for the name of the file
+#include <vector>  // for the lights
 
 namespace anamorph {
 class Camera;
-struct SharedTree;
+class DrapeSurfaces;
+class ParameterValues;
+struct DrapeOptions;
 struct Size;
 }  // namespace anamorph
 
@@ -38,20 +53,58 @@ class ANAMORPHFILTERS_EXPORT vtkAnamorphDrape : public vtkImageAlgorithm {
     void PrintSelf(ostream& os, vtkIndent indent) override;
 
     /** The values of Surface. */
-    enum { PLANE, CYLINDER, SPHERE, TORUS, PAGE_TURN, WAVES, RIPPLES };
+    enum { PLANE, CYLINDER, SPHERE, TORUS, PAGE_TURN, WAVES, RIPPLES, POSITIONS };
     /** The values of Filter. */
     enum { NEAREST, BILINEAR, BICUBIC, ANTIALIAS };
     /** The values of Style. */
     enum { COLOR, TEXTURE_COORDINATES, DEPTH, NORMAL };
+    /** The values of Shading. */
+    enum { NONE, GOURAUD, PHONG };
+
+    ///@{
+    /** The optional inputs. */
+    void SetPositionsConnection(vtkAlgorithmOutput* output) { this->SetInputConnection(1, output); }
+    void SetHeightConnection(vtkAlgorithmOutput* output) { this->SetInputConnection(2, output); }
+    void SetDeformationsConnection(vtkAlgorithmOutput* output) { this->SetInputConnection(3, output); }
+    ///@}
 
     ///@{
     /**
      * The surface that the texture lies on: PLANE, the default; CYLINDER, about the y axis; SPHERE, about the
      * origin, with all latitudes; TORUS, about the y axis; PAGE_TURN: a sheet curls round a cylinder that rolls
-     * over it; WAVES, RIPPLES: plane and circular.
+     * over it; WAVES, RIPPLES: plane and circular; POSITIONS: that of the input Positions.
      */
-    vtkSetClampMacro(Surface, int, PLANE, RIPPLES);
+    vtkSetClampMacro(Surface, int, PLANE, POSITIONS);
     vtkGetMacro(Surface, int);
+    ///@}
+
+    ///@{
+    /**
+     * Weights of the surfaces that Surface is blended with, point by point (Oka 1987, eq. 4.3), from PLANE to
+     * POSITIONS, -1e6 to 1e6; what they lack to 1 is the weight of Surface itself, whose own counts for nothing. All
+     * are 0 by default. There are no others.
+     */
+    void SetBlendWeight(int surface, double weight);
+    vtkSetVectorMacro(BlendWeights, double, 8);
+    vtkGetVectorMacro(BlendWeights, double, 8);
+    ///@}
+
+    ///@{
+    /** How far brightness 1 of the input Height raises the surface, -1000 to 1000; 0.1 by default. */
+    vtkSetMacro(HeightScale, double);
+    vtkGetMacro(HeightScale, double);
+    /** Its heights are smoothed by a Gaussian of that standard deviation, in texels, 0 to 100; 1 by default. */
+    vtkSetMacro(HeightSmooth, double);
+    vtkGetMacro(HeightSmooth, double);
+    ///@}
+
+    ///@{
+    /**
+     * A file of deformations, JSON or CSV as vtkAnamorphDeformationList has them, beside those of the input. It is
+     * read whenever the filter executes.
+     */
+    void SetDeformationFileName(const char* name);
+    const char* GetDeformationFileName() { return this->DeformationFileName.c_str(); }
     ///@}
 
     ///@{
@@ -152,6 +205,39 @@ class ANAMORPHFILTERS_EXPORT vtkAnamorphDrape : public vtkImageAlgorithm {
     ///@}
 
     ///@{
+    /** NONE, the default; GOURAUD: by the light at the corners of patches; PHONG: by the normals there. */
+    vtkSetClampMacro(Shading, int, NONE, PHONG);
+    vtkGetMacro(Shading, int);
+    ///@}
+
+    ///@{
+    /**
+     * Directions towards lights at infinity, in space, of any length but 0. Both sides of the surface are lit alike, by
+     * lights on the viewer's. By default there is one, (0, 0, 1), as are those that are added. An index that is not
+     * in the list is an error.
+     */
+    void SetNumberOfLights(int count);
+    int GetNumberOfLights() { return static_cast<int>(this->Lights.size()); }
+    void SetLight(int index, double x, double y, double z);
+    double* GetLight(int index) VTK_SIZEHINT(3);
+    ///@}
+
+    ///@{
+    /** The share of the color that is seen without light, 0 to 1000; 0.2 by default. */
+    vtkSetMacro(Ambient, double);
+    vtkGetMacro(Ambient, double);
+    /** The share of the color that light adds, 0 to 1000; 0.8 by default. */
+    vtkSetMacro(Diffuse, double);
+    vtkGetMacro(Diffuse, double);
+    /** Highlights that light adds, 0 to 1000; 0 by default. */
+    vtkSetMacro(Specular, double);
+    vtkGetMacro(Specular, double);
+    /** Their exponent, 0 to 100000; 20 by default. */
+    vtkSetMacro(Shininess, double);
+    vtkGetMacro(Shininess, double);
+    ///@}
+
+    ///@{
     /** What is drawn. COLOR by default. */
     vtkSetClampMacro(Style, int, COLOR, NORMAL);
     vtkGetMacro(Style, int);
@@ -164,6 +250,7 @@ class ANAMORPHFILTERS_EXPORT vtkAnamorphDrape : public vtkImageAlgorithm {
     vtkAnamorphDrape();
     ~vtkAnamorphDrape() override;
 
+    int FillInputPortInformation(int port, vtkInformation* info) override;
     int RequestInformation(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
     int RequestUpdateExtent(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
     int RequestData(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
@@ -172,23 +259,28 @@ class ANAMORPHFILTERS_EXPORT vtkAnamorphDrape : public vtkImageAlgorithm {
     vtkAnamorphDrape(const vtkAnamorphDrape&) = delete;
     void operator=(const vtkAnamorphDrape&) = delete;
 
-    /// A surface and its patches.
+    /// A number of a row of the operation's table.
+    struct Number;
+    static const std::vector<Number>& Numbers();
+    /// Surfaces and their patches.
     struct Kept;
 
-    std::shared_ptr<anamorph::SharedTree> TreeOf(double aspect);
+    anamorph::ParameterValues Values() const;
+    bool UsesPositions() const;
+    bool IsLight(int index);
+    const anamorph::DrapeSurfaces& SurfacesOf(const anamorph::ParameterValues& values,
+                                              vtkInformationVector** inputs, double aspect);
+    anamorph::DrapeOptions Options(const anamorph::ParameterValues& values, int components) const;
     anamorph::Camera CameraOf(const anamorph::Size& screen) const;
     anamorph::Size Screen() const;
-    void Draw(vtkImageData* texture, vtkDataArray* texels, const int* extent, vtkImageData* output);
+    void Draw(vtkInformationVector** inputs, const int* extent, vtkImageData* output);
 
     int Surface = PLANE;
-    double Angle = 180;
-    double Radius = 0;
-    double Tube = 0.2;
-    double Amplitude = 0.05;
-    double Wavelength = 0.5;
-    double Phase = 0;
-    double Direction = 0;
-    double Turn = 0.5;
+    double BlendWeights[8] = {0, 0, 0, 0, 0, 0, 0, 0};
+    std::string DeformationFileName;
+    // Defaults are those of the operation's table.
+    double Angle, Radius, Tube, Amplitude, Wavelength, Phase, Direction, Turn;
+    double HeightScale, HeightSmooth, Tolerance, Ambient, Diffuse, Specular, Shininess;
     int ViewSize[2] = {500, 500};
     double CameraPosition[3] = {0, 0, 2};
     double CameraFocalPoint[3] = {0, 0, 0};
@@ -196,12 +288,13 @@ class ANAMORPHFILTERS_EXPORT vtkAnamorphDrape : public vtkImageAlgorithm {
     bool CameraParallelProjection = false;
     double CameraParallelScale = 0.5;
     double CameraViewAngle = 30;
-    double Tolerance = 0.125;
     int Filter = ANTIALIAS;
     double Background[4] = {0, 0, 0, 0};
+    int Shading = NONE;
+    std::vector<std::array<double, 3>> Lights;
     int Style = COLOR;
     double MaxError = 0;
-    std::unique_ptr<Kept> KeptSurface;
+    std::unique_ptr<Kept> KeptSurfaces;
 };
 
 #endif
