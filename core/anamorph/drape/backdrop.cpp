@@ -40,9 +40,7 @@ Backdrop::Backdrop(const std::vector<float>& color, const Source* picture, int a
 /// The picture at a pixel's centre, in its own channels.
 bool Backdrop::sample(int x, int y) {
     const double u = (x + 0.5) * m_step.x_i, v = (y + 0.5) * m_step.y_j;
-    return m_filter == Filter::antialias
-               ? m_sampler->sample((*m_chooser)(m_step), m_step, 0, u, v, m_texel.data())
-               : m_sampler->sample(m_filter, 0, 0, u, v, m_texel.data());
+    return m_sampler->sample(m_filter, *m_chooser, m_step, 0, u, v, m_texel.data());
 }
 
 bool Backdrop::at(int x, int y, float* pixel) {

@@ -4,11 +4,13 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <deque>
 #include <glm/geometric.hpp>
 
 #include "anamorph/drape/oka.h"
 #include "anamorph/parameter.h"
 #include "anamorph/render/pixel.h"
+#include "anamorph/render/pyramid.h"
 #include "anamorph/render/strips.h"
 
 namespace anamorph {
@@ -302,8 +304,8 @@ class Drape::EdgePainter {
         m_drape.weigh(spot, part.x, part.y);
         const Jacobian jacobian = map.jacobian_of(*spot.facet, part.x, part.y);
         const Size& size = map.picture();
-        const bool ok = m_sampler.sample(m_chooser(jacobian), jacobian, 0, part.u * size.width,
-                                         part.v * size.height, m_part.data());
+        const bool ok = m_sampler.sample(m_drape.m_options.filter, m_chooser, jacobian, 0,
+                                         part.u * size.width, part.v * size.height, m_part.data());
         if (m_drape.m_options.lighting.shading == DrapeShading::none) return ok;
         if (alpha.straight()) unassociate_alpha(m_part.data(), channels, alpha.channel);
         m_drape.light_pixel(spot, m_part.data(), channels, alpha);
@@ -342,6 +344,11 @@ bool Drape::draw(const Source* source, const Box& box, const ImageView& view, co
     if (m_options.own != DrapeOutput::shared || m_options.output != Output::color)
         return draw_values(box, view, parallel_for);
     if (!source) return m_picture.draw({source}, box, view, parallel_for);
+    // Sources that keep no sums are lent a place for them.
+    std::deque<Pyramid> lent;
+    if (m_options.filter == Filter::summed_area)
+        for (const Source** s : {&source, &backdrop})
+            if (*s && !(*s)->summed_areas()) *s = &lent.emplace_back(**s);
     const int straight = source->unassociated_alpha();
     const Layers layers{*source, backdrop, {straight >= 0 ? straight : m_options.alpha, straight < 0}};
     Picture picture = m_picture;
@@ -352,8 +359,7 @@ bool Drape::draw(const Source* source, const Box& box, const ImageView& view, co
         };
     if (!picture.draw({source}, box, view, parallel_for)) return false;
     const Box inside = intersection(box, {0, 0, m_map->width(), m_map->height()});
-    return ok && (m_options.filter != Filter::antialias ||
-                  draw_edges(layers, inside, Canvas(view, box), parallel_for));
+    return ok && (!averages(m_options.filter) || draw_edges(layers, inside, Canvas(view, box), parallel_for));
 }
 
 }  // namespace anamorph

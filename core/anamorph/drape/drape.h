@@ -3,7 +3,7 @@
 //
 // The surface is cut into facets (facets.h) whose points are seen at most `tol` pixels from where they belong: a
 // distance on the screen, since near a silhouette a step on the screen is any distance on the picture. Each pixel shows
-// the nearest facet at its centre; with Filter::antialias, those at silhouettes and borders show what is seen at
+// the nearest facet at its centre; with a filter that averages, those at silhouettes and borders show what is seen at
 // kEdgeSamples^2 samples of them.
 #pragma once
 

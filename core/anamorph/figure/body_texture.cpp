@@ -36,13 +36,8 @@ glm::dvec3 BodyTexture::color(const SeenSurface& surface, double x, double y, bo
     const Size size = m_source.size(0);
     u = u * double(size.width) + offset.x;
     v = v * double(size.height) + offset.y;
-    bool read;
-    if (m_filter == Filter::antialias) {
-        const Jacobian jacobian = {u.c[1], v.c[1], u.c[2], v.c[2]};
-        read = m_sampler.sample(m_chooser(jacobian), jacobian, 0, u.value(), v.value(), m_pixel.data());
-    } else {
-        read = m_sampler.sample(m_filter, 0, 0, u.value(), v.value(), m_pixel.data());
-    }
+    const bool read = m_sampler.sample(m_filter, m_chooser, {u.c[1], v.c[1], u.c[2], v.c[2]}, 0, u.value(),
+                                       v.value(), m_pixel.data());
     if (!read) return below;
     const bool gray = m_pixel.size() < 3;
     const auto at = [&](std::size_t c) { return static_cast<double>(m_pixel[gray ? 0 : c]); };

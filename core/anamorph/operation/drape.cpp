@@ -61,7 +61,11 @@ ParameterTable make_table() {
         size("width and height of the picture, or its width alone; by default the source's"),
         tile(),
         mip(),
-        filter(),
+        filter({{"pyramid",
+                 "the mean over the least rectangle along the source's sides that covers what a pixel shows, "
+                 "from "
+                 "a pyramid (Oka 1987, Williams 1983)"},
+                {"summed_area", "the same of all texels, from a table of sums (Crow 1984)"}}),
         wrap("goes on as at the edge"),
         number("tol", "pixels", kDrapeTolRow,
                "how far, on the screen, a point of the picture may be drawn from where it belongs"),

@@ -148,9 +148,12 @@ Parameter colorspace(const std::string& doc) {
     return text("colorspace", doc);
 }
 
-Parameter filter() {
-    return choice("filter", "antialias", {"nearest", "bilinear", "bicubic", "antialias"},
-                  "antialias is bilinear where the map magnifies");
+Parameter filter(const std::vector<Word>& own) {
+    Parameter row = choice("filter", "antialias", {"nearest", "bilinear", "bicubic", "antialias"},
+                           "antialias is bilinear where the map magnifies");
+    for (const Word& word : own) row.choices.push_back(word.name);
+    if (!own.empty()) row.documentation += "; " + meanings_of(own);
+    return row;
 }
 
 Parameter wrap(const std::string& automatic) {

@@ -45,8 +45,8 @@ struct Word {
     std::string name, meaning = {};
 };
 
-/// In the order of anamorph::Filter.
-Parameter filter();
+/// The filters that all operations share, in the order of anamorph::Filter, then those that follow them there.
+Parameter filter(const std::vector<Word>& own = {});
 /// In the order of anamorph::Wrap. `automatic`: what that is here, "is black".
 Parameter wrap(const std::string& automatic);
 /// In the order of the operation's enumeration. The words auto, exact, blocks, residual and hardware mean the same

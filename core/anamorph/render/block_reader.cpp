@@ -330,8 +330,11 @@ BlockReader::BlockReader(const BlockMap& map, const Source& source, const Border
 bool BlockReader::rows(const Block& block, const Box& part, const Row& row) {
     if (in_double(block)) {
         read_in_double(block);
+        if (m_filter == Filter::summed_area) return rows_one_by_one(block, {}, part, row);
         return rows_in_double(block, part, row);
     }
+    if (m_filter == Filter::summed_area && block.kind != Block::Kind::outside)
+        return rows_one_by_one(block, points_of(block), part, row);
     switch (block.kind) {
         case Block::Kind::outside:
             std::fill(m_values.begin(), m_values.end(), 0.0f);
@@ -356,6 +359,7 @@ bool BlockReader::draw(const Block& block, const Box& part, const Canvas& canvas
     const Row store = [&](int x, int y, int count, const float* values, float one) {
         canvas.store(x, y, count, values, one);
     };
+    if (m_filter == Filter::summed_area) return rows(block, part, store);
     if (in_double(block)) {
         read_in_double(block);
         const Got got = straight ? draw_in_double(block, part, canvas, next) : Got::too_large;
@@ -390,7 +394,7 @@ BlockReader::Got BlockReader::draw_polynomial(const Block& block, const Box& par
 template <class Real>
 bool BlockReader::filtering_of(const Block& block, const PixelPoints<Real>& points, Filtering& f) const {
     f = filtering({});
-    if (m_filter != Filter::antialias) return true;
+    if (!averages(m_filter)) return true;
     const int width = block.box.width(), height = block.box.height();
     if (width < 2 || height < 2) return false;
     const auto at = [&](int i, int j) {
@@ -484,7 +488,7 @@ void BlockReader::draw_window(const Filtering& f, const Block& block, const simd
 
 /// Do all pixels of a polynomial block share the filter that serves its middle?
 bool BlockReader::shares_filter(const BlockPolynomial& polynomial, const Block& block) const {
-    return m_filter != Filter::antialias || shares_footprint(polynomial, block);
+    return !averages(m_filter) || shares_footprint(polynomial, block);
 }
 
 bool BlockReader::polynomial_rows(const Block& block, const Box& part, const Row& row) {
@@ -508,6 +512,7 @@ bool BlockReader::polynomial_rows(const Block& block, const Box& part, const Row
 }
 
 bool BlockReader::rows(const Block& block, const BlockPoints& points, const Box& part, const Row& row) {
+    if (m_filter == Filter::summed_area) return rows_one_by_one(block, points, part, row);
     const auto at = [&](int i, int j) {
         const std::ptrdiff_t k = j * points.row_stride + i;
         return Point<double>{points.x[k], points.y[k]};
@@ -522,7 +527,7 @@ bool BlockReader::rows(const Block& block, const BlockPoints& points, const Box&
 /// pixels, counted from its corner.
 template <class At, class Body>
 bool BlockReader::for_each_footprint(const Block& block, const At& at, const Body& body) const {
-    if (m_filter != Filter::antialias) return body(whole(block), filtering({}));
+    if (!averages(m_filter)) return body(whole(block), filtering({}));
     const Steps<At> steps(at, block);
     const auto derivative = [&](const Box& cell) {
         if (steps.go_both_ways()) return steps.jacobian(cell);
@@ -642,7 +647,7 @@ bool BlockReader::rows_in_double(const Block& block, const Box& part, const Row&
     const auto body = [&](const Box& cell, const Filtering& f) {
         return exact_cell(f, block, cell, part, row);
     };
-    if (m_filter != Filter::antialias) return body(whole(block), filtering({}));
+    if (!averages(m_filter)) return body(whole(block), filtering({}));
     // Steps go from source point to source point.
     Range x, y;
     if (!lie_together(whole(block)) || !ranges_in_double(whole(block), x, y))
@@ -718,9 +723,9 @@ bool BlockReader::rows_one_by_one(const Block& block, const BlockPoints& points,
 
 bool BlockReader::sample_point(int i, int j, int target_piece, const Point<double>& p, int piece,
                                float* pixel) {
-    if (m_filter != Filter::antialias) return m_points.sample(m_filter, 0, piece, p.x, p.y, pixel);
-    const Jacobian jacobian = m_map.jacobian(i + 0.5, j + 0.5, target_piece);
-    return m_points.sample(m_chooser(jacobian), jacobian, piece, p.x, p.y, pixel);
+    const Jacobian jacobian =
+        averages(m_filter) ? m_map.jacobian(i + 0.5, j + 0.5, target_piece) : Jacobian{};
+    return m_points.sample(m_filter, m_chooser, jacobian, piece, p.x, p.y, pixel);
 }
 
 void BlockReader::sample(const simd::Texels& texels, const simd::Offsets& offsets, PixelType type, int x,
@@ -802,11 +807,12 @@ simd::Texels BlockReader::texels_of(const Filtering& f, const Window& window, st
             texels_in(window.box) > kApart * pixels};
 }
 
-BlockReader::Filtering BlockReader::filtering(const Jacobian& jacobian) const {
+BlockReader::Filtering BlockReader::filtering(const Jacobian& steps) const {
     Filtering f;
+    const Jacobian jacobian = m_filter == Filter::pyramid ? covering_rectangle(steps) : steps;
     if (m_filter == Filter::nearest) f.kernel = simd::Kernel::nearest;
     if (m_filter == Filter::bicubic) f.kernel = simd::Kernel::bicubic;
-    if (m_filter != Filter::antialias) return f;
+    if (!averages(m_filter)) return f;
     const Footprint footprint = m_chooser(jacobian);
     f.level = footprint.level;
     f.scale_x = m_chooser.scale(f.level)[0];

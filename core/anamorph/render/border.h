@@ -37,6 +37,8 @@ class Border {
     Border(const Chart& chart, Wrap wrap);
 
     const Chart& chart() const noexcept { return m_chart; }
+    /// What stands beyond the edge.
+    Wrap wrap() const noexcept { return m_wrap; }
 
     /// A rectangle of texels of a level that stand for themselves on `piece`: all of them, but for pictures
     /// with a round edge.

@@ -6,6 +6,14 @@ namespace anamorph {
 
 /// nearest, bilinear and bicubic (Catmull-Rom) read the source as it is; antialias is bilinear where the map
 /// magnifies and averages over the pixel's footprint, on the pyramid level that fits it, where it minifies.
-enum class Filter { nearest, bilinear, bicubic, antialias };
+/// The last two average over the least rectangle of the source, its sides along the source's own, that covers that
+/// parallelogram (Oka 1987, fig. 2.6), too much of a blur where it lies aslant: pyramid on a level of the pyramid
+/// (Williams 1983), summed_area over all texels, by Source::summed_areas (Crow 1984).
+enum class Filter { nearest, bilinear, bicubic, antialias, pyramid, summed_area };
+
+/// Does it average where the map minifies?
+constexpr bool averages(Filter filter) {
+    return filter >= Filter::antialias;
+}
 
 }  // namespace anamorph

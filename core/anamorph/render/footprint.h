@@ -11,6 +11,7 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 
 #include "anamorph/render/source.h"
 
@@ -25,6 +26,12 @@ struct Footprint {
 
     friend bool operator==(const Footprint&, const Footprint&) = default;
 };
+
+/// The least rectangle whose sides are along the source's own and that covers a pixel's parallelogram, as the steps of a
+/// pixel to the right and down (Oka 1987, fig. 2.6): (|b11| + |b12|) x (|b21| + |b22|).
+inline Jacobian covering_rectangle(const Jacobian& j) {
+    return {std::fabs(j.x_i) + std::fabs(j.x_j), 0, 0, std::fabs(j.y_i) + std::fabs(j.y_j)};
+}
 
 /// The offset of tap (i, j) in texels of the footprint's level; `scale`: texels of the level per texel of
 /// level 0.

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "anamorph/render/pixel.h"
+#include "anamorph/render/summed_areas.h"
 
 namespace anamorph {
 namespace {
@@ -30,6 +31,7 @@ Taps taps_at(Filter filter, double at) {
 
 PointSampler::PointSampler(const Source& source, const Border& border)
     : m_source(source),
+      m_wrap(border.wrap()),
       m_reader(source, border),
       m_tap(static_cast<std::size_t>(source.channels())),
       m_sum(static_cast<std::size_t>(source.channels())) {}
@@ -75,6 +77,22 @@ bool PointSampler::sample(const Footprint& footprint, const Jacobian& jacobian, 
         }
     const double taps = footprint.taps_a * footprint.taps_b;
     for (std::size_t c = 0; c < m_sum.size(); ++c) pixel[c] = static_cast<float>(m_sum[c] / taps);
+    return true;
+}
+
+bool PointSampler::sample(Filter filter, const FootprintChooser& chooser, const Jacobian& jacobian, int piece,
+                          double x, double y, float* pixel) noexcept {
+    if (!averages(filter)) return sample(filter, 0, piece, x, y, pixel);
+    if (filter == Filter::antialias) return sample(chooser(jacobian), jacobian, piece, x, y, pixel);
+    const Jacobian rectangle = covering_rectangle(jacobian);
+    if (filter == Filter::pyramid) return sample(chooser(rectangle), rectangle, piece, x, y, pixel);
+    return mean(rectangle, x, y, pixel);
+}
+
+bool PointSampler::mean(const Jacobian& rectangle, double x, double y, float* pixel) noexcept {
+    if (!m_sums) m_sums = m_source.summed_areas();
+    if (!m_sums) return false;
+    m_sums->mean(x, y, rectangle.x_i, rectangle.y_j, m_wrap, pixel);
     return true;
 }
 

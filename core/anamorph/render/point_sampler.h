@@ -47,8 +47,17 @@ class PointSampler {
     bool sample(const Footprint& footprint, const Jacobian& jacobian, int piece, double x, double y,
                 float* pixel) noexcept;
 
+    /// (x, y), in pixels of level 0, by any filter, for a pixel that takes steps of `jacobian` there; `chooser` is the
+    /// source's. Filter::summed_area is for sources of one piece.
+    bool sample(Filter filter, const FootprintChooser& chooser, const Jacobian& jacobian, int piece, double x,
+                double y, float* pixel) noexcept;
+
   private:
+    bool mean(const Jacobian& rectangle, double x, double y, float* pixel) noexcept;
+
     const Source& m_source;
+    Wrap m_wrap;
+    const SummedAreas* m_sums = nullptr;
     WindowReader m_reader;
     std::vector<float> m_tap;
     std::vector<double> m_sum;

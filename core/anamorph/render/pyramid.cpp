@@ -12,6 +12,7 @@
 #include <new>
 
 #include "anamorph/render/pixel.h"
+#include "anamorph/render/summed_areas.h"
 
 namespace anamorph {
 namespace {
@@ -237,6 +238,14 @@ bool Pyramid::prepare(int level, const Box& box) const noexcept try {
     return true;
 } catch (const std::exception&) {
     return false;
+}
+
+const SummedAreas* Pyramid::summed_areas() const noexcept try {
+    const std::lock_guard lock(m_summing);
+    if (!m_sums) m_sums = std::make_unique<const SummedAreas>(m_base);
+    return m_sums.get();
+} catch (const std::exception&) {
+    return nullptr;
 }
 
 bool Pyramid::make_tile(int level, const Box& tile) const {

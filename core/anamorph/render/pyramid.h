@@ -3,6 +3,7 @@
 #pragma once
 
 #include <memory>
+#include <mutex>
 #include <vector>
 
 #include "anamorph/geometry/size.h"
@@ -40,6 +41,7 @@ class Pyramid final : public Source {
               std::ptrdiff_t row_stride) const noexcept override;
     const ConstImageView* view(int level) const noexcept override;
     bool prepare(int level, const Box& box) const noexcept override;
+    const SummedAreas* summed_areas() const noexcept override;
 
   private:
     struct Level;
@@ -52,6 +54,8 @@ class Pyramid final : public Source {
 
     const Source& m_base;
     std::vector<std::unique_ptr<Level>> m_made;
+    mutable std::mutex m_summing;
+    mutable std::unique_ptr<const SummedAreas> m_sums;
 };
 
 }  // namespace anamorph

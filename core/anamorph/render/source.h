@@ -9,6 +9,8 @@ namespace anamorph {
 
 inline constexpr int kMaxSide = 1 << 20;  ///< pixels of a picture, either way
 
+class SummedAreas;
+
 /// The pixels of one image at one or more resolutions, level 0 the finest. Reading is thread safe.
 class Source {
   public:
@@ -41,6 +43,10 @@ class Source {
         static_cast<void>(level), static_cast<void>(box);
         return true;
     }
+
+    /// The table of sums of level 0, made when it is first asked for and kept. Null where the source keeps none, or it
+    /// could not be made.
+    virtual const SummedAreas* summed_areas() const noexcept { return nullptr; }
 };
 
 /// An image in memory, not owned.

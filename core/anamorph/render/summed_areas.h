@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: Apache-2.0
+// Means over rectangles of a source in a time that does not depend on their size (Crow 1984).
+//
+// A table holds, for each texel, the sum of all texels above and to the left of it; that over a rectangle of whole texels
+// is S(x1, y1) - S(x0, y1) - S(x1, y0) + S(x0, y0). Sums are integers, in units of a power of two such that no sum of a
+// channel reaches 2^62: differences are exact however many texels lie before them. uint8 and uint16 lose nothing, with
+// alpha or without; half and float are rounded to the unit, at most 2^-60 of the sum of all magnitudes of the channel.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "anamorph/geometry/size.h"
+#include "anamorph/render/border.h"
+#include "anamorph/render/source.h"
+
+namespace anamorph {
+
+/// The table of a source's level 0. Thread safe once it is made.
+class SummedAreas {
+  public:
+    /// Reads all of the source, twice. Throws std::bad_alloc, and Error where it cannot be read.
+    explicit SummedAreas(const Source& source);
+
+    /// The mean over the rectangle of width x height texels about (x, y), in which texels are squares of one color, to
+    /// `pixel`: as many floats as channels, multiplied by alpha as PointSampler::sample says. Sides below 1, or that are no number, are 1, so
+    /// that the smallest rectangle interpolates bilinearly. Beyond the edges as `wrap`, where automatic is black. A
+    /// texel that is no number or infinite makes no number of its channel's means over it; where (x, y) is no number,
+    /// they are 0.
+    void mean(double x, double y, double width, double height, Wrap wrap, float* pixel) const noexcept;
+
+  private:
+    class Texels;
+
+    std::size_t at(int x, int y) const {
+        return (static_cast<std::size_t>(y) * (static_cast<std::size_t>(m_size.width) + 1) +
+                static_cast<std::size_t>(x)) *
+               m_units.size();
+    }
+    void choose_units(Texels& texels);
+    void add_up(Texels& texels);
+
+    Size m_size;
+    std::vector<double> m_units;           ///< channel by channel: of the sums
+    std::vector<double> m_scales;          ///< and of the channel's values
+    std::vector<std::uint64_t> m_sums;     ///< modulo 2^64
+    std::vector<std::uint64_t> m_missing;  ///< how many texels are no numbers; empty where all are
+};
+
+}  // namespace anamorph

@@ -1,0 +1,266 @@
+// SPDX-License-Identifier: Apache-2.0
+// Means over rectangles from a table of sums, against means of all texels one by one in long double; and drapes that read
+// with them.
+#include "anamorph/render/summed_areas.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+#include <vector>
+
+#include "anamorph/render/pixel.h"
+#include "anamorph/render/pyramid.h"
+#include "drape_scene.h"
+
+namespace anamorph {
+namespace {
+
+using test::Scene;
+using test::Shown;
+
+/// A picture in memory.
+struct Texels {
+    Size size;
+    int channels;
+    PixelType type;
+    std::vector<std::byte> bytes;
+
+    Texels(const Size& s, int c, PixelType t)
+        : size(s),
+          channels(c),
+          type(t),
+          bytes(static_cast<std::size_t>(s.width) * static_cast<std::size_t>(s.height) *
+                static_cast<std::size_t>(c * size_of(t))) {}
+    std::byte* at(int x, int y, int c) {
+        return bytes.data() + ((std::ptrdiff_t{y} * size.width + x) * channels + c) * size_of(type);
+    }
+    template <class Value>
+    void fill(const Value& value) {
+        for (int y = 0; y < size.height; ++y)
+            for (int x = 0; x < size.width; ++x)
+                for (int c = 0; c < channels; ++c)
+                    store_channel(static_cast<float>(value(x, y, c)), at(x, y, c), type);
+    }
+    MemorySource source(int alpha = -1) const {
+        return MemorySource(
+            packed_view<const std::byte>(bytes.data(), type, size.width, size.height, channels), alpha);
+    }
+};
+
+/// Where texel i of an endless row stands; -1: nowhere.
+int place_of(long i, int size, Wrap wrap) {
+    if (i >= 0 && i < size) return static_cast<int>(i);
+    const long n = size;
+    if (wrap == Wrap::clamp) return i < 0 ? 0 : size - 1;
+    if (wrap == Wrap::periodic) return static_cast<int>((i % n + n) % n);
+    if (wrap == Wrap::mirror) {
+        const long r = (i % (2 * n) + 2 * n) % (2 * n);
+        return static_cast<int>(r < n ? r : 2 * n - 1 - r);
+    }
+    return -1;
+}
+
+/// Mean of a channel over a rectangle, texel by texel.
+long double mean_of(Texels& texels, int alpha, double x, double y, double w, double h, Wrap wrap, int c) {
+    const auto share = [](long i, double from, double to) {
+        return std::max(0.0L, std::min<long double>(to, i + 1.0L) - std::max<long double>(from, i));
+    };
+    const double x0 = x - w / 2, x1 = x + w / 2, y0 = y - h / 2, y1 = y + h / 2;
+    long double sum = 0;
+    for (long j = std::lround(std::floor(y0)); j < y1; ++j)
+        for (long i = std::lround(std::floor(x0)); i < x1; ++i) {
+            const int px = place_of(i, texels.size.width, wrap), py = place_of(j, texels.size.height, wrap);
+            if (px < 0 || py < 0) continue;
+            const auto value = [&](int k) {
+                const std::byte* at = texels.at(px, py, k);
+                if (texels.type == PixelType::uint8) return std::to_integer<int>(*at) / 255.0L;
+                return static_cast<long double>(load_channel(at, texels.type));
+            };
+            sum += share(i, x0, x1) * share(j, y0, y1) * value(c) *
+                   (alpha >= 0 && c != alpha ? value(alpha) : 1);
+        }
+    return sum / (static_cast<long double>(w) * h);
+}
+
+/// Rectangles of all sizes about points in and around a picture.
+void expect_means(Texels& texels, int alpha, unsigned seed, int count, double relative) {
+    SCOPED_TRACE(testing::Message() << "seed " << seed);
+    std::mt19937 random(seed);
+    std::uniform_real_distribution<double> uniform(0, 1);
+    const MemorySource source = texels.source(alpha);
+    const SummedAreas sums(source);
+    std::vector<float> pixel(static_cast<std::size_t>(texels.channels));
+    for (int n = 0; n < count; ++n)
+        for (const Wrap wrap : {Wrap::black, Wrap::clamp, Wrap::periodic, Wrap::mirror}) {
+            const double x = texels.size.width * (1.6 * uniform(random) - 0.3),
+                         y = texels.size.height * (1.6 * uniform(random) - 0.3),
+                         w = std::exp(uniform(random) * std::log(2.5 * texels.size.width + 1)),
+                         h = std::exp(uniform(random) * std::log(2.5 * texels.size.height + 1));
+            sums.mean(x, y, w, h, wrap, pixel.data());
+            for (int c = 0; c < texels.channels; ++c) {
+                const long double truth = mean_of(texels, alpha, x, y, w, h, wrap, c);
+                EXPECT_NEAR(pixel[static_cast<std::size_t>(c)], static_cast<double>(truth), relative)
+                    << x << "," << y << " " << w << "x" << h << " wrap " << static_cast<int>(wrap);
+            }
+        }
+}
+
+TEST(SummedAreas, MeansAreThoseOfAllTexels) {
+    std::mt19937 random(1);
+    std::uniform_real_distribution<double> uniform(0, 1);
+    for (const Size& size : {Size{1, 1}, Size{2, 3}, Size{37, 23}, Size{1, 3000}, Size{200, 2}})
+        for (const PixelType type :
+             {PixelType::uint8, PixelType::uint16, PixelType::half, PixelType::float32}) {
+            Texels texels(size, 2, type);
+            texels.fill([&](int, int, int) { return uniform(random); });
+            const int count = size.height > 1000 ? 10 : 40;
+            // What a float holds, and a unit of 2^-60 of the sum.
+            expect_means(texels, -1, 2, count, 6e-8);
+            expect_means(texels, 1, 3, count, 6e-8);
+        }
+}
+
+TEST(SummedAreas, ManyTexelsInFrontCostNoAccuracy) {
+    // 2^23 white texels, and behind them small differences, which sums in float or of 32 bits would lose.
+    Texels texels({4096, 2048}, 1, PixelType::float32);
+    const auto value = [](int x, int y) {
+        return x < 4000 || y < 2000 ? 1.0 : 1e-3 * (1 + (x * 31 + y * 17) % 97);
+    };
+    texels.fill([&](int x, int y, int) { return value(x, y); });
+    const MemorySource source = texels.source();
+    const SummedAreas sums(source);
+    float mean = 0;
+    for (const int side : {1, 2, 5, 20}) {
+        const int x = 4050, y = 2024;
+        double truth = 0;
+        for (int j = 0; j < side; ++j)
+            for (int i = 0; i < side; ++i) truth += double{static_cast<float>(value(x + i, y + j))};
+        sums.mean(x + side / 2.0, y + side / 2.0, side, side, Wrap::clamp, &mean);
+        EXPECT_NEAR(mean * side * side / truth, 1, 1e-7) << side;
+    }
+}
+
+TEST(SummedAreas, AStripOfAnyLengthIsRead) {
+    Texels texels({1, 30000}, 1, PixelType::uint8);
+    texels.fill([](int, int y, int) { return (y % 7) / 6.0; });
+    expect_means(texels, -1, 5, 3, 6e-8);
+    const MemorySource source = texels.source();
+    float mean = 0;
+    SummedAreas(source).mean(0.5, 29999.5, 1, 1, Wrap::clamp, &mean);
+    EXPECT_EQ(mean, load_channel(texels.at(0, 29999, 0), PixelType::uint8));
+}
+
+TEST(SummedAreas, WhatIsNoNumberIsLocal) {
+    for (const float bad : {NAN, HUGE_VALF, -HUGE_VALF}) {
+        Texels texels({20, 10}, 2, PixelType::float32);
+        texels.fill([&](int x, int y, int c) { return x == 5 && y == 4 && c == 0 ? bad : 0.5f; });
+        const MemorySource source = texels.source();
+        const SummedAreas sums(source);
+        float pixel[2];
+        sums.mean(6, 5, 3, 3, Wrap::clamp, pixel);
+        EXPECT_TRUE(std::isnan(pixel[0]));
+        EXPECT_FLOAT_EQ(pixel[1], 0.5f);
+        for (const double x : {7.0, 15.0, 19.9}) {
+            sums.mean(x, 7, 2, 2, Wrap::clamp, pixel);
+            EXPECT_FLOAT_EQ(pixel[0], 0.5f);
+        }
+        for (const double side : {double{NAN}, HUGE_VAL, -1.0, 1e300, 0.0}) {
+            sums.mean(12.5, 5.5, side, 1, Wrap::periodic, pixel);
+            EXPECT_FLOAT_EQ(pixel[1], 0.5f) << side;
+        }
+        sums.mean(NAN, 5, 1, 1, Wrap::clamp, pixel);
+        EXPECT_EQ(pixel[1], 0);
+    }
+}
+
+/// The rectangle that a pixel of a map covers on the picture, and where.
+struct Rectangle {
+    double x, y, w, h;
+};
+Rectangle rectangle_of(const DrapeMap& map, int x, int y) {
+    Point<double> p{};
+    int piece = 0;
+    EXPECT_TRUE(map.exact(x + 0.5, y + 0.5, 0, p, piece));
+    const Jacobian j = map.jacobian(x + 0.5, y + 0.5, 0);
+    return {p.x, p.y, std::fabs(j.x_i) + std::fabs(j.x_j), std::fabs(j.y_i) + std::fabs(j.y_j)};
+}
+
+TEST(SummedAreas, DrapesReadThePapersRectangle) {
+    Scene scene{"plane"};
+    scene.picture = {640, 480};
+    scene.shape.aspect = 4.0 / 3;
+    scene.pose.position = {0.9, -0.7, 1.5};
+    Texels texels(scene.picture, 1, PixelType::uint8);
+    std::mt19937 random(7);
+    texels.fill([&](int, int, int) { return std::uniform_real_distribution<double>(0, 1)(random); });
+    DrapeOptions options;
+    options.filter = Filter::summed_area;
+    Shown shown(scene, options);
+    const MemorySource source = texels.source();
+    const std::vector<float> drawn = shown.draw(&source, 1), covered = shown.coverage();
+    const DrapeMap map(cut_into_facets(shown.tree()->tree, shown.camera(), options.tol), shown.camera(),
+                       scene.picture, options.tol);
+    options.filter = Filter::pyramid;
+    const Pyramid pyramid(source);
+    const std::vector<float> by_pyramid = Shown(scene, options).draw(&pyramid, 1);
+    int seen = 0;
+    double squares[2] = {};
+    for (int y = 1; y < 119; ++y)
+        for (int x = 1; x < 159; ++x) {
+            const auto whole = [&](int i, int j) {
+                return covered[static_cast<std::size_t>(j * 160 + i)] == 1;
+            };
+            if (!whole(x, y) || !whole(x - 1, y) || !whole(x + 1, y) || !whole(x, y - 1) || !whole(x, y + 1))
+                continue;
+            const Rectangle r = rectangle_of(map, x, y);
+            const auto k = static_cast<std::size_t>(y * 160 + x);
+            const auto truth = static_cast<double>(
+                mean_of(texels, -1, r.x, r.y, std::max(1.0, r.w), std::max(1.0, r.h), Wrap::clamp, 0));
+            // Points are floats: 2^-24 of a block's reach, times differences between texels.
+            EXPECT_NEAR(drawn[k], truth, 1e-4);
+            squares[0] += std::pow(truth - 0.5, 2);
+            squares[1] += std::pow(double{by_pyramid[k]} - 0.5, 2);
+            ++seen;
+        }
+    ASSERT_GT(seen, 3000);
+    // The picture is noise: what is left of it tells over how many texels a filter averages.
+    EXPECT_NEAR(squares[1] / squares[0], 1, 0.15);
+}
+
+TEST(SummedAreas, EveryPartOfADrapeHasTheSameBits) {
+    Scene scene{"sphere"};
+    scene.shape.angle = 360;
+    scene.picture = {500, 300};
+    scene.pose.position = {0.2, 0.4, 2.4};
+    Texels texels(scene.picture, 4, PixelType::uint8);
+    texels.fill([](int x, int y, int c) { return (x * 31 + y * 17 + c * 5) % 256 / 255.0; });
+    for (const Filter filter : {Filter::pyramid, Filter::summed_area})
+        for (const int alpha : {-1, 3}) {
+            DrapeOptions options;
+            options.filter = filter;
+            options.alpha = 3;
+            options.background = {1, 0, 0};
+            Shown shown(scene, options);
+            const MemorySource memory = texels.source(alpha);
+            const Pyramid source(memory);
+            const std::vector<float> whole = shown.draw(&source, 4);
+            const Drape drape(shown.tree(), shown.camera(), scene.picture, options);
+            for (const Box& box : {Box{3, 5, 50, 61}, Box{40, 0, 160, 120}, Box{77, 50, 78, 51}}) {
+                std::vector<float> part(static_cast<std::size_t>(box.width() * box.height() * 4));
+                ASSERT_TRUE(drape.draw(&source, box,
+                                       packed_view(reinterpret_cast<std::byte*>(part.data()),
+                                                   PixelType::float32, box.width(), box.height(), 4),
+                                       serial_for));
+                for (int y = box.y0; y < box.y1; ++y)
+                    for (int i = 0; i < box.width() * 4; ++i)
+                        ASSERT_EQ(part[static_cast<std::size_t>((y - box.y0) * box.width() * 4 + i)],
+                                  whole[static_cast<std::size_t>((y * 160 + box.x0) * 4 + i)]);
+            }
+        }
+}
+
+}  // namespace
+}  // namespace anamorph
