@@ -60,22 +60,65 @@ DrapeMap::DrapeMap(Facets facets, const Camera& camera, const Size& picture, dou
       m_for_float(tol * kFloatShare),
       m_surface(std::move(surface)),
       m_raster(m_facets, camera.screen(), kSquare),
-      m_pool(std::make_shared<SeenPool>()) {
-    for (const FacetLeaf& leaf : m_facets.leaves)
-        m_max_error = std::max(m_max_error, leaf.bound + m_for_float);
+      m_pool(std::make_shared<SeenPool>()) {}
+
+/// Of the leaves.
+const std::vector<double>& DrapeMap::bounds() const {
+    std::call_once(m_bounded, [&] {
+        for (std::uint32_t i = 0; i < m_facets.leaves.size(); ++i)
+            m_bounds.push_back(m_facets.bound_of ? m_facets.bound_of(i) : m_facets.leaves[i].bound);
+    });
+    return m_bounds;
+}
+
+double DrapeMap::max_error() const {
+    double most = 0;
+    for (const double bound : bounds()) most = std::max(most, bound + m_for_float);
+    return most;
 }
 
 void DrapeMap::plan(const Box& box, int, Blocks& blocks) const {
     const auto region = std::make_shared<SeenRegion>(m_pool);
     const Box screen{0, 0, width(), height()};
-    m_raster.draw(intersection({box.x0 - 1, box.y0 - 1, box.x1 + 1, box.y1 + 1}, screen), region->pixels());
-    if (m_surface) polish(box, region->pixels());
+    see(intersection({box.x0 - 1, box.y0 - 1, box.x1 + 1, box.y1 + 1}, screen), region->pixels());
+    if (m_surface) polish(region->pixels());
     blocks.data = region;
     for_squares(box, kMostSide, [&](const Box& square) { cut(*region, square, blocks); });
 }
 
-/// Moves the points of a box to those that are seen at the middles of their pixels.
-void DrapeMap::polish(const Box& box, SeenPixels& pixels) const {
+void DrapeMap::see(const Box& box, SeenPixels& pixels, int times) const {
+    m_raster.draw(box, pixels, times);
+    if (m_surface) order_sheets(box, pixels, times);
+}
+
+/// A facet's own points lie in the depths of its patch, or a little beyond its edge: within as much again either way.
+/// Where the depths of another facet at a pixel begin before those of the one that is seen end, both points are found,
+/// and the nearer one is seen.
+void DrapeMap::order_sheets(const Box& box, SeenPixels& pixels, int times) const {
+    const PointPolish to(*m_surface, m_camera);
+    const auto leaf_of = [&](double facet) -> const FacetLeaf& {
+        return m_facets.leaves[m_facets.facets[static_cast<std::size_t>(facet)].leaf];
+    };
+    const auto begins = [](const FacetLeaf& leaf) { return 2 * leaf.nearest - leaf.farthest; };
+    const auto ends = [](const FacetLeaf& leaf) { return 2 * leaf.farthest - leaf.nearest; };
+    m_raster.each_covered(box, times, [&](std::uint32_t facet, int x, int y, double u, double v) {
+        const std::size_t at = pixels.index(x, y);
+        if (pixels.facet[at] == facet || begins(leaf_of(facet)) > ends(leaf_of(pixels.facet[at]))) return;
+        const double px = (x + 0.5) / times - width() / 2.0, py = (y + 0.5) / times - height() / 2.0;
+        const PointPolish::Polished seen = to.polish(px, py, pixels.u[at], pixels.v[at]);
+        if (!(seen.bound <= kExactError)) return;
+        const PointPolish::Polished other = to.polish(px, py, u, v);
+        if (!(other.bound <= kExactError && other.nearness > seen.nearness)) return;
+        pixels.facet[at] = facet;
+        pixels.nearness[at] = other.nearness;
+        pixels.u[at] = u;
+        pixels.v[at] = v;
+    });
+}
+
+/// Moves the points to those that are seen at the middles of their pixels.
+void DrapeMap::polish(SeenPixels& pixels) const {
+    const Box& box = pixels.box;
     const PointPolish to(*m_surface, m_camera);
     pixels.bound.assign(pixels.facet.size(), 0);
     for (int y = box.y0; y < box.y1; ++y)
@@ -96,7 +139,7 @@ void DrapeMap::polish(const Box& box, SeenPixels& pixels) const {
 
 double DrapeMap::bound_at(const SeenPixels& pixels, std::size_t at) const {
     if (!pixels.bound.empty()) return pixels.bound[at];
-    return m_facets.leaves[m_facets.facets[static_cast<std::size_t>(pixels.facet[at])].leaf].bound;
+    return bounds()[m_facets.facets[static_cast<std::size_t>(pixels.facet[at])].leaf];
 }
 
 /// Adds the blocks of a square: whole where all of it is seen, or nothing; else its quarters.

@@ -54,7 +54,7 @@ class DrapeMap final : public BlockMap {
     const Camera& camera() const { return m_camera; }
     const Size& picture() const { return m_picture; }
     /// No block's bound is larger.
-    double max_error() const { return m_max_error; }
+    double max_error() const;
 
     /// Has each pixel a point of its own?
     bool exact_points() const { return m_surface != nullptr; }
@@ -63,7 +63,9 @@ class DrapeMap final : public BlockMap {
 
     /// What is seen about a pixel of the screen.
     std::shared_ptr<const SeenRegion> region_at(int x, int y) const;
-    const FacetRaster& raster() const { return m_raster; }
+    /// What is seen in a box as FacetRaster::draw says, and, where each pixel has a point of its own, of sheets that lie too
+    /// near each other for facets to tell, the one whose own point is nearer.
+    void see(const Box& box, SeenPixels& pixels, int times = 1) const;
     /// Pixels of the picture per pixel of the screen, at a point of a facet's plane.
     Jacobian jacobian_of(const Facet& facet, double x, double y) const;
 
@@ -78,7 +80,9 @@ class DrapeMap final : public BlockMap {
     void plan(const Box& box, int piece, Blocks& blocks) const override;
 
   private:
-    void polish(const Box& box, SeenPixels& pixels) const;
+    const std::vector<double>& bounds() const;
+    void order_sheets(const Box& box, SeenPixels& pixels, int times) const;
+    void polish(SeenPixels& pixels) const;
     void cut(const SeenRegion& region, const Box& box, Blocks& blocks) const;
     double bound_of(const SeenRegion& region, const Box& box) const;
     bool fits_float(const SeenRegion& region, const Box& box, Block& block) const;
@@ -88,7 +92,9 @@ class DrapeMap final : public BlockMap {
     Facets m_facets;
     Camera m_camera;
     Size m_picture;
-    double m_for_float, m_max_error = 0;
+    double m_for_float;
+    mutable std::once_flag m_bounded;
+    mutable std::vector<double> m_bounds;  ///< of leaves, when they are asked for
     std::shared_ptr<const DrapedSurface> m_surface;
     FacetRaster m_raster;
     std::shared_ptr<SeenPool> m_pool;

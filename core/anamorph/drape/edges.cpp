@@ -125,9 +125,9 @@ std::vector<EdgePixel> edges_in(const DrapeMap& map, const SeenRegion& region, c
                               std::max(around.y1, y + 1)};
                 }
             if (edges.size() == first) continue;
-            map.raster().draw({around.x0 * kEdgeSamples, around.y0 * kEdgeSamples, around.x1 * kEdgeSamples,
-                               around.y1 * kEdgeSamples},
-                              samples, kEdgeSamples);
+            map.see({around.x0 * kEdgeSamples, around.y0 * kEdgeSamples, around.x1 * kEdgeSamples,
+                     around.y1 * kEdgeSamples},
+                    samples, kEdgeSamples);
             for (std::size_t i = first; i < edges.size(); ++i)
                 edges[i].parts = parts_of(map, samples, edges[i].x, edges[i].y);
         }

@@ -82,19 +82,16 @@ Box FacetRaster::pixels_of(const Facet& facet, int times) const {
         {0, 0, screen.width, screen.height});
 }
 
-void FacetRaster::draw(std::uint32_t index, int times, SeenPixels& to) const {
+bool FacetRaster::set_up(std::uint32_t index, const Box& part, int times, simd::FacetSetup& setup) const {
     const double unit = m_unit / times;
     const Facet& facet = m_facets.facets[index];
-    const Box box = intersection(pixels_of(facet, times), to.box);
-    if (box.empty()) return;
     const FacetCorner* c[3];
     for (int k = 0; k < 3; ++k) c[k] = &m_facets.corners[facet.corner[k]];
     const double area = edge_function(*c[0], *c[1], c[2]->x, c[2]->y);
-    if (area == 0) return;
+    if (area == 0) return false;
     if (area < 0) std::swap(c[1], c[2]);
-    const double left = (box.x0 + 0.5 - m_screen.width * times / 2.0) * unit,
-                 top = (box.y0 + 0.5 - m_screen.height * times / 2.0) * unit;
-    simd::FacetSetup setup;
+    const double left = (part.x0 + 0.5 - m_screen.width * times / 2.0) * unit,
+                 top = (part.y0 + 0.5 - m_screen.height * times / 2.0) * unit;
     for (int k = 0; k < 3; ++k) {
         // The edge across from corner k, whose function is the area at the corner and 0 at the others.
         const FacetCorner &a = *c[(k + 1) % 3], &b = *c[(k + 2) % 3], &corner = *c[k];
@@ -108,14 +105,11 @@ void FacetRaster::draw(std::uint32_t index, int times, SeenPixels& to) const {
         setup.v[k] = corner.weight * corner.v;
     }
     setup.id = index;
-    const auto at = static_cast<std::ptrdiff_t>(to.index(box.x0, box.y0));
-    simd::draw_facet(
-        setup, box.width(), box.height(),
-        {to.nearness.data() + at, to.u.data() + at, to.v.data() + at, to.facet.data() + at, to.stride});
+    return true;
 }
 
-void FacetRaster::draw(const Box& box, SeenPixels& seen, int times) const {
-    seen.clear(box);
+template <class Body>
+void FacetRaster::each_near(const Box& box, int times, const Body& body) const {
     if (box.empty()) return;
     // Of the square in the middle: the box may reach over its edges by a pixel.
     const int row = (box.y0 + box.y1) / 2 / times / m_square,
@@ -123,7 +117,41 @@ void FacetRaster::draw(const Box& box, SeenPixels& seen, int times) const {
     const auto square = static_cast<std::size_t>(row * m_columns + column);
     const Box pixels{box.x0 / times, box.y0 / times, (box.x1 - 1) / times + 1, (box.y1 - 1) / times + 1};
     for (std::size_t i = m_first[square]; i < m_first[square + 1]; ++i)
-        if (!intersection(m_boxes[m_lists[i]], pixels).empty()) draw(m_lists[i], times, seen);
+        if (!intersection(m_boxes[m_lists[i]], pixels).empty()) body(m_lists[i]);
+}
+
+void FacetRaster::draw(const Box& box, SeenPixels& seen, int times) const {
+    seen.clear(box);
+    each_near(box, times, [&](std::uint32_t facet) {
+        const Box part = intersection(pixels_of(m_facets.facets[facet], times), box);
+        simd::FacetSetup setup;
+        if (part.empty() || !set_up(facet, part, times, setup)) return;
+        const std::size_t at = seen.index(part.x0, part.y0);
+        simd::draw_facet(setup, part.width(), part.height(),
+                         {seen.nearness.data() + at, seen.u.data() + at, seen.v.data() + at,
+                          seen.facet.data() + at, seen.stride});
+    });
+}
+
+void FacetRaster::each_covered(const Box& box, int times, const Covered& covered) const {
+    each_near(box, times, [&](std::uint32_t facet) {
+        const Box part = intersection(pixels_of(m_facets.facets[facet], times), box);
+        simd::FacetSetup s;
+        if (part.empty() || !set_up(facet, part, times, s)) return;
+        for (int j = 0; j < part.height(); ++j)
+            for (int i = 0; i < part.width(); ++i) {
+                double weight = 0, u = 0, v = 0;
+                bool in = true;
+                for (int k = 0; k < 3; ++k) {
+                    const double e = s.e[k] + j * s.down[k] + i * s.right[k];
+                    in = in && e >= s.least[k];
+                    weight += e * s.weight[k];
+                    u += e * s.u[k];
+                    v += e * s.v[k];
+                }
+                if (in) covered(facet, part.x0 + i, part.y0 + j, u / weight, v / weight);
+            }
+    });
 }
 
 }  // namespace anamorph

@@ -7,10 +7,12 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <vector>
 
 #include "anamorph/drape/facets.h"
 #include "anamorph/geometry/box.h"
+#include "anamorph/simd/facet_rows.h"
 
 namespace anamorph {
 
@@ -41,10 +43,19 @@ class FacetRaster {
     /// finer than those of the screen, 1 to 8.
     void draw(const Box& box, SeenPixels& seen, int times = 1) const;
 
+    /// Takes a facet, a pixel that it covers, seen or not, and the point of the picture there.
+    using Covered = std::function<void(std::uint32_t facet, int x, int y, double u, double v)>;
+    /// All facets at all pixels of such a box.
+    void each_covered(const Box& box, int times, const Covered& covered) const;
+
   private:
     /// The pixels whose centres a facet may cover.
     Box pixels_of(const Facet& facet, int times) const;
-    void draw(std::uint32_t facet, int times, SeenPixels& to) const;
+    /// body(facet) for those that may meet a box.
+    template <class Body>
+    void each_near(const Box& box, int times, const Body& body) const;
+    /// A facet's functions from the corner of a part of its pixels on. False where it has no area.
+    bool set_up(std::uint32_t facet, const Box& part, int times, simd::FacetSetup& setup) const;
 
     const Facets& m_facets;
     Size m_screen;

@@ -75,7 +75,7 @@ class PatchView {
         };
         const double e_z = error(depth_of) + rounding;
         const double depth = std::max(p.low(2), m_camera.near()) - e_z;
-        FacetLeaf leaf{index, 0, 0, 0};
+        FacetLeaf leaf{index, 0, 0, 0, p.low(2), p.high(2)};
         const glm::dvec2 bends = error(across), rounds(rounding * 2);
         leaf.bound = on_screen(bends + rounds, depth);
         const bool deep = m_camera.perspective() && !(p.radius.z < depth / 2);

@@ -2,6 +2,7 @@
 #include "anamorph/drape/oka.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <string>
 
@@ -13,6 +14,38 @@ namespace anamorph {
 namespace {
 
 constexpr int kMostBlocks = 1 << 22;
+
+/// How far a block's map is off on the screen, at most: pixels.
+double bound_of(const OkaBlock& map, const DrapedSurface& surface, const Camera& camera, double h, double k) {
+    using Taylor = std::array<Jet<Interval, 2>, 2>;
+    const Taylor centre = seen_range(camera, surface.range(Interval(map.u), Interval(map.v)));
+    double size = 0;
+    for (const double right : {-h, h})
+        for (const double down : {-k, k}) {
+            const auto from_centre = [](double to) { return Interval(std::min(0.0, to), std::max(0.0, to)); };
+            const auto over = [&](double part) {
+                return seen_range(camera, surface.range(from_centre(part * right) + map.u,
+                                                        from_centre(part * down) + map.v));
+            };
+            // Of the integral of (1 - s) from 0 to 1, three quarters lie in the nearer half of the way.
+            const Taylor near = over(0.5), far = over(1);
+            const Interval s = from_centre(right), t = from_centre(down), st = from_centre(right * down);
+            double off[2];
+            for (int i = 0; i < 2; ++i) {
+                const auto& c = centre[static_cast<std::size_t>(i)].c;
+                const auto second = [&](int n) {
+                    return near[static_cast<std::size_t>(i)].c[n] * 0.75 +
+                           far[static_cast<std::size_t>(i)].c[n] * 0.25;
+                };
+                off[i] = magnitude(c[0] - map.centre[i] + (c[1] - map.by_u[i]) * s +
+                                   (c[2] - map.by_v[i]) * t + second(3) * Interval(0, h * h) +
+                                   second(4) * st + second(5) * Interval(0, k * k));
+            }
+            if (std::isnan(off[0] + off[1])) return HUGE_VAL;
+            size = std::max(size, std::hypot(off[0], off[1]));
+        }
+    return size;
+}
 
 class BlockMaker {
   public:
@@ -29,6 +62,12 @@ class BlockMaker {
         const Size count = oka_block_count(m_picture, m_blocks);
         for (int j = 0; j < count.height; ++j)
             for (int i = 0; i < count.width; ++i) add(i, j);
+        const double h = (m_side.x + m_blocks.overlap / m_picture.width) / 2,
+                     k = (m_side.y + m_blocks.overlap / m_picture.height) / 2;
+        m_made.bound_of = [maps = std::move(m_maps), &surface = m_surface, camera = m_camera, h, k,
+                           moved = grid_error(m_made.grid_bits)](std::uint32_t leaf) {
+            return anamorph::bound_of(maps[leaf], surface, camera, h, k) + moved;
+        };
         return std::move(m_made);
     }
 
@@ -44,8 +83,9 @@ class BlockMaker {
                 return;
             }
         const auto leaf = static_cast<std::uint32_t>(m_made.leaves.size());
-        m_made.leaves.push_back({SurfacePatch::kNone, bound(map), glm::length(glm::dvec2(map.by_u)),
+        m_made.leaves.push_back({SurfacePatch::kNone, HUGE_VAL, glm::length(glm::dvec2(map.by_u)),
                                  glm::length(glm::dvec2(map.by_v))});
+        m_maps.push_back(map);
         m_made.facets.push_back({{first, first + 1, first + 2}, leaf});
         m_made.facets.push_back({{first, first + 2, first + 3}, leaf});
     }
@@ -58,29 +98,12 @@ class BlockMaker {
         return true;
     }
 
-    double bound(const OkaBlock& map) const {
-        using J = Jet<Interval, 2>;
-        const double u = map.u, v = map.v;
-        const double h = m_side.x / 2 + m_blocks.overlap / 2 / m_picture.width,
-                     k = m_side.y / 2 + m_blocks.overlap / 2 / m_picture.height;
-        const double reach_u = std::max(m_side.x, h), reach_v = std::max(m_side.y, k);
-        const SurfaceRange f = m_surface.range({u - reach_u, u + reach_u}, {v - reach_v, v + reach_v});
-        const auto seen = seen_range(m_camera, f);
-        const auto off = [&](const J& g) {
-            const auto half = [](const Interval& a) { return (a.hi - a.lo) / 2; };
-            const double differences = h * m_side.x * half(g.c[3]) + k * m_side.y * half(g.c[5]);
-            return differences + magnitude(g.c[3] * Interval(0, h * h) + g.c[4] * Interval(-h * k, h * k) +
-                                           g.c[5] * Interval(0, k * k));
-        };
-        const double size = std::hypot(off(seen[0]), off(seen[1])) + grid_error(m_made.grid_bits);
-        return std::isnan(size) ? HUGE_VAL : size;
-    }
-
     const DrapedSurface& m_surface;
     const Camera& m_camera;
     Size m_picture;
     OkaBlocks m_blocks;
     Facets m_made;
+    std::vector<OkaBlock> m_maps;  ///< of the leaves
     double m_unit = 1;
     glm::dvec2 m_side{0.0};
 };

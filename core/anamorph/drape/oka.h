@@ -31,12 +31,13 @@ bool oka_block(const DrapedSurface& surface, const Camera& camera, const Size& p
 
 /// Two facets for each parallelogram: the block's linear map (2.8), whose matrix comes from central differences
 /// (2.4 to 2.7) over the block's side, on the block and half of the common area around it. Neighbours need not meet, and
-/// the tolerance is what comes out: a block's bound is, axis by axis, by Taylor's formula (2.9),
-///     H d / 2 r_uu + K d / 2 r_vv + |[0, H^2] g_uu + 2 [-H K, H K] g_uv + [0, K^2] g_vv| / 2
-/// where H and K are half of the parallelogram's sides, the derivatives of g, the map to the screen, are intervals over the
-/// differences' reach and the parallelogram, and the first two terms are what the differences are off the derivatives: with
-/// g_uu = m + r, |r| <= r_uu, a11 - g_u is an integral of s (r(u + s) - r(u - s)) / (2 d) over 0 to d. Infinite where that is
-/// not known. Blocks with a point that is not in front of the camera are left out. Throws Error where there are more than four million blocks.
+/// the tolerance is what comes out: a block's bound (Facets::bound_of) is, axis by axis, by Taylor's formula (2.9) about
+/// its centre, of g, the map to the screen, and the linear map a that is drawn, whatever it is made of,
+///     |g - a0 + (g_u - a1) s + (g_v - a2) t + g_uu s^2 / 2 + g_uv s t + g_vv t^2 / 2|
+/// with g, g_u and g_v at the centre, and for (s, t) in each quarter of the block a mean of the second derivatives over
+/// that quarter, which the way from the centre does not leave, and over the half of it that is next to the centre. Infinite where that is not known. Blocks with a point that is not in
+/// front of the camera are left out. The surface outlives the facets. Throws Error where there are more than four million
+/// blocks.
 Facets oka_facets(const DrapedSurface& surface, const Camera& camera, const Size& picture,
                   const OkaBlocks& blocks);
 
