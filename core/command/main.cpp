@@ -24,6 +24,7 @@
 #include "frame_range.h"
 #include "progress.h"
 #include "script_source.h"
+#include "texture_files.h"
 #include "threads.h"
 #include "writers.h"
 
@@ -118,9 +119,10 @@ class Command {
 
     CLI::App* add_subcommand(const char* name, const char* what, std::function<int()> run) {
         CLI::App* sub = m_app.add_subcommand(name, what);
-        sub->add_option("SCRIPT", m_settings.source.path,
-                        "The script, or a motion (.bvh), a crystal structure (.cif) or frames (.3); - is the "
-                        "standard input: a script")
+        sub->add_option(
+               "SCRIPT", m_settings.source.path,
+               "The script, or a motion (.bvh), a crystal structure (.cif) or frames (.3, .mrasel); - is the "
+               "standard input: a script")
             ->required();
         static const std::map<std::string, Dialect> dialects{{"classic", Dialect::classic},
                                                              {"strict", Dialect::strict}};
@@ -249,10 +251,14 @@ class Command {
                    "Frames a second; by default those of a .bvh file, 25 of scripts");
         static const std::map<std::string, FigureStyle> styles{{"shaded", FigureStyle::shaded},
                                                                {"outline", FigureStyle::outline},
-                                                               {"stick", FigureStyle::stick}};
-        sub->add_option("--style", m_settings.look.style, "What is drawn")
+                                                               {"stick", FigureStyle::stick},
+                                                               {"textured", FigureStyle::textured}};
+        sub->add_option(
+               "--style", m_settings.look.style,
+               "What is drawn; textured: shaded, with the pictures (.png, .ppm) beside the script that it "
+               "names")
             ->transform(CLI::CheckedTransformer(styles))
-            ->option_text("shaded|outline|stick [shaded]");
+            ->option_text("shaded|textured|outline|stick [shaded]");
         static const std::map<std::string, Lighting> lightings{
             {"rasel", Lighting::rasel}, {"lambert", Lighting::lambert}, {"blinn", Lighting::blinn}};
         sub->add_option("--lighting", m_settings.look.light.lighting, "How bodies are shaded")
@@ -424,12 +430,12 @@ class Command {
     }
 
     FilmFrame film_frame(const FigureFrame& frame, const SeenExtent& extent, int side,
-                         const ParallelFor& parallel_for) const {
+                         const TextureFiles& textures, const ParallelFor& parallel_for) const {
         const glm::dvec2 page(side);
         View view = view_for(frame, page);
         fit_view(view, extent, page);
         FigureLook look = m_settings.look;
-        look.background = glm::dvec3(1.0);
+        if (frame.bands.empty()) look.background = glm::dvec3(1.0);
         const FigurePicture picture(frame, view, {side, side}, look, parallel_for);
         const int channels = channels_of(look.style);
         std::vector<float> pixels(static_cast<std::size_t>(side) * static_cast<std::size_t>(side) *
@@ -437,7 +443,7 @@ class Command {
         picture.draw({0, 0, side, side},
                      packed_view(reinterpret_cast<std::byte*>(pixels.data()), PixelType::float32, side, side,
                                  channels),
-                     parallel_for);
+                     parallel_for, textures.sources());
         FilmFrame film{frame.number, {}};
         for (std::size_t i = 0; i < pixels.size(); i += static_cast<std::size_t>(channels))
             for (std::size_t c = 0; c < 3; ++c)
@@ -457,10 +463,14 @@ class Command {
             m_settings.frames_per_second > 0 ? m_settings.frames_per_second : motion->frames_per_second();
         const SeenExtent extent = extent_of(range, *motion);
         const ParallelFor parallel_for = threads_for(thread_count());
+        if (m_settings.look.style == FigureStyle::textured) m_settings.look.textures = motion->images();
+        const TextureFiles textures(
+            m_settings.source.path, m_settings.look.textures,
+            [](const std::string& what) { std::cerr << "anamorph-figure: " << one_line(what) << "\n"; });
         std::unique_ptr<FilmWriter> out;
         range.for_each(*motion, [&](const FigureFrame& frame) {
             if (!out) out = film_writer(side, rate);
-            out->add(film_frame(frame, extent, side, parallel_for));
+            out->add(film_frame(frame, extent, side, textures, parallel_for));
             progress.advance();
         });
         if (!out) throw Error(m_settings.source.path + " shows no frame");

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstring>
 #include <map>
 
 #include "anamorph/operation/operation.h"
@@ -177,6 +178,115 @@ TEST(FigureOperation, WhatIsWrongIsNamed) {
     EXPECT_THAT(error_of({}, wrong), HasSubstr("a/doll.n"));
     wrong.files["a/doll.n"] = "include none.n\n" + std::string(kScript);
     EXPECT_THAT(error_of({}, wrong), AllOf(HasSubstr("doll.n:1"), HasSubstr("none.n")));
+}
+
+TEST(FigureOperation, BackgroundsAreColorsAndBands) {
+    const std::vector<float> bands =
+        drawn({{"background", "0.5,255,0,0,1,0,0,255"}, {"zoom", "1e-6"}, {"antialias", "0"}});
+    const auto at = [](const std::vector<float>& pixels, int y) {
+        const float* p = &pixels[static_cast<std::size_t>(4 * 64 * y)];
+        return std::vector<float>(p, p + 4);
+    };
+    EXPECT_EQ(at(bands, 23), (std::vector<float>{1, 0, 0, 1}));
+    EXPECT_EQ(at(bands, 24), (std::vector<float>{0, 0, 1, 1}));
+    for (const char* wrong :
+         {"1,2", "1,2,3,4,5", "0.5,256,0,0", "1.5,0,0,0", "0.6,0,0,0,0.5,0,0,0", "0,0,256"})
+        EXPECT_THAT(error_of({{"background", wrong}}), HasSubstr("background")) << wrong;
+    // A frame of MRASEL has its own.
+    Texts texts;
+    texts.files["a/in.mrasel"] = "1 0 1\n511 51 0 255\n100 100 100 2560 2560 0 0 0 0 map\n";
+    ParameterValues values(*find_operation("figure")->parameters);
+    values.assign({{"size", "64x48"}});
+    const SideFiles files = {{"script", {"a/in.mrasel", ""}}};
+    const auto film = find_operation("figure")->read({values, {}, files, texts});
+    EXPECT_EQ(film->frames(), 1);
+    EXPECT_EQ(at(draw(*film->picture(0, 0)), 0), (std::vector<float>{0.2f, 0, 1, 1}));
+}
+
+/// An image of 8 x 4 texels, of which texel (x, y) has the values x + 10 y, + 100 and + 200.
+class Numbered final : public Source {
+  public:
+    PixelType type() const noexcept override { return PixelType::float32; }
+    int channels() const noexcept override { return 3; }
+    int levels() const noexcept override { return 1; }
+    Size size(int) const noexcept override { return {8, 4}; }
+    bool read(int, const Box& box, std::byte* texels, std::ptrdiff_t stride) const noexcept override {
+        for (int y = box.y0; y < box.y1; ++y)
+            for (int x = box.x0; x < box.x1; ++x)
+                for (int c = 0; c < 3; ++c) {
+                    const auto value = static_cast<float>(x + 10 * y + 100 * c);
+                    std::memcpy(texels + (y - box.y0) * stride + (3 * (x - box.x0) + c) * 4, &value, 4);
+                }
+        return true;
+    }
+};
+
+TEST(FigureOperation, MipsShowThePyramid) {
+    class Images final : public SideFileReader {
+      public:
+        std::string text(const std::string&) const override {
+            return "figure f 1 e\nellipsoid e 1 2 3\nrepeat 0 1 texture e map 0 0\nrepeat 0 1 texture e gone "
+                   "0 0\nstop\n";
+        }
+        std::unique_ptr<SideImage> image(const std::string&, const std::string&) const override {
+            class Sized final : public SideImage {
+              public:
+                Size size() const override { return {8, 4}; }
+                int channels() const override { return 3; }
+                std::vector<float> read(int) override { return {}; }
+            };
+            return std::make_unique<Sized>();
+        }
+    };
+    const Operation& operation = *find_operation("figure");
+    ParameterValues values(*operation.parameters);
+    values.assign({{"output", "mips"}});
+    SideFiles files = {{"script", {"a/doll.n", ""}}};
+    const Images reader;
+    const LinkedFiles linked = operation.linked(values, files, reader);
+    ASSERT_EQ(linked.size(), 2u);
+    for (const LinkedFile& file : linked) files[file.key] = {file.name, ""};
+    const auto pictures = operation.read({values, {}, files, reader, {linked[1].key}});
+    ASSERT_EQ(pictures->frames(), 2);
+    const PictureRequest picture = *pictures->picture(0, 0);
+    EXPECT_EQ(picture.size, (Size{16, 8}));
+    EXPECT_EQ(picture.channels, std::vector<std::string>{"Y"});
+    EXPECT_FALSE(pictures->picture(0, 1));
+    const Numbered source;
+    const auto part = [&](const Box& box) {
+        std::vector<float> pixels(static_cast<std::size_t>(box.width() * box.height()), -1.0f);
+        EXPECT_TRUE(picture.solve()->draw({&source, nullptr}, box,
+                                          packed_view(reinterpret_cast<std::byte*>(pixels.data()),
+                                                      PixelType::float32, box.width(), box.height(), 1),
+                                          serial_for));
+        return pixels;
+    };
+    const std::vector<float> all = part({0, 0, 16, 8});
+    const auto at = [&](int x, int y) { return all[static_cast<std::size_t>(16 * y + x)]; };
+    for (int y = 0; y < 4; ++y)
+        for (int x = 0; x < 8; ++x) {
+            const auto red = static_cast<float>(x + 10 * y);
+            EXPECT_EQ(at(8 + x, y), red);
+            EXPECT_EQ(at(x, 4 + y), red + 100);
+            EXPECT_EQ(at(8 + x, 4 + y), red + 200);
+        }
+    // Level 1: 4 x 2, means of 2 x 2 texels; level 2: 2 x 1, the last.
+    EXPECT_EQ(at(4, 0), 5.5f);
+    EXPECT_EQ(at(7, 1), 31.5f);
+    EXPECT_EQ(at(0, 2), 105.5f);
+    EXPECT_EQ(at(4 + 3, 2 + 1), 231.5f);
+    EXPECT_EQ(at(2, 0), 16.5f);
+    EXPECT_EQ(at(1, 1), 120.5f);
+    EXPECT_EQ(at(3, 1), 220.5f);
+    EXPECT_EQ(at(0, 0), 0);
+    for (const Box& box : {Box{1, 1, 5, 4}, Box{6, 3, 16, 5}}) {
+        const std::vector<float> some = part(box);
+        for (int y = box.y0; y < box.y1; ++y)
+            for (int x = box.x0; x < box.x1; ++x)
+                EXPECT_EQ(some[static_cast<std::size_t>((y - box.y0) * box.width() + x - box.x0)], at(x, y));
+    }
+    EXPECT_EQ(pictures->picture(1, 0)->size, (Size{2, 2}));
+    EXPECT_THAT(error_of({{"output", "mips"}}), HasSubstr("has no texture"));
 }
 
 }  // namespace

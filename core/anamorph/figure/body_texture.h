@@ -5,6 +5,7 @@
 
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
+#include <glm/vec4.hpp>
 #include <vector>
 
 #include "anamorph/figure/body_mapping.h"
@@ -13,27 +14,49 @@
 #include "anamorph/render/filter.h"
 #include "anamorph/render/footprint.h"
 #include "anamorph/render/point_sampler.h"
+#include "anamorph/render/summed_area.h"
 
 namespace anamorph {
 
-/// One for each thread. Keeps a reference to the source.
+/// What is seen of a texture: a body's surface, the texture moved by `offset` texels.
+struct TexturedSurface {
+    const SeenSurface& surface;
+    glm::dvec2 offset{0.0};
+    double longest = 0;  ///< half of the body's longest axis, in pixels
+};
+
+/// Red, green, blue and alpha of a texel of 1 to 4 channels, the last of 2 and of 4 alpha.
+glm::dvec4 color_of_texel(const std::vector<float>& texel);
+
+/// The edges that a mapping gives a table of sums.
+SummedEdges summed_edges(BodyMapping mapping);
+
+/// One for each thread. Keeps references to the source and the table.
 class BodyTexture {
   public:
-    BodyTexture(const Source& source, BodyMapping mapping, Filter filter);
+    /// `sums`: of TextureAverage::summed; null where there is none, then it is averaged by footprints.
+    BodyTexture(const Source& source, BodyMapping mapping, Filter filter,
+                TextureAverage average = TextureAverage::footprint, const SummedArea* sums = nullptr);
 
-    /// What the texture, moved by `offset` texels, has where a pixel shows the surface at (x, y), over `below`
-    /// where it is transparent. `below` itself where the source cannot be read.
-    glm::dvec3 color(const SeenSurface& surface, double x, double y, bool far_side, const glm::dvec2& offset,
-                     const glm::dvec3& below);
+    /// What the texture has where a pixel shows the body at (x, y), over `below` where it is transparent.
+    /// `below` itself where the source cannot be read.
+    glm::dvec3 color(const TexturedSurface& body, double x, double y, bool far_side, const glm::dvec3& below);
 
   private:
+    bool read_average(const Jacobian& jacobian, double u, double v);
+    bool read_trilinear(const Jacobian& jacobian, double u, double v);
+    bool read_as_mrasel(double sine, double longest, double u, double v);
+    bool read_level(Filter filter, int level, double u, double v, float* pixel);
+
     const Source& m_source;
+    TextureAverage m_average;
+    const SummedArea* m_sums;
     BodyMapping m_mapping;
     Filter m_filter;
     Border m_border;
     FootprintChooser m_chooser;
     PointSampler m_sampler;
-    std::vector<float> m_pixel;
+    std::vector<float> m_pixel, m_coarser;
 };
 
 }  // namespace anamorph

@@ -5,8 +5,10 @@
 #include <array>
 #include <cmath>
 #include <cstring>
+#include <mutex>
 #include <vector>
 
+#include "anamorph/figure/backdrop.h"
 #include "anamorph/figure/body_texture.h"
 #include "anamorph/figure/stroke_pixels.h"
 #include "anamorph/figure/visible_surfaces.h"
@@ -30,6 +32,13 @@ std::vector<std::string> names_of(const FigureFrame& frame) {
     return names;
 }
 
+/// Half of a body's longest axis in pixels, as far away as its centre.
+double half_longest(const Ellipsoid& shape, const View& view) {
+    const double axis = std::max({shape.axes.x, shape.axes.y, shape.axes.z});
+    if (!view.perspective()) return view.scale * axis;
+    return view.scale * view.eye_distance / std::max(view.to_view(shape.center).z, view.near) * axis;
+}
+
 bool is_lines(FigureStyle style) {
     return style == FigureStyle::outline || style == FigureStyle::stick;
 }
@@ -46,25 +55,58 @@ StrokePixels strokes_of(const FigureFrame& frame, const View& view, const Size& 
     return StrokePixels(draw(frame, view, {size.width, size.height}, lines, parallel_for));
 }
 
-/// The textures of a picture as one thread reads them: made when the first pixel needs them.
+/// Tables of sums of the textures, for all threads: made when the first pixel needs them.
+class SharedSums {
+  public:
+    explicit SharedSums(std::size_t count) : m_sums(std::make_unique<Entry[]>(count)) {}
+
+    const SummedArea* get(std::size_t i, const Source& source, BodyMapping mapping) const {
+        Entry& entry = m_sums[i];
+        std::call_once(entry.once, [&] { entry.sums = SummedArea::of(source, summed_edges(mapping)); });
+        return entry.sums.get();
+    }
+
+  private:
+    struct Entry {
+        std::once_flag once;
+        std::unique_ptr<const SummedArea> sums;
+    };
+    std::unique_ptr<Entry[]> m_sums;
+};
+
+/// The sources of a picture as one thread reads them: made when the first pixel needs them.
 class Textures {
   public:
-    Textures(const std::vector<const Source*>& sources, const FigureLook& look)
-        : m_sources(sources), m_look(look), m_open(sources.size()) {}
+    Textures(const std::vector<const Source*>& sources, const FigureLook& look, const SharedSums& sums)
+        : m_sources(sources), m_look(look), m_sums(sums), m_open(look.textures.size()) {}
 
     /// Null where there is none.
     BodyTexture* get(int index) {
         const auto i = static_cast<std::size_t>(index);
         if (index < 0 || i >= m_sources.size() || !m_sources[i]) return nullptr;
-        if (!m_open[i])
-            m_open[i] = std::make_unique<BodyTexture>(*m_sources[i], m_look.mapping, m_look.filter);
+        if (!m_open[i]) {
+            const bool summed =
+                m_look.average == TextureAverage::summed && m_look.filter == Filter::antialias;
+            m_open[i] = std::make_unique<BodyTexture>(
+                *m_sources[i], m_look.mapping, m_look.filter, m_look.average,
+                summed ? m_sums.get(i, *m_sources[i], m_look.mapping) : nullptr);
+        }
         return m_open[i].get();
+    }
+    /// The same of the backdrop, of a picture of this size.
+    Backdrop* backdrop(const Size& size) {
+        const std::size_t i = m_look.textures.size();
+        if (!m_look.backdrop || i >= m_sources.size() || !m_sources[i]) return nullptr;
+        if (!m_backdrop) m_backdrop = std::make_unique<Backdrop>(*m_sources[i], size);
+        return m_backdrop.get();
     }
 
   private:
     const std::vector<const Source*>& m_sources;
     const FigureLook& m_look;
+    const SharedSums& m_sums;
     std::vector<std::unique_ptr<BodyTexture>> m_open;
+    std::unique_ptr<Backdrop> m_backdrop;
 };
 
 }  // namespace
@@ -88,8 +130,10 @@ struct FigurePicture::Impl {
     FigureLook look;
     std::vector<glm::dvec3> colors = {};  ///< of the bodies, 0 to 1
     std::vector<int> textures = {};       ///< of the bodies: positions in FigureLook::textures, -1 for none
+    std::vector<double> longest = {};     ///< of the bodies: half the longest axis in pixels
     std::unique_ptr<const VisibleSurfaces> surfaces = {};
     std::unique_ptr<const StrokePixels> strokes = {};
+    SharedSums sums{look.textures.size()};
 
     /// Towards the eye, from what is seen at (x, y).
     glm::dvec3 toward_eye(double x, double y) const {
@@ -105,20 +149,35 @@ struct FigurePicture::Impl {
         const glm::dvec3 outwards = glm::normalize(surface.gradient(x, y, far_side));
         glm::dvec3 own = colors[i];
         if (BodyTexture* texture = open.get(textures[i]))
-            own = texture->color(surface, x, y, far_side, frame.bodies[i].texture_offset, own);
+            own = texture->color({surface, frame.bodies[i].texture_offset, longest[i]}, x, y, far_side, own);
         // Only highlights are seen from somewhere.
         const bool seen_from = look.light.lighting == Lighting::blinn;
         return lit(own, look.light, far_side ? -outwards : outwards,
                    seen_from ? toward_eye(x, y) : glm::dvec3(0.0));
     }
 
+    /// Color and alpha of what lies behind all bodies, in a pixel.
+    glm::dvec4 background(int x, int y, Textures& open) const {
+        glm::dvec4 color(0.0);
+        const std::vector<BackgroundBand>& bands = look.bands.empty() ? frame.bands : look.bands;
+        if (look.background)
+            color = glm::dvec4(*look.background, 1);
+        else if (!bands.empty())
+            color = band_color(bands, y, size.height);
+        Backdrop* picture = open.backdrop(size);
+        return picture ? picture->color(x, y, color) : color;
+    }
+
+    bool has_background() const {
+        return look.background || look.backdrop || !look.bands.empty() || !frame.bands.empty();
+    }
+
     /// Of a color multiplied by alpha: before the background.
-    Values on_background(const glm::dvec3& c, double alpha) const {
-        if (!look.background)
-            return {static_cast<float>(c.r), static_cast<float>(c.g), static_cast<float>(c.b),
-                    static_cast<float>(alpha)};
-        const glm::dvec3 all = c + (1 - alpha) * *look.background;
-        return {static_cast<float>(all.r), static_cast<float>(all.g), static_cast<float>(all.b), 1};
+    Values on_background(const glm::dvec3& c, double alpha, int x, int y, Textures& open) const {
+        glm::dvec4 all(c, alpha);
+        if (alpha < 1 && has_background()) all += (1 - alpha) * background(x, y, open);
+        return {static_cast<float>(all.r), static_cast<float>(all.g), static_cast<float>(all.b),
+                static_cast<float>(all.a)};
     }
 
     Values value(const VisiblePoint& seen, int x, int y, Textures& open) const {
@@ -137,12 +196,12 @@ struct FigurePicture::Impl {
                 return {static_cast<float>(uv.x), static_cast<float>(uv.y)};
             }
             default:
-                return none ? on_background(glm::dvec3(0.0), 0)
-                            : on_background(color(seen.body, px, py, seen.hit.far_side, open), 1);
+                return none ? on_background(glm::dvec3(0.0), 0, x, y, open)
+                            : on_background(color(seen.body, px, py, seen.hit.far_side, open), 1, x, y, open);
         }
     }
 
-    Values value(std::span<const VisiblePart> parts, Textures& open) const {
+    Values value(std::span<const VisiblePart> parts, int x, int y, Textures& open) const {
         glm::dvec3 sum(0.0);
         double alpha = 0;
         for (const VisiblePart& part : parts) {
@@ -150,13 +209,13 @@ struct FigurePicture::Impl {
             sum += share * color(part.body, part.x, part.y, part.far_side, open);
             alpha += share;
         }
-        return on_background(sum, alpha);
+        return on_background(sum, alpha, x, y, open);
     }
 
     /// store(x, y, values) for the pixels of a small box inside the picture.
     template <class Store>
     void draw(const Box& box, const std::vector<const Source*>& sources, const Store& store) const {
-        Textures open(sources, look);
+        Textures open(sources, look, sums);
         const auto each = [&](const auto& value) {
             std::size_t i = 0;
             for (int y = box.y0; y < box.y1; ++y)
@@ -164,13 +223,13 @@ struct FigurePicture::Impl {
         };
         if (is_lines(look.style)) {
             const std::vector<LinePixel> lines = strokes->pixels(box);
-            each([&](std::size_t i, int, int) {
+            each([&](std::size_t i, int x, int y) {
                 const LinePixel& p = lines[i];
-                return on_background({p.r, p.g, p.b}, static_cast<double>(p.a));
+                return on_background({p.r, p.g, p.b}, static_cast<double>(p.a), x, y, open);
             });
         } else if (is_shaded(look.style) && look.antialias) {
             const VisibleParts seen = surfaces->parts(box);
-            each([&](std::size_t, int x, int y) { return value(seen.of(x, y), open); });
+            each([&](std::size_t, int x, int y) { return value(seen.of(x, y), x, y, open); });
         } else {
             const std::vector<VisiblePoint> seen = surfaces->points(box);
             each([&](std::size_t i, int x, int y) { return value(seen[i], x, y, open); });
@@ -184,6 +243,7 @@ FigurePicture::FigurePicture(FigureFrame frame, const View& view, const Size& si
     const FigureFrame& own = impl->frame;
     for (const Body& body : own.bodies) {
         impl->colors.push_back(body.color / 255.0);
+        impl->longest.push_back(half_longest(body.shape, view));
         const auto found = std::find(look.textures.begin(), look.textures.end(), body.texture);
         const bool textured = look.style == FigureStyle::textured && found != look.textures.end();
         impl->textures.push_back(textured ? static_cast<int>(found - look.textures.begin()) : -1);
@@ -207,6 +267,10 @@ void FigurePicture::draw(const Box& box, const ImageView& pixels, const Parallel
     for_each_square(box, parallel_for, [&](const Box& square) {
         const auto store = [&](int x, int y, const Values& values) {
             std::byte* to = pixels.at(x - box.x0, y - box.y0);
+            if (pixels.type == PixelType::float32 && channels == values.size()) {
+                std::memcpy(to, values.data(), sizeof values);
+                return;
+            }
             if (pixels.type == PixelType::float32) {
                 for (std::size_t c = 0; c < channels; ++c)
                     std::memcpy(to + c * sizeof(float), &values[c], sizeof(float));

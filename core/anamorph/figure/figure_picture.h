@@ -45,11 +45,15 @@ struct FigureLook {
     FigureStyle style = FigureStyle::shaded;
     Light light;
     bool antialias = true;                 ///< false: colours of the rays through the middle alone
-    std::optional<glm::dvec3> background;  ///< red, green, blue, 0 to 1; else transparent
+    std::optional<glm::dvec3> background;  ///< red, green, blue, 0 to 1; else the bands
+    std::vector<BackgroundBand> bands;     ///< the background; by default the frame's, or transparent
+    bool backdrop = false;                 ///< a picture lies before that, as large as what is drawn: the
+                                           ///< source after those of the textures
     BodyMapping mapping = BodyMapping::latlong;
-    Filter filter = Filter::antialias;  ///< of textures
-    std::vector<std::string> textures;  ///< the names of those that are given
-    DrawingOptions lines;               ///< of outline and stick
+    Filter filter = Filter::antialias;                   ///< of textures
+    TextureAverage average = TextureAverage::footprint;  ///< of Filter::antialias
+    std::vector<std::string> textures;                   ///< the names of those that are given
+    DrawingOptions lines;                                ///< of outline and stick
 };
 
 /// Channels of a picture: red, green, blue and alpha, colour multiplied by alpha; u and v; or one.
@@ -65,7 +69,7 @@ class FigurePicture {
     FigurePicture(FigurePicture&&) noexcept;
 
     /// Fills `pixels`, which has channels_of(style) channels, with the pixels of `box`; 0 beyond the picture.
-    /// `textures`: in the order of their names, null where one is missing. Bodies whose texture is not there,
+    /// `textures`: in the order of their names, then the backdrop, null where one is missing. Bodies whose texture is not there,
     /// or cannot be read, have their own colour. A texture's fourth channel (the second of two) is alpha.
     void draw(const Box& box, const ImageView& pixels, const ParallelFor& parallel_for = serial_for,
               const std::vector<const Source*>& textures = {}) const;

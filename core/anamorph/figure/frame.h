@@ -31,13 +31,20 @@ struct Joint {
     glm::dvec3 position{0.0};   ///< in space
 };
 
+/// A stripe of the background, over all of the picture's width.
+struct BackgroundBand {
+    double end = 1;         ///< where it ends, 0 at the top of the picture to 1 at the bottom
+    glm::dvec3 color{0.0};  ///< red, green, blue, 0 to 255
+};
+
 /// All that is there at one moment, and where it is seen from.
 struct FigureFrame {
     int number = 0;
     std::vector<Body> bodies;
     std::vector<Joint> joints;
     std::vector<std::string> figures;
-    glm::dvec3 place{500.0};   ///< the centre of attention: it is seen in the middle of the window
+    std::vector<BackgroundBand> bands;  ///< the background, from above; none where it is transparent
+    glm::dvec3 place{500.0};            ///< the centre of attention: it is seen in the middle of the window
     glm::dmat3 observer{1.0};  ///< turns space about `place` before it is seen: Rx Ry Rz of `observe`
     glm::dvec3 observe{0.0};   ///< the angles of `observer`
 };

@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "anamorph/figure/frame_file.h"
+#include "anamorph/figure/mrasel_file.h"
 #include "anamorph/text_file.h"
 
 namespace anamorph {
@@ -41,7 +42,7 @@ class KeptFrames final : public Motion {
 }  // namespace
 
 bool is_motion_file(std::string_view name) {
-    for (const char* ending : {".bvh", ".cif", ".3"})
+    for (const char* ending : {".bvh", ".cif", ".3", ".mrasel"})
         if (text_file::ends_with(name, ending)) return true;
     return false;
 }
@@ -49,6 +50,8 @@ bool is_motion_file(std::string_view name) {
 std::unique_ptr<Motion> read_motion(std::string_view text, std::string_view name) {
     if (text_file::ends_with(name, ".bvh")) return read_bvh(text, name);
     if (text_file::ends_with(name, ".cif")) return read_cif(text, name);
+    if (text_file::ends_with(name, ".mrasel"))
+        return std::make_unique<KeptFrames>(std::vector{mrasel_frame(text, name)});
     std::vector<FigureFrame> frames = parse_frames(text, name);
     if (frames.empty()) text_file::fail(name, "", "has no frame");
     return std::make_unique<KeptFrames>(std::move(frames));

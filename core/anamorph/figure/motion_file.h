@@ -10,7 +10,8 @@
 // where displacement is isotropic, and small spheres where none is given. Joints are bonds: where two atoms
 // are closer than their covalent radii (Cordero et al. 2008) and 0.4 Angstrom together.
 //
-// Frames as the original programs print them (.3; frame_file.h).
+// Frames as the original programs print them (.3; frame_file.h), and the one that MRASEL draws (.mrasel;
+// mrasel_file.h).
 //
 // Right-handed coordinates are mirrored to those of frame.h, z becoming -z.
 #pragma once
@@ -22,7 +23,7 @@
 
 namespace anamorph {
 
-/// Whether a file with this name holds frames (.bvh, .cif, .3), in small letters or capitals.
+/// Whether a file with this name holds frames (.bvh, .cif, .3, .mrasel), in small letters or capitals.
 bool is_motion_file(std::string_view name);
 
 /// Reads the text of a file, by the ending of its name. Throws Error naming the file and the line or entry.

@@ -55,12 +55,19 @@ class Tile {
 
     std::vector<VisiblePoint> take_points() {
         std::vector<VisiblePoint> points(pixels());
+        // From the nearest on: most of what is behind need not be met.
+        std::sort(m_bodies.begin(), m_bodies.end(),
+                  [&](int a, int b) { return at(a).nearest() > at(b).nearest(); });
         for (const int body : m_bodies) {
             const SeenSurface& surface = at(body);
+            const double nearest = surface.nearest();
             for_each_pixel(surface, [&](int x, int y) {
-                const SurfaceHit hit = surface.hit(x + 0.5, y + 0.5);
                 VisiblePoint& point = points[index(x, y)];
-                if (hit.nearness > point.hit.nearness) point = {body, hit};
+                if (nearest < point.hit.nearness) return;
+                const SurfaceHit hit = surface.hit(x + 0.5, y + 0.5);
+                if (hit.nearness > point.hit.nearness ||
+                    (hit.nearness == point.hit.nearness && body < point.body))
+                    point = {body, hit};
             });
         }
         return points;

@@ -2,7 +2,6 @@
 // Figures of ellipsoids, performed from scripts of NUDES: a film whose subimages are the frames.
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 #include <filesystem>
 #include <limits>
 #include <mutex>
@@ -13,6 +12,7 @@
 #include "anamorph/figure/performance.h"
 #include "anamorph/figure/rotation.h"
 #include "anamorph/figure/script.h"
+#include "anamorph/operation/figure_mips.h"
 #include "anamorph/operation/operation.h"
 #include "anamorph/operation/read_once.h"
 #include "anamorph/operation/rows.h"
@@ -33,9 +33,10 @@ ParameterTable make_table() {
     using namespace rows;
     return {
         file("script",
-             "the script of NUDES, or a motion (.bvh), a crystal structure (.cif) or frames (.3); by default "
-             "the recipe's name without .figure, and of a name that ends in .n, .nudes, .bvh or .cif that "
-             "file itself"),
+             "the script of NUDES, or a motion (.bvh), a crystal structure (.cif), frames (.3) or a frame of "
+             "MRASEL (.mrasel); by default "
+             "the recipe's name without .figure, and of a name that ends in .n, .nudes, .bvh, .cif or "
+             ".mrasel that file itself"),
         file("library", "a file of figures without stop, included ahead of the script"),
         choice(
             "dialect", "classic", {"classic", "strict"},
@@ -57,6 +58,10 @@ ParameterTable make_table() {
                "there is no "
                "body; id, 1 for the first body, 0 for none; uv, the point of a body's texture, (-1, -1) for "
                "none; textured, shaded, with the pictures that the script names"),
+        choice(
+            "output", "picture", {"picture", "mips"},
+            "picture; mips, the pyramid of each texture in one picture, each a subimage: the level in three "
+            "quarters, red, green and blue, in the fourth the next level alike"),
         toggle("antialias", "1",
                "of styles shaded and textured: pixels are the mean of 16 x 16 samples; 0: what is in their "
                "middle"),
@@ -80,7 +85,11 @@ ParameterTable make_table() {
         toggle("fit", "0",
                "1: the figures fill the picture; without frame, those of all frames that are shown"),
         number("zoom", "", "1", 1e-6, 1e6, "magnifies about the middle"),
-        numbers("background", 0, "red,green,blue, 0 to 255; by default transparent"),
+        numbers(
+            "background", 0,
+            "red,green,blue, 0 to 255; or bands from above, end,red,green,blue each, the end a share of the "
+            "height, 0 to 1; by default the bands of the frame, or transparent"),
+        file("backdrop", "a picture behind the figures, stretched to the size, before the background"),
         number("line_width", "pixels", "1.5", 0.01, 1000, "of styles outline and stick"),
         toggle("line_colors", "0", "of styles outline and stick: 1, lines in the colors of the bodies"),
         choice(
@@ -90,6 +99,11 @@ ParameterTable make_table() {
             "mirrored, over "
             "the front and again over the back; linear, stripes stay straight; octahedral, without a pole"),
         filter(),
+        choice(
+            "average", "footprint", {"footprint", "trilinear", "summed", "mrasel"},
+            "of filter antialias, how textures are averaged: footprint, by taps along what a pixel covers; "
+            "trilinear, between two levels of the pyramid; summed, by a table of sums; mrasel, the nearest "
+            "texel of the level that MRASEL takes"),
     };
 }
 
@@ -147,29 +161,34 @@ std::string picture_beside(const std::string& script, const std::string& name, c
     return file;
 }
 
+bool are_mips(const ParameterValues& values) {
+    return values.text("output") == "mips";
+}
+
 bool is_textured(const ParameterValues& values) {
-    return rows::chosen<FigureStyle>(values, "style") == FigureStyle::textured;
+    return are_mips(values) || rows::chosen<FigureStyle>(values, "style") == FigureStyle::textured;
 }
 
 const char* const kTextureKey = "texture/";
 
-/// What scripts include, and, where they are drawn, their textures in the order of the program.
+/// What scripts include, and, where they are drawn, their textures in the order of the program, and the backdrop.
 LinkedFiles linked_files(const ParameterValues& values, const SideFiles& files,
                          const SideFileReader& reader) {
     LinkedFiles linked;
     const SideFile& file = script_of(files);
-    if (is_motion_file(file.name)) {
-        if (!is_textured(values)) return linked;
-        for (const std::string& name : read_motion(reader.text(file.name), short_name(file))->images())
+    const auto add_textures = [&](const std::vector<std::string>& names) {
+        if (!is_textured(values)) return;
+        for (const std::string& name : names)
             linked.push_back({kTextureKey + name, picture_beside(file.name, name, reader), true});
-        return linked;
-    }
-    const Script script = read_script(values, files, reader, [&](const std::string& included) {
-        linked.push_back({"script/" + included, included});
-    });
-    if (!is_textured(values)) return linked;
-    for (const std::string& name : script.program.images)
-        linked.push_back({kTextureKey + name, picture_beside(file.name, name, reader), true});
+    };
+    if (!is_motion_file(file.name))
+        add_textures(read_script(values, files, reader, [&](const std::string& included) {
+                         linked.push_back({"script/" + included, included});
+                     }).program.images);
+    else if (is_textured(values))
+        add_textures(read_motion(reader.text(file.name), short_name(file))->images());
+    const auto backdrop = files.find("backdrop");
+    if (backdrop != files.end()) linked.push_back({"picture/backdrop", backdrop->second.name, true});
     return linked;
 }
 
@@ -270,6 +289,27 @@ Light read_light(const ParameterValues& values) {
     return light;
 }
 
+/// A colour, or bands.
+void read_background(const ParameterValues& values, FigureLook& look) {
+    if (!values.given("background")) return;
+    const std::vector<double>& numbers = values.numbers("background");
+    if (numbers.size() % 4 != 0 || numbers.empty()) {
+        look.background = rows::three_numbers(values, "background", 0, 255) / 255.0;
+        return;
+    }
+    double from = 0;
+    for (std::size_t i = 0; i < numbers.size(); i += 4) {
+        const BackgroundBand band{numbers[i], {numbers[i + 1], numbers[i + 2], numbers[i + 3]}};
+        const double most = std::max({band.color.r, band.color.g, band.color.b});
+        if (!(band.end >= from && band.end <= 1 && most <= 255))
+            throw Error(
+                "background", printable(values.text("background")),
+                "must be red,green,blue from 0 to 255, or bands of an end, ascending from 0 to 1, and these");
+        look.bands.push_back(band);
+        from = band.end;
+    }
+}
+
 FigureRequest read_request(const ParameterValues& values) {
     FigureRequest request;
     request.size = rows::size_of(values, {kSide, kSide});
@@ -277,9 +317,11 @@ FigureRequest read_request(const ParameterValues& values) {
     look.style = rows::chosen<FigureStyle>(values, "style");
     look.light = read_light(values);
     look.antialias = values.toggle("antialias");
-    if (const auto color = three(values, "background", 0, 255)) look.background = *color / 255.0;
+    read_background(values, look);
     look.mapping = rows::chosen<BodyMapping>(values, "mapping");
     look.filter = rows::chosen<Filter>(values, "filter");
+    look.average = rows::chosen<TextureAverage>(values, "average");
+    look.backdrop = values.given("backdrop");
     look.lines.tol = kChordError;
     look.lines.line_width = values.number("line_width");
     look.lines.colors = values.toggle("line_colors");
@@ -377,6 +419,26 @@ class Figures final : public Pictures {
     std::shared_ptr<const SeenExtent> m_extent = std::make_shared<const SeenExtent>();
 };
 
+/// Pyramids of all textures.
+std::unique_ptr<const Pictures> read_mips(const OperationInput& input, const Film& film,
+                                          const std::string& missing) {
+    if (film.images().empty()) throw Error("output", "mips", "must be picture, as the script has no texture");
+    std::vector<MipTexture> textures;
+    for (const std::string& name : film.images()) {
+        const std::string key = kTextureKey + name;
+        MipTexture texture{name, {}};
+        if (std::find(input.missing.begin(), input.missing.end(), key) == input.missing.end())
+            texture.size = input.reader.image(key, input.files.at(key).name)->size();
+        if (texture.size && 2 * std::max(texture.size->width, texture.size->height) > kMaxSide)
+            throw Error(name + " has too many pixels for output=mips: must have up to " +
+                        std::to_string(kMaxSide / 2) + " either way");
+        textures.push_back(std::move(texture));
+    }
+    Attributes says;
+    if (!missing.empty()) says.push_back({"anamorph:missing_textures", missing});
+    return mip_pictures(std::move(textures), says);
+}
+
 std::unique_ptr<const Pictures> read_figures(const OperationInput& input) {
     FigureRequest request = read_request(input.values);
     std::optional<int> frame;
@@ -384,7 +446,8 @@ std::unique_ptr<const Pictures> read_figures(const OperationInput& input) {
     const std::shared_ptr<const Film> film = read_film(input);
     if (is_textured(input.values)) request.look.textures = film->images();
     for (const std::string& key : input.missing)
-        request.missing += (request.missing.empty() ? "" : ", ") + key.substr(std::strlen(kTextureKey));
+        request.missing += (request.missing.empty() ? "" : ", ") + key.substr(key.find('/') + 1);
+    if (are_mips(input.values)) return read_mips(input, *film, request.missing);
     return std::make_unique<Figures>(std::move(request), film, frame);
 }
 
@@ -416,7 +479,7 @@ const Operation& figure_operation() {
         .example = {"script=doll.nudes&size=48x24", {{"doll.nudes", kExampleScript}}},
         .read = read_figures,
         .main_file = "script",
-        .endings = {"n", "nudes", "bvh", "cif"},
+        .endings = {"n", "nudes", "bvh", "cif", "mrasel"},
         .linked = linked_files};
     return operation;
 }

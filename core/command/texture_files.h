@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: Apache-2.0
+// The pictures that a motion names, from files beside it.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "anamorph/render/pyramid.h"
+#include "anamorph/render/source.h"
+
+namespace anamorph::command {
+
+/// Textures in memory, with their pyramids.
+class TextureFiles {
+  public:
+    /// Those of `names`: a file of that name in the folder of `script`, or with the ending .png or .ppm.
+    /// warn(what) hears of each that is not there or cannot be read.
+    TextureFiles(const std::string& script, const std::vector<std::string>& names,
+                 const std::function<void(const std::string& what)>& warn);
+
+    /// In the order of their names, null where one is missing.
+    const std::vector<const Source*>& sources() const { return m_sources; }
+
+  private:
+    struct Texture;
+    struct Delete {
+        void operator()(Texture* texture) const;
+    };
+    std::vector<std::unique_ptr<Texture, Delete>> m_textures;
+    std::vector<const Source*> m_sources;
+};
+
+}  // namespace anamorph::command
