@@ -48,6 +48,7 @@
 #include "anamorph/parameter.h"
 #include "anamorph/projector/occluders.h"
 #include "anamorph/projector/projected_triangles.h"
+#include "anamorph/projector/projection_bake.h"
 #include "anamorph/projector/projector.h"
 #include "anamorph/render/border.h"
 #include "anamorph/render/filter.h"

@@ -1,0 +1,226 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "anamorph/projector/projection_bake.h"
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <optional>
+
+#include "anamorph/error.h"
+#include "anamorph/parameter.h"
+
+namespace anamorph {
+namespace {
+
+constexpr int kMostChannels = 64;
+constexpr double kMostFade = 1 << 24, kMostMargin = 64;
+
+/// A triangle in texels of its texture.
+struct FlatTriangle {
+    std::array<glm::dvec2, 3> corners;
+    double twice_area;
+
+    FlatTriangle(const BakedTriangle& t, const Size& size) {
+        for (std::size_t i = 0; i < 3; ++i)
+            corners[i] = {t.coordinates[i].x * size.width, (1 - t.coordinates[i].y) * size.height};
+        const glm::dvec2 p = corners[1] - corners[0], q = corners[2] - corners[0];
+        twice_area = p.x * q.y - p.y * q.x;
+    }
+
+    bool counts() const {
+        for (const glm::dvec2& c : corners)
+            if (!(std::isfinite(c.x) && std::isfinite(c.y))) return false;
+        return std::isfinite(twice_area) && twice_area != 0;
+    }
+
+    /// Weights of the corners.
+    glm::dvec3 weights(const glm::dvec2& p) const {
+        glm::dvec3 w;
+        for (std::size_t i = 0; i < 3; ++i) {
+            const glm::dvec2 a = corners[(i + 1) % 3] - p, b = corners[(i + 2) % 3] - p;
+            w[static_cast<int>(i)] = (a.x * b.y - a.y * b.x) / twice_area;
+        }
+        return w;
+    }
+
+    double distance(const glm::dvec2& p) const {
+        double least = HUGE_VAL;
+        for (std::size_t i = 0; i < 3; ++i) {
+            const glm::dvec2 a = corners[i], along = corners[(i + 1) % 3] - a;
+            const double t = std::clamp(glm::dot(p - a, along) / glm::dot(along, along), 0.0, 1.0);
+            least = std::min(least, glm::length(p - a - t * along));
+        }
+        return least;
+    }
+};
+
+/// Bilinear, within the face that a texel lies on; across the seam of a closed panorama.
+void read_pixel(const Chart& chart, const float* pixels, int channels, const Point<double>& texel,
+                const glm::dvec3& ray, double share, std::vector<double>& sum) {
+    const Box& box =
+        chart.pieces()[static_cast<std::size_t>(chart.piece_of(Ray<double>{ray.x, ray.y, ray.z}))].box;
+    const bool faces = chart.pieces().size() > 1;
+    const double x0 = faces ? box.x0 : 0, x1 = faces ? box.x1 : chart.width();
+    const double y0 = faces ? box.y0 : 0, y1 = faces ? box.y1 : chart.height();
+    const double x = texel.x - 0.5, y = std::clamp(texel.y - 0.5, y0, y1 - 1);
+    const auto column = [&](double at) {
+        if (!chart.closed()) return static_cast<std::int64_t>(std::clamp(at, x0, x1 - 1));
+        const double wrapped = std::fmod(at, chart.period());
+        return static_cast<std::int64_t>(wrapped < 0 ? wrapped + chart.period() : wrapped);
+    };
+    const double s = x - std::floor(x), t = y - std::floor(y);
+    const std::int64_t left = column(std::floor(x)), right = column(std::floor(x) + 1);
+    const auto top = static_cast<std::int64_t>(y),
+               bottom = std::min(top + 1, static_cast<std::int64_t>(y1) - 1);
+    const auto at = [&](std::int64_t i, std::int64_t j, int c) {
+        return double{pixels[(j * chart.width() + i) * channels + c]};
+    };
+    for (int c = 0; c < channels; ++c)
+        sum[static_cast<std::size_t>(c)] +=
+            share * ((1 - t) * ((1 - s) * at(left, top, c) + s * at(right, top, c)) +
+                     t * ((1 - s) * at(left, bottom, c) + s * at(right, bottom, c)));
+}
+
+/// The baking of one texture.
+class Baking {
+  public:
+    Baking(const std::vector<BakedTriangle>& mesh, const std::vector<ThrownPicture>& pictures,
+           const BakeOptions& options)
+        : m_mesh(mesh),
+          m_pictures(pictures),
+          m_options(options),
+          m_rows(static_cast<std::size_t>(options.size.height)) {
+        m_stride = options.channels + 1;
+        m_texture.pixels.assign(static_cast<std::size_t>(options.size.width) *
+                                    static_cast<std::size_t>(options.size.height) *
+                                    static_cast<std::size_t>(m_stride),
+                                0.0F);
+        for (std::size_t i = 0; i < mesh.size(); ++i) {
+            m_flat.emplace_back(mesh[i], options.size);
+            if (!m_flat.back().counts()) continue;
+            const auto& c = m_flat.back().corners;
+            const auto row = [&](double y) {
+                return static_cast<std::size_t>(
+                    std::clamp(y, 0.0, static_cast<double>(options.size.height - 1)));
+            };
+            const double low = std::min({c[0].y, c[1].y, c[2].y}) - options.margin - 1,
+                         high = std::max({c[0].y, c[1].y, c[2].y}) + options.margin + 1;
+            if (high < 0 || low > options.size.height) continue;
+            for (std::size_t j = row(low); j <= row(high); ++j) m_rows[j].push_back(i);
+        }
+    }
+
+    void row(std::int64_t j) {
+        std::vector<char> taken(static_cast<std::size_t>(m_options.size.width), 0);
+        for (const bool beyond : {false, true})
+            for (const std::size_t triangle : m_rows[static_cast<std::size_t>(j)])
+                span(triangle, j, beyond, taken);
+    }
+
+    BakedTexture take() {
+        m_texture.painted = m_painted;
+        m_texture.unseen = m_unseen;
+        return std::move(m_texture);
+    }
+
+  private:
+    /// The texels of a row that a triangle has, or those that it has beyond its border.
+    void span(std::size_t triangle, std::int64_t j, bool beyond, std::vector<char>& taken) {
+        const FlatTriangle& flat = m_flat[triangle];
+        const auto& c = flat.corners;
+        const double low = std::min({c[0].x, c[1].x, c[2].x}), high = std::max({c[0].x, c[1].x, c[2].x});
+        const double width = m_options.size.width;
+        const auto begin = static_cast<std::int64_t>(std::clamp(low - m_options.margin - 1, 0.0, width));
+        const auto end = static_cast<std::int64_t>(std::clamp(high + m_options.margin + 1, 0.0, width));
+        for (std::int64_t i = begin; i < end; ++i) {
+            char& mine = taken[static_cast<std::size_t>(i)];
+            if (mine) continue;
+            const glm::dvec2 p(static_cast<double>(i) + 0.5, static_cast<double>(j) + 0.5);
+            const glm::dvec3 weights = flat.weights(p);
+            const bool inside = std::min({weights.x, weights.y, weights.z}) >= 0;
+            if (!inside && !(beyond && flat.distance(p) <= m_options.margin)) continue;
+            mine = 1;
+            texel(m_mesh[triangle], weights, i, j);
+        }
+    }
+
+    void texel(const BakedTriangle& triangle, const glm::dvec3& weights, std::int64_t i, std::int64_t j) {
+        const auto& q = triangle.points;
+        const glm::dvec3 point = q[0] * weights.x + q[1] * weights.y + q[2] * weights.z;
+        const glm::dvec3 normal = glm::cross(q[1] - q[0], q[2] - q[0]);
+        std::vector<double> sum(static_cast<std::size_t>(m_options.channels), 0.0);
+        double all = 0;
+        for (const ThrownPicture& picture : m_pictures) {
+            Point<double> at{};
+            const double share = share_of(picture.projector, point, normal, m_options.fade, at);
+            if (!(share > 0) || (picture.occluders && picture.occluders->hides(point))) continue;
+            all += share;
+            read_pixel(picture.projector.panorama(), picture.pixels, m_options.channels, at,
+                       picture.projector.ray(point), share, sum);
+        }
+        if (!(all > 0)) {
+            ++m_unseen;
+            return;
+        }
+        ++m_painted;
+        float* to = &m_texture.pixels[static_cast<std::size_t>((j * m_options.size.width + i) * m_stride)];
+        for (int c = 0; c < m_options.channels; ++c)
+            to[c] = static_cast<float>(sum[static_cast<std::size_t>(c)] / all);
+        to[m_options.channels] = 1;
+    }
+
+    const std::vector<BakedTriangle>& m_mesh;
+    const std::vector<ThrownPicture>& m_pictures;
+    const BakeOptions& m_options;
+    std::vector<FlatTriangle> m_flat;
+    std::vector<std::vector<std::size_t>> m_rows;
+    std::int64_t m_stride;
+    BakedTexture m_texture;
+    std::atomic<std::int64_t> m_painted{0}, m_unseen{0};
+};
+
+void check(const std::vector<ThrownPicture>& pictures, const BakeOptions& options) {
+    const auto refuse = [](const char* name, double value, const std::string& range) {
+        throw Error(name, shortest(value), "must be " + range);
+    };
+    for (const int side : {options.size.width, options.size.height})
+        if (side < 1 || side > 1 << 15) refuse("size", side, "from 1 to 32768");
+    if (options.channels < 1 || options.channels > kMostChannels)
+        refuse("channels", options.channels, "from 1 to 64");
+    if (!(options.fade >= 0 && options.fade <= kMostFade)) refuse("fade", options.fade, "from 0 to 16777216");
+    if (!(options.margin >= 0 && options.margin <= kMostMargin))
+        refuse("margin", options.margin, "from 0 to 64");
+    for (const ThrownPicture& picture : pictures)
+        if (!picture.pixels) throw Error("pictures", "none", "must have pixels");
+}
+
+}  // namespace
+
+double share_of(const Projector& projector, const glm::dvec3& point, const glm::dvec3& normal, double fade,
+                Point<double>& texel) {
+    if (projector.receive(point, texel) != Received::texel) return 0;
+    const glm::dvec3 ray = point - projector.pose().position;
+    const double distance = glm::length(ray), across = glm::length(normal);
+    const double cosine = std::fabs(glm::dot(ray, normal)) / (distance * across);
+    if (!(cosine > 0)) return 0;
+    const Chart& chart = projector.panorama();
+    double within = HUGE_VAL;
+    // Full circles have no border to the left and right, faces and poles none at all.
+    if (chart.pieces().size() == 1) {
+        if (!chart.closed()) within = std::min(texel.x, chart.width() - texel.x);
+        if (!chart.reaches_poles()) within = std::min({within, texel.y, chart.height() - texel.y});
+    }
+    const double faded = fade > 0 ? std::min(1.0, within / fade) : 1;
+    return faded * cosine / (distance * distance);
+}
+
+BakedTexture bake(const std::vector<BakedTriangle>& mesh, const std::vector<ThrownPicture>& pictures,
+                  const BakeOptions& options, const ParallelFor& parallel_for) {
+    check(pictures, options);
+    Baking baking(mesh, pictures, options);
+    parallel_for(options.size.height, [&](std::int64_t j) { baking.row(j); });
+    return baking.take();
+}
+
+}  // namespace anamorph
