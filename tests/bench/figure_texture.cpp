@@ -7,7 +7,7 @@
 // latitude_L: a ball that fills the picture, seen from before its equator, its front under a texture of 512 x
 // 512 texels of noise (mapping=mirrored, the essay's): errors are differences of colour, 0 to 1, from the mean of
 // 16 x 16 samples of the texture, of the pixels from L to L + 15 degrees of latitude. mrasel: the essay's level
-// and nearest texel; trilinear: the level by the footprint's longer side; summed: rectangles of a table of sums;
+// and nearest texel; trilinear: the level by the footprint's longer side; summed_area: rectangles of a table of sums;
 // footprint: taps along the footprint. Times are of the whole picture; ratio_to_exact is against the samples.
 #include <cmath>
 #include <fstream>
@@ -140,7 +140,7 @@ struct Average {
 };
 constexpr Average kAverages[] = {{"mrasel", TextureAverage::mrasel},
                                  {"trilinear", TextureAverage::trilinear},
-                                 {"summed", TextureAverage::summed},
+                                 {"summed_area", TextureAverage::summed_area},
                                  {"footprint", TextureAverage::footprint}};
 
 void run_latitudes(const Settings& settings, const NoiseTexture& texture, Report& report) {

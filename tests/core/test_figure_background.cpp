@@ -160,7 +160,7 @@ TEST(FigureTextureAverage, EachIsBetterThanMraselsAtEveryLatitude) {
     const Pyramid source(base);
     const auto mrasel = errors_of(TextureAverage::mrasel, source, texels, kSide);
     const auto trilinear = errors_of(TextureAverage::trilinear, source, texels, kSide);
-    const auto summed = errors_of(TextureAverage::summed, source, texels, kSide);
+    const auto summed = errors_of(TextureAverage::summed_area, source, texels, kSide);
     const auto footprint = errors_of(TextureAverage::footprint, source, texels, kSide);
     for (std::size_t k = 0; k < 3; ++k) {
         SCOPED_TRACE(k);
@@ -183,7 +183,7 @@ TEST(FigureTextureAverage, OfAPlainTextureAllAreThatColor) {
     View view;
     view.middle = {16, 16};
     for (const TextureAverage average : {TextureAverage::footprint, TextureAverage::trilinear,
-                                         TextureAverage::summed, TextureAverage::mrasel})
+                                         TextureAverage::summed_area, TextureAverage::mrasel})
         for (const BodyMapping mapping :
              {BodyMapping::latlong, BodyMapping::mirrored, BodyMapping::linear, BodyMapping::octahedral}) {
             look.average = average;

@@ -123,6 +123,55 @@ TEST(SummedAreas, MeansAreThoseOfAllTexels) {
         }
 }
 
+/// The texel that stands at (x, y) of a picture all around, any distance beyond the poles.
+Point<int> texel_over_poles(int x, int y, const Size& size) {
+    const auto modulo = [](int a, int b) { return (a % b + b) % b; };
+    y = modulo(y, 2 * size.height);
+    if (y < size.height) return {modulo(x, size.width), y};
+    return {modulo(x + size.width / 2, size.width), 2 * size.height - 1 - y};
+}
+
+TEST(SummedAreas, PicturesAllAroundGoOnOverTheirPoles) {
+    constexpr unsigned kSeed = 5;
+    SCOPED_TRACE(testing::Message() << "seed " << kSeed);
+    std::mt19937 random(kSeed);
+    const auto uniform = [&](double from, double to) {
+        return std::uniform_real_distribution<double>(from, to)(random);
+    };
+    const Size size{12, 7};
+    std::vector<float> texels(static_cast<std::size_t>(size.width) * 7);
+    for (float& t : texels) t = static_cast<float>(uniform(0, 1));
+    const MemorySource source(packed_view(reinterpret_cast<const std::byte*>(texels.data()),
+                                          PixelType::float32, size.width, size.height, 1));
+    const SummedAreas sums(source);
+    for (int k = 0; k < 2000; ++k) {
+        const double x = uniform(-30, 30), y = uniform(-20, 20), w = uniform(1, size.width),
+                     h = uniform(1, size.height);
+        const auto covered = [](int at, double middle, double side) {
+            return std::max(0.0,
+                            std::min(at + 1.0, middle + side / 2) - std::max(double(at), middle - side / 2));
+        };
+        double truth = 0;
+        for (int j = -40; j < 40; ++j)
+            for (int i = -50; i < 50; ++i) {
+                const Point<int> texel = texel_over_poles(i, j, size);
+                truth += covered(i, x, w) * covered(j, y, h) *
+                         double{texels[static_cast<std::size_t>(texel.y * size.width + texel.x)]};
+            }
+        float mean = 0;
+        sums.mean_over_poles(x, y, w, h, &mean);
+        ASSERT_NEAR(mean, truth / (w * h), 1e-6) << x << "," << y << " " << w << "x" << h;
+    }
+    for (const double far : {1e300, -1e15, HUGE_VAL, -HUGE_VAL, std::nan("")})
+        for (const double side : {0.0, 1e300, HUGE_VAL, std::nan("")}) {
+            float mean = -1;
+            sums.mean_over_poles(far, 1, side, 1, &mean);
+            EXPECT_TRUE(mean >= 0 && mean <= 1) << far << " " << side;
+            sums.mean_over_poles(1, far, 1, side, &mean);
+            EXPECT_TRUE(mean >= 0 && mean <= 1) << far << " " << side;
+        }
+}
+
 TEST(SummedAreas, ManyTexelsInFrontCostNoAccuracy) {
     // 2^23 white texels, and behind them small differences, which sums in float or of 32 bits would lose.
     Texels texels({4096, 2048}, 1, PixelType::float32);

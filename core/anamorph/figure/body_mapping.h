@@ -25,10 +25,10 @@ enum class BodyMapping {
 
 /// How Filter::antialias averages a body's texture.
 enum class TextureAverage {
-    footprint,  ///< along the pixel's footprint: taps on one level of the pyramid
-    trilinear,  ///< between the two levels next to the footprint's longer side (Williams 1983)
-    summed,     ///< over the rectangle around the footprint, by a table of sums (Crow 1984)
-    mrasel      ///< the nearest texel of the level that MRASEL takes
+    footprint,    ///< along the pixel's footprint: taps on one level of the pyramid
+    trilinear,    ///< between the two levels next to the footprint's longer side (Williams 1983)
+    summed_area,  ///< over the rectangle around the footprint, by a table of sums (Crow 1984)
+    mrasel        ///< the nearest texel of the level that MRASEL takes
 };
 
 /// (u, v) of a point of the unit sphere, for any number (number/number.h).

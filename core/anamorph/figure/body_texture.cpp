@@ -27,14 +27,21 @@ glm::dvec4 color_of_texel(const std::vector<float>& texel) {
     return {at(0), at(1), at(2), alpha < texel.size() ? at(alpha) : 1.0};
 }
 
-SummedEdges summed_edges(BodyMapping mapping) {
-    return mapping == BodyMapping::latlong ? SummedEdges::turn : SummedEdges::reflected;
+std::unique_ptr<const SummedTexture> summed_texture(const Source& source) try {
+    constexpr std::int64_t kMostTexels = std::int64_t{1} << 22;
+    int level = 0;
+    const auto texels = [&] { return std::int64_t{source.size(level).width} * source.size(level).height; };
+    while (texels() > kMostTexels)
+        if (++level == source.levels()) return nullptr;
+    return std::unique_ptr<const SummedTexture>(new SummedTexture{level, SummedAreas(source, level)});
+} catch (const std::exception&) {
+    return nullptr;
 }
 
 BodyTexture::BodyTexture(const Source& source, BodyMapping mapping, Filter filter, TextureAverage average,
-                         const SummedArea* sums)
+                         const SummedTexture* sums)
     : m_source(source),
-      m_average(average == TextureAverage::summed && !sums ? TextureAverage::footprint : average),
+      m_average(average == TextureAverage::summed_area && !sums ? TextureAverage::footprint : average),
       m_sums(sums),
       m_mapping(mapping),
       m_filter(filter),
@@ -55,7 +62,7 @@ glm::dvec3 BodyTexture::color(const TexturedSurface& body, double x, double y, b
     u = u * double(size.width) + body.offset.x;
     v = v * double(size.height) + body.offset.y;
     bool read;
-    if (m_filter != Filter::antialias)
+    if (!averages(m_filter))
         read = m_sampler.sample(m_filter, 0, 0, u.value(), v.value(), m_pixel.data());
     else if (m_average == TextureAverage::mrasel)
         read = read_as_mrasel(p[1].value(), body.longest, u.value(), v.value());
@@ -70,10 +77,19 @@ bool BodyTexture::read_average(const Jacobian& jacobian, double u, double v) {
     if (m_average == TextureAverage::trilinear) return read_trilinear(jacobian, u, v);
     if (m_average == TextureAverage::footprint)
         return m_sampler.sample(m_chooser(jacobian), jacobian, 0, u, v, m_pixel.data());
-    // The rectangle around the parallelogram that the pixel is in the texture.
-    m_sums->mean(u, v, 0.5 * (std::fabs(jacobian.x_i) + std::fabs(jacobian.x_j)),
-                 0.5 * (std::fabs(jacobian.y_i) + std::fabs(jacobian.y_j)), m_pixel.data());
+    read_sums(jacobian, u, v);
     return true;
+}
+
+void BodyTexture::read_sums(const Jacobian& jacobian, double u, double v) {
+    const std::array<double, 2>& scale = m_chooser.scale(m_sums->level);
+    const Jacobian rectangle = covering_rectangle(jacobian);
+    const double x = u * scale[0], y = v * scale[1], width = rectangle.x_i * scale[0],
+                 height = rectangle.y_j * scale[1];
+    if (m_mapping == BodyMapping::latlong)
+        m_sums->sums.mean_over_poles(x, y, width, height, m_pixel.data());
+    else
+        m_sums->sums.mean(x, y, width, height, m_border.wrap(), m_pixel.data());
 }
 
 bool BodyTexture::read_trilinear(const Jacobian& jacobian, double u, double v) {

@@ -6,6 +6,7 @@
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 #include <glm/vec4.hpp>
+#include <memory>
 #include <vector>
 
 #include "anamorph/figure/body_mapping.h"
@@ -14,7 +15,7 @@
 #include "anamorph/render/filter.h"
 #include "anamorph/render/footprint.h"
 #include "anamorph/render/point_sampler.h"
-#include "anamorph/render/summed_area.h"
+#include "anamorph/render/summed_areas.h"
 
 namespace anamorph {
 
@@ -28,15 +29,20 @@ struct TexturedSurface {
 /// Red, green, blue and alpha of a texel of 1 to 4 channels, the last of 2 and of 4 alpha.
 glm::dvec4 color_of_texel(const std::vector<float>& texel);
 
-/// The edges that a mapping gives a table of sums.
-SummedEdges summed_edges(BodyMapping mapping);
+/// A table of sums of a level of a texture.
+struct SummedTexture {
+    int level;
+    SummedAreas sums;
+};
+/// Of the largest level of at most 2^22 texels. Null where there is none, or it cannot be read.
+std::unique_ptr<const SummedTexture> summed_texture(const Source& source);
 
 /// One for each thread. Keeps references to the source and the table.
 class BodyTexture {
   public:
-    /// `sums`: of TextureAverage::summed; null where there is none, then it is averaged by footprints.
+    /// `sums`: of TextureAverage::summed_area; null where there is none, then it is averaged by footprints.
     BodyTexture(const Source& source, BodyMapping mapping, Filter filter,
-                TextureAverage average = TextureAverage::footprint, const SummedArea* sums = nullptr);
+                TextureAverage average = TextureAverage::footprint, const SummedTexture* sums = nullptr);
 
     /// What the texture has where a pixel shows the body at (x, y), over `below` where it is transparent.
     /// `below` itself where the source cannot be read.
@@ -44,13 +50,14 @@ class BodyTexture {
 
   private:
     bool read_average(const Jacobian& jacobian, double u, double v);
+    void read_sums(const Jacobian& jacobian, double u, double v);
     bool read_trilinear(const Jacobian& jacobian, double u, double v);
     bool read_as_mrasel(double sine, double longest, double u, double v);
     bool read_level(Filter filter, int level, double u, double v, float* pixel);
 
     const Source& m_source;
     TextureAverage m_average;
-    const SummedArea* m_sums;
+    const SummedTexture* m_sums;
     BodyMapping m_mapping;
     Filter m_filter;
     Border m_border;

@@ -60,16 +60,16 @@ class SharedSums {
   public:
     explicit SharedSums(std::size_t count) : m_sums(std::make_unique<Entry[]>(count)) {}
 
-    const SummedArea* get(std::size_t i, const Source& source, BodyMapping mapping) const {
+    const SummedTexture* get(std::size_t i, const Source& source) const {
         Entry& entry = m_sums[i];
-        std::call_once(entry.once, [&] { entry.sums = SummedArea::of(source, summed_edges(mapping)); });
+        std::call_once(entry.once, [&] { entry.sums = summed_texture(source); });
         return entry.sums.get();
     }
 
   private:
     struct Entry {
         std::once_flag once;
-        std::unique_ptr<const SummedArea> sums;
+        std::unique_ptr<const SummedTexture> sums;
     };
     std::unique_ptr<Entry[]> m_sums;
 };
@@ -86,10 +86,10 @@ class Textures {
         if (index < 0 || i >= m_sources.size() || !m_sources[i]) return nullptr;
         if (!m_open[i]) {
             const bool summed =
-                m_look.average == TextureAverage::summed && m_look.filter == Filter::antialias;
-            m_open[i] = std::make_unique<BodyTexture>(
-                *m_sources[i], m_look.mapping, m_look.filter, m_look.average,
-                summed ? m_sums.get(i, *m_sources[i], m_look.mapping) : nullptr);
+                m_look.average == TextureAverage::summed_area && m_look.filter == Filter::antialias;
+            m_open[i] =
+                std::make_unique<BodyTexture>(*m_sources[i], m_look.mapping, m_look.filter, m_look.average,
+                                              summed ? m_sums.get(i, *m_sources[i]) : nullptr);
         }
         return m_open[i].get();
     }

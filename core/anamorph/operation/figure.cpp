@@ -100,9 +100,10 @@ ParameterTable make_table() {
             "the front and again over the back; linear, stripes stay straight; octahedral, without a pole"),
         filter(),
         choice(
-            "average", "footprint", {"footprint", "trilinear", "summed", "mrasel"},
+            "average", "footprint", {"footprint", "trilinear", "summed_area", "mrasel"},
             "of filter antialias, how textures are averaged: footprint, by taps along what a pixel covers; "
-            "trilinear, between two levels of the pyramid; summed, by a table of sums; mrasel, the nearest "
+            "trilinear, between two levels of the pyramid; summed_area, by a table of sums; mrasel, the "
+            "nearest "
             "texel of the level that MRASEL takes"),
     };
 }

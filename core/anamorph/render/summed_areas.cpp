@@ -80,8 +80,8 @@ class Runs {
 /// A source row by row, as it is averaged: in double, integers as they are stored, colour multiplied by alpha.
 class SummedAreas::Texels {
   public:
-    explicit Texels(const Source& source)
-        : m_source(source), m_size(source.size(0)), m_channels(source.channels()) {
+    Texels(const Source& source, int level)
+        : m_source(source), m_level(level), m_size(source.size(level)), m_channels(source.channels()) {
         const std::size_t values =
             static_cast<std::size_t>(m_size.width) * static_cast<std::size_t>(m_channels);
         m_bytes.resize(values * static_cast<std::size_t>(size_of(source.type())));
@@ -89,7 +89,7 @@ class SummedAreas::Texels {
     }
 
     const std::vector<double>& row(int y) {
-        if (!m_source.read(0, {0, y, m_size.width, y + 1}, m_bytes.data(),
+        if (!m_source.read(m_level, {0, y, m_size.width, y + 1}, m_bytes.data(),
                            static_cast<std::ptrdiff_t>(m_bytes.size())))
             throw Error("a source cannot be read");
         const PixelType type = m_source.type();
@@ -121,15 +121,16 @@ class SummedAreas::Texels {
     }
 
     const Source& m_source;
+    int m_level;
     Size m_size;
     int m_channels;
     std::vector<std::byte> m_bytes;
     std::vector<double> m_values;
 };
 
-SummedAreas::SummedAreas(const Source& source)
-    : m_size(source.size(0)), m_units(static_cast<std::size_t>(source.channels()), 1.0) {
-    Texels texels(source);
+SummedAreas::SummedAreas(const Source& source, int level)
+    : m_size(source.size(level)), m_units(static_cast<std::size_t>(source.channels()), 1.0) {
+    Texels texels(source, level);
     for (int c = 0; c < source.channels(); ++c) m_scales.push_back(texels.scale(c));
     choose_units(texels);
     add_up(texels);
@@ -175,32 +176,64 @@ void SummedAreas::add_up(Texels& texels) {
     }
 }
 
+/// A part of a rectangle.
+struct SummedAreas::Part {
+    Runs across, down;
+};
+
 void SummedAreas::mean(double x, double y, double width, double height, Wrap wrap,
                        float* pixel) const noexcept {
-    const std::size_t channels = m_units.size();
-    std::fill_n(pixel, channels, 0.0f);
-    if (std::isnan(x) || std::isnan(y)) return;
+    if (std::isnan(x) || std::isnan(y)) return clear(pixel);
     // Far beyond every edge all points are alike, and no picture is larger.
     constexpr double kFar = 0x1p30;
     const double w = width > 1 ? std::min(width, kFar) : 1, h = height > 1 ? std::min(height, kFar) : 1;
     x = std::clamp(x, -kFar, kFar);
     y = std::clamp(y, -kFar, kFar);
-    const Runs across(x - w / 2, x + w / 2, m_size.width, wrap),
-        down(y - h / 2, y + h / 2, m_size.height, wrap);
-    for (std::size_t c = 0; c < channels; ++c) {
+    const Part all{{x - w / 2, x + w / 2, m_size.width, wrap}, {y - h / 2, y + h / 2, m_size.height, wrap}};
+    mean_of({&all, 1}, w * h, pixel);
+}
+
+void SummedAreas::mean_over_poles(double x, double y, double width, double height,
+                                  float* pixel) const noexcept {
+    if (!std::isfinite(x) || !std::isfinite(y)) return clear(pixel);
+    const double across = m_size.width, down = m_size.height;
+    // On the picture, as one goes up and down a meridian and its opposite again and again.
+    y -= std::floor(y / (2 * down)) * 2 * down;
+    x += y > down ? across / 2 : 0;
+    x -= std::floor(x / across) * across;
+    y = std::clamp(y > down ? 2 * down - y : y, 0.0, down);
+    const double w = width > 1 ? std::min(width, across) : 1, h = height > 1 ? std::min(height, down) : 1;
+    const double above = y - h / 2, below = y + h / 2;
+    const auto part = [&](double at, double from, double to) {
+        return Part{{at - w / 2, at + w / 2, m_size.width, Wrap::periodic},
+                    {from, to, m_size.height, Wrap::black}};
+    };
+    const double opposite = x + across / 2;
+    const Part parts[] = {part(x, above, below), part(opposite, 0, -above),
+                          part(opposite, 2 * down - below, down)};
+    mean_of(parts, w * h, pixel);
+}
+
+void SummedAreas::clear(float* pixel) const noexcept {
+    std::fill_n(pixel, m_units.size(), 0.0f);
+}
+
+void SummedAreas::mean_of(std::span<const Part> parts, double area, float* pixel) const noexcept {
+    for (std::size_t c = 0; c < m_units.size(); ++c) {
         const auto over = [&](const std::vector<std::uint64_t>& sums, const Run& i, const Run& j) {
             return sums[at(i.end, j.end) + c] - sums[at(i.first, j.end) + c] - sums[at(i.end, j.first) + c] +
                    sums[at(i.first, j.first) + c];
         };
         double sum = 0;
         std::uint64_t missing = 0;
-        for (const Run& j : down)
-            for (const Run& i : across) {
-                sum +=
-                    i.weight * j.weight * static_cast<double>(static_cast<std::int64_t>(over(m_sums, i, j)));
-                if (!m_missing.empty()) missing |= over(m_missing, i, j);
-            }
-        pixel[c] = missing ? NAN : static_cast<float>(sum * m_units[c] * m_scales[c] / (w * h));
+        for (const Part& part : parts)
+            for (const Run& j : part.down)
+                for (const Run& i : part.across) {
+                    sum += i.weight * j.weight *
+                           static_cast<double>(static_cast<std::int64_t>(over(m_sums, i, j)));
+                    if (!m_missing.empty()) missing |= over(m_missing, i, j);
+                }
+        pixel[c] = missing ? NAN : static_cast<float>(sum * m_units[c] * m_scales[c] / area);
     }
 }
 

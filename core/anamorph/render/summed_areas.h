@@ -8,6 +8,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "anamorph/geometry/size.h"
@@ -16,21 +17,26 @@
 
 namespace anamorph {
 
-/// The table of a source's level 0. Thread safe once it is made.
+/// The table of a level of a source. Thread safe once it is made.
 class SummedAreas {
   public:
-    /// Reads all of the source, twice. Throws std::bad_alloc, and Error where it cannot be read.
-    explicit SummedAreas(const Source& source);
+    /// Reads all of the level, twice. Throws std::bad_alloc, and Error where it cannot be read.
+    explicit SummedAreas(const Source& source, int level = 0);
 
     /// The mean over the rectangle of width x height texels about (x, y), in which texels are squares of one color, to
-    /// `pixel`: as many floats as channels, multiplied by alpha as PointSampler::sample says. Sides below 1, or that are no number, are 1, so
-    /// that the smallest rectangle interpolates bilinearly. Beyond the edges as `wrap`, where automatic is black. A
-    /// texel that is no number or infinite makes no number of its channel's means over it; where (x, y) is no number,
-    /// they are 0.
+    /// `pixel`: as many floats as channels, multiplied by alpha as PointSampler::sample says. Sides below 1, or that are
+    /// no number, are 1, so that the smallest rectangle interpolates bilinearly. Beyond the edges as `wrap`, where
+    /// automatic is black. A texel that is no number or infinite makes no number of its channel's means over it; where
+    /// (x, y) is no number, they are 0.
     void mean(double x, double y, double width, double height, Wrap wrap, float* pixel) const noexcept;
+
+    /// The same of a picture in latitudes and longitudes, all around: left and right it repeats itself, and beyond its
+    /// upper and lower edges, the poles, it goes on half a turn farther. Sides above those of the picture are those.
+    void mean_over_poles(double x, double y, double width, double height, float* pixel) const noexcept;
 
   private:
     class Texels;
+    struct Part;
 
     std::size_t at(int x, int y) const {
         return (static_cast<std::size_t>(y) * (static_cast<std::size_t>(m_size.width) + 1) +
@@ -39,6 +45,8 @@ class SummedAreas {
     }
     void choose_units(Texels& texels);
     void add_up(Texels& texels);
+    void clear(float* pixel) const noexcept;
+    void mean_of(std::span<const Part> parts, double area, float* pixel) const noexcept;
 
     Size m_size;
     std::vector<double> m_units;           ///< channel by channel: of the sums
