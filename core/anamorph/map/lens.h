@@ -290,17 +290,6 @@ J compose(const lens_formula::Series<T, N>& series, const J& n) {
     return sum;
 }
 
-/// Of jets, whose products need not be added to.
-template <class T, int N, int Degree>
-Jet<T, N> compose(const lens_formula::Series<T, Degree>& series, const Jet<T, N>& n) {
-    Jet<T, N> sum(series.c[Degree]);
-    for (int k = Degree - 1; k >= 0; --k) {
-        sum = sum * n;
-        sum.c[0] = series.c[k];
-    }
-    return sum;
-}
-
 /// The largest sum of a row of magnitudes, as `of` has them.
 template <class T, class Of>
 double largest_row(const lens_formula::Slope<T>& slope, const Of& of) {
@@ -511,12 +500,9 @@ namespace lens_detail {
 
 /// A function of the square of a point's distance from the centre, by its coefficients.
 template <int N>
-Jet<Interval, N> compose_squared(const LensCoefficients& function, Jet<Interval, N> squared) {
+Jet<Interval, N> compose_squared(const LensCoefficients& function, const Jet<Interval, N>& squared) {
     static_assert(N <= LensCoefficients::kDegree);
-    lens_formula::Series<Interval, N> series;
-    std::copy_n(function.c, N + 1, series.c);
-    squared.c[0] = Interval(0);
-    return compose(series, squared);
+    return compose(function.c, squared);
 }
 
 }  // namespace lens_detail
@@ -566,10 +552,7 @@ inline NearBase shrink(const LensTerms& lens, const NearBase& value) {
 
 template <class T, int N>
 Jet<T, N> shrink(const LensTerms& lens, const Jet<T, N>& value) {
-    Jet<T, N> rest = value;
-    rest.c[0] = T(0);
-    return lens_detail::compose(
-        lens_detail::shrink_series<N>(lens, lens_detail::radial_root(lens, value.c[0])), rest);
+    return compose(lens_detail::shrink_series<N>(lens, lens_detail::radial_root(lens, value.c[0])).c, value);
 }
 
 }  // namespace anamorph

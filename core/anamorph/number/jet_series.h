@@ -368,6 +368,24 @@ inline Jet<T, N> operator/(const Jet<T, N>& f, const Jet<T, N>& g) {
     return q;
 }
 
+/// sum_k c_k f^k for k = 0 ... N, of f less its constant part: by Horner's rule. Of what is multiplied by f another n
+/// times, the parts up to degree N - n count.
+template <class T, int N>
+inline Jet<T, N> compose(const T* c, const Jet<T, N>& f) {
+    Jet<T, N> r(c[N]);
+    const auto left = jet_detail::Factor<T, N>::growing(r);
+    const jet_detail::Factor<T, N> right(f);
+    for (int degree = 1; degree <= N; ++degree) {
+        // A part needs those below only, so the highest comes first.
+        for (int k = degree; k > 0; --k)
+            for (int m = 0; m <= k; ++m)
+                r.c[Jet<T, N>::part(k) + m] =
+                    jet_detail::convolve(k, 0, k - 1, left, right, m, [](int) { return 1; });
+        r.c[0] = c[N - degree];
+    }
+    return r;
+}
+
 /// a a, with a constant part that is never negative.
 template <class T, int N>
 inline Jet<T, N> square(const Jet<T, N>& a) {

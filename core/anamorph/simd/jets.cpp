@@ -149,6 +149,22 @@ void HyperbolicSineOfJets(const Jets<T, N>& a, Jets<T, N>& sine, Jets<T, N>& one
     }
 }
 
+template <class T, int N>
+void ComposeJets(const Four<T>* c, const Jets<T, N>& f, Jets<T, N>& r) {
+    r.degree = f.degree > 0 ? N : 0;
+    ANAMORPH_EACH_LANE {
+        InLanes<T> of[N + 1];
+        for (int k = 0; k <= N; ++k) of[k] = LoadFour(c[k], lane);
+        StoreJet(compose(of, LoadJet(f, lane)), lane, r);
+    }
+}
+
+void ComposeTaylorJets(const Four<double>* c, const TaylorJets& f, TaylorJets& r) {
+    ComposeJets(c, f, r);
+}
+void ComposeBoundJets(const Four<Interval>* c, const BoundJets& f, BoundJets& r) {
+    ComposeJets(c, f, r);
+}
 #define ANAMORPH_JETS(J)                                  \
     void Multiply##J(const J& a, const J& b, J& r) {      \
         MultiplyJets(a, b, r);                            \
@@ -224,6 +240,15 @@ ANAMORPH_JETS(BoundJets)
 HWY_EXPORT(ScaleBoundJets);
 void scale(const BoundJets& a, double k, BoundJets& product) {
     HWY_DYNAMIC_DISPATCH(ScaleBoundJets)(a, k, product);
+}
+
+HWY_EXPORT(ComposeTaylorJets);
+void compose_with(const Four<double>* c, const TaylorJets& f, TaylorJets& sum) {
+    HWY_DYNAMIC_DISPATCH(ComposeTaylorJets)(c, f, sum);
+}
+HWY_EXPORT(ComposeBoundJets);
+void compose_with(const Four<Interval>* c, const BoundJets& f, BoundJets& sum) {
+    HWY_DYNAMIC_DISPATCH(ComposeBoundJets)(c, f, sum);
 }
 
 }  // namespace anamorph::simd

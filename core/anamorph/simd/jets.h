@@ -114,6 +114,9 @@ ANAMORPH_JETS(TaylorJets)
 ANAMORPH_JETS(BoundJets)
 #undef ANAMORPH_JETS
 void scale(const BoundJets& a, double k, BoundJets& product);
+/// sum_k c_k f^k of f less its constant part.
+void compose_with(const Four<double>* c, const TaylorJets& f, TaylorJets& sum);
+void compose_with(const Four<Interval>* c, const BoundJets& f, BoundJets& sum);
 
 template <class T, int N>
 Jets<T, N> operator*(const Jets<T, N>& a, const Jets<T, N>& b) {
