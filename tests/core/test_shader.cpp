@@ -59,8 +59,20 @@ TEST(ShaderProgram, ErrorsNameTheLine) {
     expect("add oC0, c0, c1", "line 2: \"oC0\": must be written by mov, all of it");
     expect("mov c0, c1" + last,
            "line 2: \"c0\": must be a register that can be written, r0 to r11 or oC0 to oC3");
-    expect("mov r0, c0", "no instruction writes all of oC0: the program must");
-    EXPECT_THROW(assemble_shader("", "none"), Error);
+    const char* const unwritten = "is the last one, and all of oC0 has not been written: must be by then";
+    expect("mov r0, c0", std::string("line 2: ") + unwritten);
+    expect("mov r0, c0\n\n; the end\n", std::string("line 4: ") + unwritten);
+    expect("mov r0, c0\n\n", std::string("line 3: ") + unwritten);
+    const auto whole = [](const char* text) -> std::string {
+        try {
+            assemble_shader(text, "none");
+        } catch (const Error& e) {
+            return e.what();
+        }
+        return "";
+    };
+    EXPECT_EQ(whole(""), "none: line 1: is empty: the first line must be ps_2_0");
+    EXPECT_EQ(whole("\n\n"), "none: line 2: is empty: the first line must be ps_2_0");
     EXPECT_THROW(assemble_shader("vs_2_0\n", "none"), Error);
 }
 

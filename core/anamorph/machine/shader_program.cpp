@@ -171,7 +171,7 @@ class Assembler {
     ShaderProgram finish() {
         if (!m_versioned) throw Error("is empty: the first line must be ps_2_0");
         if (written(ShaderBank::output, 0) != 15)
-            throw Error("no instruction writes all of oC0: the program must");
+            throw Error("is the last one, and all of oC0 has not been written: must be by then");
         return std::move(m_program);
     }
 
@@ -376,15 +376,17 @@ std::string text_of(const ShaderSource& source) {
 ShaderProgram assemble_shader(std::string_view text, const std::string& name, const ShaderSlots& slots) {
     text_file::check_size(text, name);
     Assembler assembler(slots);
-    for (std::size_t number = 1; !text.empty(); ++number) {
-        const std::size_t end = text.find('\n');
-        text_file::in_entry(name, "line " + std::to_string(number),
-                            [&] { assembler.line(text.substr(0, end)); });
-        text.remove_prefix(end == std::string_view::npos ? text.size() : end + 1);
-    }
     ShaderProgram program;
-    text_file::in_entry(name, "", [&] { program = assembler.finish(); });
-    return program;
+    for (std::size_t number = 1;; ++number) {
+        const std::size_t end = std::min(text.find('\n'), text.size());
+        const bool is_last = end + 1 >= text.size();
+        text_file::in_entry(name, "line " + std::to_string(number), [&] {
+            assembler.line(text.substr(0, end));
+            if (is_last) program = assembler.finish();
+        });
+        if (is_last) return program;
+        text.remove_prefix(end + 1);
+    }
 }
 
 std::string shader_listing(const ShaderProgram& program) {
