@@ -499,6 +499,38 @@ class Film(Case):
         self.output("film", WALKER, "-o", self.path("p.png"), "--size", "40", "--frame", "3")
         self.assertEqual(self.read("p.0003.png"), self.read("walk.0003.png"))
 
+    @unittest.skipUnless(CAIRO, "built without cairo")
+    def test_textures_lie_beside_the_script(self):
+        script = self.write("s.n", scene(("e", (400, 400, 400), (500, 500, 500)), extra="repeat 0 1 texture e map 0 0\n"))
+        film = ("film", script, "-o", self.path("f.png"), "--size", "20", "--frame", "1", "--style")
+        self.output(*film, "shaded")
+        plain = self.read("f.0001.png")
+        result = subprocess.run([PROGRAM, *film, "textured"], capture_output=True, timeout=100, text=True)
+        self.assertEqual((result.returncode, self.read("f.0001.png")), (0, plain))
+        self.assertIn("the texture map is not there", result.stderr)
+        # Green on the left, blue on the right; as PPM and as PNG.
+        rows = [b"\x00\xff\x00" * 8 + b"\x00\x00\xff" * 8] * 8
+        chunk = lambda kind, data: struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data))
+        png = (b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", struct.pack(">IIBBBBB", 16, 8, 8, 2, 0, 0, 0)) +
+               chunk(b"IDAT", zlib.compress(b"".join(b"\0" + row for row in rows))) + chunk(b"IEND", b""))
+        pictures = []
+        for name, data in (("map.ppm", b"P6\n# a comment\n16 8\n255\n" + b"".join(rows)), ("map.png", png)):
+            self.write(name, data)
+            self.output(*film, "textured")
+            pictures.append(self.read("f.0001.png"))
+            os.remove(self.path(name))
+        self.assertEqual(*pictures)
+        self.write("map.ppm", b"P6 16 8 255\n" + b"".join(row[24:] + row[:24] for row in rows))
+        self.output(*film, "textured")
+        self.assertNotEqual(self.read("f.0001.png"), pictures[0])
+        os.remove(self.path("map.ppm"))
+        self.assertNotEqual(pictures[0], plain)
+        for wrong in (b"P6 16 8 255 ", b"P6 16", b"P5 1 1 255 a", b"P6 99999999 9 255 ", b"P6 1 1 65535 aaaaaa", b"", png[:60], b"P6 #"):
+            self.write("map", wrong)
+            result = subprocess.run([PROGRAM, *film, "textured"], capture_output=True, timeout=100, text=True)
+            self.assertEqual((result.returncode, self.read("f.0001.png")), (0, plain), wrong)
+            self.assertIn("cannot be read", result.stderr)
+
     def test_what_cannot_be_written_is_said(self):
         self.assertIn("--output", self.error("film", WALKER))
         if shutil.which("ffmpeg"):
