@@ -15,7 +15,7 @@ using namespace anamorph;
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     const std::string_view text(reinterpret_cast<const char*>(data), size);
-    for (const char* name : {"fuzz.bvh", "fuzz.cif"})
+    for (const char* name : {"fuzz.bvh", "fuzz.cif", "fuzz.mrasel"})
         fuzz::expect_no_failure_but_error([&] {
             const auto motion = read_motion(text, name);
             std::vector<FigureFrame> frames;
