@@ -454,8 +454,8 @@ class Planner {
         radius = std::max(radius, reach_of_sheets(middle.at, middle.to_source.inverse()));
         if (!(radius < 8)) return HUGE_VAL;
         const double start = start_in(radius);
-        const std::optional<Step> step =
-            step_to_neighbours(middle.cell, middle.powers, middle.at, middle.span, radius, 1 + d);
+        const std::optional<Step> step = step_to_neighbours(middle.cell, middle.patch, middle.powers,
+                                                            middle.at, middle.span, radius, 1 + d);
         if (!step) return HUGE_VAL;
         const double outside = value_at(step->sizes, 0, radius);
         // One root in the ball: the map less the identity takes it into itself and contracts.
@@ -510,7 +510,7 @@ class Planner {
             const double r = (std::max(std::fabs(at - from), std::fabs(to - at)) + reach) / (to - from);
             return std::max(1.0, r * r * r);
         };
-        return double_rounding(m_mesh, cell, patch) * growth(patch.x0, patch.x1, m.x, radius * span.x) *
+        return rounding_of(cell, patch) * growth(patch.x0, patch.x1, m.x, radius * span.x) *
                growth(patch.y0, patch.y1, m.y, radius * span.y) / std::min(m_hx, m_hy);
     }
 
@@ -541,6 +541,16 @@ class Planner {
         return reach;
     }
 
+    /// double_rounding of a cell; the last few are kept.
+    double rounding_of(const MeshCell& cell, const Patch& patch) const {
+        for (const CellRounding& known : m_roundings)
+            if (known.level == cell.level && known.column == cell.column && known.row == cell.row)
+                return known.rounding;
+        CellRounding& next = m_roundings[m_next_rounding++ % m_roundings.size()];
+        next = {cell.level, cell.column, cell.row, double_rounding(m_mesh, cell, patch)};
+        return next.rounding;
+    }
+
     /// By how much the maps of the cells that a ball meets differ from the one in the middle, in units of the
     /// block: everywhere in the ball, and where a cell meets a smaller one.
     struct Step {
@@ -548,8 +558,9 @@ class Planner {
         double most = 0;
     };
     /// None where the ball leaves the mesh or meets many cells.
-    std::optional<Step> step_to_neighbours(const MeshCell& cell, const Bicubic& f, const Point<double>& m,
-                                           const Point<double>& span, double radius, double smaller) const {
+    std::optional<Step> step_to_neighbours(const MeshCell& cell, const Patch& own_patch, const Bicubic& f,
+                                           const Point<double>& m, const Point<double>& span, double radius,
+                                           double smaller) const {
         const double rx = span.x * radius, ry = span.y * radius;
         if (!(m.x - rx >= m_mesh.x_lines().front() && m.x + rx <= m_mesh.x_lines().back() &&
               m.y - ry >= m_mesh.y_lines().front() && m.y + ry <= m_mesh.y_lines().back()))
@@ -561,6 +572,15 @@ class Planner {
         int count = 0;
         m_mesh.each_cell(m.x - rx, m.y - ry, m.x + rx, m.y + ry, [&](const MeshCell& other) {
             if (++count > kMost) return;
+            const bool own =
+                other.level == cell.level && other.column == cell.column && other.row == cell.row;
+            if (own) {
+                // No difference but rounding.
+                const double rounding = rounding_about(other, own_patch, m, span, radius);
+                step.sizes[0] = std::max(step.sizes[0], rounding);
+                step.most = std::max(step.most, rounding);
+                return;
+            }
             const Patch patch = m_mesh.patch(other);
             Bicubic g = about(patch, m);
             for (int i = 0; i < 4; ++i)
@@ -594,6 +614,12 @@ class Planner {
     BlockWriter m_writer;
     double m_x = 0, m_y = 0, m_hx = 0, m_hy = 0;  ///< the block's middle and half its size, target pixels
     std::vector<Near> m_near;
+    struct CellRounding {
+        int level = -1, column = 0, row = 0;
+        double rounding = 0;
+    };
+    mutable std::array<CellRounding, 8> m_roundings;
+    mutable std::size_t m_next_rounding = 0;
 };
 
 }  // namespace

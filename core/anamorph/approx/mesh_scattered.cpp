@@ -9,6 +9,7 @@
 #include "anamorph/approx/block_writer.h"
 #include "anamorph/approx/folds.h"
 #include "anamorph/approx/hermite.h"
+#include "anamorph/simd/cubic_rows.h"
 
 namespace anamorph {
 namespace {
@@ -73,14 +74,8 @@ class RowCubic {
         m_d2 = twice[0] / (2 * h * h);
         m_d3 = (twice[1] - twice[0]) / (6 * h * h * h);
     }
-    /// Its values at 0, 1, ... less a base.
-    void write(int count, double base, float* to) const {
-        const double h = m_h, d0 = m_d0, d1 = m_d1, d2 = m_d2, d3 = m_d3;
-        for (int i = 0; i < count; ++i) {
-            const double x = i;
-            to[i] = static_cast<float>(d0 + x * (d1 + (x - h) * (d2 + (x - 2 * h) * d3)) - base);
-        }
-    }
+    /// The same less a base, for vectors.
+    simd::CubicRow less(double base) const { return {m_d0, m_d1, m_d2, m_d3, m_h, base}; }
 
   private:
     double m_h, m_d0, m_d1, m_d2, m_d3;
@@ -90,13 +85,12 @@ class RowCubic {
 struct Run {
     int begin, end, outer_begin, outer_end;
 
-    /// The row's first centre is (x, y).
-    Run(const CubicTriangle& t, double x, double y, int count) : begin(0), end(count) {
+    /// The row's first centre is (x, y). Barycentric coordinates err by less than `margin`, crossings by less than
+    /// their share of it.
+    Run(const CubicTriangle& t, double margin, double x, double y, int count) : begin(0), end(count) {
         outer_begin = begin;
         outer_end = end;
         const double dx = x - t.base.x, dy = y - t.base.y;
-        // Barycentric coordinates err by less than this on the row, crossings by less than their share of it.
-        const double margin = 4 * t.place_error({x, y, x + count, y});
         // A triangle without an inside holds nothing for certain.
         if (!std::isfinite(margin)) {
             end = begin;
@@ -325,13 +319,16 @@ BlockPolynomial ScatteredPlan::bicubic(const Block& block) const noexcept {
 struct ScatteredPlan::Near {
     const CubicTriangle* triangle;
     Bounds bounds;
+    double margin;  ///< of barycentric coordinates at the block's pixels
 };
 
-std::vector<ScatteredPlan::Near> ScatteredPlan::near(const Bounds& centres) const {
+std::vector<ScatteredPlan::Near> ScatteredPlan::near(const Box& block) const {
+    const Bounds centres{block.x0 + 0.5, block.y0 + 0.5, block.x1 - 0.5, block.y1 - 0.5};
     std::vector<Near> found;
     m_map.tree().each(centres, [&](std::int32_t n) {
         const CubicTriangle& triangle = m_map.triangles()[static_cast<std::size_t>(n)];
-        found.push_back({&triangle, triangle.bounds()});
+        found.push_back({&triangle, triangle.bounds(),
+                         4 * triangle.place_error({centres.x0, centres.y0, centres.x1 + 1, centres.y1})});
     });
     return found;
 }
@@ -339,16 +336,14 @@ std::vector<ScatteredPlan::Near> ScatteredPlan::near(const Bounds& centres) cons
 void ScatteredPlan::computed(std::span<const Block> layers, const PointRows* to) const noexcept {
     const Block& block = layers.front();
     const Box& b = block.box;
-    const std::vector<Near> triangles = near({b.x0 + 0.5, b.y0 + 0.5, b.x1 - 0.5, b.y1 - 0.5});
+    const std::vector<Near> triangles = near(b);
     for (int j = 0; j < b.height(); ++j)
         write_row(block, triangles, j, 0, b.width(), to->x + j * to->stride, to->y + j * to->stride);
 }
 
 void ScatteredPlan::computed_row(const Block& block, int row, int begin, int end, float* x,
                                  float* y) const noexcept {
-    const double down = block.box.y0 + row + 0.5;
-    write_row(block, near({block.box.x0 + begin + 0.5, down, block.box.x0 + end - 0.5, down}), row, begin,
-              end, x, y);
+    write_row(block, near(block.box), row, begin, end, x, y);
 }
 
 void ScatteredPlan::write_row(const Block& block, const std::vector<Near>& triangles, int row, int begin,
@@ -360,20 +355,23 @@ void ScatteredPlan::write_row(const Block& block, const std::vector<Near>& trian
         y[i] = static_cast<float>(p.y - block.base_y);
     };
     // How many triangles may hold a pixel, and whether one certainly does.
-    std::array<int, Block::kMaxSide> claims{};
+    std::array<std::uint8_t, Block::kMaxSide> claims{};
     std::array<bool, Block::kMaxSide> held{};
     for (const Near& near : triangles) {
         if (!near.bounds.meets({first, down, first + count - 1, down})) continue;
         const CubicTriangle& triangle = *near.triangle;
-        const Run run(triangle, first, down, count);
-        for (int i = run.outer_begin; i < run.outer_end; ++i) ++claims[static_cast<std::size_t>(i)];
+        const Run run(triangle, near.margin, first, down, count);
+        for (int i = run.outer_begin; i < run.outer_end; ++i) {
+            std::uint8_t& claim = claims[static_cast<std::size_t>(i)];
+            claim = static_cast<std::uint8_t>(std::min(claim + 1, 2));
+        }
         if (run.begin >= run.end) continue;
         const double h = std::max(run.end - run.begin - 1, 1) / 3.0;
         RowValues places;
         for (std::size_t k = 0; k < 4; ++k) places.v[k] = first + run.begin + h * double(k);
         const Point<RowValues> f = m_map.at(triangle, places, RowValues(down));
-        RowCubic(f.x, h).write(run.end - run.begin, block.base_x, x + run.begin);
-        RowCubic(f.y, h).write(run.end - run.begin, block.base_y, y + run.begin);
+        simd::write_cubic(RowCubic(f.x, h).less(block.base_x), run.end - run.begin, x + run.begin);
+        simd::write_cubic(RowCubic(f.y, h).less(block.base_y), run.end - run.begin, y + run.begin);
         std::fill(held.begin() + run.begin, held.begin() + run.end, true);
     }
     // On edges, by the rule for single points.

@@ -31,7 +31,7 @@ class ScatteredPlan final : public WarpPlan {
 
   private:
     struct Near;
-    std::vector<Near> near(const Bounds& centres) const;
+    std::vector<Near> near(const Box& block) const;
     /// Pixels [begin, end) of a row of a computed block, by the triangles near it.
     void write_row(const Block& block, const std::vector<Near>& triangles, int row, int begin, int end,
                    float* x, float* y) const noexcept;
