@@ -49,6 +49,7 @@
 #include "anamorph/projector/occluders.h"
 #include "anamorph/projector/projected_triangles.h"
 #include "anamorph/projector/projection_bake.h"
+#include "anamorph/projector/projection_groups.h"
 #include "anamorph/projector/projector.h"
 #include "anamorph/render/border.h"
 #include "anamorph/render/filter.h"

@@ -1,0 +1,144 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <vtkAnamorphProjectionBake.h>  // first: it stands alone
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <vtkFieldData.h>
+#include <vtkFloatArray.h>
+#include <vtkImageData.h>
+#include <vtkNew.h>
+#include <vtkPlaneSource.h>
+#include <vtkPointData.h>
+#include <vtkPolyData.h>
+#include <vtkSmartPointer.h>
+#include <vtkSphereSource.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "support.h"
+
+namespace {
+
+using testing::HasSubstr;
+using Bake = vtkAnamorphProjectionBake;
+constexpr double kPi = std::numbers::pi;
+
+vtkSmartPointer<vtkPolyData> wall(double z = -1, double half = 1) {
+    vtkNew<vtkPlaneSource> source;
+    source->SetOrigin(-half, -half, z);
+    source->SetPoint1(half, -half, z);
+    source->SetPoint2(-half, half, z);
+    source->Update();
+    return source->GetOutput();
+}
+
+/// Two components: how far a pixel is from the left, and from the lower border.
+vtkSmartPointer<vtkImageData> coordinates(int width, int height, int type = VTK_FLOAT) {
+    auto image = vtkSmartPointer<vtkImageData>::New();
+    image->SetDimensions(width, height, 1);
+    image->AllocateScalars(type, 2);
+    for (int j = 0; j < height; ++j)
+        for (int i = 0; i < width; ++i) {
+            image->SetScalarComponentFromDouble(i, j, 0, 0, i + (type == VTK_FLOAT ? 0.5 : 0));
+            image->SetScalarComponentFromDouble(i, j, 0, 1, j + (type == VTK_FLOAT ? 0.5 : 0));
+        }
+    return image;
+}
+
+TEST(VtkProjectionBake, TexelsShowWhatTheFormulaSays) {
+    vtkNew<Bake> bake;
+    bake->SetInputData(0, wall());
+    bake->AddInputData(1, coordinates(400, 200));
+    bake->AddProjector(0, 0, 0.5, 0, 0, -1, 0, 1, 0);
+    bake->SetWidth(31);
+    bake->SetHeight(21);
+    bake->Update();
+    vtkImageData* out = bake->GetOutput();
+    ASSERT_EQ(out->GetNumberOfScalarComponents(), 3);
+    ASSERT_EQ(out->GetScalarType(), VTK_FLOAT);
+    for (int j = 0; j < 21; ++j)
+        for (int i = 0; i < 31; ++i) {
+            const double x = (i + 0.5) / 31 * 2 - 1, y = (j + 0.5) / 21 * 2 - 1, z = 1.5;
+            EXPECT_NEAR(out->GetScalarComponentAsDouble(i, j, 0, 0),
+                        (std::atan2(x, z) / (2 * kPi) + 0.5) * 400, 1e-3);
+            EXPECT_NEAR(out->GetScalarComponentAsDouble(i, j, 0, 1),
+                        (std::atan2(y, std::hypot(x, z)) / kPi + 0.5) * 200, 1e-3);
+            EXPECT_EQ(out->GetScalarComponentAsDouble(i, j, 0, 2), 1);
+        }
+    EXPECT_EQ(
+        vtkDataArray::SafeDownCast(out->GetFieldData()->GetAbstractArray("anamorph:painted"))->GetTuple1(0),
+        31 * 21);
+}
+
+TEST(VtkProjectionBake, TwoProjectorsPaintWhatEitherSees) {
+    vtkNew<Bake> bake;
+    bake->SetInputData(0, wall());
+    for (int k = 0; k < 2; ++k) bake->AddInputData(1, coordinates(100, 50, VTK_UNSIGNED_CHAR));
+    bake->AddProjector(0, 0, 1, 0, 0, -1, 0, 1, 0);
+    bake->AddProjector(0.5, 0.5, 0, 0, 0, -1, 0, 1, 0);
+    bake->SetInputData(2, wall(0.5, 0.1));
+    bake->SetWidth(64);
+    bake->SetHeight(64);
+    bake->Update();
+    vtkImageData* out = bake->GetOutput();
+    EXPECT_EQ(out->GetScalarType(), VTK_UNSIGNED_CHAR);
+    EXPECT_EQ(out->GetScalarComponentAsDouble(32, 32, 0, 2), 255);
+    // The middle is seen by the second alone: its panorama's lower left.
+    EXPECT_NEAR(out->GetScalarComponentAsDouble(32, 32, 0, 0), (0.5 - std::atan2(0.5, 1) / (2 * kPi)) * 100,
+                1.5);
+    bake->RemoveAllProjectors();
+    bake->AddProjector(0, 0, 1, 0, 0, -1, 0, 1, 0);
+    bake->RemoveAllInputConnections(1);
+    bake->AddInputData(1, coordinates(100, 50, VTK_UNSIGNED_CHAR));
+    bake->Update();
+    EXPECT_EQ(bake->GetOutput()->GetScalarComponentAsDouble(32, 32, 0, 2), 0);
+    EXPECT_EQ(bake->GetOutput()->GetScalarComponentAsDouble(2, 2, 0, 2), 255);
+    bake->OcclusionOff();
+    bake->Update();
+    EXPECT_EQ(bake->GetOutput()->GetScalarComponentAsDouble(32, 32, 0, 2), 255);
+}
+
+TEST(VtkProjectionBake, RefusesInWords) {
+    const auto said = [](const std::function<void(Bake*)>& set) {
+        vtkNew<Bake> bake;
+        Errors errors(bake);
+        bake->SetInputData(0, wall());
+        bake->AddInputData(1, coordinates(100, 50));
+        bake->AddProjector(0, 0, 0, 0, 0, -1, 0, 1, 0);
+        set(bake);
+        bake->Update();
+        return errors.text();
+    };
+    EXPECT_EQ(said([](Bake*) {}), "");
+    EXPECT_THAT(said([](Bake* b) { b->RemoveAllProjectors(); }), HasSubstr("projectors=0: must be as many"));
+    EXPECT_THAT(said([](Bake* b) { b->SetWidth(0); }), HasSubstr("size=0: must be"));
+    EXPECT_THAT(said([](Bake* b) { b->SetFade(kNan); }), HasSubstr("fade=nan: must be"));
+    EXPECT_THAT(said([](Bake* b) { b->SetMargin(65); }), HasSubstr("margin=65: must be"));
+    EXPECT_THAT(said([](Bake* b) { b->SetFieldOfView(361); }), HasSubstr("panorama fov=361: must be"));
+    EXPECT_THAT(said([](Bake* b) { b->SetInputData(1, vtkNew<vtkImageData>()); }),
+                HasSubstr("panorama=0: must be an image"));
+    EXPECT_THAT(said([](Bake* b) {
+                    vtkNew<vtkSphereSource> bare;
+                    bare->Update();
+                    b->SetInputData(0, bare->GetOutput());
+                }),
+                HasSubstr("mesh=no texture coordinates: must have them"));
+    EXPECT_EQ(said([](Bake* b) { b->SetInputData(0, vtkNew<vtkPolyData>()); }), "");
+}
+
+TEST(VtkProjectionBake, CountsModificationsExecutesOnceAndPrints) {
+    vtkNew<Bake> bake;
+    expect_modified_by<Bake>(bake, {[](Bake* b) { b->SetProjection(1); },
+                                    [](Bake* b) { b->SetFieldOfView(90); }, [](Bake* b) { b->SetWidth(20); },
+                                    [](Bake* b) { b->SetHeight(10); }, [](Bake* b) { b->SetFade(3); },
+                                    [](Bake* b) { b->SetMargin(2); }, [](Bake* b) { b->OcclusionOff(); }});
+    bake->AddProjector(0, 0, 0, 0, 0, -1, 0, 1, 0);
+    expect_printed(bake, {"Projection: cylindrical", "NumberOfProjectors: 1", "Width: 20", "Margin: 2"});
+    bake->SetInputData(0, wall());
+    bake->AddInputData(1, coordinates(100, 50));
+    expect_executed_once(bake);
+    expect_overridden<Bake>("vtkAnamorphProjectionBake");
+}
+
+}  // namespace

@@ -1,0 +1,127 @@
+// SPDX-License-Identifier: Apache-2.0
+/**
+ * @class vtkAnamorphProjectionBake
+ * @brief panoramas thrown onto a mesh, blended, and kept in its own texture
+ *
+ * The projection of vtkAnamorphPanoramaProjection (Kim 2003, chapter 4) as an image for a mesh that has texture coordinates:
+ * the centre of every texel is a point of the mesh, and what projectors throw there is read by the exact formula, in double.
+ * Several projectors are blended by angle and distance: each has a share as its rays lie close at the point, the cosine of
+ * the angle to the surface over the square of the distance, which fades to 0 at borders of its panorama. With Occlusion a
+ * ray to every texel tells what a projector does not see: the mesh hides itself, and so does the third input. What is nearer
+ * than 2^-16 of the distance does not.
+ *
+ * Input 0 is the mesh, with texture coordinates from 0 to 1; where triangles share texels, the first one has them. Input 1
+ * takes one image for each projector, in their order, all with the same number of components; they are read bilinearly.
+ * The output is an image that VTK's writers write: the components of the panoramas, and one that says where there is
+ * something, 0 or 1 (255 for bytes). It has bytes if all panoramas have, and float otherwise.
+ *
+ * Field arrays: "anamorph:painted", the number of texels painted; "anamorph:unseen", of those of the mesh that no projector
+ * throws anything on.
+ */
+#ifndef vtkAnamorphProjectionBake_h
+#define vtkAnamorphProjectionBake_h
+
+#include <memory>  // for the members
+
+#include "AnamorphFiltersModule.h"  // for the export macro
+#include "vtkImageAlgorithm.h"
+
+class ANAMORPHFILTERS_EXPORT vtkAnamorphProjectionBake : public vtkImageAlgorithm {
+  public:
+    static vtkAnamorphProjectionBake* New();
+    vtkTypeMacro(vtkAnamorphProjectionBake, vtkImageAlgorithm);
+    void PrintSelf(ostream& os, vtkIndent indent) override;
+
+    ///@{
+    /**
+     * The projectors: position, direction of the panorama's middle, and upwards. There has to be one for each panorama.
+     */
+    void AddProjector(double x, double y, double z, double dx, double dy, double dz, double ux, double uy,
+                      double uz);
+    void RemoveAllProjectors();
+    int GetNumberOfProjectors();
+    ///@}
+
+    ///@{
+    /**
+     * The projection of the panoramas, as vtkAnamorphPanoramaProjection counts them. Default: 0, equirectangular.
+     */
+    vtkSetClampMacro(Projection, int, 0, 16);
+    vtkGetMacro(Projection, int);
+    ///@}
+
+    ///@{
+    /**
+     * Degrees that a panorama's width covers, or each of its faces; 0: what its projection has by default. Default: 0.
+     */
+    vtkSetMacro(FieldOfView, double);
+    vtkGetMacro(FieldOfView, double);
+    ///@}
+
+    ///@{
+    /**
+     * The size of the texture. Default: 1024 x 1024.
+     */
+    vtkSetMacro(Width, int);
+    vtkGetMacro(Width, int);
+    vtkSetMacro(Height, int);
+    vtkGetMacro(Height, int);
+    ///@}
+
+    ///@{
+    /**
+     * How wide a panorama fades at its borders, in its texels. Default: 32.
+     */
+    vtkSetMacro(Fade, double);
+    vtkGetMacro(Fade, double);
+    ///@}
+
+    ///@{
+    /**
+     * How far beyond borders of triangles texels are painted, too, for filters that read across them. Default: 1.
+     */
+    vtkSetMacro(Margin, double);
+    vtkGetMacro(Margin, double);
+    ///@}
+
+    ///@{
+    /**
+     * Whether what a projector does not see stays without it. Default: on.
+     */
+    vtkSetMacro(Occlusion, bool);
+    vtkGetMacro(Occlusion, bool);
+    vtkBooleanMacro(Occlusion, bool);
+    ///@}
+
+    /**
+     * One more panorama.
+     */
+    void AddPanoramaConnection(vtkAlgorithmOutput* output) { this->AddInputConnection(1, output); }
+    /**
+     * What else casts shadows.
+     */
+    void SetOccluderConnection(vtkAlgorithmOutput* output) { this->SetInputConnection(2, output); }
+
+  protected:
+    vtkAnamorphProjectionBake();
+    ~vtkAnamorphProjectionBake() override;
+
+    int FillInputPortInformation(int port, vtkInformation* info) override;
+    int RequestInformation(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
+    int RequestUpdateExtent(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
+    int RequestData(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
+
+  private:
+    vtkAnamorphProjectionBake(const vtkAnamorphProjectionBake&) = delete;
+    void operator=(const vtkAnamorphProjectionBake&) = delete;
+
+    struct Projectors;
+    struct Run;
+
+    std::unique_ptr<Projectors> Poses;
+    int Projection = 0, Width = 1024, Height = 1024;
+    double FieldOfView = 0, Fade = 32, Margin = 1;
+    bool Occlusion = true;
+};
+
+#endif
