@@ -81,7 +81,7 @@ def check_defaults(element):
     compared = 0
     for p in properties(element):
         command, default = p.get("command"), p.get("default_values")
-        if not (command or "").startswith("Set") or default is None or command == "SetInputArrayToProcess":
+        if not (command or "").startswith("Set") or default is None:
             continue
         if p.get("repeat_command"):
             shown = [] if default == "none" else numbers(default.split())
@@ -211,6 +211,10 @@ def with_input(cls):
         picture.SetWholeExtent(0, 9, 0, 9, 0, 0)
         picture.Update()
         new.SetInputData(picture.GetOutput())
+        if cls is anamorph.vtkAnamorphDrape:
+            relief = with_input(anamorph.vtkAnamorphReliefSource)
+            relief.Update()
+            new.SetInputData(1, relief.GetOutput())
     elif cls is anamorph.vtkAnamorphFigureReader:
         with open("ranges.nudes", "w") as file:
             file.write("figure f 1 a\nellipsoid a 5 8 4\nrepeat 0 2 moveto f a 500 500 300\nstop\n")

@@ -130,6 +130,23 @@ def a_picture_on_a_surface():
     apply(drape, Surface=3, Tube=.1, Style=2, CameraParallelProjection=1, CameraParallelScale=.7)
 
 
+def surfaces_of_inputs_in_light():
+    picture = Wavelet(WholeExtent=[0, 20, 0, 10, 0, 0])
+    picture.UpdatePipeline()
+    relief = AnamorphRelief(registrationName="relief", Input=picture, HeightScale=.001)
+    vectors = Calculator(registrationName="vectors", Input=picture,
+                         Function="iHat*coordsX/10+jHat*coordsY/10+kHat*coordsX*coordsY/100", ResultArrayName="Place")
+    table = CSVReader(FileName=[os.path.abspath("list.csv")])
+    for source in (relief, vectors, table):
+        source.UpdatePipeline()
+    drape = AnamorphDrape(registrationName="result", Input=picture, Positions=relief, ViewSize=[60, 40])
+    apply(drape, Surface=7, Shading=2, Lights=[0, 1, 2, 3, 0, 1], Ambient=.1, Diffuse=.7, Specular=.3, Shininess=5)
+    apply(drape, Deformations=table, DeformationFileName=os.path.abspath("list.csv"))
+    apply(drape, BlendWeights=[0, 0, .3, 0, .1, 0, 0, 0], Positions=vectors, PositionsArrayName="Place")
+    apply(drape, Surface=0, BlendWeights=[0, .2, 0, 0, 0, 0, 0, 0], Height=vectors, HeightArrayName="RTData",
+          HeightScale=.001, HeightSmooth=2, Shading=1)
+
+
 def figures_performed():
     figures = AnamorphFigureReader(registrationName="figures", FileName=os.path.abspath("figure.nudes"))
     figures.UpdatePipeline()
@@ -154,7 +171,7 @@ def a_panorama_thrown_onto_a_plane():
 
 SESSIONS = [texture_coordinates_after_the_plane, a_bump_in_texture_coordinates, handles_and_then_the_plane, another_row,
             files_and_a_table, surfaces_in_between, a_relief_of_a_file, a_relief_of_the_pipeline,
-            a_picture_on_a_surface, figures_performed, a_panorama_thrown_onto_a_plane]
+            a_picture_on_a_surface, surfaces_of_inputs_in_light, figures_performed, a_panorama_thrown_onto_a_plane]
 
 
 # ---- What is compared ----

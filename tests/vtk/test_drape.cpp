@@ -8,6 +8,7 @@
 #include <vtkFloatArray.h>
 #include <vtkImageData.h>
 #include <vtkInformation.h>
+#include <vtkInformationVector.h>
 #include <vtkPointData.h>
 #include <vtkPoints.h>
 #include <vtkSOADataArrayTemplate.h>
@@ -477,6 +478,28 @@ TEST(VtkDrape, ASampledSurfaceHasThePixelsOfTheOperation) {
         }
 }
 
+TEST(VtkDrape, ArraysOfInputsAreChosenByName) {
+    const Picture positions = saddle(9, 7), named = saddle(9, 7);
+    const vtkSmartPointer<vtkDataArray> array = named->GetPointData()->GetScalars();
+    array->SetName("Place");
+    named->GetPointData()->SetScalars(picture(9, 7)->GetPointData()->GetScalars());
+    named->GetPointData()->AddArray(array);
+    Scene scene{[&](Drape* f) {
+                    f->SetInputData(1, named);
+                    f->SetSurface(Drape::POSITIONS);
+                    f->SetPositionsArrayName("Place");
+                },
+                {{"surface", "positions"}, {"positions", "positions"}}};
+    scene.files.all["positions"] = file_of(positions);
+    expect_pixels_of_operation(scene);
+    EXPECT_THAT(errors_of<Drape>(picture(4, 4),
+                                 [&](Drape* f) {
+                                     f->SetInputData(2, named);
+                                     f->SetHeightArrayName("None");
+                                 }),
+                HasSubstr("the input Height has no point array"));
+}
+
 TEST(VtkDrape, AnInputThatNoSurfaceNamesIsNotLookedAt) {
     expect_pixels_of_operation({[&](Drape* f) { f->SetInputData(1, vtkNew<vtkStructuredGrid>()); }, {}});
 }
@@ -870,6 +893,49 @@ TEST(VtkDrape, TheSameBitsForAnyThreadsAndTheInputStays) {
     EXPECT_EQ(numbers(texture->GetPointData()->GetScalars()), before);
 }
 
+/// A picture of 8 x 8 pixels of 10 times the time that is asked for.
+class Clock : public vtkImageAlgorithm {
+  public:
+    static Clock* New() { return new Clock; }
+    vtkTypeMacro(Clock, vtkImageAlgorithm);
+
+  protected:
+    Clock() { this->SetNumberOfInputPorts(0); }
+    int RequestInformation(vtkInformation*, vtkInformationVector**, vtkInformationVector* outputs) override {
+        using Pipeline = vtkStreamingDemandDrivenPipeline;
+        const double steps[3] = {1, 2, 4}, range[2] = {1, 4};
+        vtkInformation* output = outputs->GetInformationObject(0);
+        output->Set(Pipeline::TIME_STEPS(), steps, 3);
+        output->Set(Pipeline::TIME_RANGE(), range, 2);
+        output->Set(Pipeline::WHOLE_EXTENT(), 0, 7, 0, 7, 0, 0);
+        return 1;
+    }
+    int RequestData(vtkInformation*, vtkInformationVector**, vtkInformationVector* outputs) override {
+        const double time =
+            outputs->GetInformationObject(0)->Get(vtkStreamingDemandDrivenPipeline::UPDATE_TIME_STEP());
+        vtkImageData* image = vtkImageData::GetData(outputs);
+        image->SetExtent(0, 7, 0, 7, 0, 0);
+        image->AllocateScalars(VTK_UNSIGNED_CHAR, 1);
+        image->GetPointData()->GetScalars()->FillComponent(0, 10 * time);
+        image->GetInformation()->Set(vtkDataObject::DATA_TIME_STEP(), time);
+        return 1;
+    }
+};
+
+TEST(VtkDrape, ATimeThatIsAskedForIsSeen) {
+    vtkNew<Clock> clock;
+    vtkNew<Drape> filter;
+    filter->SetInputConnection(clock->GetOutputPort());
+    look_straight(filter, 8, 8);
+    filter->UpdateInformation();
+    EXPECT_EQ(filter->GetOutputInformation(0)->Length(vtkStreamingDemandDrivenPipeline::TIME_STEPS()), 3);
+    for (const double time : {1., 4., 2., 2.}) {
+        filter->UpdateTimeStep(time);
+        EXPECT_EQ(filter->GetOutput()->GetScalarComponentAsDouble(4, 4, 0, 0), 10 * time);
+        EXPECT_EQ(filter->GetOutput()->GetInformation()->Get(vtkDataObject::DATA_TIME_STEP()), time);
+    }
+}
+
 TEST(VtkDrape, ProgressRisesTo1AndAbortLeavesNothing) {
     vtkNew<Drape> filter;
     vtkNew<ProgressObserver> progress;
@@ -962,6 +1028,8 @@ TEST(VtkDrape, PrintsItsState) {
                             "HeightScale: 0.1",
                             "HeightSmooth: 1",
                             "DeformationFileName: (none)",
+                            "PositionsArrayName: (none)",
+                            "HeightArrayName: (none)",
                             "Shading: none",
                             "Light: 0 0 1",
                             "Ambient: 0.2",

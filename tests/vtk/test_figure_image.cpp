@@ -3,11 +3,15 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <vtkAnamorphFigureReader.h>
 #include <vtkCommand.h>
 #include <vtkImageData.h>
+#include <vtkInformation.h>
 #include <vtkMultiBlockDataSet.h>
+#include <vtkStreamingDemandDrivenPipeline.h>
 #include <vtkUnsignedCharArray.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "figure_support.h"
@@ -117,7 +121,116 @@ TEST(VtkFigureImage, BlocksBecomeAnImageEach) {
     auto* output = vtkMultiBlockDataSet::SafeDownCast(filter->GetOutputDataObject(0));
     ASSERT_TRUE(output);
     EXPECT_EQ(errors.text(), "");
-    EXPECT_TRUE(vtkImageData::SafeDownCast(output->GetBlock(0)));
+    auto* first = vtkImageData::SafeDownCast(output->GetBlock(0));
+    ASSERT_TRUE(first);
+    vtkNew<Image> alone;
+    alone->SetInputData(figures({kNear}));
+    alone->Update();
+    const std::vector<double> wanted = numbers(alone->GetOutput()->GetPointData()->GetScalars());
+    EXPECT_EQ(wanted.size(), std::size_t{4 * 500 * 500});
+    EXPECT_EQ(numbers(first->GetPointData()->GetScalars()), wanted);
+}
+
+/// A script's figure, which moves.
+class Film {
+  public:
+    Film() {
+        m_reader->SetFileName(m_folder.write("film.nudes", kTwoBodies).c_str());
+        filter->SetInputConnection(m_reader->GetOutputPort());
+        filter->SetViewSize(70, 50);
+        filter->SetStyle(Image::BODY_ID);
+    }
+    vtkNew<Image> filter;
+
+  private:
+    Folder m_folder;
+    vtkNew<vtkAnamorphFigureReader> m_reader;
+};
+
+TEST(VtkFigureImage, PartsOfTheImageAreThoseOfTheWhole) {
+    Film film;
+    Image* filter = film.filter;
+    Errors errors(filter);
+    for (const int style : {Image::SHADED, Image::OUTLINE, Image::DEPTH, Image::BODY_ID}) {
+        filter->SetStyle(style);
+        filter->Update();
+        vtkNew<vtkImageData> whole;
+        whole->DeepCopy(filter->GetOutput());
+        const auto expect_part = [&](int points) {
+            int e[6];
+            vtkImageData* part = filter->GetOutput();
+            part->GetExtent(e);
+            EXPECT_EQ(part->GetNumberOfPoints(), points);
+            for (int y = e[2]; y <= e[3]; ++y)
+                for (int x = e[0]; x <= e[1]; ++x)
+                    for (int c = 0; c < whole->GetNumberOfScalarComponents(); ++c)
+                        ASSERT_EQ(part->GetScalarComponentAsDouble(x, y, 0, c),
+                                  whole->GetScalarComponentAsDouble(x, y, 0, c))
+                            << style << " " << x << " " << y;
+        };
+        const int extent[6] = {11, 53, 20, 31, 0, 0};
+        filter->Modified();
+        filter->UpdateExtent(extent);
+        expect_part(43 * 12);
+        int all = 0;
+        for (int piece = 0; piece < 3; ++piece) {
+            filter->Modified();
+            filter->UpdatePiece(piece, 3, 0);
+            const int points = static_cast<int>(filter->GetOutput()->GetNumberOfPoints());
+            EXPECT_LT(points, 70 * 50);
+            expect_part(points);
+            all += points;
+        }
+        EXPECT_GE(all, 70 * 50);
+    }
+    EXPECT_EQ(errors.text(), "");
+}
+
+TEST(VtkFigureImage, ATimeThatIsAskedForIsSeen) {
+    Film film;
+    const auto at = [&](double time) {
+        film.filter->UpdateTimeStep(time);
+        vtkImageData* seen = film.filter->GetOutput();
+        EXPECT_EQ(seen->GetInformation()->Get(vtkDataObject::DATA_TIME_STEP()), time);
+        return numbers(seen->GetPointData()->GetScalars());
+    };
+    film.filter->UpdateInformation();
+    EXPECT_EQ(film.filter->GetOutputInformation(0)->Length(vtkStreamingDemandDrivenPipeline::TIME_STEPS()),
+              4);
+    const std::vector<double> first = at(1), last = at(4);
+    EXPECT_NE(first, last);
+    EXPECT_EQ(at(1), first);
+}
+
+TEST(VtkFigureImage, NoBodiesAreAnEmptyPictureAndNoInputIsAnError) {
+    const auto empty = image({}, [](Image* f) { f->SetStyle(Image::BODY_ID); });
+    for (const double id : numbers(empty->GetPointData()->GetScalars())) ASSERT_EQ(id, -1);
+    EXPECT_EQ(empty->GetNumberOfPoints(), 100 * 80);
+    vtkNew<Image> alone;
+    Errors errors(alone);
+    alone->Update();
+    EXPECT_THAT(errors.text(), HasSubstr("0 connections"));
+}
+
+TEST(VtkFigureImage, ProgressRisesTo1AndAbortLeavesNothing) {
+    vtkNew<Image> filter;
+    vtkNew<ProgressObserver> progress;
+    filter->AddObserver(vtkCommand::ProgressEvent, progress);
+    filter->SetInputData(figures({kNear, kFar}));
+    filter->Update();
+    ASSERT_GE(progress->reports.size(), 4u);
+    EXPECT_TRUE(std::is_sorted(progress->reports.begin(), progress->reports.end()));
+    EXPECT_EQ(progress->reports.back(), 1);
+    progress->algorithm = filter;
+    progress->abort_at = 0.4;
+    filter->Modified();
+    filter->Update();
+    EXPECT_EQ(filter->GetOutput()->GetNumberOfPoints(), 0);
+    progress->abort_at = -1;
+    filter->SetAbortExecute(0);
+    filter->Modified();
+    filter->Update();
+    EXPECT_EQ(filter->GetOutput()->GetNumberOfPoints(), 500 * 500);
 }
 
 TEST(VtkFigureImage, WhatCannotBeDoneIsAnError) {
@@ -155,8 +268,13 @@ TEST(VtkFigureImage, TheSameBitsForAnyThreads) {
 TEST(VtkFigureImage, UpdatesOnlyAfterAChangeOfAValue) {
     vtkNew<Image> filter;
     expect_modified_by<Image>(
-        filter, {[](Image* f) { f->SetStyle(Image::DEPTH); }, [](Image* f) { f->SetLighting(Image::BLINN); },
-                 [](Image* f) { f->AntialiasOff(); }});
+        filter,
+        {[](Image* f) { f->SetStyle(Image::DEPTH); }, [](Image* f) { f->SetLighting(Image::BLINN); },
+         [](Image* f) { f->AntialiasOff(); }, [](Image* f) { f->SetViewMode(Image::CAMERA); },
+         [](Image* f) { f->SetViewSize(30, 20); }, [](Image* f) { f->SetCameraPosition(1, 2, 3); },
+         [](Image* f) { f->SetCameraFocalPoint(1, 2, 0); }, [](Image* f) { f->SetCameraViewUp(0, 1, 1); },
+         [](Image* f) { f->CameraParallelProjectionOn(); }, [](Image* f) { f->SetCameraParallelScale(9); },
+         [](Image* f) { f->SetCameraViewAngle(50); }});
     filter->SetInputData(figures({kNear}));
     filter->Update();
     const vtkMTimeType made = filter->GetOutput()->GetMTime();
@@ -165,7 +283,11 @@ TEST(VtkFigureImage, UpdatesOnlyAfterAChangeOfAValue) {
 }
 
 TEST(VtkFigureImage, PrintsItsState) {
-    expect_printed(vtkNew<Image>(), {"Style: shaded", "Lighting: rasel", "Antialias: 1", "ViewMode: script"});
+    expect_printed(
+        vtkNew<Image>(),
+        {"Style: shaded", "Lighting: rasel", "Antialias: 1", "ViewMode: script", "ViewSize: 500 500",
+         "CameraPosition: 500 500 1500", "CameraFocalPoint: 500 500 ", "CameraViewUp: 0 1 0",
+         "CameraParallelProjection: 0", "CameraParallelScale: ", "CameraViewAngle: 30"});
 }
 
 TEST(VtkFigureImage, FactoriesMayOverrideIt) {

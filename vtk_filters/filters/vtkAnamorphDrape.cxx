@@ -160,6 +160,12 @@ void say_as_vtk(int style, float* values, vtkIdType pixels) {
     }
 }
 
+/// The point array of a name, by default the scalars; null where there is none.
+vtkDataArray* array_of(vtkDataSet* data, const std::string& name) {
+    if (!data) return nullptr;
+    return name.empty() ? data->GetPointData()->GetScalars() : data->GetPointData()->GetArray(name.c_str());
+}
+
 /// Directions of length 1.
 std::vector<glm::dvec3> lights_of(const std::vector<double>& numbers) {
     std::vector<glm::dvec3> lights;
@@ -239,9 +245,8 @@ const std::vector<vtkAnamorphDrape::Number>& vtkAnamorphDrape::Numbers() {
 
 vtkAnamorphDrape::vtkAnamorphDrape() {
     this->SetNumberOfInputPorts(4);
-    for (int i = 0; i < 3; ++i)
-        this->SetInputArrayToProcess(i, i, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS,
-                                     vtkDataSetAttributes::SCALARS);
+    this->SetInputArrayToProcess(0, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS,
+                                 vtkDataSetAttributes::SCALARS);
     // 0 stands for what has no default of its own.
     const anamorph::ParameterValues defaults(*anamorph::drape_operation().parameters);
     for (const Number& number : Numbers())
@@ -263,10 +268,10 @@ void vtkAnamorphDrape::SetBlendWeight(int surface, double weight) {
     this->SetBlendWeights(weights);
 }
 
-void vtkAnamorphDrape::SetDeformationFileName(const char* name) {
-    const std::string given = name ? name : "";
-    if (given == this->DeformationFileName) return;
-    this->DeformationFileName = given;
+void vtkAnamorphDrape::SetText(std::string& member, const char* text) {
+    const std::string given = text ? text : "";
+    if (given == member) return;
+    member = given;
     this->Modified();
 }
 
@@ -359,9 +364,8 @@ const anamorph::DrapeSurfaces& vtkAnamorphDrape::SurfacesOf(const anamorph::Para
         const auto more = anamorph_vtk::read_deformations(this->DeformationFileName);
         bumps.insert(bumps.end(), more.begin(), more.end());
     }
-    // Arrays are chosen by what modifies the filter, not the data.
-    vtkDataArray* arrays[] = {positions ? this->GetInputArrayToProcess(1, inputs) : nullptr,
-                              heights ? this->GetInputArrayToProcess(2, inputs) : nullptr};
+    vtkDataArray* arrays[] = {array_of(positions, this->PositionsArrayName),
+                              array_of(heights, this->HeightArrayName)};
     std::ostringstream key;
     key << anamorph::shortest(aspect) << " " << values.text("height_smooth");
     for (vtkObject* object : {static_cast<vtkObject*>(positions), static_cast<vtkObject*>(heights),
@@ -530,9 +534,13 @@ void vtkAnamorphDrape::PrintSelf(ostream& os, vtkIndent indent) {
     os << indent << "Surface: " << word_of("surface", this->Surface) << "\n";
     print("BlendWeights", this->BlendWeights, 8);
     for (const Number& number : Numbers()) print(number.name, &(this->*number.value), 1);
-    os << indent << "DeformationFileName: "
-       << (this->DeformationFileName.empty() ? "(none)" : this->DeformationFileName) << "\n"
-       << indent << "ViewSize: " << this->ViewSize[0] << " " << this->ViewSize[1] << "\n";
+    const auto print_text = [&](const char* name, const std::string& text) {
+        os << indent << name << ": " << (text.empty() ? "(none)" : text) << "\n";
+    };
+    print_text("PositionsArrayName", this->PositionsArrayName);
+    print_text("HeightArrayName", this->HeightArrayName);
+    print_text("DeformationFileName", this->DeformationFileName);
+    os << indent << "ViewSize: " << this->ViewSize[0] << " " << this->ViewSize[1] << "\n";
     print("CameraPosition", this->CameraPosition, 3);
     print("CameraFocalPoint", this->CameraFocalPoint, 3);
     print("CameraViewUp", this->CameraViewUp, 3);

@@ -13,9 +13,9 @@
  *
  * Three more inputs are optional. Positions, port 1: a surface that is sampled, one layer of points over the whole of
  * the texture, interpolated by smooth cubics; the points of a vtkStructuredGrid, or an array of three components, float
- * or double, of a vtkImageData (SetInputArrayToProcess(1, 1, ...); by default the scalars). Rows go up, as the
+ * or double, of a vtkImageData (PositionsArrayName; by default the scalars). Rows go up, as the
  * texture's. Height, port 2: a vtkImageData by whose brightness, the mean of up to three components of an array
- * (SetInputArrayToProcess(2, 2, ...)), surfaces with smooth normals are raised along these: floating point as it is,
+ * (HeightArrayName), surfaces with smooth normals are raised along these: floating point as it is,
  * whole numbers as fractions of the largest of their type. Deformations, port 3: a table of bumps that
  * move the surface, with the columns of vtkAnamorphDeformationList; u and v run from 0 to 1 over the texture. Hidden
  * points, and such that are no numbers, are holes; then the field array "anamorph:missing" says how many, and where
@@ -90,6 +90,14 @@ class ANAMORPHFILTERS_EXPORT vtkAnamorphDrape : public vtkImageAlgorithm {
     ///@}
 
     ///@{
+    /** The point arrays that are read of the inputs Positions and Height. By default their scalars. */
+    void SetPositionsArrayName(const char* name) { this->SetText(this->PositionsArrayName, name); }
+    const char* GetPositionsArrayName() { return this->PositionsArrayName.c_str(); }
+    void SetHeightArrayName(const char* name) { this->SetText(this->HeightArrayName, name); }
+    const char* GetHeightArrayName() { return this->HeightArrayName.c_str(); }
+    ///@}
+
+    ///@{
     /** How far brightness 1 of the input Height raises the surface, -1000 to 1000; 0.1 by default. */
     vtkSetMacro(HeightScale, double);
     vtkGetMacro(HeightScale, double);
@@ -103,7 +111,7 @@ class ANAMORPHFILTERS_EXPORT vtkAnamorphDrape : public vtkImageAlgorithm {
      * A file of deformations, JSON or CSV as vtkAnamorphDeformationList has them, beside those of the input. It is
      * read whenever the filter executes.
      */
-    void SetDeformationFileName(const char* name);
+    void SetDeformationFileName(const char* name) { this->SetText(this->DeformationFileName, name); }
     const char* GetDeformationFileName() { return this->DeformationFileName.c_str(); }
     ///@}
 
@@ -268,6 +276,7 @@ class ANAMORPHFILTERS_EXPORT vtkAnamorphDrape : public vtkImageAlgorithm {
     anamorph::ParameterValues Values() const;
     bool UsesPositions() const;
     bool IsLight(int index);
+    void SetText(std::string& member, const char* text);
     const anamorph::DrapeSurfaces& SurfacesOf(const anamorph::ParameterValues& values,
                                               vtkInformationVector** inputs, double aspect);
     anamorph::DrapeOptions Options(const anamorph::ParameterValues& values, int components) const;
@@ -277,7 +286,7 @@ class ANAMORPHFILTERS_EXPORT vtkAnamorphDrape : public vtkImageAlgorithm {
 
     int Surface = PLANE;
     double BlendWeights[8] = {0, 0, 0, 0, 0, 0, 0, 0};
-    std::string DeformationFileName;
+    std::string PositionsArrayName, HeightArrayName, DeformationFileName;
     // Defaults are those of the operation's table.
     double Angle, Radius, Tube, Amplitude, Wavelength, Phase, Direction, Turn;
     double HeightScale, HeightSmooth, Tolerance, Ambient, Diffuse, Specular, Shininess;

@@ -10,6 +10,7 @@
 #include "execution.h"
 #include "figure_data.h"
 #include "figure_lines.h"
+#include "vtkCompositeDataSet.h"
 #include "vtkFloatArray.h"
 #include "vtkImageData.h"
 #include "vtkInformation.h"
@@ -93,7 +94,30 @@ int vtkAnamorphFigureImage::RequestInformation(vtkInformation*, vtkInformationVe
     const double spacing[3] = {1, 1, 1}, origin[3] = {0, 0, 0};
     output->Set(vtkDataObject::SPACING(), spacing, 3);
     output->Set(vtkDataObject::ORIGIN(), origin, 3);
+    output->Set(CAN_PRODUCE_SUB_EXTENT(), 1);
     return 1;
+}
+
+int vtkAnamorphFigureImage::RequestUpdateExtent(vtkInformation*, vtkInformationVector** inputs,
+                                                vtkInformationVector*) {
+    // A part of the image shows all bodies that are there.
+    if (vtkInformation* input = inputs[0]->GetInformationObject(0)) {
+        input->Set(vtkStreamingDemandDrivenPipeline::UPDATE_PIECE_NUMBER(), 0);
+        input->Set(vtkStreamingDemandDrivenPipeline::UPDATE_NUMBER_OF_PIECES(), 1);
+        input->Set(vtkStreamingDemandDrivenPipeline::UPDATE_NUMBER_OF_GHOST_LEVELS(), 0);
+    }
+    return 1;
+}
+
+/// The pixels that are asked for: of a collection, all.
+void vtkAnamorphFigureImage::AskedExtent(int extent[6]) {
+    const int whole[6] = {0, this->ViewSize[0] - 1, 0, this->ViewSize[1] - 1, 0, 0};
+    std::copy_n(whole, 6, extent);
+    vtkInformation* output = this->GetOutputInformation(0);
+    if (vtkCompositeDataSet::SafeDownCast(this->GetInputDataObject(0, 0)) ||
+        !output->Has(vtkStreamingDemandDrivenPipeline::UPDATE_EXTENT()))
+        return;
+    output->Get(vtkStreamingDemandDrivenPipeline::UPDATE_EXTENT(), extent);
 }
 
 void vtkAnamorphFigureImage::Draw(vtkPolyData* input, vtkDataObject* output,
@@ -115,22 +139,27 @@ void vtkAnamorphFigureImage::Draw(vtkPolyData* input, vtkDataObject* output,
     const anamorph::FigurePicture picture(frame_of(input, bodies), view, {width, height}, look,
                                           execution.stage(0, 0.3));
     const int channels = anamorph::channels_of(look.style);
-    std::vector<float> pixels(static_cast<std::size_t>(width) * static_cast<std::size_t>(height) *
-                              static_cast<std::size_t>(channels));
-    picture.draw({0, 0, width, height},
-                 anamorph::packed_view(reinterpret_cast<std::byte*>(pixels.data()),
-                                       anamorph::PixelType::float32, width, height, channels),
-                 execution.stage(0.3, 0.9));
+    int extent[6];
+    this->AskedExtent(extent);
     auto* image = vtkImageData::SafeDownCast(output);
-    image->SetExtent(0, width - 1, 0, height - 1, 0, 0);
+    if (extent[0] > extent[1] || extent[2] > extent[3]) return;
+    const anamorph::Box box{extent[0], height - 1 - extent[3], extent[1] + 1, height - extent[2]};
+    std::vector<float> pixels(static_cast<std::size_t>(box.width()) * static_cast<std::size_t>(box.height()) *
+                              static_cast<std::size_t>(channels));
+    picture.draw(box,
+                 anamorph::packed_view(reinterpret_cast<std::byte*>(pixels.data()),
+                                       anamorph::PixelType::float32, box.width(), box.height(), channels),
+                 execution.stage(0.3, 0.9));
+    image->SetExtent(extent);
     image->SetOrigin(0, 0, 0);
     image->SetSpacing(1, 1, 1);
     // Rows from the bottom up.
     const auto each_pixel = [&](const auto& write) {
-        for (int y = 0; y < height; ++y)
-            for (int x = 0; x < width; ++x)
-                write(vtkIdType{y} * width + x,
-                      &pixels[(static_cast<std::size_t>(height - 1 - y) * static_cast<std::size_t>(width) +
+        for (int y = 0; y < box.height(); ++y)
+            for (int x = 0; x < box.width(); ++x)
+                write(vtkIdType{y} * box.width() + x,
+                      &pixels[(static_cast<std::size_t>(box.height() - 1 - y) *
+                                   static_cast<std::size_t>(box.width()) +
                                static_cast<std::size_t>(x)) *
                               static_cast<std::size_t>(channels)]);
     };

@@ -11,7 +11,8 @@
  *
  * Colors are the mean of 16 x 16 rays where a pixel shows more than one body or an edge; nothing is
  * tessellated. Bodies have the colors of the point array Color (3 unsigned chars), or a default one. Bodies
- * hide each other within one input; blocks of composite data become an image each.
+ * hide each other within one input; blocks of composite data become an image each. A pixel has the same bits in any
+ * part of the image that is asked for.
  */
 #ifndef vtkAnamorphFigureImage_h
 #define vtkAnamorphFigureImage_h
@@ -62,11 +63,14 @@ class ANAMORPHFILTERS_EXPORT vtkAnamorphFigureImage : public vtkAnamorphFigureAl
 
     int FillOutputPortInformation(int port, vtkInformation* information) override;
     int RequestInformation(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
+    int RequestUpdateExtent(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
     void Draw(vtkPolyData* input, vtkDataObject* output, anamorph_vtk::Execution& execution) override;
 
   private:
     vtkAnamorphFigureImage(const vtkAnamorphFigureImage&) = delete;
     void operator=(const vtkAnamorphFigureImage&) = delete;
+
+    void AskedExtent(int extent[6]);
 
     int Style = SHADED;
     int Lighting = RASEL;
