@@ -101,26 +101,31 @@ if ! fetch_animals; then
     a=round.png morph="round.png.morph?b=long.png&features=faces.csv"
 fi
 
+# film NAME LAST RECIPE: frames 0 to LAST, and a film of them.
+film() {
+    echo "$1.0000.jpg to $1.00$2.jpg: $3"
+    oiiotool --frames "0-$2" "$3" -o "$1.%04d.jpg"
+    if command -v ffmpeg >/dev/null; then
+        echo "$1.mp4"
+        ffmpeg -loglevel error -y -framerate 24 -i "$1.%04d.jpg" -pix_fmt yuv420p "$1.mp4"
+    else
+        echo "(no $1.mp4: ffmpeg is not installed)"
+    fi
+}
+
 # From one picture to another along corresponding lines: a film, frame by frame.
 echo "lines.jpg: $morph&output=lines"
 oiiotool "$morph&output=lines" -o lines.jpg
-echo "film.0000.jpg to film.0048.jpg: $morph&t={FRAME_NUMBER/48}"
-oiiotool --frames 0-48 "$morph&t={FRAME_NUMBER/48}" -o film.%04d.jpg
-if command -v ffmpeg >/dev/null; then
-    echo "film.mp4"
-    ffmpeg -loglevel error -y -framerate 24 -i film.%04d.jpg -pix_fmt yuv420p film.mp4
-else
-    echo "(no film.mp4: ffmpeg is not installed)"
-fi
+film film 48 "$morph&t={FRAME_NUMBER/48}"
 
-# The same picture as a page that is turned, and raised by a list of deformations before the camera.
-page="$a.drape?surface=page_turn&direction=-25&radius=0.12&shading=phong&light=0.3,0.4,1&fov=35&camera=0.3,-0.7,2&background=0.1,0.1,0.1"
-echo "page.0000.jpg to page.0024.jpg: $page&turn={FRAME_NUMBER/24}"
-oiiotool --frames 0-24 "$page&turn={FRAME_NUMBER/24}" -o page.%04d.jpg
+# The same picture as a page that is turned; a face that a list of deformations raises from its picture, turned before the
+# camera (Oka 1987, section 4.1).
+film page 24 "$a.drape?surface=page_turn&direction=-25&radius=0.12&shading=phong&light=0.3,0.4,1&fov=35&camera=0.3,-0.7,2&background=0.1,0.1,0.1&turn={FRAME_NUMBER/24}"
 cp ../../../examples/relief.csv .
-relief="round.png.drape?deform=relief.csv&shading=phong&light=-0.6,0.5,1&ambient=0.35&fov=40&camera=0.8,0.3,1.2"
-echo "relief.jpg: $relief"
-oiiotool "$relief" -o relief.jpg
+relief="round.png.drape?deform=relief.csv&shading=phong&light=-0.6,0.5,1&ambient=0.35&fov=40&camera=0,0.3,1.9"
+film relief 24 "$relief&rotate=0,{-55+110*FRAME_NUMBER/24},0"
+echo "relief.jpg: $relief&rotate=0,-34,0"
+oiiotool "$relief&rotate=0,-34,0" -o relief.jpg
 
 # Ellipsoids that walk by a script of NUDES: outlines with hidden lines removed.
 cp ../../../examples/figures/walker.nudes .
