@@ -54,7 +54,8 @@ Drape::Drape(std::shared_ptr<SharedTree> surface, const Camera& camera, const Si
       m_options(options),
       m_map(std::make_shared<DrapeMap>(
           facets_of(*m_surface, camera, picture, options), camera, picture, options.tol,
-          options.scheme == DrapeScheme::exact ? m_surface->tree.shared_surface() : nullptr)) {
+          options.scheme == DrapeScheme::exact ? m_surface->tree.shared_surface() : nullptr,
+          m_surface->pool)) {
     if (options.lighting.shading != DrapeShading::none || options.own == DrapeOutput::normal)
         for (const FacetCorner& corner : m_map->facets().corners) m_lit.push_back(lit(corner));
     const Chart flat(Projection::rectilinear, picture.width, picture.height);

@@ -63,11 +63,12 @@ struct DrapeOptions {
     int backdrop_alpha = -1;        ///< the same of the picture behind
 };
 
-/// A surface's patches, which views of it share.
+/// A surface's patches, and room to draw in, which views of it share.
 struct SharedTree {
     explicit SharedTree(std::shared_ptr<const DrapedSurface> surface) : tree(std::move(surface)) {}
     std::mutex mutex;
     SurfaceTree tree;
+    std::shared_ptr<SeenPool> pool = std::make_shared<SeenPool>();
 };
 
 /// A surface draped with a picture, ready to draw any box of the screen from any number of threads.

@@ -51,7 +51,7 @@ void SeenPool::give_back(std::unique_ptr<SeenPixels> pixels) {
 }
 
 DrapeMap::DrapeMap(Facets facets, const Camera& camera, const Size& picture, double tol,
-                   std::shared_ptr<const DrapedSurface> surface)
+                   std::shared_ptr<const DrapedSurface> surface, std::shared_ptr<SeenPool> pool)
     : BlockMap(camera.screen().width, camera.screen().height,
                {{0, 0, camera.screen().width, camera.screen().height}}, {1, kSquare, kKeptRegions}),
       m_facets(std::move(facets)),
@@ -60,7 +60,7 @@ DrapeMap::DrapeMap(Facets facets, const Camera& camera, const Size& picture, dou
       m_for_float(tol * kFloatShare),
       m_surface(std::move(surface)),
       m_raster(m_facets, camera.screen(), kSquare),
-      m_pool(std::make_shared<SeenPool>()) {}
+      m_pool(std::move(pool)) {}
 
 /// Of the leaves.
 const std::vector<double>& DrapeMap::bounds() const {

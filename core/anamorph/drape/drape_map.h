@@ -46,9 +46,10 @@ class DrapeMap final : public BlockMap {
   public:
     /// Bounds of facets leave kFloatShare of `tol` to points in float; blocks for which that is too little have theirs in
     /// double. With `surface`, that of the facets, each pixel's point is that of the surface itself (PointPolish), where
-    /// that can be told.
+    /// that can be told. `pool`: room that other maps may leave and use.
     DrapeMap(Facets facets, const Camera& camera, const Size& picture, double tol,
-             std::shared_ptr<const DrapedSurface> surface = nullptr);
+             std::shared_ptr<const DrapedSurface> surface = nullptr,
+             std::shared_ptr<SeenPool> pool = std::make_shared<SeenPool>());
 
     const Facets& facets() const { return m_facets; }
     const Camera& camera() const { return m_camera; }
