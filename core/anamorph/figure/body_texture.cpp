@@ -27,22 +27,10 @@ glm::dvec4 color_of_texel(const std::vector<float>& texel) {
     return {at(0), at(1), at(2), alpha < texel.size() ? at(alpha) : 1.0};
 }
 
-std::unique_ptr<const SummedTexture> summed_texture(const Source& source) try {
-    constexpr std::int64_t kMostTexels = std::int64_t{1} << 22;
-    int level = 0;
-    const auto texels = [&] { return std::int64_t{source.size(level).width} * source.size(level).height; };
-    while (texels() > kMostTexels)
-        if (++level == source.levels()) return nullptr;
-    return std::unique_ptr<const SummedTexture>(new SummedTexture{level, SummedAreas(source, level)});
-} catch (const std::exception&) {
-    return nullptr;
-}
-
-BodyTexture::BodyTexture(const Source& source, BodyMapping mapping, Filter filter, TextureAverage average,
-                         const SummedTexture* sums)
+BodyTexture::BodyTexture(const Source& source, BodyMapping mapping, Filter filter, TextureAverage average)
     : m_source(source),
-      m_average(average == TextureAverage::summed_area && !sums ? TextureAverage::footprint : average),
-      m_sums(sums),
+      m_average(average),
+      m_sums(average == TextureAverage::summed_area && averages(filter) ? source.summed_areas() : nullptr),
       m_mapping(mapping),
       m_filter(filter),
       m_border(border_of(source, mapping)),
@@ -75,21 +63,13 @@ glm::dvec3 BodyTexture::color(const TexturedSurface& body, double x, double y, b
 
 bool BodyTexture::read_average(const Jacobian& jacobian, double u, double v) {
     if (m_average == TextureAverage::trilinear) return read_trilinear(jacobian, u, v);
-    if (m_average == TextureAverage::footprint)
-        return m_sampler.sample(m_chooser(jacobian), jacobian, 0, u, v, m_pixel.data());
-    read_sums(jacobian, u, v);
-    return true;
-}
-
-void BodyTexture::read_sums(const Jacobian& jacobian, double u, double v) {
-    const std::array<double, 2>& scale = m_chooser.scale(m_sums->level);
+    if (!m_sums) return m_sampler.sample(m_chooser(jacobian), jacobian, 0, u, v, m_pixel.data());
     const Jacobian rectangle = covering_rectangle(jacobian);
-    const double x = u * scale[0], y = v * scale[1], width = rectangle.x_i * scale[0],
-                 height = rectangle.y_j * scale[1];
     if (m_mapping == BodyMapping::latlong)
-        m_sums->sums.mean_over_poles(x, y, width, height, m_pixel.data());
+        m_sums->mean_over_poles(u, v, rectangle.x_i, rectangle.y_j, m_pixel.data());
     else
-        m_sums->sums.mean(x, y, width, height, m_border.wrap(), m_pixel.data());
+        m_sums->mean(u, v, rectangle.x_i, rectangle.y_j, m_border.wrap(), m_pixel.data());
+    return true;
 }
 
 bool BodyTexture::read_trilinear(const Jacobian& jacobian, double u, double v) {

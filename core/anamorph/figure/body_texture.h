@@ -6,7 +6,6 @@
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 #include <glm/vec4.hpp>
-#include <memory>
 #include <vector>
 
 #include "anamorph/figure/body_mapping.h"
@@ -29,20 +28,12 @@ struct TexturedSurface {
 /// Red, green, blue and alpha of a texel of 1 to 4 channels, the last of 2 and of 4 alpha.
 glm::dvec4 color_of_texel(const std::vector<float>& texel);
 
-/// A table of sums of a level of a texture.
-struct SummedTexture {
-    int level;
-    SummedAreas sums;
-};
-/// Of the largest level of at most 2^22 texels. Null where there is none, or it cannot be read.
-std::unique_ptr<const SummedTexture> summed_texture(const Source& source);
-
-/// One for each thread. Keeps references to the source and the table.
+/// One for each thread. Keeps a reference to the source.
 class BodyTexture {
   public:
-    /// `sums`: of TextureAverage::summed_area; null where there is none, then it is averaged by footprints.
+    /// Where the source has no table of sums, TextureAverage::summed_area averages by footprints.
     BodyTexture(const Source& source, BodyMapping mapping, Filter filter,
-                TextureAverage average = TextureAverage::footprint, const SummedTexture* sums = nullptr);
+                TextureAverage average = TextureAverage::footprint);
 
     /// What the texture has where a pixel shows the body at (x, y), over `below` where it is transparent.
     /// `below` itself where the source cannot be read.
@@ -50,14 +41,13 @@ class BodyTexture {
 
   private:
     bool read_average(const Jacobian& jacobian, double u, double v);
-    void read_sums(const Jacobian& jacobian, double u, double v);
     bool read_trilinear(const Jacobian& jacobian, double u, double v);
     bool read_as_mrasel(double sine, double longest, double u, double v);
     bool read_level(Filter filter, int level, double u, double v, float* pixel);
 
     const Source& m_source;
     TextureAverage m_average;
-    const SummedTexture* m_sums;
+    const SummedAreas* m_sums;
     BodyMapping m_mapping;
     Filter m_filter;
     Border m_border;

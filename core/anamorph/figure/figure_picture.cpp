@@ -5,7 +5,6 @@
 #include <array>
 #include <cmath>
 #include <cstring>
-#include <mutex>
 #include <vector>
 
 #include "anamorph/figure/backdrop.h"
@@ -55,42 +54,19 @@ StrokePixels strokes_of(const FigureFrame& frame, const View& view, const Size& 
     return StrokePixels(draw(frame, view, {size.width, size.height}, lines, parallel_for));
 }
 
-/// Tables of sums of the textures, for all threads: made when the first pixel needs them.
-class SharedSums {
-  public:
-    explicit SharedSums(std::size_t count) : m_sums(std::make_unique<Entry[]>(count)) {}
-
-    const SummedTexture* get(std::size_t i, const Source& source) const {
-        Entry& entry = m_sums[i];
-        std::call_once(entry.once, [&] { entry.sums = summed_texture(source); });
-        return entry.sums.get();
-    }
-
-  private:
-    struct Entry {
-        std::once_flag once;
-        std::unique_ptr<const SummedTexture> sums;
-    };
-    std::unique_ptr<Entry[]> m_sums;
-};
-
 /// The sources of a picture as one thread reads them: made when the first pixel needs them.
 class Textures {
   public:
-    Textures(const std::vector<const Source*>& sources, const FigureLook& look, const SharedSums& sums)
-        : m_sources(sources), m_look(look), m_sums(sums), m_open(look.textures.size()) {}
+    Textures(const std::vector<const Source*>& sources, const FigureLook& look)
+        : m_sources(sources), m_look(look), m_open(look.textures.size()) {}
 
     /// Null where there is none.
     BodyTexture* get(int index) {
         const auto i = static_cast<std::size_t>(index);
         if (index < 0 || i >= m_sources.size() || !m_sources[i]) return nullptr;
-        if (!m_open[i]) {
-            const bool summed =
-                m_look.average == TextureAverage::summed_area && m_look.filter == Filter::antialias;
+        if (!m_open[i])
             m_open[i] =
-                std::make_unique<BodyTexture>(*m_sources[i], m_look.mapping, m_look.filter, m_look.average,
-                                              summed ? m_sums.get(i, *m_sources[i]) : nullptr);
-        }
+                std::make_unique<BodyTexture>(*m_sources[i], m_look.mapping, m_look.filter, m_look.average);
         return m_open[i].get();
     }
     /// The same of the backdrop, of a picture of this size.
@@ -104,7 +80,6 @@ class Textures {
   private:
     const std::vector<const Source*>& m_sources;
     const FigureLook& m_look;
-    const SharedSums& m_sums;
     std::vector<std::unique_ptr<BodyTexture>> m_open;
     std::unique_ptr<Backdrop> m_backdrop;
 };
@@ -133,7 +108,6 @@ struct FigurePicture::Impl {
     std::vector<double> longest = {};     ///< of the bodies: half the longest axis in pixels
     std::unique_ptr<const VisibleSurfaces> surfaces = {};
     std::unique_ptr<const StrokePixels> strokes = {};
-    SharedSums sums{look.textures.size()};
 
     /// Towards the eye, from what is seen at (x, y).
     glm::dvec3 toward_eye(double x, double y) const {
@@ -215,7 +189,7 @@ struct FigurePicture::Impl {
     /// store(x, y, values) for the pixels of a small box inside the picture.
     template <class Store>
     void draw(const Box& box, const std::vector<const Source*>& sources, const Store& store) const {
-        Textures open(sources, look, sums);
+        Textures open(sources, look);
         const auto each = [&](const auto& value) {
             std::size_t i = 0;
             for (int y = box.y0; y < box.y1; ++y)

@@ -80,8 +80,8 @@ class Runs {
 /// A source row by row, as it is averaged: in double, integers as they are stored, colour multiplied by alpha.
 class SummedAreas::Texels {
   public:
-    Texels(const Source& source, int level)
-        : m_source(source), m_level(level), m_size(source.size(level)), m_channels(source.channels()) {
+    explicit Texels(const Source& source)
+        : m_source(source), m_size(source.size(0)), m_channels(source.channels()) {
         const std::size_t values =
             static_cast<std::size_t>(m_size.width) * static_cast<std::size_t>(m_channels);
         m_bytes.resize(values * static_cast<std::size_t>(size_of(source.type())));
@@ -89,7 +89,7 @@ class SummedAreas::Texels {
     }
 
     const std::vector<double>& row(int y) {
-        if (!m_source.read(m_level, {0, y, m_size.width, y + 1}, m_bytes.data(),
+        if (!m_source.read(0, {0, y, m_size.width, y + 1}, m_bytes.data(),
                            static_cast<std::ptrdiff_t>(m_bytes.size())))
             throw Error("a source cannot be read");
         const PixelType type = m_source.type();
@@ -121,16 +121,15 @@ class SummedAreas::Texels {
     }
 
     const Source& m_source;
-    int m_level;
     Size m_size;
     int m_channels;
     std::vector<std::byte> m_bytes;
     std::vector<double> m_values;
 };
 
-SummedAreas::SummedAreas(const Source& source, int level)
-    : m_size(source.size(level)), m_units(static_cast<std::size_t>(source.channels()), 1.0) {
-    Texels texels(source, level);
+SummedAreas::SummedAreas(const Source& source)
+    : m_size(source.size(0)), m_units(static_cast<std::size_t>(source.channels()), 1.0) {
+    Texels texels(source);
     for (int c = 0; c < source.channels(); ++c) m_scales.push_back(texels.scale(c));
     choose_units(texels);
     add_up(texels);

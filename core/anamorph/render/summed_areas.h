@@ -17,11 +17,11 @@
 
 namespace anamorph {
 
-/// The table of a level of a source. Thread safe once it is made.
+/// The table of a source's level 0. Thread safe once it is made.
 class SummedAreas {
   public:
-    /// Reads all of the level, twice. Throws std::bad_alloc, and Error where it cannot be read.
-    explicit SummedAreas(const Source& source, int level = 0);
+    /// Reads all of the source, twice. Throws std::bad_alloc, and Error where it cannot be read.
+    explicit SummedAreas(const Source& source);
 
     /// The mean over the rectangle of width x height texels about (x, y), in which texels are squares of one color, to
     /// `pixel`: as many floats as channels, multiplied by alpha as PointSampler::sample says. Sides below 1, or that are
