@@ -48,10 +48,11 @@ namespace lens_jets_detail {
 
 /// Coefficients as constant parts.
 template <class T, int N>
-Point<Jets<T, N>> about(Point<Jets<T, N>> u, const Point<Four<T>>& constant) {
-    u.x.c[0] = constant.x;
-    u.y.c[0] = constant.y;
-    return u;
+Point<Jets<T, N>> about(const Point<Jets<T, N>>& u, const Point<Four<T>>& constant) {
+    Point<Jets<T, N>> r = u;
+    r.x.c[0] = constant.x;
+    r.y.c[0] = constant.y;
+    return r;
 }
 /// settled() of the constant parts.
 template <class T, int N>
