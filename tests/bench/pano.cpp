@@ -456,11 +456,14 @@ Chart cylinder(int width) {
 // --- bilinear, float
 
 void run_bilinear(const Settings& settings, Report& report, const Chart& chart, const std::string& name) {
-    const std::string turned = name + "_rotated";
-    if (!settings.wants_case(name) && !settings.wants_case(turned)) return;
+    // With the zenith in the picture.
+    const std::string turned = name + "_rotated", raised = name + "_pitch_60";
+    if (!settings.wants_case(name) && !settings.wants_case(turned) && !settings.wants_case(raised)) return;
     Scene scene(settings, report, chart, PixelType::float32, "pano");
     scene.add_view(name, settings.size, 90, {});
     scene.add_view(turned, settings.size, 90, kTurned);
+    if (chart.projection() == Projection::equirectangular)
+        scene.add_view(raised, settings.size, 90, {.pitch = 60});
     for (const auto& view : scene.views()) {
         scene.add_schemes(*view, {std::begin(kTols), std::end(kTols)});
         scene.add_rivals<float>(*view);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // speed_vs_error --csv FILE [--op NAME] [--size N] [--threads N] [--case NAME] [--scheme NAME] [--rounds N]
 // speed_vs_error --bounds [...]
+// --instructions NAME: one of Highway's instruction sets (AVX3, AVX2, SSE2 ...), in place of the machine's best.
 //
 // Measures how fast each scheme draws and how far it is from the exact map, next to what else one could use,
 // all in one run. The CSV has a line per case, scheme and tolerance; a summary goes to standard output.
@@ -18,6 +19,7 @@
 #include <string_view>
 #include <utility>
 
+#include "anamorph/simd/block_sampler.h"
 #include "bench.h"
 #include "output_file.h"
 
@@ -44,6 +46,14 @@ int whole_number(std::string_view option, const char* text, int least, int most)
     return static_cast<int>(value);
 }
 
+void use_instructions(const std::string& name) {
+    if (simd::use_instruction_set(name.c_str())) return;
+    std::string names;
+    for (const char* const* set = simd::instruction_sets(); *set; ++set)
+        names += (names.empty() ? "" : ", ") + std::string(*set);
+    throw std::invalid_argument("--instructions " + name + ": must be one of " + names);
+}
+
 Settings parse(int argc, char** argv) {
     Settings s;
     for (int i = 1; i < argc; ++i) {
@@ -62,6 +72,8 @@ Settings parse(int argc, char** argv) {
             s.case_name = value;
         else if (option == "--scheme")
             s.scheme = value;
+        else if (option == "--instructions")
+            use_instructions(value);
         else if (option == "--size")
             s.size = whole_number(option, value, 16, 8192);
         else if (option == "--threads")
@@ -117,6 +129,44 @@ void print_targets(const Report& report) {
     }
 }
 
+/// Does a row measure what else one could use? A copy of memory is a limit, and no way to draw.
+bool is_peer(const Row& row) {
+    constexpr std::string_view kPeers[] = {"double",       "simd_exact",   "opencv",      "opencv_remap",
+                                           "opencv_fixed", "oiio_st_warp", "vtk_reslice", "xmorph"};
+    return std::find(std::begin(kPeers), std::end(kPeers), row.scheme) != std::end(kPeers);
+}
+
+/// The tolerance at which cells are compared, source pixels.
+constexpr double kUsualTol = 0.01;
+
+/// The cells in which the best peer comes nearest, or is ahead, those first.
+void print_weakest(const Report& report) {
+    struct Cell {
+        const Row *ours, *peer;
+        double ratio() const { return peer->ns_per_px / ours->ns_per_px; }
+    };
+    std::vector<Cell> cells;
+    for (const Row& ours : report.rows) {
+        if (!(ours.scheme == "automatic" || ours.scheme == "auto") || ours.tol_px != kUsualTol) continue;
+        const Row* best = nullptr;
+        for (const Row& r : report.rows)
+            if (is_peer(r) && r.op == ours.op && r.case_name == ours.case_name && r.size == ours.size &&
+                r.threads == ours.threads && (!best || r.ns_per_px < best->ns_per_px))
+                best = &r;
+        if (best) cells.push_back({&ours, best});
+    }
+    if (cells.empty()) return;
+    std::sort(cells.begin(), cells.end(), [](const Cell& a, const Cell& b) { return a.ratio() < b.ratio(); });
+    const auto name = [](const Cell& c) { return c.ours->op + " " + c.ours->case_name; };
+    std::printf("\nleast ratio to the best peer, at tol %g: %.2f (%s, %d x %d, against %s)\n", kUsualTol,
+                cells[0].ratio(), name(cells[0]).c_str(), cells[0].ours->size, cells[0].ours->size,
+                cells[0].peer->scheme.c_str());
+    constexpr std::size_t kShown = 5;
+    for (std::size_t i = 1; i < std::min(kShown, cells.size()); ++i)
+        std::printf("  then %.2f (%s, against %s)\n", cells[i].ratio(), name(cells[i]).c_str(),
+                    cells[i].peer->scheme.c_str());
+}
+
 int run(int argc, char** argv) {
     const Settings settings = parse(argc, argv);
     std::optional<anamorph::command::OutputFile> csv;
@@ -141,6 +191,7 @@ int run(int argc, char** argv) {
     csv->write(table.str());
     csv->close();
     print_targets(report);
+    print_weakest(report);
     for (const std::string& failure : report.failures)
         std::fprintf(stderr, "speed_vs_error: %s\n", failure.c_str());
     return report.failures.empty() ? 0 : 1;
