@@ -22,10 +22,10 @@ HWY_INLINE L root(const L& square) {
 #include "anamorph/map/feature_formula.h"
 
 /// Where points lie as seen from a line.
-struct Seen {
+struct SeenFrom {
     L along, beside, before, behind;
 
-    HWY_INLINE Seen(const FeatureMap::TargetLine& line, const L& x, const L& y) {
+    HWY_INLINE SeenFrom(const FeatureMap::TargetLine& line, const L& x, const L& y) {
         const L dx = x - L(line.p.x), dy = y - L(line.p.y), ux(line.along.x), uy(line.along.y);
         along = along_line(dx, dy, ux, uy);
         beside = beside_line(dx, dy, ux, uy);
@@ -35,27 +35,28 @@ struct Seen {
     HWY_INLINE L Distance() const { return distance_to_line(before, behind, beside); }
 };
 
-enum class Exponent { half, one, two, other };
+enum class PowerKind { half, one, two, other };
 
 /// c^-b.
-template <Exponent kExponent>
+template <PowerKind kPower>
 HWY_INLINE L InversePower(const L& c, const L& b) {
-    if constexpr (kExponent == Exponent::two) return L(1) / (c * c);
-    if constexpr (kExponent == Exponent::one) return L(1) / c;
-    if constexpr (kExponent == Exponent::half) return L(1) / sqrt(c);
+    if constexpr (kPower == PowerKind::two) return L(1) / (c * c);
+    if constexpr (kPower == PowerKind::one) return L(1) / c;
+    if constexpr (kPower == PowerKind::half) return L(1) / sqrt(c);
     return exp(-(b * log(c)));
 }
 
 /// The least distance of any line from each point.
 HWY_INLINE L Nearest(const FeatureMap& map, const L& x, const L& y) {
     L nearest(HUGE_VAL);
-    for (std::size_t i = 0; i < map.size(); ++i) nearest = min(nearest, Seen(map.line(i), x, y).Distance());
+    for (std::size_t i = 0; i < map.size(); ++i)
+        nearest = min(nearest, SeenFrom(map.line(i), x, y).Distance());
     return nearest;
 }
 
-template <Exponent kExponent, bool kWeighted>
-HWY_INLINE void Row(const FeatureMap& map, int shape, double x0, double y0, int count, double* to_x,
-                    double* to_y) {
+template <PowerKind kPower, bool kWeighted>
+HWY_INLINE void FeaturePoints(const FeatureMap& map, int shape, double x0, double y0, int count, double* to_x,
+                              double* to_y) {
     const L a(map.weights().a), b(map.weights().b), zero(0), y(y0);
     const Point<double> scale = map.scale(shape);
     for (int i = 0; i < count; i += L::kCount) {
@@ -64,12 +65,12 @@ HWY_INLINE void Row(const FeatureMap& map, int shape, double x0, double y0, int 
         L weights(0), moved_x(0), moved_y(0);
         for (std::size_t n = 0; n < map.size(); ++n) {
             const FeatureMap::TargetLine& line = map.line(n);
-            const Seen seen(line, x, y);
+            const SeenFrom seen(line, x, y);
             L weight(line.factor);
             if constexpr (kWeighted) {
                 // Where a line is at distance 0 those that are not do not count.
                 const L far = seen.Distance() + a;
-                const L power = InversePower<kExponent>(far / nearest, b) * weight;
+                const L power = InversePower<kPower>(far / nearest, b) * weight;
                 weight = select(zero < nearest, power, select(zero < far, zero, weight));
             }
             weights = weights + weight;
@@ -89,11 +90,11 @@ HWY_INLINE void Row(const FeatureMap& map, int shape, double x0, double y0, int 
 
 void FeatureRow(const FeatureMap& map, int shape, double x, double y, int count, double* to_x, double* to_y) {
     const double b = map.weights().b;
-    if (!(b > 0)) return Row<Exponent::one, false>(map, shape, x, y, count, to_x, to_y);
-    if (b == 2) return Row<Exponent::two, true>(map, shape, x, y, count, to_x, to_y);
-    if (b == 1) return Row<Exponent::one, true>(map, shape, x, y, count, to_x, to_y);
-    if (b == 0.5) return Row<Exponent::half, true>(map, shape, x, y, count, to_x, to_y);
-    Row<Exponent::other, true>(map, shape, x, y, count, to_x, to_y);
+    if (!(b > 0)) return FeaturePoints<PowerKind::one, false>(map, shape, x, y, count, to_x, to_y);
+    if (b == 2) return FeaturePoints<PowerKind::two, true>(map, shape, x, y, count, to_x, to_y);
+    if (b == 1) return FeaturePoints<PowerKind::one, true>(map, shape, x, y, count, to_x, to_y);
+    if (b == 0.5) return FeaturePoints<PowerKind::half, true>(map, shape, x, y, count, to_x, to_y);
+    FeaturePoints<PowerKind::other, true>(map, shape, x, y, count, to_x, to_y);
 }
 
 }  // namespace HWY_NAMESPACE
