@@ -5,7 +5,9 @@
 // time is that of a triangle that is painted. vertices: texture coordinates of a grid's vertices (of about as many
 // triangles as the table's size across, squared), without a tolerance, as vtkTextureMapToSphere and vtkProjectedTexture
 // compute them; the time is that of a triangle. Errors are measured in long double at three points of each triangle, about poles
-// as directions. ratio_to_exact: against a texel for every point, by the formula.
+// as directions. ratio_to_exact: against a texel for every point, by the formula. groups: the middles of the grid's triangles
+// by Kim's linear parts and tables of residuals of 256 x 256 (4.2 to 4.4), eight directions of 90 degrees; those above and below
+// are left out. bake: a texture of 256 x 256 of a wall, evaluated at every texel; the time is that of a texel.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -14,6 +16,8 @@
 #include <vector>
 
 #include "anamorph/projector/projected_triangles.h"
+#include "anamorph/projector/projection_bake.h"
+#include "anamorph/projector/projection_groups.h"
 #include "bench.h"
 
 namespace anamorph::bench {
@@ -95,6 +99,63 @@ std::vector<PaintedTriangle> by_vertices(const Projector& projector, const Scene
     return pieces;
 }
 
+/// The middles of triangles by the tables of their groups.
+struct GroupedPoints {
+    std::vector<glm::dvec3> points;
+    std::vector<int> groups;
+    std::vector<Point<double>> texels;
+
+    GroupedPoints(const ProjectionGroups& all, const SceneTriangles& scene) {
+        for (const auto& triangle : scene) {
+            const int group = all.group_of(triangle);
+            if (group < 0) continue;
+            points.push_back((triangle[0] + triangle[1] + triangle[2]) / 3.0);
+            groups.push_back(group);
+        }
+        texels.resize(points.size());
+    }
+
+    void read(const ProjectionGroups& all) {
+        for (std::size_t i = 0; i < points.size(); ++i) all.texel(groups[i], points[i], texels[i]);
+    }
+
+    /// As pieces that are points, for accuracy().
+    std::vector<PaintedTriangle> pieces() const {
+        std::vector<PaintedTriangle> all(points.size());
+        for (std::size_t i = 0; i < points.size(); ++i)
+            for (PaintedCorner& corner : all[i].corners) corner = {{}, points[i], texels[i]};
+        return all;
+    }
+};
+
+std::vector<BakedTriangle> baked_wall() {
+    const glm::dvec3 p(-1, -1, -1), q(1, -1, -1), r(1, 1, -1), s(-1, 1, -1);
+    return {{{p, q, r}, {{{0, 0}, {1, 0}, {1, 1}}}}, {{p, r, s}, {{{0, 0}, {1, 1}, {0, 1}}}}};
+}
+
+/// Two channels, the places of a panorama's pixels, from which bilinear reading makes those of all points.
+std::vector<float> coordinates(int width, int height) {
+    std::vector<float> pixels;
+    for (int j = 0; j < height; ++j)
+        for (int i = 0; i < width; ++i)
+            pixels.insert(pixels.end(), {static_cast<float>(i) + 0.5F, static_cast<float>(j) + 0.5F});
+    return pixels;
+}
+
+/// Texels of the wall that show coordinates, as pieces that are points.
+std::vector<PaintedTriangle> texels_of(const BakedTexture& baked, int size) {
+    std::vector<PaintedTriangle> all(static_cast<std::size_t>(size) * static_cast<std::size_t>(size));
+    for (std::size_t i = 0; i < all.size(); ++i) {
+        const auto column = static_cast<double>(i % static_cast<std::size_t>(size)),
+                   row = static_cast<double>(i / static_cast<std::size_t>(size));
+        for (PaintedCorner& corner : all[i].corners) {
+            corner.point = {(column + 0.5) / size * 2 - 1, 1 - (row + 0.5) / size * 2, -1};
+            corner.texel = {baked.pixels[3 * i], baked.pixels[3 * i + 1]};
+        }
+    }
+    return all;
+}
+
 void run(const Settings& settings, Report& report) {
     if (!settings.wants_case("room")) return;
     const Projector projector(Chart(Projection::equirectangular, 4096, 2048), kPose);
@@ -114,6 +175,15 @@ void run(const Settings& settings, Report& report) {
             t.counts = {};
             for (const auto& triangle : room) t.counts += painter.paint(triangle, t.pieces);
         }});
+    const ProjectionGroups groups(projector, ProjectionGroups::level_directions(8));
+    GroupedPoints grouped(groups, grid);
+    timed.push_back({[&] { grouped.read(groups); }});
+    const std::vector<float> picture = coordinates(4096, 2048);
+    BakeOptions bake_options;
+    bake_options.size = {256, 256};
+    bake_options.channels = 2;
+    BakedTexture baked;
+    timed.push_back({[&] { baked = bake(baked_wall(), {{projector, picture.data()}}, bake_options); }});
     const std::vector<Times> times = time_interleaved(timed, settings.rounds);
     const auto add = [&](const std::string& scheme, double tol, const Times& time,
                          const std::vector<PaintedTriangle>& pieces, double bound) {
@@ -135,6 +205,10 @@ void run(const Settings& settings, Report& report) {
     for (std::size_t i = 0; i < tolerances.size(); ++i)
         add("triangles", tolerances[i].tol, times[i + 1], tolerances[i].pieces,
             tolerances[i].counts.max_error);
+    double bound = 0;
+    for (const ProjectionGroup& group : groups.groups()) bound = std::max(bound, group.bound);
+    add("groups", kNone, times[tolerances.size() + 1], grouped.pieces(), bound);
+    add("bake", 0, times[tolerances.size() + 2], texels_of(baked, 256), kNone);
 }
 
 const RegisterOp registered({"projection", run, nullptr});
