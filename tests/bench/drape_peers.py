@@ -327,7 +327,7 @@ def write_ppm(name, texture):
 
 def numbered(side):
     """A texture that says where its texels are."""
-    place = (np.arange(side) * (65536 // side) + 32768 // side).astype(np.uint16)
+    place = (np.arange(side) * (65536 // side) + 32768 // side).astype(np.uint16)  # the middle of its share
     texture = np.full((side, side, 3), 65535, np.uint16)
     texture[..., 0], texture[..., 1] = place[None, :], place[:, None]
     return texture
@@ -336,7 +336,7 @@ def numbered(side):
 def wrong_share(name, picture, uv, covered, side):
     """The share of pixels that show another texel than POV-Ray's, by more than one, or that only one of both shows."""
     known = picture[..., 2] > 32768
-    texel = picture[..., :2].astype(float) * side / 65536 - 0.5
+    texel = picture[..., :2].astype(float) / (65536 // side) - 0.5
     off = np.abs(uv * side - 0.5 - texel)
     off = np.minimum(off, side - off) if name != "sphere" else np.stack([np.minimum(off[..., 0], side - off[..., 0]), off[..., 1]], -1)
     # A texel is read as a whole: its middle is up to half of it off.
@@ -407,7 +407,7 @@ def compare_with_povray(table, args, pixels):
     if not shutil.which("povray"):
         print("(POV-Ray is not installed: tests/install_packages.sh peers)")
         return []
-    failures, first, side = [], camera_at(0), 1024
+    failures, first, side = [], camera_at(0), args.size
     for name, (formula, setter) in TRACED.items():
         drape = drape_of(setter, image_of(pixels), args.size, args.tol)
         times = {"POV-Ray": [], "vtkAnamorphDrape": []}
