@@ -67,6 +67,18 @@ class Waves {
                     errors.push_back(static_cast<float>(map.landing_error(x, y)));
         return accuracy_of(errors);
     }
+    /// The same of the plain drape.
+    Accuracy plain_accuracy() const {
+        std::vector<float> errors(static_cast<std::size_t>(m_size.width) *
+                                  static_cast<std::size_t>(m_size.height));
+        drape(Output::error)
+            .draw(nullptr, whole(),
+                  packed_view(reinterpret_cast<std::byte*>(errors.data()), PixelType::float32, m_size.width,
+                              m_size.height, 1),
+                  serial_for);
+        std::erase(errors, 0.0f);
+        return accuracy_of(errors);
+    }
     const Size& size() const { return m_size; }
 
   private:
@@ -111,6 +123,7 @@ void measure_blocks(const Settings& settings, Report& report, int side) {
     Waves waves(side);
     std::vector<Row> rows(1, row_of("drape", side));
     rows[0].tol_px = 0.125;
+    rows[0].error = waves.plain_accuracy();
     rows[0].bound_px = waves.drape(Output::color).reached(serial_for).max_error;
     std::vector<Timed> timed(1, {[&] { waves.draw_plain(); }, 1});
     for (const int block : {8, 4}) {
