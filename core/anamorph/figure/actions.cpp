@@ -234,7 +234,7 @@ void FigureAction::bendto() const {
 }
 
 bool FigureAction::is_left(int i) const {
-    const int f = m_state.topology->figure_of[static_cast<std::size_t>(i)];
+    const int f = m_state.topology->figure_of(i);
     const int first = f < 0 ? 1 : m_state.topology->figure_first[static_cast<std::size_t>(f)];
     return (i - first) % 2 == 0;
 }

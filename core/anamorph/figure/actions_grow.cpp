@@ -105,11 +105,7 @@ void FigureAction::attach() const {
     }
     joint_position(made) = body(strict() ? second : first).center + vector(3);
     check(joint_position(made), "the joint " + joint_name(made));
-    auto topology = std::make_shared<Topology>(*m_state.topology);
-    topology->joints[static_cast<std::size_t>(made)] = {first, second, true};
-    topology->joint_order.push_back(made);
-    topology->connect(m_state.bodies.size());
-    m_state.topology = std::move(topology);
+    own_topology(m_state).attach(made, first, second);
 }
 
 void FigureAction::detach() const {

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "anamorph/figure/rotation.h"
 
@@ -40,14 +41,40 @@ void Topology::connect(std::size_t ellipsoids) {
         joints_of[at(joints[at(j)].first)].push_back(j);
         if (joints[at(j)].second != joints[at(j)].first) joints_of[at(joints[at(j)].second)].push_back(j);
     }
-    figure_of.assign(ellipsoids, -1);
-    std::vector<char> seen(ellipsoids, 0);
-    for (std::size_t f = 2; f < figure_first.size(); ++f) {
-        if (figure_first[f] < 0 || seen[at(figure_first[f])]) continue;
-        FigurePart part;
-        spread(*this, figure_first[f], -1, seen, part);
-        for (const int body : part.bodies) figure_of[at(body)] = static_cast<int>(f);
-    }
+    m_pieces.assign(ellipsoids, {});
+    visited += ellipsoids + joint_order.size();
+    for (const int j : joint_order) join(joints[at(j)].first, joints[at(j)].second);
+    // Of several figures that hang together the first.
+    for (std::size_t f = figure_first.size(); f-- > 2;)
+        if (figure_first[f] >= 0) m_pieces[at(root_of(figure_first[f]))].figure = static_cast<int>(f);
+}
+
+int Topology::root_of(int ellipsoid) const {
+    while (m_pieces[at(ellipsoid)].parent >= 0) ellipsoid = m_pieces[at(ellipsoid)].parent;
+    return ellipsoid;
+}
+
+int Topology::figure_of(int ellipsoid) const {
+    return m_pieces[at(root_of(ellipsoid))].figure;
+}
+
+void Topology::join(int first, int second) {
+    int large = root_of(first), small = root_of(second);
+    if (large == small) return;
+    if (m_pieces[at(large)].size < m_pieces[at(small)].size) std::swap(large, small);
+    Piece &kept = m_pieces[at(large)], &added = m_pieces[at(small)];
+    kept.size += added.size;
+    if (kept.figure < 0 || (added.figure >= 0 && added.figure < kept.figure)) kept.figure = added.figure;
+    added.parent = large;
+}
+
+void Topology::attach(int joint, int first, int second) {
+    joints[at(joint)] = {first, second, true};
+    joint_order.push_back(joint);
+    joints_of[at(first)].push_back(joint);
+    if (second != first) joints_of[at(second)].push_back(joint);
+    join(first, second);
+    visited += 2;
 }
 
 int Topology::other_end(int joint, int ellipsoid) const {
@@ -63,6 +90,15 @@ bool Topology::is_end(int joint, int ellipsoid) const {
 std::size_t FigureState::bytes() const {
     return sizeof(FigureState) + bodies.size() * sizeof(Body) + joints.size() * sizeof(glm::dvec3) +
            variables.size() * sizeof(Value) + overlaps.size() * sizeof(Overlap);
+}
+
+Topology& own_topology(FigureState& state) {
+    if (state.topology.use_count() > 1) {
+        auto copy = std::make_shared<Topology>(*state.topology);
+        copy->visited += state.bodies.size() + copy->joint_order.size();
+        state.topology = std::move(copy);
+    }
+    return *state.topology;
 }
 
 FigurePart part_from(const FigureState& state, int ellipsoid, int joint) {
@@ -170,7 +206,7 @@ FigureFrame frame_of(const FigureState& state, const Program& program, int numbe
     };
     for (std::size_t f = 2; f < program.figures.size(); ++f)
         if (topology.figure_first[f] >= 0 &&
-            topology.figure_of[at(topology.figure_first[f])] == static_cast<int>(f))
+            topology.figure_of(topology.figure_first[f]) == static_cast<int>(f))
             list(f, program.figures[f].name);
     std::vector<int> declared(state.bodies.size(), 0);
     for (std::size_t f = program.figures.size(); f-- > 2;)
@@ -182,7 +218,8 @@ FigureFrame frame_of(const FigureState& state, const Program& program, int numbe
         body.name = program.ellipsoids[i].name;
         // Where a figure is in pieces, only the first is found by its joints: the others by their
         // declaration.
-        const auto f = at(topology.figure_of[i] >= 0 ? topology.figure_of[i] : declared[i]);
+        const int figure = topology.figure_of(static_cast<int>(i));
+        const auto f = at(figure >= 0 ? figure : declared[i]);
         if (listed[f] < 0) list(f, f == 0 ? "" : program.figures[f].name);
         body.figure = listed[f];
         body.color = from.color;

@@ -23,12 +23,26 @@ struct Topology {
     std::vector<int> joint_order;             ///< those that exist, in the order made
     std::vector<std::vector<int>> joints_of;  ///< of each ellipsoid
     std::vector<int> figure_first;            ///< the ellipsoid that a figure is found by; -1: no such figure
-    std::vector<int> figure_of;               ///< of each ellipsoid; -1: none
+    std::size_t visited = 0;                  ///< ellipsoids and joints met in making it
 
-    /// Fills joints_of and figure_of from the others.
+    /// Fills joints_of and what figure_of tells from the others.
     void connect(std::size_t ellipsoids);
+    /// Adds a joint that did not exist.
+    void attach(int joint, int first, int second);
+    /// Of an ellipsoid; -1: none.
+    int figure_of(int ellipsoid) const;
     int other_end(int joint, int ellipsoid) const;
     bool is_end(int joint, int ellipsoid) const;
+
+  private:
+    /// Ellipsoids that hang together are a tree, by its size joined to others; its root knows the figure.
+    struct Piece {
+        int parent = -1, size = 1, figure = -1;
+    };
+    int root_of(int ellipsoid) const;
+    void join(int first, int second);
+
+    std::vector<Piece> m_pieces;
 };
 
 struct FigureState {
@@ -53,12 +67,15 @@ struct FigureState {
     std::vector<Body> bodies;        ///< as Program::ellipsoids; 0 is world, which never moves
     std::vector<glm::dvec3> joints;  ///< positions in space, as Program::joints
     std::vector<Value> variables;
-    std::vector<Overlap> overlaps;  ///< the last that names a pair holds
-    std::shared_ptr<const Topology> topology;
+    std::vector<Overlap> overlaps;       ///< the last that names a pair holds
+    std::shared_ptr<Topology> topology;  ///< changed by own_topology alone
     glm::dvec3 place{500.0}, observe{0.0};
 
     std::size_t bytes() const;
 };
+
+/// The state's topology, to be changed: a copy where other states share it.
+Topology& own_topology(FigureState& state);
 
 /// Ellipsoids and joints that move together.
 struct FigurePart {
