@@ -201,6 +201,7 @@ double Occluders::border(const glm::dvec3& a, const glm::dvec3& b, double hair,
     std::vector<Stretch> dark, inner;
     // Where a corner of a shadow just reaches the edge, the border goes on within the triangles beside it.
     std::vector<double> touched;
+    bool all_dark = false;
     for_each_in(region_before(r, s), [&](const Occluder& o) {
         Stretch stretch{0, 1};
         bool on_side = false;
@@ -222,8 +223,11 @@ double Occluders::border(const glm::dvec3& a, const glm::dvec3& b, double hair,
         }
         dark.push_back(stretch);
         if (!on_side) inner.push_back(stretch);
-        return true;
+        // All of it within one shadow: no other border counts.
+        all_dark = !on_side && stretch.from == 0 && stretch.to == 1;
+        return !all_dark;
     });
+    if (all_dark) return -1;
     const bool same = dark.size() == inner.size();
     const double first = first_end(dark, hair), other = same ? first : first_end(inner, hair);
     double least = first < 0 || (other > 0 && other < first) ? other : first;

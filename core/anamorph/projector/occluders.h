@@ -25,8 +25,13 @@ struct ShadowScale {
 
 /// How much of a triangle is in shadows.
 struct ShadowCover {
-    /// none, all, or some of it.
-    enum Share { lit, hidden, both } share = lit;
+    /// Of the triangle.
+    enum Share {
+        lit,     ///< none of it is hidden
+        hidden,  ///< all of it is
+        both     ///< some of it is
+    };
+    Share share = lit;  ///< what there is of shadows
     /// Where it is both: weights of a point within the triangle, a corner of a shadow if there is one.
     glm::dvec3 corner{1. / 3};
     bool has_corner = false;  ///< is it one?
