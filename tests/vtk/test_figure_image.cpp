@@ -131,11 +131,16 @@ TEST(VtkFigureImage, BlocksBecomeAnImageEach) {
     EXPECT_EQ(numbers(first->GetPointData()->GetScalars()), wanted);
 }
 
-/// A script's figure, which moves.
+/// A figure in all parts of the picture, which moves.
+const char* const kLarge =
+    "figure f 1 a\nellipsoid a 450 400 40\nrepeat 0 1 moveto f a 450 500 300\nlinear 0 4 moveby f world 100 "
+    "0 0\nstop\n";
+
+/// A script's figure.
 class Film {
   public:
     Film() {
-        m_reader->SetFileName(m_folder.write("film.nudes", kTwoBodies).c_str());
+        m_reader->SetFileName(m_folder.write("film.nudes", kLarge).c_str());
         filter->SetInputConnection(m_reader->GetOutputPort());
         filter->SetViewSize(70, 50);
         filter->SetStyle(Image::BODY_ID);
@@ -180,6 +185,10 @@ TEST(VtkFigureImage, PartsOfTheImageAreThoseOfTheWhole) {
             EXPECT_LT(points, 70 * 50);
             expect_part(points);
             all += points;
+            const std::vector<double> seen = numbers(filter->GetOutput()->GetPointData()->GetScalars());
+            if (style == Image::BODY_ID) {
+                EXPECT_NE(std::count(seen.begin(), seen.end(), 0), 0) << "piece " << piece;
+            }
         }
         EXPECT_GE(all, 70 * 50);
     }
