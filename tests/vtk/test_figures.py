@@ -72,3 +72,25 @@ with tempfile.TemporaryDirectory() as folder:
             output = lines.GetOutput()
             drawn.append([output.GetPoint(i) for i in range(output.GetNumberOfPoints())])
         assert drawn[0] == drawn[1] and len(drawn[0]) > 1, cls
+
+    # The same as a picture.
+    picture = anamorph.vtkAnamorphFigureImage()
+    for name, value in view + [("Style", picture.DEPTH), ("Lighting", picture.BLINN), ("Antialias", False)]:
+        getattr(picture, "Set" + name)(value)
+        assert getattr(picture, "Get" + name)() == value, name
+    assert "Style: depth" in str(picture) and "Lighting: blinn" in str(picture)
+    pictures = []
+    for source in (reader, back):
+        picture = anamorph.vtkAnamorphFigureImage()
+        picture.SetInputConnection(source.GetOutputPort())
+        picture.SetViewMode(picture.CAMERA)
+        x, y, z = reader.GetOutput().GetPoint(0)
+        picture.SetCameraFocalPoint(x, y, z)
+        picture.SetCameraPosition(x, y, z + 500)
+        picture.SetViewSize(200, 160)
+        picture.SetStyle(picture.BODY_ID)
+        picture.Update()
+        assert picture.GetOutput().GetDimensions() == (200, 160, 1)
+        ids = picture.GetOutput().GetPointData().GetScalars()
+        pictures.append([ids.GetValue(i) for i in range(ids.GetNumberOfTuples())])
+    assert pictures[0] == pictures[1] and {-1, 0} <= set(pictures[0]), set(pictures[0])
