@@ -15,9 +15,33 @@ namespace {
 
 constexpr int kMostBlocks = 1 << 22;
 
+using Taylor = std::array<Jet<Interval, 2>, 2>;
+
+/// The length of the vector of polynomials of the second degree, over a quarter of a block from its centre to (right, down),
+/// at most: part by part of it, so that its terms need not all be largest at once.
+double length_of(const Taylor& p, double right, double down) {
+    constexpr int kParts = 4;
+    const auto part = [](double to, int i) {
+        const double a = to * i / kParts, b = to * (i + 1) / kParts;
+        return Interval(std::min(a, b), std::max(a, b));
+    };
+    double length = 0;
+    for (int j = 0; j < kParts; ++j)
+        for (int i = 0; i < kParts; ++i) {
+            const Interval s = part(right, i), t = part(down, j);
+            const auto size = [&](const Jet<Interval, 2>& g) {
+                return magnitude(g.c[0] + g.c[1] * s + g.c[2] * t + g.c[3] * square(s) + g.c[4] * (s * t) +
+                                 g.c[5] * square(t));
+            };
+            const double here = std::hypot(size(p[0]), size(p[1]));
+            if (std::isnan(here)) return HUGE_VAL;
+            length = std::max(length, here);
+        }
+    return length;
+}
+
 /// How far a block's map is off on the screen, at most: pixels.
 double bound_of(const OkaBlock& map, const DrapedSurface& surface, const Camera& camera, double h, double k) {
-    using Taylor = std::array<Jet<Interval, 2>, 2>;
     const Taylor centre = seen_range(camera, surface.range(Interval(map.u), Interval(map.v)));
     double size = 0;
     for (const double right : {-h, h})
@@ -29,20 +53,15 @@ double bound_of(const OkaBlock& map, const DrapedSurface& surface, const Camera&
             };
             // Of the integral of (1 - s) from 0 to 1, three quarters lie in the nearer half of the way.
             const Taylor near = over(0.5), far = over(1);
-            const Interval s = from_centre(right), t = from_centre(down), st = from_centre(right * down);
-            double off[2];
+            Taylor off = centre;
             for (int i = 0; i < 2; ++i) {
-                const auto& c = centre[static_cast<std::size_t>(i)].c;
-                const auto second = [&](int n) {
-                    return near[static_cast<std::size_t>(i)].c[n] * 0.75 +
-                           far[static_cast<std::size_t>(i)].c[n] * 0.25;
-                };
-                off[i] = magnitude(c[0] - map.centre[i] + (c[1] - map.by_u[i]) * s +
-                                   (c[2] - map.by_v[i]) * t + second(3) * Interval(0, h * h) +
-                                   second(4) * st + second(5) * Interval(0, k * k));
+                const auto axis = static_cast<std::size_t>(i);
+                off[axis].c[0] -= map.centre[i];
+                off[axis].c[1] -= map.by_u[i];
+                off[axis].c[2] -= map.by_v[i];
+                for (int n = 3; n < 6; ++n) off[axis].c[n] = near[axis].c[n] * 0.75 + far[axis].c[n] * 0.25;
             }
-            if (std::isnan(off[0] + off[1])) return HUGE_VAL;
-            size = std::max(size, std::hypot(off[0], off[1]));
+            size = std::max(size, length_of(off, right, down));
         }
     return size;
 }
