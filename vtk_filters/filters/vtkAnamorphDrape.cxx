@@ -166,18 +166,6 @@ vtkDataArray* array_of(vtkDataSet* data, const std::string& name) {
     return name.empty() ? data->GetPointData()->GetScalars() : data->GetPointData()->GetArray(name.c_str());
 }
 
-/// Directions of length 1.
-std::vector<glm::dvec3> lights_of(const std::vector<double>& numbers) {
-    std::vector<glm::dvec3> lights;
-    for (std::size_t i = 0; i + 2 < numbers.size(); i += 3) {
-        const glm::dvec3 light(numbers[i], numbers[i + 1], numbers[i + 2]);
-        const double largest = std::max({std::fabs(light.x), std::fabs(light.y), std::fabs(light.z)});
-        if (largest == 0) throw Error("light", "0,0,0", "must be a direction");
-        lights.push_back(glm::normalize(light / largest));
-    }
-    return lights;
-}
-
 void add_missing(const std::string& text, vtkDataObject* output) {
     vtkNew<vtkStringArray> array;
     array->SetName("anamorph:missing");
@@ -394,12 +382,13 @@ anamorph::DrapeOptions vtkAnamorphDrape::Options(const anamorph::ParameterValues
     if (this->Style == TEXTURE_COORDINATES) options.output = anamorph::Output::stmap;
     if (this->Style == DEPTH) options.own = anamorph::DrapeOutput::depth;
     if (this->Style == NORMAL) options.own = anamorph::DrapeOutput::normal;
-    options.lighting = {anamorph::rows::chosen<anamorph::DrapeShading>(values, "shading"),
-                        lights_of(this->Lights.empty() ? std::vector<double>{} : values.numbers("light")),
-                        values.number("ambient"),
-                        values.number("diffuse"),
-                        values.number("specular"),
-                        values.number("shininess")};
+    options.lighting = {
+        anamorph::rows::chosen<anamorph::DrapeShading>(values, "shading"),
+        anamorph::drape_lights(this->Lights.empty() ? std::vector<double>{} : values.numbers("light")),
+        values.number("ambient"),
+        values.number("diffuse"),
+        values.number("specular"),
+        values.number("shininess")};
     for (int c = 0; c < 4; ++c)
         if (!std::isfinite(this->Background[c]))
             throw Error("Background", anamorph::shortest(this->Background[c]), "must be finite numbers");

@@ -25,9 +25,6 @@ inline constexpr NumberRow kDrapeTolRow{"drape_tol", 0.125, 0.001, 1000};
 /// Of filters: half the height of what is seen without perspective, in units of space.
 inline constexpr NumberRow kDrapeParallelScaleRow{"drape_parallel_scale", 0.5, 1e-6, 1e6};
 
-inline constexpr NumberRow kDrapeRows[] = {kDrapeAngleRow,      kDrapeTubeRow,  kDrapeAmplitudeRow,
-                                           kDrapeWavelengthRow, kDrapePhaseRow, kDrapeDirectionRow,
-                                           kDrapeTurnRow,       kDrapeTolRow,   kDrapeParallelScaleRow};
 /// By default that of the surface.
 inline constexpr NumberRow kDrapeRadiusRow{"drape_radius", NAN, 0.001, 1000};
 

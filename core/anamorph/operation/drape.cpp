@@ -113,22 +113,6 @@ glm::dvec3 vector_of(const ParameterValues& values, const char* name) {
     return rows::three_numbers(values, name, -kFarthest, kFarthest);
 }
 
-/// Directions of length 1.
-std::vector<glm::dvec3> lights_of(const ParameterValues& values) {
-    const std::vector<double> v = values.numbers("light");
-    if (v.size() % 3 != 0)
-        throw Error("light", printable(values.text("light")), "must be three numbers for each light");
-    std::vector<glm::dvec3> lights;
-    for (std::size_t i = 0; i < v.size(); i += 3) {
-        const glm::dvec3 light(v[i], v[i + 1], v[i + 2]);
-        const double largest = std::max({std::fabs(light.x), std::fabs(light.y), std::fabs(light.z)});
-        if (largest == 0)
-            throw Error("light", printable(values.text("light")), "must be directions, other than 0,0,0");
-        lights.push_back(glm::normalize(light / largest));
-    }
-    return lights;
-}
-
 CameraPose pose_of(const ParameterValues& values, double aspect) {
     CameraPose pose;
     pose.perspective = values.text("view") == "perspective";
@@ -175,7 +159,7 @@ DrapeOptions options_of(const ParameterValues& values) {
                       output = rows::chosen_index(values, "output");
     if (output >= shared) options.own = kOwn[output - shared];
     options.lighting = {chosen<DrapeShading>(values, "shading"),
-                        lights_of(values),
+                        drape_lights(values.numbers("light")),
                         values.number("ambient"),
                         values.number("diffuse"),
                         values.number("specular"),
@@ -418,6 +402,23 @@ class Drapes final : public Pictures {
 };
 
 }  // namespace
+
+std::vector<glm::dvec3> drape_lights(const std::vector<double>& numbers) {
+    const auto check = [&](bool holds, const char* must) {
+        std::string text;
+        for (const double number : numbers) text += (text.empty() ? "" : ",") + shortest(number);
+        if (!holds) throw Error("light", text, must);
+    };
+    check(numbers.size() % 3 == 0, "must be three numbers for each light");
+    std::vector<glm::dvec3> lights;
+    for (std::size_t i = 0; i < numbers.size(); i += 3) {
+        const glm::dvec3 light(numbers[i], numbers[i + 1], numbers[i + 2]);
+        const double largest = std::max({std::fabs(light.x), std::fabs(light.y), std::fabs(light.z)});
+        check(largest != 0, "must be directions, other than 0,0,0");
+        lights.push_back(glm::normalize(light / largest));
+    }
+    return lights;
+}
 
 const Operation& drape_operation() {
     static const ParameterTable table = make_table();
