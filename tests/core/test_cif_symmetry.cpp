@@ -152,7 +152,7 @@ TEST(CrystalSymmetry, MoleculesAreWhole) {
         rows += "C" + std::to_string(i + 1) + " " +
                 std::to_string(r * std::cos(i * std::numbers::pi / 3) / 9) + " " +
                 std::to_string(r * std::sin(i * std::numbers::pi / 3) / 9) + " 0\n";
-    for (const std::string& other : {"-x,-y,-z", "1-x,1-y,-z", "2-x,-y-3,4-z"}) {
+    for (const char* const other : {"-x,-y,-z", "1-x,1-y,-z", "2-x,-y-3,4-z"}) {
         const FigureFrame frame =
             frame_of(cell_text(9, 9, 9, 90, 90, 90) + operations_text({"x,y,z", other}) + atoms_text(rows));
         ASSERT_EQ(frame.bodies.size(), 6u);
