@@ -95,19 +95,14 @@ class Cutting {
         m_open.push_back({c, sides, m_depth + 1});
     }
 
-    double rounded(double x) const { return m_options.single ? double{static_cast<float>(x)} : x; }
+    glm::dvec3 rounded(const glm::dvec3& p) const { return m_options.single ? glm::dvec3(glm::vec3(p)) : p; }
 
     /// The corner that splits a side: the same from both ends.
     SceneCorner between(const SceneCorner& a, const SceneCorner& b, const EdgeFinding& found) const {
         const bool ordered = EdgeRule::in_order(a.point, b.point);
         const SceneCorner &first = ordered ? a : b, &last = ordered ? b : a;
         const double t = found.verdict == EdgeVerdict::cut ? found.at : 0.5;
-        SceneCorner corner;
-        for (int i = 0; i < 3; ++i) {
-            corner.point[i] = rounded(first.point[i] * (1 - t) + last.point[i] * t);
-            corner.weights[i] = first.weights[i] * (1 - t) + last.weights[i] * t;
-        }
-        return corner;
+        return {first.weights * (1 - t) + last.weights * t, rounded(first.point * (1 - t) + last.point * t)};
     }
 
     void split_or_paint(const SceneTriangle& triangle) {
@@ -192,7 +187,7 @@ class Cutting {
             m.weights += c[k].weights * weights[static_cast<int>(k)];
             m.point += c[k].point * weights[static_cast<int>(k)];
         }
-        for (int i = 0; i < 3; ++i) m.point[i] = rounded(m.point[i]);
+        m.point = rounded(m.point);
         const glm::dvec3 normal = glm::cross(c[1].point - c[0].point, c[2].point - c[0].point);
         for (std::size_t k = 0; k < 3; ++k)
             if (!(glm::dot(glm::cross(c[(k + 1) % 3].point - c[k].point, m.point - c[k].point), normal) > 0))
@@ -382,10 +377,8 @@ class Cutting {
     /// The corner at a border; the ends come in order, so that it is the same for both triangles.
     PaintedCorner on_border(const PaintedCorner& a, const PaintedCorner& b, double t) const {
         PaintedCorner c;
-        for (int i = 0; i < 3; ++i) {
-            c.weights[i] = a.weights[i] * (1 - t) + b.weights[i] * t;
-            c.point[i] = rounded(a.point[i] * (1 - t) + b.point[i] * t);
-        }
+        c.weights = a.weights * (1 - t) + b.weights * t;
+        c.point = rounded(a.point * (1 - t) + b.point * t);
         c.texel = a.texel * (1 - t) + b.texel * t;
         return c;
     }
