@@ -102,6 +102,11 @@ class ParameterEnds : public InFolder {
                        "figure f 1 e\nellipsoid e 200 300 100\nrepeat 0 1000000 spinby f e e 1 z\nstop\n");
             add("script", "long.nudes");
         }
+        if (key == "output" && value == "mips") {
+            write_text("dressed.nudes",
+                       "figure f 1 e\nellipsoid e 200 300 100\nrepeat 0 1 texture e city.exr 0 0\nstop\n");
+            add("script", "dressed.nudes");
+        }
         if (key == "picture") {
             for (const Assignment& a : pictures_to(value)) arguments.push_back(a);
         }
