@@ -9,6 +9,8 @@
 #include <set>
 #include <stdexcept>
 
+#include "anamorph/text_file.h"
+
 namespace anamorph {
 namespace {
 
@@ -298,7 +300,7 @@ std::vector<Assignment> parse_recipe(std::string_view text) {
     if (text.size() > kMaxRecipeBytes)
         throw Error("recipe of " + std::to_string(text.size()) + " bytes: must have at most " +
                     std::to_string(kMaxRecipeBytes));
-    if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);
+    text = text_file::without_byte_order_mark(text);
     std::vector<Assignment> out;
     for (int number = 1; !text.empty(); ++number) {
         const std::size_t end = text.find('\n');

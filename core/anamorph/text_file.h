@@ -46,12 +46,17 @@ std::vector<std::string_view> fields_of(std::string_view row);
 /// Whether a file's name ends like this, in small letters or capitals.
 bool ends_with(std::string_view name, std::string_view lower_case_ending);
 
+/// The text behind the mark that some editors put in front of UTF-8.
+inline std::string_view without_byte_order_mark(std::string_view text) {
+    constexpr std::string_view kMark = "\xef\xbb\xbf";
+    return text.starts_with(kMark) ? text.substr(kMark.size()) : text;
+}
+
 /// Calls body(row, label) for every row, trimmed; `label` is "row N". Left out are a byte order mark, empty
 /// rows, and those that begin with #.
 template <class Body>
 void each_row(std::string_view text, const Body& body) {
-    constexpr std::string_view kByteOrderMark = "\xef\xbb\xbf";
-    if (text.starts_with(kByteOrderMark)) text.remove_prefix(kByteOrderMark.size());
+    text = without_byte_order_mark(text);
     for (std::size_t number = 1; !text.empty(); ++number) {
         const std::size_t end = text.find('\n');
         const std::string_view row = trimmed(text.substr(0, end));

@@ -55,7 +55,9 @@ TEST(ShaderProgram, ErrorsNameTheLine) {
     expect("def c0, 1, 2, 3, 4\ndef c0, 1, 2, 3, 4" + last, "line 3: \"c0\": is defined twice");
     expect("mad r0, c0, c1, c2" + last, "line 2: an instruction can read two different constants at most");
     expect("rcp r0.x, c0" + last, "line 2: \"c0\": must be one component, as in r0.x");
-    expect("mov_x2 r0, c0" + last, "line 2: \"mov_x2\": must have _sat and _pp at most behind it");
+    expect("mov_x2 r0, c0" + last, "line 2: \"mov_x2\": must have _sat and _pp at most behind it, each once");
+    expect("mov_sat_sat r0, c0" + last,
+           "line 2: \"mov_sat_sat\": must have _sat and _pp at most behind it, each once");
     expect("add oC0, c0, c1", "line 2: \"oC0\": must be written by mov, all of it");
     expect("mov c0, c1" + last,
            "line 2: \"c0\": must be a register that can be written, r0 to r11 or oC0 to oC3");
@@ -74,6 +76,7 @@ TEST(ShaderProgram, ErrorsNameTheLine) {
     EXPECT_EQ(whole(""), "none: line 1: is empty: the first line must be ps_2_0");
     EXPECT_EQ(whole("\n\n"), "none: line 2: is empty: the first line must be ps_2_0");
     EXPECT_THROW(assemble_shader("vs_2_0\n", "none"), Error);
+    EXPECT_EQ(whole("\xef\xbb\xbfps_2_0\r\nmov oC0, c0\r\n"), "");
 }
 
 TEST(ShaderProgram, HasTheLimitsOfTheProfile) {
@@ -129,6 +132,12 @@ std::array<float, 4> computed(const std::string& instruction, const std::array<s
 }
 
 /// In arithmetic of float, component by component.
+TEST(ShaderMachine, BothZerosHaveTheSameRoot) {
+    const std::array<std::array<float, 4>, 3> v{{{0, 0, 0, 0}, {-0.0f, 0, 0, 0}, {0, 0, 0, 0}}};
+    EXPECT_EQ(computed("rsq_sat r0, -c0.x", v)[0], 1);
+    EXPECT_EQ(computed("rsq_sat r0, c1.x", v)[0], 1);
+}
+
 TEST(ShaderMachine, InstructionsComputeAsTheProcessorDoes) {
     constexpr unsigned kSeed = 11;
     SCOPED_TRACE(testing::Message() << "seed " << kSeed);

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <string>
 
+#include "anamorph/text_file.h"
+
 namespace anamorph {
 namespace {
 
@@ -21,10 +23,7 @@ bool is_blank(char c) {
 
 }  // namespace
 
-ScriptLexer::ScriptLexer(std::string_view text) : m_text(text) {
-    constexpr std::string_view kByteOrderMark = "\xef\xbb\xbf";
-    if (m_text.starts_with(kByteOrderMark)) m_text.remove_prefix(kByteOrderMark.size());
-}
+ScriptLexer::ScriptLexer(std::string_view text) : m_text(text_file::without_byte_order_mark(text)) {}
 
 void ScriptLexer::advance() {
     if (m_text[m_at++] == '\n') {

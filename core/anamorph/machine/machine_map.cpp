@@ -10,6 +10,8 @@ namespace anamorph {
 namespace {
 
 constexpr int kBlockSide = 64;
+// Source pixels: less than any machine's own errors.
+constexpr double kSmallRounding = 1e-6;
 
 }  // namespace
 
@@ -45,19 +47,32 @@ void MachineMap::plan(const Box& box, int piece, Blocks& blocks) const {
     for (int y = box.y0; y < box.y1; y += kBlockSide)
         for (int x = box.x0; x < box.x1; x += kBlockSide) {
             const Box part{x, y, std::min(x + kBlockSide, box.x1), std::min(y + kBlockSide, box.y1)};
-            blocks.push_back(measured(part, piece, region->saturated));
-            blocks.back().data = region.get();
+            Block block;
+            block.box = part;
+            block.kind = Block::Kind::computed;
+            block.precise = true;
+            block.piece = piece;
+            block.bound = bound_over(part, piece, region->saturated);
+            block.data = region.get();
+            blocks.push_back(block);
         }
     blocks.data = region;
 }
 
-/// A block with its bound; adds its saturated pixels.
-Block MachineMap::measured(const Box& box, int piece, std::int64_t& saturated) const {
-    Block block;
-    block.box = box;
-    block.kind = Block::Kind::computed;
-    block.precise = true;
-    block.piece = piece;
+/// The largest distance of the pixels of a box, and what it may be off; adds its saturated pixels. About poles and seams
+/// rounding is known of small boxes only.
+double MachineMap::bound_over(const Box& box, int piece, std::int64_t& saturated) const {
+    const double off = rounding(box, piece);
+    if (!(off <= kSmallRounding) && box.width() * box.height() > 1) {
+        Box first = box, second = box;
+        if (box.width() >= box.height())
+            first.x1 = second.x0 = box.x0 + box.width() / 2;
+        else
+            first.y1 = second.y0 = box.y0 + box.height() / 2;
+        const double bound = bound_over(first, piece, saturated);
+        return std::max(bound, bound_over(second, piece, saturated));
+    }
+    double largest = 0;
     for (int y = box.y0; y < box.y1; ++y)
         for (int x = box.x0; x < box.x1; ++x) {
             Point<double> exact{};
@@ -65,10 +80,9 @@ Block MachineMap::measured(const Box& box, int piece, std::int64_t& saturated) c
             if (!m_exact->exact(x + 0.5, y + 0.5, piece, exact, source_piece)) continue;
             const UnitCoordinates used = coordinates(x, y, piece);
             saturated += used.beyond;
-            block.bound = std::max(block.bound, distance(source_point(used), exact));
+            largest = std::max(largest, distance(source_point(used), exact));
         }
-    block.bound += rounding(box, piece);
-    return block;
+    return largest + off;
 }
 
 std::int64_t MachineMap::saturated_pixels(const ParallelFor& parallel_for) const {

@@ -50,7 +50,7 @@ class MachineMap : public BlockMap {
     struct Region;
 
     double distance(const Point<double>& used, const Point<double>& exact) const;
-    Block measured(const Box& box, int piece, std::int64_t& saturated) const;
+    double bound_over(const Box& box, int piece, std::int64_t& saturated) const;
 
     std::shared_ptr<const BlockMap> m_exact;
     Size m_source;

@@ -98,9 +98,11 @@ class MachineMembers {
         return found == m_json.end() ? nullptr : &*found;
     }
     [[noreturn]] static void refuse(const std::string& key, const Json& value, const std::string& rule) {
-        throw Error("machine: " + key,
-                    text_file::excerpt(value.dump(-1, ' ', true, Json::error_handler_t::replace)),
-                    "must be " + rule);
+        // As it was written in a list: JSON has no name for what is no number.
+        const std::string text = value.is_number_float()
+                                     ? shortest(value.get<double>())
+                                     : value.dump(-1, ' ', true, Json::error_handler_t::replace);
+        throw Error("machine: " + key, text_file::excerpt(text), "must be " + rule);
     }
 
     Json m_json;

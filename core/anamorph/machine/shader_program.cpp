@@ -244,9 +244,10 @@ class Assembler {
         for (std::string_view rest = word.substr(end); !rest.empty();) {
             const std::size_t next = std::min(rest.find('_', 1), rest.size());
             const std::string_view modifier = rest.substr(0, next);
-            if (modifier != "_sat" && modifier != "_pp")
-                refuse(word, "must have _sat and _pp at most behind it");
-            (modifier == "_sat" ? made.saturated : made.partial) = true;
+            bool& flag = modifier == "_sat" ? made.saturated : made.partial;
+            if ((modifier != "_sat" && modifier != "_pp") || flag)
+                refuse(word, "must have _sat and _pp at most behind it, each once");
+            flag = true;
             rest.remove_prefix(next);
         }
         expect(operands, facts->sources + 1, word);
@@ -375,6 +376,7 @@ std::string text_of(const ShaderSource& source) {
 
 ShaderProgram assemble_shader(std::string_view text, const std::string& name, const ShaderSlots& slots) {
     text_file::check_size(text, name);
+    text = text_file::without_byte_order_mark(text);
     Assembler assembler(slots);
     ShaderProgram program;
     for (std::size_t number = 1;; ++number) {

@@ -98,7 +98,8 @@ class ShaderMachine {
             case ShaderOpcode::rcp:
                 return T(1.0) / a[k];
             case ShaderOpcode::rsq:
-                return T(1.0) / sqrt(max(a[k], -a[k]));
+                // Of |a|; the sum makes one zero of two.
+                return T(1.0) / sqrt(max(a[k], -a[k]) + T(0.0));
             case ShaderOpcode::min:
                 return min(a[k], b[k]);
             case ShaderOpcode::max:
