@@ -32,6 +32,13 @@ class OiioImage final : public SideImage {
         m_input->threads(1);
         const OIIO::ImageSpec& spec = m_input->spec();
         if (spec.deep || spec.depth > 1) throw Error(m_what + " is deep or a volume: must be a flat image");
+        // Beyond its data there is nothing that a map or a surface could go on with.
+        if (spec.x != spec.full_x || spec.y != spec.full_y || spec.width != spec.full_width ||
+            spec.height != spec.full_height)
+            throw Error(
+                m_what +
+                " has pixels in a part of its display window only, or beyond it: must have them in all of "
+                "it and no more (oiiotool --croptofull)");
     }
 
     Size size() const override {

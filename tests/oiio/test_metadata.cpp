@@ -190,6 +190,17 @@ TEST_P(Orientations, SourcesAreReadUpright) {
     }
 }
 
+/// What a map says of some pixels is not taken for what it says of others.
+TEST_F(Metadata, SideImagesMustFillTheirWindows) {
+    ASSERT_EQ(run("oiiotool 'city.exr.warp?mesh=grid.json&output=stmap&size=20x30' -o st.exr "
+                  "--crop 10x12+4+5 -o part.exr")
+                  .status,
+              0);
+    EXPECT_EQ(open_error("city.exr.warp?mesh=st.exr"), "");
+    EXPECT_THAT(open_error("city.exr.warp?mesh=part.exr"),
+                testing::HasSubstr("image \"part.exr\" has pixels in a part"));
+}
+
 TEST_P(Orientations, SoAreDataWindowsAndStMaps) {
     ImageBuf stored = panorama(70, 44);
     stored.specmod().attribute("Orientation", GetParam());
