@@ -330,6 +330,8 @@ TEST(Lens, RefusesToFoldWithinThePicture) {
     expect_refused("ptlens:b=-0.9,d=400", "folds at a radius of 531.3 pixels: must not within 900");
     expect_refused("ptlens:a=0.5,b=0.5,c=0.5", "folds at a radius of 0 pixels");
     expect_refused("brown:k1=-1", "folds at a radius of");
+    // A tangential part takes up half of the rest before the picture folds.
+    expect_refused("brown:p1=0.5", "ends at a radius of");
     expect_refused("3de4:k1=-3", "folds at a radius of");
     expect_refused("kb4:k1=-2", "folds at a radius of");
 }

@@ -169,7 +169,7 @@ Lens::Lens(const LensModel& model, Lensed lensed, const std::string& projection,
             return print(std::round(10 * length * static_cast<double>(unit / plane.per_x)) / 10);
         };
         throw Error(parameter, model.text(),
-                    std::string(folds ? "folds" : "ends") + " at a radius of " +
+                    std::string(folds && !m_terms.tangential ? "folds" : "ends") + " at a radius of " +
                         pixels(m_terms.observed_end) + " pixels: must not within " + pixels(asked) +
                         ", the circle that the picture holds");
     }
