@@ -192,7 +192,7 @@ TEST(BlockMachine, IsASchemeOfDrapes) {
     EXPECT_EQ(message({{"machine", "ps20"}}),
               "machine=ps20: must be oka-1987, oka-1987:key=value,key=value or an object of JSON, {...}");
     EXPECT_EQ(message({{"machine", "oka-1987:processors=0"}}),
-              "machine: processors=0.0: must be an integer from 1 to 4096");
+              "machine: processors=0: must be an integer from 1 to 4096");
 }
 
 }  // namespace

@@ -271,7 +271,7 @@ TEST(MachineText, SaysWhatIsWrong) {
     EXPECT_EQ(message("embm-2003:size=2,size=3"), "machine=size=3: must be key=value, each key once");
     EXPECT_EQ(message("embm-2003:size"), "machine=size: must be key=value, each key once");
     EXPECT_EQ(message("embm-2003:size=x"), "machine: size=\"x\": must be an integer from 0 to 4096");
-    EXPECT_EQ(message("embm-2003:scaled=1"), "machine: scaled=1.0: must be true or false");
+    EXPECT_EQ(message("embm-2003:scaled=1"), "machine: scaled=1: must be true or false");
     EXPECT_EQ(message("embm-2003:texel=V8U8,scaled=false,size=64"), "");
     EXPECT_EQ(bump_unit_from_text("embm-2003:texel=V8U8,size=64").size, 64);
     EXPECT_EQ(bump_unit_from_text("embm-2003:texel=V8U8,size=64").texel, kSigned8);
