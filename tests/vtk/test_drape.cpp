@@ -244,7 +244,7 @@ std::vector<double> turned_over(const std::vector<Value>& pixels, std::size_t ro
 }
 
 const anamorph::Size kScreen{90, 60};
-const char* const kFilters[] = {"nearest", "bilinear", "bicubic", "antialias"};
+const char* const kFilters[] = {"nearest", "bilinear", "bicubic", "antialias", "pyramid", "summed_area"};
 const char* const kStyles[] = {"color", "stmap", "depth", "normal"};
 
 /// What is drawn of a surface.
@@ -328,10 +328,10 @@ TEST(VtkDrape, EverySurfaceHasThePixelsOfTheOperation) {
     ASSERT_EQ(anamorph::surface_names().size(), std::size_t{Drape::RIPPLES + 1});
     for (int surface = Drape::PLANE; surface <= Drape::RIPPLES; ++surface)
         for (const bool parallel : {false, true})
-            for (int i = 0; i < 7; ++i) {
+            for (int i = 0; i < 9; ++i) {
                 SCOPED_TRACE(testing::Message() << surface << " " << parallel << " " << i);
                 // Colors by each filter, then what else is drawn.
-                const Case c{surface, parallel, i < 4 ? i : 3, i < 4 ? 0 : i - 3, i % 2 ? 4 : 3};
+                const Case c{surface, parallel, i < 6 ? i : 3, i < 6 ? 0 : i - 5, i % 2 ? 4 : 3};
                 const Picture texture = picture(80, 50, VTK_UNSIGNED_CHAR, c.components);
                 vtkNew<Drape> filter;
                 filter->SetInputData(texture);

@@ -55,7 +55,7 @@ class ANAMORPHFILTERS_EXPORT vtkAnamorphDrape : public vtkImageAlgorithm {
     /** The values of Surface. */
     enum { PLANE, CYLINDER, SPHERE, TORUS, PAGE_TURN, WAVES, RIPPLES, POSITIONS };
     /** The values of Filter. */
-    enum { NEAREST, BILINEAR, BICUBIC, ANTIALIAS };
+    enum { NEAREST, BILINEAR, BICUBIC, ANTIALIAS, PYRAMID, SUMMED_AREA };
     /** The values of Style. */
     enum { COLOR, TEXTURE_COORDINATES, DEPTH, NORMAL };
     /** The values of Shading. */
@@ -199,9 +199,11 @@ class ANAMORPHFILTERS_EXPORT vtkAnamorphDrape : public vtkImageAlgorithm {
     ///@{
     /**
      * How the texture is read: NEAREST, BILINEAR, BICUBIC, or ANTIALIAS, the default: means over a pixel's
-     * footprint, and of samples at silhouettes and borders.
+     * footprint, and of samples at silhouettes and borders. PYRAMID and SUMMED_AREA: the same with means over
+     * the least rectangle around the footprint (Oka 1987, fig. 2.6), of a level of a pyramid (Williams 1983),
+     * or of all texels, from a table of their sums (Crow 1984).
      */
-    vtkSetClampMacro(Filter, int, NEAREST, ANTIALIAS);
+    vtkSetClampMacro(Filter, int, NEAREST, SUMMED_AREA);
     vtkGetMacro(Filter, int);
     ///@}
 
