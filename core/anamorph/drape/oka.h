@@ -35,9 +35,9 @@ bool oka_block(const DrapedSurface& surface, const Camera& camera, const Size& p
 /// its centre, of g, the map to the screen, and the linear map a that is drawn, whatever it is made of,
 ///     |g - a0 + (g_u - a1) s + (g_v - a2) t + g_uu s^2 / 2 + g_uv s t + g_vv t^2 / 2|
 /// with g, g_u and g_v at the centre, and for (s, t) in each quarter of the block a mean of the second derivatives over
-/// that quarter, which the way from the centre does not leave, and over the half of it that is next to the centre. Infinite where that is not known. Blocks with a point that is not in
-/// front of the camera are left out. The surface outlives the facets. Throws Error where there are more than four million
-/// blocks.
+/// that quarter, which the way from the centre does not leave, and over the half of it that is next to the centre. Infinite
+/// where that is not known. Blocks with a point that is not in front of the camera are left out. The surface outlives the
+/// facets. Throws Error where there are more than four million blocks.
 Facets oka_facets(const DrapedSurface& surface, const Camera& camera, const Size& picture,
                   const OkaBlocks& blocks);
 
