@@ -52,16 +52,18 @@ class Povray(unittest.TestCase):
     def traced(self, name, camera):
         eye, target, fov = camera
         body, v, _ = BODIES[name]
+        # A name each: a cache keeps what was written over within the same second.
+        traced = f"traced_{name}_{CAMERAS.index(camera)}.png"
         with open("scene.pov", "w") as scene:
             scene.write(SCENE.format(eye=numbers(eye), target=numbers(target), fov=fov, width=WIDTH, height=HEIGHT,
                                      body=body, u=AROUND, v=v))
         environment = {k: v for k, v in os.environ.items() if k not in ("LD_PRELOAD", "ASAN_OPTIONS")}
-        done = subprocess.run(["povray", "+Iscene.pov", "+Otraced.png", f"+W{WIDTH}", f"+H{HEIGHT}", "+FN16",
+        done = subprocess.run(["povray", "+Iscene.pov", f"+O{traced}", f"+W{WIDTH}", f"+H{HEIGHT}", "+FN16",
                                "File_Gamma=1.0", "-A", "-D", "+WT1", "-GA"], env=environment,
                               stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True,
                               timeout=120)
         self.assertEqual(done.returncode, 0, done.stdout)
-        return read("traced.png")
+        return read(traced)
 
     def ours(self, name, camera):
         eye, target, fov = camera
