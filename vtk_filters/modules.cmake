@@ -3,16 +3,16 @@
 
 # Found the same way by our build and by the users of the installed package.
 if(ANAMORPH_TOOLKIT STREQUAL "PARAVIEW")
-    set(find_toolkit "find_package(ParaView REQUIRED COMPONENTS RemotingCore RemotingServerManager)")
+    set(find_toolkit "find_package(ParaView REQUIRED COMPONENTS RemotingCore RemotingServerManager RemotingViews)")
 else()
     set(find_toolkit "find_package(VTK 9.1 REQUIRED COMPONENTS CommonExecutionModel FiltersCore FiltersGeneral
-             FiltersGeometry FiltersSources IOImage ImagingCore ParallelCore WrappingPythonCore Python)")
+             FiltersGeometry FiltersSources IOImage ImagingCore ParallelCore RenderingOpenGL2 WrappingPythonCore Python)")
 endif()
 file(WRITE ${PROJECT_BINARY_DIR}/AnamorphToolkit.cmake "# SPDX-License-Identifier: Apache-2.0\n${find_toolkit}\n")
 include(${PROJECT_BINARY_DIR}/AnamorphToolkit.cmake)
 install(FILES ${PROJECT_BINARY_DIR}/AnamorphToolkit.cmake DESTINATION ${package_dir})
 if(ANAMORPH_TESTS AND ANAMORPH_TOOLKIT STREQUAL "VTK")
-    find_package(VTK 9.1 REQUIRED COMPONENTS InteractionStyle RenderingFreeType RenderingOpenGL2) # of the example
+    find_package(VTK 9.1 REQUIRED COMPONENTS InteractionStyle RenderingFreeType) # of the example
 endif()
 
 # One folder of libraries: a plugin then finds the modules from the build tree as from an installation.
@@ -49,6 +49,7 @@ vtk_module_wrap_python(MODULES ${anamorph_modules}
                        INSTALL_EXPORT AnamorphVTK)
 # What VTK's wrapper writes leaves out what Pythons newer than it have in their types.
 target_compile_options(AnamorphFiltersPython PRIVATE -Wno-missing-field-initializers)
+target_compile_options(AnamorphRenderingPython PRIVATE -Wno-missing-field-initializers)
 configure_file(${PROJECT_SOURCE_DIR}/vtk_filters/python/__init__.py
                ${PROJECT_BINARY_DIR}/${python_dir}/anamorph/__init__.py COPYONLY)
 install(FILES vtk_filters/python/__init__.py DESTINATION ${python_dir}/anamorph)

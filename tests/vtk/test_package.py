@@ -9,5 +9,7 @@ assert len(sys.argv) < 2 or anamorph.__file__.startswith(sys.argv[1]), anamorph.
 headers = pathlib.Path(__file__).parents[2].glob("vtk_filters/**/vtkAnamorph*.h")
 names = [header.stem for header in headers if "vtkAbstractTypeMacro" not in header.read_text()]
 assert "vtkAnamorphDeform" in names
+# What does not draw loads no OpenGL.
+assert not [name for name in sys.modules if "Rendering" in name], sys.modules
 for name in names:
     assert getattr(anamorph, name)().GetClassName() == name, name

@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: Apache-2.0
+// The ellipsoids that points of data stand for, and the numbers that shaders draw them by.
+#pragma once
+
+#include <glm/mat3x3.hpp>
+#include <glm/vec3.hpp>
+#include <string>
+#include <vector>
+
+#include "vtkType.h"
+
+class vtkDataSet;
+class vtkUnsignedCharArray;
+
+namespace anamorph_vtk {
+
+/// Which arrays of the points say what shape the bodies have.
+struct EllipsoidArrays {
+    enum Shape { AXES, TENSOR, COVARIANCE };
+    int shape = AXES;
+    std::string axes, orientation, tensor;
+    double scale = 1;
+};
+
+/// The points center + axes s with |s| <= 1.
+struct EllipsoidBody {
+    glm::dvec3 center{0.0};
+    glm::dmat3 axes{0.0}, inverse{0.0};
+    bool drawn = false;
+    vtkIdType cell = -1;
+    float color[4] = {1, 1, 1, 1};
+};
+
+/// A body for each point of a data set: `first` to `first + count` of all.
+struct EllipsoidBlock {
+    unsigned int index = 0;  ///< in composite data, depth first
+    vtkIdType first = 0, count = 0;
+};
+
+class EllipsoidBodies {
+  public:
+    std::vector<EllipsoidBody> bodies;
+    std::vector<EllipsoidBlock> blocks;
+    vtkIdType skipped = 0;  ///< points whose numbers make no body
+
+    /// Adds the points of a block, hidden ones and ghosts as bodies that are not drawn. `colors`: RGBA of the points, or
+    /// of the cells; may be null. Throws Error naming an array that is missing or not as it should be.
+    void add(vtkDataSet* data, unsigned int index, const EllipsoidArrays& arrays);
+    void color(const EllipsoidBlock& block, vtkUnsignedCharArray* colors, bool of_cells);
+    bool bounds(double box[6]) const;
+
+    /// A power of two near the size of all, and the texels of ellipsoid_shader.h in that unit.
+    double unit() const;
+    std::vector<float> texels(double unit) const;
+};
+
+}  // namespace anamorph_vtk

@@ -1,0 +1,142 @@
+// SPDX-License-Identifier: Apache-2.0
+// The shaders that draw ellipsoids, to be put in the places of VTK's shader templates.
+//
+// A body is c + A s, |s| <= 1. In the space of s it is the unit sphere, and the eye is at e = A^-1 (eye - c). With k = 1 /
+// |e|, n = k e, r = sqrt(1 - k^2) and u, v that make an orthonormal basis of n, view rays touch the sphere in the circle
+// r (u cos p + v sin p) + k n. So the parallelogram with the corners r (+-u +-v) + k n, turned into space by A, hides the
+// body; its point r (a u + b v) + k n is on a ray that meets the sphere where a^2 + b^2 <= 1, at the points
+//     (r a, r b, k +- h) / (1 +- k h)    in the basis u, v, n,    h = sqrt(1 - a^2 - b^2).
+// Proof: put e + t (q - e) on the sphere; |q - e|^2 = r^2 (a^2 + b^2 + (r / k)^2), and t = 1 / (1 +- k h). Rays of a parallel
+// view are the limit k = 0. Nothing cancels where a body is thin, far or seen at its edge. From within (|e| < 1, of
+// perspective views) it covers the picture, and e + t d is solved for t > 0.
+#pragma once
+
+namespace anamorph_vtk {
+
+/// Texels that a body takes of the buffer `bodies`: the centre, as the sum of two floats a coordinate (its w: 1, or 0 if it
+/// is not to be drawn); the columns of A (the first two w: its cell's id, as id % 2^24 and id / 2^24); the rows of A^-1;
+/// the colour.
+constexpr int kBodyTexels = 9;
+
+/// Draws 6 vertices, two triangles, for each body.
+constexpr const char* kEllipsoidVertexShader = R"glsl(//VTK::System::Dec
+uniform samplerBuffer bodies;
+uniform int firstBody;
+uniform int eyeInPerspective;
+uniform vec3 eyeHigh, eyeLow;  // of the eye, as centres are given
+uniform vec3 towardEye;        // of parallel views
+uniform mat3 bodyToView, viewToBody;
+uniform mat4 viewToClip, clipToView;
+
+out vec3 at;
+flat out vec4 apex;
+flat out vec3 center;
+flat out mat3 axes, inverseAxes, basis;
+flat out vec4 bodyColor;
+flat out ivec2 bodyIds;
+//VTK::CustomUniforms::Dec
+
+void main()
+{
+  int body = gl_VertexID / 6, corner = gl_VertexID % 6;
+  vec2 ab = vec2(corner == 1 || corner == 2 || corner == 4 ? 1.0 : -1.0,
+                 corner == 2 || corner == 4 || corner == 5 ? 1.0 : -1.0);
+  int texel = (firstBody + body) * BODY_TEXELS;
+  vec4 high = texelFetch(bodies, texel), low = texelFetch(bodies, texel + 1);
+  vec4 x = texelFetch(bodies, texel + 2), y = texelFetch(bodies, texel + 3), z = texelFetch(bodies, texel + 4);
+  mat3 A = mat3(x.xyz, y.xyz, z.xyz);
+  mat3 inverseA = transpose(mat3(texelFetch(bodies, texel + 5).xyz, texelFetch(bodies, texel + 6).xyz,
+                                 texelFetch(bodies, texel + 7).xyz));
+  bodyColor = texelFetch(bodies, texel + 8);
+  bodyIds = ivec2(body, int(x.w) + 16777216 * int(y.w));
+  vec3 fromEye = (high.xyz - eyeHigh) + (low.xyz - eyeLow);
+  center = bodyToView * fromEye;
+
+  vec3 e = eyeInPerspective == 1 ? inverseA * -fromEye : inverseA * towardEye;
+  float s = length(e);
+  bool inside = eyeInPerspective == 1 && s <= 1.0;
+  float k = eyeInPerspective == 1 ? 1.0 / s : 0.0;
+  float r = eyeInPerspective == 1 ? sqrt(max(0.0, (s - 1.0) * (s + 1.0))) * k : 1.0;
+  vec3 n = e / s;
+  vec3 u = normalize(abs(n.x) < 0.6 ? vec3(0.0, -n.z, n.y) : vec3(n.z, 0.0, -n.x));
+  basis = inside ? mat3(1.0) : mat3(u, cross(n, u), n);
+  axes = bodyToView * A * basis;
+  inverseAxes = transpose(basis) * inverseA * viewToBody;
+  apex = inside ? vec4(e, 1.0) : vec4(k, r, 0.0, 0.0);
+  if (inside)
+  {
+    vec4 ray = clipToView * vec4(ab, 0.0, 1.0);
+    at = inverseAxes * (ray.xyz / ray.w);
+    gl_Position = vec4(ab, 0.0, 1.0);
+  }
+  else
+  {
+    at = vec3(ab, 0.0);
+    vec4 clip = viewToClip * vec4(center + axes * vec3(r * ab, k), 1.0);
+    gl_Position = vec4(clip.xy, 0.0, clip.w);  // the depth is that of the surface
+  }
+  if (high.w == 0.0) gl_Position = vec4(2.0, 2.0, 2.0, 1.0);
+}
+)glsl";
+
+constexpr const char* kEllipsoidDeclarations = R"glsl(
+uniform mat4 viewToClip;
+uniform float depthBias;
+uniform int farSide;  // 1: what leaves is drawn, not what enters
+uniform int numberOfClips;
+uniform vec4 clips[6];
+in vec3 at;
+flat in vec4 apex;
+flat in vec3 center;
+flat in mat3 axes, inverseAxes, basis;
+flat in vec4 bodyColor;
+flat in ivec2 bodyIds;
+
+// Where the ray enters (side 1) or leaves (side -1) the sphere, in its basis.
+vec3 spherePoint(float side)
+{
+  if (apex.w == 1.0)
+  {
+    float a = dot(at, at), b = dot(apex.xyz, at), c = 1.0 - dot(apex.xyz, apex.xyz), root = sqrt(b * b + a * c);
+    return apex.xyz + at * (b > 0.0 ? c / (b + root) : (root - b) / a);
+  }
+  float k = apex.x, r = apex.y, h = side * sqrt(max(0.0, 1.0 - dot(at.xy, at.xy)));
+  return vec3(r * at.xy, k + h) / (1.0 + k * h);
+}
+
+// The depth of a point of the view in -1 to 1, or 2 if it is not to be seen.
+float shownDepth(vec3 p)
+{
+  for (int i = 0; i < numberOfClips; ++i)
+    if (dot(clips[i], vec4(p, 1.0)) < 0.0) return 2.0;
+  vec4 clip = viewToClip * vec4(p, 1.0);
+  return clip.z >= -clip.w && clip.w > 0.0 ? clip.z / clip.w : 2.0;
+}
+//VTK::PositionVC::Dec)glsl";
+
+/// The first point of the ray that is not clipped; the far side shows where the near one is.
+constexpr const char* kEllipsoidPosition = R"glsl(
+  float side = apex.w == 1.0 || farSide == 1 ? -1.0 : 1.0;
+  vec3 s = spherePoint(side);
+  vec4 vertexVC = vec4(center + axes * s, 1.0);
+  float depth = shownDepth(vertexVC.xyz);
+  if (depth > 1.0 && side == 1.0 && farSide == 0)
+  {
+    side = -1.0;
+    s = spherePoint(side);
+    vertexVC.xyz = center + axes * s;
+    depth = shownDepth(vertexVC.xyz);
+  }
+)glsl";
+
+constexpr const char* kEllipsoidDepth = R"glsl(
+  if (dot(at.xy, at.xy) > 1.0 && apex.w == 0.0 || depth > 1.0) discard;
+  gl_FragDepth = 0.5 * (gl_DepthRange.diff * depth + gl_DepthRange.near + gl_DepthRange.far) - depthBias;
+)glsl";
+
+constexpr const char* kEllipsoidNormal = R"glsl(
+  vec3 normalVCVSOutput = side * normalize(s * inverseAxes);
+  vec3 coatNormalVCVSOutput = normalVCVSOutput;
+)glsl";
+
+}  // namespace anamorph_vtk

@@ -1,0 +1,396 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "vtkAnamorphEllipsoidMapper.h"
+
+#include <glm/gtc/type_ptr.hpp>
+#include <glm/mat4x4.hpp>
+#include <glm/matrix.hpp>
+#include <string>
+#include <vector>
+
+#include "anamorph/error.h"
+#include "ellipsoid_bodies.h"
+#include "ellipsoid_shader.h"
+#include "vtkActor.h"
+#include "vtkCamera.h"
+#include "vtkCommand.h"
+#include "vtkCompositeDataIterator.h"
+#include "vtkCompositeDataSet.h"
+#include "vtkDataSet.h"
+#include "vtkHardwareSelector.h"
+#include "vtkInformation.h"
+#include "vtkMath.h"
+#include "vtkMatrix4x4.h"
+#include "vtkNew.h"
+#include "vtkObjectFactory.h"
+#include "vtkOpenGLBufferObject.h"
+#include "vtkOpenGLCamera.h"
+#include "vtkOpenGLIndexBufferObject.h"
+#include "vtkOpenGLRenderWindow.h"
+#include "vtkOpenGLState.h"
+#include "vtkOpenGLVertexArrayObject.h"
+#include "vtkPoints.h"
+#include "vtkPolyData.h"
+#include "vtkProperty.h"
+#include "vtkRenderer.h"
+#include "vtkScalarsToColors.h"
+#include "vtkShaderProgram.h"
+#include "vtkSmartPointer.h"
+#include "vtkTextureObject.h"
+#include "vtkUnsignedCharArray.h"
+#include "vtkWeakPointer.h"
+#if __has_include("vtk_glad.h")
+#include "vtk_glad.h"
+#else
+#include "vtk_glew.h"
+#endif
+
+vtkObjectFactoryNewMacro(vtkAnamorphEllipsoidMapper);
+
+using anamorph_vtk::EllipsoidArrays;
+using anamorph_vtk::EllipsoidBlock;
+using anamorph_vtk::EllipsoidBodies;
+
+struct vtkAnamorphEllipsoidMapper::Drawing {
+    EllipsoidBodies bodies;
+    std::vector<vtkSmartPointer<vtkDataSet>> data;  ///< of the blocks
+    vtkDataObject* input = nullptr;                 ///< that the bodies are of
+    vtkMTimeType input_time = 0, mapper_time = 0;
+    bool valid = false, colored = false;
+    double unit = 1;
+    vtkIdType first = 0;  ///< of the block that is drawn
+    bool far_side = false;
+    vtkNew<vtkPolyData> no_data;  ///< for what VTK's mapper asks of its input
+    vtkNew<vtkOpenGLBufferObject> buffer;
+    vtkNew<vtkTextureObject> texture;
+    vtkWeakPointer<vtkOpenGLRenderWindow> window;  ///< that these are in
+};
+
+namespace {
+
+/// What VTK keeps transposed.
+glm::dmat4 matrix(vtkMatrix4x4* m) {
+    return glm::make_mat4(m->GetData());
+}
+
+void set_uniform(vtkShaderProgram* program, const char* name, const glm::dmat4& m) {
+    const glm::mat4 numbers(m);
+    program->SetUniformMatrix4x4(name, const_cast<float*>(glm::value_ptr(numbers)));
+}
+
+void set_uniform(vtkShaderProgram* program, const char* name, const glm::dmat3& m) {
+    const glm::mat3 numbers(m);
+    program->SetUniformMatrix3x3(name, const_cast<float*>(glm::value_ptr(numbers)));
+}
+
+void set_uniform(vtkShaderProgram* program, const char* name, const glm::dvec3& v) {
+    const glm::vec3 numbers(v);
+    program->SetUniform3f(name, glm::value_ptr(numbers));
+}
+
+void substitute(vtkShader* shader, const char* place, const std::string& text) {
+    std::string source = shader->GetSource();
+    vtkShaderProgram::Substitute(source, place, text, false);
+    shader->SetSource(source);
+}
+
+}  // namespace
+
+vtkAnamorphEllipsoidMapper::vtkAnamorphEllipsoidMapper() : Current(std::make_unique<Drawing>()) {
+    vtkNew<vtkPoints> none;
+    this->Current->no_data->SetPoints(none);
+}
+
+vtkAnamorphEllipsoidMapper::~vtkAnamorphEllipsoidMapper() {
+    if (!this->Current->window) return;
+    this->Current->window->MakeCurrent();
+    this->ReleaseGraphicsResources(this->Current->window);
+}
+
+void vtkAnamorphEllipsoidMapper::SetAxesArray(const char* name) {
+    if (this->AxesArray == (name ? name : "")) return;
+    this->AxesArray = name ? name : "";
+    this->Modified();
+}
+
+void vtkAnamorphEllipsoidMapper::SetOrientationArray(const char* name) {
+    if (this->OrientationArray == (name ? name : "")) return;
+    this->OrientationArray = name ? name : "";
+    this->Modified();
+}
+
+void vtkAnamorphEllipsoidMapper::SetTensorArray(const char* name) {
+    if (this->TensorArray == (name ? name : "")) return;
+    this->TensorArray = name ? name : "";
+    this->Modified();
+}
+
+int vtkAnamorphEllipsoidMapper::FillInputPortInformation(int, vtkInformation* information) {
+    information->Set(INPUT_REQUIRED_DATA_TYPE(), "vtkDataSet");
+    information->Append(INPUT_REQUIRED_DATA_TYPE(), "vtkCompositeDataSet");
+    return 1;
+}
+
+vtkIdType vtkAnamorphEllipsoidMapper::GetNumberOfSkippedPoints() {
+    return this->Current->bodies.skipped;
+}
+
+bool vtkAnamorphEllipsoidMapper::GatherBodies() {
+    Drawing& current = *this->Current;
+    vtkDataObject* input = this->GetInputDataObject(0, 0);
+    const vtkMTimeType input_time = input ? input->GetMTime() : 0;
+    if (current.input == input && current.input_time == input_time && current.mapper_time == this->GetMTime())
+        return current.valid;
+    current.input = input;
+    current.input_time = input_time;
+    current.mapper_time = this->GetMTime();
+    current.bodies = EllipsoidBodies();
+    current.data.clear();
+    current.valid = false;
+    current.colored = false;
+    try {
+        if (!(this->ScaleFactor > 0 && this->ScaleFactor <= 1e300))
+            throw anamorph::Error("ScaleFactor", std::to_string(this->ScaleFactor),
+                                  "must be a positive number");
+        const EllipsoidArrays arrays{this->Shape, this->AxesArray, this->OrientationArray, this->TensorArray,
+                                     this->ScaleFactor};
+        const auto add = [&](vtkDataObject* block, unsigned int index) {
+            if (auto* data = vtkDataSet::SafeDownCast(block)) {
+                current.bodies.add(data, index, arrays);
+                current.data.push_back(data);
+            }
+        };
+        if (auto* composite = vtkCompositeDataSet::SafeDownCast(input)) {
+            const auto blocks = vtk::TakeSmartPointer(composite->NewIterator());
+            for (blocks->InitTraversal(); !blocks->IsDoneWithTraversal(); blocks->GoToNextItem())
+                add(blocks->GetCurrentDataObject(), blocks->GetCurrentFlatIndex());
+        } else {
+            add(input, 1);
+        }
+        current.valid = true;
+    } catch (const anamorph::Error& error) {
+        current.bodies = EllipsoidBodies();
+        vtkErrorMacro(<< error.what());
+    }
+    return current.valid;
+}
+
+void vtkAnamorphEllipsoidMapper::ColorBodies() {
+    Drawing& current = *this->Current;
+    current.colored = false;
+    // Colors are one a body: none are to be interpolated over it.
+    const auto interpolate = this->InterpolateScalarsBeforeMapping;
+    this->InterpolateScalarsBeforeMapping = 0;
+    for (std::size_t i = 0; i < current.data.size(); ++i) {
+        int of_cells = 0;
+        vtkUnsignedCharArray* colors = this->MapScalars(current.data[i], 1.0, of_cells);
+        if (!colors || of_cells > 1) continue;
+        current.bodies.color(current.bodies.blocks[i], colors, of_cells == 1);
+        current.colored = true;
+    }
+    this->InterpolateScalarsBeforeMapping = interpolate;
+}
+
+void vtkAnamorphEllipsoidMapper::ComputeBounds() {
+    vtkMath::UninitializeBounds(this->Bounds);
+    double box[6];
+    if (!this->GatherBodies() || !this->Current->bodies.bounds(box)) return;
+    for (int k = 0; k < 6; ++k) this->Bounds[k] = box[k];
+}
+
+bool vtkAnamorphEllipsoidMapper::GetNeedToRebuildBufferObjects(vtkRenderer*, vtkActor*) {
+    const vtkMTimeType time = this->VBOBuildTime;
+    return time < this->Current->input_time || time < this->GetMTime() ||
+           (this->LookupTable && time < this->LookupTable->GetMTime()) ||
+           !this->Current->texture->GetHandle();
+}
+
+void vtkAnamorphEllipsoidMapper::BuildBufferObjects(vtkRenderer* renderer, vtkActor*) {
+    Drawing& current = *this->Current;
+    this->ColorBodies();
+    current.unit = current.bodies.unit();
+    const std::vector<float> texels = current.bodies.texels(current.unit);
+    auto* window = vtkOpenGLRenderWindow::SafeDownCast(renderer->GetRenderWindow());
+    current.texture->SetContext(window);
+    current.buffer->Upload(texels, vtkOpenGLBufferObject::TextureBuffer);
+    current.texture->CreateTextureBuffer(static_cast<unsigned int>(texels.size() / 4), 4, VTK_FLOAT,
+                                         current.buffer);
+    this->Primitives[PrimitiveTris].IBO->IndexCount = 6 * current.bodies.bodies.size();
+    this->VBOBuildTime.Modified();
+}
+
+void vtkAnamorphEllipsoidMapper::UpdateMaximumPointCellIds(vtkRenderer* renderer, vtkActor*) {
+    for (vtkDataSet* data : this->Current->data) {
+        renderer->GetSelector()->UpdateMaximumPointId(data->GetNumberOfPoints());
+        renderer->GetSelector()->UpdateMaximumCellId(data->GetNumberOfCells());
+    }
+}
+
+void vtkAnamorphEllipsoidMapper::Render(vtkRenderer* renderer, vtkActor* actor) {
+    // What is behind first, where both sides are seen.
+    this->Current->far_side = actor->GetProperty()->GetOpacity() < 1 && !renderer->GetSelector();
+    if (this->Current->far_side) this->Superclass::Render(renderer, actor);
+    this->Current->far_side = false;
+    this->Superclass::Render(renderer, actor);
+}
+
+void vtkAnamorphEllipsoidMapper::RenderPiece(vtkRenderer* renderer, vtkActor* actor) {
+    auto* window = vtkOpenGLRenderWindow::SafeDownCast(renderer->GetRenderWindow());
+    if (window->CheckAbortStatus()) return;
+    if (this->Current->window && this->Current->window != window)
+        this->ReleaseGraphicsResources(this->Current->window);
+    this->Current->window = window;
+    this->CurrentInput = this->Current->no_data;
+    this->InvokeEvent(vtkCommand::StartEvent, nullptr);
+    if (!this->Static) this->GetInputAlgorithm()->Update();
+    this->InvokeEvent(vtkCommand::EndEvent, nullptr);
+    if (!this->GatherBodies() || this->Current->bodies.bodies.empty()) return;
+    this->RenderPieceStart(renderer, actor);
+    this->RenderPieceDraw(renderer, actor);
+    this->RenderPieceFinish(renderer, actor);
+}
+
+void vtkAnamorphEllipsoidMapper::RenderPieceDraw(vtkRenderer* renderer, vtkActor* actor) {
+    Drawing& current = *this->Current;
+    vtkHardwareSelector* selector = renderer->GetSelector();
+    vtkOpenGLState* state = vtkOpenGLRenderWindow::SafeDownCast(renderer->GetRenderWindow())->GetState();
+    const vtkOpenGLState::ScopedglEnableDisable culling(state, GL_CULL_FACE);
+    state->vtkglDisable(GL_CULL_FACE);
+    current.texture->Activate();
+    const auto draw = [&](vtkIdType first, std::size_t count) {
+        current.first = first;
+        this->UpdateShaders(this->Primitives[PrimitiveTris], renderer, actor);
+        glDrawArrays(GL_TRIANGLES, 0, static_cast<GLsizei>(6 * count));
+    };
+    if (selector)
+        for (const EllipsoidBlock& block : current.bodies.blocks) {
+            if (selector->GetCurrentPass() == vtkHardwareSelector::COMPOSITE_INDEX_PASS)
+                selector->RenderCompositeIndex(block.index);
+            draw(block.first, static_cast<std::size_t>(block.count));
+        }
+    else
+        draw(0, current.bodies.bodies.size());
+    current.texture->Deactivate();
+}
+
+void vtkAnamorphEllipsoidMapper::GetShaderTemplate(Shaders shaders, vtkRenderer* renderer, vtkActor* actor) {
+    this->Superclass::GetShaderTemplate(shaders, renderer, actor);
+    std::string source = anamorph_vtk::kEllipsoidVertexShader;
+    vtkShaderProgram::Substitute(source, "BODY_TEXELS", std::to_string(anamorph_vtk::kBodyTexels));
+    shaders[vtkShader::Vertex]->SetSource(source);
+    shaders[vtkShader::Geometry]->SetSource("");
+}
+
+void vtkAnamorphEllipsoidMapper::ReplaceShaderPositionVC(Shaders shaders, vtkRenderer*, vtkActor*) {
+    vtkShader* fragment = shaders[vtkShader::Fragment];
+    substitute(fragment, "//VTK::Camera::Dec", "uniform int cameraParallel;\n");
+    substitute(fragment, "//VTK::PositionVC::Dec", anamorph_vtk::kEllipsoidDeclarations);
+    substitute(fragment, "//VTK::PositionVC::Impl", anamorph_vtk::kEllipsoidPosition);
+    substitute(fragment, "//VTK::Depth::Impl", anamorph_vtk::kEllipsoidDepth);
+}
+
+void vtkAnamorphEllipsoidMapper::ReplaceShaderNormal(Shaders shaders, vtkRenderer*, vtkActor*) {
+    substitute(shaders[vtkShader::Fragment], "//VTK::Normal::Impl", anamorph_vtk::kEllipsoidNormal);
+}
+
+void vtkAnamorphEllipsoidMapper::ReplaceShaderColor(Shaders shaders, vtkRenderer* renderer, vtkActor* actor) {
+    vtkShader* fragment = shaders[vtkShader::Fragment];
+    if (this->Current->colored)
+        substitute(fragment, "//VTK::Color::Impl",
+                   "//VTK::Color::Impl\n"
+                   "  ambientColor = ambientIntensity * bodyColor.rgb;\n"
+                   "  diffuseColor = diffuseIntensity * bodyColor.rgb;\n"
+                   "  opacity = opacityUniform * bodyColor.a;\n");
+    this->Superclass::ReplaceShaderColor(shaders, renderer, actor);
+}
+
+void vtkAnamorphEllipsoidMapper::ReplaceShaderPicking(Shaders shaders, vtkRenderer* renderer,
+                                                      vtkActor* actor) {
+    vtkHardwareSelector* selector = renderer->GetSelector();
+    if (!selector) return;
+    const int pass = selector->GetCurrentPass();
+    const bool low =
+                   pass == vtkHardwareSelector::POINT_ID_LOW24 || pass == vtkHardwareSelector::CELL_ID_LOW24,
+               high = pass == vtkHardwareSelector::POINT_ID_HIGH24 ||
+                      pass == vtkHardwareSelector::CELL_ID_HIGH24;
+    if (!low && !high) {
+        this->Superclass::ReplaceShaderPicking(shaders, renderer, actor);
+        return;
+    }
+    const bool of_points =
+        pass == vtkHardwareSelector::POINT_ID_LOW24 || pass == vtkHardwareSelector::POINT_ID_HIGH24;
+    substitute(
+        shaders[vtkShader::Fragment], "//VTK::Picking::Impl",
+        std::string("  int id = (bodyIds.") + (of_points ? "x" : "y") + " + 1) >> " + (low ? "0" : "24") +
+            ";\n"
+            "  gl_FragData[0] = vec4(vec3(id & 255, (id >> 8) & 255, (id >> 16) & 255) / 255.0, 1.0);\n");
+}
+
+void vtkAnamorphEllipsoidMapper::SetMapperShaderParameters(vtkOpenGLHelper& helper, vtkRenderer* renderer,
+                                                           vtkActor* actor) {
+    this->Superclass::SetMapperShaderParameters(helper, renderer, actor);
+    vtkShaderProgram* program = helper.Program;
+    program->SetUniformi("bodies", this->Current->texture->GetTextureUnit());
+    program->SetUniformi("firstBody", static_cast<int>(this->Current->first));
+    program->SetUniformi("farSide", this->Current->far_side ? 1 : 0);
+    // Points are selected before a picture of the same depths.
+    vtkHardwareSelector* selector = renderer->GetSelector();
+    program->SetUniformf("depthBias", selector ? 1e-6f : 0.0f);
+}
+
+void vtkAnamorphEllipsoidMapper::SetCameraShaderParameters(vtkOpenGLHelper& helper, vtkRenderer* renderer,
+                                                           vtkActor* actor) {
+    vtkShaderProgram* program = helper.Program;
+    auto* camera = vtkOpenGLCamera::SafeDownCast(renderer->GetActiveCamera());
+    vtkMatrix4x4 *world_to_view, *view_to_clip, *world_to_clip;
+    vtkMatrix3x3* normals;
+    camera->GetKeyMatrices(renderer, world_to_view, normals, view_to_clip, world_to_clip);
+    vtkNew<vtkMatrix4x4> data_to_world;
+    actor->GetMatrix(data_to_world);
+    const glm::dmat4 data_to_view = matrix(world_to_view) * glm::transpose(matrix(data_to_world)),
+                     view_to_data = glm::inverse(data_to_view), clip = matrix(view_to_clip);
+    const double unit = this->Current->unit;
+    const glm::dvec3 eye = glm::dvec3(view_to_data[3]) / unit, high = glm::vec3(eye);
+    set_uniform(program, "eyeHigh", high);
+    set_uniform(program, "eyeLow", eye - high);
+    set_uniform(program, "towardEye", glm::dvec3(view_to_data[2]) / unit);
+    set_uniform(program, "bodyToView", glm::dmat3(data_to_view) * unit);
+    set_uniform(program, "viewToBody", glm::dmat3(view_to_data) / unit);
+    set_uniform(program, "viewToClip", clip);
+    set_uniform(program, "clipToView", glm::inverse(clip));
+    program->SetUniformi("eyeInPerspective", camera->GetParallelProjection() ? 0 : 1);
+    program->SetUniformi("cameraParallel", camera->GetParallelProjection());
+    this->SetClips(helper, actor, glm::value_ptr(view_to_data));
+}
+
+void vtkAnamorphEllipsoidMapper::SetClips(vtkOpenGLHelper& helper, vtkActor* actor,
+                                          const double* view_to_data) {
+    const int count = std::min(this->GetNumberOfClippingPlanes(), 6);
+    float clips[6][4] = {};
+    vtkNew<vtkMatrix4x4> data_to_world;
+    actor->GetMatrix(data_to_world);
+    for (int i = 0; i < count; ++i) {
+        glm::dvec4 plane;
+        this->GetClippingPlaneInDataCoords(data_to_world, i, &plane.x);
+        const glm::dvec4 in_view = plane * glm::make_mat4(view_to_data);
+        for (int k = 0; k < 4; ++k) clips[i][k] = static_cast<float>(in_view[k]);
+    }
+    helper.Program->SetUniformi("numberOfClips", count);
+    if (count > 0) helper.Program->SetUniform4fv("clips", 6, clips);
+}
+
+void vtkAnamorphEllipsoidMapper::ReleaseGraphicsResources(vtkWindow* window) {
+    this->Current->texture->ReleaseGraphicsResources(window);
+    this->Current->buffer->ReleaseGraphicsResources();
+    this->Current->window = nullptr;
+    this->Superclass::ReleaseGraphicsResources(window);
+}
+
+void vtkAnamorphEllipsoidMapper::PrintSelf(ostream& os, vtkIndent indent) {
+    this->Superclass::PrintSelf(os, indent);
+    static const char* const shapes[] = {"axes", "tensor", "covariance"};
+    os << indent << "Shape: " << shapes[this->Shape] << "\n"
+       << indent << "AxesArray: " << this->AxesArray << "\n"
+       << indent << "OrientationArray: " << this->OrientationArray << "\n"
+       << indent << "TensorArray: " << this->TensorArray << "\n"
+       << indent << "ScaleFactor: " << this->ScaleFactor << "\n";
+}

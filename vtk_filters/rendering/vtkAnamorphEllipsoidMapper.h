@@ -1,0 +1,127 @@
+// SPDX-License-Identifier: Apache-2.0
+/**
+ * @class   vtkAnamorphEllipsoidMapper
+ * @brief   Draws points as ellipsoids, exact at every pixel, without triangles (ray casting).
+ *
+ * Each point of a data set, or of the data sets of composite data, is an ellipsoid around it. Its shape comes
+ * from arrays of the points:
+ *
+ * - AXES, the default: half the lengths of its axes (AxesArray, 3 components) and a quaternion w, x, y, z that
+ *   turns them (OrientationArray, 4 components; none if the name is empty), as vtkAnamorphFigureReader writes
+ *   them.
+ * - TENSOR: the unit sphere under a matrix (TensorArray, 9 components row by row, or 6 of a symmetric one in
+ *   VTK's order XX, YY, ZZ, XY, YZ, XZ), as of diffusion tensors and of vtkTensorGlyph.
+ * - COVARIANCE: the same array is the matrix C of the surface x^T C^-1 x = 1, as of displacements of atoms
+ *   (ORTEP): half axes are the roots of the eigenvalues. With ScaleFactor 1.5382 an atom is within with a
+ *   probability of 50%.
+ *
+ * A point is left out, and counted by GetNumberOfSkippedPoints(), where a number is not finite, the
+ * quaternion is zero, or an axis is not longer than 1e-10 of the body's longest. Hidden (blanked) points and ghosts are
+ * left out, too.
+ *
+ * A pixel shows what the view ray through its middle meets first, at its depth: bodies pass through each
+ * other and through whatever else is in the scene. Perspective and parallel views are exact; other projections (oblique
+ * ones) are not supported. Where the near plane or a clipping plane of the mapper cuts a body open, its far side
+ * is seen from within, as is all around a camera that is within one.
+ *
+ * Materials, lights, scalars (of points, or of the cells that they are in first), clipping planes, opacity
+ * and hardware selection (ids are those of the points, or of these cells) are those of VTK. A texture of the actor is
+ * laid around every body as by vtkAnamorphFigureGeometry. Representation (wireframe, points), edges, and
+ * culling do nothing.
+ */
+#ifndef vtkAnamorphEllipsoidMapper_h
+#define vtkAnamorphEllipsoidMapper_h
+
+#include "AnamorphRenderingModule.h"  // for the export macro
+#include "vtkOpenGLPolyDataMapper.h"
+
+#include <memory>  // for what it draws
+#include <string>  // for names of arrays
+
+class ANAMORPHRENDERING_EXPORT vtkAnamorphEllipsoidMapper : public vtkOpenGLPolyDataMapper {
+  public:
+    static vtkAnamorphEllipsoidMapper* New();
+    vtkTypeMacro(vtkAnamorphEllipsoidMapper, vtkOpenGLPolyDataMapper);
+    void PrintSelf(ostream& os, vtkIndent indent) override;
+
+    /** The values of Shape. */
+    enum { AXES, TENSOR, COVARIANCE };
+
+    ///@{
+    /** What the arrays mean; see above. AXES by default. */
+    vtkSetClampMacro(Shape, int, AXES, COVARIANCE);
+    vtkGetMacro(Shape, int);
+    ///@}
+
+    ///@{
+    /** The array of half axes. "Axes" by default. */
+    void SetAxesArray(const char* name);
+    const char* GetAxesArray() { return this->AxesArray.c_str(); }
+    ///@}
+
+    ///@{
+    /** The array of quaternions; empty: bodies are not turned. "Orientation" by default. */
+    void SetOrientationArray(const char* name);
+    const char* GetOrientationArray() { return this->OrientationArray.c_str(); }
+    ///@}
+
+    ///@{
+    /** The array of tensors. Empty by default. */
+    void SetTensorArray(const char* name);
+    const char* GetTensorArray() { return this->TensorArray.c_str(); }
+    ///@}
+
+    ///@{
+    /** All bodies are scaled by this about their centers; positive. The default is 1. */
+    vtkSetMacro(ScaleFactor, double);
+    vtkGetMacro(ScaleFactor, double);
+    ///@}
+
+    /** The points that made no ellipsoid when the bounds were computed, or the picture drawn, last. */
+    vtkIdType GetNumberOfSkippedPoints();
+
+    void Render(vtkRenderer* renderer, vtkActor* actor) override;
+    void RenderPiece(vtkRenderer* renderer, vtkActor* actor) override;
+    void ReleaseGraphicsResources(vtkWindow* window) override;
+
+  protected:
+    vtkAnamorphEllipsoidMapper();
+    ~vtkAnamorphEllipsoidMapper() override;
+
+    using Shaders = std::map<vtkShader::Type, vtkShader*>;
+
+    int FillInputPortInformation(int port, vtkInformation* information) override;
+    void ComputeBounds() override;
+    bool GetNeedToRebuildBufferObjects(vtkRenderer* renderer, vtkActor* actor) override;
+    void BuildBufferObjects(vtkRenderer* renderer, vtkActor* actor) override;
+    void UpdateMaximumPointCellIds(vtkRenderer* renderer, vtkActor* actor) override;
+    void RenderPieceDraw(vtkRenderer* renderer, vtkActor* actor) override;
+    void GetShaderTemplate(Shaders shaders, vtkRenderer* renderer, vtkActor* actor) override;
+    void ReplaceShaderColor(Shaders shaders, vtkRenderer* renderer, vtkActor* actor) override;
+    void ReplaceShaderNormal(Shaders shaders, vtkRenderer* renderer, vtkActor* actor) override;
+    void ReplaceShaderPicking(Shaders shaders, vtkRenderer* renderer, vtkActor* actor) override;
+    void ReplaceShaderPositionVC(Shaders shaders, vtkRenderer* renderer, vtkActor* actor) override;
+    void ReplaceShaderTCoord(Shaders, vtkRenderer*, vtkActor*) override {}
+    void ReplaceShaderClip(Shaders, vtkRenderer*, vtkActor*) override {}
+    void ReplaceShaderEdges(Shaders, vtkRenderer*, vtkActor*) override {}
+    void ReplaceShaderCoincidentOffset(Shaders, vtkRenderer*, vtkActor*) override {}
+    void SetMapperShaderParameters(vtkOpenGLHelper& helper, vtkRenderer* renderer, vtkActor* actor) override;
+    void SetCameraShaderParameters(vtkOpenGLHelper& helper, vtkRenderer* renderer, vtkActor* actor) override;
+
+  private:
+    vtkAnamorphEllipsoidMapper(const vtkAnamorphEllipsoidMapper&) = delete;
+    void operator=(const vtkAnamorphEllipsoidMapper&) = delete;
+
+    bool GatherBodies();
+    void ColorBodies();
+    void SetClips(vtkOpenGLHelper& helper, vtkActor* actor, const double* view_to_data);
+
+    int Shape = AXES;
+    std::string AxesArray = "Axes", OrientationArray = "Orientation", TensorArray;
+    double ScaleFactor = 1;
+
+    struct Drawing;
+    std::unique_ptr<Drawing> Current;
+};
+
+#endif
