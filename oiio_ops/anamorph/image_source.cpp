@@ -288,11 +288,46 @@ bool CacheSource::read(int level, const Box& box, std::byte* texels,
         const std::ptrdiff_t pixel = pixel_size(m_type, channels());
         if (!(data == box)) clear_around(box, data, pixel, texels, row_stride);
         if (data.empty()) return true;
-        return copy_tiles(level, data, texels + (data.y0 - box.y0) * row_stride + (data.x0 - box.x0) * pixel,
-                          row_stride);
+        std::byte* const to = texels + (data.y0 - box.y0) * row_stride + (data.x0 - box.x0) * pixel;
+        return m_rows ? read_rows(data, to, row_stride) : copy_tiles(level, data, to, row_stride);
     } catch (const std::exception& e) {
         return fail(message_of(e, "its pixels"));
     }
+}
+
+void CacheSource::keep_rows() try {
+    if (levels() > 1 || spec().tile_width > 0) return;
+    m_rows = std::make_unique<FileRows>(
+        [cache = m_cache, name = m_name.string()] { return open_as_cache_does(*cache, name); }, spec(),
+        m_type);
+} catch (const std::bad_alloc&) {
+    // Larger than the address space that is left: by the cache, then.
+}
+
+const ConstImageView* CacheSource::view(int) const noexcept {
+    const Frame& frame = m_levels.front().frame;
+    return m_rows && frame.data == Box{0, 0, frame.width, frame.height} ? &m_rows->view() : nullptr;
+}
+
+bool CacheSource::prepare(int, const Box& box) const noexcept {
+    if (!m_rows) return true;
+    try {
+        m_rows->need(box.y0, box.y1);
+        return true;
+    } catch (const std::exception& e) {
+        return fail(message_of(e, "its pixels"));
+    }
+}
+
+/// `box` lies inside the data window.
+bool CacheSource::read_rows(const Box& box, std::byte* texels, std::ptrdiff_t row_stride) const {
+    const Box& data = m_levels.front().frame.data;
+    m_rows->need(box.y0 - data.y0, box.y1 - data.y0);
+    const ConstImageView& from = m_rows->view();
+    for (int y = box.y0; y < box.y1; ++y, texels += row_stride)
+        std::memcpy(texels, from.at(box.x0 - data.x0, y - data.y0),
+                    static_cast<std::size_t>(box.width() * from.pixel_stride));
+    return true;
 }
 
 /// `box` lies inside the data window.

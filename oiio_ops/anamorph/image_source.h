@@ -17,6 +17,7 @@
 #include <string>
 #include <vector>
 
+#include "anamorph/file_rows.h"
 #include "anamorph/render/source.h"
 
 namespace anamorph {
@@ -46,7 +47,7 @@ void check_source(const OIIO::ImageSpec& spec, const std::string& name);
 /// `name` and is shown as `shown`: one line, without the reader's own prefix.
 std::string reason_of(std::string message, const std::string& name, const std::string& shown);
 
-/// A file, read tile by tile through an ImageCache. Each read borrows one of a pool of the cache's thread
+/// A file, read tile by tile through an ImageCache, or row by row where it keeps its rows. Each read borrows one of a pool of the cache's thread
 /// records, so it may happen inside another read of the same cache. Throws Error when the image cannot be
 /// opened.
 class CacheSource final : public Source {
@@ -76,9 +77,13 @@ class CacheSource final : public Source {
     Size size(int level) const noexcept override;
     bool read(int level, const Box& box, std::byte* texels,
               std::ptrdiff_t row_stride) const noexcept override;
+    const ConstImageView* view(int level) const noexcept override;
+    bool prepare(int level, const Box& box) const noexcept override;
 
     /// Leaves level 0 only, where the coarser levels cannot serve (cube faces that do not halve).
     void keep_first_level() { m_levels.resize(1); }
+    /// Has a file without tiles decode its rows once, past the cache; of other files nothing changes.
+    void keep_rows();
 
   private:
     struct Level {
@@ -89,6 +94,7 @@ class CacheSource final : public Source {
                 int first_level);
     /// `why_not`: the reason where there is no level 0.
     void read_levels(const SpecOf& spec_of, const std::function<std::string()>& why_not);
+    bool read_rows(const Box& box, std::byte* texels, std::ptrdiff_t row_stride) const;
     bool copy_tiles(int level, const Box& box, std::byte* texels, std::ptrdiff_t row_stride) const;
     bool fail(const std::string& message) const;
 
@@ -99,6 +105,7 @@ class CacheSource final : public Source {
     PixelType m_type = PixelType::float32;
     int m_alpha = -1;
     std::vector<Level> m_levels;
+    std::unique_ptr<FileRows> m_rows;
     mutable std::mutex m_mutex;
     mutable std::string m_error;
 };

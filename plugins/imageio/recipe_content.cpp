@@ -276,13 +276,14 @@ std::shared_ptr<const Content> Opening::open(const std::string& name, const std:
 std::unique_ptr<CacheSource> Opening::open_file(const SideFile& file) {
     const std::string name = cached_name(file.name, file.identity);
     const auto known = m_headers.find(file.name);
-    if (known != m_headers.end())
-        return std::make_unique<CacheSource>(shared_cache(), name, file.name, [&](int level) {
-            const auto i = static_cast<std::size_t>(level);
-            return i < known->second.size() ? known->second[i] : ImageSpec();
-        });
-    auto source = std::make_unique<CacheSource>(shared_cache(), name, file.name);
-    m_headers[file.name] = source->specs();
+    const bool is_new = known == m_headers.end();
+    auto source = is_new ? std::make_unique<CacheSource>(shared_cache(), name, file.name)
+                         : std::make_unique<CacheSource>(shared_cache(), name, file.name, [&](int level) {
+                               const auto i = static_cast<std::size_t>(level);
+                               return i < known->second.size() ? known->second[i] : ImageSpec();
+                           });
+    if (is_new) m_headers[file.name] = source->specs();
+    source->keep_rows();
     return source;
 }
 

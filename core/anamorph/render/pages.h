@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: Apache-2.0
+// Memory for pictures of which only parts may ever be needed.
+#pragma once
+
+#include <sys/mman.h>
+
+#include <cstddef>
+#include <new>
+
+namespace anamorph {
+
+/// Memory that reads as zeros and takes room page by page, when written to. Throws std::bad_alloc.
+class Pages {
+  public:
+    explicit Pages(std::size_t size) : m_size(size) {
+        m_data =
+            ::mmap(nullptr, size, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
+        if (m_data == MAP_FAILED) throw std::bad_alloc();
+#ifdef MADV_HUGEPAGE
+        // Huge pages are faster, but a tile's rows lie far apart, and in a large level each would take a page
+        // of its own.
+        ::madvise(m_data, size, size <= kHuge ? MADV_HUGEPAGE : MADV_NOHUGEPAGE);
+#endif
+    }
+    ~Pages() {
+        ::munmap(m_data, m_size);
+    }
+    Pages(const Pages&) = delete;
+    Pages& operator=(const Pages&) = delete;
+
+    std::byte* data() const {
+        return static_cast<std::byte*>(m_data);
+    }
+
+  private:
+    static constexpr std::size_t kHuge = std::size_t{128} << 20;
+
+    std::size_t m_size;
+    void* m_data;
+};
+
+}  // namespace anamorph

@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: Apache-2.0
+// The pixels of a file without tiles, decoded once and kept: an ImageCache would hold the whole file as one tile, and
+// in float where its host asks for that.
+#pragma once
+
+#include <OpenImageIO/imageio.h>
+
+#include <atomic>
+#include <functional>
+#include <limits>
+#include <memory>
+#include <mutex>
+#include <string>
+
+#include "anamorph/render/pages.h"
+#include "anamorph/render/view.h"
+
+namespace anamorph {
+
+/// The first subimage of a file, row by row, in the file's own order and in a packed type. Rows are decoded when they are
+/// first needed, together with those between them and the rows that are there, so that memory and time are those of
+/// the rows that a view reaches; a format that can only be decoded from its beginning is stopped after the last of them.
+/// Thread safe.
+class FileRows {
+  public:
+    using Opener = std::function<std::unique_ptr<OIIO::ImageInput>()>;
+
+    /// `spec`: of the file when it was opened. Throws std::bad_alloc.
+    FileRows(Opener open, const OIIO::ImageSpec& spec, PixelType type);
+    ~FileRows();
+    FileRows(const FileRows&) = delete;
+    FileRows& operator=(const FileRows&) = delete;
+
+    /// The whole image; only rows that need() was asked for hold pixels.
+    const ConstImageView& view() const { return m_view; }
+    /// Decodes rows first to end - 1 where they are not there yet. Throws Error: the reason alone.
+    void need(int first, int end);
+
+  private:
+    bool has(int first, int end) const {
+        return m_first.load(std::memory_order_acquire) <= first &&
+               end <= m_end.load(std::memory_order_acquire);
+    }
+    void decode(int first, int end);
+
+    const Opener m_open;
+    const OIIO::ImageSpec m_spec;
+    const Pages m_pages;
+    const ConstImageView m_view;
+    /// Rows that are there. The first is set before the end, so that a reader who sees the end sees it.
+    std::atomic<int> m_first{std::numeric_limits<int>::max()}, m_end{0};
+    std::mutex m_mutex;
+    std::unique_ptr<OIIO::ImageInput> m_input;  ///< kept open where more rows may follow
+    std::string m_failure;                      ///< why nothing more can be decoded
+};
+
+}  // namespace anamorph

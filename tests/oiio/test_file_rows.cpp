@@ -1,0 +1,135 @@
+// SPDX-License-Identifier: Apache-2.0
+// Rows of files without tiles: decoded once, as many as are needed, in any order of asking.
+#include "anamorph/file_rows.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <random>
+#include <thread>
+
+#include "anamorph/error.h"
+#include "anamorph/image_source.h"
+#include "host.h"
+
+namespace anamorph {
+namespace {
+
+using namespace testing_oiio;
+
+constexpr int kWidth = 300, kHeight = 1000;
+
+/// Opens a file and counts how often.
+struct Counted {
+    std::string name;
+    int opened = 0;
+
+    FileRows::Opener opener() {
+        return [this] {
+            ++opened;
+            return OIIO::ImageInput::open(name);
+        };
+    }
+};
+
+class FileRowsOf : public InFolder, public testing::WithParamInterface<const char*> {
+  protected:
+    void SetUp() override {
+        InFolder::SetUp();
+        const bool floats = GetParam() == std::string("exr");
+        file.name = std::string("rows.") + GetParam();
+        write_image(panorama(kWidth, kHeight, floats ? OIIO::TypeHalf : OIIO::TypeUInt8), file.name);
+        want = read_pixels(file.name);
+    }
+    FileRows rows() { return {file.opener(), want.spec, pixel_type(want.spec.format)}; }
+    /// Row y of what is there.
+    bool equal(const FileRows& rows, int y) const {
+        const auto row = static_cast<std::size_t>(rows.view().row_stride);
+        return std::equal(rows.view().at(0, y), rows.view().at(0, y) + row,
+                          want.bytes.data() + row * static_cast<std::size_t>(y));
+    }
+    bool decoded(const FileRows& rows, int y) const {
+        const std::byte* const row = rows.view().at(0, y);
+        return std::any_of(row, row + rows.view().row_stride, [](std::byte b) { return b != std::byte{0}; });
+    }
+
+    Counted file;
+    Pixels want;
+};
+
+INSTANTIATE_TEST_SUITE_P(Formats, FileRowsOf, testing::Values("jpg", "png", "tif", "exr"));
+
+TEST_P(FileRowsOf, AreThoseOfTheFileInAnyOrder) {
+    const unsigned seed = std::random_device{}();
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    std::mt19937 random(seed);
+    FileRows all = rows();
+    for (int n = 0; n < 20; ++n) {
+        const int first = std::uniform_int_distribution(0, kHeight - 1)(random);
+        const int end = std::min(kHeight, first + std::uniform_int_distribution(1, 150)(random));
+        all.need(first, end);
+        for (int y = first; y < end; ++y) ASSERT_TRUE(equal(all, y)) << "row " << y;
+    }
+    // Backwards at most twice as many rows each time.
+    EXPECT_LE(file.opened, 6);
+}
+
+TEST_P(FileRowsOf, BeyondThoseNeededStayUntouched) {
+    FileRows some = rows();
+    some.need(300, 340);
+    some.need(380, 400);
+    EXPECT_EQ(file.opened, 1) << "the way down needs no second decoding";
+    for (int y = 300; y < 400; ++y) EXPECT_TRUE(equal(some, y)) << "row " << y;
+    EXPECT_FALSE(decoded(some, 0));
+    EXPECT_FALSE(decoded(some, 200));
+    EXPECT_FALSE(decoded(some, 600));
+}
+
+TEST_P(FileRowsOf, AreTheSameOnThreads) {
+    FileRows shared = rows();
+    std::vector<std::thread> threads;
+    for (int t = 0; t < 4; ++t)
+        threads.emplace_back([&, t] {
+            for (int n = 0; n < 10; ++n) {
+                const int first = (n * 373 + t * 211) % (kHeight - 20);
+                shared.need(first, first + 20);
+                for (int y = first; y < first + 20; ++y) EXPECT_TRUE(equal(shared, y)) << "row " << y;
+            }
+        });
+    for (std::thread& thread : threads) thread.join();
+}
+
+TEST_P(FileRowsOf, SayWhyTheyCannotBeRead) {
+    FileRows changed = rows();
+    write_image(panorama(kWidth, kHeight / 2, OIIO::TypeUInt8), file.name);
+    EXPECT_THAT([&] { changed.need(0, 10); },
+                testing::ThrowsMessage<Error>("has changed since it was opened"));
+    FileRows gone = rows();
+    std::filesystem::remove(file.name);
+    EXPECT_THROW(gone.need(0, 10), Error);
+    const int before = file.opened;
+    EXPECT_THROW(gone.need(500, 510), Error);
+    EXPECT_EQ(file.opened, before) << "each block would try again";
+}
+
+using UntiledSources = InFolder;
+
+TEST_F(UntiledSources, TakeMemoryForTheirRowsInTheirOwnType) {
+    // 96 MiB of uint8: as one tile of floats it would be 384.
+    ASSERT_EQ(
+        run("oiiotool --pattern constant:color=.5,.4,.3 8192x4096 3 -d uint8 --scanline -o big.tif").status,
+        0);
+    const double least =
+        run("oiiotool --pattern constant:color=.5,.4,.3 512x512 3 -d uint8 -o view.tif").megabytes;
+    const Ran view =
+        run("oiiotool 'big.tif.pano?to=rectilinear&fov=90&size=512x512&filter=bilinear' -o view.tif");
+    EXPECT_EQ(view.status, 0) << view.text;
+    EXPECT_LT(view.megabytes, least + 120);
+    // Of a band of 20 degrees, less than a fifth of the rows.
+    const Ran band =
+        run("oiiotool 'big.tif.pano?to=cylindrical&fov=20&size=512x512&filter=bilinear' -o view.tif");
+    EXPECT_EQ(band.status, 0) << band.text;
+    EXPECT_LT(band.megabytes, least + 60);
+}
+
+}  // namespace
+}  // namespace anamorph
