@@ -47,6 +47,7 @@
 #include "anamorph/parallel_for.h"
 #include "anamorph/parameter.h"
 #include "anamorph/projector/occluders.h"
+#include "anamorph/projector/panorama_glsl.h"
 #include "anamorph/projector/projected_triangles.h"
 #include "anamorph/projector/projection_bake.h"
 #include "anamorph/projector/projection_groups.h"

@@ -16,8 +16,8 @@
 //
 // Numbers: double and long double (here), Interval (interval.h), Jet (jet.h), Lanes (lanes.h), four jets at once
 // (simd/jets.h). Rounded (rounded.h), which bounds rounding over a box, offers what projections ask for; Tracked (tracked.h)
-// follows a single evaluation. FormatNumber (number_format.h) is rounded as hardware does. A new one gives the list above in
-// its own namespace and works at once in every formula.
+// follows a single evaluation. FormatNumber (number_format.h) is rounded as hardware does. GlslNumber (glsl_number.h) writes a
+// shader. A new one gives the list above in its own namespace and works at once in every formula.
 #pragma once
 
 #include <algorithm>

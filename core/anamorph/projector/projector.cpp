@@ -49,7 +49,7 @@ glm::dvec3 scaled_ray(const glm::dvec3& ray) {
     return {std::ldexp(ray.x, exponent), std::ldexp(ray.y, exponent), std::ldexp(ray.z, exponent)};
 }
 
-Projector::Projector(const Chart& panorama, const ProjectorPose& pose) : m_panorama(panorama), m_pose(pose) {
+glm::dmat3 frame_of(const ProjectorPose& pose) {
     const glm::dvec3& p = pose.position;
     if (!(std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z)))
         throw Error("position", in_words(p), "must be finite");
@@ -57,9 +57,14 @@ Projector::Projector(const Chart& panorama, const ProjectorPose& pose) : m_panor
     const glm::dvec3 right = glm::cross(forward, up);
     if (!(glm::length(right) > 1e-9)) throw Error("up", in_words(pose.up), "must not be along the direction");
     const glm::dvec3 across = glm::normalize(right);
-    m_frame = glm::dmat3(across, glm::cross(forward, across), forward);
-    m_least_forward = least_forward_of(panorama);
+    return {across, glm::cross(forward, across), forward};
 }
+
+Projector::Projector(const Chart& panorama, const ProjectorPose& pose)
+    : m_panorama(panorama),
+      m_pose(pose),
+      m_frame(frame_of(pose)),
+      m_least_forward(least_forward_of(panorama)) {}
 
 Received Projector::receive(const glm::dvec3& point, Point<double>& texel) const {
     const glm::dvec3 r = scaled_ray(ray(point));

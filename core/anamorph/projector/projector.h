@@ -19,6 +19,10 @@ struct ProjectorPose {
     glm::dvec3 up{0, 1, 0};          ///< not along the direction; need not be at right angles to it
 };
 
+/// Right, down and forward of a pose, in the scene, as columns: within a few roundings at right angles, of length 1. Throws
+/// Error: a position that is not finite, a direction or an up that is none, or the one along the other.
+glm::dmat3 frame_of(const ProjectorPose& pose);
+
 /// What a point of the scene receives.
 enum class Received {
     texel,         ///< a point of the panorama
@@ -29,12 +33,12 @@ enum class Received {
 /// A panorama and its projector.
 class Projector {
   public:
-    /// Throws Error: a position that is not finite, a direction or an up that is none, or the one along the other.
+    /// Throws what frame_of() throws.
     explicit Projector(const Chart& panorama, const ProjectorPose& pose = {});
 
     const Chart& panorama() const { return m_panorama; }
     const ProjectorPose& pose() const { return m_pose; }
-    /// Right, down and forward in the scene, as columns: within a few roundings at right angles, of length 1.
+    /// frame_of() the pose.
     const glm::dmat3& frame() const { return m_frame; }
 
     /// From the centre to a point of the scene, in the frame of rays (map/chart.h), in units of the scene.
