@@ -1,0 +1,593 @@
+// SPDX-License-Identifier: Apache-2.0
+// Panoramas thrown fragment by fragment, against the core's formulas in long double.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <vtkAnamorphPanoramaProjection.h>
+#include <vtkCallbackCommand.h>
+#include <vtkMultiBlockDataSet.h>
+#include <vtkVersion.h>
+
+#include <sstream>
+
+#include "anamorph/projector/projection_bake.h"
+#include "thrown_scene.h"
+
+#if VTK_VERSION_NUMBER >= VTK_VERSION_CHECK(9, 3, 0)
+#include <vtkCompositePolyDataMapper.h>
+using CompositeMapper = vtkCompositePolyDataMapper;
+#else
+#include <vtkCompositePolyDataMapper2.h>
+using CompositeMapper = vtkCompositePolyDataMapper2;
+#endif
+
+namespace {
+
+using anamorph::Chart;
+using anamorph::Point;
+using anamorph::Projection;
+using anamorph::Projector;
+using anamorph::Ray;
+
+/// About so many texels across, as the projection's faces or field of view have it.
+Chart chart_of(Projection projection, double fov = 0) {
+    constexpr int kTexels = 2048;
+    const anamorph::FaceGrid grid = anamorph::faces_of(projection);
+    if (grid.columns > 0) {
+        const int face = kTexels / std::max(grid.columns, grid.rows);
+        return {projection, grid.columns * face, grid.rows * face, fov};
+    }
+    const double degrees = fov > 0 ? fov : Chart::default_fov(projection);
+    const double height = kTexels * anamorph::natural_aspect(projection, degrees);
+    return {projection, kTexels, static_cast<int>(std::lround(height)), fov};
+}
+
+/// Throws a chart's panorama at an angle.
+vtkSmartPointer<vtkAnamorphPanoramaProjector> projector_of(const Chart& chart, vtkTexture* texture,
+                                                           const glm::dvec3& at = {-0.3, 0.2, 0.1}) {
+    const auto projector = vtkSmartPointer<vtkAnamorphPanoramaProjector>::New();
+    projector->SetPanorama(texture);
+    projector->SetProjection(static_cast<int>(chart.projection()));
+    projector->SetFieldOfView(chart.fov());
+    projector->SetPosition(at.x, at.y, at.z);
+    projector->SetOrientation(25, 15, -10);
+    return projector;
+}
+
+Projector core_of(const Chart& chart, vtkAnamorphPanoramaProjector& projector) {
+    const auto vector = [](const double* v) { return glm::dvec3(v[0], v[1], v[2]); };
+    return Projector(chart, {vector(projector.GetPosition()), vector(projector.GetDirection()),
+                             vector(projector.GetViewUp())});
+}
+
+/// The larger of the distances across and down from a texel's middle to where a ray meets the panorama.
+long double distance(const Chart& chart, const Ray<long double>& ray, const std::array<int, 2>& place,
+                     int piece) {
+    const Point<long double> truth = chart.point(ray, piece);
+    long double across = std::fabs(place[0] + 0.5L - truth.x);
+    if (chart.closed()) across = std::min(across, std::fabs(chart.width() - across));
+    return std::max(across, std::fabs(place[1] + 0.5L - truth.y));
+}
+
+/// On a border of two pieces either will do.
+long double least_distance(const Chart& chart, const Ray<long double>& ray, const std::array<int, 2>& place) {
+    const auto along = [&](int piece) {
+        const glm::dvec3& f = chart.pieces()[static_cast<std::size_t>(piece)].toward;
+        return (ray.x * f.x + ray.y * f.y + ray.z * f.z) / std::hypot(ray.x, ray.y, ray.z);
+    };
+    const int first = chart.piece_of(ray);
+    long double least = HUGE_VALL;
+    for (int p = 0; p < static_cast<int>(chart.pieces().size()); ++p)
+        if (along(p) > along(first) - 1e-6L) least = std::min(least, distance(chart, ray, place, p));
+    return least;
+}
+
+/// How far inside a panorama a ray is, in texels; negative outside.
+long double texels_within(const Chart& chart, const Ray<long double>& ray) {
+    if (chart.pieces().size() > 1) return HUGE_VALL;
+    if (!(chart.sees(ray) > 0)) return -HUGE_VALL;
+    const Point<long double> p = chart.point(ray, 0);
+    const long double down = std::min(p.y, chart.height() - p.y);
+    return chart.closed() ? down : std::min({p.x, chart.width() - p.x, down});
+}
+
+struct Findings {
+    long double worst = 0;
+    int painted = 0, unpainted = 0, wrong = 0;
+};
+
+/// Of a picture of places.
+void compare(const Room& room, const std::vector<Colour>& picture, const Projector& projector,
+             Findings& findings) {
+    const Chart& chart = projector.panorama();
+    for (int j = 0; j < Room::kHeight; ++j)
+        for (int i = 0; i < Room::kWidth; ++i) {
+            const Colour& c = picture[static_cast<std::size_t>(j * Room::kWidth + i)];
+            const Ray<long double> ray = room.ray(projector, i, j);
+            const long double within = texels_within(chart, ray);
+            const bool painted = c != kNoPlace;
+            ++(painted ? findings.painted : findings.unpainted);
+            // The border itself may go either way.
+            if (painted != (within >= 0) && std::fabs(within) > 0.1L) ++findings.wrong;
+            if (painted && within >= 0)
+                findings.worst = std::max(findings.worst, least_distance(chart, ray, place_of_colour(c)));
+        }
+}
+
+using Mode = vtkAnamorphProjectionShader::Modes;
+
+/// A picture of places, from several sides.
+Findings throw_places(const Chart& chart, const glm::dvec3& middle = glm::dvec3(0.0),
+                      Mode mode = vtkAnamorphProjectionShader::DIRECT, double* bound = nullptr) {
+    Room room(middle);
+    const auto texture = texture_of(chart.width(), chart.height(), colour_of_place);
+    texture->InterpolateOff();
+    const auto projector = projector_of(chart, texture, middle + glm::dvec3(-0.3, 0.2, 0.1));
+    vtkNew<vtkAnamorphProjectionShader> shader;
+    shader->AddProjector(projector);
+    shader->HideUnpaintedOn();
+    shader->SetMode(mode);
+    shader->AddTo(room.actor);
+    Findings findings;
+    for (const double yaw : {20.0, 140.0, 260.0}) {
+        room.look({yaw, yaw / 4 - 40, 15});
+        compare(room, room.picture(), core_of(chart, *projector), findings);
+    }
+    if (bound) *bound = shader->GetResidualBound(room.actor);
+    return findings;
+}
+
+TEST(VtkProjectionShader, DirectIsExactForEveryProjection) {
+    for (const Projection projection : anamorph::kProjections) {
+        SCOPED_TRACE(std::string(anamorph::name_of(projection)));
+        const Findings findings = throw_places(chart_of(projection));
+        EXPECT_LE(findings.worst, 0.6L);
+        EXPECT_EQ(findings.wrong, 0);
+        EXPECT_GT(findings.painted, 10000);
+    }
+}
+
+TEST(VtkProjectionShader, ScenesFarFromTheOriginAreExact) {
+    const Findings findings = throw_places(chart_of(Projection::equirectangular), {4e6, -3e6, 5e5});
+    EXPECT_LE(findings.worst, 0.6L);
+    EXPECT_EQ(findings.unpainted, 0);
+}
+
+TEST(VtkProjectionShader, ResidualsHoldTheirBound) {
+    for (const Projection projection :
+         {Projection::cylindrical, Projection::equirectangular, Projection::mercator, Projection::hammer,
+          Projection::fisheye, Projection::pannini}) {
+        SCOPED_TRACE(std::string(anamorph::name_of(projection)));
+        double bound = 0;
+        const Findings findings = throw_places(chart_of(projection), glm::dvec3(0.0),
+                                               vtkAnamorphProjectionShader::RESIDUAL, &bound);
+        EXPECT_GT(bound, 0);
+        EXPECT_LE(bound, 0.25);
+        // Half a texel to its border, and the rounding of float and of the texture unit's weights.
+        EXPECT_LE(findings.worst, 0.5L + bound + 0.01L);
+        EXPECT_EQ(findings.wrong, 0);
+    }
+}
+
+/// Rises and falls by 8 levels a texel; its peaks are 30 texels apart.
+double wave(double at) {
+    return 8 + 8 * std::fabs(std::fmod(at, 60) - 30);
+}
+
+/// How far picture and formula are apart at most, in texels, where waves do not turn.
+long double worst_of_waves(const Room& room, const std::vector<Colour>& picture, const Projector& projector) {
+    long double worst = 0;
+    for (int j = 0; j < Room::kHeight; ++j)
+        for (int i = 0; i < Room::kWidth; ++i) {
+            const Ray<long double> ray = room.ray(projector, i, j);
+            const Point<long double> truth =
+                projector.panorama().point(ray, projector.panorama().piece_of(ray));
+            const double at[2] = {static_cast<double>(truth.x), static_cast<double>(truth.y)};
+            for (std::size_t k = 0; k < 2; ++k) {
+                const double place = std::fmod(at[k], 30);
+                if (place < 3 || place > 27) continue;
+                const int level = picture[static_cast<std::size_t>(j * Room::kWidth + i)][k];
+                worst = std::max(worst, std::fabs(level - wave(at[k])) / 8.0L);
+            }
+        }
+    return worst;
+}
+
+TEST(VtkProjectionShader, MultipassIsAsGoodAsItsPlanes) {
+    const Chart chart(Projection::equirectangular, 1920, 960);
+    const auto texture = texture_of(chart.width(), chart.height(), [](int i, int j) {
+        return Colour{static_cast<unsigned char>(std::lround(wave(i + 0.5))),
+                      static_cast<unsigned char>(std::lround(wave(j + 0.5))), 0};
+    });
+    texture->InterpolateOn();
+    const auto projector = projector_of(chart, texture);
+    Room room;
+    room.look({20, 10, 15});
+    vtkNew<vtkAnamorphProjectionShader> shader;
+    shader->AddProjector(projector);
+    shader->AddTo(room.actor);
+    for (const auto& [mode, size, most] : {std::tuple(vtkAnamorphProjectionShader::DIRECT, 0, 0.1L),
+                                           std::tuple(vtkAnamorphProjectionShader::RESIDUAL, 0, 0.1L),
+                                           std::tuple(vtkAnamorphProjectionShader::MULTIPASS, 512, 0.5L),
+                                           std::tuple(vtkAnamorphProjectionShader::MULTIPASS, 2048, 0.2L)}) {
+        SCOPED_TRACE(mode);
+        shader->SetMode(mode);
+        shader->SetPlaneSize(size);
+        const long double worst = worst_of_waves(room, room.picture(), core_of(chart, *projector));
+        EXPECT_LE(worst, most);
+    }
+}
+
+/// Smooth, with 1.25 levels a texel at most; not rounded to levels.
+std::array<double, 3> smooth_colour(int i, int j) {
+    const auto level = [](double phase) { return 127 + 100 * std::sin(phase); };
+    return {level(i * 2 * std::numbers::pi / 512), level(j * 2 * std::numbers::pi / 512),
+            level((i + j) * 2 * std::numbers::pi / 1024)};
+}
+
+/// What bilinear interpolation makes of a panorama whose rows close.
+std::array<double, 3> interpolated(const Chart& chart, const Point<double>& at) {
+    const double x = at.x - 0.5, y = std::clamp(at.y, 0.5, chart.height() - 0.5) - 0.5;
+    const int i = static_cast<int>(std::floor(x)), j = static_cast<int>(std::floor(y));
+    std::array<double, 3> sum{};
+    for (int corner = 0; corner < 4; ++corner) {
+        const int right = corner % 2, down = corner / 2;
+        const double weight = (right ? x - i : 1 - (x - i)) * (down ? y - j : 1 - (y - j));
+        const int column = (i + right + chart.width()) % chart.width();
+        const std::array<double, 3> c = smooth_colour(column, std::min(j + down, chart.height() - 1));
+        for (std::size_t k = 0; k < 3; ++k) sum[k] += weight * c[k];
+    }
+    return sum;
+}
+
+/// The largest distance of a picture from exact colours, in levels.
+double worst_level(const std::vector<Colour>& picture,
+                   const std::function<std::array<double, 3>(int, int)>& exact) {
+    double worst = 0;
+    for (int j = 0; j < Room::kHeight; ++j)
+        for (int i = 0; i < Room::kWidth; ++i) {
+            const std::array<double, 3> colour = exact(i, j);
+            const Colour& c = picture[static_cast<std::size_t>(j * Room::kWidth + i)];
+            for (std::size_t k = 0; k < 3; ++k) worst = std::max(worst, std::fabs(c[k] - colour[k]));
+        }
+    return worst;
+}
+
+/// In float: texture units may round mixtures of bytes to bytes.
+vtkSmartPointer<vtkTexture> smooth_texture(int width, int height) {
+    vtkNew<vtkImageData> image;
+    image->SetDimensions(width, height, 1);
+    image->AllocateScalars(VTK_FLOAT, 3);
+    for (int j = 0; j < height; ++j)
+        for (int i = 0; i < width; ++i)
+            for (int k = 0; k < 3; ++k)
+                image->SetScalarComponentFromDouble(i, height - 1 - j, 0, k,
+                                                    smooth_colour(i, j)[static_cast<std::size_t>(k)] / 255);
+    const auto texture = vtkSmartPointer<vtkTexture>::New();
+    texture->SetInputData(image);
+    texture->SetColorModeToDirectScalars();
+    texture->InterpolateOn();
+    return texture;
+}
+
+TEST(VtkProjectionShader, AgreesWithTheFilter) {
+    const Chart chart(Projection::equirectangular, 1024, 512);
+    const auto projector = projector_of(chart, smooth_texture(chart.width(), chart.height()));
+    const Projector core = core_of(chart, *projector);
+    Room room;
+    room.look({20, 10, 15});
+    const auto exact = [&](int i, int j) {
+        const Point<long double> truth = chart.point(room.ray(core, i, j), 0);
+        return interpolated(chart, {static_cast<double>(truth.x), static_cast<double>(truth.y)});
+    };
+    vtkNew<vtkAnamorphProjectionShader> shader;
+    shader->AddProjector(projector);
+    shader->AddTo(room.actor);
+    EXPECT_LE(worst_level(room.picture(), exact), 0.6);
+    shader->RemoveFrom(room.actor);
+
+    vtkNew<vtkAnamorphPanoramaProjection> filter;
+    filter->SetInputConnection(room.mapper->GetInputConnection(0, 0));
+    filter->SetPanoramaWidth(chart.width());
+    filter->SetPanoramaHeight(chart.height());
+    filter->SetPosition(projector->GetPosition());
+    filter->SetDirection(projector->GetDirection());
+    filter->SetViewUp(projector->GetViewUp());
+    filter->SetTolerance(0.06);
+    filter->OcclusionOff();
+    room.mapper->SetInputConnection(filter->GetOutputPort());
+    room.actor->SetTexture(projector->GetPanorama());
+    // Texture coordinates at poles and on triangles' borders are less exact; one pixel in a thousand may be.
+    int off = 0;
+    const std::vector<Colour> picture = room.picture();
+    worst_level(picture, [&](int i, int j) {
+        const auto colour = exact(i, j);
+        const Colour& c = picture[static_cast<std::size_t>(j * Room::kWidth + i)];
+        for (std::size_t k = 0; k < 3; ++k) off += std::fabs(c[k] - colour[k]) > 0.6;
+        return colour;
+    });
+    EXPECT_LE(off, Room::kWidth * Room::kHeight / 1000);
+}
+
+TEST(VtkProjectionShader, SharesAreThoseOfTheCore) {
+    const Chart chart(Projection::equirectangular, 1024, 512),
+        narrow(Projection::cylindrical, 1024, 400, 300);
+    const auto texture = smooth_texture(chart.width(), chart.height());
+    const auto other_texture = texture_of(1024, 400, [](int i, int) {
+        return Colour{static_cast<unsigned char>(i / 8), 20, 200};
+    });
+    other_texture->InterpolateOn();
+    const auto first = projector_of(chart, texture),
+               second = projector_of(narrow, other_texture, {0.9, -0.5, 0.6});
+    second->SetFade(100);
+    const Projector cores[] = {core_of(chart, *first), core_of(narrow, *second)};
+    Room room;
+    room.look({20, 10, 15});
+    vtkNew<vtkAnamorphProjectionShader> shader;
+    shader->AddProjector(first);
+    shader->AddProjector(second);
+    shader->AddTo(room.actor);
+    const auto exact = [&](int i, int j) {
+        std::array<double, 3> sum{};
+        double all = 0;
+        for (int k = 0; k < 2; ++k) {
+            Point<double> at{};
+            const Room::Wall wall = room.wall(i, j);
+            const double share = share_of(cores[k], wall.point, wall.normal, k == 0 ? 0 : 100, at);
+            if (!(share > 0)) continue;
+            const auto colour = k == 0
+                                    ? interpolated(chart, at)
+                                    : std::array<double, 3>{std::clamp(at.x - 0.5, 0.0, 1023.0) / 8, 20, 200};
+            for (std::size_t c = 0; c < 3; ++c) sum[c] += share * colour[c];
+            all += share;
+        }
+        for (double& c : sum) c /= all;
+        return sum;
+    };
+    // The second picture has steps of one level.
+    EXPECT_LE(worst_level(room.picture(), exact), 1.6);
+    shader->RemoveProjector(second);
+    EXPECT_GT(worst_level(room.picture(), exact), 20);
+}
+
+/// A room's picture of places, thrown with its middle at the origin.
+std::vector<Colour> picture_of_places(const std::function<void(Room&)>& change) {
+    const Chart chart = chart_of(Projection::equirectangular);
+    const auto texture = texture_of(chart.width(), chart.height(), colour_of_place);
+    texture->InterpolateOff();
+    Room room;
+    vtkNew<vtkAnamorphProjectionShader> shader;
+    shader->AddProjector(projector_of(chart, texture));
+    shader->AddTo(room.actor);
+    change(room);
+    return room.picture();
+}
+
+/// How many pixels of two pictures are not the same.
+int differences(const std::vector<Colour>& a, const std::vector<Colour>& b) {
+    int count = 0;
+    for (std::size_t i = 0; i < a.size(); ++i) count += a[i] != b[i];
+    return count;
+}
+
+TEST(VtkProjectionShader, ServesEveryWayThatVtkDraws) {
+    const auto plain = picture_of_places([](Room&) {});
+    constexpr int kFew = Room::kWidth * Room::kHeight / 200;
+    // Nearest texels change here and there by rounding.
+    EXPECT_LE(differences(plain, picture_of_places([](Room& room) {
+                              room.cube->SetCenter(-1, -2, 3);
+                              room.actor->SetPosition(1, 2, -3);
+                          })),
+              kFew);
+    // By a geometry shader, which darkens the edges.
+    const auto outside = [](bool edges) {
+        return picture_of_places([=](Room& room) {
+            room.look({0, 0, 0}, {1, 1, 5});
+            room.actor->GetProperty()->SetEdgeVisibility(edges);
+        });
+    };
+    const auto with = outside(true), without = outside(false);
+    int same = 0, other = 0;
+    for (std::size_t i = 0; i < with.size(); ++i)
+        if (without[i] != kNoPlace) {
+            const bool near =
+                std::abs(with[i][0] - without[i][0]) <= 3 && std::abs(with[i][1] - without[i][1]) <= 3;
+            ++(near ? same : other);
+        }
+    EXPECT_GT(same, 10 * other);
+    EXPECT_GT(same, 3000);
+    EXPECT_LE(differences(plain, picture_of_places([](Room& room) {
+                              vtkNew<CompositeMapper> mapper;
+                              vtkNew<vtkMultiBlockDataSet> blocks;
+                              room.cube->Update();
+                              blocks->SetBlock(0, room.cube->GetOutput());
+                              mapper->SetInputDataObject(blocks);
+                              room.actor->SetMapper(mapper);
+                          })),
+              kFew);
+    EXPECT_LE(differences(plain, picture_of_places([](Room& room) {
+                              room.actor->GetProperty()->LightingOn();
+                              room.actor->GetProperty()->SetAmbient(1);
+                              room.actor->GetProperty()->SetDiffuse(0);
+                          })),
+              kFew);
+}
+
+TEST(VtkProjectionShader, ParallelCamerasAreServed) {
+    const Chart chart = chart_of(Projection::equirectangular);
+    const auto texture = texture_of(chart.width(), chart.height(), colour_of_place);
+    texture->InterpolateOff();
+    const auto projector = projector_of(chart, texture);
+    const Projector core = core_of(chart, *projector);
+    Room room;
+    vtkNew<vtkAnamorphProjectionShader> shader;
+    shader->AddProjector(projector);
+    shader->AddTo(room.actor);
+    vtkCamera* camera = room.renderer->GetActiveCamera();
+    camera->SetPosition(0, 0, 0);
+    camera->SetFocalPoint(0, 0, -1);
+    camera->SetViewUp(0, 1, 0);
+    camera->ParallelProjectionOn();
+    camera->SetParallelScale(1.2);
+    const std::vector<Colour> picture = room.picture();
+    long double worst = 0;
+    for (int j = 0; j < Room::kHeight; ++j)
+        for (int i = 0; i < Room::kWidth; ++i) {
+            const double scale = 2.4 / Room::kHeight;
+            const glm::dvec3 point((i + 0.5 - Room::kWidth / 2) * scale,
+                                   -(j + 0.5 - Room::kHeight / 2) * scale, -Room::kHalf);
+            const glm::dvec3 ray = core.ray(point);
+            worst = std::max(
+                worst,
+                least_distance(chart, {ray.x, ray.y, ray.z},
+                               place_of_colour(picture[static_cast<std::size_t>(j * Room::kWidth + i)])));
+        }
+    EXPECT_LE(worst, 0.6L);
+}
+
+TEST(VtkProjectionShader, LensesOfEveryModelAreServed) {
+    for (const auto& [projection, lens] :
+         {std::pair(Projection::rectilinear, "brown:k1=-0.1,k2=0.02,p1=0.001,p2=-0.002"),
+          std::pair(Projection::rectilinear, "ptlens:a=0.01,b=-0.03,c=0.01"),
+          std::pair(Projection::rectilinear, "3de4:k1=0.05,k2=-0.01"),
+          std::pair(Projection::fisheye, "kb4:k1=0.02,k2=-0.004"),
+          std::pair(Projection::fisheye, "3de4:k1=0.05,k2=-0.01")}) {
+        SCOPED_TRACE(lens);
+        const Chart chart(projection, 1600, 1200, 110, anamorph::PixelSpacing::edges, "", 1,
+                          anamorph::LensModel::parse(lens));
+        const auto texture = texture_of(chart.width(), chart.height(), colour_of_place);
+        texture->InterpolateOff();
+        const auto projector = projector_of(chart, texture);
+        projector->SetLens(lens);
+        Room room;
+        room.look({25, 10, 0});
+        vtkNew<vtkAnamorphProjectionShader> shader;
+        shader->AddProjector(projector);
+        shader->HideUnpaintedOn();
+        shader->AddTo(room.actor);
+        Findings findings;
+        compare(room, room.picture(), core_of(chart, *projector), findings);
+        EXPECT_LE(findings.worst, 0.6L);
+        EXPECT_EQ(findings.wrong, 0);
+        EXPECT_GT(findings.painted, 10000);
+    }
+}
+
+/// VTK's errors of an object.
+class Errors {
+  public:
+    explicit Errors(vtkObject* object) {
+        m_command->SetCallback([](vtkObject*, unsigned long, void* to, void* text) {
+            static_cast<std::vector<std::string>*>(to)->emplace_back(static_cast<char*>(text));
+        });
+        m_command->SetClientData(&texts);
+        object->AddObserver(vtkCommand::ErrorEvent, m_command);
+    }
+    std::vector<std::string> texts;
+
+  private:
+    vtkNew<vtkCallbackCommand> m_command;
+};
+
+TEST(VtkProjectionShader, BadValuesAreSaidOnceAndPaintNothing) {
+    using testing::ElementsAre;
+    using testing::HasSubstr;
+    const Chart chart(Projection::cubemap, 64, 384);
+    const auto projector = projector_of(chart, nullptr);
+    vtkNew<vtkAnamorphProjectionShader> shader;
+    const Errors errors(shader);
+    Room room;
+    const auto own = room.picture();
+    shader->AddProjector(projector);
+    shader->AddTo(room.actor);
+    EXPECT_EQ(room.picture(), own);
+    EXPECT_EQ(room.picture(), own);
+    EXPECT_THAT(errors.texts, ElementsAre(HasSubstr("must be a texture with an image as its input")));
+    projector->SetPanorama(smooth_texture(100, 50));
+    EXPECT_EQ(room.picture(), own);
+    EXPECT_THAT(errors.texts.back(), HasSubstr("needs square faces"));
+    projector->SetPanorama(smooth_texture(64, 384));
+    EXPECT_NE(room.picture(), own);
+    EXPECT_EQ(errors.texts.size(), 2);
+    projector->SetViewUp(projector->GetDirection());
+    room.picture();
+    EXPECT_THAT(errors.texts.back(), HasSubstr("must not be along the direction"));
+    projector->SetOrientation(0, 0, 0);
+    projector->SetPosition(std::nan(""), 0, 0);
+    room.picture();
+    EXPECT_THAT(errors.texts.back(), HasSubstr("must be finite"));
+    projector->SetPosition(0, 0, 0);
+    shader->SetModeToResidual();
+    EXPECT_EQ(room.picture(), own);
+    EXPECT_THAT(errors.texts.back(), HasSubstr("must be direct or multipass"));
+    shader->SetModeToMultipass();
+    shader->SetVerticalReach(-1);
+    EXPECT_EQ(room.picture(), own);
+    EXPECT_THAT(errors.texts.back(), HasSubstr("must be a number above 0"));
+    EXPECT_EQ(errors.texts.size(), 6);
+}
+
+TEST(VtkProjectionShader, WindowsComeAndGo) {
+    const Chart chart(Projection::equirectangular, 256, 128);
+    const auto projector = projector_of(chart, smooth_texture(chart.width(), chart.height()));
+    vtkNew<vtkAnamorphProjectionShader> shader;
+    shader->AddProjector(projector);
+    for (const int mode : {0, 1, 2}) {
+        shader->SetMode(mode);
+        Room first, second;
+        shader->AddTo(first.actor);
+        const auto picture = first.picture();
+        first.window->Finalize();
+        EXPECT_EQ(first.picture(), picture);
+        shader->AddTo(second.actor);
+        EXPECT_LE(differences(second.picture(), picture), 10);
+        shader->RemoveFrom(first.actor);
+        EXPECT_NE(first.picture(), picture);
+    }
+}
+
+TEST(VtkPanoramaProjector, IsAsVtkClassesAre) {
+    vtkNew<vtkAnamorphPanoramaProjector> projector;
+    EXPECT_STREQ(projector->GetProjectionName(), "equirectangular");
+    const vtkMTimeType before = projector->GetMTime();
+    projector->SetProjection(0);
+    projector->SetPanorama(nullptr);
+    projector->SetOrientation(0, 0, 0);
+    EXPECT_EQ(projector->GetMTime(), before);
+    projector->SetProjectionName("fisheye");
+    EXPECT_EQ(projector->GetProjection(), 3);
+    EXPECT_GT(projector->GetMTime(), before);
+    const Errors errors(projector);
+    projector->SetProjectionName("round");
+    projector->SetProjectionName(nullptr);
+    EXPECT_EQ(errors.texts.size(), 2);
+    EXPECT_EQ(projector->GetProjection(), 3);
+    std::ostringstream text;
+    projector->Print(text);
+    EXPECT_THAT(text.str(), testing::HasSubstr("Projection: fisheye"));
+    vtkNew<vtkAnamorphProjectionShader> shader;
+    shader->AddProjector(projector);
+    const vtkMTimeType added = shader->GetMTime();
+    projector->SetFade(3);
+    EXPECT_GT(shader->GetMTime(), added);
+    text.str("");
+    shader->Print(text);
+    EXPECT_THAT(text.str(), testing::HasSubstr("Mode: direct"));
+}
+
+TEST(VtkPanoramaProjector, YawGoesRightPitchUpAndRollClockwise) {
+    vtkNew<vtkAnamorphPanoramaProjector> projector;
+    const auto expect = [&](const glm::dvec3& direction, const glm::dvec3& up) {
+        for (int k = 0; k < 3; ++k) {
+            EXPECT_NEAR(projector->GetDirection()[k], direction[k], 1e-12);
+            EXPECT_NEAR(projector->GetViewUp()[k], up[k], 1e-12);
+        }
+    };
+    projector->SetOrientation(90, 0, 0);
+    expect({1, 0, 0}, {0, 1, 0});
+    projector->SetOrientation(0, 90, 0);
+    expect({0, 1, 0}, {0, 0, 1});
+    projector->SetOrientation(0, 0, 90);
+    expect({0, 0, -1}, {1, 0, 0});
+}
+
+}  // namespace

@@ -1,0 +1,250 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "projection_hook.h"
+
+#include <glm/mat4x4.hpp>
+
+#include "anamorph/error.h"
+#include "projection_tables.h"
+#include "vtkActor.h"
+#include "vtkAnamorphPanoramaProjector.h"
+#include "vtkAnamorphProjectionShader.h"
+#include "vtkImageData.h"
+#include "vtkMatrix4x4.h"
+#include "vtkObjectFactory.h"
+#include "vtkOpenGLCamera.h"
+#include "vtkOpenGLRenderWindow.h"
+#include "vtkProperty.h"
+#include "vtkRenderer.h"
+#include "vtkShaderProperty.h"
+#include "vtkTextureObject.h"
+#include "vtkUniforms.h"
+
+namespace anamorph_vtk {
+
+vtkStandardNewMacro(LoadedTexture);
+vtkStandardNewMacro(ProjectionHook);
+
+namespace {
+
+constexpr const char* kPositionDec = "//VTK::PositionVC::Dec";
+constexpr const char* kPositionImpl = "//VTK::PositionVC::Impl";
+constexpr const char* kTextureDec = "//VTK::TCoord::Dec";
+constexpr const char* kTextureImpl = "//VTK::TCoord::Impl";
+
+void set_replacements(vtkShaderProperty& shaders, const ProjectionText& text) {
+    const auto after = [](const char* tag, const std::string& added) {
+        return std::string(tag) + "\n" + added;
+    };
+    shaders.AddVertexShaderReplacement(kPositionDec, true, after(kPositionDec, text.vertex_declarations),
+                                       false);
+    shaders.AddVertexShaderReplacement(kPositionImpl, true, after(kPositionImpl, text.vertex_code), false);
+    shaders.AddGeometryShaderReplacement(kPositionDec, true, after(kPositionDec, text.geometry_declarations),
+                                         false);
+    shaders.AddGeometryShaderReplacement(kPositionImpl, true, after(kPositionImpl, text.geometry_code),
+                                         false);
+    shaders.AddFragmentShaderReplacement(kPositionDec, true, after(kPositionDec, text.fragment_declarations),
+                                         false);
+    shaders.AddFragmentShaderReplacement(kTextureDec, true, after(kTextureDec, text.fragment_functions),
+                                         false);
+    shaders.AddFragmentShaderReplacement(kTextureImpl, true, text.fragment_code, false);
+}
+
+void clear_replacements(vtkShaderProperty& shaders) {
+    shaders.ClearVertexShaderReplacement(kPositionDec, true);
+    shaders.ClearVertexShaderReplacement(kPositionImpl, true);
+    shaders.ClearGeometryShaderReplacement(kPositionDec, true);
+    shaders.ClearGeometryShaderReplacement(kPositionImpl, true);
+    shaders.ClearFragmentShaderReplacement(kPositionDec, true);
+    shaders.ClearFragmentShaderReplacement(kTextureDec, true);
+    shaders.ClearFragmentShaderReplacement(kTextureImpl, true);
+}
+
+/// From world coordinates to those of gl_Position.
+glm::dmat4 clip_matrix(vtkRenderer* renderer) {
+    vtkMatrix4x4 *view = nullptr, *projection = nullptr, *both = nullptr;
+    vtkMatrix3x3* normals = nullptr;
+    vtkOpenGLCamera::SafeDownCast(renderer->GetActiveCamera())
+        ->GetKeyMatrices(renderer, view, normals, projection, both);
+    glm::dmat4 matrix;
+    for (int column = 0; column < 4; ++column)
+        for (int row = 0; row < 4; ++row) matrix[column][row] = both->GetElement(column, row);
+    return matrix;
+}
+
+/// ray = matrix * gl_Position + origin. In perspective x, y and w tell a point better than z does; else z counts.
+struct RayFromClip {
+    glm::dmat4 matrix{0.0};
+    glm::dvec3 origin{0.0};
+
+    RayFromClip(const glm::dmat4& clip, const anamorph::ProjectorPose& pose) {
+        const bool perspective = clip[0][3] != 0 || clip[1][3] != 0 || clip[2][3] != 0;
+        const int third = perspective ? 3 : 2;
+        const auto part = [&](int column) {
+            return glm::dvec3(clip[column][0], clip[column][1], clip[column][third]);
+        };
+        const glm::dmat3 to_world = glm::inverse(glm::dmat3(part(0), part(1), part(2)));
+        const glm::dmat3 to_frame = glm::transpose(frame_of(pose));
+        const glm::dmat3 to_ray = to_frame * to_world;
+        matrix[0] = glm::dvec4(to_ray[0], 0);
+        matrix[1] = glm::dvec4(to_ray[1], 0);
+        matrix[third] = glm::dvec4(to_ray[2], 0);
+        origin = -(to_frame * (to_world * part(3) + pose.position));
+    }
+};
+
+}  // namespace
+
+void LoadedTexture::Render(vtkRenderer*) {
+    if (this->GetTextureObject()) this->GetTextureObject()->Activate();
+}
+
+void LoadedTexture::PostRender(vtkRenderer*) {
+    if (this->GetTextureObject()) this->GetTextureObject()->Deactivate();
+}
+
+void ProjectionHook::put_on(vtkActor* actor, vtkAnamorphProjectionShader* owner) {
+    const auto state = std::make_shared<State>();
+    for (int i = 0; i < owner->GetNumberOfProjectors(); ++i) {
+        const auto hook = vtkSmartPointer<ProjectionHook>::New();
+        hook->m_owner = owner;
+        hook->m_projector = owner->GetProjector(i);
+        hook->m_shaders = actor->GetShaderProperty();
+        hook->m_index = static_cast<std::size_t>(i);
+        hook->m_state = state;
+        // By name, tables come behind panoramas, and are loaded when these have been.
+        actor->GetProperty()->SetTexture(texture_name(hook->m_index).c_str(), hook);
+        if (owner->GetMode() == vtkAnamorphProjectionShader::DIRECT) continue;
+        hook->m_table = vtkSmartPointer<LoadedTexture>::New();
+        actor->GetProperty()->SetTexture(table_name(hook->m_index).c_str(), hook->m_table);
+    }
+}
+
+void ProjectionHook::take_off(vtkActor* actor) {
+    vtkProperty* property = actor->GetProperty();
+    vtkShaderProperty* shaders = actor->GetShaderProperty();
+    if (owner_of(actor)) clear_replacements(*shaders);
+    for (std::size_t i = 0; i < vtkAnamorphProjectionShader::MostProjectors; ++i) {
+        for (const std::string& name : {texture_name(i), table_name(i)})
+            if (property->GetTexture(name.c_str())) property->RemoveTexture(name.c_str());
+        shaders->GetVertexCustomUniforms()->RemoveUniform(matrix_name(i).c_str());
+        shaders->GetVertexCustomUniforms()->RemoveUniform(origin_name(i).c_str());
+    }
+}
+
+vtkAnamorphProjectionShader* ProjectionHook::owner_of(vtkActor* actor) {
+    auto* first = ProjectionHook::SafeDownCast(actor->GetProperty()->GetTexture(texture_name(0).c_str()));
+    return first ? first->m_owner : nullptr;
+}
+
+const PreparedPanorama* ProjectionHook::prepared_for(vtkActor* actor, int projector) {
+    auto* first = ProjectionHook::SafeDownCast(actor->GetProperty()->GetTexture(texture_name(0).c_str()));
+    const auto i = static_cast<std::size_t>(projector);
+    return first && i < first->m_state->prepared.size() ? first->m_state->prepared[i].get() : nullptr;
+}
+
+vtkOpenGLTexture* ProjectionHook::panorama() const {
+    return vtkOpenGLTexture::SafeDownCast(m_projector->GetPanorama());
+}
+
+void ProjectionHook::complain(const std::string& complaint, std::string& last) {
+    if (!complaint.empty() && complaint != last) vtkErrorWithObjectMacro(m_owner, << complaint);
+    last = complaint;
+}
+
+void ProjectionHook::Render(vtkRenderer* renderer) {
+    if (m_index == 0) refresh_text();
+    set_uniforms(renderer);
+    vtkSmartPointer<vtkTextureObject> loaded;
+    if (panorama() && m_index < m_state->prepared.size()) {
+        panorama()->Render(renderer);
+        loaded = panorama()->GetTextureObject();
+    }
+    if (!loaded) loaded = blank_texture(vtkOpenGLRenderWindow::SafeDownCast(renderer->GetRenderWindow()));
+    this->SetTextureObject(loaded);
+    this->Superclass::Render(renderer);
+    if (m_table) refresh_table(renderer);
+}
+
+void ProjectionHook::PostRender(vtkRenderer* renderer) {
+    if (panorama()) panorama()->PostRender(renderer);
+    this->Superclass::PostRender(renderer);
+}
+
+void ProjectionHook::ReleaseGraphicsResources(vtkWindow* window) {
+    if (panorama()) panorama()->ReleaseGraphicsResources(window);
+    this->SetTextureObject(nullptr);
+    if (m_table) m_table->SetTextureObject(nullptr);
+    m_table_of = nullptr;
+}
+
+void ProjectionHook::refresh_text() {
+    if (!m_shaders) return;
+    PreparedPanoramas& prepared = m_state->prepared;
+    PreparedPanoramas now;
+    std::string complaint;
+    try {
+        for (int i = 0; i < m_owner->GetNumberOfProjectors(); ++i) {
+            const ThrownPanorama thrown = thrown_by(*m_owner->GetProjector(i), *m_owner);
+            const auto at = static_cast<std::size_t>(i);
+            const bool known = at < prepared.size() && prepared[at]->thrown == thrown;
+            now.push_back(known ? prepared[at] : std::make_shared<const PreparedPanorama>(thrown));
+        }
+    } catch (const anamorph::Error& error) {
+        complaint = error.what();
+        now.clear();
+    }
+    complain(complaint, m_state->complaint);
+    const bool hides = m_owner->GetHideUnpainted();
+    if (m_state->has_text && now == prepared && hides == m_state->hides) return;
+    prepared = now;
+    m_state->hides = hides;
+    m_state->has_text = true;
+    set_replacements(*m_shaders, projection_text(prepared, hides));
+}
+
+void ProjectionHook::refresh_table(vtkRenderer* renderer) {
+    auto* window = vtkOpenGLRenderWindow::SafeDownCast(renderer->GetRenderWindow());
+    const auto prepared = m_index < m_state->prepared.size() ? m_state->prepared[m_index] : nullptr;
+    if (!prepared || prepared->groups.empty()) {
+        m_table->SetTextureObject(this->GetTextureObject());
+        m_table_of = nullptr;
+        return;
+    }
+    const bool residual = prepared->thrown.mode == vtkAnamorphProjectionShader::RESIDUAL;
+    const std::pair<vtkTextureObject*, vtkMTimeType> drawn(
+        this->GetTextureObject(),
+        residual ? 0 : std::max(panorama()->GetMTime(), panorama()->GetInput()->GetMTime()));
+    if (m_table_of == prepared && drawn == m_drawn) return;
+    try {
+        // What is blended by parts has colours times these, which 8 bits would not hold.
+        const bool bytes = panorama()->GetTextureObject()->GetVTKDataType() == VTK_UNSIGNED_CHAR &&
+                           !(prepared->thrown.fade > 0);
+        m_table->SetTextureObject(residual ? residual_table(*prepared, window)
+                                           : drawn_planes(*prepared, bytes, panorama(), window));
+        complain("", m_wrong_table);
+    } catch (const anamorph::Error& error) {
+        m_table->SetTextureObject(blank_texture(window));
+        complain(error.what(), m_wrong_table);
+    }
+    m_table_of = prepared;
+    m_drawn = drawn;
+}
+
+void ProjectionHook::set_uniforms(vtkRenderer* renderer) {
+    if (!m_shaders) return;
+    try {
+        const RayFromClip from(clip_matrix(renderer), pose_of(*m_projector));
+        float matrix[16], origin[3];
+        for (int i = 0; i < 16; ++i) matrix[i] = static_cast<float>(from.matrix[i / 4][i % 4]);
+        for (int i = 0; i < 3; ++i) origin[i] = static_cast<float>(from.origin[i]);
+        vtkUniforms* uniforms = m_shaders->GetVertexCustomUniforms();
+        uniforms->SetUniformMatrix4x4(matrix_name(m_index).c_str(), matrix);
+        uniforms->SetUniform3f(origin_name(m_index).c_str(), origin);
+        complain("", m_wrong_pose);
+    } catch (const anamorph::Error& error) {
+        // The last right pose stays.
+        complain(error.what(), m_wrong_pose);
+    }
+}
+
+}  // namespace anamorph_vtk

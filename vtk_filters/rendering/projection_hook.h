@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: Apache-2.0
+// How a vtkAnamorphProjectionShader takes part in drawing an actor: as textures of the actor's property, one or two for each
+// projector. VTK lets them load just before it draws, with the renderer: they load the panorama's texture instead, and bring
+// the actor's shaders up to date.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <utility>
+
+#include "projection_text.h"
+#include "vtkOpenGLTexture.h"
+#include "vtkSmartPointer.h"
+#include "vtkWeakPointer.h"
+
+class vtkActor;
+class vtkShaderProperty;
+
+namespace anamorph_vtk {
+
+/// A texture that is only loaded.
+class LoadedTexture : public vtkOpenGLTexture {
+  public:
+    static LoadedTexture* New();
+    vtkTypeMacro(LoadedTexture, vtkOpenGLTexture);
+
+    void Render(vtkRenderer*) override;
+    void PostRender(vtkRenderer*) override;
+    int IsTranslucent() override { return 0; }
+};
+
+class ProjectionHook : public LoadedTexture {
+  public:
+    static ProjectionHook* New();
+    vtkTypeMacro(ProjectionHook, LoadedTexture);
+
+    static void put_on(vtkActor* actor, vtkAnamorphProjectionShader* owner);
+    static void take_off(vtkActor* actor);
+    /// Whose hooks an actor has; null: none.
+    static vtkAnamorphProjectionShader* owner_of(vtkActor* actor);
+    /// What it throws as of the last frame; null: nothing.
+    static const PreparedPanorama* prepared_for(vtkActor* actor, int projector);
+
+    // As a texture.
+    void Render(vtkRenderer* renderer) override;
+    void PostRender(vtkRenderer* renderer) override;
+    void ReleaseGraphicsResources(vtkWindow* window) override;
+
+  private:
+    /// What the hooks of an actor share.
+    struct State {
+        PreparedPanoramas prepared;
+        bool hides = false, has_text = false;
+        std::string complaint;
+    };
+
+    vtkOpenGLTexture* panorama() const;
+    /// Once, where something is wrong.
+    void complain(const std::string& complaint, std::string& last);
+    /// Writes the shaders anew where the text has changed.
+    void refresh_text();
+    /// Draws or loads what the mode reads beside the panorama.
+    void refresh_table(vtkRenderer* renderer);
+    void set_uniforms(vtkRenderer* renderer);
+
+    vtkSmartPointer<vtkAnamorphProjectionShader> m_owner;
+    vtkSmartPointer<vtkAnamorphPanoramaProjector> m_projector;
+    vtkWeakPointer<vtkShaderProperty> m_shaders;
+    std::size_t m_index = 0;
+    std::shared_ptr<State> m_state;
+    std::string m_wrong_pose, m_wrong_table;
+    /// None in mode direct.
+    vtkSmartPointer<LoadedTexture> m_table;
+    /// What the table was made of.
+    std::shared_ptr<const PreparedPanorama> m_table_of;
+    std::pair<vtkTextureObject*, vtkMTimeType> m_drawn{};
+};
+
+}  // namespace anamorph_vtk

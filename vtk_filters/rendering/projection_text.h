@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: Apache-2.0
+// The shaders' text that throws panoramas.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "anamorph/projector/projection_groups.h"
+
+class vtkAnamorphPanoramaProjector;
+class vtkAnamorphProjectionShader;
+
+namespace anamorph_vtk {
+
+/// What the text depends on: of a projector, all but its pose; and how it is thrown.
+struct ThrownPanorama {
+    int projection = 0, width = 0, height = 0, components = 4;
+    double fov = 0, d = 1, fade = 0;
+    std::string lens;
+    int mode = 0, directions = 0, plane_size = 0, table_size = 0;
+    double vertical_reach = 1;
+
+    bool operator==(const ThrownPanorama&) const = default;
+};
+
+/// Of a projector as it is. Throws Error where it has no picture.
+ThrownPanorama thrown_by(vtkAnamorphPanoramaProjector& projector, vtkAnamorphProjectionShader& shader);
+
+/// As the core has it.
+anamorph::ProjectorPose pose_of(vtkAnamorphPanoramaProjector& projector);
+
+/// A panorama with what its mode needs.
+struct PreparedPanorama {
+    ThrownPanorama thrown;
+    anamorph::Chart chart;
+    /// None in mode direct. Of mode residual, only those whose bound is good enough.
+    std::vector<anamorph::ProjectionGroup> groups;
+    anamorph::GroupOptions field;
+
+    /// Throws Error.
+    explicit PreparedPanorama(const ThrownPanorama& panorama);
+    /// In texels, proven, where residuals are read; of mode residual.
+    double bound() const;
+};
+using PreparedPanoramas = std::vector<std::shared_ptr<const PreparedPanorama>>;
+
+/// What becomes of the tags of VTK's shaders. A tag is kept in front, but for that of texture coordinates.
+struct ProjectionText {
+    std::string vertex_declarations, vertex_code, geometry_declarations, geometry_code;
+    std::string fragment_declarations, fragment_functions, fragment_code;
+};
+
+/// `hide`: are fragments left out that receive nothing?
+ProjectionText projection_text(const PreparedPanoramas& panoramas, bool hide);
+
+/// The fragment shader that draws a panorama on its projection planes, one above the other: colours times how much of them
+/// counts, and that.
+std::string plane_text(const PreparedPanorama& panorama);
+
+/// The names in the text of what belongs to a projector: its texture, its table or planes, and a matrix and a vector that make
+/// a ray in its frame of gl_Position.
+std::string texture_name(std::size_t projector);
+std::string table_name(std::size_t projector);
+std::string matrix_name(std::size_t projector);
+std::string origin_name(std::size_t projector);
+
+}  // namespace anamorph_vtk

@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: Apache-2.0
+/**
+ * @class vtkAnamorphPanoramaProjector
+ * @brief a panorama that is thrown like a slide from its centre (Kim 2003, chapter 4)
+ *
+ * Says what is thrown and from where; vtkAnamorphProjectionShader throws it onto actors, vtkAnamorphPanoramaProjection onto
+ * data. The panorama is a texture with an image as its input, whose size in texels counts. It should interpolate, and
+ * repeat where it covers 360 degrees; with mipmaps it is smooth where it shrinks.
+ */
+#ifndef vtkAnamorphPanoramaProjector_h
+#define vtkAnamorphPanoramaProjector_h
+
+#include "AnamorphRenderingModule.h"  // for the export macro
+#include "vtkObject.h"
+#include "vtkSmartPointer.h"  // for the members
+
+class vtkTexture;
+
+class ANAMORPHRENDERING_EXPORT vtkAnamorphPanoramaProjector : public vtkObject {
+  public:
+    static vtkAnamorphPanoramaProjector* New();
+    vtkTypeMacro(vtkAnamorphPanoramaProjector, vtkObject);
+    void PrintSelf(ostream& os, vtkIndent indent) override;
+
+    ///@{
+    /**
+     * The picture. Default: none.
+     */
+    void SetPanorama(vtkTexture* panorama);
+    vtkTexture* GetPanorama();
+    ///@}
+
+    ///@{
+    /**
+     * The projection of the panorama, by its place in the core's list (the values of vtkAnamorphPanoramaProjection) or by its
+     * name, such as "equirectangular". A name that is none changes nothing. Default: 0, equirectangular.
+     */
+    void SetProjection(int projection);
+    vtkGetMacro(Projection, int);
+    void SetProjectionName(const char* name);
+    const char* GetProjectionName();
+    static int GetNumberOfProjections();
+    ///@}
+
+    ///@{
+    /**
+     * Degrees that the panorama's width covers, or each of its faces; 0: what its projection has by default. Default: 0.
+     */
+    vtkSetMacro(FieldOfView, double);
+    vtkGetMacro(FieldOfView, double);
+    ///@}
+
+    ///@{
+    /**
+     * The distance d of Pannini's projection, which others do not read. Default: 1.
+     */
+    vtkSetMacro(PanniniDistance, double);
+    vtkGetMacro(PanniniDistance, double);
+    ///@}
+
+    ///@{
+    /**
+     * Distortion of the lens that the panorama was taken through: MODEL:name=value,name=value with ptlens, brown, 3de4 or
+     * kb4. Default: none.
+     */
+    vtkSetStringMacro(Lens);
+    vtkGetStringMacro(Lens);
+    ///@}
+
+    ///@{
+    /**
+     * The centre of the panorama, in world coordinates; where its middle is thrown; and upwards, which may be aslant.
+     * Defaults: (0, 0, 0), (0, 0, -1), (0, 1, 0).
+     */
+    vtkSetVector3Macro(Position, double);
+    vtkGetVector3Macro(Position, double);
+    vtkSetVector3Macro(Direction, double);
+    vtkGetVector3Macro(Direction, double);
+    vtkSetVector3Macro(ViewUp, double);
+    vtkGetVector3Macro(ViewUp, double);
+    ///@}
+
+    /**
+     * Sets Direction and ViewUp by degrees: yaw to the right of (0, 0, -1), pitch towards (0, 1, 0), roll clockwise. It is
+     * rolled first, then pitched, then turned.
+     */
+    void SetOrientation(double yaw, double pitch, double roll);
+
+    ///@{
+    /**
+     * How wide the panorama's border fades where several projectors meet, in texels. Default: 0.
+     */
+    vtkSetMacro(Fade, double);
+    vtkGetMacro(Fade, double);
+    ///@}
+
+  protected:
+    vtkAnamorphPanoramaProjector() = default;
+    ~vtkAnamorphPanoramaProjector() override;
+
+  private:
+    vtkAnamorphPanoramaProjector(const vtkAnamorphPanoramaProjector&) = delete;
+    void operator=(const vtkAnamorphPanoramaProjector&) = delete;
+
+    vtkSmartPointer<vtkTexture> Panorama;
+    int Projection = 0;
+    double FieldOfView = 0, PanniniDistance = 1;
+    char* Lens = nullptr;
+    double Position[3] = {0, 0, 0}, Direction[3] = {0, 0, -1}, ViewUp[3] = {0, 1, 0};
+    double Fade = 0;
+};
+
+#endif

@@ -1,0 +1,148 @@
+// SPDX-License-Identifier: Apache-2.0
+/**
+ * @class vtkAnamorphProjectionShader
+ * @brief throws panoramas onto actors, fragment by fragment
+ *
+ * Projective texture mapping with panoramas of any projection (Kim 2003, chapter 4) on the mappers of polygons of VTK's OpenGL:
+ * no texture coordinates, and no triangle is cut. What a fragment receives is multiplied with its colour after lighting, as
+ * VTK does with textures; an ambient of 1 and a diffuse of 0 show the panorama as it is. What receives nothing keeps its own
+ * colour, or is not drawn.
+ *
+ * It sets replacements and uniforms of the actor's vtkShaderProperty and textures of its vtkProperty: after replacing one of
+ * these, call AddTo() again. Other replacements are kept, but not one of //VTK::TCoord::Impl in fragment shaders, which ours
+ * replaces: a texture by texture coordinates does not show. Changes of projectors show in the next frame.
+ *
+ * Positions are taken from the renderer's camera, with matrices multiplied in double: far from the origin nothing trembles that
+ * VTK draws calmly, and coordinates that a mapper shifts and scales do not matter.
+ *
+ * Where several projectors meet, each has a share in proportion to the cosine of its rays to the surface's normal over the
+ * square of the distance, as vtkAnamorphProjectionBake does it.
+ */
+#ifndef vtkAnamorphProjectionShader_h
+#define vtkAnamorphProjectionShader_h
+
+#include <memory>  // for the members
+
+#include "AnamorphRenderingModule.h"  // for the export macro
+#include "vtkObject.h"
+
+class vtkActor;
+class vtkAnamorphPanoramaProjector;
+class vtkRenderer;
+class vtkShaderProperty;
+
+class ANAMORPHRENDERING_EXPORT vtkAnamorphProjectionShader : public vtkObject {
+  public:
+    static vtkAnamorphProjectionShader* New();
+    vtkTypeMacro(vtkAnamorphProjectionShader, vtkObject);
+    void PrintSelf(ostream& os, vtkIndent indent) override;
+    vtkMTimeType GetMTime() override;
+
+    /// As many may be thrown at a time.
+    static constexpr int MostProjectors = 8;
+
+    ///@{
+    /**
+     * The projectors. Default: none.
+     */
+    void AddProjector(vtkAnamorphPanoramaProjector* projector);
+    void RemoveProjector(vtkAnamorphPanoramaProjector* projector);
+    void RemoveAllProjectors();
+    int GetNumberOfProjectors();
+    vtkAnamorphPanoramaProjector* GetProjector(int index);
+    ///@}
+
+    /// How a fragment finds its colour.
+    enum Modes {
+        DIRECT = 0,  ///< by the panorama's formula
+        RESIDUAL,    ///< by a matrix, a division and a table of what is left (Kim 2003, 4.4.1)
+        MULTIPASS    ///< from the panorama as it was drawn on projection planes before (Kim 2003, 4.4.2)
+    };
+    ///@{
+    /**
+     * Modes RESIDUAL and MULTIPASS divide what is around into level directions of projection. Fragments that are in the
+     * field of view of none, above and below, are found as in mode DIRECT. RESIDUAL is for panoramas without faces, and tables
+     * of which no bound of .25 texels is proven are not read. MULTIPASS samples a panorama twice, drops its transparency, and
+     * has no mipmaps. Default: DIRECT.
+     */
+    void SetMode(int mode);
+    vtkGetMacro(Mode, int);
+    void SetModeToDirect() { this->SetMode(DIRECT); }
+    void SetModeToResidual() { this->SetMode(RESIDUAL); }
+    void SetModeToMultipass() { this->SetMode(MULTIPASS); }
+    ///@}
+
+    ///@{
+    /**
+     * Directions of projection, all around. Default: 4.
+     */
+    vtkSetClampMacro(NumberOfDirections, int, 3, 32);
+    vtkGetMacro(NumberOfDirections, int);
+    ///@}
+
+    ///@{
+    /**
+     * How far up and down a projection plane goes, at a distance of 1: 1 is 45 degrees. Default: 1.
+     */
+    vtkSetMacro(VerticalReach, double);
+    vtkGetMacro(VerticalReach, double);
+    ///@}
+
+    ///@{
+    /**
+     * Rows and columns of a table of residuals. Default: 256.
+     */
+    vtkSetClampMacro(TableSize, int, 2, 4096);
+    vtkGetMacro(TableSize, int);
+    ///@}
+
+    ///@{
+    /**
+     * Pixels across and down a projection plane. Default: 1024.
+     */
+    vtkSetClampMacro(PlaneSize, int, 16, 8192);
+    vtkGetMacro(PlaneSize, int);
+    ///@}
+
+    /**
+     * In mode RESIDUAL: how far what a fragment finds on an actor is from the panorama's formula at most, in texels, proven
+     * but for the rounding of float; of the last frame. 0 in other modes.
+     */
+    double GetResidualBound(vtkActor* actor, int projector = 0);
+
+    ///@{
+    /**
+     * Whether fragments that receive nothing are left out. Default: off.
+     */
+    vtkSetMacro(HideUnpainted, bool);
+    vtkGetMacro(HideUnpainted, bool);
+    vtkBooleanMacro(HideUnpainted, bool);
+    ///@}
+
+    ///@{
+    /**
+     * Throws onto an actor, from now on; and no longer. An actor takes part with one shader at a time.
+     */
+    void AddTo(vtkActor* actor);
+    void RemoveFrom(vtkActor* actor);
+    ///@}
+
+  protected:
+    vtkAnamorphProjectionShader();
+    ~vtkAnamorphProjectionShader() override;
+
+  private:
+    vtkAnamorphProjectionShader(const vtkAnamorphProjectionShader&) = delete;
+    void operator=(const vtkAnamorphProjectionShader&) = delete;
+
+    void AddToAll();
+
+    struct Internals;
+
+    int Mode = DIRECT, NumberOfDirections = 4, TableSize = 256, PlaneSize = 1024;
+    double VerticalReach = 1;
+    bool HideUnpainted = false;
+    std::unique_ptr<Internals> Inside;
+};
+
+#endif
