@@ -46,13 +46,16 @@ run_tests() {
     ctest --preset "$1" -j "$jobs" --no-tests=error --no-label-summary
 }
 
+fuzz_one() {
+    build/fuzz/fuzz/"$1" -max_total_time="$fuzz_seconds" -timeout=10 -rss_limit_mb=2048 \
+        -dict=tests/fuzz/fuzz.dict -artifact_prefix=build/fuzz/"$1"- -print_final_stats=1
+}
+export -f fuzz_one
+export fuzz_seconds
+
 run_fuzz_targets() {
-    local target
-    for target in build/fuzz/fuzz/*; do
-        [ -x "$target" ] || continue
-        "$target" -max_total_time="$fuzz_seconds" -timeout=10 -rss_limit_mb=2048 \
-            -dict=tests/fuzz/fuzz.dict -artifact_prefix=build/fuzz/ -print_final_stats=1 || return 1
-    done
+    find build/fuzz/fuzz -maxdepth 1 -name 'fuzz_*' -executable -printf '%f\n' | sort |
+        xargs -P "$jobs" -I TARGET bash -c 'fuzz_one TARGET || exit 255'
 }
 
 step format check_format
