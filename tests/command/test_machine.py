@@ -133,6 +133,7 @@ class Machine(unittest.TestCase):
         defines = self.write("defines.ps", b"ps_2_0\ndef c1, 0, 0, 0, 0\nmov oC0, c1\n")
         bad = self.write("bad.ps", b"ps_2_0\nmov oC0, c0\nfrob r0\n")
         wide = self.write("wide.pfm", picture([[(0, 0, 0)] * 2]))
+        square = self.write("square.pfm", picture([[(0, 0, 0)]]))
         short = self.write("short.pfm", picture([[(0, 0, 0)]])[:-1])
         for arguments, message in (
                 ([], "A subcommand is required"),
@@ -148,6 +149,10 @@ class Machine(unittest.TestCase):
                 (["run", good, "--size", "0"], "--size=0: must be N or NxM"),
                 (["run", good, "--size", "nan"], "--size=nan: must be N or NxM"),
                 (["run", good, "--constant", "c0=1,2"], "must have four numbers"),
+                (["run", good, "--constant", "c0=1,2,nan,4"], "--constant=c0=1,2,nan,4: must be finite numbers"),
+                (["run", good, "--constant", "c0=1,2,3,4", "--constant", "c0=1,2,3,5"],
+                 "--constant=c0=1,2,3,5: is given twice: must be given once"),
+                (["run", good, "--texture", "s0=" + square, "--texture", "s0=" + square], "is given twice"),
                 (["run", defines, "--constant", "c1=1,2,3,4"], "--constant=c1=1,2,3,4: must be none that the program defines"),
                 (["run", good, "--arithmetic", "V8U8"], "--arithmetic=V8U8: must be one of float16"),
                 (["schedule", "--surface", "cube"], "--surface=cube: must be one of plane, "),

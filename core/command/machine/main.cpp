@@ -10,6 +10,7 @@
 #include <functional>
 #include <iostream>
 #include <map>
+#include <set>
 
 #include "anamorph/machine/block_schedule.h"
 #include "anamorph/machine/machine_text.h"
@@ -225,7 +226,8 @@ class Command {
         std::map<int, MachineTexture<4>> textures;
         for (const std::string& text : m_settings.textures) {
             const auto [number, name] = assigned(text, 's', ShaderProgram::kSamplers);
-            textures.emplace(number, read_texture(name, m_settings.weight_bits));
+            if (!textures.emplace(number, read_texture(name, m_settings.weight_bits)).second)
+                throw Error("--texture", printable(text), "is given twice: must be given once");
         }
         for (int n = 0; n < ShaderProgram::kSamplers; ++n)
             if ((program.samplers >> n & 1) && !textures.count(n))
@@ -238,6 +240,7 @@ class Command {
     template <class T>
     ShaderInputs<T> inputs_of(const ShaderProgram& program) const {
         ShaderInputs<T> inputs(program);
+        std::set<int> given;
         for (const std::string& text : m_settings.constants) {
             const auto [number, list] = assigned(text, 'c', ShaderProgram::kConstants);
             const std::vector<std::string_view> fields = text_file::fields_of(list);
@@ -245,8 +248,14 @@ class Command {
             const auto n = static_cast<std::size_t>(number);
             if (inputs.defines(n))
                 throw Error("--constant", printable(text), "must be none that the program defines");
+            if (!given.insert(number).second)
+                throw Error("--constant", printable(text), "is given twice: must be given once");
             std::array<double, 4> value{};
-            for (std::size_t i = 0; i < 4; ++i) value[i] = text_file::number(fields[i]);
+            for (std::size_t i = 0; i < 4; ++i) {
+                value[i] = text_file::number(fields[i]);
+                if (!std::isfinite(value[i]))
+                    throw Error("--constant", printable(text), "must be finite numbers");
+            }
             inputs.give(n, value);
         }
         return inputs;
