@@ -125,14 +125,13 @@ Point<Jets<double, N>> settled(const LensTerms& lens, const Point<Jets<double, N
         u.x.degree = u.y.degree = k;
         for (int i = 0; i < kJets; ++i) {
             const lens_formula::Slope<double> slope(lens, {constant.x[i], constant.y[i]});
-            const double determinant = slope.xx * slope.yy - slope.xy * slope.xy;
             for (int at = Jet<double, N>::part(k); at < Jet<double, N>::part(k + 1); ++at) {
                 const auto lacks = [&](const J& of_v, const J& of_f) {
                     return (at < of_v.terms() ? of_v.c[at][i] : 0) - (at < of_f.terms() ? of_f.c[at][i] : 0);
                 };
-                const double x = lacks(v.x, f.x), y = lacks(v.y, f.y);
-                u.x.c[at].set(i, (slope.yy * x - slope.xy * y) / determinant);
-                u.y.c[at].set(i, (slope.xx * y - slope.xy * x) / determinant);
+                const Point<double> gain = slope.solved(lacks(v.x, f.x), lacks(v.y, f.y));
+                u.x.c[at].set(i, gain.x);
+                u.y.c[at].set(i, gain.y);
             }
         }
     }

@@ -409,23 +409,23 @@ Jet<T, K> lowest(const Jet<T, N>& jet) {
 /// Degree by degree, from K on: what F(u) lacks of v is the slope times what u lacks.
 template <int K, class T, int N>
 void settle_from(const LensTerms& lens, const Point<Jet<T, N>>& v, const lens_formula::Slope<T>& slope,
-                 const T& determinant, Point<Jet<T, N>>& u) {
+                 Point<Jet<T, N>>& u) {
     using J = Jet<T, N>;
     const Point<Jet<T, K>> f =
         lens_formula::distorted(lens, Point<Jet<T, K>>{lowest<K>(u.x), lowest<K>(u.y)});
     for (int i = J::part(K); i < J::part(K + 1); ++i) {
-        const T x = v.x.c[i] - f.x.c[i], y = v.y.c[i] - f.y.c[i];
-        u.x.c[i] = (slope.yy * x - slope.xy * y) / determinant;
-        u.y.c[i] = (slope.xx * y - slope.xy * x) / determinant;
+        const Point<T> gain = slope.solved(v.x.c[i] - f.x.c[i], v.y.c[i] - f.y.c[i]);
+        u.x.c[i] = gain.x;
+        u.y.c[i] = gain.y;
     }
-    if constexpr (K < N) settle_from<K + 1>(lens, v, slope, determinant, u);
+    if constexpr (K < N) settle_from<K + 1>(lens, v, slope, u);
 }
 template <class T, int N>
 Point<Jet<T, N>> settled_by_degree(const LensTerms& lens, const Point<Jet<T, N>>& v,
                                    const Point<T>& constant) {
     const lens_formula::Slope<T> slope(lens, constant);
     Point<Jet<T, N>> u{Jet<T, N>(constant.x), Jet<T, N>(constant.y)};
-    settle_from<1>(lens, v, slope, T(slope.xx * slope.yy - square(slope.xy)), u);
+    settle_from<1>(lens, v, slope, u);
     return u;
 }
 

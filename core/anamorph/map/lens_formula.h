@@ -192,7 +192,7 @@ Point<T> nearer(const LensTerms& lens, const Point<T>& v, const Point<T>& u) {
 /// 2 (u m^T + m u^T).
 template <class T>
 struct Slope {
-    T stretch, xx, xy, yy;
+    T stretch, xx, xy, yy, determinant;
 
     Slope(const LensTerms& lens, const Point<T>& u) {
         const T squared = square(u.x) + square(u.y);
@@ -202,6 +202,11 @@ struct Slope {
         xx = along + (series.c[1] * square(u.x) + u.x * lens.mx * 2.0) * 2.0;
         yy = along + (series.c[1] * square(u.y) + u.y * lens.my * 2.0) * 2.0;
         xy = (series.c[1] * (u.x * u.y) + u.x * lens.my + u.y * lens.mx) * 2.0;
+        determinant = xx * yy - square(xy);
+    }
+    /// Where the derivative takes to (x, y).
+    Point<T> solved(const T& x, const T& y) const {
+        return {(yy * x - xy * y) / determinant, (xx * y - xy * x) / determinant};
     }
 };
 
@@ -210,10 +215,9 @@ template <class T>
 Point<T> newton_step(const LensTerms& lens, const Point<T>& v, const Point<T>& u) {
     const Slope<T> slope(lens, u);
     const Point<T> more = tangential_at(lens, u);
-    const T x = v.x - u.x * slope.stretch - more.x, y = v.y - u.y * slope.stretch - more.y;
-    const T determinant = slope.xx * slope.yy - square(slope.xy);
-    const Point<T> next{u.x + (slope.yy * x - slope.xy * y) / determinant,
-                        u.y + (slope.xx * y - slope.xy * x) / determinant};
+    const Point<T> step =
+        slope.solved(v.x - u.x * slope.stretch - more.x, v.y - u.y * slope.stretch - more.y);
+    const Point<T> next{u.x + step.x, u.y + step.y};
     const auto within = is_negative(T(square(next.x) + square(next.y) - lens.ideal_end * lens.ideal_end));
     return {select(within, next.x, u.x), select(within, next.y, u.y)};
 }
