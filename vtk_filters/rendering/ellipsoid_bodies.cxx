@@ -142,6 +142,7 @@ void EllipsoidBodies::add(vtkDataSet* data, unsigned int index, const EllipsoidA
         EllipsoidBody& body = bodies.emplace_back();
         data->GetPoint(i, &body.center.x);
         body.cell = cells[static_cast<std::size_t>(i)];
+        body.picked = body.cell < 0 ? i : body.cell;
         if (ghosts && (ghosts->GetValue(i) & hidden) != 0) continue;
         if (std::isfinite(body.center.x) && std::isfinite(body.center.y) && std::isfinite(body.center.z))
             shapes.set(body, i);
@@ -188,17 +189,17 @@ double EllipsoidBodies::unit() const {
 std::vector<float> EllipsoidBodies::texels(double unit) const {
     std::vector<float> numbers(bodies.size() * kBodyTexels * 4);
     float* to = numbers.data();
-    const auto put = [&to](const glm::dvec3& v, double w) {
+    const auto put = [&to](const auto& v, double w) {
         for (int k = 0; k < 3; ++k) *to++ = static_cast<float>(v[k]);
         *to++ = static_cast<float>(w);
     };
     for (const EllipsoidBody& body : bodies) {
-        const glm::dvec3 center = body.drawn ? body.center / unit : glm::dvec3(0), high = glm::vec3(center);
-        put(high, body.drawn ? 1 : 0);
-        put(center - high, 0);
-        const double ids[3] = {static_cast<double>(body.cell % (1 << 24)),
-                               static_cast<double>(body.cell >> 24), 0};
-        for (int k = 0; k < 3; ++k) put(body.axes[k] / unit, body.cell < 0 ? 0 : ids[k]);
+        const FloatPair center(body.drawn ? body.center / unit : glm::dvec3(0));
+        put(center.high, body.drawn ? 1 : 0);
+        put(center.low, 0);
+        const double ids[3] = {static_cast<double>(body.picked % (1 << 24)),
+                               static_cast<double>(body.picked >> 24), 0};
+        for (int k = 0; k < 3; ++k) put(body.axes[k] / unit, ids[k]);
         const glm::dmat3 rows = glm::transpose(body.inverse);
         for (int k = 0; k < 3; ++k) put(rows[k] * unit, 0);
         for (const float c : body.color) *to++ = c;

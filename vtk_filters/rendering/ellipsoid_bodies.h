@@ -2,6 +2,8 @@
 // The ellipsoids that points of data stand for, and the numbers that shaders draw them by.
 #pragma once
 
+#include <bit>
+#include <cstdint>
 #include <glm/mat3x3.hpp>
 #include <glm/vec3.hpp>
 #include <string>
@@ -27,7 +29,8 @@ struct EllipsoidBody {
     glm::dvec3 center{0.0};
     glm::dmat3 axes{0.0}, inverse{0.0};
     bool drawn = false;
-    vtkIdType cell = -1;
+    vtkIdType cell = -1;    ///< that the point is in; -1: none
+    vtkIdType picked = -1;  ///< what a selection of cells finds: the cell, or the point that is in none
     float color[4] = {1, 1, 1, 1};
 };
 
@@ -35,6 +38,24 @@ struct EllipsoidBody {
 struct EllipsoidBlock {
     unsigned int index = 0;  ///< in composite data, depth first
     vtkIdType first = 0, count = 0;
+};
+
+/// A point as the sum of two in single precision.
+struct FloatPair {
+    float high[3], low[3];
+
+    explicit FloatPair(const glm::dvec3& point) {
+        for (int k = 0; k < 3; ++k) {
+            const double first = leading_bits(point[k]);
+            high[k] = static_cast<float>(first);
+            low[k] = static_cast<float>(point[k] - first);
+        }
+    }
+
+    /// The sign, the exponent and 24 bits. (GCC 12 at -O3 takes a number for what it is after a conversion to float and back.)
+    static double leading_bits(double number) {
+        return std::bit_cast<double>(std::bit_cast<std::uint64_t>(number) & ~((std::uint64_t{1} << 29) - 1));
+    }
 };
 
 class EllipsoidBodies {

@@ -3,12 +3,12 @@
 //
 // A body is c + A s, |s| <= 1. In the space of s it is the unit sphere, and the eye is at e = A^-1 (eye - c). With k = 1 /
 // |e|, n = k e, r = sqrt(1 - k^2) and u, v that make an orthonormal basis of n, view rays touch the sphere in the circle
-// r (u cos p + v sin p) + k n. So the parallelogram with the corners r (+-u +-v) + k n, turned into space by A, hides the
-// body; its point r (a u + b v) + k n is on a ray that meets the sphere where a^2 + b^2 <= 1, at the points
+// r (u cos p + v sin p) + k n. So what a triangle around the unit circle of (a, b) covers as r (a u + b v) + k n, turned into
+// space by A, is all of the body; the ray to its point (a, b) meets the sphere where a^2 + b^2 <= 1, at the points
 //     (r a, r b, k +- h) / (1 +- k h)    in the basis u, v, n,    h = sqrt(1 - a^2 - b^2).
-// Proof: put e + t (q - e) on the sphere; |q - e|^2 = r^2 (a^2 + b^2 + (r / k)^2), and t = 1 / (1 +- k h). Rays of a parallel
-// view are the limit k = 0. Nothing cancels where a body is thin, far or seen at its edge. From within (|e| < 1, of
-// perspective views) it covers the picture, and e + t d is solved for t > 0.
+// Proof: the ray e + t (q - e), with q = r (a u + b v) + k n, has |q - e|^2 = r^2 (a^2 + b^2 + r^2 / k^2); it is on the sphere
+// at t = 1 / (1 +- k h). Rays of a parallel view are the limit k = 0. Nothing cancels where a body is thin, far or seen at its
+// edge. If the eye is within (|e| < 1, in perspective), the triangle covers the picture, and e + t d is solved for t > 0.
 #pragma once
 
 namespace anamorph_vtk {
@@ -18,7 +18,7 @@ namespace anamorph_vtk {
 /// the colour.
 constexpr int kBodyTexels = 9;
 
-/// Draws 6 vertices, two triangles, for each body.
+/// Draws 3 vertices, a triangle, for each body.
 constexpr const char* kEllipsoidVertexShader = R"glsl(//VTK::System::Dec
 uniform samplerBuffer bodies;
 uniform int firstBody;
@@ -38,9 +38,8 @@ flat out ivec2 bodyIds;
 
 void main()
 {
-  int body = gl_VertexID / 6, corner = gl_VertexID % 6;
-  vec2 ab = vec2(corner == 1 || corner == 2 || corner == 4 ? 1.0 : -1.0,
-                 corner == 2 || corner == 4 || corner == 5 ? 1.0 : -1.0);
+  int body = gl_VertexID / 3, corner = gl_VertexID % 3;
+  vec2 ab = corner == 0 ? vec2(-1.7320509, -1.0) : corner == 1 ? vec2(1.7320509, -1.0) : vec2(0.0, 2.0);
   int texel = (firstBody + body) * BODY_TEXELS;
   vec4 high = texelFetch(bodies, texel), low = texelFetch(bodies, texel + 1);
   vec4 x = texelFetch(bodies, texel + 2), y = texelFetch(bodies, texel + 3), z = texelFetch(bodies, texel + 4);
@@ -65,9 +64,9 @@ void main()
   apex = inside ? vec4(e, 1.0) : vec4(k, r, 0.0, 0.0);
   if (inside)
   {
-    vec4 ray = clipToView * vec4(ab, 0.0, 1.0);
+    gl_Position = vec4(2.0 * ab, 0.0, 1.0);
+    vec4 ray = clipToView * gl_Position;
     at = inverseAxes * (ray.xyz / ray.w);
-    gl_Position = vec4(ab, 0.0, 1.0);
   }
   else
   {
@@ -79,12 +78,11 @@ void main()
 }
 )glsl";
 
+/// With CUT 1 for bodies that the eye may be in, or a plane may cut.
 constexpr const char* kEllipsoidDeclarations = R"glsl(
 uniform mat4 viewToClip;
 uniform float depthBias;
 uniform int farSide;  // 1: what leaves is drawn, not what enters
-uniform int numberOfClips;
-uniform vec4 clips[6];
 in vec3 at;
 flat in vec4 apex;
 flat in vec3 center;
@@ -95,43 +93,68 @@ flat in ivec2 bodyIds;
 // Where the ray enters (side 1) or leaves (side -1) the sphere, in its basis.
 vec3 spherePoint(float side)
 {
+#if CUT
   if (apex.w == 1.0)
   {
     float a = dot(at, at), b = dot(apex.xyz, at), c = 1.0 - dot(apex.xyz, apex.xyz), root = sqrt(b * b + a * c);
     return apex.xyz + at * (b > 0.0 ? c / (b + root) : (root - b) / a);
   }
+#endif
   float k = apex.x, r = apex.y, h = side * sqrt(max(0.0, 1.0 - dot(at.xy, at.xy)));
   return vec3(r * at.xy, k + h) / (1.0 + k * h);
 }
 
-// The depth of a point of the view in -1 to 1, or 2 if it is not to be seen.
-float shownDepth(vec3 p)
+float depthOf(vec3 p)
+{
+  vec4 clip = viewToClip * vec4(p, 1.0);
+  return clip.z / clip.w;
+}
+
+#if CUT
+uniform int numberOfClips;
+uniform vec4 clips[6];
+
+bool isCut(vec3 p)
 {
   for (int i = 0; i < numberOfClips; ++i)
-    if (dot(clips[i], vec4(p, 1.0)) < 0.0) return 2.0;
+    if (dot(clips[i], vec4(p, 1.0)) < 0.0) return true;
   vec4 clip = viewToClip * vec4(p, 1.0);
-  return clip.z >= -clip.w && clip.w > 0.0 ? clip.z / clip.w : 2.0;
+  return clip.z < -clip.w || clip.w <= 0.0;
 }
+#endif
 //VTK::PositionVC::Dec)glsl";
 
-/// The first point of the ray that is not clipped; the far side shows where the near one is.
+/// The first point of the ray that is not cut off; the far side shows where the near one is.
 constexpr const char* kEllipsoidPosition = R"glsl(
-  float side = apex.w == 1.0 || farSide == 1 ? -1.0 : 1.0;
+  float side = farSide == 1 ? -1.0 : 1.0;
   vec3 s = spherePoint(side);
   vec4 vertexVC = vec4(center + axes * s, 1.0);
-  float depth = shownDepth(vertexVC.xyz);
-  if (depth > 1.0 && side == 1.0 && farSide == 0)
+  bool seen = dot(at.xy, at.xy) <= 1.0;
+#if CUT
+  if (apex.w == 1.0) seen = true;
+  if (apex.w == 1.0 || isCut(vertexVC.xyz))
   {
     side = -1.0;
     s = spherePoint(side);
     vertexVC.xyz = center + axes * s;
-    depth = shownDepth(vertexVC.xyz);
+    seen = seen && !isCut(vertexVC.xyz);
   }
+#endif
+  float depth = depthOf(vertexVC.xyz);
 )glsl";
 
 constexpr const char* kEllipsoidDepth = R"glsl(
-  if (dot(at.xy, at.xy) > 1.0 && apex.w == 0.0 || depth > 1.0) discard;
+  if (!seen || depth > 1.0) discard;
   gl_FragDepth = 0.5 * (gl_DepthRange.diff * depth + gl_DepthRange.near + gl_DepthRange.far) - depthBias;
+)glsl";
+
+/// Texture coordinates as vtkAnamorphFigureGeometry has them. Across the cut behind they change by little, not by 1.
+constexpr const char* kEllipsoidTexture = R"glsl(
+  vec3 own = basis * s;
+  vec2 uv = vec2(0.5 - atan(own.x, -own.z) * 0.15915494, 0.5 + atan(own.y, length(own.xz)) * 0.31830989);
+  vec2 uvAcross = dFdx(uv), uvUp = dFdy(uv);
+  uvAcross.x -= floor(uvAcross.x + 0.5);
+  uvUp.x -= floor(uvUp.x + 0.5);
 )glsl";
 
 constexpr const char* kEllipsoidNormal = R"glsl(

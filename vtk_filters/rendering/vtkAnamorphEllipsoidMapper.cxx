@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "vtkAnamorphEllipsoidMapper.h"
 
+#include <algorithm>
 #include <glm/gtc/type_ptr.hpp>
 #include <glm/mat4x4.hpp>
 #include <glm/matrix.hpp>
@@ -27,6 +28,7 @@
 #include "vtkOpenGLIndexBufferObject.h"
 #include "vtkOpenGLRenderWindow.h"
 #include "vtkOpenGLState.h"
+#include "vtkOpenGLTexture.h"
 #include "vtkOpenGLVertexArrayObject.h"
 #include "vtkPoints.h"
 #include "vtkPolyData.h"
@@ -50,15 +52,30 @@ using anamorph_vtk::EllipsoidArrays;
 using anamorph_vtk::EllipsoidBlock;
 using anamorph_vtk::EllipsoidBodies;
 
+namespace {
+
+/// What the shaders depend on besides what VTK looks after.
+struct Variant {
+    bool cut = false, colored = false;
+    int texture_components = 0;     ///< 0: no texture
+    bool texture_is_moved = false;  ///< by the actor's matrix
+    bool operator==(const Variant&) const = default;
+};
+
+}  // namespace
+
 struct vtkAnamorphEllipsoidMapper::Drawing {
     EllipsoidBodies bodies;
     std::vector<vtkSmartPointer<vtkDataSet>> data;  ///< of the blocks
     vtkDataObject* input = nullptr;                 ///< that the bodies are of
     vtkMTimeType input_time = 0, mapper_time = 0;
-    bool valid = false, colored = false;
+    bool valid = false;
+    double box[6];  ///< of the bodies that are drawn, if there are any
+    bool any = false;
     double unit = 1;
     vtkIdType first = 0;  ///< of the block that is drawn
     bool far_side = false;
+    Variant variant, built;
     vtkNew<vtkPolyData> no_data;  ///< for what VTK's mapper asks of its input
     vtkNew<vtkOpenGLBufferObject> buffer;
     vtkNew<vtkTextureObject> texture;
@@ -71,6 +88,21 @@ namespace {
 glm::dmat4 matrix(vtkMatrix4x4* m) {
     return glm::make_mat4(m->GetData());
 }
+
+struct ViewMatrices {
+    glm::dmat4 data_to_view, view_to_clip;
+
+    ViewMatrices(vtkRenderer* renderer, vtkActor* actor) {
+        vtkMatrix4x4 *world_to_view, *to_clip, *world_to_clip;
+        vtkMatrix3x3* normals;
+        vtkOpenGLCamera::SafeDownCast(renderer->GetActiveCamera())
+            ->GetKeyMatrices(renderer, world_to_view, normals, to_clip, world_to_clip);
+        vtkNew<vtkMatrix4x4> data_to_world;
+        actor->GetMatrix(data_to_world);
+        data_to_view = matrix(world_to_view) * glm::transpose(matrix(data_to_world));
+        view_to_clip = matrix(to_clip);
+    }
+};
 
 void set_uniform(vtkShaderProgram* program, const char* name, const glm::dmat4& m) {
     const glm::mat4 numbers(m);
@@ -146,7 +178,6 @@ bool vtkAnamorphEllipsoidMapper::GatherBodies() {
     current.bodies = EllipsoidBodies();
     current.data.clear();
     current.valid = false;
-    current.colored = false;
     try {
         if (!(this->ScaleFactor > 0 && this->ScaleFactor <= 1e300))
             throw anamorph::Error("ScaleFactor", std::to_string(this->ScaleFactor),
@@ -166,6 +197,7 @@ bool vtkAnamorphEllipsoidMapper::GatherBodies() {
         } else {
             add(input, 1);
         }
+        current.any = current.bodies.bounds(current.box);
         current.valid = true;
     } catch (const anamorph::Error& error) {
         current.bodies = EllipsoidBodies();
@@ -176,25 +208,22 @@ bool vtkAnamorphEllipsoidMapper::GatherBodies() {
 
 void vtkAnamorphEllipsoidMapper::ColorBodies() {
     Drawing& current = *this->Current;
-    current.colored = false;
-    // Colors are one a body: none are to be interpolated over it.
-    const auto interpolate = this->InterpolateScalarsBeforeMapping;
-    this->InterpolateScalarsBeforeMapping = 0;
+    current.variant.colored = false;
     for (std::size_t i = 0; i < current.data.size(); ++i) {
+        // VTK would take the colors of the block before for those of this one.
+        if (this->Colors) this->Colors->UnRegister(this);
+        this->Colors = nullptr;
         int of_cells = 0;
         vtkUnsignedCharArray* colors = this->MapScalars(current.data[i], 1.0, of_cells);
         if (!colors || of_cells > 1) continue;
         current.bodies.color(current.bodies.blocks[i], colors, of_cells == 1);
-        current.colored = true;
+        current.variant.colored = true;
     }
-    this->InterpolateScalarsBeforeMapping = interpolate;
 }
 
 void vtkAnamorphEllipsoidMapper::ComputeBounds() {
     vtkMath::UninitializeBounds(this->Bounds);
-    double box[6];
-    if (!this->GatherBodies() || !this->Current->bodies.bounds(box)) return;
-    for (int k = 0; k < 6; ++k) this->Bounds[k] = box[k];
+    if (this->GatherBodies() && this->Current->any) std::copy_n(this->Current->box, 6, this->Bounds);
 }
 
 bool vtkAnamorphEllipsoidMapper::GetNeedToRebuildBufferObjects(vtkRenderer*, vtkActor*) {
@@ -214,7 +243,7 @@ void vtkAnamorphEllipsoidMapper::BuildBufferObjects(vtkRenderer* renderer, vtkAc
     current.buffer->Upload(texels, vtkOpenGLBufferObject::TextureBuffer);
     current.texture->CreateTextureBuffer(static_cast<unsigned int>(texels.size() / 4), 4, VTK_FLOAT,
                                          current.buffer);
-    this->Primitives[PrimitiveTris].IBO->IndexCount = 6 * current.bodies.bodies.size();
+    this->Primitives[PrimitiveTris].IBO->IndexCount = 3 * current.bodies.bodies.size();
     this->VBOBuildTime.Modified();
 }
 
@@ -243,7 +272,7 @@ void vtkAnamorphEllipsoidMapper::RenderPiece(vtkRenderer* renderer, vtkActor* ac
     this->InvokeEvent(vtkCommand::StartEvent, nullptr);
     if (!this->Static) this->GetInputAlgorithm()->Update();
     this->InvokeEvent(vtkCommand::EndEvent, nullptr);
-    if (!this->GatherBodies() || this->Current->bodies.bodies.empty()) return;
+    if (!this->GatherBodies() || !this->Current->any) return;
     this->RenderPieceStart(renderer, actor);
     this->RenderPieceDraw(renderer, actor);
     this->RenderPieceFinish(renderer, actor);
@@ -256,10 +285,11 @@ void vtkAnamorphEllipsoidMapper::RenderPieceDraw(vtkRenderer* renderer, vtkActor
     const vtkOpenGLState::ScopedglEnableDisable culling(state, GL_CULL_FACE);
     state->vtkglDisable(GL_CULL_FACE);
     current.texture->Activate();
+    this->FindVariant(renderer, actor);
     const auto draw = [&](vtkIdType first, std::size_t count) {
         current.first = first;
         this->UpdateShaders(this->Primitives[PrimitiveTris], renderer, actor);
-        glDrawArrays(GL_TRIANGLES, 0, static_cast<GLsizei>(6 * count));
+        glDrawArrays(GL_TRIANGLES, 0, static_cast<GLsizei>(3 * count));
     };
     if (selector)
         for (const EllipsoidBlock& block : current.bodies.blocks) {
@@ -270,6 +300,39 @@ void vtkAnamorphEllipsoidMapper::RenderPieceDraw(vtkRenderer* renderer, vtkActor
     else
         draw(0, current.bodies.bodies.size());
     current.texture->Deactivate();
+}
+
+/// Whether a corner of the bodies' box is not beyond the near plane.
+bool vtkAnamorphEllipsoidMapper::IsNear(vtkRenderer* renderer, vtkActor* actor) {
+    const ViewMatrices view(renderer, actor);
+    const glm::dmat4 data_to_clip = view.view_to_clip * view.data_to_view;
+    const double* box = this->Current->box;
+    for (int corner = 0; corner < 8; ++corner) {
+        const glm::dvec4 clip =
+            data_to_clip * glm::dvec4(box[corner & 1], box[2 + (corner >> 1 & 1)], box[4 + (corner >> 2)], 1);
+        if (!(clip.z >= -clip.w && clip.w > 0)) return true;
+    }
+    return false;
+}
+
+void vtkAnamorphEllipsoidMapper::FindVariant(vtkRenderer* renderer, vtkActor* actor) {
+    Variant& variant = this->Current->variant;
+    variant.cut = this->GetNumberOfClippingPlanes() > 0 || this->IsNear(renderer, actor);
+    auto* texture = vtkOpenGLTexture::SafeDownCast(actor->GetTexture());
+    variant.texture_components = texture && !texture->GetCubeMap() && texture->GetTextureObject()
+                                     ? texture->GetTextureObject()->GetComponents()
+                                     : 0;
+    vtkInformation* keys = actor->GetPropertyKeys();
+    variant.texture_is_moved = keys && keys->Has(vtkProp::GeneralTextureTransform());
+}
+
+bool vtkAnamorphEllipsoidMapper::GetNeedToRebuildShaders(vtkOpenGLHelper& helper, vtkRenderer* renderer,
+                                                         vtkActor* actor) {
+    const bool needed = this->Superclass::GetNeedToRebuildShaders(helper, renderer, actor);
+    Drawing& current = *this->Current;
+    if (!needed && current.built == current.variant) return false;
+    current.built = current.variant;
+    return true;
 }
 
 void vtkAnamorphEllipsoidMapper::GetShaderTemplate(Shaders shaders, vtkRenderer* renderer, vtkActor* actor) {
@@ -283,7 +346,9 @@ void vtkAnamorphEllipsoidMapper::GetShaderTemplate(Shaders shaders, vtkRenderer*
 void vtkAnamorphEllipsoidMapper::ReplaceShaderPositionVC(Shaders shaders, vtkRenderer*, vtkActor*) {
     vtkShader* fragment = shaders[vtkShader::Fragment];
     substitute(fragment, "//VTK::Camera::Dec", "uniform int cameraParallel;\n");
-    substitute(fragment, "//VTK::PositionVC::Dec", anamorph_vtk::kEllipsoidDeclarations);
+    substitute(fragment, "//VTK::PositionVC::Dec",
+               std::string("#define CUT ") + (this->Current->variant.cut ? "1\n" : "0\n") +
+                   anamorph_vtk::kEllipsoidDeclarations);
     substitute(fragment, "//VTK::PositionVC::Impl", anamorph_vtk::kEllipsoidPosition);
     substitute(fragment, "//VTK::Depth::Impl", anamorph_vtk::kEllipsoidDepth);
 }
@@ -294,13 +359,31 @@ void vtkAnamorphEllipsoidMapper::ReplaceShaderNormal(Shaders shaders, vtkRendere
 
 void vtkAnamorphEllipsoidMapper::ReplaceShaderColor(Shaders shaders, vtkRenderer* renderer, vtkActor* actor) {
     vtkShader* fragment = shaders[vtkShader::Fragment];
-    if (this->Current->colored)
+    if (this->Current->variant.colored)
         substitute(fragment, "//VTK::Color::Impl",
                    "//VTK::Color::Impl\n"
                    "  ambientColor = ambientIntensity * bodyColor.rgb;\n"
                    "  diffuseColor = diffuseIntensity * bodyColor.rgb;\n"
                    "  opacity = opacityUniform * bodyColor.a;\n");
     this->Superclass::ReplaceShaderColor(shaders, renderer, actor);
+}
+
+void vtkAnamorphEllipsoidMapper::ReplaceShaderTCoord(Shaders shaders, vtkRenderer*, vtkActor*) {
+    const Variant& variant = this->Current->variant;
+    if (variant.texture_components == 0) return;
+    static const char* const components[] = {"rrra", "rrrg", "rgba", "rgba"};
+    vtkShader* fragment = shaders[vtkShader::Fragment];
+    substitute(fragment, "//VTK::TMap::Dec", "uniform sampler2D actortexture;\n");
+    if (variant.texture_is_moved) substitute(fragment, "//VTK::TCoord::Dec", "uniform mat4 tcMatrix;\n");
+    substitute(fragment, "//VTK::UniformFlow::Impl",
+               std::string(anamorph_vtk::kEllipsoidTexture) +
+                   (variant.texture_is_moved
+                        ? "  vec4 moved = tcMatrix * vec4(uv, 0.0, 1.0);\n  uv = moved.xy / moved.w;\n"
+                        : "") +
+                   "  //VTK::UniformFlow::Impl\n");
+    substitute(fragment, "//VTK::TCoord::Impl",
+               std::string("  gl_FragData[0] *= textureGrad(actortexture, uv, uvAcross, uvUp).") +
+                   components[std::min(variant.texture_components, 4) - 1] + ";\n");
 }
 
 void vtkAnamorphEllipsoidMapper::ReplaceShaderPicking(Shaders shaders, vtkRenderer* renderer,
@@ -320,7 +403,7 @@ void vtkAnamorphEllipsoidMapper::ReplaceShaderPicking(Shaders shaders, vtkRender
         pass == vtkHardwareSelector::POINT_ID_LOW24 || pass == vtkHardwareSelector::POINT_ID_HIGH24;
     substitute(
         shaders[vtkShader::Fragment], "//VTK::Picking::Impl",
-        std::string("  int id = (bodyIds.") + (of_points ? "x" : "y") + " + 1) >> " + (low ? "0" : "24") +
+        std::string("  int id = bodyIds.") + (of_points ? "x" : "y") + " >> " + (low ? "0" : "24") +
             ";\n"
             "  gl_FragData[0] = vec4(vec3(id & 255, (id >> 8) & 255, (id >> 16) & 255) / 255.0, 1.0);\n");
 }
@@ -340,25 +423,20 @@ void vtkAnamorphEllipsoidMapper::SetMapperShaderParameters(vtkOpenGLHelper& help
 void vtkAnamorphEllipsoidMapper::SetCameraShaderParameters(vtkOpenGLHelper& helper, vtkRenderer* renderer,
                                                            vtkActor* actor) {
     vtkShaderProgram* program = helper.Program;
-    auto* camera = vtkOpenGLCamera::SafeDownCast(renderer->GetActiveCamera());
-    vtkMatrix4x4 *world_to_view, *view_to_clip, *world_to_clip;
-    vtkMatrix3x3* normals;
-    camera->GetKeyMatrices(renderer, world_to_view, normals, view_to_clip, world_to_clip);
-    vtkNew<vtkMatrix4x4> data_to_world;
-    actor->GetMatrix(data_to_world);
-    const glm::dmat4 data_to_view = matrix(world_to_view) * glm::transpose(matrix(data_to_world)),
-                     view_to_data = glm::inverse(data_to_view), clip = matrix(view_to_clip);
+    const ViewMatrices view(renderer, actor);
+    const glm::dmat4 view_to_data = glm::inverse(view.data_to_view);
+    const int parallel = renderer->GetActiveCamera()->GetParallelProjection() ? 1 : 0;
     const double unit = this->Current->unit;
-    const glm::dvec3 eye = glm::dvec3(view_to_data[3]) / unit, high = glm::vec3(eye);
-    set_uniform(program, "eyeHigh", high);
-    set_uniform(program, "eyeLow", eye - high);
+    const anamorph_vtk::FloatPair eye(glm::dvec3(view_to_data[3]) / unit);
+    program->SetUniform3f("eyeHigh", eye.high);
+    program->SetUniform3f("eyeLow", eye.low);
     set_uniform(program, "towardEye", glm::dvec3(view_to_data[2]) / unit);
-    set_uniform(program, "bodyToView", glm::dmat3(data_to_view) * unit);
+    set_uniform(program, "bodyToView", glm::dmat3(view.data_to_view) * unit);
     set_uniform(program, "viewToBody", glm::dmat3(view_to_data) / unit);
-    set_uniform(program, "viewToClip", clip);
-    set_uniform(program, "clipToView", glm::inverse(clip));
-    program->SetUniformi("eyeInPerspective", camera->GetParallelProjection() ? 0 : 1);
-    program->SetUniformi("cameraParallel", camera->GetParallelProjection());
+    set_uniform(program, "viewToClip", view.view_to_clip);
+    set_uniform(program, "clipToView", glm::inverse(view.view_to_clip));
+    program->SetUniformi("eyeInPerspective", 1 - parallel);
+    program->SetUniformi("cameraParallel", parallel);
     this->SetClips(helper, actor, glm::value_ptr(view_to_data));
 }
 

@@ -44,6 +44,9 @@ class ANAMORPHRENDERING_EXPORT vtkAnamorphEllipsoidMapper : public vtkOpenGLPoly
     vtkTypeMacro(vtkAnamorphEllipsoidMapper, vtkOpenGLPolyDataMapper);
     void PrintSelf(ostream& os, vtkIndent indent) override;
 
+    /** A vtkDataSet or vtkCompositeDataSet. */
+    void SetInputData(vtkDataObject* data) { this->SetInputDataInternal(0, data); }
+
     /** The values of Shape. */
     enum { AXES, TENSOR, COVARIANCE };
 
@@ -83,6 +86,8 @@ class ANAMORPHRENDERING_EXPORT vtkAnamorphEllipsoidMapper : public vtkOpenGLPoly
     void Render(vtkRenderer* renderer, vtkActor* actor) override;
     void RenderPiece(vtkRenderer* renderer, vtkActor* actor) override;
     void ReleaseGraphicsResources(vtkWindow* window) override;
+    /** Nothing: what is drawn for a selection are the ids. */
+    void ProcessSelectorPixelBuffers(vtkHardwareSelector*, std::vector<unsigned int>&, vtkProp*) override {}
 
   protected:
     vtkAnamorphEllipsoidMapper();
@@ -91,8 +96,10 @@ class ANAMORPHRENDERING_EXPORT vtkAnamorphEllipsoidMapper : public vtkOpenGLPoly
     using Shaders = std::map<vtkShader::Type, vtkShader*>;
 
     int FillInputPortInformation(int port, vtkInformation* information) override;
+    int CanUseTextureMapForColoring(vtkDataObject*) override { return 0; }  // a body has one color
     void ComputeBounds() override;
     bool GetNeedToRebuildBufferObjects(vtkRenderer* renderer, vtkActor* actor) override;
+    bool GetNeedToRebuildShaders(vtkOpenGLHelper& helper, vtkRenderer* renderer, vtkActor* actor) override;
     void BuildBufferObjects(vtkRenderer* renderer, vtkActor* actor) override;
     void UpdateMaximumPointCellIds(vtkRenderer* renderer, vtkActor* actor) override;
     void RenderPieceDraw(vtkRenderer* renderer, vtkActor* actor) override;
@@ -101,7 +108,7 @@ class ANAMORPHRENDERING_EXPORT vtkAnamorphEllipsoidMapper : public vtkOpenGLPoly
     void ReplaceShaderNormal(Shaders shaders, vtkRenderer* renderer, vtkActor* actor) override;
     void ReplaceShaderPicking(Shaders shaders, vtkRenderer* renderer, vtkActor* actor) override;
     void ReplaceShaderPositionVC(Shaders shaders, vtkRenderer* renderer, vtkActor* actor) override;
-    void ReplaceShaderTCoord(Shaders, vtkRenderer*, vtkActor*) override {}
+    void ReplaceShaderTCoord(Shaders shaders, vtkRenderer* renderer, vtkActor* actor) override;
     void ReplaceShaderClip(Shaders, vtkRenderer*, vtkActor*) override {}
     void ReplaceShaderEdges(Shaders, vtkRenderer*, vtkActor*) override {}
     void ReplaceShaderCoincidentOffset(Shaders, vtkRenderer*, vtkActor*) override {}
@@ -114,6 +121,8 @@ class ANAMORPHRENDERING_EXPORT vtkAnamorphEllipsoidMapper : public vtkOpenGLPoly
 
     bool GatherBodies();
     void ColorBodies();
+    bool IsNear(vtkRenderer* renderer, vtkActor* actor);
+    void FindVariant(vtkRenderer* renderer, vtkActor* actor);
     void SetClips(vtkOpenGLHelper& helper, vtkActor* actor, const double* view_to_data);
 
     int Shape = AXES;

@@ -1,0 +1,347 @@
+# SPDX-License-Identifier: Apache-2.0
+# vtkAnamorphEllipsoidMapper draws what core's own renderer does (vtkAnamorphFigureImage), pixel for pixel; and what VTK offers
+# besides (selection, lights, textures, clipping planes) works on it. Needs a display.
+import math
+
+import numpy as np
+import vtkmodules.vtkInteractionStyle  # noqa: F401
+from ellipsoid_scene import Scene, core_picture, crowd, points_of
+from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
+from vtkmodules.vtkCommonCore import vtkUnsignedCharArray
+from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkDataObject, vtkImageData, vtkMultiBlockDataSet, vtkPlane
+from vtkmodules.vtkRenderingCore import (vtkHardwareSelector, vtkLight, vtkPolyDataMapper, vtkPropPicker, vtkTexture)
+
+import anamorph
+
+Image = anamorph.vtkAnamorphFigureImage
+WRONG_PIXELS = 0.002  # of all; measured: at most 0.00006, where two bodies are equally near or a limb is on a pixel's middle
+EYE, ANGLE, SCALE = (1.7, 2.1, 3.4), 34, 1.2
+IDENTITY = (1.0, 0, 0, 0)
+
+
+def mapper_of(data, **settings):
+    mapper = anamorph.vtkAnamorphEllipsoidMapper()
+    mapper.SetInputData(data)
+    for name, value in settings.items():
+        getattr(mapper, "Set" + name)(value)
+    return mapper
+
+
+def scenes(data, size=256, eye=EYE, focus=(0, 0, 0), scale=SCALE):
+    """The data in perspective, and in parallel."""
+    for parallel_scale in (None, scale):
+        scene = Scene(mapper_of(data), size, size)
+        scene.look(eye, focus, angle=ANGLE, parallel_scale=parallel_scale)
+        yield scene
+
+
+def wrong(scene, data):
+    return (scene.ids() != core_picture(data, scene, Image.BODY_ID)).mean()
+
+
+def depth_step(scene, depths):
+    """How far apart depths are that a buffer of 24 bits tells apart."""
+    near, far = scene.camera.GetClippingRange()
+    if scene.camera.GetParallelProjection():
+        return (far - near) / 2 ** 24
+    return depths ** 2 * (far - near) / (near * far) / 2 ** 24
+
+
+def ids_and_depths_are_those_of_core():
+    for data in (crowd(2000), crowd(60, 0.2), crowd(300, 0.04, aspect=30)):
+        for scene in scenes(data, 512):
+            ids, reference = scene.ids(), core_picture(data, scene, Image.BODY_ID)
+            assert (ids >= 0).mean() > 0.3
+            assert (ids != reference).mean() <= WRONG_PIXELS, (ids != reference).mean()
+            depths, exact = scene.depths(), core_picture(data, scene, Image.DEPTH)
+            if scene.camera.GetParallelProjection():
+                exact += np.linalg.norm(EYE)  # core counts from the middle of the view
+            # In steps of a buffer of 24 bits; limbs, where the surface is seen edge-on, are a few in a thousand.
+            same = (ids == reference) & (ids >= 0)
+            error = np.abs(depths - exact)[same]
+            steps = error / depth_step(scene, exact[same])
+            assert np.quantile(steps, 0.99) < 4 and error.max() < 2e-3, (np.quantile(steps, 0.99), error.max())
+
+
+def shading_is_that_of_core():
+    data = crowd(200, 0.1)
+    for scene in scenes(data):
+        scene.mapper.SetScalarModeToUsePointFieldData()
+        scene.mapper.SelectColorArray("Color")
+        scene.actor.GetProperty().SetAmbient(0.3)
+        scene.actor.GetProperty().SetDiffuse(0.7)
+        light = vtkLight()
+        light.SetLightTypeToCameraLight()
+        light.SetPosition(-1, 2, 2)
+        light.SetFocalPoint(0, 0, 0)
+        scene.renderer.AddLight(light)
+        ids, reference = scene.ids(), core_picture(data, scene, Image.BODY_ID)
+        scene.mapper.SelectColorArray("Color")
+        exact = core_picture(data, scene, Image.SHADED, Lighting=Image.LAMBERT, Antialias=False)
+        error = np.abs(scene.colors() - exact[..., :3])[(ids == reference) & (ids >= 0)]
+        # Two roundings to bytes, of the color and of the result; a normal turns fast at a limb.
+        assert error.mean() < 0.3 and np.quantile(error, 0.999) <= 2, (error.mean(), np.quantile(error, 0.999), error.max())
+
+
+def a_camera_within_and_a_plane_show_the_far_side():
+    ball = points_of([(0, 0, 0), (0, 0, -1.5)], Axes=[(2.0, 1.5, 3), (0.3, 0.4, 0.2)], Orientation=[IDENTITY] * 2,
+                     Id=np.array([(0, 0, 255), (1, 0, 255)], np.uint8))
+    scene = Scene(mapper_of(ball), 256, 256)
+    scene.look((0.3, 0.2, 0.9), (0, 0, -1), angle=80)
+    scene.camera.SetClippingRange(0.01, 10)
+    ids = scene.ids()
+    assert (ids == core_picture(ball, scene, Image.BODY_ID)).all() and set(np.unique(ids)) == {0, 1}
+    # Far sides are where the rays leave: x^T diag(a)^-2 x = 1.
+    depth, t = scene.depths()[128, 20], math.tan(math.radians(40)) / 128
+    away = np.array([-0.3, -0.2, -1.9]) / np.linalg.norm([-0.3, -0.2, -1.9])
+    right = np.cross(away, (0, 1, 0)) / np.linalg.norm(np.cross(away, (0, 1, 0)))
+    ray = away + right * (20.5 - 128) * t + np.cross(right, away) * 0.5 * t
+    point = np.array([0.3, 0.2, 0.9]) + depth * ray
+    assert abs(np.sum((point / (2, 1.5, 3)) ** 2) - 1) < 1e-3, point
+    # The near plane cuts the front off.
+    scene.look((0, 0, 6), angle=40)
+    scene.camera.SetClippingRange(4, 12)
+    assert scene.ids()[128, 128] == 1 and scene.ids()[128, 150] == 0
+    assert abs(scene.depths()[128, 190] - 6) < 3 and scene.depths()[128, 160] > 6
+    # So does a clipping plane, in the world's coordinates: everything left of it is gone.
+    scene = Scene(mapper_of(ball), 256, 256)
+    scene.actor.SetPosition(0.5, 0, 0)
+    plane = vtkPlane()
+    plane.SetOrigin(0.5, 0, 0)
+    plane.SetNormal(1, 0, 0)
+    scene.mapper.AddClippingPlane(plane)
+    scene.look((0.5, 0, 12), (0.5, 0, 0), parallel_scale=3)
+    ids = scene.ids()
+    assert (ids[:, :127] == -1).all() and ids[128, 140] == 0
+
+
+def needles_and_discs():
+    data = points_of([(0, 0, 0), (0.4, 0.1, 0)], Axes=[(1, 1e-3, 1e-3), (0.4, 0.4, 4e-4)],
+                     Orientation=[(0.9, 0.1, 0.2, 0.35), (0.6, 0.5, 0.2, 0.3)], Id=np.array([(0, 0, 255), (1, 0, 255)], np.uint8))
+    for scene in scenes(data, 512, scale=0.6):
+        ids = scene.ids()
+        assert (ids == 0).sum() > 100 and (ids == 1).sum() > 1000
+        assert wrong(scene, data) < 2e-4
+
+
+def any_scale_and_any_origin():
+    plain = crowd(60, 0.2)
+    centers, axes = (vtk_to_numpy(a) for a in (plain.GetPoints().GetData(), plain.GetPointData().GetArray("Axes")))
+    turns = vtk_to_numpy(plain.GetPointData().GetArray("Orientation"))
+    ids = vtk_to_numpy(plain.GetPointData().GetArray("Id"))
+    for factor, origin in ((1e-9, 0), (1e9, 0), (1, 1e6), (1e-3, 1e5)):
+        origin = np.array([1, -2, 3]) * float(origin)
+        data = points_of(origin + factor * centers, Axes=factor * axes, Orientation=turns, Id=ids)
+        for scene in scenes(data, 256, origin + factor * np.array(EYE), origin, factor * SCALE):
+            # VTK's camera has a few digits less of such an origin.
+            assert wrong(scene, data) <= WRONG_PIXELS, (factor, origin, wrong(scene, data))
+
+
+def turns_of(data):
+    """The rotations of the points' quaternions, as matrices."""
+    turns = vtk_to_numpy(data.GetPointData().GetArray("Orientation"))
+    w, x, y, z = (turns / np.linalg.norm(turns, axis=1)[:, None]).T
+    return np.array([[1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)],
+                     [2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)],
+                     [2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)]]).transpose(2, 0, 1)
+
+
+def tensors_are_axes():
+    data = crowd(60, 0.2)
+    centers, axes = (vtk_to_numpy(a) for a in (data.GetPoints().GetData(), data.GetPointData().GetArray("Axes")))
+    turn = turns_of(data)
+    symmetric = np.einsum("nij,nj,nkj->nik", turn, axes, turn)
+    general = np.einsum("nij,nj,jk->nik", turn, axes, np.array([[0.6, 0, 0.8], [0, -1, 0], [0.8, 0, -0.6]]))
+    covariance = np.einsum("nij,nj,nkj->nik", turn, axes ** 2, turn) * 0.25
+    six = symmetric.reshape(-1, 9)[:, [0, 4, 8, 1, 5, 2]]
+    ids = vtk_to_numpy(data.GetPointData().GetArray("Id"))
+    expected = next(scenes(data)).ids()
+    for shape, tensor, scale in (("TENSOR", symmetric, 1), ("TENSOR", general, 1), ("TENSOR", six, 1), ("COVARIANCE", covariance, 2)):
+        points = points_of(centers, Tensor=tensor.reshape(len(ids), -1), Id=ids)
+        scene = Scene(mapper_of(points, TensorArray="Tensor", ScaleFactor=scale,
+                                Shape=getattr(anamorph.vtkAnamorphEllipsoidMapper, shape)), 256, 256)
+        scene.look(EYE, angle=ANGLE)
+        assert (scene.ids() != expected).mean() < 1e-4, shape
+
+
+def points_without_an_ellipsoid_are_skipped_and_counted():
+    nan, inf = math.nan, math.inf
+    centers = [(0, 0, 0), (1, 0, 0), (nan, 0, 0), (0, inf, 0), (0, 1, 0), (0, 0, 1), (0, 0, -1), (-1, 0, 0)]
+    axes = [(0.1, 0.2, 0.3), (0.1, 0, 0.1), (1, 1, 1), (1, 1, 1), (nan, 1, 1), (1, inf, 1), (1, 1, 1), (0.3, 0.2, 0.1)]
+    turns = [IDENTITY] * 6 + [(0, 0, 0, 0), IDENTITY]
+    data = points_of(centers, Axes=axes, Orientation=turns,
+                     Id=np.array([(i, 0, 255) for i in range(len(axes))], np.uint8))
+    scene = next(scenes(data))
+    assert set(np.unique(scene.ids())) == {-1, 0, 7}
+    assert scene.mapper.GetNumberOfSkippedPoints() == 6
+    assert scene.mapper.GetBounds() == (-1.3, 0.1, -0.2, 0.2, -0.3, 0.3)
+    ghosts = vtkUnsignedCharArray()
+    ghosts.SetName("vtkGhostType")
+    for i in range(len(axes)):
+        ghosts.InsertNextValue(2 if i == 7 else 0)  # hidden
+    data.GetPointData().AddArray(ghosts)
+    data.Modified()
+    assert set(np.unique(scene.ids())) == {-1, 0}
+    for empty in (points_of([]), points_of([(0, 0, 0)], Axes=[(0.0, 0, 0)], Orientation=[IDENTITY])):
+        scene = next(scenes(empty))
+        assert scene.colors().max() == 0
+
+
+def selected(scene, field, x0, y0, x1, y1):
+    """The ids that the hardware selector finds, by block."""
+    selector = vtkHardwareSelector()
+    selector.SetRenderer(scene.renderer)
+    selector.SetArea(x0, y0, x1, y1)
+    selector.SetFieldAssociation(field)
+    selection, found = selector.Select(), {}
+    for i in range(selection.GetNumberOfNodes()):
+        node = selection.GetNode(i)
+        assert node.GetProperties().Get(node.PROP()) is scene.actor
+        block = node.GetProperties().Get(node.COMPOSITE_INDEX())
+        found.setdefault(block, set()).update(vtk_to_numpy(node.GetSelectionList()).tolist())
+    return found
+
+
+def selection_finds_points_and_cells():
+    data = crowd(300, 0.08)
+    for scene in scenes(data):
+        ids = scene.ids()
+        x0, y0, x1, y1 = 100, 90, 160, 170
+        expected = set(np.unique(ids[y0:y1 + 1, x0:x1 + 1])) - {-1}
+        assert len(expected) > 20
+        found = selected(scene, vtkDataObject.FIELD_ASSOCIATION_POINTS, x0, y0, x1, y1)
+        assert set().union(*found.values()) == expected, (found, expected)
+    # Cells in another order than the points.
+    cells = vtkCellArray()
+    for i in range(300):
+        cells.InsertNextCell(1, [299 - i])
+    data.SetVerts(cells)
+    scene = next(scenes(data))
+    expected = {299 - i for i in set(np.unique(scene.ids()[y0:y1 + 1, x0:x1 + 1])) - {-1}}
+    found = selected(scene, vtkDataObject.FIELD_ASSOCIATION_CELLS, x0, y0, x1, y1)
+    assert set().union(*found.values()) == expected
+    picker = vtkPropPicker()
+    y, x = np.argwhere(scene.ids() >= 0)[5000]
+    assert picker.Pick(float(x), float(y), 0, scene.renderer) and picker.GetActor() is scene.actor
+    depth = scene.depths()[y, x]
+    away = np.array(scene.camera.GetDirectionOfProjection())
+    assert abs(np.dot(np.array(picker.GetPickPosition()) - scene.camera.GetPosition(), away) - depth) < 1e-3
+
+
+def blocks_are_drawn_and_told_apart():
+    parts = [crowd(40, 0.15, seed=2), crowd(30, 0.15, seed=3)]
+    blocks = vtkMultiBlockDataSet()
+    blocks.SetBlock(0, parts[0])
+    blocks.SetBlock(2, parts[1])
+    for i, part in enumerate(parts):
+        levels = numpy_to_vtk(np.full(part.GetNumberOfPoints(), float(i)), deep=True)
+        levels.SetName("Level")
+        part.GetPointData().AddArray(levels)
+    scene = next(scenes(blocks))
+    alone = [next(scenes(part)) for part in parts]
+    for each in alone:
+        each.camera.DeepCopy(scene.camera)
+    ids, depths = [each.ids() for each in alone], [each.depths() for each in alone]
+    first = depths[0] < depths[1]
+    assert (scene.ids() != np.where(first, *ids)).mean() < 1e-4
+    found = selected(scene, vtkDataObject.FIELD_ASSOCIATION_POINTS, 60, 60, 200, 200)
+    area = (slice(60, 201), slice(60, 201))
+    assert found == {1: set(np.unique(ids[0][area][first[area]])) - {-1},
+                     3: set(np.unique(ids[1][area][~first[area]])) - {-1}}
+    # Scalars of each block have their own colors.
+    scene.mapper.SetScalarModeToUsePointFieldData()
+    scene.mapper.SelectColorArray("Level")
+    scene.mapper.SetScalarRange(0, 1)
+    scene.actor.GetProperty().LightingOff()
+    colors = scene.colors()
+    assert (colors[first][:, 0] == 255).all() and (colors[~first & np.isfinite(depths[1])][:, 2] == 255).all()
+
+
+def scalars_of_cells():
+    data = points_of([(-0.5, 0, 0), (0.5, 0, 0)], Axes=[(0.4, 0.4, 0.4)] * 2, Orientation=[IDENTITY] * 2)
+    cells = vtkCellArray()
+    for i in (1, 0):
+        cells.InsertNextCell(1, [i])
+    data.SetVerts(cells)
+    colors = vtkUnsignedCharArray()
+    colors.SetNumberOfComponents(3)
+    colors.InsertNextTuple3(255, 0, 0)
+    colors.InsertNextTuple3(0, 255, 0)
+    data.GetCellData().SetScalars(colors)
+    scene = Scene(mapper_of(data), 100, 100)
+    scene.actor.GetProperty().LightingOff()
+    scene.look((0, 0, 5), parallel_scale=1)
+    assert scene.colors()[50, 25].tolist() == [0, 255, 0] and scene.colors()[50, 75].tolist() == [255, 0, 0]
+    # Without scalars, the color of the material.
+    scene.mapper.ScalarVisibilityOff()
+    scene.actor.GetProperty().SetColor(0, 0, 1)
+    assert scene.colors()[50, 25].tolist() == [0, 0, 255]
+    # Both sides of what is transparent: 1 - (1 - 0.5)^2 of it.
+    scene.actor.GetProperty().SetOpacity(0.5)
+    assert abs(scene.colors()[50, 25][2] - 191) <= 1
+
+
+def textures_are_those_of_the_geometry():
+    picture = vtkImageData()
+    picture.SetDimensions(64, 32, 1)
+    u, v = np.meshgrid(np.arange(64) / 64, np.arange(32) / 32)
+    texels = np.stack([128 + 100 * np.cos(2 * np.pi * u), 128 + 100 * np.sin(2 * np.pi * u), 40 + 200 * v], -1)
+    scalars = numpy_to_vtk(texels.reshape(-1, 3).astype(np.uint8), deep=True)
+    picture.GetPointData().SetScalars(scalars)
+    data = crowd(8, 0.4, seed=5)
+    geometry = anamorph.vtkAnamorphFigureGeometry()
+    geometry.SetInputData(data)
+    geometry.SetTolerance(1e-4)
+    triangles = vtkPolyDataMapper()
+    triangles.SetInputConnection(geometry.GetOutputPort())
+    triangles.ScalarVisibilityOff()
+    colors = []
+    for mapper in (mapper_of(data), triangles):
+        mapper.ScalarVisibilityOff()
+        scene, texture = Scene(mapper, 256, 256), vtkTexture()
+        texture.SetInputData(picture)
+        texture.InterpolateOn()
+        texture.RepeatOn()
+        scene.actor.SetTexture(texture)
+        scene.actor.GetProperty().LightingOff()
+        scene.look(EYE, angle=ANGLE)
+        colors.append(scene.colors())
+    seen = (colors[0].sum(2) > 0) & (colors[1].sum(2) > 0)
+    error = np.abs(colors[0] - colors[1])[seen].max(1)
+    assert seen.mean() > 0.3 and np.quantile(error, 0.99) <= 6 and error.mean() < 1.5, (error.mean(), np.quantile(error, 0.99))
+
+
+def an_actor_moves_turns_and_scales_it():
+    data = crowd(40, 0.2)
+    scene = Scene(mapper_of(data), 256, 256)
+    scene.actor.SetScale(2, 0.5, 1)
+    scene.actor.RotateY(30)
+    scene.actor.SetPosition(0.1, 0.2, 0.3)
+    # The same bodies, moved: M R diag(a) of each is a general matrix.
+    matrix = np.array([[scene.actor.GetMatrix().GetElement(i, j) for j in range(4)] for i in range(4)])
+    centers, axes = (vtk_to_numpy(a) for a in (data.GetPoints().GetData(), data.GetPointData().GetArray("Axes")))
+    own = turns_of(data) * axes[:, None, :]
+    moved = points_of(centers @ matrix[:3, :3].T + matrix[:3, 3], Tensor=(matrix[:3, :3] @ own).reshape(-1, 9),
+                      Id=vtk_to_numpy(data.GetPointData().GetArray("Id")))
+    other = Scene(mapper_of(moved, TensorArray="Tensor", Shape=anamorph.vtkAnamorphEllipsoidMapper.TENSOR), 256, 256)
+    for each in (scene, other):
+        each.look(EYE, angle=ANGLE)
+    assert (scene.ids() != other.ids()).mean() < 1e-4 and (scene.ids() >= 0).mean() > 0.2
+    other.camera.DeepCopy(scene.camera)
+    for each in (scene, other):
+        each.mapper.ScalarVisibilityOff()
+    assert np.quantile(np.abs(scene.colors() - other.colors()), 0.999) <= 1
+
+
+ids_and_depths_are_those_of_core()
+shading_is_that_of_core()
+a_camera_within_and_a_plane_show_the_far_side()
+needles_and_discs()
+any_scale_and_any_origin()
+tensors_are_axes()
+points_without_an_ellipsoid_are_skipped_and_counted()
+selection_finds_points_and_cells()
+blocks_are_drawn_and_told_apart()
+scalars_of_cells()
+textures_are_those_of_the_geometry()
+an_actor_moves_turns_and_scales_it()

@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: Apache-2.0
+// What of vtkAnamorphEllipsoidMapper needs no display; ellipsoid_mapper.py draws.
+#include <vtkAnamorphEllipsoidMapper.h>  // first: it stands alone
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <vtkDoubleArray.h>
+#include <vtkImageData.h>
+
+#include <cmath>
+
+#include "figure_support.h"
+#include "support.h"
+
+namespace {
+
+using testing::HasSubstr;
+using Mapper = vtkAnamorphEllipsoidMapper;
+
+const Ball kTurned{{1, 2, 3}, {3, 1, 2}, {std::sqrt(0.5), 0, 0, std::sqrt(0.5)}};  // a quarter about z
+
+TEST(VtkEllipsoidMapper, BoundsAreThoseOfTheEllipsoids) {
+    vtkNew<Mapper> mapper;
+    mapper->SetInputData(figures({kTurned}));
+    const double wanted[6] = {0, 2, -1, 5, 1, 5};
+    for (int k = 0; k < 6; ++k) EXPECT_NEAR(mapper->GetBounds()[k], wanted[k], 1e-12) << k;
+    mapper->SetScaleFactor(2);
+    EXPECT_NEAR(mapper->GetBounds()[3], 8, 1e-12);
+    mapper->SetOrientationArray("");
+    EXPECT_NEAR(mapper->GetBounds()[3], 4, 1e-12);
+    EXPECT_EQ(mapper->GetNumberOfSkippedPoints(), 0);
+}
+
+TEST(VtkEllipsoidMapper, AnyDataSetHasPoints) {
+    vtkNew<vtkImageData> image;
+    image->SetDimensions(2, 3, 2);
+    vtkNew<vtkDoubleArray> tensors;
+    tensors->SetName("D");
+    tensors->SetNumberOfComponents(9);
+    for (vtkIdType i = 0; i < image->GetNumberOfPoints(); ++i)
+        tensors->InsertNextTuple9(0.25, 0, 0, 0, 0.5, 0, 0, 0, i == 3 ? kNan : 1);
+    image->GetPointData()->AddArray(tensors);
+    vtkNew<Mapper> mapper;
+    mapper->SetInputData(image);
+    mapper->SetShape(Mapper::TENSOR);
+    mapper->SetTensorArray("D");
+    const double linear[6] = {-0.25, 1.25, -0.5, 2.5, -1, 2},
+                 root[6] = {-0.5, 1.5, -std::sqrt(0.5), 2 + std::sqrt(0.5), -1, 2};
+    for (int k = 0; k < 6; ++k) EXPECT_NEAR(mapper->GetBounds()[k], linear[k], 1e-12) << k;
+    EXPECT_EQ(mapper->GetNumberOfSkippedPoints(), 1);
+    mapper->SetShape(Mapper::COVARIANCE);
+    for (int k = 0; k < 6; ++k) EXPECT_NEAR(mapper->GetBounds()[k], root[k], 1e-12) << k;
+}
+
+TEST(VtkEllipsoidMapper, WhatCannotBeDoneIsAnError) {
+    const auto error = [](const std::function<void(Mapper*)>& set) {
+        vtkNew<Mapper> mapper;
+        Errors errors(mapper);
+        mapper->SetInputData(figures({kTurned}));
+        set(mapper);
+        mapper->GetBounds();
+        return errors.text();
+    };
+    EXPECT_EQ(error([](Mapper*) {}), "");
+    EXPECT_THAT(error([](Mapper* m) { m->SetAxesArray("none"); }),
+                HasSubstr("AxesArray=\"none\": must be the name of"));
+    EXPECT_THAT(error([](Mapper* m) { m->SetOrientationArray("Axes"); }),
+                HasSubstr("OrientationArray=\"Axes\": has 3 components, but must have 4"));
+    EXPECT_THAT(error([](Mapper* m) { m->SetShape(Mapper::TENSOR); }), HasSubstr("TensorArray=\"\""));
+    for (const double scale : {0.0, -1.0, kNan, kInf})
+        EXPECT_THAT(error([&](Mapper* m) { m->SetScaleFactor(scale); }), HasSubstr("ScaleFactor=")) << scale;
+}
+
+TEST(VtkEllipsoidMapper, TheSameValueLeavesItsTime) {
+    vtkNew<Mapper> mapper;
+    expect_modified_by<Mapper>(
+        mapper, {[](Mapper* m) { m->SetShape(Mapper::COVARIANCE); }, [](Mapper* m) { m->SetAxesArray("a"); },
+                 [](Mapper* m) { m->SetOrientationArray("b"); }, [](Mapper* m) { m->SetTensorArray("c"); },
+                 [](Mapper* m) { m->SetScaleFactor(3); }});
+    mapper->SetAxesArray(nullptr);
+    EXPECT_STREQ(mapper->GetAxesArray(), "");
+}
+
+TEST(VtkEllipsoidMapper, PrintsItsState) {
+    expect_printed(vtkNew<Mapper>(), {"Shape: axes", "AxesArray: Axes", "OrientationArray: Orientation",
+                                      "TensorArray: ", "ScaleFactor: 1"});
+}
+
+TEST(VtkEllipsoidMapper, FactoriesMayOverrideIt) {
+    expect_overridden<vtkAnamorphEllipsoidMapper>("vtkAnamorphEllipsoidMapper");
+}
+
+}  // namespace
