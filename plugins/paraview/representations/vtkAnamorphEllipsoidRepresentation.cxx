@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "vtkAnamorphEllipsoidRepresentation.h"
+
+#include <cstring>
+
+#include "vtkAnamorphEllipsoidMapper.h"
+#include "vtkConvertToPointCloud.h"
+#include "vtkMatrix4x4.h"
+#include "vtkNew.h"
+#include "vtkObjectFactory.h"
+#include "vtkPVLODActor.h"
+#include "vtkPVRenderView.h"
+
+vtkStandardNewMacro(vtkAnamorphEllipsoidRepresentation);
+
+namespace {
+
+/// What ParaView's menus of arrays call none.
+const char* array_name(const char* name) {
+    return name && std::strcmp(name, "None") != 0 ? name : "";
+}
+
+}  // namespace
+
+vtkAnamorphEllipsoidRepresentation::vtkAnamorphEllipsoidRepresentation() {
+    this->GeometryFilter->Delete();
+    auto* points = vtkConvertToPointCloud::New();
+    points->SetCellGenerationMode(vtkConvertToPointCloud::VERTEX_CELLS);
+    this->GeometryFilter = points;
+    this->Mapper->Delete();
+    this->LODMapper->Delete();
+    this->Mapper = vtkAnamorphEllipsoidMapper::New();
+    this->LODMapper = vtkAnamorphEllipsoidMapper::New();
+    this->SuppressLOD = true;
+    this->SetupDefaults();
+}
+
+vtkAnamorphEllipsoidRepresentation::~vtkAnamorphEllipsoidRepresentation() = default;
+
+vtkAnamorphEllipsoidMapper* vtkAnamorphEllipsoidRepresentation::Ellipsoids() {
+    return vtkAnamorphEllipsoidMapper::SafeDownCast(this->Mapper);
+}
+
+void vtkAnamorphEllipsoidRepresentation::SetShape(int shape) {
+    this->Ellipsoids()->SetShape(shape);
+}
+
+void vtkAnamorphEllipsoidRepresentation::SetAxesArray(const char* name) {
+    this->Ellipsoids()->SetAxesArray(array_name(name));
+}
+
+void vtkAnamorphEllipsoidRepresentation::SetOrientationArray(const char* name) {
+    this->Ellipsoids()->SetOrientationArray(array_name(name));
+}
+
+void vtkAnamorphEllipsoidRepresentation::SetTensorArray(const char* name) {
+    this->Ellipsoids()->SetTensorArray(array_name(name));
+}
+
+void vtkAnamorphEllipsoidRepresentation::SetScaleFactor(double factor) {
+    this->Ellipsoids()->SetScaleFactor(factor);
+}
+
+int vtkAnamorphEllipsoidRepresentation::ProcessViewRequest(vtkInformationRequestKey* request,
+                                                           vtkInformation* input, vtkInformation* output) {
+    if (!this->Superclass::ProcessViewRequest(request, input, output)) return 0;
+    if (request == vtkPVView::REQUEST_UPDATE()) {
+        // The view fits what the points stand for, not the points.
+        this->Mapper->SetInputDataObject(this->MultiBlockMaker->GetOutputDataObject(0));
+        vtkNew<vtkMatrix4x4> matrix;
+        this->Actor->GetMatrix(matrix);
+        vtkPVRenderView::SetGeometryBounds(input, this, this->Mapper->GetBounds(), matrix);
+    }
+    return 1;
+}
+
+void vtkAnamorphEllipsoidRepresentation::PrintSelf(ostream& os, vtkIndent indent) {
+    this->Superclass::PrintSelf(os, indent);
+    os << indent << "Mapper:\n";
+    this->Mapper->PrintSelf(os, indent.GetNextIndent());
+}

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: Apache-2.0
+/**
+ * @class   vtkAnamorphEllipsoidRepresentation
+ * @brief   Points as ellipsoids in ParaView's render views, drawn by vtkAnamorphEllipsoidMapper.
+ *
+ * It is a vtkGeometryRepresentation of all points of the data instead of their surface: colors, lights,
+ * transforms, blocks and selection of points are those of any other representation. There is no coarser level of
+ * detail, since none is faster.
+ */
+#ifndef vtkAnamorphEllipsoidRepresentation_h
+#define vtkAnamorphEllipsoidRepresentation_h
+
+#include "AnamorphRepresentationsModule.h"  // for the export macro
+#include "vtkGeometryRepresentation.h"
+
+class vtkAnamorphEllipsoidMapper;
+
+class ANAMORPHREPRESENTATIONS_EXPORT vtkAnamorphEllipsoidRepresentation : public vtkGeometryRepresentation {
+  public:
+    static vtkAnamorphEllipsoidRepresentation* New();
+    vtkTypeMacro(vtkAnamorphEllipsoidRepresentation, vtkGeometryRepresentation);
+    void PrintSelf(ostream& os, vtkIndent indent) override;
+
+    ///@{
+    /** As of vtkAnamorphEllipsoidMapper. */
+    void SetShape(int shape);
+    void SetAxesArray(const char* name);
+    void SetOrientationArray(const char* name);
+    void SetTensorArray(const char* name);
+    void SetScaleFactor(double factor);
+    ///@}
+
+    /** Nothing: points have the ids that they have in the data. */
+    void SetArrayIdNames(const char*, const char*) override {}
+
+    int ProcessViewRequest(vtkInformationRequestKey* request, vtkInformation* input,
+                           vtkInformation* output) override;
+
+  protected:
+    vtkAnamorphEllipsoidRepresentation();
+    ~vtkAnamorphEllipsoidRepresentation() override;
+
+  private:
+    vtkAnamorphEllipsoidRepresentation(const vtkAnamorphEllipsoidRepresentation&) = delete;
+    void operator=(const vtkAnamorphEllipsoidRepresentation&) = delete;
+
+    vtkAnamorphEllipsoidMapper* Ellipsoids();
+};
+
+#endif

@@ -1,0 +1,159 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The representation "Ellipsoids" shows figures, blocks of them and tensors of an image as core's renderer does, fits the view to
+them, selects them, and survives a state file."""
+import os
+import subprocess
+
+from display import xvfb_run
+
+SCRIPT = r'''
+import os
+import sys
+
+import anamorph
+import numpy as np
+from paraview import simple
+from paraview.simple import *
+from paraview.vtk.util.numpy_support import numpy_to_vtk, vtk_to_numpy
+from vtkmodules.vtkCommonDataModel import vtkImageData
+from vtkmodules.vtkIOImage import vtkPNGReader
+
+SIZE, COLORS = 200, {(250, 20, 30): 0, (20, 30, 250): 1}
+LoadPlugin(os.environ["ANAMORPH_PLUGIN"], remote=False, ns=vars(simple))
+
+
+def script(name, shift):
+    with open(name, "w") as file:
+        file.write("figure f 2 a b\nellipsoid a 100 200 150\nellipsoid b 120 80 90\njoint j a 0 150 0 b 0 -50 0\n"
+                   f"repeat 0 1 moveto f a {500 + shift} 400 300\nrepeat 0 1 bendby b j world 60 y\n"
+                   "repeat 0 1 colour a 250 20 30\nrepeat 0 1 colour b 20 30 250\nstop")
+    return OpenDataFile(os.path.abspath(name))
+
+
+def new_view(parallel):
+    view = CreateRenderView(ViewSize=[SIZE, SIZE], OrientationAxesVisibility=0, UseColorPaletteForBackground=0, Background=[0, 0, 0],
+                            UseFXAA=0)
+    view.CameraParallelProjection = parallel
+    return view
+
+
+def show(source, view):
+    """As ellipsoids in their own colors, without light."""
+    shown = Show(source, view)
+    shown.SetRepresentationType("Ellipsoids")
+    ColorBy(shown, ("POINTS", "Color"))
+    shown.MapScalars, shown.Ambient, shown.Diffuse, shown.Specular = 0, 1, 0, 0
+    return shown
+
+
+def pixels(view):
+    Render(view)
+    SaveScreenshot("view.png", view, ImageResolution=[SIZE, SIZE])
+    reader = vtkPNGReader()
+    reader.SetFileName("view.png")
+    reader.Update()
+    return vtk_to_numpy(reader.GetOutput().GetPointData().GetScalars()).reshape(SIZE, SIZE, -1)[..., :3].astype(int)
+
+
+def ids(view):
+    found = np.full((SIZE, SIZE), -1)
+    for color, body in COLORS.items():
+        found[(pixels(view) == color).all(-1)] = body
+    return found
+
+
+def core_ids(data, view):
+    image = anamorph.vtkAnamorphFigureImage()
+    image.SetInputData(data)
+    image.SetViewMode(image.CAMERA)
+    image.SetStyle(image.BODY_ID)
+    image.SetViewSize(SIZE, SIZE)
+    image.SetCameraPosition(*view.CameraPosition)
+    image.SetCameraFocalPoint(*view.CameraFocalPoint)
+    image.SetCameraViewUp(*view.CameraViewUp)
+    image.SetCameraViewAngle(view.CameraViewAngle)
+    image.SetCameraParallelProjection(view.CameraParallelProjection)
+    image.SetCameraParallelScale(view.CameraParallelScale)
+    image.Update()
+    return vtk_to_numpy(image.GetOutput().GetPointData().GetScalars()).reshape(SIZE, SIZE)
+
+
+def block(source, index=None):
+    data = servermanager.Fetch(source)
+    return data.GetBlock(index) if index is not None else data
+
+
+first, second = script("first.nudes", 0), script("second.nudes", 300)
+for parallel in (0, 1):
+    view = new_view(parallel)
+    shown = show(first, view)
+    assert (shown.EllipsoidAxes, shown.EllipsoidOrientation) == ("Axes", "Orientation")
+    ResetCamera(view)
+    view.CameraPosition = [p + d for p, d in zip(view.CameraPosition, (300, 200, 0))]
+    seen = ids(view)
+    # Bodies fill the view: it was reset to what the points stand for.
+    assert (seen >= 0).mean() > 0.1 and (seen != core_ids(block(first), view)).mean() <= 0.002
+    # A rectangle in which both bodies are.
+    SelectSurfacePoints(Rectangle=[0, 0, SIZE, SIZE], View=view)
+    extract = ExtractSelection(Input=first)
+    extract.UpdatePipeline()
+    assert extract.GetDataInformation().GetNumberOfPoints() == 2
+    y, x = np.argwhere(seen == 1)[len(np.argwhere(seen == 1)) // 2]
+    ClearSelection(first)
+    SelectSurfacePoints(Rectangle=[int(x), int(y), int(x) + 1, int(y) + 1], View=view)
+    extract = ExtractSelection(Input=first)
+    extract.UpdatePipeline()
+    found = servermanager.Fetch(extract).GetPointData().GetArray("vtkOriginalPointIds")
+    assert vtk_to_numpy(found).tolist() == [1], vtk_to_numpy(found)
+    ClearSelection(first)
+
+# Blocks: what is nearest of both.
+both = GroupDatasets(Input=[first, second])
+view = new_view(0)
+show(both, view)
+ResetCamera(view)
+parts = [core_ids(block(both, i), view) for i in (0, 1)]
+assert ((ids(view) >= 0) != ((parts[0] >= 0) | (parts[1] >= 0))).mean() <= 0.002
+
+# Tensors of an image, whose points inside are drawn as well as those of its surface.
+image = vtkImageData()
+image.SetDimensions(3, 3, 3)
+tensors = np.tile(np.diag([0.3, 0.2, 0.1]).ravel(), (27, 1))
+tensors[:13] = tensors[14:] = 0
+for name, values in (("D", tensors), ("Color", np.tile(np.array([250, 20, 30], np.uint8), (27, 1)))):
+    array = numpy_to_vtk(values, deep=True)
+    array.SetName(name)
+    image.GetPointData().AddArray(array)
+producer = TrivialProducer()
+producer.GetClientSideObject().SetOutput(image)
+view = new_view(1)
+shown = show(producer, view)
+shown.EllipsoidShape, shown.EllipsoidTensor, shown.EllipsoidScaleFactor = "Tensor", "D", 2.0
+view.CameraPosition, view.CameraFocalPoint, view.CameraParallelScale = [1, 1, 9], [1, 1, 1], 1
+y, x = (np.mgrid[:SIZE, :SIZE] + 0.5) / SIZE * 2 - 1
+inside = (x / 0.6) ** 2 + (y / 0.4) ** 2 < 1
+assert ((ids(view) == 0) != inside).mean() <= 0.002
+
+Delete(producer)
+shown = show(second, new_view(0))
+shown.EllipsoidShape, shown.EllipsoidScaleFactor, shown.EllipsoidOrientation = "Covariance", 2.0, "None"
+SaveState("ellipsoids.pvsm")
+ResetSession()
+LoadState("ellipsoids.pvsm")
+restored = [GetRepresentation(s, v) for v in GetViews() for s in GetSources().values() if s.GetXMLName() == "AnamorphFigureReader"]
+kept = [(r.Representation, r.EllipsoidShape, r.EllipsoidOrientation, r.EllipsoidScaleFactor) for r in restored]
+assert ("Ellipsoids", "Covariance", "None", 2) in kept and ("Ellipsoids", "Axes", "Orientation", 1) in kept, kept
+
+# Defaults of the properties are those of the mapper.
+proxy, mapper = servermanager.ProxyManager().NewProxy("representations", "AnamorphEllipsoidRepresentation"), anamorph.vtkAnamorphEllipsoidMapper()
+for name in ("Shape", "AxesArray", "OrientationArray", "TensorArray", "ScaleFactor"):
+    default = proxy.GetProperty(name).GetDefaultValue(0) if name.endswith("Array") else proxy.GetProperty(name).GetElement(0)
+    assert default == getattr(mapper, "Get" + name)(), (name, default)
+print("shown")
+'''
+with open("show.py", "w") as file:
+    file.write(SCRIPT)
+done = subprocess.run([*xvfb_run(361), "pvpython", "show.py"], env={**os.environ, "LIBGL_ALWAYS_SOFTWARE": "1"},
+                      capture_output=True, text=True, timeout=250)
+assert done.returncode == 0 and "shown" in done.stdout, (done.returncode, done.stdout[-3000:], done.stderr[-5000:])
+assert "ERR" not in done.stderr and "rror" not in done.stderr, done.stderr[-5000:]
