@@ -219,11 +219,32 @@ TEST(CrystalSymmetry, AFileWithoutOperationsIsAsItIs) {
     EXPECT_EQ(frame_of(cell + "_symmetry_equiv_pos_as_xyz ?\n" + atoms).bodies.size(), 2u);
 }
 
+TEST(CrystalSymmetry, OfAModulatedStructureTheAverageIsShown) {
+    // The operations of CeSi2, I2/b(a b 0)00, as drawxtl's cesi182.cif lists them, and without the fourth dimension.
+    const std::string cell = cell_text(4.18, 4.19, 13.85, 90, 90, 90),
+                      atoms = atoms_text("Ce .1 .2 .1067\nSi1 .05 .25 .2925\n"),
+                      modulated = operations_text(
+                          {"x1,x2,x3,x4", "-x1,1/2-x2,x3,-x4", "-x1,-x2,-x3,-x4", "x1,1/2+x2,-x3,x4",
+                           "1/2+x1,1/2+x2,1/2+x3,x4", "1/2-x1,-x2,1/2+x3,-x4", "1/2-x1,1/2-x2,1/2-x3,-x4",
+                           "1/2+x1,x2,1/2-x3,x4"},
+                          "_space_group_symop_ssg_operation_algebraic"),
+                      average = operations_text({"x,y,z", "-x,1/2-y,z", "-x,-y,-z", "x,1/2+y,-z",
+                                                 "1/2+x,1/2+y,1/2+z", "1/2-x,-y,1/2+z", "1/2-x,1/2-y,1/2-z",
+                                                 "1/2+x,y,1/2-z"});
+    const FigureFrame frame = frame_of(cell + modulated + atoms), wanted = frame_of(cell + average + atoms);
+    ASSERT_EQ(frame.bodies.size(), 16u);
+    for (std::size_t i = 0; i < 16; ++i) EXPECT_EQ(frame.bodies[i].shape, wanted.bodies[i].shape) << i;
+    EXPECT_THAT(
+        error_of(cell + operations_text({"x4,x2,x3,x1"}, "_space_group_symop_ssg_operation_algebraic") +
+                 atoms),
+        HasSubstr("must be three sums"));
+}
+
 TEST(CrystalSymmetry, SaysWhatIsWrong) {
     const std::string cell = cell_text(9, 9, 9, 90, 90, 90), atoms = atoms_text("C1 .01 .5 .5\n");
     EXPECT_EQ(
         error_of(cell + operations_text({"x,y,z", "x,y,q"}) + atoms),
-        "test.cif: line 10: _symmetry_equiv_pos_as_xyz: \"x,y,q\": must be three sums of x, y, z and numbers "
+        "test.cif: line 11: _symmetry_equiv_pos_as_xyz: \"x,y,q\": must be three sums of x, y, z and numbers "
         "that keep volumes, such as -x,1/2+y,-z");
     std::vector<std::string> many(1001, "x,y,z");
     EXPECT_THAT(error_of(cell + operations_text(many) + atoms), HasSubstr("must have up to 1000 values"));

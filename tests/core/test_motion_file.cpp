@@ -218,8 +218,12 @@ TEST(Crystal, SaysWhatIsWrong) {
     EXPECT_THAT(with("_cell_length_b 12", "_cell_length_b twelve"),
                 HasSubstr("line 3: _cell_length_b=twelve"));
     EXPECT_THAT(with("110", "0"), HasSubstr("angles of the cell must span a volume"));
-    EXPECT_THAT(with("0.1 0.2 0.3 0.02", "0.1 nan 0.3 0.02"), HasSubstr("must be a number"));
-    EXPECT_THAT(with("C1 C 0.1", "C1 C"), HasSubstr("whole rows"));
+    EXPECT_THAT(with("0.1 0.2 0.3 0.02", "0.1 nan 0.3 0.02"),
+                HasSubstr("line 11: _atom_site_fract_y=nan: must be a number"));
+    EXPECT_THAT(with("0.3 0.3 .\n", "0.3 far .\n"), HasSubstr("line 12: _atom_site_fract_z=far"));
+    EXPECT_THAT(
+        with("C1 C 0.1", "C1 C"),
+        HasSubstr("line 8: a loop of 6 tags ends before line 15, after 23 values: must have whole rows"));
     EXPECT_THAT(error_of("data_x _cell_length_a", "a.cif"), HasSubstr("_cell_length_a has no value"));
     EXPECT_THAT(error_of("", "a.cif"), HasSubstr("_cell_length_a: is missing"));
     // Not positive definite: flat.

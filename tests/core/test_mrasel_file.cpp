@@ -54,6 +54,10 @@ TEST(MraselFile, SaysWhatIsWrong) {
     };
     EXPECT_EQ(error(kExample), "no error");
     EXPECT_EQ(error("0 0 0"), "no error");
+    EXPECT_EQ(error(kExample + " \n"), "no error");
+    EXPECT_EQ(error(kExample + "\nstop"),
+              "in.mrasel: line 8: found \"stop\" behind the last of 3 ellipsoids");
+    EXPECT_THAT(error(kExample, "3 -1", "2 -1"), HasSubstr("line 6: found \"250\" behind the last of 2"));
     EXPECT_EQ(error(""), "in.mrasel: line 1: the text ends, expected the number of ellipsoids");
     EXPECT_EQ(error(kExample, "511", "512"),
               "in.mrasel: line 3: found \"512\", expected a band's last row, a number from 255 to 511");

@@ -30,8 +30,9 @@ constexpr double kHalfProbability = 1.5381722544550522;
 /// Of atoms without displacement, and what bonds may be longer than radii; Angstrom.
 constexpr double kPlainRadius = 0.15, kBondSlack = 0.4;
 
-/// The tags of the operations of symmetry, the newer one first.
-constexpr std::string_view kOperations[] = {"_space_group_symop_operation_xyz", "_symmetry_equiv_pos_as_xyz"};
+/// The tags of the operations of symmetry, the newest one first; the last of modulated structures, in four dimensions or more.
+constexpr std::string_view kOperations[] = {"_space_group_symop_operation_xyz", "_symmetry_equiv_pos_as_xyz",
+                                            "_space_group_symop_ssg_operation_algebraic"};
 
 // --- The file ----------------------------------------------------------------------------------------------
 
@@ -124,7 +125,7 @@ class Tokens {
 /// Values of one tag.
 struct Column {
     std::vector<std::string> values;  ///< empty where a value is unknown
-    int line = 0;
+    std::vector<int> lines;           ///< of the values
 };
 /// The first structure's tags.
 using CifBlock = std::map<std::string, Column>;
@@ -133,28 +134,35 @@ std::string known(const Token& token) {
     return !token.quoted && (token.text == "." || token.text == "?") ? std::string() : token.text;
 }
 
-/// The tags of a loop and their values, row by row; `token` is the one behind `loop_`, and then behind it.
+/// The tags of a loop and their values, row by row; `token` is `loop_`, and then the one behind the loop.
 void read_loop(Tokens& tokens, Token& token, CifBlock& block, std::string_view file) {
+    const int line = token.line;
+    token = tokens.next();
     std::vector<std::string> tags;
     for (; token.kind == TokenKind::tag; token = tokens.next()) tags.push_back(token.text);
     std::vector<Column*> columns;
     for (const std::string& tag : tags) {
         Column& column = block[tag];
-        column = {{}, token.line};
+        column = {};
         columns.push_back(&column);
     }
     std::size_t count = 0;
-    for (; token.kind == TokenKind::value; token = tokens.next(), ++count)
-        if (!columns.empty()) columns[count % columns.size()]->values.push_back(known(token));
+    for (; token.kind == TokenKind::value; token = tokens.next(), ++count) {
+        if (columns.empty()) continue;
+        Column& column = *columns[count % columns.size()];
+        column.values.push_back(known(token));
+        column.lines.push_back(token.line);
+    }
     // Faults elsewhere in a file do not matter.
     const bool matters = std::any_of(tags.begin(), tags.end(), [](const std::string& tag) {
         return tag.starts_with("_atom_site_") ||
                std::count(std::begin(kOperations), std::end(kOperations), tag);
     });
     if (matters && count % columns.size() != 0)
-        text_file::fail(file, "line " + std::to_string(token.line),
-                        "a loop of " + std::to_string(tags.size()) + " tags ends after " +
-                            std::to_string(count) + " values: must have whole rows");
+        text_file::fail(file, "line " + std::to_string(line),
+                        "a loop of " + std::to_string(tags.size()) + " tags ends before line " +
+                            std::to_string(token.line) + ", after " + std::to_string(count) +
+                            " values: must have whole rows");
 }
 
 CifBlock read_block(std::string_view text, std::string_view file) {
@@ -167,7 +175,6 @@ CifBlock read_block(std::string_view text, std::string_view file) {
             block.clear();
             token = tokens.next();
         } else if (token.kind == TokenKind::loop) {
-            token = tokens.next();
             read_loop(tokens, token, block, file);
         } else if (token.kind == TokenKind::tag) {
             const std::string tag = token.text;
@@ -175,7 +182,7 @@ CifBlock read_block(std::string_view text, std::string_view file) {
             token = tokens.next();
             if (token.kind != TokenKind::value)
                 text_file::fail(file, "line " + std::to_string(line), tag + " has no value");
-            block[tag] = {{known(token)}, line};
+            block[tag] = {{known(token)}, {token.line}};
             token = tokens.next();
         } else {
             token = tokens.next();
@@ -227,7 +234,7 @@ class Structure {
         double value = 0;
         const bool read = text_file::take_number(rest, value);
         if (!read || !(rest.empty() || rest[0] == '(' || rest[0] == '+') || !(std::fabs(value) <= most))
-            text_file::fail(m_file, "line " + std::to_string(column.line),
+            text_file::fail(m_file, "line " + std::to_string(column.lines[row]),
                             tag + "=" + text_file::excerpt(column.values[row]) + ": must be a number from " +
                                 shortest(-most) + " to " + shortest(most));
         return value;
@@ -359,21 +366,41 @@ class Structure {
     /// x,y,z and the others, in the order of the file.
     std::vector<SymmetryOperation> read_operations() const {
         std::vector<SymmetryOperation> operations{{}};
-        const Column* column = find(std::string(kOperations[0]));
-        const std::string_view tag = kOperations[column ? 0 : 1];
-        if (!column) column = find(std::string(tag));
-        if (!column) return operations;
-        if (column->values.size() > kMostOperations)
-            text_file::fail(m_file, std::string(tag), "must have up to 1000 values");
-        for (const std::string& text : column->values)
-            text_file::in_entry(
-                m_file, "line " + std::to_string(column->line) + ": " + std::string(tag), [&] {
-                    if (text.empty()) return;
-                    const SymmetryOperation operation = symmetry_operation(text);
-                    const bool same = operation.turn == glm::dmat3(1.0) && operation.shift == glm::dvec3(0.0);
-                    if (!same) operations.push_back(operation);
-                });
+        for (const std::string_view tag : kOperations)
+            if (const Column* column = find(std::string(tag))) {
+                read_operations(std::string(tag), *column, operations);
+                break;
+            }
         return operations;
+    }
+
+    void read_operations(const std::string& tag, const Column& column,
+                         std::vector<SymmetryOperation>& operations) const {
+        if (column.values.size() > kMostOperations)
+            text_file::fail(m_file, tag, "must have up to 1000 values");
+        for (std::size_t row = 0; row < column.values.size(); ++row) {
+            const std::string& text = column.values[row];
+            if (text.empty()) continue;
+            text_file::in_entry(m_file, "line " + std::to_string(column.lines[row]) + ": " + tag, [&] {
+                const SymmetryOperation operation =
+                    symmetry_operation(tag == kOperations[2] ? of_average(text) : text);
+                const bool same = operation.turn == glm::dmat3(1.0) && operation.shift == glm::dvec3(0.0);
+                if (!same) operations.push_back(operation);
+            });
+        }
+    }
+
+    /// `-x1,1/2+x2,-x3,x4` of a modulated structure, for the average one: `-x,1/2+y,-z`.
+    static std::string of_average(const std::string& text) {
+        std::string average;
+        int sums = 1;
+        for (std::size_t i = 0; i < text.size(); ++i) {
+            if (text[i] == ',' && ++sums == 4) break;
+            const bool axis =
+                text[i] == 'x' && i + 1 < text.size() && text[i + 1] >= '1' && text[i + 1] <= '3';
+            average += axis ? "xyz"[text[++i] - '1'] : text[i];
+        }
+        return average;
     }
 
     /// All atoms of the cell, and their bonds.

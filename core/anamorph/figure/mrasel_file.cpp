@@ -20,15 +20,18 @@ class Words {
   public:
     Words(std::string_view text, std::string_view file) : m_text(text), m_file(file) {}
 
-    std::string_view next(const char* what) {
-        const auto blank = [](char c) { return c == ' ' || (c >= '\t' && c <= '\r'); };
-        while (!m_text.empty() && blank(m_text.front())) {
+    /// Skips blanks. Whether that is all that is left.
+    bool at_end() {
+        while (!m_text.empty() && is_blank(m_text.front())) {
             m_line += m_text.front() == '\n';
             m_text.remove_prefix(1);
         }
-        if (m_text.empty()) fail(std::string("the text ends, expected ") + what);
+        return m_text.empty();
+    }
+    std::string_view next(const char* what) {
+        if (at_end()) fail(std::string("the text ends, expected ") + what);
         std::size_t size = 0;
-        while (size < m_text.size() && !blank(m_text[size])) ++size;
+        while (size < m_text.size() && !is_blank(m_text[size])) ++size;
         const std::string_view word = m_text.substr(0, size);
         m_text.remove_prefix(size);
         return word;
@@ -57,6 +60,8 @@ class Words {
     }
 
   private:
+    static bool is_blank(char c) { return c == ' ' || (c >= '\t' && c <= '\r'); }
+
     std::string_view m_text, m_file;
     int m_line = 1;
 };
@@ -87,6 +92,9 @@ FigureFrame mrasel_frame(std::string_view text, std::string_view name) {
         body.texture = body.name = words.next("the name of a map");
         frame.bodies.push_back(std::move(body));
     }
+    if (!words.at_end())
+        words.fail("found \"" + text_file::excerpt(words.next("nothing")) + "\" behind the last of " +
+                   std::to_string(bodies) + " ellipsoids");
     return frame;
 }
 
