@@ -165,7 +165,7 @@ std::string other_value(const Parameter& p) {
         case ParameterType::whole:
             return "3";
         case ParameterType::number:
-            return "0.25";
+            return p.minimum < 0.25 ? "0.25" : shortest(p.minimum + 0.25);
         case ParameterType::numbers:
             return "0.25,0.75";
         default:

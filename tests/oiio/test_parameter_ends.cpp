@@ -7,6 +7,7 @@
 #include <cfloat>
 #include <cmath>
 
+#include "anamorph/map/concentric.h"
 #include "anamorph/operation/morph.h"
 #include "host.h"
 
@@ -73,6 +74,7 @@ class ParameterEnds : public InFolder {
         InFolder::SetUp();
         write_panorama("city.exr", 24, 12);
         write_panorama("town.exr", 24, 12);
+        write_panorama("tall.exr", 4, 2 * ConcentricStack::kMostCircles);
         for (const Projection p : kProjections)
             if (has_faces(p))
                 write_panorama(std::string(name_of(p)) + ".exr", 4 * faces_of(p).columns,
@@ -106,6 +108,11 @@ class ParameterEnds : public InFolder {
             write_text("dressed.nudes",
                        "figure f 1 e\nellipsoid e 200 300 100\nrepeat 0 1 texture e city.exr 0 0\nstop\n");
             add("script", "dressed.nudes");
+        }
+        if (operation.name == "mosaic") {
+            if (key == "circles" || key == "circle") sources[0] = "tall.exr";
+            if (key == "circle") add("circles", std::to_string(ConcentricStack::kMostCircles));
+            if (key == "x" || key == "z") add(key == "x" ? "z" : "x", "0");
         }
         if (key == "picture") {
             for (const Assignment& a : pictures_to(value)) arguments.push_back(a);

@@ -100,11 +100,15 @@ Panorama::Panorama(const Chart& source, const Chart& target, const Orientation& 
 }
 
 Panorama::Local Panorama::local_around(double x, double y, int piece) const {
+    return local_around(x, y, piece, transform(m_rotation, m_target.ray(x, y, piece)));
+}
+
+Panorama::Local Panorama::local_around(double x, double y, int piece, const Ray<double>& source_ray) const {
     Local local;
     // The target's own angles count from this point only where that narrows intervals; its piece is given.
     local.target = m_target.branch_around(x, y, piece);
     if (local.target.piece != piece) local.target = m_target.branch(piece);
-    local.source = m_source.branch_around(transform(m_rotation, m_target.ray(x, y, piece)));
+    local.source = m_source.branch_around(source_ray);
     local.rotation = glm::transpose(local.source.axes) * m_rotation * local.target.axes;
     return local;
 }
@@ -128,13 +132,27 @@ bool Panorama::ends_by_lens(const Ray<Interval>& ray, const Local& local) const 
     return there.lo > 0;
 }
 
-Cover Panorama::cover(const Interval& x, const Interval& y, int piece, const Local& local,
-                      bool across_seam) const {
-    const auto one_signed = [](const Interval& a) { return a.lo > 0 || a.hi < 0; };
+namespace {
+
+bool one_signed(const Interval& a) {
+    return a.lo > 0 || a.hi < 0;
+}
+
+}  // namespace
+
+Cover Panorama::target_cover(const Interval& x, const Interval& y, int piece) const {
     const Interval in = m_target.inside(x, y, piece);
     if (in.hi < 0) return Cover::outside;
-    if (!(in.lo >= 0) || !one_signed(m_target.crease(x, y, piece))) return Cover::mixed;
-    const Ray<Interval> ray = local_ray(x, y, local);
+    return in.lo >= 0 && one_signed(m_target.crease(x, y, piece)) ? Cover::inside : Cover::mixed;
+}
+
+Cover Panorama::cover(const Interval& x, const Interval& y, int piece, const Local& local,
+                      bool across_seam) const {
+    const Cover target = target_cover(x, y, piece);
+    return target == Cover::inside ? cover(local_ray(x, y, local), local, across_seam) : target;
+}
+
+Cover Panorama::cover(const Ray<Interval>& ray, const Local& local, bool across_seam) const {
     const Interval seen = m_source.sees(ray, local.source.piece);
     if (seen.hi < 0 && m_source.pieces().size() == 1) return Cover::outside;
     if (!one_signed(m_source.crease(ray))) return Cover::mixed;
@@ -155,7 +173,14 @@ template <class Real>
 double Panorama::exact_error(const Interval& x, const Interval& y, int piece) const {
     using R = Rounded<Real>;
     if (!(m_target.inside(x, y, piece).hi >= 0)) return 0;
-    const Ray<R> ray = source_ray(R(x, 0, 0), R(y, 0, 0), piece);
+    return exact_error(source_ray(R(x, 0, 0), R(y, 0, 0), piece));
+}
+template double Panorama::exact_error<double>(const Interval&, const Interval&, int) const;
+template double Panorama::exact_error<long double>(const Interval&, const Interval&, int) const;
+
+template <class Real>
+double Panorama::exact_error(const Ray<Rounded<Real>>& ray) const {
+    using R = Rounded<Real>;
     const std::size_t pieces = m_source.pieces().size();
     if (pieces == 1) {
         const R seen = m_source.sees(ray);
@@ -181,7 +206,7 @@ double Panorama::exact_error(const Interval& x, const Interval& y, int piece) co
     const double widest = m_source.widest();
     return error <= widest ? error : widest;
 }
-template double Panorama::exact_error<double>(const Interval&, const Interval&, int) const;
-template double Panorama::exact_error<long double>(const Interval&, const Interval&, int) const;
+template double Panorama::exact_error(const Ray<Rounded<double>>&) const;
+template double Panorama::exact_error(const Ray<Rounded<long double>>&) const;
 
 }  // namespace anamorph

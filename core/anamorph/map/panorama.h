@@ -41,6 +41,8 @@ class Panorama {
     };
     /// For a neighbourhood of a target point.
     Local local_around(double x, double y, int piece) const;
+    /// The same with the source's branch about another ray of it.
+    Local local_around(double x, double y, int piece, const Ray<double>& source_ray) const;
 
     // As a FormulaMap.
     Size target_size() const { return {m_target.width(), m_target.height()}; }
@@ -52,6 +54,17 @@ class Panorama {
     SourceEdges source_edges() const;
     /// Whether the points of a box have source points on one branch.
     Cover cover(const Interval& x, const Interval& y, int piece, const Local& local, bool across_seam) const;
+    /// Whether they have rays, on one branch of the target.
+    Cover target_cover(const Interval& x, const Interval& y, int piece) const;
+    /// The same for the source's local rays, of target points that have one.
+    Cover cover(const Ray<Interval>& ray, const Local& local, bool across_seam) const;
+
+    /// The source's ray of a target point.
+    template <class T>
+    Ray<T> source_ray(const T& x, const T& y, int piece) const {
+        return transform([&](int column, int row) { return m_turn[column][row].template as<T>(); },
+                         m_target.ray(x, y, piece));
+    }
 
     /// The source's local ray of a target point.
     template <class T>
@@ -70,7 +83,11 @@ class Panorama {
     template <class T>
     bool exact(const T& x, const T& y, int piece, Point<T>& source_point, int& source_piece) const {
         if (!(m_target.inside(x, y, piece) >= 0)) return false;
-        const Ray<T> r = source_ray(x, y, piece);
+        return exact(source_ray(x, y, piece), source_point, source_piece);
+    }
+    /// The source point of one ray of the source.
+    template <class T>
+    bool exact(const Ray<T>& r, Point<T>& source_point, int& source_piece) const {
         source_piece = m_source.piece_of(r);
         if (m_source.pieces().size() == 1 && !(m_source.sees(r) > 0)) return false;
         source_point = m_source.point(r, source_piece);
@@ -83,6 +100,9 @@ class Panorama {
     /// infinite where it is not certain that there is one.
     template <class Real>
     double exact_error(const Interval& x, const Interval& y, int piece) const;
+    /// The same over rays of the source.
+    template <class Real>
+    double exact_error(const Ray<Rounded<Real>>& ray) const;
 
     /// The map about a target point, read pixel by pixel (number/near.h): its source point, and the bases.
     struct Direct {
@@ -108,13 +128,6 @@ class Panorama {
 
     /// Does the source see all these local rays, but for its lens's end?
     bool ends_by_lens(const Ray<Interval>& ray, const Local& local) const;
-
-    /// The source's ray of a target point.
-    template <class T>
-    Ray<T> source_ray(const T& x, const T& y, int piece) const {
-        return transform([&](int column, int row) { return m_turn[column][row].template as<T>(); },
-                         m_target.ray(x, y, piece));
-    }
 
     Chart m_source, m_target;
     /// The rotation by columns, known better than double holds it, and in double.

@@ -161,15 +161,7 @@ std::optional<BumpUnit> machine_of(const ParameterValues& values) {
 
 }  // namespace
 
-ReprojectRequest read_reproject_request(const ParameterValues& values, const SourceFacts& facts) {
-    const auto [from, reason] = source_projection(values, facts);
-    const bool says_fov = !values.given("srcfov") && facts.fov && facts.projection == from;
-    const bool says_lens = !values.given("srclens") && facts.lens && facts.projection == from;
-    const LensModel srclens = says_lens ? *facts.lens : lens_of(values, "srclens");
-    const Chart source(from, facts.width, facts.height,
-                       says_fov ? *facts.fov : field_of_view(values, "srcfov", from),
-                       chosen<PixelSpacing>(values, "pixels"), "src", values.number("srcd"), srclens);
-
+Chart read_target_chart(const ParameterValues& values, const Chart& source) {
     const Projection to = projection_from_name(values.text("to"), "to");
     const double fov = field_of_view(values, "fov", to), d = values.number("d");
     const LensModel lens = lens_of(values, "lens");
@@ -188,17 +180,37 @@ ReprojectRequest read_reproject_request(const ParameterValues& values, const Sou
         size = values.extent("size");
         if (size.height < 0) size = natural_size(to, fov, size.width);
     }
+    return chart(size.width, size.height, lens);
+}
 
+Orientation read_orientation(const ParameterValues& values) {
+    return {values.number("yaw"), values.number("pitch"), values.number("roll")};
+}
+
+ReprojectOptions read_reproject_options(const ParameterValues& values) {
     ReprojectOptions options;
-    const std::optional<BumpUnit> machine = machine_of(values);
-    if (!machine) options.scheme = chosen<Scheme>(values, "scheme");
     options.tol = values.number("tol");
     options.filter = chosen<Filter>(values, "filter");
     options.wrap = chosen<Wrap>(values, "wrap");
     options.output = rows::chosen_output(values);
+    return options;
+}
+
+ReprojectRequest read_reproject_request(const ParameterValues& values, const SourceFacts& facts) {
+    const auto [from, reason] = source_projection(values, facts);
+    const bool says_fov = !values.given("srcfov") && facts.fov && facts.projection == from;
+    const bool says_lens = !values.given("srclens") && facts.lens && facts.projection == from;
+    const LensModel srclens = says_lens ? *facts.lens : lens_of(values, "srclens");
+    const Chart source(from, facts.width, facts.height,
+                       says_fov ? *facts.fov : field_of_view(values, "srcfov", from),
+                       chosen<PixelSpacing>(values, "pixels"), "src", values.number("srcd"), srclens);
+
+    ReprojectOptions options = read_reproject_options(values);
+    const std::optional<BumpUnit> machine = machine_of(values);
+    if (!machine) options.scheme = chosen<Scheme>(values, "scheme");
     return {source,
-            chart(size.width, size.height, lens),
-            {values.number("yaw"), values.number("pitch"), values.number("roll")},
+            read_target_chart(values, source),
+            read_orientation(values),
             {values.number("srcyaw"), values.number("srcpitch"), values.number("srcroll")},
             options,
             reason,

@@ -38,6 +38,12 @@ struct ReprojectRequest {
 ReprojectRequest read_reproject_request(const ParameterValues& values, const SourceFacts& source);
 inline constexpr int kMaxDefaultSize = 16384;
 
+/// Parts of it, for tables with some of these rows: the picture (to, fov, d, lens, size), where its camera looks (yaw, pitch,
+/// roll), and all options (tol, filter, wrap, output) but the scheme. Throw Error.
+Chart read_target_chart(const ParameterValues& values, const Chart& source);
+Orientation read_orientation(const ParameterValues& values);
+ReprojectOptions read_reproject_options(const ParameterValues& values);
+
 /// The next level of a picture's pyramid: half the pixels each way (rounded down, at least 1), the same view;
 /// none after the last.
 std::optional<Chart> half_size(const Chart& chart);

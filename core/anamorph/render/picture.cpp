@@ -68,7 +68,8 @@ class Painter {
         const bool single = m_picture.maps.size() == 1 && map.layers.size() == 1;
         if (!m_picture.shows_color() && single)
             draw_map(strip, *map.blocks, map.layers.front());
-        else if (single && map.layers.front().weight == 1 && !m_picture.overlay)
+        else if (single && map.layers.front().weight == 1 && !map.layers.front().weights &&
+                 !m_picture.overlay)
             draw_color(strip, *map.blocks, map.layers.front());
         else
             mix(strip.box());
@@ -149,29 +150,43 @@ class Painter {
         std::deque<BlockReader> readers;
         for (const Picture::Layer& layer : map.layers)
             readers.emplace_back(*map.blocks, source_of(layer), layer.border, m_picture.filter);
-        each_block(
-            *map.blocks, pixels.box,
-            [&](const Block& block, std::size_t k, const BlockPoints& points, const Box& part) {
-                const auto row = [&](int x, int y, int count, const float* values, float one) {
-                    const double weight = map.layers[k].weight / double{one};
-                    add_row(pixels.at(x, y), count, values, static_cast<float>(weight), first && k == 0);
-                };
-                const bool done =
-                    points.x ? readers[k].rows(block, points, part, row) : readers[k].rows(block, part, row);
-                if (!done) m_ok = false;
-            });
+        std::vector<float> weights;
+        each_block(*map.blocks, pixels.box,
+                   [&](const Block& block, std::size_t k, const BlockPoints& points, const Box& part) {
+                       const Picture::Layer& layer = map.layers[k];
+                       const bool starts = first && k == 0;
+                       if (!starts && block.kind == Block::Kind::outside) return;
+                       if (layer.weights) {
+                           weights.resize(static_cast<std::size_t>(part.width() * part.height()));
+                           if (!layer.weights(part, weights.data()) && !starts) return;
+                       }
+                       const auto row = [&](int x, int y, int count, const float* values, float one) {
+                           const auto weight = static_cast<float>(layer.weight / double{one});
+                           const std::ptrdiff_t at = std::ptrdiff_t{y - part.y0} * part.width() + x - part.x0;
+                           const float* each = layer.weights ? weights.data() + at : nullptr;
+                           add_row(pixels.at(x, y), count, values, weight, each, starts);
+                       };
+                       const bool done = points.x ? readers[k].rows(block, points, part, row)
+                                                  : readers[k].rows(block, part, row);
+                       if (!done) m_ok = false;
+                   });
     }
 
-    /// Adds a row of pixels, `weight` times. Colour is mixed as it is seen: by its alpha where that is not
-    /// multiplied in.
-    void add_row(float* to, int count, const float* values, float weight, bool first) const {
+    /// Adds a row of pixels, `weight` times, and so often again as `each` says of one, if it is given. Colour is mixed as
+    /// it is seen: by its alpha where that is not multiplied in.
+    void add_row(float* to, int count, const float* values, float weight, const float* each,
+                 bool first) const {
         const int channels = m_canvas.channels();
-        if (m_alpha >= 0) {
-            for (int i = 0; i < count; ++i, to += channels, values += channels)
+        if (m_alpha >= 0 || each) {
+            for (int i = 0; i < count; ++i, to += channels, values += channels) {
+                const float w = each ? weight * each[i] : weight;
                 for (int c = 0; c < channels; ++c) {
-                    const float v = weight * (c == m_alpha ? values[c] : values[c] * values[m_alpha]);
+                    const bool seen = m_alpha >= 0 && c != m_alpha;
+                    // What is infinite does not count where it has no weight.
+                    const float v = w == 0 ? 0 : w * (seen ? values[c] * values[m_alpha] : values[c]);
                     to[c] = first ? v : to[c] + v;
                 }
+            }
             return;
         }
         const int n = count * channels;

@@ -43,6 +43,8 @@ struct Picture {
         Border border;      ///< knows the source's chart, which has the size of its level 0
         int source = 0;     ///< which one of those that draw() is given
         double weight = 1;  ///< of its colour; the sum over all layers is 1
+        /// Where it is given: how often `weight` that is at each pixel of a box, row by row. False where it is 0 everywhere.
+        std::function<bool(const Box& box, float* weights)> weights = {};
     };
     /// A map, and what is seen through each of its layers.
     struct Map {

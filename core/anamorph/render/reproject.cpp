@@ -4,7 +4,6 @@
 #include "anamorph/approx/panorama_plan.h"
 
 namespace anamorph {
-namespace {
 
 PlanOptions plan_options(const ReprojectOptions& options) {
     PlanOptions plan;
@@ -14,8 +13,6 @@ PlanOptions plan_options(const ReprojectOptions& options) {
     plan.across_seam = options.wrap == Wrap::automatic;
     return plan;
 }
-
-}  // namespace
 
 struct Reprojection::State {
     State(const Panorama& map, const ReprojectOptions& reproject)

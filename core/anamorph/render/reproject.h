@@ -11,6 +11,8 @@
 
 namespace anamorph {
 
+struct PlanOptions;
+
 /// How a reprojection is drawn.
 struct ReprojectOptions {
     Scheme scheme = Scheme::automatic;
@@ -19,6 +21,9 @@ struct ReprojectOptions {
     Wrap wrap = Wrap::automatic;
     Output output = Output::color;
 };
+
+/// How its map is approximated.
+PlanOptions plan_options(const ReprojectOptions& options);
 
 /// One reprojection, ready to draw any box of the picture in any order from any number of threads: the bits
 /// of a pixel depend on nothing but the map, the options and the source.

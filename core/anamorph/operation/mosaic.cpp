@@ -1,0 +1,205 @@
+// SPDX-License-Identifier: Apache-2.0
+// Concentric mosaics seen from a point inside their circles.
+#include <algorithm>
+#include <cmath>
+#include <deque>
+
+#include "anamorph/operation/operation.h"
+#include "anamorph/operation/pano.h"
+#include "anamorph/operation/panorama_attributes.h"
+#include "anamorph/operation/rows.h"
+#include "anamorph/operation/solved.h"
+#include "anamorph/render/concentric.h"
+#include "anamorph/render/strip_source.h"
+
+namespace anamorph {
+namespace {
+
+using rows::chosen;
+
+const char* const kDistortion = "distortion";
+
+/// Those whose rows are a full turn.
+std::vector<std::string> turning_projections() {
+    std::vector<std::string> names;
+    for (const Projection p : kProjections)
+        if (with_projection(p, [](auto f) { return f.counted == Counted::azimuth && f.closes; }))
+            names.emplace_back(name_of(p));
+    return names;
+}
+
+ParameterTable make_table() {
+    using namespace rows;
+    const auto as_pano = [](const char* name) {
+        const ParameterTable& pano = *pano_operation().parameters;
+        return *std::find_if(pano.begin(), pano.end(), [&](const Parameter& p) { return p.name == name; });
+    };
+    return {
+        image("src",
+              "the panoramas, one above the other in a single image, all as high, from the circle of radius "
+              "-1 at the top to "
+              "that of 1; by default the recipe's name without .mosaic"),
+        whole("circles", "", "1", 1, ConcentricStack::kMostCircles,
+              "how many panoramas there are; their circles' radii run evenly from -1 to 1, a single one has "
+              "0. A column in "
+              "the direction u of the circle of radius r was seen along u from the point r to the right of "
+              "the centre"),
+        choice("from", "cylindrical", turning_projections(), "projection of each panorama, a full turn"),
+        number("x", "outer radii", "0", -1, 1, "the viewpoint, to the right of the centre"),
+        number("z", "outer radii", "0", -1, 1,
+               "the viewpoint, in front of the centre; inside the outer circle together with x"),
+        above(number("depth", "outer radii", "", 1, kInfinity,
+                     "distance from the centre that all things are taken to have; by default infinite")),
+        above(number("nearest", "outer radii", "", 1, kInfinity,
+                     "distance from the centre of the nearest thing, for anamorph:vertical_distortion; by "
+                     "default depth")),
+        whole("circle", "", "", 1, ConcentricStack::kMostCircles,
+              "one panorama alone, in place of the mixture of the two nearest; stmap is of one alone, in 0 "
+              "to 1 on it, by default of the middle one"),
+        as_pano("to"),
+        as_pano("fov"),
+        as_pano("d"),
+        as_pano("yaw"),
+        as_pano("pitch"),
+        as_pano("roll"),
+        as_pano("lens"),
+        as_pano("size"),
+        tile(),
+        mip(),
+        filter(),
+        as_pano("wrap"),
+        tol(),
+        scheme({{"auto"}, {"exact"}, {"blocks"}, {"residual"}}),
+        colorspace("color space to filter in; by default the source's own"),
+        output({{kDistortion, "how far heights may be from 1 times the true ones"}}),
+    };
+}
+
+struct MosaicRequest {
+    Chart panorama, target;
+    Orientation orientation;
+    ReprojectOptions options;
+    ConcentricStack stack;
+    std::optional<int> circle;
+    std::optional<double> nearest;
+    bool distortion = false;
+
+    Panorama view() const { return Panorama(panorama, target, orientation); }
+};
+
+ConcentricStack read_stack(const ParameterValues& values) {
+    ConcentricStack stack;
+    stack.circles = values.whole("circles");
+    if (values.given("depth")) stack.depth = values.number("depth");
+    stack.viewpoint = {values.number("x"), values.number("z")};
+    if (!(std::hypot(stack.viewpoint.x, stack.viewpoint.y) <= 1 + 1e-12))
+        throw Error("z", shortest(stack.viewpoint.y),
+                    "must be inside the outer circle together with x=" + shortest(stack.viewpoint.x));
+    return stack;
+}
+
+MosaicRequest read_request(const ParameterValues& values, const SourceFacts& facts) {
+    const ConcentricStack stack = read_stack(values);
+    if (facts.height % stack.circles != 0)
+        throw Error("circles", std::to_string(stack.circles),
+                    "must divide the source's height, " + std::to_string(facts.height));
+    const Chart panorama(projection_from_name(values.text("from"), "from"), facts.width,
+                         facts.height / stack.circles, 360, PixelSpacing::edges, "src");
+    MosaicRequest request{panorama,
+                          read_target_chart(values, panorama),
+                          read_orientation(values),
+                          read_reproject_options(values),
+                          stack,
+                          {},
+                          {}};
+    request.options.scheme = chosen<Scheme>(values, "scheme");
+    request.distortion = values.text("output") == kDistortion;
+    if (values.given("circle")) request.circle = values.whole("circle") - 1;
+    if (request.circle && *request.circle >= stack.circles)
+        throw Error("circle", values.text("circle"),
+                    "must be one of the circles, 1 to " + std::to_string(stack.circles));
+    if (values.given("nearest") || values.given("depth"))
+        request.nearest = values.number(values.given("nearest") ? "nearest" : "depth");
+    if (request.distortion && !request.nearest) throw Error("output", kDistortion, "needs nearest or depth");
+    return request;
+}
+
+class SolvedMosaic final : public SolvedPicture {
+  public:
+    explicit SolvedMosaic(const MosaicRequest& request)
+        : m_view(request.view(), request.stack, request.options, request.circle),
+          m_picture(m_view.picture()),
+          m_panorama{request.panorama.width(), request.panorama.height()},
+          m_nearest(request.nearest) {
+        if (request.distortion)
+            m_picture.value = distortion_of(request.view(), request.stack, *request.nearest);
+    }
+
+    Attributes reached(const ParallelFor& parallel_for) const override {
+        const Reached reached = m_picture.reached(parallel_for);
+        Attributes all = {{"anamorph:max_error", reached.max_error},
+                          {"anamorph:exact_fraction", reached.exact_fraction}};
+        if (m_nearest)
+            all.push_back({"anamorph:vertical_distortion", m_view.stack().vertical_distortion(*m_nearest)});
+        return all;
+    }
+    bool draw(const std::vector<const Source*>& sources, const Box& box, const ImageView& view,
+              const ParallelFor& parallel_for) const override {
+        std::deque<StripSource> strips;
+        std::vector<const Source*> panoramas;
+        const Source* stack = sources.empty() ? nullptr : sources[0];
+        for (int i = 0; stack && i < m_view.stack().circles; ++i)
+            panoramas.push_back(&strips.emplace_back(*stack, i * m_panorama.height, m_panorama.height));
+        return m_picture.draw(panoramas, box, view, parallel_for);
+    }
+
+  private:
+    ConcentricView m_view;
+    Picture m_picture;
+    Size m_panorama;
+    std::optional<double> m_nearest;
+};
+
+class Mosaics final : public Pictures {
+  public:
+    explicit Mosaics(const MosaicRequest& request) : m_request(request) {}
+
+    std::optional<PictureRequest> picture(int, int level) const override {
+        MosaicRequest request = m_request;
+        for (; level > 0; --level) {
+            const std::optional<Chart> half = half_size(request.target);
+            if (!half) return {};
+            request.target = *half;
+        }
+        PictureRequest picture;
+        picture.size = {request.target.width(), request.target.height()};
+        picture.pixels = request.distortion ? PixelKind::value : pixels_of(request.options.output);
+        picture.says = panorama_attributes(request.target, picture.pixels == PixelKind::color);
+        picture.says.push_back({"anamorph:tol", request.options.tol});
+        picture.solve = [request] { return std::make_unique<SolvedMosaic>(request); };
+        return picture;
+    }
+    SourceFaces faces() const override { return {1, m_request.stack.circles}; }
+
+  private:
+    MosaicRequest m_request;
+};
+
+}  // namespace
+
+const Operation& mosaic_operation() {
+    static const ParameterTable table = make_table();
+    static const Operation operation{
+        "mosaic",
+        "Concentric mosaics, slit panoramas on circles, seen from a point inside",
+        &table,
+        {"src"},
+        1,
+        {"circles=2&x=0.4&z=0.3&depth=4&to=equirectangular&size=48x24", {}},
+        [](const OperationInput& input) -> std::unique_ptr<const Pictures> {
+            return std::make_unique<Mosaics>(read_request(input.values, input.sources[0].facts));
+        }};
+    return operation;
+}
+
+}  // namespace anamorph
