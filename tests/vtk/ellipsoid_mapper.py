@@ -311,6 +311,20 @@ def textures_are_those_of_the_geometry():
     assert seen.mean() > 0.3 and np.quantile(error, 0.99) <= 6 and error.mean() < 1.5, (error.mean(), np.quantile(error, 0.99))
 
 
+def a_mapper_draws_in_several_windows():
+    mapper, first = mapper_of(crowd(40, 0.2)), None
+    windows = [Scene(mapper, 64, 64), Scene(mapper, 64, 64)]
+    for scene in (*windows, *windows):
+        scene.look(EYE, angle=ANGLE)
+        colors = scene.colors()
+        first = colors if first is None else first
+        assert (colors == first).all() and (colors > 0).any(2).mean() > 0.2
+    del scene, windows[0]
+    assert (windows[0].colors() == first).all()
+    # Without an input, nothing.
+    assert Scene(anamorph.vtkAnamorphEllipsoidMapper(), 64, 64).colors().max() == 0
+
+
 def an_actor_moves_turns_and_scales_it():
     data = crowd(40, 0.2)
     scene = Scene(mapper_of(data), 256, 256)
@@ -345,3 +359,4 @@ blocks_are_drawn_and_told_apart()
 scalars_of_cells()
 textures_are_those_of_the_geometry()
 an_actor_moves_turns_and_scales_it()
+a_mapper_draws_in_several_windows()

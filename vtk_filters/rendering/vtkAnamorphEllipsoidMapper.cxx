@@ -73,6 +73,7 @@ struct vtkAnamorphEllipsoidMapper::Drawing {
     double box[6];  ///< of the bodies that are drawn, if there are any
     bool any = false;
     double unit = 1;
+    bool fits = true;     ///< into a buffer of the graphics driver
     vtkIdType first = 0;  ///< of the block that is drawn
     bool far_side = false;
     Variant variant, built;
@@ -133,9 +134,20 @@ vtkAnamorphEllipsoidMapper::vtkAnamorphEllipsoidMapper() : Current(std::make_uni
 }
 
 vtkAnamorphEllipsoidMapper::~vtkAnamorphEllipsoidMapper() {
-    if (!this->Current->window) return;
-    this->Current->window->MakeCurrent();
-    this->ReleaseGraphicsResources(this->Current->window);
+    this->LeaveWindow();
+}
+
+/// Releases what is in the window that was drawn in last, in its own context. VTK's mapper does not know of the window.
+void vtkAnamorphEllipsoidMapper::LeaveWindow() {
+    Drawing& current = *this->Current;
+    vtkOpenGLRenderWindow* window = current.window;
+    if (!window) return;
+    current.window = nullptr;
+    window->PushContext();
+    current.texture->ReleaseGraphicsResources(window);
+    current.buffer->ReleaseGraphicsResources();
+    this->Primitives[PrimitiveTris].ReleaseGraphicsResources(window);
+    window->PopContext();
 }
 
 void vtkAnamorphEllipsoidMapper::SetAxesArray(const char* name) {
@@ -239,12 +251,20 @@ void vtkAnamorphEllipsoidMapper::BuildBufferObjects(vtkRenderer* renderer, vtkAc
     current.unit = current.bodies.unit();
     const std::vector<float> texels = current.bodies.texels(current.unit);
     auto* window = vtkOpenGLRenderWindow::SafeDownCast(renderer->GetRenderWindow());
+    GLint most = 0;
+    glGetIntegerv(GL_MAX_TEXTURE_BUFFER_SIZE, &most);
+    current.fits = texels.size() / 4 <= static_cast<std::size_t>(most);
+    if (!current.fits)
+        vtkErrorMacro("the input has " << current.bodies.bodies.size()
+                                       << " points: this graphics driver draws at most "
+                                       << most / anamorph_vtk::kBodyTexels << " ellipsoids of one actor");
+    this->VBOBuildTime.Modified();
+    if (!current.fits) return;
     current.texture->SetContext(window);
     current.buffer->Upload(texels, vtkOpenGLBufferObject::TextureBuffer);
     current.texture->CreateTextureBuffer(static_cast<unsigned int>(texels.size() / 4), 4, VTK_FLOAT,
                                          current.buffer);
     this->Primitives[PrimitiveTris].IBO->IndexCount = 3 * current.bodies.bodies.size();
-    this->VBOBuildTime.Modified();
 }
 
 void vtkAnamorphEllipsoidMapper::UpdateMaximumPointCellIds(vtkRenderer* renderer, vtkActor*) {
@@ -265,8 +285,7 @@ void vtkAnamorphEllipsoidMapper::Render(vtkRenderer* renderer, vtkActor* actor) 
 void vtkAnamorphEllipsoidMapper::RenderPiece(vtkRenderer* renderer, vtkActor* actor) {
     auto* window = vtkOpenGLRenderWindow::SafeDownCast(renderer->GetRenderWindow());
     if (window->CheckAbortStatus()) return;
-    if (this->Current->window && this->Current->window != window)
-        this->ReleaseGraphicsResources(this->Current->window);
+    if (this->Current->window != window) this->LeaveWindow();
     this->Current->window = window;
     this->CurrentInput = this->Current->no_data;
     this->InvokeEvent(vtkCommand::StartEvent, nullptr);
@@ -280,6 +299,7 @@ void vtkAnamorphEllipsoidMapper::RenderPiece(vtkRenderer* renderer, vtkActor* ac
 
 void vtkAnamorphEllipsoidMapper::RenderPieceDraw(vtkRenderer* renderer, vtkActor* actor) {
     Drawing& current = *this->Current;
+    if (!current.fits) return;
     vtkHardwareSelector* selector = renderer->GetSelector();
     vtkOpenGLState* state = vtkOpenGLRenderWindow::SafeDownCast(renderer->GetRenderWindow())->GetState();
     const vtkOpenGLState::ScopedglEnableDisable culling(state, GL_CULL_FACE);
@@ -457,9 +477,7 @@ void vtkAnamorphEllipsoidMapper::SetClips(vtkOpenGLHelper& helper, vtkActor* act
 }
 
 void vtkAnamorphEllipsoidMapper::ReleaseGraphicsResources(vtkWindow* window) {
-    this->Current->texture->ReleaseGraphicsResources(window);
-    this->Current->buffer->ReleaseGraphicsResources();
-    this->Current->window = nullptr;
+    if (window == this->Current->window) this->LeaveWindow();
     this->Superclass::ReleaseGraphicsResources(window);
 }
 

@@ -16,18 +16,19 @@
  *   probability of 50%.
  *
  * A point is left out, and counted by GetNumberOfSkippedPoints(), where a number is not finite, the
- * quaternion is zero, or an axis is not longer than 1e-10 of the body's longest. Hidden (blanked) points and ghosts are
- * left out, too.
+ * quaternion is zero, or an axis is not longer than 1e-10 of the body's longest. Hidden (blanked) points and
+ * ghosts are left out, too.
  *
  * A pixel shows what the view ray through its middle meets first, at its depth: bodies pass through each
- * other and through whatever else is in the scene. Perspective and parallel views are exact; other projections (oblique
- * ones) are not supported. Where the near plane or a clipping plane of the mapper cuts a body open, its far side
- * is seen from within, as is all around a camera that is within one.
+ * other and through whatever else is in the scene. Perspective and parallel views are exact; other
+ * projections (oblique ones) are not supported. Multisampling does not smooth edges; FXAA does. Where the
+ * near plane or a clipping plane of the mapper cuts a body open, its far side is seen from within, as is all
+ * around a camera that is within one.
  *
  * Materials, lights, scalars (of points, or of the cells that they are in first), clipping planes, opacity
- * and hardware selection (ids are those of the points, or of these cells) are those of VTK. A texture of the actor is
- * laid around every body as by vtkAnamorphFigureGeometry. Representation (wireframe, points), edges, and
- * culling do nothing.
+ * and hardware selection are those of VTK; a selection finds the ids of the points, or of these cells. A
+ * texture of the actor is laid around every body as by vtkAnamorphFigureGeometry. Representation (wireframe,
+ * points), edges, and culling do nothing.
  */
 #ifndef vtkAnamorphEllipsoidMapper_h
 #define vtkAnamorphEllipsoidMapper_h
@@ -119,6 +120,7 @@ class ANAMORPHRENDERING_EXPORT vtkAnamorphEllipsoidMapper : public vtkOpenGLPoly
     vtkAnamorphEllipsoidMapper(const vtkAnamorphEllipsoidMapper&) = delete;
     void operator=(const vtkAnamorphEllipsoidMapper&) = delete;
 
+    void LeaveWindow();
     bool GatherBodies();
     void ColorBodies();
     bool IsNear(vtkRenderer* renderer, vtkActor* actor);
