@@ -115,6 +115,13 @@ ResetCamera(view)
 parts = [core_ids(block(both, i), view) for i in (0, 1)]
 assert ((ids(view) >= 0) != ((parts[0] >= 0) | (parts[1] >= 0))).mean() <= 0.002
 
+# Of one block alone.
+shown = GetDisplayProperties(both, view)
+hierarchy = both.GetDataInformation().GetHierarchy()
+for i, part in enumerate(parts):
+    shown.BlockSelectors = [hierarchy.GetNodePath(hierarchy.GetChild(hierarchy.GetRootNode(), i))]
+    assert (ids(view) != part).mean() <= 0.002, i
+
 # Tensors of an image, whose points inside are drawn as well as those of its surface.
 image = vtkImageData()
 image.SetDimensions(3, 3, 3)

@@ -9,7 +9,8 @@ from ellipsoid_scene import Scene, core_picture, crowd, points_of
 from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
 from vtkmodules.vtkCommonCore import vtkUnsignedCharArray
 from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkDataObject, vtkImageData, vtkMultiBlockDataSet, vtkPlane
-from vtkmodules.vtkRenderingCore import (vtkHardwareSelector, vtkLight, vtkPolyDataMapper, vtkPropPicker, vtkTexture)
+from vtkmodules.vtkRenderingCore import (vtkCompositeDataDisplayAttributes, vtkHardwareSelector, vtkLight, vtkPolyDataMapper,
+                                         vtkPropPicker, vtkTexture)
 
 import anamorph
 
@@ -257,6 +258,38 @@ def blocks_are_drawn_and_told_apart():
     assert (colors[first][:, 0] == 255).all() and (colors[~first & np.isfinite(depths[1])][:, 2] == 255).all()
 
 
+def blocks_have_looks():
+    ball = {"Axes": [(0.4, 0.4, 0.4)], "Orientation": [IDENTITY]}
+    inner, blocks = vtkMultiBlockDataSet(), vtkMultiBlockDataSet()
+    for i, x in enumerate((-0.5, 0.5)):
+        inner.SetBlock(i, points_of([(x, 0, 0)], **ball))
+    blocks.SetBlock(0, inner)
+    blocks.SetBlock(1, points_of([(1.5, 0, 0)], **ball))
+    looks = vtkCompositeDataDisplayAttributes()
+    scene = Scene(mapper_of(blocks, CompositeDataDisplayAttributes=looks), 150, 50)
+    scene.look((0.5, 0, 5), (0.5, 0, 0), parallel_scale=0.5)
+    scene.actor.GetProperty().LightingOff()
+    scene.actor.GetProperty().SetColor(0, 0, 1)
+
+    def seen():
+        return [scene.colors()[25, x].tolist() for x in (25, 75, 125)]
+
+    assert seen() == [[0, 0, 255]] * 3
+    looks.SetBlockColor(inner, (1, 0, 0))
+    looks.SetBlockColor(inner.GetBlock(1), (0, 1, 0))  # what is said of a block itself counts
+    assert seen() == [[255, 0, 0], [0, 255, 0], [0, 0, 255]]
+    looks.SetBlockVisibility(blocks, False)
+    looks.SetBlockVisibility(inner.GetBlock(0), True)
+    assert seen() == [[255, 0, 0], [0, 0, 0], [0, 0, 0]]
+    assert np.allclose(scene.mapper.GetBounds(), (-0.9, -0.1, -0.4, 0.4, -0.4, 0.4))
+    looks.SetBlockOpacity(inner, 0.5)
+    assert abs(seen()[0][0] - 191) <= 1 and scene.mapper.HasTranslucentPolygonalGeometry()
+    looks.RemoveBlockVisibilities()
+    looks.RemoveBlockOpacities()
+    scene.actor.GetProperty().SetColor(1, 1, 0)
+    assert seen() == [[255, 0, 0], [0, 255, 0], [255, 255, 0]]
+
+
 def scalars_of_cells():
     data = points_of([(-0.5, 0, 0), (0.5, 0, 0)], Axes=[(0.4, 0.4, 0.4)] * 2, Orientation=[IDENTITY] * 2)
     cells = vtkCellArray()
@@ -356,6 +389,7 @@ tensors_are_axes()
 points_without_an_ellipsoid_are_skipped_and_counted()
 selection_finds_points_and_cells()
 blocks_are_drawn_and_told_apart()
+blocks_have_looks()
 scalars_of_cells()
 textures_are_those_of_the_geometry()
 an_actor_moves_turns_and_scales_it()

@@ -4,6 +4,7 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <vtkCompositeDataDisplayAttributes.h>
 #include <vtkDoubleArray.h>
 #include <vtkImageData.h>
 
@@ -73,10 +74,15 @@ TEST(VtkEllipsoidMapper, WhatCannotBeDoneIsAnError) {
 
 TEST(VtkEllipsoidMapper, TheSameValueLeavesItsTime) {
     vtkNew<Mapper> mapper;
+    vtkNew<vtkCompositeDataDisplayAttributes> blocks;
     expect_modified_by<Mapper>(
         mapper, {[](Mapper* m) { m->SetShape(Mapper::COVARIANCE); }, [](Mapper* m) { m->SetAxesArray("a"); },
                  [](Mapper* m) { m->SetOrientationArray("b"); }, [](Mapper* m) { m->SetTensorArray("c"); },
-                 [](Mapper* m) { m->SetScaleFactor(3); }});
+                 [](Mapper* m) { m->SetScaleFactor(3); },
+                 [&](Mapper* m) { m->SetCompositeDataDisplayAttributes(blocks); }});
+    const vtkMTimeType before = mapper->GetMTime();
+    blocks->SetBlockVisibility(figures({kTurned}), false);
+    EXPECT_GT(mapper->GetMTime(), before);
     mapper->SetAxesArray(nullptr);
     EXPECT_STREQ(mapper->GetAxesArray(), "");
 }

@@ -137,7 +137,7 @@ void EllipsoidBodies::add(vtkDataSet* data, unsigned int index, const EllipsoidA
     vtkUnsignedCharArray* ghosts = data->GetPointGhostArray();
     if (ghosts && ghosts->GetNumberOfTuples() != data->GetNumberOfPoints()) ghosts = nullptr;
     constexpr int hidden = vtkDataSetAttributes::HIDDENPOINT | vtkDataSetAttributes::DUPLICATEPOINT;
-    blocks.push_back({index, static_cast<vtkIdType>(bodies.size()), data->GetNumberOfPoints()});
+    blocks.push_back({index, static_cast<vtkIdType>(bodies.size()), data->GetNumberOfPoints(), {}});
     for (vtkIdType i = 0; i < data->GetNumberOfPoints(); ++i) {
         EllipsoidBody& body = bodies.emplace_back();
         data->GetPoint(i, &body.center.x);
@@ -157,6 +157,15 @@ void EllipsoidBodies::color(const EllipsoidBlock& block, vtkUnsignedCharArray* c
         if (tuple < 0 || tuple >= colors->GetNumberOfTuples()) continue;
         for (int k = 0; k < 4; ++k)
             body.color[k] = static_cast<float>(colors->GetTypedComponent(tuple, k)) / 255;
+        body.color[3] *= static_cast<float>(block.look.opacity);
+    }
+}
+
+void EllipsoidBodies::color(const EllipsoidBlock& block, const double* color) {
+    for (vtkIdType i = 0; i < block.count; ++i) {
+        EllipsoidBody& body = bodies[static_cast<std::size_t>(block.first + i)];
+        for (int k = 0; k < 3; ++k) body.color[k] = static_cast<float>(color[k]);
+        body.color[3] = static_cast<float>(block.look.opacity);
     }
 }
 

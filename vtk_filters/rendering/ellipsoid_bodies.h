@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "block_looks.h"
 #include "vtkType.h"
 
 class vtkDataSet;
@@ -38,6 +39,7 @@ struct EllipsoidBody {
 struct EllipsoidBlock {
     unsigned int index = 0;  ///< in composite data, depth first
     vtkIdType first = 0, count = 0;
+    BlockLook look;
 };
 
 /// A point as the sum of two in single precision.
@@ -68,6 +70,8 @@ class EllipsoidBodies {
     /// of the cells; may be null. Throws Error naming an array that is missing or not as it should be.
     void add(vtkDataSet* data, unsigned int index, const EllipsoidArrays& arrays);
     void color(const EllipsoidBlock& block, vtkUnsignedCharArray* colors, bool of_cells);
+    /// Gives all of a block one color, and its opacity.
+    void color(const EllipsoidBlock& block, const double* color);
     bool bounds(double box[6]) const;
 
     /// A power of two near the size of all, and the texels of ellipsoid_shader.h in that unit.

@@ -9,11 +9,13 @@
 #include <vector>
 
 #include "anamorph/error.h"
+#include "block_looks.h"
 #include "ellipsoid_bodies.h"
 #include "ellipsoid_shader.h"
 #include "vtkActor.h"
 #include "vtkCamera.h"
 #include "vtkCommand.h"
+#include "vtkCompositeDataDisplayAttributes.h"
 #include "vtkCompositeDataIterator.h"
 #include "vtkCompositeDataSet.h"
 #include "vtkDataSet.h"
@@ -48,6 +50,7 @@
 
 vtkObjectFactoryNewMacro(vtkAnamorphEllipsoidMapper);
 
+using anamorph_vtk::BlockLook;
 using anamorph_vtk::EllipsoidArrays;
 using anamorph_vtk::EllipsoidBlock;
 using anamorph_vtk::EllipsoidBodies;
@@ -68,7 +71,8 @@ struct vtkAnamorphEllipsoidMapper::Drawing {
     EllipsoidBodies bodies;
     std::vector<vtkSmartPointer<vtkDataSet>> data;  ///< of the blocks
     vtkDataObject* input = nullptr;                 ///< that the bodies are of
-    vtkMTimeType input_time = 0, mapper_time = 0;
+    vtkMTimeType input_time = 0, mapper_time = 0, property_time = 0;
+    vtkSmartPointer<vtkCompositeDataDisplayAttributes> attributes;
     bool valid = false;
     double box[6];  ///< of the bodies that are drawn, if there are any
     bool any = false;
@@ -168,6 +172,40 @@ void vtkAnamorphEllipsoidMapper::SetTensorArray(const char* name) {
     this->Modified();
 }
 
+void vtkAnamorphEllipsoidMapper::SetCompositeDataDisplayAttributes(
+    vtkCompositeDataDisplayAttributes* attributes) {
+    if (this->Current->attributes == attributes) return;
+    this->Current->attributes = attributes;
+    this->Modified();
+}
+
+vtkCompositeDataDisplayAttributes* vtkAnamorphEllipsoidMapper::GetCompositeDataDisplayAttributes() {
+    return this->Current->attributes;
+}
+
+vtkMTimeType vtkAnamorphEllipsoidMapper::GetMTime() {
+    const vtkMTimeType own = this->Superclass::GetMTime();
+    // While it is being made, there are none.
+    if (!this->Current || !this->Current->attributes) return own;
+    return std::max<vtkMTimeType>(own, this->Current->attributes->GetMTime());
+}
+
+/// Whether a block is seen through.
+bool vtkAnamorphEllipsoidMapper::IsFaded() {
+    if (!this->GatherBodies()) return false;
+    const auto& blocks = this->Current->bodies.blocks;
+    return std::any_of(blocks.begin(), blocks.end(),
+                       [](const EllipsoidBlock& block) { return block.look.opacity < 1; });
+}
+
+bool vtkAnamorphEllipsoidMapper::HasOpaqueGeometry() {
+    return !this->IsFaded() && this->Superclass::HasOpaqueGeometry();
+}
+
+bool vtkAnamorphEllipsoidMapper::HasTranslucentPolygonalGeometry() {
+    return this->IsFaded() || this->Superclass::HasTranslucentPolygonalGeometry();
+}
+
 int vtkAnamorphEllipsoidMapper::FillInputPortInformation(int, vtkInformation* information) {
     information->Set(INPUT_REQUIRED_DATA_TYPE(), "vtkDataSet");
     information->Append(INPUT_REQUIRED_DATA_TYPE(), "vtkCompositeDataSet");
@@ -196,11 +234,15 @@ bool vtkAnamorphEllipsoidMapper::GatherBodies() {
                                   "must be a positive number");
         const EllipsoidArrays arrays{this->Shape, this->AxesArray, this->OrientationArray, this->TensorArray,
                                      this->ScaleFactor};
+        const auto looks = anamorph_vtk::block_looks(input, current.attributes);
         const auto add = [&](vtkDataObject* block, unsigned int index) {
-            if (auto* data = vtkDataSet::SafeDownCast(block)) {
-                current.bodies.add(data, index, arrays);
-                current.data.push_back(data);
-            }
+            auto* data = vtkDataSet::SafeDownCast(block);
+            const auto found = looks.find(block);
+            const BlockLook look = found == looks.end() ? BlockLook() : found->second;
+            if (!data || !look.visible) return;
+            current.bodies.add(data, index, arrays);
+            current.bodies.blocks.back().look = look;
+            current.data.push_back(data);
         };
         if (auto* composite = vtkCompositeDataSet::SafeDownCast(input)) {
             const auto blocks = vtk::TakeSmartPointer(composite->NewIterator());
@@ -218,19 +260,24 @@ bool vtkAnamorphEllipsoidMapper::GatherBodies() {
     return current.valid;
 }
 
-void vtkAnamorphEllipsoidMapper::ColorBodies() {
+void vtkAnamorphEllipsoidMapper::ColorBodies(vtkActor* actor) {
     Drawing& current = *this->Current;
     current.variant.colored = false;
     for (std::size_t i = 0; i < current.data.size(); ++i) {
+        const EllipsoidBlock& block = current.bodies.blocks[i];
+        current.bodies.color(block,
+                             block.look.color ? block.look.color->data() : actor->GetProperty()->GetColor());
+        current.variant.colored = current.variant.colored || !block.look.is_plain();
         // VTK would take the colors of the block before for those of this one.
         if (this->Colors) this->Colors->UnRegister(this);
         this->Colors = nullptr;
         int of_cells = 0;
         vtkUnsignedCharArray* colors = this->MapScalars(current.data[i], 1.0, of_cells);
-        if (!colors || of_cells > 1) continue;
-        current.bodies.color(current.bodies.blocks[i], colors, of_cells == 1);
+        if (!colors || of_cells > 1 || block.look.color) continue;
+        current.bodies.color(block, colors, of_cells == 1);
         current.variant.colored = true;
     }
+    current.property_time = actor->GetProperty()->GetMTime();
 }
 
 void vtkAnamorphEllipsoidMapper::ComputeBounds() {
@@ -238,16 +285,18 @@ void vtkAnamorphEllipsoidMapper::ComputeBounds() {
     if (this->GatherBodies() && this->Current->any) std::copy_n(this->Current->box, 6, this->Bounds);
 }
 
-bool vtkAnamorphEllipsoidMapper::GetNeedToRebuildBufferObjects(vtkRenderer*, vtkActor*) {
+bool vtkAnamorphEllipsoidMapper::GetNeedToRebuildBufferObjects(vtkRenderer*, vtkActor* actor) {
     const vtkMTimeType time = this->VBOBuildTime;
     return time < this->Current->input_time || time < this->GetMTime() ||
+           (this->Current->variant.colored &&
+            this->Current->property_time != actor->GetProperty()->GetMTime()) ||
            (this->LookupTable && time < this->LookupTable->GetMTime()) ||
            !this->Current->texture->GetHandle();
 }
 
-void vtkAnamorphEllipsoidMapper::BuildBufferObjects(vtkRenderer* renderer, vtkActor*) {
+void vtkAnamorphEllipsoidMapper::BuildBufferObjects(vtkRenderer* renderer, vtkActor* actor) {
     Drawing& current = *this->Current;
-    this->ColorBodies();
+    this->ColorBodies(actor);
     current.unit = current.bodies.unit();
     const std::vector<float> texels = current.bodies.texels(current.unit);
     auto* window = vtkOpenGLRenderWindow::SafeDownCast(renderer->GetRenderWindow());
@@ -276,7 +325,8 @@ void vtkAnamorphEllipsoidMapper::UpdateMaximumPointCellIds(vtkRenderer* renderer
 
 void vtkAnamorphEllipsoidMapper::Render(vtkRenderer* renderer, vtkActor* actor) {
     // What is behind first, where both sides are seen.
-    this->Current->far_side = actor->GetProperty()->GetOpacity() < 1 && !renderer->GetSelector();
+    this->Current->far_side = !renderer->GetSelector() && (actor->GetProperty()->GetOpacity() < 1 ||
+                                                           this->HasTranslucentPolygonalGeometry());
     if (this->Current->far_side) this->Superclass::Render(renderer, actor);
     this->Current->far_side = false;
     this->Superclass::Render(renderer, actor);

@@ -39,6 +39,8 @@
 #include <memory>  // for what it draws
 #include <string>  // for names of arrays
 
+class vtkCompositeDataDisplayAttributes;
+
 class ANAMORPHRENDERING_EXPORT vtkAnamorphEllipsoidMapper : public vtkOpenGLPolyDataMapper {
   public:
     static vtkAnamorphEllipsoidMapper* New();
@@ -81,6 +83,20 @@ class ANAMORPHRENDERING_EXPORT vtkAnamorphEllipsoidMapper : public vtkOpenGLPoly
     vtkGetMacro(ScaleFactor, double);
     ///@}
 
+    ///@{
+    /**
+     * Which blocks of composite data are visible, their colors (instead of those of scalars and of the material) and their
+     * opacities. None by default: all are alike.
+     */
+    void SetCompositeDataDisplayAttributes(vtkCompositeDataDisplayAttributes* attributes);
+    vtkCompositeDataDisplayAttributes* GetCompositeDataDisplayAttributes();
+    ///@}
+
+    /** That of the blocks' attributes, too. */
+    vtkMTimeType GetMTime() override;
+    bool HasOpaqueGeometry() override;
+    bool HasTranslucentPolygonalGeometry() override;
+
     /** The points that made no ellipsoid when the bounds were computed, or the picture drawn, last. */
     vtkIdType GetNumberOfSkippedPoints();
 
@@ -122,7 +138,8 @@ class ANAMORPHRENDERING_EXPORT vtkAnamorphEllipsoidMapper : public vtkOpenGLPoly
 
     void LeaveWindow();
     bool GatherBodies();
-    void ColorBodies();
+    void ColorBodies(vtkActor* actor);
+    bool IsFaded();
     bool IsNear(vtkRenderer* renderer, vtkActor* actor);
     void FindVariant(vtkRenderer* renderer, vtkActor* actor);
     void SetClips(vtkOpenGLHelper& helper, vtkActor* actor, const double* view_to_data);

@@ -4,6 +4,7 @@
 #include <cstring>
 
 #include "vtkAnamorphEllipsoidMapper.h"
+#include "vtkCompositeDataDisplayAttributes.h"
 #include "vtkConvertToPointCloud.h"
 #include "vtkMatrix4x4.h"
 #include "vtkNew.h"
@@ -61,15 +62,29 @@ void vtkAnamorphEllipsoidRepresentation::SetScaleFactor(double factor) {
     this->Ellipsoids()->SetScaleFactor(factor);
 }
 
+/// Gives the mapper data, and what is said of its blocks where that or the data is new.
+void vtkAnamorphEllipsoidRepresentation::ShowBlocksOf(vtkDataObject* data, bool blocks_changed) {
+    this->Mapper->SetInputDataObject(data);
+    if (!data || (!blocks_changed && data == this->Shown && data->GetMTime() == this->ShownTime)) return;
+    this->Shown = data;
+    this->ShownTime = data->GetMTime();
+    vtkNew<vtkCompositeDataDisplayAttributes> blocks;
+    this->PopulateBlockAttributes(blocks, data);
+    this->Ellipsoids()->SetCompositeDataDisplayAttributes(blocks);
+}
+
 int vtkAnamorphEllipsoidRepresentation::ProcessViewRequest(vtkInformationRequestKey* request,
                                                            vtkInformation* input, vtkInformation* output) {
+    const bool blocks_changed = this->BlockAttrChanged;  // it is set back when they are rendered
     if (!this->Superclass::ProcessViewRequest(request, input, output)) return 0;
     if (request == vtkPVView::REQUEST_UPDATE()) {
         // The view fits what the points stand for, not the points.
-        this->Mapper->SetInputDataObject(this->MultiBlockMaker->GetOutputDataObject(0));
+        this->ShowBlocksOf(this->MultiBlockMaker->GetOutputDataObject(0), blocks_changed);
         vtkNew<vtkMatrix4x4> matrix;
         this->Actor->GetMatrix(matrix);
         vtkPVRenderView::SetGeometryBounds(input, this, this->Mapper->GetBounds(), matrix);
+    } else if (request == vtkPVView::REQUEST_RENDER()) {
+        this->ShowBlocksOf(vtkPVView::GetDeliveredPiece(input, this), blocks_changed);
     }
     return 1;
 }

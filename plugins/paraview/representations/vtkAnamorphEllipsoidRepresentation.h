@@ -45,6 +45,10 @@ class ANAMORPHREPRESENTATIONS_EXPORT vtkAnamorphEllipsoidRepresentation : public
     void operator=(const vtkAnamorphEllipsoidRepresentation&) = delete;
 
     vtkAnamorphEllipsoidMapper* Ellipsoids();
+    void ShowBlocksOf(vtkDataObject* data, bool blocks_changed);
+
+    vtkDataObject* Shown = nullptr;  // compared, and nothing else
+    vtkMTimeType ShownTime = 0;
 };
 
 #endif

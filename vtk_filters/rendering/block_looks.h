@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: Apache-2.0
+// How the blocks of composite data are to be drawn.
+#pragma once
+
+#include <array>
+#include <map>
+#include <optional>
+
+class vtkCompositeDataDisplayAttributes;
+class vtkDataObject;
+
+namespace anamorph_vtk {
+
+struct BlockLook {
+    bool visible = true;
+    std::optional<std::array<double, 3>> color;  ///< instead of its scalars' and the material's
+    double opacity = 1;
+
+    bool is_plain() const { return visible && !color && opacity == 1; }
+};
+
+/// Of the leaves, where it is not plain: each has what is said of it, or of the nearest node that it is in.
+std::map<vtkDataObject*, BlockLook> block_looks(vtkDataObject* data,
+                                                vtkCompositeDataDisplayAttributes* attributes);
+
+}  // namespace anamorph_vtk
