@@ -5,6 +5,7 @@
 
 #include "anamorph/error.h"
 #include "projection_tables.h"
+#include "shadow_map.h"
 #include "vtkActor.h"
 #include "vtkAnamorphPanoramaProjector.h"
 #include "vtkAnamorphProjectionShader.h"
@@ -13,6 +14,7 @@
 #include "vtkObjectFactory.h"
 #include "vtkOpenGLCamera.h"
 #include "vtkOpenGLRenderWindow.h"
+#include "vtkPolyData.h"
 #include "vtkProperty.h"
 #include "vtkRenderer.h"
 #include "vtkShaderProperty.h"
@@ -111,8 +113,10 @@ void ProjectionHook::put_on(vtkActor* actor, vtkAnamorphProjectionShader* owner)
         hook->m_shaders = actor->GetShaderProperty();
         hook->m_index = static_cast<std::size_t>(i);
         hook->m_state = state;
-        // By name, tables come behind panoramas, and are loaded when these have been.
+        // By name, tables and shadows come behind panoramas, and are loaded when these have been.
         actor->GetProperty()->SetTexture(texture_name(hook->m_index).c_str(), hook);
+        hook->m_shadows = vtkSmartPointer<LoadedTexture>::New();
+        actor->GetProperty()->SetTexture(shadow_name(hook->m_index).c_str(), hook->m_shadows);
         if (owner->GetMode() == vtkAnamorphProjectionShader::DIRECT) continue;
         hook->m_table = vtkSmartPointer<LoadedTexture>::New();
         actor->GetProperty()->SetTexture(table_name(hook->m_index).c_str(), hook->m_table);
@@ -124,7 +128,7 @@ void ProjectionHook::take_off(vtkActor* actor) {
     vtkShaderProperty* shaders = actor->GetShaderProperty();
     if (owner_of(actor)) clear_replacements(*shaders);
     for (std::size_t i = 0; i < vtkAnamorphProjectionShader::MostProjectors; ++i) {
-        for (const std::string& name : {texture_name(i), table_name(i)})
+        for (const std::string& name : {texture_name(i), table_name(i), shadow_name(i)})
             if (property->GetTexture(name.c_str())) property->RemoveTexture(name.c_str());
         shaders->GetVertexCustomUniforms()->RemoveUniform(matrix_name(i).c_str());
         shaders->GetVertexCustomUniforms()->RemoveUniform(origin_name(i).c_str());
@@ -163,6 +167,7 @@ void ProjectionHook::Render(vtkRenderer* renderer) {
     this->SetTextureObject(loaded);
     this->Superclass::Render(renderer);
     if (m_table) refresh_table(renderer);
+    refresh_shadows(renderer);
 }
 
 void ProjectionHook::PostRender(vtkRenderer* renderer) {
@@ -175,6 +180,8 @@ void ProjectionHook::ReleaseGraphicsResources(vtkWindow* window) {
     this->SetTextureObject(nullptr);
     if (m_table) m_table->SetTextureObject(nullptr);
     m_table_of = nullptr;
+    m_shadows->SetTextureObject(nullptr);
+    m_shadow_times = {};
 }
 
 void ProjectionHook::refresh_text() {
@@ -228,6 +235,27 @@ void ProjectionHook::refresh_table(vtkRenderer* renderer) {
     }
     m_table_of = prepared;
     m_drawn = drawn;
+}
+
+void ProjectionHook::refresh_shadows(vtkRenderer* renderer) {
+    const auto prepared = m_index < m_state->prepared.size() ? m_state->prepared[m_index] : nullptr;
+    if (!prepared || prepared->thrown.shadow_size == 0) {
+        m_shadows->SetTextureObject(this->GetTextureObject());
+        m_shadow_times = {};
+        return;
+    }
+    vtkPolyData* occluders = m_projector->GetOccluders();
+    const std::pair times(occluders->GetMTime(), m_projector->GetMTime());
+    if (times == m_shadow_times) return;
+    try {
+        auto* window = vtkOpenGLRenderWindow::SafeDownCast(renderer->GetRenderWindow());
+        m_shadows->SetTextureObject(drawn_shadows(corners_around(occluders, pose_of(*m_projector)),
+                                                  prepared->thrown.shadow_size, window));
+        m_shadow_times = times;
+    } catch (const anamorph::Error&) {
+        // A wrong pose, of which set_uniforms() tells; the last map stays, and there is one.
+        if (m_shadow_times.first == 0) m_shadows->SetTextureObject(this->GetTextureObject());
+    }
 }
 
 void ProjectionHook::set_uniforms(vtkRenderer* renderer) {

@@ -61,6 +61,8 @@ class ProjectionHook : public LoadedTexture {
     void refresh_text();
     /// Draws or loads what the mode reads beside the panorama.
     void refresh_table(vtkRenderer* renderer);
+    /// Draws the map of distances around the projector.
+    void refresh_shadows(vtkRenderer* renderer);
     void set_uniforms(vtkRenderer* renderer);
 
     vtkSmartPointer<vtkAnamorphProjectionShader> m_owner;
@@ -74,6 +76,9 @@ class ProjectionHook : public LoadedTexture {
     /// What the table was made of.
     std::shared_ptr<const PreparedPanorama> m_table_of;
     std::pair<vtkTextureObject*, vtkMTimeType> m_drawn{};
+    vtkSmartPointer<LoadedTexture> m_shadows;
+    /// Of the occluders and of the projector.
+    std::pair<vtkMTimeType, vtkMTimeType> m_shadow_times{};
 };
 
 }  // namespace anamorph_vtk

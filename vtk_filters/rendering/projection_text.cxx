@@ -9,6 +9,7 @@
 #include "anamorph/error.h"
 #include "anamorph/number/glsl_number.h"
 #include "anamorph/projector/panorama_glsl.h"
+#include "shadow_map.h"
 #include "vtkAlgorithm.h"
 #include "vtkAnamorphPanoramaProjector.h"
 #include "vtkAnamorphProjectionShader.h"
@@ -211,11 +212,13 @@ std::string functions(const PreparedPanorama& panorama, std::size_t i) {
         text += group_function(panorama) + (panorama.thrown.mode == Shader::RESIDUAL
                                                 ? residual_function(panorama)
                                                 : second_pass_function(panorama));
+    if (panorama.thrown.shadow_size > 0) text += hidden_function(panorama.thrown.shadow_size);
     return with_number(text, i);
 }
 
 /// A fragment's sum over projectors; a share as anamorph::share_of() has it.
-std::string fragment_code(std::size_t projector, bool alone) {
+std::string fragment_code(std::size_t projector, bool alone, bool shadows) {
+    const std::string lit = shadows ? " && !anamorphHidden#(r, cross(a, b))" : "";
     const std::string share =
         alone ? "part" : "part * abs(dot(normalize(r), normalize(cross(a, b)))) / dot(r, r)";
     return with_number(R"(
@@ -223,7 +226,8 @@ std::string fragment_code(std::size_t projector, bool alone) {
     vec3 r = anamorphRay#VSOutput, a = dFdx(r), b = dFdy(r);
     vec4 colour;
     float part;
-    if (anamorphPaint#(r, a, b, colour, part)) {
+    if (anamorphPaint#(r, a, b, colour, part))" +
+                           lit + R"() {
       float share = )" + share +
                            R"(;
       anamorphSum += share * colour;
@@ -241,6 +245,9 @@ std::string texture_name(std::size_t projector) {
 }
 std::string table_name(std::size_t projector) {
     return numbered("Table", projector);
+}
+std::string shadow_name(std::size_t projector) {
+    return numbered("Shadow", projector);
 }
 std::string matrix_name(std::size_t projector) {
     return numbered("Matrix", projector);
@@ -264,6 +271,7 @@ ThrownPanorama thrown_by(vtkAnamorphPanoramaProjector& projector, vtkAnamorphPro
     thrown.d = projector.GetPanniniDistance();
     thrown.fade = projector.GetFade();
     if (const char* lens = projector.GetLens()) thrown.lens = lens;
+    if (projector.GetOccluders()) thrown.shadow_size = projector.GetShadowSize();
     thrown.mode = shader.GetMode();
     if (thrown.mode == Shader::DIRECT) return thrown;
     thrown.directions = shader.GetNumberOfDirections();
@@ -320,7 +328,7 @@ ProjectionText projection_text(const PreparedPanoramas& panoramas, bool hide) {
         text.geometry_code += "  " + from_geometry + " = " + to_fragments + "[i];\n";
         text.fragment_declarations += "in vec3 " + to_fragments + ";\n";
         text.fragment_functions += functions(*panoramas[i], i);
-        text.fragment_code += fragment_code(i, panoramas.size() == 1);
+        text.fragment_code += fragment_code(i, panoramas.size() == 1, panoramas[i]->thrown.shadow_size > 0);
     }
     text.fragment_code += "  if (anamorphAll > 0.0) gl_FragData[0] *= anamorphSum / anamorphAll;\n";
     if (hide) text.fragment_code += "  else discard;\n";

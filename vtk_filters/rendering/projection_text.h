@@ -19,6 +19,7 @@ struct ThrownPanorama {
     double fov = 0, d = 1, fade = 0;
     std::string lens;
     int mode = 0, directions = 0, plane_size = 0, table_size = 0;
+    int shadow_size = 0;  ///< 0: nothing is hidden
     double vertical_reach = 1;
 
     bool operator==(const ThrownPanorama&) const = default;
@@ -58,10 +59,11 @@ ProjectionText projection_text(const PreparedPanoramas& panoramas, bool hide);
 /// counts, and that.
 std::string plane_text(const PreparedPanorama& panorama);
 
-/// The names in the text of what belongs to a projector: its texture, its table or planes, and a matrix and a vector that make
+/// The names in the text of what belongs to a projector: its texture, its table or planes, its shadows, and a matrix and a vector that make
 /// a ray in its frame of gl_Position.
 std::string texture_name(std::size_t projector);
 std::string table_name(std::size_t projector);
+std::string shadow_name(std::size_t projector);
 std::string matrix_name(std::size_t projector);
 std::string origin_name(std::size_t projector);
 

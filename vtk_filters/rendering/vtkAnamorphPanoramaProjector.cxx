@@ -6,10 +6,16 @@
 
 #include "anamorph/error.h"
 #include "anamorph/map/panorama.h"
+#include "vtkAlgorithm.h"
+#include "vtkAlgorithmOutput.h"
 #include "vtkObjectFactory.h"
+#include "vtkPolyData.h"
 #include "vtkTexture.h"
+#include "vtkTrivialProducer.h"
 
 vtkObjectFactoryNewMacro(vtkAnamorphPanoramaProjector);
+
+vtkAnamorphPanoramaProjector::vtkAnamorphPanoramaProjector() = default;
 
 vtkAnamorphPanoramaProjector::~vtkAnamorphPanoramaProjector() {
     this->SetLens(nullptr);
@@ -28,7 +34,9 @@ void vtkAnamorphPanoramaProjector::PrintSelf(ostream& os, vtkIndent indent) {
     write("Position", this->Position);
     write("Direction", this->Direction);
     write("ViewUp", this->ViewUp);
-    os << indent << "Fade: " << this->Fade << "\n";
+    os << indent << "Occluders: " << this->Occluders.Get() << "\n"
+       << indent << "ShadowSize: " << this->ShadowSize << "\n"
+       << indent << "Fade: " << this->Fade << "\n";
 }
 
 void vtkAnamorphPanoramaProjector::SetPanorama(vtkTexture* panorama) {
@@ -39,6 +47,28 @@ void vtkAnamorphPanoramaProjector::SetPanorama(vtkTexture* panorama) {
 
 vtkTexture* vtkAnamorphPanoramaProjector::GetPanorama() {
     return this->Panorama;
+}
+
+void vtkAnamorphPanoramaProjector::SetOccluderConnection(vtkAlgorithmOutput* output) {
+    if (output == this->Occluders) return;
+    this->Occluders = output;
+    this->OccluderData = nullptr;
+    this->Modified();
+}
+
+void vtkAnamorphPanoramaProjector::SetOccluderData(vtkPolyData* mesh) {
+    if (this->OccluderData && this->OccluderData->GetOutputDataObject(0) == mesh) return;
+    const auto data = mesh ? vtkSmartPointer<vtkTrivialProducer>::New() : nullptr;
+    if (data) data->SetOutput(mesh);
+    this->SetOccluderConnection(data ? data->GetOutputPort() : nullptr);
+    this->OccluderData = data;
+}
+
+vtkPolyData* vtkAnamorphPanoramaProjector::GetOccluders() {
+    if (!this->Occluders) return nullptr;
+    vtkAlgorithm* producer = this->Occluders->GetProducer();
+    producer->Update(this->Occluders->GetIndex());
+    return vtkPolyData::SafeDownCast(producer->GetOutputDataObject(this->Occluders->GetIndex()));
 }
 
 int vtkAnamorphPanoramaProjector::GetNumberOfProjections() {

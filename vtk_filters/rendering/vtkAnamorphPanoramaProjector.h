@@ -14,7 +14,10 @@
 #include "vtkObject.h"
 #include "vtkSmartPointer.h"  // for the members
 
+class vtkAlgorithmOutput;
+class vtkPolyData;
 class vtkTexture;
+class vtkTrivialProducer;
 
 class ANAMORPHRENDERING_EXPORT vtkAnamorphPanoramaProjector : public vtkObject {
   public:
@@ -88,6 +91,26 @@ class ANAMORPHRENDERING_EXPORT vtkAnamorphPanoramaProjector : public vtkObject {
 
     ///@{
     /**
+     * What stands between the projector and the scene, in world coordinates: the scene itself, too, if it is to hide itself.
+     * What lies behind is not painted, by a map of distances around the projector. Default: none.
+     */
+    void SetOccluderConnection(vtkAlgorithmOutput* output);
+    void SetOccluderData(vtkPolyData* mesh);
+    /** Brought up to date; null: none. */
+    vtkPolyData* GetOccluders();
+    ///@}
+
+    ///@{
+    /**
+     * Texels across each of the six faces of that map. Borders of shadows are as coarse, and what is nearer to a point than
+     * 4 / ShadowSize of its distance does not hide it. Default: 1024.
+     */
+    vtkSetClampMacro(ShadowSize, int, 16, 4096);
+    vtkGetMacro(ShadowSize, int);
+    ///@}
+
+    ///@{
+    /**
      * How wide the panorama's border fades where several projectors meet, in texels. Default: 0.
      */
     vtkSetMacro(Fade, double);
@@ -95,7 +118,7 @@ class ANAMORPHRENDERING_EXPORT vtkAnamorphPanoramaProjector : public vtkObject {
     ///@}
 
   protected:
-    vtkAnamorphPanoramaProjector() = default;
+    vtkAnamorphPanoramaProjector();
     ~vtkAnamorphPanoramaProjector() override;
 
   private:
@@ -103,7 +126,9 @@ class ANAMORPHRENDERING_EXPORT vtkAnamorphPanoramaProjector : public vtkObject {
     void operator=(const vtkAnamorphPanoramaProjector&) = delete;
 
     vtkSmartPointer<vtkTexture> Panorama;
-    int Projection = 0;
+    vtkSmartPointer<vtkAlgorithmOutput> Occluders;
+    vtkSmartPointer<vtkTrivialProducer> OccluderData;
+    int Projection = 0, ShadowSize = 1024;
     double FieldOfView = 0, PanniniDistance = 1;
     char* Lens = nullptr;
     double Position[3] = {0, 0, 0}, Direction[3] = {0, 0, -1}, ViewUp[3] = {0, 1, 0};

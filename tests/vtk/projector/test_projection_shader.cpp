@@ -3,8 +3,11 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <vtkAnamorphPanoramaProjection.h>
+#include <vtkAppendPolyData.h>
 #include <vtkCallbackCommand.h>
+#include <vtkCell.h>
 #include <vtkMultiBlockDataSet.h>
+#include <vtkSphereSource.h>
 #include <vtkVersion.h>
 
 #include <sstream>
@@ -57,6 +60,13 @@ Projector core_of(const Chart& chart, vtkAnamorphPanoramaProjector& projector) {
     const auto vector = [](const double* v) { return glm::dvec3(v[0], v[1], v[2]); };
     return Projector(chart, {vector(projector.GetPosition()), vector(projector.GetDirection()),
                              vector(projector.GetViewUp())});
+}
+
+/// How many pixels of two pictures are not the same.
+int differences(const std::vector<Colour>& a, const std::vector<Colour>& b) {
+    int count = 0;
+    for (std::size_t i = 0; i < a.size(); ++i) count += a[i] != b[i];
+    return count;
 }
 
 /// The larger of the distances across and down from a texel's middle to where a ray meets the panorama.
@@ -362,13 +372,6 @@ std::vector<Colour> picture_of_places(const std::function<void(Room&)>& change) 
     return room.picture();
 }
 
-/// How many pixels of two pictures are not the same.
-int differences(const std::vector<Colour>& a, const std::vector<Colour>& b) {
-    int count = 0;
-    for (std::size_t i = 0; i < a.size(); ++i) count += a[i] != b[i];
-    return count;
-}
-
 TEST(VtkProjectionShader, ServesEveryWayThatVtkDraws) {
     const auto plain = picture_of_places([](Room&) {});
     constexpr int kFew = Room::kWidth * Room::kHeight / 200;
@@ -470,6 +473,72 @@ TEST(VtkProjectionShader, LensesOfEveryModelAreServed) {
         EXPECT_EQ(findings.wrong, 0);
         EXPECT_GT(findings.painted, 10000);
     }
+}
+
+/// The corners of the triangles of a mesh.
+std::vector<glm::dvec3> corners_of(vtkPolyData* mesh) {
+    std::vector<glm::dvec3> corners;
+    for (vtkIdType cell = 0; cell < mesh->GetNumberOfCells(); ++cell) {
+        vtkPoints* points = mesh->GetCell(cell)->GetPoints();
+        for (vtkIdType i = 2; i < points->GetNumberOfPoints(); ++i)
+            for (const vtkIdType corner : {vtkIdType{0}, i - 1, i}) {
+                const double* p = points->GetPoint(corner);
+                corners.emplace_back(p[0], p[1], p[2]);
+            }
+    }
+    return corners;
+}
+
+TEST(VtkProjectionShader, HiddenPointsAreThoseOfTheCore) {
+    const Chart chart(Projection::equirectangular, 256, 128);
+    const auto projector = projector_of(chart, smooth_texture(256, 128));
+    const Projector core = core_of(chart, *projector);
+    // The room hides itself, and a ball and a box in it hide parts of it; they are not drawn.
+    Room room;
+    vtkNew<vtkSphereSource> ball;
+    ball->SetCenter(0.6, 0.1, -0.9);
+    ball->SetRadius(0.4);
+    vtkNew<vtkCubeSource> box;
+    box->SetCenter(-1.2, -0.6, 1.1);
+    vtkNew<vtkAppendPolyData> all;
+    for (vtkAlgorithm* source : std::initializer_list<vtkAlgorithm*>{room.cube, ball, box})
+        all->AddInputConnection(source->GetOutputPort());
+    all->Update();
+    const anamorph::Occluders truth(corners_of(all->GetOutput()), core.pose().position);
+    projector->SetOccluderConnection(all->GetOutputPort());
+    vtkNew<vtkAnamorphProjectionShader> shader;
+    shader->AddProjector(projector);
+    shader->HideUnpaintedOn();
+    shader->AddTo(room.actor);
+    int hidden = 0, wrong = 0, border = 0;
+    for (const double yaw : {20.0, 140.0, 260.0}) {
+        room.look({yaw, -10, 5});
+        const std::vector<Colour> picture = room.picture();
+        std::vector<bool> hides;
+        for (int j = 0; j < Room::kHeight; ++j)
+            for (int i = 0; i < Room::kWidth; ++i) hides.push_back(truth.hides(room.wall(i, j).point));
+        const auto at = [&](int i, int j) { return static_cast<std::size_t>(j * Room::kWidth + i); };
+        for (int j = 1; j + 1 < Room::kHeight; ++j)
+            for (int i = 1; i + 1 < Room::kWidth; ++i) {
+                const bool here = hides[at(i, j)];
+                hidden += here;
+                const bool inner = hides[at(i - 1, j)] == here && hides[at(i + 1, j)] == here &&
+                                   hides[at(i, j - 1)] == here && hides[at(i, j + 1)] == here;
+                border += !inner;
+                wrong += inner && (picture[at(i, j)] == kNoPlace) != here;
+            }
+    }
+    EXPECT_GT(hidden, 5000);
+    EXPECT_LT(border, 3000);
+    EXPECT_EQ(wrong, 0);
+    // Moved occluders, and none.
+    room.look({20, -10, 5});
+    const auto before = room.picture();
+    ball->SetCenter(0.6, 0.6, -0.2);
+    EXPECT_GT(differences(room.picture(), before), 500);
+    projector->SetOccluderConnection(nullptr);
+    const auto picture = room.picture();
+    EXPECT_EQ(std::count(picture.begin(), picture.end(), kNoPlace), 0);
 }
 
 /// VTK's errors of an object.
