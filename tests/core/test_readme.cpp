@@ -8,6 +8,7 @@
 #include "anamorph/map/features_file.h"
 #include "anamorph/map/mesh_file.h"
 #include "anamorph/operation/operation.h"
+#include "anamorph/projector/tour_file.h"
 
 namespace {
 
@@ -58,6 +59,8 @@ TEST(Readme, ItsFilesCanBeRead) {
     EXPECT_EQ(features.shapes(), 2);
     EXPECT_GE(features.size(), 4u);
     EXPECT_EQ(features.border_weight(), 1);
+    const anamorph::Tour tour = anamorph::parse_tour_json(block_with("panoramas"), "README");
+    EXPECT_EQ(tour.at(tour.at(0).spots.at(0).target).file, "garden.exr");
 }
 
 }  // namespace

@@ -1,0 +1,202 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "panorama_viewer.h"
+
+#include <vtkCommand.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <filesystem>
+
+namespace anamorph_viewer {
+namespace {
+
+constexpr double kExposureStep = 0.5, kMostExposure = 32;
+/// Radii of the outer circle.
+constexpr double kMove = 0.05;
+
+double linear_of(double encoded) {
+    return encoded <= 0.04045 ? encoded / 12.92 : std::pow((encoded + 0.055) / 1.055, 2.4);
+}
+double encoded_of(double linear) {
+    return linear <= 0.0031308 ? 12.92 * linear : 1.055 * std::pow(linear, 1 / 2.4) - 0.055;
+}
+
+}  // namespace
+
+unsigned char shown(float value, bool hdr, double gain) {
+    double v = double{value};
+    if (hdr || gain != 1) v = encoded_of((hdr ? v : linear_of(v)) * gain);
+    // Written so that what is no number is black.
+    return static_cast<unsigned char>(std::lround(255 * std::min(v > 0 ? v : 0, 1.0)));
+}
+
+PanoramaViewer::PanoramaViewer(anamorph::Tour tour, const std::string& folder,
+                               const std::vector<anamorph::Assignment>& options)
+    : m_tour(std::move(tour)), m_folder(folder), m_options(options), m_panorama(this->opened(0)) {
+    m_mapper->SetInputData(m_image);
+    m_mapper->SetColorWindow(255);
+    m_mapper->SetColorLevel(127.5);
+    m_actor->SetMapper(m_mapper);
+    m_renderer->AddActor2D(m_actor);
+    m_window->AddRenderer(m_renderer);
+    m_window->SetMultiSamples(0);
+    m_window->SetWindowName("anamorph-view");
+    m_style->MoveCameraOff();
+    m_style->SetDefaultRenderer(m_renderer);
+    m_interactor->SetRenderWindow(m_window);
+    m_interactor->SetInteractorStyle(m_style);
+    m_observer->SetCallback(&PanoramaViewer::handle);
+    m_observer->SetClientData(this);
+    m_style->AddObserver(vtkCommand::InteractionEvent, m_observer);
+    m_renderer->AddObserver(vtkCommand::StartEvent, m_observer);
+    m_style->AddObserver(vtkCommand::PickEvent, m_observer);
+    m_interactor->AddObserver(vtkCommand::MouseMoveEvent, m_observer);
+    m_interactor->AddObserver(vtkCommand::KeyPressEvent, m_observer);
+    this->go_to(0, {});
+}
+
+PanoramaViewer::~PanoramaViewer() {
+    m_interactor->RemoveObserver(m_observer);
+    m_style->RemoveObserver(m_observer);
+    m_renderer->RemoveObserver(m_observer);
+}
+
+std::unique_ptr<ViewedPanorama> PanoramaViewer::opened(std::size_t place) const {
+    const anamorph::TourPanorama& of = m_tour[place];
+    std::vector<anamorph::Assignment> options = m_options;
+    for (const anamorph::Assignment& own : anamorph::parse_recipe_name("?" + of.options).assignments) {
+        std::erase_if(options, [&](const anamorph::Assignment& a) { return a.key == own.key; });
+        options.push_back(own);
+    }
+    return std::make_unique<ViewedPanorama>((std::filesystem::path(m_folder) / of.file).string(), options);
+}
+
+View PanoramaViewer::view() const {
+    return {m_style->GetYaw(), m_style->GetPitch(), m_style->GetFieldOfView()};
+}
+
+void PanoramaViewer::look(const View& view) {
+    m_style->SetYaw(view.yaw);
+    m_style->SetPitch(view.pitch);
+    m_style->SetFieldOfView(view.fov);
+    m_stale = true;
+}
+
+void PanoramaViewer::set_exposure(double stops) {
+    m_exposure = std::clamp(stops, -kMostExposure, kMostExposure);
+    m_stale = true;
+}
+
+bool PanoramaViewer::go_to(std::size_t place, const anamorph::TourView& view) {
+    try {
+        if (place != m_place) m_panorama = this->opened(place);
+    } catch (const std::exception& e) {
+        m_error = anamorph::message_of(e, "the panorama");
+        return false;
+    }
+    m_place = place;
+    const anamorph::TourView& own = m_tour[place].view;
+    const View now = this->view();
+    const auto of = [](const std::optional<double>& first, const std::optional<double>& second, double rest) {
+        return first ? *first : second.value_or(rest);
+    };
+    this->look({of(view.yaw, own.yaw, now.yaw), of(view.pitch, own.pitch, now.pitch),
+                of(view.fov, own.fov, now.fov)});
+    return true;
+}
+
+void PanoramaViewer::update() {
+    const int* pixels = m_renderer->GetSize();
+    const anamorph::Size size{std::max(1, pixels[0]), std::max(1, pixels[1])};
+    if (!m_stale && size == m_drawn) return;
+    m_stale = false;
+    m_drawn = size;
+    m_image->SetDimensions(size.width, size.height, 1);
+    m_image->AllocateScalars(VTK_UNSIGNED_CHAR, 3);
+    auto* const to = static_cast<unsigned char*>(m_image->GetScalarPointer());
+    std::fill_n(to, std::size_t{3} * static_cast<std::size_t>(size.width * size.height), 0);
+    try {
+        const std::vector<float> drawn = m_panorama->draw(this->view(), size);
+        const int channels = m_panorama->channels();
+        const double gain = std::exp2(m_exposure);
+        for (int y = 0; y < size.height; ++y)
+            for (int x = 0; x < size.width; ++x) {
+                const float* from = &drawn[static_cast<std::size_t>((y * size.width + x) * channels)];
+                unsigned char* pixel = to + std::ptrdiff_t{(size.height - 1 - y) * size.width + x} * 3;
+                for (int c = 0; c < 3; ++c)
+                    pixel[c] = shown(from[channels < 3 ? 0 : c], m_panorama->is_hdr(), gain);
+            }
+        m_error.clear();
+    } catch (const std::exception& e) {
+        m_error = anamorph::message_of(e, "the view");
+    }
+    m_image->Modified();
+}
+
+std::optional<anamorph::HotSpot> PanoramaViewer::spot_at_mouse() {
+    const int* at = m_interactor->GetEventPosition();
+    const int* size = m_renderer->GetSize();
+    if (m_tour[m_place].spots.empty() || size[0] < 1 || size[1] < 1) return {};
+    const Direction d =
+        m_panorama->direction(this->view(), {size[0], size[1]}, at[0] + 0.5, size[1] - 1 - at[1] + 0.5);
+    const int spot = m_tour[m_place].spot_at(d.yaw, d.pitch);
+    if (spot < 0) return {};
+    return m_tour[m_place].spots[static_cast<std::size_t>(spot)];
+}
+
+void PanoramaViewer::pick() {
+    const std::optional<anamorph::HotSpot> spot = this->spot_at_mouse();
+    if (!spot) return;
+    if (!this->go_to(spot->target, spot->view)) vtkGenericWarningMacro(<< m_error);
+    m_interactor->Render();
+}
+
+void PanoramaViewer::show_cursor() {
+    m_window->SetCurrentCursor(this->spot_at_mouse() ? VTK_CURSOR_HAND : VTK_CURSOR_DEFAULT);
+}
+
+void PanoramaViewer::key() {
+    const char* name = m_interactor->GetKeySym();
+    if (!name) return;
+    const auto is = [&](const char* other) { return std::strcmp(name, other) == 0; };
+    const double yaw = m_style->GetYaw() * std::acos(-1.0) / 180;
+    const auto move = [&](double right, double ahead) {
+        m_panorama->move(right * std::cos(yaw) + ahead * std::sin(yaw),
+                         ahead * std::cos(yaw) - right * std::sin(yaw));
+        m_stale = true;
+    };
+    if (is("bracketleft")) this->set_exposure(m_exposure - kExposureStep);
+    if (is("bracketright")) this->set_exposure(m_exposure + kExposureStep);
+    if (is("w")) move(0, kMove);
+    if (is("s")) move(0, -kMove);
+    if (is("a")) move(-kMove, 0);
+    if (is("d")) move(kMove, 0);
+    if (is("r")) {
+        this->look({0, 0, 90});
+        this->go_to(m_place, {});
+    }
+    if (m_stale) m_interactor->Render();
+}
+
+void PanoramaViewer::handle(vtkObject*, unsigned long event, void* data, void*) {
+    auto* viewer = static_cast<PanoramaViewer*>(data);
+    switch (event) {
+        case vtkCommand::InteractionEvent:
+            viewer->m_stale = true;
+            break;
+        case vtkCommand::StartEvent:
+            viewer->update();
+            break;
+        case vtkCommand::PickEvent:
+            viewer->pick();
+            break;
+        case vtkCommand::MouseMoveEvent:
+            viewer->show_cursor();
+            break;
+        default:
+            viewer->key();
+    }
+}
+
+}  // namespace anamorph_viewer

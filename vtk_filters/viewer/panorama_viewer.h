@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: Apache-2.0
+// A window onto a panorama, or a tour of several.
+//
+//     left button       turns the view; a click on a hot spot goes where it leads
+//     wheel, right      field of view
+//     arrows, + and -   the same by keys
+//     [ and ]           exposure, by half a stop
+//     w, a, s, d        move the viewpoint of concentric mosaics
+//     r                 the view as at the beginning
+//     q                 ends
+#pragma once
+
+#include <vtkActor2D.h>
+#include <vtkAnamorphPanoramaStyle.h>
+#include <vtkCallbackCommand.h>
+#include <vtkImageData.h>
+#include <vtkImageMapper.h>
+#include <vtkNew.h>
+#include <vtkRenderWindow.h>
+#include <vtkRenderWindowInteractor.h>
+#include <vtkRenderer.h>
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "anamorph/projector/tour_file.h"
+#include "viewed_panorama.h"
+
+namespace anamorph_viewer {
+
+/// A value as the screen shows it: `gain` times as bright, in sRGB's curve, 0 to 255. Values of sources that are not HDR are
+/// in that curve already, and stay as they are where the gain is 1.
+unsigned char shown(float value, bool hdr, double gain);
+
+class PanoramaViewer {
+  public:
+    /// `tour`: at least one panorama; names of files are relative to `folder`. `options` hold for all of them, before their
+    /// own. Throws Error where the first cannot be opened.
+    PanoramaViewer(anamorph::Tour tour, const std::string& folder,
+                   const std::vector<anamorph::Assignment>& options);
+    ~PanoramaViewer();
+    PanoramaViewer(const PanoramaViewer&) = delete;
+    PanoramaViewer& operator=(const PanoramaViewer&) = delete;
+
+    vtkRenderWindow* window() { return m_window; }
+    vtkRenderWindowInteractor* interactor() { return m_interactor; }
+    vtkAnamorphPanoramaStyle* style() { return m_style; }
+
+    View view() const;
+    void look(const View& view);
+    /// Stops; 1 is twice as bright.
+    void set_exposure(double stops);
+    double exposure() const { return m_exposure; }
+    /// Which panorama of the tour is seen.
+    std::size_t place() const { return m_place; }
+    const ViewedPanorama& panorama() const { return *m_panorama; }
+    /// Opens another panorama of the tour. Where it cannot be opened, all stays as it is, and error() says why.
+    bool go_to(std::size_t place, const anamorph::TourView& view);
+    /// What last went wrong; empty where nothing did.
+    const std::string& error() const { return m_error; }
+
+  private:
+    static void handle(vtkObject* caller, unsigned long event, void* viewer, void*);
+    void update();
+    void pick();
+    void key();
+    void show_cursor();
+    std::optional<anamorph::HotSpot> spot_at_mouse();
+    std::unique_ptr<ViewedPanorama> opened(std::size_t place) const;
+
+    anamorph::Tour m_tour;
+    std::string m_folder, m_error;
+    std::vector<anamorph::Assignment> m_options;
+    std::size_t m_place = 0;
+    std::unique_ptr<ViewedPanorama> m_panorama;
+    double m_exposure = 0;
+    bool m_stale = true;
+    anamorph::Size m_drawn;
+
+    vtkNew<vtkCallbackCommand> m_observer;
+    vtkNew<vtkImageData> m_image;
+    vtkNew<vtkImageMapper> m_mapper;
+    vtkNew<vtkActor2D> m_actor;
+    vtkNew<vtkRenderer> m_renderer;
+    vtkNew<vtkRenderWindow> m_window;
+    vtkNew<vtkAnamorphPanoramaStyle> m_style;
+    vtkNew<vtkRenderWindowInteractor> m_interactor;
+};
+
+}  // namespace anamorph_viewer
