@@ -12,9 +12,11 @@ lens="lens=brown:k1=-0.21,k2=0.05&fov=84"
 oiiotool "panorama.exr.pano?to=rectilinear&size=2048x1556&$lens" -o plate.exr
 oiiotool "panorama.exr.pano?to=rectilinear&size=600x400&pitch=-3&$lens" -o photo.jpg
 cp plate.exr taken.exr
+oiiotool "panorama.exr.pano?to=cylindrical&fov=360&size=256x64" -o slits.exr
+oiiotool $(for i in {1..32}; do echo slits.exr; done) --mosaic 1x32 -o room.exr
 
 grep '^    oiiotool ' "$readme" >one_liners.sh
-[ "$(wc -l <one_liners.sh)" -eq 24 ]
+[ "$(wc -l <one_liners.sh)" -eq 25 ]
 bash -ex one_liners.sh
 for picture in view.jpg:480x360 planet.jpg:400x400 fisheye.jpg:400x400 cross.jpg:640x480 error.jpg:480x360 \
     warp.jpg:480x480 morph.jpg:480x480 lines.jpg:480x480 turn.jpg:480x480; do
@@ -27,6 +29,7 @@ iinfo outline.png | tr -d ' ' | grep ":1000x1000,4channel"
 iinfo benzene.png | tr -d ' ' | grep ":1000x1000,4channel"
 [ "$(ls walk.*.png | wc -l)" -eq 49 ]
 [ -s both.jpg ]
+iinfo view.exr | tr -d ' ' | grep ":640x480,3channel"
 iinfo hardware.exr | tr -d ' ' | grep ":480x360,"
 [ -s shaded.png ]
 [ -s swirled.png ]
