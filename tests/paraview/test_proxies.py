@@ -22,6 +22,7 @@ NO_PROPERTY = {
     "vtkAnamorphDeform": {"SetController", "SetDeformationList", "SetDeformationEnabled", "SetTableConnection"},
     "vtkAnamorphInbetween": {"SetKey"},
     "vtkAnamorphPanoramaProjection": {"SetController"},
+    "vtkAnamorphProjectionBake": {"SetController"},
     "vtkAnamorphReliefSource": {"SetSize"},
 }
 # The core's rows of numbers, by name. Properties have the name of their row but for these.
@@ -39,6 +40,8 @@ NOT_OFFERED = {"drape_fov", "drape_scale", "drape_block", "drape_overlap",
 IN_TABLES = {"extent"}
 # What depends on the input is refused when the filter executes; the least value is in the XML all the same.
 LEAST_ALONE = {"BaseIndex": 0, "Resolution": 0}
+# Setters that count as another class does.
+NAMED_BY = {("vtkAnamorphProjectionBake", "SetProjection"): "vtkAnamorphPanoramaProjection"}
 # Entries of menus that do not say the name of their value.
 OTHER_WORDS = {"As the input", "As the inputs", "Blend to unit length"}
 # A panel shows a slider for what has two ends. Ends beyond this are left to the filter.
@@ -161,10 +164,10 @@ def check_menu(cls, command, entries):
     values = [int(entry.get("value")) for entry in entries]
     least, most = clamped_to(cls, command, 1, int)
     assert values == list(range(int(least), int(most) + 1)), (cls.__name__, command, values, least, most)
-    named = {}
-    for name in dir(cls):
-        if re.fullmatch("[A-Z][A-Z0-9_]+", name) and isinstance(getattr(cls, name), int):
-            named.setdefault(getattr(cls, name), set()).update(name.lower().split("_"))
+    named, namer = {}, getattr(anamorph, NAMED_BY.get((cls.__name__, command), cls.__name__))
+    for name in dir(namer):
+        if re.fullmatch("[A-Z][A-Z0-9_]+", name) and isinstance(getattr(namer, name), int):
+            named.setdefault(getattr(namer, name), set()).update(name.lower().split("_"))
     for value, text in ((int(entry.get("value")), entry.get("text")) for entry in entries):
         words = set(re.findall("[a-z]+", text.lower()))
         assert text in OTHER_WORDS or words & named[value], (cls.__name__, command, text, named[value])
@@ -238,6 +241,13 @@ def with_input(cls):
             new.SetPanoramaHeight(4096)
             new.SetPosition(0, 0, 1)
             new.SetTolerance(1000)
+        elif cls is anamorph.vtkAnamorphProjectionBake:
+            picture = vtkRTAnalyticSource()
+            picture.SetWholeExtent(0, 9, 0, 9, 0, 0)
+            new.AddPanoramaConnection(picture.GetOutputPort())
+            new.AddProjector(0, 0, 1, 0, 0, -1, 0, 1, 0)
+            new.SetWidth(16)
+            new.SetHeight(16)
     return new
 
 

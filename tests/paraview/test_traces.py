@@ -169,9 +169,17 @@ def a_panorama_thrown_onto_a_plane():
     apply(projection, Projection=1, PanoramaWidth=600, PanoramaHeight=200, Direction=[1, 0, .2], Occlusion=0)
 
 
+def a_panorama_baked():
+    mesh, picture = Plane(), Wavelet(WholeExtent=[0, 63, 0, 31, 0, 0])
+    bake = AnamorphProjectionBake(registrationName="result", Input=mesh, Panoramas=[picture])
+    apply(bake, Projectors=[0, 0, 1, 0, 0, -1, 0, 1, 0], Width=40, Height=30)
+    apply(bake, FieldOfView=300, Projection=1, Fade=4, Margin=2, Projectors=[.1, .2, 1, 0, .1, -1, 0, 1, 0], Occlusion=0)
+
+
 SESSIONS = [texture_coordinates_after_the_plane, a_bump_in_texture_coordinates, handles_and_then_the_plane, another_row,
             files_and_a_table, surfaces_in_between, a_relief_of_a_file, a_relief_of_the_pipeline,
-            a_picture_on_a_surface, surfaces_of_inputs_in_light, figures_performed, a_panorama_thrown_onto_a_plane]
+            a_picture_on_a_surface, surfaces_of_inputs_in_light, figures_performed, a_panorama_thrown_onto_a_plane,
+            a_panorama_baked]
 
 
 # ---- What is compared ----

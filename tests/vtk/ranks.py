@@ -1,14 +1,16 @@
 # SPDX-License-Identifier: Apache-2.0
-# Run by mpiexec: every rank deforms a part of a surface, or throws a panorama onto it, and has the bits that the whole has.
+# Run by mpiexec: every rank deforms a part of a surface, throws a panorama onto it or bakes one, and has the bits that the whole has.
 # Argument: how many ranks there have to be.
 import os
 import sys
 import traceback
 
 import anamorph
+from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkCommonCore import vtkDoubleArray, vtkIdList, vtkPoints
 from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkPolyData, vtkTable
 from vtkmodules.vtkFiltersSources import vtkSphereSource
+from vtkmodules.vtkImagingCore import vtkRTAnalyticSource
 from vtkmodules.vtkParallelCore import vtkMultiProcessController
 
 BUMPS = [(0.1 * k - 0.5, 0.3 - 0.05 * k, 0.2, 0.3, 0.05 * k, 0.1, 0.2, k % 2) for k in range(10)]
@@ -89,6 +91,48 @@ def check_painted(mesh, part, controller):
     assert [sums[1].GetValue(i) for i in range(2)] == [len(whole), hidden], (len(whole), hidden)
 
 
+def strips(begin, end, count=6):
+    """Some of the strips that a surface is cut into, each with its part of the texture."""
+    points, coordinates, cells = vtkPoints(), vtkDoubleArray(), vtkCellArray()
+    points.SetDataTypeToDouble()
+    coordinates.SetNumberOfComponents(2)
+    for strip in range(begin, end):
+        ids = vtkIdList()
+        for x, y in ((0, 0), (1, 0), (1, 1), (0, 1)):
+            ids.InsertNextId(points.InsertNextPoint(strip + x - 3, 2 * y - 1, 0.5 * abs(strip + x - 3) * (strip % 2) - 2))
+            coordinates.InsertNextTuple2((strip + x) / count, y)
+        cells.InsertNextCell(ids)
+    mesh = vtkPolyData()
+    mesh.SetPoints(points)
+    mesh.SetPolys(cells)
+    mesh.GetPointData().SetTCoords(coordinates)
+    return mesh
+
+
+def baked(mesh, with_controller):
+    picture, bake = vtkRTAnalyticSource(), anamorph.vtkAnamorphProjectionBake()
+    picture.SetWholeExtent(0, 63, 0, 31, 0, 0)
+    bake.SetInputData(mesh)
+    bake.AddPanoramaConnection(picture.GetOutputPort())
+    bake.AddProjector(0.2, 0.1, 0, 0, 0, -1, 0, 1, 0)
+    bake.SetWidth(120)
+    bake.SetHeight(40)
+    if not with_controller:
+        bake.SetController(None)
+    bake.Update()
+    texture = bake.GetOutput()
+    fields = [texture.GetFieldData().GetArray(name).GetValue(0) for name in ("anamorph:painted", "anamorph:unseen")]
+    return vtk_to_numpy(texture.GetPointData().GetScalars()).tobytes(), fields
+
+
+def check_baked(rank, ranks):
+    """Every rank has a part of the mesh, and bakes the texture of all of it."""
+    whole = baked(strips(0, 6), False)
+    assert min(whole[1]) > 100, whole[1]
+    assert baked(strips(rank * 6 // ranks, (rank + 1) * 6 // ranks), True) == whole
+    assert baked(strips(0, 6 if rank == ranks - 1 else 0), True) == whole
+
+
 def main():
     controller = vtkMultiProcessController.GetGlobalController()
     rank, ranks = controller.GetLocalProcessId(), controller.GetNumberOfProcesses()
@@ -112,6 +156,7 @@ def main():
         for point, moved in points.items():
             assert moved == whole[point], (point, moved, whole[point])
     check_painted(mesh, part, controller)
+    check_baked(rank, ranks)
     print("rank", rank, "of", ranks, "agrees at", len(points), "points", flush=True)
 
 

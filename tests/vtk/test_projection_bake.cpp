@@ -99,6 +99,27 @@ TEST(VtkProjectionBake, TwoProjectorsPaintWhatEitherSees) {
     EXPECT_EQ(bake->GetOutput()->GetScalarComponentAsDouble(32, 32, 0, 2), 255);
 }
 
+TEST(VtkProjectionBake, GivesThePartThatIsAskedFor) {
+    vtkNew<Bake> bake, part;
+    for (Bake* one : {bake.Get(), part.Get()}) {
+        one->SetInputData(0, wall());
+        one->AddInputData(1, coordinates(400, 200));
+        one->AddProjector(0, 0, 0.5, 0, 0, -1, 0, 1, 0);
+        one->SetWidth(31);
+        one->SetHeight(21);
+    }
+    bake->Update();
+    int extent[6] = {5, 17, 3, 11, 0, 0};
+    part->UpdateExtent(extent);
+    EXPECT_THAT(std::vector<int>(part->GetOutput()->GetExtent(), part->GetOutput()->GetExtent() + 6),
+                testing::ElementsAreArray(extent));
+    for (int j = extent[2]; j <= extent[3]; ++j)
+        for (int i = extent[0]; i <= extent[1]; ++i)
+            for (int c = 0; c < 3; ++c)
+                EXPECT_EQ(part->GetOutput()->GetScalarComponentAsDouble(i, j, 0, c),
+                          bake->GetOutput()->GetScalarComponentAsDouble(i, j, 0, c));
+}
+
 TEST(VtkProjectionBake, RefusesInWords) {
     const auto said = [](const std::function<void(Bake*)>& set) {
         vtkNew<Bake> bake;

@@ -8,6 +8,7 @@
 
 #include "anamorph/error.h"
 #include "anamorph/projector/projection_bake.h"
+#include "automatic_plane.h"
 #include "execution.h"
 #include "scene_shadow.h"
 #include "vtkCellArray.h"
@@ -17,6 +18,7 @@
 #include "vtkImageData.h"
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"
+#include "vtkMultiProcessController.h"
 #include "vtkNew.h"
 #include "vtkObjectFactory.h"
 #include "vtkPointData.h"
@@ -74,21 +76,26 @@ struct vtkAnamorphProjectionBake::Run {
     anamorph::BakeOptions options = {};
     bool bytes = true;
     std::vector<std::vector<float>> pixels = {};
+    anamorph_vtk::TriangleList shadow_casters = {};
     std::vector<anamorph::Occluders> occluders = {};
     std::vector<anamorph::ThrownPicture> pictures = {};
     std::vector<anamorph::BakedTriangle> mesh = {};
+    bool has_coordinates = true;
 
     void take_mesh(vtkPolyData* triangles);
+    /// Puts the meshes of all ranks in the place of this one's.
+    void share_mesh();
     void take_pictures(vtkInformationVector* images);
-    void cast_shadows(vtkPolyData* triangles, vtkPolyData* others);
-    void hand_over(const anamorph::BakedTexture& texture, vtkImageData* output) const;
+    void list_occluders(vtkPolyData* triangles, vtkPolyData* others);
+    void cast_shadows();
+    void hand_over(const anamorph::BakedTexture& texture, const int* extent, vtkImageData* output) const;
 };
 
 void vtkAnamorphProjectionBake::Run::take_mesh(vtkPolyData* triangles) {
     vtkDataArray* coordinates = triangles->GetPointData()->GetTCoords();
-    if (triangles->GetNumberOfPolys() > 0 && (!coordinates || coordinates->GetNumberOfComponents() < 2))
-        throw anamorph::Error("mesh", "no texture coordinates",
-                              "must have them at its points, 2 numbers each");
+    has_coordinates =
+        triangles->GetNumberOfPolys() == 0 || (coordinates && coordinates->GetNumberOfComponents() >= 2);
+    if (!has_coordinates) return;
     for (vtkIdType i = 0; i < triangles->GetNumberOfPolys(); ++i) {
         vtkIdType count = 0;
         const vtkIdType* ids = nullptr;
@@ -99,6 +106,25 @@ void vtkAnamorphProjectionBake::Run::take_mesh(vtkPolyData* triangles) {
             t.coordinates[k] = {coordinates->GetComponent(ids[k], 0), coordinates->GetComponent(ids[k], 1)};
         }
         mesh.push_back(t);
+    }
+}
+
+void vtkAnamorphProjectionBake::Run::share_mesh() {
+    anamorph_vtk::TriangleList list;
+    for (const anamorph::BakedTriangle& t : mesh)
+        for (std::size_t k = 0; k < 3; ++k) {
+            list.push_back(t.points[k]);
+            list.emplace_back(t.coordinates[k], 0);
+        }
+    list = anamorph_vtk::of_all_ranks(list, filter.Controller);
+    mesh.resize(list.size() / 6);
+    for (std::size_t i = 0; i < list.size(); ++i) {
+        anamorph::BakedTriangle& t = mesh[i / 6];
+        const std::size_t k = i % 6 / 2;
+        if (i % 2 == 0)
+            t.points[k] = list[i];
+        else
+            t.coordinates[k] = list[i];
     }
 }
 
@@ -129,40 +155,45 @@ void vtkAnamorphProjectionBake::Run::take_pictures(vtkInformationVector* images)
     for (std::size_t i = 0; i < count; ++i) pictures[i].pixels = pixels[i].data();
 }
 
-void vtkAnamorphProjectionBake::Run::cast_shadows(vtkPolyData* triangles, vtkPolyData* others) {
-    anamorph_vtk::TriangleList list;
-    anamorph_vtk::append_triangles(triangles, list);
-    if (others) anamorph_vtk::append_triangles(triangles_of(others), list);
+void vtkAnamorphProjectionBake::Run::list_occluders(vtkPolyData* triangles, vtkPolyData* others) {
+    anamorph_vtk::append_triangles(triangles, shadow_casters);
+    if (others) anamorph_vtk::append_triangles(triangles_of(others), shadow_casters);
+    if (anamorph_vtk::distributed(filter.Controller))
+        shadow_casters = anamorph_vtk::of_all_ranks(shadow_casters, filter.Controller);
+}
+
+void vtkAnamorphProjectionBake::Run::cast_shadows() {
     for (const anamorph::ThrownPicture& picture : pictures)
-        occluders.emplace_back(list, picture.projector.pose().position);
+        occluders.emplace_back(shadow_casters, picture.projector.pose().position);
     for (std::size_t i = 0; i < pictures.size(); ++i) pictures[i].occluders = &occluders[i];
 }
 
-void vtkAnamorphProjectionBake::Run::hand_over(const anamorph::BakedTexture& texture,
+void vtkAnamorphProjectionBake::Run::hand_over(const anamorph::BakedTexture& texture, const int* extent,
                                                vtkImageData* output) const {
     const int channels = options.channels + 1, width = options.size.width, height = options.size.height;
-    output->SetExtent(0, width - 1, 0, height - 1, 0, 0);
+    output->SetExtent(extent[0], extent[1], extent[2], extent[3], 0, 0);
     output->AllocateScalars(bytes ? VTK_UNSIGNED_CHAR : VTK_FLOAT, channels);
     vtkDataArray* scalars = output->GetPointData()->GetScalars();
     scalars->SetName("Texture");
-    for (int j = 0; j < height; ++j)
-        for (int i = 0; i < width; ++i)
+    vtkIdType next = 0;
+    for (int row = extent[2]; row <= extent[3]; ++row)
+        for (int i = extent[0]; i <= extent[1]; ++i, ++next)
             for (int c = 0; c < channels; ++c) {
-                const float value =
-                    texture.pixels[(static_cast<std::size_t>(j) * static_cast<std::size_t>(width) +
-                                    static_cast<std::size_t>(i)) *
-                                       static_cast<std::size_t>(channels) +
-                                   static_cast<std::size_t>(c)];
+                const float value = texture.pixels[(static_cast<std::size_t>(height - 1 - row) *
+                                                        static_cast<std::size_t>(width) +
+                                                    static_cast<std::size_t>(i)) *
+                                                       static_cast<std::size_t>(channels) +
+                                                   static_cast<std::size_t>(c)];
                 const double coverage = bytes && c == channels - 1 ? 255 : 1;
                 const double out = value * coverage;
-                scalars->SetComponent(vtkIdType{height - 1 - j} * width + i, c,
-                                      bytes ? std::floor(out + 0.5) : out);
+                scalars->SetComponent(next, c, bytes ? std::floor(out + 0.5) : out);
             }
     add_field_value(output, "anamorph:painted", texture.painted);
     add_field_value(output, "anamorph:unseen", texture.unseen);
 }
 
-vtkAnamorphProjectionBake::vtkAnamorphProjectionBake() : Poses(std::make_unique<Projectors>()) {
+vtkAnamorphProjectionBake::vtkAnamorphProjectionBake()
+    : Poses(std::make_unique<Projectors>()), Controller(vtkMultiProcessController::GetGlobalController()) {
     this->SetNumberOfInputPorts(3);
 }
 
@@ -177,7 +208,18 @@ void vtkAnamorphProjectionBake::PrintSelf(ostream& os, vtkIndent indent) {
        << indent << "Height: " << this->Height << "\n"
        << indent << "Fade: " << this->Fade << "\n"
        << indent << "Margin: " << this->Margin << "\n"
-       << indent << "Occlusion: " << this->Occlusion << "\n";
+       << indent << "Occlusion: " << this->Occlusion << "\n"
+       << indent << "Controller: " << this->Controller.Get() << "\n";
+}
+
+void vtkAnamorphProjectionBake::SetController(vtkMultiProcessController* controller) {
+    if (controller == this->Controller) return;
+    this->Controller = controller;
+    this->Modified();
+}
+
+vtkMultiProcessController* vtkAnamorphProjectionBake::GetController() {
+    return this->Controller;
 }
 
 void vtkAnamorphProjectionBake::AddProjector(double x, double y, double z, double dx, double dy, double dz,
@@ -231,11 +273,20 @@ int vtkAnamorphProjectionBake::RequestData(vtkInformation*, vtkInformationVector
         run.options.size = {this->Width, this->Height};
         run.options.fade = this->Fade;
         run.options.margin = this->Margin;
-        run.take_pictures(inputs[1]);
         const vtkSmartPointer<vtkPolyData> triangles = triangles_of(vtkPolyData::GetData(inputs[0]));
+        // What may fail on one rank alone comes after what they do together.
         run.take_mesh(triangles);
-        if (this->Occlusion) run.cast_shadows(triangles, vtkPolyData::GetData(inputs[2]));
-        run.hand_over(anamorph::bake(run.mesh, run.pictures, run.options, run.execution.stage(0, 1)), output);
+        if (anamorph_vtk::distributed(this->Controller)) run.share_mesh();
+        if (this->Occlusion) run.list_occluders(triangles, vtkPolyData::GetData(inputs[2]));
+        if (!run.has_coordinates)
+            throw anamorph::Error("mesh", "no texture coordinates",
+                                  "must have them at its points, 2 numbers each");
+        run.take_pictures(inputs[1]);
+        if (this->Occlusion) run.cast_shadows();
+        const int* extent =
+            outputs->GetInformationObject(0)->Get(vtkStreamingDemandDrivenPipeline::UPDATE_EXTENT());
+        run.hand_over(anamorph::bake(run.mesh, run.pictures, run.options, run.execution.stage(0, 1)), extent,
+                      output);
     };
     return anamorph_vtk::guarded(this, execute, {output});
 }

@@ -25,6 +25,9 @@
 
 #include "AnamorphFiltersModule.h"  // for the export macro
 #include "vtkImageAlgorithm.h"
+#include "vtkSmartPointer.h"  // for the members
+
+class vtkMultiProcessController;
 
 class ANAMORPHFILTERS_EXPORT vtkAnamorphProjectionBake : public vtkImageAlgorithm {
   public:
@@ -97,10 +100,20 @@ class ANAMORPHFILTERS_EXPORT vtkAnamorphProjectionBake : public vtkImageAlgorith
      * One more panorama.
      */
     void AddPanoramaConnection(vtkAlgorithmOutput* output) { this->AddInputConnection(1, output); }
+    void RemoveAllPanoramaConnections() { this->RemoveAllInputConnections(1); }
     /**
      * What else casts shadows.
      */
     void SetOccluderConnection(vtkAlgorithmOutput* output) { this->SetInputConnection(2, output); }
+
+    ///@{
+    /**
+     * Shares the mesh and what casts shadows between all ranks: every rank then makes the whole texture, of which it gives what
+     * it is asked for. Every rank has to execute, with all panoramas. Default: the global controller; may be null.
+     */
+    void SetController(vtkMultiProcessController* controller);
+    vtkMultiProcessController* GetController();
+    ///@}
 
   protected:
     vtkAnamorphProjectionBake();
@@ -122,6 +135,7 @@ class ANAMORPHFILTERS_EXPORT vtkAnamorphProjectionBake : public vtkImageAlgorith
     int Projection = 0, Width = 1024, Height = 1024;
     double FieldOfView = 0, Fade = 32, Margin = 1;
     bool Occlusion = true;
+    vtkSmartPointer<vtkMultiProcessController> Controller;
 };
 
 #endif

@@ -541,6 +541,60 @@ TEST(VtkProjectionShader, HiddenPointsAreThoseOfTheCore) {
     EXPECT_EQ(std::count(picture.begin(), picture.end(), kNoPlace), 0);
 }
 
+/// A wall, triangles without an area beside it, and, where VTK can draw with them, some without a place or an end.
+vtkSmartPointer<vtkPolyData> hard_triangles(bool endless) {
+    constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+    const glm::dvec3 corners[] = {{-9, -9, -2}, {9, -9, -2},   {0, 15, -2}, {0, 0, -1},     {0, 0, -1},
+                                  {0, 0, -1},   {0, 0, -1},    {0, 1, -1},  {0, 2, -1},     {1, 0, -1},
+                                  {1, 1, -1},   {kNan, 0, -1}, {0, 0, 0},   {1e30, 0, 0.1}, {0, 1e30, 0.1}};
+    vtkNew<vtkPoints> points;
+    points->SetDataTypeToDouble();
+    const auto mesh = vtkSmartPointer<vtkPolyData>::New();
+    mesh->SetPoints(points);
+    mesh->AllocateEstimate(5, 3);
+    for (const glm::dvec3& p : corners)
+        if (endless || points->GetNumberOfPoints() < 9) points->InsertNextPoint(p.x, p.y, p.z);
+    for (vtkIdType i = 0; i < (endless ? 15 : 9); i += 3) {
+        const vtkIdType ids[] = {i, i + 1, i + 2};
+        mesh->InsertNextCell(VTK_TRIANGLE, 3, ids);
+    }
+    return mesh;
+}
+
+TEST(VtkProjectionShader, HardTrianglesHarmNothing) {
+    // On the axis of a cylinder and at the projector there is no direction: nothing is painted, and nothing else changes.
+    const Chart chart(Projection::cylindrical, 512, 128);
+    const auto texture = texture_of(chart.width(), chart.height(), [](int, int) {
+        return Colour{9, 99, 199};
+    });
+    const auto projector = projector_of(chart, texture, {0, 0, 0});
+    projector->SetOrientation(0, 90, 0);
+    projector->SetOccluderData(hard_triangles(true));
+    for (const int mode : {0, 1, 2}) {
+        Room room;
+        room.look({0, 0, 0}, {0, 0, 0});
+        room.mapper->SetInputData(hard_triangles(false));
+        vtkNew<vtkAnamorphProjectionShader> shader;
+        shader->AddProjector(projector);
+        shader->SetMode(mode);
+        shader->HideUnpaintedOn();
+        shader->AddTo(room.actor);
+        const std::vector<Colour> picture = room.picture();
+        int painted = 0;
+        for (const Colour& c : picture)
+            painted += std::abs(c[0] - 9) <= 2 && std::abs(c[1] - 99) <= 2 && std::abs(c[2] - 199) <= 2;
+        // The axis meets the wall in the middle of the view.
+        EXPECT_EQ(picture[static_cast<std::size_t>(Room::kHeight / 2 * Room::kWidth + Room::kWidth / 2)],
+                  kNoPlace);
+        EXPECT_GT(painted, 1000) << mode;
+        EXPECT_EQ(painted + std::count(picture.begin(), picture.end(), kNoPlace),
+                  Room::kWidth * Room::kHeight);
+        room.mapper->SetInputData(vtkSmartPointer<vtkPolyData>::New());
+        const auto empty = room.picture();
+        EXPECT_EQ(std::count(empty.begin(), empty.end(), kNoPlace), Room::kWidth * Room::kHeight);
+    }
+}
+
 /// VTK's errors of an object.
 class Errors {
   public:
