@@ -61,6 +61,13 @@ void clear_replacements(vtkShaderProperty& shaders) {
     shaders.ClearFragmentShaderReplacement(kTextureImpl, true);
 }
 
+/// VTK may make others of an image than it has.
+int loaded_components(vtkTexture* texture, vtkRenderer* renderer) {
+    texture->Render(renderer);
+    auto* loaded = vtkOpenGLTexture::SafeDownCast(texture);
+    return loaded && loaded->GetTextureObject() ? loaded->GetTextureObject()->GetComponents() : 4;
+}
+
 /// From world coordinates to those of gl_Position.
 glm::dmat4 clip_matrix(vtkRenderer* renderer) {
     vtkMatrix4x4 *view = nullptr, *projection = nullptr, *both = nullptr;
@@ -156,7 +163,7 @@ void ProjectionHook::complain(const std::string& complaint, std::string& last) {
 }
 
 void ProjectionHook::Render(vtkRenderer* renderer) {
-    if (m_index == 0) refresh_text();
+    if (m_index == 0) refresh_text(renderer);
     set_uniforms(renderer);
     vtkSmartPointer<vtkTextureObject> loaded;
     if (panorama() && m_index < m_state->prepared.size()) {
@@ -184,14 +191,16 @@ void ProjectionHook::ReleaseGraphicsResources(vtkWindow* window) {
     m_shadow_times = {};
 }
 
-void ProjectionHook::refresh_text() {
+void ProjectionHook::refresh_text(vtkRenderer* renderer) {
     if (!m_shaders) return;
     PreparedPanoramas& prepared = m_state->prepared;
     PreparedPanoramas now;
     std::string complaint;
     try {
         for (int i = 0; i < m_owner->GetNumberOfProjectors(); ++i) {
-            const ThrownPanorama thrown = thrown_by(*m_owner->GetProjector(i), *m_owner);
+            vtkAnamorphPanoramaProjector& projector = *m_owner->GetProjector(i);
+            ThrownPanorama thrown = thrown_by(projector, *m_owner);
+            thrown.components = loaded_components(projector.GetPanorama(), renderer);
             const auto at = static_cast<std::size_t>(i);
             const bool known = at < prepared.size() && prepared[at]->thrown == thrown;
             now.push_back(known ? prepared[at] : std::make_shared<const PreparedPanorama>(thrown));

@@ -57,8 +57,8 @@ class ProjectionHook : public LoadedTexture {
     vtkOpenGLTexture* panorama() const;
     /// Once, where something is wrong.
     void complain(const std::string& complaint, std::string& last);
-    /// Writes the shaders anew where the text has changed.
-    void refresh_text();
+    /// Loads all panoramas, and writes the shaders anew where the text has changed.
+    void refresh_text(vtkRenderer* renderer);
     /// Draws or loads what the mode reads beside the panorama.
     void refresh_table(vtkRenderer* renderer);
     /// Draws the map of distances around the projector.

@@ -63,14 +63,6 @@ std::string with_number(std::string text, std::size_t projector) {
     return text;
 }
 
-/// How many channels VTK makes of an image: what is not in bytes becomes colours.
-int channels_of(vtkTexture& texture, vtkImageData& image) {
-    const bool direct = texture.GetColorMode() == VTK_COLOR_MODE_DIRECT_SCALARS;
-    const bool bytes =
-        image.GetScalarType() == VTK_UNSIGNED_CHAR && texture.GetColorMode() == VTK_COLOR_MODE_DEFAULT;
-    return direct || bytes ? image.GetNumberOfScalarComponents() : 4;
-}
-
 /// Reads a panorama. Its last rows are not mixed with the first, which a texture that repeats would do.
 std::string read_function(const PreparedPanorama& panorama) {
     const anamorph::Chart& chart = panorama.chart;
@@ -266,7 +258,6 @@ ThrownPanorama thrown_by(vtkAnamorphPanoramaProjector& projector, vtkAnamorphPro
     thrown.projection = projector.GetProjection();
     thrown.width = image->GetDimensions()[0];
     thrown.height = image->GetDimensions()[1];
-    thrown.components = channels_of(*texture, *image);
     thrown.fov = projector.GetFieldOfView();
     thrown.d = projector.GetPanniniDistance();
     thrown.fade = projector.GetFade();

@@ -15,7 +15,8 @@ namespace anamorph_vtk {
 
 /// What the text depends on: of a projector, all but its pose; and how it is thrown.
 struct ThrownPanorama {
-    int projection = 0, width = 0, height = 0, components = 4;
+    int projection = 0, width = 0, height = 0;
+    int components = 4;  ///< of the texture as it was loaded
     double fov = 0, d = 1, fade = 0;
     std::string lens;
     int mode = 0, directions = 0, plane_size = 0, table_size = 0;
@@ -25,7 +26,7 @@ struct ThrownPanorama {
     bool operator==(const ThrownPanorama&) const = default;
 };
 
-/// Of a projector as it is. Throws Error where it has no picture.
+/// Of a projector as it is, but for the texture's components. Throws Error where it has no picture.
 ThrownPanorama thrown_by(vtkAnamorphPanoramaProjector& projector, vtkAnamorphProjectionShader& shader);
 
 /// As the core has it.

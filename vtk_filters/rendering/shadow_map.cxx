@@ -31,18 +31,18 @@ constexpr int kFaces = 6;
 // Face f looks along axis f / 2, the other two across: upwards or downwards along it.
 constexpr const char* kVertices = R"(//VTK::System::Dec
 in vec3 vertexMC;
-out float distance;
+out float ahead;
 uniform int face;
 void main() {
   vec3 q = face < 2 ? vertexMC.yzx : face < 4 ? vertexMC.zxy : vertexMC.xyz;
-  distance = face % 2 == 0 ? q.z : -q.z;
-  gl_Position = vec4(q.xy, 0.0, distance);
+  ahead = face % 2 == 0 ? q.z : -q.z;
+  gl_Position = vec4(q.xy, 0.0, ahead);
 }
 )";
 constexpr const char* kFragments = R"(//VTK::System::Dec
 //VTK::Output::Dec
-in float distance;
-void main() { gl_FragData[0] = vec4(distance); }
+in float ahead;
+void main() { gl_FragData[0] = vec4(ahead); }
 )";
 
 /// The nearest distance is the least: blending finds it, without limits that a buffer of depths has.

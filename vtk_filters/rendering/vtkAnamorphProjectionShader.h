@@ -8,8 +8,8 @@
  * VTK does with textures; an ambient of 1 and a diffuse of 0 show the panorama as it is. What receives nothing keeps its own
  * colour, or is not drawn.
  *
- * It sets replacements and uniforms of the actor's vtkShaderProperty and textures of its vtkProperty: after replacing one of
- * these, call AddTo() again. Other replacements are kept, but not one of //VTK::TCoord::Impl in fragment shaders, which ours
+ * It sets replacements and uniforms of the actor's vtkShaderProperty and textures of its vtkProperty, which no other actor
+ * must share: after replacing one of these, call AddTo() again. Other replacements are kept, but not one of //VTK::TCoord::Impl in fragment shaders, which ours
  * replaces: a texture by texture coordinates does not show. Changes of projectors show in the next frame.
  *
  * Positions are taken from the renderer's camera, with matrices multiplied in double: far from the origin nothing trembles that

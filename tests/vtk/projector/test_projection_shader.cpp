@@ -7,6 +7,7 @@
 #include <vtkCallbackCommand.h>
 #include <vtkCell.h>
 #include <vtkMultiBlockDataSet.h>
+#include <vtkPointData.h>
 #include <vtkSphereSource.h>
 #include <vtkVersion.h>
 
@@ -539,6 +540,32 @@ TEST(VtkProjectionShader, HiddenPointsAreThoseOfTheCore) {
     projector->SetOccluderConnection(nullptr);
     const auto picture = room.picture();
     EXPECT_EQ(std::count(picture.begin(), picture.end(), kNoPlace), 0);
+}
+
+TEST(VtkProjectionShader, PicturesHaveAnyChannels) {
+    for (const int channels : {1, 2, 3, 4}) {
+        SCOPED_TRACE(channels);
+        vtkNew<vtkImageData> image;
+        image->SetDimensions(8, 4, 1);
+        image->AllocateScalars(VTK_UNSIGNED_CHAR, channels);
+        for (vtkIdType i = 0; i < 32; ++i)
+            for (int c = 0; c < channels; ++c)
+                image->GetPointData()->GetScalars()->SetComponent(
+                    i, c, channels % 2 == 0 && c == channels - 1 ? 128 : 50 + 60 * c);
+        vtkNew<vtkTexture> texture;
+        texture->SetInputData(image);
+        Room room;
+        room.actor->ForceTranslucentOn();
+        vtkNew<vtkAnamorphProjectionShader> shader;
+        shader->AddProjector(projector_of(Chart(Projection::equirectangular, 8, 4), texture));
+        shader->AddTo(room.actor);
+        // Half of it on a white ground where it is transparent.
+        const double alpha = channels % 2 == 0 ? 128. / 255 : 1;
+        const Colour shown = room.picture()[Room::kWidth * Room::kHeight / 2];
+        for (int c = 0; c < 3; ++c)
+            EXPECT_NEAR(shown[static_cast<std::size_t>(c)],
+                        alpha * (channels < 3 ? 50 : 50 + 60 * c) + (1 - alpha) * 255, 2);
+    }
 }
 
 /// A wall, triangles without an area beside it, and, where VTK can draw with them, some without a place or an end.
