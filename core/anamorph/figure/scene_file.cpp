@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <charconv>
 #include <cmath>
 #include <cstdint>
 
@@ -10,6 +11,7 @@
 #include <glm/geometric.hpp>
 #include <glm/gtc/quaternion.hpp>
 #include <initializer_list>
+#include <iterator>
 #include <nlohmann/json.hpp>
 #include <numbers>
 #include <vector>
@@ -283,37 +285,68 @@ std::string glb_file(std::span<const FigureFrame> frames, double frames_per_seco
     return Scene(frames, frames_per_second).file();
 }
 
+namespace {
+
+/// Rows of numbers as text, as few digits as single precision takes: what reads OBJ keeps no more.
+class Rows {
+  public:
+    explicit Rows(std::string& text) : m_text(text) {}
+
+    void add(std::string_view what, const glm::dvec3& v) {
+        m_text += what;
+        for (int c = 0; c < 3; ++c) put(static_cast<float>(v[c]));
+    }
+    void add_corner(std::size_t index) {
+        put(index);
+        m_text += "//";
+        m_text.append(m_number, m_end);
+    }
+    void end() { m_text += '\n'; }
+
+  private:
+    template <class T>
+    void put(T value) {
+        m_end = std::to_chars(m_number, std::end(m_number), value).ptr;
+        m_text += ' ';
+        m_text.append(m_number, m_end);
+    }
+
+    std::string& m_text;
+    char m_number[32] = {}, *m_end = m_number;
+};
+
+}  // namespace
+
 std::string obj_file(const FigureFrame& frame) {
     const UnitSphere sphere;
     std::string text =
         "# Anamorph " + std::string(version()) + ", frame " + std::to_string(frame.number) + "\n";
-    const auto row = [&](const char* what, const glm::dvec3& v) {
-        text += std::string(what) + " " + shortest(v.x) + " " + shortest(v.y) + " " + shortest(v.z);
-    };
+    Rows rows(text);
     std::size_t first = 1;
     for (const Body& body : frame.bodies) {
         const Ellipsoid p = mirrored(body.shape);
         text += "o " + body.name + "\n";
+        std::string color;
+        Rows(color).add("", glm::clamp(body.color / 255.0, 0.0, 1.0));
         for (const glm::dvec3& point : sphere.points) {
-            row("v", p.center + p.rotation * (p.axes * point));
-            row("", glm::clamp(body.color / 255.0, 0.0, 1.0));
-            text += "\n";
+            rows.add("v", p.center + p.rotation * (p.axes * point));
+            text += color;
+            rows.end();
         }
         for (const glm::dvec3& point : sphere.points) {
             // Of a flat body, the direction that is left of the gradient.
             const glm::dvec3 gradient =
                 point / glm::max(p.axes, glm::dvec3(1e-9 * std::max({p.axes.x, p.axes.y, p.axes.z, 1e-300})));
-            row("vn", p.rotation * glm::normalize(gradient));
-            text += "\n";
+            rows.add("vn", p.rotation * glm::normalize(gradient));
+            rows.end();
         }
         for (const auto& triangle : sphere.triangles) {
-            text += "f";
-            for (const std::uint16_t corner : triangle) {
-                const std::string at = std::to_string(first + corner);
-                text += " " + at + "//" + at;
-            }
-            text += "\n";
+            text += 'f';
+            for (const std::uint16_t corner : triangle) rows.add_corner(first + corner);
+            rows.end();
         }
+        // As much for each of the others, whose corners have more digits.
+        if (first == 1) text.reserve(text.size() / 4 * 5 * frame.bodies.size());
         first += sphere.points.size();
     }
     return text;
