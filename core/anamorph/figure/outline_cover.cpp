@@ -4,8 +4,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <glm/vec2.hpp>
+
+#include "anamorph/figure/outline_hiding.h"
 
 namespace anamorph {
 namespace {
@@ -23,6 +26,7 @@ struct Range {
 template <class Vector>
 Range lengths(const Vector& a, const Vector& b) {
     const double middle = glm::dot(a, a), slope = 2 * std::fabs(glm::dot(a, b));
+    if (b == Vector(0.0)) return {std::sqrt(middle), std::sqrt(middle)};
     return {std::sqrt(std::max(0.0, middle - slope)), std::sqrt(middle + slope + glm::dot(b, b))};
 }
 
@@ -129,9 +133,25 @@ Piece Surface::piece_of(const Triangle& corners) const {
     return piece;
 }
 
+namespace {
+
+/// A piece's box on the screen; in perspective, everything if some of it is not before the eye.
+ScreenBox box_of(const Piece& piece, bool perspective) {
+    const glm::dvec3 reach = (glm::abs(piece.half) + piece.around) * (1 + 0x1p-30),
+                     low = piece.center - reach, high = piece.center + reach;
+    if (!perspective) return {glm::dvec2(low), glm::dvec2(high), high.z};
+    if (!(low.z > 0)) return {glm::dvec2(-HUGE_VAL), glm::dvec2(HUGE_VAL), HUGE_VAL};
+    const glm::dvec2 least(low), most(high);
+    return {glm::min(least / low.z, least / high.z), glm::max(most / low.z, most / high.z), high.z};
+}
+
+}  // namespace
+
 /// Appends those of a range of others that may hide a part of a piece; false where one hides all of it.
 bool Surface::leave_doubts(const Piece& piece, Others& others, std::size_t from, std::size_t to) const {
+    const ScreenBox box = box_of(piece, m_perspective);
     for (std::size_t k = from; k < to; ++k) {
+        if (!may_hide(*others[k], box)) continue;
         const Cover cover = cover_of(*others[k], piece, m_perspective);
         if (cover == Cover::all) {
             // What hides one piece often hides its neighbour.
