@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """The representation "Ellipsoids" shows figures, blocks of them and tensors of an image as core's renderer does, fits the view to
-them, selects them, and survives a state file."""
+them, selects them, and survives a state file. "Outlines of Ellipsoids" are those of core, and follow the camera."""
 import os
 import subprocess
 
@@ -62,11 +62,11 @@ def ids(view):
     return found
 
 
-def core_ids(data, view):
+def core_picture(data, view, style):
     image = anamorph.vtkAnamorphFigureImage()
     image.SetInputData(data)
     image.SetViewMode(image.CAMERA)
-    image.SetStyle(image.BODY_ID)
+    image.SetStyle(style)
     image.SetViewSize(SIZE, SIZE)
     image.SetCameraPosition(*view.CameraPosition)
     image.SetCameraFocalPoint(*view.CameraFocalPoint)
@@ -75,7 +75,17 @@ def core_ids(data, view):
     image.SetCameraParallelProjection(view.CameraParallelProjection)
     image.SetCameraParallelScale(view.CameraParallelScale)
     image.Update()
-    return vtk_to_numpy(image.GetOutput().GetPointData().GetScalars()).reshape(SIZE, SIZE)
+    return vtk_to_numpy(image.GetOutput().GetPointData().GetScalars()).reshape(SIZE, SIZE, -1)
+
+
+def core_ids(data, view):
+    return core_picture(data, view, anamorph.vtkAnamorphFigureImage.BODY_ID)[..., 0]
+
+
+def thick(mask):
+    """With the pixels around each."""
+    wide = np.pad(mask, 1)
+    return sum(wide[y:y + SIZE, x:x + SIZE] for y in (0, 1, 2) for x in (0, 1, 2)) > 0
 
 
 def block(source, index=None):
@@ -106,6 +116,25 @@ for parallel in (0, 1):
     found = servermanager.Fetch(extract).GetPointData().GetArray("vtkOriginalPointIds")
     assert vtk_to_numpy(found).tolist() == [1], vtk_to_numpy(found)
     ClearSelection(first)
+
+# Outlines follow the camera: what is drawn is next to what core draws, and the other way round, in the bodies' colors.
+for parallel in (0, 1):
+    view = new_view(parallel)
+    shown = Show(first, view)
+    shown.SetRepresentationType("Outlines of Ellipsoids")
+    assert (shown.OutlineHidden, shown.OutlineTolerance) == ("Removed", 0.1)
+    ColorBy(shown, ("POINTS", "Color"))
+    shown.MapScalars = 0
+    ResetCamera(view)
+    for turn in (0, 40, 80):
+        GetActiveCamera().Azimuth(turn)
+        drawn = pixels(view).max(-1) > 60
+        alpha = core_picture(block(first), view, anamorph.vtkAnamorphFigureImage.OUTLINE)[..., 3]
+        assert drawn.sum() > 300 and (drawn & ~thick(alpha > 0)).sum() == 0, (parallel, turn, (drawn & ~thick(alpha > 0)).sum())
+        assert ((alpha > 128) & ~thick(drawn)).sum() <= 3, (parallel, turn, ((alpha > 128) & ~thick(drawn)).sum())
+        assert {tuple(color) for color in np.unique(pixels(view)[drawn], axis=0)} == set(COLORS)
+    shown.OutlineHidden = "Transparent"
+    assert (pixels(view).max(-1) > 60).sum() > drawn.sum() + 20
 
 # Blocks: what is nearest of both.
 both = GroupDatasets(Input=[first, second])
@@ -156,6 +185,9 @@ proxy, mapper = servermanager.ProxyManager().NewProxy("representations", "Anamor
 for name in ("Shape", "AxesArray", "OrientationArray", "TensorArray", "ScaleFactor"):
     default = proxy.GetProperty(name).GetDefaultValue(0) if name.endswith("Array") else proxy.GetProperty(name).GetElement(0)
     assert default == getattr(mapper, "Get" + name)(), (name, default)
+proxy, outline = servermanager.ProxyManager().NewProxy("representations", "AnamorphOutlineRepresentation"), anamorph.vtkAnamorphFigureOutline()
+for name in ("Hidden", "Crossings", "Connected", "Tolerance"):
+    assert proxy.GetProperty(name).GetElement(0) == getattr(outline, "Get" + name)(), name
 print("shown")
 '''
 with open("show.py", "w") as file:
