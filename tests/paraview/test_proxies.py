@@ -209,7 +209,7 @@ def check_whole(element, rows, menus):
 def with_input(cls):
     """A new object that has what it needs to execute, seen by a camera."""
     new = cls()
-    if cls in (anamorph.vtkAnamorphReliefSource, anamorph.vtkAnamorphDrape):
+    if cls in (anamorph.vtkAnamorphReliefSource, anamorph.vtkAnamorphDrape, anamorph.vtkAnamorphPanoramaView):
         picture = vtkRTAnalyticSource()
         picture.SetWholeExtent(0, 9, 0, 9, 0, 0)
         picture.Update()

@@ -176,10 +176,19 @@ def a_panorama_baked():
     apply(bake, FieldOfView=300, Projection=1, Fade=4, Margin=2, Projectors=[.1, .2, 1, 0, .1, -1, 0, 1, 0], Occlusion=0)
 
 
+def a_view_of_a_panorama():
+    picture = Wavelet(WholeExtent=[0, 15, 0, 7, 0, 0])
+    picture.UpdatePipeline()
+    view = AnamorphPanoramaView(registrationName="result", Input=picture)
+    apply(view, Yaw=40, Pitch=-10, Roll=3, ViewAngle=70, ViewSize=[60, 40], Tolerance=.1)
+    apply(view, Projection=11, FieldOfView=200, PanniniDistance=.5)
+    apply(view, Projection=3, Lens="kb4:k1=0.02")
+
+
 SESSIONS = [texture_coordinates_after_the_plane, a_bump_in_texture_coordinates, handles_and_then_the_plane, another_row,
             files_and_a_table, surfaces_in_between, a_relief_of_a_file, a_relief_of_the_pipeline,
             a_picture_on_a_surface, surfaces_of_inputs_in_light, figures_performed, a_panorama_thrown_onto_a_plane,
-            a_panorama_baked]
+            a_panorama_baked, a_view_of_a_panorama]
 
 
 # ---- What is compared ----

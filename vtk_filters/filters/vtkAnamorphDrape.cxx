@@ -25,6 +25,7 @@
 #include "anamorph/render/source.h"
 #include "drape_inputs.h"
 #include "execution.h"
+#include "image_texture.h"
 #include "vtkDataArray.h"
 #include "vtkDataSetAttributes.h"
 #include "vtkFieldData.h"
@@ -44,7 +45,8 @@ vtkObjectFactoryNewMacro(vtkAnamorphDrape);
 namespace {
 
 using anamorph::Error;
-using anamorph::PixelType;
+using anamorph_vtk::alpha_of;
+using anamorph_vtk::turned_over;
 using Executive = vtkStreamingDemandDrivenPipeline;
 
 constexpr int kMostViewSize = 1 << 16;
@@ -65,72 +67,6 @@ glm::dvec3 point(const char* name, const double* v) {
     for (int k = 0; k < 3; ++k) kCoordinateRow.check(v[k], name);
     return {v[0], v[1], v[2]};
 }
-
-/// The channel of alpha, or -1.
-int alpha_of(int components) {
-    return components % 2 == 0 ? components - 1 : -1;
-}
-
-/// Of a picture's numbers. Throws Error.
-PixelType pixel_type(vtkDataArray* array) {
-    switch (array->GetDataType()) {
-        case VTK_UNSIGNED_CHAR:
-            return PixelType::uint8;
-        case VTK_UNSIGNED_SHORT:
-            return PixelType::uint16;
-        case VTK_FLOAT:
-            return PixelType::float32;
-        default:
-            throw Error(std::string("the texture's numbers are of type ") + array->GetDataTypeAsString() +
-                        ", but must be of type unsigned char, unsigned short or float");
-    }
-}
-
-/// Packed pixels whose rows go up, as rows that go down.
-template <class Byte>
-anamorph::BasicView<Byte> turned_over(Byte* data, PixelType type, int width, int height, int channels) {
-    auto view = anamorph::packed_view(data, type, width, height, channels);
-    view.data += (height - 1) * view.row_stride;
-    view.row_stride = -view.row_stride;
-    return view;
-}
-
-/// The texture's pixels as the core reads them.
-class Texture {
-  public:
-    /// Throws Error.
-    Texture(vtkImageData* image, vtkDataArray* array) : m_array(array) {
-        int size[3];
-        image->GetDimensions(size);
-        if (image->GetNumberOfPoints() < 1) throw Error("the texture has no pixels");
-        if (size[2] != 1)
-            throw Error("the texture has " + std::to_string(size[2]) + " slices, but must have 1");
-        if (std::max(size[0], size[1]) > anamorph::kMaxSide)
-            throw Error("the texture is " + std::to_string(std::max(size[0], size[1])) +
-                        " pixels wide or high, but must be at most " + std::to_string(anamorph::kMaxSide));
-        if (!array || array->GetNumberOfTuples() != image->GetNumberOfPoints())
-            throw Error("the texture has no point array to draw");
-        const int components = array->GetNumberOfComponents();
-        if (components < 1 || components > 4)
-            throw Error("the texture has " + std::to_string(components) +
-                        " components, but must have 1 to 4");
-        const PixelType type = pixel_type(array);
-        if (!array->HasStandardMemoryLayout()) {
-            m_array.TakeReference(vtkDataArray::CreateDataArray(array->GetDataType()));
-            m_array->DeepCopy(array);
-        }
-        m_view = turned_over(static_cast<const std::byte*>(m_array->GetVoidPointer(0)), type, size[0],
-                             size[1], components);
-    }
-
-    const anamorph::ConstImageView& view() const { return m_view; }
-    anamorph::Size size() const { return {m_view.width, m_view.height}; }
-    int type() const { return m_array->GetDataType(); }
-
-  private:
-    vtkSmartPointer<vtkDataArray> m_array;
-    anamorph::ConstImageView m_view;
-};
 
 /// The array of an image that is drawn.
 struct Drawn {
@@ -476,7 +412,8 @@ int vtkAnamorphDrape::RequestData(vtkInformation*, vtkInformationVector** inputs
 void vtkAnamorphDrape::Draw(vtkInformationVector** inputs, const int* extent, vtkImageData* output) {
     if (extent[0] > extent[1] || extent[2] > extent[3]) return;
     const anamorph::Size screen = this->Screen();
-    const Texture pixels(vtkImageData::GetData(inputs[0]), this->GetInputArrayToProcess(0, inputs));
+    const anamorph_vtk::ImageTexture pixels(vtkImageData::GetData(inputs[0]),
+                                            this->GetInputArrayToProcess(0, inputs), "the texture");
     const int channels = pixels.view().channels;
     const anamorph::ParameterValues values = this->Values();
     anamorph_vtk::Execution execution(this);
@@ -503,8 +440,9 @@ void vtkAnamorphDrape::Draw(vtkInformationVector** inputs, const int* extent, vt
     const anamorph::Box box{extent[0], screen.height - 1 - extent[3], extent[1] + 1,
                             screen.height - extent[2]};
     if (!drape.draw(&source, box,
-                    turned_over(static_cast<std::byte*>(array->GetVoidPointer(0)), pixel_type(array),
-                                box.width(), box.height(), drawn.components),
+                    turned_over(static_cast<std::byte*>(array->GetVoidPointer(0)),
+                                anamorph_vtk::pixel_type(array, "the texture"), box.width(), box.height(),
+                                drawn.components),
                     execution.stage(0.3, 0.95)))
         throw Error("the texture cannot be read");
     if (this->Style != COLOR)

@@ -1,0 +1,143 @@
+// SPDX-License-Identifier: Apache-2.0
+/**
+ * @class vtkAnamorphPanoramaView
+ * @brief a camera's view of a panorama, as an image
+ *
+ * What a camera in the centre of a panorama sees (Kim 2003, section 4.5), of any projection and lens, without OpenGL: the
+ * operation pano of the core, within Tolerance of the exact texels, which is proven. The panorama is a vtkImageData of one slice,
+ * its array 1 to 4 components of unsigned char, unsigned short or float, of which the second or fourth is alpha; the output has
+ * an array "Colors" of the same type. Rows go up, as in all of VTK's images. Any part of the output, and any number of threads,
+ * gives the same pixels.
+ *
+ * Errors name the core's parameters: srcfov, srcd, srclens (FieldOfView, PanniniDistance, Lens).
+ */
+#ifndef vtkAnamorphPanoramaView_h
+#define vtkAnamorphPanoramaView_h
+
+#include "AnamorphFiltersModule.h"  // for the export macro
+#include "vtkImageAlgorithm.h"
+
+class ANAMORPHFILTERS_EXPORT vtkAnamorphPanoramaView : public vtkImageAlgorithm {
+  public:
+    static vtkAnamorphPanoramaView* New();
+    vtkTypeMacro(vtkAnamorphPanoramaView, vtkImageAlgorithm);
+    void PrintSelf(ostream& os, vtkIndent indent) override;
+
+    /// The order of the core's list.
+    enum Projections {
+        EQUIRECTANGULAR = 0,
+        CYLINDRICAL,
+        RECTILINEAR,
+        FISHEYE,
+        EQUISOLID,
+        STEREOGRAPHIC,
+        MERCATOR,
+        CUBEMAP,
+        CUBEMAP_3X2,
+        CUBECROSS,
+        EAC,
+        PANNINI,
+        ORTHOGRAPHIC,
+        SINUSOIDAL,
+        HAMMER,
+        DUAL_FISHEYE,
+        OCTAHEDRAL
+    };
+    ///@{
+    /**
+     * The projection of the panorama. Default: EQUIRECTANGULAR.
+     */
+    vtkSetClampMacro(Projection, int, EQUIRECTANGULAR, OCTAHEDRAL);
+    vtkGetMacro(Projection, int);
+    ///@}
+
+    ///@{
+    /**
+     * Degrees that its width covers, or each of its faces; 0: what its projection has by default. Default: 0.
+     */
+    vtkSetMacro(FieldOfView, double);
+    vtkGetMacro(FieldOfView, double);
+    ///@}
+
+    ///@{
+    /**
+     * The distance d of Pannini's projection, which others do not read. Default: 1.
+     */
+    vtkSetMacro(PanniniDistance, double);
+    vtkGetMacro(PanniniDistance, double);
+    ///@}
+
+    ///@{
+    /**
+     * Distortion of the lens that the panorama was taken through: MODEL:name=value,name=value with ptlens, brown, 3de4 or
+     * kb4. Default: none.
+     */
+    vtkSetStringMacro(Lens);
+    vtkGetStringMacro(Lens);
+    ///@}
+
+    ///@{
+    /**
+     * Where the camera looks, in degrees: to the right of the panorama's middle, up, and turned clockwise; it is rolled first,
+     * then pitched, then turned. Default: 0.
+     */
+    vtkSetMacro(Yaw, double);
+    vtkGetMacro(Yaw, double);
+    vtkSetMacro(Pitch, double);
+    vtkGetMacro(Pitch, double);
+    vtkSetMacro(Roll, double);
+    vtkGetMacro(Roll, double);
+    ///@}
+
+    ///@{
+    /**
+     * Degrees that the view's width covers, 0.01 to 179. Default: 90.
+     */
+    vtkSetClampMacro(ViewAngle, double, 0.01, 179);
+    vtkGetMacro(ViewAngle, double);
+    ///@}
+
+    ///@{
+    /**
+     * Pixels of the view, each from 1 to 65536. Default: 500 x 500.
+     */
+    vtkSetVector2Macro(ViewSize, int);
+    vtkGetVector2Macro(ViewSize, int);
+    ///@}
+
+    ///@{
+    /**
+     * How far the texel that a pixel shows may be from the exact one, in texels, up to 1e6; 0: not at all. Default: 0.01.
+     */
+    vtkSetClampMacro(Tolerance, double, 0, 1e6);
+    vtkGetMacro(Tolerance, double);
+    ///@}
+
+    /**
+     * The largest bound of that in the view that was drawn last.
+     */
+    vtkGetMacro(MaxError, double);
+
+  protected:
+    vtkAnamorphPanoramaView();
+    ~vtkAnamorphPanoramaView() override;
+
+    int RequestInformation(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
+    int RequestUpdateExtent(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
+    int RequestData(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
+
+  private:
+    vtkAnamorphPanoramaView(const vtkAnamorphPanoramaView&) = delete;
+    void operator=(const vtkAnamorphPanoramaView&) = delete;
+
+    void Draw(vtkInformationVector** inputs, const int* extent, vtkImageData* output);
+
+    int Projection = EQUIRECTANGULAR;
+    double FieldOfView = 0, PanniniDistance = 1;
+    char* Lens = nullptr;
+    double Yaw = 0, Pitch = 0, Roll = 0, ViewAngle = 90;
+    int ViewSize[2] = {500, 500};
+    double Tolerance = 0.01, MaxError = 0;
+};
+
+#endif
