@@ -233,6 +233,24 @@ TEST(Concentric, SourcePointsHoldTheToleranceInEveryScheme) {
             }
 }
 
+TEST(Concentric, StraightUpThereIsNothing) {
+    // The middles of the first and last rows are the poles.
+    const Chart slit(Projection::cylindrical, 24, 6, 360), view(Projection::equirectangular, 4, 3, 360);
+    ReprojectOptions options;
+    options.output = Output::bound;
+    for (const double tol : {0.0, 0.01}) {
+        options.tol = tol;
+        const ConcentricView seen(Panorama(slit, view), {2, 4, {0.4, 0.3}}, options);
+        std::vector<float> bounds(12, -1);
+        ASSERT_TRUE(seen.picture().draw(
+            {nullptr, nullptr}, {0, 0, 4, 3},
+            packed_view(std::as_writable_bytes(std::span(bounds)).data(), PixelType::float32, 4, 3, 1),
+            serial_for));
+        for (const float bound : bounds) EXPECT_LT(bound, 1e-9f);
+        EXPECT_LT(seen.picture().reached(serial_for).max_error, 1e-9);
+    }
+}
+
 TEST(Concentric, WeightsOfAllCirclesAddUp) {
     const ConcentricStack stack{7, HUGE_VAL, {0.5, 0.5}};
     for (double offset = -1; offset <= 1; offset += 1.0 / 64) {

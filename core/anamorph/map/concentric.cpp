@@ -86,6 +86,7 @@ ConcentricMap::ConcentricMap(const Panorama& view, const ConcentricStack& stack,
       m_per_depth(inverse_of(stack.depth)) {
     const long double slit = static_cast<long double>(stack.radius(circle)) * m_per_depth;
     m_slit = Constant(slit);
+    m_least_height = (1 - std::hypot(stack.viewpoint.x, stack.viewpoint.y) * m_per_depth) / 2;
     const long double root = std::sqrt((1 - slit) * (1 + slit));
     m_slit_root = Constant(root);
     m_per_root = Constant(1 / root);
@@ -104,6 +105,7 @@ Cover ConcentricMap::cover(const Interval& x, const Interval& y, int piece, cons
     const Cover target = m_view.target_cover(x, y, piece);
     if (target != Cover::inside) return target;
     const Ray<Interval> ray = m_view.local_ray(x, y, local.view);
+    if (m_view.source().sees(flattest(ray)).hi < 0) return Cover::outside;
     const auto px = measured<Interval>(local.viewpoint.x, kLocalError);
     const auto pz = measured<Interval>(local.viewpoint.y, kLocalError);
     const Interval offset = sight(ray, px, pz).offset;
@@ -119,6 +121,8 @@ double ConcentricMap::exact_error(const Interval& x, const Interval& y, int piec
     using R = Rounded<Real>;
     if (!(m_view.target().inside(x, y, piece).hi >= 0)) return 0;
     const Ray<R> ray = m_view.source_ray(R(x, 0, 0), R(y, 0, 0), piece);
+    const R seen = m_view.source().sees(flattest(ray));
+    if (seen.range.hi + seen.error <= 0) return 0;
     return m_view.exact_error(slit_ray(ray, m_stack.viewpoint.x, m_stack.viewpoint.y));
 }
 template double ConcentricMap::exact_error<double>(const Interval&, const Interval&, int) const;

@@ -114,6 +114,11 @@ class ConcentricMap {
         return {r.x * k, r.y * k, r.z * k};
     }
 
+    /// No ray of a slit for this one is flatter, by half. What does not see that sees none, up to where there is no azimuth.
+    template <class T>
+    Ray<T> flattest(const Ray<T>& ray) const {
+        return {ray.x, ray.y * m_least_height, ray.z};
+    }
     /// The ray of the circle's slit towards the point that a ray of the viewpoint (px, pz) meets at the stack's depth.
     /// With that point at x = r n + l u, |x| = depth, n to the right of u: the slit's direction is u turned to the right by
     /// asin(r / depth) - asin(radius / depth), and heights are as (l - t) to the slit's own l.
@@ -136,6 +141,8 @@ class ConcentricMap {
     ConcentricStack m_stack;
     int m_circle;
     bool m_whole;
+    /// Half of 1 - |viewpoint| / depth: the way from the viewpoint to what is seen is no shorter, over that from the slit.
+    double m_least_height;
     double m_per_depth;  ///< 1 / depth; the double that it is
     /// radius / depth, the root of 1 less its square, and 1 over that.
     Constant m_slit, m_slit_root, m_per_root;
