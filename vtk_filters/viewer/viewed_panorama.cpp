@@ -48,6 +48,7 @@ ViewedPanorama::ViewedPanorama(const std::string& file, const std::vector<Assign
         if (has_key(options, key)) throw Error(std::string(key) + " is the viewer's own: must not be given");
     anamorph::check_file_name("src", file);
     auto image = std::make_unique<anamorph::CacheSource>(OIIO::ImageCache::create(true), file, 0, 0);
+    image->keep_rows();
     const OIIO::ImageSpec spec = image->spec();
     m_known = {anamorph::source_image(anamorph::upright(spec))};
     m_hdr = image->type() == anamorph::PixelType::float32 || image->type() == anamorph::PixelType::half;
