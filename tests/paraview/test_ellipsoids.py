@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """The representation "Ellipsoids" shows figures, blocks of them and tensors of an image as core's renderer does, fits the view to
-them, selects them, and survives a state file. "Outlines of Ellipsoids" are those of core, and follow the camera."""
+them, selects them, and survives a state file. "Outlines of Ellipsoids" are those of core, and follow the camera. Several ranks show what
+one process does."""
 import os
 import subprocess
 
@@ -190,9 +191,39 @@ for name in ("Hidden", "Crossings", "Connected", "Tolerance"):
     assert proxy.GetProperty(name).GetElement(0) == getattr(outline, "Get" + name)(), name
 print("shown")
 '''
-with open("show.py", "w") as file:
-    file.write(SCRIPT)
-done = subprocess.run([*xvfb_run(361), "pvpython", "show.py"], env={**os.environ, "LIBGL_ALWAYS_SOFTWARE": "1"},
-                      capture_output=True, text=True, timeout=250)
-assert done.returncode == 0 and "shown" in done.stdout, (done.returncode, done.stdout[-3000:], done.stderr[-5000:])
-assert "ERR" not in done.stderr and "rror" not in done.stderr, done.stderr[-5000:]
+# What several ranks show, of which all but the first have no figures, is what one process does.
+RANKS = r'''
+import os
+from paraview import simple
+from paraview.simple import *
+from paraview.vtk.util.numpy_support import vtk_to_numpy
+from vtkmodules.vtkIOImage import vtkPNGReader
+LoadPlugin(os.environ["ANAMORPH_PLUGIN"], remote=False, ns=vars(simple))
+figures = OpenDataFile(os.path.abspath("first.nudes"))
+for name in ("Ellipsoids", "Outlines of Ellipsoids"):
+    view = CreateRenderView(ViewSize=[100, 100], OrientationAxesVisibility=0)
+    Show(figures, view).SetRepresentationType(name)
+    ResetCamera(view)
+    Render(view)
+    SaveScreenshot("ranks.png", view)
+    reader = vtkPNGReader()
+    reader.SetFileName("ranks.png")
+    reader.Update()
+    print("sum", vtk_to_numpy(reader.GetOutput().GetPointData().GetScalars()).astype(int).sum())
+'''
+
+
+def run(script, number, *program):
+    with open("show.py", "w") as file:
+        file.write(script)
+    done = subprocess.run([*xvfb_run(number), *program, "show.py"], env={**os.environ, "LIBGL_ALWAYS_SOFTWARE": "1"},
+                          capture_output=True, text=True, timeout=250)
+    assert done.returncode == 0, (done.returncode, done.stdout[-3000:], done.stderr[-5000:])
+    assert "ERR" not in done.stderr and "rror" not in done.stderr, done.stderr[-5000:]
+    return [line for line in done.stdout.splitlines() if line.startswith(("shown", "sum"))]
+
+
+assert run(SCRIPT, 361, "pvpython") == ["shown"]
+alone, together = run(RANKS, 366, "pvpython"), run(RANKS, 371, "mpiexec", "--oversubscribe", "--mca",
+                                               "mpi_yield_when_idle", "1", "-n", "2", "pvbatch")
+assert alone == together and len(set(alone)) == 2, (alone, together)

@@ -3,9 +3,9 @@
 
 #include <cstring>
 
+#include "points_of_data.h"
 #include "vtkAnamorphEllipsoidMapper.h"
 #include "vtkCompositeDataDisplayAttributes.h"
-#include "vtkConvertToPointCloud.h"
 #include "vtkMatrix4x4.h"
 #include "vtkNew.h"
 #include "vtkObjectFactory.h"
@@ -25,9 +25,7 @@ const char* array_name(const char* name) {
 
 vtkAnamorphEllipsoidRepresentation::vtkAnamorphEllipsoidRepresentation() {
     this->GeometryFilter->Delete();
-    auto* points = vtkConvertToPointCloud::New();
-    points->SetCellGenerationMode(vtkConvertToPointCloud::VERTEX_CELLS);
-    this->GeometryFilter = points;
+    this->GeometryFilter = PointsOfData::New();
     this->Mapper->Delete();
     this->LODMapper->Delete();
     this->Mapper = vtkAnamorphEllipsoidMapper::New();

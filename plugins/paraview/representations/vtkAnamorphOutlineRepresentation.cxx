@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "vtkAnamorphOutlineRepresentation.h"
 
+#include "points_of_data.h"
 #include "vtkAnamorphEllipsoidMapper.h"
 #include "vtkAnamorphFigureOutline.h"
 #include "vtkCamera.h"
-#include "vtkConvertToPointCloud.h"
 #include "vtkMatrix4x4.h"
 #include "vtkObjectFactory.h"
 #include "vtkPVLODActor.h"
@@ -15,9 +15,7 @@ vtkStandardNewMacro(vtkAnamorphOutlineRepresentation);
 
 vtkAnamorphOutlineRepresentation::vtkAnamorphOutlineRepresentation() {
     this->GeometryFilter->Delete();
-    auto* points = vtkConvertToPointCloud::New();
-    points->SetCellGenerationMode(vtkConvertToPointCloud::VERTEX_CELLS);
-    this->GeometryFilter = points;
+    this->GeometryFilter = PointsOfData::New();
     this->SuppressLOD = true;
     this->SetupDefaults();
     this->Actor->SetPickable(0);
