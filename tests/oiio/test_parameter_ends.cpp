@@ -110,7 +110,10 @@ class ParameterEnds : public InFolder {
             add("script", "dressed.nudes");
         }
         if (operation.name == "mosaic") {
-            if (key == "circles" || key == "circle") sources[0] = "tall.exr";
+            if (key == "circles" || key == "circle") {
+                sources[0] = "tall.exr";
+                add("from", "cylindrical");
+            }
             if (key == "circle") add("circles", std::to_string(ConcentricStack::kMostCircles));
             if (key == "x" || key == "z") add(key == "x" ? "z" : "x", "0");
         }

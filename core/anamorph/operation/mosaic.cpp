@@ -195,7 +195,7 @@ const Operation& mosaic_operation() {
         &table,
         {"src"},
         1,
-        {"circles=2&x=0.4&z=0.3&depth=4&to=equirectangular&size=48x24", {}},
+        {"from=equirectangular&to=equirectangular&x=0.4&z=0.3&depth=4&pitch=20", {}},
         [](const OperationInput& input) -> std::unique_ptr<const Pictures> {
             return std::make_unique<Mosaics>(read_request(input.values, input.sources[0].facts));
         }};
