@@ -54,7 +54,7 @@ struct FloatPair {
         }
     }
 
-    /// The sign, the exponent and 24 bits. (GCC 12 at -O3 takes a number for what it is after a conversion to float and back.)
+    /// The sign, the exponent and 24 bits. (GCC 12 at -O3 wrongly leaves out a conversion to float and back.)
     static double leading_bits(double number) {
         return std::bit_cast<double>(std::bit_cast<std::uint64_t>(number) & ~((std::uint64_t{1} << 29) - 1));
     }
@@ -66,9 +66,10 @@ class EllipsoidBodies {
     std::vector<EllipsoidBlock> blocks;
     vtkIdType skipped = 0;  ///< points whose numbers make no body
 
-    /// Adds the points of a block, hidden ones and ghosts as bodies that are not drawn. `colors`: RGBA of the points, or
-    /// of the cells; may be null. Throws Error naming an array that is missing or not as it should be.
+    /// Adds the points of a block, hidden ones and ghosts as bodies that are not drawn. Throws Error naming an
+    /// array that is missing or not as it should be.
     void add(vtkDataSet* data, unsigned int index, const EllipsoidArrays& arrays);
+    /// `colors`: RGBA of the points, or of the cells.
     void color(const EllipsoidBlock& block, vtkUnsignedCharArray* colors, bool of_cells);
     /// Gives all of a block one color, and its opacity.
     void color(const EllipsoidBlock& block, const double* color);
