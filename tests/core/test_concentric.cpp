@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <deque>
 #include <numbers>
 
 #include "anamorph/operation/operation.h"
@@ -276,6 +277,33 @@ TEST(Concentric, WhatHasNoWeightDoesNotShow) {
         const ConcentricView mixed(view.of(wall), {3, 2, {0, 0}}, options),
             alone(view.of(wall), {3, 2, {0, 0}}, options, 1);
         EXPECT_EQ(draw(mixed.picture(), wall, 48), draw(alone.picture(), wall, 48));
+    }
+}
+
+TEST(Concentric, PartsAreTheSameAsTheWhole) {
+    Wall wall{128, 40, 5, 2};
+    wall.draw();
+    const View view{64, 100, 10};
+    for (const double tol : {0.01, 0.0}) {
+        ReprojectOptions options;
+        options.tol = tol;
+        const ConcentricView seen(view.of(wall), {5, HUGE_VAL, {0.5, -0.6}}, options);
+        const std::vector<float> whole = draw(seen.picture(), wall, 64), part = [&] {
+            const MemorySource stack = wall.source();
+            std::deque<StripSource> strips;
+            std::vector<const Source*> sources;
+            for (int i = 0; i < 5; ++i) sources.push_back(&strips.emplace_back(stack, 8 * 5 * i, 40));
+            std::vector<float> pixels(30 * 20 * 3);
+            EXPECT_TRUE(seen.picture().draw(
+                sources, {21, 33, 51, 53},
+                packed_view(std::as_writable_bytes(std::span(pixels)).data(), PixelType::float32, 30, 20, 3),
+                serial_for));
+            return pixels;
+        }();
+        for (std::size_t row = 0; row < 20; ++row)
+            EXPECT_TRUE(std::equal(part.begin() + static_cast<std::ptrdiff_t>(row * 90),
+                                   part.begin() + static_cast<std::ptrdiff_t>(row * 90 + 90),
+                                   whole.begin() + static_cast<std::ptrdiff_t>(((row + 33) * 64 + 21) * 3)));
     }
 }
 
