@@ -132,7 +132,7 @@ void vtkAnamorphPanoramaStyle::Turn(double right, double up) {
     this->Look();
 }
 
-void vtkAnamorphPanoramaStyle::Zoom(double factor) {
+void vtkAnamorphPanoramaStyle::ScaleFieldOfView(double factor) {
     this->SetFieldOfView(this->FieldOfView * factor);
     this->Look();
 }
@@ -169,18 +169,19 @@ void vtkAnamorphPanoramaStyle::OnRightButtonUp() {
 void vtkAnamorphPanoramaStyle::OnMouseMove() {
     const int *at = this->Interactor->GetEventPosition(), *last = this->Interactor->GetLastEventPosition();
     if (this->State == VTKIS_ROTATE) this->Turn(last[0] - at[0], last[1] - at[1]);
-    if (this->State == VTKIS_DOLLY) this->Zoom(std::pow(kZoomStep, (last[1] - at[1]) / kPixelsOfStep));
+    if (this->State == VTKIS_DOLLY)
+        this->ScaleFieldOfView(std::pow(kZoomStep, (last[1] - at[1]) / kPixelsOfStep));
 }
 
 void vtkAnamorphPanoramaStyle::OnMouseWheelForward() {
     const int* at = this->Interactor->GetEventPosition();
     this->FindPokedRenderer(at[0], at[1]);
-    this->Zoom(1 / kZoomStep);
+    this->ScaleFieldOfView(1 / kZoomStep);
 }
 void vtkAnamorphPanoramaStyle::OnMouseWheelBackward() {
     const int* at = this->Interactor->GetEventPosition();
     this->FindPokedRenderer(at[0], at[1]);
-    this->Zoom(kZoomStep);
+    this->ScaleFieldOfView(kZoomStep);
 }
 
 void vtkAnamorphPanoramaStyle::OnKeyPress() {
@@ -193,8 +194,8 @@ void vtkAnamorphPanoramaStyle::OnKeyPress() {
     if (is("Right")) this->Turn(step, 0);
     if (is("Up")) this->Turn(0, step);
     if (is("Down")) this->Turn(0, -step);
-    if (is("plus") || is("equal")) this->Zoom(1 / kZoomStep);
-    if (is("minus")) this->Zoom(kZoomStep);
+    if (is("plus") || is("equal")) this->ScaleFieldOfView(1 / kZoomStep);
+    if (is("minus")) this->ScaleFieldOfView(kZoomStep);
 }
 
 void vtkAnamorphPanoramaStyle::OnChar() {

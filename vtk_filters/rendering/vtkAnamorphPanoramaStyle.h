@@ -87,7 +87,7 @@ class ANAMORPHRENDERING_EXPORT vtkAnamorphPanoramaStyle : public vtkInteractorSt
 
     vtkRenderer* ViewRenderer();
     void Turn(double right, double up);
-    void Zoom(double factor);
+    void ScaleFieldOfView(double factor);
 
     int Pressed[2] = {0, 0};
     double Yaw = 0, Pitch = 0, FieldOfView = 90;
