@@ -252,6 +252,30 @@ TEST(Concentric, StraightUpThereIsNothing) {
     }
 }
 
+TEST(Concentric, StraightUpIsThePole) {
+    const Chart turn(Projection::equirectangular, 24, 12), view(Projection::rectilinear, 3, 3, 90);
+    for (const double pitch : {90.0, -90.0})
+        for (const double tol : {0.0, 0.01}) {
+            ReprojectOptions options;
+            options.tol = tol;
+            const auto drawn = [&](Output output, std::optional<int> circle) {
+                options.output = output;
+                const ConcentricView seen(Panorama(turn, view, {0, pitch, 0}), {2, 4, {0.4, 0.3}}, options,
+                                          circle);
+                EXPECT_LT(seen.picture().reached(serial_for).max_error, 1e-9);
+                std::vector<float> values(18, -1);
+                EXPECT_TRUE(seen.picture().draw(
+                    {nullptr, nullptr}, {0, 0, 3, 3},
+                    packed_view(std::as_writable_bytes(std::span(values)).data(), PixelType::float32, 3, 3,
+                                output == Output::stmap ? 2 : 1),
+                    serial_for));
+                return values;
+            };
+            EXPECT_EQ(drawn(Output::stmap, 0)[9], pitch > 0 ? 0 : 1);
+            EXPECT_LT(drawn(Output::bound, {})[4], 1e-9f);
+        }
+}
+
 TEST(Concentric, WeightsOfAllCirclesAddUp) {
     const ConcentricStack stack{7, HUGE_VAL, {0.5, 0.5}};
     for (double offset = -1; offset <= 1; offset += 1.0 / 64) {

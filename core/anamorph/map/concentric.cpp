@@ -94,7 +94,7 @@ ConcentricMap::ConcentricMap(const Panorama& view, const ConcentricStack& stack,
 
 ConcentricMap::Local ConcentricMap::local_around(double x, double y, int piece) const {
     const glm::dvec2& p = m_stack.viewpoint;
-    Local local{m_view.local_around(x, y, piece, slit_ray(m_view.source_ray(x, y, piece), p.x, p.y)), {}};
+    Local local{m_view.local_around(x, y, piece, slit_or_pole(m_view.source_ray(x, y, piece))), {}};
     const glm::dvec3 moved = glm::transpose(local.view.source.axes) * glm::dvec3(p.x, 0, p.y);
     local.viewpoint = {moved.x, moved.z};
     return local;
@@ -123,6 +123,8 @@ double ConcentricMap::exact_error(const Interval& x, const Interval& y, int piec
     const Ray<R> ray = m_view.source_ray(R(x, 0, 0), R(y, 0, 0), piece);
     const R seen = m_view.source().sees(flattest(ray));
     if (seen.range.hi + seen.error <= 0) return 0;
+    const auto is_zero = [](const R& r) { return r.range.lo == 0 && r.range.hi == 0 && r.error == 0; };
+    if (is_zero(ray.x) && is_zero(ray.z)) return m_view.exact_error(ray);
     return m_view.exact_error(slit_ray(ray, m_stack.viewpoint.x, m_stack.viewpoint.y));
 }
 template double ConcentricMap::exact_error<double>(const Interval&, const Interval&, int) const;

@@ -82,9 +82,7 @@ class ConcentricMap {
     template <class T>
     bool exact(const T& x, const T& y, int piece, Point<T>& source_point, int& source_piece) const {
         if (!(m_view.target().inside(x, y, piece) >= 0)) return false;
-        const Ray<T> ray =
-            slit_ray(m_view.source_ray(x, y, piece), T(m_stack.viewpoint.x), T(m_stack.viewpoint.y));
-        return m_view.exact(ray, source_point, source_piece);
+        return m_view.exact(slit_or_pole(m_view.source_ray(x, y, piece)), source_point, source_piece);
     }
     template <class Real>
     double exact_error(const Interval& x, const Interval& y, int piece) const;
@@ -130,6 +128,12 @@ class ConcentricMap {
         const T cos = root * slit_root + a * slit, sin = a * slit_root - root * slit;
         return {s.along.x * cos + s.along.z * sin, s.along.y * (root - s.ahead * m_per_depth) * per_root,
                 s.along.z * cos - s.along.x * sin};
+    }
+    /// The same with the stack's viewpoint; straight up and down, where there is no horizontal direction, the ray itself.
+    template <class T>
+    Ray<T> slit_or_pole(const Ray<T>& ray) const {
+        if (ray.x == T(0) && ray.z == T(0)) return ray;
+        return slit_ray(ray, T(m_stack.viewpoint.x), T(m_stack.viewpoint.y));
     }
     template <class T>
     Ray<T> local_slit_ray(const T& x, const T& y, const Local& local) const {
