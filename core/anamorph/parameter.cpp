@@ -153,9 +153,32 @@ bool is_control(char c) {
     return (byte < 0x20 && c != '\t') || byte == 0x7f;
 }
 
+/// Bytes of the UTF-8 character in front of `text`; 0 where there is none.
+std::size_t character(std::string_view text) {
+    const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
+    const unsigned char lead = byte(0);
+    const std::size_t size = lead < 0x80                    ? 1
+                             : lead >= 0xc2 && lead <= 0xdf ? 2
+                             : lead >= 0xe0 && lead <= 0xef ? 3
+                             : lead >= 0xf0 && lead <= 0xf4 ? 4
+                                                            : 0;
+    if (text.size() < size) return 0;
+    for (std::size_t i = 1; i < size; ++i)
+        if ((byte(i) & 0xc0) != 0x80) return 0;
+    // Longer than need be, halves of pairs, and beyond the last one.
+    if ((lead == 0xe0 && byte(1) < 0xa0) || (lead == 0xed && byte(1) > 0x9f) ||
+        (lead == 0xf0 && byte(1) < 0x90) || (lead == 0xf4 && byte(1) > 0x8f))
+        return 0;
+    return size;
+}
+
+/// UTF-8 on one line, which every host can show.
 void make_printable(std::string& text) {
-    std::replace_if(
-        text.begin(), text.end(), [](char c) { return is_control(c) || c == '\t'; }, '?');
+    for (std::size_t at = 0; at < text.size();) {
+        const std::size_t size = character(std::string_view(text).substr(at));
+        if (size == 0 || is_control(text[at]) || text[at] == '\t') text[at] = '?';
+        at += std::max<std::size_t>(size, 1);
+    }
 }
 
 template <class Number>
@@ -175,10 +198,14 @@ std::string shortest(float value) {
 }
 
 std::string printable(std::string_view text) {
-    constexpr std::size_t kMost = 100;
-    std::string out(text.substr(0, kMost));
+    std::size_t most = 100;
+    const bool cut = text.size() > most;
+    // Not within a character.
+    for (int i = 0; cut && i < 3 && most > 0 && (static_cast<unsigned char>(text[most]) & 0xc0) == 0x80; ++i)
+        --most;
+    std::string out(text.substr(0, most));
     make_printable(out);
-    return text.size() > kMost ? out + "..." : out;
+    return cut ? out + "..." : out;
 }
 
 std::string message_of(const std::exception& error, const std::string& what) {

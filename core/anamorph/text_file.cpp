@@ -5,14 +5,12 @@
 #include <cctype>
 #include <charconv>
 
+#include "anamorph/parameter.h"
+
 namespace anamorph::text_file {
 
 std::string excerpt(std::string_view text) {
-    constexpr std::size_t kMost = 60;
-    std::string out(text.substr(0, kMost));
-    for (char& c : out)
-        if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) c = '?';
-    return text.size() > kMost ? out + "..." : out;
+    return printable(text);
 }
 
 void fail(std::string_view file, const std::string& entry, const std::string& what) {

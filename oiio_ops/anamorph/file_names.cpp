@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "anamorph/file_names.h"
 
+#include <sys/stat.h>
+
 #include <algorithm>
 #include <cctype>
+#include <cstdint>
 #include <cstdlib>
 #include <filesystem>
 #include <string_view>
@@ -45,6 +48,16 @@ void check_file_name(const std::string& key, const std::string& name) {
         throw Error(key, printable(name),
                     "is an address: must be the name of a file, unless the environment variable "
                     "ANAMORPH_ALLOW_URLS is 1");
+}
+
+std::string file_state(const std::string& name) {
+    struct stat s {};
+    std::string state;
+    if (::stat(name.c_str(), &s) != 0) return state;
+    for (const auto number : {std::int64_t(s.st_ino), std::int64_t(s.st_size), std::int64_t(s.st_mtim.tv_sec),
+                              std::int64_t(s.st_mtim.tv_nsec)})
+        state += std::to_string(number) + " ";
+    return state;
 }
 
 }  // namespace anamorph

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which names of files are opened at all.
+// Which names of files are opened at all, and which file a name stands for.
 #pragma once
 
 #include <string>
@@ -11,5 +11,8 @@ namespace anamorph {
 /// variable ANAMORPH_ALLOW_URLS is 1. A name that is none of a file may be one that OpenImageIO makes pixels
 /// of, and passes.
 void check_file_name(const std::string& key, const std::string& name);
+
+/// Another text after each change of a file, whether it was written over or replaced; empty where there is none.
+std::string file_state(const std::string& name);
 
 }  // namespace anamorph

@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "anamorph/error.h"
+#include "anamorph/file_names.h"
 #include "anamorph/image_source.h"
 
 namespace anamorph {
@@ -20,8 +21,10 @@ std::size_t bytes_of(const OIIO::ImageSpec& spec, PixelType type) {
 
 }  // namespace
 
-FileRows::FileRows(Opener open, const OIIO::ImageSpec& spec, PixelType type)
+FileRows::FileRows(Opener open, const std::string& file, const OIIO::ImageSpec& spec, PixelType type)
     : m_open(std::move(open)),
+      m_file(file),
+      m_state(file_state(file)),
       m_spec(spec),
       m_pages(bytes_of(spec, type)),
       m_view(packed_view<const std::byte>(m_pages.data(), type, spec.width, spec.height, spec.nchannels)) {}
@@ -58,23 +61,30 @@ void FileRows::need(int first, int end) {
 void FileRows::decode(int first, int end) {
     if (!m_failure.empty()) throw Error(m_failure);
     if (m_input) --open_files;
-    std::unique_ptr<OIIO::ImageInput> input = m_input ? std::move(m_input) : m_open();
-    const auto fail = [&](const std::string& why) {
-        m_failure = why.empty() ? "cannot be read" : why;
-        throw Error(m_failure);
-    };
-    if (!input) fail(OIIO::geterror());
+    std::unique_ptr<OIIO::ImageInput> input = std::move(m_input);
+    // Not every reader finds its way back.
+    if (!input || first != m_next) input = m_open();
+    if (!input) throw Error(OIIO::geterror());
     const OIIO::ImageSpec& spec = input->spec();
-    if (spec.width != m_spec.width || spec.height != m_spec.height || spec.nchannels != m_spec.nchannels)
-        fail("has changed since it was opened");
+    const std::string state = file_state(m_file);
+    if (spec.width != m_spec.width || spec.height != m_spec.height || spec.nchannels != m_spec.nchannels ||
+        (!state.empty() && state != m_state))
+        throw Error("has changed since it was opened");
     // OpenImageIO's pool must not be waited on inside a read of its host.
     input->threads(1);
-    if (!input->read_scanlines(0, 0, spec.y + first, spec.y + end, spec.z, 0, spec.nchannels,
-                               oiio_type(m_view.type), m_pages.data() + first * m_view.row_stride))
-        fail(input->geterror());
+    const bool done =
+        input->read_scanlines(0, 0, spec.y + first, spec.y + end, spec.z, 0, spec.nchannels,
+                              oiio_type(m_view.type), m_pages.data() + first * m_view.row_stride);
+    // Some readers say that all went well and leave an error.
+    if (!done || input->has_error()) {
+        const std::string why = input->geterror();
+        m_failure = why.empty() ? "cannot be read" : why.substr(0, why.find('\n'));
+        throw Error(m_failure);
+    }
     if (end == m_spec.height || open_files >= kMostOpen) return;
     ++open_files;
     m_input = std::move(input);
+    m_next = end;
 }
 
 }  // namespace anamorph

@@ -25,15 +25,16 @@ class FileRows {
   public:
     using Opener = std::function<std::unique_ptr<OIIO::ImageInput>()>;
 
-    /// `spec`: of the file when it was opened. Throws std::bad_alloc.
-    FileRows(Opener open, const OIIO::ImageSpec& spec, PixelType type);
+    /// `file`: its name. `spec`: of the file when it was opened. Throws std::bad_alloc.
+    FileRows(Opener open, const std::string& file, const OIIO::ImageSpec& spec, PixelType type);
     ~FileRows();
     FileRows(const FileRows&) = delete;
     FileRows& operator=(const FileRows&) = delete;
 
     /// The whole image; only rows that need() was asked for hold pixels.
     const ConstImageView& view() const { return m_view; }
-    /// Decodes rows first to end - 1 where they are not there yet. Throws Error: the reason alone.
+    /// Decodes rows first to end - 1 where they are not there yet. Throws Error, the reason alone, where the file cannot be
+    /// opened, is another one by now, or is damaged; what was damaged once is not tried again.
     void need(int first, int end);
 
   private:
@@ -44,13 +45,15 @@ class FileRows {
     void decode(int first, int end);
 
     const Opener m_open;
+    const std::string m_file, m_state;
     const OIIO::ImageSpec m_spec;
     const Pages m_pages;
     const ConstImageView m_view;
     /// Rows that are there. The first is set before the end, so that a reader who sees the end sees it.
     std::atomic<int> m_first{std::numeric_limits<int>::max()}, m_end{0};
     std::mutex m_mutex;
-    std::unique_ptr<OIIO::ImageInput> m_input;  ///< kept open where more rows may follow
+    std::unique_ptr<OIIO::ImageInput> m_input;  ///< kept open where more rows may follow,
+    int m_next = 0;                             ///< from this one on
     std::string m_failure;                      ///< why nothing more can be decoded
 };
 

@@ -297,9 +297,9 @@ bool CacheSource::read(int level, const Box& box, std::byte* texels,
 
 void CacheSource::keep_rows() try {
     if (levels() > 1 || spec().tile_width > 0) return;
-    m_rows = std::make_unique<FileRows>(
-        [cache = m_cache, name = m_name.string()] { return open_as_cache_does(*cache, name); }, spec(),
-        m_type);
+    const std::string& name = m_name.string();
+    m_rows = std::make_unique<FileRows>([cache = m_cache, name] { return open_as_cache_does(*cache, name); },
+                                        name, spec(), m_type);
 } catch (const std::bad_alloc&) {
     // Larger than the address space that is left: by the cache, then.
 }

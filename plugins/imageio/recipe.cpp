@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "recipe.h"
 
-#include <sys/stat.h>
-
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
@@ -59,14 +57,10 @@ std::string without_detours(std::string_view path) {
 }
 
 std::string state_of(const std::string& name) {
-    struct stat s {};
-    std::string state = normal(name) + "\n";
-    if (has_extension(name, kBufferExtension)) return state + std::to_string(buffer_generation(name)) + "\n";
-    if (::stat(std::string(base_of(name)).c_str(), &s) != 0) return state;
-    for (const auto number : {std::int64_t(s.st_ino), std::int64_t(s.st_size), std::int64_t(s.st_mtim.tv_sec),
-                              std::int64_t(s.st_mtim.tv_nsec)})
-        state += std::to_string(number) + " ";
-    return state + "\n";
+    const bool in_memory = has_extension(name, kBufferExtension);
+    return normal(name) + "\n" +
+           (in_memory ? std::to_string(buffer_generation(name)) : file_state(std::string(base_of(name)))) +
+           "\n";
 }
 
 /// Is it the name of a file that the operation draws as it stands?

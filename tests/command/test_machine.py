@@ -150,6 +150,7 @@ class Machine(unittest.TestCase):
                 (["run", good, "--size", "nan"], "--size=nan: must be N or NxM"),
                 (["run", good, "--constant", "c0=1,2"], "must have four numbers"),
                 (["run", good, "--constant", "c0=1,2,nan,4"], "--constant=c0=1,2,nan,4: must be finite numbers"),
+                (["run", good, "--constant", "c7=1,,2,3"], "--constant=c7=1,,2,3: must be finite numbers"),
                 (["run", good, "--constant", "c0=1,2,3,4", "--constant", "c0=1,2,3,5"],
                  "--constant=c0=1,2,3,5: is given twice: must be given once"),
                 (["run", good, "--texture", "s0=" + square, "--texture", "s0=" + square], "is given twice"),

@@ -105,8 +105,8 @@ std::vector<float> draw(const Picture& picture, const Wall& wall, int side, int 
     return pixels;
 }
 
-/// What a picture of the wall is off by: the place along it in texels of a panorama from the centre, and the height relative
-/// to the true one, between the least and the most.
+/// What a picture of the wall is off by: the place along it in texels of a panorama from the centre, and the height as it
+/// is drawn relative to the true one, between the least and the most.
 struct Off {
     double across = 0, least_height = HUGE_VAL, most_height = 0;
 };
@@ -123,7 +123,8 @@ Off off(const std::vector<float>& pixels, const Wall& wall, const View& view, co
             const Real across = std::fabs(turned_into(azimuth - truth.azimuth)) * wall.width / (2 * kPi);
             worst.across = std::max(worst.across, static_cast<double>(across));
             if (std::fabs(truth.height) < wall.distance / 8) continue;
-            const auto height = static_cast<double>(p[2] / truth.height);
+            // What stands where the other should be is drawn at the other's height.
+            const auto height = static_cast<double>(truth.height / p[2]);
             worst.least_height = std::min(worst.least_height, height);
             worst.most_height = std::max(worst.most_height, height);
         }
@@ -171,22 +172,22 @@ TEST(Concentric, OtherWallsAreExactAcrossAndOffInHeightAsStated) {
             largest = std::max({largest, worst.most_height - 1, 1 - worst.least_height});
         }
         const double stated = stack.vertical_distortion(2.0);
-        EXPECT_LE(largest, stated + 2e-4) << depth;
-        EXPECT_GE(
-            largest,
-            0.9 * (depth < 5 ? 1 / (1 - std::hypot(0.3, 0.6) / 2) * (1 - std::hypot(0.3, 0.6) / depth) - 1
-                             : stated))
-            << depth;
+        // And 2e-4 of a height by bilinear texels, as in the test above.
+        EXPECT_LE(largest, stated + 2e-4 * (1 + stated)) << depth;
+        EXPECT_GE(largest, 0.9 * stated) << depth;
     }
 }
 
 TEST(Concentric, DistortionInClosedForm) {
     // Looking away from the centre and back to it, at things at 3 and at infinity, which are taken to be at 5.
     const ConcentricStack stack{9, 5, {0.6, 0}};
-    const double away = (1 - 0.6 / 5) / (1 - 0.6 / 3) - 1, far = 0.6 / 5;
-    EXPECT_NEAR(stack.vertical_distortion({1, 0, 0}, 3), std::max(away, far), 1e-12);
-    EXPECT_NEAR(stack.vertical_distortion({-1, 0, 0}, 3), far, 1e-12);
-    EXPECT_NEAR(stack.vertical_distortion(3), std::max(away, far), 1e-3);
+    const double away = 1 / (1 - 0.6 / 5) - 1, back = 1 - 1 / (1 + 0.6 / 5);  // those at infinity
+    EXPECT_NEAR(stack.vertical_distortion({1, 0, 0}, 3), away, 1e-12);
+    EXPECT_NEAR(stack.vertical_distortion({-1, 0, 0}, 3), back, 1e-12);
+    EXPECT_NEAR(stack.vertical_distortion(3), away, 1e-3);
+    // Things at 1.2 that are taken to be at 5: drawn too low ahead, too high behind.
+    EXPECT_NEAR(stack.vertical_distortion({1, 0, 0}, 1.2), 1 - (1 - 0.6 / 1.2) / (1 - 0.6 / 5), 1e-12);
+    EXPECT_NEAR(stack.vertical_distortion({-1, 0, 0}, 1.2), (1 + 0.6 / 1.2) / (1 + 0.6 / 5) - 1, 1e-12);
     EXPECT_EQ(ConcentricStack({9, HUGE_VAL, {0, 0}}).vertical_distortion(2), 0);
 }
 

@@ -72,6 +72,15 @@ TEST(Parameter, KeysAndAliasesInAnyCase) {
     EXPECT_THAT(error_of([] { values({{"RES", "64"}, {"size", "32"}}); }), HasSubstr("size=32: given twice"));
 }
 
+TEST(Parameter, MessagesAreUtf8) {
+    EXPECT_EQ(printable("caf\u00e9 \u4e16 \U0001f600"), "caf\u00e9 \u4e16 \U0001f600");
+    EXPECT_EQ(printable("caf\xe9, \xc3"), "caf?, ?");
+    EXPECT_EQ(printable("\xc0\xaf\xed\xa0\x80\xf4\x90\x80\x80\n"), "??????????");
+    // Cut between characters.
+    EXPECT_EQ(printable(std::string(99, 'x') + "\u00e9\u00e9"), std::string(99, 'x') + "...");
+    EXPECT_EQ(printable(std::string(98, 'x') + "\u00e9\u00e9"), std::string(98, 'x') + "\u00e9...");
+}
+
 TEST(Parameter, ErrorsNameParameterValueAndWhatIsAllowed) {
     const auto says = [](const char* key, const std::string& value, const char* allowed) {
         const std::string error = error_of([&] { values({{key, value}}); });

@@ -40,7 +40,7 @@ class FileRowsOf : public InFolder, public testing::WithParamInterface<const cha
         write_image(panorama(kWidth, kHeight, floats ? OIIO::TypeHalf : OIIO::TypeUInt8), file.name);
         want = read_pixels(file.name);
     }
-    FileRows rows() { return {file.opener(), want.spec, pixel_type(want.spec.format)}; }
+    FileRows rows() { return {file.opener(), file.name, want.spec, pixel_type(want.spec.format)}; }
     /// Row y of what is there.
     bool equal(const FileRows& rows, int y) const {
         const auto row = static_cast<std::size_t>(rows.view().row_stride);
@@ -103,12 +103,36 @@ TEST_P(FileRowsOf, SayWhyTheyCannotBeRead) {
     write_image(panorama(kWidth, kHeight / 2, OIIO::TypeUInt8), file.name);
     EXPECT_THAT([&] { changed.need(0, 10); },
                 testing::ThrowsMessage<Error>("has changed since it was opened"));
-    FileRows gone = rows();
-    std::filesystem::remove(file.name);
-    EXPECT_THROW(gone.need(0, 10), Error);
-    const int before = file.opened;
-    EXPECT_THROW(gone.need(500, 510), Error);
-    EXPECT_EQ(file.opened, before) << "each block would try again";
+    // Another file of the same size, after the first rows of the one before.
+    FileRows replaced(file.opener(), file.name, read_pixels(file.name).spec, pixel_type(want.spec.format));
+    replaced.need(100, 110);
+    write_image(panorama(kWidth, kHeight / 2, OIIO::TypeUInt8), "other" + file.name);
+    std::filesystem::rename("other" + file.name, file.name);
+    EXPECT_THAT([&] { replaced.need(300, 310); },
+                testing::ThrowsMessage<Error>("has changed since it was opened"));
+
+    FileRows away(file.opener(), file.name, read_pixels(file.name).spec, pixel_type(want.spec.format));
+    std::filesystem::rename(file.name, "away");
+    EXPECT_THROW(away.need(0, 10), Error);
+    std::filesystem::rename("away", file.name);
+    EXPECT_NO_THROW(away.need(0, 10)) << "it is there again";
+}
+
+TEST(FileRows, SayWhichFilesAreDamaged) {
+    // Some readers report success, and leave an error.
+    for (const char* name : {"damaged.tif", "damaged.png", "damaged.jpg"}) {
+        SCOPED_TRACE(name);
+        write_image(panorama(kWidth, kHeight, OIIO::TypeUInt8), name);
+        Counted file{name};
+        const OIIO::ImageSpec spec = read_pixels(name).spec;
+        std::filesystem::resize_file(name, std::filesystem::file_size(name) * 6 / 10);
+        FileRows rows(file.opener(), name, spec, PixelType::uint8);
+        EXPECT_THROW(rows.need(kHeight - 10, kHeight), Error);
+        const int before = file.opened;
+        EXPECT_THROW(rows.need(kHeight - 20, kHeight - 10), Error);
+        EXPECT_EQ(file.opened, before) << "each block would try again";
+        std::filesystem::remove(name);
+    }
 }
 
 using UntiledSources = InFolder;

@@ -62,10 +62,12 @@ double ConcentricStack::weight(int circle, double offset) const {
 double ConcentricStack::vertical_distortion(const Ray<double>& ray, double nearest) const {
     const glm::dvec2 u = horizontal(ray);
     const double r = offset(ray), t = viewpoint.x * u.x + viewpoint.y * u.y;
-    const double taken = 1 - part_of_way(r, t, inverse_of(depth));
-    const double near = taken / (1 - part_of_way(r, t, inverse_of(nearest)));
+    // Drawn heights over true ones: the thing's way from the viewpoint over that of the depth that is taken, in parts of the
+    // ways from the slit.
+    const double taken = 1 - part_of_way(r, t, inverse_of(depth)), far = 1 / taken;
+    const double near = (1 - part_of_way(r, t, inverse_of(nearest))) / taken;
     // Things in between are in between.
-    return std::max(std::fabs(near - 1), std::fabs(taken - 1));
+    return std::max(std::fabs(near - 1), std::fabs(far - 1));
 }
 
 double ConcentricStack::vertical_distortion(double nearest) const {

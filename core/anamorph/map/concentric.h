@@ -41,8 +41,8 @@ struct ConcentricStack {
     /// By how much a circle counts for lines of sight with this offset: 1 at its own radius, 0 from those of its neighbours
     /// on. Those of all circles add up to 1.
     double weight(int circle, double offset) const;
-    /// How far heights may be from 1 times the true ones, in the direction of a ray, of things that are `nearest` (above 1)
-    /// or farther from the centre.
+    /// How far heights may be from 1 times the true ones as they are drawn, in the direction of a ray, of things that are
+    /// `nearest` (above 1) or farther from the centre.
     double vertical_distortion(const Ray<double>& ray, double nearest) const;
     /// The same for all directions, to within a thousandth of it.
     double vertical_distortion(double nearest) const;

@@ -252,8 +252,8 @@ class Command {
                 throw Error("--constant", printable(text), "is given twice: must be given once");
             std::array<double, 4> value{};
             for (std::size_t i = 0; i < 4; ++i) {
-                value[i] = text_file::number(fields[i]);
-                if (!std::isfinite(value[i]))
+                std::string_view field = fields[i];
+                if (!text_file::take_number(field, value[i]) || !field.empty() || !std::isfinite(value[i]))
                     throw Error("--constant", printable(text), "must be finite numbers");
             }
             inputs.give(n, value);
