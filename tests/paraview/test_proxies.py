@@ -41,7 +41,8 @@ IN_TABLES = {"extent"}
 # What depends on the input is refused when the filter executes; the least value is in the XML all the same.
 LEAST_ALONE = {"BaseIndex": 0, "Resolution": 0}
 # Setters that count as another class does.
-NAMED_BY = {("vtkAnamorphProjectionBake", "SetProjection"): "vtkAnamorphPanoramaProjection"}
+NAMED_BY = {(name, "SetProjection"): "vtkAnamorphPanoramaProjection"
+            for name in ("vtkAnamorphProjectionBake", "vtkAnamorphPanoramaView")}
 # Entries of menus that do not say the name of their value.
 OTHER_WORDS = {"As the input", "As the inputs", "Blend to unit length"}
 # A panel shows a slider for what has two ends. Ends beyond this are left to the filter.

@@ -2,7 +2,6 @@
 #include "vtkAnamorphPanoramaView.h"
 
 #include <algorithm>
-#include <iterator>
 #include <string>
 
 #include "anamorph/error.h"
@@ -24,8 +23,6 @@ vtkObjectFactoryNewMacro(vtkAnamorphPanoramaView);
 namespace {
 
 using Executive = vtkStreamingDemandDrivenPipeline;
-
-static_assert(std::size(anamorph::kProjections) == vtkAnamorphPanoramaView::OCTAHEDRAL + 1);
 
 constexpr int kMostViewSize = 1 << 16;
 const char* const kName = "the panorama";

@@ -15,6 +15,7 @@
 #define vtkAnamorphPanoramaView_h
 
 #include "AnamorphFiltersModule.h"  // for the export macro
+#include "vtkAnamorphPanoramaProjection.h"
 #include "vtkImageAlgorithm.h"
 
 class ANAMORPHFILTERS_EXPORT vtkAnamorphPanoramaView : public vtkImageAlgorithm {
@@ -23,31 +24,12 @@ class ANAMORPHFILTERS_EXPORT vtkAnamorphPanoramaView : public vtkImageAlgorithm 
     vtkTypeMacro(vtkAnamorphPanoramaView, vtkImageAlgorithm);
     void PrintSelf(ostream& os, vtkIndent indent) override;
 
-    /// The order of the core's list.
-    enum Projections {
-        EQUIRECTANGULAR = 0,
-        CYLINDRICAL,
-        RECTILINEAR,
-        FISHEYE,
-        EQUISOLID,
-        STEREOGRAPHIC,
-        MERCATOR,
-        CUBEMAP,
-        CUBEMAP_3X2,
-        CUBECROSS,
-        EAC,
-        PANNINI,
-        ORTHOGRAPHIC,
-        SINUSOIDAL,
-        HAMMER,
-        DUAL_FISHEYE,
-        OCTAHEDRAL
-    };
     ///@{
     /**
-     * The projection of the panorama. Default: EQUIRECTANGULAR.
+     * The projection of the panorama, one of vtkAnamorphPanoramaProjection::Projections. Default: EQUIRECTANGULAR.
      */
-    vtkSetClampMacro(Projection, int, EQUIRECTANGULAR, OCTAHEDRAL);
+    vtkSetClampMacro(Projection, int, vtkAnamorphPanoramaProjection::EQUIRECTANGULAR,
+                     vtkAnamorphPanoramaProjection::OCTAHEDRAL);
     vtkGetMacro(Projection, int);
     ///@}
 
@@ -132,7 +114,7 @@ class ANAMORPHFILTERS_EXPORT vtkAnamorphPanoramaView : public vtkImageAlgorithm 
 
     void Draw(vtkInformationVector** inputs, const int* extent, vtkImageData* output);
 
-    int Projection = EQUIRECTANGULAR;
+    int Projection = vtkAnamorphPanoramaProjection::EQUIRECTANGULAR;
     double FieldOfView = 0, PanniniDistance = 1;
     char* Lens = nullptr;
     double Yaw = 0, Pitch = 0, Roll = 0, ViewAngle = 90;
