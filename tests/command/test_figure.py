@@ -457,10 +457,9 @@ class Scenes(Case):
             points = [tuple(map(float, r[1:4])) for r in rows if r[0] == "v"]
             normals = [tuple(map(float, r[1:])) for r in rows if r[0] == "vn"]
             for point, normal in zip(points, normals):
-                # In single precision.
-                self.assertAlmostEqual(math.dist(point, center), 100, delta=1e-4)
+                self.assertAlmostEqual(math.dist(point, center), 100, places=9)
                 for p, n, c in zip(point, normal, center):
-                    self.assertAlmostEqual(p, c + 100 * n, delta=1e-4)
+                    self.assertAlmostEqual(p, c + 100 * n, places=9)
             corners = [int(c.split("//")[0]) for r in rows if r[0] == "f" for c in r[1:]]
             self.assertEqual((min(corners), max(corners)), (first, first + len(points) - 1))
             first += len(points)

@@ -287,14 +287,14 @@ std::string glb_file(std::span<const FigureFrame> frames, double frames_per_seco
 
 namespace {
 
-/// Rows of numbers as text, as few digits as single precision takes: what reads OBJ keeps no more.
+/// Rows of numbers as text, with as many digits as it takes to read them back.
 class Rows {
   public:
     explicit Rows(std::string& text) : m_text(text) {}
 
     void add(std::string_view what, const glm::dvec3& v) {
         m_text += what;
-        for (int c = 0; c < 3; ++c) put(static_cast<float>(v[c]));
+        for (int c = 0; c < 3; ++c) put(v[c]);
     }
     void add_corner(std::size_t index) {
         put(index);
