@@ -27,24 +27,42 @@ void for_strips(int rows, const ParallelFor& parallel_for, const std::function<v
 
 PlainView::PlainView(const Panorama& map, const Orientation& orientation)
     : cylinder(map.source().projection() == Projection::cylindrical),
+      target(map.target().projection()),
       source_width(map.source().width()),
       source_height(map.source().height()),
-      size(map.target().width()),
+      width(map.target().width()),
+      height(map.target().height()),
+      faces(target == Projection::cubemap ? 6 : 1),
       scale_x(map.source().scale_x()),
       scale_y(map.source().scale_y()),
       step(1 / map.target().scale_x()),
-      first((0.5 - 0.5 * size) * step) {
+      first_x((0.5 - 0.5 * width) * step),
+      first_y((0.5 - 0.5 * height / faces) * step) {
     const glm::dmat3 m = anamorph::rotation(orientation);
-    for (int row = 0; row < 3; ++row)
-        for (int column = 0; column < 3; ++column) rotation[3 * row + column] = m[column][row];
+    for (int face = 0; face < faces; ++face) {
+        const glm::dmat3 turned = m * map.target().pieces()[static_cast<std::size_t>(face)].axes;
+        for (int row = 0; row < 3; ++row)
+            for (int column = 0; column < 3; ++column) rotation[face][3 * row + column] = turned[column][row];
+    }
 }
 
 Point<double> double_point(const PlainView& view, int i, int j) {
-    const double* r = view.rotation;
-    const double x = view.first + i * view.step, y = view.first + j * view.step;
-    const double rx = r[0] * x + r[1] * y + r[2];
-    const double ry = r[3] * x + r[4] * y + r[5];
-    const double rz = r[6] * x + r[7] * y + r[8];
+    const double* r = view.rotation_of(j);
+    double x = view.first_x + i * view.step, y = view.first_y + view.row_of_face(j) * view.step, z = 1;
+    if (view.target == Projection::fisheye) {
+        const double angle = std::hypot(x, y), k = angle > 0 ? std::sin(angle) / angle : 1;
+        x *= k, y *= k, z = std::cos(angle);
+    } else if (view.target == Projection::stereographic) {
+        z = 1 - (x * x + y * y) / 4;
+    } else if (view.target == Projection::equirectangular || view.target == Projection::mercator) {
+        const double longitude = x, latitude = view.latitude(y);
+        x = std::sin(longitude) * std::cos(latitude);
+        y = std::sin(latitude);
+        z = std::cos(longitude) * std::cos(latitude);
+    }
+    const double rx = r[0] * x + r[1] * y + r[2] * z;
+    const double ry = r[3] * x + r[4] * y + r[5] * z;
+    const double rz = r[6] * x + r[7] * y + r[8] * z;
     const double rho = std::sqrt(rx * rx + rz * rz);
     const double down = view.cylinder ? ry / rho : std::atan2(ry, rho);
     return {std::atan2(rx, rz) * view.scale_x + 0.5 * view.source_width,
@@ -55,9 +73,9 @@ template <class Texel>
 void draw_double(const PlainView& view, const Texel* source, Texel* picture,
                  const ParallelFor& parallel_for) {
     const int w = view.source_width, h = view.source_height;
-    for_strips(view.size, parallel_for, [&](int first, int last) {
+    for_strips(view.height, parallel_for, [&](int first, int last) {
         for (int j = first; j < last; ++j)
-            for (int i = 0; i < view.size; ++i) {
+            for (int i = 0; i < view.width; ++i) {
                 const Point<double> p = double_point(view, i, j);
                 const double x = p.x - 0.5, y = p.y - 0.5;
                 const int ix = static_cast<int>(std::floor(x)), iy = static_cast<int>(std::floor(y));
@@ -71,7 +89,7 @@ void draw_double(const PlainView& view, const Texel* source, Texel* picture,
                 const Texel* c = source + 3 * (below + static_cast<std::size_t>(x0));
                 const Texel* d = source + 3 * (below + static_cast<std::size_t>(x1));
                 Texel* out =
-                    picture + 3 * (static_cast<std::size_t>(j) * static_cast<std::size_t>(view.size) +
+                    picture + 3 * (static_cast<std::size_t>(j) * static_cast<std::size_t>(view.width) +
                                    static_cast<std::size_t>(i));
                 for (int k = 0; k < 3; ++k) {
                     const float value =
@@ -127,16 +145,16 @@ OpenCv<Texel>::OpenCv(const PlainView& view, const Texel* source, Texel* picture
       m_picture(picture),
       m_threads(threads),
       m_parallel_for(parallel_for),
-      m_x(static_cast<std::size_t>(view.size) * static_cast<std::size_t>(view.size)),
+      m_x(static_cast<std::size_t>(view.width) * static_cast<std::size_t>(view.height)),
       m_y(m_x.size()) {}
 
 template <class Texel>
 void OpenCv<Texel>::compute_map() {
-    for_strips(m_view.size, m_parallel_for, [&](int first, int last) {
+    for_strips(m_view.height, m_parallel_for, [&](int first, int last) {
         for (int j = first; j < last; ++j)
-            for (int i = 0; i < m_view.size; ++i) {
+            for (int i = 0; i < m_view.width; ++i) {
                 const Point<double> p = double_point(m_view, i, j);
-                const std::size_t at = static_cast<std::size_t>(j) * static_cast<std::size_t>(m_view.size) +
+                const std::size_t at = static_cast<std::size_t>(j) * static_cast<std::size_t>(m_view.width) +
                                        static_cast<std::size_t>(i);
                 m_x[at] = static_cast<float>(p.x - 0.5);
                 m_y[at] = static_cast<float>(p.y - 0.5);
@@ -148,33 +166,33 @@ template <class Texel>
 template <class Map>
 void OpenCv<Texel>::remap_by(const Map& first, const Map& second) {
     const int depth = std::is_same_v<Texel, float> ? CV_32F : sizeof(Texel) == 1 ? CV_8U : CV_16U;
-    const int type = CV_MAKETYPE(depth, 3), n = m_view.size;
+    const int type = CV_MAKETYPE(depth, 3);
     const cv::Mat from(m_view.source_height, m_view.source_width, type, const_cast<Texel*>(m_source));
-    cv::Mat to(n, n, type, m_picture);
+    cv::Mat to(m_view.height, m_view.width, type, m_picture);
     cv::setNumThreads(m_threads);
     cv::remap(from, to, first, second, cv::INTER_LINEAR, cv::BORDER_WRAP);
 }
 
 template <class Texel>
 void OpenCv<Texel>::remap() {
-    const int n = m_view.size;
-    remap_by(cv::Mat(n, n, CV_32FC1, m_x.data()), cv::Mat(n, n, CV_32FC1, m_y.data()));
+    const int w = m_view.width, h = m_view.height;
+    remap_by(cv::Mat(h, w, CV_32FC1, m_x.data()), cv::Mat(h, w, CV_32FC1, m_y.data()));
 }
 
 template <class Texel>
 void OpenCv<Texel>::fix_map() {
-    const int n = m_view.size;
+    const int w = m_view.width, h = m_view.height;
     m_whole.resize(2 * m_x.size());
     m_fraction.resize(m_x.size());
-    cv::Mat whole(n, n, CV_16SC2, m_whole.data()), fraction(n, n, CV_16UC1, m_fraction.data());
-    cv::convertMaps(cv::Mat(n, n, CV_32FC1, m_x.data()), cv::Mat(n, n, CV_32FC1, m_y.data()), whole, fraction,
+    cv::Mat whole(h, w, CV_16SC2, m_whole.data()), fraction(h, w, CV_16UC1, m_fraction.data());
+    cv::convertMaps(cv::Mat(h, w, CV_32FC1, m_x.data()), cv::Mat(h, w, CV_32FC1, m_y.data()), whole, fraction,
                     CV_16SC2);
 }
 
 template <class Texel>
 void OpenCv<Texel>::remap_fixed() {
-    const int n = m_view.size;
-    remap_by(cv::Mat(n, n, CV_16SC2, m_whole.data()), cv::Mat(n, n, CV_16UC1, m_fraction.data()));
+    const int w = m_view.width, h = m_view.height;
+    remap_by(cv::Mat(h, w, CV_16SC2, m_whole.data()), cv::Mat(h, w, CV_16UC1, m_fraction.data()));
 }
 
 #else
@@ -206,7 +224,7 @@ template class OpenCv<std::uint16_t>;
 
 Traffic::Traffic(const PlainView& view, const std::byte* source, int texel_bytes,
                  const ParallelFor& parallel_for)
-    : m_picture_bytes(static_cast<std::size_t>(view.size) * static_cast<std::size_t>(view.size) *
+    : m_picture_bytes(static_cast<std::size_t>(view.width) * static_cast<std::size_t>(view.height) *
                       static_cast<std::size_t>(texel_bytes)) {
     constexpr std::size_t kLine = 64;
     const std::int64_t row = std::int64_t{view.source_width} * texel_bytes;
@@ -218,9 +236,9 @@ Traffic::Traffic(const PlainView& view, const std::byte* source, int texel_bytes
         for (const std::int64_t byte : {at, at + texel_bytes - 1})
             touched[static_cast<std::size_t>(byte) / kLine].store(true, std::memory_order_relaxed);
     };
-    for_strips(view.size, parallel_for, [&](int first, int last) {
+    for_strips(view.height, parallel_for, [&](int first, int last) {
         for (int j = first; j < last; ++j)
-            for (int i = 0; i < view.size; ++i) {
+            for (int i = 0; i < view.width; ++i) {
                 const Point<double> p = double_point(view, i, j);
                 const auto x = static_cast<std::int64_t>(std::floor(p.x - 0.5));
                 const auto y = static_cast<std::int64_t>(std::floor(p.y - 0.5));

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // What a panorama can be reprojected with instead: the loop that one writes in an afternoon, an exact loop
 // with all the tricks of vector units and caches, OpenCV, and the memory traffic alone, below which nobody
-// gets. All draw a square rectilinear view, three channels, bilinear.
+// gets. All draw three channels, bilinear.
 #pragma once
 
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <string>
@@ -20,11 +21,21 @@ namespace anamorph::bench {
 struct PlainView {
     PlainView(const Panorama& map, const Orientation& orientation);
 
+    /// The rows of the face that a row stands in, from 0.
+    int row_of_face(int j) const { return j % (height / faces); }
+    /// The source's ray of a pixel is `rotation_of` its row times the target's; row by row.
+    const double* rotation_of(int j) const { return rotation[j / (height / faces)]; }
+
+    /// Of a height in the plane of an equirectangular or Mercator picture.
+    double latitude(double y) const { return target == Projection::mercator ? std::atan(std::sinh(y)) : y; }
+
     bool cylinder;
-    int source_width, source_height, size;
+    Projection
+        target;  ///< rectilinear or a cubemap of such faces, fisheye, stereographic, equirectangular, mercator
+    int source_width, source_height, width, height, faces;
     double scale_x, scale_y;  ///< source pixels per radian; per unit of height where the source is a cylinder
-    double step, first;       ///< distance of target pixels in the plane z = 1, and the first pixel's place
-    double rotation[9];       ///< source ray = rotation * target ray, row by row
+    double step, first_x, first_y;  ///< distance of target pixels in their plane, and the first pixel's place
+    double rotation[6][9];
 };
 
 // (1) Every pixel with double trigonometry, row after row.
