@@ -8,6 +8,7 @@
 #include <random>
 
 #include "anamorph/render/block_reader.h"
+#include "anamorph/render/pixel.h"
 #include "anamorph/render/pyramid.h"
 #include "draw_map.h"
 #include "function_map.h"
@@ -163,6 +164,108 @@ TEST(BlockReader, PointsThatAreNoneOrFarAwayHarmNoOthers) {
                 EXPECT_EQ(wrong, 0);
                 EXPECT_EQ(lit, 0);
             }
+}
+
+/// An image that is not at hand as a whole.
+class Copied final : public Source {
+  public:
+    explicit Copied(const Source& source) : m_source(source) {}
+    PixelType type() const noexcept override { return m_source.type(); }
+    int channels() const noexcept override { return m_source.channels(); }
+    int unassociated_alpha() const noexcept override { return m_source.unassociated_alpha(); }
+    int levels() const noexcept override { return 1; }
+    Size size(int level) const noexcept override { return m_source.size(level); }
+    bool read(int level, const Box& box, std::byte* texels,
+              std::ptrdiff_t row_stride) const noexcept override {
+        return m_source.read(level, box, texels, row_stride);
+    }
+
+  private:
+    const Source& m_source;
+};
+
+TEST(BlockReader, PointsFarApartAreReadEachFromItsOwnTexels) {
+    constexpr int kWidth = 2400, kHeight = 1300, kAcross = 100, kDown = 50;
+    const unsigned seed = 5;
+    SCOPED_TRACE(seed);
+    std::mt19937 random(seed);
+    // Some 600 texels a pixel, and points over every edge.
+    const auto at = [](double x, double y) {
+        return Point<double>{24.7 * x - 1.3 * y + 0.01 * x * y - 30, 25.9 * y + 2.1 * x - 60.3};
+    };
+    for (const int channels : {1, 3, 4, 5}) {
+        Picture texels(kWidth, kHeight, channels);
+        // Not transparent: colour is divided by alpha, of which bicubic weights may leave little.
+        for (float& v : texels.values) v = 0.5f + static_cast<float>(random() % 4096) / 8192;
+        for (const int alpha : {-1, channels - 1}) {
+            const MemorySource source(texels.read(), alpha);
+            for (const Kind kind : {Kind::exact, Kind::polynomial, Kind::computed})
+                for (const Filter filter : {Filter::nearest, Filter::bilinear, Filter::bicubic})
+                    for (const Wrap wrap : {Wrap::black, Wrap::mirror}) {
+                        SCOPED_TRACE(::testing::Message()
+                                     << channels << " channels, alpha " << alpha << ", kind "
+                                     << static_cast<int>(kind) << ", filter " << static_cast<int>(filter)
+                                     << ", wrap " << static_cast<int>(wrap));
+                        const FunctionMap map(kAcross, kDown, kind, at);
+                        const Picture picture = draw(map, source, filter, wrap);
+                        EXPECT_EQ(picture.values, draw(map, Copied(source), filter, wrap).values);
+                        // A crop, whose rows begin elsewhere.
+                        const Box box{17, 9, 83, 40};
+                        Picture crop(box.width(), box.height(), channels);
+                        ASSERT_TRUE(test::draw_map(map, border_of(source, wrap), filter, Output::color,
+                                                   &source, box, crop.view()));
+                        PointSampler sampler(source, border_of(source, wrap));
+                        std::vector<float> pixel(static_cast<std::size_t>(channels));
+                        double worst = 0;
+                        for (int y = box.y0; y < box.y1; ++y)
+                            for (int x = box.x0; x < box.x1; ++x) {
+                                const auto* drawn =
+                                    &picture.values[static_cast<std::size_t>((y * kAcross + x) * channels)];
+                                for (int c = 0; c < channels; ++c)
+                                    ASSERT_EQ(drawn[c], crop.at(x - box.x0, y - box.y0, c));
+                                // Polynomials and offsets in float may be off by more; nearest takes another texel then.
+                                if (kind != Kind::exact) continue;
+                                const Point<double> p = at(x + 0.5, y + 0.5);
+                                ASSERT_TRUE(sampler.sample(filter, 0, 0, p.x, p.y, pixel.data()));
+                                if (alpha >= 0) unassociate_alpha(pixel.data(), channels, alpha);
+                                for (int c = 0; c < channels; ++c)
+                                    worst = std::max(worst,
+                                                     std::fabs(double{drawn[c]} -
+                                                               double{pixel[static_cast<std::size_t>(c)]}));
+                            }
+                        EXPECT_LE(worst, alpha >= 0 ? 1e-4 : 2e-6);
+                    }
+        }
+    }
+}
+
+TEST(BlockReader, PointsFarApartStayWithinTheirFloats) {
+    // A slope in each direction: a value says where it was read.
+    constexpr int kWidth = 3000, kHeight = 1500;
+    Picture texels(kWidth, kHeight, 2);
+    for (int y = 0; y < kHeight; ++y)
+        for (int x = 0; x < kWidth; ++x) {
+            texels.at(x, y, 0) = static_cast<float>(x) / 4096;
+            texels.at(x, y, 1) = static_cast<float>(y) / 4096;
+        }
+    const MemorySource source(texels.read());
+    const auto at = [](double x, double y) {
+        return Point<double>{25.3 * x + 7 * y + 30, 26.1 * y + 3 * x + 20};
+    };
+    for (const Kind kind : {Kind::exact, Kind::polynomial, Kind::computed})
+        for (const Filter filter : {Filter::bilinear, Filter::bicubic}) {
+            const Picture picture = draw(FunctionMap(100, 44, kind, at), source, filter);
+            double worst = 0;
+            for (int y = 0; y < 44; ++y)
+                for (int x = 0; x < 100; ++x) {
+                    const Point<double> p = at(x + 0.5, y + 0.5);
+                    const auto* v = &picture.values[static_cast<std::size_t>((y * 100 + x) * 2)];
+                    worst = std::max({worst, std::fabs(4096 * double{v[0]} + 0.5 - p.x),
+                                      std::fabs(4096 * double{v[1]} + 0.5 - p.y)});
+                }
+            // Offsets of up to 2000 texels, and values of up to 1 in sums, in float: 2.4e-4 texels each.
+            EXPECT_LE(worst, 1e-3);
+        }
 }
 
 /// How far an antialiased picture of stripes, `wave` source pixels wide, is from the average of 16 x 16

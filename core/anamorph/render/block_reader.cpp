@@ -176,6 +176,9 @@ bool all_alike(const PixelPoints<Real>& points, std::ptrdiff_t ahead, int width,
 // Where there are more texels than this for a pixel, they are brought near one by one.
 constexpr double kApart = 8;
 
+// More texels than this for a pixel are not taken together, wherever they are: the bits of a picture do not depend on that.
+constexpr double kMostTexels = 128;
+
 // Cells of up to so many pixels whose texels lie too far apart are read pixel by pixel, larger ones are halved.
 constexpr int kSmallCell = 16;
 
@@ -324,6 +327,7 @@ BlockReader::BlockReader(const BlockMap& map, const Source& source, const Border
       m_filter(filter),
       m_reader(source, border),
       m_points(source, border),
+      m_apart(source, border),
       m_chooser(source),
       m_values(static_cast<std::size_t>(kMaxRow) * static_cast<std::size_t>(source.channels()) + 16) {}
 
@@ -517,6 +521,7 @@ bool BlockReader::rows(const Block& block, const BlockPoints& points, const Box&
         const std::ptrdiff_t k = j * points.row_stride + i;
         return Point<double>{points.x[k], points.y[k]};
     };
+    if (lie_apart(at, block)) return rows_apart(block, points, part, row);
     const auto body = [&](const Box& cell, const Filtering& f) {
         return points_cell(f, block, points, cell, part, row);
     };
@@ -644,6 +649,8 @@ bool BlockReader::lie_together(const Box& cell) const {
 }
 
 bool BlockReader::rows_in_double(const Block& block, const Box& part, const Row& row) {
+    const auto at = [&](int i, int j) { return m_exact.at(i, j); };
+    if (lie_apart(at, block)) return rows_apart(block, {}, part, row);
     const auto body = [&](const Box& cell, const Filtering& f) {
         return exact_cell(f, block, cell, part, row);
     };
@@ -652,8 +659,7 @@ bool BlockReader::rows_in_double(const Block& block, const Box& part, const Row&
     Range x, y;
     if (!lie_together(whole(block)) || !ranges_in_double(whole(block), x, y))
         return rows_one_by_one(block, {}, part, row);
-    return for_each_footprint(
-        block, [&](int i, int j) { return m_exact.at(i, j); }, body);
+    return for_each_footprint(block, at, body);
 }
 
 /// Of the points of a cell that were read in double. False where they are too far away.
@@ -721,6 +727,49 @@ bool BlockReader::rows_one_by_one(const Block& block, const BlockPoints& points,
     return ok;
 }
 
+/// Does the map minify so much that no cell of the block has its texels together? Judged by the steps in its middle.
+template <class At>
+bool BlockReader::lie_apart(const At& at, const Block& block) const {
+    const Steps<At> steps(at, block);
+    if (averages(m_filter) || !steps.go_both_ways()) return false;
+    const Jacobian j = steps.jacobian(whole(block));
+    return (std::fabs(j.x_i) + std::fabs(j.x_j)) * (std::fabs(j.y_i) + std::fabs(j.y_j)) > kMostTexels;
+}
+
+/// Each pixel with texels of its own, of filters that read one point. The next row's are on their way meanwhile.
+bool BlockReader::rows_apart(const Block& block, const BlockPoints& points, const Box& part, const Row& row) {
+    const simd::Kernel kernel = filtering({}).kernel;
+    for (int j = part.y0; j <= part.y1; ++j) {
+        ApartReader::Row& next = m_apart_rows[j & 1];
+        const ApartReader::Row& now = m_apart_rows[(j - 1) & 1];
+        if (j < part.y1) {
+            take_apart(block, points, part, j, next);
+            if (!m_apart.locate(next, kernel)) return false;
+        }
+        if (j == part.y0) continue;
+        const PixelType type = m_apart.sample(now, kernel, m_values.data());
+        finish(part.x0, j - 1, part.width(), one_of(type), row);
+    }
+    return true;
+}
+
+/// The points of row j. Beyond every edge all points are alike: those too far away come nearer.
+void BlockReader::take_apart(const Block& block, const BlockPoints& points, const Box& part, int j,
+                             ApartReader::Row& to) const {
+    const int k = j - block.box.y0, first = part.x0 - block.box.x0;
+    to.count = part.width();
+    for (int i = 0; i < to.count; ++i) {
+        const std::ptrdiff_t at = k * points.row_stride + first + i;
+        const Point<double> p =
+            points.x ? Point<double>{block.base_x + double{points.x[at]}, block.base_y + double{points.y[at]}}
+                     : m_exact.at(first + i, k);
+        const bool is_none = std::isnan(p.x) || std::isnan(p.y);
+        to.x[i] = is_none ? 0 : std::clamp(p.x, -kFarthest, kFarthest);
+        to.y[i] = is_none ? 0 : std::clamp(p.y, -kFarthest, kFarthest);
+        to.piece[i] = is_none ? -1 : points.x ? block.source_piece : m_exact.piece(k)[first + i];
+    }
+}
+
 bool BlockReader::sample_point(int i, int j, int target_piece, const Point<double>& p, int piece,
                                float* pixel) {
     const Jacobian jacobian =
@@ -761,9 +810,7 @@ BlockReader::Got BlockReader::window_of(const Filtering& f, int piece, std::int3
     if (!(most_x <= kMostOffset && most_y <= kMostOffset)) return Got::too_large;
     const Box box{static_cast<int>(x.first), static_cast<int>(y.first), static_cast<int>(x.last),
                   static_cast<int>(y.last)};
-    // More texels than this per pixel are not copied, wherever they are: the bits of a picture do not depend on that.
-    constexpr double kMost = 128;
-    if (texels_in(box) > kMost * texels_in(block) + 4096) return Got::too_large;
+    if (texels_in(box) > kMostTexels * texels_in(block) + 4096) return Got::too_large;
     if (!m_reader.get(f.level, piece, box, window)) return Got::failed;
     const double pixel = double(window.channels) * size_of(window.type);
     const double span = std::fabs(double(window.row_stride)) * most_y + pixel * most_x;

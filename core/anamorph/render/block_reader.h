@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "anamorph/approx/block.h"
+#include "anamorph/render/apart_reader.h"
 #include "anamorph/render/canvas.h"
 #include "anamorph/render/footprint.h"
 #include "anamorph/render/point_sampler.h"
@@ -133,6 +134,11 @@ class BlockReader {
     bool polynomial_rows(const Block& block, const Box& part, const Row& row);
     bool rows_in_double(const Block& block, const Box& part, const Row& row);
     bool rows_one_by_one(const Block& block, const BlockPoints& points, const Box& part, const Row& row);
+    bool rows_apart(const Block& block, const BlockPoints& points, const Box& part, const Row& row);
+    void take_apart(const Block& block, const BlockPoints& points, const Box& part, int j,
+                    ApartReader::Row& to) const;
+    template <class At>
+    bool lie_apart(const At& at, const Block& block) const;
     bool sample_point(int i, int j, int target_piece, const Point<double>& p, int piece, float* pixel);
     void sample(const simd::Texels& texels, const simd::Offsets& offsets, PixelType type, int x, int y,
                 const Row& row);
@@ -169,6 +175,8 @@ class BlockReader {
     Filter m_filter;
     WindowReader m_reader;
     PointSampler m_points;
+    ApartReader m_apart;
+    ApartReader::Row m_apart_rows[2];
     FootprintChooser m_chooser;
     std::vector<float> m_values;
     std::optional<BlockPlanes> m_planes;

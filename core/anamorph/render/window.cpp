@@ -149,6 +149,20 @@ void grow(std::vector<std::byte>& bytes, std::int64_t size) {
 
 }  // namespace
 
+const ConstImageView* WindowReader::view_of(int level, int piece, const Box& box) const noexcept {
+    const bool inside = holds(m_border.interior(piece, m_source.size(level)), box);
+    const ConstImageView* image =
+        inside && m_source.unassociated_alpha() < 0 ? m_source.view(level) : nullptr;
+    return image && is_readable(*image) && has_slack(*image, box) ? image : nullptr;
+}
+
+bool WindowReader::get_in_place(int level, int piece, const Box& box, Window& window) noexcept {
+    const ConstImageView* image = view_of(level, piece, box);
+    if (!image || !m_source.prepare(level, box)) return false;
+    window = {image->at(box.x0, box.y0), m_source.type(), m_source.channels(), image->row_stride, box};
+    return true;
+}
+
 bool WindowReader::get(int level, int piece, const Box& box, Window& window) noexcept try {
     const std::int64_t width = std::int64_t{box.x1} - box.x0, height = std::int64_t{box.y1} - box.y0;
     if (width <= 0 || height <= 0 || width > kMaxTexels || height > kMaxTexels || width * height > kMaxTexels)
@@ -157,13 +171,7 @@ bool WindowReader::get(int level, int piece, const Box& box, Window& window) noe
     const PixelType type = m_source.type();
     const std::int64_t pixel = std::int64_t{channels} * size_of(type);
 
-    const bool inside = holds(m_border.interior(piece, m_source.size(level)), box);
-    const ConstImageView* image = alpha < 0 && inside ? m_source.view(level) : nullptr;
-    if (image && is_readable(*image) && has_slack(*image, box)) {
-        if (!m_source.prepare(level, box)) return false;
-        window = {image->at(box.x0, box.y0), type, channels, image->row_stride, box};
-        return true;
-    }
+    if (view_of(level, piece, box)) return get_in_place(level, piece, box, window);
 
     std::vector<std::byte>& raw = alpha < 0 ? m_texels : m_raw;
     grow(raw, height * width * pixel + Window::kSlack);

@@ -33,9 +33,15 @@ class WindowReader {
     /// the source could not be read or the box has more than kMaxTexels texels.
     bool get(int level, int piece, const Box& box, Window& window) noexcept;
 
+    /// The same where it points into the source, and false elsewhere: nothing is copied.
+    bool get_in_place(int level, int piece, const Box& box, Window& window) noexcept;
+
     static constexpr std::int64_t kMaxTexels = std::int64_t{1} << 24;
 
   private:
+    /// The level in memory, if a window of it may point there.
+    const ConstImageView* view_of(int level, int piece, const Box& box) const noexcept;
+
     const Source& m_source;
     const Border& m_border;
     std::vector<std::byte> m_texels, m_raw;

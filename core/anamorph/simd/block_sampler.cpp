@@ -233,6 +233,17 @@ void SampleRow(const Texels& s, const Offsets& at, float* out) {
     }
 }
 
+void FetchRow(const Texels& s, const Offsets& at) {
+    const std::ptrdiff_t pixel = std::ptrdiff_t{s.channels} * size_of(s.type);
+    for (int i = 0; i < at.count; ++i) {
+        const std::byte* texel = s.texels + at.whole_y[i] * s.row_stride + at.whole_x[i] * pixel;
+        // The row of its own texel, and the other row that is read.
+        const ptrdiff_t other = at.y[i] < 0.5f ? -s.row_stride : s.row_stride;
+        hwy::Prefetch(texel);
+        hwy::Prefetch(texel + other);
+    }
+}
+
 /// Float to float: whole aligned vectors bypass the cache.
 void StoreFloats(const float* HWY_RESTRICT values, int count, float scale, float* HWY_RESTRICT to) {
     const hn::ScalableTag<float> d;
@@ -386,6 +397,7 @@ namespace anamorph::simd {
 HWY_EXPORT(BlockPoints);
 HWY_EXPORT(SampleRow);
 HWY_EXPORT(StoreRow);
+HWY_EXPORT(FetchRow);
 HWY_EXPORT(DrawBlock);
 
 void block_points(const Polynomials& block, int row, int begin, int end, float* out_x, float* out_y) {
@@ -402,6 +414,10 @@ void draw_block(const Texels& texels, const Polynomials& block, int begin, int e
 
 void sample_row(const Texels& texels, const Offsets& offsets, float* out) {
     HWY_DYNAMIC_DISPATCH(SampleRow)(texels, offsets, out);
+}
+
+void fetch_row(const Texels& texels, const Offsets& offsets) {
+    HWY_DYNAMIC_DISPATCH(FetchRow)(texels, offsets);
 }
 
 void store_row(const float* values, int count, float scale, PixelType type, std::byte* to) {

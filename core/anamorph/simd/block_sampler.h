@@ -80,6 +80,9 @@ inline constexpr int kRowRoom = kMaxRow + 16;
 /// uint8). `out` has room for kMaxRow * channels + 16 floats.
 void sample_row(const Texels& texels, const Offsets& offsets, float* out);
 
+/// Brings near what sample_row is to read of a row by one tap.
+void fetch_row(const Texels& texels, const Offsets& offsets);
+
 /// Texels that will be read soon: `rows` rows of `bytes` bytes.
 struct Upcoming {
     const std::byte* first = nullptr;

@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "anamorph/render/apart_reader.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <limits>
+
+#include "anamorph/simd/split_points.h"
+
+namespace anamorph {
+namespace {
+
+/// So many texels on each side of the one that a point falls into may be read.
+int support_of(simd::Kernel kernel) {
+    switch (kernel) {
+        case simd::Kernel::nearest:
+            return 0;
+        case simd::Kernel::bilinear:
+            return 1;
+        case simd::Kernel::bicubic:
+            return 2;
+    }
+    return 2;
+}
+
+simd::Texels texels_of(const Window& window, simd::Kernel kernel) {
+    static constexpr simd::Tap kMiddle{};
+    return {window.texels, window.row_stride, window.type, window.channels, kernel, &kMiddle, 1};
+}
+
+}  // namespace
+
+ApartReader::ApartReader(const Source& source, const Border& border)
+    : m_source(source), m_reader(source, border) {}
+
+bool ApartReader::locate(Row& row, simd::Kernel kernel) {
+    simd::split_points(row.x, row.count, 1, 0, row.texel_x, row.rest_x);
+    simd::split_points(row.y, row.count, 1, 0, row.texel_y, row.rest_y);
+    const int support = support_of(kernel);
+    if (!in_place(row, support)) return copied(row, support);
+    simd::fetch_row(texels_of(row.window, kernel), row.offsets());
+    return true;
+}
+
+PixelType ApartReader::sample(const Row& row, simd::Kernel kernel, float* values) const {
+    simd::sample_row(texels_of(row.window, kernel), row.offsets(), values);
+    const int channels = row.window.channels;
+    for (int i = 0; i < row.count; ++i)
+        if (row.piece[i] < 0) std::fill_n(values + i * channels, channels, 0.0f);
+    return row.window.type;
+}
+
+/// Where one box that stands in memory holds all texels: they are counted from its corner.
+bool ApartReader::in_place(Row& row, int support) {
+    const std::int32_t piece = row.piece[0], *const x = row.texel_x, *const y = row.texel_y;
+    const auto on_piece = [&](std::int32_t p) { return p == piece; };
+    if (piece < 0 || !std::all_of(row.piece, row.piece + row.count, on_piece)) return false;
+    const auto [left, right] = std::minmax_element(x, x + row.count);
+    const auto [top, bottom] = std::minmax_element(y, y + row.count);
+    const Box box{*left - support, *top - support, *right + support + 1, *bottom + support + 1};
+    if (!m_reader.get_in_place(0, piece, box, row.window)) return false;
+    // Offsets count elements in 32 bits.
+    const double bytes = std::fabs(static_cast<double>(row.window.row_stride)) * (box.height() + 1.0);
+    if (bytes > std::numeric_limits<std::int32_t>::max()) return false;
+    for (int i = 0; i < row.count; ++i) {
+        row.texel_x[i] -= box.x0;
+        row.texel_y[i] -= box.y0;
+    }
+    return true;
+}
+
+/// Elsewhere the texels of each are copied, side by side.
+bool ApartReader::copied(Row& row, int support) {
+    const int side = 2 * support + 1, channels = m_source.channels();
+    // As WindowReader has them.
+    const PixelType type = m_source.unassociated_alpha() < 0 ? m_source.type() : PixelType::float32;
+    const std::ptrdiff_t bytes = std::ptrdiff_t{side} * channels * size_of(type);
+    const std::ptrdiff_t row_stride = simd::kMaxRow * bytes;
+    row.texels.resize(static_cast<std::size_t>(side * row_stride + Window::kSlack));
+    row.window = {row.texels.data(), type, channels, row_stride, {}};
+    for (int i = 0; i < row.count; ++i) {
+        const int x = row.texel_x[i] - support, y = row.texel_y[i] - support;
+        row.texel_x[i] = i * side + support;
+        row.texel_y[i] = support;
+        if (row.piece[i] < 0) continue;
+        Window around;
+        if (!m_reader.get(0, row.piece[i], {x, y, x + side, y + side}, around)) return false;
+        for (int j = 0; j < side; ++j)
+            std::memcpy(row.texels.data() + j * row_stride + i * bytes, around.texels + j * around.row_stride,
+                        static_cast<std::size_t>(bytes));
+    }
+    return true;
+}
+
+}  // namespace anamorph

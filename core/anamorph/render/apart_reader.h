@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: Apache-2.0
+// Rows of pixels whose texels lie far apart: each is read from the few texels around its own point, instead of all of them
+// from one window.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "anamorph/render/window.h"
+#include "anamorph/simd/block_sampler.h"
+
+namespace anamorph {
+
+/// Reads level 0 of a source; one per thread. Keeps references to its arguments.
+class ApartReader {
+  public:
+    ApartReader(const Source& source, const Border& border);
+
+    /// A row of up to simd::kMaxRow pixels: source points within 2^30 of 0, and the source's piece of each, negative
+    /// where there is none.
+    struct Row {
+        int count = 0;
+        alignas(64) double x[simd::kRowRoom], y[simd::kRowRoom];
+        std::int32_t piece[simd::kMaxRow];
+
+      private:
+        friend ApartReader;
+        simd::Offsets offsets() const { return {rest_x, rest_y, count, texel_x, texel_y}; }
+
+        alignas(64) std::int32_t texel_x[simd::kRowRoom], texel_y[simd::kRowRoom];  ///< in the window
+        alignas(64) float rest_x[simd::kRowRoom], rest_y[simd::kRowRoom];
+        Window window;
+        std::vector<std::byte> texels;  ///< the window's own
+    };
+
+    /// Finds a row's texels, for a filter that reads one tap, and brings them near. False when the source could not be
+    /// read.
+    bool locate(Row& row, simd::Kernel kernel);
+    /// The pixels of a row that was located, channel by channel, to `values`, which has room for simd::kMaxRow * channels
+    /// + 16 floats; 0 where there is no point. A pixel's bits depend on its own point only. Returns the type whose units
+    /// they have (simd::sample_row).
+    PixelType sample(const Row& row, simd::Kernel kernel, float* values) const;
+
+  private:
+    bool in_place(Row& row, int support);
+    bool copied(Row& row, int support);
+
+    const Source& m_source;
+    WindowReader m_reader;
+};
+
+}  // namespace anamorph
