@@ -29,6 +29,30 @@ constexpr double kFar = 1e9;
 // Chords of outlines, in pixels.
 constexpr double kChordError = 0.02;
 
+/// What Filter::antialias, the last of the shared words, averages by; then those words that follow it.
+constexpr TextureAverage kAverages[] = {TextureAverage::footprint, TextureAverage::trilinear,
+                                        TextureAverage::summed_area, TextureAverage::mrasel};
+
+Parameter texture_filter() {
+    Parameter row = rows::filter({{"trilinear",
+                                   "between the two levels of a pyramid next to the longer side of what a "
+                                   "pixel shows (Williams 1983)"},
+                                  {"summed_area",
+                                   "the mean over the least rectangle along the texture's sides that covers "
+                                   "what a pixel shows, from a table of sums (Crow 1984)"},
+                                  {"mrasel", "the nearest texel of the level that MRASEL takes"}});
+    row.documentation = "of style textured: " + row.documentation;
+    row.alias = "average";
+    return row;
+}
+
+void read_filter(const ParameterValues& values, FigureLook& look) {
+    const auto word = static_cast<int>(rows::chosen_index(values, "filter"));
+    const int beyond = word - static_cast<int>(Filter::antialias);
+    look.filter = beyond > 0 ? Filter::antialias : static_cast<Filter>(word);
+    look.average = kAverages[std::max(beyond, 0)];
+}
+
 ParameterTable make_table() {
     using namespace rows;
     return {
@@ -98,13 +122,7 @@ ParameterTable make_table() {
             "back; "
             "mirrored, over "
             "the front and again over the back; linear, stripes stay straight; octahedral, without a pole"),
-        filter(),
-        choice(
-            "average", "footprint", {"footprint", "trilinear", "summed_area", "mrasel"},
-            "of filter antialias, how textures are averaged: footprint, by taps along what a pixel covers; "
-            "trilinear, between two levels of the pyramid; summed_area, by a table of sums; mrasel, the "
-            "nearest "
-            "texel of the level that MRASEL takes"),
+        texture_filter(),
     };
 }
 
@@ -320,8 +338,7 @@ FigureRequest read_request(const ParameterValues& values) {
     look.antialias = values.toggle("antialias");
     read_background(values, look);
     look.mapping = rows::chosen<BodyMapping>(values, "mapping");
-    look.filter = rows::chosen<Filter>(values, "filter");
-    look.average = rows::chosen<TextureAverage>(values, "average");
+    read_filter(values, look);
     look.backdrop = values.given("backdrop");
     look.lines.tol = kChordError;
     look.lines.line_width = values.number("line_width");
