@@ -130,6 +130,31 @@ TEST(FigureTexture, ColorsAreThoseOfTheMapping) {
         }
 }
 
+TEST(FigureTexture, ATextureOfAnyShapeGoesOnAroundAndOverThePoles) {
+    for (const int width : {16, 24, 48}) {
+        SCOPED_TRACE(width);
+        const Image map(width, 24, [&](int, int, int) { return 1; });
+        const MemorySource source(map.view());
+        const Pyramid pyramid(source, 1, 1);
+        for (const glm::dvec2& offset : {glm::dvec2(0), glm::dvec2(5, 30), glm::dvec2(-70, -500)})
+            for (const TextureAverage average :
+                 {TextureAverage::footprint, TextureAverage::trilinear, TextureAverage::summed_area}) {
+                // Seen from above.
+                Scene scene;
+                scene.width = scene.height = 40;
+                scene.view.middle = {20, 20};
+                scene.view.rotation = {{1, 0, 0}, {0, 0, -1}, {0, 1, 0}};
+                scene.bodies = {{{0, 0, 0}, {30, 30, 30}, glm::dmat3(1)}};
+                FigureFrame frame = frame_of(scene);
+                frame.bodies[0].texture_offset = offset;
+                FigureLook look = look_of(BodyMapping::latlong);
+                look.average = average;
+                const std::vector<float> pixels = draw(scene, frame, look, {nullptr, &pyramid, nullptr});
+                for (const float value : pixels) ASSERT_NEAR(value, 1, 1e-6);
+            }
+    }
+}
+
 TEST(FigureTexture, FinePatternsAreAveraged) {
     // Stripes of two texels, some to a pixel near the middle and very many near limbs and poles.
     const Image map(1024, 512, [](int x, int y, int c) { return c == 3 || (x / 2 + y / 2) % 2 ? 1.0 : 0.0; });

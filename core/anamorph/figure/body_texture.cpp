@@ -12,8 +12,9 @@ namespace {
 /// What stands beyond the texture's edges: what the mapping continues with.
 Border border_of(const Source& source, BodyMapping mapping) {
     const Size size = source.size(0);
+    // Any texture goes from pole to pole, as a panorama of such a height and twice its width does.
     if (mapping == BodyMapping::latlong)
-        return {Chart(Projection::equirectangular, size.width, size.height), Wrap::automatic};
+        return {Chart(Projection::equirectangular, 2 * size.height, size.height), Wrap::automatic};
     return {Chart(Projection::rectilinear, size.width, size.height),
             mapping == BodyMapping::mirrored ? Wrap::mirror : Wrap::clamp};
 }
