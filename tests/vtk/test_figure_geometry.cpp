@@ -174,25 +174,43 @@ TEST(VtkFigureGeometry, PixelsOfTheScriptsView) {
     EXPECT_EQ(coordinates(in_pixels), coordinates(in_units));
 }
 
-TEST(VtkFigureGeometry, PixelsOfACameraInPerspective) {
-    const Ball near{{0, 0, 80}, {10, 15, 10}, {1, 0.2, 0, 0}},
-        far{{0, 0, -900}, {10, 15, 10}, {1, 0.2, 0, 0}};
-    const double tolerance = 0.2, height = 400, distance = 100, angle = 40;
-    const auto data = surface(figures({near, far}), [&](auto* g) {
-        g->SetToleranceMode(vtkAnamorphFigureGeometry::PIXELS);
+/// A camera in perspective, 400 x 400 pixels.
+struct Camera {
+    glm::dvec3 position, focus;
+    double angle = 40;
+
+    void set(vtkAnamorphFigureGeometry* geometry) const {
+        geometry->SetToleranceMode(vtkAnamorphFigureGeometry::PIXELS);
+        geometry->SetViewMode(vtkAnamorphFigureGeometry::CAMERA);
+        geometry->SetViewSize(400, 400);
+        geometry->SetCameraPosition(position.x, position.y, position.z);
+        geometry->SetCameraFocalPoint(focus.x, focus.y, focus.z);
+        geometry->SetCameraViewAngle(angle);
+    }
+    /// Pixels from the middle, and the depth. Up is y.
+    glm::dvec3 image(const glm::dvec3& p) const {
+        const glm::dvec3 away = glm::normalize(focus - position),
+                         right = glm::normalize(glm::cross(away, glm::dvec3(0, 1, 0))),
+                         up = glm::cross(right, away), q = p - position;
+        const double depth = glm::dot(away, q), zoom = 200 / std::tan(angle / 2 * kPi / 180) / depth;
+        return {zoom * glm::dot(right, q), zoom * glm::dot(up, q), depth};
+    }
+};
+
+/// How far points of the triangles are off on the screen, most, and how many of them are seen, for each body.
+struct Moved {
+    std::vector<double> most;
+    std::vector<vtkIdType> seen;
+};
+
+Moved moved(const Camera& camera, const std::vector<Ball>& balls, double tolerance) {
+    const auto data = surface(figures(balls), [&](auto* g) {
+        camera.set(g);
         g->SetTolerance(tolerance);
-        g->SetViewMode(vtkAnamorphFigureGeometry::CAMERA);
-        g->SetViewSize(400, 400);
-        g->SetCameraPosition(0, 0, distance);
-        g->SetCameraFocalPoint(0, 0, 0);
-        g->SetCameraViewAngle(angle);
     });
-    const double zoom = height / 2 / std::tan(angle / 2 * kPi / 180);
-    const auto image = [&](const glm::dvec3& p) { return zoom / (distance - p.z) * glm::dvec2(p); };
+    Moved result{std::vector<double>(balls.size()), std::vector<vtkIdType>(balls.size())};
     vtkDataArray *texture = data->GetPointData()->GetTCoords(), *points = data->GetPoints()->GetData(),
                  *bodies = data->GetCellData()->GetArray("BodyId");
-    double most[2] = {0, 0};
-    vtkIdType cells[2] = {0, 0};
     for_points_of_triangles(data, [&](vtkIdType cell, const vtkIdType* corners, const double* w) {
         glm::dvec3 p(0);
         glm::dvec2 uv(0);
@@ -201,16 +219,49 @@ TEST(VtkFigureGeometry, PixelsOfACameraInPerspective) {
             uv +=
                 w[k] * glm::dvec2(texture->GetComponent(corners[k], 0), texture->GetComponent(corners[k], 1));
         }
-        const int body = static_cast<int>(bodies->GetComponent(cell, 0));
-        const glm::dvec2 q = image(at(body == 0 ? near : far, uv.x, uv.y));
-        if (std::max(std::fabs(q.x), std::fabs(q.y)) > 200) return;  // not on the screen
-        most[body] = std::max(most[body], glm::length(image(p) - q));
-        ++cells[body];
+        const auto body = static_cast<std::size_t>(bodies->GetComponent(cell, 0));
+        const glm::dvec3 q = camera.image(at(balls[body], uv.x, uv.y));
+        if (!(q.z > 0) || std::max(std::fabs(q.x), std::fabs(q.y)) > 200) return;  // not on the screen
+        result.most[body] = std::max(result.most[body], glm::length(glm::dvec2(camera.image(p) - q)));
+        ++result.seen[body];
     });
-    EXPECT_GT(cells[0], 4 * cells[1]);
-    EXPECT_LE(most[0], tolerance);
-    EXPECT_GT(most[0], 0.1 * tolerance);
-    EXPECT_LE(most[1], tolerance);
+    return result;
+}
+
+TEST(VtkFigureGeometry, PixelsOfACameraInPerspective) {
+    const Camera camera{{0, 0, 100}, {0, 0, 0}};
+    const Moved both = moved(
+        camera, {{{0, 0, 80}, {10, 15, 10}, {1, 0.2, 0, 0}}, {{0, 0, -900}, {10, 15, 10}, {1, 0.2, 0, 0}}},
+        0.2);
+    EXPECT_GT(both.seen[0], 4 * both.seen[1]);
+    EXPECT_LE(both.most[0], 0.2);
+    EXPECT_GT(both.most[0], 0.1 * 0.2);
+    EXPECT_LE(both.most[1], 0.2);
+}
+
+TEST(VtkFigureGeometry, ACameraOnAStageOrInARoomNeedsNoMoreThanItSees) {
+    const Ball stage{{500, -10, 500}, {6000, 10, 6000}, {1, 0, 0, 0}},
+        turned{{500, -10, 500}, {6000, 6000, 10}, {std::sqrt(0.5), std::sqrt(0.5), 0, 0}},
+        room{{500, 0, 500}, {6000, 5000, 7000}, {1, 0.1, 0, 0.2}},
+        doll{{500, 90, 0}, {30, 90, 20}, {1, 0, 0, 0}};
+    const Camera camera{{500, 300, 1500}, {500, 150, 0}};
+    for (const Ball& large : {stage, turned, room}) {
+        const Moved both = moved(camera, {large, doll}, 0.5);
+        EXPECT_GT(both.seen[0], 1000);
+        EXPECT_GT(both.seen[1], 10);
+        for (const double most : both.most) EXPECT_LE(most, 0.5);
+    }
+    // Of which a thousandth of the distance to the focal point would need several millions.
+    const auto triangles = [&](const Ball& ball) {
+        return surface(figures({ball}),
+                       [&](auto* g) {
+                           camera.set(g);
+                           g->SetTolerance(0.5);
+                       })
+            ->GetNumberOfCells();
+    };
+    EXPECT_LT(triangles(room), 60'000);
+    EXPECT_LT(triangles(stage), 600'000);
 }
 
 // ---- Data ----

@@ -111,14 +111,36 @@ void check_size(const std::vector<Body>& bodies, double tolerance) {
     throw Error("Tolerance", anamorph::shortest(tolerance), rule);
 }
 
+/// At most how far a point, from the middle of a body in its own axes, is from the body's surface. Outside, a plane between
+/// the two is as far from it as it says, whatever its normal n: n p - |a n|. The normal at the nearest point is
+/// best, which is at a^2 p / (a^2 + t) where sum (a p / (a^2 + t))^2 = 1 (Eberly 2013): the sum falls as t grows, and
+/// is at most 1 at t = |a p|. Inside, the body holds the sphere of radius 1 - |p / a| times its least half axis.
+double distance_bound(const glm::dvec3& a, const glm::dvec3& p) {
+    const double from_middle = glm::length(p / a), least = std::min({a.x, a.y, a.z});
+    if (from_middle <= 1) return (1 - from_middle) * least;
+    double low = 0, high = glm::length(a * p);
+    for (int i = 0; i < 64; ++i) {
+        const double t = 0.5 * (low + high);
+        (glm::length(a * p / (a * a + t)) > 1 ? low : high) = t;
+    }
+    glm::dvec3 n;
+    for (int k = 0; k < 3; ++k) n[k] = a[k] > 0 ? p[k] * (high / (a[k] * a[k] + high)) : p[k];
+    n /= glm::length(n);
+    return std::max(0.0, glm::dot(n, p) - glm::length(a * n));
+}
+
 /// Most that a point of a body may move for the picture to move by `pixels`. In perspective the image of q +
-/// d is zoom (d.xy - q.xy / q.z d.z) / (q.z + d.z) from that of q, and on the screen |q.xy| / q.z <= slope.
+/// d is zoom (d.xy - q.xy / q.z d.z) / (q.z + d.z) from that of q, and on the screen |q.xy| / q.z <= slope. So a point
+/// that is seen has a depth of at least its distance from the eye over |(1, slope)|.
 double tolerance_in_units(double pixels, const Ellipsoid& shape, const View& view, double half_diagonal) {
     if (!view.perspective()) return pixels / view.scale;
     const double zoom = view.scale * view.eye_distance, slope = half_diagonal / zoom;
     const glm::dvec3 away(view.rotation[0][2], view.rotation[1][2], view.rotation[2][2]);
     const double reach = glm::length(shape.axes * (away * shape.rotation));
-    const double nearest = std::max(view.to_view(shape.center).z - reach, view.near);
+    const glm::dvec3 eye = view.center - view.eye_distance * away;
+    const double distance = distance_bound(shape.axes, (eye - shape.center) * shape.rotation);
+    const double nearest =
+        std::max({view.to_view(shape.center).z - reach, distance / std::hypot(1, slope), view.near});
     return pixels * nearest / (zoom * std::hypot(1, slope) + pixels);
 }
 

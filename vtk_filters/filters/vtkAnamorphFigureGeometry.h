@@ -20,7 +20,8 @@
  * Points in single precision are rounded besides.
  *
  * In a tolerance of pixels, the same moves a point of the picture by at most that; in perspective where it is
- * seen, not nearer than a thousandth of the distance to the camera's focal point.
+ * seen, not nearer than a thousandth of the distance to the camera's focal point. Each body gets what its nearest
+ * point asks for; a camera on a large one, or within it, asks for as much as its distance from the surface does.
  */
 #ifndef vtkAnamorphFigureGeometry_h
 #define vtkAnamorphFigureGeometry_h
