@@ -93,6 +93,8 @@ class Command {
         add_film();
         add_scene("gltf", "Write the figures with their motion as glTF 2.0 (.glb)", " (the default)");
         add_scene("obj", "Write a frame's figures as Wavefront OBJ", "; by default the first of those");
+        add_scene("vtp", "Write a frame's figures as points of VTK's XML (.vtp)",
+                  "; by default the first of those");
         add_stats();
         add_language();
     }
@@ -479,13 +481,15 @@ class Command {
     }
 
     int write_scene(const std::string& format) const {
-        const bool is_obj = format == "obj";
+        const bool is_one = format != "gltf";
         std::unique_ptr<Motion> motion;
         FrameRange range;
         Progress progress([&] { return count_of(range, *motion); });
         motion = perform(progress);
-        range = range_or(is_obj ? std::to_string(motion->first_frame()).c_str() : "all");
-        if (is_obj && range.several()) throw Error("--frame", m_settings.frames, "must be one frame for OBJ");
+        range = range_or(is_one ? std::to_string(motion->first_frame()).c_str() : "all");
+        if (is_one && range.several())
+            throw Error("--frame", m_settings.frames,
+                        "must be one frame for " + std::string(format == "obj" ? "OBJ" : ".vtp"));
         std::vector<FigureFrame> frames;
         range.for_each(*motion, [&](const FigureFrame& frame) {
             frames.push_back(frame);
@@ -493,7 +497,9 @@ class Command {
         });
         if (frames.empty()) throw Error(m_settings.source.path + " shows no frame");
         OutputFile file(m_settings.output);
-        file.write(is_obj ? obj_file(frames[0]) : glb_file(frames, motion->frames_per_second()));
+        file.write(format == "obj"   ? obj_file(frames[0])
+                   : format == "vtp" ? vtp_file(frames[0])
+                                     : glb_file(frames, motion->frames_per_second()));
         file.close();
         return 0;
     }

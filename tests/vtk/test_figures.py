@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 # The figure classes from Python: every property set and read, and a script from reader to lines.
 import os
+import subprocess
 import tempfile
 
 import anamorph
@@ -72,6 +73,37 @@ with tempfile.TemporaryDirectory() as folder:
             output = lines.GetOutput()
             drawn.append([output.GetPoint(i) for i in range(output.GetNumberOfPoints())])
         assert drawn[0] == drawn[1] and len(drawn[0]) > 1, cls
+
+    # Written by the program, a frame is what the reader makes of it, with the fields that say how it is seen.
+    if "ANAMORPH_FIGURE" in os.environ:
+        with open(path, "w") as file:
+            file.write("figure doll 2 trunk arm\nellipsoid trunk 60 100 40\nellipsoid arm 20 80 20\n"
+                       "joint shoulder trunk 60 80 0 arm 0 75 0\nrepeat 0 3 moveto doll trunk 500 480 510\n"
+                       "repeat 0 3 observe 10 20 30\nrepeat 0 3 place 400 450 500\nrepeat 0 1 texture arm wood 3 4\n"
+                       "repeat 0 1 colour arm 10 20 250\nlinear 0 3 spinby doll trunk world 77 y\nstop")
+        same_file = os.path.join(folder, "frame.vtp")
+        subprocess.run([os.environ["ANAMORPH_FIGURE"], "vtp", path, "--frame", "2", "-o", same_file], check=True)
+        from vtkmodules.vtkIOXML import vtkXMLPolyDataReader
+        again, frames = vtkXMLPolyDataReader(), anamorph.vtkAnamorphFigureReader()
+        again.SetFileName(same_file)
+        again.Update()
+        frames.SetFileName(path)
+        frames.UpdateTimeStep(2)
+
+        def listed(data):
+            """All that a data set holds, by name."""
+            fields = {"points": [data.GetPoint(i) for i in range(data.GetNumberOfPoints())], "verts": data.GetNumberOfVerts()}
+            for field in (data.GetPointData(), data.GetFieldData()):
+                for k in range(field.GetNumberOfArrays()):
+                    array = field.GetAbstractArray(k)
+                    kind = array.GetDataTypeAsString().replace("idtype", "long long")
+                    fields[array.GetName()] = (kind, array.GetNumberOfComponents(), [
+                        array.GetVariantValue(i).ToString() for i in range(array.GetNumberOfValues())])
+            return fields
+
+        written, read = listed(again.GetOutput()), listed(frames.GetOutput())
+        assert written == read and len(read) >= 13, [(n, written.get(n), read.get(n)) for n in {*written, *read}
+                                                    if written.get(n) != read.get(n)]
 
     # The same as a picture.
     picture = anamorph.vtkAnamorphFigureImage()

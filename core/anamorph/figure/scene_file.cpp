@@ -352,4 +352,125 @@ std::string obj_file(const FigureFrame& frame) {
     return text;
 }
 
+namespace {
+
+/// VTK's space is right-handed: z is negated, and turns go the other way about the mirrored axis.
+glm::dvec3 in_vtk(const glm::dvec3& p) {
+    return {p.x, p.y, -p.z};
+}
+
+/// The elements of a .vtp file.
+class VtpText {
+  public:
+    std::string text;
+
+    void open(std::string_view element) { text.append("<").append(element).append(">\n"); }
+    void close(std::string_view element) { text.append("</").append(element).append(">\n"); }
+
+    /// `values(row)`: the numbers of a row.
+    template <class Values>
+    void array(std::string_view type, std::string_view name, std::size_t rows, std::size_t components,
+               const Values& values) {
+        begin(type, name, rows, components);
+        for (std::size_t row = 0; row < rows; ++row)
+            for (const auto value : values(row)) put(value);
+        text += "\n</DataArray>\n";
+    }
+    /// Bytes, each string with a 0 at its end.
+    template <class Name>
+    void strings(std::string_view name, std::size_t rows, const Name& name_of) {
+        begin("String", name, rows, 1);
+        for (std::size_t row = 0; row < rows; ++row) {
+            for (const char c : name_of(row)) put(int{static_cast<unsigned char>(c)});
+            put(0);
+        }
+        text += "\n</DataArray>\n";
+    }
+
+  private:
+    void begin(std::string_view type, std::string_view name, std::size_t rows, std::size_t components) {
+        text.append("<DataArray type=\"").append(type).append("\" Name=\"").append(name);
+        text += "\" NumberOfComponents=\"" + std::to_string(components) + "\" NumberOfTuples=\"" +
+                std::to_string(rows) + "\" format=\"ascii\">\n";
+    }
+    template <class T>
+    void put(T value) {
+        char number[32];
+        text.append(number, std::to_chars(number, std::end(number), value).ptr) += ' ';
+    }
+};
+
+using Three = std::array<double, 3>;
+
+Three three(const glm::dvec3& v) {
+    return {v.x, v.y, v.z};
+}
+
+void add_bodies(VtpText& to, const FigureFrame& frame) {
+    const auto body = [&](std::size_t i) -> const Body& { return frame.bodies[i]; };
+    const std::size_t count = frame.bodies.size();
+    to.open("PointData Scalars=\"Color\"");
+    to.array("Float64", "Axes", count, 3, [&](std::size_t i) { return three(body(i).shape.axes); });
+    to.array("Float64", "Orientation", count, 4, [&](std::size_t i) {
+        const glm::dquat q = glm::quat_cast(body(i).shape.rotation);
+        return std::array{q.w, -q.x, -q.y, q.z};
+    });
+    to.array("UInt8", "Color", count, 3, [&](std::size_t i) {
+        const glm::dvec3 c = glm::round(glm::clamp(body(i).color, 0.0, 255.0));
+        return std::array{static_cast<int>(c.r), static_cast<int>(c.g), static_cast<int>(c.b)};
+    });
+    to.strings("Texture", count, [&](std::size_t i) { return body(i).texture; });
+    to.array("Float64", "TextureOffset", count, 2, [&](std::size_t i) {
+        return std::array{body(i).texture_offset.x, body(i).texture_offset.y};
+    });
+    to.strings("Name", count, [&](std::size_t i) { return body(i).name; });
+    to.strings("Figure", count, [&](std::size_t i) {
+        const auto figure = static_cast<std::size_t>(body(i).figure);
+        return figure < frame.figures.size() ? frame.figures[figure] : std::string();
+    });
+    to.close("PointData");
+    to.open("Points");
+    to.array("Float64", "Points", count, 3,
+             [&](std::size_t i) { return three(in_vtk(body(i).shape.center)); });
+    to.close("Points");
+    to.open("Verts");
+    to.array("Int64", "connectivity", count, 1, [](std::size_t i) { return std::array{i}; });
+    to.array("Int64", "offsets", count, 1, [](std::size_t i) { return std::array{i + 1}; });
+    to.close("Verts");
+}
+
+void add_joints_and_view(VtpText& to, const FigureFrame& frame) {
+    const std::size_t count = frame.joints.size();
+    to.open("FieldData");
+    to.array("Int64", "JointBodies", count, 2, [&](std::size_t i) {
+        return std::array{frame.joints[i].first, frame.joints[i].second};
+    });
+    to.array("Float64", "JointPosition", count, 3,
+             [&](std::size_t i) { return three(in_vtk(frame.joints[i].position)); });
+    to.strings("JointName", count, [&](std::size_t i) { return frame.joints[i].name; });
+    to.array("Float64", "ViewCenter", 1, 3, [&](std::size_t) { return three(in_vtk(frame.place)); });
+    to.array("Float64", "ViewRotation", 1, 9, [&](std::size_t) {
+        std::array<double, 9> rows;
+        for (int k = 0; k < 9; ++k)
+            rows[static_cast<std::size_t>(k)] = (k % 3 == 2 ? -1 : 1) * frame.observer[k % 3][k / 3];
+        return rows;
+    });
+    to.close("FieldData");
+}
+
+}  // namespace
+
+std::string vtp_file(const FigureFrame& frame) {
+    VtpText to;
+    const std::string count = std::to_string(frame.bodies.size());
+    to.open("?xml version=\"1.0\"?");
+    to.open("VTKFile type=\"PolyData\" version=\"1.0\" byte_order=\"LittleEndian\" header_type=\"UInt64\"");
+    to.open("PolyData");
+    add_joints_and_view(to, frame);
+    to.open("Piece NumberOfPoints=\"" + count + "\" NumberOfVerts=\"" + count + "\"");
+    add_bodies(to, frame);
+    for (const char* element : {"Piece", "PolyData", "VTKFile"}) to.close(element);
+    return to.text;
+}
+
 }  // namespace anamorph
