@@ -19,6 +19,7 @@ PAPERS = ("Oka 1987", "Chapman 1986", "Kim 2003")
 # What a panel has no use for: other ways to set the same, and what the host sets.
 NO_PROPERTY = {
     "vtkAnamorphDrape": {"SetBlendWeight", "SetPositionsConnection", "SetHeightConnection", "SetDeformationsConnection"},
+    "vtkAnamorphFigureImage": {"SetTextureMapping"},  # AddTexture() is for programs
     "vtkAnamorphDeform": {"SetController", "SetDeformationList", "SetDeformationEnabled", "SetTableConnection"},
     "vtkAnamorphInbetween": {"SetKey"},
     "vtkAnamorphPanoramaProjection": {"SetController"},

@@ -5,13 +5,16 @@
 #include <gtest/gtest.h>
 #include <vtkAnamorphFigureReader.h>
 #include <vtkCommand.h>
+#include <vtkDoubleArray.h>
 #include <vtkImageData.h>
 #include <vtkInformation.h>
 #include <vtkMultiBlockDataSet.h>
 #include <vtkStreamingDemandDrivenPipeline.h>
+#include <vtkStringArray.h>
 #include <vtkUnsignedCharArray.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "figure_support.h"
@@ -66,6 +69,64 @@ TEST(VtkFigureImage, DepthIsThatOfTheSphere) {
     EXPECT_NEAR(value(depth, 50, 40), 400, 1);
     EXPECT_GE(value(depth, 50, 40), 400);
     EXPECT_NEAR(value(depth, 0, 0), 1e30, 1e24);
+}
+
+/// Red on its right, blue in its upper half; the first row is the lowest.
+vtkSmartPointer<vtkImageData> quarters(int slices = 1) {
+    auto texture = vtkSmartPointer<vtkImageData>::New();
+    texture->SetDimensions(64, 32, slices);
+    texture->AllocateScalars(VTK_UNSIGNED_CHAR, 3);
+    for (int y = 0; y < 32; ++y)
+        for (int x = 0; x < 64; ++x)
+            for (int c = 0; c < 3; ++c)
+                texture->SetScalarComponentFromDouble(x, y, 0, c,
+                                                      (c == 0 && x >= 32) || (c == 2 && y >= 16) ? 255 : 0);
+    return texture;
+}
+
+TEST(VtkFigureImage, TexturesShowTheirMiddleToTheObserver) {
+    const auto input = figures({kNear, {{200, 500, -200}, {100, 100, 100}, {1, 0, 0, 0}}});
+    vtkNew<vtkStringArray> names;
+    names->SetName("Texture");
+    names->InsertNextValue("quarters");
+    names->InsertNextValue("another");
+    input->GetPointData()->AddArray(names);
+    vtkNew<Image> filter;
+    filter->SetInputData(input);
+    filter->SetViewSize(100, 100);
+    filter->SetLighting(Image::LAMBERT);
+    const auto at = [&](int x, int y) {
+        filter->Update();
+        return std::array{value(filter->GetOutput(), x, y, 0) > 30, value(filter->GetOutput(), x, y, 2) > 30};
+    };
+    const auto plain = at(46, 46);
+    for (const int mapping : {Image::LATLONG, Image::LINEAR, Image::OCTAHEDRAL}) {
+        SCOPED_TRACE(mapping);
+        filter->RemoveAllTextures();
+        filter->AddTexture("quarters", quarters());
+        filter->SetTextureMapping(mapping);
+        EXPECT_EQ(at(46, 46), (std::array{false, false}));
+        EXPECT_EQ(at(54, 46), (std::array{true, false}));
+        EXPECT_EQ(at(46, 54), (std::array{false, true}));
+        EXPECT_EQ(at(54, 54), (std::array{true, true}));
+        EXPECT_EQ(at(16, 46), plain) << "the other body has a texture that is not there";
+    }
+    // Moved by half of its width.
+    vtkNew<vtkDoubleArray> offsets;
+    offsets->SetName("TextureOffset");
+    offsets->SetNumberOfComponents(2);
+    for (int i = 0; i < 2; ++i) offsets->InsertNextTuple2(32, 0);
+    input->GetPointData()->AddArray(offsets);
+    input->Modified();
+    filter->SetTextureMapping(Image::LATLONG);
+    EXPECT_EQ(at(46, 46), (std::array{true, false}));
+    EXPECT_EQ(at(54, 46), (std::array{false, false}));
+    filter->RemoveAllTextures();
+    EXPECT_EQ(at(46, 46), plain);
+    Errors errors(filter);
+    filter->AddTexture("thick", quarters(2));
+    filter->Update();
+    EXPECT_THAT(errors.text(), HasSubstr("texture thick has 2 slices, but must have 1"));
 }
 
 TEST(VtkFigureImage, ColorsAreTheBodiesAndCoverageIsAlpha) {
@@ -279,11 +340,11 @@ TEST(VtkFigureImage, UpdatesOnlyAfterAChangeOfAValue) {
     expect_modified_by<Image>(
         filter,
         {[](Image* f) { f->SetStyle(Image::DEPTH); }, [](Image* f) { f->SetLighting(Image::BLINN); },
-         [](Image* f) { f->AntialiasOff(); }, [](Image* f) { f->SetViewMode(Image::CAMERA); },
-         [](Image* f) { f->SetViewSize(30, 20); }, [](Image* f) { f->SetCameraPosition(1, 2, 3); },
-         [](Image* f) { f->SetCameraFocalPoint(1, 2, 0); }, [](Image* f) { f->SetCameraViewUp(0, 1, 1); },
-         [](Image* f) { f->CameraParallelProjectionOn(); }, [](Image* f) { f->SetCameraParallelScale(9); },
-         [](Image* f) { f->SetCameraViewAngle(50); }});
+         [](Image* f) { f->AntialiasOff(); }, [](Image* f) { f->SetTextureMapping(Image::LINEAR); },
+         [](Image* f) { f->SetViewMode(Image::CAMERA); }, [](Image* f) { f->SetViewSize(30, 20); },
+         [](Image* f) { f->SetCameraPosition(1, 2, 3); }, [](Image* f) { f->SetCameraFocalPoint(1, 2, 0); },
+         [](Image* f) { f->SetCameraViewUp(0, 1, 1); }, [](Image* f) { f->CameraParallelProjectionOn(); },
+         [](Image* f) { f->SetCameraParallelScale(9); }, [](Image* f) { f->SetCameraViewAngle(50); }});
     filter->SetInputData(figures({kNear}));
     filter->Update();
     const vtkMTimeType made = filter->GetOutput()->GetMTime();

@@ -107,7 +107,8 @@ with tempfile.TemporaryDirectory() as folder:
 
     # The same as a picture.
     picture = anamorph.vtkAnamorphFigureImage()
-    for name, value in view + [("Style", picture.DEPTH), ("Lighting", picture.BLINN), ("Antialias", False)]:
+    for name, value in view + [("Style", picture.DEPTH), ("Lighting", picture.BLINN), ("Antialias", False),
+                               ("TextureMapping", picture.LINEAR)]:
         getattr(picture, "Set" + name)(value)
         assert getattr(picture, "Get" + name)() == value, name
     assert "Style: depth" in str(picture) and "Lighting: blinn" in str(picture)

@@ -3,13 +3,19 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
+#include <string>
 #include <vector>
 
 #include "anamorph/error.h"
 #include "anamorph/figure/figure_picture.h"
+#include "anamorph/parameter.h"
+#include "anamorph/render/pyramid.h"
+#include "anamorph/render/source.h"
 #include "execution.h"
 #include "figure_data.h"
 #include "figure_lines.h"
+#include "image_texture.h"
 #include "vtkCompositeDataSet.h"
 #include "vtkFloatArray.h"
 #include "vtkImageData.h"
@@ -21,6 +27,7 @@
 #include "vtkPointData.h"
 #include "vtkPolyData.h"
 #include "vtkStreamingDemandDrivenPipeline.h"
+#include "vtkStringArray.h"
 #include "vtkUnsignedCharArray.h"
 
 vtkObjectFactoryNewMacro(vtkAnamorphFigureImage);
@@ -31,8 +38,26 @@ using anamorph::FigureStyle;
 
 constexpr int kMostSide = 1 << 16;
 
+/// A picture with its pyramid.
+struct Texture {
+    anamorph_vtk::ImageTexture image;
+    anamorph::MemorySource base;
+    anamorph::Pyramid pyramid;
+
+    Texture(vtkImageData* data, const std::string& name)
+        : image(data, data->GetPointData()->GetScalars(), name),
+          base(image.view(), anamorph_vtk::alpha_of(image.view().channels)),
+          pyramid(base, 1, 1) {}
+};
+
 /// The bodies of a data set as a frame, in their colors.
-anamorph::FigureFrame frame_of(vtkPolyData* data, const anamorph_vtk::Bodies& bodies) {
+anamorph::FigureFrame frame_of(vtkPolyData* data, const anamorph_vtk::Bodies& bodies, bool textured) {
+    auto* textures = vtkStringArray::SafeDownCast(data->GetPointData()->GetAbstractArray("Texture"));
+    if (textures && textures->GetNumberOfTuples() != data->GetNumberOfPoints()) textures = nullptr;
+    vtkDataArray* offsets = data->GetPointData()->GetArray("TextureOffset");
+    if (offsets &&
+        (offsets->GetNumberOfComponents() != 2 || offsets->GetNumberOfTuples() != data->GetNumberOfPoints()))
+        offsets = nullptr;
     anamorph::FigureFrame frame;
     auto* colors = vtkUnsignedCharArray::SafeDownCast(data->GetPointData()->GetArray("Color"));
     if (colors &&
@@ -44,6 +69,10 @@ anamorph::FigureFrame frame_of(vtkPolyData* data, const anamorph_vtk::Bodies& bo
         body.name = bodies.names[i];
         if (colors)
             for (int c = 0; c < 3; ++c) body.color[c] = colors->GetTypedComponent(bodies.ids[i], c);
+        if (textures) body.texture = textures->GetValue(bodies.ids[i]);
+        // Textures lie on bodies in NUDES' space, where z is negated: so is their own z axis, seen from here.
+        if (textured) body.shape.rotation[2] = -body.shape.rotation[2];
+        if (offsets) offsets->GetTuple(bodies.ids[i], &body.texture_offset.x);
         frame.bodies.push_back(std::move(body));
     }
     frame.joints = bodies.joints;
@@ -76,6 +105,18 @@ void write_color(const float* from, unsigned char* to) {
 
 vtkAnamorphFigureImage::vtkAnamorphFigureImage() = default;
 vtkAnamorphFigureImage::~vtkAnamorphFigureImage() = default;
+
+void vtkAnamorphFigureImage::AddTexture(const char* name, vtkImageData* image) {
+    if (!name || !image) return;
+    this->Textures.emplace_back(name, image);
+    this->Modified();
+}
+
+void vtkAnamorphFigureImage::RemoveAllTextures() {
+    if (this->Textures.empty()) return;
+    this->Textures.clear();
+    this->Modified();
+}
 
 vtkImageData* vtkAnamorphFigureImage::GetOutput() {
     return vtkImageData::SafeDownCast(this->GetOutputDataObject(0));
@@ -135,9 +176,20 @@ void vtkAnamorphFigureImage::Draw(vtkPolyData* input, vtkDataObject* output,
     look.light.lighting = static_cast<anamorph::Lighting>(this->Lighting);
     look.light.toward = anamorph::usual_light(look.light.lighting);
     look.antialias = this->Antialias;
+    std::vector<std::unique_ptr<Texture>> textures;
+    std::vector<const anamorph::Source*> sources;
+    if (this->Style == SHADED && !this->Textures.empty()) {
+        look.style = FigureStyle::textured;
+        look.mapping = static_cast<anamorph::BodyMapping>(this->TextureMapping);
+        for (const auto& [name, image] : this->Textures) {
+            textures.push_back(std::make_unique<Texture>(image, "texture " + anamorph::printable(name)));
+            sources.push_back(&textures.back()->pyramid);
+            look.textures.push_back(name);
+        }
+    }
     const anamorph_vtk::Bodies bodies(input);
-    const anamorph::FigurePicture picture(frame_of(input, bodies), view, {width, height}, look,
-                                          execution.stage(0, 0.3));
+    const anamorph::FigurePicture picture(frame_of(input, bodies, look.style == FigureStyle::textured), view,
+                                          {width, height}, look, execution.stage(0, 0.3));
     const int channels = anamorph::channels_of(look.style);
     int extent[6];
     this->AskedExtent(extent);
@@ -149,7 +201,7 @@ void vtkAnamorphFigureImage::Draw(vtkPolyData* input, vtkDataObject* output,
     picture.draw(box,
                  anamorph::packed_view(reinterpret_cast<std::byte*>(pixels.data()),
                                        anamorph::PixelType::float32, box.width(), box.height(), channels),
-                 execution.stage(0.3, 0.9));
+                 execution.stage(0.3, 0.9), sources);
     image->SetExtent(extent);
     image->SetOrigin(0, 0, 0);
     image->SetSpacing(1, 1, 1);
@@ -182,7 +234,10 @@ void vtkAnamorphFigureImage::PrintSelf(ostream& os, vtkIndent indent) {
     this->Superclass::PrintSelf(os, indent);
     static const char* const styles[] = {"shaded", "outline", "stick", "depth", "body id"};
     static const char* const lightings[] = {"rasel", "lambert", "blinn"};
+    static const char* const mappings[] = {"latlong", "mirrored", "linear", "octahedral"};
     os << indent << "Style: " << styles[this->Style] << "\n"
        << indent << "Lighting: " << lightings[this->Lighting] << "\n"
-       << indent << "Antialias: " << this->Antialias << "\n";
+       << indent << "Antialias: " << this->Antialias << "\n"
+       << indent << "Textures: " << this->Textures.size() << "\n"
+       << indent << "TextureMapping: " << mappings[this->TextureMapping] << "\n";
 }

@@ -11,15 +11,21 @@
  *
  * Colors are the mean of 16 x 16 rays where a pixel shows more than one body or an edge; nothing is
  * tessellated. Bodies have the colors of the point array Color (3 unsigned chars), or a default one. Bodies
- * hide each other within one input; blocks of composite data become an image each. A pixel has the same bits in any
+ * hide each other within one input; blocks of composite data become an image each. With AddTexture(), bodies whose string array
+ * Texture has the name of one show it, moved by TextureOffset (2 texels): the style textured of `.figure`
+ * recipes. A pixel has the same bits in any
  * part of the image that is asked for.
  */
 #ifndef vtkAnamorphFigureImage_h
 #define vtkAnamorphFigureImage_h
 
 #include "vtkAnamorphFigureAlgorithm.h"
+#include "vtkImageData.h"     // of textures
+#include "vtkSmartPointer.h"  // for them
 
-class vtkImageData;
+#include <string>   // for their names
+#include <utility>  // for both
+#include <vector>   // for all
 
 class ANAMORPHFILTERS_EXPORT vtkAnamorphFigureImage : public vtkAnamorphFigureAlgorithm {
   public:
@@ -51,6 +57,24 @@ class ANAMORPHFILTERS_EXPORT vtkAnamorphFigureImage : public vtkAnamorphFigureAl
     ///@}
 
     ///@{
+    /**
+     * Textures of the style SHADED, by their names: images of a slice whose scalars are 1 to 4 components of unsigned
+     * char, unsigned short or float, the last of 2 and of 4 alpha, the colors multiplied by it.
+     */
+    void AddTexture(const char* name, vtkImageData* image);
+    void RemoveAllTextures();
+    ///@}
+
+    /** The values of TextureMapping. */
+    enum { LATLONG, MIRRORED, LINEAR, OCTAHEDRAL };
+
+    ///@{
+    /** How textures lie on bodies, as of vtkAnamorphEllipsoidMapper. LATLONG by default. */
+    vtkSetClampMacro(TextureMapping, int, LATLONG, OCTAHEDRAL);
+    vtkGetMacro(TextureMapping, int);
+    ///@}
+
+    ///@{
     /** Whether colors are means over pixels. On by default; off: those in the middle of each. */
     vtkSetMacro(Antialias, bool);
     vtkGetMacro(Antialias, bool);
@@ -75,6 +99,8 @@ class ANAMORPHFILTERS_EXPORT vtkAnamorphFigureImage : public vtkAnamorphFigureAl
     int Style = SHADED;
     int Lighting = RASEL;
     bool Antialias = true;
+    int TextureMapping = LATLONG;
+    std::vector<std::pair<std::string, vtkSmartPointer<vtkImageData>>> Textures;
 };
 
 #endif
