@@ -7,10 +7,10 @@ import numpy as np
 import vtkmodules.vtkInteractionStyle  # noqa: F401
 from ellipsoid_scene import Scene, core_picture, crowd, points_of
 from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
-from vtkmodules.vtkCommonCore import vtkUnsignedCharArray
+from vtkmodules.vtkCommonCore import vtkStringArray, vtkUnsignedCharArray
 from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkDataObject, vtkImageData, vtkMultiBlockDataSet, vtkPlane
-from vtkmodules.vtkRenderingCore import (vtkCompositeDataDisplayAttributes, vtkHardwareSelector, vtkLight, vtkPolyDataMapper,
-                                         vtkPropPicker, vtkTexture)
+from vtkmodules.vtkRenderingCore import (vtkCellPicker, vtkCompositeDataDisplayAttributes, vtkHardwareSelector, vtkLight,
+                                         vtkPolyDataMapper, vtkPropPicker, vtkTexture)
 
 import anamorph
 
@@ -344,6 +344,133 @@ def textures_are_those_of_the_geometry():
     assert seen.mean() > 0.3 and np.quantile(error, 0.99) <= 6 and error.mean() < 1.5, (error.mean(), np.quantile(error, 0.99))
 
 
+def image_of(colors):
+    """A picture of rows from the bottom up."""
+    picture = vtkImageData()
+    picture.SetDimensions(colors.shape[1], colors.shape[0], 1)
+    picture.GetPointData().SetScalars(numpy_to_vtk(colors.reshape(-1, colors.shape[2]).astype(np.uint8), deep=True))
+    return picture
+
+
+def texture_of(picture):
+    texture = vtkTexture()
+    texture.SetInputData(picture)
+    texture.InterpolateOn()
+    return texture
+
+
+def waves(width, height, phase):
+    """Three smooth patterns, which go around; none looks the same mirrored or turned."""
+    u, v = np.meshgrid((np.arange(width) + 0.5) / width, (np.arange(height) + 0.5) / height)
+    return image_of(np.stack([128 + 100 * np.cos(2 * np.pi * u + phase), 128 + 100 * np.sin(2 * np.pi * u + v),
+                              40 + 200 * v * v], -1))
+
+
+def bodies_with_textures():
+    """Eight bodies, of which some have one of two textures, one has none and one a name that is not there."""
+    data = crowd(8, 0.4, seed=5)
+    names, numbers = vtkStringArray(), [0, 1, 0, 1, 0, 1, -1, 7]
+    names.SetName("Texture")
+    for number in numbers:
+        names.InsertNextValue({0: "first", 1: "second", -1: ""}.get(number, "none"))
+    data.GetPointData().AddArray(names)
+    offsets = numpy_to_vtk(np.array([(0, 0), (0, 0), (9, 4), (30, -25), (-200, 0), (3, 45), (0, 0), (0, 0)], float), deep=True)
+    offsets.SetName("TextureOffset")
+    data.GetPointData().AddArray(offsets)
+    return data, numbers
+
+
+def textures_of_bodies_are_those_of_core():
+    (data, numbers), pictures = bodies_with_textures(), {"first": waves(64, 32, 0), "second": waves(40, 48, 1)}
+    numbered = numpy_to_vtk(np.array(numbers, np.int32), deep=True)
+    numbered.SetName("Number")
+    data.GetPointData().AddArray(numbered)
+    for scene in scenes(data):
+        mapper = scene.mapper
+        scene.actor.GetProperty().SetAmbient(0.3)
+        scene.actor.GetProperty().SetDiffuse(0.7)
+        light = vtkLight()
+        light.SetLightTypeToCameraLight()
+        light.SetPosition(-1, 2, 2)
+        light.SetFocalPoint(0, 0, 0)
+        scene.renderer.AddLight(light)
+        ids, reference = scene.ids(), core_picture(data, scene, Image.BODY_ID)
+        mapper.SelectColorArray("Color")
+        plain = scene.colors()
+        for name, picture in pictures.items():
+            mapper.AddTexture(texture_of(picture), name)
+        assert mapper.GetNumberOfTextures() == 2
+        for mapping in ("LATLONG", "MIRRORED", "LINEAR", "OCTAHEDRAL"):
+            mapper.SetTextureMapping(getattr(mapper, mapping))
+            image = anamorph.vtkAnamorphFigureImage()
+            for name, picture in pictures.items():
+                image.AddTexture(name, picture)
+            exact = core_picture(data, scene, Image.SHADED, image=image, Lighting=Image.LAMBERT, Antialias=False,
+                                 TextureMapping=getattr(Image, mapping))
+            colors, same = scene.colors(), (ids == reference) & (ids >= 0)
+            error = np.abs(colors - exact[..., :3]).max(2)
+            # Where the square of a mapping ends, a texture has an edge: lines of pixels.
+            assert error[same].mean() < 1 and np.quantile(error[same], 0.98) <= 2, (mapping, error[same].mean(),
+                                                                                   np.quantile(error[same], 0.98))
+            for body, number in enumerate(numbers):
+                changed = (colors != plain).any(2)[same & (ids == body)]
+                assert len(changed) > 20 and (changed.mean() > 0.9 if number in (0, 1) else not changed.any()), (body, number)
+            mapper.SetTextureArray("Number")
+            assert (scene.colors() == colors).all(), mapping
+            mapper.SetTextureArray("Texture")
+        # Selection does not see textures, and without them all is as before.
+        found = selected(scene, vtkDataObject.FIELD_ASSOCIATION_POINTS, 100, 90, 160, 170)
+        assert set().union(*found.values()) == set(np.unique(ids[90:171, 100:161])) - {-1}
+        mapper.RemoveAllTextures()
+        assert (scene.colors() == plain).all()
+
+
+def a_body_shows_through_its_texture():
+    ball = points_of([(0, 0, 0)], Axes=[(1.0, 1, 1)], Orientation=[IDENTITY], Texture=np.zeros(1))
+    for texel, multiplied, wanted in (([200, 100, 40, 128], False, [100, 50, 147]), ([100, 50, 20, 128], True, [100, 50, 147]),
+                                      ([90], False, [90, 90, 90]), ([90, 128], False, [45, 45, 172])):
+        scene, texture = Scene(mapper_of(ball), 64, 64), texture_of(image_of(np.tile(texel, (4, 4, 1))))
+        texture.SetPremultipliedAlpha(multiplied)
+        scene.mapper.AddTexture(texture)
+        scene.mapper.ScalarVisibilityOff()
+        scene.actor.GetProperty().LightingOff()
+        scene.actor.GetProperty().SetColor(0, 0, 1)
+        scene.look((0, 0, 5), parallel_scale=1.2)
+        assert np.abs(scene.colors()[32, 32] - wanted).max() <= 2, (texel, scene.colors()[32, 32])
+
+
+def a_cell_picker_finds_what_is_seen():
+    data = crowd(300, 0.08)
+    cells = vtkCellArray()
+    for i in range(300):
+        cells.InsertNextCell(1, [299 - i])  # in another order than the points
+    data.SetVerts(cells)
+    blocks = vtkMultiBlockDataSet()
+    blocks.SetBlock(1, data)
+    random = np.random.default_rng(3)
+    for whole in (data, blocks):
+        for scene in scenes(whole):
+            scene.actor.SetPosition(0.2, 0.1, 0)
+            scene.actor.RotateZ(20)
+            scene.actor.SetScale(1.5, 1, 1)
+            scene.renderer.ResetCameraClippingRange()
+            ids, depths, picker = scene.ids(), scene.depths(), vtkCellPicker()
+            scene.mapper.AddLocators(picker)
+            picker.SetTolerance(0.2)  # bodies reach beyond the boxes of the blocks' points
+            position, away = np.array(scene.camera.GetPosition()), np.array(scene.camera.GetDirectionOfProjection())
+            for y, x in random.integers(0, 256, (200, 2)):
+                found = picker.Pick(float(x), float(y), 0, scene.renderer)
+                inner = ids[max(y - 1, 0):y + 2, max(x - 1, 0):x + 2]
+                if (inner != ids[y, x]).any():
+                    continue  # a limb: pickers look through the corner of a pixel
+                assert bool(found) == (ids[y, x] >= 0), (x, y)
+                if found:
+                    assert (picker.GetPointId(), picker.GetCellId()) == (ids[y, x], 299 - ids[y, x])
+                    assert picker.GetActor() is scene.actor
+                    depth = np.dot(np.array(picker.GetPickPosition()) - position, away)
+                    assert abs(depth - depths[y, x]) < 0.05, (depth, depths[y, x])
+
+
 def a_mapper_draws_in_several_windows():
     mapper, first = mapper_of(crowd(40, 0.2)), None
     windows = [Scene(mapper, 64, 64), Scene(mapper, 64, 64)]
@@ -392,5 +519,8 @@ blocks_are_drawn_and_told_apart()
 blocks_have_looks()
 scalars_of_cells()
 textures_are_those_of_the_geometry()
+textures_of_bodies_are_those_of_core()
+a_body_shows_through_its_texture()
+a_cell_picker_finds_what_is_seen()
 an_actor_moves_turns_and_scales_it()
 a_mapper_draws_in_several_windows()

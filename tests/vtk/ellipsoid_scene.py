@@ -93,9 +93,9 @@ class Scene:
         return np.where(z == 1, math.inf, depth)
 
 
-def core_picture(data, scene, style, **settings):
-    """What vtkAnamorphFigureImage shows of the data to the same camera: an array of rows from the bottom up."""
-    image, camera = anamorph.vtkAnamorphFigureImage(), scene.camera
+def core_picture(data, scene, style, image=None, **settings):
+    """What a vtkAnamorphFigureImage shows of the data to the same camera: an array of rows from the bottom up."""
+    image, camera = image or anamorph.vtkAnamorphFigureImage(), scene.camera
     image.SetInputData(data)
     image.SetViewMode(image.CAMERA)
     image.SetViewSize(*scene.window.GetSize())

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // What of vtkAnamorphEllipsoidMapper needs no display; ellipsoid_mapper.py draws.
-#include <vtkAnamorphEllipsoidMapper.h>  // first: it stands alone
+#include <vtkAnamorphEllipsoidLocator.h>  // first: it stands alone
+#include <vtkAnamorphEllipsoidMapper.h>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -53,6 +54,37 @@ TEST(VtkEllipsoidMapper, AnyDataSetHasPoints) {
     for (int k = 0; k < 6; ++k) EXPECT_NEAR(mapper->GetBounds()[k], root[k], 1e-12) << k;
 }
 
+TEST(VtkEllipsoidMapper, ALineMeetsTheFirstBody) {
+    // Half axes of 2 along y after the turn, of 1 along x, and 2 along z; the other one is behind it.
+    const auto data = figures({{{1, 2, -9}, {1, 1, 1}, {1, 0, 0, 0}}, {{1, 2, 3}, {2, 1, 2}, kTurned.turn}});
+    vtkNew<Mapper> mapper;
+    mapper->SetInputData(data);
+    const double from[3] = {1, 2, 13}, to[3] = {1, 2, -27};
+    double t = -1;
+    vtkIdType cell = 7;
+    const auto meet = [&](const glm::dvec3& first, const glm::dvec3& last) {
+        return mapper->IntersectWithLine(data, &first.x, &last.x, t, cell);
+    };
+    EXPECT_EQ(meet({1, 2, 13}, {1, 2, -27}), 1);
+    EXPECT_NEAR(t, 8.0 / 40, 1e-12);
+    EXPECT_EQ(cell, -1) << "the points are in no cell";
+    EXPECT_EQ(meet({1, 2, 3}, {1, 2, 13}), 1);
+    EXPECT_NEAR(t, 0.2, 1e-12) << "out of it";
+    EXPECT_EQ(meet({1, 2, 0}, {1, 2, -10}), 0);
+    EXPECT_EQ(meet({1, 2, 13}, {1, 2, 6}), -1) << "too short";
+    EXPECT_EQ(meet({1, 3.9, 13}, {1, 3.9, -10}), 1);
+    EXPECT_EQ(meet({1, 4.1, 13}, {1, 4.1, -10}), -1);
+    EXPECT_EQ(meet({1, 2, 13}, {1, 2, 13}), -1) << "a line without length";
+    EXPECT_EQ(meet({kNan, 2, 13}, {1, 2, 13}), -1);
+    EXPECT_EQ(mapper->IntersectWithLine(vtkNew<vtkImageData>(), from, to, t, cell), -1);
+    mapper->AddLocators(nullptr);
+    vtkNew<vtkAnamorphEllipsoidLocator> locator;
+    locator->SetDataSet(data);
+    double x[3], where[3];
+    int part = 0;
+    EXPECT_EQ(locator->IntersectWithLine(from, to, 0, t, x, where, part, cell, nullptr), 0) << "no mapper";
+}
+
 TEST(VtkEllipsoidMapper, WhatCannotBeDoneIsAnError) {
     const auto error = [](const std::function<void(Mapper*)>& set) {
         vtkNew<Mapper> mapper;
@@ -78,7 +110,9 @@ TEST(VtkEllipsoidMapper, TheSameValueLeavesItsTime) {
     expect_modified_by<Mapper>(
         mapper, {[](Mapper* m) { m->SetShape(Mapper::COVARIANCE); }, [](Mapper* m) { m->SetAxesArray("a"); },
                  [](Mapper* m) { m->SetOrientationArray("b"); }, [](Mapper* m) { m->SetTensorArray("c"); },
-                 [](Mapper* m) { m->SetScaleFactor(3); },
+                 [](Mapper* m) { m->SetScaleFactor(3); }, [](Mapper* m) { m->SetTextureArray("d"); },
+                 [](Mapper* m) { m->SetTextureOffsetArray("e"); },
+                 [](Mapper* m) { m->SetTextureMapping(Mapper::LINEAR); },
                  [&](Mapper* m) { m->SetCompositeDataDisplayAttributes(blocks); }});
     const vtkMTimeType before = mapper->GetMTime();
     blocks->SetBlockVisibility(figures({kTurned}), false);
@@ -88,8 +122,10 @@ TEST(VtkEllipsoidMapper, TheSameValueLeavesItsTime) {
 }
 
 TEST(VtkEllipsoidMapper, PrintsItsState) {
-    expect_printed(vtkNew<Mapper>(), {"Shape: axes", "AxesArray: Axes", "OrientationArray: Orientation",
-                                      "TensorArray: ", "ScaleFactor: 1"});
+    expect_printed(vtkNew<Mapper>(),
+                   {"Shape: axes", "AxesArray: Axes", "OrientationArray: Orientation",
+                    "TensorArray: ", "ScaleFactor: 1", "NumberOfTextures: 0", "TextureArray: Texture",
+                    "TextureOffsetArray: TextureOffset", "TextureMapping: latlong"});
 }
 
 TEST(VtkEllipsoidMapper, FactoriesMayOverrideIt) {

@@ -17,6 +17,7 @@
 #include "vtkIdList.h"
 #include "vtkNew.h"
 #include "vtkPointData.h"
+#include "vtkStringArray.h"
 #include "vtkUnsignedCharArray.h"
 
 namespace anamorph_vtk {
@@ -117,6 +118,43 @@ class Shapes {
     vtkDataArray *m_axes = nullptr, *m_orientation = nullptr, *m_tensor = nullptr;
 };
 
+/// The texture of each point, where there is one.
+class Textures {
+  public:
+    Textures(vtkDataSet* data, const EllipsoidArrays& arrays) {
+        if (!arrays.textures) return;
+        m_names = arrays.textures;
+        m_array = data->GetPointData()->GetAbstractArray(arrays.texture.c_str());
+        m_offset = data->GetPointData()->GetArray(arrays.offset.c_str());
+        if (m_array && m_array->GetNumberOfTuples() != data->GetNumberOfPoints()) m_array = nullptr;
+        if (m_offset && (m_offset->GetNumberOfTuples() != data->GetNumberOfPoints() ||
+                         m_offset->GetNumberOfComponents() != 2))
+            m_offset = nullptr;
+    }
+
+    void set(EllipsoidBody& body, vtkIdType point) const {
+        if (!m_array) return;
+        if (auto* names = vtkStringArray::SafeDownCast(m_array))
+            body.texture = numbered(names->GetValue(point));
+        else if (auto* numbers = vtkDataArray::SafeDownCast(m_array))
+            body.texture = numbered(numbers->GetComponent(point, 0));
+        if (m_offset) m_offset->GetTuple(point, body.offset);
+    }
+
+  private:
+    int numbered(const std::string& name) const {
+        const auto found = std::find(m_names->begin(), m_names->end(), name);
+        return name.empty() || found == m_names->end() ? -1 : static_cast<int>(found - m_names->begin());
+    }
+    int numbered(double number) const {
+        return number >= 0 && number < static_cast<double>(m_names->size()) ? static_cast<int>(number) : -1;
+    }
+
+    const std::vector<std::string>* m_names = nullptr;
+    vtkAbstractArray* m_array = nullptr;
+    vtkDataArray* m_offset = nullptr;
+};
+
 /// The cell that each point is in first; -1: none.
 std::vector<vtkIdType> cells_of_points(vtkDataSet* data) {
     std::vector<vtkIdType> cells(static_cast<std::size_t>(data->GetNumberOfPoints()), -1);
@@ -133,6 +171,7 @@ std::vector<vtkIdType> cells_of_points(vtkDataSet* data) {
 
 void EllipsoidBodies::add(vtkDataSet* data, unsigned int index, const EllipsoidArrays& arrays) {
     const Shapes shapes(data, arrays);
+    const Textures textures(data, arrays);
     const std::vector<vtkIdType> cells = cells_of_points(data);
     vtkUnsignedCharArray* ghosts = data->GetPointGhostArray();
     if (ghosts && ghosts->GetNumberOfTuples() != data->GetNumberOfPoints()) ghosts = nullptr;
@@ -143,6 +182,7 @@ void EllipsoidBodies::add(vtkDataSet* data, unsigned int index, const EllipsoidA
         data->GetPoint(i, &body.center.x);
         body.cell = cells[static_cast<std::size_t>(i)];
         body.picked = body.cell < 0 ? i : body.cell;
+        textures.set(body, i);
         if (ghosts && (ghosts->GetValue(i) & hidden) != 0) continue;
         if (std::isfinite(body.center.x) && std::isfinite(body.center.y) && std::isfinite(body.center.z))
             shapes.set(body, i);
@@ -188,6 +228,23 @@ bool EllipsoidBodies::bounds(double box[6]) const {
     return any;
 }
 
+std::optional<LineHit> EllipsoidBodies::hit(const EllipsoidBlock& block, const glm::dvec3& from,
+                                            const glm::dvec3& to) const {
+    std::optional<LineHit> first;
+    for (vtkIdType i = 0; i < block.count; ++i) {
+        const EllipsoidBody& body = bodies[static_cast<std::size_t>(block.first + i)];
+        if (!body.drawn) continue;
+        // In the space of the unit sphere: from the point of the line that is next to its centre, both ways.
+        const glm::dvec3 start = body.inverse * (from - body.center), way = body.inverse * (to - from);
+        const double square = glm::dot(way, way), middle = -glm::dot(start, way) / square;
+        const glm::dvec3 nearest = start + middle * way;
+        const double half = std::sqrt((1 - glm::dot(nearest, nearest)) / square);  // not a number: it misses
+        const double t = middle - half >= 0 ? middle - half : middle + half;
+        if (t >= 0 && t <= 1 && (!first || t < first->t)) first = LineHit{t, i};
+    }
+    return first;
+}
+
 double EllipsoidBodies::unit() const {
     double box[6];
     if (!bounds(box)) return 1;
@@ -205,12 +262,12 @@ std::vector<float> EllipsoidBodies::texels(double unit) const {
     for (const EllipsoidBody& body : bodies) {
         const FloatPair center(body.drawn ? body.center / unit : glm::dvec3(0));
         put(center.high, body.drawn ? 1 : 0);
-        put(center.low, 0);
+        put(center.low, 1 + body.texture);
         const double ids[3] = {static_cast<double>(body.picked % (1 << 24)),
                                static_cast<double>(body.picked >> 24), 0};
         for (int k = 0; k < 3; ++k) put(body.axes[k] / unit, ids[k]);
         const glm::dmat3 rows = glm::transpose(body.inverse);
-        for (int k = 0; k < 3; ++k) put(rows[k] * unit, 0);
+        for (int k = 0; k < 3; ++k) put(rows[k] * unit, k < 2 ? body.offset[k] : 0);
         for (const float c : body.color) *to++ = c;
     }
     return numbers;

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <glm/mat3x3.hpp>
 #include <glm/vec3.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -23,6 +24,8 @@ struct EllipsoidArrays {
     int shape = AXES;
     std::string axes, orientation, tensor;
     double scale = 1;
+    std::string texture, offset;  ///< arrays of textures' names or numbers, and of 2 texels
+    const std::vector<std::string>* textures = nullptr;  ///< their names; null: the arrays are not read
 };
 
 /// The points center + axes s with |s| <= 1.
@@ -33,6 +36,14 @@ struct EllipsoidBody {
     vtkIdType cell = -1;    ///< that the point is in; -1: none
     vtkIdType picked = -1;  ///< what a selection of cells finds: the cell, or the point that is in none
     float color[4] = {1, 1, 1, 1};
+    int texture = -1;           ///< its number; -1: none
+    double offset[2] = {0, 0};  ///< texels
+};
+
+/// Where a line meets a body.
+struct LineHit {
+    double t;  ///< 0 to 1 from the line's first point to its last
+    vtkIdType body;
 };
 
 /// A body for each point of a data set: `first` to `first + count` of all.
@@ -74,6 +85,9 @@ class EllipsoidBodies {
     /// Gives all of a block one color, and its opacity.
     void color(const EllipsoidBlock& block, const double* color);
     bool bounds(double box[6]) const;
+    /// The first of a block's bodies that a line enters, or leaves where it begins in it.
+    std::optional<LineHit> hit(const EllipsoidBlock& block, const glm::dvec3& from,
+                               const glm::dvec3& to) const;
 
     /// A power of two near the size of all, and the texels of ellipsoid_shader.h in that unit.
     double unit() const;

@@ -14,14 +14,15 @@
 namespace anamorph_vtk {
 
 /// Texels that a body takes of the buffer `bodies`: the centre, as the sum of two floats a coordinate (its w: 1, or 0 if it
-/// is not to be drawn); the columns of A (the first two w: its cell's id, as id % 2^24 and id / 2^24); the rows of A^-1;
-/// the colour.
+/// is not to be drawn; the other w: 1 + the number of its texture, 0 without one); the columns of A (the first two w: its
+/// cell's id, as id % 2^24 and id / 2^24); the rows of A^-1 (the first two w: the texture's offset in texels); the colour.
 constexpr int kBodyTexels = 9;
 
 /// Draws 3 vertices, a triangle, for each body.
 constexpr const char* kEllipsoidVertexShader = R"glsl(//VTK::System::Dec
 uniform samplerBuffer bodies;
 uniform int firstBody;
+uniform int textureDrawn;  // only bodies with this one; -1: all
 uniform int eyeInPerspective;
 uniform vec3 eyeHigh, eyeLow;  // of the eye, as centres are given
 uniform vec3 towardEye;        // of parallel views
@@ -34,6 +35,7 @@ flat out vec3 center;
 flat out mat3 axes, inverseAxes, basis;
 flat out vec4 bodyColor;
 flat out ivec2 bodyIds;
+flat out vec2 bodyOffset;
 //VTK::CustomUniforms::Dec
 
 void main()
@@ -44,8 +46,9 @@ void main()
   vec4 high = texelFetch(bodies, texel), low = texelFetch(bodies, texel + 1);
   vec4 x = texelFetch(bodies, texel + 2), y = texelFetch(bodies, texel + 3), z = texelFetch(bodies, texel + 4);
   mat3 A = mat3(x.xyz, y.xyz, z.xyz);
-  mat3 inverseA = transpose(mat3(texelFetch(bodies, texel + 5).xyz, texelFetch(bodies, texel + 6).xyz,
-                                 texelFetch(bodies, texel + 7).xyz));
+  vec4 row = texelFetch(bodies, texel + 5), secondRow = texelFetch(bodies, texel + 6);
+  mat3 inverseA = transpose(mat3(row.xyz, secondRow.xyz, texelFetch(bodies, texel + 7).xyz));
+  bodyOffset = vec2(row.w, secondRow.w);
   bodyColor = texelFetch(bodies, texel + 8);
   bodyIds = ivec2(body, int(x.w) + 16777216 * int(y.w));
   vec3 fromEye = (high.xyz - eyeHigh) + (low.xyz - eyeLow);
@@ -74,7 +77,7 @@ void main()
     vec4 clip = viewToClip * vec4(center + axes * vec3(r * ab, k), 1.0);
     gl_Position = vec4(clip.xy, 0.0, clip.w);  // the depth is that of the surface
   }
-  if (high.w == 0.0) gl_Position = vec4(2.0, 2.0, 2.0, 1.0);
+  if (high.w == 0.0 || (textureDrawn >= 0 && int(low.w) != textureDrawn)) gl_Position = vec4(2.0, 2.0, 2.0, 1.0);
 }
 )glsl";
 
@@ -89,6 +92,7 @@ flat in vec3 center;
 flat in mat3 axes, inverseAxes, basis;
 flat in vec4 bodyColor;
 flat in ivec2 bodyIds;
+flat in vec2 bodyOffset;
 
 // Where the ray enters (side 1) or leaves (side -1) the sphere, in its basis.
 vec3 spherePoint(float side)
@@ -155,6 +159,50 @@ constexpr const char* kEllipsoidTexture = R"glsl(
   vec2 uvAcross = dFdx(uv), uvUp = dFdy(uv);
   uvAcross.x -= floor(uvAcross.x + 0.5);
   uvUp.x -= floor(uvUp.x + 0.5);
+)glsl";
+
+/// The texel of the texture of a body, (u, v) as the core's body_mapping.h has them. What lies beyond the texture's edges goes on as
+/// the mapping does: LATLONG over the poles and around, which takes a texture that repeats; MIRRORED; or as at the edge.
+constexpr const char* kBodyTexture = R"glsl(
+uniform sampler2D bodyTexture;
+uniform int bodyTextureChannels;  // 0: none
+uniform int bodyTextureMultiplied;  // by alpha
+
+vec4 bodyTexel(vec2 uv, vec2 across, vec2 up)
+{
+  vec2 size = vec2(textureSize(bodyTexture, 0)), flip = vec2(1.0, -1.0);
+  uv += bodyOffset / size;
+#if LATLONG
+  uv.y -= 2.0 * floor(0.5 * uv.y);
+  if (uv.y > 1.0) uv = vec2(uv.x + 0.5, 2.0 - uv.y);
+  uv.y = clamp(uv.y, 0.5 / size.y, 1.0 - 0.5 / size.y);
+#else
+#if MIRRORED
+  uv = 1.0 - abs(uv - 2.0 * floor(0.5 * uv) - 1.0);
+#endif
+  uv = clamp(uv, 0.5 / size, 1.0 - 0.5 / size);
+#endif
+  vec4 texel = textureGrad(bodyTexture, vec2(uv.x, 1.0 - uv.y), flip * across, flip * up);
+  return bodyTextureChannels == 1 ? texel.rrra : bodyTextureChannels == 2 ? texel.rrrg : texel;
+}
+)glsl";
+
+/// In NUDES' space, where z is negated.
+constexpr const char* kBodyTextureCoordinates = R"glsl(
+  vec3 bodyPoint = vec3(1.0, 1.0, -1.0) * (basis * s);
+  vec2 bodyUv, bodyUvAcross, bodyUvUp;
+  bodyMapping(bodyPoint, dFdx(bodyPoint), dFdy(bodyPoint), bodyUv, bodyUvAcross, bodyUvUp);
+)glsl";
+
+/// Over the body's own colour, where it is transparent.
+constexpr const char* kBodyTextureColor = R"glsl(
+  if (bodyTextureChannels > 0)
+  {
+    vec4 texel = bodyTexel(bodyUv, bodyUvAcross, bodyUvUp);
+    vec3 color = mix(bodyColor.rgb, bodyTextureMultiplied == 1 ? texel.rgb / max(texel.a, 1e-6) : texel.rgb, texel.a);
+    ambientColor = ambientIntensity * color;
+    diffuseColor = diffuseIntensity * color;
+  }
 )glsl";
 
 constexpr const char* kEllipsoidNormal = R"glsl(

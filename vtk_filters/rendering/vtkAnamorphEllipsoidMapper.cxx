@@ -9,11 +9,14 @@
 #include <vector>
 
 #include "anamorph/error.h"
+#include "anamorph/figure/body_mapping_glsl.h"
 #include "block_looks.h"
 #include "ellipsoid_bodies.h"
 #include "ellipsoid_shader.h"
 #include "vtkActor.h"
+#include "vtkAnamorphEllipsoidLocator.h"
 #include "vtkCamera.h"
+#include "vtkCellPicker.h"
 #include "vtkCommand.h"
 #include "vtkCompositeDataDisplayAttributes.h"
 #include "vtkCompositeDataIterator.h"
@@ -39,6 +42,7 @@
 #include "vtkScalarsToColors.h"
 #include "vtkShaderProgram.h"
 #include "vtkSmartPointer.h"
+#include "vtkTexture.h"
 #include "vtkTextureObject.h"
 #include "vtkUnsignedCharArray.h"
 #include "vtkWeakPointer.h"
@@ -62,6 +66,7 @@ struct Variant {
     bool cut = false, colored = false;
     int texture_components = 0;     ///< 0: no texture
     bool texture_is_moved = false;  ///< by the actor's matrix
+    int mapping = -1;               ///< of the bodies' own textures; -1: none
     bool operator==(const Variant&) const = default;
 };
 
@@ -85,6 +90,9 @@ struct vtkAnamorphEllipsoidMapper::Drawing {
     vtkNew<vtkOpenGLBufferObject> buffer;
     vtkNew<vtkTextureObject> texture;
     vtkWeakPointer<vtkOpenGLRenderWindow> window;  ///< that these are in
+    std::vector<vtkSmartPointer<vtkTexture>> textures;
+    std::vector<std::string> texture_names;
+    int texture_drawn = -1;  ///< 0: that of bodies without one; -1: all bodies at once
 };
 
 namespace {
@@ -130,6 +138,19 @@ void substitute(vtkShader* shader, const char* place, const std::string& text) {
     shader->SetSource(source);
 }
 
+void add_body_textures(vtkShader* fragment, int mapping) {
+    const auto flag = [&](const char* name, int which) {
+        return std::string("#define ") + name + (mapping == which ? " 1\n" : " 0\n");
+    };
+    substitute(fragment, "//VTK::TMap::Dec",
+               flag("LATLONG", vtkAnamorphEllipsoidMapper::LATLONG) +
+                   flag("MIRRORED", vtkAnamorphEllipsoidMapper::MIRRORED) + anamorph_vtk::kBodyTexture +
+                   anamorph::body_mapping_glsl(static_cast<anamorph::BodyMapping>(mapping), "bodyMapping") +
+                   "//VTK::TMap::Dec\n");
+    substitute(fragment, "//VTK::UniformFlow::Impl",
+               std::string(anamorph_vtk::kBodyTextureCoordinates) + "  //VTK::UniformFlow::Impl\n");
+}
+
 }  // namespace
 
 vtkAnamorphEllipsoidMapper::vtkAnamorphEllipsoidMapper() : Current(std::make_unique<Drawing>()) {
@@ -170,6 +191,36 @@ void vtkAnamorphEllipsoidMapper::SetTensorArray(const char* name) {
     if (this->TensorArray == (name ? name : "")) return;
     this->TensorArray = name ? name : "";
     this->Modified();
+}
+
+void vtkAnamorphEllipsoidMapper::SetTextureArray(const char* name) {
+    if (this->TextureArray == (name ? name : "")) return;
+    this->TextureArray = name ? name : "";
+    this->Modified();
+}
+
+void vtkAnamorphEllipsoidMapper::SetTextureOffsetArray(const char* name) {
+    if (this->TextureOffsetArray == (name ? name : "")) return;
+    this->TextureOffsetArray = name ? name : "";
+    this->Modified();
+}
+
+void vtkAnamorphEllipsoidMapper::AddTexture(vtkTexture* texture, const char* name) {
+    if (!texture) return;
+    this->Current->textures.push_back(texture);
+    this->Current->texture_names.push_back(name ? name : "");
+    this->Modified();
+}
+
+void vtkAnamorphEllipsoidMapper::RemoveAllTextures() {
+    if (this->Current->textures.empty()) return;
+    this->Current->textures.clear();
+    this->Current->texture_names.clear();
+    this->Modified();
+}
+
+int vtkAnamorphEllipsoidMapper::GetNumberOfTextures() {
+    return static_cast<int>(this->Current->textures.size());
 }
 
 void vtkAnamorphEllipsoidMapper::SetCompositeDataDisplayAttributes(
@@ -232,8 +283,14 @@ bool vtkAnamorphEllipsoidMapper::GatherBodies() {
         if (!(this->ScaleFactor > 0 && this->ScaleFactor <= 1e300))
             throw anamorph::Error("ScaleFactor", std::to_string(this->ScaleFactor),
                                   "must be a positive number");
-        const EllipsoidArrays arrays{this->Shape, this->AxesArray, this->OrientationArray, this->TensorArray,
-                                     this->ScaleFactor};
+        const EllipsoidArrays arrays{this->Shape,
+                                     this->AxesArray,
+                                     this->OrientationArray,
+                                     this->TensorArray,
+                                     this->ScaleFactor,
+                                     this->TextureArray,
+                                     this->TextureOffsetArray,
+                                     current.textures.empty() ? nullptr : &current.texture_names};
         const auto looks = anamorph_vtk::block_looks(input, current.attributes);
         const auto add = [&](vtkDataObject* block, unsigned int index) {
             auto* data = vtkDataSet::SafeDownCast(block);
@@ -260,9 +317,35 @@ bool vtkAnamorphEllipsoidMapper::GatherBodies() {
     return current.valid;
 }
 
+vtkIdType vtkAnamorphEllipsoidMapper::IntersectWithLine(vtkDataSet* block, const double from[3],
+                                                        const double to[3], double& t, vtkIdType& cell) {
+    cell = -1;
+    if (!this->GatherBodies()) return -1;
+    const Drawing& current = *this->Current;
+    const auto found = std::find(current.data.begin(), current.data.end(), block);
+    if (found == current.data.end()) return -1;
+    const EllipsoidBlock& bodies =
+        current.bodies.blocks[static_cast<std::size_t>(found - current.data.begin())];
+    const auto hit = current.bodies.hit(bodies, {from[0], from[1], from[2]}, {to[0], to[1], to[2]});
+    if (!hit) return -1;
+    t = hit->t;
+    cell = current.bodies.bodies[static_cast<std::size_t>(bodies.first + hit->body)].cell;
+    return hit->body;
+}
+
+void vtkAnamorphEllipsoidMapper::AddLocators(vtkCellPicker* picker) {
+    if (!picker || !this->GatherBodies()) return;
+    for (vtkDataSet* block : this->Current->data) {
+        vtkNew<vtkAnamorphEllipsoidLocator> locator;
+        locator->SetMapper(this);
+        locator->SetDataSet(block);
+        picker->AddLocator(locator);
+    }
+}
+
 void vtkAnamorphEllipsoidMapper::ColorBodies(vtkActor* actor) {
     Drawing& current = *this->Current;
-    current.variant.colored = false;
+    current.variant.colored = !current.textures.empty();
     for (std::size_t i = 0; i < current.data.size(); ++i) {
         const EllipsoidBlock& block = current.bodies.blocks[i];
         current.bodies.color(block,
@@ -368,8 +451,28 @@ void vtkAnamorphEllipsoidMapper::RenderPieceDraw(vtkRenderer* renderer, vtkActor
             draw(block.first, static_cast<std::size_t>(block.count));
         }
     else
-        draw(0, current.bodies.bodies.size());
+        this->DrawTextured(renderer, [&] { draw(0, current.bodies.bodies.size()); });
     current.texture->Deactivate();
+}
+
+/// Draws all bodies at once, or where they have textures those of each by itself.
+void vtkAnamorphEllipsoidMapper::DrawTextured(vtkRenderer* renderer, const std::function<void()>& draw) {
+    Drawing& current = *this->Current;
+    if (current.variant.mapping < 0) {
+        draw();
+        return;
+    }
+    std::vector<bool> used(current.textures.size() + 1);
+    for (const anamorph_vtk::EllipsoidBody& body : current.bodies.bodies)
+        if (body.drawn) used[static_cast<std::size_t>(body.texture + 1)] = true;
+    for (std::size_t i = 0; i < used.size(); ++i) {
+        if (!used[i]) continue;
+        current.texture_drawn = static_cast<int>(i);
+        if (i > 0) current.textures[i - 1]->Render(renderer);
+        draw();
+        if (i > 0) current.textures[i - 1]->PostRender(renderer);
+    }
+    current.texture_drawn = -1;
 }
 
 /// Whether a corner of the bodies' box is not beyond the near plane.
@@ -394,6 +497,7 @@ void vtkAnamorphEllipsoidMapper::FindVariant(vtkRenderer* renderer, vtkActor* ac
                                      : 0;
     vtkInformation* keys = actor->GetPropertyKeys();
     variant.texture_is_moved = keys && keys->Has(vtkProp::GeneralTextureTransform());
+    variant.mapping = this->Current->textures.empty() || renderer->GetSelector() ? -1 : this->TextureMapping;
 }
 
 bool vtkAnamorphEllipsoidMapper::GetNeedToRebuildShaders(vtkOpenGLHelper& helper, vtkRenderer* renderer,
@@ -431,15 +535,17 @@ void vtkAnamorphEllipsoidMapper::ReplaceShaderColor(Shaders shaders, vtkRenderer
     vtkShader* fragment = shaders[vtkShader::Fragment];
     if (this->Current->variant.colored)
         substitute(fragment, "//VTK::Color::Impl",
-                   "//VTK::Color::Impl\n"
-                   "  ambientColor = ambientIntensity * bodyColor.rgb;\n"
-                   "  diffuseColor = diffuseIntensity * bodyColor.rgb;\n"
-                   "  opacity = opacityUniform * bodyColor.a;\n");
+                   std::string("//VTK::Color::Impl\n"
+                               "  ambientColor = ambientIntensity * bodyColor.rgb;\n"
+                               "  diffuseColor = diffuseIntensity * bodyColor.rgb;\n"
+                               "  opacity = opacityUniform * bodyColor.a;\n") +
+                       (this->Current->variant.mapping < 0 ? "" : anamorph_vtk::kBodyTextureColor));
     this->Superclass::ReplaceShaderColor(shaders, renderer, actor);
 }
 
 void vtkAnamorphEllipsoidMapper::ReplaceShaderTCoord(Shaders shaders, vtkRenderer*, vtkActor*) {
     const Variant& variant = this->Current->variant;
+    if (variant.mapping >= 0) add_body_textures(shaders[vtkShader::Fragment], variant.mapping);
     if (variant.texture_components == 0) return;
     static const char* const components[] = {"rrra", "rrrg", "rgba", "rgba"};
     vtkShader* fragment = shaders[vtkShader::Fragment];
@@ -484,10 +590,27 @@ void vtkAnamorphEllipsoidMapper::SetMapperShaderParameters(vtkOpenGLHelper& help
     vtkShaderProgram* program = helper.Program;
     program->SetUniformi("bodies", this->Current->texture->GetTextureUnit());
     program->SetUniformi("firstBody", static_cast<int>(this->Current->first));
+    this->SetTexture(program);
     program->SetUniformi("farSide", this->Current->far_side ? 1 : 0);
     // Points are selected before a picture of the same depths.
     vtkHardwareSelector* selector = renderer->GetSelector();
     program->SetUniformf("depthBias", selector ? 1e-6f : 0.0f);
+}
+
+/// Samplers of different types must not share a unit, whether they are read or not.
+void vtkAnamorphEllipsoidMapper::SetTexture(vtkShaderProgram* program) {
+    const Drawing& current = *this->Current;
+    program->SetUniformi("textureDrawn", current.texture_drawn);
+    if (current.variant.mapping < 0) return;
+    auto* texture = current.texture_drawn > 0
+                        ? vtkOpenGLTexture::SafeDownCast(
+                              current.textures[static_cast<std::size_t>(current.texture_drawn - 1)])
+                        : nullptr;
+    vtkTextureObject* object = texture ? texture->GetTextureObject() : nullptr;
+    program->SetUniformi("bodyTexture",
+                         object ? texture->GetTextureUnit() : current.texture->GetTextureUnit() + 1);
+    program->SetUniformi("bodyTextureChannels", object ? object->GetComponents() : 0);
+    program->SetUniformi("bodyTextureMultiplied", texture && texture->GetPremultipliedAlpha() ? 1 : 0);
 }
 
 void vtkAnamorphEllipsoidMapper::SetCameraShaderParameters(vtkOpenGLHelper& helper, vtkRenderer* renderer,
@@ -528,15 +651,21 @@ void vtkAnamorphEllipsoidMapper::SetClips(vtkOpenGLHelper& helper, vtkActor* act
 
 void vtkAnamorphEllipsoidMapper::ReleaseGraphicsResources(vtkWindow* window) {
     if (window == this->Current->window) this->LeaveWindow();
+    for (const auto& texture : this->Current->textures) texture->ReleaseGraphicsResources(window);
     this->Superclass::ReleaseGraphicsResources(window);
 }
 
 void vtkAnamorphEllipsoidMapper::PrintSelf(ostream& os, vtkIndent indent) {
     this->Superclass::PrintSelf(os, indent);
     static const char* const shapes[] = {"axes", "tensor", "covariance"};
+    static const char* const mappings[] = {"latlong", "mirrored", "linear", "octahedral"};
     os << indent << "Shape: " << shapes[this->Shape] << "\n"
        << indent << "AxesArray: " << this->AxesArray << "\n"
        << indent << "OrientationArray: " << this->OrientationArray << "\n"
        << indent << "TensorArray: " << this->TensorArray << "\n"
-       << indent << "ScaleFactor: " << this->ScaleFactor << "\n";
+       << indent << "ScaleFactor: " << this->ScaleFactor << "\n"
+       << indent << "NumberOfTextures: " << this->GetNumberOfTextures() << "\n"
+       << indent << "TextureArray: " << this->TextureArray << "\n"
+       << indent << "TextureOffsetArray: " << this->TextureOffsetArray << "\n"
+       << indent << "TextureMapping: " << mappings[this->TextureMapping] << "\n";
 }

@@ -29,6 +29,17 @@
  * and hardware selection are those of VTK; a selection finds the ids of the points, or of these cells. A
  * texture of the actor is laid around every body as by vtkAnamorphFigureGeometry. Representation (wireframe,
  * points), edges, and culling do nothing.
+ *
+ * Bodies have textures of their own where AddTexture() gave any: TextureArray says which one, by name as
+ * vtkAnamorphFigureReader does, or by number. They lie on a body as the script's do where core's renderer draws them
+ * (style textured of `.figure` recipes): the formulas of TextureMapping are the same ones. Colors are lit
+ * like those of bodies, and the body's own color shows through where a texture is transparent.
+ *
+ * Pickers: vtkPropPicker and vtkHardwareSelector draw, and find what is seen. vtkCellPicker meets the cells of
+ * the input, which here are points: give it this mapper's locators, by AddLocators(), and it finds the cell of
+ * the body that is seen, the point (GetPointId()), and where the body is met. Of composite data, vtkCellPicker only looks into a
+ * block where the line passes its points' box, widened by SetTolerance(): let that be as wide as bodies reach
+ * beyond their points. Points in no cell are found by IntersectWithLine() alone.
  */
 #ifndef vtkAnamorphEllipsoidMapper_h
 #define vtkAnamorphEllipsoidMapper_h
@@ -36,10 +47,13 @@
 #include "AnamorphRenderingModule.h"  // for the export macro
 #include "vtkOpenGLPolyDataMapper.h"
 
-#include <memory>  // for what it draws
-#include <string>  // for names of arrays
+#include <functional>  // for what is drawn several times
+#include <memory>      // for what it draws
+#include <string>      // for names of arrays
 
+class vtkCellPicker;
 class vtkCompositeDataDisplayAttributes;
+class vtkTexture;
 
 class ANAMORPHRENDERING_EXPORT vtkAnamorphEllipsoidMapper : public vtkOpenGLPolyDataMapper {
   public:
@@ -81,6 +95,58 @@ class ANAMORPHRENDERING_EXPORT vtkAnamorphEllipsoidMapper : public vtkOpenGLPoly
     /** All bodies are scaled by this about their centers; positive. The default is 1. */
     vtkSetMacro(ScaleFactor, double);
     vtkGetMacro(ScaleFactor, double);
+    ///@}
+
+    ///@{
+    /**
+     * A texture for bodies, the next in number from 0 on, and its name, which may be empty. Whether it is read between texels and by
+     * mipmaps is its own matter; it has to repeat (vtkTexture::RepeatOn, the default) for LATLONG.
+     */
+    void AddTexture(vtkTexture* texture, const char* name = "");
+    void RemoveAllTextures();
+    int GetNumberOfTextures();
+    ///@}
+
+    ///@{
+    /**
+     * The array of the points that says which texture a body has: names, or numbers; a body without one has its
+     * color. "Texture" by default.
+     */
+    void SetTextureArray(const char* name);
+    const char* GetTextureArray() { return this->TextureArray.c_str(); }
+    ///@}
+
+    ///@{
+    /** The array of 2 texels, right and down, by which a body's texture is moved. "TextureOffset" by default. */
+    void SetTextureOffsetArray(const char* name);
+    const char* GetTextureOffsetArray() { return this->TextureOffsetArray.c_str(); }
+    ///@}
+
+    /** The values of TextureMapping. */
+    enum { LATLONG, MIRRORED, LINEAR, OCTAHEDRAL };
+
+    ///@{
+    /**
+     * How a texture lies on a body, its middle towards the observer of an unturned one. LATLONG, the default: once around, the
+     * seam at the back. MIRRORED: over the front and again over the back. LINEAR: stripes stay straight.
+     * OCTAHEDRAL: without a pole.
+     */
+    vtkSetClampMacro(TextureMapping, int, LATLONG, OCTAHEDRAL);
+    vtkGetMacro(TextureMapping, int);
+    ///@}
+
+    ///@{
+    /**
+     * Where a line from `from` to `to`, in the coordinates of the data, first meets a body of `block`, the input or one of
+     * its blocks: the point of `block`, -1 if there is none; in `t`, how far along the line, 0 to 1, and in `cell` the
+     * cell that the point is in first, -1 if it is in none. Where the line begins in a body, it meets it where it
+     * leaves. Clipping planes are not heeded.
+     */
+    vtkIdType IntersectWithLine(vtkDataSet* block, const double from[3], const double to[3], double& t,
+                                vtkIdType& cell);
+    /** Gives a picker vtkAnamorphEllipsoidLocators of the input's blocks as they are now, which find what
+     * IntersectWithLine() does. */
+    void AddLocators(vtkCellPicker* picker);
     ///@}
 
     ///@{
@@ -142,11 +208,15 @@ class ANAMORPHRENDERING_EXPORT vtkAnamorphEllipsoidMapper : public vtkOpenGLPoly
     bool IsFaded();
     bool IsNear(vtkRenderer* renderer, vtkActor* actor);
     void FindVariant(vtkRenderer* renderer, vtkActor* actor);
+    void DrawTextured(vtkRenderer* renderer, const std::function<void()>& draw);
+    void SetTexture(vtkShaderProgram* program);
     void SetClips(vtkOpenGLHelper& helper, vtkActor* actor, const double* view_to_data);
 
     int Shape = AXES;
     std::string AxesArray = "Axes", OrientationArray = "Orientation", TensorArray;
     double ScaleFactor = 1;
+    std::string TextureArray = "Texture", TextureOffsetArray = "TextureOffset";
+    int TextureMapping = LATLONG;
 
     struct Drawing;
     std::unique_ptr<Drawing> Current;
