@@ -16,8 +16,8 @@ import numpy as np
 from paraview import simple
 from paraview.simple import *
 from paraview.vtk.util.numpy_support import numpy_to_vtk, vtk_to_numpy
-from vtkmodules.vtkCommonDataModel import vtkImageData
-from vtkmodules.vtkIOImage import vtkPNGReader
+from vtkmodules.vtkCommonDataModel import vtkDataObject, vtkImageData
+from vtkmodules.vtkIOImage import vtkPNGReader, vtkPNGWriter
 
 SIZE, COLORS = 200, {(250, 20, 30): 0, (20, 30, 250): 1}
 LoadPlugin(os.environ["ANAMORPH_PLUGIN"], remote=False, ns=vars(simple))
@@ -61,6 +61,11 @@ def ids(view):
     for color, body in COLORS.items():
         found[(pixels(view) == color).all(-1)] = body
     return found
+
+
+def triangles(representation):
+    """As many as a representation's mapper has."""
+    return representation.GetActor().GetMapper().GetInputDataObject(0, 0).GetNumberOfElements(vtkDataObject.CELL)
 
 
 def core_picture(data, view, style):
@@ -137,6 +142,49 @@ for parallel in (0, 1):
     shown.OutlineHidden = "Transparent"
     assert (pixels(view).max(-1) > 60).sum() > drawn.sum() + 20
 
+# Surfaces follow the camera, too: they show core's bodies, and the nearer the camera is the more triangles there are.
+for parallel in (0, 1):
+    view = new_view(parallel)
+    shown = Show(first, view)
+    shown.SetRepresentationType("Surfaces of Ellipsoids")
+    assert shown.SurfaceTolerance == 0.25
+    ColorBy(shown, ("POINTS", "Color"))
+    shown.MapScalars, shown.Ambient, shown.Diffuse, shown.Specular = 0, 1, 0, 0
+    ResetCamera(view)
+    counts = []
+    for zoom in (1, 8):
+        GetActiveCamera().Zoom(zoom)
+        assert (ids(view) != core_ids(block(first), view)).mean() <= 0.005, (parallel, zoom)
+        surfaces = shown.GetClientSideObject().GetActiveRepresentation()
+        counts.append(triangles(surfaces))
+    shown.SurfaceTolerance = 4
+    Render(view)
+    counts.append(triangles(surfaces))
+    assert counts[1] > 4 * counts[0] and counts[2] < counts[1] / 4, counts
+
+# A texture for the body whose name the script gives it.
+with open("dressed.nudes", "w") as file:
+    file.write("figure f 2 a b\nellipsoid a 100 100 100\nellipsoid b 100 100 100\njoint j a 0 150 0 b 0 -150 0\n"
+               "repeat 0 1 moveto f a 500 400 300\nrepeat 0 1 colour a 250 20 30\nrepeat 0 1 colour b 20 30 250\n"
+               "repeat 0 1 texture b wood 0 0\nstop")
+green = vtkImageData()
+green.SetDimensions(4, 4, 1)
+green.GetPointData().SetScalars(numpy_to_vtk(np.tile(np.array([10, 240, 60], np.uint8), (16, 1)), deep=True))
+writer = vtkPNGWriter()
+writer.SetFileName("wood.png")
+writer.SetInputData(green)
+writer.Write()
+view = new_view(1)
+shown = show(OpenDataFile(os.path.abspath("dressed.nudes")), view)
+ResetCamera(view)
+before = pixels(view)
+shown.EllipsoidTextures, shown.EllipsoidTextureNames = [CreateTexture(os.path.abspath("wood.png"))], ["wood"]
+after = pixels(view)
+assert ((after == (10, 240, 60)).all(-1) == (before == (20, 30, 250)).all(-1)).all() and (after == (10, 240, 60)).all(-1).sum() > 500
+assert ((after == (250, 20, 30)).all(-1) == (before == (250, 20, 30)).all(-1)).all()
+shown.EllipsoidTextures = []
+assert (pixels(view) == before).all()
+
 # Blocks: what is nearest of both.
 both = GroupDatasets(Input=[first, second])
 view = new_view(0)
@@ -183,12 +231,14 @@ assert ("Ellipsoids", "Covariance", "None", 2) in kept and ("Ellipsoids", "Axes"
 
 # Defaults of the properties are those of the mapper.
 proxy, mapper = servermanager.ProxyManager().NewProxy("representations", "AnamorphEllipsoidRepresentation"), anamorph.vtkAnamorphEllipsoidMapper()
-for name in ("Shape", "AxesArray", "OrientationArray", "TensorArray", "ScaleFactor"):
+for name in ("Shape", "AxesArray", "OrientationArray", "TensorArray", "ScaleFactor", "TextureArray", "TextureMapping"):
     default = proxy.GetProperty(name).GetDefaultValue(0) if name.endswith("Array") else proxy.GetProperty(name).GetElement(0)
     assert default == getattr(mapper, "Get" + name)(), (name, default)
 proxy, outline = servermanager.ProxyManager().NewProxy("representations", "AnamorphOutlineRepresentation"), anamorph.vtkAnamorphFigureOutline()
 for name in ("Hidden", "Crossings", "Connected", "Tolerance"):
     assert proxy.GetProperty(name).GetElement(0) == getattr(outline, "Get" + name)(), name
+proxy, surface = servermanager.ProxyManager().NewProxy("representations", "AnamorphSurfaceRepresentation"), anamorph.vtkAnamorphFigureGeometry()
+assert proxy.GetProperty("Tolerance").GetElement(0) == surface.GetTolerance()
 print("shown")
 '''
 # What several ranks show, of which all but the first have no figures, is what one process does.
@@ -200,7 +250,7 @@ from paraview.vtk.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkIOImage import vtkPNGReader
 LoadPlugin(os.environ["ANAMORPH_PLUGIN"], remote=False, ns=vars(simple))
 figures = OpenDataFile(os.path.abspath("first.nudes"))
-for name in ("Ellipsoids", "Outlines of Ellipsoids"):
+for name in ("Ellipsoids", "Outlines of Ellipsoids", "Surfaces of Ellipsoids"):
     view = CreateRenderView(ViewSize=[100, 100], OrientationAxesVisibility=0)
     Show(figures, view).SetRepresentationType(name)
     ResetCamera(view)
@@ -226,4 +276,4 @@ def run(script, number, *program):
 assert run(SCRIPT, 361, "pvpython") == ["shown"]
 alone, together = run(RANKS, 366, "pvpython"), run(RANKS, 371, "mpiexec", "--oversubscribe", "--mca",
                                                "mpi_yield_when_idle", "1", "-n", "2", "pvbatch")
-assert alone == together and len(set(alone)) == 2, (alone, together)
+assert alone == together and len(set(alone)) == 3, (alone, together)

@@ -26,6 +26,55 @@ LoadState(sys.argv[1] + "/figures.pvsm")
 figures = [s for s in GetSources().values() if s.GetXMLName() == "AnamorphFigureReader"]
 assert len(figures) == 1 and len(figures[0].TimestepValues) == 49
 """
+# Two balls far from the window, which `place` brings to its middle; `observe` turns the second one, behind the first, to the side.
+TURNED = """figure f 2 red blue
+ellipsoid red 60 60 60
+ellipsoid blue 60 60 60
+joint j red 0 0 200 blue 0 0 -200
+repeat 0 1 moveto f red 3000 500 500
+repeat 0 1 place 3000 500 500
+repeat 0 1 colour red 250 20 30
+repeat 0 1 colour blue 20 30 250
+linear 0 8 observe 0 90 0
+stop
+"""
+SEEN = """
+import math, os, sys
+import numpy as np
+from paraview import simple
+from paraview.simple import *
+from paraview.vtk.util.numpy_support import vtk_to_numpy
+from vtkmodules.vtkIOImage import vtkPNGReader
+
+
+def places(name):
+    # Columns and rows of the middles of what is red and of what is blue, from that of the picture.
+    reader = vtkPNGReader()
+    reader.SetFileName(name)
+    reader.Update()
+    colors = vtk_to_numpy(reader.GetOutput().GetPointData().GetScalars()).astype(int).reshape(600, 600, -1)
+    masks = colors[..., 0] - colors[..., 2] > 80, colors[..., 2] - colors[..., 0] > 80
+    assert all(mask.sum() > 1500 for mask in masks), [mask.sum() for mask in masks]
+    return [np.argwhere(mask).mean(0)[::-1] - 299.5 for mask in masks]
+
+
+def check(name, frame):
+    red, blue = places(name)
+    assert np.abs(red).max() < 6 and abs(blue[1]) < 6, (red, blue)  # light is not the same all around
+    # 400 units of a window of 1000, in 600 pixels.
+    assert abs(abs(blue[0]) - 240 * math.sin(math.radians(90 * frame / 8))) < 6, (frame, blue)
+
+
+check(sys.argv[1] + "/figures.png", 5)
+LoadPlugin(os.environ["ANAMORPH_PLUGIN"], remote=False, ns=vars(simple))
+simple._DisableFirstRenderCameraReset()
+LoadState(sys.argv[1] + "/figures.pvsm")
+for frame in (8, 3):
+    GetAnimationScene().AnimationTime = frame
+    Render()
+    SaveScreenshot(sys.argv[1] + "/later.png", GetActiveView(), ImageResolution=[600, 600])
+    check(sys.argv[1] + "/later.png", frame)
+"""
 
 
 def run(*command):
@@ -60,6 +109,13 @@ with tempfile.TemporaryDirectory() as folder:
     with open(folder + "/again.py", "w") as file:
         file.write(AGAIN)
     run(*xvfb_run(312), "pvbatch", folder + "/again.py", out)
+    # The view is the script's, in the state as well.
+    with open(folder + "/turned.nudes", "w") as file:
+        file.write(TURNED)
+    with open(folder + "/seen.py", "w") as file:
+        file.write(SEEN)
+    run(*xvfb_run(316), "pvbatch", EXAMPLE, folder + "/turned.nudes", folder + "/turned")
+    run(*xvfb_run(317), "pvbatch", folder + "/seen.py", folder + "/turned")
     # A folder that cannot be made, and a script without figures, are failures.
     open(folder + "/file", "w").close()
     assert folder + "/file" in fails(*xvfb_run(313), "pvbatch", EXAMPLE, WALKER, folder + "/file/out")

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "vtkAnamorphEllipsoidRepresentation.h"
 
+#include <algorithm>
 #include <cstring>
 
 #include "points_of_data.h"
@@ -11,6 +12,7 @@
 #include "vtkObjectFactory.h"
 #include "vtkPVLODActor.h"
 #include "vtkPVRenderView.h"
+#include "vtkTexture.h"
 
 vtkStandardNewMacro(vtkAnamorphEllipsoidRepresentation);
 
@@ -58,6 +60,45 @@ void vtkAnamorphEllipsoidRepresentation::SetTensorArray(const char* name) {
 
 void vtkAnamorphEllipsoidRepresentation::SetScaleFactor(double factor) {
     this->Ellipsoids()->SetScaleFactor(factor);
+}
+
+void vtkAnamorphEllipsoidRepresentation::SetTextureArray(const char* name) {
+    this->Ellipsoids()->SetTextureArray(array_name(name));
+}
+
+void vtkAnamorphEllipsoidRepresentation::SetTextureMapping(int mapping) {
+    this->Ellipsoids()->SetTextureMapping(mapping);
+}
+
+void vtkAnamorphEllipsoidRepresentation::AddTexture(vtkTexture* texture) {
+    if (!texture) return;
+    this->Textures.emplace_back(texture);
+    this->GiveTextures();
+}
+
+void vtkAnamorphEllipsoidRepresentation::RemoveAllTextures() {
+    this->Textures.clear();
+    this->GiveTextures();
+}
+
+void vtkAnamorphEllipsoidRepresentation::SetNumberOfTextureNames(int count) {
+    this->TextureNames.resize(static_cast<std::size_t>(std::max(count, 0)));
+    this->GiveTextures();
+}
+
+void vtkAnamorphEllipsoidRepresentation::SetTextureName(int i, const char* name) {
+    const auto at = static_cast<std::size_t>(std::max(i, 0));
+    if (at >= this->TextureNames.size()) this->TextureNames.resize(at + 1);
+    this->TextureNames[at] = name ? name : "";
+    this->GiveTextures();
+}
+
+/// The textures and the names, which are set one after the other.
+void vtkAnamorphEllipsoidRepresentation::GiveTextures() {
+    this->Ellipsoids()->RemoveAllTextures();
+    for (std::size_t i = 0; i < this->Textures.size(); ++i)
+        this->Ellipsoids()->AddTexture(this->Textures[i],
+                                       i < this->TextureNames.size() ? this->TextureNames[i].c_str() : "");
 }
 
 /// Gives the mapper data, and what is said of its blocks where that or the data is new.

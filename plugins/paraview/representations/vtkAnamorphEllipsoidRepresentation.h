@@ -12,8 +12,13 @@
 
 #include "AnamorphRepresentationsModule.h"  // for the export macro
 #include "vtkGeometryRepresentation.h"
+#include "vtkSmartPointer.h"  // for textures
+
+#include <string>  // for their names
+#include <vector>  // for both
 
 class vtkAnamorphEllipsoidMapper;
+class vtkTexture;
 
 class ANAMORPHREPRESENTATIONS_EXPORT vtkAnamorphEllipsoidRepresentation : public vtkGeometryRepresentation {
   public:
@@ -28,6 +33,16 @@ class ANAMORPHREPRESENTATIONS_EXPORT vtkAnamorphEllipsoidRepresentation : public
     void SetOrientationArray(const char* name);
     void SetTensorArray(const char* name);
     void SetScaleFactor(double factor);
+    void SetTextureArray(const char* name);
+    void SetTextureMapping(int mapping);
+    ///@}
+
+    ///@{
+    /** Textures of bodies, and their names; as many of them have one as there are names. */
+    void AddTexture(vtkTexture* texture);
+    void RemoveAllTextures();
+    void SetNumberOfTextureNames(int count);
+    void SetTextureName(int i, const char* name);
     ///@}
 
     /** Nothing: points have the ids that they have in the data. */
@@ -46,9 +61,12 @@ class ANAMORPHREPRESENTATIONS_EXPORT vtkAnamorphEllipsoidRepresentation : public
 
     vtkAnamorphEllipsoidMapper* Ellipsoids();
     void ShowBlocksOf(vtkDataObject* data, bool blocks_changed);
+    void GiveTextures();
 
     vtkDataObject* Shown = nullptr;  // compared, and nothing else
     vtkMTimeType ShownTime = 0;
+    std::vector<vtkSmartPointer<vtkTexture>> Textures;
+    std::vector<std::string> TextureNames;
 };
 
 #endif
