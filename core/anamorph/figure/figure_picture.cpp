@@ -146,36 +146,50 @@ struct FigurePicture::Impl {
         return look.background || look.backdrop || !look.bands.empty() || !frame.bands.empty();
     }
 
-    /// Of a color multiplied by alpha: before the background.
-    Values on_background(const glm::dvec3& c, double alpha, int x, int y, Textures& open) const {
-        glm::dvec4 all(c, alpha);
-        if (alpha < 1 && has_background()) all += (1 - alpha) * background(x, y, open);
-        return {static_cast<float>(all.r), static_cast<float>(all.g), static_cast<float>(all.b),
-                static_cast<float>(all.a)};
+    // Values are stored where they are known: one by one on the stack and then all four at once would be a stall for every pixel.
+
+    /// Stores a color multiplied by alpha, before the background.
+    template <class Store>
+    void on_background(const glm::dvec3& c, double alpha, int x, int y, Textures& open,
+                       const Store& store) const {
+        if (!(alpha < 1 && has_background())) {
+            store(x, y,
+                  Values{static_cast<float>(c.r), static_cast<float>(c.g), static_cast<float>(c.b),
+                         static_cast<float>(alpha)});
+            return;
+        }
+        const glm::dvec4 all = glm::dvec4(c, alpha) + (1 - alpha) * background(x, y, open);
+        store(x, y,
+              Values{static_cast<float>(all.r), static_cast<float>(all.g), static_cast<float>(all.b),
+                     static_cast<float>(all.a)});
     }
 
-    Values value(const VisiblePoint& seen, int x, int y, Textures& open) const {
+    template <class Store>
+    void value(const VisiblePoint& seen, int x, int y, Textures& open, const Store& store) const {
         const double px = x + 0.5, py = y + 0.5;
         const bool none = seen.body < 0;
         switch (look.style) {
             case FigureStyle::depth:
-                return {none ? kNoDepth
-                             : static_cast<float>(depth_of(seen.hit.nearness, surfaces->perspective()))};
+                return store(
+                    x, y,
+                    Values{none ? kNoDepth
+                                : static_cast<float>(depth_of(seen.hit.nearness, surfaces->perspective()))});
             case FigureStyle::id:
-                return {static_cast<float>(seen.body + 1)};
+                return store(x, y, Values{static_cast<float>(seen.body + 1)});
             case FigureStyle::uv: {
-                if (none) return {-1, -1};
+                if (none) return store(x, y, Values{-1, -1});
                 const glm::dvec2 uv = texture_point(
                     look.mapping, surfaces->surface(seen.body).unit_point(px, py, seen.hit.far_side));
-                return {static_cast<float>(uv.x), static_cast<float>(uv.y)};
+                return store(x, y, Values{static_cast<float>(uv.x), static_cast<float>(uv.y)});
             }
             default:
-                return none ? on_background(glm::dvec3(0.0), 0, x, y, open)
-                            : on_background(color(seen.body, px, py, seen.hit.far_side, open), 1, x, y, open);
+                if (none) return on_background(glm::dvec3(0.0), 0, x, y, open, store);
+                on_background(color(seen.body, px, py, seen.hit.far_side, open), 1, x, y, open, store);
         }
     }
 
-    Values value(std::span<const VisiblePart> parts, int x, int y, Textures& open) const {
+    template <class Store>
+    void value(std::span<const VisiblePart> parts, int x, int y, Textures& open, const Store& store) const {
         glm::dvec3 sum(0.0);
         double alpha = 0;
         for (const VisiblePart& part : parts) {
@@ -183,7 +197,7 @@ struct FigurePicture::Impl {
             sum += share * color(part.body, part.x, part.y, part.far_side, open);
             alpha += share;
         }
-        return on_background(sum, alpha, x, y, open);
+        on_background(sum, alpha, x, y, open, store);
     }
 
     /// store(x, y, values) for the pixels of a small box inside the picture.
@@ -193,20 +207,20 @@ struct FigurePicture::Impl {
         const auto each = [&](const auto& value) {
             std::size_t i = 0;
             for (int y = box.y0; y < box.y1; ++y)
-                for (int x = box.x0; x < box.x1; ++x) store(x, y, value(i++, x, y));
+                for (int x = box.x0; x < box.x1; ++x) value(i++, x, y);
         };
         if (is_lines(look.style)) {
             const std::vector<LinePixel> lines = strokes->pixels(box);
             each([&](std::size_t i, int x, int y) {
                 const LinePixel& p = lines[i];
-                return on_background({p.r, p.g, p.b}, static_cast<double>(p.a), x, y, open);
+                on_background({p.r, p.g, p.b}, static_cast<double>(p.a), x, y, open, store);
             });
         } else if (is_shaded(look.style) && look.antialias) {
             const VisibleParts seen = surfaces->parts(box);
-            each([&](std::size_t, int x, int y) { return value(seen.of(x, y), x, y, open); });
+            each([&](std::size_t, int x, int y) { value(seen.of(x, y), x, y, open, store); });
         } else {
             const std::vector<VisiblePoint> seen = surfaces->points(box);
-            each([&](std::size_t i, int x, int y) { return value(seen[i], x, y, open); });
+            each([&](std::size_t i, int x, int y) { value(seen[i], x, y, open, store); });
         }
     }
 };

@@ -37,13 +37,15 @@ inline glm::dvec3 usual_light(Lighting lighting) {
 inline glm::dvec3 lit(const glm::dvec3& color, const Light& light, const glm::dvec3& n, const glm::dvec3& v) {
     const double cosine = glm::dot(n, light.toward);
     const double direct = light.lighting == Lighting::rasel ? 0.5 * (1 + cosine) : std::max(0.0, cosine);
-    const glm::dvec3 diffuse = color * (light.ambient + (1 - light.ambient) * direct);
-    if (light.lighting != Lighting::blinn || !(cosine > 0)) return diffuse;
-    const glm::dvec3 half = light.toward + v;
-    const double length = glm::length(half);
-    if (!(length > 0)) return diffuse;
-    const double glance = std::max(0.0, glm::dot(n, half) / length);
-    return diffuse + glm::dvec3(light.specular * std::pow(glance, light.shininess));
+    // One variable, which is what is returned: a copy of it would wait for its three numbers at every pixel.
+    glm::dvec3 seen = color * (light.ambient + (1 - light.ambient) * direct);
+    if (light.lighting == Lighting::blinn && cosine > 0) {
+        const glm::dvec3 half = light.toward + v;
+        const double length = glm::length(half);
+        const double glance = length > 0 ? std::max(0.0, glm::dot(n, half) / length) : 0;
+        if (length > 0) seen += glm::dvec3(light.specular * std::pow(glance, light.shininess));
+    }
+    return seen;
 }
 
 }  // namespace anamorph
