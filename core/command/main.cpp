@@ -188,8 +188,10 @@ class Command {
                    "Pixels (in PDF points) that the window of 1000 units is");
         add_number(sub, "--tol", d.tol, kDrawingTolRow, "Maximum chord error, in pixels");
         add_number(sub, "--line-width", d.line_width, kLineWidthRow, "Width of lines, in pixels");
-        add_number(sub, "--halo", d.halo, kHaloRow, "Gap on either side of a nearer line, in pixels");
+        add_number(sub, "--halo", d.halo, kHaloRow,
+                   "Gap on either side of a nearer line, in pixels; not at joints");
         sub->add_flag("--colors", d.colors, "Lines in the colors of the bodies");
+        sub->add_flag("--fill", d.fill, "Bodies filled with their colors, from far to near");
     }
 
     void add_text() {

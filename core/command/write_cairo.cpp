@@ -42,6 +42,11 @@ cairo_status_t write_to(void* file, const unsigned char* data, unsigned int leng
     }
 }
 
+void add_path(cairo_t* c, const std::vector<glm::dvec2>& points) {
+    for (const glm::dvec2& p : points) cairo_line_to(c, p.x, p.y);
+    if (points.size() > 3 && points.front() == points.back()) cairo_close_path(c);
+}
+
 void draw_stroke(cairo_t* c, const Stroke& stroke, const Drawing& drawing) {
     const glm::dvec3 rgb = stroke.color / 255.0;
     if (stroke.kind == StrokeKind::dot) {
@@ -50,13 +55,19 @@ void draw_stroke(cairo_t* c, const Stroke& stroke, const Drawing& drawing) {
         cairo_fill(c);
         return;
     }
-    for (const glm::dvec2& p : stroke.points) cairo_line_to(c, p.x, p.y);
-    if (stroke.points.size() > 3 && stroke.points.front() == stroke.points.back()) cairo_close_path(c);
-    if (drawing.halo > 0 && stroke.kind != StrokeKind::hidden) {
+    cairo_set_dash(c, nullptr, 0, 0);
+    for (const std::vector<glm::dvec2>& part : stroke.halo) {
+        add_path(c, part);
         cairo_set_source_rgb(c, 1, 1, 1);
         cairo_set_line_cap(c, CAIRO_LINE_CAP_BUTT);
         cairo_set_line_width(c, drawing.line_width + 2 * drawing.halo);
-        cairo_stroke_preserve(c);
+        cairo_stroke(c);
+    }
+    add_path(c, stroke.points);
+    if (stroke.kind == StrokeKind::fill) {
+        cairo_set_source_rgb(c, rgb.r, rgb.g, rgb.b);
+        cairo_fill(c);
+        return;
     }
     const double dash = 3 * drawing.line_width;
     cairo_set_dash(c, &dash, stroke.kind == StrokeKind::hidden ? 1 : 0, 0);

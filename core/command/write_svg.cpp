@@ -75,9 +75,16 @@ void add_stroke(std::string& text, const Stroke& stroke, const Drawing& drawing)
         text += " stroke=\"none\"/>\n";
         return;
     }
-    if (drawing.halo > 0 && stroke.kind != StrokeKind::hidden) {
-        text += "<path class=\"halo\"";
+    if (stroke.kind == StrokeKind::fill) {
+        add(text, "<path class=\"fill\" data-body=\"", stroke.body, "\"");
         add_path(text, stroke.points);
+        add_color(text, " fill=\"", stroke.color);
+        text += " stroke=\"none\"/>\n";
+        return;
+    }
+    for (const std::vector<glm::dvec2>& part : stroke.halo) {
+        text += "<path class=\"halo\"";
+        add_path(text, part);
         add(text, " stroke=\"white\" stroke-width=\"", drawing.line_width + 2 * drawing.halo,
             "\" stroke-linecap=\"butt\"/>\n");
     }

@@ -247,6 +247,49 @@ class Pictures(Case):
         self.assertEqual(elements[0].get("stroke-width"), "8")
         self.assertEqual(elements[2].get("d"), elements[3].get("d"))
 
+    def test_a_halo_leaves_joints_closed(self):
+        # Circles of 50 pixels about (250, 250) and, behind, (310, 250): they meet at (280, 250 -+ 40).
+        joined = ("figure f 2 near far\nellipsoid near 100 100 100\nellipsoid far 100 100 100\n"
+                  "joint j near 60 0 60 far -60 0 -60\nrepeat 0 1 moveto f near 500 500 500\nstop\n")
+        apart = scene(("near", (100, 100, 100), (500, 500, 500)), ("far", (100, 100, 100), (620, 500, 620)))
+        ends = ((280, 210), (280, 290))
+        for script, nearest in ((apart, 0), (joined, 4)):
+            halos = self.paths(script, "--halo=3", "--line-width=1", kind="halo")
+            of_near = [points for _, points, _ in halos if all(abs(math.dist(p, (250, 250)) - 50) < 0.2 for p in points)]
+            distances = [min(math.dist(p, end) for points in of_near for p in points) for end in ends]
+            for distance in distances:
+                self.assertGreater(distance, nearest - 0.2)
+                self.assertLess(distance, nearest + 4)  # from corner to corner
+            # Beside the ends, halos are all around both.
+            length = sum(math.dist(a, b) for _, points, _ in halos for a, b in zip(points, points[1:]))
+            lines = self.paths(script, "--halo=3", "--line-width=1")
+            whole = sum(math.dist(a, b) for _, points, _ in lines for a, b in zip(points, points[1:]))
+            self.assertAlmostEqual(whole - length, 4 * nearest, delta=1)
+
+    def test_bodies_are_filled_from_far_to_near(self):
+        colored = NEAR_AND_FAR.replace("stop\n", "repeat 0 1 colour near 10 20 30\nrepeat 0 1 colour far 200 100 0\nstop\n")
+        elements = list(self.svg(colored, "--fill", "--hidden=dash").iter(SVG + "path"))
+        self.assertEqual([(e.get("class"), e.get("data-body"), e.get("fill")) for e in elements],
+                         [("fill", "far", "rgb(200,100,0)"), ("fill", "near", "rgb(10,20,30)"), ("hidden", "far", None),
+                          ("visible", "far", None), ("visible", "near", None)])
+        for name, points, closed in self.paths(colored, "--fill", kind="fill"):
+            self.assertTrue(closed)
+            self.assert_on_circle(points, (250 if name == "near" else 300, 250), 50, 0.1)
+        self.assertEqual(self.paths(colored, kind="fill"), [])
+
+    def test_fills_are_painted(self):
+        if not CAIRO:
+            return self.skipTest("cairo is not there")
+        colored = NEAR_AND_FAR.replace("stop\n", "repeat 0 1 colour near 10 20 30\nrepeat 0 1 colour far 200 100 0\nstop\n")
+        for kind in ("png", "pdf"):
+            sizes = []
+            for options in ((), ("--fill",)):
+                self.output(kind, "-", "-o", self.path("f." + kind), *options, text=colored)
+                sizes.append(self.read("f." + kind))
+            self.assertNotEqual(*sizes)
+        page = re.search(rb"stream\r?\n(.*?)endstream", sizes[1], re.DOTALL)[1]
+        self.assertIn(b"0.784314 0.392157 0 rg", zlib.decompressobj().decompress(page))
+
     def test_perspective(self):
         # Of a sphere of radius r about the middle of the window, the eye D before it: D r / sqrt(D^2 - r^2).
         sphere = scene(("s", (200, 200, 200), (500, 500, 500)))

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <glm/common.hpp>
 #include <numbers>
+#include <utility>
 
 #include "anamorph/figure/level_of_detail.h"
 #include "anamorph/figure/outline.h"
@@ -55,6 +56,37 @@ bool clip(glm::dvec2& a, glm::dvec2& b, const Corners& box) {
     return true;
 }
 
+/// What of a polyline is not within `radius` of any of the points.
+std::vector<std::vector<glm::dvec2>> parts_away_from(const std::vector<glm::dvec2>& points,
+                                                     const std::vector<glm::dvec2>& from, double radius) {
+    if (from.empty()) return {points};
+    std::vector<std::vector<glm::dvec2>> parts;
+    const auto add = [&](const glm::dvec2& a, const glm::dvec2& b) {
+        if (parts.empty() || parts.back().back() != a) parts.push_back({a});
+        parts.back().push_back(b);
+    };
+    for (std::size_t k = 0; k + 1 < points.size(); ++k) {
+        const glm::dvec2 a = points[k], d = points[k + 1] - a;
+        // Shares of the segment that are too near, in order.
+        std::vector<std::pair<double, double>> near;
+        for (const glm::dvec2& p : from) {
+            const double square = glm::dot(d, d), middle = glm::dot(p - a, d) / square;
+            const glm::dvec2 beside = a + middle * d - p;
+            const double half = std::sqrt((radius * radius - glm::dot(beside, beside)) / square);
+            if (half > 0) near.emplace_back(middle - half, middle + half);
+        }
+        std::sort(near.begin(), near.end());
+        double at = 0;
+        for (const auto& [begin, end] : near) {
+            if (begin >= 1) break;
+            if (begin > at) add(a + at * d, a + begin * d);
+            at = std::max(at, end);
+        }
+        if (at < 1) add(at > 0 ? a + at * d : a, points[k + 1]);
+    }
+    return parts;
+}
+
 class Page {
   public:
     Page(const FigureFrame& frame, const View& view, const glm::dvec2& size, const DrawingOptions& options)
@@ -69,11 +101,14 @@ class Page {
     }
 
     Drawing take() {
-        std::stable_sort(
-            m_drawing.strokes.begin(), m_drawing.strokes.end(), [](const Stroke& a, const Stroke& b) {
-                const bool a_hidden = a.kind == StrokeKind::hidden, b_hidden = b.kind == StrokeKind::hidden;
-                return a_hidden != b_hidden ? a_hidden : a.depth > b.depth;
-            });
+        const auto layer = [](const Stroke& stroke) {
+            return stroke.kind == StrokeKind::fill ? 0 : stroke.kind == StrokeKind::hidden ? 1 : 2;
+        };
+        std::stable_sort(m_drawing.strokes.begin(), m_drawing.strokes.end(),
+                         [&](const Stroke& a, const Stroke& b) {
+                             return layer(a) != layer(b) ? layer(a) < layer(b) : a.depth > b.depth;
+                         });
+        if (m_options.halo > 0) add_halos();
         return std::move(m_drawing);
     }
 
@@ -114,7 +149,40 @@ class Page {
     }
 
   private:
+    /// A gap where a neighbour's line ends at this one would open the joint.
+    void add_halos() {
+        std::vector<std::vector<glm::dvec2>> ends(m_frame.bodies.size());
+        for (const Stroke& stroke : m_drawing.strokes) {
+            const auto& points = stroke.points;
+            if (stroke.kind != StrokeKind::visible || points.front() == points.back()) continue;
+            for (const Joint& joint : m_frame.joints)
+                for (const auto& [own, other] :
+                     {std::pair(joint.first, joint.second), std::pair(joint.second, joint.first)})
+                    if (own == stroke.position)
+                        ends[static_cast<std::size_t>(other)].insert(
+                            ends[static_cast<std::size_t>(other)].end(), {points.front(), points.back()});
+        }
+        const double radius = m_options.halo + m_options.line_width;
+        for (Stroke& stroke : m_drawing.strokes)
+            if (stroke.kind == StrokeKind::visible || stroke.kind == StrokeKind::stick)
+                stroke.halo =
+                    parts_away_from(stroke.points, ends[static_cast<std::size_t>(stroke.position)], radius);
+    }
+
+    /// The whole limb, which the page may cut.
+    void fill_outline(std::size_t i, const Outline& outline) {
+        if (outline.kind != OutlineKind::whole) return;
+        Stroke stroke = stroke_of(StrokeKind::fill, i);
+        for (const double angle :
+             chord_angles(outline, {0, 2 * std::numbers::pi}, m_view, kShareOfTol * m_options.tol))
+            stroke.points.push_back(on_page(outline.on_screen(angle, m_view)));
+        stroke.points.back() = stroke.points.front();
+        stroke.depth = outline.viewed.center.z;
+        if (has_extent(stroke.points)) m_drawing.strokes.push_back(std::move(stroke));
+    }
+
     void draw_outline(std::size_t i, const Outline& outline) {
+        if (m_options.fill) fill_outline(i, outline);
         for (const Arc& arc : outline.visible) add_arc(StrokeKind::visible, i, outline, arc);
         if (m_options.hidden == HiddenLines::dash)
             for (const Arc& arc : outline.hidden) add_arc(StrokeKind::hidden, i, outline, arc);
@@ -224,7 +292,9 @@ class Page {
         Stroke stroke;
         stroke.kind = kind;
         stroke.body = m_frame.bodies[i].name;
-        if (m_options.colors) stroke.color = glm::clamp(m_frame.bodies[i].color, 0.0, 255.0);
+        stroke.position = static_cast<int>(i);
+        if (m_options.colors || kind == StrokeKind::fill)
+            stroke.color = glm::clamp(m_frame.bodies[i].color, 0.0, 255.0);
         return stroke;
     }
 

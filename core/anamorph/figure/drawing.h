@@ -39,18 +39,23 @@ struct DrawingOptions {
     double line_width = kLineWidthRow.standard;  ///< pixels
     double halo = kHaloRow.standard;             ///< the gap on either side of a nearer line, in pixels
     bool colors = false;                         ///< of the bodies; black otherwise
+    bool fill = false;                           ///< bodies are filled with their colors, from far to near
 };
 
 /// What a stroke stands for.
-enum class StrokeKind { visible, hidden, stick, dot };
+enum class StrokeKind { visible, hidden, stick, dot, fill };
 
-/// A line on the page.
+/// A line on the page, or the closed line around what is filled.
 struct Stroke {
     StrokeKind kind = StrokeKind::visible;
     std::vector<glm::dvec2> points;  ///< on the page, pixels from its upper left, y down; a dot's is one
     std::string body;                ///< its name
     glm::dvec3 color{0};             ///< 0 to 255
     double depth = 0;
+    int position = -1;  ///< of its body in the frame
+    /// Parts of the line beside which there is a gap, where there are gaps: all of it but where a line of a body that is joined
+    /// to its own ends at it.
+    std::vector<std::vector<glm::dvec2>> halo;
 };
 
 /// A frame on a page.
@@ -58,7 +63,7 @@ struct Drawing {
     int frame = 0;
     glm::dvec2 size{0.0};  ///< of the page
     double line_width = 1, halo = 0;
-    std::vector<Stroke> strokes;  ///< hidden ones first, then from far to near
+    std::vector<Stroke> strokes;  ///< what is filled first, then hidden ones, each from far to near
 };
 
 /// The frame as `view` sees it, on a page of `size` pixels whose lower left corner is the origin of the view's
