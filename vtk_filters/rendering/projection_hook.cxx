@@ -5,7 +5,6 @@
 
 #include "anamorph/error.h"
 #include "projection_tables.h"
-#include "shadow_map.h"
 #include "vtkActor.h"
 #include "vtkAnamorphPanoramaProjector.h"
 #include "vtkAnamorphProjectionShader.h"
@@ -120,6 +119,8 @@ void ProjectionHook::put_on(vtkActor* actor, vtkAnamorphProjectionShader* owner)
         hook->m_shaders = actor->GetShaderProperty();
         hook->m_index = static_cast<std::size_t>(i);
         hook->m_state = state;
+        // Until there is a right pose nothing has a direction.
+        hook->write_uniforms(glm::dmat4(0.0), glm::dvec3(0.0), glm::dmat3(0.0));
         // By name, tables and shadows come behind panoramas, and are loaded when these have been.
         actor->GetProperty()->SetTexture(texture_name(hook->m_index).c_str(), hook);
         hook->m_shadows = vtkSmartPointer<LoadedTexture>::New();
@@ -139,6 +140,7 @@ void ProjectionHook::take_off(vtkActor* actor) {
             if (property->GetTexture(name.c_str())) property->RemoveTexture(name.c_str());
         shaders->GetVertexCustomUniforms()->RemoveUniform(matrix_name(i).c_str());
         shaders->GetVertexCustomUniforms()->RemoveUniform(origin_name(i).c_str());
+        shaders->GetFragmentCustomUniforms()->RemoveUniform(frame_name(i).c_str());
     }
 }
 
@@ -151,6 +153,12 @@ const PreparedPanorama* ProjectionHook::prepared_for(vtkActor* actor, int projec
     auto* first = ProjectionHook::SafeDownCast(actor->GetProperty()->GetTexture(texture_name(0).c_str()));
     const auto i = static_cast<std::size_t>(projector);
     return first && i < first->m_state->prepared.size() ? first->m_state->prepared[i].get() : nullptr;
+}
+
+const ShadowMap* ProjectionHook::shadow_map_for(vtkActor* actor, int projector) {
+    const std::string name = texture_name(static_cast<std::size_t>(projector));
+    auto* hook = ProjectionHook::SafeDownCast(actor->GetProperty()->GetTexture(name.c_str()));
+    return hook ? hook->m_shadow_map.get() : nullptr;
 }
 
 vtkOpenGLTexture* ProjectionHook::panorama() const {
@@ -188,7 +196,7 @@ void ProjectionHook::ReleaseGraphicsResources(vtkWindow* window) {
     if (m_table) m_table->SetTextureObject(nullptr);
     m_table_of = nullptr;
     m_shadows->SetTextureObject(nullptr);
-    m_shadow_times = {};
+    m_shadow_map = nullptr;
 }
 
 void ProjectionHook::refresh_text(vtkRenderer* renderer) {
@@ -201,6 +209,9 @@ void ProjectionHook::refresh_text(vtkRenderer* renderer) {
             vtkAnamorphPanoramaProjector& projector = *m_owner->GetProjector(i);
             ThrownPanorama thrown = thrown_by(projector, *m_owner);
             thrown.components = loaded_components(projector.GetPanorama(), renderer);
+            thrown.shadow_size =
+                std::min(thrown.shadow_size,
+                         most_shadow_size(vtkOpenGLRenderWindow::SafeDownCast(renderer->GetRenderWindow())));
             const auto at = static_cast<std::size_t>(i);
             const bool known = at < prepared.size() && prepared[at]->thrown == thrown;
             now.push_back(known ? prepared[at] : std::make_shared<const PreparedPanorama>(thrown));
@@ -250,38 +261,43 @@ void ProjectionHook::refresh_shadows(vtkRenderer* renderer) {
     const auto prepared = m_index < m_state->prepared.size() ? m_state->prepared[m_index] : nullptr;
     if (!prepared || prepared->thrown.shadow_size == 0) {
         m_shadows->SetTextureObject(this->GetTextureObject());
-        m_shadow_times = {};
+        m_shadow_map = nullptr;
         return;
     }
-    vtkPolyData* occluders = m_projector->GetOccluders();
-    const std::pair times(occluders->GetMTime(), m_projector->GetMTime());
-    if (times == m_shadow_times) return;
-    try {
-        auto* window = vtkOpenGLRenderWindow::SafeDownCast(renderer->GetRenderWindow());
-        m_shadows->SetTextureObject(drawn_shadows(corners_around(occluders, pose_of(*m_projector)),
-                                                  prepared->thrown.shadow_size, window));
-        m_shadow_times = times;
-    } catch (const anamorph::Error&) {
-        // A wrong pose, of which set_uniforms() tells; the last map stays, and there is one.
-        if (m_shadow_times.first == 0) m_shadows->SetTextureObject(this->GetTextureObject());
-    }
+    m_shadow_map =
+        ShadowMap::of(m_projector, vtkOpenGLRenderWindow::SafeDownCast(renderer->GetRenderWindow()));
+    const double* at = m_projector->GetPosition();
+    // With a wrong pose, of which set_uniforms() tells, the last map stays.
+    if (m_wrong_pose.empty())
+        m_shadows->SetTextureObject(m_shadow_map->refreshed(
+            m_projector->GetOccluders(), {at[0], at[1], at[2]}, prepared->thrown.shadow_size));
+    else if (!m_shadows->GetTextureObject())
+        m_shadows->SetTextureObject(this->GetTextureObject());
 }
 
 void ProjectionHook::set_uniforms(vtkRenderer* renderer) {
     if (!m_shaders) return;
     try {
-        const RayFromClip from(clip_matrix(renderer), pose_of(*m_projector));
-        float matrix[16], origin[3];
-        for (int i = 0; i < 16; ++i) matrix[i] = static_cast<float>(from.matrix[i / 4][i % 4]);
-        for (int i = 0; i < 3; ++i) origin[i] = static_cast<float>(from.origin[i]);
-        vtkUniforms* uniforms = m_shaders->GetVertexCustomUniforms();
-        uniforms->SetUniformMatrix4x4(matrix_name(m_index).c_str(), matrix);
-        uniforms->SetUniform3f(origin_name(m_index).c_str(), origin);
+        const anamorph::ProjectorPose pose = pose_of(*m_projector);
+        const RayFromClip from(clip_matrix(renderer), pose);
+        write_uniforms(from.matrix, from.origin, frame_of(pose));
         complain("", m_wrong_pose);
     } catch (const anamorph::Error& error) {
         // The last right pose stays.
         complain(error.what(), m_wrong_pose);
     }
+}
+
+void ProjectionHook::write_uniforms(const glm::dmat4& matrix, const glm::dvec3& origin,
+                                    const glm::dmat3& frame) {
+    float numbers[16], vector[3], axes[9];
+    for (int i = 0; i < 16; ++i) numbers[i] = static_cast<float>(matrix[i / 4][i % 4]);
+    for (int i = 0; i < 3; ++i) vector[i] = static_cast<float>(origin[i]);
+    for (int i = 0; i < 9; ++i) axes[i] = static_cast<float>(frame[i / 3][i % 3]);
+    vtkUniforms* uniforms = m_shaders->GetVertexCustomUniforms();
+    uniforms->SetUniformMatrix4x4(matrix_name(m_index).c_str(), numbers);
+    uniforms->SetUniform3f(origin_name(m_index).c_str(), vector);
+    m_shaders->GetFragmentCustomUniforms()->SetUniformMatrix3x3(frame_name(m_index).c_str(), axes);
 }
 
 }  // namespace anamorph_vtk

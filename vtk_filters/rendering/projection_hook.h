@@ -4,11 +4,13 @@
 // the actor's shaders up to date.
 #pragma once
 
+#include <glm/mat4x4.hpp>
 #include <memory>
 #include <string>
 #include <utility>
 
 #include "projection_text.h"
+#include "shadow_map.h"
 #include "vtkOpenGLTexture.h"
 #include "vtkSmartPointer.h"
 #include "vtkWeakPointer.h"
@@ -41,6 +43,9 @@ class ProjectionHook : public LoadedTexture {
     /// What it throws as of the last frame; null: nothing.
     static const PreparedPanorama* prepared_for(vtkActor* actor, int projector);
 
+    /// Its map of what hides; null: none.
+    static const ShadowMap* shadow_map_for(vtkActor* actor, int projector);
+
     // As a texture.
     void Render(vtkRenderer* renderer) override;
     void PostRender(vtkRenderer* renderer) override;
@@ -64,6 +69,7 @@ class ProjectionHook : public LoadedTexture {
     /// Draws the map of distances around the projector.
     void refresh_shadows(vtkRenderer* renderer);
     void set_uniforms(vtkRenderer* renderer);
+    void write_uniforms(const glm::dmat4& matrix, const glm::dvec3& origin, const glm::dmat3& frame);
 
     vtkSmartPointer<vtkAnamorphProjectionShader> m_owner;
     vtkSmartPointer<vtkAnamorphPanoramaProjector> m_projector;
@@ -77,8 +83,8 @@ class ProjectionHook : public LoadedTexture {
     std::shared_ptr<const PreparedPanorama> m_table_of;
     std::pair<vtkTextureObject*, vtkMTimeType> m_drawn{};
     vtkSmartPointer<LoadedTexture> m_shadows;
-    /// Of the occluders and of the projector.
-    std::pair<vtkMTimeType, vtkMTimeType> m_shadow_times{};
+    /// None where nothing is hidden.
+    std::shared_ptr<ShadowMap> m_shadow_map;
 };
 
 }  // namespace anamorph_vtk

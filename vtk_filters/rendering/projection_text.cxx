@@ -210,7 +210,8 @@ std::string functions(const PreparedPanorama& panorama, std::size_t i) {
 
 /// A fragment's sum over projectors; a share as anamorph::share_of() has it.
 std::string fragment_code(std::size_t projector, bool alone, bool shadows) {
-    const std::string lit = shadows ? " && !anamorphHidden#(r, cross(a, b))" : "";
+    const std::string lit =
+        shadows ? " && !anamorphHidden#(anamorphFrame# * r, anamorphFrame# * cross(a, b))" : "";
     const std::string share =
         alone ? "part" : "part * abs(dot(normalize(r), normalize(cross(a, b)))) / dot(r, r)";
     return with_number(R"(
@@ -246,6 +247,9 @@ std::string matrix_name(std::size_t projector) {
 }
 std::string origin_name(std::size_t projector) {
     return numbered("Origin", projector);
+}
+std::string frame_name(std::size_t projector) {
+    return numbered("Frame", projector);
 }
 
 ThrownPanorama thrown_by(vtkAnamorphPanoramaProjector& projector, vtkAnamorphProjectionShader& shader) {

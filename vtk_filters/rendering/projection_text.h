@@ -67,5 +67,7 @@ std::string table_name(std::size_t projector);
 std::string shadow_name(std::size_t projector);
 std::string matrix_name(std::size_t projector);
 std::string origin_name(std::size_t projector);
+/// A matrix that turns such rays into the scene's axes.
+std::string frame_name(std::size_t projector);
 
 }  // namespace anamorph_vtk

@@ -7,9 +7,12 @@
 #include "vtk_glew.h"
 #endif
 
+#include <array>
 #include <limits>
+#include <map>
 #include <numeric>
 
+#include "vtkAnamorphPanoramaProjector.h"
 #include "vtkIdList.h"
 #include "vtkNew.h"
 #include "vtkOpenGLFramebufferObject.h"
@@ -26,7 +29,7 @@
 namespace anamorph_vtk {
 namespace {
 
-constexpr int kFaces = 6;
+constexpr int kFaces = 6, kAcross = 3, kDown = 2;
 
 // Face f looks along axis f / 2, the other two across: upwards or downwards along it.
 constexpr const char* kVertices = R"(//VTK::System::Dec
@@ -45,37 +48,14 @@ in float ahead;
 void main() { gl_FragData[0] = vec4(ahead); }
 )";
 
-/// The nearest distance is the least: blending finds it, without limits that a buffer of depths has.
-void draw_faces(std::vector<glm::vec3>& corners, int size, vtkOpenGLRenderWindow* window) {
-    vtkOpenGLState* state = window->GetState();
-    state->vtkglEnable(GL_BLEND);
-    state->vtkglBlendEquation(GL_MIN);
-    state->vtkglDisable(GL_CULL_FACE);
-    vtkShaderProgram* program = window->GetShaderCache()->ReadyShaderProgram(kVertices, kFragments, "");
-    std::vector<GLuint> indices(corners.size());
-    std::iota(indices.begin(), indices.end(), 0U);
-    const auto count = static_cast<unsigned>(corners.size());
-    for (int face = 0; face < kFaces && program; ++face) {
-        state->vtkglViewport(0, face * size, size, size);
-        state->vtkglScissor(0, face * size, size, size);
-        program->SetUniformi("face", face);
-        vtkNew<vtkOpenGLVertexArrayObject> arrays;
-        vtkOpenGLRenderUtilities::RenderTriangles(&corners[0].x, count, indices.data(), count, nullptr,
-                                                  program, arrays);
-    }
-    state->vtkglBlendEquation(GL_FUNC_ADD);
-}
-
-}  // namespace
-
-std::vector<glm::vec3> corners_around(vtkPolyData* mesh, const anamorph::ProjectorPose& pose) {
+/// The corners of all triangles, three each, from a position.
+std::vector<glm::vec3> corners_around(vtkPolyData* mesh, const glm::dvec3& position) {
     vtkNew<vtkTriangleFilter> triangles;
     triangles->SetInputData(mesh);
     triangles->PassVertsOff();
     triangles->PassLinesOff();
     triangles->Update();
     vtkPolyData* cut = triangles->GetOutput();
-    const glm::dmat3 frame = frame_of(pose);
     std::vector<glm::vec3> corners;
     vtkNew<vtkIdList> ids;
     for (vtkIdType cell = 0; cell < cut->GetNumberOfPolys(); ++cell) {
@@ -83,37 +63,117 @@ std::vector<glm::vec3> corners_around(vtkPolyData* mesh, const anamorph::Project
         for (vtkIdType i = 0; i < 3; ++i) {
             double p[3];
             cut->GetPoint(ids->GetId(i), p);
-            corners.emplace_back((glm::dvec3(p[0], p[1], p[2]) - pose.position) * frame);
+            corners.emplace_back(glm::dvec3(p[0], p[1], p[2]) - position);
         }
     }
     return corners;
 }
 
-vtkSmartPointer<vtkTextureObject> drawn_shadows(std::vector<glm::vec3> corners, int size,
-                                                vtkOpenGLRenderWindow* window) {
-    const auto texture = vtkSmartPointer<vtkTextureObject>::New();
-    texture->SetContext(window);
-    texture->SetMinificationFilter(vtkTextureObject::Nearest);
-    texture->SetMagnificationFilter(vtkTextureObject::Nearest);
-    texture->Allocate2D(static_cast<unsigned>(size), static_cast<unsigned>(size * kFaces), 1, VTK_FLOAT);
+/// The triangles that may be seen in a face: not all beyond one of its sides.
+std::vector<glm::vec3> corners_in(const std::vector<glm::vec3>& corners, int face) {
+    const int ahead = face / 2, across = (ahead + 1) % 3, down = (ahead + 2) % 3;
+    const float side = face % 2 == 0 ? 1.0F : -1.0F;
+    std::vector<glm::vec3> inside;
+    for (std::size_t i = 0; i + 2 < corners.size(); i += 3) {
+        std::array<int, 4> beyond{};
+        for (std::size_t k = i; k < i + 3; ++k) {
+            const glm::vec3& c = corners[k];
+            const float z = side * c[ahead];
+            beyond[0] += c[across] > z;
+            beyond[1] += -c[across] > z;
+            beyond[2] += c[down] > z;
+            beyond[3] += -c[down] > z;
+        }
+        if (std::max({beyond[0], beyond[1], beyond[2], beyond[3]}) < 3)
+            inside.insert(inside.end(), {corners[i], corners[i + 1], corners[i + 2]});
+    }
+    return inside;
+}
+
+/// The nearest distance is the least: blending finds it, without limits that a buffer of depths has.
+void draw_faces(const std::vector<glm::vec3>& corners, int size, vtkOpenGLRenderWindow* window) {
     vtkOpenGLState* state = window->GetState();
+    state->vtkglEnable(GL_BLEND);
+    state->vtkglBlendEquation(GL_MIN);
+    state->vtkglDisable(GL_CULL_FACE);
+    vtkShaderProgram* program = window->GetShaderCache()->ReadyShaderProgram(kVertices, kFragments, "");
+    for (int face = 0; face < kFaces && program; ++face) {
+        std::vector<glm::vec3> inside = corners_in(corners, face);
+        if (inside.empty()) continue;
+        std::vector<GLuint> indices(inside.size());
+        std::iota(indices.begin(), indices.end(), 0U);
+        const auto count = static_cast<unsigned>(inside.size());
+        state->vtkglViewport(face % kAcross * size, face / kAcross * size, size, size);
+        state->vtkglScissor(face % kAcross * size, face / kAcross * size, size, size);
+        program->SetUniformi("face", face);
+        vtkNew<vtkOpenGLVertexArrayObject> arrays;
+        vtkOpenGLRenderUtilities::RenderTriangles(&inside[0].x, count, indices.data(), count, nullptr,
+                                                  program, arrays);
+    }
+    state->vtkglBlendEquation(GL_FUNC_ADD);
+}
+
+}  // namespace
+
+int most_shadow_size(vtkOpenGLRenderWindow* window) {
+    const int most = vtkTextureObject::GetMaximumTextureSize(window);
+    return most > 0 ? most / kAcross : std::numeric_limits<int>::max();
+}
+
+std::shared_ptr<ShadowMap> ShadowMap::of(vtkAnamorphPanoramaProjector* projector,
+                                         vtkOpenGLRenderWindow* window) {
+    static std::map<std::pair<void*, void*>, std::weak_ptr<ShadowMap>> all;
+    std::erase_if(all, [](const auto& entry) { return entry.second.expired(); });
+    std::weak_ptr<ShadowMap>& known = all[{projector, window}];
+    std::shared_ptr<ShadowMap> map = known.lock();
+    // Another window may stand where one was.
+    if (!map || map->m_window != window) known = map = std::make_shared<ShadowMap>(window);
+    return map;
+}
+
+ShadowMap::ShadowMap(vtkOpenGLRenderWindow* window) : m_window(window) {}
+
+ShadowMap::~ShadowMap() = default;
+
+vtkTextureObject* ShadowMap::refreshed(vtkPolyData* occluders, const glm::dvec3& position, int size) {
+    const bool same = m_texture && m_texture->GetHandle() && m_occluders == occluders &&
+                      m_time == occluders->GetMTime() && m_position == position && m_size == size;
+    if (same) return m_texture;
+    draw(corners_around(occluders, position), size);
+    m_occluders = occluders;
+    m_time = occluders->GetMTime();
+    m_position = position;
+    return m_texture;
+}
+
+void ShadowMap::draw(const std::vector<glm::vec3>& corners, int size) {
+    if (!m_texture || !m_texture->GetHandle() || m_size != size) {
+        m_texture = vtkSmartPointer<vtkTextureObject>::New();
+        m_texture->SetContext(m_window);
+        m_texture->SetMinificationFilter(vtkTextureObject::Nearest);
+        m_texture->SetMagnificationFilter(vtkTextureObject::Nearest);
+        m_texture->Allocate2D(static_cast<unsigned>(size * kAcross), static_cast<unsigned>(size * kDown), 1,
+                              VTK_FLOAT);
+        m_frame = vtkSmartPointer<vtkOpenGLFramebufferObject>::New();
+        m_frame->SetContext(m_window);
+        m_size = size;
+    }
+    vtkOpenGLState* state = m_window->GetState();
     state->Push();
     state->PushFramebufferBindings();
-    vtkNew<vtkOpenGLFramebufferObject> frame;
-    frame->SetContext(window);
-    frame->Bind();
-    frame->AddColorAttachment(0, texture);
-    frame->ActivateDrawBuffer(0);
-    frame->StartNonOrtho(size, size * kFaces);
-    state->vtkglViewport(0, 0, size, size * kFaces);
-    state->vtkglScissor(0, 0, size, size * kFaces);
+    m_frame->Bind();
+    m_frame->AddColorAttachment(0, m_texture);
+    m_frame->ActivateDrawBuffer(0);
+    m_frame->StartNonOrtho(size * kAcross, size * kDown);
+    state->vtkglViewport(0, 0, size * kAcross, size * kDown);
+    state->vtkglScissor(0, 0, size * kAcross, size * kDown);
     const float far = std::numeric_limits<float>::max();
     state->vtkglClearColor(far, far, far, far);
     state->vtkglClear(GL_COLOR_BUFFER_BIT);
-    if (!corners.empty()) draw_faces(corners, size, window);
+    if (!corners.empty()) draw_faces(corners, size, m_window);
     state->PopFramebufferBindings();
     state->Pop();
-    return texture;
+    ++m_draws;
 }
 
 std::string hidden_function(int size) {
@@ -126,8 +186,9 @@ bool anamorphHidden#(vec3 r, vec3 normal) {
            std::to_string(size) + R"(.0, ahead = abs(q.z);
   vec2 texel = clamp(floor((q.xy / ahead * 0.5 + 0.5) * size), 0.0, size - 1.0) + 0.5;
   vec3 middle = vec3(texel / size * 2.0 - 1.0, sign(q.z));
-  float face = float(2 * axis + (q.z < 0.0 ? 1 : 0)), on_plane = dot(n, q) / dot(n, middle);
-  float nearest = textureLod(anamorphShadow#, vec2(texel.x, texel.y + face * size) / (size * vec2(1.0, 6.0)), 0.0).r;
+  int face = 2 * axis + (q.z < 0.0 ? 1 : 0);
+  float on_plane = dot(n, q) / dot(n, middle);
+  float nearest = texelFetch(anamorphShadow#, ivec2(texel) + ivec2(face % 3, face / 3) * int(size), 0).r;
   return nearest < clamp(on_plane, 0.5 * ahead, 2.0 * ahead) * (1.0 - 4.0 / size);
 }
 )";

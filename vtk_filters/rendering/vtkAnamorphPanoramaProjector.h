@@ -103,7 +103,8 @@ class ANAMORPHRENDERING_EXPORT vtkAnamorphPanoramaProjector : public vtkObject {
     ///@{
     /**
      * Texels across each of the six faces of that map. Borders of shadows are as coarse, and what is nearer to a point than
-     * 4 / ShadowSize of its distance does not hide it. Default: 1024.
+     * 4 / ShadowSize of its distance does not hide it; where a driver's textures have no room for three faces beside each other
+     * they are smaller. The map is drawn when the position or what is around changes, not when the projector turns. Default: 1024.
      */
     vtkSetClampMacro(ShadowSize, int, 16, 4096);
     vtkGetMacro(ShadowSize, int);

@@ -90,6 +90,11 @@ double vtkAnamorphProjectionShader::GetResidualBound(vtkActor* actor, int projec
     return prepared && prepared->thrown.mode == RESIDUAL ? prepared->bound() : 0;
 }
 
+int vtkAnamorphProjectionShader::GetNumberOfShadowDraws(vtkActor* actor, int projector) {
+    const auto* map = actor && projector >= 0 ? ProjectionHook::shadow_map_for(actor, projector) : nullptr;
+    return map ? map->draws() : 0;
+}
+
 void vtkAnamorphProjectionShader::AddTo(vtkActor* actor) {
     if (!actor) return;
     this->RemoveFrom(actor);

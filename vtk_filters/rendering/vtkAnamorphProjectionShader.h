@@ -110,6 +110,12 @@ class ANAMORPHRENDERING_EXPORT vtkAnamorphProjectionShader : public vtkObject {
      */
     double GetResidualBound(vtkActor* actor, int projector = 0);
 
+    /**
+     * How often the map of what stands around a projector has been drawn, for the window that an actor was last drawn in; 0
+     * where there is none. Actors in one window share it.
+     */
+    int GetNumberOfShadowDraws(vtkActor* actor, int projector = 0);
+
     ///@{
     /**
      * Whether fragments that receive nothing are left out. Default: off.

@@ -542,6 +542,67 @@ TEST(VtkProjectionShader, HiddenPointsAreThoseOfTheCore) {
     EXPECT_EQ(std::count(picture.begin(), picture.end(), kNoPlace), 0);
 }
 
+TEST(VtkProjectionShader, TheMapOfOccludersIsDrawnWhenItChangesAndShared) {
+    const auto projector =
+        projector_of(Chart(Projection::equirectangular, 256, 128), smooth_texture(256, 128));
+    Room room;
+    room.look({20, -10, 5});
+    vtkNew<vtkSphereSource> ball;
+    ball->SetCenter(0.6, 0.1, -0.9);
+    ball->SetRadius(0.4);
+    vtkNew<vtkActor> other;
+    other->SetMapper(room.mapper);
+    room.renderer->AddActor(other);
+    projector->SetOccluderConnection(ball->GetOutputPort());
+    vtkNew<vtkAnamorphProjectionShader> shader;
+    shader->AddProjector(projector);
+    shader->AddTo(room.actor);
+    shader->AddTo(other);
+    room.picture();
+    EXPECT_EQ(shader->GetNumberOfShadowDraws(room.actor), 1);
+    room.look({60, 0, 0});
+    room.picture();
+    projector->SetOrientation(70, -20, 5);
+    projector->SetFade(2);
+    room.picture();
+    EXPECT_EQ(shader->GetNumberOfShadowDraws(room.actor), 1) << "all of them once";
+    EXPECT_EQ(shader->GetNumberOfShadowDraws(other), 1);
+    ball->SetRadius(0.5);
+    room.picture();
+    projector->SetPosition(0.1, 0.1, 0.1);
+    room.picture();
+    projector->SetShadowSize(64);
+    room.picture();
+    EXPECT_EQ(shader->GetNumberOfShadowDraws(other), 4);
+    projector->SetOccluderConnection(nullptr);
+    room.picture();
+    EXPECT_EQ(shader->GetNumberOfShadowDraws(other), 0);
+    EXPECT_EQ(shader->GetNumberOfShadowDraws(nullptr), 0);
+}
+
+TEST(VtkProjectionShader, TheLargestMapOfOccludersIsOne) {
+    const auto projector =
+        projector_of(Chart(Projection::equirectangular, 256, 128), smooth_texture(256, 128));
+    Room room;
+    room.look({20, -10, 5});
+    vtkNew<vtkSphereSource> ball;
+    ball->SetCenter(0.6, 0.1, -0.9);
+    ball->SetRadius(0.4);
+    projector->SetOccluderConnection(ball->GetOutputPort());
+    vtkNew<vtkAnamorphProjectionShader> shader;
+    shader->AddProjector(projector);
+    shader->HideUnpaintedOn();
+    shader->AddTo(room.actor);
+    projector->SetShadowSize(512);
+    const auto coarse = room.picture();
+    projector->SetShadowSize(4096);
+    const auto fine = room.picture();
+    const auto hidden = std::count(fine.begin(), fine.end(), kNoPlace);
+    EXPECT_GT(hidden, 500);
+    EXPECT_NEAR(static_cast<double>(std::count(coarse.begin(), coarse.end(), kNoPlace)),
+                static_cast<double>(hidden), 0.1 * static_cast<double>(hidden));
+}
+
 TEST(VtkProjectionShader, PicturesHaveAnyChannels) {
     for (const int channels : {1, 2, 3, 4}) {
         SCOPED_TRACE(channels);
@@ -674,6 +735,29 @@ TEST(VtkProjectionShader, BadValuesAreSaidOnceAndPaintNothing) {
     EXPECT_EQ(room.picture(), own);
     EXPECT_THAT(errors.texts.back(), HasSubstr("must be a number above 0"));
     EXPECT_EQ(errors.texts.size(), 6);
+}
+
+TEST(VtkProjectionShader, AProjectorThatWasNeverTurnedPaintsNothing) {
+    for (const int mode : {0, 1, 2}) {
+        const auto projector =
+            projector_of(Chart(Projection::equirectangular, 256, 128), smooth_texture(256, 128));
+        projector->SetViewUp(projector->GetDirection());
+        vtkNew<vtkSphereSource> ball;
+        ball->SetCenter(0.6, 0.1, -1.2);
+        projector->SetOccluderConnection(ball->GetOutputPort());
+        Room room;
+        const auto own = room.picture();
+        vtkNew<vtkAnamorphProjectionShader> shader;
+        const Errors errors(shader);
+        shader->AddProjector(projector);
+        shader->SetMode(mode);
+        shader->AddTo(room.actor);
+        EXPECT_EQ(differences(room.picture(), own), 0);
+        EXPECT_THAT(errors.texts,
+                    testing::ElementsAre(testing::HasSubstr("must not be along the direction")));
+        projector->SetOrientation(0, 0, 0);
+        EXPECT_GT(differences(room.picture(), own), 10000);
+    }
 }
 
 TEST(VtkProjectionShader, WindowsComeAndGo) {
