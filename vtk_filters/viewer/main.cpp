@@ -15,7 +15,7 @@ namespace {
 using anamorph::Error;
 
 struct Arguments {
-    std::string panorama, picture;
+    std::string panorama, picture, drawing = "picture";
     std::vector<std::string> options;
     anamorph_viewer::View view{NAN, NAN, NAN};
     double exposure = 0;
@@ -60,6 +60,7 @@ void run(const Arguments& arguments) {
     viewer.look({of(arguments.view.yaw, own.yaw), of(arguments.view.pitch, own.pitch),
                  of(arguments.view.fov, own.fov)});
     viewer.set_exposure(arguments.exposure);
+    viewer.set_drawing(anamorph_viewer::drawing_from_name(arguments.drawing));
     viewer.window()->SetSize(arguments.size[0], arguments.size[1]);
     if (!arguments.picture.empty()) viewer.window()->OffScreenRenderingOn();
     viewer.window()->Render();
@@ -77,7 +78,9 @@ int main(int argc, char** argv) {
     app.footer(
         "Left button, arrows: turn. Wheel, right button, + and -: field of view. [ and ]: exposure. w, a, s, "
         "d: move in\n"
-        "concentric mosaics. r: as at the beginning. q: end. A click on a hot spot goes where it leads.");
+        "concentric mosaics. v: drawn as a picture, per fragment or per vertex. r: as at the beginning. q: "
+        "end.\n"
+        "A click on a hot spot goes where it leads.");
     app.add_option("PANORAMA", arguments.panorama, "An image, or a tour: a .json of panoramas and hot spots")
         ->required();
     app.add_option("KEY=VALUE", arguments.options,
@@ -89,6 +92,10 @@ int main(int argc, char** argv) {
     app.add_option("--fov", arguments.view.fov, "Degrees that the window's width covers");
     app.add_option("--exposure", arguments.exposure, "Stops: 1 is twice as bright")
         ->check(CLI::Range(-32.0, 32.0));
+    app.add_option("--draw", arguments.drawing,
+                   "How: picture, by the core within tol and from images larger than memory; or by the "
+                   "graphics card, fragments, "
+                   "every pixel by the formula, or vertices, the corners of the view and a table");
     app.add_option("--size", arguments.size, "Width and height of the window")
         ->expected(2)
         ->check(CLI::Range(1, 16384));

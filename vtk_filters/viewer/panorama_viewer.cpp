@@ -31,6 +31,13 @@ unsigned char shown(float value, bool hdr, double gain) {
     return static_cast<unsigned char>(std::lround(255 * std::min(v > 0 ? v : 0, 1.0)));
 }
 
+Drawing drawing_from_name(const std::string& name) {
+    if (name == "picture") return Drawing::picture;
+    if (name == "fragments") return Drawing::fragments;
+    if (name == "vertices") return Drawing::vertices;
+    throw anamorph::Error("draw", name, "must be picture, fragments or vertices");
+}
+
 PanoramaViewer::PanoramaViewer(anamorph::Tour tour, const std::string& folder,
                                const std::vector<anamorph::Assignment>& options)
     : m_tour(std::move(tour)), m_folder(folder), m_options(options), m_panorama(this->opened(0)) {
@@ -88,9 +95,17 @@ void PanoramaViewer::set_exposure(double stops) {
     m_stale = true;
 }
 
+void PanoramaViewer::forget_card() {
+    if (m_card) m_renderer->RemoveActor(m_card->actor());
+    m_card.reset();
+}
+
 bool PanoramaViewer::go_to(std::size_t place, const anamorph::TourView& view) {
     try {
-        if (place != m_place) m_panorama = this->opened(place);
+        if (place != m_place) {
+            m_panorama = this->opened(place);
+            this->forget_card();
+        }
     } catch (const std::exception& e) {
         m_error = anamorph::message_of(e, "the panorama");
         return false;
@@ -106,32 +121,64 @@ bool PanoramaViewer::go_to(std::size_t place, const anamorph::TourView& view) {
     return true;
 }
 
+void PanoramaViewer::set_drawing(Drawing drawing) {
+    if (drawing == m_drawing) return;
+    m_drawing = drawing;
+    m_stale = true;
+}
+
 void PanoramaViewer::update() {
     const int* pixels = m_renderer->GetSize();
     const anamorph::Size size{std::max(1, pixels[0]), std::max(1, pixels[1])};
     if (!m_stale && size == m_drawn) return;
     m_stale = false;
     m_drawn = size;
-    m_image->SetDimensions(size.width, size.height, 1);
-    m_image->AllocateScalars(VTK_UNSIGNED_CHAR, 3);
-    auto* const to = static_cast<unsigned char*>(m_image->GetScalarPointer());
-    std::fill_n(to, std::size_t{3} * static_cast<std::size_t>(size.width * size.height), 0);
     try {
-        const std::vector<float> drawn = m_panorama->draw(this->view(), size);
-        const int channels = m_panorama->channels();
-        const double gain = std::exp2(m_exposure);
-        for (int y = 0; y < size.height; ++y)
-            for (int x = 0; x < size.width; ++x) {
-                const float* from = &drawn[static_cast<std::size_t>((y * size.width + x) * channels)];
-                unsigned char* pixel = to + std::ptrdiff_t{(size.height - 1 - y) * size.width + x} * 3;
-                for (int c = 0; c < 3; ++c)
-                    pixel[c] = shown(from[channels < 3 ? 0 : c], m_panorama->is_hdr(), gain);
-            }
+        if (m_drawing == Drawing::picture)
+            this->draw_picture(size);
+        else
+            this->draw_by_card(size);
         m_error.clear();
     } catch (const std::exception& e) {
         m_error = anamorph::message_of(e, "the view");
     }
+}
+
+void PanoramaViewer::draw_picture(const anamorph::Size& size) {
+    this->let_card_draw(false);
+    m_image->SetDimensions(size.width, size.height, 1);
+    m_image->AllocateScalars(VTK_UNSIGNED_CHAR, 3);
     m_image->Modified();
+    auto* const to = static_cast<unsigned char*>(m_image->GetScalarPointer());
+    std::fill_n(to, std::size_t{3} * static_cast<std::size_t>(size.width * size.height), 0);
+    const std::vector<float> drawn = m_panorama->draw(this->view(), size);
+    const int channels = m_panorama->channels();
+    const double gain = std::exp2(m_exposure);
+    for (int y = 0; y < size.height; ++y)
+        for (int x = 0; x < size.width; ++x) {
+            const float* from = &drawn[static_cast<std::size_t>((y * size.width + x) * channels)];
+            unsigned char* pixel = to + std::ptrdiff_t{(size.height - 1 - y) * size.width + x} * 3;
+            for (int c = 0; c < 3; ++c)
+                pixel[c] = shown(from[channels < 3 ? 0 : c], m_panorama->is_hdr(), gain);
+        }
+}
+
+void PanoramaViewer::draw_by_card(const anamorph::Size& size) {
+    if (!m_card) {
+        m_actor->VisibilityOff();
+        m_card = std::make_unique<CardView>(*m_panorama);
+    }
+    this->let_card_draw(true);
+    m_by_vertices =
+        m_card->look(this->view(), size, m_drawing == Drawing::vertices, std::exp2(m_exposure), m_renderer);
+}
+
+/// What it has is kept for the next time.
+void PanoramaViewer::let_card_draw(bool does) {
+    m_actor->SetVisibility(!does);
+    if (!m_card) return;
+    m_card->actor()->SetVisibility(does);
+    m_renderer->AddActor(m_card->actor());
 }
 
 std::optional<anamorph::HotSpot> PanoramaViewer::spot_at_mouse() {
@@ -172,6 +219,7 @@ void PanoramaViewer::key() {
     if (is("s")) move(0, -kMove);
     if (is("a")) move(-kMove, 0);
     if (is("d")) move(kMove, 0);
+    if (is("v")) this->set_drawing(static_cast<Drawing>((static_cast<int>(m_drawing) + 1) % 3));
     if (is("r")) {
         this->look({0, 0, 90});
         this->go_to(m_place, {});

@@ -6,6 +6,7 @@
 //     arrows, + and -   the same by keys
 //     [ and ]           exposure, by half a stop
 //     w, a, s, d        move the viewpoint of concentric mosaics
+//     v                 draws as a picture, per fragment, or per vertex (Drawing)
 //     r                 the view as at the beginning
 //     q                 ends
 #pragma once
@@ -26,6 +27,7 @@
 #include <vector>
 
 #include "anamorph/projector/tour_file.h"
+#include "card_view.h"
 #include "viewed_panorama.h"
 
 namespace anamorph_viewer {
@@ -33,6 +35,15 @@ namespace anamorph_viewer {
 /// A value as the screen shows it: `gain` times as bright, in sRGB's curve, 0 to 255. Values of sources that are not HDR are
 /// in that curve already, and stay as they are where the gain is 1.
 unsigned char shown(float value, bool hdr, double gain);
+
+/// How a view is drawn.
+enum class Drawing {
+    picture,    ///< by the core, within its tolerance and from any size of image
+    fragments,  ///< by the graphics card, every pixel by the panorama's formula (card_view.h)
+    vertices    ///< by the graphics card, per vertex with the trapezoid, where there is one
+};
+/// "picture" and so on. Throws Error: none of these.
+Drawing drawing_from_name(const std::string& name);
 
 class PanoramaViewer {
   public:
@@ -53,6 +64,12 @@ class PanoramaViewer {
     /// Stops; 1 is twice as bright.
     void set_exposure(double stops);
     double exposure() const { return m_exposure; }
+    Drawing drawing() const { return m_drawing; }
+    void set_drawing(Drawing drawing);
+    /// Of the last view that the card drew; null where it draws none.
+    const CardView* card() const { return m_card.get(); }
+    /// Whether that was per vertex.
+    bool by_vertices() const { return m_by_vertices; }
     /// Which panorama of the tour is seen.
     std::size_t place() const { return m_place; }
     const ViewedPanorama& panorama() const { return *m_panorama; }
@@ -64,6 +81,10 @@ class PanoramaViewer {
   private:
     static void handle(vtkObject* caller, unsigned long event, void* viewer, void*);
     void update();
+    void draw_picture(const anamorph::Size& size);
+    void draw_by_card(const anamorph::Size& size);
+    void let_card_draw(bool does);
+    void forget_card();
     void pick();
     void key();
     void show_cursor();
@@ -76,7 +97,9 @@ class PanoramaViewer {
     std::size_t m_place = 0;
     std::unique_ptr<ViewedPanorama> m_panorama;
     double m_exposure = 0;
-    bool m_stale = true;
+    bool m_stale = true, m_by_vertices = false;
+    Drawing m_drawing = Drawing::picture;
+    std::unique_ptr<CardView> m_card;
     anamorph::Size m_drawn;
 
     vtkNew<vtkCallbackCommand> m_observer;

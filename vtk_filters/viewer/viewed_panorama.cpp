@@ -98,6 +98,44 @@ std::vector<float> ViewedPanorama::draw(const View& view, const anamorph::Size& 
     return pixels;
 }
 
+CardPicture ViewedPanorama::card_picture() const {
+    constexpr int kMostSide = 8192;
+    constexpr std::int64_t kMostTexels = std::int64_t{1} << 25;
+    const auto refuse = [](const std::string& what) {
+        throw Error("a graphics card does not draw " + what + ": draw must be picture");
+    };
+    if (is_mosaic()) refuse("concentric mosaics");
+    if (m_stacks.front()->space()) refuse("in another color space");
+    const anamorph::ParameterValues values = this->values({}, {64, 64});
+    const anamorph::ReprojectRequest request =
+        anamorph::read_reproject_request(values, m_known.front().facts);
+    if (request.target.projection() != anamorph::Projection::rectilinear || request.target.lens())
+        refuse("views that are not rectilinear");
+    if (request.source.spacing() != anamorph::PixelSpacing::edges) refuse("pixels from centre to centre");
+    const anamorph::Source& source = m_stacks.front()->top();
+    int level = 0;
+    const auto fits = [&](const anamorph::Size& s) {
+        return std::max(s.width, s.height) <= kMostSide && std::int64_t{s.width} * s.height <= kMostTexels;
+    };
+    while (!fits(source.size(level)) && level + 1 < source.levels()) ++level;
+    const anamorph::Size size = source.size(level);
+    if (!fits(size)) refuse("images as large as this");
+    const int channels = source.channels();
+    const std::size_t values_of_row =
+                          static_cast<std::size_t>(size.width) * static_cast<std::size_t>(channels),
+                      count = values_of_row * static_cast<std::size_t>(size.height);
+    const OIIO::TypeDesc type = anamorph::oiio_type(source.type());
+    std::vector<std::byte> stored(count * type.size());
+    if (!source.read(level, {0, 0, size.width, size.height}, stored.data(),
+                     static_cast<std::ptrdiff_t>(values_of_row * type.size())))
+        throw Error(m_stacks.front()->error());
+    CardPicture picture{request.source.resized(size.width, size.height), request.held, values.number("srcd"),
+                        channels, std::vector<float>(count)};
+    OIIO::convert_pixel_values(type, stored.data(), OIIO::TypeDesc::FLOAT, picture.pixels.data(),
+                               static_cast<int>(count));
+    return picture;
+}
+
 Direction ViewedPanorama::direction(const View& view, const anamorph::Size& size, double x, double y) const {
     const anamorph::ParameterValues values = this->values(view, size);
     const anamorph::Chart unused(anamorph::Projection::equirectangular, 2, 1);

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "anamorph/map/panorama.h"
 #include "anamorph/operation/operation.h"
 #include "anamorph/source_stack.h"
 
@@ -20,6 +21,15 @@ struct View {
 /// The point of the sphere that a pixel shows, in degrees.
 struct Direction {
     double yaw, pitch;
+};
+
+/// A panorama for a graphics card.
+struct CardPicture {
+    anamorph::Chart chart;
+    anamorph::Orientation held;  ///< of the panorama
+    double d = 1;                ///< of Pannini's projection
+    int channels = 0;
+    std::vector<float> pixels;  ///< rows from the top
 };
 
 class ViewedPanorama {
@@ -39,6 +49,9 @@ class ViewedPanorama {
 
     /// The pixels of a view, row by row from the top. Throws Error.
     std::vector<float> draw(const View& view, const anamorph::Size& size) const;
+    /// All of it, at its finest level that a card takes: 8192 texels a side, and 2^25 in all. Throws Error: mosaics, and views
+    /// that are not rectilinear, have to be drawn by draw().
+    CardPicture card_picture() const;
     /// What point (x, y) of a view shows, in pixels from its upper left corner.
     Direction direction(const View& view, const anamorph::Size& size, double x, double y) const;
 
