@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """The representation "Panorama" throws a picture onto surfaces as the formulas of Kim 2003, eq. 4.1, have it, written out here;
-in every mode, on blocks, out of a state file, and on two ranks."""
+in every mode, on blocks, with what hides, out of a state file, on two ranks, and on a server."""
 import os
 import subprocess
 
@@ -103,6 +103,52 @@ view.Background = [1, 1, 1]
 compare(view, exact(height))
 shown.HideUnpainted, shown.PanoramaProjection = 0, "Equirectangular"
 SaveState(os.path.abspath("panorama.pvsm"))
+
+
+def behind_board():
+    """Which pixels show what a board behind the camera hides from the projector, but for those at borders."""
+    j, i = np.mgrid[0:SIZE, 0:SIZE]
+    way = np.stack([(i + 0.5) * 2 / SIZE - 1, 1 - (j + 0.5) * 2 / SIZE, -np.ones((SIZE, SIZE))], -1)
+    ray = way * (2 / np.abs(way).max(-1))[..., None] - POSITION
+    on_board = POSITION + ray * ((0.1 - POSITION[2]) / ray[..., 2])[..., None]
+    hidden = (np.abs(on_board[..., :2] - POSITION[:2]) < 0.1).all(-1)
+    near = [np.roll(hidden, step, axis) for axis in (0, 1) for step in (-1, 1)]
+    return hidden, np.all([other == hidden for other in near], 0)
+
+
+def check_hidden(hidden, inner):
+    off, picture = np.abs(pixels(view) - exact()[0]).max(-1), pixels(view)
+    assert hidden.sum() > 2000
+    assert (picture[hidden & inner] > 250).all() and (off[~hidden & inner] <= 2.0).all()
+
+
+# The board belongs to the same data; moved and turned with its projector, all is as it was.
+Hide(room, view)
+board = Plane(Origin=[0.2, -0.3, 0.1], Point1=[0.4, -0.3, 0.1], Point2=[0.2, -0.1, 0.1])
+both = GroupDatasets(Input=[room, board])
+together = Show(both, view)
+white(together)
+together.SetRepresentationType("Panorama")
+together.Panorama = CreateTexture("panorama.png")
+together.ProjectorPosition, together.ProjectorDirection = list(POSITION), [1, 0, 0]
+compare(view, exact())
+together.PanoramaOcclusion = 1
+check_hidden(*behind_board())
+together.Position = [0, 0, 1]
+together.ProjectorPosition = list(POSITION + [0, 0, 1])
+view.CameraPosition, view.CameraFocalPoint = [0, 0, 1], [0, 0, 0]
+check_hidden(*behind_board())
+together.Position, together.ProjectorPosition = [0, 0, 0], list(POSITION)
+view.CameraPosition, view.CameraFocalPoint = [0, 0, 0], [0, 0, -1]
+board.Origin, board.Point1, board.Point2 = [9, 9, 9], [9.1, 9, 9], [9, 9.1, 9]
+compare(view, exact())
+board.Origin, board.Point1, board.Point2 = [0.2, -0.3, 0.1], [0.4, -0.3, 0.1], [0.2, -0.1, 0.1]
+check_hidden(*behind_board())
+together.PanoramaOcclusion = 0
+compare(view, exact())
+Delete(together)
+Delete(both)
+Show(room, view)
 # Surfaces as before, and back.
 shown.SetRepresentationType("Surface")
 assert (pixels(view) > 250).all()
@@ -128,7 +174,7 @@ proxy = servermanager.ProxyManager().NewProxy("representations", "AnamorphPanora
 projector, shader = anamorph.vtkAnamorphPanoramaProjector(), anamorph.vtkAnamorphProjectionShader()
 for name, value in {"Projection": projector.GetProjection(), "FieldOfView": projector.GetFieldOfView(),
                     "PanniniDistance": projector.GetPanniniDistance(), "ProjectionMode": shader.GetMode(),
-                    "HideUnpainted": shader.GetHideUnpainted(), "ProjectorPosition": projector.GetPosition(),
+                    "HideUnpainted": shader.GetHideUnpainted(), "Occlusion": 0, "ShadowSize": projector.GetShadowSize(), "ProjectorPosition": projector.GetPosition(),
                     "ProjectorDirection": projector.GetDirection(), "ProjectorViewUp": projector.GetViewUp()}.items():
     values = value if isinstance(value, tuple) else (value,)
     assert tuple(proxy.GetProperty(name).GetElement(i) for i in range(len(values))) == values, name
@@ -148,8 +194,13 @@ import sys
 from paraview import simple
 from paraview.simple import *
 
+if "ANAMORPH_SERVER" in os.environ:
+    host, port = os.environ["ANAMORPH_SERVER"].split(":")
+    Connect(host, int(port))
+    LoadPlugin(os.environ["ANAMORPH_PLUGIN"], remote=True, ns=vars(simple))
 LoadPlugin(os.environ["ANAMORPH_PLUGIN"], remote=False, ns=vars(simple))
 view = CreateRenderView(ViewSize=[200, 200], OrientationAxesVisibility=0, UseFXAA=0)
+view.RemoteRenderThreshold = 0 if sys.argv[2] == "there" else 1e9
 shown = Show(Sphere(Radius=2, ThetaResolution=64, PhiResolution=48), view)
 shown.SetRepresentationType("Panorama")
 shown.Panorama, shown.ProjectorPosition = CreateTexture("panorama.png"), [.3, -.2, .4]
@@ -158,7 +209,13 @@ shown.Ambient, shown.Diffuse, shown.Specular = 1, 0, 0
 Render(view)
 view.CameraPosition, view.CameraFocalPoint, view.CameraViewUp, view.CameraViewAngle = [0, 0, 0], [0, 0, -1], [0, 1, 0], 90
 Render(view)
-SaveScreenshot(sys.argv[1], view, ImageResolution=[200, 200])
+SaveScreenshot(sys.argv[1] + ".png", view, ImageResolution=[200, 200])
+# From one end of the ball: the half of the other rank hides this one's.
+shown.ProjectorPosition, shown.PanoramaOcclusion, shown.HideUnpainted = [0.1, 9, -2], 1, 1
+view.CameraPosition, view.CameraFocalPoint, view.CameraViewUp = [0, 0, 9], [0, 0, 0], [0, 1, 0]
+SaveScreenshot(sys.argv[1] + "_hidden.png", view, ImageResolution=[200, 200])
+shown.PanoramaOcclusion = 0
+SaveScreenshot(sys.argv[1] + "_all.png", view, ImageResolution=[200, 200])
 '''
 
 
@@ -179,7 +236,35 @@ for name, text in (("throw.py", SCRIPT), ("ranks.py", RANKS_SCRIPT)):
     with open(name, "w") as file:
         file.write(text)
 assert "as it should be" in run("pvpython", "throw.py")
-# Two ranks, which have a half of a ball each, show what one does.
-run("pvbatch", "ranks.py", "one.png")
-run("mpiexec", "--oversubscribe", "-n", "2", "pvbatch", "ranks.py", "two.png")
-assert bytes_of("one.png") == bytes_of("two.png")
+PICTURES = ("", "_hidden", "_all")
+
+
+def pictures_of(name):
+    return [bytes_of(name + more + ".png") for more in PICTURES]
+
+
+def on_server(ranks, where):
+    """With the client drawing, or the server."""
+    name = f"server_{where}"
+    command = ["pvserver", "--server-port=0"]
+    server = subprocess.Popen([*xvfb_run(371), "mpiexec", "--oversubscribe", "-n", str(ranks), *command],
+                              env={**os.environ, "LIBGL_ALWAYS_SOFTWARE": "1"}, stdout=subprocess.PIPE, text=True)
+    try:
+        line = next(line for line in server.stdout if line.startswith("Accepting connection(s): "))
+        os.environ["ANAMORPH_SERVER"] = "127.0.0.1:" + line.strip().rsplit(":", 1)[1]
+        run("pvpython", "ranks.py", name, where)
+    finally:
+        os.environ.pop("ANAMORPH_SERVER", None)
+        server.terminate()
+        server.wait(timeout=60)
+    return pictures_of(name)
+
+
+# Two ranks, which have a half of a ball each, show what one does; so do servers.
+run("pvbatch", "ranks.py", "one", "here")
+one = pictures_of("one")
+assert len(set(one)) == 3, "what is hidden shows"
+run("mpiexec", "--oversubscribe", "-n", "2", "pvbatch", "ranks.py", "two", "here")
+assert pictures_of("two") == one
+for where in ("there", "here"):
+    assert on_server(2, where) == one, where

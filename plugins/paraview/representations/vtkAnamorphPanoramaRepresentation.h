@@ -4,6 +4,9 @@
  * @brief   Surfaces with a panorama thrown onto them in ParaView's render views, by vtkAnamorphProjectionShader.
  *
  * It is a vtkGeometryRepresentation in all else: what a fragment receives is multiplied with its color.
+ *
+ * With Occlusion the surfaces hide what lies behind them from the projector, blocks that are not shown included. Every rank
+ * that draws gets the triangles of all ranks, so that a picture is the same on any number of them.
  */
 #ifndef vtkAnamorphPanoramaRepresentation_h
 #define vtkAnamorphPanoramaRepresentation_h
@@ -14,13 +17,18 @@
 
 class vtkAnamorphPanoramaProjector;
 class vtkAnamorphProjectionShader;
+class vtkMatrixToLinearTransform;
+class vtkPolyData;
 class vtkTexture;
+class vtkTransformPolyDataFilter;
 
 class ANAMORPHREPRESENTATIONS_EXPORT vtkAnamorphPanoramaRepresentation : public vtkGeometryRepresentation {
   public:
     static vtkAnamorphPanoramaRepresentation* New();
     vtkTypeMacro(vtkAnamorphPanoramaRepresentation, vtkGeometryRepresentation);
     void PrintSelf(ostream& os, vtkIndent indent) override;
+    int ProcessViewRequest(vtkInformationRequestKey* request, vtkInformation* input,
+                           vtkInformation* output) override;
 
     /** The picture. It is made to interpolate, to repeat, and to have mipmaps. */
     void SetPanorama(vtkTexture* panorama);
@@ -34,7 +42,11 @@ class ANAMORPHREPRESENTATIONS_EXPORT vtkAnamorphPanoramaRepresentation : public 
     void SetProjectorPosition(double x, double y, double z);
     void SetProjectorDirection(double x, double y, double z);
     void SetProjectorViewUp(double x, double y, double z);
+    void SetShadowSize(int texels);
     ///@}
+
+    /** Whether what is hidden from the projector stays unpainted. Default: off. */
+    void SetOcclusion(bool occlusion);
 
     ///@{
     /** As of vtkAnamorphProjectionShader. */
@@ -50,8 +62,18 @@ class ANAMORPHREPRESENTATIONS_EXPORT vtkAnamorphPanoramaRepresentation : public 
     vtkAnamorphPanoramaRepresentation(const vtkAnamorphPanoramaRepresentation&) = delete;
     void operator=(const vtkAnamorphPanoramaRepresentation&) = delete;
 
+    void SendOccluders(vtkInformation* view);
+    void ReceiveOccluders(vtkInformation* view);
+
     vtkNew<vtkAnamorphPanoramaProjector> Projector;
     vtkNew<vtkAnamorphProjectionShader> Shader;
+    bool Occlusion = false;
+    /// The triangles of this rank, and when what they were made of changed.
+    vtkNew<vtkPolyData> OwnTriangles;
+    vtkMTimeType OwnTime = 0;
+    /// Those of all ranks, from the data to the world.
+    vtkNew<vtkMatrixToLinearTransform> ToWorld;
+    vtkNew<vtkTransformPolyDataFilter> Occluders;
 };
 
 #endif
