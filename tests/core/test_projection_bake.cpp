@@ -194,6 +194,27 @@ TEST(ProjectionBake, AnyThreadsGiveTheSameBits) {
               bake(wall(), {{projector, pixels.data()}}, options, threads).pixels);
 }
 
+TEST(ProjectionBake, SharedRowsMakeTheWhole) {
+    const std::vector<float> pixels = coordinates(64, 32);
+    const Projector projector(Chart(Projection::equirectangular, 64, 32), {{0.1, 0.2, 0.3}});
+    BakeOptions options;
+    options.size = {20, 17};
+    options.margin = 2;
+    const BakedTexture whole = bake(wall(), {{projector, pixels.data()}}, options);
+    ASSERT_EQ(whole.painted, 20 * 17);
+    std::int64_t painted = 0;
+    options.row_step = 3;
+    for (options.first_row = 0; options.first_row < 3; ++options.first_row) {
+        const BakedTexture part = bake(wall(), {{projector, pixels.data()}}, options);
+        painted += part.painted;
+        for (std::size_t i = 0; i < whole.pixels.size(); ++i) {
+            const bool mine = static_cast<int>(i / 80) % 3 == options.first_row;
+            EXPECT_EQ(part.pixels[i], mine ? whole.pixels[i] : 0);
+        }
+    }
+    EXPECT_EQ(painted, whole.painted);
+}
+
 TEST(ProjectionBake, RefusesInWordsAndTakesTrianglesThatAreNone) {
     const std::vector<float> pixels = plain(64, 32, 1);
     const Projector projector(Chart(Projection::equirectangular, 64, 32));

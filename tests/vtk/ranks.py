@@ -126,11 +126,25 @@ def baked(mesh, with_controller):
 
 
 def check_baked(rank, ranks):
-    """Every rank has a part of the mesh, and bakes the texture of all of it."""
+    """Every rank has a part of the mesh, bakes some rows, and has the texture of all of it."""
     whole = baked(strips(0, 6), False)
     assert min(whole[1]) > 100, whole[1]
     assert baked(strips(rank * 6 // ranks, (rank + 1) * 6 // ranks), True) == whole
     assert baked(strips(0, 6 if rank == ranks - 1 else 0), True) == whole
+
+
+def check_failures(rank):
+    """Where one rank cannot bake, none does, and none waits for it."""
+    mesh, picture, bake, errors = strips(rank, rank + 1), vtkRTAnalyticSource(), anamorph.vtkAnamorphProjectionBake(), []
+    if rank == 0:
+        mesh.GetPointData().SetTCoords(None)
+    bake.SetInputData(mesh)
+    bake.AddPanoramaConnection(picture.GetOutputPort())
+    bake.AddProjector(0, 0, 0, 0, 0, -1, 0, 1, 0)
+    for watched in (bake, bake.GetExecutive()):
+        watched.AddObserver("ErrorEvent", lambda *_: errors.append(1))
+    bake.Update()
+    assert errors and bake.GetOutput().GetNumberOfPoints() == 0, (errors, bake.GetOutput().GetNumberOfPoints())
 
 
 def main():
@@ -157,6 +171,7 @@ def main():
             assert moved == whole[point], (point, moved, whole[point])
     check_painted(mesh, part, controller)
     check_baked(rank, ranks)
+    check_failures(rank)
     print("rank", rank, "of", ranks, "agrees at", len(points), "points", flush=True)
 
 

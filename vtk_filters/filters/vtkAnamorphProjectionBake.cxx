@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <exception>
 #include <string>
 #include <vector>
 
@@ -12,6 +13,7 @@
 #include "execution.h"
 #include "scene_shadow.h"
 #include "vtkCellArray.h"
+#include "vtkCommunicator.h"
 #include "vtkDataArray.h"
 #include "vtkDoubleArray.h"
 #include "vtkFieldData.h"
@@ -72,6 +74,7 @@ void add_field_value(vtkDataObject* object, const char* name, std::int64_t value
 /// One execution of the filter.
 struct vtkAnamorphProjectionBake::Run {
     vtkAnamorphProjectionBake& filter;
+    vtkInformationVector* images;
     anamorph_vtk::Execution execution{&filter};
     anamorph::BakeOptions options = {};
     bool bytes = true;
@@ -85,9 +88,13 @@ struct vtkAnamorphProjectionBake::Run {
     void take_mesh(vtkPolyData* triangles);
     /// Puts the meshes of all ranks in the place of this one's.
     void share_mesh();
-    void take_pictures(vtkInformationVector* images);
+    void take_pictures();
     void list_occluders(vtkPolyData* triangles, vtkPolyData* others);
     void cast_shadows();
+    /// Every rank makes some of the rows, and gets those of the others.
+    anamorph::BakedTexture bake_with_others();
+    anamorph::BakedTexture bake();
+    void share_rows(anamorph::BakedTexture& texture) const;
     void hand_over(const anamorph::BakedTexture& texture, const int* extent, vtkImageData* output) const;
 };
 
@@ -128,7 +135,7 @@ void vtkAnamorphProjectionBake::Run::share_mesh() {
     }
 }
 
-void vtkAnamorphProjectionBake::Run::take_pictures(vtkInformationVector* images) {
+void vtkAnamorphProjectionBake::Run::take_pictures() {
     const auto count = static_cast<std::size_t>(images->GetNumberOfInformationObjects());
     const auto& poses = filter.Poses->all;
     if (count != poses.size())
@@ -166,6 +173,78 @@ void vtkAnamorphProjectionBake::Run::cast_shadows() {
     for (const anamorph::ThrownPicture& picture : pictures)
         occluders.emplace_back(shadow_casters, picture.projector.pose().position);
     for (std::size_t i = 0; i < pictures.size(); ++i) pictures[i].occluders = &occluders[i];
+}
+
+anamorph::BakedTexture vtkAnamorphProjectionBake::Run::bake() {
+    if (!has_coordinates)
+        throw anamorph::Error("mesh", "no texture coordinates",
+                              "must have them at its points, 2 numbers each");
+    take_pictures();
+    if (filter.Occlusion) cast_shadows();
+    return anamorph::bake(mesh, pictures, options, execution.stage(0, 1));
+}
+
+anamorph::BakedTexture vtkAnamorphProjectionBake::Run::bake_with_others() {
+    vtkMultiProcessController* controller = filter.Controller;
+    anamorph::BakedTexture texture;
+    std::exception_ptr failure;
+    options.first_row = controller->GetLocalProcessId();
+    options.row_step = controller->GetNumberOfProcesses();
+    try {
+        texture = bake();
+    } catch (...) {
+        failure = std::current_exception();
+    }
+    // Who fails must not leave the others waiting.
+    const int channels = failure ? 0 : options.channels, own[] = {channels, -channels};
+    int least[2] = {};
+    controller->AllReduce(own, least, 2, vtkCommunicator::MIN_OP);
+    if (failure) std::rethrow_exception(failure);
+    if (least[0] == 0) throw anamorph::Error("another rank could not bake its part of the texture");
+    if (least[0] != -least[1]) throw anamorph::Error("panoramas must be the same on all ranks");
+    share_rows(texture);
+    return texture;
+}
+
+void vtkAnamorphProjectionBake::Run::share_rows(anamorph::BakedTexture& texture) const {
+    // Some rows at a time: their numbers are counted with int.
+    constexpr int kMostNumbers = 1 << 26;
+    vtkMultiProcessController* controller = filter.Controller;
+    const int ranks = controller->GetNumberOfProcesses(), rank = controller->GetLocalProcessId(),
+              row_length = options.size.width * (options.channels + 1),
+              most_rows = std::max(1, kMostNumbers / row_length);
+    const auto row_of = [&](int j) { return texture.pixels.begin() + std::ptrdiff_t{j} * row_length; };
+    for (int top = 0; top < options.size.height; top += most_rows) {
+        const int bottom = std::min(top + most_rows, options.size.height);
+        const auto rows = [&](int of, const auto& body) {
+            for (int j = top + ((of - top) % ranks + ranks) % ranks; j < bottom; j += ranks) body(j);
+        };
+        std::vector<vtkIdType> counts(static_cast<std::size_t>(ranks)), offsets(counts.size());
+        vtkIdType total = 0;
+        for (int r = 0; r < ranks; ++r) {
+            const auto at = static_cast<std::size_t>(r);
+            offsets[at] = total;
+            rows(r, [&](int) { counts[at] += row_length; });
+            total += counts[at];
+        }
+        // One more, so that there is an address.
+        std::vector<float> mine, all(static_cast<std::size_t>(total) + 1);
+        rows(rank, [&](int j) { mine.insert(mine.end(), row_of(j), row_of(j) + row_length); });
+        mine.push_back(0);
+        controller->AllGatherV(mine.data(), all.data(), counts[static_cast<std::size_t>(rank)], counts.data(),
+                               offsets.data());
+        auto next = all.begin();
+        for (int r = 0; r < ranks; ++r)
+            rows(r, [&](int j) {
+                std::copy(next, next + row_length, row_of(j));
+                next += row_length;
+            });
+    }
+    const long long own[] = {texture.painted, texture.unseen};
+    long long sums[2] = {};
+    controller->AllReduce(own, sums, 2, vtkCommunicator::SUM_OP);
+    texture.painted = sums[0];
+    texture.unseen = sums[1];
 }
 
 void vtkAnamorphProjectionBake::Run::hand_over(const anamorph::BakedTexture& texture, const int* extent,
@@ -269,24 +348,19 @@ int vtkAnamorphProjectionBake::RequestData(vtkInformation*, vtkInformationVector
                                            vtkInformationVector* outputs) {
     vtkImageData* output = vtkImageData::GetData(outputs);
     const auto execute = [&] {
-        Run run{*this};
+        Run run{*this, inputs[1]};
         run.options.size = {this->Width, this->Height};
         run.options.fade = this->Fade;
         run.options.margin = this->Margin;
         const vtkSmartPointer<vtkPolyData> triangles = triangles_of(vtkPolyData::GetData(inputs[0]));
-        // What may fail on one rank alone comes after what they do together.
+        const bool shared = anamorph_vtk::distributed(this->Controller);
         run.take_mesh(triangles);
-        if (anamorph_vtk::distributed(this->Controller)) run.share_mesh();
+        if (shared) run.share_mesh();
         if (this->Occlusion) run.list_occluders(triangles, vtkPolyData::GetData(inputs[2]));
-        if (!run.has_coordinates)
-            throw anamorph::Error("mesh", "no texture coordinates",
-                                  "must have them at its points, 2 numbers each");
-        run.take_pictures(inputs[1]);
-        if (this->Occlusion) run.cast_shadows();
+        const anamorph::BakedTexture texture = shared ? run.bake_with_others() : run.bake();
         const int* extent =
             outputs->GetInformationObject(0)->Get(vtkStreamingDemandDrivenPipeline::UPDATE_EXTENT());
-        run.hand_over(anamorph::bake(run.mesh, run.pictures, run.options, run.execution.stage(0, 1)), extent,
-                      output);
+        run.hand_over(texture, extent, output);
     };
     return anamorph_vtk::guarded(this, execute, {output});
 }

@@ -108,8 +108,9 @@ class ANAMORPHFILTERS_EXPORT vtkAnamorphProjectionBake : public vtkImageAlgorith
 
     ///@{
     /**
-     * Shares the mesh and what casts shadows between all ranks: every rank then makes the whole texture, of which it gives what
-     * it is asked for. Every rank has to execute, with all panoramas. Default: the global controller; may be null.
+     * Shares the mesh and what casts shadows between all ranks: every rank then makes every so many rows of the texture, gets
+     * those of the others, and gives what it is asked for. Every rank has to execute, with all panoramas; where one cannot,
+     * none gives anything. Default: the global controller; may be null.
      */
     void SetController(vtkMultiProcessController* controller);
     vtkMultiProcessController* GetController();

@@ -107,7 +107,8 @@ class Baking {
             const double low = std::min({c[0].y, c[1].y, c[2].y}) - options.margin - 1,
                          high = std::max({c[0].y, c[1].y, c[2].y}) + options.margin + 1;
             if (high < 0 || low > options.size.height) continue;
-            for (std::size_t j = row(low); j <= row(high); ++j) m_rows[j].push_back(i);
+            for (std::size_t j = row(low); j <= row(high); ++j)
+                if (is_asked_for(j)) m_rows[j].push_back(i);
         }
     }
 
@@ -125,6 +126,11 @@ class Baking {
     }
 
   private:
+    bool is_asked_for(std::size_t row) const {
+        const auto first = static_cast<std::size_t>(m_options.first_row);
+        return row >= first && (row - first) % static_cast<std::size_t>(m_options.row_step) == 0;
+    }
+
     /// The texels of a row that a triangle has, or those that it has beyond its border.
     void span(std::size_t triangle, std::int64_t j, bool beyond, std::vector<char>& taken) {
         const FlatTriangle& flat = m_flat[triangle];
@@ -191,6 +197,8 @@ void check(const std::vector<ThrownPicture>& pictures, const BakeOptions& option
     if (!(options.fade >= 0 && options.fade <= kMostFade)) refuse("fade", options.fade, "from 0 to 16777216");
     if (!(options.margin >= 0 && options.margin <= kMostMargin))
         refuse("margin", options.margin, "from 0 to 64");
+    if (options.first_row < 0) refuse("first_row", options.first_row, "at least 0");
+    if (options.row_step < 1) refuse("row_step", options.row_step, "at least 1");
     for (const ThrownPicture& picture : pictures)
         if (!picture.pixels) throw Error("pictures", "none", "must have pixels");
 }

@@ -48,6 +48,8 @@ struct BakeOptions {
     double fade = 32;       ///< texels of a panorama: towards its borders, its share goes down to 0
     /// Texels beyond the border of a triangle that are painted, too, as its plane goes on: for filters that read across it.
     double margin = 1;
+    /// Only rows first_row, first_row + row_step and so on are made, for several that share the work; others stay 0.
+    int first_row = 0, row_step = 1;
 };
 
 /// A texture: rows from the top, the channels of the pictures and one of coverage, 0 or 1.
@@ -58,7 +60,7 @@ struct BakedTexture {
 };
 
 /// Bakes. The first triangle that a texel lies in has it. The same bits for any `parallel_for`. Throws Error: a size, a number
-/// of channels, a fade or a margin out of their range, or no pixels.
+/// of channels, a fade, a margin or a row out of their range, or no pixels.
 BakedTexture bake(const std::vector<BakedTriangle>& mesh, const std::vector<ThrownPicture>& pictures,
                   const BakeOptions& options = {}, const ParallelFor& parallel_for = serial_for);
 
