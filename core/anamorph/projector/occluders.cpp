@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <glm/vec2.hpp>
 #include <limits>
@@ -174,7 +175,13 @@ std::vector<Occluders::HalfSpace> Occluders::region_before(const glm::dvec3& a, 
 bool Occluders::hides(const glm::dvec3& point) const {
     const glm::dvec3 r = point - m_centre;
     bool hidden = false;
-    const std::vector<HalfSpace> on_way{{r, 0}, {-r, glm::dot(r, r)}};
+    // The line between two pairs of planes, up to the point.
+    const glm::dvec3 size = glm::abs(r);
+    const glm::dvec3 other = size.x <= size.y && size.x <= size.z ? glm::dvec3(1, 0, 0)
+                             : size.y <= size.z                   ? glm::dvec3(0, 1, 0)
+                                                                  : glm::dvec3(0, 0, 1);
+    const glm::dvec3 e = glm::cross(r, other), f = glm::cross(r, e);
+    const std::vector<HalfSpace> on_way{{e, 0}, {-e, 0}, {f, 0}, {-f, 0}, {r, 0}, {-r, glm::dot(r, r)}};
     for_each_in(on_way, [&](const Occluder& o) {
         hidden = o.value(0, r) >= 0 && o.value(1, r) >= 0 && o.value(2, r) >= 0 && o.value(3, r) > 0;
         return !hidden;
