@@ -106,8 +106,10 @@ bool any_about(const glm::dvec3& point, double texels, const Chart& chart, const
     const glm::dvec3 c = glm::normalize(point), e = glm::normalize(glm::cross(c, glm::dvec3(0.3, 1, 0.2))),
                      f = glm::cross(c, e);
     const double off = texels / chart.pixels_per_radian() * glm::length(point);
-    for (int i = 0; i < 64; ++i) {
-        const double a = std::numbers::pi * i / 8, r = off * (1 + i / 16) / 4;
+    // So fine that nothing is missed for its being narrow.
+    constexpr int kWays = 256, kSteps = 16;
+    for (int i = 0; i < kWays * kSteps; ++i) {
+        const double a = 2 * std::numbers::pi * i / kWays, r = off * (1 + i / kWays) / kSteps;
         if (is_hidden(point + r * (std::cos(a) * e + std::sin(a) * f), before) == hidden) return true;
     }
     return false;
@@ -127,8 +129,8 @@ void expect_as_rays_say(const Chart& chart, const Painted& painted, const Triang
             const bool says = p.painting == Painting::hidden, is = is_hidden(point, before);
             if (says == is) continue;
             // What is lit may be hidden as part of a small piece; what is hidden is painted in narrow strips at most.
-            EXPECT_TRUE(any_about(point, says ? std::min(tol, 1.0) * 2.2 : std::min(tol, 1.0) / 8 * 1.1,
-                                  chart, before, says))
+            EXPECT_TRUE(
+                any_about(point, says ? std::min(tol, 1.0) : std::min(tol, 1.0) / 8, chart, before, says))
                 << (says ? "hidden but lit" : "painted but hidden") << " at " << point.x << " " << point.y
                 << " " << point.z;
         }

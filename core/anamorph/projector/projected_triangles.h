@@ -27,7 +27,7 @@ struct ProjectionOptions {
     /// What stands between the projector and the scene: the scene itself, too, if it is to hide itself. It has to live as
     /// long as the painter. Triangles are cut along the borders of its shadows; what is left on the wrong side is narrower
     /// than an eighth of the tolerance, or of a texel if that is less, and what has no simpler shape is hidden as soon as
-    /// it is about as small as the tolerance, or a texel.
+    /// it is as small as the tolerance, or a texel: nothing is hidden farther than that from a shadow.
     const Occluders* occluders = nullptr;
     /// More triangles than this are refused.
     std::int64_t most_triangles = std::int64_t{1} << 23;
