@@ -3,11 +3,14 @@
 //
 // A room of 12 triangles about a projector that is not in its middle, 4096 x 2048 texels. triangles: cut to a tolerance; the
 // time is that of a triangle that is painted. vertices: texture coordinates of a grid's vertices (of about as many
-// triangles as the table's size across, squared), without a tolerance, as vtkTextureMapToSphere and vtkProjectedTexture
-// compute them; the time is that of a triangle. Errors are measured in long double at three points of each triangle, about poles
+// triangles as the table's size across, squared), without a tolerance; where VTK was found, vtkTextureMapToSphere and
+// vtkProjectedTexture (a picture of 90 degrees) do the same beside it; the time is that of a triangle. Errors are measured in long double at three points of each triangle, about poles
 // as directions. ratio_to_exact: against a texel for every point, by the formula. groups: the middles of the grid's triangles
 // by Kim's linear parts and tables of residuals of 256 x 256 (4.2 to 4.4), eight directions of 90 degrees; those above and below
 // are left out. bake: a texture of 256 x 256 of a wall, evaluated at every texel; the time is that of a texel.
+//
+// Case mosaic: a view of 90 degrees of concentric mosaics of 9 circles, four times as wide as the view, from beside their
+// middle; the time is that of a pixel, and errors are those of the source points of one circle.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -18,14 +21,16 @@
 #include "anamorph/projector/projected_triangles.h"
 #include "anamorph/projector/projection_bake.h"
 #include "anamorph/projector/projection_groups.h"
-#include "bench.h"
+#include "projection_rows.h"
 
 namespace anamorph::bench {
 namespace {
 
-using SceneTriangles = std::vector<std::array<glm::dvec3, 3>>;
-
 const ProjectorPose kPose{{0.2, 0.1, -0.3}, {0.3, -0.1, -1}, {0.1, 1, 0.2}};
+
+/// Where errors are measured in a triangle.
+const std::vector<std::array<double, 3>> kShares = {
+    {0.6, 0.2, 0.2}, {0.2, 0.6, 0.2}, {1. / 3, 1. / 3, 1. / 3}};
 
 /// A cube from -1 to 1, every side of it as a grid of quads.
 SceneTriangles room_of(int quads) {
@@ -60,11 +65,10 @@ long double turned(const long double (&ray)[3], long double u, long double v, in
 /// The formula of an equirectangular panorama in long double, against what is interpolated.
 Accuracy accuracy(const Projector& projector, const std::vector<PaintedTriangle>& pieces) {
     constexpr long double kPi = std::numbers::pi_v<long double>;
-    const double shares[][3] = {{0.6, 0.2, 0.2}, {0.2, 0.6, 0.2}, {1. / 3, 1. / 3, 1. / 3}};
     const int width = projector.panorama().width(), height = projector.panorama().height();
     std::vector<float> errors;
     for (const PaintedTriangle& piece : pieces)
-        for (const auto& share : shares) {
+        for (const auto& share : kShares) {
             long double r[3] = {}, u = 0, v = 0;
             for (std::size_t k = 0; k < 3; ++k) {
                 const PaintedCorner& c = piece.corners[k];
@@ -156,7 +160,7 @@ std::vector<PaintedTriangle> texels_of(const BakedTexture& baked, int size) {
     return all;
 }
 
-void run(const Settings& settings, Report& report) {
+void run_room(const Settings& settings, Report& report) {
     if (!settings.wants_case("room")) return;
     const Projector projector(Chart(Projection::equirectangular, 4096, 2048), kPose);
     const SceneTriangles room = room_of(1), grid = room_of(std::max(2, settings.size / 16));
@@ -184,22 +188,29 @@ void run(const Settings& settings, Report& report) {
     bake_options.channels = 2;
     BakedTexture baked;
     timed.push_back({[&] { baked = bake(baked_wall(), {{projector, picture.data()}}, bake_options); }});
+    const std::vector<VertexRival> rivals = vertex_rivals(grid, kPose, 4096);
+    for (const VertexRival& rival : rivals) timed.push_back({rival.run});
     const std::vector<Times> times = time_interleaved(timed, settings.rounds);
-    const auto add = [&](const std::string& scheme, double tol, const Times& time,
-                         const std::vector<PaintedTriangle>& pieces, double bound) {
+    const auto add_row = [&](const std::string& scheme, double tol, const Times& time, std::size_t count,
+                             const std::function<Accuracy()>& error, double bound) {
         if (!settings.wants_scheme(scheme)) return;
         Row row;
         row.op = "projection";
         row.case_name = "room";
         row.scheme = scheme;
         row.tol_px = tol;
-        row.size = static_cast<int>(pieces.size());
-        row.ns_per_px = time.median / static_cast<double>(pieces.size());
-        row.best_ns_per_px = time.best / static_cast<double>(pieces.size());
+        row.size = static_cast<int>(count);
+        row.ns_per_px = time.median / static_cast<double>(count);
+        row.best_ns_per_px = time.best / static_cast<double>(count);
         row.ratio_to_exact = times[0].median / static_cast<double>(vertices.size()) / row.ns_per_px;
-        row.error = accuracy(projector, pieces);
+        row.error = error();
         row.bound_px = bound;
         report.add(row);
+    };
+    const auto add = [&](const std::string& scheme, double tol, const Times& time,
+                         const std::vector<PaintedTriangle>& pieces, double bound) {
+        add_row(
+            scheme, tol, time, pieces.size(), [&] { return accuracy(projector, pieces); }, bound);
     };
     add("vertices", kNone, times[0], vertices, kNone);
     for (std::size_t i = 0; i < tolerances.size(); ++i)
@@ -209,6 +220,15 @@ void run(const Settings& settings, Report& report) {
     for (const ProjectionGroup& group : groups.groups()) bound = std::max(bound, group.bound);
     add("groups", kNone, times[tolerances.size() + 1], grouped.pieces(), bound);
     add("bake", 0, times[tolerances.size() + 2], texels_of(baked, 256), kNone);
+    for (std::size_t i = 0; i < rivals.size(); ++i)
+        add_row(
+            rivals[i].scheme, kNone, times[tolerances.size() + 3 + i], grid.size(),
+            [&] { return rivals[i].accuracy(kShares); }, kNone);
+}
+
+void run(const Settings& settings, Report& report) {
+    run_room(settings, report);
+    run_mosaics(settings, report);
 }
 
 const RegisterOp registered({"projection", run, nullptr});
