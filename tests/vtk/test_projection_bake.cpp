@@ -10,9 +10,13 @@
 #include <vtkPlaneSource.h>
 #include <vtkPointData.h>
 #include <vtkPolyData.h>
+#include <vtkSOADataArrayTemplate.h>
 #include <vtkSmartPointer.h>
 #include <vtkSphereSource.h>
+#include <vtkWeakPointer.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 
@@ -146,6 +150,96 @@ TEST(VtkProjectionBake, RefusesInWords) {
                 }),
                 HasSubstr("mesh=no texture coordinates: must have them"));
     EXPECT_EQ(said([](Bake* b) { b->SetInputData(0, vtkNew<vtkPolyData>()); }), "");
+}
+
+/// A projector in the middle, and a small texture.
+vtkSmartPointer<Bake> small_bake(vtkPolyData* mesh, vtkImageData* picture) {
+    auto bake = vtkSmartPointer<Bake>::New();
+    bake->SetInputData(0, mesh);
+    bake->AddInputData(1, picture);
+    bake->AddProjector(0, 0, 0, 0, 0, -1, 0, 1, 0);
+    bake->SetWidth(40);
+    bake->SetHeight(30);
+    return bake;
+}
+
+std::vector<double> baked(vtkPolyData* mesh, vtkImageData* picture) {
+    const auto bake = small_bake(mesh, picture);
+    bake->Update();
+    return numbers(bake->GetOutput()->GetPointData()->GetScalars());
+}
+
+/// The same numbers, component by component.
+template <class Number>
+vtkSmartPointer<vtkDataArray> apart(vtkDataArray* array) {
+    auto copy = vtkSmartPointer<vtkSOADataArrayTemplate<Number>>::New();
+    copy->SetNumberOfComponents(array->GetNumberOfComponents());
+    copy->SetNumberOfTuples(array->GetNumberOfTuples());
+    for (vtkIdType i = 0; i < array->GetNumberOfTuples(); ++i) copy->SetTuple(i, array->GetTuple(i));
+    return copy;
+}
+
+TEST(VtkProjectionBake, ArraysOfAnyLayoutAndTypeGiveTheSame) {
+    const auto mesh = wall(), other = vtkSmartPointer<vtkPolyData>::New();
+    const auto picture = coordinates(100, 50), other_picture = vtkSmartPointer<vtkImageData>::New();
+    other->DeepCopy(mesh);
+    other->GetPoints()->SetData(apart<float>(mesh->GetPoints()->GetData()));
+    other->GetPointData()->SetTCoords(apart<double>(mesh->GetPointData()->GetTCoords()));
+    other_picture->DeepCopy(picture);
+    other_picture->GetPointData()->SetScalars(apart<double>(picture->GetPointData()->GetScalars()));
+    const auto before = numbers(mesh->GetPoints()->GetData());
+    const auto wanted = baked(mesh, picture);
+    EXPECT_EQ(baked(other, other_picture), wanted);
+    EXPECT_EQ(numbers(mesh->GetPoints()->GetData()), before);
+    for_any_threads([&] { EXPECT_EQ(baked(mesh, picture), wanted); });
+}
+
+TEST(VtkProjectionBake, HardTrianglesHarmNothing) {
+    const auto picture = coordinates(100, 50);
+    const auto wanted = baked(wall(), picture);
+    // A point and a coordinate that are none, without an area in space or in the texture, about the projector, without an end.
+    const auto mesh = wall();
+    auto* coordinates_of = mesh->GetPointData()->GetTCoords();
+    const auto add = [&](std::initializer_list<std::array<double, 5>> corners) {
+        std::vector<vtkIdType> ids;
+        for (const auto& c : corners) {
+            ids.push_back(mesh->GetPoints()->InsertNextPoint(c[0], c[1], c[2]));
+            coordinates_of->InsertNextTuple2(c[3], c[4]);
+        }
+        mesh->GetPolys()->InsertNextCell(static_cast<vtkIdType>(ids.size()), ids.data());
+    };
+    add({{kNan, 0, -1, 0, 0}, {1, 0, -1, 1, 0}, {0, 1, -1, 0, 1}});
+    add({{0, 0, -1, kNan, 0}, {1, 0, -1, 1, 0}, {0, 1, -1, 0, kInf}});
+    add({{0, 0, -1, 0.5, 0.5}, {0, 0, -1, 0.5, 0.5}, {0, 0, -1, 0.5, 0.5}});
+    add({{kInf, 0, -1, 0.1, 0.1}, {1, 0, -kInf, 0.2, 0.1}, {0, 1, -1, 0.1, 0.2}});
+    add({{-1, -1, 0, 3, 3}, {1, -1, 0, 4, 3}, {0, 1, 0, 3, 4}});
+    EXPECT_EQ(baked(mesh, picture), wanted);
+    // And nothing at all.
+    const auto none = baked(vtkSmartPointer<vtkPolyData>::New(), picture);
+    EXPECT_EQ(none.size(), wanted.size());
+    EXPECT_TRUE(std::all_of(none.begin(), none.end(), [](double v) { return v == 0; }));
+}
+
+TEST(VtkProjectionBake, ProgressRisesTo1AbortEmptiesTheOutputAndNothingStays) {
+    vtkWeakPointer<Bake> left;
+    {
+        const auto bake = small_bake(wall(), coordinates(100, 50));
+        left = bake;
+        bake->SetHeight(400);
+        vtkNew<ProgressObserver> progress;
+        progress->algorithm = bake;
+        bake->AddObserver(vtkCommand::ProgressEvent, progress);
+        bake->Update();
+        ASSERT_GT(progress->reports.size(), 3u);
+        EXPECT_TRUE(std::is_sorted(progress->reports.begin(), progress->reports.end()));
+        EXPECT_EQ(progress->reports.back(), 1);
+        progress->abort_at = 0.3;
+        bake->Modified();
+        bake->Update();
+        EXPECT_EQ(bake->GetOutput()->GetNumberOfPoints(), 0);
+        bake->SetAbortExecute(0);
+    }
+    EXPECT_EQ(left, nullptr);
 }
 
 TEST(VtkProjectionBake, CountsModificationsExecutesOnceAndPrints) {

@@ -10,6 +10,7 @@
 #include <vtkPointData.h>
 #include <vtkSphereSource.h>
 #include <vtkVersion.h>
+#include <vtkWeakPointer.h>
 
 #include <sstream>
 
@@ -777,6 +778,28 @@ TEST(VtkProjectionShader, WindowsComeAndGo) {
         shader->RemoveFrom(first.actor);
         EXPECT_NE(first.picture(), picture);
     }
+}
+
+TEST(VtkProjectionShader, NothingStaysOfIt) {
+    vtkWeakPointer<vtkObject> left[4];
+    {
+        const auto projector =
+            projector_of(Chart(Projection::equirectangular, 256, 128), smooth_texture(256, 128));
+        vtkNew<vtkSphereSource> ball;
+        ball->SetCenter(0.6, 0.1, -1.2);
+        projector->SetOccluderConnection(ball->GetOutputPort());
+        vtkNew<vtkAnamorphProjectionShader> shader;
+        shader->AddProjector(projector);
+        shader->SetModeToMultipass();
+        Room room;
+        shader->AddTo(room.actor);
+        room.picture();
+        left[0] = projector;
+        left[1] = shader;
+        left[2] = projector->GetPanorama();
+        left[3] = room.actor;
+    }
+    for (const auto& object : left) EXPECT_EQ(object, nullptr);
 }
 
 TEST(VtkPanoramaProjector, IsAsVtkClassesAre) {
