@@ -20,7 +20,10 @@ struct Settings {
     bool bounds = false;  ///< report bounds over true errors instead of times
 
     bool wants_case(const std::string& name) const { return case_name.empty() || case_name == name; }
-    bool wants_scheme(const std::string& name) const { return scheme.empty() || scheme == name; }
+    /// `scheme` may be several, a,b,c.
+    bool wants_scheme(const std::string& name) const {
+        return scheme.empty() || ("," + scheme + ",").find("," + name + ",") != std::string::npos;
+    }
 };
 
 /// Distances from the exact source points, in source pixels.

@@ -6,8 +6,8 @@
 // oka-z are the paper's, with blocks of `block` pixels; `auto` holds a tolerance; `exact` finds each pixel's own point. Errors
 // are measured in long double at every pixel.
 //
-// Beside them: `inner_loop` is what oka's blocks of 8 pixels cost when all that is left of them is addresses that step from
-// pixel to pixel, the texels and the pixels; `ray_march` walks along each ray to the Gaussian surface in double;
+// Beside them: `inner_loop_8` is what oka's blocks of 8 pixels cost when all that is left of them is addresses that step from
+// pixel to pixel, the texels and the pixels, far to near; `ray_march` walks along each ray to the Gaussian surface in double;
 // `moving` is auto at .125 with a camera that is elsewhere each frame, on two threads; `four_times` the screen and
 // `texture_4` and `texture_16` times the texels, antialiased, next to `antialias`, the same at the usual sizes.
 //
@@ -158,17 +158,19 @@ class Drawing {
     std::unique_ptr<Pyramid> m_pyramid;
 };
 
-/// What is left of oka's blocks of 8 pixels when all that a frame needs but once has been done: spans of rows, with the
+/// What is left of oka's blocks when all that a frame needs but once has been done: spans of rows, with the
 /// address of the first pixel and the steps to the next, (2.12).
 class InnerLoop {
   public:
-    InnerLoop(const Case& c, const Drawing& drawing) : m_drawing(drawing) {
+    InnerLoop(const Case& c, const Drawing& drawing, double side) : m_drawing(drawing) {
+        OkaBlocks cut;
+        cut.side = side;
         const Camera camera = drawing.camera();
-        const Size texture = drawing.texture(), count = oka_block_count(texture, {});
+        const Size texture = drawing.texture(), count = oka_block_count(texture, cut);
         std::vector<std::pair<double, OkaBlock>> blocks;
         for (int j = 0; j < count.height; ++j)
             for (int i = 0; i < count.width; ++i)
-                if (OkaBlock b; oka_block(c.surface->tree.surface(), camera, texture, {}, i, j, b))
+                if (OkaBlock b; oka_block(c.surface->tree.surface(), camera, texture, cut, i, j, b))
                     blocks.emplace_back(-b.centre.z, b);
         std::sort(blocks.begin(), blocks.end(),
                   [](const auto& a, const auto& b) { return a.first < b.first; });
@@ -199,6 +201,12 @@ class InnerLoop {
         float x, y, step_x, step_y;
     };
 
+    /// The start of a span of texels, of a row or column of `size`, so that it lies within: a texel from its edges.
+    static float inside(float start, float length, int size) {
+        const float low = 1 - std::min(0.0f, length),
+                    high = static_cast<float>(size - 3) - std::max(0.0f, length);
+        return std::max(low, std::min(start, high));
+    }
     void add(const OkaBlock& b) {
         // (2.11), in texels.
         const Size texture = m_drawing.texture();
@@ -227,17 +235,15 @@ class InnerLoop {
                              u = b.u + dx * u_x + dy * u_y, v = b.v + dx * v_x + dy * v_y;
                 if (!(u >= b.u0 && u < b.u1 && v >= b.v0 && v < b.v1)) continue;
                 if (s.count++ > 0) continue;
-                // Texels that are read lie within the picture, a pixel from its edge.
-                const auto inside = [&](double at, int most) {
-                    return static_cast<float>(std::clamp(at - 0.5, 32.0, most - 34.0));
-                };
                 s.first = std::ptrdiff_t{y} * m_drawing.size() + x;
-                s.x = inside(u * texture.width, texture.width);
-                s.y = inside(v * texture.height, texture.height);
+                s.x = static_cast<float>(u * texture.width - 0.5);
+                s.y = static_cast<float>(v * texture.height - 0.5);
             }
-            // Near its edge a span of a few pixels may step up to as many texels from where it is clamped.
-            if (s.count > 0 && s.count * std::max(std::fabs(s.step_x), std::fabs(s.step_y)) < 32)
-                m_spans.push_back(s);
+            if (s.count == 0) continue;
+            // What is read lies within the picture: a span at its edge is moved inwards.
+            s.x = inside(s.x, s.count * s.step_x, texture.width);
+            s.y = inside(s.y, s.count * s.step_y, texture.height);
+            m_spans.push_back(s);
         }
     }
 
@@ -374,10 +380,12 @@ void add_others(const Settings& settings, const Case& c, Drawing& drawing, std::
     const double pixels = double(size) * size;
     DrapeOptions options;
     options.filter = Filter::bilinear;
-    if (settings.wants_scheme("inner_loop")) {
-        const auto loop = std::make_shared<InnerLoop>(c, drawing);
+    for (const double block : kBlocks) {
+        const std::string name = "inner_loop_" + std::to_string(static_cast<int>(block));
+        if (!settings.wants_scheme(name)) continue;
+        const auto loop = std::make_shared<InnerLoop>(c, drawing, block);
         entries.push_back(entry(
-            c, "inner_loop", [loop] { loop->draw(); }, pixels, size, 1));
+            c, name, [loop] { loop->draw(); }, pixels, size, 1));
     }
     if (settings.wants_scheme("ray_march") && c.name == "gaussians") {
         const auto march = std::make_shared<RayMarch>(drawing, gaussians());
@@ -414,8 +422,11 @@ void add_targets(Report& report, const std::string& name) {
     };
     const Row *held = report.find(name, "auto", 0.125), *blocks = report.find(name, "oka_8");
     limit(" at .125: times the paper's blocks of 8 pixels", kMostOfBlocks, held, blocks);
-    limit(": the paper's blocks of 8 pixels, times their inner loop", kMostOfLoop, blocks,
-          report.find(name, "inner_loop"));
+    for (const double block : kBlocks) {
+        const std::string side = std::to_string(static_cast<int>(block));
+        limit(": the paper's blocks of " + side + " pixels, times their inner loop", kMostOfLoop,
+              report.find(name, "oka_" + side), report.find(name, "inner_loop_" + side));
+    }
     const Row* usual = report.find(name, "antialias");
     limit(": four times the screen, per pixel", kMostOfSize, report.find(name, "four_times"), usual);
     limit(": sixteen times the texels instead of four", kMostOfSize, report.find(name, "texture_16"),

@@ -702,6 +702,57 @@ TEST(Drape, ABackdropOfTheScreensSizeIsSeenAsItStands) {
     EXPECT_GT(seen, 1000);
 }
 
+/// Of the blocks whose parallelogram holds a place on the screen, what the one shows that is nearest in its middle, or there.
+Point<double> nearest_block_at(const std::vector<OkaBlock>& blocks, double x, double y, bool linear_depth) {
+    Point<double> found{-1, -1};
+    double nearest = HUGE_VAL;
+    for (const OkaBlock& b : blocks) {
+        const double dx = x - b.centre.x, dy = y - b.centre.y;
+        const double area = b.by_u.x * b.by_v.y - b.by_u.y * b.by_v.x;
+        const double s = (dx * b.by_v.y - dy * b.by_v.x) / area, t = (dy * b.by_u.x - dx * b.by_u.y) / area;
+        if (!(b.u + s >= b.u0 && b.u + s < b.u1 && b.v + t >= b.v0 && b.v + t < b.v1)) continue;
+        const double depth = b.centre.z + (linear_depth ? s * b.by_u.z + t * b.by_v.z : 0);
+        if (!(depth < nearest)) continue;
+        nearest = depth;
+        found = {b.u + s, b.v + t};
+    }
+    return found;
+}
+
+TEST(Drape, BlocksLieOverThoseThatAreFarther) {
+    for (const char* surface : {"sphere", "page_turn", "torus"})
+        for (const DrapeScheme scheme : {DrapeScheme::oka, DrapeScheme::oka_z}) {
+            Scene scene{surface};
+            scene.pose.position = {0.7, 0.4, 1.6};
+            DrapeOptions options;
+            options.scheme = scheme;
+            options.block = 4;
+            options.overlap = 1;
+            Shown shown(scene, options);
+            const std::vector<float> points = shown.values(Output::stmap);
+            const OkaBlocks cut{options.block, options.overlap, scheme == DrapeScheme::oka_z};
+            std::vector<OkaBlock> blocks;
+            for (int j = 0; j < 16; ++j)
+                for (int i = 0; i < 16; ++i)
+                    if (OkaBlock b;
+                        oka_block(shown.tree()->tree.surface(), shown.camera(), scene.picture, cut, i, j, b))
+                        blocks.push_back(b);
+            int differ = 0, seen = 0;
+            for (int y = 0; y < scene.screen.height; ++y)
+                for (int x = 0; x < scene.screen.width; ++x) {
+                    const auto k = static_cast<std::size_t>(2 * (y * scene.screen.width + x));
+                    const Point<double> truth =
+                        nearest_block_at(blocks, x + 0.5 - scene.screen.width / 2.0,
+                                         y + 0.5 - scene.screen.height / 2.0, cut.linear_depth);
+                    differ += std::hypot(points[k] - truth.x, points[k + 1] - truth.y) > 1e-6;
+                    seen += truth.x >= 0;
+                }
+            EXPECT_GT(seen, 2000) << surface;
+            // Where two are as near as each other, which is a matter of rounding.
+            EXPECT_LE(differ, scene.screen.width * scene.screen.height / 500) << surface;
+        }
+}
+
 TEST(Drape, BoundsOfParallelogramsHoldForWideOverlaps) {
     Scene scene{"page_turn"};
     scene.pose.position = {0.3, 0.3, 2};

@@ -16,17 +16,23 @@
 namespace anamorph {
 namespace {
 
-Facets facets_of(SharedTree& surface, const Camera& camera, const Size& picture,
-                 const DrapeOptions& options) {
+std::shared_ptr<const DrapeMap> map_of(SharedTree& surface, const Camera& camera, const Size& picture,
+                                       const DrapeOptions& options) {
     if (options.scheme == DrapeScheme::oka || options.scheme == DrapeScheme::oka_z)
-        return oka_facets(surface.tree.surface(), camera, picture,
-                          {options.block, options.overlap, options.scheme == DrapeScheme::oka_z});
+        return std::make_shared<DrapeMap>(
+            std::make_shared<OkaRaster>(
+                surface.tree.shared_surface(), camera, picture,
+                OkaBlocks{options.block, options.overlap, options.scheme == DrapeScheme::oka_z},
+                DrapeMap::kSquare, surface.oka_pool),
+            camera, picture, options.tol, surface.pool);
     const double least = 2 * grid_error(grid_bits_of(camera.screen()));
     if (!(options.tol >= least))
         throw Error("tol", shortest(options.tol),
                     "must be at least " + shortest(least) + " for a picture of this size");
     const std::lock_guard lock(surface.mutex);
-    return cut_into_facets(surface.tree, camera, options.tol);
+    return std::make_shared<DrapeMap>(
+        cut_into_facets(surface.tree, camera, options.tol), camera, picture, options.tol,
+        options.scheme == DrapeScheme::exact ? surface.tree.shared_surface() : nullptr, surface.pool);
 }
 
 /// body(pixels, part) for the regions that meet a box.
@@ -50,12 +56,7 @@ struct Drape::Spot {
 
 Drape::Drape(std::shared_ptr<SharedTree> surface, const Camera& camera, const Size& picture,
              const DrapeOptions& options)
-    : m_surface(std::move(surface)),
-      m_options(options),
-      m_map(std::make_shared<DrapeMap>(
-          facets_of(*m_surface, camera, picture, options), camera, picture, options.tol,
-          options.scheme == DrapeScheme::exact ? m_surface->tree.shared_surface() : nullptr,
-          m_surface->pool)) {
+    : m_surface(std::move(surface)), m_options(options), m_map(map_of(*m_surface, camera, picture, options)) {
     if (options.lighting.shading != DrapeShading::none || options.own == DrapeOutput::normal)
         for (const FacetCorner& corner : m_map->facets().corners) m_lit.push_back(lit(corner));
     const Chart flat(Projection::rectilinear, picture.width, picture.height);
@@ -86,8 +87,9 @@ Drape::Spot Drape::spot(const SeenPixels& pixels, int x, int y) const {
     spot.facet = &facets.facets[static_cast<std::size_t>(pixels.facet[at])];
     spot.u = pixels.u[at];
     spot.v = pixels.v[at];
-    spot.nearness = pixels.nearness[at];
-    spot.bound = m_map->bound_at(pixels, at);
+    spot.nearness = m_map->nearness_at(pixels, at);
+    if (m_options.own == DrapeOutput::shared && m_options.output == Output::bound)
+        spot.bound = m_map->bound_at(pixels, at);
     weigh(spot, x + 0.5, y + 0.5);
     return spot;
 }
@@ -95,6 +97,7 @@ Drape::Spot Drape::spot(const SeenPixels& pixels, int x, int y) const {
 /// The weights of a point of the screen.
 void Drape::weigh(Spot& spot, double x, double y) const {
     const Facets& facets = m_map->facets();
+    spot.facet = &m_map->part_of(*spot.facet, spot.u, spot.v);
     const double unit = std::ldexp(1.0, facets.grid_bits);
     const double px = (x - m_map->width() / 2.0) * unit, py = (y - m_map->height() / 2.0) * unit;
     double sum = 0;

@@ -69,6 +69,7 @@ struct SharedTree {
     std::mutex mutex;
     SurfaceTree tree;
     std::shared_ptr<SeenPool> pool = std::make_shared<SeenPool>();
+    std::shared_ptr<RoomPool<OkaRoom>> oka_pool = std::make_shared<RoomPool<OkaRoom>>();
 };
 
 /// A surface draped with a picture, ready to draw any box of the screen from any number of threads.
@@ -83,7 +84,7 @@ class Drape {
     Reached reached(const ParallelFor& parallel_for) const;
     double max_error() const { return m_map->max_error(); }
     /// Patches that the camera sees, or nearly so.
-    std::size_t patches() const { return m_map->facets().leaves.size(); }
+    std::size_t patches() const { return m_map->patches(); }
 
     /// Draws the pixels of `box`; sources are read for colour only. `backdrop`: a picture that fills the screen behind the
     /// surface and over the background. False when one could not be read.

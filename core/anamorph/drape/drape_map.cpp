@@ -10,8 +10,6 @@
 namespace anamorph {
 namespace {
 
-// Regions are squares that caches hold while they are drawn.
-constexpr int kSquare = 128;
 constexpr std::size_t kKeptRegions = 8;
 
 // Blocks of which only a part is seen, or only a part exactly, are cut down to the least side.
@@ -37,19 +35,6 @@ void for_squares(const Box& box, int side, const Body& body) {
 
 }  // namespace
 
-std::unique_ptr<SeenPixels> SeenPool::take() {
-    const std::lock_guard lock(m_mutex);
-    if (m_free.empty()) return std::make_unique<SeenPixels>();
-    std::unique_ptr<SeenPixels> pixels = std::move(m_free.back());
-    m_free.pop_back();
-    return pixels;
-}
-
-void SeenPool::give_back(std::unique_ptr<SeenPixels> pixels) {
-    const std::lock_guard lock(m_mutex);
-    m_free.push_back(std::move(pixels));
-}
-
 DrapeMap::DrapeMap(Facets facets, const Camera& camera, const Size& picture, double tol,
                    std::shared_ptr<const DrapedSurface> surface, std::shared_ptr<SeenPool> pool)
     : BlockMap(camera.screen().width, camera.screen().height,
@@ -59,16 +44,41 @@ DrapeMap::DrapeMap(Facets facets, const Camera& camera, const Size& picture, dou
       m_picture(picture),
       m_for_float(tol * kFloatShare),
       m_surface(std::move(surface)),
-      m_raster(m_facets, camera.screen(), kSquare),
+      m_pool(std::move(pool)) {
+    m_raster.emplace(m_facets, camera.screen(), kSquare);
+}
+
+DrapeMap::DrapeMap(std::shared_ptr<const OkaRaster> blocks, const Camera& camera, const Size& picture,
+                   double tol, std::shared_ptr<SeenPool> pool)
+    : BlockMap(camera.screen().width, camera.screen().height,
+               {{0, 0, camera.screen().width, camera.screen().height}}, {1, kSquare, kKeptRegions}),
+      m_blocks(std::move(blocks)),
+      m_camera(camera),
+      m_picture(picture),
+      m_for_float(tol * kFloatShare),
       m_pool(std::move(pool)) {}
+
+const Facets& DrapeMap::facets() const {
+    if (m_blocks) std::call_once(m_made, [&] { m_facets = m_blocks->facets(); });
+    return m_facets;
+}
 
 /// Of the leaves.
 const std::vector<double>& DrapeMap::bounds() const {
     std::call_once(m_bounded, [&] {
-        for (std::uint32_t i = 0; i < m_facets.leaves.size(); ++i)
-            m_bounds.push_back(m_facets.bound_of ? m_facets.bound_of(i) : m_facets.leaves[i].bound);
+        for (std::size_t i = 0; i < patches(); ++i)
+            m_bounds.push_back(m_blocks ? m_blocks->bound_of(i) : m_facets.leaves[i].bound);
     });
     return m_bounds;
+}
+
+const Facet& DrapeMap::part_of(const Facet& facet, double u, double v) const {
+    if (!m_blocks) return facet;
+    // Cut from the first corner to the third.
+    const Facet& first = facets().facets[2 * facet.leaf];
+    const FacetCorner &a = facets().corners[first.corner[0]], &c = facets().corners[first.corner[2]];
+    const bool right = (u - a.u) * (c.v - a.v) >= (v - a.v) * (c.u - a.u);
+    return right ? first : facets().facets[2 * facet.leaf + 1];
 }
 
 double DrapeMap::max_error() const {
@@ -87,7 +97,10 @@ void DrapeMap::plan(const Box& box, int, Blocks& blocks) const {
 }
 
 void DrapeMap::see(const Box& box, SeenPixels& pixels, int times) const {
-    m_raster.draw(box, pixels, times);
+    if (m_blocks)
+        m_blocks->draw(box, pixels, times);
+    else
+        m_raster->draw(box, pixels, times);
     if (m_surface) order_sheets(box, pixels, times);
 }
 
@@ -101,7 +114,7 @@ void DrapeMap::order_sheets(const Box& box, SeenPixels& pixels, int times) const
     };
     const auto begins = [](const FacetLeaf& leaf) { return 2 * leaf.nearest - leaf.farthest; };
     const auto ends = [](const FacetLeaf& leaf) { return 2 * leaf.farthest - leaf.nearest; };
-    m_raster.each_covered(box, times, [&](std::uint32_t facet, int x, int y, double u, double v) {
+    m_raster->each_covered(box, times, [&](std::uint32_t facet, int x, int y, double u, double v) {
         const std::size_t at = pixels.index(x, y);
         if (pixels.facet[at] == facet || begins(leaf_of(facet)) > ends(leaf_of(pixels.facet[at]))) return;
         const double px = (x + 0.5) / times - width() / 2.0, py = (y + 0.5) / times - height() / 2.0;
@@ -139,7 +152,16 @@ void DrapeMap::polish(SeenPixels& pixels) const {
 
 double DrapeMap::bound_at(const SeenPixels& pixels, std::size_t at) const {
     if (!pixels.bound.empty()) return pixels.bound[at];
-    return bounds()[m_facets.facets[static_cast<std::size_t>(pixels.facet[at])].leaf];
+    return bounds()[leaf_of(pixels.facet[at])];
+}
+
+double DrapeMap::nearness_at(const SeenPixels& pixels, std::size_t at) const {
+    return pixels.nearness.empty() ? m_blocks->nearness(leaf_of(pixels.facet[at])) : pixels.nearness[at];
+}
+
+std::size_t DrapeMap::leaf_of(double facet) const {
+    const auto index = static_cast<std::size_t>(facet);
+    return m_blocks ? index / 2 : m_facets.facets[index].leaf;
 }
 
 /// Adds the blocks of a square: whole where all of it is seen, or nothing; else its quarters.
@@ -168,6 +190,7 @@ void DrapeMap::cut(const SeenRegion& region, const Box& box, Blocks& blocks) con
 
 /// The largest bound of what a box shows.
 double DrapeMap::bound_of(const SeenRegion& region, const Box& box) const {
+    if (m_blocks) return HUGE_VAL;
     double bound = 0;
     const SeenPixels& pixels = region.pixels();
     if (!pixels.bound.empty()) {
@@ -193,9 +216,13 @@ bool DrapeMap::fits_float(const SeenRegion& region, const Box& box, Block& block
     const double reach_u = u[1] - u[0] + 1.0 / m_picture.width,
                  reach_v = v[1] - v[0] + 1.0 / m_picture.height;
     double lost = 0;
-    for_leaves(region, box, [&](const FacetLeaf& leaf) {
-        lost = std::max(lost, 0x1p-24 * (reach_u * leaf.by_u + reach_v * leaf.by_v));
-    });
+    const auto lose = [&](double by_u, double by_v) {
+        lost = std::max(lost, 0x1p-24 * (reach_u * by_u + reach_v * by_v));
+    };
+    if (m_blocks)
+        lose(m_blocks->most_by_u(), m_blocks->most_by_v());
+    else
+        for_leaves(region, box, [&](const FacetLeaf& leaf) { lose(leaf.by_u, leaf.by_v); });
     if (!(lost <= m_for_float)) return false;
     block.bound += lost;
     return true;
@@ -265,19 +292,19 @@ Jacobian DrapeMap::jacobian(double x, double y, int) const noexcept {
     const auto region = region_at(i, j);
     const double seen = region->pixels().facet[region->pixels().index(i, j)];
     if (seen == SeenPixels::kNone) return {};
-    return jacobian_of(m_facets.facets[static_cast<std::size_t>(seen)], x, y);
+    return jacobian_of(facets().facets[static_cast<std::size_t>(seen)], x, y);
 }
 
 /// Of its projective map.
 Jacobian DrapeMap::jacobian_of(const Facet& facet, double x, double y) const {
-    const double unit = std::ldexp(1.0, m_facets.grid_bits);
+    const double unit = std::ldexp(1.0, facets().grid_bits);
     const double px = (x - width() / 2.0) * unit, py = (y - height() / 2.0) * unit;
     // Weighted sums over the corners of 1, u and v, and their derivatives by x and y.
     double w[3] = {}, u[3] = {}, v[3] = {};
     for (int k = 0; k < 3; ++k) {
-        const FacetCorner &a = m_facets.corners[facet.corner[(k + 1) % 3]],
-                          &b = m_facets.corners[facet.corner[(k + 2) % 3]],
-                          &c = m_facets.corners[facet.corner[k]];
+        const FacetCorner &a = facets().corners[facet.corner[(k + 1) % 3]],
+                          &b = facets().corners[facet.corner[(k + 2) % 3]],
+                          &c = facets().corners[facet.corner[k]];
         const double e[3] = {edge_function(a, b, px, py), -(b.y - a.y) * unit, (b.x - a.x) * unit};
         for (int n = 0; n < 3; ++n) {
             w[n] += e[n] * c.weight;

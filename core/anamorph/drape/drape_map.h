@@ -5,23 +5,18 @@
 
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <vector>
 
 #include "anamorph/approx/block.h"
 #include "anamorph/drape/facet_raster.h"
+#include "anamorph/drape/oka.h"
+#include "anamorph/drape/room_pool.h"
 
 namespace anamorph {
 
 /// Room for what is seen in regions, used again for others.
-class SeenPool {
-  public:
-    std::unique_ptr<SeenPixels> take();
-    void give_back(std::unique_ptr<SeenPixels> pixels);
-
-  private:
-    std::mutex m_mutex;
-    std::vector<std::unique_ptr<SeenPixels>> m_free;
-};
+using SeenPool = RoomPool<SeenPixels>;
 
 /// What is seen in a region.
 class SeenRegion final : public RegionData {
@@ -50,8 +45,16 @@ class DrapeMap final : public BlockMap {
     DrapeMap(Facets facets, const Camera& camera, const Size& picture, double tol,
              std::shared_ptr<const DrapedSurface> surface = nullptr,
              std::shared_ptr<SeenPool> pool = std::make_shared<SeenPool>());
+    /// Of the paper's blocks. Their squares have the side kSquare.
+    DrapeMap(std::shared_ptr<const OkaRaster> blocks, const Camera& camera, const Size& picture, double tol,
+             std::shared_ptr<SeenPool> pool);
 
-    const Facets& facets() const { return m_facets; }
+    /// Of the paper's blocks, made when they are asked for first.
+    const Facets& facets() const;
+    /// Patches that are drawn: leaves of facets().
+    std::size_t patches() const { return m_blocks ? m_blocks->count() : m_facets.leaves.size(); }
+    /// Of the two facets of one of the paper's blocks, the one that a point lies in; of others, the facet itself.
+    const Facet& part_of(const Facet& facet, double u, double v) const;
     const Camera& camera() const { return m_camera; }
     const Size& picture() const { return m_picture; }
     /// No block's bound is larger.
@@ -61,6 +64,7 @@ class DrapeMap final : public BlockMap {
     bool exact_points() const { return m_surface != nullptr; }
     /// The bound of what is seen at a place of SeenPixels.
     double bound_at(const SeenPixels& pixels, std::size_t at) const;
+    double nearness_at(const SeenPixels& pixels, std::size_t at) const;
 
     /// What is seen about a pixel of the screen.
     std::shared_ptr<const SeenRegion> region_at(int x, int y) const;
@@ -77,11 +81,15 @@ class DrapeMap final : public BlockMap {
     void computed_row(const Block& block, int row, int begin, int end, float* x,
                       float* y) const noexcept override;
 
+    /// Side of the squares of the screen that are seen at once, which caches hold meanwhile.
+    static constexpr int kSquare = 128;
+
   protected:
     void plan(const Box& box, int piece, Blocks& blocks) const override;
 
   private:
     const std::vector<double>& bounds() const;
+    std::size_t leaf_of(double facet) const;
     void order_sheets(const Box& box, SeenPixels& pixels, int times) const;
     void polish(SeenPixels& pixels) const;
     void cut(const SeenRegion& region, const Box& box, Blocks& blocks) const;
@@ -90,14 +98,16 @@ class DrapeMap final : public BlockMap {
     template <class Body>
     void for_leaves(const SeenRegion& region, const Box& box, const Body& body) const;
 
-    Facets m_facets;
+    std::shared_ptr<const OkaRaster> m_blocks;  ///< or null
+    mutable std::once_flag m_made;
+    mutable Facets m_facets;
     Camera m_camera;
     Size m_picture;
     double m_for_float;
     mutable std::once_flag m_bounded;
     mutable std::vector<double> m_bounds;  ///< of leaves, when they are asked for
     std::shared_ptr<const DrapedSurface> m_surface;
-    FacetRaster m_raster;
+    std::optional<FacetRaster> m_raster;  ///< where there are no blocks
     std::shared_ptr<SeenPool> m_pool;
 };
 

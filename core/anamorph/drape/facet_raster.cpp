@@ -17,11 +17,11 @@ bool owns(const FacetCorner& a, const FacetCorner& b) {
 
 }  // namespace
 
-void SeenPixels::clear(const Box& pixels) {
+void SeenPixels::clear(const Box& pixels, bool with_nearness) {
     box = pixels;
     stride = pixels.width() + 16;
     const auto room = static_cast<std::size_t>(stride * box.height());
-    nearness.assign(room, -std::numeric_limits<double>::infinity());
+    nearness.assign(with_nearness ? room : 0, -std::numeric_limits<double>::infinity());
     u.resize(room);
     v.resize(room);
     facet.assign(room, kNone);

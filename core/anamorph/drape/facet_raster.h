@@ -22,12 +22,13 @@ struct SeenPixels {
 
     Box box;
     std::ptrdiff_t stride = 0;
-    std::vector<double> nearness, u, v;  ///< u and v in 0 to 1
-    std::vector<double> facet;           ///< its number, or kNone
-    std::vector<double> bound;           ///< of points that have one of their own (DrapeMap), else empty
+    std::vector<double> nearness;  ///< or empty, where that of a facet says it
+    std::vector<double> u, v;      ///< in 0 to 1
+    std::vector<double> facet;     ///< its number, or kNone
+    std::vector<double> bound;     ///< of points that have one of their own (DrapeMap), else empty
 
-    /// From now on those of this box, in which nothing is seen.
-    void clear(const Box& pixels);
+    /// From now on those of this box, in which nothing is seen. `with_nearness`: each pixel has one.
+    void clear(const Box& pixels, bool with_nearness = true);
     std::size_t index(int x, int y) const {
         return static_cast<std::size_t>((y - box.y0) * stride + x - box.x0);
     }

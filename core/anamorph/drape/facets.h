@@ -18,7 +18,6 @@
 
 #include <cmath>
 #include <cstdint>
-#include <functional>
 #include <vector>
 
 #include "anamorph/drape/camera.h"
@@ -49,7 +48,7 @@ struct Facet {
 /// A patch that is drawn.
 struct FacetLeaf {
     std::int32_t patch;
-    double bound;       ///< of the distance on the screen, in pixels; infinite where Facets::bound_of says it
+    double bound;       ///< of the distance on the screen, in pixels; infinite where it is not known
     double by_u, by_v;  ///< pixels on the screen per unit of u and of v: at most
     /// How far ahead of the camera the patch may lie.
     double nearest = -HUGE_VAL, farthest = HUGE_VAL;
@@ -62,8 +61,6 @@ struct Facets {
     std::vector<FacetCorner> corners;
     std::vector<Facet> facets;
     std::vector<FacetLeaf> leaves;
-    /// Bounds of leaves that take longer than drawing them, where they are asked for. Thread safe.
-    std::function<double(std::uint32_t leaf)> bound_of;
 };
 
 /// No coordinate of a corner is larger: an edge's function, a difference of two products of differences, stays below

@@ -3,8 +3,12 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
+#include <limits>
+#include <numeric>
 #include <string>
+#include <utility>
 
 #include "anamorph/drape/seen_range.h"
 #include "anamorph/error.h"
@@ -66,66 +70,47 @@ double bound_of(const OkaBlock& map, const DrapedSurface& surface, const Camera&
     return size;
 }
 
-class BlockMaker {
-  public:
-    BlockMaker(const DrapedSurface& surface, const Camera& camera, const Size& picture,
-               const OkaBlocks& blocks)
-        : m_surface(surface), m_camera(camera), m_picture(picture), m_blocks(blocks) {
-        m_made.grid_bits = grid_bits_of(camera.screen());
-        m_made.inverse_depth = false;
-        m_unit = std::ldexp(1.0, m_made.grid_bits);
-        m_side = {blocks.side / picture.width, blocks.side / picture.height};
-    }
+// Parallelograms that are so much longer than wide are lines.
+constexpr double kMostCondition = 0x1p30;
 
-    Facets make() {
-        const Size count = oka_block_count(m_picture, m_blocks);
-        for (int j = 0; j < count.height; ++j)
-            for (int i = 0; i < count.width; ++i) add(i, j);
-        const double h = (m_side.x + m_blocks.overlap / m_picture.width) / 2,
-                     k = (m_side.y + m_blocks.overlap / m_picture.height) / 2;
-        m_made.bound_of = [maps = std::move(m_maps), &surface = m_surface, camera = m_camera, h, k,
-                           moved = grid_error(m_made.grid_bits)](std::uint32_t leaf) {
-            return anamorph::bound_of(maps[leaf], surface, camera, h, k) + moved;
-        };
-        return std::move(m_made);
-    }
+/// A key that is the less the farther a depth is: its bits as a float.
+std::uint32_t far_first(double depth) {
+    const auto bits = std::bit_cast<std::uint32_t>(static_cast<float>(depth));
+    return bits >> 31 ? bits : ~(bits | 0x80000000u);
+}
 
-  private:
-    void add(int i, int j) {
-        OkaBlock map;
-        if (!oka_block(m_surface, m_camera, m_picture, m_blocks, i, j, map)) return;
-        const double corners[4][2] = {{map.u0, map.v0}, {map.u1, map.v0}, {map.u1, map.v1}, {map.u0, map.v1}};
-        const auto first = static_cast<std::uint32_t>(m_made.corners.size());
-        for (const auto& [s, t] : corners)
-            if (!add_corner(map, s, t)) {
-                m_made.corners.resize(first);
-                return;
-            }
-        const auto leaf = static_cast<std::uint32_t>(m_made.leaves.size());
-        m_made.leaves.push_back({SurfacePatch::kNone, HUGE_VAL, glm::length(glm::dvec2(map.by_u)),
-                                 glm::length(glm::dvec2(map.by_v))});
-        m_maps.push_back(map);
-        m_made.facets.push_back({{first, first + 1, first + 2}, leaf});
-        m_made.facets.push_back({{first, first + 2, first + 3}, leaf});
+/// Sorts numbers by their keys; those with equal ones stay in order.
+void bucket_sort(const std::vector<std::uint32_t>& keys, std::vector<std::uint32_t>& order,
+                 std::vector<std::uint32_t>& room) {
+    constexpr int kBits = 11;
+    constexpr std::size_t kBuckets = std::size_t{1} << kBits;
+    order.resize(keys.size());
+    room.resize(keys.size());
+    std::iota(order.begin(), order.end(), 0u);
+    for (int shift = 0; shift < 32; shift += kBits) {
+        std::array<std::uint32_t, kBuckets> next{};
+        const auto bucket = [&](std::uint32_t i) { return keys[i] >> shift & (kBuckets - 1); };
+        for (const std::uint32_t i : order) ++next[bucket(i)];
+        if (!order.empty() && next[bucket(order[0])] == order.size()) continue;
+        std::uint32_t sum = 0;
+        for (std::uint32_t& n : next) sum += std::exchange(n, sum);
+        for (const std::uint32_t i : order) room[next[bucket(i)]++] = i;
+        order.swap(room);
     }
-    /// False where it is too far off the screen.
-    bool add_corner(const OkaBlock& map, double u, double v) {
-        const glm::dvec3 at = map.centre + (u - map.u) * map.by_u + (v - map.v) * map.by_v;
-        const double x = std::nearbyint(at.x * m_unit), y = std::nearbyint(at.y * m_unit);
-        if (!(std::max(std::fabs(x), std::fabs(y)) <= kMostGrid)) return false;
-        m_made.corners.push_back({x, y, 1, -(m_blocks.linear_depth ? at.z : map.centre.z), u, v});
-        return true;
-    }
+}
 
-    const DrapedSurface& m_surface;
-    const Camera& m_camera;
-    Size m_picture;
-    OkaBlocks m_blocks;
-    Facets m_made;
-    std::vector<OkaBlock> m_maps;  ///< of the leaves
-    double m_unit = 1;
-    glm::dvec2 m_side{0.0};
-};
+/// Where a point of the picture is seen, pixels from the middle of the screen, and its depth; NaN where it is not in front
+/// of the camera.
+glm::dvec3 seen_at(const DrapedSurface& surface, const Camera& camera, double u, double v) {
+    const glm::dvec3 p = camera.in_frame(surface.position(u, v));
+    const Point<double> on_screen = camera.seen(p);
+    if (!(p.z >= camera.near())) return glm::dvec3(std::numeric_limits<double>::quiet_NaN());
+    return {on_screen.x, on_screen.y, p.z};
+}
+
+bool is_number(const glm::dvec3& v) {
+    return std::isfinite(v.x + v.y + v.z);
+}
 
 }  // namespace
 
@@ -139,34 +124,205 @@ Size oka_block_count(const Size& picture, const OkaBlocks& blocks) {
 
 bool oka_block(const DrapedSurface& surface, const Camera& camera, const Size& picture,
                const OkaBlocks& blocks, int i, int j, OkaBlock& block) {
-    // Where a point of the picture is seen, and its depth.
-    const auto seen = [&](double u, double v, glm::dvec3& at) {
-        const glm::dvec3 p = camera.in_frame(surface.position(u, v));
-        const Point<double> on_screen = camera.seen(p);
-        at = {on_screen.x, on_screen.y, p.z};
-        return p.z >= camera.near() && std::isfinite(at.x + at.y + at.z);
-    };
     const double side_u = blocks.side / picture.width, side_v = blocks.side / picture.height;
-    const double u = (i + 0.5) * side_u, v = (j + 0.5) * side_v;
-    glm::dvec3 left, right, above, below;
-    if (!seen(u, v, block.centre) || !seen(u - side_u, v, left) || !seen(u + side_u, v, right) ||
-        !seen(u, v - side_v, above) || !seen(u, v + side_v, below))
-        return false;
-    block.u = u;
-    block.v = v;
+    // Where the centre of a block is seen, and its depth.
+    const auto seen = [&](int column, int row) {
+        return seen_at(surface, camera, (column + 0.5) * side_u, (row + 0.5) * side_v);
+    };
+    const glm::dvec3 left = seen(i - 1, j), right = seen(i + 1, j), above = seen(i, j - 1),
+                     below = seen(i, j + 1);
+    block.centre = seen(i, j);
     block.by_u = (right - left) / (2 * side_u);
     block.by_v = (below - above) / (2 * side_v);
-    const double wide_u = blocks.overlap / 2 / picture.width, wide_v = blocks.overlap / 2 / picture.height;
-    block.u0 = std::max(0.0, i * side_u - wide_u);
-    block.u1 = std::min(1.0, (i + 1) * side_u + wide_u);
-    block.v0 = std::max(0.0, j * side_v - wide_v);
-    block.v1 = std::min(1.0, (j + 1) * side_v + wide_v);
+    if (!is_number(block.centre) || !is_number(block.by_u) || !is_number(block.by_v)) return false;
+    block.u = (i + 0.5) * side_u;
+    block.v = (j + 0.5) * side_v;
+    const double half_u = (side_u + blocks.overlap / picture.width) / 2,
+                 half_v = (side_v + blocks.overlap / picture.height) / 2;
+    block.u0 = std::max(0.0, block.u - half_u);
+    block.u1 = std::min(1.0, block.u + half_u);
+    block.v0 = std::max(0.0, block.v - half_v);
+    block.v1 = std::min(1.0, block.v + half_v);
     return true;
 }
 
-Facets oka_facets(const DrapedSurface& surface, const Camera& camera, const Size& picture,
-                  const OkaBlocks& blocks) {
-    return BlockMaker(surface, camera, picture, blocks).make();
+OkaRaster::OkaRaster(std::shared_ptr<const DrapedSurface> surface, const Camera& camera, const Size& picture,
+                     const OkaBlocks& blocks, int square, std::shared_ptr<RoomPool<OkaRoom>> pool)
+    : m_surface(std::move(surface)),
+      m_camera(camera),
+      m_picture(picture),
+      m_count(oka_block_count(picture, blocks)),
+      m_blocks(blocks),
+      m_square(square),
+      m_columns((camera.screen().width + square - 1) / square),
+      m_pool(std::move(pool)),
+      m_room(m_pool->take()) {
+    m_grid.side_u = blocks.side / picture.width;
+    m_grid.side_v = blocks.side / picture.height;
+    m_grid.half_u = (m_grid.side_u + blocks.overlap / picture.width) / 2;
+    m_grid.half_v = (m_grid.side_v + blocks.overlap / picture.height) / 2;
+    find_blocks();
+    m_most_by_u = std::sqrt(m_most_by_u);
+    m_most_by_v = std::sqrt(m_most_by_v);
+    if (!m_blocks.linear_depth) sort_by_depth();
+    list_squares();
+}
+
+OkaRaster::~OkaRaster() {
+    m_pool->give_back(std::move(m_room));
+}
+
+/// Where the centres of a row of blocks are seen, and of one more at each end.
+void OkaRaster::see_row(int row, glm::dvec3* to) const {
+    for (int i = -1; i <= m_count.width; ++i)
+        *to++ = seen_at(*m_surface, m_camera, (i + 0.5) * m_grid.side_u, (row + 0.5) * m_grid.side_v);
+}
+
+void OkaRaster::find_blocks() {
+    m_room->blocks.clear();
+    m_room->squares.clear();
+    // Three rows, of which the middle one is looked at.
+    const auto room = static_cast<std::size_t>(m_count.width) + 2;
+    m_room->seen.resize(3 * room);
+    glm::dvec3* rows[3] = {m_room->seen.data(), m_room->seen.data() + room, m_room->seen.data() + 2 * room};
+    see_row(-1, rows[0]);
+    see_row(0, rows[1]);
+    for (int j = 0; j < m_count.height; ++j) {
+        see_row(j + 1, rows[2]);
+        find_row(j, rows[0], rows[1], rows[2]);
+        std::rotate(rows, rows + 1, rows + 3);
+    }
+}
+
+/// Adds the blocks of a row that are on the screen.
+void OkaRaster::find_row(int row, const glm::dvec3* above, const glm::dvec3* here, const glm::dvec3* below) {
+    const Size& screen = m_camera.screen();
+    const double twice_u = 2 * m_grid.side_u, twice_v = 2 * m_grid.side_v, half_width = 0.5 * screen.width,
+                 half_height = 0.5 * screen.height;
+    for (int i = 0; i < m_count.width; ++i) {
+        const glm::dvec3& centre = here[i + 1];
+        const glm::dvec3 by_u = (here[i + 2] - here[i]) / twice_u,
+                         by_v = (below[i + 1] - above[i + 1]) / twice_v;
+        const double reach_x = std::fabs(by_u.x) * m_grid.half_u + std::fabs(by_v.x) * m_grid.half_v,
+                     reach_y = std::fabs(by_u.y) * m_grid.half_u + std::fabs(by_v.y) * m_grid.half_v;
+        // Written so that what is no number is not on the screen.
+        if (!(std::fabs(centre.x) < half_width + reach_x && std::fabs(centre.y) < half_height + reach_y))
+            continue;
+        const double area = by_u.x * by_v.y - by_v.x * by_u.y, square_u = square(by_u.x) + square(by_u.y),
+                     square_v = square(by_v.x) + square(by_v.y);
+        if (!(square_u + square_v <= kMostCondition * std::fabs(area)) || !std::isfinite(by_u.z + by_v.z))
+            continue;
+        m_most_by_u = std::max(m_most_by_u, square_u);
+        m_most_by_v = std::max(m_most_by_v, square_v);
+        const double inverse = 1 / area;
+        // A pixel more, for what this and the places of pixels lose.
+        const auto first = [](double at) { return static_cast<int>(std::max(at, 0.0)); };
+        const auto end = [](double at, int size) {
+            return static_cast<int>(std::min(at + 1.5, double(size)));
+        };
+        const double x = centre.x + half_width - 0.5, y = centre.y + half_height - 0.5;
+        m_room->blocks.push_back({centre.x, centre.y, centre.z, by_v.y * inverse, -by_v.x * inverse,
+                                  -by_u.y * inverse, by_u.x * inverse, by_u.z, by_v.z, i, row,
+                                  Box{first(x - reach_x), first(y - reach_y), end(x + reach_x, screen.width),
+                                      end(y + reach_y, screen.height)}});
+        m_room->squares.push_back(squares_of(m_room->blocks.back().pixels));
+    }
+}
+
+/// From the farthest to the nearest.
+void OkaRaster::sort_by_depth() {
+    m_room->keys.clear();
+    for (const simd::Parallelogram& p : m_room->blocks) m_room->keys.push_back(far_first(p.z));
+    bucket_sort(m_room->keys, m_room->order, m_room->sorted);
+}
+
+OkaRoom::Squares OkaRaster::squares_of(const Box& pixels) const {
+    const Size& screen = m_camera.screen();
+    const auto square = [&](int at, int size) {
+        return static_cast<std::uint16_t>(static_cast<unsigned>(std::clamp(at, 0, size - 1)) /
+                                          static_cast<unsigned>(m_square));
+    };
+    return {square(pixels.x0 - 2, screen.width), square(pixels.y0 - 2, screen.height),
+            square(pixels.x1 + 1, screen.width), square(pixels.y1 + 1, screen.height)};
+}
+
+/// The blocks of each square of the screen and the pixels around it, in the order in which they are drawn.
+void OkaRaster::list_squares() {
+    const int rows = (m_camera.screen().height + m_square - 1) / m_square;
+    std::vector<std::size_t>& first = m_room->first;
+    const auto each_square = [&](const OkaRoom::Squares& s, const auto& body) {
+        for (int row = s.y0; row <= s.y1; ++row)
+            for (int column = s.x0; column <= s.x1; ++column)
+                body(static_cast<std::size_t>(row * m_columns + column));
+    };
+    // Counted, added up, and put in their order.
+    first.assign(static_cast<std::size_t>(m_columns * rows) + 2, 0);
+    for (const OkaRoom::Squares& s : m_room->squares)
+        each_square(s, [&](std::size_t at) { ++first[at + 2]; });
+    for (std::size_t i = 2; i < first.size(); ++i) first[i] += first[i - 1];
+    m_room->lists.resize(first.back());
+    const auto put = [&](std::uint32_t block) {
+        each_square(m_room->squares[block], [&](std::size_t at) { m_room->lists[first[at + 1]++] = block; });
+    };
+    if (m_blocks.linear_depth)
+        for (std::uint32_t k = 0; k < count(); ++k) put(k);
+    else
+        for (const std::uint32_t block : m_room->order) put(block);
+}
+
+void OkaRaster::draw(const Box& box, SeenPixels& seen, int times) const {
+    seen.clear(box, m_blocks.linear_depth);
+    if (box.empty()) return;
+    // Of the square in the middle: the box may reach over its edges by a pixel.
+    const int row = (box.y0 + box.y1) / 2 / times / m_square,
+              column = (box.x0 + box.x1) / 2 / times / m_square;
+    const auto square = static_cast<std::size_t>(row * m_columns + column);
+    const std::size_t first = m_room->first[square];
+    const Size& screen = m_camera.screen();
+    simd::draw_parallelograms(
+        m_room->blocks.data(), m_room->lists.data() + first, m_room->first[square + 1] - first, m_grid,
+        {box, screen.width, screen.height, times}, m_blocks.linear_depth,
+        {seen.nearness.data(), seen.u.data(), seen.v.data(), seen.facet.data(), seen.stride});
+}
+
+OkaBlock OkaRaster::block_of(const simd::Parallelogram& p) const {
+    OkaBlock block{};
+    oka_block(*m_surface, m_camera, m_picture, m_blocks, p.column, p.row, block);
+    return block;
+}
+
+Facets OkaRaster::facets() const {
+    Facets made;
+    made.grid_bits = grid_bits_of(m_camera.screen());
+    made.inverse_depth = false;
+    const double unit = std::ldexp(1.0, made.grid_bits);
+    for (const simd::Parallelogram& p : m_room->blocks) {
+        const OkaBlock b = block_of(p);
+        const auto first = static_cast<std::uint32_t>(made.corners.size()),
+                   leaf = static_cast<std::uint32_t>(made.leaves.size());
+        const double corners[4][2] = {{b.u0, b.v0}, {b.u1, b.v0}, {b.u1, b.v1}, {b.u0, b.v1}};
+        for (const auto& [u, v] : corners) {
+            const glm::dvec3 at = b.centre + (u - b.u) * b.by_u + (v - b.v) * b.by_v;
+            made.corners.push_back(
+                {at.x * unit, at.y * unit, 1, -(m_blocks.linear_depth ? at.z : b.centre.z), u, v});
+        }
+        made.leaves.push_back({SurfacePatch::kNone, HUGE_VAL, glm::length(glm::dvec2(b.by_u)),
+                               glm::length(glm::dvec2(b.by_v))});
+        made.facets.push_back({{first, first + 1, first + 2}, leaf});
+        made.facets.push_back({{first, first + 2, first + 3}, leaf});
+    }
+    return made;
+}
+
+double OkaRaster::bound_of(std::size_t index) const {
+    const OkaBlock block = block_of(m_room->blocks[index]);
+    const double by_u = glm::length(glm::dvec2(block.by_u)), by_v = glm::length(glm::dvec2(block.by_v));
+    // What the inverse loses, relative to a point's distance from the centre, is the map's condition times a few units of
+    // 2^-53; and a unit of u and of v.
+    const double condition =
+        (square(by_u) + square(by_v)) / std::fabs(block.by_u.x * block.by_v.y - block.by_v.x * block.by_u.y);
+    const double lost = (condition * (by_u * m_grid.half_u + by_v * m_grid.half_v) + by_u + by_v) * 0x1p-48;
+    return anamorph::bound_of(block, *m_surface, m_camera, m_grid.half_u, m_grid.half_v) + lost;
 }
 
 }  // namespace anamorph

@@ -2,7 +2,13 @@
 // The locally linear approximation of Oka et al. 1987: the picture in square blocks, each drawn as a parallelogram.
 #pragma once
 
+#include <memory>
+#include <vector>
+
+#include "anamorph/drape/facet_raster.h"
 #include "anamorph/drape/facets.h"
+#include "anamorph/drape/room_pool.h"
+#include "anamorph/simd/parallelogram_rows.h"
 
 namespace anamorph {
 
@@ -29,16 +35,73 @@ Size oka_block_count(const Size& picture, const OkaBlocks& blocks);
 bool oka_block(const DrapedSurface& surface, const Camera& camera, const Size& picture,
                const OkaBlocks& blocks, int i, int j, OkaBlock& block);
 
-/// Two facets for each parallelogram: the block's linear map (2.8), whose matrix comes from central differences
-/// (2.4 to 2.7) over the block's side, on the block and half of the common area around it. Neighbours need not meet, and
-/// the tolerance is what comes out: a block's bound (Facets::bound_of) is, axis by axis, by Taylor's formula (2.9) about
-/// its centre, of g, the map to the screen, and the linear map a that is drawn, whatever it is made of,
-///     |g - a0 + (g_u - a1) s + (g_v - a2) t + g_uu s^2 / 2 + g_uv s t + g_vv t^2 / 2|
-/// with g, g_u and g_v at the centre, and for (s, t) in each quarter of the block a mean of the second derivatives over
-/// that quarter, which the way from the centre does not leave, and over the half of it that is next to the centre. Infinite
-/// where that is not known. Blocks with a point that is not in front of the camera are left out. The surface outlives the
-/// facets. Throws Error where there are more than four million blocks.
-Facets oka_facets(const DrapedSurface& surface, const Camera& camera, const Size& picture,
-                  const OkaBlocks& blocks);
+/// What the blocks that a camera sees are made of, used again for other views.
+struct OkaRoom {
+    /// Columns and rows of squares of the screen, from the first to the last.
+    struct Squares {
+        std::uint16_t x0, y0, x1, y1;
+    };
+
+    std::vector<simd::Parallelogram> blocks;
+    std::vector<Squares> squares;  ///< of the blocks and the pixels around them
+    std::vector<std::uint32_t> keys, order, sorted, lists;
+    std::vector<std::size_t> first;
+    std::vector<glm::dvec3> seen;
+};
+
+/// The blocks that are on the screen as parallelograms: each block's linear map (2.8), whose matrix comes from central
+/// differences (2.4 to 2.7) over the block's side, on the block and half of the common area around it. They are drawn from
+/// the farthest to the nearest, those as far as each other in their order in the picture, or each with its depths.
+/// Neighbours need not meet. Blocks that are not in front of the camera as oka_block() says, and those whose parallelogram
+/// is a line but for rounding, are left out.
+class OkaRaster {
+  public:
+    /// `square`: side of the squares that draw() finds blocks by. `pool`: room that other views may leave and use. Throws
+    /// Error where there are more than four million blocks.
+    OkaRaster(std::shared_ptr<const DrapedSurface> surface, const Camera& camera, const Size& picture,
+              const OkaBlocks& blocks, int square, std::shared_ptr<RoomPool<OkaRoom>> pool);
+    ~OkaRaster();
+    OkaRaster(const OkaRaster&) = delete;
+    OkaRaster& operator=(const OkaRaster&) = delete;
+
+    /// As FacetRaster::draw. A pixel's facet is the first of its block's in facets(); nearness is that of linear depth,
+    /// and empty without.
+    void draw(const Box& box, SeenPixels& seen, int times = 1) const;
+
+    std::size_t count() const { return m_room->blocks.size(); }
+    /// Of a block's centre.
+    double nearness(std::size_t block) const { return -m_room->blocks[block].z; }
+    /// Pixels on the screen per unit of u and of v: at most, of all blocks.
+    double most_by_u() const { return m_most_by_u; }
+    double most_by_v() const { return m_most_by_v; }
+    /// Two facets for each block, in the order of blocks; leaves have no bound. Corners are where they are, off any grid.
+    Facets facets() const;
+    /// How far a point of a block may be seen from where it is drawn, pixels. By Taylor's formula (2.9) about the block's
+    /// centre, axis by axis, of g, the map to the screen, and the linear map a that is drawn, whatever it is made of,
+    ///     |g - a0 + (g_u - a1) s + (g_v - a2) t + g_uu s^2 / 2 + g_uv s t + g_vv t^2 / 2|
+    /// with g, g_u and g_v at the centre, and for (s, t) in each quarter of the block a mean of the second derivatives over
+    /// that quarter, which the way from the centre does not leave, and over the half of it that is next to the centre.
+    /// Infinite where that is not known.
+    double bound_of(std::size_t block) const;
+
+  private:
+    void find_blocks();
+    void find_row(int row, const glm::dvec3* above, const glm::dvec3* here, const glm::dvec3* below);
+    void see_row(int row, glm::dvec3* to) const;
+    void sort_by_depth();
+    OkaRoom::Squares squares_of(const Box& pixels) const;
+    void list_squares();
+    OkaBlock block_of(const simd::Parallelogram& p) const;
+
+    std::shared_ptr<const DrapedSurface> m_surface;
+    Camera m_camera;
+    Size m_picture, m_count;
+    OkaBlocks m_blocks;
+    simd::ParallelogramGrid m_grid;
+    int m_square, m_columns;
+    double m_most_by_u = 0, m_most_by_v = 0;
+    std::shared_ptr<RoomPool<OkaRoom>> m_pool;
+    std::unique_ptr<OkaRoom> m_room;
+};
 
 }  // namespace anamorph
