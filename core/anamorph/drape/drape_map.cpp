@@ -46,6 +46,11 @@ DrapeMap::DrapeMap(Facets facets, const Camera& camera, const Size& picture, dou
       m_surface(std::move(surface)),
       m_pool(std::move(pool)) {
     m_raster.emplace(m_facets, camera.screen(), kSquare);
+    for (const FacetLeaf& leaf : m_facets.leaves) {
+        m_most_bound = std::max(m_most_bound, leaf.bound);
+        m_most_by_u = std::max(m_most_by_u, leaf.by_u);
+        m_most_by_v = std::max(m_most_by_v, leaf.by_v);
+    }
 }
 
 DrapeMap::DrapeMap(std::shared_ptr<const OkaRaster> blocks, const Camera& camera, const Size& picture,
@@ -56,6 +61,9 @@ DrapeMap::DrapeMap(std::shared_ptr<const OkaRaster> blocks, const Camera& camera
       m_camera(camera),
       m_picture(picture),
       m_for_float(tol * kFloatShare),
+      m_most_bound(HUGE_VAL),
+      m_most_by_u(m_blocks->most_by_u()),
+      m_most_by_v(m_blocks->most_by_v()),
       m_pool(std::move(pool)) {}
 
 const Facets& DrapeMap::facets() const {
@@ -188,17 +196,13 @@ void DrapeMap::cut(const SeenRegion& region, const Box& box, Blocks& blocks) con
     blocks.push_back(block);
 }
 
-/// The largest bound of what a box shows.
+/// The largest bound of what a box shows, or of all there is.
 double DrapeMap::bound_of(const SeenRegion& region, const Box& box) const {
-    if (m_blocks) return HUGE_VAL;
-    double bound = 0;
     const SeenPixels& pixels = region.pixels();
-    if (!pixels.bound.empty()) {
-        for (int y = box.y0; y < box.y1; ++y)
-            for (int x = box.x0; x < box.x1; ++x) bound = std::max(bound, pixels.bound[pixels.index(x, y)]);
-        return bound;
-    }
-    for_leaves(region, box, [&](const FacetLeaf& leaf) { bound = std::max(bound, leaf.bound); });
+    if (pixels.bound.empty()) return m_most_bound;
+    double bound = 0;
+    for (int y = box.y0; y < box.y1; ++y)
+        for (int x = box.x0; x < box.x1; ++x) bound = std::max(bound, pixels.bound[pixels.index(x, y)]);
     return bound;
 }
 
@@ -215,14 +219,15 @@ bool DrapeMap::fits_float(const SeenRegion& region, const Box& box, Block& block
     block.base_y = static_cast<std::int32_t>(std::floor(v[0] * m_picture.height));
     const double reach_u = u[1] - u[0] + 1.0 / m_picture.width,
                  reach_v = v[1] - v[0] + 1.0 / m_picture.height;
-    double lost = 0;
-    const auto lose = [&](double by_u, double by_v) {
-        lost = std::max(lost, 0x1p-24 * (reach_u * by_u + reach_v * by_v));
+    const auto lost_by = [&](double by_u, double by_v) {
+        return 0x1p-24 * (reach_u * by_u + reach_v * by_v);
     };
-    if (m_blocks)
-        lose(m_blocks->most_by_u(), m_blocks->most_by_v());
-    else
-        for_leaves(region, box, [&](const FacetLeaf& leaf) { lose(leaf.by_u, leaf.by_v); });
+    double lost = lost_by(m_most_by_u, m_most_by_v);
+    if (!(lost <= m_for_float) && !m_blocks) {
+        lost = 0;
+        for_leaves(region, box,
+                   [&](const FacetLeaf& leaf) { lost = std::max(lost, lost_by(leaf.by_u, leaf.by_v)); });
+    }
     if (!(lost <= m_for_float)) return false;
     block.bound += lost;
     return true;

@@ -104,6 +104,8 @@ class DrapeMap final : public BlockMap {
     Camera m_camera;
     Size m_picture;
     double m_for_float;
+    /// Of leaves: their bounds, and FacetLeaf::by_u and by_v.
+    double m_most_bound = 0, m_most_by_u = 0, m_most_by_v = 0;
     mutable std::once_flag m_bounded;
     mutable std::vector<double> m_bounds;  ///< of leaves, when they are asked for
     std::shared_ptr<const DrapedSurface> m_surface;

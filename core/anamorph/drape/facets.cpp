@@ -141,46 +141,50 @@ class PatchView {
     double m_slope_x, m_slope_y;
 };
 
-/// Corners of patches by their place in parameters: an open hash table.
+/// Corners of patches by their place in parameters, in units of 2^-kMostLevels: an open hash table of few bytes an entry.
 class CornerTable {
   public:
     CornerTable() : m_entries(std::size_t{1} << m_bits) {}
 
-    /// The corner at (u, v), in units of 2^-kMostLevels; null where there is none.
+    /// The corner at (u, v); null where there is none.
     const std::uint32_t* find(std::uint64_t u, std::uint64_t v) const {
-        const Entry& entry = m_entries[slot(u, v)];
-        return entry.used ? &entry.corner : nullptr;
+        const Entry& entry = m_entries[slot({u, v})];
+        return entry.place != kFree ? &entry.corner : nullptr;
     }
     void insert(std::uint64_t u, std::uint64_t v, std::uint32_t corner) {
-        if (2 * ++m_count > m_entries.size()) grow();
-        m_entries[slot(u, v)] = {u, v, corner, true};
+        if (2 * (m_places.size() + 1) > m_entries.size()) grow();
+        m_entries[slot({u, v})] = {static_cast<std::uint32_t>(m_places.size()), corner};
+        m_places.push_back({u, v});
     }
 
   private:
+    static constexpr std::uint32_t kFree = ~0u;
+    struct Place {
+        std::uint64_t u, v;
+        bool operator==(const Place&) const = default;
+    };
     struct Entry {
-        std::uint64_t u = 0, v = 0;
-        std::uint32_t corner = 0;
-        bool used = false;
+        std::uint32_t place = kFree, corner = 0;
     };
 
-    std::size_t slot(std::uint64_t u, std::uint64_t v) const {
+    std::size_t slot(const Place& at) const {
         // Places have few digits, so that only the highest bits of the product tell them apart.
-        const std::uint64_t mixed = u * 0x9e3779b97f4a7c15u + v * 0xc2b2ae3d27d4eb4fu;
+        const std::uint64_t mixed = at.u * 0x9e3779b97f4a7c15u + at.v * 0xc2b2ae3d27d4eb4fu;
         const std::size_t mask = m_entries.size() - 1;
-        std::size_t at = static_cast<std::size_t>(mixed >> (64 - m_bits));
-        while (m_entries[at].used && !(m_entries[at].u == u && m_entries[at].v == v)) at = (at + 1) & mask;
-        return at;
+        std::size_t i = static_cast<std::size_t>(mixed >> (64 - m_bits));
+        while (m_entries[i].place != kFree && m_places[m_entries[i].place] != at) i = (i + 1) & mask;
+        return i;
     }
     void grow() {
         std::vector<Entry> old(std::size_t{1} << ++m_bits);
         old.swap(m_entries);
         for (const Entry& entry : old)
-            if (entry.used) m_entries[slot(entry.u, entry.v)] = entry;
+            if (entry.place != kFree) m_entries[slot(m_places[entry.place])] = entry;
     }
 
     int m_bits = 12;
     std::vector<Entry> m_entries;
-    std::size_t m_count = 0;
+    std::vector<Place> m_places;
 };
 
 /// A point of the surface in the camera's frame, and its parameters.

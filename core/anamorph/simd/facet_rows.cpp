@@ -18,6 +18,22 @@ HWY_INLINE void Put(V values, M where, double* to) {
     hn::StoreU(hn::IfThenElse(where, values, hn::LoadU(d, to)), d, to);
 }
 
+/// The columns of a row, of `width`, that may be in a triangle: a pixel more on each side, for what this loses.
+struct Columns {
+    int first, end;
+
+    HWY_INLINE Columns(const FacetSetup& f, const double (&inverse)[3], int row, int width) {
+        double low = 0, high = width;
+        for (int k = 0; k < 3; ++k) {
+            const double at = (f.least[k] - (f.e[k] + row * f.down[k])) * inverse[k];
+            if (f.right[k] > 0) low = HWY_MAX(low, at - 1);
+            if (f.right[k] < 0) high = HWY_MIN(high, at + 2);
+        }
+        first = static_cast<int>(HWY_MIN(low, width));
+        end = static_cast<int>(HWY_MAX(high, 0));
+    }
+};
+
 // Products and sums are rounded one by one, so that sets with and without fused operations agree. Sums of e_i times
 // what is not negative lose a few units of 2^-53, and e_i themselves are exact.
 void DrawFacet(const FacetSetup& f, int width, int height, const FacetPlanes& to) {
@@ -29,12 +45,14 @@ void DrawFacet(const FacetSetup& f, int width, int height, const FacetPlanes& to
         return hn::Add(hn::Add(hn::Mul(a, hn::Set(d, of[0])), hn::Mul(b, hn::Set(d, of[1]))),
                        hn::Mul(c, hn::Set(d, of[2])));
     };
+    const double inverse[3] = {1 / f.right[0], 1 / f.right[1], 1 / f.right[2]};
     for (int j = 0; j < height; ++j) {
+        const Columns columns(f, inverse, j, width);
         const std::ptrdiff_t row = j * to.stride;
         const auto edge = [&](int k, const V& column) HWY_ATTR {
             return hn::Add(hn::Set(d, f.e[k] + j * f.down[k]), hn::Mul(column, hn::Set(d, f.right[k])));
         };
-        for (int i = 0; i < width; i += lanes) {
+        for (int i = columns.first; i < columns.end; i += lanes) {
             const V column = hn::Add(lane, hn::Set(d, i));
             const V a = edge(0, column), b = edge(1, column), c = edge(2, column);
             auto in = hn::And(hn::Ge(a, hn::Set(d, f.least[0])), hn::Ge(b, hn::Set(d, f.least[1])));
