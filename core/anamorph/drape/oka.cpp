@@ -21,10 +21,60 @@ constexpr int kMostBlocks = 1 << 22;
 
 using Taylor = std::array<Jet<Interval, 2>, 2>;
 
+Taylor hull_of(const Taylor& a, const Taylor& b) {
+    Taylor all = a;
+    for (std::size_t axis = 0; axis < 2; ++axis)
+        for (std::size_t n = 0; n < 6; ++n) all[axis].c[n] = hull(a[axis].c[n], b[axis].c[n]);
+    return all;
+}
+
+/// What is known of the second derivatives over a quarter of a block: over its halves either way, and over both.
+class QuarterRanges {
+  public:
+    /// over(s0, s1, t0, t1): over a part of the quarter, 0 to 1 from the block's centre outwards.
+    template <class Over>
+    explicit QuarterRanges(const Over& over) {
+        for (int j = 0; j < 2; ++j)
+            for (int i = 0; i < 2; ++i) at(i, i, j, j) = over(i / 2.0, (i + 1) / 2.0, j / 2.0, (j + 1) / 2.0);
+        for (int j = 0; j < 2; ++j) at(0, 1, j, j) = hull_of(at(0, 0, j, j), at(1, 1, j, j));
+        for (int i = 0; i < 2; ++i) at(i, i, 0, 1) = hull_of(at(i, i, 0, 0), at(i, i, 1, 1));
+        at(0, 1, 0, 1) = hull_of(at(0, 1, 0, 0), at(0, 1, 1, 1));
+    }
+    /// Over the halves from the first to the last either way.
+    const Taylor& at(int i0, int i1, int j0, int j1) const {
+        return m_ranges[static_cast<std::size_t>((i0 + i1) * 3 + j0 + j1)];
+    }
+
+  private:
+    Taylor& at(int i0, int i1, int j0, int j1) {
+        return m_ranges[static_cast<std::size_t>((i0 + i1) * 3 + j0 + j1)];
+    }
+
+    std::array<Taylor, 9> m_ranges;
+};
+
+// Parts of a quarter of a block, either way; and of the way from the centre to a part.
+constexpr int kParts = 4;
+
+/// The mean of the second derivatives, twice the integral of 1 - r times those at r of the way, over all ways from the
+/// centre to part (i, j): each part of the way lies in a rectangle.
+void put_means(const QuarterRanges& ranges, int i, int j, Taylor& to) {
+    for (std::size_t axis = 0; axis < 2; ++axis)
+        for (std::size_t n = 3; n < 6; ++n) to[axis].c[n] = Interval(0);
+    const auto first = [](int from, int k) { return 2 * from * k >= kParts * kParts ? 1 : 0; };
+    const auto last = [](int end, int k) { return 2 * end * (k + 1) > kParts * kParts ? 1 : 0; };
+    for (int k = 0; k < kParts; ++k) {
+        const Taylor& range = ranges.at(first(k, i), last(k + 1, i), first(k, j), last(k + 1, j));
+        const double weight = (square(double(kParts - k)) - square(kParts - k - 1.0)) / (kParts * kParts);
+        for (std::size_t axis = 0; axis < 2; ++axis)
+            for (std::size_t n = 3; n < 6; ++n) to[axis].c[n] += range[axis].c[n] * weight;
+    }
+}
+
 /// The length of the vector of polynomials of the second degree, over a quarter of a block from its centre to (right, down),
-/// at most: part by part of it, so that its terms need not all be largest at once.
-double length_of(const Taylor& p, double right, double down) {
-    constexpr int kParts = 4;
+/// at most: part by part of it, so that its terms need not all be largest at once. `p` has what is constant of them and the
+/// first degree.
+double length_of(Taylor p, const QuarterRanges& ranges, double right, double down) {
     const auto part = [](double to, int i) {
         const double a = to * i / kParts, b = to * (i + 1) / kParts;
         return Interval(std::min(a, b), std::max(a, b));
@@ -32,6 +82,7 @@ double length_of(const Taylor& p, double right, double down) {
     double length = 0;
     for (int j = 0; j < kParts; ++j)
         for (int i = 0; i < kParts; ++i) {
+            put_means(ranges, i, j, p);
             const Interval s = part(right, i), t = part(down, j);
             const auto size = [&](const Jet<Interval, 2>& g) {
                 return magnitude(g.c[0] + g.c[1] * s + g.c[2] * t + g.c[3] * square(s) + g.c[4] * (s * t) +
@@ -46,26 +97,22 @@ double length_of(const Taylor& p, double right, double down) {
 
 /// How far a block's map is off on the screen, at most: pixels.
 double bound_of(const OkaBlock& map, const DrapedSurface& surface, const Camera& camera, double h, double k) {
-    const Taylor centre = seen_range(camera, surface.range(Interval(map.u), Interval(map.v)));
+    Taylor off = seen_range(camera, surface.range(Interval(map.u), Interval(map.v)));
+    for (int i = 0; i < 2; ++i) {
+        const auto axis = static_cast<std::size_t>(i);
+        off[axis].c[0] -= map.centre[i];
+        off[axis].c[1] -= map.by_u[i];
+        off[axis].c[2] -= map.by_v[i];
+    }
     double size = 0;
     for (const double right : {-h, h})
         for (const double down : {-k, k}) {
-            const auto from_centre = [](double to) { return Interval(std::min(0.0, to), std::max(0.0, to)); };
-            const auto over = [&](double part) {
-                return seen_range(camera, surface.range(from_centre(part * right) + map.u,
-                                                        from_centre(part * down) + map.v));
-            };
-            // Of the integral of (1 - s) from 0 to 1, three quarters lie in the nearer half of the way.
-            const Taylor near = over(0.5), far = over(1);
-            Taylor off = centre;
-            for (int i = 0; i < 2; ++i) {
-                const auto axis = static_cast<std::size_t>(i);
-                off[axis].c[0] -= map.centre[i];
-                off[axis].c[1] -= map.by_u[i];
-                off[axis].c[2] -= map.by_v[i];
-                for (int n = 3; n < 6; ++n) off[axis].c[n] = near[axis].c[n] * 0.75 + far[axis].c[n] * 0.25;
-            }
-            size = std::max(size, length_of(off, right, down));
+            const auto between = [](double a, double b) { return Interval(std::min(a, b), std::max(a, b)); };
+            const QuarterRanges ranges([&](double s0, double s1, double t0, double t1) {
+                return seen_range(camera, surface.range(between(s0 * right, s1 * right) + map.u,
+                                                        between(t0 * down, t1 * down) + map.v));
+            });
+            size = std::max(size, length_of(off, ranges, right, down));
         }
     return size;
 }

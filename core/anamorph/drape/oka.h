@@ -79,8 +79,8 @@ class OkaRaster {
     /// How far a point of a block may be seen from where it is drawn, pixels. By Taylor's formula (2.9) about the block's
     /// centre, axis by axis, of g, the map to the screen, and the linear map a that is drawn, whatever it is made of,
     ///     |g - a0 + (g_u - a1) s + (g_v - a2) t + g_uu s^2 / 2 + g_uv s t + g_vv t^2 / 2|
-    /// with g, g_u and g_v at the centre, and for (s, t) in each quarter of the block a mean of the second derivatives over
-    /// that quarter, which the way from the centre does not leave, and over the half of it that is next to the centre.
+    /// with g, g_u and g_v at the centre and, for (s, t) in each sixteenth of each quarter of the block, a mean of the second
+    /// derivatives over the quarters of that quarter that the way there from the centre passes, part by part of the way.
     /// Infinite where that is not known.
     double bound_of(std::size_t block) const;
 

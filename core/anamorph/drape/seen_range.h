@@ -3,6 +3,8 @@
 #pragma once
 
 #include <array>
+#include <cmath>
+#include <iterator>
 
 #include "anamorph/drape/camera.h"
 #include "anamorph/map/surface.h"
@@ -11,16 +13,33 @@ namespace anamorph {
 
 /// Taylor coefficients of the place on the screen, in pixels from its middle, of what has those of `range`. Infinite where
 /// a part may not be in front of the camera.
+///
+/// With X and Z those of the camera's frame and s near X / Z, a place is s + (X - s Z) / Z, where X - s Z is a sum of what
+/// `range` says of each coordinate of space once: X and Z by themselves would each be as wide as that makes them.
 inline std::array<Jet<Interval, 2>, 2> seen_range(const Camera& camera, const SurfaceRange& range) {
     using J = Jet<Interval, 2>;
-    J in_frame[3];
-    for (int i = 0; i < 3; ++i)
-        in_frame[i] = range[0] * camera.matrix()[0][i] + range[1] * camera.matrix()[1][i] +
-                      range[2] * camera.matrix()[2][i] + camera.offset()[i];
-    const auto seen = [&](const J& coordinate) {
-        return J((camera.perspective() ? coordinate / in_frame[2] : coordinate) * camera.focal());
+    const auto& m = camera.matrix();
+    const auto sum = [&](const auto& weight, const Interval& constant) {
+        J total(constant);
+        for (int axis = 0; axis < 3; ++axis)
+            for (std::size_t n = 0; n < std::size(total.c); ++n)
+                total.c[n] += range[static_cast<std::size_t>(axis)].c[n] * weight(axis);
+        return total;
     };
-    return {seen(in_frame[0]), seen(in_frame[1])};
+    const auto in_frame = [&](int i) {
+        return sum([&](int axis) { return Interval(m[axis][i]); }, Interval(camera.offset()[i]));
+    };
+    if (!camera.perspective()) return {J(in_frame(0) * camera.focal()), J(in_frame(1) * camera.focal())};
+    const auto middle = [](const J& of) { return of.c[0].lo / 2 + of.c[0].hi / 2; };
+    const J ahead = in_frame(2);
+    const auto seen = [&](int i) {
+        const double near = middle(in_frame(i)) / middle(ahead);
+        const Interval slope(std::isfinite(near) ? near : 0);
+        const J beside = sum([&](int axis) { return Interval(m[axis][i]) - slope * Interval(m[axis][2]); },
+                             Interval(camera.offset()[i]) - slope * Interval(camera.offset()[2]));
+        return J((beside / ahead + J(slope)) * camera.focal());
+    };
+    return {seen(0), seen(1)};
 }
 
 }  // namespace anamorph

@@ -13,19 +13,15 @@ namespace {
 constexpr int kFinestBox = 4;
 // A query reads at most so many boxes each way.
 constexpr int kMostBoxes = 3;
-// Derivatives are bounded over no less than this part of a cell: differences of coefficients that are nearly the same
-// would lose their digits.
-constexpr double kLeastPart = 1.0 / 8;
 // What is left of a cell next to missing ones is cut down to this.
 constexpr double kLeastRest = 1.0 / 8;
 
-// Bezier coefficients of a part of a cell are 12 interpolations and 4 differences away from texels no larger than M: each
-// loses at most 6 units of 2^-53 of numbers up to (4/3)^2 M, together less than 128 units of M.
+// Bezier coefficients of a part of a cell are 12 interpolations away from texels no larger than M: each loses at most 6
+// units of 2^-53 of numbers up to (4/3)^2 M, together less than 128 units of M. Those of a derivative, differences of the
+// cell's before they are cut down to the part, are larger by 2 for each difference, and so is what they lose.
 constexpr double kRounding = 128 * 0x1p-53;
 // What the place within a cell loses of a coordinate counted in cells.
 constexpr double kPlaceRounding = 4 * 0x1p-53;
-
-using Net = std::array<double, 16>;  ///< row by row
 
 double between(double a, double b, double t) {
     return a + t * (b - a);
@@ -40,34 +36,54 @@ void to_bezier(double* p, std::size_t step) {
     p[3 * step] = p2;
 }
 
-/// The coefficients of a cubic over [a, b] of [0, 1]: its blossom at (a, a, a), (a, a, b), (a, b, b), (b, b, b).
-void to_part(double* q, std::size_t step, double a, double b) {
-    const auto twice = [&](double t, double* at) {
-        const double s0 = between(q[0], q[step], t), s1 = between(q[step], q[2 * step], t),
-                     s2 = between(q[2 * step], q[3 * step], t);
-        at[0] = between(s0, s1, t);
-        at[1] = between(s1, s2, t);
-    };
-    double from_a[2], from_b[2];
-    twice(a, from_a);
-    twice(b, from_b);
-    q[0] = between(from_a[0], from_a[1], a);
-    q[step] = between(from_a[0], from_a[1], b);
-    q[2 * step] = between(from_b[0], from_b[1], a);
-    q[3 * step] = between(from_b[0], from_b[1], b);
+/// The coefficients of a polynomial of the first to the third degree over [a, b] of [0, 1], from those over that: its blossom
+/// at as many b, and for the rest a.
+void to_part(double* q, std::size_t step, std::size_t degree, double a, double b) {
+    const double from[4] = {q[0], q[step], degree > 1 ? q[2 * step] : 0, degree > 2 ? q[3 * step] : 0};
+    for (std::size_t k = 0; k <= degree; ++k) {
+        double to[4] = {from[0], from[1], from[2], from[3]};
+        for (std::size_t n = degree; n > 0; --n)
+            for (std::size_t i = 0; i < n; ++i) to[i] = between(to[i], to[i + 1], n > degree - k ? b : a);
+        q[k * step] = to[0];
+    }
 }
 
-/// The hull of what `at(i, j)` gives for i < columns and j < rows, widened and scaled.
-template <class At>
-Interval hull_of(int columns, int rows, double margin, double scale, const At& at) {
-    double least = HUGE_VAL, most = -HUGE_VAL;
-    for (std::size_t j = 0; j < static_cast<std::size_t>(rows); ++j)
-        for (std::size_t i = 0; i < static_cast<std::size_t>(columns); ++i) {
-            least = std::min(least, at(i, j));
-            most = std::max(most, at(i, j));
-        }
-    return Interval(least - margin, most + margin) * scale;
-}
+/// The coefficients of differences, along rows or along columns, of those of a polynomial.
+struct Net {
+    std::array<double, 16> values{};  ///< row by row of 4
+    std::size_t columns = 4, rows = 4;
+
+    double at(std::size_t i, std::size_t j) const { return values[4 * j + i]; }
+    Net across() const {
+        Net d{{}, columns - 1, rows};
+        for (std::size_t j = 0; j < d.rows; ++j)
+            for (std::size_t i = 0; i < d.columns; ++i) d.values[4 * j + i] = at(i + 1, j) - at(i, j);
+        return d;
+    }
+    Net down() const {
+        Net d{{}, columns, rows - 1};
+        for (std::size_t j = 0; j < d.rows; ++j)
+            for (std::size_t i = 0; i < d.columns; ++i) d.values[4 * j + i] = at(i, j + 1) - at(i, j);
+        return d;
+    }
+    /// Over a part of the cell.
+    Net part(double x0, double y0, double x1, double y1) const {
+        Net n = *this;
+        for (std::size_t j = 0; j < rows; ++j) to_part(n.values.data() + 4 * j, 1, columns - 1, x0, x1);
+        for (std::size_t i = 0; i < columns; ++i) to_part(n.values.data() + i, 4, rows - 1, y0, y1);
+        return n;
+    }
+    /// Of all coefficients, widened and scaled.
+    Interval hull(double margin, double scale) const {
+        double least = HUGE_VAL, most = -HUGE_VAL;
+        for (std::size_t j = 0; j < rows; ++j)
+            for (std::size_t i = 0; i < columns; ++i) {
+                least = std::min(least, at(i, j));
+                most = std::max(most, at(i, j));
+            }
+        return Interval(least - margin, most + margin) * scale;
+    }
+};
 
 void extend(Interval& range, const Interval& more) {
     range = {std::min(range.lo, more.lo), std::max(range.hi, more.hi)};
@@ -75,13 +91,6 @@ void extend(Interval& range, const Interval& more) {
 
 constexpr Interval kNothing{HUGE_VAL, -HUGE_VAL};
 constexpr std::array<Interval, 6> kNoHull{kNothing, kNothing, kNothing, kNothing, kNothing, kNothing};
-
-/// The coefficients over a part of a cell.
-Net net_of_part(Net net, double x0, double y0, double x1, double y1) {
-    for (std::size_t k = 0; k < 4; ++k) to_part(net.data() + 4 * k, 1, x0, x1);
-    for (std::size_t k = 0; k < 4; ++k) to_part(net.data() + k, 4, y0, y1);
-    return net;
-}
 
 bool is_number(float value) {
     return std::fabs(value) <= SampledField::kMostMagnitude;
@@ -196,46 +205,36 @@ void SampledField::add_box(const Level& level, int x, int y, Hull* hulls) const 
         for (std::size_t k = 0; k < 6; ++k) extend(hulls[c][k], box[c][k]);
 }
 
-/// Adds the coefficients over a part of a cell: hulls of Bezier coefficients, and of their differences.
+/// Adds the coefficients over a part of a cell, and those of derivatives.
 void SampledField::add_cell(int column, int row, const Part& part, Hull* hulls) const {
     if (missing_cell(column, row) != Certainty::no) return;
-    const Part wide = {std::min(part.x0, std::max(0.0, part.x1 - kLeastPart)),
-                       std::min(part.y0, std::max(0.0, part.y1 - kLeastPart)),
-                       std::max(part.x1, std::min(1.0, part.x0 + kLeastPart)),
-                       std::max(part.y1, std::min(1.0, part.y0 + kLeastPart))};
-    const double across = m_size.width / (wide.x1 - wide.x0), down = m_size.height / (wide.y1 - wide.y0);
-    const double beyond = std::max({1.0, 1 - 2 * wide.x0, 2 * wide.x1 - 1, 1 - 2 * wide.y0, 2 * wide.y1 - 1});
+    const double across = m_size.width, down = m_size.height;
+    const double beyond = std::max({1.0, 1 - 2 * part.x0, 2 * part.x1 - 1, 1 - 2 * part.y0, 2 * part.y1 - 1});
     for (int c = 0; c < m_channels; ++c) {
         Net cell;
         double largest = 0;
-        for (int j = 0; j < 4; ++j)
-            for (int i = 0; i < 4; ++i) {
-                const double number = texel(column + i, row + j)[c];
-                cell.data()[4 * j + i] = number;
+        for (std::size_t j = 0; j < 4; ++j)
+            for (std::size_t i = 0; i < 4; ++i) {
+                const double number = texel(column + static_cast<int>(i), row + static_cast<int>(j))[c];
+                cell.values[4 * j + i] = number;
                 largest = std::max(largest, std::fabs(number));
             }
+        for (std::size_t k = 0; k < 4; ++k) to_bezier(cell.values.data() + 4 * k, 1);
+        for (std::size_t k = 0; k < 4; ++k) to_bezier(cell.values.data() + k, 4);
         // Extrapolated, each of six linear steps multiplies by that.
         const double margin = largest * kRounding * std::pow(beyond, 6);
-        for (std::size_t k = 0; k < 4; ++k) to_bezier(cell.data() + 4 * k, 1);
-        for (std::size_t k = 0; k < 4; ++k) to_bezier(cell.data() + k, 4);
-        const Net here = net_of_part(cell, part.x0, part.y0, part.x1, part.y1),
-                  n = net_of_part(cell, wide.x0, wide.y0, wide.x1, wide.y1);
+        const auto add = [&](Interval& to, const Net& net, double lost, double scale) {
+            extend(to, net.part(part.x0, part.y0, part.x1, part.y1).hull(lost, scale));
+        };
         Hull& h = hulls[c];
-        extend(h[0], hull_of(4, 4, margin, 1, [&](auto i, auto j) { return here[4 * j + i]; }));
-        extend(h[1], hull_of(3, 4, 2 * margin, 3 * across,
-                             [&](auto i, auto j) { return n[4 * j + i + 1] - n[4 * j + i]; }));
-        extend(h[2], hull_of(4, 3, 2 * margin, 3 * down,
-                             [&](auto i, auto j) { return n[4 * (j + 1) + i] - n[4 * j + i]; }));
+        const Net by_x = cell.across(), by_y = cell.down();
+        add(h[0], cell, margin, 1);
+        add(h[1], by_x, 2 * margin, 3 * across);
+        add(h[2], by_y, 2 * margin, 3 * down);
         // Half of the second derivative, twice the difference of differences times 3.
-        extend(h[3], hull_of(2, 4, 4 * margin, 3 * across * across, [&](auto i, auto j) {
-                   return n[4 * j + i + 2] - 2 * n[4 * j + i + 1] + n[4 * j + i];
-               }));
-        extend(h[4], hull_of(3, 3, 4 * margin, 9 * across * down, [&](auto i, auto j) {
-                   return n[4 * (j + 1) + i + 1] - n[4 * (j + 1) + i] - n[4 * j + i + 1] + n[4 * j + i];
-               }));
-        extend(h[5], hull_of(4, 2, 4 * margin, 3 * down * down, [&](auto i, auto j) {
-                   return n[4 * (j + 2) + i] - 2 * n[4 * (j + 1) + i] + n[4 * j + i];
-               }));
+        add(h[3], by_x.across(), 4 * margin, 3 * across * across);
+        add(h[4], by_x.down(), 4 * margin, 9 * across * down);
+        add(h[5], by_y.down(), 4 * margin, 3 * down * down);
     }
 }
 
