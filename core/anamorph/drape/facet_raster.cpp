@@ -60,22 +60,27 @@ FacetRaster::FacetRaster(const Facets& facets, const Size& screen, int square)
 }
 
 Box FacetRaster::pixels_of(const Facet& facet, int times) const {
-    const double unit = m_unit / times;
     const Size screen{m_screen.width * times, m_screen.height * times};
-    double x0 = HUGE_VAL, y0 = HUGE_VAL, x1 = -HUGE_VAL, y1 = -HUGE_VAL;
+    // In units of the grid's, all integers.
+    std::int64_t x0 = INT64_MAX, y0 = INT64_MAX, x1 = INT64_MIN, y1 = INT64_MIN;
     for (const std::uint32_t corner : facet.corner) {
         const FacetCorner& c = m_facets.corners[corner];
-        x0 = std::min(x0, c.x);
-        y0 = std::min(y0, c.y);
-        x1 = std::max(x1, c.x);
-        y1 = std::max(y1, c.y);
+        const auto x = static_cast<std::int64_t>(c.x), y = static_cast<std::int64_t>(c.y);
+        x0 = std::min(x0, x);
+        y0 = std::min(y0, y);
+        x1 = std::max(x1, x);
+        y1 = std::max(y1, y);
     }
-    // Pixel i has its centre at i + 1/2 - width / 2.
-    const auto first = [&](double at, int size) {
-        return static_cast<int>(std::ceil(at / unit + (size - 1) / 2.0));
+    // Pixel i has its centre at i + 1/2 - width / 2; places are counted in halves of units, so that this is one too.
+    const int bits = m_facets.grid_bits + 1;
+    const auto at = [&](std::int64_t place, int size) {
+        return 2 * times * place + (std::int64_t{size - 1} << (bits - 1));
     };
-    const auto end = [&](double at, int size) {
-        return static_cast<int>(std::floor(at / unit + (size - 1) / 2.0)) + 1;
+    const auto first = [&](std::int64_t place, int size) {
+        return static_cast<int>((at(place, size) + (std::int64_t{1} << bits) - 1) >> bits);
+    };
+    const auto end = [&](std::int64_t place, int size) {
+        return static_cast<int>(at(place, size) >> bits) + 1;
     };
     return intersection(
         {first(x0, screen.width), first(y0, screen.height), end(x1, screen.width), end(y1, screen.height)},

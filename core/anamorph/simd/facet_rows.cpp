@@ -22,6 +22,7 @@ HWY_INLINE void Put(V values, M where, double* to) {
 struct Columns {
     int first, end;
 
+    HWY_INLINE Columns(int from, int to) : first(from), end(to) {}
     HWY_INLINE Columns(const FacetSetup& f, const double (&inverse)[3], int row, int width) {
         double low = 0, high = width;
         for (int k = 0; k < 3; ++k) {
@@ -45,9 +46,12 @@ void DrawFacet(const FacetSetup& f, int width, int height, const FacetPlanes& to
         return hn::Add(hn::Add(hn::Mul(a, hn::Set(d, of[0])), hn::Mul(b, hn::Set(d, of[1]))),
                        hn::Mul(c, hn::Set(d, of[2])));
     };
-    const double inverse[3] = {1 / f.right[0], 1 / f.right[1], 1 / f.right[2]};
+    // Worth their while in long rows.
+    const bool trims = width > 2 * lanes;
+    double inverse[3] = {0, 0, 0};
+    for (int k = 0; trims && k < 3; ++k) inverse[k] = 1 / f.right[k];
     for (int j = 0; j < height; ++j) {
-        const Columns columns(f, inverse, j, width);
+        const Columns columns = trims ? Columns(f, inverse, j, width) : Columns{0, width};
         const std::ptrdiff_t row = j * to.stride;
         const auto edge = [&](int k, const V& column) HWY_ATTR {
             return hn::Add(hn::Set(d, f.e[k] + j * f.down[k]), hn::Mul(column, hn::Set(d, f.right[k])));
