@@ -157,11 +157,12 @@ class RecipeContent final : public Content {
 
         if (values.knows("mip") && values.toggle("mip"))
             while (m_pictures->picture(0, m_levels)) ++m_levels;
-        // What a film of many frames reached is not known without solving them all.
+        // What a film of many frames reached is not known without solving them all, nor what a picture did whose pixels
+        // have to be drawn for that.
         for (int i = 0; subimages() == 1 && i < m_levels; ++i) {
             Level& l = level(0, i);
             l.solved = solve(l);
-            add_attributes(l.spec, l.solved->reached());
+            if (!l.solved->picture().reached_by_drawing()) add_attributes(l.spec, l.solved->reached());
         }
     }
 

@@ -2,7 +2,6 @@
 #include "anamorph/machine/machine_map.h"
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
 #include <string>
 
@@ -10,19 +9,31 @@ namespace anamorph {
 namespace {
 
 constexpr int kBlockSide = 64;
+// What was computed of a region is kept: 12 megabytes of them.
+constexpr BlockLayout kLayout{1, 128, 32};
 // Source pixels: less than any machine's own errors.
 constexpr double kSmallRounding = 1e-6;
 
 }  // namespace
 
-/// What is counted of a region.
+/// What the machine makes of the pixels of a region, row by row.
 struct MachineMap::Region final : RegionData {
-    std::int64_t saturated = 0;
+    struct Pixel {
+        Point<double> used;
+        double off = -1;  ///< of `used` from the exact point; negative where there is none
+        bool seen() const { return !(off < 0); }
+    };
+    Box box;
+    std::vector<Pixel> pixels;
+
+    const Pixel& at(int x, int y) const {
+        return pixels[static_cast<std::size_t>((y - box.y0) * box.width() + x - box.x0)];
+    }
 };
 
 MachineMap::MachineMap(std::shared_ptr<const BlockMap> exact, const std::vector<Box>& pieces,
                        const Size& source, double turn, int address_bits)
-    : BlockMap(exact->width(), exact->height(), pieces),
+    : BlockMap(exact->width(), exact->height(), pieces, kLayout),
       m_exact(std::move(exact)),
       m_source(source),
       m_turn(turn),
@@ -44,6 +55,11 @@ double MachineMap::distance(const Point<double>& used, const Point<double>& exac
 
 void MachineMap::plan(const Box& box, int piece, Blocks& blocks) const {
     const auto region = std::make_shared<Region>();
+    const std::int64_t saturated = compute(box, piece, *region);
+    {
+        const std::lock_guard lock(m_mutex);
+        m_saturated[{piece, box.x0, box.y0}] = saturated;
+    }
     for (int y = box.y0; y < box.y1; y += kBlockSide)
         for (int x = box.x0; x < box.x1; x += kBlockSide) {
             const Box part{x, y, std::min(x + kBlockSide, box.x1), std::min(y + kBlockSide, box.y1)};
@@ -52,16 +68,34 @@ void MachineMap::plan(const Box& box, int piece, Blocks& blocks) const {
             block.kind = Block::Kind::computed;
             block.precise = true;
             block.piece = piece;
-            block.bound = bound_over(part, piece, region->saturated);
+            block.bound = bound_over(part, piece, *region);
             block.data = region.get();
             blocks.push_back(block);
         }
     blocks.data = region;
 }
 
-/// The largest distance of the pixels of a box, and what it may be off; adds its saturated pixels. About poles and seams
-/// rounding is known of small boxes only.
-double MachineMap::bound_over(const Box& box, int piece, std::int64_t& saturated) const {
+/// Returns how many pixels have coordinates that were beyond the range of a format.
+std::int64_t MachineMap::compute(const Box& box, int piece, Region& region) const {
+    region.box = box;
+    std::int64_t saturated = 0;
+    for (int y = box.y0; y < box.y1; ++y)
+        for (int x = box.x0; x < box.x1; ++x) {
+            Region::Pixel& pixel = region.pixels.emplace_back();
+            Point<double> exact{};
+            int source_piece = 0;
+            if (!m_exact->exact(x + 0.5, y + 0.5, piece, exact, source_piece)) continue;
+            const UnitCoordinates found = coordinates(x, y, piece);
+            saturated += found.beyond;
+            pixel.used = source_point(found);
+            pixel.off = distance(pixel.used, exact);
+        }
+    return saturated;
+}
+
+/// The largest distance of the pixels of a box, and what it may be off. About poles and seams rounding is known of small
+/// boxes only.
+double MachineMap::bound_over(const Box& box, int piece, const Region& region) const {
     const double off = rounding(box, piece);
     if (!(off <= kSmallRounding) && box.width() * box.height() > 1) {
         Box first = box, second = box;
@@ -69,28 +103,20 @@ double MachineMap::bound_over(const Box& box, int piece, std::int64_t& saturated
             first.x1 = second.x0 = box.x0 + box.width() / 2;
         else
             first.y1 = second.y0 = box.y0 + box.height() / 2;
-        const double bound = bound_over(first, piece, saturated);
-        return std::max(bound, bound_over(second, piece, saturated));
+        return std::max(bound_over(first, piece, region), bound_over(second, piece, region));
     }
     double largest = 0;
     for (int y = box.y0; y < box.y1; ++y)
-        for (int x = box.x0; x < box.x1; ++x) {
-            Point<double> exact{};
-            int source_piece = 0;
-            if (!m_exact->exact(x + 0.5, y + 0.5, piece, exact, source_piece)) continue;
-            const UnitCoordinates used = coordinates(x, y, piece);
-            saturated += used.beyond;
-            largest = std::max(largest, distance(source_point(used), exact));
-        }
+        for (int x = box.x0; x < box.x1; ++x) largest = std::max(largest, region.at(x, y).off);
     return largest + off;
 }
 
 std::int64_t MachineMap::saturated_pixels(const ParallelFor& parallel_for) const {
-    std::atomic<std::int64_t> pixels{0};
-    parallel_for(regions(), [&](std::int64_t region) {
-        const SharedBlocks found = blocks(region);
-        pixels += static_cast<const Region*>(found[0].data)->saturated;
-    });
+    // All regions are computed for that, if they have not been before.
+    reached(parallel_for);
+    const std::lock_guard lock(m_mutex);
+    std::int64_t pixels = 0;
+    for (const auto& [place, saturated] : m_saturated) pixels += saturated;
     return pixels;
 }
 
@@ -107,14 +133,14 @@ Jacobian MachineMap::jacobian(double x, double y, int piece) const noexcept {
 }
 
 void MachineMap::exact_rows(const Block& block, int begin, int end, const DoubleRows& to) const noexcept {
+    const Region& region = *static_cast<const Region*>(block.data);
     for (int row = begin; row < end; ++row)
         for (int i = 0; i < block.box.width(); ++i) {
-            const int x = block.box.x0 + i, y = block.box.y0 + row;
+            const Region::Pixel& pixel = region.at(block.box.x0 + i, block.box.y0 + row);
             const std::ptrdiff_t at = (row - begin) * to.stride + i;
-            const Point<double> used = source_point(coordinates(x, y, block.piece));
-            to.x[at] = used.x;
-            to.y[at] = used.y;
-            to.piece[at] = m_exact->seen(x + 0.5, y + 0.5, block.piece) ? 0 : -1;
+            to.x[at] = pixel.used.x;
+            to.y[at] = pixel.used.y;
+            to.piece[at] = pixel.seen() ? 0 : -1;
         }
 }
 

@@ -2,7 +2,11 @@
 // A map as a machine computes it, pixel by pixel, beside the exact one.
 #pragma once
 
+#include <array>
+#include <cstdint>
+#include <map>
 #include <memory>
+#include <mutex>
 #include <vector>
 
 #include "anamorph/approx/block.h"
@@ -49,12 +53,15 @@ class MachineMap : public BlockMap {
   private:
     struct Region;
 
+    std::int64_t compute(const Box& box, int piece, Region& region) const;
     double distance(const Point<double>& used, const Point<double>& exact) const;
-    double bound_over(const Box& box, int piece, std::int64_t& saturated) const;
+    double bound_over(const Box& box, int piece, const Region& region) const;
 
     std::shared_ptr<const BlockMap> m_exact;
     Size m_source;
     double m_turn, m_address_unit;
+    mutable std::mutex m_mutex;
+    mutable std::map<std::array<int, 3>, std::int64_t> m_saturated;  ///< of regions, by piece and corner
 };
 
 /// Throws Error naming `machine` where a source is larger than textures of side x side.

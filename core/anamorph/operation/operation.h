@@ -61,6 +61,9 @@ class SolvedPicture {
     virtual ~SolvedPicture() = default;
     /// What was reached over the whole picture.
     virtual Attributes reached(const ParallelFor& parallel_for) const = 0;
+    /// Does reached() compute every pixel, so that it takes as long as drawing all of them? Hosts that open a picture to
+    /// read a part of it go without.
+    virtual bool reached_by_drawing() const { return false; }
     /// Fills `view` with the pixels of `box`; sources are read for colour only. After those given come linked
     /// images, null where one is missing. False when a source could not be read.
     virtual bool draw(const std::vector<const Source*>& sources, const Box& box, const ImageView& view,

@@ -269,7 +269,7 @@ class Panos final : public Pictures {
         picture.solve = [request]() -> std::unique_ptr<const SolvedPicture> {
             if (request.machine)
                 return std::make_unique<Solved<BumpedPicture>>(BumpedPicture(request),
-                                                               BumpedPicture::saturated);
+                                                               BumpedPicture::saturated, true);
             return std::make_unique<Solved<Reprojection>>(Reprojection(request.map(), request.options));
         };
         return picture;

@@ -67,6 +67,7 @@ class ProgrammedPicture final : public SolvedPicture {
                 {"anamorph:exact_fraction", 0.0},
                 {"anamorph:saturated_pixels", double(m_warp->saturated_pixels(parallel_for))}};
     }
+    bool reached_by_drawing() const override { return m_is_map; }
     bool draw(const std::vector<const Source*>& sources, const Box& box, const ImageView& view,
               const ParallelFor& parallel_for) const override {
         const Source* source = sources.empty() ? nullptr : sources[0];
@@ -137,7 +138,8 @@ std::optional<ShaderProgram> read_shader(const OperationInput& input) {
 std::unique_ptr<const SolvedPicture> shaded_picture(const WarpMap& map, const WarpRequest& request) {
     const bool is_color = !request.options.folds && request.options.output == Output::color;
     if (request.program && is_color) return std::make_unique<ProgrammedPicture>(map, request);
-    return std::make_unique<Solved<ShadedPicture>>(ShadedPicture(map, request), ShadedPicture::saturated);
+    return std::make_unique<Solved<ShadedPicture>>(ShadedPicture(map, request), ShadedPicture::saturated,
+                                                   true);
 }
 
 }  // namespace anamorph

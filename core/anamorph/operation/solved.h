@@ -29,7 +29,8 @@ class Solved final : public SolvedPicture {
     /// What it says of itself beyond what every picture reached.
     using More = Attributes (*)(const Solver& solver, const ParallelFor& parallel_for);
 
-    explicit Solved(Solver solver, More more = nullptr) : m_solver(std::move(solver)), m_more(more) {}
+    explicit Solved(Solver solver, More more = nullptr, bool by_drawing = false)
+        : m_solver(std::move(solver)), m_more(more), m_by_drawing(by_drawing) {}
 
     Attributes reached(const ParallelFor& parallel_for) const override {
         const Reached reached = m_solver.picture().reached(parallel_for);
@@ -39,6 +40,7 @@ class Solved final : public SolvedPicture {
             for (Attribute& attribute : m_more(m_solver, parallel_for)) all.push_back(std::move(attribute));
         return all;
     }
+    bool reached_by_drawing() const override { return m_by_drawing; }
     bool draw(const std::vector<const Source*>& sources, const Box& box, const ImageView& view,
               const ParallelFor& parallel_for) const override {
         return m_solver.picture().draw(sources, box, view, parallel_for);
@@ -47,6 +49,7 @@ class Solved final : public SolvedPicture {
   private:
     Solver m_solver;
     More m_more;
+    bool m_by_drawing;
 };
 
 }  // namespace anamorph
