@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "anamorph/number/number_format.h"
 
+#include <algorithm>
 #include <utility>
 
 #include "anamorph/error.h"
@@ -15,9 +16,12 @@ constexpr std::pair<const char*, NumberFormat> kNames[] = {
 
 }  // namespace
 
-NumberFormat number_format_from_name(std::string_view name, const std::string& parameter) {
+NumberFormat number_format_from_name(std::string_view name, const std::string& parameter,
+                                     std::initializer_list<NumberFormat> allowed) {
     std::string names;
     for (const auto& [known, format] : kNames) {
+        if (allowed.size() > 0 && std::find(allowed.begin(), allowed.end(), format) == allowed.end())
+            continue;
         if (name == known) return format;
         names += (names.empty() ? "" : ", ") + std::string(known);
     }

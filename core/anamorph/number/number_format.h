@@ -5,6 +5,7 @@
 
 #include <bit>
 #include <cstdint>
+#include <initializer_list>
 #include <string>
 #include <string_view>
 
@@ -39,8 +40,10 @@ inline constexpr NumberFormat kSigned8{NumberFormat::Kind::fixed, 8, 7};
 inline constexpr NumberFormat kSigned16{NumberFormat::Kind::fixed, 16, 15};
 inline constexpr NumberFormat kUnsigned16{NumberFormat::Kind::normalised, 16};
 
-/// Throws Error naming `parameter`: must be one of float16, float24, float32, fixed16, fixed32, V8U8, V16U16, G16R16.
-NumberFormat number_format_from_name(std::string_view name, const std::string& parameter);
+/// float16, float24, float32, fixed16, fixed32, V8U8, V16U16 or G16R16; of these only those `allowed`, where any are given.
+/// Throws Error naming `parameter` and what is allowed.
+NumberFormat number_format_from_name(std::string_view name, const std::string& parameter,
+                                     std::initializer_list<NumberFormat> allowed = {});
 /// One of those names.
 std::string name_of(const NumberFormat& format);
 

@@ -50,17 +50,20 @@ std::string file_text(const std::string& name) {
     return text;
 }
 
-/// The parts of "s0=FILE" or "c0=1,2,3,4": the register's number and what it is.
-std::pair<int, std::string> assigned(const std::string& text, char bank, int count) {
+/// The parts of "s0=FILE" or "c0=1,2,3,4": the register's number and `what` it is.
+std::pair<int, std::string> assigned(const char* option, const std::string& text, char bank, int count,
+                                     const char* what) {
     const std::size_t sign = text.find('=');
     std::string_view digits = std::string_view(text).substr(0, sign);
     double number = -1;
     const bool is_register = !digits.empty() && digits.front() == bank;
     if (is_register) digits.remove_prefix(1);
-    if (!is_register || sign == std::string::npos || !text_file::take_number(digits, number) ||
-        !digits.empty() || !(number >= 0 && number < count) || number != static_cast<int>(number))
-        throw Error("\"" + printable(text) + "\": must be " + bank + "0 to " + bank +
-                    std::to_string(count - 1) + ", = and what it is");
+    if (!is_register || sign == std::string::npos || sign + 1 == text.size() ||
+        !text_file::take_number(digits, number) || !digits.empty() || !(number >= 0 && number < count) ||
+        number != static_cast<int>(number))
+        throw Error(
+            option, printable(text),
+            std::string("must be ") + bank + "0 to " + bank + std::to_string(count - 1) + ", = and " + what);
     return {static_cast<int>(number), text.substr(sign + 1)};
 }
 
@@ -218,14 +221,13 @@ class Command {
     }
 
     void draw() const {
-        const NumberFormat format = number_format_from_name(m_settings.arithmetic, "--arithmetic");
-        if (format == kSigned8 || format == kSigned16 || format == kUnsigned16)
-            throw Error("--arithmetic", m_settings.arithmetic,
-                        "must be one of float16, float24, float32, fixed16, fixed32");
+        const NumberFormat format = number_format_from_name(
+            m_settings.arithmetic, "--arithmetic", {kFloat16, kFloat24, kFloat32, kFixed16, kFixed32});
         const ShaderProgram program = read_program();
         std::map<int, MachineTexture<4>> textures;
         for (const std::string& text : m_settings.textures) {
-            const auto [number, name] = assigned(text, 's', ShaderProgram::kSamplers);
+            const auto [number, name] =
+                assigned("--texture", text, 's', ShaderProgram::kSamplers, "the name of a file");
             if (!textures.emplace(number, read_texture(name, m_settings.weight_bits)).second)
                 throw Error("--texture", printable(text), "is given twice: must be given once");
         }
@@ -242,7 +244,8 @@ class Command {
         ShaderInputs<T> inputs(program);
         std::set<int> given;
         for (const std::string& text : m_settings.constants) {
-            const auto [number, list] = assigned(text, 'c', ShaderProgram::kConstants);
+            const auto [number, list] =
+                assigned("--constant", text, 'c', ShaderProgram::kConstants, "four numbers");
             const std::vector<std::string_view> fields = text_file::fields_of(list);
             if (fields.size() != 4) throw Error("--constant", printable(text), "must have four numbers");
             const auto n = static_cast<std::size_t>(number);

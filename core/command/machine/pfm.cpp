@@ -2,6 +2,7 @@
 #include "pfm.h"
 
 #include <bit>
+#include <cmath>
 #include <cstring>
 
 #include "anamorph/text_file.h"
@@ -46,8 +47,11 @@ FloatPicture parse_pfm(std::string_view bytes, const std::string& name) {
     picture.height = take_side(bytes, name);
     double scale = 0;
     std::string_view word = take_word(bytes);
-    if (!text_file::take_number(word, scale) || !word.empty() || scale == 0)
-        fail(name, "", "has no scale behind its size: must have -1 for little-endian floats, 1 for others");
+    if (!text_file::take_number(word, scale) || !word.empty() || scale == 0 || !std::isfinite(scale))
+        fail(name, "",
+             "has no scale behind its size: must have a finite number, negative for little-endian floats, "
+             "positive for "
+             "others");
     const std::size_t row = std::size_t{3} * static_cast<std::size_t>(picture.width);
     const std::size_t count = row * static_cast<std::size_t>(picture.height);
     if (bytes.size() != count * sizeof(float))
