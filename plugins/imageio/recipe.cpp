@@ -42,9 +42,11 @@ std::string normal(const std::string& name) {
     return fs::path(base).lexically_normal().string() + name.substr(base.size());
 }
 
-/// A path without "." and empty parts, which mean nothing; ".." is kept, since a link may stand before it.
+/// A path without "." and empty parts, which mean nothing, unless there is no other; ".." is kept, since a link may stand
+/// before it.
 std::string without_detours(std::string_view path) {
     std::string out = path.starts_with('/') ? "/" : "";
+    const bool is_empty = path.empty();
     while (!path.empty()) {
         const std::size_t slash = path.find('/');
         const std::string_view part = path.substr(0, slash);
@@ -53,7 +55,7 @@ std::string without_detours(std::string_view path) {
         if (!out.empty() && out.back() != '/') out += '/';
         out += part;
     }
-    return out;
+    return out.empty() && !is_empty ? "." : out;
 }
 
 std::string state_of(const std::string& name) {

@@ -13,6 +13,7 @@
 #include <random>
 
 #include "anamorph/drape/oka.h"
+#include "anamorph/simd/block_sampler.h"
 #include "anamorph/simd/facet_rows.h"
 #include "drape_oracle.h"
 #include "drape_scene.h"
@@ -750,6 +751,81 @@ TEST(Drape, BlocksLieOverThoseThatAreFarther) {
             // Where two are as near as each other, which is a matter of rounding.
             EXPECT_LE(differ, scene.screen.width * scene.screen.height / 500) << surface;
         }
+}
+
+/// A drape's colours, drawn in parts of this size.
+std::vector<float> drawn_in_parts(const Drape& drape, const Source& source, const Size& screen,
+                                  const Size& part) {
+    std::vector<float> pixels(static_cast<std::size_t>(3 * screen.width * screen.height));
+    for (int y = 0; y < screen.height; y += part.height)
+        for (int x = 0; x < screen.width; x += part.width) {
+            const Box box =
+                intersection({x, y, x + part.width, y + part.height}, {0, 0, screen.width, screen.height});
+            std::vector<float> own(static_cast<std::size_t>(3 * box.width() * box.height()));
+            EXPECT_TRUE(drape.draw(&source, box,
+                                   packed_view(reinterpret_cast<std::byte*>(own.data()), PixelType::float32,
+                                               box.width(), box.height(), 3),
+                                   serial_for));
+            for (int j = 0; j < box.height(); ++j)
+                std::copy_n(own.begin() + 3 * j * box.width(), 3 * box.width(),
+                            pixels.begin() + 3 * ((box.y0 + j) * screen.width + box.x0));
+        }
+    return pixels;
+}
+
+TEST(Drape, BlocksHaveTheSameBitsInPartsAndOnEveryInstructionSet) {
+    for (const Size& picture : {Size{64, 64}, Size{1, 1}, Size{1, 3000}})
+        for (const DrapeScheme scheme : {DrapeScheme::oka, DrapeScheme::oka_z}) {
+            // A block that goes all round has no linear map.
+            Scene scene{picture.width > 1 ? "sphere" : "cylinder"};
+            scene.shape.angle = picture.width > 1 ? 360 : 90;
+            scene.picture = picture;
+            scene.pose.position = {0.4, 0.3, 1.2};
+            const Shown shown(scene);
+            std::vector<float> texels(static_cast<std::size_t>(3 * picture.width * picture.height));
+            for (std::size_t i = 0; i < texels.size(); ++i)
+                texels[i] = static_cast<float>(i * 37 % 101 + 1) / 102;
+            const MemorySource source(packed_view(reinterpret_cast<const std::byte*>(texels.data()),
+                                                  PixelType::float32, picture.width, picture.height, 3));
+            DrapeOptions options;
+            options.scheme = scheme;
+            options.block = 4;
+            options.lighting.shading = DrapeShading::phong;
+            const Drape drape(shown.tree(), shown.camera(), picture, options);
+            const std::vector<float> whole = drawn_in_parts(drape, source, scene.screen, scene.screen);
+            EXPECT_GT(std::count_if(whole.begin(), whole.end(), [](float v) { return v > 0; }), 5000);
+            EXPECT_EQ(whole, drawn_in_parts(drape, source, scene.screen, {37, 23}));
+            for (const char* const* set = simd::instruction_sets(); *set; ++set) {
+                SCOPED_TRACE(*set);
+                ASSERT_TRUE(simd::use_instruction_set(*set));
+                const std::vector<float> points = Shown(scene, options).values(Output::stmap);
+                simd::use_instruction_set("");
+                EXPECT_EQ(points, Shown(scene, options).values(Output::stmap));
+            }
+        }
+}
+
+TEST(Drape, BlocksBehindTheCameraAndEdgeOnAreLeftOut) {
+    for (const glm::dvec3& position :
+         {glm::dvec3(0.1, 0.05, 0), glm::dvec3(0, 0, 1e-9), glm::dvec3(3, 0, 0)}) {
+        Scene scene{position.x == 3 ? "plane" : "sphere"};
+        scene.shape.angle = 360;
+        scene.pose.position = position;
+        scene.pose.target = position - glm::dvec3(1, 0, 0);
+        for (const DrapeScheme scheme : {DrapeScheme::oka, DrapeScheme::oka_z}) {
+            DrapeOptions options;
+            options.scheme = scheme;
+            Shown shown(scene, options);
+            const std::vector<float> depths = shown.values(Output::color, DrapeOutput::depth);
+            for (const float depth : depths) EXPECT_GT(depth, 0);
+            const auto seen =
+                std::count_if(depths.begin(), depths.end(), [](float d) { return d < HUGE_VALF; });
+            if (position.x == 3)
+                EXPECT_EQ(seen, 0);
+            else
+                EXPECT_GT(seen, 1000);
+        }
+    }
 }
 
 TEST(Drape, BoundsOfParallelogramsHoldForWideOverlaps) {

@@ -314,6 +314,17 @@ TEST_F(Warp, ProgramsOfTheUsersRunInOiiotool) {
     }
 }
 
+/// Their largest error is that of all pixels, which would take minutes.
+TEST_F(Warp, RecipesOfMachinesOpenWithoutComputingTheirPixels) {
+    const auto input =
+        OIIO::ImageInput::open("city.exr.warp?scheme=hardware&mesh=grid.json&size=16384&tile=64");
+    ASSERT_TRUE(input) << OIIO::geterror();
+    EXPECT_EQ(input->spec().find_attribute("anamorph:max_error"), nullptr);
+    EXPECT_NE(input->spec().find_attribute("anamorph:tol"), nullptr);
+    std::vector<float> tile(static_cast<std::size_t>(64 * 64 * input->spec().nchannels));
+    EXPECT_TRUE(input->read_tile(64, 64, 0, OIIO::TypeFloat, tile.data())) << input->geterror();
+}
+
 TEST_F(Warp, WhatFailsFailsWithStatus1AndALine) {
     write_text("short.json", R"({"columns": 2, "rows": 1, "vertices": [[0, 0], [1, 1]]})");
     write_text("cut.json", kMesh.substr(0, kMesh.size() / 2));
@@ -335,6 +346,7 @@ TEST_F(Warp, WhatFailsFailsWithStatus1AndALine) {
         {"city.exr.warp?mesh=none.exr", "none.exr"},
         {"city.exr.warp?mesh=twice.json", "twice.json: \"rows\" is given twice"},
         {"city.exr.warp?scheme=hardware&program=none.ps", "none.ps\" does not exist"},
+        {"city.exr.warp?scheme=hardware&program=.", "program=.: is not a file but a folder"},
         {"city.exr.warp?scheme=hardware&program=bad.ps", "bad.ps: line 3: \"frob\": no such instruction"},
         {"city.exr.warp?scheme=hardware&program=good.ps&output=error", "output=error: must be color"},
         {"city.exr.warp?scheme=exact&mesh=grid.json&program=good.ps", "must be given with scheme=hardware"},

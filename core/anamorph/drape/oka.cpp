@@ -155,6 +155,11 @@ glm::dvec3 seen_at(const DrapedSurface& surface, const Camera& camera, double u,
     return {on_screen.x, on_screen.y, p.z};
 }
 
+/// Of u and of v; at most all of the picture.
+glm::dvec2 sides_of(const Size& picture, const OkaBlocks& blocks) {
+    return {std::min(1.0, blocks.side / picture.width), std::min(1.0, blocks.side / picture.height)};
+}
+
 bool is_number(const glm::dvec3& v) {
     return std::isfinite(v.x + v.y + v.z);
 }
@@ -171,7 +176,8 @@ Size oka_block_count(const Size& picture, const OkaBlocks& blocks) {
 
 bool oka_block(const DrapedSurface& surface, const Camera& camera, const Size& picture,
                const OkaBlocks& blocks, int i, int j, OkaBlock& block) {
-    const double side_u = blocks.side / picture.width, side_v = blocks.side / picture.height;
+    const glm::dvec2 sides = sides_of(picture, blocks);
+    const double side_u = sides.x, side_v = sides.y;
     // Where the centre of a block is seen, and its depth.
     const auto seen = [&](int column, int row) {
         return seen_at(surface, camera, (column + 0.5) * side_u, (row + 0.5) * side_v);
@@ -204,8 +210,9 @@ OkaRaster::OkaRaster(std::shared_ptr<const DrapedSurface> surface, const Camera&
       m_columns((camera.screen().width + square - 1) / square),
       m_pool(std::move(pool)),
       m_room(m_pool->take()) {
-    m_grid.side_u = blocks.side / picture.width;
-    m_grid.side_v = blocks.side / picture.height;
+    const glm::dvec2 sides = sides_of(picture, blocks);
+    m_grid.side_u = sides.x;
+    m_grid.side_v = sides.y;
     m_grid.half_u = (m_grid.side_u + blocks.overlap / picture.width) / 2;
     m_grid.half_v = (m_grid.side_v + blocks.overlap / picture.height) / 2;
     find_blocks();

@@ -14,7 +14,7 @@ namespace anamorph {
 
 /// How a picture is cut into blocks.
 struct OkaBlocks {
-    double side = 8;       ///< d, pixels of the picture
+    double side = 8;       ///< d, pixels of the picture; either way at most all of them
     double overlap = 0.5;  ///< width of the common area of two neighbours, pixels of the picture
     /// Depth within a block: false, that of its centre, so that nearer blocks are drawn over farther ones (section 3); true,
     /// linear (section 5).
