@@ -148,6 +148,9 @@ turn.KeyFrames = [CompositeKeyFrame(KeyTime=time, KeyValues=[angle])
 nose = GetAnimationTrack("Deformations", index=9 * model.first_of("nose") + 9 * 3 + 6, proxy=face)
 nose.KeyFrames = [CompositeKeyFrame(KeyTime=time, KeyValues=[height])
                   for time, height in ((0, 0.05), (0.5, 0.12), (1, 0.05))]
+for name, track in (("turn", turn), ("nose", nose)):
+    for key in track.KeyFrames:  # a state has what is registered, and nothing else
+        servermanager.ProxyManager().RegisterProxy("animation", f"{name} {key.KeyTime}", key.SMProxy)
 SaveAnimation(out + "/film.png", view, ImageResolution=view.ViewSize, FrameWindow=[0, given.frames - 1])
 scene.GoToFirst()
 SaveState(out + "/face.pvsm")

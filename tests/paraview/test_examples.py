@@ -18,6 +18,8 @@ LoadState({folder!r} + "/face.pvsm")
 film = FindSource("film")
 assert list(film.TimestepValues) == [0, 1, 2, 3, 4, 5, 6], list(film.TimestepValues)
 assert len(FindSource("face").Deformations) == 50 * 9
+tracks = [cue for cue in GetAnimationScene().Cues if cue.GetXMLName() == "KeyFrameAnimationCue"]
+assert [[key.KeyValues[0] for key in track.KeyFrames] for track in tracks] == [[-35, 35, -35], [0.05, 0.12, 0.05]], tracks
 SaveScreenshot({folder!r} + "/again.png", GetActiveView() or GetViews()[0], ImageResolution=[480, 480])
 """
 READ = """
