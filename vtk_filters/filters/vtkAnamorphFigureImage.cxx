@@ -161,31 +161,38 @@ void vtkAnamorphFigureImage::AskedExtent(int extent[6]) {
     output->Get(vtkStreamingDemandDrivenPipeline::UPDATE_EXTENT(), extent);
 }
 
-void vtkAnamorphFigureImage::Draw(vtkPolyData* input, vtkDataObject* output,
-                                  anamorph_vtk::Execution& execution) {
+/// How the figures are drawn: textured, where the style is shaded and there are textures.
+anamorph::FigureLook vtkAnamorphFigureImage::GetLook() const {
     static constexpr FigureStyle kStyles[] = {FigureStyle::shaded, FigureStyle::outline, FigureStyle::stick,
                                               FigureStyle::depth, FigureStyle::id};
+    anamorph::FigureLook look;
+    look.style = kStyles[this->Style];
+    look.light.lighting = static_cast<anamorph::Lighting>(this->Lighting);
+    look.light.toward = anamorph::usual_light(look.light.lighting);
+    look.antialias = this->Antialias;
+    if (this->Style != SHADED || this->Textures.empty()) return look;
+    look.style = FigureStyle::textured;
+    look.mapping = static_cast<anamorph::BodyMapping>(this->TextureMapping);
+    for (const auto& texture : this->Textures) look.textures.push_back(texture.first);
+    return look;
+}
+
+void vtkAnamorphFigureImage::Draw(vtkPolyData* input, vtkDataObject* output,
+                                  anamorph_vtk::Execution& execution) {
     anamorph::View view = this->ViewOf(input);
     const int width = this->ViewSize[0], height = this->ViewSize[1];
     if (width > kMostSide || height > kMostSide)
         throw anamorph::Error("ViewSize", std::to_string(std::max(width, height)),
                               "must be an integer from 1 to " + std::to_string(kMostSide));
     view.middle += 0.5 * glm::dvec2(width, height);
-    anamorph::FigureLook look;
-    look.style = kStyles[this->Style];
-    look.light.lighting = static_cast<anamorph::Lighting>(this->Lighting);
-    look.light.toward = anamorph::usual_light(look.light.lighting);
-    look.antialias = this->Antialias;
+    const anamorph::FigureLook look = this->GetLook();
+    // In the order of their names.
     std::vector<std::unique_ptr<Texture>> textures;
     std::vector<const anamorph::Source*> sources;
-    if (this->Style == SHADED && !this->Textures.empty()) {
-        look.style = FigureStyle::textured;
-        look.mapping = static_cast<anamorph::BodyMapping>(this->TextureMapping);
-        for (const auto& [name, image] : this->Textures) {
-            textures.push_back(std::make_unique<Texture>(image, "texture " + anamorph::printable(name)));
-            sources.push_back(&textures.back()->pyramid);
-            look.textures.push_back(name);
-        }
+    for (const std::string& name : look.textures) {
+        textures.push_back(std::make_unique<Texture>(this->Textures[sources.size()].second,
+                                                     "texture " + anamorph::printable(name)));
+        sources.push_back(&textures.back()->pyramid);
     }
     const anamorph_vtk::Bodies bodies(input);
     const anamorph::FigurePicture picture(frame_of(input, bodies, look.style == FigureStyle::textured), view,

@@ -27,6 +27,10 @@
 #include <utility>  // for both
 #include <vector>   // for all
 
+namespace anamorph {
+struct FigureLook;
+}
+
 class ANAMORPHFILTERS_EXPORT vtkAnamorphFigureImage : public vtkAnamorphFigureAlgorithm {
   public:
     static vtkAnamorphFigureImage* New();
@@ -94,6 +98,7 @@ class ANAMORPHFILTERS_EXPORT vtkAnamorphFigureImage : public vtkAnamorphFigureAl
     vtkAnamorphFigureImage(const vtkAnamorphFigureImage&) = delete;
     void operator=(const vtkAnamorphFigureImage&) = delete;
 
+    anamorph::FigureLook GetLook() const;
     void AskedExtent(int extent[6]);
 
     int Style = SHADED;
