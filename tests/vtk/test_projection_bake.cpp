@@ -194,6 +194,37 @@ TEST(VtkProjectionBake, ArraysOfAnyLayoutAndTypeGiveTheSame) {
     for_any_threads([&] { EXPECT_EQ(baked(mesh, picture), wanted); });
 }
 
+TEST(VtkProjectionBake, LensesAndPanninisDistanceCount) {
+    // Seen from 1 in front of it, the wall reaches 45 degrees each way.
+    for (const bool pannini : {false, true}) {
+        const auto bake = small_bake(wall(), coordinates(400, 400));
+        bake->SetProjection(pannini ? 11 : 2);
+        bake->SetFieldOfView(120);
+        bake->SetFade(0);
+        const double d = 0.5, k1 = -0.02;
+        if (pannini)
+            bake->SetPanniniDistance(d);
+        else
+            bake->SetLens("brown:k1=-0.02");
+        bake->Update();
+        for (int i = 0; i < 40; ++i) {
+            // Level: across the middle rows, which are 1/30 up and down.
+            const double x = (i + 0.5) / 40 * 2 - 1, y = 1. / 30, half = 60 * kPi / 180, a = std::atan(x);
+            const double place =
+                pannini ? (d + 1) * std::sin(a) / (d + std::cos(a)) : x * (1 + k1 * (x * x + y * y));
+            const double border = pannini ? (d + 1) * std::sin(half) / (d + std::cos(half)) : std::tan(half);
+            EXPECT_NEAR(bake->GetOutput()->GetScalarComponentAsDouble(i, 15, 0, 0),
+                        (place / border + 1) * 200, 1e-2)
+                << pannini << " " << i;
+        }
+    }
+    const auto bake = small_bake(wall(), coordinates(100, 50));
+    bake->SetLens("thick:a=1");
+    Errors errors(bake);
+    bake->Update();
+    EXPECT_THAT(errors.text(), HasSubstr("thick"));
+}
+
 TEST(VtkProjectionBake, HardTrianglesHarmNothing) {
     const auto picture = coordinates(100, 50);
     const auto wanted = baked(wall(), picture);
@@ -244,12 +275,15 @@ TEST(VtkProjectionBake, ProgressRisesTo1AbortEmptiesTheOutputAndNothingStays) {
 
 TEST(VtkProjectionBake, CountsModificationsExecutesOnceAndPrints) {
     vtkNew<Bake> bake;
-    expect_modified_by<Bake>(bake, {[](Bake* b) { b->SetProjection(1); },
-                                    [](Bake* b) { b->SetFieldOfView(90); }, [](Bake* b) { b->SetWidth(20); },
-                                    [](Bake* b) { b->SetHeight(10); }, [](Bake* b) { b->SetFade(3); },
-                                    [](Bake* b) { b->SetMargin(2); }, [](Bake* b) { b->OcclusionOff(); }});
+    expect_modified_by<Bake>(
+        bake,
+        {[](Bake* b) { b->SetProjection(1); }, [](Bake* b) { b->SetFieldOfView(90); },
+         [](Bake* b) { b->SetWidth(20); }, [](Bake* b) { b->SetHeight(10); }, [](Bake* b) { b->SetFade(3); },
+         [](Bake* b) { b->SetPanniniDistance(2); }, [](Bake* b) { b->SetLens("none"); },
+         [](Bake* b) { b->SetMargin(2); }, [](Bake* b) { b->OcclusionOff(); }});
     bake->AddProjector(0, 0, 0, 0, 0, -1, 0, 1, 0);
-    expect_printed(bake, {"Projection: cylindrical", "NumberOfProjectors: 1", "Width: 20", "Margin: 2"});
+    expect_printed(bake, {"Projection: cylindrical", "NumberOfProjectors: 1", "Width: 20", "Margin: 2",
+                          "PanniniDistance: 2", "Lens: none"});
     bake->SetInputData(0, wall());
     bake->AddInputData(1, coordinates(100, 50));
     expect_executed_once(bake);

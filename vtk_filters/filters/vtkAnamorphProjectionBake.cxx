@@ -154,8 +154,10 @@ void vtkAnamorphProjectionBake::Run::take_pictures() {
         bytes = bytes && scalars->GetDataType() == VTK_UNSIGNED_CHAR;
         int size[3];
         image->GetDimensions(size);
-        const anamorph::Chart chart(anamorph::kProjections[filter.Projection], size[0], size[1],
-                                    filter.FieldOfView, anamorph::PixelSpacing::edges, "panorama ");
+        const anamorph::Chart chart(
+            anamorph::kProjections[filter.Projection], size[0], size[1], filter.FieldOfView,
+            anamorph::PixelSpacing::edges, "panorama ", filter.PanniniDistance,
+            filter.Lens && *filter.Lens ? anamorph::LensModel::parse(filter.Lens) : anamorph::LensModel{});
         pixels.push_back(pixels_of(image, scalars));
         pictures.push_back({anamorph::Projector(chart, poses[i]), nullptr});
     }
@@ -276,13 +278,17 @@ vtkAnamorphProjectionBake::vtkAnamorphProjectionBake()
     this->SetNumberOfInputPorts(3);
 }
 
-vtkAnamorphProjectionBake::~vtkAnamorphProjectionBake() = default;
+vtkAnamorphProjectionBake::~vtkAnamorphProjectionBake() {
+    this->SetLens(nullptr);
+}
 
 void vtkAnamorphProjectionBake::PrintSelf(ostream& os, vtkIndent indent) {
     this->Superclass::PrintSelf(os, indent);
     os << indent << "NumberOfProjectors: " << this->Poses->all.size() << "\n"
        << indent << "Projection: " << anamorph::name_of(anamorph::kProjections[this->Projection]) << "\n"
        << indent << "FieldOfView: " << this->FieldOfView << "\n"
+       << indent << "PanniniDistance: " << this->PanniniDistance << "\n"
+       << indent << "Lens: " << (this->Lens ? this->Lens : "(none)") << "\n"
        << indent << "Width: " << this->Width << "\n"
        << indent << "Height: " << this->Height << "\n"
        << indent << "Fade: " << this->Fade << "\n"

@@ -63,6 +63,23 @@ class ANAMORPHFILTERS_EXPORT vtkAnamorphProjectionBake : public vtkImageAlgorith
 
     ///@{
     /**
+     * The distance d of Pannini's projection, which others do not read. Default: 1.
+     */
+    vtkSetMacro(PanniniDistance, double);
+    vtkGetMacro(PanniniDistance, double);
+    ///@}
+
+    ///@{
+    /**
+     * Distortion of the lens that the panoramas were taken through: MODEL:name=value,name=value with ptlens, brown, 3de4 or
+     * kb4. Default: none.
+     */
+    vtkSetStringMacro(Lens);
+    vtkGetStringMacro(Lens);
+    ///@}
+
+    ///@{
+    /**
      * The size of the texture. Default: 1024 x 1024.
      */
     vtkSetMacro(Width, int);
@@ -134,7 +151,8 @@ class ANAMORPHFILTERS_EXPORT vtkAnamorphProjectionBake : public vtkImageAlgorith
 
     std::unique_ptr<Projectors> Poses;
     int Projection = 0, Width = 1024, Height = 1024;
-    double FieldOfView = 0, Fade = 32, Margin = 1;
+    double FieldOfView = 0, PanniniDistance = 1, Fade = 32, Margin = 1;
+    char* Lens = nullptr;
     bool Occlusion = true;
     vtkSmartPointer<vtkMultiProcessController> Controller;
 };

@@ -49,7 +49,8 @@ struct BakeOptions {
     /// Texels beyond the border of a triangle that are painted, too, as its plane goes on: for filters that read across it.
     double margin = 1;
     /// Only rows first_row, first_row + row_step and so on are made, for several that share the work; others stay 0.
-    int first_row = 0, row_step = 1;
+    int first_row = 0;
+    int row_step = 1;  ///< from one of these to the next
 };
 
 /// A texture: rows from the top, the channels of the pictures and one of coverage, 0 or 1.
