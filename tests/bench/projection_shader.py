@@ -1,14 +1,10 @@
-#!/ usr / bin / python3
-#SPDX - License - Identifier : Apache - 2.0
-""
-    "Panoramas on a room, drawn by OpenGL: frames and fragments a second, and errors, of vtkAnamorphProjectionShader's three modes beside
-    what VTK has,
-    which has no tolerance
-    : vtkProjectedTexture(a picture of 90 degrees;
-                          Kim 2003 calls it conventional projective texture mapping) and
-      vtkTextureMapToSphere,
-    both of which give the vertices of a mesh texture coordinates; and
-vtkAnamorphPanoramaProjection, which does so within a tolerance. Their vertices a second are those of the filter.
+#!/usr/bin/python3
+# SPDX-License-Identifier: Apache-2.0
+"""Panoramas on a room, drawn by OpenGL: frames and fragments a second, and errors, of vtkAnamorphProjectionShader's three modes beside
+what VTK has, which has no tolerance: vtkProjectedTexture (a picture of 90 degrees; Kim 2003 calls it conventional projective
+texture mapping) and vtkTextureMapToSphere, both of which give the vertices of a mesh texture coordinates; and
+vtkAnamorphPanoramaProjection, which does so within a tolerance. Their vertices a second are those of the filter. With occluders the
+room hides itself, by a map of 1024 texels a face that is drawn once.
 
 Every pixel of the window shows the room, whose walls have CELLS x CELLS quads. Errors are in texels, of pictures whose texels have their
 place as their color, read without interpolation, against the formulas of this file in double: at their middle half a texel
@@ -37,7 +33,7 @@ from anamorph import vtkAnamorphPanoramaProjection, vtkAnamorphPanoramaProjector
 
 HALF, CELLS, POSITION, EYE, VIEW_ANGLE = 2.0, 16, np.array([-0.3, 0.2, 0.1]), np.array([0.4, 0.3, 0.7]), 80.0
 MODES = ("direct", "residual", "multipass")
-#Texels, half of one and a little : what a mode that is measured may be off.
+# Texels, half of one and a little: what a mode that is measured may be off.
 MOST = 0.6
 
 
@@ -211,32 +207,28 @@ def main():
         show(window, False)
         for size in sizes:
             seconds = window.seconds(size, arguments.rounds)
-            rows.append({
-    "case" : name,
-             "size" : f "{size[0]}x{size[1]}",
-                      "frames_per_s" : 1 / seconds,
-                      "fragments_per_s" : size[0] * size[1] / seconds,
-                      "vertices_per_s" : speed or "",
-                      "worst_texels" : off[0] if off else "",
-                                       "share_off_by_one" : off[1] if off else ""})
+            rows.append({"case": name, "size": f"{size[0]}x{size[1]}", "frames_per_s": 1 / seconds,
+                         "fragments_per_s": size[0] * size[1] / seconds, "vertices_per_s": speed or "",
+                         "worst_texels": off[0] if off else "", "share_off_by_one": off[1] if off else ""})
             print("{case:24} {size:>10} {frames_per_s:9.1f} frames/s {fragments_per_s:10.3g} fragments/s".format(**rows[-1]),
                   "  worst {:8.3f} texels, {:.3%} off by more than one".format(*off) if off else "",
                   f"  {speed:.3g} vertices/s" if speed else "", flush=True)
         return off[0] if off else 0
 
-    for mode in MODES:
-        def throw(window, places, mode=mode):
+    for mode, hides in [(mode, False) for mode in MODES] + [("direct", True)]:
+        def throw(window, places, mode=mode, hides=hides):
             window.shader, projector = vtkAnamorphProjectionShader(), vtkAnamorphPanoramaProjector()
+            if hides:
+                projector.SetOccluderData(mesh)
             projector.SetPanorama(texture(width, height, places))
             projector.SetPosition(POSITION)
             window.shader.AddProjector(projector)
             window.shader.SetMode(MODES.index(mode))
             window.shader.SetPlaneSize(2048)
             window.shader.AddTo(window.actor)
-#Mode multipass reads a picture that was read before, in which colors are no places; \
-    tests / vtk / projector measures it.
+        # Mode multipass reads a picture that was read before, in which colors are no places; tests/vtk/projector measures it.
         truth = equirectangular(points, width, height) if mode != "multipass" else None
-        off = report("shader " + mode, throw, truth)
+        off = report("shader " + mode + ", occluders" * hides, throw, truth)
         failed = failed or off > MOST
 
     def by_coordinates(output, size):
