@@ -160,6 +160,19 @@ std::vector<PaintedTriangle> texels_of(const BakedTexture& baked, int size) {
     return all;
 }
 
+/// Of so many triangles or texels, without its errors.
+Row row_of(const std::string& scheme, double tol, const Times& time, std::size_t count) {
+    Row row;
+    row.op = "projection";
+    row.case_name = "room";
+    row.scheme = scheme;
+    row.tol_px = tol;
+    row.size = static_cast<int>(count);
+    row.ns_per_px = time.median / static_cast<double>(count);
+    row.best_ns_per_px = time.best / static_cast<double>(count);
+    return row;
+}
+
 void run_room(const Settings& settings, Report& report) {
     if (!settings.wants_case("room")) return;
     const Projector projector(Chart(Projection::equirectangular, 4096, 2048), kPose);
@@ -194,14 +207,7 @@ void run_room(const Settings& settings, Report& report) {
     const auto add_row = [&](const std::string& scheme, double tol, const Times& time, std::size_t count,
                              const std::function<Accuracy()>& error, double bound) {
         if (!settings.wants_scheme(scheme)) return;
-        Row row;
-        row.op = "projection";
-        row.case_name = "room";
-        row.scheme = scheme;
-        row.tol_px = tol;
-        row.size = static_cast<int>(count);
-        row.ns_per_px = time.median / static_cast<double>(count);
-        row.best_ns_per_px = time.best / static_cast<double>(count);
+        Row row = row_of(scheme, tol, time, count);
         row.ratio_to_exact = times[0].median / static_cast<double>(vertices.size()) / row.ns_per_px;
         row.error = error();
         row.bound_px = bound;
