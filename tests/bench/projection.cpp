@@ -9,7 +9,7 @@
 // by Kim's linear parts and tables of residuals of 256 x 256 (4.2 to 4.4), eight directions of 90 degrees; those above and below
 // are left out. bake: a texture of 256 x 256 of a wall, evaluated at every texel; the time is that of a texel.
 //
-// Case mosaic: a view of 90 degrees of concentric mosaics of 9 circles, four times as wide as the view, from beside their
+// Case mosaic: a view of 90 degrees of concentric mosaics of 5 circles, four times as wide as the view, from beside their
 // middle; the time is that of a pixel, and errors are those of the source points of one circle.
 #include <algorithm>
 #include <array>

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Views of concentric mosaics: speed and error.
+#include <algorithm>
 #include <cmath>
 #include <deque>
 #include <numbers>
@@ -16,7 +17,7 @@ namespace {
 using Real = long double;
 constexpr Real kPi = std::numbers::pi_v<Real>;
 
-constexpr int kCircles = 9, kMiddle = 6;
+constexpr int kCircles = 5, kMiddle = 3, kMostSide = 1024;
 constexpr double kDepth = 3, kYaw = 30, kRight = 0.4, kAhead = -0.3;
 
 Panorama view_of(int side) {
@@ -63,7 +64,7 @@ Accuracy accuracy(int side, const ConcentricStack& stack, ReprojectOptions optio
 
 void run_mosaics(const Settings& settings, Report& report) {
     if (!settings.wants_case("mosaic")) return;
-    const int side = settings.size;
+    const int side = std::min(settings.size, kMostSide);
     Pool pool(settings.threads);
     const auto pixels = static_cast<std::size_t>(side) * static_cast<std::size_t>(side);
     Buffer texels(sizeof(float) * 3 * 4 * pixels * kCircles), picture(sizeof(float) * 3 * pixels);
