@@ -66,7 +66,7 @@ Drape::Drape(std::shared_ptr<SharedTree> surface, const Camera& camera, const Si
 }
 
 Reached Drape::reached(const ParallelFor& parallel_for) const {
-    return m_map->exact_points() ? m_map->reached(parallel_for) : Reached{max_error(), 0};
+    return m_map->exact_points() ? m_map->reached(parallel_for) : Reached{m_map->max_error(parallel_for), 0};
 }
 
 Drape::Lit Drape::lit(const FacetCorner& corner) const {

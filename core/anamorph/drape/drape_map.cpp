@@ -72,10 +72,16 @@ const Facets& DrapeMap::facets() const {
 }
 
 /// Of the leaves.
-const std::vector<double>& DrapeMap::bounds() const {
+const std::vector<double>& DrapeMap::bounds(const ParallelFor& parallel_for) const {
     std::call_once(m_bounded, [&] {
-        for (std::size_t i = 0; i < patches(); ++i)
-            m_bounds.push_back(m_blocks ? m_blocks->bound_of(i) : m_facets.leaves[i].bound);
+        constexpr std::size_t kAtOnce = 256;
+        m_bounds.resize(patches());
+        parallel_for(static_cast<std::int64_t>((patches() + kAtOnce - 1) / kAtOnce), [&](std::int64_t part) {
+            const std::size_t first = static_cast<std::size_t>(part) * kAtOnce,
+                              end = std::min(first + kAtOnce, patches());
+            for (std::size_t i = first; i < end; ++i)
+                m_bounds[i] = m_blocks ? m_blocks->bound_of(i) : m_facets.leaves[i].bound;
+        });
     });
     return m_bounds;
 }
@@ -89,9 +95,9 @@ const Facet& DrapeMap::part_of(const Facet& facet, double u, double v) const {
     return right ? first : facets().facets[2 * facet.leaf + 1];
 }
 
-double DrapeMap::max_error() const {
+double DrapeMap::max_error(const ParallelFor& parallel_for) const {
     double most = 0;
-    for (const double bound : bounds()) most = std::max(most, bound + m_for_float);
+    for (const double bound : bounds(parallel_for)) most = std::max(most, bound + m_for_float);
     return most;
 }
 

@@ -58,7 +58,7 @@ class DrapeMap final : public BlockMap {
     const Camera& camera() const { return m_camera; }
     const Size& picture() const { return m_picture; }
     /// No block's bound is larger.
-    double max_error() const;
+    double max_error(const ParallelFor& parallel_for = serial_for) const;
 
     /// Has each pixel a point of its own?
     bool exact_points() const { return m_surface != nullptr; }
@@ -88,7 +88,7 @@ class DrapeMap final : public BlockMap {
     void plan(const Box& box, int piece, Blocks& blocks) const override;
 
   private:
-    const std::vector<double>& bounds() const;
+    const std::vector<double>& bounds(const ParallelFor& parallel_for = serial_for) const;
     std::size_t leaf_of(double facet) const;
     void order_sheets(const Box& box, SeenPixels& pixels, int times) const;
     void polish(SeenPixels& pixels) const;

@@ -63,12 +63,22 @@ void put_means(const QuarterRanges& ranges, int i, int j, Taylor& to) {
         for (std::size_t n = 3; n < 6; ++n) to[axis].c[n] = Interval(0);
     const auto first = [](int from, int k) { return 2 * from * k >= kParts * kParts ? 1 : 0; };
     const auto last = [](int end, int k) { return 2 * end * (k + 1) > kParts * kParts ? 1 : 0; };
+    const Taylor* range = nullptr;
+    double weight = 0;
+    const auto add = [&] {
+        for (std::size_t axis = 0; range && axis < 2; ++axis)
+            for (std::size_t n = 3; n < 6; ++n) to[axis].c[n] += (*range)[axis].c[n] * weight;
+    };
     for (int k = 0; k < kParts; ++k) {
-        const Taylor& range = ranges.at(first(k, i), last(k + 1, i), first(k, j), last(k + 1, j));
-        const double weight = (square(double(kParts - k)) - square(kParts - k - 1.0)) / (kParts * kParts);
-        for (std::size_t axis = 0; axis < 2; ++axis)
-            for (std::size_t n = 3; n < 6; ++n) to[axis].c[n] += range[axis].c[n] * weight;
+        const Taylor& next = ranges.at(first(k, i), last(k + 1, i), first(k, j), last(k + 1, j));
+        if (&next != range) {
+            add();
+            range = &next;
+            weight = 0;
+        }
+        weight += (square(double(kParts - k)) - square(kParts - k - 1.0)) / (kParts * kParts);
     }
+    add();
 }
 
 /// The length of the vector of polynomials of the second degree, over a quarter of a block from its centre to (right, down),

@@ -21,19 +21,26 @@ inline std::array<Jet<Interval, 2>, 2> seen_range(const Camera& camera, const Su
     const auto& m = camera.matrix();
     const auto sum = [&](const auto& weight, const Interval& constant) {
         J total(constant);
-        for (int axis = 0; axis < 3; ++axis)
-            for (std::size_t n = 0; n < std::size(total.c); ++n)
-                total.c[n] += range[static_cast<std::size_t>(axis)].c[n] * weight(axis);
+        for (int axis = 0; axis < 3; ++axis) {
+            const Interval times = weight(axis);
+            const J& along = range[static_cast<std::size_t>(axis)];
+            for (std::size_t n = 0; n < std::size(total.c); ++n) total.c[n] += along.c[n] * times;
+        }
         return total;
     };
     const auto in_frame = [&](int i) {
         return sum([&](int axis) { return Interval(m[axis][i]); }, Interval(camera.offset()[i]));
     };
     if (!camera.perspective()) return {J(in_frame(0) * camera.focal()), J(in_frame(1) * camera.focal())};
-    const auto middle = [](const J& of) { return of.c[0].lo / 2 + of.c[0].hi / 2; };
+    glm::dvec3 middle;
+    for (int axis = 0; axis < 3; ++axis) {
+        const Interval& at = range[static_cast<std::size_t>(axis)].c[0];
+        middle[axis] = at.lo / 2 + at.hi / 2;
+    }
+    middle = camera.in_frame(middle);
     const J ahead = in_frame(2);
     const auto seen = [&](int i) {
-        const double near = middle(in_frame(i)) / middle(ahead);
+        const double near = middle[i] / middle.z;
         const Interval slope(std::isfinite(near) ? near : 0);
         const J beside = sum([&](int axis) { return Interval(m[axis][i]) - slope * Interval(m[axis][2]); },
                              Interval(camera.offset()[i]) - slope * Interval(camera.offset()[2]));
