@@ -241,8 +241,9 @@ class InnerLoop {
             }
             if (s.count == 0) continue;
             // What is read lies within the picture: a span at its edge is moved inwards.
-            s.x = inside(s.x, s.count * s.step_x, texture.width);
-            s.y = inside(s.y, s.count * s.step_y, texture.height);
+            const auto steps = static_cast<float>(s.count - 1);
+            s.x = inside(s.x, steps * s.step_x, texture.width);
+            s.y = inside(s.y, steps * s.step_y, texture.height);
             m_spans.push_back(s);
         }
     }
