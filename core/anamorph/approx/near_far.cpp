@@ -10,11 +10,11 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <mutex>
 
 #include "anamorph/approx/near_far_line.h"
 #include "anamorph/approx/near_far_planner.h"
 #include "anamorph/approx/scheme.h"
+#include "anamorph/room_pool.h"
 
 namespace anamorph {
 
@@ -32,10 +32,8 @@ constexpr double kSlopeRounding = 1e-5, kSlopeUnderflow = 1e-12;
 struct NearFar::State {
     NearFarOptions options;
     Chebyshev chebyshev;
-    std::vector<float> slopes;  ///< line by line: the most that its displacement changes over a pixel
-    /// Planners keep their memory from region to region.
-    std::mutex mutex;
-    std::vector<std::unique_ptr<Planner>> idle;
+    std::vector<float> slopes;   ///< line by line: the most that its displacement changes over a pixel
+    RoomPool<Planner> planners;  ///< which keep their memory from region to region
 
     State(const FeatureMap& map, const NearFarOptions& near_far)
         : options(near_far), chebyshev(degree_for(near_far.tol)) {
@@ -55,18 +53,6 @@ struct NearFar::State {
             slopes.push_back(static_cast<float>(slope * (1 + kSlopeRounding) + kSlopeUnderflow));
         }
     }
-
-    std::unique_ptr<Planner> take_planner(const FeatureMap& map) {
-        const std::lock_guard lock(mutex);
-        if (idle.empty()) return std::make_unique<Planner>(map, options, chebyshev, slopes);
-        std::unique_ptr<Planner> planner = std::move(idle.back());
-        idle.pop_back();
-        return planner;
-    }
-    void give_back(std::unique_ptr<Planner> planner) {
-        const std::lock_guard lock(mutex);
-        idle.push_back(std::move(planner));
-    }
 };
 
 NearFar::NearFar(const FeatureMap& map, const NearFarOptions& options) : FeatureBlocks(map, options.shapes) {
@@ -81,9 +67,11 @@ void NearFar::plan(const Box& box, int, Blocks& blocks) const {
         return;
     }
     const auto region = std::make_shared<Region>();
-    std::unique_ptr<Planner> planner = m_state->take_planner(map());
+    State& state = *m_state;
+    auto planner = state.planners.take(
+        [&] { return std::make_unique<Planner>(map(), state.options, state.chebyshev, state.slopes); });
     planner->plan(box.x0, box.y0, *region);
-    m_state->give_back(std::move(planner));
+    state.planners.give_back(std::move(planner));
 
     blocks.reserve(region->cells.size() * static_cast<std::size_t>(layers()));
     for (std::size_t i = 0; i < region->cells.size(); ++i) {

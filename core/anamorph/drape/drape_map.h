@@ -11,7 +11,7 @@
 #include "anamorph/approx/block.h"
 #include "anamorph/drape/facet_raster.h"
 #include "anamorph/drape/oka.h"
-#include "anamorph/drape/room_pool.h"
+#include "anamorph/room_pool.h"
 
 namespace anamorph {
 

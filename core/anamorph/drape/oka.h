@@ -7,7 +7,7 @@
 
 #include "anamorph/drape/facet_raster.h"
 #include "anamorph/drape/facets.h"
-#include "anamorph/drape/room_pool.h"
+#include "anamorph/room_pool.h"
 #include "anamorph/simd/parallelogram_rows.h"
 
 namespace anamorph {

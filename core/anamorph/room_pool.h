@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Room that is left by one view of a surface to the next.
+// Room for work, left by one task to the next.
 #pragma once
 
 #include <memory>
@@ -13,13 +13,21 @@ namespace anamorph {
 template <class Room>
 class RoomPool {
   public:
-    /// As it was left, or a new one.
+    /// As it was left, or what `make` makes.
+    template <class Make>
+    std::unique_ptr<Room> take(const Make& make) {
+        {
+            const std::lock_guard lock(m_mutex);
+            if (!m_free.empty()) {
+                std::unique_ptr<Room> room = std::move(m_free.back());
+                m_free.pop_back();
+                return room;
+            }
+        }
+        return make();
+    }
     std::unique_ptr<Room> take() {
-        const std::lock_guard lock(m_mutex);
-        if (m_free.empty()) return std::make_unique<Room>();
-        std::unique_ptr<Room> room = std::move(m_free.back());
-        m_free.pop_back();
-        return room;
+        return take([] { return std::make_unique<Room>(); });
     }
     void give_back(std::unique_ptr<Room> room) {
         const std::lock_guard lock(m_mutex);
