@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Panorama reprojection: speed against error.
 //
-// Sources are 8192 pixels wide (less for small pictures), views square. The views of one source are measured
-// in the same rounds. Schemes: automatic, blocks, residual and exact draw a fresh Reprojection each time,
+// Sources are 8192 pixels wide (less for small pictures). The views of one source are measured in the same
+// rounds. Schemes: automatic, blocks, residual and exact draw a fresh Reprojection each time,
 // planning included; automatic_kept draws with a plan made before. Rivals: pano_rivals.h.
 //
 // Errors are distances of the source points used from Panorama::exact<long double>, over all pixels. The
@@ -503,31 +503,51 @@ void run_bilinear(const Settings& settings, Report& report, const Chart& chart, 
 
 // --- bilinear, float: other targets, and small pictures of large panoramas
 
+/// A view and its small twin, of a quarter of its width.
+struct Target {
+    const char* name;
+    Projection projection;
+    double fov;
+    Orientation orientation;
+    bool has_large = true;  ///< else the small one alone is new
+};
+const Target kTargets[] = {{"rotated", Projection::rectilinear, 90, kTurned, false},
+                           {"pitch_60", Projection::rectilinear, 90, {.pitch = 60}, false},
+                           {"fisheye", Projection::fisheye, 180, {}},
+                           {"fisheye_rotated", Projection::fisheye, 180, kTurned},
+                           {"planet", Projection::stereographic, 240, {.pitch = -90}},
+                           {"cube", Projection::cubemap, 90, {}},
+                           {"mercator", Projection::mercator, 360, {}},
+                           {"full_sphere", Projection::equirectangular, 360, {.roll = 2}}};
+
+/// No larger than `size` squared pixels.
+Chart target_chart(const Target& target, int size) {
+    const int faces = faces_of(target.projection).rows;
+    if (faces > 0) return Chart(target.projection, size / 3, size / 3 * faces, target.fov);
+    const bool is_sphere = target.projection == Projection::equirectangular;
+    return Chart(target.projection, size, is_sphere ? size / 2 : size, target.fov);
+}
+
 void run_targets(const Settings& settings, Report& report) {
-    const int size = settings.size, quarter = std::max(16, size / 4);
-    Scene scene(settings, report, equirectangular(source_width(settings)), PixelType::float32, "pano");
-    const Orientation down{.pitch = -90}, rolled{.roll = 2};
-    for (const auto& [part, n] : {std::pair<const char*, int>{"", size}, {"_quarter", quarter}}) {
-        const auto add = [&](const char* name, Projection to, int height, double fov, const Orientation& o) {
-            scene.add_view(std::string(name) + part,
-                           Chart(to, to == Projection::cubemap ? height / 6 : n, height, fov), o);
-        };
-        if (n != size) {
-            add("rotated", Projection::rectilinear, n, 90, kTurned);
-            add("pitch_60", Projection::rectilinear, n, 90, {.pitch = 60});
+    std::vector<std::pair<std::string, const Target*>> wanted[2];
+    for (const Target& target : kTargets)
+        for (const bool is_small : {false, true}) {
+            const std::string name = std::string(target.name) + (is_small ? "_quarter" : "");
+            if ((is_small || target.has_large) && settings.wants_case(name))
+                wanted[is_small].emplace_back(name, &target);
         }
-        add("fisheye", Projection::fisheye, n, 180, {});
-        add("fisheye_rotated", Projection::fisheye, n, 180, kTurned);
-        add("planet", Projection::stereographic, n, 240, down);
-        add("cube", Projection::cubemap, n / 3 * 6, 90, {});
-        add("mercator", Projection::mercator, n, 360, {});
-        add("full_sphere", Projection::equirectangular, n / 2, 360, rolled);
-    }
+    if (wanted[0].empty() && wanted[1].empty()) return;
+    Scene scene(settings, report, equirectangular(source_width(settings)), PixelType::float32, "pano");
+    for (const bool is_small : {false, true})
+        for (const auto& [name, target] : wanted[is_small])
+            scene.add_view(name,
+                           target_chart(*target, is_small ? std::max(16, settings.size / 4) : settings.size),
+                           target->orientation);
     for (const auto& view : scene.views()) {
         scene.add_automatic(*view, {std::begin(kTols), std::end(kTols)});
         scene.add_rivals<float>(*view);
     }
-    if (!scene.views().empty()) scene.measure();
+    scene.measure();
 }
 
 // --- bilinear, other types of pixels
