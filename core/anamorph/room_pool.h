@@ -4,6 +4,7 @@
 
 #include <memory>
 #include <mutex>
+#include <new>
 #include <utility>
 #include <vector>
 
@@ -29,9 +30,11 @@ class RoomPool {
     std::unique_ptr<Room> take() {
         return take([] { return std::make_unique<Room>(); });
     }
-    void give_back(std::unique_ptr<Room> room) {
+    /// Where there is no memory to remember it by, it goes.
+    void give_back(std::unique_ptr<Room> room) noexcept try {
         const std::lock_guard lock(m_mutex);
         m_free.push_back(std::move(room));
+    } catch (const std::bad_alloc&) {
     }
 
   private:

@@ -719,38 +719,46 @@ Point<double> nearest_block_at(const std::vector<OkaBlock>& blocks, double x, do
     return found;
 }
 
+/// Each pixel shows the block that nearest_block_at finds.
+void expect_nearest_blocks(const char* surface, const CameraPose& pose) {
+    for (const DrapeScheme scheme : {DrapeScheme::oka, DrapeScheme::oka_z}) {
+        Scene scene{surface};
+        scene.pose = pose;
+        DrapeOptions options;
+        options.scheme = scheme;
+        options.block = 4;
+        options.overlap = 1;
+        Shown shown(scene, options);
+        const std::vector<float> points = shown.values(Output::stmap);
+        const OkaBlocks cut{options.block, options.overlap, scheme == DrapeScheme::oka_z};
+        std::vector<OkaBlock> blocks;
+        for (int j = 0; j < 16; ++j)
+            for (int i = 0; i < 16; ++i)
+                if (OkaBlock b;
+                    oka_block(shown.tree()->tree.surface(), shown.camera(), scene.picture, cut, i, j, b))
+                    blocks.push_back(b);
+        int differ = 0, seen = 0;
+        for (int y = 0; y < scene.screen.height; ++y)
+            for (int x = 0; x < scene.screen.width; ++x) {
+                const auto k = static_cast<std::size_t>(2 * (y * scene.screen.width + x));
+                const Point<double> truth =
+                    nearest_block_at(blocks, x + 0.5 - scene.screen.width / 2.0,
+                                     y + 0.5 - scene.screen.height / 2.0, cut.linear_depth);
+                differ += std::hypot(points[k] - truth.x, points[k + 1] - truth.y) > 1e-6;
+                seen += truth.x >= 0;
+            }
+        EXPECT_GT(seen, 2000) << surface;
+        // Where two are as near as each other, which is a matter of rounding.
+        EXPECT_LE(differ, scene.screen.width * scene.screen.height / 500) << surface;
+    }
+}
+
 TEST(Drape, BlocksLieOverThoseThatAreFarther) {
-    for (const char* surface : {"sphere", "page_turn", "torus"})
-        for (const DrapeScheme scheme : {DrapeScheme::oka, DrapeScheme::oka_z}) {
-            Scene scene{surface};
-            scene.pose.position = {0.7, 0.4, 1.6};
-            DrapeOptions options;
-            options.scheme = scheme;
-            options.block = 4;
-            options.overlap = 1;
-            Shown shown(scene, options);
-            const std::vector<float> points = shown.values(Output::stmap);
-            const OkaBlocks cut{options.block, options.overlap, scheme == DrapeScheme::oka_z};
-            std::vector<OkaBlock> blocks;
-            for (int j = 0; j < 16; ++j)
-                for (int i = 0; i < 16; ++i)
-                    if (OkaBlock b;
-                        oka_block(shown.tree()->tree.surface(), shown.camera(), scene.picture, cut, i, j, b))
-                        blocks.push_back(b);
-            int differ = 0, seen = 0;
-            for (int y = 0; y < scene.screen.height; ++y)
-                for (int x = 0; x < scene.screen.width; ++x) {
-                    const auto k = static_cast<std::size_t>(2 * (y * scene.screen.width + x));
-                    const Point<double> truth =
-                        nearest_block_at(blocks, x + 0.5 - scene.screen.width / 2.0,
-                                         y + 0.5 - scene.screen.height / 2.0, cut.linear_depth);
-                    differ += std::hypot(points[k] - truth.x, points[k + 1] - truth.y) > 1e-6;
-                    seen += truth.x >= 0;
-                }
-            EXPECT_GT(seen, 2000) << surface;
-            // Where two are as near as each other, which is a matter of rounding.
-            EXPECT_LE(differ, scene.screen.width * scene.screen.height / 500) << surface;
-        }
+    for (const char* surface : {"sphere", "page_turn", "torus"}) {
+        expect_nearest_blocks(surface, {.position = {0.7, 0.4, 1.6}});
+        // Where the depths of all blocks are one number in float.
+        expect_nearest_blocks(surface, {.position = {7e8, 4e8, 16e8}, .perspective = false, .extent = 1.3});
+    }
 }
 
 /// A drape's colours, drawn in parts of this size.

@@ -105,8 +105,12 @@ TEST(SampledField, RangesHoldValuesAndDifferences) {
         const OracleField oracle = noise(random, size, 1);
         const SampledField field(oracle.texels, size, 1);
         for (int n = 0; n < 400; ++n) {
+            // Also a little beyond the picture, where the field goes on.
+            const double beyond_u = n % 3 == 0 ? 0.6 / size.width : 0,
+                         beyond_v = n % 3 == 0 ? 0.6 / size.height : 0;
             const double side_u = std::ldexp(1.0, -(n % 12)), side_v = std::ldexp(1.0, -(n / 12 % 12)),
-                         u = (1 - side_u) * uniform(random), v = (1 - side_v) * uniform(random);
+                         u = (1 + 2 * beyond_u - side_u) * uniform(random) - beyond_u,
+                         v = (1 + 2 * beyond_v - side_v) * uniform(random) - beyond_v;
             J range;
             field.read(J::variable({u, u + side_u}, 1.0, 0.0), J::variable({v, v + side_v}, 0.0, 1.0),
                        &range);

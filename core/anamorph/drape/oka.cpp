@@ -295,9 +295,20 @@ void OkaRaster::find_row(int row, const glm::dvec3* above, const glm::dvec3* her
 
 /// From the farthest to the nearest.
 void OkaRaster::sort_by_depth() {
+    const auto& blocks = m_room->blocks;
+    const auto& keys = m_room->keys;
+    auto& order = m_room->order;
     m_room->keys.clear();
-    for (const simd::Parallelogram& p : m_room->blocks) m_room->keys.push_back(far_first(p.z));
-    bucket_sort(m_room->keys, m_room->order, m_room->sorted);
+    for (const simd::Parallelogram& p : blocks) m_room->keys.push_back(far_first(p.z));
+    bucket_sort(keys, order, m_room->sorted);
+    // Depths that are one as floats are few, but of a camera far away.
+    for (auto begin = order.begin(); begin != order.end();) {
+        const auto end =
+            std::find_if(begin, order.end(), [&](std::uint32_t i) { return keys[i] != keys[*begin]; });
+        std::stable_sort(begin, end,
+                         [&](std::uint32_t a, std::uint32_t b) { return blocks[a].z > blocks[b].z; });
+        begin = end;
+    }
 }
 
 OkaRoom::Squares OkaRaster::squares_of(const Box& pixels) const {

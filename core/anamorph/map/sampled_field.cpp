@@ -283,14 +283,27 @@ void SampledField::read(const Interval& u, const Interval& v, Interval* to) cons
 
 void SampledField::read(const Jet<Interval, 2>& u, const Jet<Interval, 2>& v, Jet<Interval, 2>* to) const {
     std::array<Hull, 3> hulls{kNoHull, kNoHull, kNoHull};
-    Range range = cells_of(u.c[0], v.c[0]);
+    const Range cells = cells_of(u.c[0], v.c[0]);
+    Range range = cells;
     const Level* const level = level_of(range);
+    const auto add_part = [&](int x, int y) { add_cell(x, y, part_of(x, y, u.c[0], v.c[0]), hulls.data()); };
     for (int y = range.y0; y <= range.y1; ++y)
         for (int x = range.x0; x <= range.x1; ++x)
             if (level)
                 add_box(*level, x, y, hulls.data());
             else
-                add_cell(x, y, part_of(x, y, u.c[0], v.c[0]), hulls.data());
+                add_part(x, y);
+    if (level) {
+        // Boxes are of whole cells: beyond the picture those on its edges go on.
+        for (int y = cells.y0; y <= cells.y1; ++y) {
+            if (u.c[0].lo < 0) add_part(cells.x0, y);
+            if (u.c[0].hi > 1) add_part(cells.x1, y);
+        }
+        for (int x = cells.x0; x <= cells.x1; ++x) {
+            if (v.c[0].lo < 0) add_part(x, cells.y0);
+            if (v.c[0].hi > 1) add_part(x, cells.y1);
+        }
+    }
     for (std::size_t c = 0; c < static_cast<std::size_t>(m_channels); ++c)
         for (std::size_t k = 0; k < 6; ++k)
             to[c].c[k] = hulls[c][k].lo <= hulls[c][k].hi ? hulls[c][k] : Interval::all();
