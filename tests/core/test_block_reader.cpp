@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Blocks of every kind read the texels that their points name, and no byte that is not the source's.
 #include <gtest/gtest.h>
+#include <sys/mman.h>
 
 #include <cmath>
 #include <cstring>
@@ -131,6 +132,32 @@ TEST(BlockReader, RowsMayStandAnyNumberOfBytesApart) {
         });
         EXPECT_EQ(draw(map, source, Filter::bilinear).values, draw(map, other, Filter::bilinear).values);
     }
+}
+
+TEST(BlockReader, RowsMayStandGigabytesApart) {
+    constexpr int kWidth = 64, kHeight = 60;
+    constexpr std::ptrdiff_t kStride = std::ptrdiff_t{1} << 27;
+    // Of which the rows' own pages are touched.
+    void* const memory = mmap(nullptr, kStride * kHeight, PROT_READ | PROT_WRITE,
+                              MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
+    if (memory == MAP_FAILED) GTEST_SKIP() << "no 8 GB of addresses";
+    Picture texels = numbered(kWidth, kHeight);
+    for (float& v : texels.values) v = std::sin(v);
+    ConstImageView view = texels.read();
+    for (int y = 0; y < kHeight; ++y)
+        std::memcpy(static_cast<std::byte*>(memory) + y * kStride, view.at(0, y), kWidth * sizeof(float));
+    const MemorySource packed(view);
+    view.data = static_cast<const std::byte*>(memory);
+    view.row_stride = kStride;
+    const MemorySource apart(view);
+    for (const Kind kind : {Kind::exact, Kind::polynomial, Kind::computed})
+        for (const Filter filter : {Filter::nearest, Filter::bilinear, Filter::bicubic}) {
+            const FunctionMap map(48, 40, kind, [](double x, double y) {
+                return Point<double>{1.1 * x + 0.013 * y + 3.3, 1.07 * y + 0.1 * x + 4.4};
+            });
+            EXPECT_EQ(draw(map, packed, filter).values, draw(map, apart, filter).values);
+        }
+    munmap(memory, kStride * kHeight);
 }
 
 TEST(BlockReader, PointsThatAreNoneOrFarAwayHarmNoOthers) {

@@ -811,10 +811,15 @@ BlockReader::Got BlockReader::window_of(const Filtering& f, int piece, std::int3
     const Box box{static_cast<int>(x.first), static_cast<int>(y.first), static_cast<int>(x.last),
                   static_cast<int>(y.last)};
     if (texels_in(box) > kMostTexels * texels_in(block) + 4096) return Got::too_large;
+    const auto fits = [&] {
+        const double pixel = double(window.channels) * size_of(window.type);
+        const double span = std::fabs(double(window.row_stride)) * most_y + pixel * most_x;
+        return span < std::numeric_limits<std::int32_t>::max();
+    };
     if (!m_reader.get(f.level, piece, box, window)) return Got::failed;
-    const double pixel = double(window.channels) * size_of(window.type);
-    const double span = std::fabs(double(window.row_stride)) * most_y + pixel * most_x;
-    return span < std::numeric_limits<std::int32_t>::max() ? Got::window : Got::too_large;
+    // Rows that stand far apart in memory are no reason to read otherwise than from a file.
+    if (!fits() && !m_reader.get_copy(f.level, piece, box, window)) return Got::failed;
+    return fits() ? Got::window : Got::too_large;
 }
 
 /// Where the next block's texels stand in memory, if they do; filtered like this one's.

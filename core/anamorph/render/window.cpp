@@ -163,15 +163,18 @@ bool WindowReader::get_in_place(int level, int piece, const Box& box, Window& wi
     return true;
 }
 
-bool WindowReader::get(int level, int piece, const Box& box, Window& window) noexcept try {
+bool WindowReader::get(int level, int piece, const Box& box, Window& window) noexcept {
+    return view_of(level, piece, box) ? get_in_place(level, piece, box, window)
+                                      : get_copy(level, piece, box, window);
+}
+
+bool WindowReader::get_copy(int level, int piece, const Box& box, Window& window) noexcept try {
     const std::int64_t width = std::int64_t{box.x1} - box.x0, height = std::int64_t{box.y1} - box.y0;
     if (width <= 0 || height <= 0 || width > kMaxTexels || height > kMaxTexels || width * height > kMaxTexels)
         return false;
     const int channels = m_source.channels(), alpha = m_source.unassociated_alpha();
     const PixelType type = m_source.type();
     const std::int64_t pixel = std::int64_t{channels} * size_of(type);
-
-    if (view_of(level, piece, box)) return get_in_place(level, piece, box, window);
 
     std::vector<std::byte>& raw = alpha < 0 ? m_texels : m_raw;
     grow(raw, height * width * pixel + Window::kSlack);

@@ -35,6 +35,8 @@ class WindowReader {
 
     /// The same where it points into the source, and false elsewhere: nothing is copied.
     bool get_in_place(int level, int piece, const Box& box, Window& window) noexcept;
+    /// The same, with rows one behind the other in memory of its own.
+    bool get_copy(int level, int piece, const Box& box, Window& window) noexcept;
 
     static constexpr std::int64_t kMaxTexels = std::int64_t{1} << 24;
 
