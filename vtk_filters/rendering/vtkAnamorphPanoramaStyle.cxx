@@ -45,6 +45,11 @@ bool set_range(double range[2], double from, double to, double least, double mos
     return true;
 }
 
+/// Whether there is a window to end a drag in: it may have gone in the midst of one.
+bool has_window(vtkRenderWindowInteractor* interactor) {
+    return interactor && interactor->GetRenderWindow();
+}
+
 }  // namespace
 
 void vtkAnamorphPanoramaStyle::PrintSelf(ostream& os, vtkIndent indent) {
@@ -138,6 +143,7 @@ void vtkAnamorphPanoramaStyle::ScaleFieldOfView(double factor) {
 }
 
 void vtkAnamorphPanoramaStyle::OnLeftButtonDown() {
+    if (!this->Interactor) return;
     const int* at = this->Interactor->GetEventPosition();
     this->FindPokedRenderer(at[0], at[1]);
     if (!this->CurrentRenderer) return;
@@ -147,6 +153,10 @@ void vtkAnamorphPanoramaStyle::OnLeftButtonDown() {
 }
 void vtkAnamorphPanoramaStyle::OnLeftButtonUp() {
     if (this->State != VTKIS_ROTATE) return;
+    if (!has_window(this->Interactor)) {
+        this->State = VTKIS_NONE;
+        return;
+    }
     this->EndRotate();
     this->ReleaseFocus();
     const int* at = this->Interactor->GetEventPosition();
@@ -154,6 +164,7 @@ void vtkAnamorphPanoramaStyle::OnLeftButtonUp() {
         this->InvokeEvent(vtkCommand::PickEvent, nullptr);
 }
 void vtkAnamorphPanoramaStyle::OnRightButtonDown() {
+    if (!this->Interactor) return;
     const int* at = this->Interactor->GetEventPosition();
     this->FindPokedRenderer(at[0], at[1]);
     if (!this->CurrentRenderer) return;
@@ -162,11 +173,16 @@ void vtkAnamorphPanoramaStyle::OnRightButtonDown() {
 }
 void vtkAnamorphPanoramaStyle::OnRightButtonUp() {
     if (this->State != VTKIS_DOLLY) return;
+    if (!has_window(this->Interactor)) {
+        this->State = VTKIS_NONE;
+        return;
+    }
     this->EndDolly();
     this->ReleaseFocus();
 }
 
 void vtkAnamorphPanoramaStyle::OnMouseMove() {
+    if (!this->Interactor) return;
     const int *at = this->Interactor->GetEventPosition(), *last = this->Interactor->GetLastEventPosition();
     if (this->State == VTKIS_ROTATE) this->Turn(last[0] - at[0], last[1] - at[1]);
     if (this->State == VTKIS_DOLLY)
@@ -174,17 +190,20 @@ void vtkAnamorphPanoramaStyle::OnMouseMove() {
 }
 
 void vtkAnamorphPanoramaStyle::OnMouseWheelForward() {
+    if (!this->Interactor) return;
     const int* at = this->Interactor->GetEventPosition();
     this->FindPokedRenderer(at[0], at[1]);
     this->ScaleFieldOfView(1 / kZoomStep);
 }
 void vtkAnamorphPanoramaStyle::OnMouseWheelBackward() {
+    if (!this->Interactor) return;
     const int* at = this->Interactor->GetEventPosition();
     this->FindPokedRenderer(at[0], at[1]);
     this->ScaleFieldOfView(kZoomStep);
 }
 
 void vtkAnamorphPanoramaStyle::OnKeyPress() {
+    if (!this->Interactor) return;
     const char* key = this->Interactor->GetKeySym();
     if (!key) return;
     const auto is = [&](const char* name) { return std::strcmp(key, name) == 0; };
@@ -199,6 +218,7 @@ void vtkAnamorphPanoramaStyle::OnKeyPress() {
 }
 
 void vtkAnamorphPanoramaStyle::OnChar() {
+    if (!this->Interactor) return;
     // Of the usual keys only those that end the program: the others pick, reset the camera, or change how things are drawn.
     const char key = this->Interactor->GetKeyCode();
     if (key == 'q' || key == 'Q' || key == 'e' || key == 'E') this->Superclass::OnChar();
