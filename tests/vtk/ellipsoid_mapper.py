@@ -1,16 +1,19 @@
 # SPDX-License-Identifier: Apache-2.0
 # vtkAnamorphEllipsoidMapper draws what core's own renderer does (vtkAnamorphFigureImage), pixel for pixel; and what VTK offers
 # besides (selection, lights, textures, clipping planes) works on it. Needs a display.
+import gc
 import math
 
 import numpy as np
 import vtkmodules.vtkInteractionStyle  # noqa: F401
+from conformance import ghosts_of
 from ellipsoid_scene import Scene, core_picture, crowd, points_of
 from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
-from vtkmodules.vtkCommonCore import vtkStringArray, vtkUnsignedCharArray
-from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkDataObject, vtkImageData, vtkMultiBlockDataSet, vtkPlane
+from vtkmodules.vtkCommonCore import reference as Reference, vtkSOADataArrayTemplate, vtkStringArray, vtkUnsignedCharArray, vtkWeakReference
+from vtkmodules.vtkCommonDataModel import (vtkCellArray, vtkDataObject, vtkImageData, vtkMultiBlockDataSet, vtkPartitionedDataSet,
+                                           vtkPartitionedDataSetCollection, vtkPlane)
 from vtkmodules.vtkRenderingCore import (vtkCellPicker, vtkCompositeDataDisplayAttributes, vtkHardwareSelector, vtkLight,
-                                         vtkPolyDataMapper, vtkPropPicker, vtkTexture)
+                                         vtkPolyDataMapper, vtkPropPicker, vtkRenderWindow, vtkTexture)
 
 import anamorph
 
@@ -186,6 +189,155 @@ def points_without_an_ellipsoid_are_skipped_and_counted():
     for empty in (points_of([]), points_of([(0, 0, 0)], Axes=[(0.0, 0, 0)], Orientation=[IDENTITY])):
         scene = next(scenes(empty))
         assert scene.colors().max() == 0
+
+
+def pair(ghosts=None, axes=((0.5, 0.5, 0.5), (0.5, 0.4, 0.3))):
+    """Two bodies beside each other, 0 and 1."""
+    data = points_of([(-1, 0, 0), (1, 0, 0)], Axes=np.array(axes), Orientation=[IDENTITY] * 2,
+                     Id=np.array([(0, 0, 255), (1, 0, 255)], np.uint8))
+    if ghosts:
+        data.GetPointData().AddArray(ghosts_of(ghosts))
+    return data
+
+
+def shown(scene):
+    return set(np.unique(scene.ids())) - {-1}
+
+
+def ghosts_are_neither_drawn_nor_met():
+    duplicate, hidden, other = 1, 2, 64
+    left, right = (-1.5, -0.5, -0.5, 0.5, -0.5, 0.5), (0.5, 1.5, -0.4, 0.4, -0.3, 0.3)
+    blocks = vtkMultiBlockDataSet()
+    blocks.SetBlock(0, pair((hidden, 0)))
+    blocks.SetBlock(1, pair((duplicate, 0)))
+    for data, wanted, bounds in ((pair((0, duplicate)), {0}, left), (pair((duplicate | other, 0)), {1}, right),
+                                 (pair((0, hidden)), {0}, left), (pair((other, duplicate)), {0}, left),
+                                 (pair((hidden, duplicate)), set(), None), (blocks, {1}, right)):
+        for scene in scenes(data):
+            assert shown(scene) == wanted
+            assert scene.mapper.GetBounds() == (bounds or (1, -1, 1, -1, 1, -1))
+            assert scene.mapper.GetNumberOfSkippedPoints() == 0, "they are bodies"
+            found = selected(scene, vtkDataObject.FIELD_ASSOCIATION_POINTS, 0, 0, 255, 255)
+            assert set().union(*found.values()) == wanted
+        if isinstance(data, vtkMultiBlockDataSet):
+            continue
+        for point, x in enumerate((-1.0, 1.0)):
+            t, cell = Reference(0.0), Reference(0)
+            met = scene.mapper.IntersectWithLine(data, (x, 0, 5), (x, 0, -5), t, cell)
+            assert met == (point if point in wanted else -1), (met, wanted)
+
+
+def an_axis_may_be_negative_and_arrays_of_any_layout():
+    plain = [scene.ids() for scene in scenes(pair())]
+    assert set(np.unique(plain[0])) == {-1, 0, 1}
+    mirrored = pair(axes=((-0.5, 0.5, -0.5), (0.5, -0.4, -0.3)))
+    apart, integers = pair(), pair(axes=((5, 5, 5), (5, 4, 3)))
+    for array in (apart.GetPoints().GetData(), apart.GetPointData().GetArray("Axes"), apart.GetPointData().GetArray("Orientation")):
+        copy = vtkSOADataArrayTemplate["float64"]()
+        copy.SetName(array.GetName())
+        copy.SetNumberOfComponents(array.GetNumberOfComponents())
+        copy.SetNumberOfTuples(2)
+        for i in range(2):
+            copy.SetTuple(i, array.GetTuple(i))
+        assert not copy.HasStandardMemoryLayout()
+        if array is apart.GetPoints().GetData():
+            apart.GetPoints().SetData(copy)
+        else:
+            apart.GetPointData().AddArray(copy)
+    for data, scale in ((mirrored, 1), (apart, 1), (integers, 0.1)):
+        for scene, wanted in zip(scenes(data), plain):
+            scene.mapper.SetScaleFactor(scale)
+            scene.look(EYE, angle=ANGLE, parallel_scale=SCALE if scene.camera.GetParallelProjection() else None)
+            assert (scene.ids() != wanted).mean() < 1e-4
+
+
+def composite_data_of_every_kind():
+    upper = points_of([(0, 1, 0)], Axes=[(0.2, 0.3, 0.4)], Orientation=[IDENTITY], Id=np.array([(2, 0, 255)], np.uint8))
+    blocks, inner = vtkMultiBlockDataSet(), vtkMultiBlockDataSet()
+    collection, parts = vtkPartitionedDataSetCollection(), vtkPartitionedDataSet()
+    blocks.SetBlock(0, pair())
+    blocks.SetBlock(2, points_of([]))
+    inner.SetBlock(1, upper)
+    blocks.SetBlock(3, inner)
+    collection.SetPartition(0, 0, pair())
+    collection.SetPartition(2, 1, upper)
+    parts.SetPartition(0, pair())
+    parts.SetPartition(2, upper)
+    for data in (blocks, collection, parts):
+        scene = next(scenes(data))
+        assert shown(scene) == {0, 1, 2}, data.GetClassName()
+        assert scene.mapper.GetBounds() == (-1.5, 1.5, -0.5, 1.3, -0.5, 0.5)
+    for data in (vtkMultiBlockDataSet(), vtkPartitionedDataSetCollection(), vtkPartitionedDataSet()):
+        scene = next(scenes(data))
+        assert scene.colors().max() == 0 and scene.mapper.GetBounds() == (1, -1, 1, -1, 1, -1)
+    # One block without the arrays is an error that names them; nothing is drawn.
+    blocks.SetBlock(1, points_of([(0, 0, 0)]))
+    scene, said = next(scenes(pair())), []
+    scene.mapper.AddObserver("ErrorEvent", lambda caller, event: said.append(event))
+    scene.mapper.SetInputDataObject(blocks)
+    assert scene.colors().max() == 0 and len(said) == 1, "once, not for every picture"
+
+
+def changes_within_data_are_seen():
+    whole, blocks, block, inner = pair(), vtkMultiBlockDataSet(), pair(), vtkMultiBlockDataSet()
+    inner.SetBlock(0, block)
+    blocks.SetBlock(1, inner)
+    for data, changed in ((whole, whole), (blocks, block)):
+        scene = next(scenes(data))
+        before = scene.ids()
+        assert (scene.ids() == before).all()
+        axes = changed.GetPointData().GetArray("Axes")
+        axes.SetTuple(0, (0.1, 0.1, 0.1))
+        axes.Modified()
+        assert scene.mapper.GetBounds()[0] == -1.1, data.GetClassName()
+        assert 0 < (scene.ids() == 0).sum() < (before == 0).sum() / 4, data.GetClassName()
+        changed.GetPoints().SetPoint(0, -2, 0, 0)
+        changed.GetPoints().Modified()
+        assert scene.mapper.GetBounds()[0] == -2.1, data.GetClassName()
+        changed.GetPointData().AddArray(ghosts_of((0, 2)))
+        assert shown(scene) <= {0} and scene.mapper.GetBounds()[1] == -1.9, data.GetClassName()
+        changed.Initialize()
+        assert scene.colors().max() == 0, data.GetClassName()
+
+
+def graphics_resources_are_released_and_made_again():
+    data, other = pair(), vtkRenderWindow()
+    fresh = mapper_of(data)
+    for window in (other, None):
+        fresh.ReleaseGraphicsResources(window)  # nothing has been drawn
+    texture = texture_of(image_of(np.full((4, 4, 3), 90)))
+    for textured in (False, True):
+        scene = next(scenes(data))
+        if textured:
+            numbers = numpy_to_vtk(np.zeros(2), deep=True)
+            numbers.SetName("Texture")
+            data.GetPointData().AddArray(numbers)
+            scene.mapper.AddTexture(texture)
+        before = scene.colors()
+        assert before.max() > 0
+        for window in (scene.window, scene.window, other, None):
+            scene.mapper.ReleaseGraphicsResources(window)
+            scene.mapper.ReleaseGraphicsResources(window)
+            assert (scene.colors() == before).all()
+        scene.window.Finalize()
+        scene.mapper.ReleaseGraphicsResources(scene.window)
+
+
+def nothing_of_a_mapper_stays():
+    data, left = pair(), [vtkWeakReference() for _ in range(4)]
+    scene, blocks = next(scenes(data)), vtkCompositeDataDisplayAttributes()
+    texture = texture_of(image_of(np.full((4, 4, 3), 90)))
+    scene.mapper.AddTexture(texture)
+    scene.mapper.SetCompositeDataDisplayAttributes(blocks)
+    scene.colors()
+    for each, of in zip(left, (scene.mapper, data, blocks, texture)):
+        each.Set(of)
+    scene.actor.SetMapper(None)
+    scene.mapper = None
+    del data, of, blocks, texture
+    gc.collect()
+    assert [each.Get() for each in left] == [None] * 4
+    assert scene.colors().max() == 0
 
 
 def selected(scene, field, x0, y0, x1, y1):
@@ -514,6 +666,12 @@ needles_and_discs()
 any_scale_and_any_origin()
 tensors_are_axes()
 points_without_an_ellipsoid_are_skipped_and_counted()
+ghosts_are_neither_drawn_nor_met()
+an_axis_may_be_negative_and_arrays_of_any_layout()
+composite_data_of_every_kind()
+changes_within_data_are_seen()
+graphics_resources_are_released_and_made_again()
+nothing_of_a_mapper_stays()
 selection_finds_points_and_cells()
 blocks_are_drawn_and_told_apart()
 blocks_have_looks()

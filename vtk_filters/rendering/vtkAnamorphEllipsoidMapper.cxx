@@ -132,6 +132,17 @@ void set_uniform(vtkShaderProgram* program, const char* name, const glm::dvec3& 
     program->SetUniform3f(name, glm::value_ptr(numbers));
 }
 
+/// Of composite data, which does not count changes within its blocks, that of the block changed last.
+vtkMTimeType time_of(vtkDataObject* data) {
+    vtkMTimeType time = data ? data->GetMTime() : 0;
+    if (auto* composite = vtkCompositeDataSet::SafeDownCast(data)) {
+        const auto blocks = vtk::TakeSmartPointer(composite->NewIterator());
+        for (blocks->InitTraversal(); !blocks->IsDoneWithTraversal(); blocks->GoToNextItem())
+            time = std::max(time, blocks->GetCurrentDataObject()->GetMTime());
+    }
+    return time;
+}
+
 void substitute(vtkShader* shader, const char* place, const std::string& text) {
     std::string source = shader->GetSource();
     vtkShaderProgram::Substitute(source, place, text, false);
@@ -270,7 +281,7 @@ vtkIdType vtkAnamorphEllipsoidMapper::GetNumberOfSkippedPoints() {
 bool vtkAnamorphEllipsoidMapper::GatherBodies() {
     Drawing& current = *this->Current;
     vtkDataObject* input = this->GetInputDataObject(0, 0);
-    const vtkMTimeType input_time = input ? input->GetMTime() : 0;
+    const vtkMTimeType input_time = time_of(input);
     if (current.input == input && current.input_time == input_time && current.mapper_time == this->GetMTime())
         return current.valid;
     current.input = input;
