@@ -5,6 +5,9 @@ import subprocess
 import tempfile
 
 import anamorph
+from vtkmodules.vtkCommonCore import VTK_FLOAT, VTK_INT, VTK_UNSIGNED_CHAR
+from vtkmodules.vtkCommonDataModel import vtkDataObject, vtkDataSetAttributes
+from vtkmodules.vtkImagingCore import vtkImageFlip
 
 reader = anamorph.vtkAnamorphFigureReader()
 for name, value in [("FileName", "walk.n"), ("Dialect", reader.STRICT), ("NumberOfLibraries", 2), ("Joints", True),
@@ -127,3 +130,19 @@ with tempfile.TemporaryDirectory() as folder:
         ids = picture.GetOutput().GetPointData().GetScalars()
         pictures.append([ids.GetValue(i) for i in range(ids.GetNumberOfTuples())])
     assert pictures[0] == pictures[1] and {-1, 0} <= set(pictures[0]), set(pictures[0])
+    # Filters behind it know its numbers before it has drawn.
+    for style, kind, components in ((picture.SHADED, VTK_UNSIGNED_CHAR, 4), (picture.OUTLINE, VTK_UNSIGNED_CHAR, 4),
+                                    (picture.DEPTH, VTK_FLOAT, 1), (picture.BODY_ID, VTK_INT, 1)):
+        picture.SetStyle(style)
+        flip = vtkImageFlip()
+        flip.SetInputConnection(picture.GetOutputPort())
+        flip.SetFilteredAxis(1)
+        flip.UpdateInformation()
+        told = vtkDataObject.GetActiveFieldInformation(flip.GetOutputInformation(0), vtkDataObject.FIELD_ASSOCIATION_POINTS,
+                                                       vtkDataSetAttributes.SCALARS)
+        assert told.Get(vtkDataObject.FIELD_ARRAY_TYPE()) == kind, style
+        assert told.Get(vtkDataObject.FIELD_NUMBER_OF_COMPONENTS()) == components, style
+        flip.Update()
+        upright, turned = (each.GetOutput().GetPointData().GetScalars() for each in (picture, flip))
+        assert upright.GetDataType() == turned.GetDataType() == kind
+        assert all(upright.GetTuple(i) == turned.GetTuple((159 - i // 200) * 200 + i % 200) for i in range(0, 32000, 97))

@@ -136,6 +136,10 @@ int vtkAnamorphFigureImage::RequestInformation(vtkInformation*, vtkInformationVe
     output->Set(vtkDataObject::SPACING(), spacing, 3);
     output->Set(vtkDataObject::ORIGIN(), origin, 3);
     output->Set(CAN_PRODUCE_SUB_EXTENT(), 1);
+    // Filters behind it make room for such numbers, as Draw() gives them.
+    const bool colors = this->Style != DEPTH && this->Style != BODY_ID;
+    vtkDataObject::SetPointDataActiveScalarInfo(
+        output, colors ? VTK_UNSIGNED_CHAR : (this->Style == DEPTH ? VTK_FLOAT : VTK_INT), colors ? 4 : 1);
     return 1;
 }
 
