@@ -18,6 +18,8 @@ class Source(VTKPythonAlgorithmBase):
 
     def RequestInformation(self, request, inputs, outputs):
         info = outputs.GetInformationObject(0)
+        info.Remove(Pipeline.TIME_STEPS())
+        info.Remove(Pipeline.TIME_RANGE())
         if self.steps:
             info.Set(Pipeline.TIME_STEPS(), self.steps, len(self.steps))
             info.Set(Pipeline.TIME_RANGE(), (self.steps[0], self.steps[-1]), 2)

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <exception>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -11,10 +12,15 @@
 #include "anamorph/projector/projection_bake.h"
 #include "automatic_plane.h"
 #include "execution.h"
+#include "input_times.h"
 #include "scene_shadow.h"
 #include "vtkCellArray.h"
+#include "vtkCellData.h"
 #include "vtkCommunicator.h"
+#include "vtkCompositeDataIterator.h"
+#include "vtkCompositeDataSet.h"
 #include "vtkDataArray.h"
+#include "vtkDataSetAttributes.h"
 #include "vtkDoubleArray.h"
 #include "vtkFieldData.h"
 #include "vtkImageData.h"
@@ -28,6 +34,7 @@
 #include "vtkSmartPointer.h"
 #include "vtkStreamingDemandDrivenPipeline.h"
 #include "vtkTriangleFilter.h"
+#include "vtkUnsignedCharArray.h"
 
 vtkObjectFactoryNewMacro(vtkAnamorphProjectionBake);
 
@@ -37,6 +44,7 @@ struct vtkAnamorphProjectionBake::Projectors {
 
 namespace {
 
+/// The polygons of a mesh that are not hidden (blanked), as triangles.
 vtkSmartPointer<vtkPolyData> triangles_of(vtkPolyData* mesh) {
     vtkNew<vtkPolyData> copy;
     copy->ShallowCopy(mesh);
@@ -45,7 +53,32 @@ vtkSmartPointer<vtkPolyData> triangles_of(vtkPolyData* mesh) {
     filter->PassVertsOff();
     filter->PassLinesOff();
     filter->Update();
-    return filter->GetOutput();
+    vtkPolyData* triangles = filter->GetOutput();
+    auto* ghosts = vtkUnsignedCharArray::SafeDownCast(
+        triangles->GetCellData()->GetArray(vtkDataSetAttributes::GhostArrayName()));
+    if (!ghosts || ghosts->GetNumberOfTuples() != triangles->GetNumberOfPolys()) return triangles;
+    vtkNew<vtkCellArray> shown;
+    for (vtkIdType i = 0; i < triangles->GetNumberOfPolys(); ++i) {
+        if ((ghosts->GetValue(i) & vtkDataSetAttributes::HIDDENCELL) != 0) continue;
+        vtkIdType count = 0;
+        const vtkIdType* ids = nullptr;
+        triangles->GetPolys()->GetCellAtId(i, count, ids);
+        shown->InsertNextCell(count, ids);
+    }
+    triangles->GetCellData()->Initialize();
+    triangles->SetPolys(shown);
+    return triangles;
+}
+
+/// Calls `body` with every mesh in a data object, which may be null.
+void for_meshes(vtkDataObject* data, const std::function<void(vtkPolyData*)>& body) {
+    if (auto* composite = vtkCompositeDataSet::SafeDownCast(data)) {
+        const auto leaves = vtk::TakeSmartPointer(composite->NewIterator());
+        for (leaves->InitTraversal(); !leaves->IsDoneWithTraversal(); leaves->GoToNextItem())
+            for_meshes(leaves->GetCurrentDataObject(), body);
+    } else if (auto* mesh = vtkPolyData::SafeDownCast(data)) {
+        body(mesh);
+    }
 }
 
 /// The pixels of an image, rows from the top.
@@ -60,6 +93,22 @@ std::vector<float> pixels_of(vtkImageData* image, vtkDataArray* scalars) {
             for (int c = 0; c < channels; ++c)
                 pixels.push_back(static_cast<float>(scalars->GetComponent(vtkIdType{j} * size[0] + i, c)));
     return pixels;
+}
+
+/// Tells filters behind this one what numbers a texture of these panoramas has, if theirs are known.
+void tell_pixels(vtkInformationVector* panoramas, vtkInformation* output) {
+    int type = VTK_UNSIGNED_CHAR, channels = 0;
+    for (int i = 0; i < panoramas->GetNumberOfInformationObjects(); ++i) {
+        vtkInformation* scalars = vtkDataObject::GetActiveFieldInformation(
+            panoramas->GetInformationObject(i), vtkDataObject::FIELD_ASSOCIATION_POINTS,
+            vtkDataSetAttributes::SCALARS);
+        if (!scalars || !scalars->Has(vtkDataObject::FIELD_ARRAY_TYPE()) ||
+            !scalars->Has(vtkDataObject::FIELD_NUMBER_OF_COMPONENTS()))
+            return;
+        if (scalars->Get(vtkDataObject::FIELD_ARRAY_TYPE()) != VTK_UNSIGNED_CHAR) type = VTK_FLOAT;
+        channels = scalars->Get(vtkDataObject::FIELD_NUMBER_OF_COMPONENTS());
+    }
+    if (channels > 0) vtkDataObject::SetPointDataActiveScalarInfo(output, type, channels + 1);
 }
 
 void add_field_value(vtkDataObject* object, const char* name, std::int64_t value) {
@@ -89,7 +138,7 @@ struct vtkAnamorphProjectionBake::Run {
     /// Puts the meshes of all ranks in the place of this one's.
     void share_mesh();
     void take_pictures();
-    void list_occluders(vtkPolyData* triangles, vtkPolyData* others);
+    void list_occluders(vtkPolyData* triangles, vtkDataObject* others);
     void cast_shadows();
     /// Every rank makes some of the rows, and gets those of the others.
     anamorph::BakedTexture bake_with_others();
@@ -146,6 +195,10 @@ void vtkAnamorphProjectionBake::Run::take_pictures() {
         vtkDataArray* scalars = image ? image->GetPointData()->GetScalars() : nullptr;
         if (!scalars || scalars->GetNumberOfTuples() == 0)
             throw anamorph::Error("panorama", std::to_string(i), "must be an image with scalars");
+        if (image->GetDimensions()[2] != 1)
+            throw anamorph::Error(
+                "panorama", std::to_string(i),
+                "has " + std::to_string(image->GetDimensions()[2]) + " slices, but must have 1");
         const int channels = scalars->GetNumberOfComponents();
         if (i > 0 && channels != options.channels)
             throw anamorph::Error("panorama", std::to_string(i),
@@ -164,9 +217,11 @@ void vtkAnamorphProjectionBake::Run::take_pictures() {
     for (std::size_t i = 0; i < count; ++i) pictures[i].pixels = pixels[i].data();
 }
 
-void vtkAnamorphProjectionBake::Run::list_occluders(vtkPolyData* triangles, vtkPolyData* others) {
+void vtkAnamorphProjectionBake::Run::list_occluders(vtkPolyData* triangles, vtkDataObject* others) {
     anamorph_vtk::append_triangles(triangles, shadow_casters);
-    if (others) anamorph_vtk::append_triangles(triangles_of(others), shadow_casters);
+    for_meshes(others, [&](vtkPolyData* other) {
+        anamorph_vtk::append_triangles(triangles_of(other), shadow_casters);
+    });
     if (anamorph_vtk::distributed(filter.Controller))
         shadow_casters = anamorph_vtk::of_all_ranks(shadow_casters, filter.Controller);
 }
@@ -326,15 +381,21 @@ int vtkAnamorphProjectionBake::GetNumberOfProjectors() {
 int vtkAnamorphProjectionBake::FillInputPortInformation(int port, vtkInformation* info) {
     info->Set(INPUT_REQUIRED_DATA_TYPE(), port == 1 ? "vtkImageData" : "vtkPolyData");
     if (port == 1) info->Set(INPUT_IS_REPEATABLE(), 1);
-    if (port == 2) info->Set(INPUT_IS_OPTIONAL(), 1);
+    if (port == 2) {
+        info->Set(INPUT_IS_OPTIONAL(), 1);
+        // All of its blocks cast shadows at once: none is baked by itself.
+        info->Append(INPUT_REQUIRED_DATA_TYPE(), "vtkCompositeDataSet");
+    }
     return 1;
 }
 
-int vtkAnamorphProjectionBake::RequestInformation(vtkInformation*, vtkInformationVector**,
+int vtkAnamorphProjectionBake::RequestInformation(vtkInformation*, vtkInformationVector** inputs,
                                                   vtkInformationVector* outputs) {
     vtkInformation* info = outputs->GetInformationObject(0);
     const int extent[6] = {0, std::max(this->Width, 1) - 1, 0, std::max(this->Height, 1) - 1, 0, 0};
     info->Set(vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT(), extent, 6);
+    tell_pixels(inputs[1], info);
+    anamorph_vtk::tell_times({inputs, 3}, info);
     return 1;
 }
 
@@ -347,6 +408,14 @@ int vtkAnamorphProjectionBake::RequestUpdateExtent(vtkInformation*, vtkInformati
         if (info->Has(Pipeline::WHOLE_EXTENT()))
             info->Set(Pipeline::UPDATE_EXTENT(), info->Get(Pipeline::WHOLE_EXTENT()), 6);
     }
+    // And all of every mesh, of which ranks share out their pieces.
+    if (anamorph_vtk::distributed(this->Controller)) return 1;
+    for (const int port : {0, 2})
+        if (vtkInformation* info = inputs[port]->GetInformationObject(0)) {
+            info->Set(Pipeline::UPDATE_PIECE_NUMBER(), 0);
+            info->Set(Pipeline::UPDATE_NUMBER_OF_PIECES(), 1);
+            info->Set(Pipeline::UPDATE_NUMBER_OF_GHOST_LEVELS(), 0);
+        }
     return 1;
 }
 
@@ -362,11 +431,12 @@ int vtkAnamorphProjectionBake::RequestData(vtkInformation*, vtkInformationVector
         const bool shared = anamorph_vtk::distributed(this->Controller);
         run.take_mesh(triangles);
         if (shared) run.share_mesh();
-        if (this->Occlusion) run.list_occluders(triangles, vtkPolyData::GetData(inputs[2]));
+        if (this->Occlusion) run.list_occluders(triangles, vtkDataObject::GetData(inputs[2]));
         const anamorph::BakedTexture texture = shared ? run.bake_with_others() : run.bake();
         const int* extent =
             outputs->GetInformationObject(0)->Get(vtkStreamingDemandDrivenPipeline::UPDATE_EXTENT());
         run.hand_over(texture, extent, output);
+        anamorph_vtk::hand_over_time({inputs, 3}, output);
     };
     return anamorph_vtk::guarded(this, execute, {output});
 }

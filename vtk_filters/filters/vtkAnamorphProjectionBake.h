@@ -8,9 +8,9 @@
  * Several projectors are blended by angle and distance: each has a share as its rays lie close at the point, the cosine of
  * the angle to the surface over the square of the distance, which fades to 0 at borders of its panorama. With Occlusion a
  * ray to every texel tells what a projector does not see: the mesh hides itself, and so does the third input. What is nearer
- * than 2^-16 of the distance does not.
+ * than 2^-16 of the distance does not. Hidden (blanked) cells are not painted and hide nothing.
  *
- * Input 0 is the mesh, with texture coordinates from 0 to 1; where triangles share texels, the first one has them. Input 1
+ * Input 0 is the mesh (of composite data each mesh is baked by itself, into a texture of its own), with texture coordinates from 0 to 1; where triangles share texels, the first one has them. Input 1
  * takes one image for each projector, in their order, all with the same number of components; they are read bilinearly.
  * The output is an image that VTK's writers write: the components of the panoramas, and one that says where there is
  * something, 0 or 1 (255 for bytes). It has bytes if all panoramas have, and float otherwise.
@@ -119,7 +119,7 @@ class ANAMORPHFILTERS_EXPORT vtkAnamorphProjectionBake : public vtkImageAlgorith
     void AddPanoramaConnection(vtkAlgorithmOutput* output) { this->AddInputConnection(1, output); }
     void RemoveAllPanoramaConnections() { this->RemoveAllInputConnections(1); }
     /**
-     * What else casts shadows.
+     * What else casts shadows: a mesh, or all of those in composite data.
      */
     void SetOccluderConnection(vtkAlgorithmOutput* output) { this->SetInputConnection(2, output); }
 
