@@ -3,6 +3,8 @@
 import os
 
 import anamorph
+from conformance import Source, steps_of, time_of
+from conformance import wall as wall_at
 from vtkmodules.vtkFiltersSources import vtkPlaneSource
 
 os.environ.pop("DISPLAY", None)
@@ -25,3 +27,16 @@ u, v = (painted.GetPointData().GetTCoords().GetRange(c) for c in range(2))
 # 53.13 of 360 and of 180 degrees, about the middle.
 assert abs(u[0] - (0.5 - 0.0737918)) < 1e-6 and abs(v[1] - (0.5 + 0.1475836)) < 1e-6, (u, v)
 assert painted.GetFieldData().GetArray("anamorph:max_error").GetValue(0) <= 0.125
+
+# What hides others may vary in time, where the scene does not.
+occluders = Source(lambda time: wall_at(-0.5, half=0.05 + time / 20), (0.0, 1.0, 2.0))
+projection = anamorph.vtkAnamorphPanoramaProjection()
+projection.SetInputConnection(wall.GetOutputPort())
+projection.SetInputConnection(1, occluders.GetOutputPort())
+assert steps_of(projection) == [0, 1, 2]
+left = []
+for time in (0.0, 2.0, 1.0):
+    projection.UpdateTimeStep(time)
+    assert [time_of(projection.GetOutputDataObject(port)) for port in (0, 1)] == [time, time]
+    left.append(projection.GetOutputDataObject(1).GetNumberOfCells())
+assert 0 < left[0] < left[2] < left[1] and [asked[0] for asked in occluders.asked] == [0, 2, 1], (left, occluders.asked)

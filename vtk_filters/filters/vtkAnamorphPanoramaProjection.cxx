@@ -14,6 +14,7 @@
 #include "anamorph/projector/projected_triangles.h"
 #include "automatic_plane.h"
 #include "execution.h"
+#include "input_times.h"
 #include "painted_mesh.h"
 #include "scene_shadow.h"
 #include "vtkCellArray.h"
@@ -182,6 +183,13 @@ int vtkAnamorphPanoramaProjection::RequestDataObject(vtkInformation*, vtkInforma
     return 1;
 }
 
+int vtkAnamorphPanoramaProjection::RequestInformation(vtkInformation*, vtkInformationVector** inputs,
+                                                      vtkInformationVector* outputs) {
+    for (int port = 0; port < 2; ++port)
+        anamorph_vtk::tell_times({inputs, 2}, outputs->GetInformationObject(port));
+    return 1;
+}
+
 int vtkAnamorphPanoramaProjection::RequestUpdateExtent(vtkInformation*, vtkInformationVector** inputs,
                                                        vtkInformationVector*) {
     using Pipeline = vtkStreamingDemandDrivenPipeline;
@@ -330,6 +338,8 @@ int vtkAnamorphPanoramaProjection::RequestData(vtkInformation*, vtkInformationVe
             run.paint(run.scene[i], share * static_cast<double>(i), share * static_cast<double>(i + 1));
         hand_out(input, run.painted, vtkDataObject::GetData(outputs, 0));
         hand_out(input, run.rest, vtkDataObject::GetData(outputs, 1));
+        for (int port = 0; port < 2; ++port)
+            anamorph_vtk::hand_over_time({inputs, 2}, vtkDataObject::GetData(outputs, port));
     };
     return anamorph_vtk::guarded(this, execute,
                                  {vtkDataObject::GetData(outputs, 0), vtkDataObject::GetData(outputs, 1)});
