@@ -6,6 +6,7 @@ import os
 import tempfile
 
 import anamorph
+from conformance import Source, steps_of, time_of
 from vtkmodules.vtkCommonDataModel import vtkPartitionedDataSetCollection, vtkTable
 from vtkmodules.vtkFiltersGeneral import vtkTransformFilter
 from vtkmodules.vtkFiltersSources import vtkPlaneSource
@@ -80,6 +81,25 @@ from_table.SetInputConnection(plane.GetOutputPort())
 from_table.SetInputData(1, table)
 from_table.Update()
 assert points_of(from_table.GetOutput()) == once
+
+# A table that varies in time, where the mesh does not.
+def table_at(time):
+    bump, made = anamorph.vtkAnamorphDeformationList(), vtkTable()
+    bump.AddDeformation(0, 0, 0.3, 0.4, 0, 0, 1 + time)
+    bump.WriteTable(made)
+    return made
+
+
+tables = Source(table_at, (0.0, 1.0, 2.0))
+from_table = anamorph.vtkAnamorphDeform()
+from_table.SetInputConnection(plane.GetOutputPort())
+from_table.SetInputConnection(1, tables.GetOutputPort())
+assert steps_of(from_table) == [0, 1, 2]
+for time in (0.0, 2.0, 1.0):
+    from_table.UpdateTimeStep(time)
+    assert time_of(from_table.GetOutput()) == time
+    assert abs(from_table.GetOutput().GetBounds()[5] - (1 + time)) < 1e-3, (time, from_table.GetOutput().GetBounds())
+assert [asked[0] for asked in tables.asked] == [0, 2, 1]
 
 # A collection.
 collection = vtkPartitionedDataSetCollection()

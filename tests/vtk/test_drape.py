@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 # vtkAnamorphDrape from Python: every property set and read, and a picture on a sphere.
 import anamorph
+from conformance import Source, picture, pixels, steps_of, time_of
 from vtkmodules.vtkCommonDataModel import vtkImageData
 
 drape = anamorph.vtkAnamorphDrape()
@@ -35,3 +36,19 @@ assert seen.GetDimensions() == (41, 31, 1)
 assert [seen.GetScalarComponentAsDouble(20, 15, 0, c) for c in range(3)] == [200, 100, 50]
 assert seen.GetScalarComponentAsDouble(0, 0, 0, 0) == 0
 assert 0 < drape.GetMaxError() <= drape.GetTolerance()
+
+# A height that varies in time moves the surface, where the texture does not vary.
+heights = Source(lambda time: picture((1 + time) / 500), (0.0, 1.0, 2.0))
+drape = anamorph.vtkAnamorphDrape()
+drape.SetInputData(picture(1))
+drape.SetInputConnection(2, heights.GetOutputPort())
+drape.SetHeightScale(0.5)
+drape.SetViewSize(41, 31)
+drape.SetStyle(drape.DEPTH)
+assert steps_of(drape) == [0, 1, 2]
+depths = []
+for time in (0.0, 2.0, 1.0):
+    drape.UpdateTimeStep(time)
+    assert time_of(drape.GetOutput()) == time
+    depths.append(pixels(drape.GetOutput())[15, 20, 0])
+assert depths[0] > depths[2] > depths[1] > 0 and [asked[0] for asked in heights.asked] == [0, 2, 1], (depths, heights.asked)

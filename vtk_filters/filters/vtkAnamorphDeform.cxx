@@ -12,6 +12,7 @@
 #include "deformation_numbers.h"
 #include "deformed_mesh.h"
 #include "execution.h"
+#include "input_times.h"
 #include "vtkAnamorphDeformationList.h"
 #include "vtkCompositeDataIterator.h"
 #include "vtkDataObjectTree.h"
@@ -306,6 +307,13 @@ int vtkAnamorphDeform::RequestDataObject(vtkInformation*, vtkInformationVector**
     return 1;
 }
 
+int vtkAnamorphDeform::RequestInformation(vtkInformation*, vtkInformationVector** inputs,
+                                          vtkInformationVector* outputs) {
+    for (int port = 0; port < 2; ++port)
+        anamorph_vtk::tell_times({inputs, 2}, outputs->GetInformationObject(port));
+    return 1;
+}
+
 int vtkAnamorphDeform::RequestUpdateExtent(vtkInformation*, vtkInformationVector** inputs,
                                            vtkInformationVector*) {
     using Pipeline = vtkStreamingDemandDrivenPipeline;
@@ -328,6 +336,8 @@ int vtkAnamorphDeform::RequestData(vtkInformation*, vtkInformationVector** input
     const auto execute = [&] {
         try {
             this->Execute(inputs, outputs);
+            for (int port = 0; port < 2; ++port)
+                anamorph_vtk::hand_over_time({inputs, 2}, vtkDataObject::GetData(outputs, port));
         } catch (...) {
             this->Meshes->meshes.clear();
             throw;

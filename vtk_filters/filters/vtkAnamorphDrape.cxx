@@ -26,6 +26,7 @@
 #include "drape_inputs.h"
 #include "execution.h"
 #include "image_texture.h"
+#include "input_times.h"
 #include "vtkDataArray.h"
 #include "vtkDataSetAttributes.h"
 #include "vtkFieldData.h"
@@ -372,6 +373,7 @@ int vtkAnamorphDrape::RequestInformation(vtkInformation*, vtkInformationVector**
             drawn_by(this->Style, known ? texture->Get(vtkDataObject::FIELD_ARRAY_TYPE()) : -1,
                      known ? texture->Get(vtkDataObject::FIELD_NUMBER_OF_COMPONENTS()) : -1);
         vtkDataObject::SetPointDataActiveScalarInfo(output, drawn.type, drawn.components);
+        anamorph_vtk::tell_times({inputs, 4}, output);
     };
     return anamorph_vtk::guarded(this, tell, {vtkDataObject::GetData(outputs)});
 }
@@ -401,6 +403,7 @@ int vtkAnamorphDrape::RequestData(vtkInformation*, vtkInformationVector** inputs
             int asked[6];
             outputs->GetInformationObject(0)->Get(Executive::UPDATE_EXTENT(), asked);
             this->Draw(inputs, asked, output);
+            anamorph_vtk::hand_over_time({inputs, 4}, output);
         } catch (const Error& error) {
             throw of_property(error);
         }
