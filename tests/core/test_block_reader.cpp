@@ -241,7 +241,8 @@ TEST(BlockReader, PointsFarApartAreReadEachFromItsOwnTexels) {
                         Picture crop(box.width(), box.height(), channels);
                         ASSERT_TRUE(test::draw_map(map, border_of(source, wrap), filter, Output::color,
                                                    &source, box, crop.view()));
-                        PointSampler sampler(source, border_of(source, wrap));
+                        const Border border = border_of(source, wrap);
+                        PointSampler sampler(source, border);
                         std::vector<float> pixel(static_cast<std::size_t>(channels));
                         double worst = 0;
                         for (int y = box.y0; y < box.y1; ++y)
