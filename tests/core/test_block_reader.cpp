@@ -14,6 +14,7 @@
 #include "draw_map.h"
 #include "function_map.h"
 #include "guarded_memory.h"
+#include "remote_source.h"
 
 namespace anamorph {
 namespace {
@@ -193,24 +194,6 @@ TEST(BlockReader, PointsThatAreNoneOrFarAwayHarmNoOthers) {
             }
 }
 
-/// An image that is not at hand as a whole.
-class Copied final : public Source {
-  public:
-    explicit Copied(const Source& source) : m_source(source) {}
-    PixelType type() const noexcept override { return m_source.type(); }
-    int channels() const noexcept override { return m_source.channels(); }
-    int unassociated_alpha() const noexcept override { return m_source.unassociated_alpha(); }
-    int levels() const noexcept override { return 1; }
-    Size size(int level) const noexcept override { return m_source.size(level); }
-    bool read(int level, const Box& box, std::byte* texels,
-              std::ptrdiff_t row_stride) const noexcept override {
-        return m_source.read(level, box, texels, row_stride);
-    }
-
-  private:
-    const Source& m_source;
-};
-
 TEST(BlockReader, PointsFarApartAreReadEachFromItsOwnTexels) {
     constexpr int kWidth = 2400, kHeight = 1300, kAcross = 100, kDown = 50;
     const unsigned seed = 5;
@@ -235,7 +218,7 @@ TEST(BlockReader, PointsFarApartAreReadEachFromItsOwnTexels) {
                                      << ", wrap " << static_cast<int>(wrap));
                         const FunctionMap map(kAcross, kDown, kind, at);
                         const Picture picture = draw(map, source, filter, wrap);
-                        EXPECT_EQ(picture.values, draw(map, Copied(source), filter, wrap).values);
+                        EXPECT_EQ(picture.values, draw(map, test::Remote(source), filter, wrap).values);
                         // A crop, whose rows begin elsewhere.
                         const Box box{17, 9, 83, 40};
                         Picture crop(box.width(), box.height(), channels);
