@@ -67,18 +67,22 @@ def ids_and_depths_are_those_of_core():
             assert np.quantile(steps, 0.99) < 4 and error.max() < 2e-3, (np.quantile(steps, 0.99), error.max())
 
 
+def light_as_core(scene):
+    scene.actor.GetProperty().SetAmbient(0.3)
+    scene.actor.GetProperty().SetDiffuse(0.7)
+    light = vtkLight()
+    light.SetLightTypeToCameraLight()
+    light.SetPosition(-1, 2, 2)
+    light.SetFocalPoint(0, 0, 0)
+    scene.renderer.AddLight(light)
+
+
 def shading_is_that_of_core():
     data = crowd(200, 0.1)
     for scene in scenes(data):
         scene.mapper.SetScalarModeToUsePointFieldData()
         scene.mapper.SelectColorArray("Color")
-        scene.actor.GetProperty().SetAmbient(0.3)
-        scene.actor.GetProperty().SetDiffuse(0.7)
-        light = vtkLight()
-        light.SetLightTypeToCameraLight()
-        light.SetPosition(-1, 2, 2)
-        light.SetFocalPoint(0, 0, 0)
-        scene.renderer.AddLight(light)
+        light_as_core(scene)
         ids, reference = scene.ids(), core_picture(data, scene, Image.BODY_ID)
         scene.mapper.SelectColorArray("Color")
         exact = core_picture(data, scene, Image.SHADED, Lighting=Image.LAMBERT, Antialias=False)
@@ -539,13 +543,7 @@ def textures_of_bodies_are_those_of_core():
     data.GetPointData().AddArray(numbered)
     for scene in scenes(data):
         mapper = scene.mapper
-        scene.actor.GetProperty().SetAmbient(0.3)
-        scene.actor.GetProperty().SetDiffuse(0.7)
-        light = vtkLight()
-        light.SetLightTypeToCameraLight()
-        light.SetPosition(-1, 2, 2)
-        light.SetFocalPoint(0, 0, 0)
-        scene.renderer.AddLight(light)
+        light_as_core(scene)
         ids, reference = scene.ids(), core_picture(data, scene, Image.BODY_ID)
         mapper.SelectColorArray("Color")
         plain = scene.colors()

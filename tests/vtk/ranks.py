@@ -8,7 +8,7 @@ import traceback
 import anamorph
 from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkCommonCore import vtkDoubleArray, vtkIdList, vtkPoints
-from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkPolyData, vtkTable
+from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkMultiBlockDataSet, vtkPolyData, vtkTable
 from vtkmodules.vtkFiltersSources import vtkSphereSource
 from vtkmodules.vtkImagingCore import vtkRTAnalyticSource
 from vtkmodules.vtkParallelCore import vtkMultiProcessController
@@ -109,7 +109,7 @@ def strips(begin, end, count=6):
     return mesh
 
 
-def baked(mesh, with_controller):
+def bake_of(mesh):
     picture, bake = vtkRTAnalyticSource(), anamorph.vtkAnamorphProjectionBake()
     picture.SetWholeExtent(0, 63, 0, 31, 0, 0)
     bake.SetInputData(mesh)
@@ -117,12 +117,21 @@ def baked(mesh, with_controller):
     bake.AddProjector(0.2, 0.1, 0, 0, 0, -1, 0, 1, 0)
     bake.SetWidth(120)
     bake.SetHeight(40)
+    return bake
+
+
+def texture_and_counts(texture):
+    fields = [texture.GetFieldData().GetArray(name).GetValue(0) for name in ("anamorph:painted", "anamorph:unseen")]
+    return vtk_to_numpy(texture.GetPointData().GetScalars()).tobytes(), fields
+
+
+def baked(mesh, with_controller, occlusion=True):
+    bake = bake_of(mesh)
+    bake.SetOcclusion(occlusion)
     if not with_controller:
         bake.SetController(None)
     bake.Update()
-    texture = bake.GetOutput()
-    fields = [texture.GetFieldData().GetArray(name).GetValue(0) for name in ("anamorph:painted", "anamorph:unseen")]
-    return vtk_to_numpy(texture.GetPointData().GetScalars()).tobytes(), fields
+    return texture_and_counts(bake.GetOutput())
 
 
 def check_baked(rank, ranks):
@@ -133,18 +142,40 @@ def check_baked(rank, ranks):
     assert baked(strips(0, 6 if rank == ranks - 1 else 0), True) == whole
 
 
-def check_failures(rank):
-    """Where one rank cannot bake, none does, and none waits for it."""
-    mesh, picture, bake, errors = strips(rank, rank + 1), vtkRTAnalyticSource(), anamorph.vtkAnamorphProjectionBake(), []
-    if rank == 0:
-        mesh.GetPointData().SetTCoords(None)
-    bake.SetInputData(mesh)
-    bake.AddPanoramaConnection(picture.GetOutputPort())
-    bake.AddProjector(0, 0, 0, 0, 0, -1, 0, 1, 0)
+def errors_of(bake):
+    errors = []
     for watched in (bake, bake.GetExecutive()):
         watched.AddObserver("ErrorEvent", lambda *_: errors.append(1))
     bake.Update()
-    assert errors and bake.GetOutput().GetNumberOfPoints() == 0, (errors, bake.GetOutput().GetNumberOfPoints())
+    return errors
+
+
+def check_blocks(rank, ranks):
+    """Of composite data every rank has other blocks: each has the textures of all of them."""
+    meshes = {0: (0, 3), 3: (3, 6)}
+    blocks = vtkMultiBlockDataSet()
+    blocks.SetNumberOfBlocks(4)
+    for k, of in (0, 0), (3, ranks - 1):
+        blocks.SetBlock(k, strips(*meshes[k]) if rank == of else None)
+    bake = bake_of(blocks)
+    bake.OcclusionOff()
+    bake.Update()
+    textures = bake.GetOutputDataObject(0)
+    assert [k for k in range(4) if textures.GetBlock(k)] == list(meshes)
+    for k, ends in meshes.items():
+        assert texture_and_counts(textures.GetBlock(k)) == baked(strips(*ends), False, False), k
+    # Another structure on each rank is an error on all.
+    blocks.SetNumberOfBlocks(4 + rank)
+    assert errors_of(bake)
+
+
+def check_failures(rank):
+    """Where one rank cannot bake, none does, and none waits for it."""
+    mesh = strips(rank, rank + 1)
+    if rank == 0:
+        mesh.GetPointData().SetTCoords(None)
+    bake = bake_of(mesh)
+    assert errors_of(bake) and bake.GetOutput().GetNumberOfPoints() == 0
 
 
 def main():
@@ -171,6 +202,7 @@ def main():
             assert moved == whole[point], (point, moved, whole[point])
     check_painted(mesh, part, controller)
     check_baked(rank, ranks)
+    check_blocks(rank, ranks)
     check_failures(rank)
     print("rank", rank, "of", ranks, "agrees at", len(points), "points", flush=True)
 

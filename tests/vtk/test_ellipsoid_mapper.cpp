@@ -8,6 +8,7 @@
 #include <vtkCompositeDataDisplayAttributes.h>
 #include <vtkDoubleArray.h>
 #include <vtkImageData.h>
+#include <vtkTexture.h>
 
 #include <cmath>
 
@@ -102,6 +103,50 @@ TEST(VtkEllipsoidMapper, WhatCannotBeDoneIsAnError) {
     EXPECT_THAT(error([](Mapper* m) { m->SetShape(Mapper::TENSOR); }), HasSubstr("TensorArray=\"\""));
     for (const double scale : {0.0, -1.0, kNan, kInf})
         EXPECT_THAT(error([&](Mapper* m) { m->SetScaleFactor(scale); }), HasSubstr("ScaleFactor=")) << scale;
+}
+
+TEST(VtkEllipsoidMapper, AShallowCopyDrawsTheSame) {
+    // No vtkPolyData, and nothing as it is by default.
+    vtkNew<vtkImageData> points;
+    points->SetDimensions(1, 1, 1);
+    vtkNew<vtkDoubleArray> tensors;
+    tensors->SetName("D");
+    tensors->SetNumberOfComponents(9);
+    tensors->InsertNextTuple9(1, 0, 0, 0, 4, 0, 0, 0, 9);
+    points->GetPointData()->AddArray(tensors);
+    vtkNew<vtkCompositeDataDisplayAttributes> blocks;
+    vtkNew<Mapper> one, copy;
+    one->SetInputData(points);
+    one->SetShape(Mapper::COVARIANCE);
+    one->SetAxesArray("a");
+    one->SetOrientationArray("b");
+    one->SetTensorArray("D");
+    one->SetScaleFactor(2);
+    one->SetTextureArray("c");
+    one->SetTextureOffsetArray("d");
+    one->SetTextureMapping(Mapper::LINEAR);
+    one->AddTexture(vtkNew<vtkTexture>(), "wood");
+    one->SetCompositeDataDisplayAttributes(blocks);
+    one->ScalarVisibilityOff();
+    copy->AddTexture(vtkNew<vtkTexture>());
+    copy->AddTexture(vtkNew<vtkTexture>());
+    copy->ShallowCopy(one);
+    const double wanted[6] = {-2, 2, -4, 4, -6, 6};
+    for (int k = 0; k < 6; ++k) EXPECT_NEAR(copy->GetBounds()[k], wanted[k], 1e-12) << k;
+    EXPECT_EQ(copy->GetShape(), Mapper::COVARIANCE);
+    EXPECT_STREQ(copy->GetAxesArray(), "a");
+    EXPECT_STREQ(copy->GetOrientationArray(), "b");
+    EXPECT_STREQ(copy->GetTextureArray(), "c");
+    EXPECT_STREQ(copy->GetTextureOffsetArray(), "d");
+    EXPECT_EQ(copy->GetTextureMapping(), Mapper::LINEAR);
+    EXPECT_EQ(copy->GetNumberOfTextures(), 1);
+    EXPECT_EQ(copy->GetCompositeDataDisplayAttributes(), blocks.Get());
+    EXPECT_FALSE(copy->GetScalarVisibility());
+    copy->ShallowCopy(copy);
+    EXPECT_EQ(copy->GetNumberOfTextures(), 1);
+    copy->ShallowCopy(vtkNew<Mapper>());
+    EXPECT_EQ(copy->GetNumberOfInputConnections(0), 0);
+    EXPECT_EQ(copy->GetNumberOfTextures(), 0);
 }
 
 TEST(VtkEllipsoidMapper, TheSameValueLeavesItsTime) {

@@ -197,6 +197,35 @@ TEST(VtkPanoramaProjection, WhatIsHiddenIsNotPainted) {
     EXPECT_EQ(rest(filter)->GetNumberOfCells(), 0);
 }
 
+TEST(VtkPanoramaProjection, BlankedCellsHideNothing) {
+    const Mesh blanked = wall(-1, 0.5);
+    vtkNew<vtkUnsignedCharArray> ghosts;
+    ghosts->SetName(vtkDataSetAttributes::GhostArrayName());
+    ghosts->InsertNextValue(vtkDataSetAttributes::HIDDENCELL);
+    blanked->GetCellData()->AddArray(ghosts);
+    vtkNew<vtkMultiBlockDataSet> blocks;
+    blocks->SetBlock(0, wall(-2, 2));
+    vtkNew<Filter> filter;
+    filter->SetInputData(blocks);
+    filter->SetInputData(1, blanked);
+    const auto painted_area = [&] {
+        filter->Update();
+        auto* out = vtkMultiBlockDataSet::SafeDownCast(filter->GetOutputDataObject(0));
+        return area_of(vtkPolyData::SafeDownCast(out->GetBlock(0)));
+    };
+    EXPECT_NEAR(painted_area(), 16, 1e-5) << "among the occluders";
+    filter->RemoveAllInputConnections(1);
+    blocks->SetBlock(1, blanked);
+    blocks->Modified();
+    EXPECT_NEAR(painted_area(), 16, 1e-5) << "in the scene";
+    // What another piece has, too, hides.
+    ghosts->SetValue(0, vtkDataSetAttributes::DUPLICATECELL);
+    ghosts->Modified();
+    blanked->Modified();
+    filter->Modified();
+    EXPECT_LT(painted_area(), 13);
+}
+
 TEST(VtkPanoramaProjection, ASurfaceHidesItsFarSideAndNotItself) {
     vtkNew<vtkSphereSource> ball;
     ball->SetCenter(0, 0, -3);

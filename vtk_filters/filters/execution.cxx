@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <cstring>
 #include <exception>
 #include <mutex>
 #include <new>
@@ -10,6 +11,8 @@
 #include "smp_for.h"
 #include "vtkAlgorithm.h"
 #include "vtkDataObject.h"
+#include "vtkInformation.h"
+#include "vtkSmartPointer.h"
 
 namespace anamorph_vtk {
 namespace {
@@ -75,6 +78,12 @@ int guarded(vtkObject* object, const std::function<void()>& body,
     for (vtkDataObject* output : outputs)
         if (output) output->Initialize();
     return failed ? 0 : 1;
+}
+
+void make_output(vtkInformation* output, vtkDataObject* like) {
+    vtkDataObject* there = vtkDataObject::GetData(output);
+    if (there && std::strcmp(there->GetClassName(), like->GetClassName()) == 0) return;
+    output->Set(vtkDataObject::DATA_OBJECT(), vtkSmartPointer<vtkDataObject>::Take(like->NewInstance()));
 }
 
 }  // namespace anamorph_vtk

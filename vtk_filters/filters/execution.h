@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a filter lends to the core while it executes: VTK's threads, its progress, and the wish to stop; and
-// what becomes of what the core throws.
+// What a filter lends to the core while it executes: VTK's threads, its progress, and the wish to stop; what becomes of what
+// the core throws; and what it writes to.
 #pragma once
 
 #include <functional>
@@ -11,6 +11,7 @@
 
 class vtkAlgorithm;
 class vtkDataObject;
+class vtkInformation;
 class vtkObject;
 
 namespace anamorph_vtk {
@@ -38,5 +39,8 @@ class Execution {
 /// for Aborted, which is none.
 int guarded(vtkObject* object, const std::function<void()>& body,
             std::initializer_list<vtkDataObject*> outputs = {});
+
+/// Sees to it, in RequestDataObject(), that an output is of the class of `like`.
+void make_output(vtkInformation* output, vtkDataObject* like);
 
 }  // namespace anamorph_vtk

@@ -4,25 +4,51 @@
 #include <cmath>
 
 #include "vtkCellArray.h"
+#include "vtkCellData.h"
+#include "vtkDataSetAttributes.h"
 #include "vtkMultiProcessController.h"
+#include "vtkNew.h"
 #include "vtkPolyData.h"
+#include "vtkTriangleFilter.h"
+#include "vtkUnsignedCharArray.h"
 
 namespace anamorph_vtk {
 
-void append_triangles(vtkPolyData* mesh, TriangleList& to) {
-    vtkCellArray* cells = mesh->GetPolys();
-    vtkIdType count = 0;
-    const vtkIdType* corners = nullptr;
+vtkSmartPointer<vtkPolyData> triangulated(vtkPolyData* mesh) {
+    vtkNew<vtkPolyData> copy;
+    copy->ShallowCopy(mesh);
+    vtkNew<vtkTriangleFilter> filter;
+    filter->SetInputData(copy);
+    filter->PassVertsOff();
+    filter->PassLinesOff();
+    filter->Update();
+    return filter->GetOutput();
+}
+
+void for_shown(vtkPolyData* triangles, const std::function<void(const vtkIdType*)>& body) {
+    vtkCellArray* cells = triangles->GetPolys();
+    auto* ghosts = vtkUnsignedCharArray::SafeDownCast(
+        triangles->GetCellData()->GetArray(vtkDataSetAttributes::GhostArrayName()));
+    if (ghosts && ghosts->GetNumberOfTuples() != cells->GetNumberOfCells()) ghosts = nullptr;
     for (vtkIdType i = 0; i < cells->GetNumberOfCells(); ++i) {
+        if (ghosts && (ghosts->GetValue(i) & vtkDataSetAttributes::HIDDENCELL) != 0) continue;
+        vtkIdType count = 0;
+        const vtkIdType* corners = nullptr;
         cells->GetCellAtId(i, count, corners);
+        if (count == 3) body(corners);
+    }
+}
+
+void append_triangles(vtkPolyData* triangles, TriangleList& to) {
+    for_shown(triangles, [&](const vtkIdType* corners) {
         glm::dvec3 p[3];
-        bool finite = count == 3;
-        for (int k = 0; k < 3 && finite; ++k) {
-            mesh->GetPoint(corners[k], &p[k].x);
-            finite = std::isfinite(p[k].x) && std::isfinite(p[k].y) && std::isfinite(p[k].z);
+        bool finite = true;
+        for (int k = 0; k < 3; ++k) {
+            triangles->GetPoint(corners[k], &p[k].x);
+            finite = finite && std::isfinite(p[k].x) && std::isfinite(p[k].y) && std::isfinite(p[k].z);
         }
         if (finite) to.insert(to.end(), p, p + 3);
-    }
+    });
 }
 
 TriangleList of_all_ranks(const TriangleList& own, vtkMultiProcessController* controller) {

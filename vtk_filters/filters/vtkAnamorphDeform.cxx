@@ -297,13 +297,8 @@ int vtkAnamorphDeform::RequestDataObject(vtkInformation*, vtkInformationVector**
                                          vtkInformationVector* outputs) {
     vtkDataObject* input = vtkDataObject::GetData(inputs[0]);
     if (!input) return 0;
-    vtkInformation* info = outputs->GetInformationObject(0);
-    vtkDataObject* output = info->Get(vtkDataObject::DATA_OBJECT());
-    if (!output || std::string(output->GetClassName()) != input->GetClassName())
-        info->Set(vtkDataObject::DATA_OBJECT(), vtkSmartPointer<vtkDataObject>::Take(input->NewInstance()));
-    vtkInformation* overlay = outputs->GetInformationObject(1);
-    if (!vtkPolyData::SafeDownCast(overlay->Get(vtkDataObject::DATA_OBJECT())))
-        overlay->Set(vtkDataObject::DATA_OBJECT(), vtkNew<vtkPolyData>());
+    anamorph_vtk::make_output(outputs->GetInformationObject(0), input);
+    anamorph_vtk::make_output(outputs->GetInformationObject(1), vtkNew<vtkPolyData>());
     return 1;
 }
 

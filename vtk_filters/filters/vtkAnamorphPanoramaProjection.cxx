@@ -34,7 +34,6 @@
 #include "vtkObjectFactory.h"
 #include "vtkPolyData.h"
 #include "vtkStreamingDemandDrivenPipeline.h"
-#include "vtkTriangleFilter.h"
 #include "vtkUnsignedCharArray.h"
 
 vtkObjectFactoryNewMacro(vtkAnamorphPanoramaProjection);
@@ -60,14 +59,7 @@ vtkSmartPointer<vtkPolyData> triangles_of(vtkDataSet* data) {
         surface = filter->GetOutput();
     }
     if (!surface || surface->GetNumberOfCells() == 0) return vtkSmartPointer<vtkPolyData>::New();
-    vtkNew<vtkPolyData> copy;
-    copy->ShallowCopy(surface);
-    vtkNew<vtkTriangleFilter> filter;
-    filter->SetInputData(copy);
-    filter->PassVertsOff();
-    filter->PassLinesOff();
-    filter->Update();
-    return filter->GetOutput();
+    return anamorph_vtk::triangulated(surface);
 }
 
 /// The data sets of an input, in order.
@@ -172,14 +164,9 @@ int vtkAnamorphPanoramaProjection::RequestDataObject(vtkInformation*, vtkInforma
     vtkDataObject* input = vtkDataObject::GetData(inputs[0]);
     if (!input) return 0;
     const bool tree = vtkDataObjectTree::SafeDownCast(input) != nullptr;
-    const std::string wanted = tree ? input->GetClassName() : "vtkPolyData";
-    for (int port = 0; port < 2; ++port) {
-        vtkInformation* info = outputs->GetInformationObject(port);
-        vtkDataObject* output = info->Get(vtkDataObject::DATA_OBJECT());
-        if (output && wanted == output->GetClassName()) continue;
-        info->Set(vtkDataObject::DATA_OBJECT(),
-                  vtkSmartPointer<vtkDataObject>::Take(tree ? input->NewInstance() : vtkPolyData::New()));
-    }
+    const vtkNew<vtkPolyData> mesh;
+    for (int port = 0; port < 2; ++port)
+        anamorph_vtk::make_output(outputs->GetInformationObject(port), tree ? input : mesh.Get());
     return 1;
 }
 

@@ -21,7 +21,7 @@
  * does what comes in on the second input. Triangles are cut along the borders of shadows and at their corners, wherever they
  * lie in a cell, however small they are: what is left on the wrong side is narrower than an eighth of Tolerance, or of a texel
  * if that is less. Where borders of many shadows meet, what is smaller than Tolerance or a texel is not divided and counts as
- * hidden. What is nearer to a point than 2^-16 of its distance does not hide it.
+ * hidden. What is nearer to a point than 2^-16 of its distance does not hide it, nor do blanked cells.
  *
  * Field arrays on both outputs: "anamorph:tol"; "anamorph:max_error", the largest bound in use, in texels;
  * "anamorph:no_direction", the number of triangles without one. They count what this rank has of a leaf.

@@ -14,12 +14,12 @@
 #include "execution.h"
 #include "input_times.h"
 #include "scene_shadow.h"
-#include "vtkCellArray.h"
-#include "vtkCellData.h"
 #include "vtkCommunicator.h"
 #include "vtkCompositeDataIterator.h"
 #include "vtkCompositeDataSet.h"
 #include "vtkDataArray.h"
+#include "vtkDataObjectTree.h"
+#include "vtkDataObjectTreeIterator.h"
 #include "vtkDataSetAttributes.h"
 #include "vtkDoubleArray.h"
 #include "vtkFieldData.h"
@@ -33,8 +33,6 @@
 #include "vtkPolyData.h"
 #include "vtkSmartPointer.h"
 #include "vtkStreamingDemandDrivenPipeline.h"
-#include "vtkTriangleFilter.h"
-#include "vtkUnsignedCharArray.h"
 
 vtkObjectFactoryNewMacro(vtkAnamorphProjectionBake);
 
@@ -43,32 +41,6 @@ struct vtkAnamorphProjectionBake::Projectors {
 };
 
 namespace {
-
-/// The polygons of a mesh that are not hidden (blanked), as triangles.
-vtkSmartPointer<vtkPolyData> triangles_of(vtkPolyData* mesh) {
-    vtkNew<vtkPolyData> copy;
-    copy->ShallowCopy(mesh);
-    vtkNew<vtkTriangleFilter> filter;
-    filter->SetInputData(copy);
-    filter->PassVertsOff();
-    filter->PassLinesOff();
-    filter->Update();
-    vtkPolyData* triangles = filter->GetOutput();
-    auto* ghosts = vtkUnsignedCharArray::SafeDownCast(
-        triangles->GetCellData()->GetArray(vtkDataSetAttributes::GhostArrayName()));
-    if (!ghosts || ghosts->GetNumberOfTuples() != triangles->GetNumberOfPolys()) return triangles;
-    vtkNew<vtkCellArray> shown;
-    for (vtkIdType i = 0; i < triangles->GetNumberOfPolys(); ++i) {
-        if ((ghosts->GetValue(i) & vtkDataSetAttributes::HIDDENCELL) != 0) continue;
-        vtkIdType count = 0;
-        const vtkIdType* ids = nullptr;
-        triangles->GetPolys()->GetCellAtId(i, count, ids);
-        shown->InsertNextCell(count, ids);
-    }
-    triangles->GetCellData()->Initialize();
-    triangles->SetPolys(shown);
-    return triangles;
-}
 
 /// Calls `body` with every mesh in a data object, which may be null.
 void for_meshes(vtkDataObject* data, const std::function<void(vtkPolyData*)>& body) {
@@ -111,6 +83,17 @@ void tell_pixels(vtkInformationVector* panoramas, vtkInformation* output) {
     if (channels > 0) vtkDataObject::SetPointDataActiveScalarInfo(output, type, channels + 1);
 }
 
+/// Which entries are not 0 on any rank, where all have as many.
+std::vector<int> on_any_rank(const std::vector<int>& own, vtkMultiProcessController* controller) {
+    const int count = static_cast<int>(own.size()), counts[] = {count, -count};
+    int least[2] = {};
+    controller->AllReduce(counts, least, 2, vtkCommunicator::MIN_OP);
+    if (least[0] != -least[1]) throw anamorph::Error("the mesh must have the same blocks on all ranks");
+    std::vector<int> any(own);
+    controller->AllReduce(own.data(), any.data(), count, vtkCommunicator::MAX_OP);
+    return any;
+}
+
 void add_field_value(vtkDataObject* object, const char* name, std::int64_t value) {
     vtkNew<vtkDoubleArray> array;
     array->SetName(name);
@@ -124,7 +107,7 @@ void add_field_value(vtkDataObject* object, const char* name, std::int64_t value
 struct vtkAnamorphProjectionBake::Run {
     vtkAnamorphProjectionBake& filter;
     vtkInformationVector* images;
-    anamorph_vtk::Execution execution{&filter};
+    anamorph::ParallelFor parallel_for;
     anamorph::BakeOptions options = {};
     bool bytes = true;
     std::vector<std::vector<float>> pixels = {};
@@ -134,6 +117,7 @@ struct vtkAnamorphProjectionBake::Run {
     std::vector<anamorph::BakedTriangle> mesh = {};
     bool has_coordinates = true;
 
+    /// Of a mesh of triangles.
     void take_mesh(vtkPolyData* triangles);
     /// Puts the meshes of all ranks in the place of this one's.
     void share_mesh();
@@ -143,26 +127,25 @@ struct vtkAnamorphProjectionBake::Run {
     /// Every rank makes some of the rows, and gets those of the others.
     anamorph::BakedTexture bake_with_others();
     anamorph::BakedTexture bake();
+    /// All of it, to a part of an image.
+    void bake_to(vtkPolyData* of, vtkDataObject* others, const int* extent, vtkImageData* output);
     void share_rows(anamorph::BakedTexture& texture) const;
     void hand_over(const anamorph::BakedTexture& texture, const int* extent, vtkImageData* output) const;
 };
 
 void vtkAnamorphProjectionBake::Run::take_mesh(vtkPolyData* triangles) {
     vtkDataArray* coordinates = triangles->GetPointData()->GetTCoords();
-    has_coordinates =
-        triangles->GetNumberOfPolys() == 0 || (coordinates && coordinates->GetNumberOfComponents() >= 2);
-    if (!has_coordinates) return;
-    for (vtkIdType i = 0; i < triangles->GetNumberOfPolys(); ++i) {
-        vtkIdType count = 0;
-        const vtkIdType* ids = nullptr;
-        triangles->GetPolys()->GetCellAtId(i, count, ids);
+    const bool known = coordinates && coordinates->GetNumberOfComponents() >= 2;
+    anamorph_vtk::for_shown(triangles, [&](const vtkIdType* ids) {
+        has_coordinates = known;
+        if (!known) return;
         anamorph::BakedTriangle t;
         for (std::size_t k = 0; k < 3; ++k) {
             triangles->GetPoint(ids[k], &t.points[k].x);
             t.coordinates[k] = {coordinates->GetComponent(ids[k], 0), coordinates->GetComponent(ids[k], 1)};
         }
         mesh.push_back(t);
-    }
+    });
 }
 
 void vtkAnamorphProjectionBake::Run::share_mesh() {
@@ -220,7 +203,7 @@ void vtkAnamorphProjectionBake::Run::take_pictures() {
 void vtkAnamorphProjectionBake::Run::list_occluders(vtkPolyData* triangles, vtkDataObject* others) {
     anamorph_vtk::append_triangles(triangles, shadow_casters);
     for_meshes(others, [&](vtkPolyData* other) {
-        anamorph_vtk::append_triangles(triangles_of(other), shadow_casters);
+        anamorph_vtk::append_triangles(anamorph_vtk::triangulated(other), shadow_casters);
     });
     if (anamorph_vtk::distributed(filter.Controller))
         shadow_casters = anamorph_vtk::of_all_ranks(shadow_casters, filter.Controller);
@@ -238,7 +221,7 @@ anamorph::BakedTexture vtkAnamorphProjectionBake::Run::bake() {
                               "must have them at its points, 2 numbers each");
     take_pictures();
     if (filter.Occlusion) cast_shadows();
-    return anamorph::bake(mesh, pictures, options, execution.stage(0, 1));
+    return anamorph::bake(mesh, pictures, options, parallel_for);
 }
 
 anamorph::BakedTexture vtkAnamorphProjectionBake::Run::bake_with_others() {
@@ -328,6 +311,44 @@ void vtkAnamorphProjectionBake::Run::hand_over(const anamorph::BakedTexture& tex
     add_field_value(output, "anamorph:unseen", texture.unseen);
 }
 
+void vtkAnamorphProjectionBake::Run::bake_to(vtkPolyData* of, vtkDataObject* others, const int* extent,
+                                             vtkImageData* output) {
+    options.size = {filter.Width, filter.Height};
+    options.fade = filter.Fade;
+    options.margin = filter.Margin;
+    const vtkSmartPointer<vtkPolyData> triangles = anamorph_vtk::triangulated(of);
+    const bool shared = anamorph_vtk::distributed(filter.Controller);
+    take_mesh(triangles);
+    if (shared) share_mesh();
+    if (filter.Occlusion) list_occluders(triangles, others);
+    hand_over(shared ? bake_with_others() : bake(), extent, output);
+}
+
+void vtkAnamorphProjectionBake::BakeBlocks(vtkDataObjectTree* meshes, vtkInformationVector** inputs,
+                                           vtkDataObjectTree* textures) {
+    textures->CopyStructure(meshes);
+    const auto leaves = vtk::TakeSmartPointer(meshes->NewTreeIterator());
+    leaves->SkipEmptyNodesOff();
+    std::vector<int> has_mesh;
+    for (leaves->InitTraversal(); !leaves->IsDoneWithTraversal(); leaves->GoToNextItem())
+        has_mesh.push_back(vtkPolyData::SafeDownCast(leaves->GetCurrentDataObject()) != nullptr);
+    if (anamorph_vtk::distributed(this->Controller)) has_mesh = on_any_rank(has_mesh, this->Controller);
+    anamorph_vtk::Execution execution(this);
+    const auto count = static_cast<double>(has_mesh.size());
+    const int all[] = {0, this->Width - 1, 0, this->Height - 1, 0, 0};
+    std::size_t k = 0;
+    for (leaves->InitTraversal(); !leaves->IsDoneWithTraversal(); leaves->GoToNextItem(), ++k) {
+        if (has_mesh[k] == 0) continue;
+        vtkSmartPointer<vtkPolyData> mesh = vtkPolyData::SafeDownCast(leaves->GetCurrentDataObject());
+        if (!mesh) mesh = vtkSmartPointer<vtkPolyData>::New();
+        const vtkNew<vtkImageData> texture;
+        const auto at = static_cast<double>(k);
+        Run run{*this, inputs[1], execution.stage(at / count, (at + 1) / count)};
+        run.bake_to(mesh, vtkDataObject::GetData(inputs[2]), all, texture);
+        textures->SetDataSet(leaves, texture);
+    }
+}
+
 vtkAnamorphProjectionBake::vtkAnamorphProjectionBake()
     : Poses(std::make_unique<Projectors>()), Controller(vtkMultiProcessController::GetGlobalController()) {
     this->SetNumberOfInputPorts(3);
@@ -381,12 +402,27 @@ int vtkAnamorphProjectionBake::GetNumberOfProjectors() {
 int vtkAnamorphProjectionBake::FillInputPortInformation(int port, vtkInformation* info) {
     info->Set(INPUT_REQUIRED_DATA_TYPE(), port == 1 ? "vtkImageData" : "vtkPolyData");
     if (port == 1) info->Set(INPUT_IS_REPEATABLE(), 1);
-    if (port == 2) {
-        info->Set(INPUT_IS_OPTIONAL(), 1);
-        // All of its blocks cast shadows at once: none is baked by itself.
-        info->Append(INPUT_REQUIRED_DATA_TYPE(), "vtkCompositeDataSet");
-    }
+    if (port == 2) info->Set(INPUT_IS_OPTIONAL(), 1);
+    // Of meshes, ranks take the same block at the same time; all blocks cast shadows at once.
+    if (port != 1) info->Append(INPUT_REQUIRED_DATA_TYPE(), "vtkCompositeDataSet");
     return 1;
+}
+
+int vtkAnamorphProjectionBake::FillOutputPortInformation(int, vtkInformation* info) {
+    info->Set(vtkDataObject::DATA_TYPE_NAME(), "vtkDataObject");
+    return 1;
+}
+
+vtkTypeBool vtkAnamorphProjectionBake::ProcessRequest(vtkInformation* request, vtkInformationVector** inputs,
+                                                      vtkInformationVector* outputs) {
+    if (request->Has(vtkDemandDrivenPipeline::REQUEST_DATA_OBJECT())) {
+        vtkDataObject* input = vtkDataObject::GetData(inputs[0]);
+        const vtkNew<vtkImageData> image;
+        anamorph_vtk::make_output(outputs->GetInformationObject(0),
+                                  vtkDataObjectTree::SafeDownCast(input) ? input : image.Get());
+        return 1;
+    }
+    return this->Superclass::ProcessRequest(request, inputs, outputs);
 }
 
 int vtkAnamorphProjectionBake::RequestInformation(vtkInformation*, vtkInformationVector** inputs,
@@ -421,21 +457,18 @@ int vtkAnamorphProjectionBake::RequestUpdateExtent(vtkInformation*, vtkInformati
 
 int vtkAnamorphProjectionBake::RequestData(vtkInformation*, vtkInformationVector** inputs,
                                            vtkInformationVector* outputs) {
-    vtkImageData* output = vtkImageData::GetData(outputs);
+    vtkInformation* info = outputs->GetInformationObject(0);
+    vtkDataObject *input = vtkDataObject::GetData(inputs[0]), *output = vtkDataObject::GetData(info);
     const auto execute = [&] {
-        Run run{*this, inputs[1]};
-        run.options.size = {this->Width, this->Height};
-        run.options.fade = this->Fade;
-        run.options.margin = this->Margin;
-        const vtkSmartPointer<vtkPolyData> triangles = triangles_of(vtkPolyData::GetData(inputs[0]));
-        const bool shared = anamorph_vtk::distributed(this->Controller);
-        run.take_mesh(triangles);
-        if (shared) run.share_mesh();
-        if (this->Occlusion) run.list_occluders(triangles, vtkDataObject::GetData(inputs[2]));
-        const anamorph::BakedTexture texture = shared ? run.bake_with_others() : run.bake();
-        const int* extent =
-            outputs->GetInformationObject(0)->Get(vtkStreamingDemandDrivenPipeline::UPDATE_EXTENT());
-        run.hand_over(texture, extent, output);
+        if (auto* meshes = vtkDataObjectTree::SafeDownCast(input)) {
+            this->BakeBlocks(meshes, inputs, vtkDataObjectTree::SafeDownCast(output));
+        } else {
+            anamorph_vtk::Execution execution(this);
+            Run run{*this, inputs[1], execution.stage(0, 1)};
+            run.bake_to(vtkPolyData::SafeDownCast(input), vtkDataObject::GetData(inputs[2]),
+                        info->Get(vtkStreamingDemandDrivenPipeline::UPDATE_EXTENT()),
+                        vtkImageData::SafeDownCast(output));
+        }
         anamorph_vtk::hand_over_time({inputs, 3}, output);
     };
     return anamorph_vtk::guarded(this, execute, {output});

@@ -10,8 +10,8 @@
  * ray to every texel tells what a projector does not see: the mesh hides itself, and so does the third input. What is nearer
  * than 2^-16 of the distance does not. Hidden (blanked) cells are not painted and hide nothing.
  *
- * Input 0 is the mesh (of composite data each mesh is baked by itself, into a texture of its own), with texture coordinates from 0 to 1; where triangles share texels, the first one has them. Input 1
- * takes one image for each projector, in their order, all with the same number of components; they are read bilinearly.
+ * Input 0 is the mesh (of composite data each mesh is baked by itself, into a texture of its own), with texture coordinates
+ * from 0 to 1; where triangles share texels, the first one has them. Input 1 takes one image for each projector, in their order, all with the same number of components; they are read bilinearly.
  * The output is an image that VTK's writers write: the components of the panoramas, and one that says where there is
  * something, 0 or 1 (255 for bytes). It has bytes if all panoramas have, and float otherwise.
  *
@@ -27,6 +27,7 @@
 #include "vtkImageAlgorithm.h"
 #include "vtkSmartPointer.h"  // for the members
 
+class vtkDataObjectTree;
 class vtkMultiProcessController;
 
 class ANAMORPHFILTERS_EXPORT vtkAnamorphProjectionBake : public vtkImageAlgorithm {
@@ -126,18 +127,22 @@ class ANAMORPHFILTERS_EXPORT vtkAnamorphProjectionBake : public vtkImageAlgorith
     ///@{
     /**
      * Shares the mesh and what casts shadows between all ranks: every rank then makes every so many rows of the texture, gets
-     * those of the others, and gives what it is asked for. Every rank has to execute, with all panoramas; where one cannot,
-     * none gives anything. Default: the global controller; may be null.
+     * those of the others, and gives what it is asked for. Every rank has to execute, with all panoramas and, of composite
+     * data, the same blocks, of which any may be empty; where one cannot, none gives anything. Default: the global controller; may be null.
      */
     void SetController(vtkMultiProcessController* controller);
     vtkMultiProcessController* GetController();
     ///@}
+
+    vtkTypeBool ProcessRequest(vtkInformation* request, vtkInformationVector** inputs,
+                               vtkInformationVector* outputs) override;
 
   protected:
     vtkAnamorphProjectionBake();
     ~vtkAnamorphProjectionBake() override;
 
     int FillInputPortInformation(int port, vtkInformation* info) override;
+    int FillOutputPortInformation(int port, vtkInformation* info) override;
     int RequestInformation(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
     int RequestUpdateExtent(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
     int RequestData(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
@@ -148,6 +153,9 @@ class ANAMORPHFILTERS_EXPORT vtkAnamorphProjectionBake : public vtkImageAlgorith
 
     struct Projectors;
     struct Run;
+
+    /// A texture for every mesh of a tree.
+    void BakeBlocks(vtkDataObjectTree* meshes, vtkInformationVector** inputs, vtkDataObjectTree* textures);
 
     std::unique_ptr<Projectors> Poses;
     int Projection = 0, Width = 1024, Height = 1024;

@@ -186,6 +186,27 @@ void vtkAnamorphEllipsoidMapper::LeaveWindow() {
     window->PopContext();
 }
 
+void vtkAnamorphEllipsoidMapper::ShallowCopy(vtkAbstractMapper* mapper) {
+    auto* other = vtkAnamorphEllipsoidMapper::SafeDownCast(mapper);
+    this->Superclass::ShallowCopy(mapper);
+    if (!other || other == this) return;
+    // VTK's mapper takes over an input of vtkPolyData alone.
+    this->SetInputConnection(
+        0, other->GetNumberOfInputConnections(0) > 0 ? other->GetInputConnection(0, 0) : nullptr);
+    this->Shape = other->Shape;
+    this->AxesArray = other->AxesArray;
+    this->OrientationArray = other->OrientationArray;
+    this->TensorArray = other->TensorArray;
+    this->ScaleFactor = other->ScaleFactor;
+    this->TextureArray = other->TextureArray;
+    this->TextureOffsetArray = other->TextureOffsetArray;
+    this->TextureMapping = other->TextureMapping;
+    this->Current->attributes = other->Current->attributes;
+    this->Current->textures = other->Current->textures;
+    this->Current->texture_names = other->Current->texture_names;
+    this->Modified();
+}
+
 void vtkAnamorphEllipsoidMapper::SetAxesArray(const char* name) {
     if (this->AxesArray == (name ? name : "")) return;
     this->AxesArray = name ? name : "";

@@ -64,6 +64,9 @@ class ANAMORPHRENDERING_EXPORT vtkAnamorphEllipsoidMapper : public vtkOpenGLPoly
     /** A vtkDataSet or vtkCompositeDataSet. */
     void SetInputData(vtkDataObject* data) { this->SetInputDataInternal(0, data); }
 
+    /** What is drawn, and how, is then that of `mapper`: its input, and its textures and display attributes themselves. */
+    void ShallowCopy(vtkAbstractMapper* mapper) override;
+
     /** The values of Shape. */
     enum { AXES, TENSOR, COVARIANCE };
 
