@@ -30,13 +30,14 @@ constexpr double kSlopeRounding = 1e-5, kSlopeUnderflow = 1e-12;
 }  // namespace
 
 struct NearFar::State {
+    FeatureMap map;  ///< along_curve
     NearFarOptions options;
     Chebyshev chebyshev;
     std::vector<float> slopes;   ///< line by line: the most that its displacement changes over a pixel
     RoomPool<Planner> planners;  ///< which keep their memory from region to region
 
-    State(const FeatureMap& map, const NearFarOptions& near_far)
-        : options(near_far), chebyshev(degree_for(near_far.tol)) {
+    State(const FeatureMap& given, const NearFarOptions& near_far)
+        : map(given.along_curve()), options(near_far), chebyshev(degree_for(near_far.tol)) {
         if (options.tol == 0) return;
         constexpr double kNowhere[kComponents] = {};
         for (std::size_t i = 0; i < map.size(); ++i) {
@@ -69,7 +70,7 @@ void NearFar::plan(const Box& box, int, Blocks& blocks) const {
     const auto region = std::make_shared<Region>();
     State& state = *m_state;
     auto planner = state.planners.take(
-        [&] { return std::make_unique<Planner>(map(), state.options, state.chebyshev, state.slopes); });
+        [&] { return std::make_unique<Planner>(state.map, state.options, state.chebyshev, state.slopes); });
     planner->plan(box.x0, box.y0, *region);
     state.planners.give_back(std::move(planner));
 

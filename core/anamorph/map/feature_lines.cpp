@@ -328,6 +328,31 @@ FeatureMap::FeatureMap(const Features& features, const std::vector<Size>& pictur
     builder.finish_weights();
 }
 
+FeatureMap FeatureMap::along_curve() const {
+    const auto spread = [](double at) {
+        const auto place = static_cast<std::uint32_t>(std::clamp(at, -0x1p30, 0x1p30) + 0x1p30);
+        std::uint64_t code = 0;
+        for (unsigned bit = 0; bit < 32; ++bit) code |= std::uint64_t{place >> bit & 1} << 2 * bit;
+        return code;
+    };
+    std::vector<std::pair<std::uint64_t, std::size_t>> order;
+    for (std::size_t i = 0; i < m_lines.size(); ++i) {
+        const TargetLine& l = m_lines[i];
+        const double half = 0.5 * l.length;
+        order.emplace_back(spread(l.p.x + half * l.along.x) | spread(l.p.y + half * l.along.y) << 1, i);
+    }
+    std::sort(order.begin(), order.end());
+    FeatureMap sorted = *this;
+    sorted.m_displacements.clear();
+    for (std::size_t to = 0; to < order.size(); ++to) {
+        const std::size_t i = order[to].second;
+        sorted.m_lines[to] = m_lines[i];
+        sorted.m_roundings[to] = m_roundings[i];
+        for (int k = 0; k < m_shapes; ++k) sorted.m_displacements.push_back(displacement(i, k));
+    }
+    return sorted;
+}
+
 bool FeatureMap::passes_through(std::size_t i, double x, double y) const {
     const Point<double>&p = m_lines[i].p, &q = m_roundings[i].q;
     const auto between = [](double a, double b, double at) {

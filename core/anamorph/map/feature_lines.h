@@ -154,6 +154,10 @@ class FeatureMap {
 
     int shapes() const { return m_shapes; }
     Size target() const { return m_target; }
+    /// The same map, but lines that lie together come one after the other (along Morton's curve), so that
+    /// what is read of the lines about a place is one stretch of memory; sums round in another order.
+    FeatureMap along_curve() const;
+
     /// The size of a shape's picture.
     Size picture(int shape) const { return m_pictures[static_cast<std::size_t>(shape)]; }
     const LineWeights& weights() const { return m_weights; }
