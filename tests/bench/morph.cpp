@@ -181,12 +181,15 @@ template <class Body>
 void each_double_row(const Scene& scene, const ParallelFor& parallel_for, const Body& body) {
     parallel_for(scene.size(), [&](std::int64_t row) {
         const auto room = static_cast<std::size_t>(scene.size() + 16);
-        std::vector<double> x(room), y(room);
+        std::vector<double> x[2], y[2];
+        simd::FeatureRow rows[2];
         for (int shape = 0; shape < 2; ++shape) {
-            simd::feature_row(scene.map, shape, 0.5, static_cast<double>(row) + 0.5, scene.size(), x.data(),
-                              y.data());
-            body(shape, row, x, y);
+            x[shape].resize(room);
+            y[shape].resize(room);
+            rows[shape] = {shape, x[shape].data(), y[shape].data()};
         }
+        simd::feature_rows(scene.map, rows, 0.5, static_cast<double>(row) + 0.5, scene.size());
+        for (int shape = 0; shape < 2; ++shape) body(shape, row, x[shape], y[shape]);
     });
 }
 

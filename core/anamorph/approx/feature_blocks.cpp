@@ -2,6 +2,7 @@
 #include "anamorph/approx/feature_blocks.h"
 
 #include <algorithm>
+#include <new>
 #include <utility>
 
 #include "anamorph/approx/near_far_exact.h"
@@ -13,7 +14,9 @@ FeatureBlocks::FeatureBlocks(const FeatureMap& map, std::vector<int> shapes)
     : BlockMap(map.target().width, map.target().height, {Box{0, 0, map.target().width, map.target().height}},
                {.layers = static_cast<int>(shapes.size()), .region_side = kRegion}),
       m_map(map),
-      m_shapes(std::move(shapes)) {}
+      m_shapes(std::move(shapes)) {
+    m_waiting.reserve(kMostWaiting);
+}
 
 bool FeatureBlocks::exact(double x, double y, int piece, Point<double>& source_point,
                           int& source_piece) const noexcept {
@@ -35,12 +38,53 @@ bool FeatureBlocks::truth(double x, double y, int piece, Point<long double>& sou
 
 void FeatureBlocks::exact_rows(const Block& block, int begin, int end, const DoubleRows& to) const noexcept {
     const Box& box = block.box;
-    for (int row = begin; row < end; ++row) {
-        const std::ptrdiff_t at = (row - begin) * to.stride;
-        simd::feature_row(m_map, shape(block.piece), box.x0 + 0.5, box.y0 + row + 0.5, box.width(), to.x + at,
-                          to.y + at);
-        std::fill_n(to.piece + at, box.width(), 0);
+    const int width = box.width(), height = end - begin;
+    for (int row = 0; row < height; ++row) std::fill_n(to.piece + row * to.stride, width, 0);
+    if (const auto waiting = take_waiting(block, begin, end)) {
+        for (int row = 0; row < height; ++row) {
+            std::copy_n(waiting->x.data() + row * waiting->stride, width, to.x + row * to.stride);
+            std::copy_n(waiting->y.data() + row * waiting->stride, width, to.y + row * to.stride);
+        }
+        return;
     }
+    // The next layer is asked for next, and most of its work is the same.
+    std::unique_ptr<Waiting> next = room_for_next(block, begin, end);
+    for (int row = 0; row < height; ++row) {
+        simd::FeatureRow rows[2] = {{shape(block.piece), to.x + row * to.stride, to.y + row * to.stride}, {}};
+        if (next)
+            rows[1] = {shape(block.piece + 1), next->x.data() + row * next->stride,
+                       next->y.data() + row * next->stride};
+        simd::feature_rows(m_map, {rows, next ? 2u : 1u}, box.x0 + 0.5, box.y0 + begin + row + 0.5, width);
+    }
+    if (next) keep(std::move(next));
+}
+
+/// None where there is no next layer, or no memory.
+std::unique_ptr<FeatureBlocks::Waiting> FeatureBlocks::room_for_next(const Block& block, int begin,
+                                                                     int end) const noexcept try {
+    if (block.piece + 1 == layers()) return nullptr;
+    return std::make_unique<Waiting>(block.box, begin, end, block.piece + 1);
+} catch (const std::bad_alloc&) {
+    return nullptr;
+}
+
+std::unique_ptr<FeatureBlocks::Waiting> FeatureBlocks::take_waiting(const Block& block, int begin,
+                                                                    int end) const noexcept {
+    const std::lock_guard lock(m_mutex);
+    for (auto at = m_waiting.begin(); at != m_waiting.end(); ++at) {
+        const Waiting& w = **at;
+        if (w.layer != block.piece || w.box != block.box || w.begin != begin || w.end != end) continue;
+        std::unique_ptr<Waiting> found = std::move(*at);
+        m_waiting.erase(at);
+        return found;
+    }
+    return nullptr;
+}
+
+void FeatureBlocks::keep(std::unique_ptr<Waiting> rows) const noexcept {
+    const std::lock_guard lock(m_mutex);
+    if (m_waiting.size() == kMostWaiting) m_waiting.erase(m_waiting.begin());
+    m_waiting.push_back(std::move(rows));
 }
 
 Jacobian FeatureBlocks::jacobian(double x, double y, int piece) const noexcept {

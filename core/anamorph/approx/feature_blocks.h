@@ -3,6 +3,8 @@
 // common.
 #pragma once
 
+#include <memory>
+#include <mutex>
 #include <vector>
 
 #include "anamorph/approx/block.h"
@@ -45,8 +47,31 @@ class FeatureBlocks : public BlockMap {
     void add_exact(const Box& box, Blocks& blocks) const;
 
   private:
+    /// Exact points of a layer's block, found with those of the layer before.
+    struct Waiting {
+        Box box;
+        int begin, end, layer;
+        std::ptrdiff_t stride;
+        std::vector<double> x, y;
+
+        Waiting(const Box& of, int from, int to, int of_layer)
+            : box(of), begin(from), end(to), layer(of_layer), stride(of.width() + 16) {
+            const auto room = static_cast<std::size_t>(stride) * static_cast<std::size_t>(to - from);
+            x.resize(room);
+            y.resize(room);
+        }
+    };
+    /// More threads than this compute some points twice.
+    static constexpr std::size_t kMostWaiting = 64;
+
+    std::unique_ptr<Waiting> room_for_next(const Block& block, int begin, int end) const noexcept;
+    std::unique_ptr<Waiting> take_waiting(const Block& block, int begin, int end) const noexcept;
+    void keep(std::unique_ptr<Waiting> rows) const noexcept;
+
     const FeatureMap& m_map;
     std::vector<int> m_shapes;
+    mutable std::mutex m_mutex;
+    mutable std::vector<std::unique_ptr<Waiting>> m_waiting;
 };
 
 }  // namespace anamorph

@@ -20,11 +20,17 @@ inline T beside_line(const T& dx, const T& dy, const U& ux, const U& uy) {
     return dy * ux - dx * uy;
 }
 
-/// dist of eq. 5.11, from how far X lies before p (-along), behind q (along - |e|) and beside the line.
+/// The square of dist of eq. 5.11, from how far X lies before p (-along), behind q (along - |e|) and beside the
+/// line.
+template <class T>
+inline T square_to_line(const T& before, const T& behind, const T& beside) {
+    const T beyond = max(max(before, behind), T(0));
+    return beyond * beyond + beside * beside;
+}
+/// dist itself.
 template <class T>
 inline T distance_to_line(const T& before, const T& behind, const T& beside) {
-    const T beyond = max(max(before, behind), T(0));
-    return root(beyond * beyond + beside * beside);
+    return root(square_to_line(before, behind, beside));
 }
 
 /// Eq. 5.10 less X, along one axis: how far the line moves the pixel. `origin`: at p; the rates: per unit of

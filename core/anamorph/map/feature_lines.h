@@ -101,7 +101,10 @@ inline T root(const T& square) {
     if (constant_part(square) == 0) return T(0);
     return sqrt(square);
 }
-/// x^-b for x >= 1.
+/// Distances nearer than this count in units of it: its reciprocal, and the powers of what is nearer, are finite.
+inline constexpr double kLeastUnit = 1e-307;
+
+/// x^-b.
 template <class T>
 inline T inverse_power(const T& x, double b) {
     using std::pow;
@@ -224,6 +227,9 @@ void FeatureMap::sum(const T& x, const T& y, int first, int last, Point<T>* poin
     for (const TargetLine& line : m_lines)
         nearest = std::min(nearest, constant_part(distance(line, frame(line, x, y))));
 
+    // Rounded once for all lines, which moves no quotient of weights.
+    const T per_nearest(1 / std::max<decltype(nearest)>(nearest, feature_detail::kLeastUnit));
+
     T weights(0);
     for (int k = first; k < last; ++k) points[k - first] = {T(0), T(0)};
     for (std::size_t i = 0; i < m_lines.size(); ++i) {
@@ -233,7 +239,7 @@ void FeatureMap::sum(const T& x, const T& y, int first, int last, Point<T>* poin
         T weight(line.factor);
         if (m_weights.b > 0) {
             if (nearest > 0)
-                weight = feature_detail::inverse_power<T>(far / T(nearest), m_weights.b) * line.factor;
+                weight = feature_detail::inverse_power<T>(far * per_nearest, m_weights.b) * line.factor;
             else if (constant_part(far) > 0)
                 continue;
         }

@@ -32,7 +32,8 @@ struct SeenFrom {
         before = -along;
         behind = along - L(line.length);
     }
-    HWY_INLINE L Distance() const { return distance_to_line(before, behind, beside); }
+    HWY_INLINE L Square() const { return square_to_line(before, behind, beside); }
+    HWY_INLINE L Distance() const { return root(Square()); }
 };
 
 enum class PowerKind { half, one, two, other };
@@ -48,21 +49,22 @@ HWY_INLINE L InversePower(const L& c, const L& b) {
 
 /// The least distance of any line from each point.
 HWY_INLINE L Nearest(const FeatureMap& map, const L& x, const L& y) {
-    L nearest(HUGE_VAL);
-    for (std::size_t i = 0; i < map.size(); ++i)
-        nearest = min(nearest, SeenFrom(map.line(i), x, y).Distance());
-    return nearest;
+    // A root that is rounded grows with what it is taken of: the least is that of the least square.
+    L square(HUGE_VAL);
+    for (std::size_t i = 0; i < map.size(); ++i) square = min(square, SeenFrom(map.line(i), x, y).Square());
+    return root(square);
 }
 
-template <PowerKind kPower, bool kWeighted>
-HWY_INLINE void FeaturePoints(const FeatureMap& map, int shape, double x0, double y0, int count, double* to_x,
-                              double* to_y) {
+template <PowerKind kPower, bool kWeighted, std::size_t kShapes>
+HWY_INLINE void FeaturePoints(const FeatureMap& map, const FeatureRow* rows, double x0, double y0,
+                              int count) {
     const L a(map.weights().a), b(map.weights().b), zero(0), y(y0);
-    const Point<double> scale = map.scale(shape);
     for (int i = 0; i < count; i += L::kCount) {
         const L x = L(hn::Iota(D(), static_cast<double>(i))) + L(x0);
         const L nearest = kWeighted ? Nearest(map, x, y) + a : zero;
-        L weights(0), moved_x(0), moved_y(0);
+        const L per_nearest = L(1) / max(nearest, L(feature_detail::kLeastUnit));
+        L weights(0), moved_x[kShapes], moved_y[kShapes];
+        for (std::size_t k = 0; k < kShapes; ++k) moved_x[k] = moved_y[k] = zero;
         for (std::size_t n = 0; n < map.size(); ++n) {
             const FeatureMap::TargetLine& line = map.line(n);
             const SeenFrom seen(line, x, y);
@@ -70,31 +72,41 @@ HWY_INLINE void FeaturePoints(const FeatureMap& map, int shape, double x0, doubl
             if constexpr (kWeighted) {
                 // Where a line is at distance 0 those that are not do not count.
                 const L far = seen.Distance() + a;
-                const L power = InversePower<kPower>(far / nearest, b) * weight;
+                const L power = InversePower<kPower>(far * per_nearest, b) * weight;
                 weight = select(zero < nearest, power, select(zero < far, zero, weight));
             }
             weights = weights + weight;
             if (!line.moves) continue;
-            const FeatureMap::Displacement& d = map.displacement(n, shape);
-            const auto moved = [&](double origin, double along_rate, double beside_rate) HWY_ATTR {
-                return displacement_by_line(L(origin), L(along_rate), seen.along, L(beside_rate),
-                                            seen.beside);
-            };
-            moved_x = moved_x + weight * moved(d.origin.x, d.along_rate.x, d.beside_rate.x);
-            moved_y = moved_y + weight * moved(d.origin.y, d.along_rate.y, d.beside_rate.y);
+            for (std::size_t k = 0; k < kShapes; ++k) {
+                const FeatureMap::Displacement& d = map.displacement(n, rows[k].shape);
+                const auto moved = [&](double origin, double along_rate, double beside_rate) HWY_ATTR {
+                    return displacement_by_line(L(origin), L(along_rate), seen.along, L(beside_rate),
+                                                seen.beside);
+                };
+                moved_x[k] = moved_x[k] + weight * moved(d.origin.x, d.along_rate.x, d.beside_rate.x);
+                moved_y[k] = moved_y[k] + weight * moved(d.origin.y, d.along_rate.y, d.beside_rate.y);
+            }
         }
-        ((x + moved_x / weights) * L(scale.x)).store(to_x + i);
-        ((y + moved_y / weights) * L(scale.y)).store(to_y + i);
+        for (std::size_t k = 0; k < kShapes; ++k) {
+            const Point<double> scale = map.scale(rows[k].shape);
+            ((x + moved_x[k] / weights) * L(scale.x)).store(rows[k].x + i);
+            ((y + moved_y[k] / weights) * L(scale.y)).store(rows[k].y + i);
+        }
     }
 }
 
-void FeatureRow(const FeatureMap& map, int shape, double x, double y, int count, double* to_x, double* to_y) {
+template <std::size_t kShapes>
+void RowsOf(const FeatureMap& map, const FeatureRow* rows, double x, double y, int count) {
     const double b = map.weights().b;
-    if (!(b > 0)) return FeaturePoints<PowerKind::one, false>(map, shape, x, y, count, to_x, to_y);
-    if (b == 2) return FeaturePoints<PowerKind::two, true>(map, shape, x, y, count, to_x, to_y);
-    if (b == 1) return FeaturePoints<PowerKind::one, true>(map, shape, x, y, count, to_x, to_y);
-    if (b == 0.5) return FeaturePoints<PowerKind::half, true>(map, shape, x, y, count, to_x, to_y);
-    FeaturePoints<PowerKind::other, true>(map, shape, x, y, count, to_x, to_y);
+    if (!(b > 0)) return FeaturePoints<PowerKind::one, false, kShapes>(map, rows, x, y, count);
+    if (b == 2) return FeaturePoints<PowerKind::two, true, kShapes>(map, rows, x, y, count);
+    if (b == 1) return FeaturePoints<PowerKind::one, true, kShapes>(map, rows, x, y, count);
+    if (b == 0.5) return FeaturePoints<PowerKind::half, true, kShapes>(map, rows, x, y, count);
+    FeaturePoints<PowerKind::other, true, kShapes>(map, rows, x, y, count);
+}
+void FeatureRows(const FeatureMap& map, const FeatureRow* rows, int shapes, double x, double y, int count) {
+    for (; shapes > 1; shapes -= 2, rows += 2) RowsOf<2>(map, rows, x, y, count);
+    if (shapes > 0) RowsOf<1>(map, rows, x, y, count);
 }
 
 }  // namespace HWY_NAMESPACE
@@ -104,11 +116,10 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace anamorph::simd {
 
-HWY_EXPORT(FeatureRow);
+HWY_EXPORT(FeatureRows);
 
-void feature_row(const FeatureMap& map, int shape, double x, double y, int count, double* to_x,
-                 double* to_y) {
-    HWY_DYNAMIC_DISPATCH(FeatureRow)(map, shape, x, y, count, to_x, to_y);
+void feature_rows(const FeatureMap& map, std::span<const FeatureRow> rows, double x, double y, int count) {
+    HWY_DYNAMIC_DISPATCH(FeatureRows)(map, rows.data(), static_cast<int>(rows.size()), x, y, count);
 }
 
 }  // namespace anamorph::simd

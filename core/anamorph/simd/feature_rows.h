@@ -2,6 +2,8 @@
 // Rows of a morph's map in double, every line at every pixel: the formula of map/feature_formula.h read with vectors.
 #pragma once
 
+#include <span>
+
 #include "anamorph/map/feature_lines.h"
 
 namespace anamorph::simd {
@@ -15,9 +17,21 @@ constexpr double power_rounding(double log) {
 /// Nor is the power of a greater b log(c) more than 0: it is less than any double.
 inline constexpr double kMostPowerLog = 746;
 
-/// The points of one shape's picture that the map finds for the `count` points (x + i, y). What is computed, and in
+/// Where the points of one shape's picture go; room for 16 more is written to.
+struct FeatureRow {
+    int shape;
+    double *x, *y;
+};
+
+/// The points of shapes' pictures that the map finds for the `count` points (x + i, y). What is computed, and in
 /// what order, is what FeatureMap does in double, but for power_rounding where b is none of 0, 1/2, 1 and 2. The same
-/// bits on all instruction sets. Room for 16 more is written to.
-void feature_row(const FeatureMap& map, int shape, double x, double y, int count, double* to_x, double* to_y);
+/// bits on all instruction sets, and whichever shapes are computed together.
+void feature_rows(const FeatureMap& map, std::span<const FeatureRow> rows, double x, double y, int count);
+/// The points of one.
+inline void feature_row(const FeatureMap& map, int shape, double x, double y, int count, double* to_x,
+                        double* to_y) {
+    const FeatureRow row{shape, to_x, to_y};
+    feature_rows(map, {&row, 1}, x, y, count);
+}
 
 }  // namespace anamorph::simd
