@@ -34,7 +34,7 @@ constexpr double kInterpolationShares[] = {0.9, 0.55};
 // And in the smallest cells, before they fall back on double.
 constexpr double kSmallestShares[] = {0.2, 0};
 // Where rounding takes more of it on a large cell even without near lines, smaller ones seldom hold it.
-constexpr double kMostRoundingShare = 0.3;
+constexpr double kMostRoundingShare = 0.2;
 // And the part of what is left of it that a cell uses up for lines that are far already from a cell to be
 // cut.
 constexpr double kParentShare = 0.25;
