@@ -273,7 +273,7 @@ struct LocalInverse {
 class Planner {
   public:
     Planner(const InversePlan& plan, double tol, Blocks& blocks)
-        : m_plan(plan), m_mesh(plan.mesh()), m_writer(tol, blocks) {}
+        : m_plan(plan), m_mesh(plan.mesh()), m_tol(tol), m_writer(tol, blocks) {}
 
     void exact(const Box& box) {
         BlockWriter::for_blocks(box, [&](const Box& b) {
@@ -295,22 +295,40 @@ class Planner {
         m_hy = half(box.height());
     }
 
-    void place(const Box& box) {
+    /// About what a quadratic misses on a block, along s and along t; nothing is proven of it.
+    struct Miss {
+        double s = 0, t = 0;
+
+        bool is_across() const { return s >= t; }
+        /// On a half: cubes of s shrink most.
+        Miss on_half(bool vertical_cut) const {
+            return vertical_cut ? Miss{s / 8, t / 2} : Miss{s / 2, t / 8};
+        }
+    };
+
+    void place(const Box& box) { place(box, Miss{}); }
+    void place(const Box& box, const Miss& expected) {
+        // Not worth the attempt.
+        if (expected.s + expected.t > m_tol && !BlockWriter::below_floor(box)) return halve(box, expected);
         aim(box);
         const bool on_fold = gather();
         if (m_near.empty() && !on_fold) return m_writer.outside(box);
         if (BlockWriter::below_floor(box)) return write_exact(box, on_fold);
-        bool vertical_cut = box.width() >= box.height();
         if (!on_fold) {
             const LocalInverse inverse = invert();
             if (inverse.error < HUGE_VAL) {
                 const EconomizedBicubic x(inverse.x), y(inverse.y);
                 if (m_writer.polynomial(box, x.c, y.c, std::hypot(x.dropped, y.dropped) + inverse.error))
                     return;
-                vertical_cut = x.dropped_s + y.dropped_s >= x.dropped_t + y.dropped_t;
+                return halve(box,
+                             {std::hypot(x.dropped_s, y.dropped_s), std::hypot(x.dropped_t, y.dropped_t)});
             }
         }
-        m_writer.halve(box, vertical_cut, [&](const Box& b) { place(b); });
+        m_writer.halve(box, box.width() >= box.height(), [&](const Box& b) { place(b); });
+    }
+    void halve(const Box& box, const Miss& miss) {
+        const bool vertical_cut = miss.is_across();
+        m_writer.halve(box, vertical_cut, [&](const Box& b) { place(b, miss.on_half(vertical_cut)); });
     }
 
     /// The bound of exact pixels: that of the sheets near; on folds, of each pixel.
@@ -411,7 +429,17 @@ class Planner {
         result.error = std::hypot(span.x, span.y) * inverse_error(middle, norm(third[0], third[1])) +
                        16 * 0x1p-53 * (std::fabs(m.x) + std::fabs(m.y) + 4 * (span.x + span.y));
         set_inverse(middle, third, result);
+        if (!on_mesh(result)) result.error = HUGE_VAL;
         return result;
+    }
+
+    /// Are its points certainly on the mesh?
+    bool on_mesh(const LocalInverse& inverse) const {
+        const auto holds = [&](const std::vector<double>& lines, const double(&c)[4][4]) {
+            const double reach = sum_of_magnitudes(c) - std::fabs(c[0][0]) + inverse.error;
+            return c[0][0] - reach >= lines.front() && c[0][0] + reach <= lines.back();
+        };
+        return holds(m_mesh.x_lines(), inverse.x) && holds(m_mesh.y_lines(), inverse.y);
     }
 
     /// Q and C: the patch's own, of what M makes of z.
@@ -552,25 +580,28 @@ class Planner {
     }
 
     /// By how much the maps of the cells that a ball meets differ from the one in the middle, in units of the
-    /// block: everywhere in the ball, and where a cell meets a smaller one.
+    /// block: everywhere in the ball, and where a cell meets a smaller one. Beyond the mesh the map is taken to
+    /// differ from that by as much as at the nearest point of the mesh, which lies in the ball's box too: so it
+    /// goes on without a step, as steep at most. Its source points are the mesh's where they lie on it
+    /// (on_mesh).
     struct Step {
         Sizes sizes{};
         double most = 0;
     };
-    /// None where the ball leaves the mesh or meets many cells.
+    /// None where the ball meets many cells.
     std::optional<Step> step_to_neighbours(const MeshCell& cell, const Patch& own_patch, const Bicubic& f,
                                            const Point<double>& m, const Point<double>& span, double radius,
                                            double smaller) const {
         const double rx = span.x * radius, ry = span.y * radius;
-        if (!(m.x - rx >= m_mesh.x_lines().front() && m.x + rx <= m_mesh.x_lines().back() &&
-              m.y - ry >= m_mesh.y_lines().front() && m.y + ry <= m_mesh.y_lines().back()))
-            return std::nullopt;
+        const std::vector<double>&x_lines = m_mesh.x_lines(), &y_lines = m_mesh.y_lines();
         Step step;
         if (m.x - rx >= cell.x0 && m.x + rx <= cell.x1 && m.y - ry >= cell.y0 && m.y + ry <= cell.y1)
             return step;
         constexpr int kMost = 9;
         int count = 0;
-        m_mesh.each_cell(m.x - rx, m.y - ry, m.x + rx, m.y + ry, [&](const MeshCell& other) {
+        const double left = std::max(m.x - rx, x_lines.front()), right = std::min(m.x + rx, x_lines.back()),
+                     top = std::max(m.y - ry, y_lines.front()), bottom = std::min(m.y + ry, y_lines.back());
+        m_mesh.each_cell(left, top, right, bottom, [&](const MeshCell& other) {
             if (++count > kMost) return;
             const bool own =
                 other.level == cell.level && other.column == cell.column && other.row == cell.row;
@@ -611,6 +642,7 @@ class Planner {
 
     const InversePlan& m_plan;
     const Mesh& m_mesh;
+    double m_tol;
     BlockWriter m_writer;
     double m_x = 0, m_y = 0, m_hx = 0, m_hy = 0;  ///< the block's middle and half its size, target pixels
     std::vector<Near> m_near;
@@ -651,12 +683,18 @@ Point<double> InversePlan::on_sheet(const Sheet& sheet, const Point<double>& z) 
                          sheet.s + sheet.hs * z.x, sheet.t + sheet.ht * z.y);
 }
 
+/// Does a sheet that is no fold come near a target point?
+bool InversePlan::reaches(const Sheet& sheet, double x, double y) const noexcept {
+    const Matrix to_sheet{sheet.y11, sheet.y12, sheet.y21, sheet.y22};
+    return largest(to_sheet(x - sheet.at.x, y - sheet.at.y)) <= 1 + sheet.reach;
+}
+
 /// The source point on a sheet that is no fold, if there is one.
 bool InversePlan::find(const Sheet& sheet, const Patch& patch, double x, double y,
                        Preimage& found) const noexcept {
+    if (!reaches(sheet, x, y)) return false;
     const Matrix to_sheet{sheet.y11, sheet.y12, sheet.y21, sheet.y22};
     const Point<double> first = to_sheet(x - sheet.at.x, y - sheet.at.y);
-    if (!(largest(first) <= 1 + sheet.reach)) return false;
     // Beyond the part by more than what is accepted, so that no end is taken for a solution.
     const double end = 1 + 2 * sheet.hair;
     const auto clamped = [&](double a, double b) {
@@ -668,6 +706,11 @@ bool InversePlan::find(const Sheet& sheet, const Patch& patch, double x, double 
     for (int n = 0; n < 64 && !(moved <= sheet.noise); ++n) {
         const Point<double> f = m_mesh.inside(patch, sheet.s + sheet.hs * z.x, sheet.t + sheet.ht * z.y);
         const Point<double> step = to_sheet(f.x - x, f.y - y);
+        // A solution is no farther from where the step leads than its length times rho / (1 - rho), and rounding
+        // is less than the hair.
+        if (largest({z.x - step.x, z.y - step.y}) >
+            end + kContraction / (1 - kContraction) * largest(step) + sheet.hair)
+            return false;
         const Point<double> next = clamped(z.x - step.x, z.y - step.y);
         moved = largest(next - z);
         z = next;
@@ -703,6 +746,7 @@ class InversePlan::Search {
         const MeshCell& cell = m_plan.m_cells[static_cast<std::size_t>(sheet.cell)];
         if (sheet.fold)
             return look(CellParts(m_plan.m_mesh, cell, sheet.cell), {sheet.s, sheet.hs}, {sheet.t, sheet.ht});
+        if (!m_plan.reaches(sheet, m_x, m_y)) return;
         Preimage found{};
         if (m_plan.find(sheet, m_plan.m_mesh.patch(cell), m_x, m_y, found)) take(found);
     }

@@ -91,6 +91,7 @@ class InversePlan final : public WarpPlan {
 
   private:
     class Search;
+    bool reaches(const Sheet& sheet, double x, double y) const noexcept;
     bool find(const Sheet& sheet, const Patch& patch, double x, double y, Preimage& found) const noexcept;
     bool before(const Preimage& a, const Preimage& b) const noexcept;
 
