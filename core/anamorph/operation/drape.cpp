@@ -31,21 +31,25 @@ Parameter vector(const char* name, std::string value, const std::string& doc) {
     return row;
 }
 
-ParameterTable make_table() {
+/// Which pictures there are.
+ParameterTable sequence_rows() {
     using namespace rows;
-    ParameterTable table = {
-        image("src", "the picture that is draped; by default the recipe's name without .drape")};
-    const ParameterTable others = {
+    return {
         whole("frames", "", "", 1, kMostFrames,
               "as many subimages, frames 0, 1 and so on of the key frames; by default up to the last key "
-              "frame, and "
-              "1 without keys"),
+              "frame, and 1 without keys"),
         whole("frame", "", "", 0, kMostFrames, "one frame alone"),
-        file(
-            "keys",
-            "key frames of any numbers here, JSON: {\"keys\": {\"turn\": [[0, 0.1], [24, 0.9]]}}, each a "
-            "frame and its "
-            "numbers; optional \"interpolation\": step, linear, catmull_rom, or monotone_cubic, the default"),
+        file("keys",
+             "key frames of any numbers here, JSON: {\"keys\": {\"turn\": [[0, 0.1], [24, 0.9]]}}, each a "
+             "frame and its numbers; optional \"interpolation\": step, linear, catmull_rom, or "
+             "monotone_cubic, the default"),
+    };
+}
+
+/// Where the surface is, and who sees it.
+ParameterTable view_rows() {
+    using namespace rows;
+    return {
         vector("rotate", "0,0,0", "degrees about the x, the y and the z axis, in this order"),
         number("scale", "", "1", 0.001, 1000, "of the surface, after it is rotated"),
         vector("move", "0,0,0", "of the surface, after that"),
@@ -61,22 +65,27 @@ ParameterTable make_table() {
         size("width and height of the picture, or its width alone; by default the source's"),
         tile(),
         mip(),
+    };
+}
+
+/// How it is drawn.
+ParameterTable accuracy_rows() {
+    using namespace rows;
+    return {
         filter({{"pyramid",
                  "the mean over the least rectangle along the source's sides that covers what a pixel shows, "
-                 "from "
-                 "a pyramid (Oka 1987, Williams 1983)"},
+                 "from a pyramid (Oka 1987, Williams 1983)"},
                 {"summed_area", "the same of all texels, from a table of sums (Crow 1984)"}}),
         wrap("goes on as at the edge"),
         number("tol", "pixels", kDrapeTolRow,
                "how far, on the screen, a point of the picture may be drawn from where it belongs"),
-        scheme(
-            {{"auto"},
-             {"exact"},
-             {"oka",
-              "blocks of the picture as parallelograms, the nearer over the farther, with the tolerance that "
-              "comes out (Oka 1987)"},
-             {"oka-z", "the same with a depth for each pixel"},
-             {"hardware"}}),
+        scheme({{"auto"},
+                {"exact"},
+                {"oka",
+                 "blocks of the picture as parallelograms, the nearer over the farther, with the tolerance "
+                 "that comes out (Oka 1987)"},
+                {"oka-z", "the same with a depth for each pixel"},
+                {"hardware"}}),
         text("machine",
              "of scheme hardware: oka-1987, the machine of Oka 1987, and what differs from it, "
              "oka-1987:block=4,fraction_bits=8 or {\"block\": 4, \"fraction_bits\": 8}; by default oka-1987"),
@@ -84,6 +93,13 @@ ParameterTable make_table() {
                "of oka and oka-z: side of a block, in pixels of the source"),
         number("overlap", "pixels", "0.5", 0, 64,
                "of oka and oka-z: width of what neighbours have in common"),
+    };
+}
+
+/// How it looks, and what is written.
+ParameterTable look_rows() {
+    using namespace rows;
+    return {
         choice("shading", "none", {"none", "gouraud", "phong"},
                "none; by the light at corners of patches; by the normals there"),
         vector("light", "0,0,1", "directions towards the lights, three numbers each"),
@@ -93,8 +109,7 @@ ParameterTable make_table() {
         number("shininess", "", "20", 0, 100000, "of highlights, the exponent"),
         vector("background", "",
                "values of the channels behind the surface and where its picture's alpha lets through; by "
-               "default "
-               "nothing, 0 in every channel; where it is given for the colors alone, alpha is 1"),
+               "default nothing, 0 in every channel; where it is given for the colors alone, alpha is 1"),
         image("backdrop",
               "a picture behind the surface and over the background, as large as the screen; with as many "
               "colors, with alpha or without"),
@@ -104,8 +119,14 @@ ParameterTable make_table() {
                 {"patch", "the number of the patch of the surface that is drawn, -1 where none is"},
                 {"coverage", "1 where the surface is seen, else 0"}}),
     };
-    for (const ParameterTable& rows : {drape_surface_rows(), others})
-        table.insert(table.end(), rows.begin(), rows.end());
+}
+
+ParameterTable make_table() {
+    ParameterTable table = {
+        rows::image("src", "the picture that is draped; by default the recipe's name without .drape")};
+    for (const ParameterTable& part :
+         {drape_surface_rows(), sequence_rows(), view_rows(), accuracy_rows(), look_rows()})
+        table.insert(table.end(), part.begin(), part.end());
     return table;
 }
 

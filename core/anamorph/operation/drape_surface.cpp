@@ -120,24 +120,19 @@ ParameterTable drape_surface_rows() {
     return {
         choice("surface", "plane", surfaces(),
                "undeformed the picture is 1 high, about the origin, in the plane z = 0, with x to the right "
-               "and y up. "
-               "cylinder: about the y axis; sphere: about the origin, with all latitudes; torus: about the y "
-               "axis; "
-               "page_turn: a sheet curls round a cylinder that rolls over it; waves, ripples: plane and "
-               "circular; positions: of the picture that the key positions names"),
+               "and y up. cylinder: about the y axis; sphere: about the origin, with all latitudes; torus: "
+               "about the y axis; page_turn: a sheet curls round a cylinder that rolls over it; waves, "
+               "ripples: plane and circular; positions: of the picture that the key positions names"),
         text("blend", "names of surfaces, separated by commas, that the surface is blended with, by weights"),
         numbers("weights", -kInfinity,
                 "one for each surface of blend; what they lack to 1 is the weight of surface itself, and any "
-                "may be "
-                "negative or above 1"),
+                "may be negative or above 1"),
         image("positions",
               "of surface=positions: a picture whose first three channels are x, y and z, over the whole of "
-              "the "
-              "draped picture, interpolated by smooth cubics"),
+              "the draped picture, interpolated by smooth cubics"),
         image("height",
               "a picture by whose brightness, the mean of up to three channels, the surface is raised along "
-              "its "
-              "normal, interpolated by smooth cubics"),
+              "its normal, interpolated by smooth cubics"),
         number("height_scale", "", "0.1", -1000, 1000, "how high brightness 1 is"),
         number("height_smooth", "texels", "1", 0, 100,
                "heights are smoothed by a Gaussian of that standard deviation; 0: not"),
@@ -145,8 +140,7 @@ ParameterTable drape_surface_rows() {
                "of cylinder, sphere and torus, the part of a turn that is covered"),
         number("radius", "", kDrapeRadiusRow,
                "of the surface; by default 0.5 (sphere, torus), 0.1 (page_turn), and for a cylinder such "
-               "that the "
-               "picture keeps its width"),
+               "that the picture keeps its width"),
         number("tube", "", kDrapeTubeRow, "radius of a torus's tube"),
         number("amplitude", "", kDrapeAmplitudeRow, "of waves and ripples"),
         number("wavelength", "", kDrapeWavelengthRow, "of waves and ripples"),

@@ -53,53 +53,59 @@ void read_filter(const ParameterValues& values, FigureLook& look) {
     look.average = kAverages[std::max(beyond, 0)];
 }
 
-ParameterTable make_table() {
+/// What is performed, and which of it.
+ParameterTable script_rows() {
     using namespace rows;
     return {
         file("script",
              "the script of NUDES, or a motion (.bvh), a crystal structure (.cif), frames (.3) or a frame of "
-             "MRASEL (.mrasel); by default "
-             "the recipe's name without .figure, and of a name that ends in .n, .nudes, .bvh, .cif or "
-             ".mrasel that file itself"),
+             "MRASEL (.mrasel); by default the recipe's name without .figure, and of a name that ends in .n, "
+             ".nudes, .bvh, .cif or .mrasel that file itself"),
         file("library", "a file of figures without stop, included ahead of the script"),
-        choice(
-            "dialect", "classic", {"classic", "strict"},
-            "classic: as the programs of 2003 ran scripts, but abut and touch end in exact contact; strict: "
-            "as the language is documented"),
+        choice("dialect", "classic", {"classic", "strict"},
+               "classic: as the programs of 2003 ran scripts, but abut and touch end in exact contact; "
+               "strict: as the language is documented"),
         whole("frame", "", "", 0, kMostFrames,
               "the frame of the script that is drawn, 0 the figures at rest; by default all that it shows, "
-              "each a "
-              "subimage"),
+              "each a subimage"),
+    };
+}
+
+/// How bodies are drawn, and under what light.
+ParameterTable style_rows() {
+    using namespace rows;
+    return {
         rows::size("width and height of the picture, or its width alone; by default 1000x1000, a pixel for "
-                   "each unit "
-                   "of the script's window, which is as large as fits"),
+                   "each unit of the script's window, which is as large as fits"),
         tile(),
         mip(),
         choice("style", "shaded", {"shaded", "outline", "stick", "depth", "id", "uv", "textured"},
                "shaded, bodies in their colors; outline, without hidden lines; stick, from joint to joint; "
-               "depth, "
-               "from the eye, without perspective from the plane through the place, in units, 1e30 where "
-               "there is no "
-               "body; id, 1 for the first body, 0 for none; uv, the point of a body's texture, (-1, -1) for "
-               "none; textured, shaded, with the pictures that the script names"),
-        choice(
-            "output", "picture", {"picture", "mips"},
-            "picture; mips, the pyramid of each texture in one picture, each a subimage: the level in three "
-            "quarters, red, green and blue, in the fourth the next level alike"),
+               "depth, from the eye, without perspective from the plane through the place, in units, 1e30 "
+               "where there is no body; id, 1 for the first body, 0 for none; uv, the point of a body's "
+               "texture, (-1, -1) for none; textured, shaded, with the pictures that the script names"),
+        choice("output", "picture", {"picture", "mips"},
+               "picture; mips, the pyramid of each texture in one picture, each a subimage: the level in "
+               "three quarters, red, green and blue, in the fourth the next level alike"),
         toggle("antialias", "1",
                "of styles shaded and textured: pixels are the mean of 16 x 16 samples; 0: what is in their "
                "middle"),
         choice("lighting", "rasel", {"rasel", "lambert", "blinn"},
                "of styles shaded and textured: rasel, soft from one pole of a body to the other; lambert; "
-               "blinn, with "
-               "highlights"),
+               "blinn, with highlights"),
         numbers("light", -kInfinity,
                 "x,y,z: the direction to the light, x to the right, y up, z away; by default 0,1,0, and for "
-                "lambert "
-                "and blinn -1,2,-2"),
+                "lambert and blinn -1,2,-2"),
         number("ambient", "", "0.3", 0, 1, "the share of light that comes from everywhere"),
         number("specular", "", "0.3", 0, 1, "of blinn: how strong highlights are"),
         number("shininess", "", "30", 0, 10000, "of blinn: how narrow they are"),
+    };
+}
+
+/// Who sees them, before what.
+ParameterTable view_rows() {
+    using namespace rows;
+    return {
         numbers("camera", -kInfinity,
                 "x,y,z in degrees: how space is turned before it is seen, as the script's observe does, in "
                 "its place"),
@@ -109,21 +115,32 @@ ParameterTable make_table() {
         toggle("fit", "0",
                "1: the figures fill the picture; without frame, those of all frames that are shown"),
         number("zoom", "", "1", 1e-6, 1e6, "magnifies about the middle"),
-        numbers(
-            "background", 0,
-            "red,green,blue, 0 to 255; or bands from above, end,red,green,blue each, the end a share of the "
-            "height, 0 to 1; by default the bands of the frame, or transparent"),
+        numbers("background", 0,
+                "red,green,blue, 0 to 255; or bands from above, end,red,green,blue each, the end a share of "
+                "the height, 0 to 1; by default the bands of the frame, or transparent"),
         file("backdrop", "a picture behind the figures, stretched to the size, before the background"),
+    };
+}
+
+/// Of lines and textures.
+ParameterTable line_rows() {
+    using namespace rows;
+    return {
         number("line_width", "pixels", "1.5", 0.01, 1000, "of styles outline and stick"),
         toggle("line_colors", "0", "of styles outline and stick: 1, lines in the colors of the bodies"),
-        choice(
-            "mapping", "latlong", {"latlong", "mirrored", "linear", "octahedral"},
-            "of styles uv and textured, how a texture lies on a body: latlong, once around, the seam at the "
-            "back; "
-            "mirrored, over "
-            "the front and again over the back; linear, stripes stay straight; octahedral, without a pole"),
+        choice("mapping", "latlong", {"latlong", "mirrored", "linear", "octahedral"},
+               "of styles uv and textured, how a texture lies on a body: latlong, once around, the seam at "
+               "the back; mirrored, over the front and again over the back; linear, stripes stay straight; "
+               "octahedral, without a pole"),
         texture_filter(),
     };
+}
+
+ParameterTable make_table() {
+    ParameterTable table;
+    for (const ParameterTable& part : {script_rows(), style_rows(), view_rows(), line_rows()})
+        table.insert(table.end(), part.begin(), part.end());
+    return table;
 }
 
 // --- Scripts -----------------------------------------------------------------------------------------------

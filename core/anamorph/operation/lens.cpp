@@ -16,25 +16,21 @@ ParameterTable make_table() {
     using namespace rows;
     Parameter extent = size(
         "width and height of the picture, or its width alone, about the same middle and as fine as the "
-        "source; all: so "
-        "many that nothing of the source is cut off; by default the source's");
+        "source; all: so many that nothing of the source is cut off; by default the source's");
     extent.choices = {kAll};
     return {
         image("src", "the source image; by default the recipe's name without .lens"),
         choice("mode", "undistort", {"undistort", "distort"},
                "undistort: the source was taken through the lens, and the picture is free of it; distort: "
-               "the other way "
-               "round, with the picture of the size that the lens is of"),
+               "the other way round, with the picture of the size that the lens is of"),
         text("lens",
              "MODEL:name=value,name=value with ptlens (a, b, c), brown (k1 to k6, p1, p2), 3de4 (k1, k2) or "
-             "kb4 (k1 to "
-             "k4), and d, e, the shift of its centre in pixels; by default what the image says of itself"),
+             "kb4 (k1 to k4), and d, e, the shift of its centre in pixels; by default what the image says of "
+             "itself"),
         above(number("fov", "degrees", "", 0, 360,
                      "horizontal field of view of the picture that was taken through the lens, without the "
-                     "distortion, "
-                     "for brown (below 180) and kb4, whose unit is the focal length; by default what the "
-                     "image says of "
-                     "itself")),
+                     "distortion, for brown (below 180) and kb4, whose unit is the focal length; by default "
+                     "what the image says of itself")),
         extent,
         tile(),
         mip(),

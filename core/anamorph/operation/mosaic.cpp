@@ -37,13 +37,11 @@ ParameterTable make_table() {
     return {
         image("src",
               "the panoramas, one above the other in a single image, all as high, from the circle of radius "
-              "-1 at the top to "
-              "that of 1; by default the recipe's name without .mosaic"),
+              "-1 at the top to that of 1; by default the recipe's name without .mosaic"),
         whole("circles", "", "1", 1, ConcentricStack::kMostCircles,
               "how many panoramas there are; their circles' radii run evenly from -1 to 1, a single one has "
-              "0. A column in "
-              "the direction u of the circle of radius r was seen along u from the point r to the right of "
-              "the centre"),
+              "0. A column in the direction u of the circle of radius r was seen along u from the point r to "
+              "the right of the centre"),
         choice("from", "cylindrical", turning_projections(), "projection of each panorama, a full turn"),
         number("x", "outer radii", "0", -1, 1, "the viewpoint, to the right of the centre"),
         number("z", "outer radii", "0", -1, 1,

@@ -47,18 +47,16 @@ std::string limited_fovs() {
 ParameterTable make_table() {
     using namespace rows;
     return {
-        image(
-            "src",
-            "the source image; by default the recipe's name without .pano; in a name it stands last when it "
-            "has arguments of its own"),
+        image("src",
+              "the source image; by default the recipe's name without .pano; in a name it stands last when "
+              "it has arguments of its own"),
         choice("from", "", projection_name_list(),
                "projection of the source; by default what the image says of itself, else by its shape: 2:1 "
                "equirectangular, 1:6 cubemap (anamorph:from tells what was assumed)"),
         choice("to", "rectilinear", projection_name_list(), "projection of the picture"),
         above(number("srcfov", "degrees", "", 0, 360,
                      "horizontal field of view of the source, edge to edge, or of each of its faces; by "
-                     "default what the "
-                     "image says of itself, else " +
+                     "default what the image says of itself, else " +
                          default_fovs())),
         above(number("fov", "degrees", "", 0, 360,
                      "horizontal field of view of the picture, edge to edge, or of each of its faces: " +
@@ -67,8 +65,7 @@ ParameterTable make_table() {
                "Pannini's distance d of the source, for from=pannini"),
         number("d", "", "1", 0, Chart::kMostDistance,
                "Pannini's distance d of the picture, for to=pannini: 0 is rectilinear, 1 the usual one; fov "
-               "stays "
-               "below the angle at which d + cos or 1 + d cos of its half is 0"),
+               "stays below the angle at which d + cos or 1 + d cos of its half is 0"),
         number("yaw", "degrees", "0", -kInfinity, kInfinity, "where the camera looks: to the right"),
         number("pitch", "degrees", "0", -kInfinity, kInfinity, "where the camera looks: up"),
         number("roll", "degrees", "0", -kInfinity, kInfinity,
@@ -84,8 +81,7 @@ ParameterTable make_table() {
         text("lens",
              "distortion of the picture: none, or MODEL:name=value,name=value with ptlens (a, b, c), brown "
              "(k1 to k6, p1, p2), 3de4 (k1, k2) or kb4 (k1 to k4), and d, e, the shift of its centre in "
-             "pixels; "
-             "by default none; fields of view are those without distortion"),
+             "pixels; by default none; fields of view are those without distortion"),
         size("width and height of the picture, or its width alone; by default as fine as the source at the "
              "centre"),
         tile(),

@@ -33,9 +33,8 @@ ParameterTable make_table() {
             "in the source, its vertices say where they go; by default what the file says, else pull"),
         number("amount", "", "1", -kInfinity, kInfinity,
                "how far every vertex is moved: 0 not at all, 1 as given, any other as far in proportion"),
-        size(
-            "width and height of the picture, or its width alone; by default the source's, of an ST-map that "
-            "pulls its own"),
+        size("width and height of the picture, or its width alone; by default the source's, of an ST-map "
+             "that pulls its own"),
         tile(),
         mip(),
         filter(),
