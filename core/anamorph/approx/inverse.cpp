@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "anamorph/approx/block_writer.h"
+#include "anamorph/approx/cubic_terms.h"
 #include "anamorph/approx/hermite.h"
 
 namespace anamorph {
@@ -269,11 +270,16 @@ struct LocalInverse {
     double error = HUGE_VAL;
 };
 
+/// What a region's bicubic blocks are made of.
+struct Cubics : RegionData {
+    std::vector<CubicTerms> terms;
+};
+
 /// Plans one region.
 class Planner {
   public:
     Planner(const InversePlan& plan, double tol, Blocks& blocks)
-        : m_plan(plan), m_mesh(plan.mesh()), m_tol(tol), m_writer(tol, blocks) {}
+        : m_plan(plan), m_mesh(plan.mesh()), m_tol(tol), m_blocks(blocks), m_writer(tol, blocks) {}
 
     void exact(const Box& box) {
         BlockWriter::for_blocks(box, [&](const Box& b) {
@@ -295,40 +301,54 @@ class Planner {
         m_hy = half(box.height());
     }
 
-    /// About what a quadratic misses on a block, along s and along t; nothing is proven of it.
+    /// About what a cubic misses on a block, and which cut helps most; nothing is proven of it.
     struct Miss {
-        double s = 0, t = 0;
+        double error = 0;
+        bool vertical_cut = true;
 
-        bool is_across() const { return s >= t; }
-        /// On a half: cubes of s shrink most.
-        Miss on_half(bool vertical_cut) const {
-            return vertical_cut ? Miss{s / 8, t / 2} : Miss{s / 2, t / 8};
-        }
+        /// A remainder of degree 4, of which each cut concerns a part.
+        Miss on_half() const { return {error / 4, !vertical_cut}; }
     };
 
     void place(const Box& box) { place(box, Miss{}); }
     void place(const Box& box, const Miss& expected) {
         // Not worth the attempt.
-        if (expected.s + expected.t > m_tol && !BlockWriter::below_floor(box)) return halve(box, expected);
+        if (expected.error > m_tol && !BlockWriter::below_floor(box)) return halve(box, expected);
         aim(box);
         const bool on_fold = gather();
         if (m_near.empty() && !on_fold) return m_writer.outside(box);
         if (BlockWriter::below_floor(box)) return write_exact(box, on_fold);
+        Miss miss{0, box.width() >= box.height()};
         if (!on_fold) {
             const LocalInverse inverse = invert();
             if (inverse.error < HUGE_VAL) {
                 const EconomizedBicubic x(inverse.x), y(inverse.y);
-                if (m_writer.polynomial(box, x.c, y.c, std::hypot(x.dropped, y.dropped) + inverse.error))
+                if (m_writer.polynomial(box, x.c, y.c, std::hypot(x.dropped, y.dropped) + inverse.error) ||
+                    cubic(box, inverse))
                     return;
-                return halve(box,
-                             {std::hypot(x.dropped_s, y.dropped_s), std::hypot(x.dropped_t, y.dropped_t)});
+                miss = {inverse.error, x.dropped_s + y.dropped_s >= x.dropped_t + y.dropped_t};
             }
         }
-        m_writer.halve(box, box.width() >= box.height(), [&](const Box& b) { place(b); });
+        halve(box, miss);
     }
     void halve(const Box& box, const Miss& miss) {
-        const bool vertical_cut = miss.is_across();
-        m_writer.halve(box, vertical_cut, [&](const Box& b) { place(b, miss.on_half(vertical_cut)); });
+        m_writer.halve(box, miss.vertical_cut, [&](const Box& b) { place(b, miss.on_half()); });
+    }
+
+    /// True when the cubic as it is keeps the tolerance.
+    bool cubic(const Box& box, const LocalInverse& inverse) {
+        const auto by_degree = [](const double(&c)[4][4]) {
+            return std::array<double, 10>{c[0][0], c[1][0], c[0][1], c[2][0], c[1][1],
+                                          c[0][2], c[3][0], c[2][1], c[1][2], c[0][3]};
+        };
+        const std::array<double, 10> x = by_degree(inverse.x), y = by_degree(inverse.y);
+        if (!m_writer.cubic(box, x.data(), y.data(), inverse.error)) return false;
+        if (!m_cubics) m_blocks.data = m_cubics = std::make_shared<Cubics>();
+        Block& block = m_blocks.back();
+        block.data = m_cubics.get();
+        block.record = static_cast<int>(m_cubics->terms.size());
+        m_cubics->terms.emplace_back(x.data(), y.data());
+        return true;
     }
 
     /// The bound of exact pixels: that of the sheets near; on folds, of each pixel.
@@ -400,13 +420,25 @@ class Planner {
         Form<3> c[2];
     };
 
+    /// The source point of the block's middle. False where there is none, or several.
+    bool find_middle(InversePlan::Preimage& at) const {
+        if (m_near.size() == 1) {
+            const Sheet& only = *m_near.front().sheet;
+            return m_plan.find(only, m_mesh.patch(m_plan.cells()[static_cast<std::size_t>(only.cell)]), m_x,
+                               m_y, at);
+        }
+        const InversePlan::Preimages found = m_plan.preimages(m_x, m_y);
+        at = found.best;
+        return found.count == 1;
+    }
+
     /// See inverse.h. The error is infinite where nothing is proven.
     LocalInverse invert() {
         LocalInverse result;
-        const InversePlan::Preimages found = m_plan.preimages(m_x, m_y);
-        if (found.count != 1) return result;
-        const MeshCell& cell = m_plan.cells()[static_cast<std::size_t>(found.best.cell)];
-        Middle middle{cell, m_mesh.patch(cell), found.best.at, {}, {}, {}, {}, {}};
+        InversePlan::Preimage at{};
+        if (!find_middle(at)) return result;
+        const MeshCell& cell = m_plan.cells()[static_cast<std::size_t>(at.cell)];
+        Middle middle{cell, m_mesh.patch(cell), at.at, {}, {}, {}, {}, {}};
         middle.powers = about(middle.patch, middle.at);
         const Bicubic& f = middle.powers;
         const Matrix j{f.x[1][0], f.x[0][1], f.y[1][0], f.y[0][1]};
@@ -643,6 +675,8 @@ class Planner {
     const InversePlan& m_plan;
     const Mesh& m_mesh;
     double m_tol;
+    Blocks& m_blocks;
+    std::shared_ptr<Cubics> m_cubics;  ///< of m_blocks, if there are any
     BlockWriter m_writer;
     double m_x = 0, m_y = 0, m_hx = 0, m_hy = 0;  ///< the block's middle and half its size, target pixels
     std::vector<Near> m_near;
@@ -676,6 +710,11 @@ void InversePlan::plan(const Box& box, int, Blocks& blocks) const {
         planner.exact(box);
     else
         planner.region(box);
+}
+
+BlockPolynomial InversePlan::bicubic(const Block& block) const noexcept {
+    return with_cubic_terms(
+        block, static_cast<const Cubics&>(*block.data).terms[static_cast<std::size_t>(block.record)]);
 }
 
 Point<double> InversePlan::on_sheet(const Sheet& sheet, const Point<double>& z) const noexcept {

@@ -20,7 +20,7 @@
 // Blocks. Around the preimage of a block's middle, in parameters z of the block, the map is z + Q(z) + C(z) +
 // higher terms, so that its inverse is z - Q(z) + 2 Q(z, Q(z)) - C(z) + remainder; norms of the coefficients
 // prove existence and uniqueness (Banach's fixed point theorem on a ball somewhat larger than the block) and
-// bound the remainder. The cubic is economised to a quadratic. Neighbouring cells that the ball reaches enter
+// bound the remainder. The cubic is economised to a quadratic, or drawn as it is. Neighbouring cells that the ball reaches enter
 // with their difference from the cell in the middle, so that blocks may run over edges.
 #pragma once
 
@@ -41,6 +41,7 @@ class InversePlan final : public WarpPlan {
     /// of level 0 with the largest number, row by row, of these the lowest, of these the rightmost.
     bool exact(double x, double y, int piece, Point<double>& source_point,
                int& source_piece) const noexcept override;
+    BlockPolynomial bicubic(const Block& block) const noexcept override;
     Jacobian jacobian(double x, double y, int piece) const noexcept override;
     /// The number of source points less one; at least 1 where they cannot be told apart.
     float folds(double x, double y) const noexcept override;
@@ -85,6 +86,8 @@ class InversePlan final : public WarpPlan {
         double error = 0;      ///< of the distance from the best to the exact one
     };
     Preimages preimages(double x, double y) const noexcept;
+    /// Finds the source point of (x, y) on a sheet that is no fold. False where there is none. `patch`: of its cell.
+    bool find(const Sheet& sheet, const Patch& patch, double x, double y, Preimage& found) const noexcept;
 
   protected:
     void plan(const Box& box, int piece, Blocks& blocks) const override;
@@ -92,7 +95,6 @@ class InversePlan final : public WarpPlan {
   private:
     class Search;
     bool reaches(const Sheet& sheet, double x, double y) const noexcept;
-    bool find(const Sheet& sheet, const Patch& patch, double x, double y, Preimage& found) const noexcept;
     bool before(const Preimage& a, const Preimage& b) const noexcept;
 
     Mesh m_mesh;
