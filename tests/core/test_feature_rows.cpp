@@ -3,6 +3,7 @@
 // exact blocks.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <vector>
 
@@ -98,6 +99,38 @@ TEST(FeatureRows, TheSameBitsOnAllInstructionSets) {
     });
     ASSERT_GT(all.size(), 1u);
     for (const std::vector<double>& values : all) EXPECT_EQ(values, all.front());
+}
+
+TEST(FeatureRows, TogetherTheyAreWhatTheyAreAlone) {
+    each_map([](const FeatureMap& map, const std::string& text) {
+        Row alone[2] = {{map, 0, 3, 17}, {map, 1, 3, 17}}, together[2] = {alone[0], alone[1]};
+        for (Row& row : together) std::fill(row.x.begin(), row.x.end(), 0.0);
+        const simd::FeatureRow rows[] = {{0, together[0].x.data(), together[0].y.data()},
+                                         {1, together[1].x.data(), together[1].y.data()}};
+        simd::feature_rows(map, rows, 3.5, 17.5, kCount);
+        for (int shape = 0; shape < 2; ++shape)
+            for (std::size_t i = 0; i < kCount; ++i) {
+                ASSERT_EQ(together[shape].x[i], alone[shape].x[i]) << text;
+                ASSERT_EQ(together[shape].y[i], alone[shape].y[i]) << text;
+            }
+    });
+}
+
+// Weights count in units of the nearest line's, whose reciprocal is then no double.
+TEST(FeatureRows, ALineNearerThanTheLeastDoublesReciprocal) {
+    Features features;
+    features.add_line({Line{{4.5, 17.5}, {60.5, 17.5}}, Line{{9.5, 20.5}, {65.5, 20.5}}});
+    features.add_line({Line{{4.5, 40.5}, {60.5, 50.5}}, Line{{4.5, 40.5}, {60.5, 50.5}}});
+    for (const double a : {1e-308, 1e-320})
+        for (const double b : {1.0, 2.0, 16.0}) {
+            const FeatureMap map(features, {{kSize, kSize}, {kSize, kSize}}, {kSize, kSize}, {1, 0},
+                                 {a, b, 0.5});
+            const Row row(map, 1, 10, 17);
+            for (std::size_t i = 0; i < kCount; ++i) {
+                EXPECT_NEAR(row.x[i], 15.5 + double(i), 1e-12) << a << " " << b;
+                EXPECT_NEAR(map(10.5 + double(i), 17.5, 1).y, 20.5, 1e-12) << a << " " << b;
+            }
+        }
 }
 
 // With a = 0 a line that a pixel lies on is all that counts there.

@@ -138,6 +138,45 @@ TEST(MeshInverse, NothingWhereTheMeshDoesNotReach) {
     EXPECT_EQ(plan.folded_pixels({0, 0, 200, 100}), 0);
 }
 
+// The mesh ends at the picture's edge, within it, or beyond it: blocks along its edge are polynomials, and hold.
+TEST(MeshInverse, TheMeshsEdgeTakesNoExactPoints) {
+    constexpr unsigned kSeed = 554;
+    SCOPED_TRACE(::testing::Message() << "seed " << kSeed);
+    const Size size{512, 384};
+    for (const double grown : {1.0, 0.7, 1.3}) {
+        SCOPED_TRACE(grown);
+        test::Random random(kSeed);
+        ControlMesh mesh = test::identity_mesh(size, 6, 5);
+        for (int r = 0; r <= 5; ++r)
+            for (int c = 0; c <= 6; ++c) {
+                Point<double>& v = mesh.vertices[static_cast<std::size_t>(r * 7 + c)];
+                if (c > 0 && c < 6) v.x += random.between(-8, 8);
+                if (r > 0 && r < 5) v.y += random.between(-8, 8);
+                v = {256 + grown * (v.x - 256), 192 + grown * (v.y - 192)};
+            }
+        for (const double tol : {1.0, 0.01}) expect_promise(mesh, size, size, tol);
+        const InversePlan plan(Mesh(mesh, size, size, 1), WarpScheme::automatic, 1, "mesh");
+        // Within the picture the edge is a line between blocks and pixels without a source.
+        if (grown >= 1) {
+            EXPECT_EQ(plan.reached(serial_for).exact_fraction, 0);
+        }
+    }
+}
+
+TEST(MeshInverse, LinesBeyondThePictureHold) {
+    const Size size{300, 200};
+    ControlMesh mesh = test::identity_mesh(size, 8, 6);
+    for (int i = 0; i <= 8; ++i) mesh.x_lines.push_back(-150 + 75.0 * i);
+    for (int i = 0; i <= 6; ++i) mesh.y_lines.push_back(-100 + 400.0 / 6 * i);
+    test::Random random(555);
+    for (int r = 0; r <= 6; ++r)
+        for (int c = 0; c <= 8; ++c)
+            mesh.vertices[static_cast<std::size_t>(r * 9 + c)] = {
+                75 + 0.5 * mesh.x_lines[static_cast<std::size_t>(c)] + random.between(-3, 3),
+                50 + 0.5 * mesh.y_lines[static_cast<std::size_t>(r)] + random.between(-3, 3)};
+    for (const double tol : {1.0, 0.01}) expect_promise(mesh, size, size, tol);
+}
+
 TEST(MeshInverse, MostPixelsNeedNoExactPoints) {
     test::Random random(553);
     const Size size{1024, 1024};

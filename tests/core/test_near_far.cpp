@@ -634,6 +634,47 @@ TEST(NearFar, OneShapeAlone) {
     EXPECT_LE(worst, 0.05);
 }
 
+TEST(NearFar, ExactLayersAreTheSameInWhicheverOrderTheyAreAskedFor) {
+    const auto features = families::Maker(150, 9).make("face", 32);
+    const FeatureMap map = map_of(*features, {150, 150}, {1, 2, 0.5});
+    const NearFar forwards(map, {0, {0, 1}}), backwards(map, {0, {0, 1}});
+    const auto at_middle = [](const NearFar& field, const Block& block) {
+        PointsInDouble points;
+        points.read(field, block, 3, 9);
+        return points.at(5, 2);
+    };
+    for (std::int64_t r = 0; r < forwards.regions(); ++r) {
+        const SharedBlocks blocks = forwards.blocks(r), others = backwards.blocks(r);
+        for (std::size_t i = 0; i < blocks.size(); i += 2) {
+            Point<double> to[2], back[2];
+            // The second one twice: what waited for it is gone then.
+            for (const std::size_t k : {0, 1, 1}) to[k] = at_middle(forwards, blocks[i + k]);
+            for (const std::size_t k : {1, 0, 0}) back[k] = at_middle(backwards, others[i + k]);
+            for (const std::size_t k : {0, 1}) {
+                const Point<double> truth = map(blocks[i].box.x0 + 5.5, blocks[i].box.y0 + 5.5, int(k));
+                EXPECT_EQ(to[k].x, truth.x);
+                EXPECT_EQ(to[k].y, truth.y);
+                EXPECT_EQ(back[k].x, truth.x);
+                EXPECT_EQ(back[k].y, truth.y);
+            }
+        }
+    }
+}
+
+TEST(NearFar, LinesAlongTheCurveMakeTheSameMap) {
+    const auto features = families::Maker(150, 10).make("crossing", 40);
+    const FeatureMap map = map_of(*features, {150, 150}, {1, 2, 0.5}), sorted = map.along_curve();
+    ASSERT_EQ(sorted.size(), map.size());
+    for (int y = 0; y < 150; y += 7)
+        for (int x = 0; x < 150; x += 7)
+            for (int shape = 0; shape < 2; ++shape) {
+                const Point<long double> p = map(x + 0.5L, y + 0.5L, shape),
+                                         q = sorted(x + 0.5L, y + 0.5L, shape);
+                EXPECT_NEAR(double(p.x), double(q.x), 1e-12);
+                EXPECT_NEAR(double(p.y), double(q.y), 1e-12);
+            }
+}
+
 TEST(NearFar, ARowAloneIsThatOfBothShapesTogether) {
     const auto features = families::Maker(150, 9).make("face", 32);
     const FeatureMap map = map_of(*features, {150, 150}, {1, 2, 0.5});

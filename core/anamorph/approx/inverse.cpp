@@ -465,13 +465,15 @@ class Planner {
         return result;
     }
 
-    /// Are its points certainly on the mesh?
+    /// Are its points certainly on the mesh, in cells that have sheets? Those that meet the source have.
     bool on_mesh(const LocalInverse& inverse) const {
-        const auto holds = [&](const std::vector<double>& lines, const double(&c)[4][4]) {
+        const auto holds = [&](const std::vector<double>& lines, int size, const double(&c)[4][4]) {
             const double reach = sum_of_magnitudes(c) - std::fabs(c[0][0]) + inverse.error;
-            return c[0][0] - reach >= lines.front() && c[0][0] + reach <= lines.back();
+            return c[0][0] - reach >= std::max(lines.front(), 0.0) &&
+                   c[0][0] + reach <= std::min(lines.back(), double(size));
         };
-        return holds(m_mesh.x_lines(), inverse.x) && holds(m_mesh.y_lines(), inverse.y);
+        return holds(m_mesh.x_lines(), m_mesh.from().width, inverse.x) &&
+               holds(m_mesh.y_lines(), m_mesh.from().height, inverse.y);
     }
 
     /// Q and C: the patch's own, of what M makes of z.
