@@ -7,6 +7,7 @@
 
 #include "anamorph/approx/mesh_scattered.h"
 #include "anamorph/error.h"
+#include "each_instruction_set.h"
 #include "mesh_cases.h"
 #include "warp_findings.h"
 
@@ -116,6 +117,43 @@ TEST(Scattered, HoldsTheTolerance) {
 }
 
 // Points within hairs of lines: triangles so thin that rounding decides on which side their corners lie.
+TEST(Scattered, PartsOfRowsAreThoseOfTheWholeOnAllInstructionSets) {
+    constexpr unsigned kSeed = 21;
+    SCOPED_TRACE(::testing::Message() << "seed " << kSeed);
+    test::Random random(kSeed);
+    const Size size{256, 192};
+    ControlPoints points;
+    for (int i = 0; i < 60; ++i) {
+        const double x = random.between(0, size.width), y = random.between(0, size.height);
+        points.pairs.push_back({x, y, x + random.between(-6, 6), y + random.between(-6, 6)});
+    }
+    const ScatteredPlan plan(Scattered(points, size, size, 1), WarpScheme::automatic, 1e-3);
+    std::vector<std::vector<float>> all;
+    int compared = 0;
+    test::on_every_instruction_set([&] {
+        std::vector<float>& values = all.emplace_back();
+        for (std::int64_t r = 0; r < plan.regions(); ++r)
+            for (const Block& block : plan.blocks(r)) {
+                if (block.kind != Block::Kind::computed) continue;
+                const int row = block.box.height() / 2, begin = block.box.width() / 3,
+                          end = block.box.width();
+                float x[simd::kRowRoom], y[simd::kRowRoom], part_x[simd::kRowRoom], part_y[simd::kRowRoom];
+                plan.computed_row(block, row, 0, end, x, y);
+                plan.computed_row(block, row, begin, end - 1, part_x, part_y);
+                for (int i = 0; i < end; ++i) {
+                    values.push_back(x[i]);
+                    values.push_back(y[i]);
+                    if (i < begin || i >= end - 1) continue;
+                    ASSERT_EQ(part_x[i - begin], x[i]);
+                    ASSERT_EQ(part_y[i - begin], y[i]);
+                    ++compared;
+                }
+            }
+    });
+    EXPECT_GT(compared, 100);
+    for (const std::vector<float>& values : all) EXPECT_EQ(values, all.front());
+}
+
 TEST(Scattered, ThinTrianglesKeepTheTolerance) {
     constexpr unsigned kSeed = 565;
     SCOPED_TRACE(::testing::Message() << "seed " << kSeed);

@@ -2,8 +2,9 @@
 #include "anamorph/approx/mesh_scattered.h"
 
 #include <algorithm>
-#include <array>
+#include <bit>
 #include <cmath>
+#include <cstdint>
 #include <vector>
 
 #include "anamorph/approx/block_writer.h"
@@ -37,49 +38,17 @@ Bicubic on(const Scattered& map, const CubicTriangle& triangle, const Centres& a
     return f;
 }
 
-/// Values at four places of a row at once: the number a triangle is read with there.
-struct RowValues {
-    std::array<double, 4> v{};
-
-    RowValues() = default;
-    RowValues(double constant) { v.fill(constant); }  // NOLINT: a number is a constant row
-};
-template <class Body>
-RowValues each_value(const RowValues& a, const RowValues& b, const Body& body) {
-    RowValues r;
-    for (std::size_t i = 0; i < 4; ++i) r.v[i] = body(a.v[i], b.v[i]);
-    return r;
-}
-RowValues operator+(const RowValues& a, const RowValues& b) {
-    return each_value(a, b, [](double x, double y) { return x + y; });
-}
-RowValues operator-(const RowValues& a, const RowValues& b) {
-    return each_value(a, b, [](double x, double y) { return x - y; });
-}
-RowValues operator*(const RowValues& a, const RowValues& b) {
-    return each_value(a, b, [](double x, double y) { return x * y; });
-}
-RowValues square(const RowValues& a) {
-    return a * a;
+/// Bits [begin, end) of at most 64.
+std::uint64_t bits(int begin, int end) {
+    static_assert(Block::kMaxSide <= 64);
+    return begin < end ? ~std::uint64_t{0} >> (64 - (end - begin)) << begin : 0;
 }
 
-/// A cubic on a row, from its values at 0, h, 2 h and 3 h (Newton's form).
-class RowCubic {
-  public:
-    RowCubic(const RowValues& values, double h) : m_h(h), m_d0(values.v[0]) {
-        const auto& v = values.v;
-        const double once[3] = {v[1] - v[0], v[2] - v[1], v[3] - v[2]};
-        const double twice[2] = {once[1] - once[0], once[2] - once[1]};
-        m_d1 = once[0] / h;
-        m_d2 = twice[0] / (2 * h * h);
-        m_d3 = (twice[1] - twice[0]) / (6 * h * h * h);
-    }
-    /// The same less a base, for vectors.
-    simd::CubicRow less(double base) const { return {m_d0, m_d1, m_d2, m_d3, m_h, base}; }
-
-  private:
-    double m_h, m_d0, m_d1, m_d2, m_d3;
-};
+/// A coordinate of a cubic on the row at `t`, less a base: in powers of the row's parameter.
+simd::CubicRow row_of(const double (&c)[4][4], double t, double base) {
+    return {{c[0][0] + t * (c[0][1] + t * (c[0][2] + t * c[0][3])) - base,
+             c[1][0] + t * (c[1][1] + t * c[1][2]), c[2][0] + t * c[2][1], c[3][0]}};
+}
 
 /// The pixels [begin, end) of a row whose centres certainly lie in a triangle, and those that may.
 struct Run {
@@ -261,8 +230,8 @@ class Planner {
 
     /// The same of a cubic as a polynomial on all of a box, which may reach beyond its triangle. A Taylor
     /// coefficient of a weight takes less than 40 roundings, sums with the Bezier points 11; those of what is
-    /// made of it (restrictions, differences, Chebyshev's form; rows from four values, whose weights sum to
-    /// 1.7) less than 200.
+    /// made of it (restrictions, differences, Chebyshev's form; rows by Horner's rule, in parameters off by two)
+    /// less than 200.
     double form_rounding(const CubicTriangle& t, const Centres& at) const {
         const Bounds box = bounds_of(at);
         const CubicTriangle::Terms terms = t.terms(t.reach(box));
@@ -320,15 +289,19 @@ struct ScatteredPlan::Near {
     const CubicTriangle* triangle;
     Bounds bounds;
     double margin;  ///< of barycentric coordinates at the block's pixels
+    Bicubic cubic;  ///< on the block
 };
 
 std::vector<ScatteredPlan::Near> ScatteredPlan::near(const Box& block) const {
     const Bounds centres{block.x0 + 0.5, block.y0 + 0.5, block.x1 - 0.5, block.y1 - 0.5};
+    const Centres at(block);
     std::vector<Near> found;
     m_map.tree().each(centres, [&](std::int32_t n) {
         const CubicTriangle& triangle = m_map.triangles()[static_cast<std::size_t>(n)];
-        found.push_back({&triangle, triangle.bounds(),
-                         4 * triangle.place_error({centres.x0, centres.y0, centres.x1 + 1, centres.y1})});
+        if (triangle.meets(centres))
+            found.push_back({&triangle, triangle.bounds(),
+                             4 * triangle.place_error({centres.x0, centres.y0, centres.x1 + 1, centres.y1}),
+                             on(m_map, triangle, at)});
     });
     return found;
 }
@@ -348,36 +321,35 @@ void ScatteredPlan::computed_row(const Block& block, int row, int begin, int end
 
 void ScatteredPlan::write_row(const Block& block, const std::vector<Near>& triangles, int row, int begin,
                               int end, float* x, float* y) const noexcept {
-    const int count = end - begin;
-    const double first = block.box.x0 + begin + 0.5, down = block.box.y0 + row + 0.5;
+    // Whatever part of it is asked for, the whole row decides who holds a pixel.
+    const int width = block.box.width();
+    const double first = block.box.x0 + 0.5, down = block.box.y0 + row + 0.5;
+    const Centres at(block.box);
+    const double t = (down - at.down.middle) / at.down.half, per_pixel = 1 / at.across.half;
     const auto put = [&](int i, const Point<double>& p) {
-        x[i] = static_cast<float>(p.x - block.base_x);
-        y[i] = static_cast<float>(p.y - block.base_y);
+        x[i - begin] = static_cast<float>(p.x - block.base_x);
+        y[i - begin] = static_cast<float>(p.y - block.base_y);
     };
-    // How many triangles may hold a pixel, and whether one certainly does.
-    std::array<std::uint8_t, Block::kMaxSide> claims{};
-    std::array<bool, Block::kMaxSide> held{};
+    // Pixels, bit by bit, that a triangle may hold, that several may, and that one certainly does.
+    std::uint64_t claimed = 0, contested = 0, held = 0;
     for (const Near& near : triangles) {
-        if (!near.bounds.meets({first, down, first + count - 1, down})) continue;
-        const CubicTriangle& triangle = *near.triangle;
-        const Run run(triangle, near.margin, first, down, count);
-        for (int i = run.outer_begin; i < run.outer_end; ++i) {
-            std::uint8_t& claim = claims[static_cast<std::size_t>(i)];
-            claim = static_cast<std::uint8_t>(std::min(claim + 1, 2));
-        }
-        if (run.begin >= run.end) continue;
-        const double h = std::max(run.end - run.begin - 1, 1) / 3.0;
-        RowValues places;
-        for (std::size_t k = 0; k < 4; ++k) places.v[k] = first + run.begin + h * double(k);
-        const Point<RowValues> f = m_map.at(triangle, places, RowValues(down));
-        simd::write_cubic(RowCubic(f.x, h).less(block.base_x), run.end - run.begin, x + run.begin);
-        simd::write_cubic(RowCubic(f.y, h).less(block.base_y), run.end - run.begin, y + run.begin);
-        std::fill(held.begin() + run.begin, held.begin() + run.end, true);
+        if (!near.bounds.meets({first, down, first + width - 1, down})) continue;
+        const Run run(*near.triangle, near.margin, first, down, width);
+        const std::uint64_t claim = bits(run.outer_begin, run.outer_end);
+        contested |= claimed & claim;
+        claimed |= claim;
+        held |= bits(run.begin, run.end);
+        const int from = std::max(run.begin, begin), to = std::min(run.end, end);
+        if (from >= to) continue;
+        simd::write_cubics(row_of(near.cubic.x, t, block.base_x), row_of(near.cubic.y, t, block.base_y),
+                           from - 0.5 * (width - 1), per_pixel, to - from, x + from - begin,
+                           y + from - begin);
     }
     // On edges, by the rule for single points.
-    for (int i = 0; i < count; ++i)
-        if (claims[static_cast<std::size_t>(i)] != 1 || !held[static_cast<std::size_t>(i)])
-            put(i, m_map.at(first + i, down));
+    for (std::uint64_t open = bits(begin, end) & ~(held & ~contested); open; open &= open - 1) {
+        const int i = std::countr_zero(open);
+        put(i, m_map.at(first + i, down));
+    }
 }
 
 Jacobian ScatteredPlan::jacobian(double x, double y, int) const noexcept {

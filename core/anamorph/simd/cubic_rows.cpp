@@ -11,26 +11,43 @@ namespace anamorph::simd {
 namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-void WriteCubic(const CubicRow& cubic, int count, float* HWY_RESTRICT to) {
-    const hn::CappedTag<double, 8> d;
-    const hn::Rebind<float, decltype(d)> df;
-    constexpr int kLanes = static_cast<int>(hn::MaxLanes(d));
-    const auto d0 = hn::Set(d, cubic.d0), d1 = hn::Set(d, cubic.d1), d2 = hn::Set(d, cubic.d2),
-               d3 = hn::Set(d, cubic.d3), h = hn::Set(d, cubic.h), twice = hn::Set(d, 2 * cubic.h),
-               base = hn::Set(d, cubic.base);
+using D = hn::CappedTag<double, 8>;
+using F = hn::Rebind<float, D>;
+using V = hn::Vec<D>;
+constexpr int kLanes = static_cast<int>(hn::MaxLanes(D()));
+
+/// A cubic's coefficients in vectors.
+struct Cubic {
+    V c0, c1, c2, c3;
+
+    HWY_INLINE explicit Cubic(const CubicRow& row)
+        : c0(hn::Set(D(), row.c[0])),
+          c1(hn::Set(D(), row.c[1])),
+          c2(hn::Set(D(), row.c[2])),
+          c3(hn::Set(D(), row.c[3])) {}
     // No fused multiply-adds, which some processors have.
-    const auto values = [&](int i) HWY_ATTR {
-        const auto x = hn::Iota(d, i);
-        const auto inner = hn::Add(d2, hn::Mul(hn::Sub(x, twice), d3));
-        const auto middle = hn::Add(d1, hn::Mul(hn::Sub(x, h), inner));
-        return hn::DemoteTo(df, hn::Sub(hn::Add(d0, hn::Mul(x, middle)), base));
-    };
+    HWY_INLINE hn::Vec<F> At(V s) const {
+        const V inner = hn::Add(c1, hn::Mul(s, hn::Add(c2, hn::Mul(s, c3))));
+        return hn::DemoteTo(F(), hn::Add(c0, hn::Mul(s, inner)));
+    }
+};
+
+void WriteCubics(const CubicRow& row_x, const CubicRow& row_y, double from, double step, int count,
+                 float* HWY_RESTRICT to_x, float* HWY_RESTRICT to_y) {
+    const Cubic x(row_x), y(row_y);
+    const V first = hn::Set(D(), from), each = hn::Set(D(), step);
+    const auto at = [&](int i) HWY_ATTR { return hn::Mul(hn::Add(hn::Iota(D(), i), first), each); };
     int i = 0;
-    for (; i + kLanes <= count; i += kLanes) hn::StoreU(values(i), df, to + i);
+    for (; i + kLanes <= count; i += kLanes) {
+        const V s = at(i);
+        hn::StoreU(x.At(s), F(), to_x + i);
+        hn::StoreU(y.At(s), F(), to_y + i);
+    }
     if (i == count) return;
-    HWY_ALIGN float last[8];
-    hn::Store(values(i), df, last);
-    for (int n = 0; i + n < count; ++n) to[i + n] = last[n];
+    const auto rest = hn::FirstN(F(), static_cast<std::size_t>(count - i));
+    const V s = at(i);
+    hn::BlendedStore(x.At(s), rest, F(), to_x + i);
+    hn::BlendedStore(y.At(s), rest, F(), to_y + i);
 }
 
 }  // namespace HWY_NAMESPACE
@@ -40,10 +57,11 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace anamorph::simd {
 
-HWY_EXPORT(WriteCubic);
+HWY_EXPORT(WriteCubics);
 
-void write_cubic(const CubicRow& cubic, int count, float* to) {
-    HWY_DYNAMIC_DISPATCH(WriteCubic)(cubic, count, to);
+void write_cubics(const CubicRow& x, const CubicRow& y, double from, double step, int count, float* to_x,
+                  float* to_y) {
+    HWY_DYNAMIC_DISPATCH(WriteCubics)(x, y, from, step, count, to_x, to_y);
 }
 
 }  // namespace anamorph::simd

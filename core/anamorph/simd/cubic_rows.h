@@ -4,12 +4,13 @@
 
 namespace anamorph::simd {
 
-/// d0 + x (d1 + (x - h) (d2 + (x - 2 h) d3)) - base: Newton's form of a cubic through values at 0, h, 2 h and 3 h.
+/// c[0] + s (c[1] + s (c[2] + s c[3])).
 struct CubicRow {
-    double d0, d1, d2, d3, h, base;
+    double c[4];
 };
-/// Its values at x = 0, 1, ..., `count` of them, computed in double and rounded to float: the same bits on all
-/// instruction sets. Nothing else is written to.
-void write_cubic(const CubicRow& cubic, int count, float* to);
+/// The values of two at s = (from + i) step, i = 0, 1, ..., `count` of them, computed in double and rounded to float:
+/// the same bits on all instruction sets. Nothing else changes, but there is room for 16 more.
+void write_cubics(const CubicRow& x, const CubicRow& y, double from, double step, int count, float* to_x,
+                  float* to_y);
 
 }  // namespace anamorph::simd
