@@ -11,6 +11,7 @@
 #include <map>
 #include <numeric>
 #include <random>
+#include <set>
 
 #include "anamorph/drape/oka.h"
 #include "anamorph/simd/block_sampler.h"
@@ -570,6 +571,47 @@ TEST(Drape, FacetsMeetAlongWholeEdgesAlsoNextToWhatIsHidden) {
                 << i << ": a crack at " << edge[1] << ", " << edge[2];
         }
     }
+}
+
+TEST(Drape, FacetsDoNotDependOnTheViewsBefore) {
+    Scene scene{"torus"};
+    scene.pose.position = {1.1, 0.7, 1.3};
+    const Shown shown(scene), fresh(scene);
+    scene.pose.position = {-0.4, 0.2, 0.9};
+    FacetRoom room;
+    cut_into_facets(shown.tree()->tree, Shown(scene).camera(), 0.02, room);
+    cut_into_facets(shown.tree()->tree, shown.camera(), 0.25, room);
+    const Facets wanted = cut_into_facets(fresh.tree()->tree, fresh.camera(), 0.25);
+    ASSERT_EQ(room.facets.facets.size(), wanted.facets.size());
+    ASSERT_EQ(room.facets.corners.size(), wanted.corners.size());
+    for (std::size_t i = 0; i < wanted.facets.size(); ++i)
+        for (int k = 0; k < 3; ++k)
+            ASSERT_EQ(room.facets.facets[i].corner[k], wanted.facets[i].corner[k]) << i;
+    for (std::size_t i = 0; i < wanted.corners.size(); ++i) {
+        const FacetCorner &a = room.facets.corners[i], &b = wanted.corners[i];
+        ASSERT_TRUE(a.x == b.x && a.y == b.y && a.weight == b.weight && a.u == b.u && a.v == b.v) << i;
+    }
+}
+
+TEST(Drape, PatchesNextToSmallerOnesHaveAsFewFacetsAsTheirCornersAllow) {
+    // Of n corners round a patch, n - 2.
+    Scene scene;
+    scene.deformations = {{{0, 0, 0.4}, {0.3, 0.4}, {0.1, 0.1}, DeformationKernel::gaussian}};
+    const Shown shown(scene);
+    const Facets facets = cut_into_facets(shown.tree()->tree, shown.camera(), 0.125);
+    std::map<std::uint32_t, std::set<std::uint32_t>> corners;
+    std::map<std::uint32_t, std::size_t> counts;
+    for (const Facet& facet : facets.facets) {
+        corners[facet.leaf].insert(std::begin(facet.corner), std::end(facet.corner));
+        ++counts[facet.leaf];
+    }
+    std::size_t five = 0;
+    for (const auto& [leaf, own] : corners) {
+        if (own.size() > 5) continue;
+        EXPECT_EQ(counts[leaf], own.size() - 2) << leaf;
+        five += own.size() == 5;
+    }
+    EXPECT_GT(five, 20u);
 }
 
 TEST(Drape, WhatIsSeenFromVeryNearIsDrawnOrRefused) {

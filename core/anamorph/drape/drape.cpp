@@ -29,10 +29,15 @@ std::shared_ptr<const DrapeMap> map_of(SharedTree& surface, const Camera& camera
     if (!(options.tol >= least))
         throw Error("tol", shortest(options.tol),
                     "must be at least " + shortest(least) + " for a picture of this size");
-    const std::lock_guard lock(surface.mutex);
+    std::unique_ptr<FacetRoom> room = surface.facet_pool->take();
+    {
+        const std::lock_guard lock(surface.mutex);
+        cut_into_facets(surface.tree, camera, options.tol, *room);
+    }
     return std::make_shared<DrapeMap>(
-        cut_into_facets(surface.tree, camera, options.tol), camera, picture, options.tol,
-        options.scheme == DrapeScheme::exact ? surface.tree.shared_surface() : nullptr, surface.pool);
+        std::move(room), camera, picture, options.tol,
+        options.scheme == DrapeScheme::exact ? surface.tree.shared_surface() : nullptr, surface.pool,
+        surface.facet_pool);
 }
 
 /// body(pixels, part) for the regions that meet a box.

@@ -69,6 +69,7 @@ struct SharedTree {
     std::mutex mutex;
     SurfaceTree tree;
     std::shared_ptr<SeenPool> pool = std::make_shared<SeenPool>();
+    std::shared_ptr<FacetPool> facet_pool = std::make_shared<FacetPool>();
     std::shared_ptr<RoomPool<OkaRoom>> oka_pool = std::make_shared<RoomPool<OkaRoom>>();
 };
 

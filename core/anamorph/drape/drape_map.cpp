@@ -33,24 +33,42 @@ void for_squares(const Box& box, int side, const Body& body) {
         for (int x = box.x0; x < box.x1; x += side) body(intersection({x, y, x + side, y + side}, box));
 }
 
+std::unique_ptr<FacetRoom> room_of(Facets facets) {
+    auto room = std::make_unique<FacetRoom>();
+    room->facets = std::move(facets);
+    return room;
+}
+
 }  // namespace
 
 DrapeMap::DrapeMap(Facets facets, const Camera& camera, const Size& picture, double tol,
-                   std::shared_ptr<const DrapedSurface> surface, std::shared_ptr<SeenPool> pool)
+                   std::shared_ptr<const DrapedSurface> surface)
+    : DrapeMap(room_of(std::move(facets)), camera, picture, tol, std::move(surface),
+               std::make_shared<SeenPool>(), std::make_shared<FacetPool>()) {}
+
+DrapeMap::DrapeMap(std::unique_ptr<FacetRoom> room, const Camera& camera, const Size& picture, double tol,
+                   std::shared_ptr<const DrapedSurface> surface, std::shared_ptr<SeenPool> pool,
+                   std::shared_ptr<FacetPool> facet_pool)
     : BlockMap(camera.screen().width, camera.screen().height,
                {{0, 0, camera.screen().width, camera.screen().height}}, {1, kSquare, kKeptRegions}),
-      m_facets(std::move(facets)),
+      m_room(std::move(room)),
       m_camera(camera),
       m_picture(picture),
       m_for_float(tol * kFloatShare),
       m_surface(std::move(surface)),
-      m_pool(std::move(pool)) {
-    m_raster.emplace(m_facets, camera.screen(), kSquare);
-    for (const FacetLeaf& leaf : m_facets.leaves) {
+      m_pool(std::move(pool)),
+      m_facet_pool(std::move(facet_pool)) {
+    m_raster.emplace(*m_room, camera.screen(), kSquare);
+    for (const FacetLeaf& leaf : m_room->facets.leaves) {
         m_most_bound = std::max(m_most_bound, leaf.bound);
         m_most_by_u = std::max(m_most_by_u, leaf.by_u);
         m_most_by_v = std::max(m_most_by_v, leaf.by_v);
     }
+}
+
+DrapeMap::~DrapeMap() {
+    m_raster.reset();
+    if (m_facet_pool) m_facet_pool->give_back(std::move(m_room));
 }
 
 DrapeMap::DrapeMap(std::shared_ptr<const OkaRaster> blocks, const Camera& camera, const Size& picture,
@@ -58,6 +76,7 @@ DrapeMap::DrapeMap(std::shared_ptr<const OkaRaster> blocks, const Camera& camera
     : BlockMap(camera.screen().width, camera.screen().height,
                {{0, 0, camera.screen().width, camera.screen().height}}, {1, kSquare, kKeptRegions}),
       m_blocks(std::move(blocks)),
+      m_room(std::make_unique<FacetRoom>()),
       m_camera(camera),
       m_picture(picture),
       m_for_float(tol * kFloatShare),
@@ -67,8 +86,8 @@ DrapeMap::DrapeMap(std::shared_ptr<const OkaRaster> blocks, const Camera& camera
       m_pool(std::move(pool)) {}
 
 const Facets& DrapeMap::facets() const {
-    if (m_blocks) std::call_once(m_made, [&] { m_facets = m_blocks->facets(); });
-    return m_facets;
+    if (m_blocks) std::call_once(m_made, [&] { m_room->facets = m_blocks->facets(); });
+    return m_room->facets;
 }
 
 /// Of the leaves.
@@ -80,7 +99,7 @@ const std::vector<double>& DrapeMap::bounds(const ParallelFor& parallel_for) con
             const std::size_t first = static_cast<std::size_t>(part) * kAtOnce,
                               end = std::min(first + kAtOnce, patches());
             for (std::size_t i = first; i < end; ++i)
-                m_bounds[i] = m_blocks ? m_blocks->bound_of(i) : m_facets.leaves[i].bound;
+                m_bounds[i] = m_blocks ? m_blocks->bound_of(i) : m_room->facets.leaves[i].bound;
         });
     });
     return m_bounds;
@@ -124,7 +143,7 @@ void DrapeMap::see(const Box& box, SeenPixels& pixels, int times) const {
 void DrapeMap::order_sheets(const Box& box, SeenPixels& pixels, int times) const {
     const PointPolish to(*m_surface, m_camera);
     const auto leaf_of = [&](double facet) -> const FacetLeaf& {
-        return m_facets.leaves[m_facets.facets[static_cast<std::size_t>(facet)].leaf];
+        return m_room->facets.leaves[m_room->facets.facets[static_cast<std::size_t>(facet)].leaf];
     };
     const auto begins = [](const FacetLeaf& leaf) { return 2 * leaf.nearest - leaf.farthest; };
     const auto ends = [](const FacetLeaf& leaf) { return 2 * leaf.farthest - leaf.nearest; };
@@ -152,8 +171,8 @@ void DrapeMap::polish(SeenPixels& pixels) const {
         for (int x = box.x0; x < box.x1; ++x) {
             const std::size_t at = pixels.index(x, y);
             if (pixels.facet[at] == SeenPixels::kNone) continue;
-            const auto& facet = m_facets.facets[static_cast<std::size_t>(pixels.facet[at])];
-            pixels.bound[at] = m_facets.leaves[facet.leaf].bound;
+            const auto& facet = m_room->facets.facets[static_cast<std::size_t>(pixels.facet[at])];
+            pixels.bound[at] = m_room->facets.leaves[facet.leaf].bound;
             const PointPolish::Polished p =
                 to.polish(x + 0.5 - width() / 2.0, y + 0.5 - height() / 2.0, pixels.u[at], pixels.v[at]);
             if (!(p.bound < pixels.bound[at])) continue;
@@ -175,7 +194,7 @@ double DrapeMap::nearness_at(const SeenPixels& pixels, std::size_t at) const {
 
 std::size_t DrapeMap::leaf_of(double facet) const {
     const auto index = static_cast<std::size_t>(facet);
-    return m_blocks ? index / 2 : m_facets.facets[index].leaf;
+    return m_blocks ? index / 2 : m_room->facets.facets[index].leaf;
 }
 
 /// Adds the blocks of a square: whole where all of it is seen, or nothing; else its quarters.
@@ -248,7 +267,7 @@ void DrapeMap::for_leaves(const SeenRegion& region, const Box& box, const Body& 
         for (int i = 0; i < box.width(); ++i) {
             if (facet[i] == last || facet[i] == SeenPixels::kNone) continue;
             last = facet[i];
-            body(m_facets.leaves[m_facets.facets[static_cast<std::size_t>(last)].leaf]);
+            body(m_room->facets.leaves[m_room->facets.facets[static_cast<std::size_t>(last)].leaf]);
         }
     }
 }

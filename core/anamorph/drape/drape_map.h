@@ -17,6 +17,8 @@ namespace anamorph {
 
 /// Room for what is seen in regions, used again for others.
 using SeenPool = RoomPool<SeenPixels>;
+/// Room for facets.
+using FacetPool = RoomPool<FacetRoom>;
 
 /// What is seen in a region.
 class SeenRegion final : public RegionData {
@@ -43,16 +45,23 @@ class DrapeMap final : public BlockMap {
     /// double. With `surface`, that of the facets, each pixel's point is that of the surface itself (PointPolish), where
     /// that can be told. `pool`: room that other maps may leave and use.
     DrapeMap(Facets facets, const Camera& camera, const Size& picture, double tol,
-             std::shared_ptr<const DrapedSurface> surface = nullptr,
-             std::shared_ptr<SeenPool> pool = std::make_shared<SeenPool>());
+             std::shared_ptr<const DrapedSurface> surface = nullptr);
+    /// Of the room's facets; `facet_pool` gets it back.
+    DrapeMap(std::unique_ptr<FacetRoom> room, const Camera& camera, const Size& picture, double tol,
+             std::shared_ptr<const DrapedSurface> surface, std::shared_ptr<SeenPool> pool,
+             std::shared_ptr<FacetPool> facet_pool);
     /// Of the paper's blocks. Their squares have the side kSquare.
     DrapeMap(std::shared_ptr<const OkaRaster> blocks, const Camera& camera, const Size& picture, double tol,
              std::shared_ptr<SeenPool> pool);
 
+    ~DrapeMap() override;
+    DrapeMap(const DrapeMap&) = delete;
+    DrapeMap& operator=(const DrapeMap&) = delete;
+
     /// Of the paper's blocks, made when they are asked for first.
     const Facets& facets() const;
     /// Patches that are drawn: leaves of facets().
-    std::size_t patches() const { return m_blocks ? m_blocks->count() : m_facets.leaves.size(); }
+    std::size_t patches() const { return m_blocks ? m_blocks->count() : m_room->facets.leaves.size(); }
     /// Of the two facets of one of the paper's blocks, the one that a point lies in; of others, the facet itself.
     const Facet& part_of(const Facet& facet, double u, double v) const;
     const Camera& camera() const { return m_camera; }
@@ -100,7 +109,7 @@ class DrapeMap final : public BlockMap {
 
     std::shared_ptr<const OkaRaster> m_blocks;  ///< or null
     mutable std::once_flag m_made;
-    mutable Facets m_facets;
+    std::unique_ptr<FacetRoom> m_room;
     Camera m_camera;
     Size m_picture;
     double m_for_float;
@@ -111,6 +120,7 @@ class DrapeMap final : public BlockMap {
     std::shared_ptr<const DrapedSurface> m_surface;
     std::optional<FacetRaster> m_raster;  ///< where there are no blocks
     std::shared_ptr<SeenPool> m_pool;
+    std::shared_ptr<FacetPool> m_facet_pool;
 };
 
 }  // namespace anamorph

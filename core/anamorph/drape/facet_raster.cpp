@@ -15,6 +15,10 @@ bool owns(const FacetCorner& a, const FacetCorner& b) {
     return b.y > a.y || (b.y == a.y && b.x > a.x);
 }
 
+Box with_margin(const Box& box) {
+    return {box.x0 - 1, box.y0 - 1, box.x1 + 1, box.y1 + 1};
+}
+
 }  // namespace
 
 void SeenPixels::clear(const Box& pixels, bool with_nearness) {
@@ -28,49 +32,55 @@ void SeenPixels::clear(const Box& pixels, bool with_nearness) {
     bound.clear();
 }
 
-FacetRaster::FacetRaster(const Facets& facets, const Size& screen, int square)
-    : m_facets(facets),
+FacetRaster::FacetRaster(FacetRoom& room, const Size& screen, int square)
+    : m_facets(room.facets),
       m_screen(screen),
       m_square(square),
       m_columns((screen.width + square - 1) / square),
-      m_unit(std::ldexp(1.0, facets.grid_bits)) {
+      m_unit(std::ldexp(1.0, room.facets.grid_bits)),
+      m_boxes(room.boxes),
+      m_first(room.first),
+      m_lists(room.lists) {
     const int rows = (screen.height + square - 1) / square;
-    // With a pixel around them.
-    for (const Facet& facet : facets.facets) {
-        const Box box = pixels_of(facet, 1);
-        m_boxes.push_back(intersection({box.x0 - 1, box.y0 - 1, box.x1 + 1, box.y1 + 1},
-                                       {0, 0, screen.width, screen.height}));
-    }
-    const auto each = [&](const auto& body) {
-        for (std::size_t f = 0; f < m_boxes.size(); ++f) {
-            const Box& b = m_boxes[f];
-            if (b.empty()) continue;
-            for (int row = b.y0 / square; row <= (b.y1 - 1) / square; ++row)
-                for (int column = b.x0 / square; column <= (b.x1 - 1) / square; ++column)
-                    body(static_cast<std::size_t>(row * m_columns + column), static_cast<std::uint32_t>(f));
-        }
+    const auto square_of = [&](int at) {
+        return static_cast<std::uint16_t>(static_cast<unsigned>(at) / static_cast<unsigned>(square));
+    };
+    m_boxes.clear();
+    room.squares.clear();
+    m_first.assign(static_cast<std::size_t>(m_columns * rows) + 1, 0);
+    const auto each = [&](const FacetRoom::Squares& s, const auto& body) {
+        for (int row = s.y0; row <= s.y1; ++row)
+            for (int column = s.x0; column <= s.x1; ++column)
+                body(static_cast<std::size_t>(row * m_columns + column));
     };
     // Counted, added up, and put in their order.
-    m_first.assign(static_cast<std::size_t>(m_columns * rows) + 1, 0);
-    each([&](std::size_t at, std::uint32_t) { ++m_first[at + 1]; });
+    for (const Facet& facet : m_facets.facets) {
+        m_boxes.push_back(pixels_of(facet, 1));
+        const Box b = intersection(with_margin(m_boxes.back()), {0, 0, screen.width, screen.height});
+        room.squares.push_back(b.empty() ? FacetRoom::Squares{1, 1, 0, 0}
+                                         : FacetRoom::Squares{square_of(b.x0), square_of(b.y0),
+                                                              square_of(b.x1 - 1), square_of(b.y1 - 1)});
+        each(room.squares.back(), [&](std::size_t at) { ++m_first[at + 1]; });
+    }
     for (std::size_t i = 1; i < m_first.size(); ++i) m_first[i] += m_first[i - 1];
     m_lists.resize(m_first.back());
-    std::vector<std::size_t> next(m_first.begin(), m_first.end() - 1);
-    each([&](std::size_t at, std::uint32_t f) { m_lists[next[at]++] = f; });
+    // Each square's beginning moves to its end, which is the beginning of the next.
+    for (std::size_t f = 0; f < m_boxes.size(); ++f)
+        each(room.squares[f],
+             [&](std::size_t at) { m_lists[m_first[at]++] = static_cast<std::uint32_t>(f); });
+    std::rotate(m_first.begin(), m_first.end() - 1, m_first.end());
+    m_first.front() = 0;
 }
 
 Box FacetRaster::pixels_of(const Facet& facet, int times) const {
     const Size screen{m_screen.width * times, m_screen.height * times};
     // In units of the grid's, all integers.
-    std::int64_t x0 = INT64_MAX, y0 = INT64_MAX, x1 = INT64_MIN, y1 = INT64_MIN;
-    for (const std::uint32_t corner : facet.corner) {
-        const FacetCorner& c = m_facets.corners[corner];
-        const auto x = static_cast<std::int64_t>(c.x), y = static_cast<std::int64_t>(c.y);
-        x0 = std::min(x0, x);
-        y0 = std::min(y0, y);
-        x1 = std::max(x1, x);
-        y1 = std::max(y1, y);
-    }
+    const FacetCorner &a = m_facets.corners[facet.corner[0]], &b = m_facets.corners[facet.corner[1]],
+                      &c = m_facets.corners[facet.corner[2]];
+    const auto x0 = static_cast<std::int64_t>(std::min(std::min(a.x, b.x), c.x)),
+               y0 = static_cast<std::int64_t>(std::min(std::min(a.y, b.y), c.y)),
+               x1 = static_cast<std::int64_t>(std::max(std::max(a.x, b.x), c.x)),
+               y1 = static_cast<std::int64_t>(std::max(std::max(a.y, b.y), c.y));
     // Pixel i has its centre at i + 1/2 - width / 2; places are counted in halves of units, so that this is one too.
     const int bits = m_facets.grid_bits + 1;
     const auto at = [&](std::int64_t place, int size) {
@@ -95,6 +105,7 @@ bool FacetRaster::set_up(std::uint32_t index, const Box& part, int times, simd::
     const double area = edge_function(*c[0], *c[1], c[2]->x, c[2]->y);
     if (area == 0) return false;
     if (area < 0) std::swap(c[1], c[2]);
+    const double inverse = 1 / std::fabs(area);
     const double left = (part.x0 + 0.5 - m_screen.width * times / 2.0) * unit,
                  top = (part.y0 + 0.5 - m_screen.height * times / 2.0) * unit;
     for (int k = 0; k < 3; ++k) {
@@ -104,7 +115,7 @@ bool FacetRaster::set_up(std::uint32_t index, const Box& part, int times, simd::
         setup.right[k] = -(b.y - a.y) * unit;
         setup.down[k] = (b.x - a.x) * unit;
         setup.least[k] = owns(a, b) ? 0 : 1;
-        setup.nearness[k] = corner.nearness / std::fabs(area);
+        setup.nearness[k] = corner.nearness * inverse;
         setup.weight[k] = corner.weight;
         setup.u[k] = corner.weight * corner.u;
         setup.v[k] = corner.weight * corner.v;
@@ -121,14 +132,18 @@ void FacetRaster::each_near(const Box& box, int times, const Body& body) const {
               column = (box.x0 + box.x1) / 2 / times / m_square;
     const auto square = static_cast<std::size_t>(row * m_columns + column);
     const Box pixels{box.x0 / times, box.y0 / times, (box.x1 - 1) / times + 1, (box.y1 - 1) / times + 1};
-    for (std::size_t i = m_first[square]; i < m_first[square + 1]; ++i)
-        if (!intersection(m_boxes[m_lists[i]], pixels).empty()) body(m_lists[i]);
+    for (std::size_t i = m_first[square]; i < m_first[square + 1]; ++i) {
+        // Where no pixel's centre is covered a sample may be.
+        const Box& own = m_boxes[m_lists[i]];
+        if (!intersection(times == 1 ? own : with_margin(own), pixels).empty()) body(m_lists[i]);
+    }
 }
 
 void FacetRaster::draw(const Box& box, SeenPixels& seen, int times) const {
     seen.clear(box);
     each_near(box, times, [&](std::uint32_t facet) {
-        const Box part = intersection(pixels_of(m_facets.facets[facet], times), box);
+        const Box part =
+            intersection(times == 1 ? m_boxes[facet] : pixels_of(m_facets.facets[facet], times), box);
         simd::FacetSetup setup;
         if (part.empty() || !set_up(facet, part, times, setup)) return;
         const std::size_t at = seen.index(part.x0, part.y0);

@@ -37,8 +37,8 @@ struct SeenPixels {
 /// Finds facets by the squares of the screen that they meet.
 class FacetRaster {
   public:
-    /// Keeps references to what it is given.
-    FacetRaster(const Facets& facets, const Size& screen, int square);
+    /// Of the room's facets, and in it.
+    FacetRaster(FacetRoom& room, const Size& screen, int square);
 
     /// What is seen in a box within one square and the pixels next to it. `times`: pixels of the box are so many times
     /// finer than those of the screen, 1 to 8.
@@ -62,9 +62,9 @@ class FacetRaster {
     Size m_screen;
     int m_square, m_columns;
     double m_unit;
-    std::vector<Box> m_boxes;          ///< the pixels of each facet and those around them
-    std::vector<std::size_t> m_first;  ///< where a square's list begins
-    std::vector<std::uint32_t> m_lists;
+    std::vector<Box>& m_boxes;          ///< the pixels of each facet
+    std::vector<std::size_t>& m_first;  ///< where a square's list begins
+    std::vector<std::uint32_t>& m_lists;
 };
 
 }  // namespace anamorph

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <span>
 #include <string>
 
 #include "anamorph/error.h"
@@ -39,12 +40,15 @@ class PatchView {
         : m_camera(camera),
           m_sizes(magnitudes(camera.matrix())),
           m_size(largest(m_sizes * glm::dvec3(1.0))),
+          m_offset_size(largest(glm::abs(camera.offset()))),
           m_slope_x(camera.screen().width / (2 * camera.focal())),
           m_slope_y(camera.screen().height / (2 * camera.focal())) {}
 
-    /// Is nothing of the patch on the screen?
-    bool hidden(const SurfacePatch& patch) const {
-        const FrameRange p = turned(patch.position, m_camera.offset());
+    /// Where a patch is.
+    FrameRange place(const SurfacePatch& patch) const { return turned(patch.position, m_camera.offset()); }
+
+    /// Is nothing of a patch at that place on the screen?
+    bool hidden(const FrameRange& p) const {
         if (m_camera.perspective()) {
             const double far = p.high(2);
             if (!(far > m_camera.near())) return std::isfinite(far);
@@ -55,35 +59,44 @@ class PatchView {
                p.high(1) < -m_slope_y;
     }
 
-    /// The bound (E) on the screen, and how fast the surface moves there.
-    /// `least` is what of the bound no finer patch could mend; infinite where that is not known yet.
-    FacetLeaf leaf(const SurfacePatch& patch, std::int32_t index, double& least) const {
-        const FrameRange p = turned(patch.position, m_camera.offset());
-        const double h = patch.side_u(), k = patch.side_v();
-        const Sight sight = sight_of(p);
-        const double rounding =
-            2 * patch.rounding * m_size + kFrameRounding * (largest(glm::abs(p.middle) + p.radius) +
-                                                            2 * largest(glm::abs(m_camera.offset())));
-        const auto across = [&](const VectorRange& by) { return steps(sight, by); };
-        // A bound of e_z, for the depth.
-        const glm::dvec3 ahead(m_camera.matrix()[0].z, m_camera.matrix()[1].z, m_camera.matrix()[2].z);
-        const auto depth_of = [&](const VectorRange& by) { return most(ahead, by); };
-        const auto error = [&](const auto& size) {
-            return (size(patch.by_uu) * (h * h) + size(patch.by_uv) * (2 * h * k) +
-                    size(patch.by_vv) * (k * k)) /
-                   8.0;
-        };
-        const double e_z = error(depth_of) + rounding;
-        const double depth = std::max(p.low(2), m_camera.near()) - e_z;
-        FacetLeaf leaf{index, 0, 0, 0, p.low(2), p.high(2)};
-        const glm::dvec2 bends = error(across), rounds(rounding * 2);
-        leaf.bound = on_screen(bends + rounds, depth);
-        const bool deep = m_camera.perspective() && !(p.radius.z < depth / 2);
-        least =
-            deep || glm::length(bends) * 16 > glm::length(rounds) ? HUGE_VAL : on_screen(rounds, 2 * depth);
-        leaf.by_u = on_screen(across(patch.by_u), depth);
-        leaf.by_v = on_screen(across(patch.by_v), depth);
-        return leaf;
+    /// The directions across the line of sight to the middle of a patch, x - (X / Z) z and y - (Y / Z) z of the camera's
+    /// frame as vectors of the object's, and z; and how far X / Z and Y / Z are from the middle's.
+    struct Sight {
+        simd::Axes axes;
+        glm::dvec2 off;
+    };
+    /// The bound (E) on the screen.
+    struct Bound {
+        double bound;
+        double least;  ///< what of it no finer patch could mend; infinite where that is not known yet
+        double depth;  ///< of what is drawn, at least
+        Sight sight;
+    };
+    Bound bound(const SurfacePatch& patch, const FrameRange& p) const {
+        Bound b{0, HUGE_VAL, 0, sight_of(p)};
+        const double rounding = 2 * patch.rounding * m_size +
+                                kFrameRounding * (largest(glm::abs(p.middle) + p.radius) + 2 * m_offset_size);
+        double reach[3][4];
+        simd::reach_along(b.sight.axes, patch.bends, 3, reach);
+        for (int k = 0; k < 3; ++k) reach[0][k] += reach[1][k] + reach[2][k];
+        b.depth = std::max(p.low(2), m_camera.near()) - (reach[0][2] + rounding);
+        const glm::dvec2 bends = across(b.sight, reach[0]), rounds(rounding * 2);
+        b.bound = on_screen(bends + rounds, b.depth);
+        const bool deep = m_camera.perspective() && !(p.radius.z < b.depth / 2);
+        if (!deep && !(glm::dot(bends, bends) * 256 > glm::dot(rounds, rounds)))
+            b.least = on_screen(rounds, 2 * b.depth);
+        return b;
+    }
+    /// A patch that is drawn, and how fast the surface moves there.
+    FacetLeaf leaf(const SurfacePatch& patch, std::int32_t index, const FrameRange& p, const Bound& b) const {
+        double reach[2][4];
+        simd::reach_along(b.sight.axes, patch.slopes, 2, reach);
+        return {index,
+                b.bound,
+                on_screen(across(b.sight, reach[0]), b.depth),
+                on_screen(across(b.sight, reach[1]), b.depth),
+                p.low(2),
+                p.high(2)};
     }
 
   private:
@@ -94,39 +107,34 @@ class PatchView {
         const double radius = p.radius[axis] + slope * p.radius.z;
         return p.middle[axis] - slope * p.middle.z > radius || -p.middle[axis] - slope * p.middle.z > radius;
     }
-    /// The directions across the line of sight to the middle of a patch, x - (X / Z) z and y - (Y / Z) z of the camera's
-    /// frame as vectors of the object's, and how far X / Z and Y / Z are from the middle's.
-    struct Sight {
-        glm::dvec3 x, y, z;
-        glm::dvec2 off;
-    };
     Sight sight_of(const FrameRange& p) const {
         const glm::dmat3& m = m_camera.matrix();
-        Sight sight{
-            {m[0].x, m[1].x, m[2].x}, {m[0].y, m[1].y, m[2].y}, {m[0].z, m[1].z, m[2].z}, glm::dvec2(0.0)};
-        if (!m_camera.perspective()) return sight;
-        // Of two points one is on the screen, and |X' / Z' - X / Z| = |e_x - (X / Z) e_z| / Z' holds the other way round
-        // too. The hundredth is for rounding.
-        const double depth = std::max(p.low(2), m_camera.near()),
-                     slope[2] = {1.01 * m_slope_x, 1.01 * m_slope_y};
-        double middle[2];
-        for (int i = 0; i < 2; ++i) {
-            const double low = std::max(p.low(i) / (p.low(i) > 0 ? p.high(2) : depth), -slope[i]),
-                         high = std::min(p.high(i) / (p.high(i) > 0 ? depth : p.high(2)), slope[i]);
-            middle[i] = (low + high) / 2;
-            sight.off[i] = std::max(0.0, (high - low) / 2 * (1 + 1e-9)) + 1e-9 * slope[i];
+        Sight sight{{}, glm::dvec2(0.0)};
+        double middle[2] = {0, 0};
+        if (m_camera.perspective()) {
+            // Of two points one is on the screen, and |X' / Z' - X / Z| = |e_x - (X / Z) e_z| / Z' holds the other way round
+            // too. The hundredth is for rounding.
+            const double near = 1 / std::max(p.low(2), m_camera.near()), far = 1 / p.high(2),
+                         slope[2] = {1.01 * m_slope_x, 1.01 * m_slope_y};
+            for (int i = 0; i < 2; ++i) {
+                const double low = std::max(p.low(i) * (p.low(i) > 0 ? far : near), -slope[i]),
+                             high = std::min(p.high(i) * (p.high(i) > 0 ? near : far), slope[i]);
+                middle[i] = (low + high) / 2;
+                sight.off[i] = std::max(0.0, (high - low) / 2 * (1 + 1e-9)) + 1e-9 * slope[i];
+            }
         }
-        sight.x -= middle[0] * sight.z;
-        sight.y -= middle[1] * sight.z;
+        for (int i = 0; i < 3; ++i) {
+            double* const to = sight.axes.coordinates[i];
+            to[0] = m[i].x - middle[0] * m[i].z;
+            to[1] = m[i].y - middle[1] * m[i].z;
+            to[2] = m[i].z;
+        }
         return sight;
     }
-    static double most(const glm::dvec3& along, const VectorRange& range) {
-        return std::fabs(glm::dot(along, range.middle)) + glm::dot(glm::abs(along), range.radius);
-    }
-    /// |x - (X / Z) z| and |y - (Y / Z) z| of the vectors of a range, at most, for all X / Z and Y / Z of a patch.
-    static glm::dvec2 steps(const Sight& sight, const VectorRange& range) {
-        const double ahead = most(sight.z, range);
-        return {most(sight.x, range) + sight.off.x * ahead, most(sight.y, range) + sight.off.y * ahead};
+    /// |x - (X / Z) z| and |y - (Y / Z) z| of vectors, at most, for all X / Z and Y / Z of a patch, by how far they reach
+    /// along its axes.
+    static glm::dvec2 across(const Sight& sight, const double (&reach)[4]) {
+        return {reach[0] + sight.off.x * reach[2], reach[1] + sight.off.y * reach[2]};
     }
     /// Such steps in pixels, at least `depth` ahead. Infinite where depth is not positive.
     double on_screen(const glm::dvec2& step, double depth) const {
@@ -138,53 +146,8 @@ class PatchView {
     const Camera& m_camera;
     glm::dmat3 m_sizes;
     double m_size;  ///< the frame's coordinates of a step of up to 1 each way are at most this
+    double m_offset_size;
     double m_slope_x, m_slope_y;
-};
-
-/// Corners of patches by their place in parameters, in units of 2^-kMostLevels: an open hash table of few bytes an entry.
-class CornerTable {
-  public:
-    CornerTable() : m_entries(std::size_t{1} << m_bits) {}
-
-    /// The corner at (u, v); null where there is none.
-    const std::uint32_t* find(std::uint64_t u, std::uint64_t v) const {
-        const Entry& entry = m_entries[slot({u, v})];
-        return entry.place != kFree ? &entry.corner : nullptr;
-    }
-    void insert(std::uint64_t u, std::uint64_t v, std::uint32_t corner) {
-        if (2 * (m_places.size() + 1) > m_entries.size()) grow();
-        m_entries[slot({u, v})] = {static_cast<std::uint32_t>(m_places.size()), corner};
-        m_places.push_back({u, v});
-    }
-
-  private:
-    static constexpr std::uint32_t kFree = ~0u;
-    struct Place {
-        std::uint64_t u, v;
-        bool operator==(const Place&) const = default;
-    };
-    struct Entry {
-        std::uint32_t place = kFree, corner = 0;
-    };
-
-    std::size_t slot(const Place& at) const {
-        // Places have few digits, so that only the highest bits of the product tell them apart.
-        const std::uint64_t mixed = at.u * 0x9e3779b97f4a7c15u + at.v * 0xc2b2ae3d27d4eb4fu;
-        const std::size_t mask = m_entries.size() - 1;
-        std::size_t i = static_cast<std::size_t>(mixed >> (64 - m_bits));
-        while (m_entries[i].place != kFree && m_places[m_entries[i].place] != at) i = (i + 1) & mask;
-        return i;
-    }
-    void grow() {
-        std::vector<Entry> old(std::size_t{1} << ++m_bits);
-        old.swap(m_entries);
-        for (const Entry& entry : old)
-            if (entry.place != kFree) m_entries[slot(m_places[entry.place])] = entry;
-    }
-
-    int m_bits = 12;
-    std::vector<Entry> m_entries;
-    std::vector<Place> m_places;
 };
 
 /// A point of the surface in the camera's frame, and its parameters.
@@ -208,9 +171,11 @@ SpacePoint between(const SpacePoint& a, double from_a, const SpacePoint& b, doub
 constexpr std::size_t kLeastLimit = std::size_t{1} << 16, kMostLimit = std::size_t{1} << 20;
 
 class FacetMaker {
+    static constexpr std::uint32_t kUnused = ~0u;
+
   public:
-    FacetMaker(SurfaceTree& tree, const Camera& camera, double tol)
-        : m_tree(tree), m_camera(camera), m_view(camera), m_tol(tol) {
+    FacetMaker(SurfaceTree& tree, const Camera& camera, double tol, FacetRoom& room)
+        : m_tree(tree), m_camera(camera), m_view(camera), m_tol(tol), m_room(room), m_made(room.facets) {
         // A bending surface takes about as many patches as it has pixels over the tolerance.
         const Size& screen = camera.screen();
         const double likely = 2.0 * screen.width * screen.height / std::min(tol, 1.0);
@@ -222,121 +187,146 @@ class FacetMaker {
         m_guard = std::ldexp(kMostGrid, -m_made.grid_bits);
     }
 
-    Facets make() {
+    void make() {
+        m_made.corners.clear();
+        m_made.facets.clear();
+        m_made.leaves.clear();
+        m_room.fits.clear();
         collect();
-        for (const FacetLeaf& leaf : m_made.leaves) insert_corners(m_tree.patch(leaf.patch));
-        // So that an edge with a corner anywhere has one in its middle (walk()).
-        for (const std::int32_t patch : m_hidden) insert_corners(m_tree.patch(patch));
+        number_corners();
         for (std::size_t i = 0; i < m_made.leaves.size(); ++i) cut(static_cast<std::uint32_t>(i));
-        return std::move(m_made);
     }
 
   private:
     /// The largest patches within the tolerance.
     void collect() {
-        std::vector<std::int32_t> open = {0};
-        for (std::size_t visited = 0; !open.empty(); ++visited) {
-            const std::int32_t index = open.back();
-            open.pop_back();
-            const SurfacePatch& patch = m_tree.patch(index);
-            if (patch.missing || m_view.hidden(patch)) {
-                m_hidden.push_back(index);
-                continue;
-            }
-            double least = 0;
-            FacetLeaf leaf = m_view.leaf(patch, index, least);
-            if (leaf.bound <= m_wanted) {
-                leaf.bound += grid_error(m_made.grid_bits);
-                m_made.leaves.push_back(leaf);
-                continue;
-            }
-            const std::int32_t halves = m_tree.halves(index);
-            if (halves == SurfacePatch::kNone || (least > m_wanted && least < HUGE_VAL))
-                throw Error("tol", shortest(m_tol),
-                            "is less than what double makes of this surface from so near");
+        // A few at a time: what memory holds of a patch is asked for when it is met and has come when it is looked at.
+        std::array<std::int32_t, 8> some{};
+        std::vector<std::int32_t>& open = m_room.open;
+        m_room.outlines.clear();
+        m_room.hidden.clear();
+        open.assign(1, 0);
+        for (std::size_t visited = 0; !open.empty();) {
+            const std::size_t count = std::min(some.size(), open.size());
+            std::copy(open.end() - static_cast<std::ptrdiff_t>(count), open.end(), some.begin());
+            open.resize(open.size() - count);
+            for (visited += count; const std::int32_t index : std::span(some).first(count)) visit(index);
             if (std::max(4 * m_made.leaves.size(), visited) > 4 * m_most_leaves)
                 throw Error("tol", shortest(m_tol),
                             "takes more than " + std::to_string(m_most_leaves) + " patches of the surface");
-            open.push_back(halves + 1);
-            open.push_back(halves);
         }
     }
-
-    static std::uint64_t lattice(std::uint64_t i, int level) {
-        return i << (SurfaceTree::kMostLevels - level);
-    }
-
-    SpacePoint space_point(std::uint64_t u, std::uint64_t v) const {
-        const double s = std::ldexp(static_cast<double>(u), -SurfaceTree::kMostLevels),
-                     t = std::ldexp(static_cast<double>(v), -SurfaceTree::kMostLevels);
-        return {m_camera.in_frame(m_tree.surface().position(s, t)), s, t};
-    }
-    std::uint32_t add_corner(const SpacePoint& point) {
-        m_points.push_back(point);
-        const Point<double> seen = m_camera.seen(point.p);
-        const double weight = m_camera.weight(point.p);
-        m_made.corners.push_back({std::nearbyint(seen.x * m_unit), std::nearbyint(seen.y * m_unit), weight,
-                                  m_camera.perspective() ? weight : -point.p.z, point.u, point.v});
-        return static_cast<std::uint32_t>(m_points.size() - 1);
-    }
-    std::uint32_t corner_at(std::uint64_t u, std::uint64_t v) {
-        if (const std::uint32_t* known = m_table.find(u, v)) return *known;
-        const std::uint32_t corner = add_corner(space_point(u, v));
-        m_table.insert(u, v, corner);
-        return corner;
-    }
-    void insert_corners(const SurfacePatch& patch) {
-        for (std::uint64_t j = 0; j < 2; ++j)
-            for (std::uint64_t i = 0; i < 2; ++i)
-                corner_at(lattice(patch.iu + i, patch.level_u), lattice(patch.iv + j, patch.level_v));
-    }
-
-    struct Place {
-        std::uint64_t u, v;
-    };
-    /// The corners on an edge after its first end, up to the other one: those of neighbours are at its middle, or
-    /// there is none.
-    void walk(const Place& a, const Place& b) {
-        const Place middle{(a.u + b.u) / 2, (a.v + b.v) / 2};
-        const bool halves = (a.u + b.u) % 2 == 0 && (a.v + b.v) % 2 == 0;
-        if (!halves || !m_table.find(middle.u, middle.v)) {
-            m_rim.push_back(*m_table.find(b.u, b.v));
+    /// Keeps a patch, or opens its halves.
+    void visit(std::int32_t index) {
+        const SurfacePatch& patch = m_tree.patch(index);
+        const FrameRange place = m_view.place(patch);
+        if (patch.missing || m_view.hidden(place)) {
+            m_room.hidden.push_back(index);
             return;
         }
-        walk(a, middle);
-        walk(middle, b);
+        const PatchView::Bound found = m_view.bound(patch, place);
+        if (found.bound <= m_wanted) {
+            m_made.leaves.push_back(m_view.leaf(patch, index, place, found));
+            m_made.leaves.back().bound += grid_error(m_made.grid_bits);
+            m_room.outlines.push_back({patch.corners, patch.sides});
+            return;
+        }
+        const std::int32_t halves = m_tree.halves(index);
+        if (halves == SurfacePatch::kNone || (found.least > m_wanted && found.least < HUGE_VAL))
+            throw Error("tol", shortest(m_tol),
+                        "is less than what double makes of this surface from so near");
+        for (const std::int32_t half : {halves + 1, halves}) {
+            m_tree.prefetch(half);
+            m_room.open.push_back(half);
+        }
+    }
+
+    SpacePoint space_point(double u, double v) const {
+        return {m_camera.in_frame(m_tree.surface().position(u, v)), u, v};
+    }
+    SpacePoint point_of(std::uint32_t corner) const {
+        return space_point(m_made.corners[corner].u, m_made.corners[corner].v);
+    }
+    std::uint32_t add_corner(const SpacePoint& point) {
+        // To the nearest integer, below 2^51, where they end in their last bits.
+        const auto on_grid = [](double at) { return (at + 0x1.8p52) - 0x1.8p52; };
+        const Point<double> seen = m_camera.seen(point.p);
+        const double weight = m_camera.weight(point.p), x = on_grid(seen.x * m_unit),
+                     y = on_grid(seen.y * m_unit);
+        m_made.corners.push_back(
+            {x, y, weight, m_camera.perspective() ? weight : -point.p.z, point.u, point.v});
+        m_room.fits.push_back(point.p.z >= m_camera.near() && std::fabs(x) <= kMostGrid &&
+                              std::fabs(y) <= kMostGrid);
+        return static_cast<std::uint32_t>(m_made.corners.size() - 1);
+    }
+    /// Gives the tree's corners that are drawn their numbers.
+    void number_corners() {
+        m_room.numbers.assign(m_tree.corners().size(), kUnused);
+        m_room.used.clear();
+        const auto use = [&](const std::array<std::int32_t, 4>& corners) {
+            for (const std::int32_t corner : corners) {
+                std::uint32_t& number = m_room.numbers[static_cast<std::size_t>(corner)];
+                if (number != kUnused) continue;
+                number = static_cast<std::uint32_t>(m_room.used.size());
+                m_room.used.push_back(corner);
+            }
+        };
+        for (const FacetRoom::Outline& outline : m_room.outlines) use(outline.corners);
+        // So that a side with a corner anywhere has one in its middle (walk()).
+        for (const std::int32_t patch : m_room.hidden) use(m_tree.patch(patch).corners);
+        for (const std::int32_t corner : m_room.used) {
+            const SurfaceCorner& c = m_tree.corners()[static_cast<std::size_t>(corner)];
+            add_corner({m_camera.in_frame(c.position), c.u, c.v});
+        }
+    }
+    /// Among those that are drawn, or kUnused.
+    std::uint32_t index_of(std::int32_t corner) const {
+        return corner == SurfacePatch::kNone ? kUnused : m_room.numbers[static_cast<std::size_t>(corner)];
+    }
+
+    /// The corners on a side after its first end, up to the other one: those of neighbours are at its middle, or
+    /// there is none.
+    void walk(std::int32_t index, bool forward, std::int32_t end) {
+        const SurfaceSide& side = m_tree.side(index);
+        if (index_of(side.middle) == kUnused) {
+            m_room.rim.push_back(index_of(end));
+            return;
+        }
+        walk(side.halves + (forward ? 0 : 1), forward, side.middle);
+        walk(side.halves + (forward ? 1 : 0), forward, end);
     }
 
     void cut(std::uint32_t leaf) {
-        const SurfacePatch& patch = m_tree.patch(m_made.leaves[leaf].patch);
-        const std::uint64_t u0 = lattice(patch.iu, patch.level_u), u1 = lattice(patch.iu + 1, patch.level_u),
-                            v0 = lattice(patch.iv, patch.level_v), v1 = lattice(patch.iv + 1, patch.level_v);
-        m_rim.clear();
-        walk({u0, v0}, {u1, v0});
-        walk({u1, v0}, {u1, v1});
-        walk({u1, v1}, {u0, v1});
-        walk({u0, v1}, {u0, v0});
-        if (m_rim.size() == 4) {
-            add_facet(m_rim[0], m_rim[1], m_rim[2], leaf);
-            add_facet(m_rim[0], m_rim[2], m_rim[3], leaf);
+        const FacetRoom::Outline& outline = m_room.outlines[leaf];
+        m_room.rim.clear();
+        // A corner that is alone between those of the patch.
+        std::size_t apex = 0;
+        bool alone = false;
+        for (std::size_t i = 0; i < 4; ++i) {
+            const std::size_t first = m_room.rim.size();
+            walk(outline.sides[i], i < 2, outline.corners[(i + 1) % 4]);
+            if (m_room.rim.size() - first != 2) continue;
+            apex = first;
+            alone = true;
+        }
+        const std::size_t count = m_room.rim.size();
+        const auto rim = [&](std::size_t i) { return m_room.rim[i < count ? i : i - count]; };
+        if (count == 4 || alone) {
+            for (std::size_t i = 1; i + 1 < count; ++i)
+                add_facet(rim(apex), rim(apex + i), rim(apex + i + 1), leaf);
             return;
         }
-        const std::uint32_t middle = add_corner(space_point(u0 / 2 + u1 / 2, v0 / 2 + v1 / 2));
-        for (std::size_t i = 0; i < m_rim.size(); ++i)
-            add_facet(m_rim[i], m_rim[(i + 1) % m_rim.size()], middle, leaf);
+        const SurfacePatch& patch = m_tree.patch(m_made.leaves[leaf].patch);
+        const std::uint32_t middle =
+            add_corner(space_point(patch.u0() + patch.side_u() / 2, patch.v0() + patch.side_v() / 2));
+        for (std::size_t i = 0; i < count; ++i) add_facet(rim(i), rim(i + 1), middle, leaf);
     }
 
-    /// On the screen and its grid?
-    bool fits(std::uint32_t corner) const {
-        const FacetCorner& c = m_made.corners[corner];
-        return m_points[corner].p.z >= m_camera.near() && std::fabs(c.x) <= kMostGrid &&
-               std::fabs(c.y) <= kMostGrid;
-    }
     void add_facet(std::uint32_t a, std::uint32_t b, std::uint32_t c, std::uint32_t leaf) {
-        if (fits(a) && fits(b) && fits(c))
+        if (m_room.fits[a] && m_room.fits[b] && m_room.fits[c])
             m_made.facets.push_back({{a, b, c}, leaf});
         else
-            add_clipped({m_points[a], m_points[b], m_points[c]}, leaf);
+            add_clipped({point_of(a), point_of(b), point_of(c)}, leaf);
     }
 
     /// What lies in front of the camera and near the screen, as a fan.
@@ -378,13 +368,10 @@ class FacetMaker {
     const Camera& m_camera;
     PatchView m_view;
     double m_tol;
+    FacetRoom& m_room;
+    Facets& m_made;
     std::size_t m_most_leaves = 0;
-    std::vector<std::int32_t> m_hidden;  ///< patches that were met and are not on the screen
     double m_unit = 1, m_wanted = 0, m_guard = 0;
-    Facets m_made;
-    std::vector<SpacePoint> m_points;  ///< of the corners
-    CornerTable m_table;
-    std::vector<std::uint32_t> m_rim;
 };
 
 }  // namespace
@@ -401,8 +388,14 @@ double grid_error(int bits) {
     return std::ldexp(0.7072, -bits);
 }
 
+void cut_into_facets(SurfaceTree& tree, const Camera& camera, double tol, FacetRoom& room) {
+    FacetMaker(tree, camera, tol, room).make();
+}
+
 Facets cut_into_facets(SurfaceTree& tree, const Camera& camera, double tol) {
-    return FacetMaker(tree, camera, tol).make();
+    FacetRoom room;
+    cut_into_facets(tree, camera, tol, room);
+    return std::move(room.facets);
 }
 
 }  // namespace anamorph

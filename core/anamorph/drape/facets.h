@@ -16,12 +16,14 @@
 // are not negative and their sum is 1, no point moves farther than a corner.
 #pragma once
 
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <vector>
 
 #include "anamorph/drape/camera.h"
 #include "anamorph/drape/surface_tree.h"
+#include "anamorph/geometry/box.h"
 
 namespace anamorph {
 
@@ -63,6 +65,30 @@ struct Facets {
     std::vector<FacetLeaf> leaves;
 };
 
+/// What is made of a view, and room to make it in, used again for other views.
+struct FacetRoom {
+    /// The corners and sides of a leaf's patch.
+    struct Outline {
+        std::array<std::int32_t, 4> corners, sides;
+    };
+    /// Columns and rows of squares of the screen, from the first to the last.
+    struct Squares {
+        std::uint16_t x0, y0, x1, y1;
+    };
+
+    Facets facets;
+    // Of cut_into_facets().
+    std::vector<std::int32_t> open, hidden, used;
+    std::vector<std::uint32_t> numbers, rim;
+    std::vector<Outline> outlines;
+    std::vector<char> fits;
+    // Of FacetRaster.
+    std::vector<Box> boxes;
+    std::vector<Squares> squares;
+    std::vector<std::size_t> first;
+    std::vector<std::uint32_t> lists;
+};
+
 /// No coordinate of a corner is larger: an edge's function, a difference of two products of differences, stays below
 /// 2^52, and so do its steps.
 inline constexpr double kMostGrid = 0x1p24;
@@ -77,6 +103,7 @@ inline constexpr double kFloatShare = 1.0 / 64;
 /// Cuts what the camera sees so that every bound, with its share for points in float, is at most `tol` pixels. Throws
 /// Error where tol is less than the grid or double allow, or takes more patches than twice the pixels over tol (at least
 /// 2^16, at most 2^20).
+void cut_into_facets(SurfaceTree& tree, const Camera& camera, double tol, FacetRoom& room);
 Facets cut_into_facets(SurfaceTree& tree, const Camera& camera, double tol);
 
 }  // namespace anamorph
