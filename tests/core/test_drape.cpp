@@ -919,6 +919,36 @@ TEST(Drape, JacobiansAreTheStepsFromPixelToPixel) {
         }
 }
 
+TEST(Drape, WhereSheetsMeetWhatLiesBetweenThemOnThePictureIsNotRead) {
+    Scene scene{"page_turn"};
+    scene.shape.direction = 30;
+    scene.pose.position = {0.3, 0.5, 1.6};
+    scene.screen = scene.picture = {512, 512};
+    const Shown shown(scene);
+    const DrapeMap map(cut_into_facets(shown.tree()->tree, shown.camera(), 0.125), shown.camera(),
+                       scene.picture, 0.125);
+    // The texels that blocks of 16 pixels and more lie in, and their pixels.
+    double texels = 0, count = 0;
+    for (const std::int64_t region : map.regions_in({0, 0, 512, 512}))
+        for (const Block& block : map.blocks(region)) {
+            const Box& box = block.box;
+            if (block.kind != Block::Kind::computed || box.width() < 16 || box.height() < 16) continue;
+            Point<double> low{HUGE_VAL, HUGE_VAL}, high{-HUGE_VAL, -HUGE_VAL};
+            for (int y = box.y0; y < box.y1; ++y)
+                for (int x = box.x0; x < box.x1; ++x) {
+                    Point<double> p{0, 0};
+                    int piece = 0;
+                    ASSERT_TRUE(map.exact(x + 0.5, y + 0.5, 0, p, piece));
+                    low = {std::min(low.x, p.x), std::min(low.y, p.y)};
+                    high = {std::max(high.x, p.x), std::max(high.y, p.y)};
+                }
+            texels += (high.x - low.x) * (high.y - low.y);
+            count += box.width() * box.height();
+        }
+    EXPECT_GT(count, 50000);
+    EXPECT_LT(texels, 15 * count);
+}
+
 TEST(Drape, RefusesWhatIsNoCamera) {
     CameraPose pose;
     pose.position = pose.target;

@@ -15,6 +15,10 @@ constexpr std::size_t kKeptRegions = 8;
 // Blocks of which only a part is seen, or only a part exactly, are cut down to the least side.
 constexpr int kMostSide = 32, kLeastSide = 8;
 
+// So are those over so many texels for a pixel, and so many times as many as the steps at their corners say: sheets that lie
+// far apart on the picture meet there, and all that lies between them would be read.
+constexpr double kMostTexels = 16, kMostTimes = 4;
+
 /// How many pixels of a box show something.
 int seen_in(const SeenPixels& pixels, const Box& box) {
     int count = 0;
@@ -217,7 +221,12 @@ void DrapeMap::cut(const SeenRegion& region, const Box& box, Blocks& blocks) con
         return;
     }
     block.kind = Block::Kind::computed;
-    block.precise = m_surface || !(whole && fits_float(region, box, block));
+    const Range range = whole ? range_of(region, box) : Range{};
+    if (whole && side > kLeastSide && torn(region, box, range)) {
+        for_squares(box, (side + 1) / 2, [&](const Box& quarter) { cut(region, quarter, blocks); });
+        return;
+    }
+    block.precise = m_surface || !(whole && fits_float(region, box, range, block));
     blocks.push_back(block);
 }
 
@@ -231,19 +240,46 @@ double DrapeMap::bound_of(const SeenRegion& region, const Box& box) const {
     return bound;
 }
 
-/// Gives a block a base to count its points from, and adds what is lost where they are floats: half of 2^-24 of their
-/// distance from the base, as fast as the surface moves on the screen. False where that is too much.
-bool DrapeMap::fits_float(const SeenRegion& region, const Box& box, Block& block) const {
-    double u[2] = {HUGE_VAL, -HUGE_VAL}, v[2] = {HUGE_VAL, -HUGE_VAL};
+/// What the points of a box run over.
+DrapeMap::Range DrapeMap::range_of(const SeenRegion& region, const Box& box) {
+    Range r{{HUGE_VAL, -HUGE_VAL}, {HUGE_VAL, -HUGE_VAL}};
     for (int y = box.y0; y < box.y1; ++y) {
         const std::size_t at = region.pixels().index(box.x0, y);
-        simd::extend_range(region.pixels().u.data() + at, box.width(), u[0], u[1]);
-        simd::extend_range(region.pixels().v.data() + at, box.width(), v[0], v[1]);
+        simd::extend_range(region.pixels().u.data() + at, box.width(), r.u[0], r.u[1]);
+        simd::extend_range(region.pixels().v.data() + at, box.width(), r.v[0], r.v[1]);
     }
-    block.base_x = static_cast<std::int32_t>(std::floor(u[0] * m_picture.width));
-    block.base_y = static_cast<std::int32_t>(std::floor(v[0] * m_picture.height));
-    const double reach_u = u[1] - u[0] + 1.0 / m_picture.width,
-                 reach_v = v[1] - v[0] + 1.0 / m_picture.height;
+    return r;
+}
+
+/// Do sheets that lie far apart on the picture meet in a box?
+bool DrapeMap::torn(const SeenRegion& region, const Box& box, const Range& range) const {
+    const double texels =
+        (range.u[1] - range.u[0]) * m_picture.width * ((range.v[1] - range.v[0]) * m_picture.height);
+    if (!(texels > kMostTexels * box.width() * box.height()) || box.width() < 2 || box.height() < 2)
+        return false;
+    const SeenPixels& pixels = region.pixels();
+    double u = 0, v = 0;
+    for (const int y : {box.y0, box.y1 - 1})
+        for (const int x : {box.x0, box.x1 - 1}) {
+            const std::size_t at = pixels.index(x, y), beside = pixels.index(x == box.x0 ? x + 1 : x - 1, y),
+                              below = pixels.index(x, y == box.y0 ? y + 1 : y - 1);
+            const auto reach = [&](const std::vector<double>& of) {
+                return std::fabs(of[beside] - of[at]) * box.width() +
+                       std::fabs(of[below] - of[at]) * box.height();
+            };
+            u = std::max(u, reach(pixels.u));
+            v = std::max(v, reach(pixels.v));
+        }
+    return texels > kMostTimes * u * m_picture.width * v * m_picture.height;
+}
+
+/// Gives a block a base to count its points from, and adds what is lost where they are floats: half of 2^-24 of their
+/// distance from the base, as fast as the surface moves on the screen. False where that is too much.
+bool DrapeMap::fits_float(const SeenRegion& region, const Box& box, const Range& range, Block& block) const {
+    block.base_x = static_cast<std::int32_t>(std::floor(range.u[0] * m_picture.width));
+    block.base_y = static_cast<std::int32_t>(std::floor(range.v[0] * m_picture.height));
+    const double reach_u = range.u[1] - range.u[0] + 1.0 / m_picture.width,
+                 reach_v = range.v[1] - range.v[0] + 1.0 / m_picture.height;
     const auto lost_by = [&](double by_u, double by_v) {
         return 0x1p-24 * (reach_u * by_u + reach_v * by_v);
     };

@@ -103,7 +103,13 @@ class DrapeMap final : public BlockMap {
     void polish(SeenPixels& pixels) const;
     void cut(const SeenRegion& region, const Box& box, Blocks& blocks) const;
     double bound_of(const SeenRegion& region, const Box& box) const;
-    bool fits_float(const SeenRegion& region, const Box& box, Block& block) const;
+    /// From the least to the greatest u and v.
+    struct Range {
+        double u[2], v[2];
+    };
+    static Range range_of(const SeenRegion& region, const Box& box);
+    bool torn(const SeenRegion& region, const Box& box, const Range& range) const;
+    bool fits_float(const SeenRegion& region, const Box& box, const Range& range, Block& block) const;
     template <class Body>
     void for_leaves(const SeenRegion& region, const Box& box, const Body& body) const;
 
