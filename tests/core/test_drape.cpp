@@ -878,6 +878,50 @@ TEST(Drape, BlocksBehindTheCameraAndEdgeOnAreLeftOut) {
     }
 }
 
+/// Counts how often it is asked for ranges.
+class CountedSurface final : public DrapedSurface {
+  public:
+    explicit CountedSurface(std::shared_ptr<const DrapedSurface> surface) : m_surface(std::move(surface)) {}
+    glm::dvec3 position(double u, double v) const noexcept override { return m_surface->position(u, v); }
+    double rounding(double u, double v) const noexcept override { return m_surface->rounding(u, v); }
+    SurfaceFrame frame(double u, double v) const noexcept override { return m_surface->frame(u, v); }
+    std::array<long double, 3> truth(long double u, long double v) const noexcept override {
+        return m_surface->truth(u, v);
+    }
+    SurfaceRange range(const Interval& u, const Interval& v) const noexcept override {
+        ++count;
+        return m_surface->range(u, v);
+    }
+    Certainty missing(const Interval& u, const Interval& v) const noexcept override {
+        return m_surface->missing(u, v);
+    }
+
+    mutable std::size_t count = 0;
+
+  private:
+    std::shared_ptr<const DrapedSurface> m_surface;
+};
+
+TEST(Drape, TheLargestBoundOfParallelogramsIsFoundWithoutAllOfThem) {
+    for (const char* const name : {"cylinder", "sphere", "torus", "page_turn", "waves", "ripples"}) {
+        SCOPED_TRACE(name);
+        Scene scene{name};
+        scene.pose.position = {0.3, 0.5, 1.6};
+        scene.picture = {512, 512};
+        const auto counted = std::make_shared<CountedSurface>(make_surface(number_of(name), scene.shape));
+        scene.own = counted;
+        const Shown shown(scene);
+        const OkaRaster blocks(counted, shown.camera(), scene.picture, {4, 0.5, false}, DrapeMap::kSquare,
+                               std::make_shared<RoomPool<OkaRoom>>());
+        const double most = blocks.most_bound(serial_for);
+        // Two for each block, seventeen for those few that are looked at closely.
+        EXPECT_LT(counted->count, 8 * blocks.count());
+        double wanted = 0;
+        for (std::size_t i = 0; i < blocks.count(); ++i) wanted = std::max(wanted, blocks.bound_of(i));
+        EXPECT_EQ(most, wanted);
+    }
+}
+
 TEST(Drape, BoundsOfParallelogramsHoldForWideOverlaps) {
     Scene scene{"page_turn"};
     scene.pose.position = {0.3, 0.3, 2};

@@ -71,6 +71,8 @@ Drape::Drape(std::shared_ptr<SharedTree> surface, const Camera& camera, const Si
 }
 
 Reached Drape::reached(const ParallelFor& parallel_for) const {
+    // So that they are not found in the midst of drawing, on one thread.
+    if (m_options.output == Output::bound) m_map->find_bounds(parallel_for);
     return m_map->exact_points() ? m_map->reached(parallel_for) : Reached{m_map->max_error(parallel_for), 0};
 }
 

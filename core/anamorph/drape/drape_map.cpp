@@ -119,9 +119,8 @@ const Facet& DrapeMap::part_of(const Facet& facet, double u, double v) const {
 }
 
 double DrapeMap::max_error(const ParallelFor& parallel_for) const {
-    double most = 0;
-    for (const double bound : bounds(parallel_for)) most = std::max(most, bound + m_for_float);
-    return most;
+    if (patches() == 0) return 0;
+    return (m_blocks ? m_blocks->most_bound(parallel_for) : m_most_bound) + m_for_float;
 }
 
 void DrapeMap::plan(const Box& box, int, Blocks& blocks) const {

@@ -71,6 +71,8 @@ class DrapeMap final : public BlockMap {
 
     /// Has each pixel a point of its own?
     bool exact_points() const { return m_surface != nullptr; }
+    /// Of all patches, for bound_at().
+    void find_bounds(const ParallelFor& parallel_for) const { bounds(parallel_for); }
     /// The bound of what is seen at a place of SeenPixels.
     double bound_at(const SeenPixels& pixels, std::size_t at) const;
     double nearness_at(const SeenPixels& pixels, std::size_t at) const;

@@ -105,8 +105,8 @@ double length_of(Taylor p, const QuarterRanges& ranges, double right, double dow
     return length;
 }
 
-/// How far a block's map is off on the screen, at most: pixels.
-double bound_of(const OkaBlock& map, const DrapedSurface& surface, const Camera& camera, double h, double k) {
+/// What g and its slopes at a block's centre are off those of its map.
+Taylor off_centre(const OkaBlock& map, const DrapedSurface& surface, const Camera& camera) {
     Taylor off = seen_range(camera, surface.range(Interval(map.u), Interval(map.v)));
     for (int i = 0; i < 2; ++i) {
         const auto axis = static_cast<std::size_t>(i);
@@ -114,6 +114,36 @@ double bound_of(const OkaBlock& map, const DrapedSurface& surface, const Camera&
         off[axis].c[1] -= map.by_u[i];
         off[axis].c[2] -= map.by_v[i];
     }
+    return off;
+}
+
+/// How far a block's map is off on the screen, at most: pixels. By second derivatives over all of the block, which takes a
+/// twentieth of the time.
+double quick_bound_of(const OkaBlock& map, const DrapedSurface& surface, const Camera& camera, double h,
+                      double k) {
+    Taylor off = off_centre(map, surface, camera);
+    const Taylor bends = seen_range(
+        camera, surface.range(Interval(-h, h) + Interval(map.u), Interval(-k, k) + Interval(map.v)));
+    double size = 0;
+    for (const double right : {-h, h})
+        for (const double down : {-k, k}) {
+            const Interval s(std::min(0.0, right), std::max(0.0, right)),
+                t(std::min(0.0, down), std::max(0.0, down));
+            double length[2];
+            for (std::size_t axis = 0; axis < 2; ++axis)
+                length[axis] = magnitude(off[axis].c[0] + off[axis].c[1] * s + off[axis].c[2] * t +
+                                         bends[axis].c[3] * square(s) + bends[axis].c[4] * (s * t) +
+                                         bends[axis].c[5] * square(t));
+            const double here = std::hypot(length[0], length[1]);
+            if (std::isnan(here)) return HUGE_VAL;
+            size = std::max(size, here);
+        }
+    return size;
+}
+
+/// The same, part by part.
+double bound_of(const OkaBlock& map, const DrapedSurface& surface, const Camera& camera, double h, double k) {
+    const Taylor off = off_centre(map, surface, camera);
     double size = 0;
     for (const double right : {-h, h})
         for (const double down : {-k, k}) {
@@ -389,15 +419,51 @@ Facets OkaRaster::facets() const {
     return made;
 }
 
-double OkaRaster::bound_of(std::size_t index) const {
-    const OkaBlock block = block_of(m_room->blocks[index]);
+double OkaRaster::lost_by(const OkaBlock& block) const {
     const double by_u = glm::length(glm::dvec2(block.by_u)), by_v = glm::length(glm::dvec2(block.by_v));
     // What the inverse loses, relative to a point's distance from the centre, is the map's condition times a few units of
     // 2^-53; and a unit of u and of v.
     const double condition =
         (square(by_u) + square(by_v)) / std::fabs(block.by_u.x * block.by_v.y - block.by_v.x * block.by_u.y);
-    const double lost = (condition * (by_u * m_grid.half_u + by_v * m_grid.half_v) + by_u + by_v) * 0x1p-48;
-    return anamorph::bound_of(block, *m_surface, m_camera, m_grid.half_u, m_grid.half_v) + lost;
+    return (condition * (by_u * m_grid.half_u + by_v * m_grid.half_v) + by_u + by_v) * 0x1p-48;
+}
+
+double OkaRaster::quick_bound_of(std::size_t index) const {
+    const OkaBlock block = block_of(m_room->blocks[index]);
+    return anamorph::quick_bound_of(block, *m_surface, m_camera, m_grid.half_u, m_grid.half_v) +
+           lost_by(block);
+}
+
+double OkaRaster::bound_of(std::size_t index) const {
+    const OkaBlock block = block_of(m_room->blocks[index]);
+    const double half_u = m_grid.half_u, half_v = m_grid.half_v;
+    return std::min(anamorph::quick_bound_of(block, *m_surface, m_camera, half_u, half_v),
+                    anamorph::bound_of(block, *m_surface, m_camera, half_u, half_v)) +
+           lost_by(block);
+}
+
+double OkaRaster::most_bound(const ParallelFor& parallel_for) const {
+    constexpr std::size_t kAtOnce = 256;
+    const auto in_parts = [&](std::size_t size, const auto& body) {
+        parallel_for(static_cast<std::int64_t>((size + kAtOnce - 1) / kAtOnce), [&](std::int64_t part) {
+            const std::size_t first = static_cast<std::size_t>(part) * kAtOnce;
+            for (std::size_t i = first; i < std::min(first + kAtOnce, size); ++i) body(i);
+        });
+    };
+    std::vector<double> quick(count());
+    in_parts(count(), [&](std::size_t i) { quick[i] = quick_bound_of(i); });
+    std::vector<std::size_t> order(count());
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return quick[a] > quick[b]; });
+    // No bound is larger than a quick one.
+    double most = 0;
+    std::vector<double> bounds;
+    for (std::size_t done = 0; done < order.size() && quick[order[done]] > most; done += bounds.size()) {
+        bounds.resize(std::min(4 * kAtOnce, order.size() - done));
+        in_parts(bounds.size(), [&](std::size_t i) { bounds[i] = bound_of(order[done + i]); });
+        most = std::max(most, *std::max_element(bounds.begin(), bounds.end()));
+    }
+    return most;
 }
 
 }  // namespace anamorph

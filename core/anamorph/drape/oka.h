@@ -7,6 +7,7 @@
 
 #include "anamorph/drape/facet_raster.h"
 #include "anamorph/drape/facets.h"
+#include "anamorph/parallel_for.h"
 #include "anamorph/room_pool.h"
 #include "anamorph/simd/parallelogram_rows.h"
 
@@ -83,8 +84,13 @@ class OkaRaster {
     /// derivatives over the quarters of that quarter that the way there from the centre passes, part by part of the way.
     /// Infinite where that is not known.
     double bound_of(std::size_t block) const;
+    /// Of all blocks, the largest bound: only of those is it worked out of which a quick one does not say that another's is
+    /// larger.
+    double most_bound(const ParallelFor& parallel_for) const;
 
   private:
+    double quick_bound_of(std::size_t block) const;
+    double lost_by(const OkaBlock& block) const;
     void find_blocks();
     void find_row(int row, const glm::dvec3* above, const glm::dvec3* here, const glm::dvec3* below);
     void see_row(int row, glm::dvec3* to) const;
