@@ -12,6 +12,7 @@
 #include <numeric>
 #include <random>
 #include <set>
+#include <span>
 
 #include "anamorph/drape/oka.h"
 #include "anamorph/simd/block_sampler.h"
@@ -78,6 +79,39 @@ TEST(DrapedSurface, PositionsAreThoseOfFormulasWrittenOutAnotherWay) {
                             static_cast<double>(truth[static_cast<std::size_t>(k)]), 1e-14)
                     << name;
             }
+        }
+}
+
+TEST(DrapedSurface, PointsOfGridsAreAsExactAsOthersAndTheSameInEveryGrid) {
+    constexpr unsigned kSeed = 23;
+    SCOPED_TRACE(testing::Message() << "seed " << kSeed);
+    std::mt19937 random(kSeed);
+    std::uniform_real_distribution<double> uniform(0, 1);
+    std::vector<Deformation> bumps(40);
+    for (std::size_t i = 0; i < bumps.size(); ++i) {
+        bumps[i].center = {uniform(random), uniform(random)};
+        bumps[i].extent = {0.003 + 0.2 * square(uniform(random)), 0.003 + 0.2 * square(uniform(random))};
+        bumps[i].vector = {uniform(random) - 0.5, 0, uniform(random) - 0.5};
+        bumps[i].kernel = i % 3 ? DeformationKernel::gaussian : DeformationKernel::wendland_c2;
+    }
+    const auto surface = make_surface(number_of("sphere"), {}, bumps);
+    std::vector<double> u(40), v(30);
+    for (double& s : u) s = 1.2 * uniform(random) - 0.1;
+    for (double& t : v) t = 1.2 * uniform(random) - 0.1;
+    std::vector<glm::dvec3> points(u.size() * v.size());
+    surface->positions(u, v, points.data());
+    for (std::size_t j = 0; j < v.size(); ++j)
+        for (std::size_t i = 0; i < u.size(); ++i) {
+            const glm::dvec3& p = points[j * u.size() + i];
+            const auto truth = surface->truth(u[i], v[j]);
+            const double rounding = surface->rounding(u[i], v[j]);
+            for (int axis = 0; axis < 3; ++axis)
+                EXPECT_LE(std::fabs(static_cast<double>(p[axis] - truth[static_cast<std::size_t>(axis)])),
+                          rounding)
+                    << u[i] << ", " << v[j];
+            glm::dvec3 alone;
+            surface->positions(std::span(u).subspan(i, 1), std::span(v).subspan(j, 1), &alone);
+            EXPECT_TRUE(alone == p) << u[i] << ", " << v[j];
         }
 }
 

@@ -29,11 +29,14 @@ class DeformationReach {
     }
     const glm::dvec3& far() const { return m_far; }
 
-  private:
     /// (u0, v0) to (u1, v1).
     struct Reached {
         double u0, v0, u1, v1;
     };
+    /// What deformation i reaches.
+    const Reached& reached(std::size_t i) const { return m_boxes[i]; }
+
+  private:
     struct Node {
         Reached box;
         std::uint32_t begin, end;  ///< of m_order

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <span>
 #include <string>
 #include <utility>
 
@@ -186,13 +187,17 @@ void bucket_sort(const std::vector<std::uint32_t>& keys, std::vector<std::uint32
     }
 }
 
-/// Where a point of the picture is seen, pixels from the middle of the screen, and its depth; NaN where it is not in front
-/// of the camera.
-glm::dvec3 seen_at(const DrapedSurface& surface, const Camera& camera, double u, double v) {
-    const glm::dvec3 p = camera.in_frame(surface.position(u, v));
-    const Point<double> on_screen = camera.seen(p);
-    if (!(p.z >= camera.near())) return glm::dvec3(std::numeric_limits<double>::quiet_NaN());
-    return {on_screen.x, on_screen.y, p.z};
+/// Where the points of a grid of the picture are seen, pixels from the middle of the screen, and their depths; NaN where one
+/// is not in front of the camera.
+void see_grid(const DrapedSurface& surface, const Camera& camera, std::span<const double> u,
+              std::span<const double> v, glm::dvec3* to) {
+    surface.positions(u, v, to);
+    for (std::size_t i = 0; i < u.size() * v.size(); ++i) {
+        const glm::dvec3 p = camera.in_frame(to[i]);
+        const Point<double> on_screen = camera.seen(p);
+        to[i] = p.z >= camera.near() ? glm::dvec3(on_screen.x, on_screen.y, p.z)
+                                     : glm::dvec3(std::numeric_limits<double>::quiet_NaN());
+    }
 }
 
 /// Of u and of v; at most all of the picture.
@@ -218,13 +223,15 @@ bool oka_block(const DrapedSurface& surface, const Camera& camera, const Size& p
                const OkaBlocks& blocks, int i, int j, OkaBlock& block) {
     const glm::dvec2 sides = sides_of(picture, blocks);
     const double side_u = sides.x, side_v = sides.y;
-    // Where the centre of a block is seen, and its depth.
-    const auto seen = [&](int column, int row) {
-        return seen_at(surface, camera, (column + 0.5) * side_u, (row + 0.5) * side_v);
-    };
-    const glm::dvec3 left = seen(i - 1, j), right = seen(i + 1, j), above = seen(i, j - 1),
-                     below = seen(i, j + 1);
-    block.centre = seen(i, j);
+    // Where the centres of the block and of those beside, above and below it are seen, and their depths.
+    const auto centre = [](int k, double side) { return (k + 0.5) * side; };
+    const double u[] = {centre(i - 1, side_u), centre(i, side_u), centre(i + 1, side_u)},
+                 v[] = {centre(j - 1, side_v), centre(j, side_v), centre(j + 1, side_v)};
+    glm::dvec3 row[3], column[3];
+    see_grid(surface, camera, u, std::span(v).subspan(1, 1), row);
+    see_grid(surface, camera, std::span(u).subspan(1, 1), v, column);
+    const glm::dvec3 &left = row[0], &right = row[2], &above = column[0], &below = column[2];
+    block.centre = row[1];
     block.by_u = (right - left) / (2 * side_u);
     block.by_v = (below - above) / (2 * side_v);
     if (!is_number(block.centre) || !is_number(block.by_u) || !is_number(block.by_v)) return false;
@@ -266,25 +273,31 @@ OkaRaster::~OkaRaster() {
     m_pool->give_back(std::move(m_room));
 }
 
-/// Where the centres of a row of blocks are seen, and of one more at each end.
-void OkaRaster::see_row(int row, glm::dvec3* to) const {
-    for (int i = -1; i <= m_count.width; ++i)
-        *to++ = seen_at(*m_surface, m_camera, (i + 0.5) * m_grid.side_u, (row + 0.5) * m_grid.side_v);
-}
-
 void OkaRaster::find_blocks() {
     m_room->blocks.clear();
     m_room->squares.clear();
-    // Three rows, of which the middle one is looked at.
-    const auto room = static_cast<std::size_t>(m_count.width) + 2;
-    m_room->seen.resize(3 * room);
-    glm::dvec3* rows[3] = {m_room->seen.data(), m_room->seen.data() + room, m_room->seen.data() + 2 * room};
-    see_row(-1, rows[0]);
-    see_row(0, rows[1]);
-    for (int j = 0; j < m_count.height; ++j) {
-        see_row(j + 1, rows[2]);
-        find_row(j, rows[0], rows[1], rows[2]);
-        std::rotate(rows, rows + 1, rows + 3);
+    // Centres, and of one more at each end.
+    const auto centres = [](int first, int end, double side, std::vector<double>& to) {
+        to.clear();
+        for (int i = first; i < end; ++i) to.push_back((i + 0.5) * side);
+    };
+    centres(-1, m_count.width + 1, m_grid.side_u, m_room->columns);
+    // Rows a few at a time, and those above and below.
+    constexpr int kRows = 16;
+    const auto width = m_room->columns.size();
+    m_room->seen.resize((kRows + 2) * width);
+    glm::dvec3* const seen = m_room->seen.data();
+    for (int top = 0; top < m_count.height; top += kRows) {
+        const int end = std::min(top + kRows, m_count.height);
+        // The last two rows before are the first two now.
+        const std::size_t kept = top > 0 ? 2 : 0;
+        std::copy_n(seen + kRows * width, kept * width, seen);
+        centres(top - 1 + static_cast<int>(kept), end + 1, m_grid.side_v, m_room->rows);
+        see_grid(*m_surface, m_camera, m_room->columns, m_room->rows, seen + kept * width);
+        for (int j = top; j < end; ++j) {
+            const glm::dvec3* const here = seen + static_cast<std::size_t>(j - top + 1) * width;
+            find_row(j, here - width, here, here + width);
+        }
     }
 }
 

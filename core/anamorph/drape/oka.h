@@ -47,6 +47,7 @@ struct OkaRoom {
     std::vector<Squares> squares;  ///< of the blocks and the pixels around them
     std::vector<std::uint32_t> keys, order, sorted, lists;
     std::vector<std::size_t> first;
+    std::vector<double> columns, rows;
     std::vector<glm::dvec3> seen;
 };
 
@@ -93,7 +94,6 @@ class OkaRaster {
     double lost_by(const OkaBlock& block) const;
     void find_blocks();
     void find_row(int row, const glm::dvec3* above, const glm::dvec3* here, const glm::dvec3* below);
-    void see_row(int row, glm::dvec3* to) const;
     void sort_by_depth();
     OkaRoom::Squares squares_of(const Box& pixels) const;
     void list_squares();

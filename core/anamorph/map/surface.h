@@ -6,6 +6,7 @@
 #include <array>
 #include <glm/vec3.hpp>
 #include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -30,6 +31,12 @@ class DrapedSurface {
   public:
     virtual ~DrapedSurface() = default;
     virtual glm::dvec3 position(double u, double v) const noexcept = 0;
+    /// The points of a grid, row by row, (u[i], v[j]): as far from the exact ones as those of position() may be. A point has
+    /// the same bits in every grid, but not those of position().
+    virtual void positions(std::span<const double> u, std::span<const double> v, glm::dvec3* to) const {
+        for (const double t : v)
+            for (const double s : u) *to++ = position(s, t);
+    }
     /// How far position() may be from the exact point, coordinate by coordinate, at most.
     virtual double rounding(double u, double v) const noexcept = 0;
     virtual SurfaceFrame frame(double u, double v) const noexcept = 0;
