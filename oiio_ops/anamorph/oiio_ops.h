@@ -41,7 +41,8 @@ OIIO::ImageBuf mesh_warp(const OIIO::ImageBuf& src, const OIIO::ParamValueList& 
                          OIIO::ROI roi = {}, int nthreads = 0);
 
 /// A picture laid on a surface in space and seen by a camera: the operation drape (surface, camera, deform, ...).
-/// anamorph:max_error is in pixels of the result; anamorph:patches tells how many patches were drawn.
+/// anamorph:max_error is in pixels of the result; anamorph:patches tells how many patches were drawn and
+/// anamorph:holes how many pixels within the surface show nothing.
 bool drape(OIIO::ImageBuf& dst, const OIIO::ImageBuf& texture, const OIIO::ParamValueList& options = {},
            OIIO::ROI roi = {}, int nthreads = 0);
 OIIO::ImageBuf drape(const OIIO::ImageBuf& texture, const OIIO::ParamValueList& options = {},

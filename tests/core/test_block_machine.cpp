@@ -163,6 +163,14 @@ std::map<std::string, double> reached_by_drape(const std::vector<Assignment>& mo
     return numbers;
 }
 
+TEST(BlockMachine, OtherSchemesOfDrapesSayHowManyHolesThereAre) {
+    for (const char* const scheme : {"auto", "exact", "oka", "oka-z"}) {
+        const auto said = reached_by_drape({{"scheme", scheme}});
+        ASSERT_EQ(said.count("anamorph:holes"), 1u) << scheme;
+        EXPECT_EQ(said.at("anamorph:holes"), 0) << scheme;
+    }
+}
+
 TEST(BlockMachine, IsASchemeOfDrapes) {
     auto standard = reached_by_drape({});
     EXPECT_EQ(standard, reached_by_drape({{"machine", "oka-1987"}}));

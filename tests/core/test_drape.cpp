@@ -1027,6 +1027,35 @@ TEST(Drape, WhereSheetsMeetWhatLiesBetweenThemOnThePictureIsNotRead) {
     EXPECT_LT(texels, 15 * count);
 }
 
+TEST(Drape, HolesAreThePixelsOfTheSurfaceThatBlocksLeaveOut) {
+    Scene scene{"sphere"};
+    scene.shape.angle = 360;
+    scene.pose.position = {0.3, 0.5, 1.6};
+    scene.screen = {300, 200};
+    DrapeOptions options;
+    const auto holes = [&] {
+        return Drape(Shown(scene).tree(), Shown(scene).camera(), scene.picture, options).holes(serial_for);
+    };
+    EXPECT_EQ(holes(), 0);
+    const std::vector<float> cover = Shown(scene, options).coverage();
+    for (const DrapeScheme scheme : {DrapeScheme::oka, DrapeScheme::oka_z})
+        for (const double overlap : {0.0, 0.5}) {
+            options.scheme = scheme;
+            options.overlap = overlap;
+            const std::vector<float> drawn = Shown(scene, options).coverage();
+            int wanted = 0;
+            for (int y = 1; y < 199; ++y)
+                for (int x = 1; x < 299; ++x) {
+                    bool hole = drawn[static_cast<std::size_t>(300 * y + x)] == 0;
+                    for (int k = 0; hole && k < 9; ++k)
+                        hole = cover[static_cast<std::size_t>(300 * (y + k / 3 - 1) + x + k % 3 - 1)] == 1;
+                    wanted += hole;
+                }
+            EXPECT_EQ(holes(), wanted);
+            EXPECT_TRUE(overlap > 0 || wanted > 0);
+        }
+}
+
 TEST(Drape, RefusesWhatIsNoCamera) {
     CameraPose pose;
     pose.position = pose.target;

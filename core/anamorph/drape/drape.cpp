@@ -50,6 +50,36 @@ void for_regions(const DrapeMap& map, const Box& box, const Body& body) {
     }
 }
 
+/// The facets that show where the surface is; null where they are too many.
+std::shared_ptr<const DrapeMap> cover_of(SharedTree& surface, const DrapeMap& map) {
+    DrapeOptions options;
+    options.tol = std::max(Drape::kCoverTol, 2 * grid_error(grid_bits_of(map.camera().screen())));
+    try {
+        return map_of(surface, map.camera(), map.picture(), options);
+    } catch (const Error&) {
+        return nullptr;
+    }
+}
+
+bool shows(const SeenPixels& pixels, int x, int y) {
+    return pixels.facet[pixels.index(x, y)] != SeenPixels::kNone;
+}
+
+/// The pixels of a box that show nothing where a cover does, also around them.
+int holes_in(const SeenPixels& drawn, const SeenPixels& cover, const Box& box) {
+    const auto within = [&](int x, int y) {
+        for (int j = y - 1; j <= y + 1; ++j)
+            for (int i = x - 1; i <= x + 1; ++i)
+                if (!shows(cover, i, j)) return false;
+        return true;
+    };
+    int count = 0;
+    for (int y = box.y0; y < box.y1; ++y)
+        for (int x = box.x0; x < box.x1; ++x)
+            if (!shows(drawn, x, y) && within(x, y)) ++count;
+    return count;
+}
+
 }  // namespace
 
 /// A pixel's facet, and the weights of its corners in space.
@@ -74,6 +104,23 @@ Reached Drape::reached(const ParallelFor& parallel_for) const {
     // So that they are not found in the midst of drawing, on one thread.
     if (m_options.output == Output::bound) m_map->find_bounds(parallel_for);
     return m_map->exact_points() ? m_map->reached(parallel_for) : Reached{m_map->max_error(parallel_for), 0};
+}
+
+std::optional<int> Drape::holes(const ParallelFor& parallel_for) const {
+    if (m_options.scheme == DrapeScheme::automatic || m_options.scheme == DrapeScheme::exact) return 0;
+    if (double(m_map->width()) * m_map->height() > kMostCounted) return {};
+    const auto cover = cover_of(*m_surface, *m_map);
+    if (!cover) return {};
+    const Box screen{0, 0, m_map->width(), m_map->height()};
+    const std::vector<std::int64_t> regions = m_map->regions_in(screen);
+    std::atomic<int> count{0};
+    parallel_for(static_cast<std::int64_t>(regions.size()), [&](std::int64_t i) {
+        const Box box = m_map->region_box(regions[static_cast<std::size_t>(i)]);
+        const auto drawn = m_map->region_at(box.x0, box.y0), covered = cover->region_at(box.x0, box.y0);
+        count += holes_in(drawn->pixels(), covered->pixels(),
+                          intersection(box, {1, 1, screen.x1 - 1, screen.y1 - 1}));
+    });
+    return count.load();
 }
 
 Drape::Lit Drape::lit(const FacetCorner& corner) const {

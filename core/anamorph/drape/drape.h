@@ -10,6 +10,7 @@
 #include <glm/vec3.hpp>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <vector>
 
 #include "anamorph/drape/backdrop.h"
@@ -86,6 +87,13 @@ class Drape {
     double max_error() const { return m_map->max_error(); }
     /// Patches that the camera sees, or nearly so.
     std::size_t patches() const { return m_map->patches(); }
+
+    /// Pixels within the surface that show nothing. None where facets share their edges; of the paper's blocks, those where
+    /// facets within kCoverTol show something, also at all eight pixels around, which takes as long as drawing does. Nothing
+    /// where the screen has more than kMostCounted pixels or such facets would be too many.
+    std::optional<int> holes(const ParallelFor& parallel_for) const;
+    static constexpr double kCoverTol = 0.125;
+    static constexpr int kMostCounted = 1 << 24;
 
     /// Draws the pixels of `box`; sources are read for colour only. `backdrop`: a picture that fills the screen behind the
     /// surface and over the background. False when one could not be read.

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
 
 #include "anamorph/deform/key_frames_file.h"
 #include "anamorph/drape/drape.h"
@@ -339,9 +340,12 @@ class SolvedDrape final : public SolvedPicture {
 
     Attributes reached(const ParallelFor& parallel_for) const override {
         const Reached reached = m_drape.reached(parallel_for);
-        return {{"anamorph:max_error", reached.max_error},
-                {"anamorph:exact_fraction", reached.exact_fraction},
-                {"anamorph:patches", static_cast<int>(m_drape.patches())}};
+        Attributes all = {{"anamorph:max_error", reached.max_error},
+                          {"anamorph:exact_fraction", reached.exact_fraction},
+                          {"anamorph:patches", static_cast<int>(m_drape.patches())}};
+        if (const std::optional<int> holes = m_drape.holes(parallel_for))
+            all.push_back({"anamorph:holes", *holes});
+        return all;
     }
     bool draw(const std::vector<const Source*>& sources, const Box& box, const ImageView& view,
               const ParallelFor& parallel_for) const override {
