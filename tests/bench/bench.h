@@ -19,10 +19,13 @@ struct Settings {
     int rounds = 15;
     bool bounds = false;  ///< report bounds over true errors instead of times
 
-    bool wants_case(const std::string& name) const { return case_name.empty() || case_name == name; }
-    /// `scheme` may be several, a,b,c.
-    bool wants_scheme(const std::string& name) const {
-        return scheme.empty() || ("," + scheme + ",").find("," + name + ",") != std::string::npos;
+    bool wants_case(const std::string& name) const { return lists(case_name, name); }
+    bool wants_scheme(const std::string& name) const { return lists(scheme, name); }
+
+  private:
+    /// Is it one of several, a,b,c? All are where there are none.
+    static bool lists(const std::string& several, const std::string& one) {
+        return several.empty() || ("," + several + ",").find("," + one + ",") != std::string::npos;
     }
 };
 

@@ -252,6 +252,15 @@ class Scene {
         options.tol = kDefaultTol;
         if (m_settings.threads == 1 && std::thread::hardware_concurrency() > 1)
             add_ours(view, "automatic", options, m_pair, 2);
+        add_kept(view);
+    }
+
+    /// With a plan made before.
+    void add_kept(const View& view) {
+        if (!m_settings.wants_scheme("automatic_kept")) return;
+        ReprojectOptions options;
+        options.filter = Filter::bilinear;
+        options.tol = kDefaultTol;
         Contender kept{&view, "automatic_kept", options.tol, m_settings.threads, {}};
         auto reprojection = std::make_shared<Reprojection>(view.map, options);
         kept.draw = [this, &view, reprojection] {
@@ -545,6 +554,7 @@ void run_targets(const Settings& settings, Report& report) {
                            target->orientation);
     for (const auto& view : scene.views()) {
         scene.add_automatic(*view, {std::begin(kTols), std::end(kTols)});
+        scene.add_kept(*view);
         scene.add_rivals<float>(*view);
     }
     scene.measure();
