@@ -7,6 +7,8 @@
 // and one source file includes approx/formula_planner.h and instantiates it. See approx/panorama_plan.h.
 #pragma once
 
+#include <span>
+
 #include "anamorph/approx/block.h"
 #include "anamorph/approx/scheme.h"
 #include "anamorph/map/formula_map.h"
@@ -21,6 +23,14 @@ struct PlanOptions {
     bool cull = true;
     /// Blocks may run over the seam of a source that closes on itself, with x beyond its edges.
     bool across_seam = true;
+};
+
+/// A computed block as it is read near its middle: where, the source point there, and its bases.
+template <class Local, class Real>
+struct NearBlock {
+    const Local& place;
+    Point<double> middle;
+    std::span<const Real> bases;
 };
 
 /// The blocks of a FormulaMap.
@@ -44,8 +54,9 @@ class FormulaPlan : public BlockMap {
   protected:
     void plan(const Box& box, int piece, Blocks& blocks) const override;
 
-    /// Where a computed block is read.
-    static const typename Map::Local& place_of(const Block& block);
+    /// How a computed block is read, in float or in double.
+    static NearBlock<typename Map::Local, float> near_in_float(const Block& block);
+    static NearBlock<typename Map::Local, double> near_in_double(const Block& block);
 
   private:
     Map m_map;

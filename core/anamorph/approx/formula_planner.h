@@ -9,6 +9,7 @@
 #include <span>
 
 #include "anamorph/approx/block_writer.h"
+#include "anamorph/approx/direct_blocks.h"
 #include "anamorph/approx/formula_plan.h"
 #include "anamorph/approx/lens_jets.h"
 #include "anamorph/approx/residual.h"
@@ -59,13 +60,8 @@ inline constexpr double kTailShare = 0.125, kPartShare = 0.25;
 
 // What a pixel of a polynomial saves, as a part of an exact pixel, where it could be direct instead, in float or in double.
 inline constexpr double kDirectSaving = 3.0 / 16, kPreciseSaving = 5.0 / 16;
-// A direct bound costs as much as so many exact pixels.
+// To look whether direct blocks hold the tolerance costs as much as so many exact pixels.
 inline constexpr int kDirectCost = 60;
-// The least pixels of a direct block, whose bases cost as much as some tens of them: where one bound serves all of a large
-// box, which is otherwise cut first, and in small ones.
-inline constexpr int kLargeBox = 128 * 128, kLeastDirect = 512, kLeastOfSmall = 128;
-// By so much parts of a large box may be better than the whole.
-inline constexpr double kMuchBetter = 256;
 
 inline int pixels_of(const Box& box) {
     return box.width() * box.height();
@@ -73,18 +69,6 @@ inline int pixels_of(const Box& box) {
 
 inline double length(double x, double y) {
     return std::sqrt(x * x + y * y);
-}
-
-inline Box sub_box(const Box& box, bool vertical_cut, bool second) {
-    Box b = box;
-    if (vertical_cut) {
-        const int cut = box.x0 + static_cast<int>(std::bit_ceil(static_cast<unsigned>(box.width()))) / 2;
-        (second ? b.x0 : b.x1) = cut;
-    } else {
-        const int cut = box.y0 + static_cast<int>(std::bit_ceil(static_cast<unsigned>(box.height()))) / 2;
-        (second ? b.y0 : b.y1) = cut;
-    }
-    return b;
 }
 
 /// What a region's bicubic blocks are made of.
@@ -137,11 +121,16 @@ inline void precise_row(const Block& block, int row, double* to_x, double* to_y)
     }
 }
 
-/// And where direct blocks are read.
+/// And its direct blocks.
 template <class Local>
 struct Records : Cubics {
-    std::vector<Local> places;
+    DirectRecords<Local> direct;
 };
+
+template <class Local, class Real>
+NearBlock<Local, Real> near_block(const Block& block) {
+    return static_cast<const Records<Local>&>(*block.data).direct.template at<Real>(block.record);
+}
 
 /// Plans one piece of the target; blocks are appended to `blocks`, and to `records` what they are made of.
 template <FormulaMap Map>
@@ -163,6 +152,7 @@ class Planner {
           m_margin(options.scheme == Scheme::residual ? 0 : 0.5) {}
 
     bool is_exact() const { return m_exact; }
+    double goal() const { return m_goal; }
     bool may_be_direct() const {
         if constexpr (DirectMap<Map>)
             return m_map.may_be_direct();
@@ -223,90 +213,61 @@ class Planner {
     void settle_inside(const Box& box, const Local& local, const Known* known = nullptr) {
         if (m_options.scheme == Scheme::residual && !m_exact) return settle_residual(box, local);
         if (m_options.scheme == Scheme::blocks && !m_exact) return settle_blocks(box, local, known);
-        const bool first = !m_direct && pixels_of(box) >= kLeastDirect;
-        const double error = first ? find_direct(box, local) : 0;
+        const bool first = !m_direct && pixels_of(box) >= kLeastInFloat;
+        const double error = first ? find_direct(box) : 0;
         const bool by_blocks = m_options.scheme == Scheme::automatic && !m_exact;
-        // Intervals that are too wide for one bound are so for the other.
-        if (m_direct || pixels_of(box) <= kLeastDirect || (by_blocks && error < HUGE_VAL))
+        // Where one bound cannot be had, the other is too wide.
+        if (m_direct || (by_blocks && error < HUGE_VAL))
             by_blocks ? settle_blocks(box, local, known) : leave(box);
+        else if (pixels_of(box) <= kLeastInFloat)
+            leave(box);
         else
             split(box, [&](const Box& b) { settle(b); });
         if (first) m_direct.reset();
     }
 
-    /// Direct blocks that hold the tolerance: where they are read, their largest size, and their error.
+    /// What is expected of direct blocks: that they hold the tolerance over most of a box.
     struct Direct {
-        int place, width, height;
-        double error;
         bool precise;   ///< in double
         double saving;  ///< of a polynomial's pixel over one of theirs
     };
-    /// The largest that serve all of a box, if there are any: in float, or else in double. Returns the least error that
-    /// was found.
-    double find_direct(const Box& box, const Local& local) {
-        double error = 0;
-        if (!may_be_direct()) return error;
+    /// Judges by the block in the middle of a box. Returns its error where none is expected to hold the tolerance, else 0.
+    double find_direct(const Box& box) {
         if constexpr (DirectMap<Map>) {
-            if (!m_exact) error = find_direct_in<float>(box, local, kDirectSaving);
-            // Float may yet serve parts of a box: a known error shrinks with the sides at most, but for one about an axis
-            // or a rim, most of whose parts are far better.
-            const double parts = pixels_of(box) / double{kBlockWidth * kBlockHeight};
-            const bool large = pixels_of(box) > kLargeBox && error <= kMuchBetter * m_goal;
-            const bool in_parts = !m_exact && (large || (parts > 1 && error <= m_goal * std::sqrt(parts)));
-            // Intervals that are too wide for float are so for double.
-            if (!m_direct && !in_parts && error < HUGE_VAL)
-                error = find_direct_in<double>(box, local, kPreciseSaving);
-        }
-        return error;
-    }
-    template <class Real>
-    double find_direct_in(const Box& box, const Local& local, double saving) {
-        Direct d{static_cast<int>(m_records.places.size()),
-                 kBlockWidth,
-                 kBlockHeight,
-                 0,
-                 std::is_same_v<Real, double>,
-                 saving};
-        const int least = pixels_of(box) > kLargeBox ? kLeastDirect : kLeastOfSmall;
-        for (double cut = 1; d.width * d.height >= least * cut * cut;) {
-            m_balance -= kDirectCost;
-            d.error = direct_error<Real>(box, d, local);
-            if (d.error <= m_goal) {
-                m_records.places.push_back(local);
-                m_direct = d;
-                return d.error;
+            if (!may_be_direct()) return 0;
+            Box middle = is_block(box) ? box : middle_of(box);
+            const auto error_in = [&](auto real) {
+                m_balance -= kDirectCost;
+                return read_near<decltype(real)>(m_map, middle, local_about(middle), m_bases).error;
+            };
+            const auto expect = [&](bool precise, double saving) {
+                m_direct = {precise, saving};
+                return 0.0;
+            };
+            double error = m_exact ? error_in(0.0) : error_in(0.0f);
+            // Where blocks are too large for any bound, smaller ones may have one.
+            while (!(error < HUGE_VAL) && pixels_of(middle) >= 2 * kLeastInFloat) {
+                middle = sub_box(middle, middle.width() > middle.height(), false);
+                error = m_exact ? error_in(0.0) : error_in(0.0f);
             }
-            // A known error shrinks with the sides at most.
-            cut = d.error < HUGE_VAL ? d.error / m_goal : 1.5;
-            (d.width > d.height ? d.width : d.height) /= 2;
+            if (m_exact) return error <= m_goal ? expect(true, kPreciseSaving) : error;
+            if (serves_in_float(middle, error, m_goal)) return expect(false, kDirectSaving);
+            if (error < HUGE_VAL) error = error_in(0.0);
+            return error <= m_goal ? expect(true, kPreciseSaving) : error;
         }
-        return d.error;
-    }
-    /// One bound serves all blocks of a box: of full size with their middles anywhere, and what the last ones lack.
-    template <class Real>
-    double direct_error(const Box& box, const Direct& d, const Local& local) const {
-        const auto middles = [](int from, int to, int most) {
-            const int full = std::min(to - from, most), last = (to - from - 1) % most + 1;
-            return Interval(from + 0.5 * std::min(full, last), to - 0.5 * std::min(full, last));
-        };
-        return m_map.template direct_error<Real>(
-            middles(box.x0, box.x1, d.width), middles(box.y0, box.y1, d.height),
-            half(std::min(box.width(), d.width)), half(std::min(box.height(), d.height)), local);
+        return 0;
     }
     /// What no polynomial serves.
     void leave(const Box& box) {
         if (!m_direct) return exact(box);
-        for_boxes(box, m_direct->width, m_direct->height, [&](const Box& b) { place_direct(b); });
+        for_blocks(box, [&](const Box& b) { leave_direct(b); });
     }
-    void place_direct(const Box& box) {
-        const Local& local = m_records.places[static_cast<std::size_t>(m_direct->place)];
-        const Point<double> middle = m_map(0.5 * (box.x0 + box.x1), 0.5 * (box.y0 + box.y1), local);
-        if (!BlockWriter(m_goal, m_blocks).computed(box, middle, m_direct->error, m_direct->precise))
-            return emit(box, Block::Kind::exact);
-        m_balance += pixels_of(box) * (1 - m_direct->saving);
+    /// For DirectBlocks.
+    void leave_direct(const Box& box) {
+        emit(box, Block::Kind::computed);
+        m_blocks.back().precise = m_direct->precise;
         m_blocks.back().data = &m_records;
-        m_blocks.back().record = m_direct->place;
-        set_source(m_blocks.back(), m_map.source_piece(local));
+        m_balance += pixels_of(box) * (1 - m_direct->saving);
     }
 
     Local local_about(const Box& box) const {
@@ -334,9 +295,13 @@ class Planner {
 
     /// Outside when every pixel's footprint lies beyond the source image's edges.
     Cover culled(const Box& box, const Local& local) const {
-        const auto p = enclose<1>(box, local);
         const Size size = m_map.source_size();
         const SourceEdges edges = m_map.source_edges();
+        const Point<Interval> at = m_map(across(box), down(box), local);
+        const auto meets = [](const Interval& a, int length) { return a.hi >= 0 && a.lo <= length; };
+        if ((!edges.across || meets(at.x, size.width)) && (!edges.down || meets(at.y, size.height)))
+            return Cover::inside;
+        const auto p = enclose<1>(box, local);
         const double margin = footprint_reach(p, size);
         const auto beyond = [&](const Jet<Interval, 1>& f, int length) {
             return f.c[0].hi < -margin || f.c[0].lo > length + margin;
@@ -760,9 +725,7 @@ class Planner {
     void set_source(Block& block, int source_piece) const {
         block.piece = m_piece;
         block.source_piece = source_piece;
-        // The turn that brings the block's middle into the image.
-        if (const int period = m_map.period(); period > 0)
-            block.base_x -= static_cast<int>(std::floor(static_cast<double>(block.base_x) / period)) * period;
+        turn_into_image(block, m_map.period());
     }
 
     void emit(const Box& box, Block::Kind kind) {
@@ -825,9 +788,7 @@ class Planner {
         body();
         const auto kind = m_direct ? Block::Kind::computed : Block::Kind::exact;
         const auto is_left = [&](const Block& b) { return b.kind == kind; };
-        const int most_width = m_direct ? m_direct->width : kBlockWidth,
-                  most_height = m_direct ? m_direct->height : kBlockHeight;
-        if (box.width() <= most_width && box.height() <= most_height &&
+        if (is_block(box) &&
             std::all_of(m_blocks.begin() + static_cast<std::ptrdiff_t>(first), m_blocks.end(), is_left)) {
             m_blocks.resize(first);
             leave(box);
@@ -847,7 +808,8 @@ class Planner {
     double m_over_direct;  ///< the same in direct pixels, over those where they serve
     double m_margin;  ///< of what is enclosed of a box: from its edges to the nodes that blocks are made of
     std::optional<LinearPart> m_linear;
-    std::optional<Direct> m_direct;  ///< what may serve all of the box that is being settled
+    std::optional<Direct> m_direct;  ///< what is expected to serve most of the box that is being settled
+    Bases m_bases;
 };
 
 /// Gives exact blocks the bound of their rounding, and cuts out of them the pixels that need long double.
@@ -919,6 +881,8 @@ void FormulaPlan<Map>::plan(const Box& box, int piece, Blocks& blocks) const {
         planner.exact(box);
     else
         planner.settle(box);
+    if constexpr (DirectMap<Map>)
+        planned = DirectBlocks<Map>(m_map, planner.goal(), records->direct).placed(planned);
     blocks.reserve(planned.size());
     ExactBounds<Map> exact(m_map, m_options.tol, blocks);
     for (const Block& block : planned)
@@ -926,7 +890,7 @@ void FormulaPlan<Map>::plan(const Box& box, int piece, Blocks& blocks) const {
             exact.place(block);
         else
             blocks.push_back(block);
-    if (!records->terms.empty() || !records->precise.empty() || !records->places.empty())
+    if (!records->terms.empty() || !records->precise.empty() || !records->direct.readings.empty())
         blocks.data = records;
 }
 
@@ -967,9 +931,12 @@ Jacobian FormulaPlan<Map>::jacobian(double x, double y, int piece) const noexcep
 }
 
 template <class Map>
-const typename Map::Local& FormulaPlan<Map>::place_of(const Block& block) {
-    const auto& records = static_cast<const planner_detail::Records<typename Map::Local>&>(*block.data);
-    return records.places[static_cast<std::size_t>(block.record)];
+NearBlock<typename Map::Local, float> FormulaPlan<Map>::near_in_float(const Block& block) {
+    return planner_detail::near_block<typename Map::Local, float>(block);
+}
+template <class Map>
+NearBlock<typename Map::Local, double> FormulaPlan<Map>::near_in_double(const Block& block) {
+    return planner_detail::near_block<typename Map::Local, double>(block);
 }
 
 }  // namespace anamorph

@@ -26,19 +26,20 @@ void PanoramaPlan::exact_rows(const Block& block, int begin, int end, const Doub
     }
 }
 
-Panorama::Direct PanoramaPlan::direct(const Block& block) const {
-    const Box& box = block.box;
-    Panorama::Direct direct = map().direct(0.5 * (box.x0 + box.x1), 0.5 * (box.y0 + box.y1), place_of(block));
-    // The block's base may be some turns away.
-    if (const int period = map().period(); period > 0)
-        direct.middle.x -= std::round((direct.middle.x - block.base_x) / period) * period;
-    return direct;
+namespace {
+
+/// x of a point, some turns away where the base of its block is.
+double beside(const Block& block, double x, int period) {
+    return period > 0 ? x - std::round((x - block.base_x) / period) * period : x;
 }
 
+}  // namespace
+
 void PanoramaPlan::direct_rows(const Block& block, int begin, int end, const DoubleRows& to) const {
-    const Panorama::Direct found = direct(block);
-    const simd::DirectBlock<double> at{map().target(),    map().source(),     place_of(block), found.bases,
-                                       block.box.width(), block.box.height(), found.middle};
+    const NearBlock<Panorama::Local, double> near = near_in_double(block);
+    const Point<double> middle{beside(block, near.middle.x, map().period()), near.middle.y};
+    const simd::DirectBlock<double> at{map().target(),    map().source(),     near.place, near.bases,
+                                       block.box.width(), block.box.height(), middle};
     for (int row = begin; row < end; ++row) {
         const std::ptrdiff_t k = (row - begin) * to.stride;
         simd::direct_row(at, row, to.x + k, to.y + k);
@@ -48,11 +49,10 @@ void PanoramaPlan::direct_rows(const Block& block, int begin, int end, const Dou
 
 /// Of a part of a block, counted from its corner.
 void PanoramaPlan::direct_rows(const Block& block, const Box& part, const PointRows& to) const {
-    const Panorama::Direct found = direct(block);
-    const std::vector<float> bases(found.bases.begin(), found.bases.end());
-    const Point<float> middle{static_cast<float>(found.middle.x - block.base_x),
-                              static_cast<float>(found.middle.y - block.base_y)};
-    simd::direct_rows({map().target(), map().source(), place_of(block), bases, block.box.width(),
+    const NearBlock<Panorama::Local, float> near = near_in_float(block);
+    const Point<float> middle{static_cast<float>(beside(block, near.middle.x, map().period()) - block.base_x),
+                              static_cast<float>(near.middle.y - block.base_y)};
+    simd::direct_rows({map().target(), map().source(), near.place, near.bases, block.box.width(),
                        block.box.height(), middle},
                       part, to);
 }

@@ -22,7 +22,6 @@ class PanoramaPlan final : public FormulaPlan<Panorama> {
     void computed(std::span<const Block> layers, const PointRows* to) const noexcept override;
 
   private:
-    Panorama::Direct direct(const Block& block) const;
     void direct_rows(const Block& block, const Box& part, const PointRows& to) const;
     void direct_rows(const Block& block, int begin, int end, const DoubleRows& to) const;
 };

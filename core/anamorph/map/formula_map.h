@@ -26,6 +26,7 @@
 #include "anamorph/geometry/point.h"
 #include "anamorph/geometry/size.h"
 #include "anamorph/number/jet.h"
+#include "anamorph/number/near_bound.h"
 
 namespace anamorph {
 
@@ -75,16 +76,22 @@ concept FormulaMap = requires(const Map& map, const typename Map::Local& local, 
     { map.template exact_error<long double>(x, x, piece) } -> std::same_as<double>;
 };
 
+/// What a map is near the middle of a block: the source point there, and a bound of the error of its pixels'.
+struct NearReading {
+    Point<double> middle;
+    double error;
+};
+
 /// A map whose plan reads it pixel by pixel near the middles of blocks as well (FormulaPlan's computed blocks), because
 /// lanes are compiled for it: simd/direct_rows.h.
 template <class Map>
 concept DirectMap = FormulaMap<Map> &&
-    requires(const Map& map, const typename Map::Local& local, double a, const Interval& x) {
+    requires(const Map& map, const typename Map::Local& local, double a, Bases& bases) {
     /// Does it read nothing that has no such bound anywhere?
     { map.may_be_direct() } -> std::same_as<bool>;
-    /// Bounds the error over blocks of up to the given half sizes with middles in a box, read in float or in double.
-    { map.template direct_error<float>(x, x, a, a, local) } -> std::same_as<double>;
-    { map.template direct_error<double>(x, x, a, a, local) } -> std::same_as<double>;
+    /// About (a, a), of pixels up to (a, a) away, read in float or in double. Its bases are appended.
+    { map.template direct<float>(a, a, a, a, local, bases) } -> std::same_as<NearReading>;
+    { map.template direct<double>(a, a, a, a, local, bases) } -> std::same_as<NearReading>;
 };
 
 /// What all maps of one flat picture to another have in common. `Formula`, derived from this, gives

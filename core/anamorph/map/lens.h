@@ -153,17 +153,12 @@ Jet<T, N> shrink(const LensTerms& lens, const Jet<T, N>& value);
 /// Near a known value by its Taylor polynomial there: the coefficients are bases, in falling order.
 template <class Real>
 NearBound<Real> shrink(const LensTerms& lens, const NearBound<Real>& value);
-NearBase shrink(const LensTerms& lens, const NearBase& value);
 
-/// Lenses with a tangential part are not followed: there is no bound.
+/// Lenses with a tangential part are not followed: there is no bound, and no base is asked for.
 template <class Real>
 Point<NearBound<Real>> settled(const LensTerms&, const Point<NearBound<Real>>& v) {
-    const auto unbounded = rounded_detail::unbounded<Real>();
+    const auto unbounded = RestBound<Real>::unbounded();
     return {{v.x.base, unbounded}, {v.y.base, unbounded}};
-}
-/// So that no base is asked for.
-inline Point<NearBase> settled(const LensTerms&, const Point<NearBase>& v) {
-    return v;
 }
 /// And settled().
 Point<Interval> settled(const LensTerms& lens, const Point<Interval>& v);
@@ -520,34 +515,25 @@ Jet<Interval, N> shrink_of(const LensTerms& lens, const Point<Jet<Interval, N>>&
 }
 
 /// The Taylor polynomial about a base b, with c what encloses its next coefficient wherever the value may be: it is off by
-/// |c| |rest|^5 at most.
+/// |c| |rest|^5 at most. Bases and the loop over a block's pixels have the coefficients as they are computed here.
 template <class Real>
 NearBound<Real> shrink(const LensTerms& lens, const NearBound<Real>& value) {
-    using R = Rounded<Real>;
     constexpr int kDegree = ComputedSeries::kDegree;
-    const R& rest = value.rest;
-    const double far = magnitude(rest.range) + rest.error;
-    const ComputedSeries at = computed_shrink(lens, value.base);
-    const Interval all = value.base + Interval(-far, far);
-    const Interval beyond = computed_shrink(lens, {std::max(all.lo, 0.0), all.hi}).exact.c[kDegree + 1];
-    Interval bases[kDegree + 1];
-    for (int k = 0; k <= kDegree; ++k) bases[k] = at.exact.c[k] + Interval(-at.error[k], at.error[k]);
+    const RestBound<Real>& rest = value.rest;
+    const double far = rest.computed_size(), base = value.base.value;
+    const auto series = lens_detail::shrink_series<kDegree>(lens, lens_formula::radial_root(lens, base));
+    WrittenBase bases[kDegree + 1];
+    for (int k = kDegree; k >= 0; --k) bases[k] = WrittenBase::written(series.c[k]);
     NearBound<Real> found = NearBound<Real>::series(bases, rest);
+    const ComputedSeries at = computed_shrink(lens, Interval(base));
+    const Interval all = Interval(base) + Interval(-far, far);
+    const Interval beyond = computed_shrink(lens, {std::max(all.lo, 0.0), all.hi}).exact.c[kDegree + 1];
     // What the bases are off is at most so much of all of the sum.
     double off = magnitude(beyond);
     for (int k = kDegree; k >= 0; --k) off = off * far + at.error[k];
     off *= 1 + 0x1p-40;
-    found.rest = {found.rest.range + Interval(-off, off), 0, found.rest.error + off};
+    found.rest = {found.rest.middle, found.rest.radius + off, found.rest.error + off};
     return found;
-}
-/// The same as bases and the loop over a block's pixels have it.
-inline NearBase shrink(const LensTerms& lens, const NearBase& value) {
-    constexpr int kDegree = ComputedSeries::kDegree;
-    const auto series =
-        lens_detail::shrink_series<kDegree>(lens, lens_formula::radial_root(lens, value.base.value));
-    WrittenBase bases[kDegree + 1];
-    for (int k = kDegree; k >= 0; --k) bases[k] = WrittenBase::written(series.c[k]);
-    return NearBase::series(bases, value.rest);
 }
 
 template <class T, int N>

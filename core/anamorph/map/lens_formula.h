@@ -251,9 +251,6 @@ template <class T>
 constexpr bool leaves_out() {
     return requires {
         T::kDegree;
-    }
-    || requires {
-        T::Pair::kBounds;
     };
 }
 

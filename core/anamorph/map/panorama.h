@@ -104,20 +104,14 @@ class Panorama {
     template <class Real>
     double exact_error(const Ray<Rounded<Real>>& ray) const;
 
-    /// The map about a target point, read pixel by pixel (number/near.h): its source point, and the bases.
-    struct Direct {
-        Point<double> middle;
-        Bases bases;
-    };
     /// Is no lens with a tangential part read the way that is a root?
     bool may_be_direct() const;
-    /// About (x, y).
-    Direct direct(double x, double y, const Local& local) const;
-    /// Bounds the error of what is read so in Real, float (less the middle) or double: for target points up to
-    /// half_width and half_height from a middle in the box x, y. Infinite or NaN where none is known.
+    /// The map read with Real, float or double, near the middle (x, y) of a block of pixels (number/near.h), whose centres
+    /// are up to half_width and half_height away. Bases are written behind those that are there. `error` is infinite or NaN
+    /// where none is known.
     template <class Real>
-    double direct_error(const Interval& x, const Interval& y, double half_width, double half_height,
-                        const Local& local) const;
+    NearReading direct(double x, double y, double half_width, double half_height, const Local& local,
+                       Bases& bases) const;
 
   private:
     /// The entries of a product of rotations to and from a local frame: each of its two angles may be off

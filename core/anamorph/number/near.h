@@ -10,11 +10,11 @@
 //   sin A - s = c sin da - s (1 - cos da)     cos A - c = -s sin da - c (1 - cos da)
 //   angle of (X, Y) - that of (x, y) = atan((x dy - y dx) / (x X + y Y))
 //
-// Base and Rest are numbers. They are read in three pairs:
+// Base and Rest are numbers. They are read in two pairs:
 //
-//   double                    no rest          the bases, written down in order (number/near_bound.h)
+//   double                    RestBound        the bases, written down in order, and a bound of |computed - exact| over all
+//                                              pixels of a block (number/near_bound.h)
 //   read from there           lanes            a block's pixels (simd/direct_rows.cpp)
-//   Interval                  Rounded          bounds |computed - exact| over all blocks of a box (near_bound.h)
 //
 // NearRest<Base, Rest> says what belongs to a pair: of(base), the base as a rest; off(rest, base, units), the rest
 // where the base was rounded by so many units of 2^-53 of another; choose(condition of bases, a, b). Rests offer

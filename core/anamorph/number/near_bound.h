@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Numbers near a known one (number/near.h) as they are read before a block is drawn: to bound what float or double does
-// to its pixels, and to write down its bases.
+// Numbers near a known one (number/near.h) as they are read before a block is drawn: their bases, written down, and what
+// float or double makes of the rests, bounded over all of the block's pixels.
 #pragma once
 
 #include <vector>
@@ -13,7 +13,96 @@ namespace anamorph {
 #include "anamorph/number/near.h"
 #undef ANAMORPH_INLINE
 
-// --- bounds ---
+// --- rests ---
+
+/// Stands for the rests of all pixels of a block: the exact ones lie within `radius` of `middle`, and what is computed in
+/// Real, float or double, lies within `error` of them. Errors are passed on as by Rounded. A bound that cannot be had is
+/// infinite or NaN: test !(error <= tol).
+template <class Real>
+struct RestBound {
+    using R = Rounded<Real>;
+    static constexpr double kUnit = R::kUnit;
+
+    double middle = 0, radius = 0, error = 0;
+
+    RestBound() = default;
+    explicit RestBound(double exact) : middle(exact) {}
+    RestBound(double about, double spread, double bound) : middle(about), radius(spread), error(bound) {}
+
+    static RestBound unbounded() { return {0, HUGE_VAL, HUGE_VAL}; }
+    /// Of these values, off by `bound` before they are rounded by `unit` of their size. The middle is itself rounded, and so
+    /// are the sums and products of which the others are made, fewer than 32 times, all of one sign.
+    static RestBound result(double middle, double radius, double bound, double unit) {
+        RestBound r{middle, radius + 0x1p-53 * std::fabs(middle), 0};
+        r.radius = r.radius * rounded_detail::kUp + interval_detail::kSmallest;
+        r.error = (bound + unit * (r.size() + bound)) * rounded_detail::kUp + R::kLeast;
+        if (std::is_same_v<Real, float> &&
+            !(r.computed_size() < double{std::numeric_limits<float>::max()} / 4))
+            r.error = HUGE_VAL;
+        return r;
+    }
+    /// Of a function of libm whose slope is at most 1, with this value at a.middle, which mostly is 0 there.
+    static RestBound of_function(const RestBound& a, double (*function)(double), double unit) {
+        const double middle = a.middle == 0 ? 0 : function(a.middle);
+        return result(middle, a.radius + interval_detail::kLibmMargin * std::fabs(middle), a.error, unit);
+    }
+
+    /// Largest magnitude of the exact ones, and of the computed ones.
+    double size() const { return std::fabs(middle) + radius; }
+    double computed_size() const { return size() + error; }
+
+    friend RestBound operator-(const RestBound& a) { return {-a.middle, a.radius, a.error}; }
+    friend RestBound operator+(const RestBound& a, const RestBound& b) {
+        return result(a.middle + b.middle, a.radius + b.radius, a.error + b.error, kUnit);
+    }
+    friend RestBound operator-(const RestBound& a, const RestBound& b) { return a + -b; }
+    friend RestBound operator*(const RestBound& a, const RestBound& b) {
+        const double in_a = a.size(), in_b = b.size();
+        return result(a.middle * b.middle, std::fabs(a.middle) * b.radius + a.radius * in_b,
+                      a.error * in_b + b.error * in_a + a.error * b.error +
+                          kUnit * a.computed_size() * b.computed_size(),
+                      0);
+    }
+    /// F / G - q = (F - q G) / G, and f - q g is a rounding of f; errors as of Rounded.
+    friend RestBound operator/(const RestBound& f, const RestBound& g) {
+        const double inverse = 1 / (std::fabs(g.middle) - g.radius);
+        const double feedback = inverse * (g.error + 2 * kUnit * g.computed_size());
+        if (!(inverse > 0 && feedback < 0.5)) return unbounded();
+        const double middle = f.middle / g.middle, q = std::fabs(middle);
+        const double radius = inverse * (f.radius + q * g.radius + 0x1p-52 * std::fabs(f.middle));
+        const double error =
+            (inverse * (f.error + 2 * kUnit * f.computed_size()) + feedback * (q + radius)) / (1 - feedback);
+        return result(middle, radius, error, 0);
+    }
+    /// sqrt F - sqrt f = (F - f) / (sqrt F + sqrt f)
+    friend RestBound sqrt(const RestBound& f) {
+        const double low = f.middle - f.radius;
+        if (!(low > f.error)) return unbounded();
+        const double least = std::sqrt(low), middle = std::sqrt(f.middle);
+        return result(middle, f.radius / (least + middle), f.error / least, kUnit);
+    }
+    friend RestBound asinh(const RestBound& a) { return of_function(a, std::asinh, R::kLibm); }
+    /// tanh a, and 1 / cosh a, whose slope is at most |a|.
+    friend RestBound scaled_sinh(const RestBound& a, RestBound& s) {
+        if (!(a.computed_size() <= 1)) return s = unbounded();
+        s = of_function(a, std::tanh, R::kLibm);
+        const double middle = a.middle == 0 ? 1 : 1 / std::cosh(a.middle);
+        return result(middle, a.size() * a.radius + interval_detail::kLibmMargin, a.error + R::kLibm,
+                      2 * kUnit);
+    }
+    friend Certainty is_negative(const RestBound& a) {
+        const double off = a.radius + a.error;
+        return is_negative(Interval(a.middle - off, a.middle + off));
+    }
+    /// No block is zero throughout, but for constants.
+    friend bool is_zero(const RestBound& a) { return a.computed_size() == 0; }
+    /// One of two, which are the same where rounding decides between them.
+    friend RestBound hull(const RestBound& a, const RestBound& b) {
+        const double middle = 0.5 * (a.middle + b.middle), apart = 0.5 * std::fabs(a.middle - b.middle);
+        return result(middle, apart + rounded_detail::larger(a.radius, b.radius),
+                      rounded_detail::larger(a.error, b.error), 0);
+    }
+};
 
 namespace rounded_detail {
 
@@ -21,73 +110,34 @@ namespace rounded_detail {
 inline constexpr double kRestUnits = 4;
 inline constexpr double kEighth = 0.785398163397448, kTangentOfSixteenth = 0.414213562373095;
 
-template <class Real>
-Rounded<Real> unbounded() {
-    return {Interval::all(), 0, HUGE_VAL};
-}
-
 }  // namespace rounded_detail
 
 /// sin a and 1 - cos a, |a| <= pi / 4; unbounded beyond.
 template <class Real>
-void sine_versine(const Rounded<Real>& a, Rounded<Real>& s, Rounded<Real>& v) {
-    const double most = magnitude(a.range) + a.error;
+void sine_versine(const RestBound<Real>& a, RestBound<Real>& s, RestBound<Real>& v) {
+    const double most = a.computed_size();
     if (!(most <= rounded_detail::kEighth)) {
-        s = v = rounded_detail::unbounded<Real>();
+        s = v = RestBound<Real>::unbounded();
         return;
     }
-    const Interval sine = sin(a.range), half_sine = sin(a.range * 0.5);
-    const Interval versine = square(half_sine) * 2.0;
-    const double unit = rounded_detail::kRestUnits * Rounded<Real>::kUnit;
-    s = rounded_detail::result<Real>(sine, 0, a.error + unit * (magnitude(sine) + a.error), 0);
-    // |sin| <= most.
-    const double moved = a.error * most;
-    v = rounded_detail::result<Real>(versine, 0, moved + unit * (magnitude(versine) + moved), 0);
+    // The slope of 1 - cos is at most |a|; it is 2 sin^2(a / 2), and at most half of a^2.
+    const double unit = rounded_detail::kRestUnits * RestBound<Real>::kUnit, size = a.size();
+    s = RestBound<Real>::of_function(a, std::sin, unit);
+    const double half_sine = a.middle == 0 ? 0 : std::sin(0.5 * a.middle), middle = 2 * half_sine * half_sine;
+    const double radius = a.middle == 0 ? 0.5 * size * size : size * a.radius;
+    v = RestBound<Real>::result(middle, radius + 4 * interval_detail::kLibmMargin * middle, a.error * most,
+                                unit);
 }
 /// atan a, |a| <= tan(pi / 8); unbounded beyond.
 template <class Real>
-Rounded<Real> small_atan(const Rounded<Real>& a) {
-    if (!(magnitude(a.range) + a.error <= rounded_detail::kTangentOfSixteenth))
-        return rounded_detail::unbounded<Real>();
-    const Interval angle = atan2(a.range, Interval(1.0));
-    const double unit = rounded_detail::kRestUnits * Rounded<Real>::kUnit;
-    return rounded_detail::result<Real>(angle, 0, a.error + unit * (magnitude(angle) + a.error), 0);
+RestBound<Real> small_atan(const RestBound<Real>& a) {
+    if (!(a.computed_size() <= rounded_detail::kTangentOfSixteenth)) return RestBound<Real>::unbounded();
+    return RestBound<Real>::of_function(a, std::atan, rounded_detail::kRestUnits * RestBound<Real>::kUnit);
 }
-
-template <class Real>
-struct NearRest<Interval, Rounded<Real>> {
-    using R = Rounded<Real>;
-    static constexpr bool kBounds = true;
-
-    static R of(const Interval& base) {
-        if (std::is_same_v<Real, double>) return R(base, 0, 0);
-        const bool kept = base.lo == base.hi && static_cast<double>(static_cast<Real>(base.lo)) == base.lo;
-        return kept ? R(base.lo) : rounded_detail::result<Real>(base, 0, 0, R::kUnit);
-    }
-    static R off(const R& rest, const Interval& base, double units) {
-        const double by = units * 0x1p-53 * magnitude(base) * rounded_detail::kUp;
-        return by == 0 ? rest : R(rest.range + Interval(-by, by), 0, (rest.error + by) * rounded_detail::kUp);
-    }
-    static Near<Interval, R> near(double value, double error) {
-        return {Interval(value), R(Interval(-error, error), 0, error)};
-    }
-    template <class T>
-    static T choose(Certainty condition, const T& a, const T& b) {
-        return select(condition, a, b);
-    }
-    template <class T>
-    static T choose(bool condition, const T& a, const T& b) {
-        return condition ? a : b;
-    }
-};
-
-/// Bounds what Real, float or double, does to a formula that is read near known points.
-template <class Real>
-using NearBound = Near<Interval, Rounded<Real>>;
 
 // --- bases ---
 
-/// The bases of one reading of a formula, in order.
+/// The bases of readings of a formula, in order.
 using Bases = std::vector<double>;
 
 /// A base in double. The result of every operation is written down where WrittenBase::to points; decisions as 1 or 0.
@@ -139,38 +189,31 @@ struct WrittenBase {
     friend bool is_zero(const WrittenBase& a) { return written_decision(a.value == 0); }
 };
 
-/// The rest of a number of which only the base is asked for.
-struct NoRest {
-    NoRest() = default;
-    explicit NoRest(double) {}
-    friend NoRest operator-(NoRest) { return {}; }
-    friend NoRest operator+(NoRest, NoRest) { return {}; }
-    friend NoRest operator-(NoRest, NoRest) { return {}; }
-    friend NoRest operator*(NoRest, NoRest) { return {}; }
-    friend NoRest operator/(NoRest, NoRest) { return {}; }
-    friend NoRest sqrt(NoRest) { return {}; }
-    friend NoRest asinh(NoRest) { return {}; }
-    friend NoRest small_atan(NoRest) { return {}; }
-    friend void sine_versine(NoRest, NoRest&, NoRest&) {}
-    friend NoRest scaled_sinh(NoRest, NoRest&) { return {}; }
-    friend bool is_negative(NoRest) { return false; }
-    friend bool is_zero(NoRest) { return false; }
-};
-inline NoRest select(bool, NoRest, NoRest) {
-    return {};
-}
+template <class Real>
+struct NearRest<WrittenBase, RestBound<Real>> {
+    using R = RestBound<Real>;
 
-template <>
-struct NearRest<WrittenBase, NoRest> {
-    static NoRest of(const WrittenBase&) { return {}; }
-    static NoRest off(NoRest, const WrittenBase&, double) { return {}; }
+    static R of(const WrittenBase& base) {
+        const bool kept = static_cast<double>(static_cast<Real>(base.value)) == base.value;
+        return kept ? R(base.value) : R::result(base.value, 0, 0, R::kUnit);
+    }
+    /// Nor are bases known better than to what underflows.
+    static R off(const R& rest, const WrittenBase& base, double units) {
+        const double by = units * (0x1p-53 * std::fabs(base.value) + interval_detail::kSmallest);
+        return {rest.middle, (rest.radius + by) * rounded_detail::kUp,
+                (rest.error + by) * rounded_detail::kUp};
+    }
+    static Near<WrittenBase, R> near(double value, double error) {
+        return {WrittenBase(value), R(0, error, error)};
+    }
     template <class T>
     static T choose(bool condition, const T& a, const T& b) {
         return condition ? a : b;
     }
 };
 
-/// Writes down the bases of a formula.
-using NearBase = Near<WrittenBase, NoRest>;
+/// Writes down the bases of a formula, and bounds what Real does to it near them.
+template <class Real>
+using NearBound = Near<WrittenBase, RestBound<Real>>;
 
 }  // namespace anamorph
