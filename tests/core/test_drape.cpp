@@ -1074,5 +1074,49 @@ TEST(Drape, RefusesWhatIsNoCamera) {
     EXPECT_THROW(Shown(large, options).coverage(), Error);
 }
 
+TEST(Drape, NothingIsProvenOfParallelogramsOverWhatIsMissing) {
+    // Two sheets in a plane, 0.3 apart along x, with a column of no numbers between.
+    constexpr int kSide = 24, kColumn = 14;
+    std::vector<float> texels;
+    for (int j = 0; j < kSide; ++j)
+        for (int i = 0; i < kSide; ++i) {
+            const float x = (static_cast<float>(i) + 0.5f) / kSide - 0.5f + (i > kColumn ? 0.3f : 0);
+            texels.insert(texels.end(),
+                          {i == kColumn ? NAN : x, 0.5f - (static_cast<float>(j) + 0.5f) / kSide, 0});
+        }
+    SurfaceSum sum;
+    sum.parts = {{surface_names().size(), 1}};
+    sum.positions = std::make_shared<SampledField>(texels, Size{kSide, kSide}, 3);
+    const std::shared_ptr<const DrapedSurface> surface = make_surface(sum);
+    CameraPose pose;
+    pose.target = {0.1, 0, 0};
+    pose.position = {0.1, 0, 2};
+    const Size screen{100, 100};
+    const Camera camera(pose, glm::dmat3(1.0), glm::dvec3(0.0), screen);
+    for (const double block : {8.0, 20.0, 64.0, 100.0}) {
+        DrapeOptions options;
+        options.scheme = DrapeScheme::oka;
+        options.block = block;
+        const auto drawn = [&](Output output) {
+            options.output = output;
+            const Drape drape(std::make_shared<SharedTree>(surface), camera, {100, 100}, options);
+            std::vector<float> values(static_cast<std::size_t>(screen.width * screen.height));
+            EXPECT_TRUE(drape.draw(nullptr, {0, 0, screen.width, screen.height},
+                                   packed_view(reinterpret_cast<std::byte*>(values.data()),
+                                               PixelType::float32, screen.width, screen.height, 1),
+                                   serial_for));
+            return values;
+        };
+        const std::vector<float> errors = drawn(Output::error), bounds = drawn(Output::bound);
+        int beyond = 0, unknown = 0;
+        for (std::size_t i = 0; i < errors.size(); ++i) {
+            beyond += errors[i] > bounds[i];
+            unknown += std::isnan(errors[i]) && std::isfinite(bounds[i]);
+        }
+        EXPECT_EQ(beyond, 0) << block;
+        EXPECT_EQ(unknown, 0) << block;
+    }
+}
+
 }  // namespace
 }  // namespace anamorph

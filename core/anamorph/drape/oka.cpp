@@ -106,6 +106,12 @@ double length_of(Taylor p, const QuarterRanges& ranges, double right, double dow
     return length;
 }
 
+/// Is the surface there on all of a block? Taylor's formula says nothing of what lies beyond a part that is missing.
+bool is_whole(const OkaBlock& map, const DrapedSurface& surface, double h, double k) {
+    return surface.missing(Interval(-h, h) + Interval(map.u), Interval(-k, k) + Interval(map.v)) ==
+           Certainty::no;
+}
+
 /// What g and its slopes at a block's centre are off those of its map.
 Taylor off_centre(const OkaBlock& map, const DrapedSurface& surface, const Camera& camera) {
     Taylor off = seen_range(camera, surface.range(Interval(map.u), Interval(map.v)));
@@ -122,6 +128,7 @@ Taylor off_centre(const OkaBlock& map, const DrapedSurface& surface, const Camer
 /// twentieth of the time.
 double quick_bound_of(const OkaBlock& map, const DrapedSurface& surface, const Camera& camera, double h,
                       double k) {
+    if (!is_whole(map, surface, h, k)) return HUGE_VAL;
     Taylor off = off_centre(map, surface, camera);
     const Taylor bends = seen_range(
         camera, surface.range(Interval(-h, h) + Interval(map.u), Interval(-k, k) + Interval(map.v)));
@@ -144,6 +151,7 @@ double quick_bound_of(const OkaBlock& map, const DrapedSurface& surface, const C
 
 /// The same, part by part.
 double bound_of(const OkaBlock& map, const DrapedSurface& surface, const Camera& camera, double h, double k) {
+    if (!is_whole(map, surface, h, k)) return HUGE_VAL;
     const Taylor off = off_centre(map, surface, camera);
     double size = 0;
     for (const double right : {-h, h})

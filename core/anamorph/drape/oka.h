@@ -83,7 +83,7 @@ class OkaRaster {
     ///     |g - a0 + (g_u - a1) s + (g_v - a2) t + g_uu s^2 / 2 + g_uv s t + g_vv t^2 / 2|
     /// with g, g_u and g_v at the centre and, for (s, t) in each sixteenth of each quarter of the block, a mean of the second
     /// derivatives over the quarters of that quarter that the way there from the centre passes, part by part of the way.
-    /// Infinite where that is not known.
+    /// Infinite where that is not known, and where a part of the block is missing.
     double bound_of(std::size_t block) const;
     /// Of all blocks, the largest bound: only of those is it worked out of which a quick one does not say that another's is
     /// larger.
