@@ -9,6 +9,7 @@
 #include <span>
 
 #include "anamorph/approx/block_writer.h"
+#include "anamorph/approx/cubic_terms.h"
 #include "anamorph/approx/direct_blocks.h"
 #include "anamorph/approx/formula_plan.h"
 #include "anamorph/approx/lens_jets.h"
@@ -73,11 +74,7 @@ inline double length(double x, double y) {
 
 /// What a region's bicubic blocks are made of.
 struct Cubics : RegionData {
-    /// Beyond a quadratic: the coefficients of s^3, s^2 t, s t^2 and t^3.
-    struct Terms {
-        float x[4], y[4];
-    };
-    std::vector<Terms> terms;
+    std::vector<CubicTerms> terms;
     /// Of precise ones all coefficients up to degree 4, as in Jet, less the base.
     struct Precise {
         double x[15], y[15];
@@ -86,15 +83,8 @@ struct Cubics : RegionData {
 };
 
 inline BlockPolynomial cubic_of(const Block& block) {
-    BlockPolynomial p = quadratic_of(block);
-    p.degree = 3;
     const auto& cubics = static_cast<const Cubics&>(*block.data);
-    const Cubics::Terms& terms = cubics.terms[static_cast<std::size_t>(block.record)];
-    for (int j = 0; j < 4; ++j) {
-        p.c[j][3 - j] = terms.x[j];
-        p.c[j][7 - j] = terms.y[j];
-    }
-    return p;
+    return with_cubic_terms(block, cubics.terms[static_cast<std::size_t>(block.record)]);
 }
 
 /// A row of a polynomial in double: by Horner's rule for t, then for s, as simd/block_sampler.cpp does in float.
@@ -689,9 +679,7 @@ class Planner {
     }
     bool emit_cubic(const Box& box, int source_piece, const double* cx, const double* cy, double error) {
         if (!BlockWriter(m_options.tol, m_blocks).cubic(box, cx, cy, error)) return false;
-        Cubics::Terms& terms = m_records.terms.emplace_back();
-        std::copy_n(cx + 6, 4, terms.x);
-        std::copy_n(cy + 6, 4, terms.y);
+        m_records.terms.emplace_back(cx, cy);
         finish(box, source_piece);
         m_blocks.back().data = &m_records;
         m_blocks.back().record = static_cast<int>(m_records.terms.size()) - 1;
