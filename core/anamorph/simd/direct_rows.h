@@ -22,7 +22,7 @@ struct DirectBlock {
 };
 
 /// The pixels of a part of the block, counted from its corner, as offsets from its base; row by row from the start of
-/// `to` on. What is computed and in what order is what Panorama::direct_error() bounds. The same bits on all instruction
+/// `to` on. What is computed and in what order is what Panorama::direct() bounds. The same bits on all instruction
 /// sets.
 void direct_rows(const DirectBlock<float>& block, const Box& part, const PointRows& to);
 
