@@ -310,8 +310,8 @@ class Bench {
             r.bound_px = c.bound;
             r.exact_fraction = c.exact_fraction;
             r.error = c.points ? accuracy(c.points(), truth) : Accuracy{0, 0, 0};
-            if (c.scheme == "automatic" && r.exact_fraction < 1 &&
-                !(r.error.max <= r.bound_px && r.bound_px <= c.tol))
+            if (c.scheme == "automatic" &&
+                !(r.error.max <= r.bound_px && (c.tol == 0 || r.bound_px <= c.tol)))
                 m_report.failures.push_back(scene.name + ", tol " + std::to_string(c.tol) +
                                             ": the bound or the tolerance is broken");
             m_report.add(r);
