@@ -68,26 +68,26 @@ struct RestBound {
         const double inverse = 1 / (std::fabs(g.middle) - g.radius);
         const double feedback = inverse * (g.error + 2 * kUnit * g.computed_size());
         if (!(inverse > 0 && feedback < 0.5)) return unbounded();
-        const double middle = f.middle / g.middle, q = std::fabs(middle);
-        const double radius = inverse * (f.radius + q * g.radius + 0x1p-52 * std::fabs(f.middle));
-        const double error =
-            (inverse * (f.error + 2 * kUnit * f.computed_size()) + feedback * (q + radius)) / (1 - feedback);
-        return result(middle, radius, error, 0);
+        const double quotient = f.middle / g.middle, q = std::fabs(quotient);
+        const double spread = inverse * (f.radius + q * g.radius + 0x1p-52 * std::fabs(f.middle));
+        const double bound =
+            (inverse * (f.error + 2 * kUnit * f.computed_size()) + feedback * (q + spread)) / (1 - feedback);
+        return result(quotient, spread, bound, 0);
     }
     /// sqrt F - sqrt f = (F - f) / (sqrt F + sqrt f)
     friend RestBound sqrt(const RestBound& f) {
         const double low = f.middle - f.radius;
         if (!(low > f.error)) return unbounded();
-        const double least = std::sqrt(low), middle = std::sqrt(f.middle);
-        return result(middle, f.radius / (least + middle), f.error / least, kUnit);
+        const double least = std::sqrt(low), root = std::sqrt(f.middle);
+        return result(root, f.radius / (least + root), f.error / least, kUnit);
     }
     friend RestBound asinh(const RestBound& a) { return of_function(a, std::asinh, R::kLibm); }
     /// tanh a, and 1 / cosh a, whose slope is at most |a|.
     friend RestBound scaled_sinh(const RestBound& a, RestBound& s) {
         if (!(a.computed_size() <= 1)) return s = unbounded();
         s = of_function(a, std::tanh, R::kLibm);
-        const double middle = a.middle == 0 ? 1 : 1 / std::cosh(a.middle);
-        return result(middle, a.size() * a.radius + interval_detail::kLibmMargin, a.error + R::kLibm,
+        const double secant = a.middle == 0 ? 1 : 1 / std::cosh(a.middle);
+        return result(secant, a.size() * a.radius + interval_detail::kLibmMargin, a.error + R::kLibm,
                       2 * kUnit);
     }
     friend Certainty is_negative(const RestBound& a) {
@@ -98,8 +98,8 @@ struct RestBound {
     friend bool is_zero(const RestBound& a) { return a.computed_size() == 0; }
     /// One of two, which are the same where rounding decides between them.
     friend RestBound hull(const RestBound& a, const RestBound& b) {
-        const double middle = 0.5 * (a.middle + b.middle), apart = 0.5 * std::fabs(a.middle - b.middle);
-        return result(middle, apart + rounded_detail::larger(a.radius, b.radius),
+        const double between = 0.5 * (a.middle + b.middle), apart = 0.5 * std::fabs(a.middle - b.middle);
+        return result(between, apart + rounded_detail::larger(a.radius, b.radius),
                       rounded_detail::larger(a.error, b.error), 0);
     }
 };
