@@ -11,7 +11,9 @@
 #include <string>
 #include <vector>
 
+#include "anamorph/approx/panorama_plan.h"
 #include "anamorph/map/chart.h"
+#include "panorama_oracle.h"
 
 namespace anamorph {
 namespace {
@@ -325,6 +327,65 @@ TEST(ProjectionOracle, BothWays) {
         for (int i = 0; i < 2000; ++i) checked.toward(unit({normal(random), normal(random), normal(random)}));
         EXPECT_GT(checked.seen, 400);
     }
+}
+
+// A pole of the source within 1e-11 of a pixel's centre magnifies what rays are off by, constants of the formulas included.
+TEST(ProjectionOracle, ExactPixelsBesideAPoleHoldTheirBounds) {
+    struct View {
+        Case target;
+        Orientation look;
+        int x, y;
+    };
+    const View views[] = {
+        {{Projection::eac, 63, 42}, {0, 3.24e-10, 132.85714285714286}, 10, 20},
+        {{Projection::pannini, 21, 21, 150, 0.3}, {0, 49.435636393783604, -179.999999999105}, 10, 14},
+        {{Projection::pannini, 21, 21, 150, 0.001}, {0, 35.198333844456087, -179.999999999105}, 10, 14},
+        {{Projection::hammer, 40, 20}, {30, 12, 49.5}, 10, 14},
+    };
+    for (const View& v : views) {
+        const Case& c = v.target;
+        SCOPED_TRACE(testing::Message() << name_of(c.projection) << " d " << c.d);
+        const Chart target(c.projection, c.width, c.height, c.fov, PixelSpacing::edges, "", c.d);
+        const Panorama map({Projection::equirectangular, 16384, 8192}, target, v.look);
+        PlanOptions options;
+        options.scheme = Scheme::exact;
+        const PanoramaPlan plan(map, options);
+        const Vector local = Oracle(target, static_cast<Real>(c.d)).ray(v.x + 0.5L, v.y + 0.5L);
+        const oracle::Vector ray = oracle::rotated({local.x, local.y, local.z}, v.look);
+        const Plane truth{azimuth_of({ray.x, ray.y, ray.z}) / (2 * kPi) * 16384 + 8192,
+                          elevation_of({ray.x, ray.y, ray.z}) / kPi * 8192 + 4096};
+        int seen = 0;
+        for (const Block& block : plan.blocks(0)) {
+            const Box& b = block.box;
+            if (v.x < b.x0 || v.x >= b.x1 || v.y < b.y0 || v.y >= b.y1) continue;
+            Point<double> used{};
+            int piece = 0;
+            ASSERT_TRUE(static_cast<const BlockMap&>(plan).exact(block, v.x + 0.5, v.y + 0.5, used, piece));
+            const Real turn = used.x - truth.x, off = turn - std::round(turn / 16384) * 16384;
+            EXPECT_LE(std::hypot(off, used.y - truth.y), block.bound);
+            ++seen;
+        }
+        EXPECT_EQ(seen, 1);
+    }
+}
+
+// Near the largest field of view d + cos a is next to nothing.
+TEST(ProjectionOracle, PanninisScaleIsAsPreciseAsItSays) {
+    const auto cotangent_near_right = [](Real degrees) { return std::tan((90 - degrees) * kDegree); };
+    const auto expect_scale = [](double fov, double d, Real truth) {
+        SCOPED_TRACE(testing::Message() << "fov " << fov << " d " << d);
+        const Chart chart(Projection::pannini, 128, 128, fov, PixelSpacing::edges, "", d);
+        const Constant& scale = chart.pixels_per_unit();
+        const auto bounded = scale.as<Rounded<Real>>();
+        EXPECT_GE(bounded.range.hi, truth);
+        EXPECT_LE(bounded.range.lo, truth);
+        EXPECT_LE(std::fabs(scale.precise() - truth), bounded.error);
+        EXPECT_LE(bounded.error, 1e-7 * truth);
+    };
+    for (const double fov : {359.99999964, 359.99964, 300.0, 90.0})
+        expect_scale(fov, 1, 32 * cotangent_near_right(static_cast<Real>(fov) / 4));
+    for (const double fov : {179.99999982, 179.5, 90.0})
+        expect_scale(fov, 0, 64 * cotangent_near_right(static_cast<Real>(fov) / 2));
 }
 
 }  // namespace

@@ -108,7 +108,7 @@ Chart::Chart(Projection projection, int width, int height, double fov, PixelSpac
         throw Error(prefix + "size", size, "must be 1x1 to 16777216x16777216 pixels");
     if (!(d >= 0 && d <= kMostDistance))
         throw Error(prefix + "d", print(d), "must be from 0 to " + print(kMostDistance));
-    m_setting.d = d;
+    m_setting.distance = d;
     if (m_fov == 0) m_fov = default_fov(projection);
     check_fov(projection, m_fov, m_setting, prefix + "fov");
     if (faces_of(projection).columns > 0)
@@ -132,10 +132,15 @@ void Chart::set_scale(const std::string& prefix, const LensModel& lens) {
         across = (columns - 1) / plane;
         down = (rows - 1) / (plane * rows / columns);
     }
-    m_sx = Constant(across);
-    m_sy = Constant(down);
-    m_per_x = Constant(1 / across);
-    m_per_y = Constant(1 / down);
+    const double units =
+        with_projection(m_projection, [&](auto formulas) { return formulas.width_units(m_fov, m_setting); });
+    const auto constant = [&](long double value) {
+        return Constant(value, static_cast<double>(value) * units * Rounded<long double>::kUnit);
+    };
+    m_sx = constant(across);
+    m_sy = constant(down);
+    m_per_x = constant(1 / across);
+    m_per_y = constant(1 / down);
     if (lens.kind == LensModel::Kind::none) return;
     const Lens::Plane half{plane / 2, plane / 2 * rows / columns, 1 / across, 1 / down};
     const Lensed lensed = with_projection(m_projection, [](auto formulas) { return formulas.lensed; });
@@ -163,7 +168,7 @@ void Chart::set_branches() {
 }
 
 Chart Chart::resized(int width, int height) const {
-    Chart chart(m_projection, width, height, m_fov, m_spacing, "", m_setting.d);
+    Chart chart(m_projection, width, height, m_fov, m_spacing, "", m_setting.distance.d);
     chart.m_lens = m_lens;
     return chart;
 }

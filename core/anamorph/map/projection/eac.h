@@ -21,17 +21,21 @@ struct Eac : CubeFamily {
     /// (tan u, tan v, 1) cos u cos v.
     template <class T>
     static Ray<T> ray(const Point<T>& p, const Setting&) {
-        constexpr double kEighth = std::numbers::pi / 4;
+        const auto eighth = kEighth.as<T>();
         T su, cu, sv, cv;
-        sin_cos(T(p.x * kEighth), su, cu);
-        sin_cos(T(p.y * kEighth), sv, cv);
+        sin_cos(T(p.x * eighth), su, cu);
+        sin_cos(T(p.y * eighth), sv, cv);
         return {su * cv, cu * sv, cu * cv};
     }
     template <class T>
     static Point<T> point(const Ray<T>& r, const Setting&) {
-        constexpr double kPerEighth = 4 / std::numbers::pi;
-        return {atan2(r.x, r.z) * kPerEighth, atan2(r.y, r.z) * kPerEighth};
+        const auto per_eighth = kPerEighth.as<T>();
+        return {atan2(r.x, r.z) * per_eighth, atan2(r.y, r.z) * per_eighth};
     }
+
+  private:
+    static inline const Constant kEighth{std::numbers::pi_v<long double> / 4},
+        kPerEighth{4 / std::numbers::pi_v<long double>};
 };
 
 #endif

@@ -31,6 +31,16 @@ struct Heading {
     }
 };
 
+/// Pannini's distance d, and constants that formulas make of it.
+struct Distance {
+    double d;
+    Constant per_sum;      ///< 1 / (d + 1)
+    Constant less_square;  ///< 1 - d^2
+
+    Distance(double distance = 1)  // NOLINT: the number is the distance
+        : d(distance), per_sum(1 / (1.0L + d)), less_square((1.0L - d) * (1.0L + d)) {}
+};
+
 /// What the formulas of a projection are read with besides the point: the direction from which angles are
 /// counted (`around` is the azimuth, or the angle about the axis of a fisheye; `along` the elevation, or the
 /// angle from that axis), and what a chart has chosen. A neighbourhood of that direction meets no seam, and
@@ -40,7 +50,7 @@ struct Setting {
     double half_width = 0;              ///< of the plane that the picture, or one of its faces, covers
     double centre_x = 0, centre_y = 0;  ///< of the piece in the plane
     double reach = 1;                   ///< the largest tangent that is seen, where not all can be
-    double d = 1;                       ///< Pannini's distance
+    Distance distance;                  ///< of Pannini
 };
 
 /// Which angles a projection's formulas count.

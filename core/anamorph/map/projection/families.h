@@ -30,6 +30,8 @@ struct AnyProjection {
 
     /// The width of the plane that a field of view in degrees covers.
     static long double width(long double degrees, const Setting&) { return degrees * kDegree; }
+    /// How many units of long double the width may be off, with a few more for what is made of it.
+    static double width_units(long double, const Setting&) { return 32; }
     /// Of a lens that shows what is straight behind all around its rim: the width of its whole plane.
     static constexpr double diameter = HUGE_VAL;
     /// The largest tangent of a ray in the corner of a plane of twice this size; 0: there is no limit.

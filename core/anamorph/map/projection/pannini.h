@@ -9,13 +9,19 @@ struct Pannini : AnyProjection {
     static constexpr FieldOfView fov{180, 360, true};
 
     /// cos a stays above this: nearer to the back the picture turns round (d > 1) or its scale has no end.
-    static double least_cosine(const Setting& s) { return -std::min(s.d, 1 / s.d); }
+    static double least_cosine(const Setting& s) { return -std::min(s.distance.d, 1 / s.distance.d); }
     static double most_fov(const FieldOfView& most, const Setting& s) {
         return std::min(most.most, 2 * std::acos(least_cosine(s)) * 180 / std::numbers::pi);
     }
+    /// By t = tan(a / 2): sin a / (d + cos a) = 2 t / ((d + 1) + (d - 1) t^2), which cancels for d < 1 only.
     static long double width(long double degrees, const Setting& s) {
-        const long double half = degrees / 2 * kDegree;
-        return 2 * (s.d + 1.0L) * std::sin(half) / (s.d + std::cos(half));
+        const long double t = tan_of(degrees / 4);
+        return 4 * (s.distance.d + 1.0L) * t / (s.distance.d + 1.0L + (s.distance.d - 1.0L) * t * t);
+    }
+    static double width_units(long double degrees, const Setting& s) {
+        const long double t = tan_of(degrees / 4), falling = (s.distance.d - 1.0L) * t * t;
+        return 32 * static_cast<double>((s.distance.d + 1.0L + std::fabs(falling)) /
+                                        (s.distance.d + 1.0L + falling));
     }
     static double largest_tangent(double half_width, double half_height) {
         return std::max(half_width, half_height);
@@ -24,26 +30,28 @@ struct Pannini : AnyProjection {
     /// Of d > 1, a picture ends where the cylinder's far side begins: X^2 (d^2 - 1) = (d + 1)^2.
     template <class T>
     static T inside(const Point<T>& p, const Setting& s) {
-        const double k = (s.d - 1) / (s.d + 1);
+        const double k = (s.distance.d - 1) / (s.distance.d + 1);
         return 1 * kSlack - square(p.x) * k;
     }
     template <class T>
     static T sees(const Ray<T>& r, const Setting& s) {
-        const T rho = across_length(r), far = (rho * s.d + r.z) * s.reach;
+        const T rho = across_length(r), far = (rho * s.distance.d + r.z) * s.reach;
         return min(min(T(r.z - rho * least_cosine(s)), min(T(far - r.x), T(far + r.x))),
                    min(T(far - r.y), T(far + r.y)));
     }
     /// With k = X^2 / (d + 1)^2: (k + 1) cos a = sqrt(1 + k - k d^2) - k d, from X (d + cos a) = (d + 1) sin a.
     template <class T>
     static Ray<T> ray(const Point<T>& p, const Setting& s) {
-        const T k = square(p.x) * (1 / ((s.d + 1) * (s.d + 1)));
-        const T cosine = (sqrt(without_hair(T(1.0 + k * ((1 - s.d) * (1 + s.d))))) - k * s.d) / (k + 1.0);
-        const T per_s = (cosine + s.d) * (1 / (s.d + 1));
+        const auto per_sum = s.distance.per_sum.as<T>();
+        const T k = square(T(p.x * per_sum));
+        const T cosine =
+            (sqrt(without_hair(T(1.0 + k * s.distance.less_square.as<T>()))) - k * s.distance.d) / (k + 1.0);
+        const T per_s = (cosine + s.distance.d) * per_sum;
         return {p.x * per_s, p.y * per_s, cosine};
     }
     template <class T>
     static Point<T> point(const Ray<T>& r, const Setting& s) {
-        const T k = T(s.d + 1) / (across_length(r) * s.d + r.z);
+        const T k = T(1) / ((across_length(r) * s.distance.d + r.z) * s.distance.per_sum.as<T>());
         return {r.x * k, r.y * k};
     }
 };
