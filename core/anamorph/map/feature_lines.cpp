@@ -2,6 +2,7 @@
 #include "anamorph/map/feature_lines.h"
 
 #include <array>
+#include <cstdint>
 
 #include "anamorph/error.h"
 #include "anamorph/parameter.h"
