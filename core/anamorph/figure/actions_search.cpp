@@ -44,7 +44,8 @@ double closest_to_zero(const Function& probe) {
     double best = 0, least = distance(0.0);
     for (int i = 1; i <= kSamples; ++i) {
         // Outwards from where it is: of equals, the closest is kept.
-        const double angle = (i % 2 ? 1 : -1) * ((i + 1) / 2) * kStep, there = distance(angle);
+        const int step = (i + 1) / 2;
+        const double angle = (i % 2 ? step : -step) * kStep, there = distance(angle);
         if (!(there < least)) continue;
         best = angle;
         least = there;

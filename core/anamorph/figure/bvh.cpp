@@ -71,7 +71,7 @@ class Words {
     /// A name, which may have blanks: up to the end of the line or a brace.
     std::string name() {
         const std::size_t end = std::min(m_text.find_first_of("\n{}"), m_text.size());
-        const std::string name(text_file::trimmed(m_text.substr(0, end)));
+        std::string name(text_file::trimmed(m_text.substr(0, end)));
         m_text.remove_prefix(end);
         return name;
     }

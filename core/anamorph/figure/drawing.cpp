@@ -141,6 +141,7 @@ class Page {
         const std::vector<Stick> sticks =
             m_options.sticks == Sticks::axes ? axis_sticks(m_frame) : joint_sticks(m_frame);
         std::vector<SeenLine> lines;
+        lines.reserve(sticks.size());
         for (const Stick& stick : sticks) lines.push_back({stick.from, stick.to, {}, {}});
         hide_lines(lines, {}, m_view);  // what is before the observer
         for (std::size_t i = 0; i < lines.size(); ++i)
@@ -260,7 +261,7 @@ class Page {
             depth += p.z;
         };
         add_point(arc.begin);
-        for (double t = std::floor(arc.begin) + 1; t < arc.end; ++t) add_point(t);
+        for (int t = static_cast<int>(std::floor(arc.begin)) + 1; t < arc.end; ++t) add_point(t);
         add_point(arc.end);
         if (arc.length() >= static_cast<double>(curve.points.size())) points.back() = points.front();
         add(kind, i, points, depth / static_cast<double>(points.size()));

@@ -31,7 +31,7 @@ std::string tenths(const glm::dvec3& v) {
     return whole(kTenths * v.x) + " " + whole(kTenths * v.y) + " " + whole(kTenths * v.z) + " ";
 }
 
-std::string padded(std::string text, std::size_t width) {
+std::string padded(const std::string& text, std::size_t width) {
     return text.size() < width ? std::string(width - text.size(), ' ') + text : text;
 }
 

@@ -98,6 +98,7 @@ Outlines outlines(std::span<const Ellipsoid> bodies, const View& view, const Out
     if (options.crossings) kOutlineTolRow.check(options.tol, "tol");
     const std::vector<SeenBody> seen = see_all(bodies, view, options.names, parallel_for);
     std::vector<ScreenBox> boxes;
+    boxes.reserve(seen.size());
     for (const SeenBody& body : seen)
         boxes.push_back(body.seen() ? ScreenBox{body.low, body.high, body.limb_farthest}
                                     : ScreenBox{glm::dvec2(1), glm::dvec2(-1), -HUGE_VAL});

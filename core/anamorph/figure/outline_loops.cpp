@@ -82,6 +82,7 @@ class Sweep {
     std::vector<std::vector<glm::dvec3>> loops() {
         if (coincides()) return {};
         std::vector<Box> all;
+        all.reserve(8);
         for (int k = 0; k < 8; ++k) all.push_back({k * (Box::kAll / 8), Box::kAll / 8});
         // The strips begin at an angle that no symmetry prefers.
         constexpr double from = 0.3;

@@ -142,6 +142,7 @@ class Search {
 }  // namespace
 
 Direction direction(double t) {
+    // NOLINTNEXTLINE(bugprone-incorrect-roundings): t is not negative.
     const int steps = static_cast<int>(t * (2 * kIntervals / kTurn) + 0.5);
     const Direction& nearest = kTables.first[static_cast<std::size_t>(steps % (2 * kIntervals))];
     return nearest.turned(small_angle(t - steps * (kTurn / (2 * kIntervals))));

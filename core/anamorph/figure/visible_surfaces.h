@@ -8,6 +8,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <span>
 #include <string>
 #include <vector>
@@ -32,7 +33,7 @@ struct VisibleParts {
     std::vector<std::size_t> first;  ///< of each pixel, and the end
 
     std::span<const VisiblePart> of(int x, int y) const {
-        const auto i = static_cast<std::size_t>((y - box.y0) * box.width() + (x - box.x0));
+        const auto i = static_cast<std::size_t>(std::int64_t{y - box.y0} * box.width() + (x - box.x0));
         return {parts.data() + first[i], first[i + 1] - first[i]};
     }
 };

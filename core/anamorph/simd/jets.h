@@ -99,6 +99,7 @@ struct Jets {
 using TaylorJets = Jets<double, 4>;
 using BoundJets = Jets<Interval, 5>;
 
+// NOLINTBEGIN(bugprone-macro-parentheses): a type takes none.
 #define ANAMORPH_JETS(J)                               \
     void multiply(const J& a, const J& b, J& product); \
     void square_of(const J& a, J& product);            \
@@ -110,6 +111,7 @@ using BoundJets = Jets<Interval, 5>;
     void logarithm_of(const J& a, J& logarithm);       \
     void area_sine(const J& a, J& area);               \
     void hyperbolic_sine(const J& a, J& sine, J& one);
+// NOLINTEND(bugprone-macro-parentheses)
 ANAMORPH_JETS(TaylorJets)
 ANAMORPH_JETS(BoundJets)
 #undef ANAMORPH_JETS
