@@ -388,5 +388,26 @@ TEST(ProjectionOracle, PanninisScaleIsAsPreciseAsItSays) {
         expect_scale(fov, 0, 64 * cotangent_near_right(static_cast<Real>(fov) / 2));
 }
 
+TEST(ProjectionOracle, PanninisFieldOfViewStaysBelowItsLimit) {
+    EXPECT_THROW(Chart(Projection::pannini, 64, 64, 240, PixelSpacing::edges, "", 0.5), Error);
+    for (const double d : {2.02e-8, 0.1, 0.23, 0.3, 0.5, 0.7, 0.999}) {
+        const Real limit = 2 * std::acos(-static_cast<Real>(d)) / kDegree;
+        double fov = static_cast<double>(limit);
+        for (int i = 0; i < 20; ++i) fov = std::nextafter(fov, 360);
+        int accepted = 0;
+        for (int i = 0; i < 40; ++i, fov = std::nextafter(fov, 0)) {
+            SCOPED_TRACE(testing::Message() << testing::PrintToString(fov) << " d " << d);
+            try {
+                const Chart chart(Projection::pannini, 64, 64, fov, PixelSpacing::edges, "", d);
+                ++accepted;
+                EXPECT_LT(static_cast<Real>(fov), limit);
+                EXPECT_GT(chart.pixels_per_unit().precise(), 0);
+            } catch (const Error&) {
+            }
+        }
+        EXPECT_GT(accepted, 0);
+    }
+}
+
 }  // namespace
 }  // namespace anamorph

@@ -11,7 +11,9 @@ struct Pannini : AnyProjection {
     /// cos a stays above this: nearer to the back the picture turns round (d > 1) or its scale has no end.
     static double least_cosine(const Setting& s) { return -std::min(s.distance.d, 1 / s.distance.d); }
     static double most_fov(const FieldOfView& most, const Setting& s) {
-        return std::min(most.most, 2 * std::acos(least_cosine(s)) * 180 / std::numbers::pi);
+        // No more than it is, however acos and the products round.
+        constexpr double kBelow = 1 - 4 * 0x1p-52;
+        return std::min(most.most, 2 * std::acos(least_cosine(s)) * 180 / std::numbers::pi * kBelow);
     }
     /// By t = tan(a / 2): sin a / (d + cos a) = 2 t / ((d + 1) + (d - 1) t^2), which cancels for d < 1 only.
     static long double width(long double degrees, const Setting& s) {
