@@ -173,6 +173,15 @@ bool all_alike(const PixelPoints<Real>& points, std::ptrdiff_t ahead, int width,
            (length <= 1 && longest <= 1);
 }
 
+/// What is at pixel (i, j).
+template <class Real>
+auto at_points(const PixelPoints<Real>& points) {
+    return [points](int i, int j) {
+        const std::ptrdiff_t k = j * points.row_stride + i;
+        return Point<double>{points.x[k], points.y[k]};
+    };
+}
+
 // Where there are more texels than this for a pixel, they are brought near one by one.
 constexpr double kApart = 8;
 
@@ -225,14 +234,30 @@ Box part_of(const Box& cell, const Block& block, const Box& part) {
 }  // namespace
 
 void PointsInDouble::read(const BlockMap& map, const Block& block, int begin, int end) {
-    m_stride = block.box.width() + 16;
-    const auto room = static_cast<std::size_t>(m_stride) * static_cast<std::size_t>(end - begin);
-    if (m_x.size() < room) {
-        m_x.resize(room);
-        m_y.resize(room);
-        m_piece.resize(room);
-    }
+    make_room(block.box.width(), end - begin);
     map.exact_rows(block, begin, end, {m_x.data(), m_y.data(), m_piece.data(), m_stride});
+}
+
+void PointsInDouble::make_room(int width, int rows) {
+    m_stride = width + 16;
+    const auto room = static_cast<std::size_t>(m_stride) * static_cast<std::size_t>(rows);
+    if (m_x.size() >= room) return;
+    m_x.resize(room);
+    m_y.resize(room);
+    m_piece.resize(room);
+}
+
+void PointsInDouble::take(const Block& block, const BlockPoints& from) {
+    const int width = block.box.width(), height = block.box.height();
+    make_room(width, height);
+    for (int j = 0; j < height; ++j) {
+        const std::ptrdiff_t to = j * m_stride, at = j * from.row_stride;
+        for (int i = 0; i < width; ++i) {
+            m_x[static_cast<std::size_t>(to + i)] = block.base_x + double{from.x[at + i]};
+            m_y[static_cast<std::size_t>(to + i)] = block.base_y + double{from.y[at + i]};
+        }
+        std::fill_n(m_piece.data() + to, width, block.source_piece);
+    }
 }
 
 void block_row(const BlockMap& map, const Block& block, const Box& part, int j, float* x, float* y) {
@@ -371,7 +396,11 @@ bool BlockReader::draw(const Block& block, const Box& part, const Canvas& canvas
     }
     if (block.kind == Block::Kind::computed) {
         const BlockPoints points = points_of(block);
-        const Got got = straight ? draw_points(block, points, part, canvas, next) : Got::too_large;
+        Got got = straight ? draw_points(block, points, part, canvas, next) : Got::too_large;
+        if (got == Got::too_large && straight && lie_apart(at_points(points), block)) {
+            m_exact.take(block, points);
+            got = draw_in_double(block, part, canvas, nullptr);
+        }
         return got == Got::too_large ? rows(block, points, part, store) : got == Got::window;
     }
     const Got got =
@@ -401,10 +430,7 @@ bool BlockReader::filtering_of(const Block& block, const PixelPoints<Real>& poin
     if (!averages(m_filter)) return true;
     const int width = block.box.width(), height = block.box.height();
     if (width < 2 || height < 2) return false;
-    const auto at = [&](int i, int j) {
-        const std::ptrdiff_t k = j * points.row_stride + i;
-        return Point<double>{points.x[k], points.y[k]};
-    };
+    const auto at = at_points(points);
     const Jacobian j = Steps(at, block).jacobian(whole(block));
     if (!all_alike(points, 1, width - 1, height, j.x_i, j.y_i) ||
         !all_alike(points, points.row_stride, width, height - 1, j.x_j, j.y_j))
@@ -442,7 +468,11 @@ BlockReader::Got BlockReader::draw_in_double(const Block& block, const Box& part
         return Got::too_large;
     const LevelPoints x(range_x.low, range_x.high, f.scale_x), y(range_y.low, range_y.high, f.scale_y);
     Window window;
-    const Got got = window_of(f, m_exact.piece(0)[0], x.base, x.range, y.base, y.range, block.box, window);
+    const bool apart = lie_apart([&](int i, int j) { return m_exact.at(i, j); }, block);
+    // From uint8 to uint8 a block at once has other bits than its rows (simd/packed_blocks.h).
+    if (apart && m_source.type() == PixelType::uint8) return Got::too_large;
+    const Got got =
+        window_of(f, m_exact.piece(0)[0], x.base, x.range, y.base, y.range, block.box, window, apart);
     if (got != Got::window) return got;
     const int width = block.box.width(), height = block.box.height();
     const std::ptrdiff_t stride = simd::kRowRoom, room = stride * height;
@@ -517,10 +547,7 @@ bool BlockReader::polynomial_rows(const Block& block, const Box& part, const Row
 
 bool BlockReader::rows(const Block& block, const BlockPoints& points, const Box& part, const Row& row) {
     if (m_filter == Filter::summed_area) return rows_one_by_one(block, points, part, row);
-    const auto at = [&](int i, int j) {
-        const std::ptrdiff_t k = j * points.row_stride + i;
-        return Point<double>{points.x[k], points.y[k]};
-    };
+    const auto at = at_points(points);
     if (lie_apart(at, block)) return rows_apart(block, points, part, row);
     const auto body = [&](const Box& cell, const Filtering& f) {
         return points_cell(f, block, points, cell, part, row);
@@ -801,7 +828,7 @@ BlockReader::Got BlockReader::polynomial_window(const Filtering& f, const Block&
 
 BlockReader::Got BlockReader::window_of(const Filtering& f, int piece, std::int32_t base_x,
                                         const Range& range_x, std::int32_t base_y, const Range& range_y,
-                                        const Box& block, Window& window) {
+                                        const Box& block, Window& window, bool apart) {
     const Span x(f, f.reach_x, base_x, range_x), y(f, f.reach_y, base_y, range_y);
     if (!x.fits() || !y.fits()) return Got::too_large;
     // Offsets are floats, which move half a texel without losing it, and count elements in 32 bits.
@@ -810,12 +837,14 @@ BlockReader::Got BlockReader::window_of(const Filtering& f, int piece, std::int3
     if (!(most_x <= kMostOffset && most_y <= kMostOffset)) return Got::too_large;
     const Box box{static_cast<int>(x.first), static_cast<int>(y.first), static_cast<int>(x.last),
                   static_cast<int>(y.last)};
-    if (texels_in(box) > kMostTexels * texels_in(block) + 4096) return Got::too_large;
+    if (!apart && texels_in(box) > kMostTexels * texels_in(block) + 4096) return Got::too_large;
     const auto fits = [&] {
         const double pixel = double(window.channels) * size_of(window.type);
         const double span = std::fabs(double(window.row_stride)) * most_y + pixel * most_x;
         return span < std::numeric_limits<std::int32_t>::max();
     };
+    if (apart)
+        return m_reader.get_in_place(f.level, piece, box, window) && fits() ? Got::window : Got::too_large;
     if (!m_reader.get(f.level, piece, box, window)) return Got::failed;
     // Rows that stand far apart in memory are no reason to read otherwise than from a file.
     if (!fits() && !m_reader.get_copy(f.level, piece, box, window)) return Got::failed;

@@ -54,6 +54,8 @@ class PointsInDouble {
   public:
     /// Rows [begin, end) of a block for which in_double() holds, counted from its first.
     void read(const BlockMap& map, const Block& block, int begin, int end);
+    /// All of a computed block, from its points in float.
+    void take(const Block& block, const BlockPoints& from);
 
     /// From the first row on that was read.
     PixelPoints<double> points() const { return {m_x.data(), m_y.data(), m_stride}; }
@@ -65,6 +67,8 @@ class PointsInDouble {
     }
 
   private:
+    void make_room(int width, int rows);
+
     std::ptrdiff_t m_stride = 0;
     std::vector<double> m_x, m_y;
     std::vector<std::int32_t> m_piece;
@@ -163,7 +167,8 @@ class BlockReader {
     Got polynomial_window(const Filtering& f, const Block& block, const LevelPolynomial& polynomial,
                           Window& window);
     Got window_of(const Filtering& f, int piece, std::int32_t base_x, const Range& range_x,
-                  std::int32_t base_y, const Range& range_y, const Box& block, Window& window);
+                  std::int32_t base_y, const Range& range_y, const Box& block, Window& window,
+                  bool apart = false);
     static simd::Texels texels_of(const Filtering& f, const Window& window, std::int32_t base_x,
                                   std::int32_t base_y, double pixels);
     simd::Upcoming upcoming(const Block* next, const Filtering& f) const;

@@ -267,17 +267,17 @@ class Fetching {
     int m_share, m_row = 0;
 };
 
-/// Draws rows in three stages, each one row ahead of the next: located, sampled, stored. Reading what was just
+/// Draws rows in three stages: located, `ahead` rows later sampled, and a row later stored. Reading what was just
 /// written in pieces of another size would wait for those writes.
 template <class Locating, class Sampling, class Storing>
 HWY_INLINE void InStages(const Drawing& drawing, const Locating& locate, const Sampling& sample,
-                         const Storing& store) {
+                         const Storing& store, int ahead = 1) {
     const int begin = drawing.row_begin, end = drawing.row_end;
     Fetching fetching(drawing.upcoming, end - begin);
-    locate(begin);
+    for (int j = begin; j < HWY_MIN(begin + ahead, end); ++j) locate(j);
     for (int j = begin; j < end; ++j) {
         fetching.Fetch();
-        if (j + 1 < end) locate(j + 1);
+        if (j + ahead < end) locate(j + ahead);
         sample(j);
         if (j > begin) store(j - 1);
     }

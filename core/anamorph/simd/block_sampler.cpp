@@ -329,12 +329,16 @@ void DrawBilinear(const Drawing& to) {
     const ptrdiff_t row = s.row_stride / static_cast<ptrdiff_t>(sizeof(T));
     const int count = to.end - to.begin;
     const RowLocator<T, kChannels> locator(to);
-    Positions<kRowRoom> positions[2];
+    // Where texels are brought near one by one, so many pixels are between that and their use.
+    constexpr int kAhead = 128, kRows = 8;
+    const int ahead = s.apart ? HWY_MAX(1, HWY_MIN(kAhead / count, kRows - 1)) : 1;
+    const int kept = ahead > 1 ? kRows - 1 : 1;
+    Positions<kRowRoom> positions[kRows];
     HWY_ALIGN float values[2][kRowRoom * kChannels];
 
-    const auto locate = [&](int j) HWY_ATTR { locator.Row(j, positions[j & 1]); };
+    const auto locate = [&](int j) HWY_ATTR { locator.Row(j, positions[j & kept]); };
     const auto sample = [&](int j) HWY_ATTR {
-        const Positions<kRowRoom>& p = positions[j & 1];
+        const Positions<kRowRoom>& p = positions[j & kept];
         float* HWY_RESTRICT out = values[j & 1];
         HWY_UNROLL(8)
         for (int i = 0; i < count; ++i)
@@ -345,7 +349,7 @@ void DrawBilinear(const Drawing& to) {
         StoreRow(values[j & 1], count * kChannels, to.scale, to.type,
                  to.to + (j - to.row_begin) * to.row_stride);
     };
-    InStages(to, locate, sample, store);
+    InStages(to, locate, sample, store, ahead);
 }
 
 template <class T>
