@@ -194,6 +194,50 @@ TEST(Window, UnassociatedAlphaIsMultipliedIn) {
         }
 }
 
+TEST(Window, BoxesWhollyBeyondASeamAreReadWhereTheirTexelsStand) {
+    const Picture picture(48, 24, 3, PixelType::uint16);
+    const Border sphere(Chart(Projection::equirectangular, 48, 24), Wrap::automatic);
+    WindowReader direct(*picture.source, sphere);
+    Remote remote(*picture.source);
+    WindowReader copying(remote, sphere);
+    const auto equal = [&](const Box& box, bool in_place) {
+        SCOPED_TRACE(testing::Message() << box.x0 << ' ' << box.y0 << ' ' << box.x1 << ' ' << box.y1);
+        Window window, copied;
+        EXPECT_EQ(direct.get_in_place(0, 0, box, window), in_place);
+        ASSERT_TRUE(direct.get(0, 0, box, window));
+        EXPECT_EQ(window.box, box);
+        expect_equals_resolve(window, picture, sphere, 0);
+        touch_slack(window);
+        ASSERT_TRUE(copying.get(0, 0, box, copied));
+        expect_equals_resolve(copied, picture, sphere, 0);
+    };
+    for (const int turns : {-3, -1, 0, 1, 2}) {
+        const int to = 48 * turns;
+        equal({to + 7, 5, to + 19, 16}, true);
+        equal({to, 0, to + 48, 20}, true);
+        // Across the seam, over either pole, and with no slack behind the last row.
+        equal({to + 40, 5, to + 52, 9}, false);
+        equal({to + 5, -6, to + 12, -2}, false);
+        equal({to + 5, -2, to + 12, 3}, false);
+        equal({to + 5, 22, to + 12, 26}, false);
+        equal({to + 40, 20, to + 48, 24}, false);
+    }
+    Window window;
+    ASSERT_TRUE(direct.get(0, 0, {48 + 7, 5, 48 + 19, 16}, window));
+    EXPECT_EQ(window.texels, picture.view.at(7, 5));
+
+    // Both ways round, and numbers that ints just hold.
+    const Border tiles(Chart(Projection::rectilinear, 48, 24), Wrap::periodic);
+    WindowReader tiled(*picture.source, tiles);
+    constexpr int kLeast = std::numeric_limits<int>::min(), kMost = std::numeric_limits<int>::max();
+    ASSERT_TRUE(tiled.get_in_place(0, 0, {7 - 96, 5 + 72, 19 - 96, 16 + 72}, window));
+    expect_equals_resolve(window, picture, tiles, 0);
+    EXPECT_EQ(window.texels, picture.view.at(7, 5));
+    ASSERT_TRUE(tiled.get(0, 0, {kMost - 2, kLeast, kMost, kLeast + 2}, window));
+    expect_equals_resolve(window, picture, tiles, 0);
+    EXPECT_FALSE(tiled.get(0, 0, {kLeast, kLeast, kMost, kMost}, window));
+}
+
 TEST(Window, WhatCannotBeHadIsRefused) {
     const Picture picture(20, 18, 1, PixelType::float32);
     Remote remote(*picture.source);

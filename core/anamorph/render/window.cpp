@@ -149,23 +149,38 @@ void grow(std::vector<std::byte>& bytes, std::int64_t size) {
 
 }  // namespace
 
-const ConstImageView* WindowReader::view_of(int level, int piece, const Box& box) const noexcept {
-    const bool inside = holds(m_border.interior(piece, m_source.size(level)), box);
+const ConstImageView* WindowReader::view_of(int level, const Box& texels) const noexcept {
     const ConstImageView* image =
-        inside && m_source.unassociated_alpha() < 0 ? m_source.view(level) : nullptr;
-    return image && is_readable(*image) && has_slack(*image, box) ? image : nullptr;
+        !texels.empty() && m_source.unassociated_alpha() < 0 ? m_source.view(level) : nullptr;
+    return image && is_readable(*image) && has_slack(*image, texels) ? image : nullptr;
+}
+
+Box WindowReader::place_of(int level, int piece, const Box& box) const noexcept {
+    const Size size = m_source.size(level);
+    if (holds(m_border.interior(piece, size), box)) return box;
+    const std::int64_t width = std::int64_t{box.x1} - box.x0, height = std::int64_t{box.y1} - box.y0;
+    if (width <= 0 || height <= 0 || width > size.width || height > size.height) return {};
+    Box place;
+    for (int j = 0; j < box.height(); ++j) {
+        const TexelRun run = m_border.resolve_run(box.x0, box.y0 + j, piece, size, box.width());
+        const Texel& first = run.first;
+        if (j == 0) place = {first.x, first.y, first.x + box.width(), first.y + box.height()};
+        const bool follows = first.x == place.x0 && first.y == place.y0 + j;
+        if (first.none || run.count < box.width() || !follows) return {};
+    }
+    return place;
 }
 
 bool WindowReader::get_in_place(int level, int piece, const Box& box, Window& window) noexcept {
-    const ConstImageView* image = view_of(level, piece, box);
-    if (!image || !m_source.prepare(level, box)) return false;
-    window = {image->at(box.x0, box.y0), m_source.type(), m_source.channels(), image->row_stride, box};
+    const Box place = place_of(level, piece, box);
+    const ConstImageView* image = view_of(level, place);
+    if (!image || !m_source.prepare(level, place)) return false;
+    window = {image->at(place.x0, place.y0), m_source.type(), m_source.channels(), image->row_stride, box};
     return true;
 }
 
 bool WindowReader::get(int level, int piece, const Box& box, Window& window) noexcept {
-    return view_of(level, piece, box) ? get_in_place(level, piece, box, window)
-                                      : get_copy(level, piece, box, window);
+    return get_in_place(level, piece, box, window) || get_copy(level, piece, box, window);
 }
 
 bool WindowReader::get_copy(int level, int piece, const Box& box, Window& window) noexcept try {

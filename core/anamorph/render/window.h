@@ -28,9 +28,10 @@ class WindowReader {
     WindowReader(const Source& source, const Border& border) : m_source(source), m_border(border) {}
 
     /// The texels of `box` on `piece` of `level`; the box may reach over every edge. Points into the source
-    /// when the box lies inside a level in memory (packed, not to be multiplied by alpha), else into memory
-    /// of its own. With unassociated alpha the window is float with colour multiplied by alpha. False when
-    /// the source could not be read or the box has more than kMaxTexels texels.
+    /// when the box lies inside a level in memory, or wholly beyond a seam of it, where the same texels follow
+    /// each other (packed, not to be multiplied by alpha), else into memory of its own. With unassociated
+    /// alpha the window is float with colour multiplied by alpha. False when the source could not be read or
+    /// the box has more than kMaxTexels texels.
     bool get(int level, int piece, const Box& box, Window& window) noexcept;
 
     /// The same where it points into the source, and false elsewhere: nothing is copied.
@@ -41,8 +42,10 @@ class WindowReader {
     static constexpr std::int64_t kMaxTexels = std::int64_t{1} << 24;
 
   private:
-    /// The level in memory, if a window of it may point there.
-    const ConstImageView* view_of(int level, int piece, const Box& box) const noexcept;
+    /// The box of the level that holds a box's texels in the same order: itself, or one across a seam; empty if none.
+    Box place_of(int level, int piece, const Box& box) const noexcept;
+    /// The level in memory, if a window of these texels may point there.
+    const ConstImageView* view_of(int level, const Box& texels) const noexcept;
 
     const Source& m_source;
     const Border& m_border;
