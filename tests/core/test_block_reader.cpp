@@ -250,6 +250,56 @@ TEST(BlockReader, PointsFarApartAreReadEachFromItsOwnTexels) {
     }
 }
 
+TEST(BlockReader, PointsFarApartHaveTheSameBitsWhereverTheirTexelsStand) {
+    constexpr int kWidth = 2400, kHeight = 1300, kAcross = 100, kDown = 50;
+    const unsigned seed = 7;
+    SCOPED_TRACE(seed);
+    std::mt19937 random(seed);
+    // Some 600 texels a pixel: on the source and, moved, over its edges.
+    for (const double aside : {60.0, -60.3})
+        for (const PixelType type : {PixelType::uint8, PixelType::uint16, PixelType::half})
+            for (const int channels : {1, 3, 4}) {
+                const std::ptrdiff_t pixel = std::ptrdiff_t{channels} * size_of(type);
+                std::vector<std::byte> texels(static_cast<std::size_t>(kWidth * kHeight * pixel));
+                // Halves below 2: no exponent of theirs is that of infinity.
+                for (std::byte& b : texels) b = static_cast<std::byte>(random() & 0x3f);
+                const MemorySource source(
+                    packed_view<const std::byte>(texels.data(), type, kWidth, kHeight, channels));
+                const test::Remote remote(source);
+                const auto at = [&](double x, double y) {
+                    return Point<double>{22.7 * x - 1.3 * y + aside, 23.9 * y + 0.4 * x + aside};
+                };
+                const auto drawn = [&](const FunctionMap& map, const Source& from, Filter filter,
+                                       const Box& box) {
+                    std::vector<std::byte> to(static_cast<std::size_t>(box.width() * box.height() * pixel));
+                    EXPECT_TRUE(test::draw_map(
+                        map, border_of(source, Wrap::mirror), filter, Output::color, &from, box,
+                        packed_view(to.data(), type, box.width(), box.height(), channels), serial_for));
+                    return to;
+                };
+                for (const Kind kind : {Kind::exact, Kind::computed})
+                    for (const Filter filter : {Filter::nearest, Filter::bilinear, Filter::bicubic}) {
+                        SCOPED_TRACE(::testing::Message()
+                                     << aside << ", type " << static_cast<int>(type) << ", " << channels
+                                     << " channels, kind " << static_cast<int>(kind) << ", filter "
+                                     << static_cast<int>(filter));
+                        const FunctionMap map(kAcross, kDown, kind, at);
+                        const std::vector<std::byte> all = drawn(map, source, filter, {0, 0, kAcross, kDown});
+                        EXPECT_TRUE(all == drawn(map, remote, filter, {0, 0, kAcross, kDown}));
+                        // A crop, whose rows begin elsewhere and are narrower.
+                        const Box box{17, 9, 83, 40};
+                        const std::vector<std::byte> crop = drawn(map, source, filter, box);
+                        for (int y = box.y0; y < box.y1; ++y)
+                            ASSERT_EQ(std::memcmp(
+                                          &crop[static_cast<std::size_t>((y - box.y0) * box.width() * pixel)],
+                                          &all[static_cast<std::size_t>((y * kAcross + box.x0) * pixel)],
+                                          static_cast<std::size_t>(box.width() * pixel)),
+                                      0)
+                                << y;
+                    }
+            }
+}
+
 TEST(BlockReader, PointsFarApartStayWithinTheirFloats) {
     // A slope in each direction: a value says where it was read.
     constexpr int kWidth = 3000, kHeight = 1500;
