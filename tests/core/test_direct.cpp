@@ -103,6 +103,23 @@ void expect_encloses(const NearBound<Real>& found, double value, const std::stri
     EXPECT_LT(found.rest.error, most) << words;
 }
 
+TYPED_TEST(Near, AnAngleTurnedByMoreThanAQuarterIsUnbounded) {
+    using Number = NearBound<TypeParam>;
+    const WrittenBases bases;
+    const Number y = number_near<TypeParam>(-9.6e-4, 4.3e-5);
+    const Number x{WrittenBase(679.4), RestBound<TypeParam>(-1052.4, 309.2, 0)};
+    EXPECT_FALSE(atan2(y, x).rest.error < 1);
+}
+
+TYPED_TEST(Near, ScalesAreKnownToTheLeastOne) {
+    const WrittenBases bases;
+    NearBound<TypeParam> sine;
+    const NearBound<TypeParam> scale = scaled_sinh(number_near<TypeParam>(700, 0), sine);
+    // 1 / cosh(700) is next to nothing, and kLeastScale is taken for it.
+    EXPECT_EQ(scale.base.value, kLeastScale);
+    EXPECT_GE(scale.rest.radius, kLeastScale);
+}
+
 TYPED_TEST(Near, NumbersEncloseEveryProjection) {
     using Number = NearBound<TypeParam>;
     const WrittenBases bases;

@@ -193,6 +193,12 @@ HWY_INLINE Lanes<D> small_atan(const Lanes<D>& t) {
     }
 }
 
+/// The angle of (x, y), |y| <= tan(pi / 8) x.
+template <class D>
+HWY_INLINE Lanes<D> small_angle(const Lanes<D>& y, const Lanes<D>& x) {
+    return small_atan(y / x);
+}
+
 /// The angle of (x, y). With p <= q the two magnitudes: atan(p / q), or beyond tan(pi / 8)
 /// pi / 4 + atan((p - q) / (p + q)); then by octant.
 template <class D>

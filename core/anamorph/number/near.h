@@ -18,7 +18,7 @@
 //
 // NearRest<Base, Rest> says what belongs to a pair: of(base), the base as a rest; off(rest, base, units), the rest
 // where the base was rounded by so many units of 2^-53 of another; choose(condition of bases, a, b). Rests offer
-// sine_versine(a, s, v), sin a and 1 - cos a for |a| <= pi / 4, and small_atan(a) for |a| <= tan(pi / 8).
+// sine_versine(a, s, v), sin a and 1 - cos a for |a| <= pi / 4, and small_angle(y, x), that of (x, y) for |y| <= tan(pi / 8) x.
 //
 // Bases are read in the order in which they were written: that in which the compiler evaluates the operands of a formula,
 // which is the same for both as long as one compiler makes both. tests/core/test_direct.cpp reads every formula.
@@ -120,7 +120,7 @@ struct Near {
         const Base angle = atan2(y.base, x.base);
         const Rest y0 = Pair::of(y.base), x0 = Pair::of(x.base);
         const Rest across = x0 * y.rest - y0 * x.rest, along = x0 * x.whole() + y0 * y.whole();
-        return {angle, Pair::off(small_atan(across / along), angle, 8)};
+        return {angle, Pair::off(small_angle(across, along), angle, 8)};
     }
     /// With t = tanh a and T = tanh da: tanh A - t = T (1 - t^2) / (1 + t T), and with the two 1 / cosh, c and C,
     /// 1 / cosh A - c = c (C - 1 - t T) / (1 + t T), C - 1 = -T^2 / (1 + C).

@@ -128,10 +128,13 @@ void sine_versine(const RestBound<Real>& a, RestBound<Real>& s, RestBound<Real>&
     v = RestBound<Real>::result(middle, radius + 4 * interval_detail::kLibmMargin * middle, a.error * most,
                                 unit);
 }
-/// atan a, |a| <= tan(pi / 8); unbounded beyond.
+/// The angle of (x, y), |y| <= tan(pi / 8) x; unbounded beyond, also where x may be negative, exact or computed.
 template <class Real>
-RestBound<Real> small_atan(const RestBound<Real>& a) {
-    if (!(a.computed_size() <= rounded_detail::kTangentOfSixteenth)) return RestBound<Real>::unbounded();
+RestBound<Real> small_angle(const RestBound<Real>& y, const RestBound<Real>& x) {
+    const RestBound<Real> a = y / x;
+    const bool ahead = x.middle - x.radius > x.error;
+    if (!(ahead && a.computed_size() <= rounded_detail::kTangentOfSixteenth))
+        return RestBound<Real>::unbounded();
     return RestBound<Real>::of_function(a, std::atan, rounded_detail::kRestUnits * RestBound<Real>::kUnit);
 }
 
@@ -197,9 +200,9 @@ struct NearRest<WrittenBase, RestBound<Real>> {
         const bool kept = static_cast<double>(static_cast<Real>(base.value)) == base.value;
         return kept ? R(base.value) : R::result(base.value, 0, 0, R::kUnit);
     }
-    /// Nor are bases known better than to what underflows.
+    /// Nor are bases known better than to the least scale, which is above what underflows.
     static R off(const R& rest, const WrittenBase& base, double units) {
-        const double by = units * (0x1p-53 * std::fabs(base.value) + interval_detail::kSmallest);
+        const double by = units * (0x1p-53 * std::fabs(base.value) + kLeastScale);
         return {rest.middle, (rest.radius + by) * rounded_detail::kUp,
                 (rest.error + by) * rounded_detail::kUp};
     }
