@@ -41,12 +41,13 @@ const std::vector<Word>& shared_schemes() {
     return words;
 }
 const std::vector<Word>& shared_outputs() {
-    static const std::vector<Word> words = {{"color", ""},
-                                            {"stmap",
-                                             "the source point (u, v) with v down, in 0 to 1 on the source, "
-                                             "beyond that beyond its edges, (-1, -1) where there is none"},
-                                            {"error", "its distance from the exact one in source pixels"},
-                                            {"bound", "the proven bound of that"}};
+    static const std::vector<Word> words = {
+        {"color", ""},
+        {"stmap",
+         "the source point (u, v) with v down, in 0 to 1 on the source, "
+         "beyond that beyond its edges, (-1, -1) where there is none or the source is far"},
+        {"error", "its distance from the exact one in source pixels"},
+        {"bound", "the proven bound of that"}};
     return words;
 }
 
