@@ -208,7 +208,8 @@ class Planner {
         const bool by_blocks = m_options.scheme == Scheme::automatic && !m_exact;
         // Where one bound cannot be had, the other is too wide.
         if (m_direct || (by_blocks && error < HUGE_VAL))
-            by_blocks ? settle_blocks(box, local, known) : leave(box);
+            by_blocks && (!first || may_beat_direct(box, local)) ? settle_blocks(box, local, known)
+                                                                 : leave(box);
         else if (pixels_of(box) <= kLeastInFloat)
             leave(box);
         else
@@ -241,11 +242,25 @@ class Planner {
                 error = m_exact ? error_in(0.0) : error_in(0.0f);
             }
             if (m_exact) return error <= m_goal ? expect(true, kPreciseSaving) : error;
-            if (serves_in_float(middle, error, m_goal)) return expect(false, kDirectSaving);
+            // Where float holds it in smaller blocks only, a polynomial saves more.
+            if (serves_in_float(middle, error, m_goal))
+                return expect(false, error <= m_goal ? kDirectSaving : kPreciseSaving);
             if (error < HUGE_VAL) error = error_in(0.0);
             return error <= m_goal ? expect(true, kPreciseSaving) : error;
         }
         return 0;
+    }
+    /// Could polynomials in float pay where direct blocks are expected? What float rounds falls with a block's side: it
+    /// says how many blocks it takes.
+    bool may_beat_direct(const Box& box, const Local& local) const {
+        if (!m_direct) return true;
+        using J = Jet1<double>;
+        const Box middle = middle_of(box);
+        const Point<J> p = m_map(J::variable(0.5 * (middle.x0 + middle.x1), half(middle.width()), 0),
+                                 J::variable(0.5 * (middle.y0 + middle.y1), 0, half(middle.height())), local);
+        const double x[10] = {0, p.x.c[1], p.x.c[2]}, y[10] = {0, p.y.c[1], p.y.c[2]};
+        const double finer = BlockWriter::cubic_rounding(x, y) / m_options.tol;
+        return !(kPolynomialCost * finer * finer >= pixels_of(middle) * m_direct->saving);
     }
     /// What no polynomial serves.
     void leave(const Box& box) {
