@@ -20,6 +20,7 @@ struct Pannini : AnyProjection {
         const long double t = tan_of(degrees / 4);
         return 4 * (s.distance.d + 1.0L) * t / (s.distance.d + 1.0L + (s.distance.d - 1.0L) * t * t);
     }
+    /// t is off by 6 units, and its square by 13; where the sum cancels, that counts as often as its terms are larger.
     static double width_units(long double degrees, const Setting& s) {
         const long double t = tan_of(degrees / 4), falling = (s.distance.d - 1.0L) * t * t;
         return 32 * static_cast<double>((s.distance.d + 1.0L + std::fabs(falling)) /
