@@ -458,18 +458,14 @@ const char* const* instruction_sets() {
 }
 
 bool use_instruction_set(const char* name) {
-    if (*name == '\0') {
-        hwy::SetSupportedTargetsForTest(0);
-        hwy::GetChosenTarget().Update(hwy::SupportedTargets());
-        return true;
-    }
+    // With a set go the weaker ones, for source files that are not compiled for this one; with none, all.
+    int64_t sets = 0;
     for (const auto& set : available())
-        if (set.second == name) {
-            hwy::SetSupportedTargetsForTest(set.first);
-            hwy::GetChosenTarget().Update(hwy::SupportedTargets());
-            return true;
-        }
-    return false;
+        if (sets != 0 || set.second == name) sets |= set.first;
+    if (sets == 0 && *name != '\0') return false;
+    hwy::SetSupportedTargetsForTest(sets);
+    hwy::GetChosenTarget().Update(hwy::SupportedTargets());
+    return true;
 }
 
 }  // namespace anamorph::simd
