@@ -110,10 +110,11 @@ concept Enclosure = requires(const T& a) {
 /// A sum of products.
 template <class T>
 struct ProductSum {
+    using Term = T;  ///< what of a factor is multiplied
     T sum;
 
     ANAMORPH_UNROLLED ProductSum() : sum(0) {}
-    ANAMORPH_UNROLLED void add(const T& a, const T& b) { sum = sum + a * b; }
+    ANAMORPH_UNROLLED void add(const Term& a, const Term& b) { sum = sum + a * b; }
     ANAMORPH_UNROLLED void add(const ProductSum& part, int weight) {
         sum = sum + (weight == 1 ? part.sum : part.sum * T(weight));
     }
@@ -132,16 +133,22 @@ struct ProductSum {
 template <Enclosure T>
 struct ProductSum<T> {
     using R = decltype(T::lo);
+    struct Term {
+        R twice, size;  ///< s, and P
+
+        Term() = default;
+        ANAMORPH_UNROLLED explicit Term(const T& a) : twice(a.lo + a.hi), size(max(a.hi, R(-a.lo))) {}
+    };
     R middle, middle_size;  ///< sum w s t and sum |w s t|
     R size;                 ///< G
 
     ANAMORPH_UNROLLED ProductSum() : middle(0), middle_size(0), size(0) {}
-    ANAMORPH_UNROLLED void add(const T& a, const T& b) {
+    ANAMORPH_UNROLLED void add(const Term& a, const Term& b) {
         using std::abs;
-        const R product = (a.lo + a.hi) * (b.lo + b.hi);
+        const R product = a.twice * b.twice;
         middle = middle + product;
         middle_size = middle_size + abs(product);
-        size = size + max(a.hi, R(-a.lo)) * max(b.hi, R(-b.lo));
+        size = size + a.size * b.size;
     }
     ANAMORPH_UNROLLED void add(const ProductSum& part, int weight) {
         middle = middle + part.middle * weight;
@@ -190,11 +197,34 @@ struct Factor {
     int degree;
 
     explicit Factor(const Jet<T, N>& known) : jet(known), degree(degree_of(known)) {}
-    /// A jet of which more parts are to come.
+    /// A jet of which more than the constant part is to come: each coefficient is told to grow() when it is there.
     static Factor growing(const Jet<T, N>& jet) { return Factor(jet, N); }
+    ANAMORPH_UNROLLED void grow(int) {}
+
+    ANAMORPH_UNROLLED const T& operator[](int at) const { return jet.c[at]; }
 
   private:
     Factor(const Jet<T, N>& unknown, int any) : jet(unknown), degree(any) {}
+};
+/// Of intervals, with the terms of all its products.
+template <Enclosure T, int N>
+struct Factor<T, N> {
+    using Term = typename ProductSum<T>::Term;
+    const Jet<T, N>& jet;
+    int degree;
+
+    explicit Factor(const Jet<T, N>& known) : jet(known), degree(degree_of(known)) {
+        for (int at = 0; at < Jet<T, N>::part(degree + 1); ++at) grow(at);
+    }
+    static Factor growing(const Jet<T, N>& jet) { return Factor(jet, N); }
+    ANAMORPH_UNROLLED void grow(int at) { m_terms[at] = Term(jet.c[at]); }
+
+    ANAMORPH_UNROLLED const Term& operator[](int at) const { return m_terms[at]; }
+
+  private:
+    Factor(const Jet<T, N>& unknown, int any) : jet(unknown), degree(any) { grow(0); }
+
+    Term m_terms[Jet<T, N>::kSize];
 };
 
 /// Coefficient m of the part of degree k of sum_(first <= a <= last) weight(a) f_a g_(k-a).
@@ -210,9 +240,8 @@ ANAMORPH_UNROLLED inline T convolve(K k, First first, Last last, const Factor<T,
         const auto b = difference(k, a);
         if (a > f.degree || b > g.degree) return;
         ProductSum<T> part;
-        each_split(a, b, m, [&](int i) ANAMORPH_UNROLLED {
-            part.add(f.jet.c[J::part(a) + i], g.jet.c[J::part(b) + m - i]);
-        });
+        each_split(a, b, m,
+                   [&](int i) ANAMORPH_UNROLLED { part.add(f[J::part(a) + i], g[J::part(b) + m - i]); });
         sums.add(part, weight(a));
     });
     return sums.value();
@@ -233,12 +262,13 @@ inline void integrate_quotient(Jet<T, N>& g, const Jet<T, N>& w, const Jet<T, N>
     const T inverse = T(1) / q.c[0];
     T part_of[N + 1];
     for (int k = 1; k <= N; ++k) part_of[k] = inverse / T(k);
-    const auto left = Factor<T, N>::growing(g);
+    auto left = Factor<T, N>::growing(g);
     const Factor<T, N> right(q);
     each_coefficient<T, N>([&](auto k, auto m) ANAMORPH_UNROLLED {
         const T known = convolve(k, kJetSteps<T, 1>, plus<-1>(k), left, right, m, [](int j) { return j; });
         const int at = Jet<T, N>::part(k) + m;
         g.c[at] = (w.c[at] - known) * part_of[k];
+        left.grow(at);
     });
 }
 
@@ -271,11 +301,13 @@ inline Jet<T, N> euler(const Jet<T, N>& f) {
 template <int Sign, class T, int N>
 inline void oscillate(Jet<T, N>& u, Jet<T, N>& v, const Jet<T, N>& a) {
     const Factor<T, N> angle(a);
-    const auto sine = Factor<T, N>::growing(u), cosine = Factor<T, N>::growing(v);
+    auto sine = Factor<T, N>::growing(u), cosine = Factor<T, N>::growing(v);
     each_coefficient<T, N>([&](auto k, auto m) ANAMORPH_UNROLLED {
         const int at = Jet<T, N>::part(k) + m;
         u.c[at] = convolve(k, kJetSteps<T, 1>, k, angle, cosine, m, [](int j) { return j; }) / T(k);
         v.c[at] = convolve(k, kJetSteps<T, 1>, k, angle, sine, m, [](int j) { return Sign * j; }) / T(k);
+        sine.grow(at);
+        cosine.grow(at);
     });
 }
 
@@ -357,13 +389,14 @@ template <class T, int N>
 inline Jet<T, N> operator/(const Jet<T, N>& f, const Jet<T, N>& g) {
     const T inverse = T(1) / g.c[0];
     Jet<T, N> q(f.c[0] * inverse);
-    const auto left = jet_detail::Factor<T, N>::growing(q);
+    auto left = jet_detail::Factor<T, N>::growing(q);
     const jet_detail::Factor<T, N> right(g);
     jet_detail::each_coefficient<T, N>([&](auto k, auto m) ANAMORPH_UNROLLED {
         const T known = jet_detail::convolve(k, kJetSteps<T, 0>, jet_detail::plus<-1>(k), left, right, m,
                                              [](int) { return 1; });
         const int at = Jet<T, N>::part(k) + m;
         q.c[at] = (f.c[at] - known) * inverse;
+        left.grow(at);
     });
     return q;
 }
@@ -373,15 +406,18 @@ inline Jet<T, N> operator/(const Jet<T, N>& f, const Jet<T, N>& g) {
 template <class T, int N>
 inline Jet<T, N> compose(const T* c, const Jet<T, N>& f) {
     Jet<T, N> r(c[N]);
-    const auto left = jet_detail::Factor<T, N>::growing(r);
+    auto left = jet_detail::Factor<T, N>::growing(r);
     const jet_detail::Factor<T, N> right(f);
     for (int degree = 1; degree <= N; ++degree) {
         // A part needs those below only, so the highest comes first.
         for (int k = degree; k > 0; --k)
-            for (int m = 0; m <= k; ++m)
-                r.c[Jet<T, N>::part(k) + m] =
-                    jet_detail::convolve(k, 0, k - 1, left, right, m, [](int) { return 1; });
+            for (int m = 0; m <= k; ++m) {
+                const int at = Jet<T, N>::part(k) + m;
+                r.c[at] = jet_detail::convolve(k, 0, k - 1, left, right, m, [](int) { return 1; });
+                left.grow(at);
+            }
         r.c[0] = c[N - degree];
+        left.grow(0);
     }
     return r;
 }
@@ -407,12 +443,13 @@ inline Jet<T, N> sqrt(const Jet<T, N>& f) {
     using std::sqrt;
     Jet<T, N> r(sqrt(f.c[0]));
     const T inverse = T(0.5) / r.c[0];
-    const auto root = jet_detail::Factor<T, N>::growing(r);
+    auto root = jet_detail::Factor<T, N>::growing(r);
     jet_detail::each_coefficient<T, N>([&](auto k, auto m) ANAMORPH_UNROLLED {
         const T known = jet_detail::convolve(k, kJetSteps<T, 1>, jet_detail::plus<-1>(k), root, root, m,
                                              [](int) { return 1; });
         const int at = Jet<T, N>::part(k) + m;
         r.c[at] = (f.c[at] - known) * inverse;
+        root.grow(at);
     });
     return r;
 }
@@ -432,11 +469,12 @@ inline Jet<T, N> exp(const Jet<T, N>& a) {
     using std::exp;
     Jet<T, N> g(exp(a.c[0]));
     const jet_detail::Factor<T, N> exponent(a);
-    const auto power = jet_detail::Factor<T, N>::growing(g);
+    auto power = jet_detail::Factor<T, N>::growing(g);
     jet_detail::each_coefficient<T, N>([&](auto k, auto m) ANAMORPH_UNROLLED {
         const int at = Jet<T, N>::part(k) + m;
         g.c[at] =
             jet_detail::convolve(k, kJetSteps<T, 1>, k, exponent, power, m, [](int j) { return j; }) / T(k);
+        power.grow(at);
     });
     return g;
 }
