@@ -118,9 +118,9 @@ struct DoubleRows {
 /// How a map is laid out, and what is kept of it.
 struct BlockLayout {
     int layers = 1;
-    int region_side = 512;  ///< pixels
+    int region_side = 256;  ///< pixels
     /// Plans of so many regions are kept; then all of them are let go.
-    std::size_t kept_regions = 2048;
+    std::size_t kept_regions = 8192;
 };
 
 /// A pull map cut into blocks. The target consists of pieces, each cut into square regions from its corner

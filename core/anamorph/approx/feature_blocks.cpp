@@ -12,7 +12,7 @@ namespace anamorph {
 
 FeatureBlocks::FeatureBlocks(const FeatureMap& map, std::vector<int> shapes)
     : BlockMap(map.target().width, map.target().height, {Box{0, 0, map.target().width, map.target().height}},
-               {.layers = static_cast<int>(shapes.size()), .region_side = kRegion}),
+               {.layers = static_cast<int>(shapes.size()), .region_side = kRegion, .kept_regions = 2048}),
       m_map(map),
       m_shapes(std::move(shapes)) {
     m_waiting.reserve(kMostWaiting);
