@@ -73,6 +73,9 @@ void Evaluate(int which, const S* a, const S* b, std::size_t count, S* out) {
             case 12:
                 r = small_atan(x);
                 break;
+            case 13:
+                r = small_angle(x, y);
+                break;
             default:
                 r = x / y;
         }
@@ -96,9 +99,9 @@ HWY_EXPORT(EvaluateFloat);
 
 namespace {
 
-constexpr int kFunctions = 13;
+constexpr int kFunctions = 14;
 const char* const kNames[kFunctions] = {"sin",   "cos",      "atan2", "exp",  "log",     "tanh",      "asinh",
-                                        "hypot", "quotient", "sech",  "sine", "versine", "small atan"};
+                                        "hypot", "quotient", "sech",  "sine", "versine", "small atan", "small angle"};
 constexpr unsigned kSeed = 4711;
 constexpr std::size_t kCount = 1 << 16;  // a multiple of any number of lanes
 
@@ -136,13 +139,15 @@ long double truth(int which, long double a, long double b, bool precise) {
             return 2 * std::sin(a / 2) * std::sin(a / 2);
         case 12:
             return std::atan(a);
+        case 13:
+            return std::atan(a / b);
         default:
             return a / b;
     }
 }
 
 /// What lanes.h states, in units of half the spacing relative to the value.
-constexpr double kStated[kFunctions] = {4, 4, 5, 3, 3, 8, 8, 3, 1, 5, 4, 4, 4};
+constexpr double kStated[kFunctions] = {4, 4, 5, 3, 3, 8, 8, 3, 1, 5, 4, 4, 4, 6};
 
 long double stated(int which, long double a, long double value, bool precise) {
     if (which < 2 && !precise) return 2 + std::fabs(a) / 2048;
@@ -185,6 +190,11 @@ void arguments(int which, std::mt19937& random, std::vector<S>& a, std::vector<S
                 break;
             case 12:
                 a[i] = static_cast<S>((i % 2 ? u : u * 1e-5) * (M_SQRT2 - 1));
+                break;
+            case 13:
+                // Whole vectors of small angles, too.
+                b[i] = static_cast<S>(std::exp2(uniform(random) * 20));
+                a[i] = static_cast<S>((i / 32 % 2 ? u * (M_SQRT2 - 1) : u * (M_SQRT2 + 1)) * b[i]);
                 break;
             default:
                 a[i] = static_cast<S>(i % 2 ? u : spread);

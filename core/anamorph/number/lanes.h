@@ -16,6 +16,7 @@
 //   asinh                           8 m
 //   sine_versine(a, s, v)           4 m      |a| <= pi / 4; gradual underflow of v apart
 //   small_atan(a)                   4 m      |a| <= tan(pi / 8)
+//   small_angle(y, x)               6 m      |y| <= tan(3 pi / 8) x, x > 0
 //   scaled_sinh(a, s)               8 m      s; 5 m what is returned, gradual underflow apart
 //
 // NaN and infinities come out as IEEE has them for + - * / sqrt; the functions give NaN for NaN.
@@ -193,32 +194,45 @@ HWY_INLINE Lanes<D> small_atan(const Lanes<D>& t) {
     }
 }
 
-/// The angle of (x, y), |y| <= tan(pi / 8) x.
+/// Half a turn in two parts: what double (or float) leaves out of the first.
+constexpr double kHalfTurn = 3.14159265358979311600;
 template <class D>
-HWY_INLINE Lanes<D> small_angle(const Lanes<D>& y, const Lanes<D>& x) {
-    return small_atan(y / x);
+constexpr double kHalfTurnRest = sizeof(hn::TFromD<D>) == 8 ? 1.22464679914735317636e-16
+                                                            : kHalfTurn - static_cast<float>(kHalfTurn);
+constexpr double kTangentOfSixteenth = 0.41421356237309503;
+
+/// The angle whose tangent is p / q, neither of them negative, up to 3 / 16 of a turn: beyond tan(pi / 8) it is
+/// pi / 4 + atan((p - q) / (p + q)). 0 / 0 is the angle 0.
+template <class D>
+HWY_INLINE Lanes<D> steep_angle(const Lanes<D>& p, const Lanes<D>& q) {
+    using L = Lanes<D>;
+    const auto beyond = q * kTangentOfSixteenth < p;
+    const L over = select(beyond, p + q, q);
+    const L t = select(is_zero(over), L(0), select(beyond, p - q, p) / over);
+    const L eighth = select(beyond, L(kHalfTurn / 4), L(0)),
+            rest = select(beyond, L(kHalfTurnRest<D> / 4), L(0));
+    return eighth + (small_atan(t) + rest);
 }
 
-/// The angle of (x, y). With p <= q the two magnitudes: atan(p / q), or beyond tan(pi / 8)
-/// pi / 4 + atan((p - q) / (p + q)); then by octant.
+/// The angle of (x, y), |y| <= tan(3 pi / 8) x and x > 0. Angles up to pi / 8 are found for themselves, with the same bits.
+template <class D>
+HWY_INLINE Lanes<D> small_angle(const Lanes<D>& y, const Lanes<D>& x) {
+    using L = Lanes<D>;
+    const L p = abs(y);
+    const bool small = hn::AllFalse(D(), (x * kTangentOfSixteenth < p).m);
+    const L angle = small ? small_atan(p / x) : steep_angle(p, x);
+    return L(hn::CopySign(angle.v, y.v));
+}
+
+/// The angle of (x, y), by octant.
 template <class D>
 HWY_INLINE Lanes<D> atan2(const Lanes<D>& y, const Lanes<D>& x) {
     using L = Lanes<D>;
     const L ax = abs(x), ay = abs(y);
     const auto steep = ax < ay;
-    const L p = select(steep, ax, ay), q = select(steep, ay, ax);
-    const auto beyond = q * 0.41421356237309503 < p;
-    const L over = select(beyond, p + q, q);
-    // 0 / 0 is the angle 0.
-    const L t = select(is_zero(over), L(0), select(beyond, p - q, p) / over);
-    L angle = small_atan(t);
-    constexpr double kHalfTurn = 3.14159265358979311600, kRest = 1.22464679914735317636e-16;
-    // Multiples of pi / 4 in two parts: what double (or float) leaves out of the first comes with the angle.
-    const double rest = sizeof(hn::TFromD<D>) == 8 ? kRest : kHalfTurn - static_cast<float>(kHalfTurn);
-    const L eighth = select(beyond, L(kHalfTurn / 4), L(0)), eighth_rest = select(beyond, L(rest / 4), L(0));
-    angle = eighth + (angle + eighth_rest);
-    angle = select(steep, L(kHalfTurn / 2) - (angle - L(rest / 2)), angle);
-    angle = select(is_negative(x), L(kHalfTurn) - (angle - L(rest)), angle);
+    L angle = steep_angle(select(steep, ax, ay), select(steep, ay, ax));
+    angle = select(steep, L(kHalfTurn / 2) - (angle - L(kHalfTurnRest<D> / 2)), angle);
+    angle = select(is_negative(x), L(kHalfTurn) - (angle - L(kHalfTurnRest<D>)), angle);
     return L(hn::CopySign(angle.v, y.v));
 }
 

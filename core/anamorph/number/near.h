@@ -19,7 +19,7 @@
 // NearRest<Base, Rest> says what belongs to a pair: of(base), the base as a rest; off(rest, base, units), the rest
 // where the base was rounded by so many units of 2^-53 of another; choose(condition of bases, a, b). Rests offer
 // sine_versine(a, s, v), sin a and 1 - cos a for |a| <= pi / 4, and small_angle(y, x), the angle of (x, y) for
-// |y| <= tan(pi / 8) x.
+// |y| <= tan(3 pi / 8) x.
 //
 // Bases are read in the order in which they were written: that in which the compiler evaluates the operands of a formula,
 // which is the same for both as long as one compiler makes both. tests/core/test_direct.cpp reads every formula.

@@ -107,8 +107,8 @@ struct RestBound {
 namespace rounded_detail {
 
 /// Errors of what lanes.h has for rests, in units of Real of the value.
-inline constexpr double kRestUnits = 4;
-inline constexpr double kEighth = 0.785398163397448, kTangentOfSixteenth = 0.414213562373095;
+inline constexpr double kRestUnits = 4, kAngleUnits = 6;
+inline constexpr double kEighth = 0.785398163397448, kTangentOfThreeSixteenths = 2.414213562373095;
 
 }  // namespace rounded_detail
 
@@ -128,14 +128,14 @@ void sine_versine(const RestBound<Real>& a, RestBound<Real>& s, RestBound<Real>&
     v = RestBound<Real>::result(middle, radius + 4 * interval_detail::kLibmMargin * middle, a.error * most,
                                 unit);
 }
-/// The angle of (x, y), |y| <= tan(pi / 8) x; unbounded beyond, also where x may be negative, exact or computed.
+/// The angle of (x, y), |y| <= tan(3 pi / 8) x; unbounded beyond, also where x may be negative, exact or computed.
 template <class Real>
 RestBound<Real> small_angle(const RestBound<Real>& y, const RestBound<Real>& x) {
     const RestBound<Real> a = y / x;
     const bool ahead = x.middle - x.radius > x.error;
-    if (!(ahead && a.computed_size() <= rounded_detail::kTangentOfSixteenth))
+    if (!(ahead && a.computed_size() <= rounded_detail::kTangentOfThreeSixteenths))
         return RestBound<Real>::unbounded();
-    return RestBound<Real>::of_function(a, std::atan, rounded_detail::kRestUnits * RestBound<Real>::kUnit);
+    return RestBound<Real>::of_function(a, std::atan, rounded_detail::kAngleUnits * RestBound<Real>::kUnit);
 }
 
 // --- bases ---
