@@ -78,9 +78,11 @@ NearReading read_near(const Map& map, const Box& box, const typename Map::Local&
     return map.template direct<Real>(0.5 * (box.x0 + box.x1), 0.5 * (box.y0 + box.y1), half(box.width()),
                                      half(box.height()), local, bases);
 }
-/// May parts in float of a box that is off by `error` keep the tolerance? A known error shrinks with the sides at most.
+/// May parts in float of a box that is off by `error` keep the tolerance? A known error shrinks with the sides, and these
+/// with the root of the pixels.
 inline bool serves_in_float(const Box& box, double error, double tol) {
-    return error <= tol || error * kLeastInFloat <= tol * box.width() * box.height();
+    const double pixels = static_cast<double>(box.width()) * box.height();
+    return error <= tol || error * error * kLeastInFloat <= tol * tol * pixels;
 }
 
 /// Makes direct blocks of what a plan leaves to them.
