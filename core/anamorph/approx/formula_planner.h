@@ -391,18 +391,21 @@ class Planner {
         return box.width() <= kBlockWidth && box.height() <= kBlockHeight;
     }
 
-    /// What is in the quarters of a box that cannot be culled; in its halves where a side is at the floor, or quarters
-    /// could not pay for their bounds.
+    /// What is in the quarters of a box that cannot be culled; in its halves where quarters could not pay for their bounds.
     void settle_quarters(const Box& box) {
         const Box quarter{box.x0, box.y0, box.x0 + box.width() / 2, box.y0 + box.height() / 2};
-        if (!worth_a_bound(quarter))
-            return split(box, [&](const Box& b) { settle_inside(b, local_about(b)); });
-        const Local local = local_about(box);
-        in_quarters(box, [&](std::span<const Box> parts) {
-            Known known[simd::kJets];
-            know(parts, local, known);
-            for (std::size_t i = 0; i < parts.size(); ++i) settle_inside(parts[i], local, &known[i]);
-        });
+        const auto at_once = [&](std::span<const Box> parts) { settle_at_once(parts, local_about(box)); };
+        if (worth_a_bound(quarter))
+            in_quarters(box, at_once);
+        else if (worth_a_bound(sub_box(box, is_cut_vertically(box), false)))
+            in_halves(box, is_cut_vertically(box), kFloor, at_once);
+        else
+            split(box, [&](const Box& b) { settle_inside(b, local_about(b)); });
+    }
+    void settle_at_once(std::span<const Box> boxes, const Local& local) {
+        Known known[simd::kJets];
+        know(boxes, local, known);
+        for (std::size_t i = 0; i < boxes.size(); ++i) settle_inside(boxes[i], local, &known[i]);
     }
     /// Of up to kJets boxes.
     void know(std::span<const Box> boxes, const Local& local, Known* known) {
@@ -751,25 +754,34 @@ class Planner {
         for_boxes(box, kBlockWidth, kBlockHeight, body);
     }
 
-    /// `body` on the halves of a box, cut across its longer side (counted in blocks).
+    /// Is a box that is cut across its longer side (counted in blocks) cut from top to bottom?
+    static bool is_cut_vertically(const Box& box) {
+        const int wide = box.width() * kBlockHeight, high = box.height() * kBlockWidth;
+        return wide > high || (wide == high && box.width() > kFloor);
+    }
+    /// `body` on the halves of a box, cut across its longer side.
     template <class Body>
     void split(const Box& box, const Body& body) {
-        const int wide = box.width() * kBlockHeight, high = box.height() * kBlockWidth;
-        halve(box, wide > high || (wide == high && box.width() > kFloor), kFloor, body);
+        halve(box, is_cut_vertically(box), kFloor, body);
     }
 
     /// `body` on the halves of the box; where neither side can be cut above the floor, or no polynomial came out of it,
     /// one block without.
     template <class Body>
     void halve(const Box& box, bool vertical_cut, int floor, const Body& body) {
-        if (vertical_cut ? box.width() <= floor : box.height() <= floor) vertical_cut = !vertical_cut;
-        if (vertical_cut ? box.width() <= floor : box.height() <= floor) return leave(box);
-        unless_left(box, [&] {
-            body(sub_box(box, vertical_cut, false));
-            body(sub_box(box, vertical_cut, true));
+        in_halves(box, vertical_cut, floor, [&](std::span<const Box> halves) {
+            for (const Box& half : halves) body(half);
         });
     }
-    /// The same for quarters, and `body` on all of them.
+    /// The same, with `body` on both at once.
+    template <class Body>
+    void in_halves(const Box& box, bool vertical_cut, int floor, const Body& body) {
+        if (vertical_cut ? box.width() <= floor : box.height() <= floor) vertical_cut = !vertical_cut;
+        if (vertical_cut ? box.width() <= floor : box.height() <= floor) return leave(box);
+        const Box halves[] = {sub_box(box, vertical_cut, false), sub_box(box, vertical_cut, true)};
+        unless_left(box, [&] { body(std::span<const Box>(halves)); });
+    }
+    /// The same for quarters.
     template <class Body>
     void in_quarters(const Box& box, const Body& body) {
         const bool across = box.width() > kFloor, down = box.height() > kFloor;
