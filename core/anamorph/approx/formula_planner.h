@@ -12,9 +12,9 @@
 #include "anamorph/approx/cubic_terms.h"
 #include "anamorph/approx/direct_blocks.h"
 #include "anamorph/approx/formula_plan.h"
-#include "anamorph/approx/lens_jets.h"
 #include "anamorph/approx/residual.h"
 #include "anamorph/approx/taylor.h"
+#include "anamorph/simd/jets.h"
 
 namespace anamorph {
 namespace planner_detail {

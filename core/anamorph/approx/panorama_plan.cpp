@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "anamorph/approx/panorama_plan.h"
 
+#include "anamorph/approx/chart_jets.h"
 #include "anamorph/approx/formula_planner.h"
 #include "anamorph/simd/direct_rows.h"
 #include "anamorph/simd/panorama_rows.h"

@@ -186,14 +186,10 @@ class Lens {
 
     /// The ideal point of an observed one. Meaningful, as is observed(), where inside() and sees() are not negative.
     template <class T>
-    Point<T> ideal(const Point<T>& observed) const {
-        return lens_formula::ideal_point(m_terms, observed);
-    }
+    Point<T> ideal(const Point<T>& observed) const;
     /// The observed point of an ideal one.
     template <class T>
-    Point<T> observed(const Point<T>& ideal) const {
-        return lens_formula::observed_point(m_terms, ideal);
-    }
+    Point<T> observed(const Point<T>& ideal) const;
     /// Not negative where an observed point has an ideal one.
     template <class T>
     T inside(const Point<T>& observed) const {
@@ -220,6 +216,15 @@ class Lens {
 };
 
 // ---------------------------------------------------------------------------------------------------------
+
+template <class T>
+Point<T> Lens::ideal(const Point<T>& observed) const {
+    return lens_formula::ideal_point(m_terms, observed);
+}
+template <class T>
+Point<T> Lens::observed(const Point<T>& ideal) const {
+    return lens_formula::observed_point(m_terms, ideal);
+}
 
 namespace lens_detail {
 

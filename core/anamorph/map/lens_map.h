@@ -3,7 +3,7 @@
 // observed one, so that only their sizes differ. Pixels, x right, y down, pixel centres at + 0.5.
 #pragma once
 
-#include "anamorph/map/chart.h"
+#include "anamorph/map/chart_numbers.h"
 #include "anamorph/map/formula_map.h"
 
 namespace anamorph {

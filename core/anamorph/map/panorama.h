@@ -6,7 +6,7 @@
 #include <array>
 #include <glm/mat3x3.hpp>
 
-#include "anamorph/map/chart.h"
+#include "anamorph/map/chart_numbers.h"
 #include "anamorph/map/formula_map.h"
 #include "anamorph/number/near_bound.h"
 
