@@ -38,12 +38,21 @@ bool ApartReader::locate(Row& row, simd::Kernel kernel) {
     simd::split_points(row.x, row.count, 1, 0, row.texel_x, row.rest_x);
     simd::split_points(row.y, row.count, 1, 0, row.texel_y, row.rest_y);
     const int support = support_of(kernel);
-    if (!in_place(row, support)) return copied(row, support);
+    if (!in_place(row, support)) return one_by_one(row, support);
+    std::fill_n(row.from, row.count, nullptr);
     simd::fetch_row(texels_of(row.window, kernel), row.offsets());
     return true;
 }
 
-PixelType ApartReader::sample(const Row& row, simd::Kernel kernel, float* values) const {
+PixelType ApartReader::sample(Row& row, simd::Kernel kernel, float* values) const {
+    const int support = support_of(kernel);
+    for (int i = 0; i < row.count; ++i) {
+        if (!row.from[i]) continue;
+        // Bilinear reads one row besides a point's own.
+        const bool is_bilinear = kernel == simd::Kernel::bilinear, above = row.rest_y[i] < 0.5f;
+        row.copy(i, row.from[i], row.from_stride, support, is_bilinear && !above ? 0 : -support,
+                 is_bilinear && above ? 0 : support);
+    }
     simd::sample_row(texels_of(row.window, kernel), row.offsets(), values);
     const int channels = row.window.channels;
     for (int i = 0; i < row.count; ++i)
@@ -70,8 +79,8 @@ bool ApartReader::in_place(Row& row, int support) {
     return true;
 }
 
-/// Elsewhere the texels of each are copied, side by side.
-bool ApartReader::copied(Row& row, int support) {
+/// Elsewhere the texels of each are copied, side by side: those that stand in memory once they are near.
+bool ApartReader::one_by_one(Row& row, int support) {
     const int side = 2 * support + 1, channels = m_source.channels();
     // As WindowReader has them.
     const PixelType type = m_source.unassociated_alpha() < 0 ? m_source.type() : PixelType::float32;
@@ -81,16 +90,33 @@ bool ApartReader::copied(Row& row, int support) {
     row.window = {row.texels.data(), type, channels, row_stride, {}};
     for (int i = 0; i < row.count; ++i) {
         const int x = row.texel_x[i] - support, y = row.texel_y[i] - support;
+        const Box box{x, y, x + side, y + side};
         row.texel_x[i] = i * side + support;
         row.texel_y[i] = support;
+        row.from[i] = nullptr;
         if (row.piece[i] < 0) continue;
         Window around;
-        if (!m_reader.get(0, row.piece[i], {x, y, x + side, y + side}, around)) return false;
-        for (int j = 0; j < side; ++j)
-            std::memcpy(row.texels.data() + j * row_stride + i * bytes, around.texels + j * around.row_stride,
-                        static_cast<std::size_t>(bytes));
+        const bool stands = m_reader.get_in_place(0, row.piece[i], box, around);
+        if (!stands && !m_reader.get_copy(0, row.piece[i], box, around)) return false;
+        const std::byte* texel =
+            around.texels + support * (around.row_stride + std::ptrdiff_t{channels} * size_of(type));
+        if (stands) {
+            row.from[i] = texel;
+            row.from_stride = around.row_stride;
+        } else
+            row.copy(i, texel, around.row_stride, support, -support, support);
     }
+    simd::fetch_row(row.from, row.rest_y, row.count, row.from_stride);
     return true;
+}
+
+void ApartReader::Row::copy(int i, const std::byte* texel, std::ptrdiff_t row_stride, int support, int first,
+                            int last) {
+    const std::ptrdiff_t pixel = std::ptrdiff_t{window.channels} * size_of(window.type);
+    const std::ptrdiff_t bytes = (2 * support + 1) * pixel;
+    for (int j = first; j <= last; ++j)
+        std::memcpy(texels.data() + (support + j) * window.row_stride + i * bytes,
+                    texel + j * row_stride - support * pixel, static_cast<std::size_t>(bytes));
 }
 
 }  // namespace anamorph

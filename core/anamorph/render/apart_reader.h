@@ -31,19 +31,25 @@ class ApartReader {
         alignas(64) float rest_x[simd::kRowRoom], rest_y[simd::kRowRoom];
         Window window;
         std::vector<std::byte> texels;  ///< the window's own
+        /// Where the texels that points fall into stand in memory, if they are still to be copied from there; else null.
+        const std::byte* from[simd::kMaxRow];
+        std::ptrdiff_t from_stride = 0;
+
+        /// Copies the texels of rows `first` to `last` around one to those of pixel i.
+        void copy(int i, const std::byte* texel, std::ptrdiff_t row_stride, int support, int first, int last);
     };
 
     /// Finds a row's texels, for a filter that reads one tap, and brings them near. False when the source could not be
     /// read.
     bool locate(Row& row, simd::Kernel kernel);
-    /// The pixels of a row that was located, channel by channel, to `values`, which has room for simd::kMaxRow * channels
+    /// The pixels of a row that was located, once, channel by channel, to `values`, which has room for simd::kMaxRow * channels
     /// + 16 floats; 0 where there is no point. A pixel's bits depend on its own point only. Returns the type whose units
     /// they have (simd::sample_row).
-    PixelType sample(const Row& row, simd::Kernel kernel, float* values) const;
+    PixelType sample(Row& row, simd::Kernel kernel, float* values) const;
 
   private:
     bool in_place(Row& row, int support);
-    bool copied(Row& row, int support);
+    bool one_by_one(Row& row, int support);
 
     const Source& m_source;
     WindowReader m_reader;

@@ -768,7 +768,7 @@ bool BlockReader::rows_apart(const Block& block, const BlockPoints& points, cons
     const simd::Kernel kernel = filtering({}).kernel;
     for (int j = part.y0; j <= part.y1; ++j) {
         ApartReader::Row& next = m_apart_rows[j & 1];
-        const ApartReader::Row& now = m_apart_rows[(j - 1) & 1];
+        ApartReader::Row& now = m_apart_rows[(j - 1) & 1];
         if (j < part.y1) {
             take_apart(block, points, part, j, next);
             if (!m_apart.locate(next, kernel)) return false;

@@ -233,17 +233,6 @@ void SampleRow(const Texels& s, const Offsets& at, float* out) {
     }
 }
 
-void FetchRow(const Texels& s, const Offsets& at) {
-    const std::ptrdiff_t pixel = std::ptrdiff_t{s.channels} * size_of(s.type);
-    for (int i = 0; i < at.count; ++i) {
-        const std::byte* texel = s.texels + at.whole_y[i] * s.row_stride + at.whole_x[i] * pixel;
-        // The row of its own texel, and the other row that is read.
-        const ptrdiff_t other = at.y[i] < 0.5f ? -s.row_stride : s.row_stride;
-        hwy::Prefetch(texel);
-        hwy::Prefetch(texel + other);
-    }
-}
-
 /// Float to float: whole aligned vectors bypass the cache.
 void StoreFloats(const float* HWY_RESTRICT values, int count, float scale, float* HWY_RESTRICT to) {
     const hn::ScalableTag<float> d;
@@ -401,7 +390,6 @@ namespace anamorph::simd {
 HWY_EXPORT(BlockPoints);
 HWY_EXPORT(SampleRow);
 HWY_EXPORT(StoreRow);
-HWY_EXPORT(FetchRow);
 HWY_EXPORT(DrawBlock);
 
 void block_points(const Polynomials& block, int row, int begin, int end, float* out_x, float* out_y) {
@@ -420,8 +408,25 @@ void sample_row(const Texels& texels, const Offsets& offsets, float* out) {
     HWY_DYNAMIC_DISPATCH(SampleRow)(texels, offsets, out);
 }
 
-void fetch_row(const Texels& texels, const Offsets& offsets) {
-    HWY_DYNAMIC_DISPATCH(FetchRow)(texels, offsets);
+namespace {
+
+/// The row of a pixel's own texel, and the other row that is read.
+void fetch(const std::byte* texel, float y, std::ptrdiff_t row_stride) {
+    hwy::Prefetch(texel);
+    hwy::Prefetch(texel + (y < 0.5f ? -row_stride : row_stride));
+}
+
+}  // namespace
+
+void fetch_row(const Texels& s, const Offsets& at) {
+    const std::ptrdiff_t pixel = std::ptrdiff_t{s.channels} * size_of(s.type);
+    for (int i = 0; i < at.count; ++i)
+        fetch(s.texels + at.whole_y[i] * s.row_stride + at.whole_x[i] * pixel, at.y[i], s.row_stride);
+}
+
+void fetch_row(const std::byte* const* texels, const float* y, int count, std::ptrdiff_t row_stride) {
+    for (int i = 0; i < count; ++i)
+        if (texels[i]) fetch(texels[i], y[i], row_stride);
 }
 
 void store_row(const float* values, int count, float scale, PixelType type, std::byte* to) {

@@ -82,6 +82,8 @@ void sample_row(const Texels& texels, const Offsets& offsets, float* out);
 
 /// Brings near what sample_row is to read of a row by one tap.
 void fetch_row(const Texels& texels, const Offsets& offsets);
+/// The same of `count` pixels, each with texels of its own: texels[i] is the one that it falls into, y[i] far down, or null.
+void fetch_row(const std::byte* const* texels, const float* y, int count, std::ptrdiff_t row_stride);
 
 /// Texels that will be read soon: `rows` rows of `bytes` bytes.
 struct Upcoming {
