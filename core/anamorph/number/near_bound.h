@@ -108,7 +108,8 @@ namespace rounded_detail {
 
 /// Errors of what lanes.h has for rests, in units of Real of the value.
 inline constexpr double kRestUnits = 4, kAngleUnits = 6;
-inline constexpr double kEighth = 0.785398163397448, kTangentOfThreeSixteenths = 2.414213562373095;
+inline constexpr double kEighth = 0.785398163397448, kTangentOfSixteenth = 0.414213562373095,
+                        kTangentOfThreeSixteenths = 2.414213562373095;
 
 }  // namespace rounded_detail
 
@@ -133,9 +134,11 @@ template <class Real>
 RestBound<Real> small_angle(const RestBound<Real>& y, const RestBound<Real>& x) {
     const RestBound<Real> a = y / x;
     const bool ahead = x.middle - x.radius > x.error;
-    if (!(ahead && a.computed_size() <= rounded_detail::kTangentOfThreeSixteenths))
-        return RestBound<Real>::unbounded();
-    return RestBound<Real>::of_function(a, std::atan, rounded_detail::kAngleUnits * RestBound<Real>::kUnit);
+    const double most = a.computed_size();
+    if (!(ahead && most <= rounded_detail::kTangentOfThreeSixteenths)) return RestBound<Real>::unbounded();
+    const double units =
+        most < rounded_detail::kTangentOfSixteenth ? rounded_detail::kRestUnits : rounded_detail::kAngleUnits;
+    return RestBound<Real>::of_function(a, std::atan, units * RestBound<Real>::kUnit);
 }
 
 // --- bases ---
