@@ -300,6 +300,37 @@ TEST(BlockReader, PointsFarApartHaveTheSameBitsWhereverTheirTexelsStand) {
             }
 }
 
+TEST(BlockReader, PointsFarApartAreNoNumbersOnlyByTheirOwnTexels) {
+    constexpr int kWidth = 2400, kHeight = 1300, kAcross = 100, kDown = 50;
+    // On the source and over its edges.
+    const auto at = [](double x, double y) {
+        return Point<double>{24.7 * x - 1.3 * y - 30.4137, 25.9 * y + 0.1 * x - 20.3219};
+    };
+    const std::pair<Filter, int> filters[] = {
+        {Filter::nearest, 1}, {Filter::bilinear, 2}, {Filter::bicubic, 4}};
+    for (const auto& [filter, side] : filters) {
+        SCOPED_TRACE(side);
+        Picture texels(kWidth, kHeight, 3);
+        std::fill(texels.values.begin(), texels.values.end(), NAN);
+        const MemorySource source(texels.read());
+        const Border border = border_of(source, Wrap::mirror);
+        for (int y = 0; y < kDown; ++y)
+            for (int x = 0; x < kAcross; ++x) {
+                const Point<double> p = at(x + 0.5, y + 0.5);
+                const auto first = [side = side](double v) {
+                    return static_cast<int>(std::floor(v - 0.5 * (side - 1)));
+                };
+                for (int j = 0; j < side; ++j)
+                    for (int i = 0; i < side; ++i) {
+                        const Texel own = border.resolve(first(p.x) + i, first(p.y) + j, 0, source.size(0));
+                        for (int c = 0; c < 3; ++c) texels.at(own.x, own.y, c) = 1;
+                    }
+            }
+        const FunctionMap map(kAcross, kDown, Kind::exact, at);
+        for (const float v : draw(map, source, filter, Wrap::mirror).values) ASSERT_NEAR(v, 1, 1e-6);
+    }
+}
+
 TEST(BlockReader, PointsFarApartStayWithinTheirFloats) {
     // A slope in each direction: a value says where it was read.
     constexpr int kWidth = 3000, kHeight = 1500;
