@@ -5,6 +5,8 @@
 #include <bit>
 #include <cmath>
 #include <cstdint>
+#include <memory>
+#include <span>
 #include <vector>
 
 #include "anamorph/approx/block_writer.h"
@@ -43,6 +45,27 @@ std::uint64_t bits(int begin, int end) {
     static_assert(Block::kMaxSide <= 64);
     return begin < end ? ~std::uint64_t{0} >> (64 - (end - begin)) << begin : 0;
 }
+
+/// A triangle that may hold pixels of a block, and where it lies.
+struct Near {
+    const CubicTriangle* triangle;
+    Bounds bounds;
+    double margin;  ///< of barycentric coordinates at the block's pixels
+    Bicubic cubic;  ///< on the block
+};
+/// The triangles of a region's computed blocks.
+struct Pieces : RegionData {
+    std::vector<Near> near;
+    struct Part {
+        std::size_t first, count;
+    };
+    std::vector<Part> of_blocks;
+
+    std::span<const Near> of(const Block& block) const {
+        const Part& part = of_blocks[static_cast<std::size_t>(block.record)];
+        return {near.data() + part.first, part.count};
+    }
+};
 
 /// A coordinate of a cubic on the row at `t`, less a base: in powers of the row's parameter.
 simd::CubicRow row_of(const double (&c)[4][4], double t, double base) {
@@ -93,7 +116,8 @@ struct Run {
 /// Plans one region.
 class Planner {
   public:
-    Planner(const Scattered& map, double tol, Blocks& blocks) : m_map(map), m_writer(tol, blocks) {}
+    Planner(const Scattered& map, double tol, Blocks& blocks, Pieces& records)
+        : m_map(map), m_blocks(blocks), m_records(records), m_writer(tol, blocks) {}
 
     void exact(const Box& box) {
         BlockWriter::for_blocks(box, [&](const Box& b) {
@@ -126,6 +150,7 @@ class Planner {
   private:
     /// A cubic that a block meets: on the block, where on it, and how double rounds it.
     struct Met {
+        const CubicTriangle* triangle;
         Bicubic f;
         Part s, t;
         double rounding;
@@ -143,8 +168,8 @@ class Planner {
         const Part &across = at.across, &down = at.down;
         const auto take = [&](const CubicTriangle& triangle) {
             const Bounds b = triangle.bounds();
-            m_met.push_back({on(m_map, triangle, at), common(across, b.x0, b.x1), common(down, b.y0, b.y1),
-                             form_rounding(triangle, at)});
+            m_met.push_back({&triangle, on(m_map, triangle, at), common(across, b.x0, b.x1),
+                             common(down, b.y0, b.y1), form_rounding(triangle, at)});
         };
         const CubicTriangle& middle = m_map.triangle_at(across.middle, down.middle);
         take(middle);
@@ -186,7 +211,16 @@ class Planner {
                   std::hypot(sum_of_magnitudes(there.x), sum_of_magnitudes(there.y)) * (3.03 * 0x1p-24) +
                       met.rounding);
         }
-        return m_writer.computed(box, middle, error);
+        if (!m_writer.computed(box, middle, error)) return false;
+        m_blocks.back().data = &m_records;
+        m_blocks.back().record = static_cast<int>(m_records.of_blocks.size());
+        m_records.of_blocks.push_back({m_records.near.size(), m_met.size()});
+        // Rows are cut where they may leave a triangle, up to a pixel behind the last one.
+        const Bounds all{box.x0 + 0.5, box.y0 + 0.5, box.x1 + 0.5, box.y1 - 0.5};
+        for (const Met& met : m_met)
+            m_records.near.push_back(
+                {met.triangle, met.triangle->bounds(), 4 * met.triangle->place_error(all), met.f});
+        return true;
     }
 
     /// Makes `most` the greater of both, or NaN where one of them is.
@@ -250,9 +284,48 @@ class Planner {
     static constexpr std::size_t kMost = 64;
 
     const Scattered& m_map;
+    Blocks& m_blocks;
+    Pieces& m_records;
     BlockWriter m_writer;
     std::vector<Met> m_met;
 };
+
+/// Pixels [begin, end) of a row of a computed block.
+void write_row(const Scattered& map, const Block& block, int row, int begin, int end, float* x, float* y) {
+    // Whatever part of it is asked for, the whole row decides who holds a pixel.
+    const int width = block.box.width();
+    const double first = block.box.x0 + 0.5, down = block.box.y0 + row + 0.5;
+    const Centres at(block.box);
+    const double t = (down - at.down.middle) / at.down.half;
+    // Pixels, bit by bit, that a triangle may hold, that several may, and that one certainly does.
+    std::uint64_t claimed = 0, contested = 0, held = 0;
+    simd::CubicRun runs[Block::kMaxSide];
+    int count = 0;
+    for (const Near& near : static_cast<const Pieces&>(*block.data).of(block)) {
+        if (!near.bounds.meets({first, down, first + width - 1, down})) continue;
+        const Run run(*near.triangle, near.margin, first, down, width);
+        const std::uint64_t claim = bits(run.outer_begin, run.outer_end);
+        contested |= claimed & claim;
+        claimed |= claim;
+        held |= bits(run.begin, run.end);
+        const int from = std::max(run.begin, begin), to = std::min(run.end, end);
+        if (from >= to) continue;
+        // From left to right: no pixel is certainly in two triangles.
+        int k = count++;
+        for (; k > 0 && runs[k - 1].begin > from - begin; --k) runs[k] = runs[k - 1];
+        runs[k] = {row_of(near.cubic.x, t, block.base_x), row_of(near.cubic.y, t, block.base_y), from - begin,
+                   to - begin};
+    }
+    simd::write_cubics({runs, static_cast<std::size_t>(count)}, begin - 0.5 * (width - 1), 1 / at.across.half,
+                       x, y);
+    // On edges, by the rule for single points.
+    for (std::uint64_t open = bits(begin, end) & ~(held & ~contested); open; open &= open - 1) {
+        const int i = std::countr_zero(open);
+        const Point<double> p = map.at(first + i, down);
+        x[i - begin] = static_cast<float>(p.x - block.base_x);
+        y[i - begin] = static_cast<float>(p.y - block.base_y);
+    }
+}
 
 }  // namespace
 
@@ -265,11 +338,13 @@ ScatteredPlan::ScatteredPlan(Scattered map, WarpScheme scheme, double tol)
 }
 
 void ScatteredPlan::plan(const Box& box, int, Blocks& blocks) const {
-    Planner planner(m_map, m_tol, blocks);
+    const auto records = std::make_shared<Pieces>();
+    Planner planner(m_map, m_tol, blocks, *records);
     if (m_tol == 0 || m_scheme == WarpScheme::exact)
         planner.exact(box);
     else
         planner.region(box);
+    if (!records->near.empty()) blocks.data = records;
 }
 
 bool ScatteredPlan::exact(double x, double y, int, Point<double>& source_point,
@@ -284,72 +359,16 @@ BlockPolynomial ScatteredPlan::bicubic(const Block& block) const noexcept {
     return float_form(on(m_map, m_map.triangle_at(at.across.middle, at.down.middle), at), block);
 }
 
-/// A triangle that may hold pixels, and where it lies.
-struct ScatteredPlan::Near {
-    const CubicTriangle* triangle;
-    Bounds bounds;
-    double margin;  ///< of barycentric coordinates at the block's pixels
-    Bicubic cubic;  ///< on the block
-};
-
-std::vector<ScatteredPlan::Near> ScatteredPlan::near(const Box& block) const {
-    const Bounds centres{block.x0 + 0.5, block.y0 + 0.5, block.x1 - 0.5, block.y1 - 0.5};
-    const Centres at(block);
-    std::vector<Near> found;
-    m_map.tree().each(centres, [&](std::int32_t n) {
-        const CubicTriangle& triangle = m_map.triangles()[static_cast<std::size_t>(n)];
-        if (triangle.meets(centres))
-            found.push_back({&triangle, triangle.bounds(),
-                             4 * triangle.place_error({centres.x0, centres.y0, centres.x1 + 1, centres.y1}),
-                             on(m_map, triangle, at)});
-    });
-    return found;
-}
-
 void ScatteredPlan::computed(std::span<const Block> layers, const PointRows* to) const noexcept {
     const Block& block = layers.front();
     const Box& b = block.box;
-    const std::vector<Near> triangles = near(b);
     for (int j = 0; j < b.height(); ++j)
-        write_row(block, triangles, j, 0, b.width(), to->x + j * to->stride, to->y + j * to->stride);
+        write_row(m_map, block, j, 0, b.width(), to->x + j * to->stride, to->y + j * to->stride);
 }
 
 void ScatteredPlan::computed_row(const Block& block, int row, int begin, int end, float* x,
                                  float* y) const noexcept {
-    write_row(block, near(block.box), row, begin, end, x, y);
-}
-
-void ScatteredPlan::write_row(const Block& block, const std::vector<Near>& triangles, int row, int begin,
-                              int end, float* x, float* y) const noexcept {
-    // Whatever part of it is asked for, the whole row decides who holds a pixel.
-    const int width = block.box.width();
-    const double first = block.box.x0 + 0.5, down = block.box.y0 + row + 0.5;
-    const Centres at(block.box);
-    const double t = (down - at.down.middle) / at.down.half, per_pixel = 1 / at.across.half;
-    const auto put = [&](int i, const Point<double>& p) {
-        x[i - begin] = static_cast<float>(p.x - block.base_x);
-        y[i - begin] = static_cast<float>(p.y - block.base_y);
-    };
-    // Pixels, bit by bit, that a triangle may hold, that several may, and that one certainly does.
-    std::uint64_t claimed = 0, contested = 0, held = 0;
-    for (const Near& near : triangles) {
-        if (!near.bounds.meets({first, down, first + width - 1, down})) continue;
-        const Run run(*near.triangle, near.margin, first, down, width);
-        const std::uint64_t claim = bits(run.outer_begin, run.outer_end);
-        contested |= claimed & claim;
-        claimed |= claim;
-        held |= bits(run.begin, run.end);
-        const int from = std::max(run.begin, begin), to = std::min(run.end, end);
-        if (from >= to) continue;
-        simd::write_cubics(row_of(near.cubic.x, t, block.base_x), row_of(near.cubic.y, t, block.base_y),
-                           from - 0.5 * (width - 1), per_pixel, to - from, x + from - begin,
-                           y + from - begin);
-    }
-    // On edges, by the rule for single points.
-    for (std::uint64_t open = bits(begin, end) & ~(held & ~contested); open; open &= open - 1) {
-        const int i = std::countr_zero(open);
-        put(i, m_map.at(first + i, down));
-    }
+    write_row(m_map, block, row, begin, end, x, y);
 }
 
 Jacobian ScatteredPlan::jacobian(double x, double y, int) const noexcept {
@@ -365,7 +384,8 @@ float ScatteredPlan::folds(double x, double y) const noexcept {
 
 std::int64_t ScatteredPlan::folded_pixels(const Box& box) const {
     Blocks unused;
-    Planner planner(m_map, m_tol, unused);
+    Pieces no_pieces;
+    Planner planner(m_map, m_tol, unused, no_pieces);
     const int orientation = m_map.orientation() < 0 ? -1 : 1;
     return count_folded(
         box, [&](const Box& b) { return planner.sign(b) * orientation; },

@@ -30,12 +30,6 @@ class ScatteredPlan final : public WarpPlan {
     void plan(const Box& box, int piece, Blocks& blocks) const override;
 
   private:
-    struct Near;
-    std::vector<Near> near(const Box& block) const;
-    /// Pixels [begin, end) of a row of a computed block, by the triangles near it.
-    void write_row(const Block& block, const std::vector<Near>& triangles, int row, int begin, int end,
-                   float* x, float* y) const noexcept;
-
     Scattered m_map;
     WarpScheme m_scheme;
     double m_tol;

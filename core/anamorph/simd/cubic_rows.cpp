@@ -32,22 +32,17 @@ struct Cubic {
     }
 };
 
-void WriteCubics(const CubicRow& row_x, const CubicRow& row_y, double from, double step, int count,
-                 float* HWY_RESTRICT to_x, float* HWY_RESTRICT to_y) {
-    const Cubic x(row_x), y(row_y);
-    const V first = hn::Set(D(), from), each = hn::Set(D(), step);
-    const auto at = [&](int i) HWY_ATTR { return hn::Mul(hn::Add(hn::Iota(D(), i), first), each); };
-    int i = 0;
-    for (; i + kLanes <= count; i += kLanes) {
-        const V s = at(i);
-        hn::StoreU(x.At(s), F(), to_x + i);
-        hn::StoreU(y.At(s), F(), to_y + i);
+void WriteCubics(std::span<const CubicRun> runs, double from, double step, float* HWY_RESTRICT to_x,
+                 float* HWY_RESTRICT to_y) {
+    const V first = hn::Iota(D(), 0), each = hn::Set(D(), step);
+    for (const CubicRun& run : runs) {
+        const Cubic x(run.x), y(run.y);
+        for (int i = run.begin; i < run.end; i += kLanes) {
+            const V s = hn::Mul(hn::Add(first, hn::Set(D(), from + i)), each);
+            hn::StoreU(x.At(s), F(), to_x + i);
+            hn::StoreU(y.At(s), F(), to_y + i);
+        }
     }
-    if (i == count) return;
-    const auto rest = hn::FirstN(F(), static_cast<std::size_t>(count - i));
-    const V s = at(i);
-    hn::BlendedStore(x.At(s), rest, F(), to_x + i);
-    hn::BlendedStore(y.At(s), rest, F(), to_y + i);
 }
 
 }  // namespace HWY_NAMESPACE
@@ -59,9 +54,8 @@ namespace anamorph::simd {
 
 HWY_EXPORT(WriteCubics);
 
-void write_cubics(const CubicRow& x, const CubicRow& y, double from, double step, int count, float* to_x,
-                  float* to_y) {
-    HWY_DYNAMIC_DISPATCH(WriteCubics)(x, y, from, step, count, to_x, to_y);
+void write_cubics(std::span<const CubicRun> runs, double from, double step, float* to_x, float* to_y) {
+    HWY_DYNAMIC_DISPATCH(WriteCubics)(runs, from, step, to_x, to_y);
 }
 
 }  // namespace anamorph::simd

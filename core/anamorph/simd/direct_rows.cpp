@@ -127,9 +127,10 @@ ANAMORPH_FLATTEN void TargetRays(const DirectBlock<Real>& block, Real x, Real y,
     using Rest = L<Real>;
     const Branch& branch = block.local.target;
     const Chart::Plane plane = block.target.plane(branch.piece);
+    const Rest lanes(hn::Iota(D<Real>(), 0));
     for (int i = 0; i < count; i += Rest::kCount) {
         t_next<Real> = block.bases.data();
-        const N<Real> px(Base::next(), Rest(hn::Iota(D<Real>(), x + static_cast<Real>(i))));
+        const N<Real> px(Base::next(), lanes + Rest(x + static_cast<Real>(i)));
         const N<Real> py(Base::next(), Rest(hn::Set(D<Real>(), y)));
         Point<N<Real>> p{(px - plane.cx) * plane.per_x + branch.centre_x,
                          (py - plane.cy) * plane.per_y + branch.centre_y};

@@ -58,9 +58,9 @@ HWY_INLINE L Nearest(const FeatureMap& map, const L& x, const L& y) {
 template <PowerKind kPower, bool kWeighted, std::size_t kShapes>
 HWY_INLINE void FeaturePoints(const FeatureMap& map, const FeatureRow* rows, double x0, double y0,
                               int count) {
-    const L a(map.weights().a), b(map.weights().b), zero(0), y(y0);
+    const L a(map.weights().a), b(map.weights().b), zero(0), y(y0), lanes(hn::Iota(D(), 0));
     for (int i = 0; i < count; i += L::kCount) {
-        const L x = L(hn::Iota(D(), static_cast<double>(i))) + L(x0);
+        const L x = lanes + L(i) + L(x0);
         const L nearest = kWeighted ? Nearest(map, x, y) + a : zero;
         const L per_nearest = L(1) / max(nearest, L(feature_detail::kLeastUnit));
         L weights(0), moved_x[kShapes], moved_y[kShapes];

@@ -63,9 +63,9 @@ void TargetRays(const Chart& target, const Matrix& turn, int piece, double x0, d
     const Branch& branch = target.branch(piece);
     const Chart::Plane plane = target.plane(piece);
     const Matrix axes = MatrixOf(branch.axes);
-    const L py = L((y - plane.cy)) * plane.per_y + branch.centre_y;
+    const L py = L((y - plane.cy)) * plane.per_y + branch.centre_y, lanes(hn::Iota(D(), 0));
     for (int i = 0; i < count; i += L::kCount) {
-        const L x = L(hn::Iota(D(), i)) + x0;
+        const L x = lanes + L(i) + x0;
         Point<L> p{(x - plane.cx) * plane.per_x + branch.centre_x, py};
         L inside(1);
         if constexpr (Projection::lensed != Lensed::no)

@@ -68,8 +68,10 @@ void SamplePlaces(const float* HWY_RESTRICT uv, int count, const SampleAxis& x, 
     const hn::Rebind<float, decltype(d)> df;
     constexpr int kLanes = static_cast<int>(hn::MaxLanes(d));
     HWY_ALIGN float last[2 * 8] = {};
+    const auto lanes = hn::Iota(d, 0);
     const auto place = [&](const SampleAxis& axis, int i, hn::Vec<decltype(df)> v) HWY_ATTR {
-        const auto start = hn::Add(hn::Mul(hn::Iota(d, i), hn::Set(d, axis.step)), hn::Set(d, axis.first));
+        const auto at = hn::Add(lanes, hn::Set(d, i));
+        const auto start = hn::Add(hn::Mul(at, hn::Set(d, axis.step)), hn::Set(d, axis.first));
         return hn::DemoteTo(df, hn::Add(hn::Mul(hn::PromoteTo(d, v), hn::Set(d, axis.scale)), start));
     };
     for (int i = 0; i < count; i += kLanes) {
