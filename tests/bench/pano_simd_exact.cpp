@@ -94,7 +94,9 @@ struct FloatMap {
     /// Source points of the pixels (i + lane, j), texel centres at whole numbers.
     HWY_INLINE void operator()(D d, int i, int j, V& x, V& y) const {
         const float* r = rotation[j / face_height];
-        const V u = hn::MulAdd(hn::Iota(d, static_cast<float>(i)), hn::Set(d, step), hn::Set(d, first_x));
+        const V lanes = hn::Iota(d, 0.0f);
+        const V u = hn::MulAdd(hn::Add(lanes, hn::Set(d, static_cast<float>(i))), hn::Set(d, step),
+                               hn::Set(d, first_x));
         const float v = first_y + static_cast<float>(j % face_height) * step;
         V rx, ry, rz;
         if (target == Projection::rectilinear || target == Projection::cubemap) {

@@ -105,11 +105,12 @@ struct Run {
             if (value < 0) end = begin;
             return;
         }
+        // Rounded up and down by what conversion cuts off.
         const double at = std::clamp(-value / slope, -1.0, double(count));
         if (slope > 0)
-            begin = std::max(begin, static_cast<int>(std::ceil(at)));
+            begin = std::max(begin, count - static_cast<int>(count - at));
         else
-            end = std::min(end, static_cast<int>(std::floor(at)) + 1);
+            end = std::min(end, static_cast<int>(at + 1));
     }
 };
 
