@@ -6,7 +6,6 @@
 #include <optional>
 
 #include "anamorph/approx/block_writer.h"
-#include "anamorph/approx/cubic_terms.h"
 #include "anamorph/approx/hermite.h"
 
 namespace anamorph {
@@ -237,6 +236,19 @@ Form<A + B - 2> times(const std::array<double, A>& a, const std::array<double, B
         for (std::size_t j = 0; j < B; ++j) product[i + j] += a[i] * b[j];
     return product;
 }
+/// The derivative of a form in the direction of (v[0], v[1]), themselves forms.
+template <std::size_t A, std::size_t B>
+Form<A + B - 3> derivative_along(const std::array<double, A>& a, const std::array<double, B> (&v)[2]) {
+    Form<A - 2> by_s, by_t;
+    for (std::size_t i = 0; i + 1 < A; ++i) {
+        by_s[i] = static_cast<double>(A - 1 - i) * a[i];
+        by_t[i] = static_cast<double>(i + 1) * a[i + 1];
+    }
+    const auto across = times(by_s, v[0]), down = times(by_t, v[1]);
+    Form<A + B - 3> sum;
+    for (std::size_t i = 0; i < sum.size(); ++i) sum[i] = across[i] + down[i];
+    return sum;
+}
 template <std::size_t N>
 double norm(const std::array<double, N>& a) {
     double sum = 0;
@@ -264,15 +276,16 @@ double slope_at(const Sizes& sizes, double r) {
     return sum;
 }
 
-/// The inverse on a block: a cubic in its parameters and the distance to the truth in source pixels.
-struct LocalInverse {
-    double x[4][4] = {}, y[4][4] = {};  ///< as Bicubic
+/// The inverse on a block: a polynomial in its parameters and the distance to the truth in source pixels.
+struct LocalInverse : Bicubic {
     double error = HUGE_VAL;
+
+    LocalInverse() : Bicubic{} {}
 };
 
 /// What a region's bicubic blocks are made of.
-struct Cubics : RegionData {
-    std::vector<CubicTerms> terms;
+struct Bicubics : RegionData {
+    std::vector<BlockPolynomial> polynomials;
 };
 
 /// Plans one region.
@@ -301,13 +314,13 @@ class Planner {
         m_hy = half(box.height());
     }
 
-    /// About what a cubic misses on a block, and which cut helps most; nothing is proven of it.
+    /// About what an inverse misses on a block, and which cut helps most; nothing is proven of it.
     struct Miss {
         double error = 0;
         bool vertical_cut = true;
 
-        /// A remainder of degree 4, of which each cut concerns a part.
-        Miss on_half() const { return {error / 4, !vertical_cut}; }
+        /// A remainder of degree 5: two cuts, one either way, leave 1/32.
+        Miss on_half() const { return {error * 0.177, !vertical_cut}; }
     };
 
     void place(const Box& box) { place(box, Miss{}); }
@@ -324,7 +337,7 @@ class Planner {
             if (inverse.error < HUGE_VAL) {
                 const EconomizedBicubic x(inverse.x), y(inverse.y);
                 if (m_writer.polynomial(box, x.c, y.c, std::hypot(x.dropped, y.dropped) + inverse.error) ||
-                    cubic(box, inverse))
+                    bicubic(box, inverse, x.c, y.c))
                     return;
                 miss = {inverse.error, x.dropped_s + y.dropped_s >= x.dropped_t + y.dropped_t};
             }
@@ -335,19 +348,14 @@ class Planner {
         m_writer.halve(box, miss.vertical_cut, [&](const Box& b) { place(b, miss.on_half()); });
     }
 
-    /// True when the cubic as it is keeps the tolerance.
-    bool cubic(const Box& box, const LocalInverse& inverse) {
-        const auto by_degree = [](const double(&c)[4][4]) {
-            return std::array<double, 10>{c[0][0], c[1][0], c[0][1], c[2][0], c[1][1],
-                                          c[0][2], c[3][0], c[2][1], c[1][2], c[0][3]};
-        };
-        const std::array<double, 10> x = by_degree(inverse.x), y = by_degree(inverse.y);
-        if (!m_writer.cubic(box, x.data(), y.data(), inverse.error)) return false;
-        if (!m_cubics) m_blocks.data = m_cubics = std::make_shared<Cubics>();
+    /// True when the polynomial as it is keeps the tolerance; `near_x` and `near_y` is the quadratic near it.
+    bool bicubic(const Box& box, const LocalInverse& inverse, const double* near_x, const double* near_y) {
+        if (!m_writer.bicubic(box, inverse.x, inverse.y, near_x, near_y, inverse.error)) return false;
+        if (!m_bicubics) m_blocks.data = m_bicubics = std::make_shared<Bicubics>();
         Block& block = m_blocks.back();
-        block.data = m_cubics.get();
-        block.record = static_cast<int>(m_cubics->terms.size());
-        m_cubics->terms.emplace_back(x.data(), y.data());
+        block.data = m_bicubics.get();
+        block.record = static_cast<int>(m_bicubics->polynomials.size());
+        m_bicubics->polynomials.push_back(float_form(inverse, block));
         return true;
     }
 
@@ -407,25 +415,36 @@ class Planner {
         return near;
     }
 
-    /// The map about the middle of a block, in its units: z + Q(z) + C(z) + higher terms, where M leads from
+    struct KnownCell {
+        int level = -1, column = 0, row = 0;
+        Patch patch{};
+        Bicubic powers{};     ///< of the patch
+        double rounding = 0;  ///< double_rounding()
+
+        bool is(const MeshCell& cell) const {
+            return level == cell.level && column == cell.column && row == cell.row;
+        }
+    };
+
+    /// The map about the middle of a block, in its units: z + Q(z) + C(z) + F(z) + higher terms, where M leads from
     /// the block's parameters to source pixels.
     struct Middle {
-        const MeshCell& cell;
-        Patch patch;
+        KnownCell cell;
         Point<double> at;    ///< source pixels
-        Bicubic powers;      ///< of the patch about it
+        Bicubic powers;      ///< of the cell's map about it
         Matrix to_source;    ///< M
         Point<double> span;  ///< of the ball of radius 1, source pixels
         Form<2> q[2];
         Form<3> c[2];
+        Form<4> f[2];
     };
 
     /// The source point of the block's middle. False where there is none, or several.
     bool find_middle(InversePlan::Preimage& at) const {
         if (m_near.size() == 1) {
             const Sheet& only = *m_near.front().sheet;
-            return m_plan.find(only, m_mesh.patch(m_plan.cells()[static_cast<std::size_t>(only.cell)]), m_x,
-                               m_y, at);
+            const KnownCell& cell = known(m_plan.cells()[static_cast<std::size_t>(only.cell)]);
+            return m_plan.find(only, cell.patch, m_x, m_y, at);
         }
         const InversePlan::Preimages found = m_plan.preimages(m_x, m_y);
         at = found.best;
@@ -437,9 +456,9 @@ class Planner {
         LocalInverse result;
         InversePlan::Preimage at{};
         if (!find_middle(at)) return result;
-        const MeshCell& cell = m_plan.cells()[static_cast<std::size_t>(at.cell)];
-        Middle middle{cell, m_mesh.patch(cell), at.at, {}, {}, {}, {}, {}};
-        middle.powers = about(middle.patch, middle.at);
+        Middle middle{
+            known(m_plan.cells()[static_cast<std::size_t>(at.cell)]), at.at, {}, {}, {}, {}, {}, {}};
+        middle.powers = about(middle.cell, middle.at);
         const Bicubic& f = middle.powers;
         const Matrix j{f.x[1][0], f.x[0][1], f.y[1][0], f.y[0][1]};
         if (j.determinant() == 0) return result;
@@ -448,19 +467,27 @@ class Planner {
         middle.span = middle.to_source.span(1, 1);
         set_terms(middle);
 
-        // T(z) = 2 Q(z, Q(z)) - C(z): the derivative of Q along Q.
+        // T = DQ Q - C and U = DC Q - DQ T - Q(Q(z)) - F.
+        const Form<2>(&q)[2] = middle.q;
         Form<3> third[2];
+        Form<4> fourth[2];
         for (int k = 0; k < 2; ++k) {
-            const Form<2>* q = middle.q;
-            const Form<1> ds{2 * q[k][0], q[k][1]}, dt{q[k][1], 2 * q[k][2]};
-            const Form<3> p = times(ds, q[0]), r = times(dt, q[1]);
-            for (std::size_t i = 0; i < 4; ++i) third[k][i] = p[i] + r[i] - middle.c[k][i];
+            const Form<3> along = derivative_along(q[k], q);
+            for (std::size_t i = 0; i < 4; ++i) third[k][i] = along[i] - middle.c[k][i];
+        }
+        const Form<4> xx = times(q[0], q[0]), xy = times(q[0], q[1]), yy = times(q[1], q[1]);
+        for (int k = 0; k < 2; ++k) {
+            const Form<4> c_along = derivative_along(middle.c[k], q), q_along = derivative_along(q[k], third);
+            for (std::size_t i = 0; i < 5; ++i)
+                fourth[k][i] = c_along[i] - q_along[i] -
+                               (q[k][0] * xx[i] + q[k][1] * xy[i] + q[k][2] * yy[i]) - middle.f[k][i];
         }
         const Point<double>&m = middle.at, &span = middle.span;
-        // And of what follows, to a quadratic: 16 roundings of point and spans.
-        result.error = std::hypot(span.x, span.y) * inverse_error(middle, norm(third[0], third[1])) +
-                       16 * 0x1p-53 * (std::fabs(m.x) + std::fabs(m.y) + 4 * (span.x + span.y));
-        set_inverse(middle, third, result);
+        // And of what follows, to a quadratic: 24 roundings of point and spans.
+        result.error = std::hypot(span.x, span.y) *
+                           inverse_error(middle, norm(third[0], third[1]), norm(fourth[0], fourth[1])) +
+                       24 * 0x1p-53 * (std::fabs(m.x) + std::fabs(m.y) + 4 * (span.x + span.y));
+        set_inverse(middle, third, fourth, result);
         if (!on_mesh(result)) result.error = HUGE_VAL;
         return result;
     }
@@ -476,12 +503,13 @@ class Planner {
                holds(m_mesh.y_lines(), m_mesh.from().height, inverse.y);
     }
 
-    /// Q and C: the patch's own, of what M makes of z.
+    /// Q, C and F: the patch's own, of what M makes of z.
     void set_terms(Middle& middle) const {
         const Matrix& m = middle.to_source;
         const Form<1> a{m.a11, m.a12}, b{m.a21, m.a22};
         const Form<2> aa = times(a, a), ab = times(a, b), bb = times(b, b);
         const Form<3> aaa = times(aa, a), aab = times(aa, b), abb = times(a, bb), bbb = times(bb, b);
+        const Form<4> aaab = times(aaa, b), aabb = times(aab, b), abbb = times(a, bbb);
         for (int k = 0; k < 2; ++k) {
             const auto& g = k ? middle.powers.y : middle.powers.x;
             const double unit = 1 / (k ? m_hy : m_hx);
@@ -490,25 +518,28 @@ class Planner {
             for (std::size_t i = 0; i < 4; ++i)
                 middle.c[k][i] =
                     (g[3][0] * aaa[i] + g[2][1] * aab[i] + g[1][2] * abb[i] + g[0][3] * bbb[i]) * unit;
+            for (std::size_t i = 0; i < 5; ++i)
+                middle.f[k][i] = (g[3][1] * aaab[i] + g[2][2] * aabb[i] + g[1][3] * abbb[i]) * unit;
         }
     }
 
-    /// How far z - Q + T is from the inverse, in units of the block; `third`: the size of T.
-    double inverse_error(const Middle& middle, double third) const {
+    /// How far z - Q + T + U is from the inverse, in units of the block; `third` and `fourth`: the sizes of T and U.
+    double inverse_error(const Middle& middle, double third, double fourth) const {
         const Sizes full = sizes_of(middle.powers, middle.span);
         Sizes sizes = full;
         sizes[0] = sizes[1] = 0;
         sizes[2] = norm(middle.q[0], middle.q[1]);
         sizes[3] = norm(middle.c[0], middle.c[1]);
-        // The residual of z - Q + T: 2 Q(z, T) + Q(d) + C(z + d) - C(z) + higher(z + d), with d = T - Q.
-        const double d = sizes[2] + third;
-        const double residual = 2 * sizes[2] * third + sizes[2] * d * d +
-                                sizes[3] * (3 * d + 3 * d * d + d * d * d) + value_at(sizes, 4, 1 + d);
+        sizes[4] = norm(middle.f[0], middle.f[1]);
+        // The residual of z + d, with d = e - Q and e = T + U: DQ U + Q(d) - Q(-Q) + DC e + C(z + d) - C(z) - DC d +
+        // F(z + d) - F(z) + higher(z + d). As a bilinear form Q(d) - Q(-Q) is that of e and d - Q.
+        const double e = third + fourth, d = sizes[2] + e, d2 = d * d;
+        const double residual =
+            2 * sizes[2] * fourth + sizes[2] * e * (d + sizes[2]) + sizes[3] * (3 * e + 3 * d2 + d2 * d) +
+            sizes[4] * (4 * d + 6 * d2 + 4 * d2 * d + d2 * d2) + value_at(sizes, 5, 1 + d);
 
         // The middle's own error, and rounding.
-        const auto start_in = [&](double r) {
-            return middle_error(middle.cell, middle.patch, middle.at, middle.powers, middle.span, r, full);
-        };
+        const auto start_in = [&](double r) { return middle_error(middle, r, full); };
         // A ball that holds block, approximation and every source point that a sheet may have.
         double radius = 1 + d;
         for (int i = 0; i < 3; ++i)
@@ -516,8 +547,7 @@ class Planner {
         radius = std::max(radius, reach_of_sheets(middle.at, middle.to_source.inverse()));
         if (!(radius < 8)) return HUGE_VAL;
         const double start = start_in(radius);
-        const std::optional<Step> step = step_to_neighbours(middle.cell, middle.patch, middle.powers,
-                                                            middle.at, middle.span, radius, 1 + d);
+        const std::optional<Step> step = step_to_neighbours(middle, radius, 1 + d);
         if (!step) return HUGE_VAL;
         const double outside = value_at(step->sizes, 0, radius);
         // One root in the ball: the map less the identity takes it into itself and contracts.
@@ -530,25 +560,36 @@ class Planner {
         return (residual + step->most + start) / (1 - contraction);
     }
 
-    /// z - Q + T, through M to source pixels.
-    static void set_inverse(const Middle& middle, const Form<3> (&third)[2], LocalInverse& result) {
+    /// z - Q + T + U, through M to source pixels. Fourth powers are economised: s^4 is within 1/8 of s^2 - 1/8.
+    static void set_inverse(const Middle& middle, const Form<3> (&third)[2], const Form<4> (&fourth)[2],
+                            LocalInverse& result) {
         const Matrix& m = middle.to_source;
+        double dropped[2];
         for (int k = 0; k < 2; ++k) {
             auto& to = k ? result.y : result.x;
             const Form<1> row = k ? Form<1>{m.a21, m.a22} : Form<1>{m.a11, m.a12};
-            to[0][0] = k ? middle.at.y : middle.at.x;
+            const auto through = [&](const auto& form, std::size_t i) {
+                return row[0] * form[0][i] + row[1] * form[1][i];
+            };
+            const double s4 = through(fourth, 0), t4 = through(fourth, 4);
+            dropped[k] = (std::fabs(s4) + std::fabs(t4)) / 8;
+            to[0][0] = (k ? middle.at.y : middle.at.x) - (s4 + t4) / 8;
             to[1][0] = row[0];
             to[0][1] = row[1];
-            for (std::size_t i = 0; i < 3; ++i)
-                to[2 - i][i] = -(row[0] * middle.q[0][i] + row[1] * middle.q[1][i]);
-            for (std::size_t i = 0; i < 4; ++i) to[3 - i][i] = row[0] * third[0][i] + row[1] * third[1][i];
+            for (std::size_t i = 0; i < 3; ++i) to[2 - i][i] = -through(middle.q, i);
+            for (std::size_t i = 0; i < 4; ++i) to[3 - i][i] = through(third, i);
+            for (std::size_t i = 1; i < 4; ++i) to[4 - i][i] = through(fourth, i);
+            to[2][0] += s4;
+            to[0][2] += t4;
         }
+        result.error += std::hypot(dropped[0], dropped[1]);
     }
 
     /// A cell's map in powers of source pixels from a point.
-    Bicubic about(const Patch& patch, const Point<double>& m) const {
+    Bicubic about(const KnownCell& cell, const Point<double>& m) const {
+        const Patch& patch = cell.patch;
         const double w = 1 / (patch.x1 - patch.x0), h = 1 / (patch.y1 - patch.y0);
-        Bicubic f = restricted(power_form(patch), {(m.x - patch.x0) * w, w}, {(m.y - patch.y0) * h, h});
+        Bicubic f = restricted(cell.powers, {(m.x - patch.x0) * w, w}, {(m.y - patch.y0) * h, h});
         add_identity(f, m_mesh, {m.x, 1}, {m.y, 1});
         return f;
     }
@@ -566,25 +607,27 @@ class Planner {
 
     /// How a cell's map rounds about a point, in units of the block: `radius` spans from it, powers of
     /// parameters beyond [0, 1] grow by their cubes, and so does their rounding.
-    double rounding_about(const MeshCell& cell, const Patch& patch, const Point<double>& m,
-                          const Point<double>& span, double radius) const {
+    double rounding_about(const KnownCell& cell, const Point<double>& m, const Point<double>& span,
+                          double radius) const {
         const auto growth = [](double from, double to, double at, double reach) {
             const double r = (std::max(std::fabs(at - from), std::fabs(to - at)) + reach) / (to - from);
             return std::max(1.0, r * r * r);
         };
-        return rounding_of(cell, patch) * growth(patch.x0, patch.x1, m.x, radius * span.x) *
+        const Patch& patch = cell.patch;
+        return cell.rounding * growth(patch.x0, patch.x1, m.x, radius * span.x) *
                growth(patch.y0, patch.y1, m.y, radius * span.y) / std::min(m_hx, m_hy);
     }
 
     /// How far f(m) is from the block's middle, with the rounding of everything here, in units of the block.
-    /// M's rounding leaves J M - 1 below 8 u |J| |M|, and `sizes` says |J| |M| at degree 1; Q and C are sums
-    /// of at most 12 products of 5 factors, and the terms of 2 Q(z, Q(z)) of twice as many: less than 64 u of
-    /// what they sum, or of its square.
-    double middle_error(const MeshCell& cell, const Patch& patch, const Point<double>& m, const Bicubic& f,
-                        const Point<double>& span, double radius, const Sizes& sizes) const {
+    /// M's rounding leaves J M - 1 below 8 u |J| |M|, and `sizes` says |J| |M| at degree 1; Q, C and F are sums
+    /// of at most 24 products of 6 factors, less than 32 u of what they sum; T, of products of two of them, and U, of
+    /// products of up to three: less than 128 u of its square and its cube.
+    double middle_error(const Middle& middle, double radius, const Sizes& sizes) const {
+        const Bicubic& f = middle.powers;
         const double off = std::max(std::fabs(f.x[0][0] - m_x) / m_hx, std::fabs(f.y[0][0] - m_y) / m_hy);
         const double sum = value_at(sizes, 1, radius);
-        return off + rounding_about(cell, patch, m, span, radius) + 64 * 0x1p-53 * sum * (1 + sum);
+        return off + rounding_about(middle.cell, middle.at, middle.span, radius) +
+               128 * 0x1p-53 * sum * (1 + sum * (1 + sum));
     }
 
     /// How far from the block's middle, in its units, the sheets' source points can be.
@@ -603,14 +646,15 @@ class Planner {
         return reach;
     }
 
-    /// double_rounding of a cell; the last few are kept.
-    double rounding_of(const MeshCell& cell, const Patch& patch) const {
-        for (const CellRounding& known : m_roundings)
-            if (known.level == cell.level && known.column == cell.column && known.row == cell.row)
-                return known.rounding;
-        CellRounding& next = m_roundings[m_next_rounding++ % m_roundings.size()];
-        next = {cell.level, cell.column, cell.row, double_rounding(m_mesh, cell, patch)};
-        return next.rounding;
+    /// What is known of a cell; the last few are kept, more than a ball may meet.
+    const KnownCell& known(const MeshCell& cell) const {
+        for (const KnownCell& one : m_known)
+            if (one.is(cell)) return one;
+        KnownCell& next = m_known[m_next_known++ % m_known.size()];
+        next = {cell.level, cell.column, cell.row, m_mesh.patch(cell), {}, 0};
+        next.powers = power_form(next.patch);
+        next.rounding = double_rounding(m_mesh, cell, next.patch);
+        return next;
     }
 
     /// By how much the maps of the cells that a ball meets differ from the one in the middle, in units of the
@@ -623,46 +667,42 @@ class Planner {
         double most = 0;
     };
     /// None where the ball meets many cells.
-    std::optional<Step> step_to_neighbours(const MeshCell& cell, const Patch& own_patch, const Bicubic& f,
-                                           const Point<double>& m, const Point<double>& span, double radius,
-                                           double smaller) const {
+    std::optional<Step> step_to_neighbours(const Middle& middle, double radius, double smaller) const {
+        const Point<double>&m = middle.at, &span = middle.span;
+        const Patch& own = middle.cell.patch;
         const double rx = span.x * radius, ry = span.y * radius;
         const std::vector<double>&x_lines = m_mesh.x_lines(), &y_lines = m_mesh.y_lines();
         Step step;
-        if (m.x - rx >= cell.x0 && m.x + rx <= cell.x1 && m.y - ry >= cell.y0 && m.y + ry <= cell.y1)
-            return step;
+        if (m.x - rx >= own.x0 && m.x + rx <= own.x1 && m.y - ry >= own.y0 && m.y + ry <= own.y1) return step;
         constexpr int kMost = 9;
         int count = 0;
         const double left = std::max(m.x - rx, x_lines.front()), right = std::min(m.x + rx, x_lines.back()),
                      top = std::max(m.y - ry, y_lines.front()), bottom = std::min(m.y + ry, y_lines.back());
         m_mesh.each_cell(left, top, right, bottom, [&](const MeshCell& other) {
             if (++count > kMost) return;
-            const bool own =
-                other.level == cell.level && other.column == cell.column && other.row == cell.row;
-            if (own) {
+            const KnownCell& there = known(other);
+            const double rounding = rounding_about(there, m, span, radius);
+            if (middle.cell.is(other)) {
                 // No difference but rounding.
-                const double rounding = rounding_about(other, own_patch, m, span, radius);
                 step.sizes[0] = std::max(step.sizes[0], rounding);
                 step.most = std::max(step.most, rounding);
                 return;
             }
-            const Patch patch = m_mesh.patch(other);
-            Bicubic g = about(patch, m);
+            Bicubic g = about(there, m);
             for (int i = 0; i < 4; ++i)
                 for (int k = 0; k < 4; ++k) {
-                    g.x[i][k] -= f.x[i][k];
-                    g.y[i][k] -= f.y[i][k];
+                    g.x[i][k] -= middle.powers.x[i][k];
+                    g.y[i][k] -= middle.powers.y[i][k];
                 }
             Sizes sizes = sizes_of(g, span);
-            const double rounding = rounding_about(other, patch, m, span, radius);
             sizes[0] += rounding;
             for (std::size_t i = 0; i < sizes.size(); ++i) step.sizes[i] = std::max(step.sizes[i], sizes[i]);
             const Part x = common(m.x, span.x * smaller, other.x0, other.x1),
                        y = common(m.y, span.y * smaller, other.y0, other.y1);
             if (x.half < 0 || y.half < 0) return;
-            const Bicubic there = restricted(g, x, y);
-            step.most = std::max({step.most, sum_of_magnitudes(there.x) / m_hx + rounding,
-                                  sum_of_magnitudes(there.y) / m_hy + rounding});
+            const Bicubic common_part = restricted(g, x, y);
+            step.most = std::max({step.most, sum_of_magnitudes(common_part.x) / m_hx + rounding,
+                                  sum_of_magnitudes(common_part.y) / m_hy + rounding});
         });
         if (count > kMost) return std::nullopt;
         return step;
@@ -678,16 +718,12 @@ class Planner {
     const Mesh& m_mesh;
     double m_tol;
     Blocks& m_blocks;
-    std::shared_ptr<Cubics> m_cubics;  ///< of m_blocks, if there are any
+    std::shared_ptr<Bicubics> m_bicubics;  ///< of m_blocks, if there are any
     BlockWriter m_writer;
     double m_x = 0, m_y = 0, m_hx = 0, m_hy = 0;  ///< the block's middle and half its size, target pixels
     std::vector<Near> m_near;
-    struct CellRounding {
-        int level = -1, column = 0, row = 0;
-        double rounding = 0;
-    };
-    mutable std::array<CellRounding, 8> m_roundings;
-    mutable std::size_t m_next_rounding = 0;
+    mutable std::array<KnownCell, 16> m_known;
+    mutable std::size_t m_next_known = 0;
 };
 
 }  // namespace
@@ -715,8 +751,7 @@ void InversePlan::plan(const Box& box, int, Blocks& blocks) const {
 }
 
 BlockPolynomial InversePlan::bicubic(const Block& block) const noexcept {
-    return with_cubic_terms(
-        block, static_cast<const Cubics&>(*block.data).terms[static_cast<std::size_t>(block.record)]);
+    return static_cast<const Bicubics&>(*block.data).polynomials[static_cast<std::size_t>(block.record)];
 }
 
 Point<double> InversePlan::on_sheet(const Sheet& sheet, const Point<double>& z) const noexcept {

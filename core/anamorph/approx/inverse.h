@@ -17,11 +17,12 @@
 // e / (1 - rho) of the exact source point, in z; parts overlap by more than that, and points found on the
 // edges of two parts are compared.
 //
-// Blocks. Around the preimage of a block's middle, in parameters z of the block, the map is z + Q(z) + C(z) +
-// higher terms, so that its inverse is z - Q(z) + 2 Q(z, Q(z)) - C(z) + remainder; norms of the coefficients
-// prove existence and uniqueness (Banach's fixed point theorem on a ball somewhat larger than the block) and
-// bound the remainder. The cubic is economised to a quadratic, or drawn as it is. Neighbouring cells that the ball reaches enter
-// with their difference from the cell in the middle, so that blocks may run over edges.
+// Blocks. Around the preimage of a block's middle, in parameters z of the block, the map is z + Q(z) + C(z) + F(z) +
+// higher terms, of degrees 2, 3, 4 and more. Its inverse is z - Q(z) + T(z) + U(z) + remainder, where by degrees
+// T = DQ Q - C and U = DC Q - DQ T - Q(Q(z)) - F; norms of the coefficients prove existence and uniqueness (Banach's
+// fixed point theorem on a ball somewhat larger than the block) and bound the remainder. The polynomial is economised to
+// a quadratic, or but for its fourth powers drawn as it is. Neighbouring cells that the ball reaches enter with their
+// difference from the cell in the middle, so that blocks may run over edges.
 #pragma once
 
 #include "anamorph/approx/mesh_plan.h"
