@@ -100,13 +100,19 @@ Panorama::Panorama(const Chart& source, const Chart& target, const Orientation& 
 }
 
 Panorama::Local Panorama::local_around(double x, double y, int piece) const {
-    return local_around(x, y, piece, transform(m_rotation, m_target.ray(x, y, piece)));
+    const Ray<double> ray = m_target.ray(x, y, piece);
+    return local_around(ray, piece, transform(m_rotation, ray));
 }
 
 Panorama::Local Panorama::local_around(double x, double y, int piece, const Ray<double>& source_ray) const {
+    return local_around(m_target.ray(x, y, piece), piece, source_ray);
+}
+
+Panorama::Local Panorama::local_around(const Ray<double>& target_ray, int piece,
+                                       const Ray<double>& source_ray) const {
     Local local;
     // The target's own angles count from this point only where that narrows intervals; its piece is given.
-    local.target = m_target.branch_around(x, y, piece);
+    local.target = m_target.branch_around(target_ray);
     if (local.target.piece != piece) local.target = m_target.branch(piece);
     local.source = m_source.branch_around(source_ray);
     local.rotation = glm::transpose(local.source.axes) * m_rotation * local.target.axes;

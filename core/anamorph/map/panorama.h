@@ -120,6 +120,7 @@ class Panorama {
     /// than 64 units.
     static constexpr double kLocalError = 6 * Heading::kError + 64 * 0x1p-53;
 
+    Local local_around(const Ray<double>& target_ray, int piece, const Ray<double>& source_ray) const;
     /// Does the source see all these local rays, but for its lens's end?
     bool ends_by_lens(const Ray<Interval>& ray, const Local& local) const;
 
