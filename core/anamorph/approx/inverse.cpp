@@ -415,6 +415,7 @@ class Planner {
         return near;
     }
 
+    /// A cell, and what is made of it.
     struct KnownCell {
         int level = -1, column = 0, row = 0;
         Patch patch{};
