@@ -53,8 +53,16 @@ struct Near {
     double margin;  ///< of barycentric coordinates at the block's pixels
     Bicubic cubic;  ///< on the block
 };
-/// The triangles of a region's computed blocks.
+Near near_to(const Box& box, const CubicTriangle& triangle, const Bicubic& cubic) {
+    // Rows are cut where they may leave a triangle, up to a pixel behind the last one.
+    const Bounds all{box.x0 + 0.5, box.y0 + 0.5, box.x1 + 0.5, box.y1 - 0.5};
+    return {&triangle, triangle.bounds(), 4 * triangle.place_error(all), cubic};
+}
+
+/// The triangles of a region's computed blocks, as many as are kept.
 struct Pieces : RegionData {
+    static constexpr std::size_t kMost = 1024;
+
     std::vector<Near> near;
     struct Part {
         std::size_t first, count;
@@ -213,14 +221,11 @@ class Planner {
                       met.rounding);
         }
         if (!m_writer.computed(box, middle, error)) return false;
+        if (m_records.near.size() + m_met.size() > Pieces::kMost) return true;
         m_blocks.back().data = &m_records;
         m_blocks.back().record = static_cast<int>(m_records.of_blocks.size());
         m_records.of_blocks.push_back({m_records.near.size(), m_met.size()});
-        // Rows are cut where they may leave a triangle, up to a pixel behind the last one.
-        const Bounds all{box.x0 + 0.5, box.y0 + 0.5, box.x1 + 0.5, box.y1 - 0.5};
-        for (const Met& met : m_met)
-            m_records.near.push_back(
-                {met.triangle, met.triangle->bounds(), 4 * met.triangle->place_error(all), met.f});
+        for (const Met& met : m_met) m_records.near.push_back(near_to(box, *met.triangle, met.f));
         return true;
     }
 
@@ -291,8 +296,36 @@ class Planner {
     std::vector<Met> m_met;
 };
 
+/// The triangles of a computed block: those that were kept, or found again.
+class Triangles {
+  public:
+    Triangles(const Scattered& map, const Block& block) {
+        if (block.data) {
+            m_all = static_cast<const Pieces&>(*block.data).of(block);
+            return;
+        }
+        const Box& box = block.box;
+        const Bounds centres{box.x0 + 0.5, box.y0 + 0.5, box.x1 - 0.5, box.y1 - 0.5};
+        map.tree().each(centres, [&](std::int32_t n) {
+            const CubicTriangle& triangle = map.triangles()[static_cast<std::size_t>(n)];
+            if (triangle.meets(centres))
+                m_found.push_back(near_to(box, triangle, on(map, triangle, Centres(box))));
+        });
+        m_all = m_found;
+    }
+    Triangles(const Triangles&) = delete;
+    Triangles& operator=(const Triangles&) = delete;
+
+    std::span<const Near> all() const { return m_all; }
+
+  private:
+    std::vector<Near> m_found;
+    std::span<const Near> m_all;
+};
+
 /// Pixels [begin, end) of a row of a computed block.
-void write_row(const Scattered& map, const Block& block, int row, int begin, int end, float* x, float* y) {
+void write_row(const Scattered& map, const Block& block, std::span<const Near> triangles, int row, int begin,
+               int end, float* x, float* y) {
     // Whatever part of it is asked for, the whole row decides who holds a pixel.
     const int width = block.box.width();
     const double first = block.box.x0 + 0.5, down = block.box.y0 + row + 0.5;
@@ -302,7 +335,7 @@ void write_row(const Scattered& map, const Block& block, int row, int begin, int
     std::uint64_t claimed = 0, contested = 0, held = 0;
     simd::CubicRun runs[Block::kMaxSide];
     int count = 0;
-    for (const Near& near : static_cast<const Pieces&>(*block.data).of(block)) {
+    for (const Near& near : triangles) {
         if (!near.bounds.meets({first, down, first + width - 1, down})) continue;
         const Run run(*near.triangle, near.margin, first, down, width);
         const std::uint64_t claim = bits(run.outer_begin, run.outer_end);
@@ -363,13 +396,15 @@ BlockPolynomial ScatteredPlan::bicubic(const Block& block) const noexcept {
 void ScatteredPlan::computed(std::span<const Block> layers, const PointRows* to) const noexcept {
     const Block& block = layers.front();
     const Box& b = block.box;
+    const Triangles triangles(m_map, block);
     for (int j = 0; j < b.height(); ++j)
-        write_row(m_map, block, j, 0, b.width(), to->x + j * to->stride, to->y + j * to->stride);
+        write_row(m_map, block, triangles.all(), j, 0, b.width(), to->x + j * to->stride,
+                  to->y + j * to->stride);
 }
 
 void ScatteredPlan::computed_row(const Block& block, int row, int begin, int end, float* x,
                                  float* y) const noexcept {
-    write_row(m_map, block, row, begin, end, x, y);
+    write_row(m_map, block, Triangles(m_map, block).all(), row, begin, end, x, y);
 }
 
 Jacobian ScatteredPlan::jacobian(double x, double y, int) const noexcept {

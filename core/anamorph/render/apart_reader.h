@@ -42,7 +42,7 @@ class ApartReader {
     /// Finds a row's texels, for a filter that reads one tap, and brings them near. False when the source could not be
     /// read.
     bool locate(Row& row, simd::Kernel kernel);
-    /// The pixels of a row that was located, once, channel by channel, to `values`, which has room for simd::kMaxRow * channels
+    /// The pixels of a row, once after it was located, channel by channel, to `values`, which has room for simd::kMaxRow * channels
     /// + 16 floats; 0 where there is no point. A pixel's bits depend on its own point only. Returns the type whose units
     /// they have (simd::sample_row).
     PixelType sample(Row& row, simd::Kernel kernel, float* values) const;
