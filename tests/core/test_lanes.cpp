@@ -100,8 +100,9 @@ HWY_EXPORT(EvaluateFloat);
 namespace {
 
 constexpr int kFunctions = 14;
-const char* const kNames[kFunctions] = {"sin",   "cos",      "atan2", "exp",  "log",     "tanh",      "asinh",
-                                        "hypot", "quotient", "sech",  "sine", "versine", "small atan", "small angle"};
+const char* const kNames[kFunctions] = {"sin",  "cos",     "atan2",      "exp",        "log",
+                                        "tanh", "asinh",   "hypot",      "quotient",   "sech",
+                                        "sine", "versine", "small atan", "small angle"};
 constexpr unsigned kSeed = 4711;
 constexpr std::size_t kCount = 1 << 16;  // a multiple of any number of lanes
 
