@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Vectors as numbers, on every instruction set that this machine has: the errors that lanes.h states, held
-// against long double, and the same bits on all of them.
+// Vectors as numbers, on every instruction set that this machine has: the errors that lanes.h and
+// exp_of_minus.h state, held against long double, and the same bits on all of them.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -25,6 +25,7 @@ namespace anamorph::test::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
 #include "anamorph/number/lanes.h"
+#include "anamorph/simd/exp_of_minus.h"
 
 static_assert(FormulaNumber<Lanes<hn::ScalableTag<double>>> && FormulaNumber<Lanes<hn::ScalableTag<float>>>);
 
@@ -89,6 +90,11 @@ void EvaluateFloat(int which, const float* a, const float* b, std::size_t count,
     Evaluate(which, a, b, count, out);
 }
 
+void EvaluateExpOfMinus(const double* a, std::size_t count, double* out) {
+    using L = Lanes<hn::ScalableTag<double>>;
+    for (std::size_t i = 0; i < count; i += hn::Lanes(L::D())) exp_of_minus(L::load(a + i)).store(out + i);
+}
+
 }  // namespace anamorph::test::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
@@ -96,6 +102,7 @@ HWY_AFTER_NAMESPACE();
 namespace anamorph::test {
 HWY_EXPORT(EvaluateDouble);
 HWY_EXPORT(EvaluateFloat);
+HWY_EXPORT(EvaluateExpOfMinus);
 
 namespace {
 
@@ -244,6 +251,41 @@ TEST(Lanes, DoubleHoldsItsErrorsWithTheSameBitsEverywhere) {
 }
 TEST(Lanes, FloatHoldsItsErrorsWithTheSameBitsEverywhere) {
     expect_stated_errors_and_the_same_bits<float>();
+}
+
+TEST(Lanes, ExpOfMinusHoldsItsErrorWithTheSameBitsEverywhere) {
+    SCOPED_TRACE(testing::Message() << "seed " << kSeed);
+    std::mt19937 random(kSeed);
+    std::uniform_real_distribution<double> uniform(0, 1);
+    std::vector<double> a, first, out(kCount);
+    constexpr double kInf = HUGE_VAL, kBeyond = 700.0000000000002;
+    for (const double x : {0.0, -0.0, 5e-324, 1e-300, 0x1p-53, 700.0, kBeyond, 1e300, kInf, double{NAN}})
+        a.push_back(x);
+    // Around the halves of log 2, where the exponent changes, too.
+    while (a.size() < kCount) {
+        const double kinds[] = {
+            uniform(random), 20 * uniform(random), 700 * uniform(random),
+            (static_cast<double>(random() % 2000) / 2) * M_LN2 * (1 + 1e-15 * uniform(random))};
+        a.push_back(std::min(kinds[a.size() % 4], 700.0));
+    }
+    on_every_target([&] {
+        HWY_DYNAMIC_DISPATCH(EvaluateExpOfMinus)(a.data(), a.size(), out.data());
+        if (first.empty()) first = out;
+        EXPECT_EQ(std::memcmp(first.data(), out.data(), kCount * sizeof(double)), 0);
+    });
+    long double worst = 0;
+    for (std::size_t i = 0; i < kCount; ++i) {
+        if (!(a[i] <= 700)) {
+            EXPECT_EQ(out[i], 0) << a[i];
+            continue;
+        }
+        const long double value = std::exp(-static_cast<long double>(a[i]));
+        worst = std::max(worst, std::fabs(out[i] - value) / (value * 0x1p-53L));
+    }
+    EXPECT_EQ(out[0], 1);
+    EXPECT_EQ(out[1], 1);
+    EXPECT_LE(worst, 2);
+    EXPECT_GT(worst, 0.5);
 }
 
 TEST(Lanes, SpecialValues) {

@@ -43,6 +43,12 @@ struct Deformation {
 /// Throws Error that names the field, unless all numbers are finite and extents in the range of kExtentRow.
 void check_deformation(const Deformation& deformation);
 
+/// exp(-a), a not negative, of numbers that have nothing faster for it.
+template <class T>
+T exp_of_minus(const T& a) {
+    return exp(-a);
+}
+
 #include "anamorph/deform/deformation_formula.h"
 
 /// F of x = (u - c_u) / a_u and y = (v - c_v) / a_v: 1 at the centre.

@@ -8,7 +8,7 @@
 /// exp(-r^2) of r^2.
 template <class T>
 inline T gaussian_of(const T& squared) {
-    return exp(-squared);
+    return exp_of_minus(squared);
 }
 
 /// (1 - r)^4 (4 r + 1) up to r = 1, then 0, of r^2.

@@ -20,6 +20,7 @@ namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
 #include "anamorph/number/lanes.h"
+#include "anamorph/simd/exp_of_minus.h"
 // Templates over the number, compiled once for every instruction set.
 #include "anamorph/deform/deformation_formula.h"
 
@@ -67,9 +68,9 @@ struct Slope {
         const L r = sqrt(a.value);
         return {r, a.by * (L(0.5) / r)};
     }
-    friend HWY_INLINE Slope exp(const Slope& a) {
-        const L e = exp(a.value);
-        return {e, e * a.by};
+    friend HWY_INLINE Slope exp_of_minus(const Slope& a) {
+        const L e = exp_of_minus(a.value);
+        return {e, -(e * a.by)};
     }
     friend HWY_INLINE L::M is_zero(const Slope& a) { return is_zero(a.value); }
     friend HWY_INLINE L::M is_negative(const Slope& a) { return is_negative(a.value); }
@@ -96,7 +97,7 @@ HWY_INLINE T NumberOf(const AxisKernel& kernel, const L& t) {
     } else {
         // As far out as this the factors are 0 in double, and their derivatives are finite.
         const double most = kernel.gaussian ? 30.0 : 2.0;
-        return Slope(max(min(t, L(most)), L(-most)), L(kernel.inverse_extent));
+        return Slope(L(hn::Max(hn::Min(t.v, L(most).v), L(-most).v)), L(kernel.inverse_extent));
     }
 }
 /// The factor of t in one direction, not cut off. T: L, or Slope for its derivative by x too.
