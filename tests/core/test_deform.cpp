@@ -407,6 +407,56 @@ TEST(DeformedSurface, GridsAndPointsAgreeToTheBit) {
     }
 }
 
+/// Large surfaces are written past the caches: their bits are those of strips, which are not, wherever the
+/// points lie in memory, and nothing beside them is touched.
+template <class T>
+void expect_that_large_surfaces_are_their_strips(int columns, int rows, std::size_t offset) {
+    SCOPED_TRACE(std::to_string(columns) + "x" + std::to_string(rows) + ", offset " + std::to_string(offset));
+    Random random(23);
+    std::vector<Deformation> list = random.list(4, .05, .3);
+    const std::vector<double> u = even(columns), v = even(rows);
+    const std::vector<T> base = plane<T>(u, v);
+    const std::size_t count = base.size();
+    const auto expected = [&] {
+        std::vector<T> out(count);
+        const int strip = rows / 8;
+        for (int row = 0; row < rows; row += strip) {
+            const std::size_t first = 3 * u.size() * static_cast<std::size_t>(row);
+            const auto part = std::span(v).subspan(static_cast<std::size_t>(row),
+                                                   static_cast<std::size_t>(std::min(strip, rows - row)));
+            deform_grid<T>(list, u, part, {}, base.data() + first, out.data() + first);
+        }
+        return out;
+    };
+    std::vector<T> room(count + 2 * offset + 32, T(-7)), moved(count);
+    T* const out = room.data() + 8 + offset;
+    DeformedGrid grid(u, v);
+    grid.apply(additions(list));
+    grid.write(base.data(), out, threads(2));
+    EXPECT_TRUE(std::equal(out, out + count, expected().begin()));
+    const Deformation before = list[1];
+    list[1] = random.deformation(.1, .2);
+    grid.apply({before, list[1]});
+    grid.update(base.data(), out, threads(2), moved.data());
+    EXPECT_TRUE(std::equal(out, out + count, expected().begin()));
+    grid.write<T>(nullptr, out, threads(2));
+    EXPECT_TRUE(std::all_of(room.data(), out, [](T x) { return x == T(-7); }));
+    EXPECT_TRUE(std::all_of(out + count, room.data() + room.size(), [](T x) { return x == T(-7); }));
+    deform_grid(list, u, v, {}, base.data(), out);
+    EXPECT_TRUE(std::equal(out, out + count, expected().begin()));
+}
+TEST(DeformedSurface, LargeSurfacesAreTheirStrips) {
+    for (const char* const* set = simd::instruction_sets(); *set; ++set) {
+        SCOPED_TRACE(*set);
+        ASSERT_TRUE(simd::use_instruction_set(*set));
+        expect_that_large_surfaces_are_their_strips<float>(900, 750, 0);
+        expect_that_large_surfaces_are_their_strips<float>(901, 750, 1);
+        expect_that_large_surfaces_are_their_strips<double>(700, 500, 0);
+        expect_that_large_surfaces_are_their_strips<double>(701, 500, 1);
+    }
+    simd::use_instruction_set("");
+}
+
 TEST(DeformedSurface, AHundredThousandEditsLeaveNoTrace) {
     const unsigned seed = 3;
     SCOPED_TRACE("seed " + std::to_string(seed));

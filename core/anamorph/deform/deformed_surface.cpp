@@ -65,7 +65,7 @@ struct Axis {
 };
 
 Axis add_axis(std::span<const double> values, double center, double extent, bool gaussian, double reach,
-              int block, std::vector<double>& tables) {
+              int block, LineVector<double>& tables) {
     const double inverse = 1 / extent;
     const auto [first, last] = reached(values, center, inverse, reach);
     if (first == last) return {};
@@ -80,7 +80,7 @@ Axis add_axis(std::span<const double> values, double center, double extent, bool
 /// Terms made ready to be drawn on a grid.
 struct GridTerms {
     std::vector<simd::GridTerm> terms;
-    std::vector<double> tables;
+    LineVector<double> tables;
     GridPart part;  ///< that they reach
 };
 
@@ -118,11 +118,20 @@ GridTerms prepare(std::span<const Term> all, std::size_t& next, std::span<const 
     return ready;
 }
 
+/// Is a surface so large that its points are better not fetched into the caches before they are written, and
+/// would not be found there afterwards?
+template <class T>
+bool goes_past_caches(int columns, int rows) {
+    constexpr double kLarge = 8e6;
+    return 3 * sizeof(T) * static_cast<double>(columns) * rows >= kLarge;
+}
+
 /// Draws terms on bands of rows; without sums nothing is kept.
 template <class T>
 void draw_terms(const GridTerms& ready, bool all, int columns, int rows, double resolution,
                 std::int64_t* sums, const T* base, T* out, const ParallelFor& parallel_for) {
     constexpr int kBandRows = 16;
+    const bool stream = goes_past_caches<T>(columns, rows);
     static_assert(kBandRows % simd::kGridRows == 0);
     const int first = all ? 0 : round_down(ready.part.row_begin, kBandRows);
     const int end = all ? rows : ready.part.row_end;
@@ -134,7 +143,7 @@ void draw_terms(const GridTerms& ready, bool all, int columns, int rows, double 
         for (const simd::GridTerm& t : ready.terms)
             if (t.row_begin < band_end && begin < t.row_end) terms.push_back(t);
         simd::deform_band(
-            {terms.data(), terms.size(), begin, band_end, columns, sums, resolution, base, out, all});
+            {terms.data(), terms.size(), begin, band_end, columns, sums, resolution, base, out, all, stream});
     });
 }
 
@@ -264,9 +273,9 @@ GridPart DeformedGrid::draw(bool all, const T* base, T* out, const ParallelFor& 
         constexpr int kRowsAtOnce = 16;
         parallel_for((count + kRowsAtOnce - 1) / kRowsAtOnce, [&](std::int64_t i) {
             const int begin = first + static_cast<int>(i) * kRowsAtOnce;
-            simd::deform_band(
-                simd::GridBand<T>{nullptr, 0, begin, std::min(begin + kRowsAtOnce, first + count), columns,
-                                  m_sums.data(), m_sum.options().resolution, nullptr, displacement, true});
+            simd::deform_band(simd::GridBand<T>{
+                nullptr, 0, begin, std::min(begin + kRowsAtOnce, first + count), columns, m_sums.data(),
+                m_sum.options().resolution, nullptr, displacement, true, goes_past_caches<T>(columns, rows)});
         });
     }
     return part;
@@ -522,7 +531,7 @@ DeformedPoints::DeformedPoints(std::span<const glm::dvec2> points, const DeformO
     m_u.assign(end, std::numeric_limits<double>::quiet_NaN());
     m_v = m_u;
     m_point.assign(end, -1);
-    for (std::vector<std::int64_t>& sums : m_sums) sums.resize(end);
+    for (LineVector<std::int64_t>& sums : m_sums) sums.resize(end);
     for (std::size_t i = 0; i < points.size(); ++i) {
         Cell& cell = m_cells[cell_of(points[i])];
         cell.least = glm::dvec2(std::min(cell.least.x, points[i].x), std::min(cell.least.y, points[i].y));

@@ -23,6 +23,7 @@
 
 #include "anamorph/deform/deformation.h"
 #include "anamorph/error.h"
+#include "anamorph/line_vector.h"
 #include "anamorph/parallel_for.h"
 
 namespace anamorph {
@@ -167,7 +168,7 @@ class DeformedGrid {
     std::vector<double> m_u, m_v;
     DisplacementSum m_sum;
     std::vector<DeformationChange> m_pending;
-    std::vector<std::int64_t> m_sums;  ///< simd::GridBand
+    LineVector<std::int64_t> m_sums;  ///< simd::GridBand
 };
 
 /// Writes base + displacement of all points of a grid once, faster than DeformedGrid, which can be edited.
@@ -232,9 +233,9 @@ class DeformedPoints {
     DisplacementSum m_sum;
     std::vector<Cell> m_cells;
     std::vector<std::size_t> m_cell_rows;  ///< first cell of each row of cells, and the end
-    std::vector<double> m_u, m_v;          ///< by slot; NaN where a slot is empty
+    LineVector<double> m_u, m_v;           ///< by slot; NaN where a slot is empty
     std::vector<std::int32_t> m_point;     ///< by slot; -1 where it is empty
-    std::vector<std::int64_t> m_sums[3];   ///< by slot
+    LineVector<std::int64_t> m_sums[3];    ///< by slot
     std::vector<DeformationChange> m_pending;
 };
 

@@ -11,6 +11,7 @@
 
 #include "anamorph/number/number.h"
 
+#include "hwy/cache_control.h"
 #include "hwy/foreach_target.h"  // must come before highway.h
 #include "hwy/highway.h"
 
@@ -203,10 +204,28 @@ HWY_INLINE V StoreAs(const double*, V v) {
     return v;
 }
 
+constexpr std::uintptr_t kStreamed = 16;  ///< bytes that are written past the caches at once
+
+/// Writes points; past the caches if `stream`, to multiples of kStreamed.
+template <class T, class VT>
+HWY_INLINE void StorePoints(VT x, VT y, VT z, bool stream, T* out) {
+    const hn::Rebind<T, D> dt;
+    constexpr int kValues = 3 * kLanes, kPart = static_cast<int>(kStreamed / sizeof(T));
+    if (!stream || kValues % kPart != 0) {
+        hn::StoreInterleaved3(x, y, z, dt, out);
+        return;
+    }
+    HWY_ALIGN T values[kValues];
+    hn::StoreInterleaved3(x, y, z, dt, values);
+    const hn::CappedTag<T, kPart> part;
+    constexpr int kAtOnce = static_cast<int>(hn::MaxLanes(part));
+    for (int i = 0; i < kValues; i += kAtOnce) hn::Stream(hn::Load(part, values + i), part, out + i);
+}
+
 /// out = base + sums * resolution for `count` <= kGridBlock points of a row, without gaps. The product is
 /// exact.
 template <class T>
-void WritePoints(const std::int64_t* sums, int count, double resolution, const T* base, T* out) {
+void WritePoints(const std::int64_t* sums, int count, double resolution, bool stream, const T* base, T* out) {
     const D d;
     const DI di;
     const hn::Rebind<T, D> dt;
@@ -223,7 +242,7 @@ void WritePoints(const std::int64_t* sums, int count, double resolution, const T
         }
         for (int c = 0; c < 3; ++c)
             p[c] = hn::MulAdd(hn::ConvertTo(d, hn::LoadU(di, sums + c * kGridBlock + i)), unit, p[c]);
-        hn::StoreInterleaved3(StoreAs(out, p[0]), StoreAs(out, p[1]), StoreAs(out, p[2]), dt, out + 3 * i);
+        StorePoints(StoreAs(out, p[0]), StoreAs(out, p[1]), StoreAs(out, p[2]), stream, out + 3 * i);
     }
     for (; i < count; ++i)
         for (int c = 0; c < 3; ++c) {
@@ -259,11 +278,14 @@ void DeformBand(const GridBand<T>& band) {
             const int count = std::min(kGridBlock, band.columns - column);
             for (int r = 0; r < kGridRows && row + r < band.row_end; ++r) {
                 const std::ptrdiff_t first = 3 * (std::ptrdiff_t{row + r} * band.columns + column);
-                WritePoints(sums + 3 * r * kGridBlock, count, band.resolution,
-                            band.base ? band.base + first : nullptr, band.out + first);
+                T* const out = band.out + first;
+                const bool stream = band.stream && reinterpret_cast<std::uintptr_t>(out) % kStreamed == 0;
+                WritePoints(sums + 3 * r * kGridBlock, count, band.resolution, stream,
+                            band.base ? band.base + first : nullptr, out);
             }
         }
     }
+    if (band.stream) hwy::FlushStream();
 }
 void DeformBandFloat(const GridBand<float>& band) {
     DeformBand(band);

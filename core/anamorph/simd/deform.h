@@ -61,8 +61,9 @@ struct GridBand {
     std::int64_t* sums;
     double resolution;
     const T* base;
-    T* out;    ///< null: sums only
-    bool all;  ///< write blocks too that no term reaches
+    T* out;       ///< null: sums only
+    bool all;     ///< write blocks too that no term reaches
+    bool stream;  ///< past the caches: for surfaces larger than these
 };
 void deform_band(const GridBand<float>& band);
 void deform_band(const GridBand<double>& band);
