@@ -6,12 +6,8 @@
 // DeformedGrid filled and drawn. edit: one bump of a DeformedGrid changed and drawn, averaged over all bumps.
 // points and points_edit: the same of DeformedPoints. memory: as many bytes copied as fixed reads and writes.
 //
-// What limits an edit is memory. Of each point that a bump reaches, three sums of 64 bits are read and written (48
-// bytes), and a point of floats is read, fetched and written (36): 84 bytes. The wide bumps reach .81 of the points,
-// the local ones .11, within 4 extents (cutoff 1e-7). A million points are 48 MB with their sums, more than the cache:
-// at the 23 GB/s that a core of the machine reads and writes there, an edit takes 2.9 and .4 ns a point, as measured
-// (2.6 and .5), against 11 and 3.2 to compute all 50 anew. Points alone, if sums took no room, would take 1.3 and .17
-// ns: 9 and 19 times as fast as all anew. 15 times is out of reach for the wide ones, whatever is stored.
+// What limits an edit: deform/deformed_surface.h has the arithmetic. 15 times as fast as all anew is out of reach for the
+// wide bumps whatever is stored, and for the local ones with sums of 64 bits.
 //
 // With normals: the same planes, normals (0, 0, 1) that turn along. double: the plain loop, that of a bump
 // giving both derivatives from its value. grid: a DeformedGrid filled and drawn, and its slopes, which turn
