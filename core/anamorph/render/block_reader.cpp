@@ -183,10 +183,13 @@ auto at_points(const PixelPoints<Real>& points) {
 }
 
 // Where there are more texels than this for a pixel, they are brought near one by one.
-constexpr double kApart = 8;
+constexpr double kApart = 3;
 
 // More texels than this for a pixel are not taken together, wherever they are: the bits of a picture do not depend on that.
 constexpr double kMostTexels = 128;
+
+// Nor are more than this where they cross an edge of the source: all but the cells at the edge can be read in place.
+constexpr double kMostPutTogether = 8;
 
 // Cells of up to so many pixels whose texels lie too far apart are read pixel by pixel, larger ones are halved.
 constexpr int kSmallCell = 16;
@@ -838,6 +841,10 @@ BlockReader::Got BlockReader::window_of(const Filtering& f, int piece, std::int3
     const Box box{static_cast<int>(x.first), static_cast<int>(y.first), static_cast<int>(x.last),
                   static_cast<int>(y.last)};
     if (!apart && texels_in(box) > kMostTexels * texels_in(block) + 4096) return Got::too_large;
+    // To put a window together takes longer than to read a few of its texels.
+    if (!apart && texels_in(block) > kSmallCell && texels_in(box) > kMostPutTogether * texels_in(block) &&
+        m_reader.crosses_edge(f.level, piece, box))
+        return Got::too_large;
     const auto fits = [&] {
         const double pixel = double(window.channels) * size_of(window.type);
         const double span = std::fabs(double(window.row_stride)) * most_y + pixel * most_x;

@@ -39,6 +39,11 @@ class WindowReader {
     /// The same, with rows one behind the other in memory of its own.
     bool get_copy(int level, int piece, const Box& box, Window& window) noexcept;
 
+    /// Does no rectangle of the level hold these texels in the same order, so that they have to be put together?
+    bool crosses_edge(int level, int piece, const Box& box) const noexcept {
+        return place_of(level, piece, box).empty();
+    }
+
     static constexpr std::int64_t kMaxTexels = std::int64_t{1} << 24;
 
   private:
