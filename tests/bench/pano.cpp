@@ -378,6 +378,7 @@ class Scene {
                     {},
                     c.bound,
                     c.exact_fraction};
+            row.one_tap = c.one_tap;
             if (c.points) {
                 const Points points = c.points();
                 std::vector<float> errors = distances(m_chart, points, c.view->truth);

@@ -8,6 +8,7 @@ libraries that are compared with choose their instructions themselves.
 """
 import argparse
 import csv
+import math
 import pathlib
 import subprocess
 import sys
@@ -39,7 +40,9 @@ def cells(rows, tol):
         if key in found:
             continue
         alike = [r for r in rows if (r["op"], r["case"], r["threads"]) == (*key, row["threads"])]
-        peers = [float(r["ns_per_px"]) for r in alike if r["scheme"] in PEERS]
+        # Averages have no source points that could be off, and the others take none.
+        is_average = math.isnan(float(row["max_error_px"]))
+        peers = [float(r["ns_per_px"]) for r in alike if r["scheme"] in PEERS and not is_average]
         own = float(row["ns_per_px"])
         found[key] = (own, min(peers) / own if peers else None)
     return found

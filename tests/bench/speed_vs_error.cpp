@@ -139,7 +139,18 @@ bool is_peer(const Row& row) {
 /// The tolerance at which cells are compared, source pixels.
 constexpr double kUsualTol = 0.01;
 
-/// The cells in which the best peer comes nearest, or is ahead, those first.
+/// The fastest peer of a row in the same cell, which filters alike; null if there is none.
+const Row* best_peer(const Report& report, const Row& ours) {
+    const Row* best = nullptr;
+    for (const Row& r : report.rows)
+        if (is_peer(r) && r.op == ours.op && r.case_name == ours.case_name && r.size == ours.size &&
+            r.threads == ours.threads && r.one_tap == ours.one_tap &&
+            (!best || r.ns_per_px < best->ns_per_px))
+            best = &r;
+    return best;
+}
+
+/// The cells in which the best peer comes nearest, or is ahead, those first; and how far off that peer is.
 void print_weakest(const Report& report) {
     struct Cell {
         const Row *ours, *peer;
@@ -148,23 +159,19 @@ void print_weakest(const Report& report) {
     std::vector<Cell> cells;
     for (const Row& ours : report.rows) {
         if (!(ours.scheme == "automatic" || ours.scheme == "auto") || ours.tol_px != kUsualTol) continue;
-        const Row* best = nullptr;
-        for (const Row& r : report.rows)
-            if (is_peer(r) && r.op == ours.op && r.case_name == ours.case_name && r.size == ours.size &&
-                r.threads == ours.threads && (!best || r.ns_per_px < best->ns_per_px))
-                best = &r;
-        if (best) cells.push_back({&ours, best});
+        if (const Row* best = best_peer(report, ours)) cells.push_back({&ours, best});
     }
     if (cells.empty()) return;
     std::sort(cells.begin(), cells.end(), [](const Cell& a, const Cell& b) { return a.ratio() < b.ratio(); });
-    const auto name = [](const Cell& c) { return c.ours->op + " " + c.ours->case_name; };
-    std::printf("\nleast ratio to the best peer, at tol %g: %.2f (%s, %d x %d, against %s)\n", kUsualTol,
-                cells[0].ratio(), name(cells[0]).c_str(), cells[0].ours->size, cells[0].ours->size,
-                cells[0].peer->scheme.c_str());
-    constexpr std::size_t kShown = 5;
-    for (std::size_t i = 1; i < std::min(kShown, cells.size()); ++i)
-        std::printf("  then %.2f (%s, against %s)\n", cells[i].ratio(), name(cells[i]).c_str(),
-                    cells[i].peer->scheme.c_str());
+    std::printf("\nleast ratios to the best peer, at tol %g:\n", kUsualTol);
+    constexpr std::size_t kShown = 8;
+    for (std::size_t i = 0; i < std::min(kShown, cells.size()); ++i) {
+        const Row &ours = *cells[i].ours, &peer = *cells[i].peer;
+        std::printf("  %.2f (%s %s, %d x %d, against %s", cells[i].ratio(), ours.op.c_str(),
+                    ours.case_name.c_str(), ours.size, ours.size, peer.scheme.c_str());
+        if (peer.error.max > kUsualTol) std::printf(", which is off by up to %.2g", peer.error.max);
+        std::printf(")\n");
+    }
 }
 
 int run(int argc, char** argv) {
