@@ -250,13 +250,13 @@ TEST(BlockReader, PointsFarApartAreReadEachFromItsOwnTexels) {
     }
 }
 
-TEST(BlockReader, PointsFarApartHaveTheSameBitsWhereverTheirTexelsStand) {
+TEST(BlockReader, PointsApartHaveTheSameBitsWhereverTheirTexelsStand) {
     constexpr int kWidth = 2400, kHeight = 1300, kAcross = 100, kDown = 50;
     const unsigned seed = 7;
     SCOPED_TRACE(seed);
     std::mt19937 random(seed);
-    // Some 600 texels a pixel: on the source and, moved, over its edges.
-    for (const double aside : {60.0, -60.3})
+    // Some 600 and 20 texels a pixel: on the source and, moved, over its edges.
+    for (const auto& [step, aside] : {std::pair{22.7, 60.0}, {22.7, -60.3}, {4.3, 60.0}, {4.3, -60.3}})
         for (const PixelType type : {PixelType::uint8, PixelType::uint16, PixelType::half})
             for (const int channels : {1, 3, 4}) {
                 const std::ptrdiff_t pixel = std::ptrdiff_t{channels} * size_of(type);
@@ -266,8 +266,8 @@ TEST(BlockReader, PointsFarApartHaveTheSameBitsWhereverTheirTexelsStand) {
                 const MemorySource source(
                     packed_view<const std::byte>(texels.data(), type, kWidth, kHeight, channels));
                 const test::Remote remote(source);
-                const auto at = [&](double x, double y) {
-                    return Point<double>{22.7 * x - 1.3 * y + aside, 23.9 * y + 0.4 * x + aside};
+                const auto at = [step = step, aside = aside](double x, double y) {
+                    return Point<double>{step * x - 1.3 * y + aside, 1.05 * step * y + 0.4 * x + aside};
                 };
                 const auto drawn = [&](const FunctionMap& map, const Source& from, Filter filter,
                                        const Box& box) {
@@ -280,7 +280,8 @@ TEST(BlockReader, PointsFarApartHaveTheSameBitsWhereverTheirTexelsStand) {
                 for (const Kind kind : {Kind::exact, Kind::computed})
                     for (const Filter filter : {Filter::nearest, Filter::bilinear, Filter::bicubic}) {
                         SCOPED_TRACE(::testing::Message()
-                                     << aside << ", type " << static_cast<int>(type) << ", " << channels
+                                     << step << " texels a step, " << aside << " aside, type "
+                                     << static_cast<int>(type) << ", " << channels
                                      << " channels, kind " << static_cast<int>(kind) << ", filter "
                                      << static_cast<int>(filter));
                         const FunctionMap map(kAcross, kDown, kind, at);
