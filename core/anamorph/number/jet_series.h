@@ -89,11 +89,10 @@ ANAMORPH_UNROLLED inline void unroll(int count, const Body& body) {
     for (int i = 0; i < count; ++i) body(i);
 }
 /// body(i) for 0 <= i <= a with 0 <= m - i <= b.
-template <int A, class Body>
-ANAMORPH_UNROLLED inline void each_split(CountOf<A>, int b, int m, const Body& body) {
-    unroll(CountOf<A + 1>{}, [&](auto i) ANAMORPH_UNROLLED {
-        if (m - i >= 0 && m - i <= b) body(i);
-    });
+template <int A, int B, int M, class Body>
+ANAMORPH_UNROLLED inline void each_split(CountOf<A>, CountOf<B>, CountOf<M>, const Body& body) {
+    constexpr int kFirst = std::max(0, M - B), kLast = std::min(A, M);
+    unroll(CountOf<kLast - kFirst + 1>{}, [&](auto i) ANAMORPH_UNROLLED { body(plus<kFirst>(i)); });
 }
 template <class Body>
 ANAMORPH_UNROLLED inline void each_split(int a, int b, int m, const Body& body) {
@@ -228,9 +227,9 @@ struct Factor<T, N> {
 };
 
 /// Coefficient m of the part of degree k of sum_(first <= a <= last) weight(a) f_a g_(k-a).
-template <class K, class First, class Last, class T, int N, class Weight>
+template <class K, class First, class Last, class T, int N, class M, class Weight>
 ANAMORPH_UNROLLED inline T convolve(K k, First first, Last last, const Factor<T, N>& f, const Factor<T, N>& g,
-                                    int m, const Weight& weight) {
+                                    M m, const Weight& weight) {
     using J = Jet<T, N>;
     static_assert(!Enclosure<T> || N <= 6);
     if (first > last || k > f.degree + g.degree) return T(0);
