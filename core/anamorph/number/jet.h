@@ -30,9 +30,11 @@ namespace anamorph {
 /// The degree of a jet as a polynomial is seen (jet_detail::degree_of).
 template <class T>
 struct ToldDegree {};
-/// Recurrences are unrolled.
+/// Recurrences are unrolled, but for long ones of intervals, which would be no faster.
 template <class T, int N>
 inline constexpr std::integral_constant<int, N> kJetSteps{};
+template <int N>
+requires(N > 2) inline constexpr int kJetSteps<Interval, N> = N;
 
 #include "anamorph/number/jet_series.h"
 

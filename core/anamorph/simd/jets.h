@@ -214,14 +214,14 @@ inline Four<Interval> sum(const Four<Interval>& a, const Four<Interval>& b) {
 }  // namespace jets_detail
 
 template <class T, int N>
-Jets<T, N> operator-(const Jets<T, N>& a) {
+[[gnu::noinline]] Jets<T, N> operator-(const Jets<T, N>& a) {
     Jets<T, N> r;
     r.degree = a.degree;
     for (int k = 0; k < a.terms(); ++k) r.c[k] = jets_detail::negated(a.c[k]);
     return r;
 }
 template <class T, int N>
-Jets<T, N> operator+(const Jets<T, N>& a, const Jets<T, N>& b) {
+[[gnu::noinline]] Jets<T, N> operator+(const Jets<T, N>& a, const Jets<T, N>& b) {
     Jets<T, N> r;
     r.degree = std::max(a.degree, b.degree);
     const int in_both = std::min(a.terms(), b.terms());
@@ -231,11 +231,11 @@ Jets<T, N> operator+(const Jets<T, N>& a, const Jets<T, N>& b) {
     return r;
 }
 template <class T, int N>
-Jets<T, N> operator-(const Jets<T, N>& a, const Jets<T, N>& b) {
+[[gnu::noinline]] Jets<T, N> operator-(const Jets<T, N>& a, const Jets<T, N>& b) {
     return a + -b;
 }
 template <class T, int N>
-Jets<T, N> operator*(const Jets<T, N>& a, double k) {
+[[gnu::noinline]] Jets<T, N> operator*(const Jets<T, N>& a, double k) {
     if (k == 1) return a;
     Jets<T, N> r;
     if constexpr (std::is_same_v<T, double>) {
@@ -252,7 +252,7 @@ Jets<T, N> operator*(double k, const Jets<T, N>& a) {
     return a * k;
 }
 template <class T, int N>
-Jets<T, N> operator+(const Jets<T, N>& a, double k) {
+[[gnu::noinline]] Jets<T, N> operator+(const Jets<T, N>& a, double k) {
     Jets<T, N> r = a;
     for (int i = 0; i < kJets; ++i) r.c[0].set(i, a.c[0][i] + T(k));
     return r;
@@ -285,7 +285,7 @@ auto is_negative(const Jets<T, N>& a) {
 }
 /// Of the larger degree, whichever is chosen: no box depends on its neighbours.
 template <class Condition, class T, int N>
-Jets<T, N> select(const FourConditions<Condition>& where, const Jets<T, N>& a, const Jets<T, N>& b) {
+[[gnu::noinline]] Jets<T, N> select(const FourConditions<Condition>& where, const Jets<T, N>& a, const Jets<T, N>& b) {
     Jets<T, N> r;
     r.degree = std::max(a.degree, b.degree);
     for (int k = 0; k < r.terms(); ++k)
@@ -320,7 +320,7 @@ FourFactors enlarger(const Jets<T, N>& a, const Jets<T, N>& b) {
     return r;
 }
 template <class T, int N>
-Jets<T, N> operator*(const Jets<T, N>& a, const FourFactors& k) {
+[[gnu::noinline]] Jets<T, N> operator*(const Jets<T, N>& a, const FourFactors& k) {
     if (std::all_of(k.of, k.of + kJets, [](double one) { return one == 1; })) return a;
     Jets<T, N> r;
     r.degree = a.degree;
