@@ -28,17 +28,16 @@ void check_count(const std::vector<Deformation>& list, std::string_view name, co
 /// Copies the numbers of entry[key].
 template <class Vector>
 void read_numbers(const Json& entry, const char* key, Vector& to) {
-    const auto found = entry.find(key);
     constexpr auto size = static_cast<std::size_t>(Vector::length());
-    if (found == entry.end() || !found->is_array() || found->size() != size ||
-        !std::all_of(found->begin(), found->end(), [](const Json& v) { return v.is_number(); }))
+    const auto is_such = [](const Json& v) { return v.is_array() && v.size() == size && v.all_numbers(); };
+    if (!entry.contains(key) || !is_such(entry.member(key)))
         throw Error(std::string(key) + ": must be a list of " + std::to_string(size) + " numbers");
-    for (std::size_t i = 0; i < size; ++i) to[static_cast<int>(i)] = (*found)[i].template get<double>();
+    for (std::size_t i = 0; i < size; ++i) to[static_cast<int>(i)] = entry.member(key)[i].number();
 }
 
 Deformation read_deformation(const Json& entry) {
     if (!entry.is_object()) throw Error("must be an object with vector, center and extent");
-    for (const auto& [key, value] : entry.items())
+    for (const auto& [key, value] : entry.members())
         if (key != "vector" && key != "center" && key != "extent" && key != "kernel" && key != "enabled")
             throw Error(excerpt(key) + ": must be one of vector, center, extent, kernel, enabled");
     Deformation d;
@@ -46,12 +45,12 @@ Deformation read_deformation(const Json& entry) {
     read_numbers(entry, "center", d.center);
     read_numbers(entry, "extent", d.extent);
     if (entry.contains("kernel")) {
-        if (!entry["kernel"].is_string()) throw Error("kernel: must be a name in quotes");
-        d.kernel = kernel_named(entry["kernel"].get_ref<const std::string&>());
+        if (!entry.member("kernel").is_string()) throw Error("kernel: must be a name in quotes");
+        d.kernel = kernel_named(entry.member("kernel").string());
     }
     if (entry.contains("enabled")) {
-        if (!entry["enabled"].is_boolean()) throw Error("enabled: must be true or false");
-        d.enabled = entry["enabled"].get<bool>();
+        if (!entry.member("enabled").is_boolean()) throw Error("enabled: must be true or false");
+        d.enabled = entry.member("enabled").boolean();
     }
     check_deformation(d);
     return d;
@@ -102,12 +101,13 @@ DeformationKernel kernel_named(std::string_view name) {
 
 std::vector<Deformation> parse_deformations_json(std::string_view text, std::string_view name) {
     text_file::check_size(text, name);
-    const Json json = text_file::parse_json(text, name);
+    const text_file::JsonFile file(text, name);
+    const Json json = file.top();
     if (!json.is_object() || json.size() != 1 || !json.contains("deformations") ||
-        !json["deformations"].is_array())
+        !json.member("deformations").is_array())
         fail(name, "", "must be an object with nothing but a list, deformations");
     std::vector<Deformation> list;
-    for (const Json& entry : json["deformations"]) {
+    for (const Json& entry : json.member("deformations").entries()) {
         const std::string label = "deformations[" + std::to_string(list.size()) + "]";
         in_entry(name, label, [&] { list.push_back(read_deformation(entry)); });
         check_count(list, name, label);

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "anamorph/deform/key_frames_file.h"
 
-#include <algorithm>
 #include <array>
 #include <utility>
 
@@ -23,9 +22,9 @@ constexpr std::array<std::pair<const char*, KeyInterpolation>, 4> kInterpolation
 
 KeyInterpolation interpolation_of(const Json& json) {
     if (!json.contains("interpolation")) return KeyInterpolation::monotone_cubic;
-    const Json& name = json["interpolation"];
+    const Json name = json.member("interpolation");
     for (const auto& [known, interpolation] : kInterpolations)
-        if (name.is_string() && name.get_ref<const std::string&>() == known) return interpolation;
+        if (name.is_string() && name.string() == known) return interpolation;
     throw Error("must be one of step, linear, catmull_rom, monotone_cubic");
 }
 
@@ -34,13 +33,12 @@ KeyFrames read_frames(const Json& list, KeyInterpolation interpolation) {
         throw Error("must be a list of 1 to " + std::to_string(kMostKeyFrames) + " key frames");
     std::vector<double> times;
     std::vector<std::vector<double>> values;
-    for (const Json& entry : list) {
-        if (!entry.is_array() || entry.size() < 2 ||
-            !std::all_of(entry.begin(), entry.end(), [](const Json& v) { return v.is_number(); }))
+    for (const Json& entry : list.entries()) {
+        if (!entry.is_array() || entry.size() < 2 || !entry.all_numbers())
             throw Error("a key frame must be a list of numbers, the frame and one or more values");
-        times.push_back(entry[0].get<double>());
+        times.push_back(entry[0].number());
         values.emplace_back();
-        for (std::size_t i = 1; i < entry.size(); ++i) values.back().push_back(entry[i].get<double>());
+        for (std::size_t i = 1; i < entry.size(); ++i) values.back().push_back(entry[i].number());
     }
     return KeyFrames(std::move(times), std::move(values), interpolation);
 }
@@ -49,16 +47,17 @@ KeyFrames read_frames(const Json& list, KeyInterpolation interpolation) {
 
 std::vector<NamedKeyFrames> parse_key_frames_json(std::string_view text, std::string_view name) {
     text_file::check_size(text, name);
-    const Json json = text_file::parse_json(text, name);
-    if (!json.is_object() || !json.contains("keys") || !json["keys"].is_object() ||
+    const text_file::JsonFile file(text, name);
+    const Json json = file.top();
+    if (!json.is_object() || !json.contains("keys") || !json.member("keys").is_object() ||
         json.size() != (json.contains("interpolation") ? 2u : 1u))
         fail(name, "", "must be an object with keys and, if wanted, interpolation");
     KeyInterpolation interpolation{};
     in_entry(name, "interpolation", [&] { interpolation = interpolation_of(json); });
     std::vector<NamedKeyFrames> all;
-    for (const auto& entry : json["keys"].items())
-        in_entry(name, excerpt(entry.key()), [&] {
-            all.push_back({entry.key(), read_frames(entry.value(), interpolation)});
+    for (const auto& member : json.member("keys").members())
+        in_entry(name, excerpt(member.first), [&] {
+            all.push_back({member.first, read_frames(member.second, interpolation)});
         });
     return all;
 }

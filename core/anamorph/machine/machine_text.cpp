@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "anamorph/machine/machine_text.h"
 
+#include <algorithm>
 #include <cctype>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -18,7 +20,7 @@ using text_file::Json;
 class MachineMembers {
   public:
     /// Throws Error unless `text` is `preset`, an object without members, or an object.
-    MachineMembers(std::string_view text, const std::string& preset) : m_json(Json::object()) {
+    MachineMembers(std::string_view text, const std::string& preset) {
         if (text == preset) return;
         if (text.starts_with(preset + ":")) {
             read_list(text.substr(preset.size() + 1));
@@ -28,20 +30,20 @@ class MachineMembers {
             throw Error(
                 "machine", printable(text),
                 "must be " + preset + ", " + preset + ":key=value,key=value or an object of JSON, {...}");
-        m_json = text_file::parse_json(text, "machine");
+        m_json = text_file::JsonFile(text, "machine");
     }
 
     template <class Number>
     void read(const NumberRow& row, Number& value) {
-        if (const Json* json = member(row.name)) {
-            if (!json->is_number() || !row.holds(json->get<double>())) refuse(row.name, *json, row.range());
-            value = static_cast<Number>(json->get<double>());
+        if (const auto json = member(row.name)) {
+            if (!json->is_number() || !row.holds(json->number())) refuse(row.name, *json, row.range());
+            value = static_cast<Number>(json->number());
         }
     }
     void read(const char* key, bool& value) {
-        if (const Json* json = member(key)) {
+        if (const auto json = member(key)) {
             if (!json->is_boolean()) refuse(key, *json, "true or false");
-            value = json->get<bool>();
+            value = json->boolean();
         }
     }
     /// One of `formats`.
@@ -52,8 +54,8 @@ class MachineMembers {
     }
     template <class Value>
     void read(const char* key, Value& value, const std::map<std::string, Value>& words) {
-        if (const Json* json = member(key)) {
-            const auto found = json->is_string() ? words.find(json->get<std::string>()) : words.end();
+        if (const auto json = member(key)) {
+            const auto found = json->is_string() ? words.find(json->string()) : words.end();
             if (found == words.end()) {
                 std::string names;
                 for (const auto& [name, meaning] : words) names += (names.empty() ? "" : ", ") + name;
@@ -66,10 +68,10 @@ class MachineMembers {
     void finish() const {
         std::string names;
         for (const std::string& key : m_known) names += (names.empty() ? "" : ", ") + key;
-        for (const auto& item : m_json.items())
-            if (std::find(m_known.begin(), m_known.end(), item.key()) == m_known.end())
-                throw Error("machine: \"" + text_file::excerpt(item.key()) +
-                            "\": no such key; the keys are " + names);
+        for (const auto& [key, value] : m_json.top().members())
+            if (std::find(m_known.begin(), m_known.end(), key) == m_known.end())
+                throw Error("machine: \"" + text_file::excerpt(key) + "\": no such key; the keys are " +
+                            names);
     }
 
   private:
@@ -78,34 +80,32 @@ class MachineMembers {
         for (const std::string_view field : text_file::fields_of(list)) {
             const std::size_t sign = field.find('=');
             const std::string key(field.substr(0, sign));
-            if (sign == std::string_view::npos || m_json.contains(key))
+            if (sign == std::string_view::npos || m_json.top().contains(key))
                 throw Error("machine", printable(field), "must be key=value, each key once");
             const std::string_view value = field.substr(sign + 1);
             std::string_view rest = value;
             double number = 0;
             if (text_file::take_number(rest, number) && rest.empty())
-                m_json[key] = number;
+                m_json.set(key, number);
             else if (value == "true" || value == "false")
-                m_json[key] = value == "true";
+                m_json.set(key, value == "true");
             else
-                m_json[key] = std::string(value);
+                m_json.set(key, value);
         }
     }
 
-    const Json* member(const char* key) {
+    std::optional<Json> member(const char* key) {
         m_known.emplace_back(key);
-        const auto found = m_json.find(key);
-        return found == m_json.end() ? nullptr : &*found;
+        if (!m_json.top().contains(key)) return {};
+        return m_json.top().member(key);
     }
     [[noreturn]] static void refuse(const std::string& key, const Json& value, const std::string& rule) {
         // As it was written in a list: JSON has no name for what is no number.
-        const std::string text = value.is_number_float()
-                                     ? shortest(value.get<double>())
-                                     : value.dump(-1, ' ', true, Json::error_handler_t::replace);
+        const std::string text = value.is_float() ? shortest(value.number()) : value.text();
         throw Error("machine: " + key, text_file::excerpt(text), "must be " + rule);
     }
 
-    Json m_json;
+    text_file::JsonFile m_json;
     std::vector<std::string> m_known;
 };
 

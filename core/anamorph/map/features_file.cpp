@@ -17,11 +17,11 @@ using text_file::Json;
 // --- JSON
 
 double number(const Json& json) {
-    if (!json.is_number()) throw Error("must be a number, not " + excerpt(json.dump(-1, ' ', true)));
-    return json.get<double>();
+    if (!json.is_number()) throw Error("must be a number, not " + excerpt(json.text()));
+    return json.number();
 }
 
-const Json& array(const Json& json, const char* of, std::size_t size = 0) {
+Json array(const Json& json, const char* of, std::size_t size = 0) {
     if (!json.is_array() || (size && json.size() != size))
         throw Error("must be a list of " + (size ? std::to_string(size) + " " : std::string()) + of);
     return json;
@@ -34,7 +34,7 @@ Line read_line(const Json& json) {
 
 std::vector<Point<double>> read_points(const Json& json) {
     std::vector<Point<double>> points;
-    for (const Json& p : array(json, "points")) {
+    for (const Json& p : array(json, "points").entries()) {
         array(p, "numbers: x, y", 2);
         points.push_back({number(p[0]), number(p[1])});
     }
@@ -45,7 +45,7 @@ std::vector<Point<double>> read_points(const Json& json) {
 std::string kind_of(const Json& entry) {
     if (!entry.is_object()) throw Error("must be an object with line, polyline or curve");
     std::string kind;
-    for (const auto& [key, value] : entry.items()) {
+    for (const auto& [key, value] : entry.members()) {
         if (key == "name" || key == "weight") continue;
         if (key != "line" && key != "polyline" && key != "curve")
             throw Error(excerpt(key) + ": must be one of line, polyline, curve, name, weight");
@@ -58,22 +58,22 @@ std::string kind_of(const Json& entry) {
 
 void add_feature(const Json& entry, std::optional<Features>& features) {
     const std::string kind = kind_of(entry);
-    const Json& shapes = array(entry[kind], "key shapes");
+    const Json shapes = array(entry.member(kind), "key shapes");
     if (shapes.size() > 64) throw Error("there must be at most 64 key shapes");
     if (!features) features.emplace(static_cast<int>(shapes.size()));
-    const double weight = entry.contains("weight") ? number(entry["weight"]) : 1;
+    const double weight = entry.contains("weight") ? number(entry.member("weight")) : 1;
     std::string name;
     if (entry.contains("name")) {
-        if (!entry["name"].is_string()) throw Error("name: must be a text in quotes");
-        name = excerpt(entry["name"].get_ref<const std::string&>());
+        if (!entry.member("name").is_string()) throw Error("name: must be a text in quotes");
+        name = excerpt(entry.member("name").string());
     }
     if (kind == "line") {
         std::vector<Line> line;
-        for (const Json& shape : shapes) line.push_back(read_line(shape));
+        for (const Json& shape : shapes.entries()) line.push_back(read_line(shape));
         return features->add_line(line, weight, name);
     }
     std::vector<std::vector<Point<double>>> points;
-    for (const Json& shape : shapes) points.push_back(read_points(shape));
+    for (const Json& shape : shapes.entries()) points.push_back(read_points(shape));
     if (kind == "polyline")
         features->add_polyline(points, weight, name);
     else
@@ -83,13 +83,13 @@ void add_feature(const Json& entry, std::optional<Features>& features) {
 void read_sizes(const Json& sizes, Features& features) {
     array(sizes, "sizes, one for every key shape", static_cast<std::size_t>(features.shapes()));
     for (int k = 0; k < features.shapes(); ++k) {
-        const Json& size = array(sizes[static_cast<std::size_t>(k)], "numbers: width, height", 2);
+        const Json size = array(sizes[static_cast<std::size_t>(k)], "numbers: width, height", 2);
         features.set_frame(k, {number(size[0]), number(size[1])});
     }
 }
 
 double border_weight(const Json& value) {
-    return value.is_boolean() ? (value.get<bool>() ? 1 : 0) : number(value);
+    return value.is_boolean() ? (value.boolean() ? 1 : 0) : number(value);
 }
 
 // --- CSV
@@ -108,24 +108,25 @@ std::vector<double> read_row(std::string_view row) {
 
 Features parse_features_json(std::string_view text, std::string_view name) {
     text_file::check_size(text, name);
-    const Json json = text_file::parse_json(text, name);
+    const text_file::JsonFile file(text, name);
+    const Json json = file.top();
     if (!json.is_object()) fail(name, "", "must be an object with features");
-    for (const auto& [key, value] : json.items())
+    for (const auto& [key, value] : json.members())
         if (key != "features" && key != "sizes" && key != "pin_border")
             fail(name, excerpt(key), "must be one of features, sizes, pin_border");
-    if (!json.contains("features") || !json["features"].is_array() || json["features"].empty())
+    if (!json.contains("features") || !json.member("features").is_array() || json.member("features").empty())
         fail(name, "features", "must be a list of one or more features");
 
     std::optional<Features> features;
     std::size_t i = 0;
-    for (const Json& entry : json["features"]) {
+    for (const Json& entry : json.member("features").entries()) {
         const std::string label = "features[" + std::to_string(i++) + "]";
         in_entry(name, label, [&] { add_feature(entry, features); });
         check_feature_count(*features, name, label);
     }
-    if (json.contains("sizes")) in_entry(name, "sizes", [&] { read_sizes(json["sizes"], *features); });
+    if (json.contains("sizes")) in_entry(name, "sizes", [&] { read_sizes(json.member("sizes"), *features); });
     if (json.contains("pin_border"))
-        in_entry(name, "", [&] { features->pin_border(border_weight(json["pin_border"])); });
+        in_entry(name, "", [&] { features->pin_border(border_weight(json.member("pin_border"))); });
     return std::move(*features);
 }
 

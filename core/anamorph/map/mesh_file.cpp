@@ -23,7 +23,7 @@ std::string shown(const Json& value) {
     else if (value.is_object())
         text = "an object";
     else
-        text = value.dump(-1, ' ', true, Json::error_handler_t::replace);
+        text = value.text();
     if (text.size() > 40) text = text.substr(0, 40) + "...";
     return text;
 }
@@ -33,25 +33,23 @@ class Entry {
   public:
     Entry(const Json& value, std::string path) : m_value(value), m_path(std::move(path)) {}
 
-    const Json& value() const { return m_value; }
+    Json value() const { return m_value; }
 
     [[noreturn]] void refuse(const std::string& rule) const { throw Error(m_path, shown(m_value), rule); }
 
     Entry operator[](std::size_t i) const { return {m_value[i], m_path + "[" + std::to_string(i) + "]"}; }
     Entry at(const char* key) const {
         const std::string path = m_path + (m_path.ends_with(": ") ? "" : ".") + key;
-        const auto found = m_value.find(key);
-        if (found == m_value.end()) throw Error(path + ": is missing");
-        return {*found, path};
+        if (!m_value.contains(key)) throw Error(path + ": is missing");
+        return {m_value.member(key), path};
     }
     bool has(const char* key) const { return m_value.contains(key); }
 
     /// An object with no keys but these.
     void expect_object(std::initializer_list<const char*> keys) const {
         if (!m_value.is_object()) refuse("must be an object");
-        for (const auto& item : m_value.items()) {
-            const std::string& key = item.key();
-            if (std::any_of(keys.begin(), keys.end(), [&](const char* k) { return key == k; })) continue;
+        for (const auto& [key, value] : m_value.members()) {
+            if (std::find(keys.begin(), keys.end(), key) != keys.end()) continue;
             std::string known;
             for (const char* k : keys) known += (known.empty() ? "" : ", ") + std::string(k);
             throw Error(m_path + "\"" + excerpt(key) + "\": no such key; the keys are " + known);
@@ -68,7 +66,7 @@ class Entry {
     }
     double number() const {
         if (!m_value.is_number()) refuse("must be a number");
-        return m_value.get<double>();
+        return m_value.number();
     }
     int whole(int least, int most) const {
         const double v = number();
@@ -81,14 +79,14 @@ class Entry {
         std::string known;
         std::size_t i = 0;
         for (const char* w : words) {
-            if (m_value.is_string() && m_value.get_ref<const std::string&>() == w) return i;
+            if (m_value.is_string() && m_value.string() == w) return i;
             known += (i++ ? " or \"" : "\"") + std::string(w) + "\"";
         }
         refuse("must be " + known);
     }
 
   private:
-    const Json& m_value;
+    Json m_value;
     std::string m_path;
 };
 
@@ -181,7 +179,8 @@ ControlPoints control_points(const Entry& top) {
 
 WarpMap parse_mesh_json(std::string_view text, std::string_view name) {
     text_file::check_size(text, name);
-    const Json json = text_file::parse_json(text, name);
+    const text_file::JsonFile file(text, name);
+    const Json json = file.top();
     const Entry top(json, excerpt(name) + ": ");
     if (!json.is_object()) fail(name, "", "must be an object with \"vertices\" or \"points\"");
     if (top.has("points")) return {excerpt(name), control_points(top)};

@@ -20,30 +20,28 @@ using text_file::Json;
 constexpr double kMostAngle = 36000;
 
 /// The member of an object; it must be there.
-const Json& member(const Json& object, const char* key) {
+Json member(const Json& object, const char* key) {
     if (!object.contains(key)) throw Error(std::string(key) + " is missing: must be given");
-    return object[key];
+    return object.member(key);
 }
 
 void check_keys(const Json& object, const std::set<std::string>& known) {
     std::string names;
     for (const std::string& name : known) names += (names.empty() ? "" : ", ") + name;
     if (!object.is_object()) throw Error("must be an object with " + names);
-    for (const auto& item : object.items())
-        if (!known.contains(item.key()))
-            throw Error("\"" + excerpt(item.key()) + "\": must be one of " + names);
+    for (const auto& [key, value] : object.members())
+        if (!known.contains(key)) throw Error("\"" + excerpt(key) + "\": must be one of " + names);
 }
 
 std::string text_of(const Json& object, const char* key) {
-    const Json& value = member(object, key);
-    if (!value.is_string() || value.get_ref<const std::string&>().empty())
-        throw Error(std::string(key) + ": must be text");
-    return value.get<std::string>();
+    const Json value = member(object, key);
+    if (!value.is_string() || value.string().empty()) throw Error(std::string(key) + ": must be text");
+    return value.string();
 }
 
 double number_of(const Json& object, const char* key, double least, double most) {
-    const Json& value = member(object, key);
-    const double number = value.is_number() ? value.get<double>() : std::nan("");
+    const Json value = member(object, key);
+    const double number = value.is_number() ? value.number() : std::nan("");
     if (!(number >= least && number <= most))
         throw Error(std::string(key) + ": must be a number from " + std::to_string(std::lround(least)) +
                     " to " + std::to_string(std::lround(most)));
@@ -61,9 +59,9 @@ TourView view_of(const Json& object) {
 /// A list of 0 or more values; none where it is missing.
 std::vector<Json> list_of(const Json& object, const char* key, std::size_t most) {
     if (!object.contains(key)) return {};
-    if (!object[key].is_array() || object[key].size() > most)
+    if (!object.member(key).is_array() || object.member(key).size() > most)
         throw Error(std::string(key) + ": must be a list of at most " + std::to_string(most));
-    return object[key].get<std::vector<Json>>();
+    return object.member(key).entries();
 }
 
 HotSpot spot_of(const Json& json, const std::map<std::string, std::size_t>& files) {
@@ -78,8 +76,8 @@ HotSpot spot_of(const Json& json, const std::map<std::string, std::size_t>& file
         throw Error("target \"" + excerpt(target) + "\": must be the file of a panorama");
     spot.target = found->second;
     if (json.contains("view")) {
-        check_keys(json["view"], {"yaw", "pitch", "fov"});
-        spot.view = view_of(json["view"]);
+        check_keys(json.member("view"), {"yaw", "pitch", "fov"});
+        spot.view = view_of(json.member("view"));
     }
     return spot;
 }
@@ -116,7 +114,8 @@ int TourPanorama::spot_at(double yaw, double pitch) const {
 
 Tour parse_tour_json(std::string_view text, std::string_view name) {
     text_file::check_size(text, name);
-    const Json json = text_file::parse_json(text, name);
+    const text_file::JsonFile file(text, name);
+    const Json json = file.top();
     Tour tour;
     std::vector<Json> list;
     in_entry(name, "", [&] {
