@@ -285,7 +285,8 @@ auto is_negative(const Jets<T, N>& a) {
 }
 /// Of the larger degree, whichever is chosen: no box depends on its neighbours.
 template <class Condition, class T, int N>
-[[gnu::noinline]] Jets<T, N> select(const FourConditions<Condition>& where, const Jets<T, N>& a, const Jets<T, N>& b) {
+[[gnu::noinline]] Jets<T, N> select(const FourConditions<Condition>& where, const Jets<T, N>& a,
+                                    const Jets<T, N>& b) {
     Jets<T, N> r;
     r.degree = std::max(a.degree, b.degree);
     for (int k = 0; k < r.terms(); ++k)
