@@ -330,6 +330,21 @@ TEST(Jet, ProductsOfIntervalsEncloseThoseOfTheirMembers) {
     EXPECT_GT(bounded, all / 4);
 }
 
+// Of log(x + i y), with coefficients of magnitude (i + j over i) / ((i + j) |x + i y|^(i + j)), a box as wide as a quarter of its
+// distance knows little more than what is nearest to 0 in it.
+TEST(Jet, AnglesAreBoundedOverWideBoxes) {
+    using I = Jet<Interval, 5>;
+    for (const double turn : {0.0, 0.7, 2.0, -3.0}) {
+        const double at_x = std::cos(turn), at_y = std::sin(turn), half = 0.125;
+        const I x = I::variable({at_x - half, at_x + half}, 1, 0),
+                y = I::variable({at_y - half, at_y + half}, 0, 1), angle = atan2(y, x);
+        const double nearest = 1 - half * (std::fabs(at_x) + std::fabs(at_y));
+        const double over[] = {1, 5, 10, 10, 5, 1};
+        for (int j = 0; j <= 5; ++j)
+            EXPECT_LE(magnitude(angle.at(5 - j, j)), 2.5 * over[j] / 5 * std::pow(nearest, -5)) << turn << j;
+    }
+}
+
 TEST(Jet, WhatHasNoDerivativeHasNoBound) {
     using I = Jet2<Interval>;
     const I s = I::variable(Interval(-1, 1), 1, 0);

@@ -284,6 +284,105 @@ inline Jet<T, N> wronskian(const Jet<T, N>& x, const Jet<T, N>& y) {
     return r;
 }
 
+/// All complex numbers within `radius` of a middle, whose magnitude is at most `size`, but for two units of it.
+template <class R>
+struct Disc {
+    R re, im, radius, size;
+
+    Disc() = default;
+    ANAMORPH_UNROLLED Disc(const R& real, const R& imaginary, const R& around)
+        : re(real), im(imaginary), radius(around), size(longest(real, imaginary)) {}
+    /// Around a rectangle: margins of 8 units of 2^-53, where a middle is rounded by one, half a side by one and longest()
+    /// by two.
+    template <Enclosure T>
+    static ANAMORPH_UNROLLED Disc around(const T& real, const T& imaginary) {
+        const R half = longest(R((real.hi - real.lo) * 0.5), R((imaginary.hi - imaginary.lo) * 0.5));
+        Disc d(R((real.lo + real.hi) * 0.5), R((imaginary.lo + imaginary.hi) * 0.5), half);
+        d.radius = half + d.reach() * 0x1p-50;
+        return d;
+    }
+    /// The inverses: a disc about c / (|c|^2 - r^2), c conjugate, of radius r / (|c|^2 - r^2). The divisor is off by 5
+    /// units of |c|^2 at most, a part of 2^-10 of it where it is known, and both results by as many of its own and three
+    /// roundings more.
+    ANAMORPH_UNROLLED Disc inverse() const {
+        const R squared = re * re + im * im, divisor = squared - radius * radius;
+        const auto known = R(max(squared * 0x1p-40, R(0x1p-900))) < divisor;
+        const R scale = R(1) / select(known, divisor, R(1));
+        Disc d(R(re * scale), R(-(im * scale)), R(radius * scale));
+        d.radius = select(known, R(d.radius + d.reach() * (squared * scale) * 0x1p-46), R(HUGE_VAL));
+        return d;
+    }
+    /// No less than any member's magnitude.
+    ANAMORPH_UNROLLED R reach() const { return size + radius; }
+
+  private:
+    /// No less than a hypotenuse, which is convex in the quotient of its sides and as long at both ends, 0 and 1.
+    static ANAMORPH_UNROLLED R longest(const R& a, const R& b) {
+        using std::abs;
+        const R p = abs(a), q = abs(b);
+        return max(p, q) + min(p, q) * 0.41421356237309515;
+    }
+};
+
+/// A sum of products of discs. With middles p, q and radii r, s a product is within (P + r)(Q + s) - P Q of p q, where P
+/// and Q are no less than the magnitudes of p and q.
+///
+/// Rounding, in units of 2^-53 of G = sum (P + r)(Q + s), for at most 16 products: a real or imaginary part of a product
+/// is off by 2 units and by 15 more as they are added, both parts together by 25; sum P Q by 17, G by 18, and both by
+/// 5 more where P and Q are too small by two units; the difference and the two ends by 4. 25 + 17 + 18 + 5 + 4 < 128. What
+/// underflows is less than 2^-940.
+template <class R>
+struct DiscSum {
+    R re, im, middles, sum;
+
+    ANAMORPH_UNROLLED DiscSum() : re(0), im(0), middles(0), sum(0) {}
+    ANAMORPH_UNROLLED void add(const Disc<R>& a, const Disc<R>& b) {
+        re = re + (a.re * b.re - a.im * b.im);
+        im = im + (a.re * b.im + a.im * b.re);
+        middles = middles + a.size * b.size;
+        sum = sum + a.reach() * b.reach();
+    }
+    ANAMORPH_UNROLLED R radius() const { return (sum - middles) + sum * 0x1p-46 + R(0x1p-940); }
+    ANAMORPH_UNROLLED Disc<R> value() const { return {re, im, radius()}; }
+};
+
+/// k z less a sum, of k = 0 without z: rounded three times, with a margin of 8 units.
+template <class R>
+ANAMORPH_UNROLLED inline Disc<R> less_sum(int k, const Disc<R>& z, const DiscSum<R>& sum) {
+    if (k == 0) return {R(-sum.re), R(-sum.im), sum.radius()};
+    Disc<R> d(R(z.re * k - sum.re), R(z.im * k - sum.im), R(z.radius * k + sum.radius()));
+    d.radius = d.radius + (z.reach() * k + sum.sum) * 0x1p-50;
+    return d;
+}
+
+/// The parts above the constant one of the angle of z = x + i y, the imaginary part of its logarithm: with e = E log z,
+/// z_0 e_k = k z_k - sum_(0<j<k) e_j z_(k-j). Discs turn as they are multiplied and grow by their radii alone, so that
+/// over wide boxes they are many times narrower than quotients of wronskian(x, y).
+template <Enclosure T, int N>
+inline void integrate_logarithm(Jet<T, N>& g, const Jet<T, N>& y, const Jet<T, N>& x) {
+    static_assert(N <= 6);
+    using J = Jet<T, N>;
+    using R = decltype(T::lo);
+    const int degree = std::max(degree_of(x), degree_of(y));
+    Disc<R> z[J::kSize], e[J::kSize];
+    for (int i = 0; i < J::part(degree + 1); ++i) z[i] = Disc<R>::around(x.c[i], y.c[i]);
+    const Disc<R> inverse = z[0].inverse();
+    for (int k = 1; k <= N; ++k)
+        for (int m = 0; m <= k; ++m) {
+            const int at = J::part(k) + m;
+            DiscSum<R> known, part;
+            for (int j = std::max(1, k - degree); j < k; ++j)
+                for (int i = std::max(0, m - (k - j)); i <= std::min(j, m); ++i)
+                    known.add(e[J::part(j) + i], z[J::part(k - j) + m - i]);
+            part.add(inverse, less_sum(k <= degree ? k : 0, z[k <= degree ? at : 0], known));
+            e[at] = part.value();
+            const auto bounded = e[at].reach() < R(0x1p1000);
+            g.c[at] = T(select(bounded, R(part.im - e[at].radius), R(-HUGE_VAL)),
+                        select(bounded, R(part.im + e[at].radius), R(HUGE_VAL))) /
+                      T(k);
+        }
+}
+
 /// E f: the part of degree k times k.
 template <class T, int N>
 inline Jet<T, N> euler(const Jet<T, N>& f) {
@@ -507,11 +606,14 @@ inline Jet<T, N> asinh(const Jet<T, N>& a) {
     return g;
 }
 
-/// (x^2 + y^2) E g = x E y - y E x
+/// The angle of a + i b is the imaginary part of the logarithm.
 template <class T, int N>
 inline Jet<T, N> atan2(const Jet<T, N>& y, const Jet<T, N>& x) {
     using std::atan2;
     Jet<T, N> g(atan2(y.c[0], x.c[0]));
-    jet_detail::integrate_quotient(g, jet_detail::wronskian(x, y), square(x) + square(y));
+    if constexpr (jet_detail::Enclosure<T>)
+        jet_detail::integrate_logarithm(g, y, x);
+    else
+        jet_detail::integrate_quotient(g, jet_detail::wronskian(x, y), square(x) + square(y));
     return g;
 }

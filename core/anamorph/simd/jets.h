@@ -60,7 +60,7 @@ auto both(const FourConditions<A>& a, const FourConditions<B>& b) {
 /// Jet<T, N> four times. All are polynomials of at most `degree`; coefficients above are not stored.
 template <class T, int N>
 struct Jets {
-    static constexpr int kSize = Jet<T, N>::kSize;
+    static constexpr int kDegree = N, kSize = Jet<T, N>::kSize;
 
     int degree = 0;
     Four<T> c[kSize];
