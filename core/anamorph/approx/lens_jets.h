@@ -3,8 +3,12 @@
 // after the other, what is made of them at once.
 #pragma once
 
+#include <array>
+#include <optional>
+
 #include "anamorph/map/lens.h"
 #include "anamorph/simd/jets.h"
+#include "anamorph/simd/lens_lanes.h"
 
 namespace anamorph::simd {
 
@@ -39,9 +43,11 @@ Jets<Interval, N> shrink_of(const LensTerms& lens, const Point<Jets<Interval, N>
 template <int N>
 Jets<double, N> shrink_of(const LensTerms& lens, const Point<Jets<double, N>>& v) {
     const Jets<double, N> value = lens_formula::radial_of(lens, v);
-    return composed(value, [&](int i) {
-        return lens_detail::shrink_series<N>(lens, lens_detail::radial_root(lens, value.c[0][i]));
-    });
+    Four<double> c[N + 1];
+    shrink_series_of(lens, value.c[0], c);
+    Jets<double, N> r;
+    compose_with(c, value, r);
+    return r;
 }
 
 namespace lens_jets_detail {
@@ -55,12 +61,11 @@ Point<Jets<T, N>> about(const Point<Jets<T, N>>& u, const Point<Four<T>>& consta
     return r;
 }
 /// settled() of the constant parts.
-template <class T, int N>
-Point<Four<T>> settled_constants(const LensTerms& lens, const Point<Jets<T, N>>& v) {
-    using lens_formula::settled;
-    Point<Four<T>> constant;
+template <int N>
+Point<Four<Interval>> settled_constants(const LensTerms& lens, const Point<Jets<Interval, N>>& v) {
+    Point<Four<Interval>> constant;
     for (int i = 0; i < kJets; ++i) {
-        const Point<T> u = settled(lens, Point<T>{v.x.c[0][i], v.y.c[0][i]});
+        const Point<Interval> u = settled(lens, Point<Interval>{v.x.c[0][i], v.y.c[0][i]});
         constant.x.set(i, u.x);
         constant.y.set(i, u.y);
     }
@@ -113,27 +118,79 @@ Point<Jets<Interval, N>> settled(const LensTerms& lens, const Point<Jets<Interva
                                                    Point<Interval>{constant.x[i], constant.y[i]}));
     return found;
 }
-/// Degree by degree, as for single jets.
+namespace lens_jets_detail {
+
+/// What is left of v in one degree, by coefficients.
+template <int N>
+struct Lacking {
+    Point<double> of[N + 1][kJets];
+
+    Lacking(const Point<Jets<double, N>>& v, const Point<Jets<double, N>>& f, int degree) {
+        const auto less = [](const Jets<double, N>& a, const Jets<double, N>& b, int at, int i) {
+            return (at < a.terms() ? a.c[at][i] : 0) - (at < b.terms() ? b.c[at][i] : 0);
+        };
+        for (int m = 0; m <= degree; ++m)
+            for (int i = 0; i < kJets; ++i) {
+                const int at = Jet<double, N>::part(degree) + m;
+                of[m][i] = {less(v.x, f.x, at, i), less(v.y, f.y, at, i)};
+            }
+    }
+};
+using Slopes = std::array<std::optional<lens_formula::Slope<double>>, kJets>;
+/// What u lacks is solved with the slope.
+template <int N>
+void solve_degree(const Slopes& slopes, const Lacking<N>& lacking, int degree, Point<Jets<double, N>>& u) {
+    u.x.degree = u.y.degree = degree;
+    for (int m = 0; m <= degree; ++m)
+        for (int i = 0; i < kJets; ++i) {
+            const int at = Jet<double, N>::part(degree) + m;
+            const Point<double> gain = slopes[i]->solved(lacking.of[m][i].x, lacking.of[m][i].y);
+            u.x.c[at].set(i, gain.x);
+            u.y.c[at].set(i, gain.y);
+        }
+}
+/// The slope's first part makes of u's highest degree a part of the next one.
+template <int N>
+void take_first_part(const LensTerms& lens, const Point<Jets<double, N>>& u, Lacking<N>& lacking) {
+    using First = Jet<double, 1>;
+    const int degree = u.x.degree;
+    const auto first = [](const Jets<double, N>& a, int i) {
+        return First::variable(a.c[0][i], a.c[1][i], a.c[2][i]);
+    };
+    for (int i = 0; i < kJets; ++i) {
+        const lens_formula::Slope<First> slope(lens, {first(u.x, i), first(u.y, i)});
+        for (int m = 0; m <= degree; ++m)
+            for (int to = 0; to < 2; ++to) {
+                const int at = Jet<double, N>::part(degree) + m;
+                const double x = u.x.c[at][i], y = u.y.c[at][i];
+                Point<double>& left = lacking.of[m + to][i];
+                left.x -= slope.xx.c[1 + to] * x + slope.xy.c[1 + to] * y;
+                left.y -= slope.xy.c[1 + to] * x + slope.yy.c[1 + to] * y;
+            }
+    }
+}
+
+}  // namespace lens_jets_detail
+
+/// As for single jets, two degrees at once: what F(u) lacks of v in degree k is the slope times what u lacks; of degree
+/// k + 1, what the slope's first part makes of that is taken off before.
 template <int N>
 Point<Jets<double, N>> settled(const LensTerms& lens, const Point<Jets<double, N>>& v) {
     using namespace lens_jets_detail;
-    using J = Jets<double, N>;
-    const Point<Four<double>> constant = settled_constants(lens, v);
-    Point<J> u = about(Point<J>{}, constant);
-    for (int k = 1; k <= N; ++k) {
-        const Point<J> f = lens_formula::distorted(lens, u);
-        u.x.degree = u.y.degree = k;
-        for (int i = 0; i < kJets; ++i) {
-            const lens_formula::Slope<double> slope(lens, {constant.x[i], constant.y[i]});
-            for (int at = Jet<double, N>::part(k); at < Jet<double, N>::part(k + 1); ++at) {
-                const auto lacks = [&](const J& of_v, const J& of_f) {
-                    return (at < of_v.terms() ? of_v.c[at][i] : 0) - (at < of_f.terms() ? of_f.c[at][i] : 0);
-                };
-                const Point<double> gain = slope.solved(lacks(v.x, f.x), lacks(v.y, f.y));
-                u.x.c[at].set(i, gain.x);
-                u.y.c[at].set(i, gain.y);
-            }
-        }
+    Point<Four<double>> constant;
+    settled_of(lens, {v.x.c[0], v.y.c[0]}, constant);
+    Slopes slopes;
+    for (int i = 0; i < kJets; ++i) slopes[i].emplace(lens, Point<double>{constant.x[i], constant.y[i]});
+    Point<Jets<double, N>> u = about(Point<Jets<double, N>>{}, constant);
+    // F of a constant has none of the first degree.
+    solve_degree(slopes, Lacking<N>(v, u, 1), 1, u);
+    for (int k = 2; k <= N; k += 2) {
+        const Point<Jets<double, N>> f = lens_formula::distorted(lens, u);
+        solve_degree(slopes, Lacking<N>(v, f, k), k, u);
+        if (k == N) break;
+        Lacking<N> lacking(v, f, k + 1);
+        take_first_part(lens, u, lacking);
+        solve_degree(slopes, lacking, k + 1, u);
     }
     return u;
 }

@@ -228,33 +228,8 @@ Point<T> Lens::observed(const Point<T>& ideal) const {
 
 namespace lens_detail {
 
-/// The inverse of a power series without its constant: x with g_1 x + g_2 x^2 + ... = y, by powers of y (Lagrange).
-template <class T, int N>
-lens_formula::Series<T, N> reversed(const lens_formula::Series<T, N>& g) {
-    static_assert(N >= 1 && N <= 5);
-    lens_formula::Series<T, N> x;
-    const T r = T(1) / g.c[1];
-    T b[6] = {T(0), T(1), T(0), T(0), T(0), T(0)}, power = r;
-    for (int k = 2; k <= N; ++k) b[k] = g.c[k] * r;
-    const T b22 = b[2] * b[2];
-    const T a[6] = {T(0),
-                    T(1),
-                    -b[2],
-                    b22 * 2.0 - b[3],
-                    b[2] * b[3] * 5.0 - b22 * b[2] * 5.0 - b[4],
-                    b22 * b22 * 14.0 - b22 * b[3] * 21.0 + b[2] * b[4] * 6.0 + b[3] * b[3] * 3.0 - b[5]};
-    for (int k = 1; k <= N; ++k, power = power * r) x.c[k] = a[k] * power;
-    return x;
-}
-
-/// shrink() by powers of what is added to a value, whose root is `t`.
-template <int N, class T>
-lens_formula::Series<T, N> shrink_series(const LensTerms& lens, const T& t) {
-    using S = lens_formula::Series<T, N>;
-    S root = reversed(lens_formula::radial_at(lens, S::variable(t)));
-    root.c[0] = t;
-    return S(T(1)) / lens_formula::stretch_at(lens, root);
-}
+using lens_formula::reversed;
+using lens_formula::shrink_series;
 
 /// Encloses the root of every member.
 Interval radial_root(const LensTerms& lens, const Interval& value);
@@ -356,14 +331,18 @@ Point<Rounded<Real>> settled_within(const LensTerms& lens, const Point<Rounded<R
                  contraction = back * most_tangential(lens, jet), r = jet.x.radius;
     const double c = back / (1 - contraction);
     // Every degree of F is rounded once more, but for the constant part, which is off as u is. Slopes are rounded, those of
-    // the computed u are read, and the solution is rounded by less than 16 units of all of it.
+    // the computed u are read, and the solution is rounded by less than 16 units of all of it. So are the first parts of
+    // slopes, by which degrees may be solved in pairs (approx/lens_jets.h), and by 8 units of all of it what they make of a degree.
     const Point<R> f = lens_formula::distorted(lens, jet);
     const lens_formula::Slope<R> at(lens, u);
-    const double size = largest_row(at, [](const R& k) { return k.computed_size(); });
-    const double rest =
-        R::kDegree * std::max(f.x.error, f.y.error) + std::max(v.x.error, v.y.error) +
-        size * std::max(u.x.error, u.y.error) +
-        (largest_row(at, [](const R& k) { return k.error; }) + 16 * R::kUnit * size * c * size) * r;
+    const lens_formula::Slope<R> along(lens, jet);
+    const auto size_of = [](const R& k) { return k.computed_size(); };
+    const auto error_of = [](const R& k) { return k.error; };
+    const double size = largest_row(at, size_of);
+    const double paired = largest_row(along, error_of) + 8 * R::kUnit * largest_row(along, size_of);
+    const double rest = R::kDegree * std::max(f.x.error, f.y.error) + std::max(v.x.error, v.y.error) +
+                        size * std::max(u.x.error, u.y.error) +
+                        (largest_row(at, error_of) + 16 * R::kUnit * size * c * size + paired) * r;
     const double error = contraction < 0.5 && rest <= off ? c * rest * (1 + 0x1p-40) : HUGE_VAL;
     return {R(u.x.range, r, error), R(u.y.range, r, error)};
 }

@@ -100,21 +100,27 @@ T stretch_of(const LensTerms& lens, const Point<T>& u) {
     return stretch_at(lens, radial_of(lens, u));
 }
 
-/// F's tangential part.
+/// F's tangential part, `squared` the distance from the centre.
 template <class T>
-Point<T> tangential_at(const LensTerms& lens, const Point<T>& u) {
-    const T squared = square(u.x) + square(u.y), along = (u.x * lens.mx + u.y * lens.my) * 2.0;
+Point<T> tangential_at(const LensTerms& lens, const Point<T>& u, const T& squared) {
+    const T along = (u.x * lens.mx + u.y * lens.my) * 2.0;
     return {u.x * along + squared * lens.mx, u.y * along + squared * lens.my};
 }
+template <class T>
+Point<T> tangential_at(const LensTerms& lens, const Point<T>& u) {
+    return tangential_at(lens, u, T(square(u.x) + square(u.y)));
+}
 
-/// F.
+/// F. Of lenses with a tangential part S is a function of r^2.
 template <class T>
 Point<T> distorted(const LensTerms& lens, const Point<T>& u) {
-    const T stretch = stretch_of(lens, u);
-    const Point<T> radial{u.x * stretch, u.y * stretch};
-    if (!lens.tangential) return radial;
-    const Point<T> more = tangential_at(lens, u);
-    return {radial.x + more.x, radial.y + more.y};
+    if (!lens.tangential) {
+        const T stretch = stretch_of(lens, u);
+        return {u.x * stretch, u.y * stretch};
+    }
+    const T squared = square(u.x) + square(u.y), along = (u.x * lens.mx + u.y * lens.my) * 2.0;
+    const T stretch = stretch_at(lens, squared) + along;
+    return {u.x * stretch + squared * lens.mx, u.y * stretch + squared * lens.my};
 }
 
 /// What rounding to T is relative to the number; 0 where that is not known.
@@ -159,6 +165,34 @@ T radial_root(const LensTerms& lens, const T& value) {
         t = select(open, next, t);
     }
     return t;
+}
+
+/// The inverse of a power series without its constant: x with g_1 x + g_2 x^2 + ... = y, by powers of y (Lagrange).
+template <class T, int N>
+Series<T, N> reversed(const Series<T, N>& g) {
+    static_assert(N >= 1 && N <= 5);
+    Series<T, N> x;
+    const T r = T(1) / g.c[1];
+    T b[6] = {T(0), T(1), T(0), T(0), T(0), T(0)}, power = r;
+    for (int k = 2; k <= N; ++k) b[k] = g.c[k] * r;
+    const T b22 = b[2] * b[2];
+    const T a[6] = {T(0),
+                    T(1),
+                    -b[2],
+                    b22 * 2.0 - b[3],
+                    b[2] * b[3] * 5.0 - b22 * b[2] * 5.0 - b[4],
+                    b22 * b22 * 14.0 - b22 * b[3] * 21.0 + b[2] * b[4] * 6.0 + b[3] * b[3] * 3.0 - b[5]};
+    for (int k = 1; k <= N; ++k, power = power * r) x.c[k] = a[k] * power;
+    return x;
+}
+
+/// shrink() by powers of what is added to a value, whose root is `t`.
+template <int N, class T>
+Series<T, N> shrink_series(const LensTerms& lens, const T& t) {
+    using S = Series<T, N>;
+    S root = reversed(radial_at(lens, S::variable(t)));
+    root.c[0] = t;
+    return S(T(1)) / stretch_at(lens, root);
 }
 
 /// u = v shrink(t of v) for v = F(u), of a lens without a tangential part.
