@@ -7,6 +7,8 @@
 #include <memory>
 #include <optional>
 #include <span>
+#include <utility>
+#include <vector>
 
 #include "anamorph/approx/block_writer.h"
 #include "anamorph/approx/cubic_terms.h"
@@ -57,10 +59,12 @@ inline constexpr double kPolynomialCost = 40, kDoubleCost = 0.3;
 inline constexpr int kMostParts = 256;
 // The part of the tolerance that a remainder over a box may take up for a polynomial on it; and for one that
 // serves parts of it.
-inline constexpr double kTailShare = 0.125, kPartShare = 0.25;
+inline constexpr double kTailShare = 0.25, kPartShare = 0.5;
 
 // What a pixel of a polynomial saves, as a part of an exact pixel, where it could be direct instead, in float or in double.
 inline constexpr double kDirectSaving = 3.0 / 16, kPreciseSaving = 5.0 / 16;
+// Where a block in the middle of a box misses it by so much, others of it are not looked at.
+inline constexpr double kHopeless = 4;
 // To look whether direct blocks hold the tolerance costs as much as so many exact pixels.
 inline constexpr int kDirectCost = 60;
 
@@ -203,9 +207,10 @@ class Planner {
     void settle_inside(const Box& box, const Local& local, const Known* known = nullptr) {
         if (m_options.scheme == Scheme::residual && !m_exact) return settle_residual(box, local);
         if (m_options.scheme == Scheme::blocks && !m_exact) return settle_blocks(box, local, known);
-        const bool first = !m_direct && pixels_of(box) >= kLeastInFloat;
-        const double error = first ? find_direct(box) : 0;
+        const bool first = !m_direct && !m_never_direct && pixels_of(box) >= kLeastInFloat;
         const bool by_blocks = m_options.scheme == Scheme::automatic && !m_exact;
+        const double error = first ? find_direct(box) : 0;
+        if (first) m_never_direct = by_blocks && error > kHopeless * m_goal && error < HUGE_VAL;
         // Where one bound cannot be had, the other is too wide.
         if (m_direct || (by_blocks && error < HUGE_VAL))
             by_blocks && (!first || may_beat_direct(box, local)) ? settle_blocks(box, local, known)
@@ -214,7 +219,9 @@ class Planner {
             leave(box);
         else
             split(box, [&](const Box& b) { settle(b); });
-        if (first) m_direct.reset();
+        if (!first) return;
+        m_direct.reset();
+        m_never_direct = false;
     }
 
     /// What is expected of direct blocks: that they hold the tolerance over most of a box.
@@ -306,14 +313,19 @@ class Planner {
         const auto meets = [](const Interval& a, int length) { return a.hi >= 0 && a.lo <= length; };
         if ((!edges.across || meets(at.x, size.width)) && (!edges.down || meets(at.y, size.height)))
             return Cover::inside;
-        const auto p = enclose<1>(box, local);
+        return lies_beyond(enclose<1>(box, local)) ? Cover::outside : Cover::inside;
+    }
+    /// Of what the map's Taylor coefficients over a box say.
+    template <int N>
+    bool lies_beyond(const Point<Jet<Interval, N>>& p) const {
+        const Size size = m_map.source_size();
+        const SourceEdges edges = m_map.source_edges();
         const double margin = footprint_reach(p, size);
-        const auto beyond = [&](const Jet<Interval, 1>& f, int length) {
-            return f.c[0].hi < -margin || f.c[0].lo > length + margin;
+        const auto beyond = [&](const Interval& a, int length) {
+            return a.hi < -margin || a.lo > length + margin;
         };
-        const bool out =
-            (edges.across && beyond(p.x, size.width)) || (edges.down && beyond(p.y, size.height));
-        return out ? Cover::outside : Cover::inside;
+        return (edges.across && beyond(p.x.c[0], size.width)) ||
+               (edges.down && beyond(p.y.c[0], size.height));
     }
 
     /// Can no part of a box be culled, with its source points here?
@@ -339,7 +351,8 @@ class Planner {
     /// as large as the image at most.
     ///
     /// Other filters and rounding: 4 pixels.
-    static double footprint_reach(const Point<Jet<Interval, 1>>& p, const Size& source) {
+    template <int N>
+    static double footprint_reach(const Point<Jet<Interval, N>>& p, const Size& source) {
         const double length =
             magnitude(p.x.c[1]) + magnitude(p.x.c[2]) + magnitude(p.y.c[1]) + magnitude(p.y.c[2]);
         const double texel = 16 * std::max(1.0, length);
@@ -372,40 +385,106 @@ class Planner {
     void settle_blocks(const Box& box, const Local& local, const Known* known = nullptr) {
         if (!known) {
             if (!worth_a_bound(box)) return leave(box);
+            if (has_quarters(box)) return settle_by_quarters(box, local);
             Known one;
             know({&box, 1}, local, &one);
             return settle_blocks(box, local, &one);
         }
         const Enclosed& p = known->enclosed;
-        Bound bound{Tail(p.x), Tail(p.y), HUGE_VAL};
-        if (is_block(box) ? tail_over(box, bound) < HUGE_VAL : serves(box, known->middle, bound)) {
-            bound.rounding = shared_rounding(box, local);
-            for_boxes(box, 4 * kBlockWidth, 4 * kBlockHeight,
-                      [&](const Box& b) { place_parts(b, local, bound, known); });
-        } else if (is_kept(p.x.c[0], p.y.c[0]))
-            settle_quarters(box);
+        const Bound bound = bound_of(*known);
+        if (is_block(box) ? tail_over(box, bound) < HUGE_VAL : serves(box, known->middle, bound))
+            place_all_parts(box, local, bound, known);
         else
-            split(box, [&](const Box& b) { settle(b); });
+            settle_quarters(box, is_kept(p.x.c[0], p.y.c[0]));
     }
     static bool is_block(const Box& box) {
         return box.width() <= kBlockWidth && box.height() <= kBlockHeight;
     }
 
-    /// What is in the quarters of a box that cannot be culled; in its halves where quarters could not pay for their bounds.
-    void settle_quarters(const Box& box) {
+    /// Does no part about whose middle blocks are placed (parts_of) cross the edges of its quarters? The sides of parts divide
+    /// two blocks, and those of quarters are multiples of that.
+    static bool has_quarters(const Box& box) {
+        return box.width() > 2 * kBlockWidth && box.height() > 2 * kBlockHeight;
+    }
+    /// A large box is bounded in its quarters, which costs no more at once and is many times narrower. It stays whole where
+    /// they are no better off each by itself.
+    void settle_by_quarters(const Box& box, const Local& local) {
+        in_quarters(box, [&](std::span<const Box> quarters) {
+            Known known[simd::kJets];
+            know(quarters, local, known);
+            Bound all = bound_of(known[0]);
+            for (std::size_t i = 1; i < quarters.size(); ++i) all = larger(all, bound_of(known[i]));
+            const auto stays = [&](const Known& part) { return serves_as_well(part, all); };
+            if (std::all_of(known, known + quarters.size(), stays))
+                return place_all_parts(box, local, all, &known[0]);
+            together(box, local, [&] {
+                for (std::size_t i = 0; i < quarters.size(); ++i) settle_known(known[i], local);
+            });
+        });
+    }
+    static Bound bound_of(const Known& known) {
+        return {Tail(known.enclosed.x), Tail(known.enclosed.y), HUGE_VAL};
+    }
+    static Bound larger(const Bound& a, const Bound& b) {
+        return {Tail::larger(a.x, b.x), Tail::larger(a.y, b.y), HUGE_VAL};
+    }
+    /// Does a bound serve a box, in no smaller parts than its own would?
+    bool serves_as_well(const Known& known, const Bound& bound) const {
+        const Parts shared = parts_of(known.box, bound), own = parts_of(known.box, bound_of(known));
+        return shared.width * shared.height == own.width * own.height && shared.are == own.are &&
+               serves(known.box, known.middle, bound);
+    }
+    /// Blocks all over a box that a bound serves.
+    void place_all_parts(const Box& box, const Local& local, Bound bound, const Known* known) {
+        bound.rounding =
+            m_together && m_together->local == &local ? m_together->rounding_of(*this) : HUGE_VAL;
+        if (!(bound.rounding < HUGE_VAL)) bound.rounding = shared_rounding(box, local);
+        for_boxes(box, 4 * kBlockWidth, 4 * kBlockHeight,
+                  [&](const Box& b) { place_parts(b, local, bound, known); });
+    }
+    /// A box whose parts are settled with the same local: what rounding costs them is found once, when first asked for.
+    struct Together {
+        Box box;
+        const Local* local;
+        double rounding = -1;
+
+        double rounding_of(const Planner& planner) {
+            if (rounding < 0) rounding = planner.shared_rounding(box, *local);
+            return rounding;
+        }
+    };
+    template <class Body>
+    void together(const Box& box, const Local& local, const Body& body) {
+        Together here{box, &local};
+        Together* const outer = std::exchange(m_together, &here);
+        body();
+        m_together = outer;
+    }
+
+    /// A box with what is known of it, unless all of it can be culled.
+    void settle_known(const Known& known, const Local& local) {
+        if (m_options.cull && lies_beyond(known.enclosed)) return emit(known.box, Block::Kind::outside);
+        settle_inside(known.box, local, &known);
+    }
+    /// What is in the quarters of a box; in its halves where quarters could not pay for their bounds. `kept`: none can be
+    /// culled.
+    void settle_quarters(const Box& box, bool kept) {
         const Box quarter{box.x0, box.y0, box.x0 + box.width() / 2, box.y0 + box.height() / 2};
-        const auto at_once = [&](std::span<const Box> parts) { settle_at_once(parts, local_about(box)); };
+        const auto at_once = [&](std::span<const Box> parts) {
+            const Local local = local_about(box);
+            together(box, local, [&] { settle_at_once(parts, local); });
+        };
         if (worth_a_bound(quarter))
             in_quarters(box, at_once);
         else if (worth_a_bound(sub_box(box, is_cut_vertically(box), false)))
             in_halves(box, is_cut_vertically(box), kFloor, at_once);
         else
-            split(box, [&](const Box& b) { settle_inside(b, local_about(b)); });
+            split(box, [&](const Box& b) { kept ? settle_inside(b, local_about(b)) : settle(b); });
     }
     void settle_at_once(std::span<const Box> boxes, const Local& local) {
         Known known[simd::kJets];
         know(boxes, local, known);
-        for (std::size_t i = 0; i < boxes.size(); ++i) settle_inside(boxes[i], local, &known[i]);
+        for (std::size_t i = 0; i < boxes.size(); ++i) settle_known(known[i], local);
     }
     /// Of up to kJets boxes.
     void know(std::span<const Box> boxes, const Local& local, Known* known) {
@@ -564,41 +643,61 @@ class Planner {
             p.are = Parts::placed;
         }
     }
+    /// The Taylor polynomials of boxes that are asked for in the order in which they were added: several at once.
+    class InTurn {
+      public:
+        InTurn(const Planner& planner, const Local& local, const Known& known)
+            : m_planner(planner), m_local(local), m_known(known) {}
+
+        void add(const Box& box) { m_boxes.push_back(box); }
+        /// Some may be left out.
+        const Taylor& of(const Box& box) {
+            if (m_boxes.size() == 1 && m_known.itself && box == m_known.box) return *m_known.itself;
+            while (m_boxes[m_at] != box) ++m_at;
+            if (m_at >= m_end) {
+                const std::size_t count = std::min<std::size_t>(simd::kJets, m_boxes.size() - m_at);
+                m_planner.taylors_of({&m_boxes[m_at], count}, m_local, m_taylors);
+                m_first = m_at;
+                m_end = m_at + count;
+            }
+            return m_taylors[m_at - m_first];
+        }
+
+      private:
+        const Planner& m_planner;
+        const Local& m_local;
+        const Known& m_known;
+        std::vector<Box> m_boxes;
+        std::size_t m_at = 0, m_first = 0, m_end = 0;
+        Taylor m_taylors[simd::kJets];
+    };
     /// Places blocks about the middles of such parts.
     void place_parts(const Box& box, const Local& local, const Bound& bound, const Known* known) {
         const Parts parts = parts_of(box, bound);
         if (parts.are == Parts::left) return leave(box);
         const bool small = parts.width <= kBlockWidth && parts.height <= kBlockHeight;
+        const auto for_parts = [&](const Box& within, const auto& body) {
+            for_boxes(within, parts.width, parts.height, body);
+        };
+        const auto renew_all = [&](const Box& within) {
+            for_parts(within, [&](const Box& b) { worth_a_bound(b) ? settle_quarters(b, true) : leave(b); });
+        };
+        InTurn taylors(*this, local, *known);
         const auto place_all = [&](const Box& within) {
             if (!worth_a_polynomial()) return leave(within);
-            if (parts.are == Parts::renewed)
-                for_boxes(within, parts.width, parts.height,
-                          [&](const Box& b) { worth_a_bound(b) ? settle_quarters(b) : leave(b); });
-            else
-                place_grid(within, parts, local, bound, known);
+            if (parts.are == Parts::renewed) return renew_all(within);
+            for_parts(within,
+                      [&](const Box& b) { place(b, expand(b, local, bound, taylors.of(b)), local, bound); });
         };
-        if (!small) return place_all(box);
+        const auto add_all = [&](const Box& within) {
+            if (parts.are == Parts::placed) for_parts(within, [&](const Box& b) { taylors.add(b); });
+        };
+        if (!small) {
+            add_all(box);
+            return place_all(box);
+        }
+        for_blocks(box, add_all);
         for_blocks(box, [&](const Box& b) { unless_left(b, [&] { place_all(b); }); });
-    }
-    void place_grid(const Box& box, const Parts& parts, const Local& local, const Bound& bound,
-                    const Known* known) {
-        Box boxes[simd::kJets];
-        Taylor taylors[simd::kJets];
-        std::size_t count = 0;
-        const auto place_known = [&] {
-            if (count == 1 && known->itself && boxes[0] == known->box)
-                taylors[0] = *known->itself;
-            else if (count > 0)
-                taylors_of({boxes, count}, local, taylors);
-            for (std::size_t i = 0; i < count; ++i)
-                place(boxes[i], expand(boxes[i], local, bound, taylors[i]), local, bound);
-            count = 0;
-        };
-        for_boxes(box, parts.width, parts.height, [&](const Box& b) {
-            boxes[count++] = b;
-            if (count == simd::kJets) place_known();
-        });
-        place_known();
     }
 
     /// Emits a part of an expansion's box as one polynomial block if that holds the tolerance, else halves it.
@@ -823,6 +922,8 @@ class Planner {
     double m_over_direct;  ///< the same in direct pixels, over those where they serve
     double m_margin;  ///< of what is enclosed of a box: from its edges to the nodes that blocks are made of
     std::optional<LinearPart> m_linear;
+    Together* m_together = nullptr;
+    bool m_never_direct = false;  ///< is nothing expected of direct blocks in the box that is being settled?
     std::optional<Direct> m_direct;  ///< what is expected to serve most of the box that is being settled
     Bases m_bases;
 };

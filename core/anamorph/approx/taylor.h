@@ -27,6 +27,14 @@ struct Remainder {
             middle[j] = std::fabs(0.5 * (a.lo + a.hi));
         }
     }
+    /// Over two boxes.
+    static Remainder larger(Remainder a, const Remainder& b) {
+        for (int j = 0; j <= K; ++j) {
+            a.c[j] = rounded_detail::larger(a.c[j], b.c[j]);
+            a.middle[j] = rounded_detail::larger(a.middle[j], b.middle[j]);
+        }
+        return a;
+    }
     double over(double hx, double hy) const { return sum(c, hx, hy); }
     /// What may be left of it over a much smaller box.
     double about(double hx, double hy) const { return sum(middle, hx, hy); }
