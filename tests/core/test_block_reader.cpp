@@ -281,9 +281,8 @@ TEST(BlockReader, PointsApartHaveTheSameBitsWhereverTheirTexelsStand) {
                     for (const Filter filter : {Filter::nearest, Filter::bilinear, Filter::bicubic}) {
                         SCOPED_TRACE(::testing::Message()
                                      << step << " texels a step, " << aside << " aside, type "
-                                     << static_cast<int>(type) << ", " << channels
-                                     << " channels, kind " << static_cast<int>(kind) << ", filter "
-                                     << static_cast<int>(filter));
+                                     << static_cast<int>(type) << ", " << channels << " channels, kind "
+                                     << static_cast<int>(kind) << ", filter " << static_cast<int>(filter));
                         const FunctionMap map(kAcross, kDown, kind, at);
                         const std::vector<std::byte> all = drawn(map, source, filter, {0, 0, kAcross, kDown});
                         EXPECT_TRUE(all == drawn(map, remote, filter, {0, 0, kAcross, kDown}));
