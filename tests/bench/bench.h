@@ -45,8 +45,7 @@ struct Row {
     Accuracy error;
     double bound_px = kNone, exact_fraction = kNone;
     double cycles = kNone, frames_per_second = kNone;  ///< of a machine that is modelled
-    bool one_tap =
-        true;  ///< does each pixel come from one point, not from an average over several? (not in the CSV)
+    bool one_tap = true;  ///< does each pixel come from one point, not from an average? (not in the CSV)
 };
 
 /// A promise about the table: `reached` is to be at least (or at most) `wanted`.
