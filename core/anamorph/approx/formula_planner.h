@@ -59,7 +59,7 @@ inline constexpr double kPolynomialCost = 40, kDoubleCost = 0.3;
 inline constexpr int kMostParts = 256;
 // The part of the tolerance that a remainder over a box may take up for a polynomial on it; and for one that
 // serves parts of it.
-inline constexpr double kTailShare = 0.25, kPartShare = 0.5;
+inline constexpr double kTailShare = 0.125, kPartShare = 0.25;
 
 // What a pixel of a polynomial saves, as a part of an exact pixel, where it could be direct instead, in float or in double.
 inline constexpr double kDirectSaving = 3.0 / 16, kPreciseSaving = 5.0 / 16;
