@@ -73,6 +73,13 @@ TEST_P(FileRowsOf, AreThoseOfTheFileInAnyOrder) {
     EXPECT_LE(file.opened, 1 + 2 * 4);
 }
 
+TEST_P(FileRowsOf, AreDecodedBackwardsInFewSteps) {
+    FileRows all = rows();
+    for (int first = kHeight - 40; first >= 0; first -= 64) all.need(first, first + 20);
+    // Of 40 rows each way back makes at least twice as many; one strip at a time it would be 16 steps.
+    EXPECT_LE(file.opened, 6);
+}
+
 TEST_P(FileRowsOf, BeyondThoseNeededStayUntouched) {
     FileRows some = rows();
     some.need(300, 340);
