@@ -182,7 +182,7 @@ auto at_points(const PixelPoints<Real>& points) {
     };
 }
 
-// Where there are more texels than this for a pixel, they are brought near one by one.
+// Where there are more texels than this for a pixel, they lie far apart for the hot loops.
 constexpr double kApart = 3;
 
 // More texels than this for a pixel are not taken together, wherever they are: the bits of a picture do not depend on that.
@@ -386,7 +386,7 @@ bool BlockReader::rows(const Block& block, const Box& part, const Row& row) {
     return false;
 }
 
-bool BlockReader::draw(const Block& block, const Box& part, const Canvas& canvas, const Block* next) {
+bool BlockReader::draw(const Block& block, const Box& part, const Canvas& canvas) {
     const bool straight = m_source.unassociated_alpha() < 0;
     const Row store = [&](int x, int y, int count, const float* values, float one) {
         canvas.store(x, y, count, values, one);
@@ -394,26 +394,24 @@ bool BlockReader::draw(const Block& block, const Box& part, const Canvas& canvas
     if (m_filter == Filter::summed_area) return rows(block, part, store);
     if (in_double(block)) {
         read_in_double(block);
-        const Got got = straight ? draw_in_double(block, part, canvas, next) : Got::too_large;
+        const Got got = straight ? draw_in_double(block, part, canvas) : Got::too_large;
         return got == Got::too_large ? rows_in_double(block, part, store) : got == Got::window;
     }
     if (block.kind == Block::Kind::computed) {
         const BlockPoints points = points_of(block);
-        Got got = straight ? draw_points(block, points, part, canvas, next) : Got::too_large;
+        Got got = straight ? draw_points(block, points, part, canvas) : Got::too_large;
         if (got == Got::too_large && straight && lie_apart(at_points(points), block)) {
             m_exact.take(block, points);
-            got = draw_in_double(block, part, canvas, nullptr);
+            got = draw_in_double(block, part, canvas);
         }
         return got == Got::too_large ? rows(block, points, part, store) : got == Got::window;
     }
-    const Got got =
-        straight && is_polynomial(block) ? draw_polynomial(block, part, canvas, next) : Got::too_large;
+    const Got got = straight && is_polynomial(block) ? draw_polynomial(block, part, canvas) : Got::too_large;
     return got == Got::too_large ? rows(block, part, store) : got == Got::window;
 }
 
 /// Where all pixels of a block share a filter and a window.
-BlockReader::Got BlockReader::draw_polynomial(const Block& block, const Box& part, const Canvas& canvas,
-                                              const Block* next) {
+BlockReader::Got BlockReader::draw_polynomial(const Block& block, const Box& part, const Canvas& canvas) {
     const Filtering f = filtering(jacobian_of(block));
     const BlockPolynomial of_source = polynomial_of(m_map, block);
     if (!shares_filter(of_source, block)) return Got::too_large;
@@ -422,7 +420,7 @@ BlockReader::Got BlockReader::draw_polynomial(const Block& block, const Box& par
     const Got got = polynomial_window(f, block, polynomial, window);
     if (got == Got::window)
         draw_window(f, block, on_block(polynomial.p, block), {polynomial.base_x, polynomial.base_y}, window,
-                    part, canvas, upcoming(next, f));
+                    part, canvas);
     return got;
 }
 
@@ -444,7 +442,7 @@ bool BlockReader::filtering_of(const Block& block, const PixelPoints<Real>& poin
 
 /// The same with its points at hand, read on the source itself.
 BlockReader::Got BlockReader::draw_points(const Block& block, const BlockPoints& points, const Box& part,
-                                          const Canvas& canvas, const Block* next) {
+                                          const Canvas& canvas) {
     Filtering f;
     if (!filtering_of(block, points, f) || f.level > 0) return Got::too_large;
     Range x, y;
@@ -455,14 +453,12 @@ BlockReader::Got BlockReader::draw_points(const Block& block, const BlockPoints&
         draw_window(
             f, block,
             {nullptr, 0, block.box.width(), block.box.height(), points.x, points.y, points.row_stride},
-            {block.base_x, block.base_y}, window, part, canvas,
-            next && next->kind == block.kind ? upcoming_like(*next, f, x, y) : upcoming(next, f));
+            {block.base_x, block.base_y}, window, part, canvas);
     return got;
 }
 
 /// The same with points in double.
-BlockReader::Got BlockReader::draw_in_double(const Block& block, const Box& part, const Canvas& canvas,
-                                             const Block* next) {
+BlockReader::Got BlockReader::draw_in_double(const Block& block, const Box& part, const Canvas& canvas) {
     const PixelPoints<double> points = m_exact.points();
     Filtering f;
     Range range_x, range_y;
@@ -488,27 +484,21 @@ BlockReader::Got BlockReader::draw_in_double(const Block& block, const Box& part
         simd::split_points(points.y + from, width, y.scale, y.base, m_texels.data() + room + to,
                            m_rests.data() + room + to);
     }
-    const auto moved = [](const Range& r, double by) { return Range{r.low - by, r.high - by}; };
-    // Exact blocks have no base to be moved by.
-    const bool alike =
-        next && next->precise && next->kind == block.kind && block.kind != Block::Kind::exact && f.level == 0;
     draw_window(f, block,
                 {nullptr, 0, width, height, m_rests.data(), m_rests.data() + room, stride, m_texels.data(),
                  m_texels.data() + room},
-                {x.base, y.base}, window, part, canvas,
-                alike ? upcoming_like(*next, f, moved(range_x, block.base_x), moved(range_y, block.base_y))
-                      : upcoming(next, f));
+                {x.base, y.base}, window, part, canvas);
     return got;
 }
 
 void BlockReader::draw_window(const Filtering& f, const Block& block, const simd::Polynomials& polynomials,
                               const Point<std::int32_t>& base, const Window& window, const Box& part,
-                              const Canvas& canvas, const simd::Upcoming& upcoming) {
+                              const Canvas& canvas) {
     const simd::Texels texels = texels_of(f, window, base.x, base.y, texels_in(block.box));
     const auto draw_to = [&](std::byte* to, std::ptrdiff_t row_stride) {
         simd::draw_block(texels, polynomials, part.x0 - block.box.x0, part.x1 - block.box.x0,
                          part.y0 - block.box.y0, part.y1 - block.box.y0,
-                         canvas.scale_from(one_of(window.type)), canvas.type(), to, row_stride, upcoming);
+                         canvas.scale_from(one_of(window.type)), canvas.type(), to, row_stride);
     };
     if (canvas.packed()) return draw_to(canvas.at(part.x0, part.y0), canvas.row_stride());
     // Pixels with gaps have the same bits: they are drawn packed, and spread.
@@ -856,30 +846,6 @@ BlockReader::Got BlockReader::window_of(const Filtering& f, int piece, std::int3
     // Rows that stand far apart in memory are no reason to read otherwise than from a file.
     if (!fits() && !m_reader.get_copy(f.level, piece, box, window)) return Got::failed;
     return fits() ? Got::window : Got::too_large;
-}
-
-/// Where the next block's texels stand in memory, if they do; filtered like this one's.
-simd::Upcoming BlockReader::upcoming(const Block* next, const Filtering& f) const {
-    if (!next || !is_polynomial(*next)) return {};
-    const LevelPolynomial p(quadratic_of(*next), *next, f.scale_x, f.scale_y);
-    return upcoming(f, Span(f, f.reach_x, p.base_x, p.x), Span(f, f.reach_y, p.base_y, p.y));
-}
-
-/// Where they would stand if the next block were moved from this one.
-simd::Upcoming BlockReader::upcoming_like(const Block& next, const Filtering& f, const Range& x,
-                                          const Range& y) const {
-    return upcoming(f, Span(f, f.reach_x, next.base_x, x), Span(f, f.reach_y, next.base_y, y));
-}
-
-simd::Upcoming BlockReader::upcoming(const Filtering& f, const Span& x, const Span& y) const {
-    const ConstImageView* view = m_source.view(f.level);
-    if (!view) return {};
-    if (!(x.first >= 0 && y.first >= 0 && x.last <= view->width && y.last <= view->height)) return {};
-    constexpr double kPixels = BlockWriter::kWidth * BlockWriter::kHeight;
-    if ((x.last - x.first) * (y.last - y.first) > kApart * kPixels) return {};
-    return {view->at(static_cast<std::ptrdiff_t>(x.first), static_cast<std::ptrdiff_t>(y.first)),
-            view->row_stride, static_cast<int>(y.last - y.first),
-            static_cast<int>((x.last - x.first) * view->pixel_stride)};
 }
 
 simd::Texels BlockReader::texels_of(const Filtering& f, const Window& window, std::int32_t base_x,

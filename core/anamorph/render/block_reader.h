@@ -103,9 +103,8 @@ class BlockReader {
     /// The same with the points of a computed block already at hand.
     bool rows(const Block& block, const BlockPoints& points, const Box& part, const Row& row);
 
-    /// Draws `part` of a block. `next` is the block to be drawn after this one, if any: its texels are
-    /// brought near meanwhile.
-    bool draw(const Block& block, const Box& part, const Canvas& canvas, const Block* next = nullptr);
+    /// Draws `part` of a block.
+    bool draw(const Block& block, const Box& part, const Canvas& canvas);
 
   private:
     /// The level and taps that all pixels of a cell share.
@@ -125,15 +124,14 @@ class BlockReader {
     struct Span;
     enum class Got { window, too_large, failed };
 
-    Got draw_polynomial(const Block& block, const Box& part, const Canvas& canvas, const Block* next);
+    Got draw_polynomial(const Block& block, const Box& part, const Canvas& canvas);
     template <class Real>
     bool filtering_of(const Block& block, const PixelPoints<Real>& points, Filtering& f) const;
-    Got draw_points(const Block& block, const BlockPoints& points, const Box& part, const Canvas& canvas,
-                    const Block* next);
-    Got draw_in_double(const Block& block, const Box& part, const Canvas& canvas, const Block* next);
+    Got draw_points(const Block& block, const BlockPoints& points, const Box& part, const Canvas& canvas);
+    Got draw_in_double(const Block& block, const Box& part, const Canvas& canvas);
     static void draw_window(const Filtering& f, const Block& block, const simd::Polynomials& polynomials,
                             const Point<std::int32_t>& base, const Window& window, const Box& part,
-                            const Canvas& canvas, const simd::Upcoming& upcoming);
+                            const Canvas& canvas);
 
     bool polynomial_rows(const Block& block, const Box& part, const Row& row);
     bool rows_in_double(const Block& block, const Box& part, const Row& row);
@@ -171,9 +169,6 @@ class BlockReader {
                   bool apart = false);
     static simd::Texels texels_of(const Filtering& f, const Window& window, std::int32_t base_x,
                                   std::int32_t base_y, double pixels);
-    simd::Upcoming upcoming(const Block* next, const Filtering& f) const;
-    simd::Upcoming upcoming_like(const Block& next, const Filtering& f, const Range& x, const Range& y) const;
-    simd::Upcoming upcoming(const Filtering& f, const Span& x, const Span& y) const;
 
     const BlockMap& m_map;
     const Source& m_source;

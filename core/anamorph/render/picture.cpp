@@ -83,8 +83,8 @@ class Painter {
 
     void draw_color(const Strip& strip, const BlockMap& map, const Picture::Layer& layer) {
         BlockReader reader(map, source_of(layer), layer.border, m_picture.filter);
-        strip.for_each_block([&](const Block& block, const Box& part, const Block* next) {
-            if (!reader.draw(block, part, m_canvas, next)) m_ok = false;
+        strip.for_each_block([&](const Block& block, const Box& part) {
+            if (!reader.draw(block, part, m_canvas)) m_ok = false;
         });
     }
     void draw_map(const Strip& strip, const BlockMap& map, const Picture::Layer& layer) {
@@ -92,7 +92,7 @@ class Painter {
             m_canvas.store(x, y, count, values);
         };
         const BlockPlanes planes(1);
-        strip.for_each_block([&](const Block& block, const Box& part, const Block*) {
+        strip.for_each_block([&](const Block& block, const Box& part) {
             const BlockPoints points = points_of(map, {&block, 1}, planes) ? planes.points(0) : BlockPoints{};
             map_rows(map, layer.border.chart(), m_picture.output, block, points, part, store);
         });

@@ -20,19 +20,17 @@ class Strip {
     /// The part of the box that lies in those rows.
     Box box() const { return intersection(m_rows, m_box); }
 
-    /// body(block, part, next) for every block that meets the box: `part` of it lies there; `next` is the
-    /// block after it, or null.
+    /// body(block, part) for every block that meets the box, in `part`.
     template <class Body>
     void for_each_block(const Body& body) const {
-        for (std::size_t k = 0; k < m_blocks.size(); ++k) {
-            const Block& block = m_blocks[k];
+        for (const Block& block : m_blocks) {
             Box part = intersection(block.box, m_box);
             if (block.kind == Block::Kind::outside) {
                 // It has no texels and may be cut at will; others are no taller than a strip.
                 part = intersection(part, m_rows);
             } else if (block.box.y0 < m_rows.y0 || block.box.y0 >= m_rows.y1)
                 continue;
-            if (!part.empty()) body(block, part, k + 1 < m_blocks.size() ? &m_blocks[k + 1] : nullptr);
+            if (!part.empty()) body(block, part);
         }
     }
 

@@ -6,6 +6,7 @@
 #include <type_traits>
 
 #include "anamorph/simd/packed_blocks.h"
+#include "anamorph/simd/prefetch.h"
 #include "hwy/cache_control.h"
 #include "hwy/highway.h"
 
@@ -208,16 +209,29 @@ HWY_INLINE void Locate(hn::Vec<Floats> x, hn::Vec<Floats> y, hn::Vec<Ints> row, 
     hn::Store(fy, Floats(), p.fy + i);
 }
 
-/// Brings near the texels at these element offsets and those below, where they lie far apart.
-template <class T>
-HWY_INLINE void FetchApart(const Texels& s, const int32_t* offset, int count) {
-    if (!s.apart) return;
-    const auto* origin = reinterpret_cast<const T*>(s.texels);
-    for (int i = 0; i < count; ++i) {
-        const auto* texel = reinterpret_cast<const std::byte*>(origin + offset[i]);
-        hwy::Prefetch(texel);
-        hwy::Prefetch(texel + s.row_stride);
+/// Texels are fetched so many pixels before they are read, in whole rows of pixels, of which there is room for so many.
+constexpr int kAhead = 128, kRows = 8;
+
+/// Fetches the texels at these element offsets, `below` rows farther down. Where they lie far apart, each pixel's own;
+/// elsewhere it takes a few of them to fetch every cache line.
+template <class T, int kChannels>
+HWY_INLINE void Fetch(const Texels& s, const int32_t* offset, int count, int below) {
+    const auto* origin = reinterpret_cast<const T*>(s.texels + below * s.row_stride);
+    if (s.apart) {
+        for (int i = 0; i < count; ++i) prefetch_to_second_level(origin + offset[i]);
+        return;
     }
+    constexpr int kBytes = 36;
+    const int step =
+        HWY_MAX(1, kBytes / ((kChannels ? kChannels : s.channels) * static_cast<int>(sizeof(T))));
+    for (int i = 0; i < count; i += step) hwy::Prefetch(origin + offset[i]);
+}
+
+/// The two rows of a bilinear tap.
+template <class T, int kChannels>
+HWY_INLINE void FetchBilinear(const Texels& s, const int32_t* offset, int count) {
+    Fetch<T, kChannels>(s, offset, count, 0);
+    Fetch<T, kChannels>(s, offset, count, 1);
 }
 
 /// Where the pixels of a drawing's rows fall among its texels, of one bilinear tap.
@@ -240,7 +254,7 @@ class RowLocator {
             Locate(hn::Add(x, m_shift_x), hn::Add(y, m_shift_y), m_row, m_pixel, i, to,
                    points.WholeX(begin + i), points.WholeY(begin + i));
         });
-        FetchApart<T>(m_drawing.texels, to.offset, count);
+        FetchBilinear<T, kChannels>(m_drawing.texels, to.offset, count);
     }
 
   private:
@@ -250,33 +264,15 @@ class RowLocator {
     hn::Vec<Floats> m_shift_x, m_shift_y;
 };
 
-/// Brings texels near, a share of their rows with every row that is drawn.
-class Fetching {
-  public:
-    HWY_INLINE Fetching(const Upcoming& upcoming, int shares)
-        : m_upcoming(upcoming), m_share((upcoming.rows + shares - 1) / shares) {}
-    HWY_INLINE void Fetch() {
-        const int last = HWY_MIN(m_row + m_share, m_upcoming.rows);
-        for (; m_row < last; ++m_row)
-            for (int b = 0; b < m_upcoming.bytes; b += 64)
-                hwy::Prefetch(m_upcoming.first + m_row * m_upcoming.row_stride + b);
-    }
-
-  private:
-    const Upcoming& m_upcoming;
-    int m_share, m_row = 0;
-};
-
-/// Draws rows in three stages: located, `ahead` rows later sampled, and a row later stored. Reading what was just
-/// written in pieces of another size would wait for those writes.
+/// Draws rows in three stages: located and their texels fetched, kAhead pixels later sampled, and a row later stored.
+/// Reading what was just written in pieces of another size would wait for those writes.
 template <class Locating, class Sampling, class Storing>
 HWY_INLINE void InStages(const Drawing& drawing, const Locating& locate, const Sampling& sample,
-                         const Storing& store, int ahead = 1) {
+                         const Storing& store) {
     const int begin = drawing.row_begin, end = drawing.row_end;
-    Fetching fetching(drawing.upcoming, end - begin);
+    const int ahead = HWY_MAX(1, HWY_MIN(kAhead / (drawing.end - drawing.begin), kRows - 1));
     for (int j = begin; j < HWY_MIN(begin + ahead, end); ++j) locate(j);
     for (int j = begin; j < end; ++j) {
-        fetching.Fetch();
         if (j + ahead < end) locate(j + ahead);
         sample(j);
         if (j > begin) store(j - 1);

@@ -112,7 +112,6 @@ HWY_INLINE void SampleBilinear(const Texels& s, const Offsets& at, float* HWY_RE
     const int channels = kChannels ? kChannels : s.channels;
     Positions<kRowRoom> p;
     Locate(at, 0, at.count, s.taps[0], 0.5f, channels, static_cast<int32_t>(row), p);
-    FetchApart<T>(s, p.offset, at.count);
     for (int i = 0; i < at.count; ++i)
         for (int c = 0; c < channels; c += kQuad)
             hn::StoreU(Bilinear<T, kChannels>(origin + p.offset[i] + c, row, channels, p.fx[i], p.fy[i]), d,
@@ -202,6 +201,22 @@ HWY_INLINE void SampleNearest(const Texels& s, const Offsets& at, float* HWY_RES
     for (int i = 0; i < at.count; ++i)
         for (int c = 0; c < s.channels; c += kQuad)
             hn::StoreU(LoadQuad(origin + p.offset[i] + c), Quad(), out + i * s.channels + c);
+}
+
+/// Fetches what SampleTyped is to read of a row: of several taps, which lie next to each other, one in four.
+template <class T>
+HWY_INLINE void FetchRow(const Texels& s, const Offsets& at) {
+    const auto row = static_cast<int32_t>(s.row_stride / static_cast<ptrdiff_t>(sizeof(T)));
+    const int last = s.kernel == Kernel::bicubic ? 2 : s.kernel == Kernel::bilinear ? 1 : 0;
+    const int rows = s.kernel == Kernel::bicubic ? 4 : last + 1;
+    // Where texels lie together those farther up came with an earlier row of pixels.
+    const int first = last + 1 - (s.apart ? rows : HWY_MIN(rows, 2));
+    const float shift = s.kernel == Kernel::nearest ? 0.0f : 0.5f;
+    for (int tap = 0; tap < s.tap_count; tap += 4) {
+        Positions<kRowRoom> p;
+        Locate(at, 0, at.count, s.taps[tap], shift, s.channels, row, p);
+        for (int k = first; k <= last; ++k) Fetch<T, 0>(s, p.offset, at.count, k);
+    }
 }
 
 template <class T>
@@ -318,16 +333,12 @@ void DrawBilinear(const Drawing& to) {
     const ptrdiff_t row = s.row_stride / static_cast<ptrdiff_t>(sizeof(T));
     const int count = to.end - to.begin;
     const RowLocator<T, kChannels> locator(to);
-    // Where texels are brought near one by one, so many pixels are between that and their use.
-    constexpr int kAhead = 128, kRows = 8;
-    const int ahead = s.apart ? HWY_MAX(1, HWY_MIN(kAhead / count, kRows - 1)) : 1;
-    const int kept = ahead > 1 ? kRows - 1 : 1;
     Positions<kRowRoom> positions[kRows];
     HWY_ALIGN float values[2][kRowRoom * kChannels];
 
-    const auto locate = [&](int j) HWY_ATTR { locator.Row(j, positions[j & kept]); };
+    const auto locate = [&](int j) HWY_ATTR { locator.Row(j, positions[j % kRows]); };
     const auto sample = [&](int j) HWY_ATTR {
-        const Positions<kRowRoom>& p = positions[j & kept];
+        const Positions<kRowRoom>& p = positions[j % kRows];
         float* HWY_RESTRICT out = values[j & 1];
         HWY_UNROLL(8)
         for (int i = 0; i < count; ++i)
@@ -338,7 +349,7 @@ void DrawBilinear(const Drawing& to) {
         StoreRow(values[j & 1], count * kChannels, to.scale, to.type,
                  to.to + (j - to.row_begin) * to.row_stride);
     };
-    InStages(to, locate, sample, store, ahead);
+    InStages(to, locate, sample, store);
 }
 
 template <class T>
@@ -350,21 +361,26 @@ void DrawTyped(const Drawing& to) {
     }
     const Polynomials& block = to.block;
     const int count = to.end - to.begin;
-    Fetching fetching(to.upcoming, to.row_end - to.row_begin);
-    HWY_ALIGN float x[kRowRoom], y[kRowRoom];
-    std::vector<float> values(static_cast<size_t>(kMaxRow * s.channels + 16));
-    std::byte* at = to.to;
-    for (int j = to.row_begin; j < to.row_end; ++j, at += to.row_stride) {
-        fetching.Fetch();
+    HWY_ALIGN float x[kRows][kRowRoom], y[kRows][kRowRoom];
+    const std::size_t room = static_cast<size_t>(kMaxRow * s.channels + 16);
+    std::vector<float> values(2 * room);
+    const auto points = [&](int j) {
         const ptrdiff_t given = j * block.row_stride + to.begin;
-        if (!block.x) BlockPoints(block, j, to.begin, to.end, x, y);
-        SampleTyped<T>(s,
-                       {block.x ? block.x + given : x, block.x ? block.y + given : y, count,
-                        block.whole_x ? block.whole_x + given : nullptr,
-                        block.whole_x ? block.whole_y + given : nullptr},
-                       values.data());
-        StoreRow(values.data(), count * s.channels, to.scale, to.type, at);
-    }
+        if (!block.x) return Offsets{x[j % kRows], y[j % kRows], count};
+        return Offsets{block.x + given, block.y + given, count,
+                       block.whole_x ? block.whole_x + given : nullptr,
+                       block.whole_x ? block.whole_y + given : nullptr};
+    };
+    const auto locate = [&](int j) HWY_ATTR {
+        if (!block.x) BlockPoints(block, j, to.begin, to.end, x[j % kRows], y[j % kRows]);
+        FetchRow<T>(s, points(j));
+    };
+    const auto sample = [&](int j) { SampleTyped<T>(s, points(j), values.data() + (j & 1) * room); };
+    const auto store = [&](int j) {
+        StoreRow(values.data() + (j & 1) * room, count * s.channels, to.scale, to.type,
+                 to.to + (j - to.row_begin) * to.row_stride);
+    };
+    InStages(to, locate, sample, store);
 }
 
 void DrawBlock(const Drawing& drawing) {
@@ -397,10 +413,8 @@ void block_points(const Polynomials& block, int row, int begin, int end, float* 
 }
 
 void draw_block(const Texels& texels, const Polynomials& block, int begin, int end, int row_begin,
-                int row_end, float scale, PixelType type, std::byte* to, std::ptrdiff_t row_stride,
-                const Upcoming& upcoming) {
-    const Drawing drawing{texels, block, begin, end,        row_begin, row_end,
-                          scale,  type,  to,    row_stride, upcoming};
+                int row_end, float scale, PixelType type, std::byte* to, std::ptrdiff_t row_stride) {
+    const Drawing drawing{texels, block, begin, end, row_begin, row_end, scale, type, to, row_stride};
     if (!draw_packed_block(drawing)) HWY_DYNAMIC_DISPATCH(DrawBlock)(drawing);
 }
 
@@ -412,8 +426,8 @@ namespace {
 
 /// The row of a pixel's own texel, and the other row that is read.
 void fetch(const std::byte* texel, float y, std::ptrdiff_t row_stride) {
-    hwy::Prefetch(texel);
-    hwy::Prefetch(texel + (y < 0.5f ? -row_stride : row_stride));
+    prefetch_to_second_level(texel);
+    prefetch_to_second_level(texel + (y < 0.5f ? -row_stride : row_stride));
 }
 
 }  // namespace

@@ -58,7 +58,7 @@ struct Texels {
     /// At most kMaxTaps (one for nearest and bicubic).
     const Tap* taps = nullptr;
     int tap_count = 1;
-    /// Do neighbouring pixels read texels far apart? Then those of a row are brought near before they are read.
+    /// Do neighbouring pixels read texels far apart?
     bool apart = false;
 };
 inline constexpr int kMaxTaps = 64;
@@ -85,19 +85,11 @@ void fetch_row(const Texels& texels, const Offsets& offsets);
 /// The same of `count` pixels, each with texels of its own: texels[i] is the one that it falls into, y[i] far down, or null.
 void fetch_row(const std::byte* const* texels, const float* y, int count, std::ptrdiff_t row_stride);
 
-/// Texels that will be read soon: `rows` rows of `bytes` bytes.
-struct Upcoming {
-    const std::byte* first = nullptr;
-    std::ptrdiff_t row_stride = 0;
-    int rows = 0, bytes = 0;
-};
-
 /// Samples pixels [begin, end) x [row_begin, row_end) of a block and stores them: block_points, sample_row
 /// and store_row in one, but for uint8 (see Errors). `to` points at pixel (begin, row_begin) of a picture with
-/// packed pixels. Meanwhile `upcoming` is brought near.
+/// packed pixels.
 void draw_block(const Texels& texels, const Polynomials& block, int begin, int end, int row_begin,
-                int row_end, float scale, PixelType type, std::byte* to, std::ptrdiff_t row_stride,
-                const Upcoming& upcoming = {});
+                int row_end, float scale, PixelType type, std::byte* to, std::ptrdiff_t row_stride);
 
 /// Converts `count` values to `type` and writes them, `scale` times (source units to the picture's); whole
 /// cache lines bypass the cache. uint8 and uint16 are rounded and clamped, NaN gives 0.

@@ -204,21 +204,21 @@ void DrawBytes(const Drawing& to) {
     const int count = to.end - to.begin;
     const HalfSteps steps(to.block);
     const Weighing weighing(s.row_stride, kChannels);
-    WeightedRow rows[2];
+    WeightedRow rows[kRows];
     HWY_ALIGN uint8_t values[2][kRowRoom * kChannels + 16];
 
     const auto locate = [&](int j) HWY_ATTR {
         const RowPoints points(to.block, steps, j);
-        WeightedRow& row = rows[j & 1];
+        WeightedRow& row = rows[j % kRows];
         points.ForEach(to.begin, count, [&](int i, hn::Vec<Floats> x, hn::Vec<Floats> y) HWY_ATTR {
             weighing.Weigh(x, y, points.WholeX(to.begin + i), points.WholeY(to.begin + i), i, row);
         });
-        FetchApart<uint8_t>(s, row.offset, count);
+        FetchBilinear<uint8_t, kChannels>(s, row.offset, count);
         FillGroup(row.offset, count, kGroup);
     };
     const auto sample = [&](int j) HWY_ATTR {
         for (int i = 0; i < count; i += kGroup)
-            SampleGroup<kChannels>(origin, origin + s.row_stride, rows[j & 1], i,
+            SampleGroup<kChannels>(origin, origin + s.row_stride, rows[j % kRows], i,
                                    values[j & 1] + i * kChannels);
     };
     const auto store = [&](int j) HWY_ATTR {
@@ -327,16 +327,16 @@ void DrawFloats(const Drawing& to) {
     const ptrdiff_t row = s.row_stride / static_cast<ptrdiff_t>(sizeof(T));
     const int count = to.end - to.begin;
     const RowLocator<T, kChannels> locator(to);
-    Positions<kRowRoom> positions[2];
+    Positions<kRowRoom> positions[kRows];
     HWY_ALIGN T values[2][kRowRoom * kChannels + 32];
 
     const auto locate = [&](int j) HWY_ATTR {
-        locator.Row(j, positions[j & 1]);
-        FillGroup(positions[j & 1].offset, count, 8);
+        locator.Row(j, positions[j % kRows]);
+        FillGroup(positions[j % kRows].offset, count, 8);
     };
     const auto sample = [&](int j) HWY_ATTR {
         for (int i = 0; i < count; i += 8)
-            SampleEight<T, kChannels>(origin, row, positions[j & 1], i, values[j & 1] + i * kChannels);
+            SampleEight<T, kChannels>(origin, row, positions[j % kRows], i, values[j & 1] + i * kChannels);
     };
     const auto store = [&](int j) HWY_ATTR {
         StreamRow(values[j & 1], count * kChannels * static_cast<int>(sizeof(T)),

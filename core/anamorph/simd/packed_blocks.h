@@ -30,7 +30,6 @@ struct Drawing {
     PixelType type;
     std::byte* to;
     std::ptrdiff_t row_stride;
-    const Upcoming& upcoming;
 };
 
 /// Draws it, if it is a block of this kind and the processor has vectors for it.
