@@ -210,7 +210,7 @@ HWY_INLINE void Locate(hn::Vec<Floats> x, hn::Vec<Floats> y, hn::Vec<Ints> row, 
 }
 
 /// Texels are fetched so many pixels before they are read, in whole rows of pixels, of which there is room for so many.
-constexpr int kAhead = 128, kRows = 8;
+constexpr int kAhead = 192, kRows = 8;
 
 /// Fetches the texels at these element offsets, `below` rows farther down. Where they lie far apart, each pixel's own;
 /// elsewhere it takes a few of them to fetch every cache line.
