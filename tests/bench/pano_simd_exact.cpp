@@ -6,6 +6,7 @@
 #include <cstring>
 #include <initializer_list>
 
+#include "anamorph/simd/prefetch.h"
 #include "pano_rivals.h"
 
 #undef HWY_TARGET_INCLUDE
@@ -164,8 +165,17 @@ HWY_INLINE void compute_taps(const FloatMap& map, int i, int j, int k, std::int3
     hn::Store(hn::Add(rows, hn::Add(columns, hn::Add(columns, columns))), di, taps.offset + k);
 }
 
-HWY_INLINE void prefetch(const RowTaps& taps, const float* below) {
+/// Of texels far apart each pixel's own; elsewhere one in four is in every cache line, and the upper row came before.
+HWY_INLINE void prefetch(const RowTaps& taps, const float* origin, std::ptrdiff_t row_floats, bool apart) {
     constexpr int kPixelsPerLine = 4;
+    const float* below = origin + row_floats;
+    if (apart) {
+        for (int k = 0; k < kTileWidth; ++k) {
+            simd::prefetch_to_second_level(origin + taps.offset[k]);
+            simd::prefetch_to_second_level(below + taps.offset[k]);
+        }
+        return;
+    }
     for (int k = 0; k < kTileWidth; k += kPixelsPerLine) hwy::Prefetch(below + taps.offset[k]);
 }
 
@@ -211,6 +221,8 @@ void draw_strip(const PlainView& view, const float* origin, std::ptrdiff_t row_f
                 int strip) {
     constexpr int kAhead = 3;
     const FloatMap map(view);
+    // More than three texels a pixel, in the middle of the view.
+    const bool apart = view.step * view.scale_x * view.step * view.scale_y > 3;
     const int width = view.width, top = strip * kTileHeight, rows = std::min(kTileHeight, view.height - top);
     const int steps = (width + kTileWidth - 1) / kTileWidth * rows;
     const int lanes = static_cast<int>(hn::Lanes(D()));
@@ -235,7 +247,7 @@ void draw_strip(const PlainView& view, const float* origin, std::ptrdiff_t row_f
             if (step < steps) compute_taps(map, step / rows * kTileWidth, top + step % rows, k, stride, next);
             if (now >= 0) sample(current, k, lanes, origin, stride, drawn[now & 1]);
         }
-        if (step < steps) prefetch(next, origin + row_floats);
+        if (step < steps) prefetch(next, origin, row_floats, apart);
         if (now > 0) finish(now - 1);
     }
     finish(steps - 1);
