@@ -221,6 +221,7 @@ HWY_INLINE void Fetch(const Texels& s, const int32_t* offset, int count, int bel
         for (int i = 0; i < count; ++i) prefetch_to_second_level(origin + offset[i]);
         return;
     }
+    // Texels of as many pixels span up to the root of 3 times that, less than a line's 64 bytes.
     constexpr int kBytes = 36;
     const int step =
         HWY_MAX(1, kBytes / ((kChannels ? kChannels : s.channels) * static_cast<int>(sizeof(T))));
