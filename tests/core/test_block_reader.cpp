@@ -7,6 +7,7 @@
 #include <cstring>
 #include <numbers>
 #include <random>
+#include <tuple>
 
 #include "anamorph/render/block_reader.h"
 #include "anamorph/render/pixel.h"
@@ -248,6 +249,66 @@ TEST(BlockReader, PointsFarApartAreReadEachFromItsOwnTexels) {
                     }
         }
     }
+}
+
+void expect_read_around_the_sphere(PixelSpacing spacing) {
+    constexpr int kWidth = 2400, kHeight = 1200, kAcross = 100, kDown = 50;
+    const unsigned seed = 11;
+    SCOPED_TRACE(seed);
+    std::mt19937 random(seed);
+    Picture texels(kWidth, kHeight, 3);
+    for (float& v : texels.values) v = static_cast<float>(random() % 4096) / 4096;
+    const MemorySource source(texels.read());
+    const Border border(Chart(Projection::equirectangular, kWidth, kHeight, 360, spacing), Wrap::automatic);
+    // Over the seam, more than a turn away, over either pole, and from 20 to 600 texels a pixel.
+    for (const auto& [step, x0, y0] : {std::tuple{22.7, -700.0, 30.0},
+                                       {22.7, 1900.0, -90.4},
+                                       {4.3, 2390.0, 1100.0},
+                                       {24.6, -3800.0, 90.0},
+                                       {9.1, 2300.0, -3.0}}) {
+        const auto at = [step = step, x0 = x0, y0 = y0](double x, double y) {
+            return Point<double>{step * x - 1.3 * y + x0, step * y + 0.4 * x + y0};
+        };
+        for (const Kind kind : {Kind::exact, Kind::computed})
+            for (const Filter filter : {Filter::nearest, Filter::bilinear, Filter::bicubic}) {
+                SCOPED_TRACE(::testing::Message()
+                             << step << " texels a step from " << x0 << ", " << y0 << ", kind "
+                             << static_cast<int>(kind) << ", filter " << static_cast<int>(filter));
+                const FunctionMap map(kAcross, kDown, kind, at);
+                const auto drawn = [&](const Source& from, const Box& box) {
+                    Picture picture(box.width(), box.height(), 3);
+                    EXPECT_TRUE(test::draw_map(map, border, filter, Output::color, &from, box, picture.view(),
+                                               serial_for));
+                    return picture;
+                };
+                Picture all = drawn(source, {0, 0, kAcross, kDown});
+                EXPECT_EQ(all.values, drawn(test::Remote(source), {0, 0, kAcross, kDown}).values);
+                const Box box{17, 9, 83, 40};
+                Picture crop = drawn(source, box);
+                PointSampler sampler(source, border);
+                float pixel[3];
+                double worst = 0;
+                for (int y = box.y0; y < box.y1; ++y)
+                    for (int x = box.x0; x < box.x1; ++x) {
+                        const Point<double> p = at(x + 0.5, y + 0.5);
+                        ASSERT_TRUE(sampler.sample(filter, 0, 0, p.x, p.y, pixel));
+                        for (int c = 0; c < 3; ++c) {
+                            ASSERT_EQ(all.at(x, y, c), crop.at(x - box.x0, y - box.y0, c));
+                            if (kind == Kind::exact)
+                                worst = std::max(worst, std::fabs(double{all.at(x, y, c)} - pixel[c]));
+                        }
+                    }
+                EXPECT_LE(worst, 2e-6);
+            }
+    }
+}
+
+TEST(BlockReader, PointsApartAreReadAroundTheSphere) {
+    expect_read_around_the_sphere(PixelSpacing::edges);
+}
+// The last texel of a row repeats the first.
+TEST(BlockReader, PointsApartAreReadAroundASphereWithAnOverlap) {
+    expect_read_around_the_sphere(PixelSpacing::centers);
 }
 
 TEST(BlockReader, PointsApartHaveTheSameBitsWhereverTheirTexelsStand) {

@@ -11,19 +11,6 @@
 namespace anamorph {
 namespace {
 
-/// So many texels on each side of the one that a point falls into may be read.
-int support_of(simd::Kernel kernel) {
-    switch (kernel) {
-        case simd::Kernel::nearest:
-            return 0;
-        case simd::Kernel::bilinear:
-            return 1;
-        case simd::Kernel::bicubic:
-            return 2;
-    }
-    return 2;
-}
-
 simd::Texels texels_of(const Window& window, simd::Kernel kernel) {
     static constexpr simd::Tap kMiddle{};
     return {window.texels, window.row_stride, window.type, window.channels, kernel, &kMiddle, 1};

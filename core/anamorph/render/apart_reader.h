@@ -11,6 +11,11 @@
 
 namespace anamorph {
 
+/// So many texels on each side of the one that a point falls into may be read.
+constexpr int support_of(simd::Kernel kernel) {
+    return kernel == simd::Kernel::bicubic ? 2 : kernel == simd::Kernel::bilinear ? 1 : 0;
+}
+
 /// Reads level 0 of a source; one per thread. Keeps references to its arguments.
 class ApartReader {
   public:

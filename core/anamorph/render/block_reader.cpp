@@ -324,9 +324,7 @@ struct BlockReader::Span {
     double first, last;
 
     Span(const Filtering& f, double tap_reach, std::int32_t base, const Range& range) {
-        const int support = f.kernel == simd::Kernel::bicubic    ? 2
-                            : f.kernel == simd::Kernel::bilinear ? 1
-                                                                 : 0;
+        const int support = support_of(f.kernel);
         first = base + std::floor(range.low - tap_reach) - support;
         last = base + std::floor(range.high + tap_reach) + support + 1;
     }
@@ -352,6 +350,7 @@ struct BlockReader::LevelPoints {
 BlockReader::BlockReader(const BlockMap& map, const Source& source, const Border& border, Filter filter)
     : m_map(map),
       m_source(source),
+      m_border(border),
       m_filter(filter),
       m_reader(source, border),
       m_points(source, border),
@@ -400,7 +399,7 @@ bool BlockReader::draw(const Block& block, const Box& part, const Canvas& canvas
     if (block.kind == Block::Kind::computed) {
         const BlockPoints points = points_of(block);
         Got got = straight ? draw_points(block, points, part, canvas) : Got::too_large;
-        if (got == Got::too_large && straight && lie_apart(at_points(points), block)) {
+        if (got == Got::too_large && straight && !averages(m_filter)) {
             m_exact.take(block, points);
             got = draw_in_double(block, part, canvas);
         }
@@ -468,27 +467,95 @@ BlockReader::Got BlockReader::draw_in_double(const Block& block, const Box& part
     const LevelPoints x(range_x.low, range_x.high, f.scale_x), y(range_y.low, range_y.high, f.scale_y);
     Window window;
     const bool apart = lie_apart([&](int i, int j) { return m_exact.at(i, j); }, block);
-    // From uint8 to uint8 a block at once has other bits than its rows (simd/packed_blocks.h).
-    if (apart && m_source.type() == PixelType::uint8) return Got::too_large;
     const Got got =
-        window_of(f, m_exact.piece(0)[0], x.base, x.range, y.base, y.range, block.box, window, apart);
+        apart ? Got::too_large
+              : window_of(f, m_exact.piece(0)[0], x.base, x.range, y.base, y.range, block.box, window);
+    if (got == Got::too_large) return draw_scattered(f, block, range_y, part, canvas);
     if (got != Got::window) return got;
+    draw_window(f, block, split(block, part, x.scale, y.scale, {x.base, y.base}).points(block),
+                {x.base, y.base}, window, part, canvas);
+    return got;
+}
+
+/// Where the texels of a block's points in double lie far apart, or across an edge, in an image that stands in memory: all
+/// its rows that the block reads are one window, and rows that close on themselves are followed around. Pixels whose own
+/// texels lie across an edge are drawn by themselves. For filters that read one point, at level 0; other ways to read give
+/// the same bits, but for uint8 (simd/packed_blocks.h).
+BlockReader::Got BlockReader::draw_scattered(const Filtering& f, const Block& block, const Range& y,
+                                             const Box& part, const Canvas& canvas) {
+    if (averages(m_filter) || m_source.type() == PixelType::uint8) return Got::too_large;
+    const int piece = m_exact.piece(0)[0], reach = support_of(f.kernel);
+    const Size size = m_source.size(0);
+    Box box = m_border.interior(piece, size);
+    box.y0 = std::max(box.y0, static_cast<int>(std::floor(y.low)) - reach);
+    box.y1 = std::min(box.y1, static_cast<int>(std::floor(y.high)) + reach + 1);
+    // Behind an image's last row nothing may be read.
+    if (box.y1 == size.height) --box.y1;
+    Window window;
+    if (box.width() <= 2 * reach || box.height() <= 2 * reach ||
+        !m_reader.get_in_place(0, piece, box, window) ||
+        !(std::fabs(static_cast<double>(window.row_stride)) * (box.height() + 1.0) <
+          std::numeric_limits<std::int32_t>::max()))
+        return Got::too_large;
+    const SplitBlock at = split(block, part, 1, 1, {0, 0});
+    const int turn = m_border.turn(size);
+    m_over_edge.clear();
+    for (int j = part.y0; j < part.y1; ++j)
+        for (int i = part.x0; i < part.x1; ++i) {
+            const std::ptrdiff_t k = (j - block.box.y0) * at.stride + i - block.box.x0;
+            std::int32_t &tx = at.whole_x[k], &ty = at.whole_y[k];
+            // Around the sphere go those of which all texels lie beyond the same end.
+            const int around = turn == 0 ? 0 : tx + reach < 0 ? turn : tx - reach >= size.width ? -turn : 0;
+            tx += around;
+            const int end = around == 0 ? box.x1 : turn;
+            const bool inside =
+                tx - reach >= box.x0 && tx + reach < end && ty - reach >= box.y0 && ty + reach < box.y1;
+            if (!inside) m_over_edge.push_back({i, j});
+            tx = inside ? tx - box.x0 : reach;
+            ty = inside ? ty - box.y0 : reach;
+        }
+    draw_window(f, block, at.points(block), {box.x0, box.y0}, window, part, canvas);
+    return draw_pixels(block, m_over_edge, canvas) ? Got::window : Got::failed;
+}
+
+/// Pixels of a block whose points were read in double, each from texels of its own.
+bool BlockReader::draw_pixels(const Block& block, const std::vector<Point<int>>& pixels,
+                              const Canvas& canvas) {
+    const simd::Kernel kernel = filtering({}).kernel;
+    ApartReader::Row& row = m_apart_rows[0];
+    for (std::size_t first = 0; first < pixels.size(); first += kMaxRow) {
+        row.count = static_cast<int>(std::min<std::size_t>(kMaxRow, pixels.size() - first));
+        for (int k = 0; k < row.count; ++k) {
+            const Point<int>& p = pixels[first + static_cast<std::size_t>(k)];
+            take_apart(block, {}, p.x - block.box.x0, p.y - block.box.y0, k, row);
+        }
+        if (!m_apart.locate(row, kernel)) return false;
+        const PixelType type = m_apart.sample(row, kernel, m_values.data());
+        for (int k = 0; k < row.count; ++k) {
+            const Point<int>& p = pixels[first + static_cast<std::size_t>(k)];
+            canvas.store(p.x, p.y, 1, m_values.data() + std::ptrdiff_t{k} * m_source.channels(),
+                         one_of(type));
+        }
+    }
+    return true;
+}
+
+/// The texels that the points of a part of a block fall into, less `base`, and the rests.
+BlockReader::SplitBlock BlockReader::split(const Block& block, const Box& part, double scale_x,
+                                           double scale_y, const Point<std::int32_t>& base) {
+    const PixelPoints<double> points = m_exact.points();
     const int width = block.box.width(), height = block.box.height();
     const std::ptrdiff_t stride = simd::kRowRoom, room = stride * height;
     m_texels.resize(2 * static_cast<std::size_t>(room));
     m_rests.resize(2 * static_cast<std::size_t>(room));
+    const SplitBlock at{m_texels.data(), m_texels.data() + room, m_rests.data(), m_rests.data() + room,
+                        stride};
     for (int j = part.y0 - block.box.y0; j < part.y1 - block.box.y0; ++j) {
         const std::ptrdiff_t from = j * points.row_stride, to = j * stride;
-        simd::split_points(points.x + from, width, x.scale, x.base, m_texels.data() + to,
-                           m_rests.data() + to);
-        simd::split_points(points.y + from, width, y.scale, y.base, m_texels.data() + room + to,
-                           m_rests.data() + room + to);
+        simd::split_points(points.x + from, width, scale_x, base.x, at.whole_x + to, at.x + to);
+        simd::split_points(points.y + from, width, scale_y, base.y, at.whole_y + to, at.y + to);
     }
-    draw_window(f, block,
-                {nullptr, 0, width, height, m_rests.data(), m_rests.data() + room, stride, m_texels.data(),
-                 m_texels.data() + room},
-                {x.base, y.base}, window, part, canvas);
-    return got;
+    return at;
 }
 
 void BlockReader::draw_window(const Filtering& f, const Block& block, const simd::Polynomials& polynomials,
@@ -763,7 +830,9 @@ bool BlockReader::rows_apart(const Block& block, const BlockPoints& points, cons
         ApartReader::Row& next = m_apart_rows[j & 1];
         ApartReader::Row& now = m_apart_rows[(j - 1) & 1];
         if (j < part.y1) {
-            take_apart(block, points, part, j, next);
+            next.count = part.width();
+            for (int i = 0; i < next.count; ++i)
+                take_apart(block, points, part.x0 - block.box.x0 + i, j - block.box.y0, i, next);
             if (!m_apart.locate(next, kernel)) return false;
         }
         if (j == part.y0) continue;
@@ -773,21 +842,18 @@ bool BlockReader::rows_apart(const Block& block, const BlockPoints& points, cons
     return true;
 }
 
-/// The points of row j. Beyond every edge all points are alike: those too far away come nearer.
-void BlockReader::take_apart(const Block& block, const BlockPoints& points, const Box& part, int j,
+/// Pixel (i, j) of a block, counted from its corner, to place k of a row. Beyond every edge all points are alike: those too
+/// far away come nearer.
+void BlockReader::take_apart(const Block& block, const BlockPoints& points, int i, int j, int k,
                              ApartReader::Row& to) const {
-    const int k = j - block.box.y0, first = part.x0 - block.box.x0;
-    to.count = part.width();
-    for (int i = 0; i < to.count; ++i) {
-        const std::ptrdiff_t at = k * points.row_stride + first + i;
-        const Point<double> p =
-            points.x ? Point<double>{block.base_x + double{points.x[at]}, block.base_y + double{points.y[at]}}
-                     : m_exact.at(first + i, k);
-        const bool is_none = std::isnan(p.x) || std::isnan(p.y);
-        to.x[i] = is_none ? 0 : std::clamp(p.x, -kFarthest, kFarthest);
-        to.y[i] = is_none ? 0 : std::clamp(p.y, -kFarthest, kFarthest);
-        to.piece[i] = is_none ? -1 : points.x ? block.source_piece : m_exact.piece(k)[first + i];
-    }
+    const std::ptrdiff_t at = j * points.row_stride + i;
+    const Point<double> p =
+        points.x ? Point<double>{block.base_x + double{points.x[at]}, block.base_y + double{points.y[at]}}
+                 : m_exact.at(i, j);
+    const bool is_none = std::isnan(p.x) || std::isnan(p.y);
+    to.x[k] = is_none ? 0 : std::clamp(p.x, -kFarthest, kFarthest);
+    to.y[k] = is_none ? 0 : std::clamp(p.y, -kFarthest, kFarthest);
+    to.piece[k] = is_none ? -1 : points.x ? block.source_piece : m_exact.piece(j)[i];
 }
 
 bool BlockReader::sample_point(int i, int j, int target_piece, const Point<double>& p, int piece,
@@ -821,7 +887,7 @@ BlockReader::Got BlockReader::polynomial_window(const Filtering& f, const Block&
 
 BlockReader::Got BlockReader::window_of(const Filtering& f, int piece, std::int32_t base_x,
                                         const Range& range_x, std::int32_t base_y, const Range& range_y,
-                                        const Box& block, Window& window, bool apart) {
+                                        const Box& block, Window& window) {
     const Span x(f, f.reach_x, base_x, range_x), y(f, f.reach_y, base_y, range_y);
     if (!x.fits() || !y.fits()) return Got::too_large;
     // Offsets are floats, which move half a texel without losing it, and count elements in 32 bits.
@@ -830,9 +896,9 @@ BlockReader::Got BlockReader::window_of(const Filtering& f, int piece, std::int3
     if (!(most_x <= kMostOffset && most_y <= kMostOffset)) return Got::too_large;
     const Box box{static_cast<int>(x.first), static_cast<int>(y.first), static_cast<int>(x.last),
                   static_cast<int>(y.last)};
-    if (!apart && texels_in(box) > kMostTexels * texels_in(block) + 4096) return Got::too_large;
+    if (texels_in(box) > kMostTexels * texels_in(block) + 4096) return Got::too_large;
     // To put a window together takes longer than to read a few of its texels.
-    if (!apart && texels_in(block) > kSmallCell && texels_in(box) > kMostPutTogether * texels_in(block) &&
+    if (texels_in(block) > kSmallCell && texels_in(box) > kMostPutTogether * texels_in(block) &&
         m_reader.crosses_edge(f.level, piece, box))
         return Got::too_large;
     const auto fits = [&] {
@@ -840,8 +906,6 @@ BlockReader::Got BlockReader::window_of(const Filtering& f, int piece, std::int3
         const double span = std::fabs(double(window.row_stride)) * most_y + pixel * most_x;
         return span < std::numeric_limits<std::int32_t>::max();
     };
-    if (apart)
-        return m_reader.get_in_place(f.level, piece, box, window) && fits() ? Got::window : Got::too_large;
     if (!m_reader.get(f.level, piece, box, window)) return Got::failed;
     // Rows that stand far apart in memory are no reason to read otherwise than from a file.
     if (!fits() && !m_reader.get_copy(f.level, piece, box, window)) return Got::failed;

@@ -119,6 +119,16 @@ class BlockReader {
     struct Range {
         double low = 0, high = 0;
     };
+    /// Points as whole texels and rests.
+    struct SplitBlock {
+        std::int32_t *whole_x, *whole_y;
+        float *x, *y;
+        std::ptrdiff_t stride;
+
+        simd::Polynomials points(const Block& block) const {
+            return {nullptr, 0, block.box.width(), block.box.height(), x, y, stride, whole_x, whole_y};
+        }
+    };
     struct LevelPolynomial;
     struct LevelPoints;
     struct Span;
@@ -129,6 +139,11 @@ class BlockReader {
     bool filtering_of(const Block& block, const PixelPoints<Real>& points, Filtering& f) const;
     Got draw_points(const Block& block, const BlockPoints& points, const Box& part, const Canvas& canvas);
     Got draw_in_double(const Block& block, const Box& part, const Canvas& canvas);
+    Got draw_scattered(const Filtering& f, const Block& block, const Range& y, const Box& part,
+                       const Canvas& canvas);
+    bool draw_pixels(const Block& block, const std::vector<Point<int>>& pixels, const Canvas& canvas);
+    SplitBlock split(const Block& block, const Box& part, double scale_x, double scale_y,
+                     const Point<std::int32_t>& base);
     static void draw_window(const Filtering& f, const Block& block, const simd::Polynomials& polynomials,
                             const Point<std::int32_t>& base, const Window& window, const Box& part,
                             const Canvas& canvas);
@@ -137,7 +152,7 @@ class BlockReader {
     bool rows_in_double(const Block& block, const Box& part, const Row& row);
     bool rows_one_by_one(const Block& block, const BlockPoints& points, const Box& part, const Row& row);
     bool rows_apart(const Block& block, const BlockPoints& points, const Box& part, const Row& row);
-    void take_apart(const Block& block, const BlockPoints& points, const Box& part, int j,
+    void take_apart(const Block& block, const BlockPoints& points, int i, int j, int k,
                     ApartReader::Row& to) const;
     template <class At>
     bool lie_apart(const At& at, const Block& block) const;
@@ -165,13 +180,13 @@ class BlockReader {
     Got polynomial_window(const Filtering& f, const Block& block, const LevelPolynomial& polynomial,
                           Window& window);
     Got window_of(const Filtering& f, int piece, std::int32_t base_x, const Range& range_x,
-                  std::int32_t base_y, const Range& range_y, const Box& block, Window& window,
-                  bool apart = false);
+                  std::int32_t base_y, const Range& range_y, const Box& block, Window& window);
     static simd::Texels texels_of(const Filtering& f, const Window& window, std::int32_t base_x,
                                   std::int32_t base_y, double pixels);
 
     const BlockMap& m_map;
     const Source& m_source;
+    const Border& m_border;
     Filter m_filter;
     WindowReader m_reader;
     PointSampler m_points;
@@ -183,6 +198,7 @@ class BlockReader {
     PointsInDouble m_exact;              ///< of the block that is being read
     std::vector<std::int32_t> m_texels;  ///< the texels they fall into, and the rests
     std::vector<float> m_rests;
+    std::vector<Point<int>> m_over_edge;
 };
 
 }  // namespace anamorph

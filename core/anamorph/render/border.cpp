@@ -48,16 +48,20 @@ Texel across_face_edge(const Chart& chart, double x, double y, int piece, const 
     return {inside(p.x / kx, face.x0, face.x1), inside(p.y / ky, face.y0, face.y1)};
 }
 
+/// Texels of a full turn. Where fields of view run between pixel centres the last texel of a row repeats the first one's
+/// direction and the outer rows stand on the poles: an overlap of one pixel, which the coarser levels hardly see.
+int period_of(const Chart& chart, const Size& level) {
+    const bool overlaps =
+        chart.spacing() == PixelSpacing::centers && 2 * std::int64_t{level.width} >= chart.width();
+    return std::max(1, level.width - (overlaps ? 1 : 0));
+}
+
 /// A chart whose azimuth closes: around the seam and, where rows end at the poles, over them. `count` is as
 /// far as the image goes.
 TexelRun around_sphere(const Chart& chart, std::int64_t x, std::int64_t y, const Size& level) {
-    // Where fields of view run between pixel centres the last texel of a row repeats the first one's
-    // direction and the outer rows stand on the poles: an overlap of one pixel, which the coarser levels
-    // hardly see.
     const bool centers = chart.spacing() == PixelSpacing::centers;
-    const int overlap_x = centers && 2 * std::int64_t{level.width} >= chart.width() ? 1 : 0;
     const int overlap_y = centers && 2 * std::int64_t{level.height} >= chart.height() ? 1 : 0;
-    const int period = std::max(1, level.width - overlap_x);
+    const int period = period_of(chart, level);
     bool over_pole = false;
     if (y < 0 || y >= level.height) {
         // Down one meridian and up the opposite one.
@@ -166,6 +170,11 @@ Box Border::interior(int piece, const Size& level) const noexcept {
     r.x1 = std::max(r.x1, r.x0 + 1);
     r.y1 = std::max(r.y1, r.y0 + 1);
     return r;
+}
+
+int Border::turn(const Size& level) const noexcept {
+    const bool closes = m_wrap == Wrap::automatic && m_chart.pieces().size() == 1 && m_chart.closed();
+    return closes ? period_of(m_chart, level) : 0;
 }
 
 TexelRun Border::resolve_run(std::int64_t x, std::int64_t y, int piece, const Size& level,

@@ -54,6 +54,9 @@ class Border {
     TexelRun resolve_run(std::int64_t x, std::int64_t y, int piece, const Size& level,
                          int limit) const noexcept;
 
+    /// Texels after which the rows of a level's interior repeat: they close on themselves. 0 if they do not.
+    int turn(const Size& level) const noexcept;
+
   private:
     Chart m_chart;
     Wrap m_wrap;
