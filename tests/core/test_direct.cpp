@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <cstring>
+#include <numbers>
 #include <random>
 #include <string>
 #include <vector>
@@ -103,12 +104,103 @@ void expect_encloses(const NearBound<Real>& found, double value, const std::stri
     EXPECT_LT(found.rest.error, most) << words;
 }
 
-TYPED_TEST(Near, AnAngleTurnedByMoreThanAQuarterIsUnbounded) {
+TYPED_TEST(Near, AnAngleMayTurnByUpToHalfATurn) {
     using Number = NearBound<TypeParam>;
     const WrittenBases bases;
-    const Number y = number_near<TypeParam>(-9.6e-4, 4.3e-5);
-    const Number x{WrittenBase(679.4), RestBound<TypeParam>(-1052.4, 309.2, 0)};
-    EXPECT_FALSE(atan2(y, x).rest.error < 1);
+    const double error = std::is_same_v<TypeParam, float> ? 1e-5 : 1e-14;
+    constexpr unsigned kSeed = 406;
+    SCOPED_TRACE(testing::Message() << "seed " << kSeed);
+    std::mt19937 random(kSeed);
+    std::uniform_real_distribution<double> turn(-std::numbers::pi, std::numbers::pi), length(0.1, 10);
+    for (int i = 0; i < 1000; ++i) {
+        const double from = turn(random), by = 0.98 * turn(random), near = length(random),
+                     far = length(random);
+        const double x = near * std::cos(from), y = near * std::sin(from);
+        const double to_x = far * std::cos(from + by), to_y = far * std::sin(from + by);
+        const Number angle = atan2(Number{WrittenBase(y), RestBound<TypeParam>(to_y - y, 0, error)},
+                                   Number{WrittenBase(x), RestBound<TypeParam>(to_x - x, 0, error)});
+        const Interval whole = whole_of(angle);
+        EXPECT_LE(whole.lo, from + by + 1e-12);
+        EXPECT_GE(whole.hi, from + by - 1e-12);
+        EXPECT_LT(whole.hi - whole.lo, 1e-9);
+        // A point that is off by so much is seen from the centre within the quotient, and rounding adds its own.
+        EXPECT_GE(angle.rest.error, error / far);
+        EXPECT_LT(angle.rest.error, 100 * error);
+    }
+}
+
+TYPED_TEST(Near, AnAngleAcrossHalfATurnIsUnbounded) {
+    using Number = NearBound<TypeParam>;
+    using Rest = RestBound<TypeParam>;
+    const WrittenBases bases;
+    const Number ahead{WrittenBase(1), Rest(-2, 0.5, 0)};
+    EXPECT_FALSE(atan2(Number{WrittenBase(0), Rest(0, 0.1, 0)}, ahead).rest.error < 1);
+    // The exact ones lie on one side, and what is computed may not.
+    EXPECT_FALSE(atan2(Number{WrittenBase(0), Rest(0.2, 0.1, 0.11)}, ahead).rest.error < 1);
+    EXPECT_TRUE(atan2(Number{WrittenBase(0), Rest(0.2, 0.1, 0)}, ahead).rest.error < 1);
+    // The centre itself.
+    EXPECT_FALSE(
+        atan2(Number{WrittenBase(0), Rest(0, 1, 0)}, Number{WrittenBase(1), Rest(0, 1, 0)}).rest.error < 1);
+}
+
+TYPED_TEST(Near, SinesOverAnglesAreBoundedFromTheAxisToHalfATurn) {
+    using Number = NearBound<TypeParam>;
+    const WrittenBases bases;
+    constexpr unsigned kSeed = 407;
+    SCOPED_TRACE(testing::Message() << "seed " << kSeed);
+    std::mt19937 random(kSeed);
+    std::uniform_real_distribution<double> uniform(0, 1);
+    for (int i = 0; i < 3000; ++i) {
+        const double at = i % 10 == 0 ? 0 : 9.8 * uniform(random);
+        const double off = std::max(-at, uniform(random) - 0.5), near_by = std::fabs(off) / (i % 3 + 1);
+        for (const double d : {off, near_by}) {
+            Number sinc, cosine;
+            sinc_cos(number_near<TypeParam>(at, d), sinc, cosine);
+            const long double t = std::sqrt(static_cast<long double>(at) + d);
+            const auto expect = [&](const Number& found, long double value) {
+                const Interval whole = whole_of(found);
+                // What is left out of the series is part of the bound, and of the width.
+                const double left_out =
+                    std::is_same_v<TypeParam, float> ? 1e-6 * std::pow(std::fabs(d), 5) : 0;
+                EXPECT_LE(whole.lo, static_cast<double>(value)) << at << " " << d;
+                EXPECT_GE(whole.hi, static_cast<double>(value)) << at << " " << d;
+                EXPECT_LT(whole.hi - whole.lo, 2 * left_out + 1e-13) << at << " " << d;
+                EXPECT_LT(found.rest.error, left_out + (std::is_same_v<TypeParam, float> ? 1e-6 : 1e-14));
+            };
+            expect(sinc, t == 0 ? 1 : std::sin(t) / t);
+            expect(cosine, std::cos(t));
+        }
+    }
+    // Beyond half a turn there is none.
+    Number sinc, cosine;
+    sinc_cos(number_near<TypeParam>(11, 0), sinc, cosine);
+    EXPECT_FALSE(sinc.rest.error < 1);
+    EXPECT_FALSE(cosine.rest.error < 1);
+}
+
+TYPED_TEST(Near, LengthsAreBoundedWhereverTheyAreNotZero) {
+    using Number = NearBound<TypeParam>;
+    const WrittenBases bases;
+    constexpr unsigned kSeed = 408;
+    SCOPED_TRACE(testing::Message() << "seed " << kSeed);
+    std::mt19937 random(kSeed);
+    std::uniform_real_distribution<double> uniform(-1, 1);
+    for (int i = 0; i < 1000; ++i) {
+        // A box that comes near the centre, from 0.01 of its distance on.
+        const double x = uniform(random), y = uniform(random), distance = std::hypot(x, y);
+        const double spread = 0.7 * distance * (1 + 0.4 * uniform(random));
+        const RestBound<TypeParam> rest(0, spread, 0);
+        const Number found = length(Number{WrittenBase(x), rest}, Number{WrittenBase(y), rest});
+        const Interval whole = whole_of(found);
+        for (int k = 0; k < 10; ++k) {
+            const double length = std::hypot(x + spread * uniform(random), y + spread * uniform(random));
+            EXPECT_LE(whole.lo, length);
+            EXPECT_GE(whole.hi, length);
+        }
+        // It is no wider than the box.
+        EXPECT_LE(whole.hi - whole.lo, 2 * std::numbers::sqrt2 * spread * (1 + 1e-12));
+        EXPECT_LT(found.rest.error, (std::is_same_v<TypeParam, float> ? 3e-5 : 1e-13) * distance);
+    }
 }
 
 TYPED_TEST(Near, ScalesAreKnownToTheLeastOne) {

@@ -78,11 +78,12 @@ NearReading read_near(const Map& map, const Box& box, const typename Map::Local&
     return map.template direct<Real>(0.5 * (box.x0 + box.x1), 0.5 * (box.y0 + box.y1), half(box.width()),
                                      half(box.height()), local, bases);
 }
-/// May parts in float of a box that is off by `error` keep the tolerance? A known error shrinks with the sides, and these
-/// with the root of the pixels.
+/// May parts in float of a box that is off by `error` keep the tolerance, and pay? A known error falls at least as the sides,
+/// and these as the root of the pixels; large boxes, whose bounds count their width many times over, have an error that
+/// falls as the square of the pixels.
 inline bool serves_in_float(const Box& box, double error, double tol) {
-    const double pixels = static_cast<double>(box.width()) * box.height();
-    return error <= tol || error * error * kLeastInFloat <= tol * tol * pixels;
+    const double times = static_cast<double>(box.width()) * box.height() / kLeastInFloat;
+    return error <= tol * std::max({1.0, std::sqrt(times), square(times / 2)});
 }
 
 /// Makes direct blocks of what a plan leaves to them.

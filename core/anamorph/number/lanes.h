@@ -54,6 +54,7 @@ struct Lanes {
 
     friend HWY_INLINE Lanes square(const Lanes& a) { return a * a; }
     friend HWY_INLINE Lanes sqrt(const Lanes& a) { return Lanes(hn::Sqrt(a.v)); }
+    friend HWY_INLINE Lanes length(const Lanes& a, const Lanes& b) { return sqrt(a * a + b * b); }
     friend HWY_INLINE Lanes abs(const Lanes& a) { return Lanes(hn::Abs(a.v)); }
     // As std::min and std::max: the first where the two do not compare.
     friend HWY_INLINE Lanes min(const Lanes& a, const Lanes& b) { return select(b < a, b, a); }

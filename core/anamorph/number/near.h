@@ -17,9 +17,11 @@
 //   read from there           lanes            a block's pixels (simd/direct_rows.cpp)
 //
 // NearRest<Base, Rest> says what belongs to a pair: of(base), the base as a rest; off(rest, base, units), the rest
-// where the base was rounded by so many units of 2^-53 of another; choose(condition of bases, a, b). Rests offer
-// sine_versine(a, s, v), sin a and 1 - cos a for |a| <= pi / 4, and small_angle(y, x), the angle of (x, y) for
-// |y| <= tan(3 pi / 8) x.
+// where the base was rounded by so many units of 2^-53 of another; left_out(rest, d, factor), the rest where up to
+// `factor` times |d| was left out; within(rest, other), the rest, of which the other is another way to compute it;
+// angle(y, x), that of (x, y); choose(condition of bases, a, b); and the degree of the series of sinc_cos. Rests offer
+// sine_versine(a, s, v), sin a and 1 - cos a for |a| <= pi / 4, and length(a, b); bases sinc_cos_series(a, s, c)
+// (number/sinc_series.h).
 //
 // Bases are read in the order in which they were written: that in which the compiler evaluates the operands of a formula,
 // which is the same for both as long as one compiler makes both. tests/core/test_direct.cpp reads every formula.
@@ -107,6 +109,14 @@ struct Near {
         const Rest of_a = Pair::off(a.rest, a.base, 3);
         return {root, of_a / (Pair::of(root) + sqrt(a.whole()))};
     }
+    /// The root of A^2 + B^2: with L that of the bases, L'^2 - L^2 = da (A + a) + db (B + b), over L' + L.
+    friend ANAMORPH_INLINE Near length(const Near& a, const Near& b) {
+        const Base squared = a.base * a.base + b.base * b.base, root = sqrt(squared);
+        const Rest whole_a = a.whole(), whole_b = b.whole(), of_root = Pair::of(root);
+        const Rest whole = length(whole_a, whole_b);
+        const Rest grown = a.rest * (whole_a + Pair::of(a.base)) + b.rest * (whole_b + Pair::of(b.base));
+        return {root, Pair::within(Pair::off(grown, squared, 4) / (of_root + whole), whole - of_root)};
+    }
     friend ANAMORPH_INLINE void sin_cos(const Near& a, Near& sine, Near& cosine) {
         Base s, c;
         sin_cos(a.base, s, c);
@@ -121,7 +131,27 @@ struct Near {
         const Base angle = atan2(y.base, x.base);
         const Rest y0 = Pair::of(y.base), x0 = Pair::of(x.base);
         const Rest across = x0 * y.rest - y0 * x.rest, along = x0 * x.whole() + y0 * y.whole();
-        return {angle, Pair::off(small_angle(across, along), angle, 8)};
+        return {angle, Pair::off(Pair::angle(across, along), angle, 8)};
+    }
+    /// sin t / t and cos t for t^2 = A, by their power series about a. With r^2 = a the coefficients of the first are
+    /// (-1/2)^k j_k(r) / (r^k k!), j_k the spherical Bessel functions: at most 1 / (2 k + 1)!, which they are at 0. Those of
+    /// the second are -1 / (2 k) times the ones before: at most 1 / (2 k)!. That much of the next power is left out.
+    friend ANAMORPH_INLINE void sinc_cos(const Near& a, Near& sinc, Near& cosine) {
+        constexpr int n = Pair::kSincDegree;
+        Base s[n + 1], c[n + 1];
+        sinc_cos_series(a.base, s, c);
+        const Rest& d = a.rest;
+        Rest sum_s = Pair::left_out(Rest(0.0), d, inverse_factorial(2 * n + 3)),
+             sum_c = Pair::left_out(Rest(0.0), d, inverse_factorial(2 * n + 2));
+        for (int k = n; k > 0; --k) {
+            const Rest of_s = Pair::off(Pair::of(s[k]), Base(inverse_factorial(2 * k + 1)), kSincUnits);
+            const Rest of_c = Pair::off(Pair::of(c[k]), Base(inverse_factorial(2 * k)), kSincUnits);
+            sum_s = (sum_s + of_s) * d;
+            sum_c = (sum_c + of_c) * d;
+        }
+        // s[0] and c[0] are off by 8 units of libm and what the rounding of r, at most pi, makes of them.
+        sinc = {s[0], Pair::off(sum_s, Base(1.0), 16)};
+        cosine = {c[0], Pair::off(sum_c, Base(1.0), 16)};
     }
     /// With t = tanh a and T = tanh da: tanh A - t = T (1 - t^2) / (1 + t T), and with the two 1 / cosh, c and C,
     /// 1 / cosh A - c = c (C - 1 - t T) / (1 + t T), C - 1 = -T^2 / (1 + C).

@@ -3,9 +3,12 @@
 // float or double makes of the rests, bounded over all of the block's pixels.
 #pragma once
 
+#include <algorithm>
+#include <numbers>
 #include <vector>
 
 #include "anamorph/number/rounded.h"
+#include "anamorph/number/sinc_series.h"
 
 namespace anamorph {
 
@@ -81,6 +84,17 @@ struct RestBound {
         const double least = std::sqrt(low), root = std::sqrt(f.middle);
         return result(root, f.radius / (least + root), f.error / least, kUnit);
     }
+    /// The root of the sum of squares, whose slopes are at most 1. Squares of less than kTiny may underflow, none of less
+    /// than its inverse overflows.
+    friend RestBound length(const RestBound& a, const RestBound& b) {
+        constexpr double kTiny = std::is_same_v<Real, float> ? 0x1p-60 : 0x1p-500;
+        const double least = std::hypot(std::max(std::fabs(a.middle) - a.radius, 0.0),
+                                        std::max(std::fabs(b.middle) - b.radius, 0.0));
+        const double most = std::hypot(a.size(), b.size()), about = std::hypot(a.middle, b.middle);
+        if (!(most + a.error + b.error < 1 / kTiny)) return unbounded();
+        const double spread = std::max(most - about, about - least) + 4 * interval_detail::kLibmMargin * most;
+        return result(about, spread, std::hypot(a.error, b.error) * rounded_detail::kUp + kTiny, 3 * kUnit);
+    }
     friend RestBound asinh(const RestBound& a) { return of_function(a, std::asinh, R::kLibm); }
     /// tanh a, and 1 / cosh a, whose slope is at most |a|.
     friend RestBound scaled_sinh(const RestBound& a, RestBound& s) {
@@ -107,7 +121,7 @@ struct RestBound {
 namespace rounded_detail {
 
 /// Errors of what lanes.h has for rests, in units of Real of the value.
-inline constexpr double kRestUnits = 4, kAngleUnits = 6;
+inline constexpr double kRestUnits = 4, kAngleUnits = 6, kTurnUnits = 5;
 inline constexpr double kEighth = 0.785398163397448, kTangentOfSixteenth = 0.414213562373095,
                         kTangentOfThreeSixteenths = 2.414213562373095;
 
@@ -129,7 +143,7 @@ void sine_versine(const RestBound<Real>& a, RestBound<Real>& s, RestBound<Real>&
     v = RestBound<Real>::result(middle, radius + 4 * interval_detail::kLibmMargin * middle, a.error * most,
                                 unit);
 }
-/// The angle of (x, y), |y| <= tan(3 pi / 8) x; unbounded beyond, also where x may be negative, exact or computed.
+/// As small_angle() in lanes.h; unbounded beyond |y| <= tan(3 pi / 8) x, also where x may be negative, exact or computed.
 template <class Real>
 RestBound<Real> small_angle(const RestBound<Real>& y, const RestBound<Real>& x) {
     const RestBound<Real> a = y / x;
@@ -139,6 +153,25 @@ RestBound<Real> small_angle(const RestBound<Real>& y, const RestBound<Real>& x) 
     const double units =
         most < rounded_detail::kTangentOfSixteenth ? rounded_detail::kRestUnits : rounded_detail::kAngleUnits;
     return RestBound<Real>::of_function(a, std::atan, units * RestBound<Real>::kUnit);
+}
+
+/// As atan2() in lanes.h; unbounded where points, exact or computed, may lie on the half line of half a turn.
+template <class Real>
+RestBound<Real> any_angle(const RestBound<Real>& y, const RestBound<Real>& x) {
+    const double left = x.middle - x.radius, top = y.middle - y.radius, bottom = y.middle + y.radius;
+    if (!(left > x.error || top > y.error || -bottom > y.error)) return RestBound<Real>::unbounded();
+    // Points that are off by less than their distance from the centre are seen from there within the quotient.
+    const double off = std::hypot(x.error, y.error);
+    const double nearest = std::hypot(std::max(left, 0.0), std::max({top, -bottom, 0.0}));
+    const double apart = nearest * (1 - 0x1p-50) - off;
+    if (!(apart > 0)) return RestBound<Real>::unbounded();
+    const double middle = y.middle == 0 && x.middle > 0 ? 0 : std::atan2(y.middle, x.middle);
+    double radius = 0;
+    for (const double corner_x : {left, x.middle + x.radius})
+        for (const double corner_y : {top, bottom})
+            radius = std::max(radius, std::fabs(std::atan2(corner_y, corner_x) - middle));
+    return RestBound<Real>::result(middle, radius + 2 * interval_detail::kLibmMargin * std::numbers::pi,
+                                   off / apart, rounded_detail::kTurnUnits * RestBound<Real>::kUnit);
 }
 
 // --- bases ---
@@ -191,6 +224,16 @@ struct WrittenBase {
         s = written(t);
         return written(c);
     }
+    /// The first coefficients of the series of sin t / t and cos t in powers of t^2, about a; NaN beyond half a turn.
+    template <std::size_t N>
+    friend void sinc_cos_series(const WrittenBase& a, WrittenBase (&s)[N], WrittenBase (&c)[N]) {
+        double sinc[N], cosine[N];
+        sinc_cos_series(a.value, sinc, cosine);
+        for (std::size_t k = 0; k < N; ++k) {
+            s[k] = written(sinc[k]);
+            c[k] = written(cosine[k]);
+        }
+    }
     friend bool is_negative(const WrittenBase& a) { return written_decision(a.value < 0); }
     friend bool is_zero(const WrittenBase& a) { return written_decision(a.value == 0); }
 };
@@ -198,6 +241,7 @@ struct WrittenBase {
 template <class Real>
 struct NearRest<WrittenBase, RestBound<Real>> {
     using R = RestBound<Real>;
+    static constexpr int kSincDegree = sinc_degree<Real>;
 
     static R of(const WrittenBase& base) {
         const bool kept = static_cast<double>(static_cast<Real>(base.value)) == base.value;
@@ -208,6 +252,19 @@ struct NearRest<WrittenBase, RestBound<Real>> {
         const double by = units * (0x1p-53 * std::fabs(base.value) + kLeastScale);
         return {rest.middle, (rest.radius + by) * rounded_detail::kUp,
                 (rest.error + by) * rounded_detail::kUp};
+    }
+    static R left_out(const R& rest, const R& d, double factor) {
+        const double by = factor * d.size();
+        return {rest.middle, (rest.radius + by) * rounded_detail::kUp,
+                (rest.error + by) * rounded_detail::kUp};
+    }
+    static R within(const R& rest, const R& other) {
+        return other.radius < rest.radius ? R{other.middle, other.radius, rest.error} : rest;
+    }
+    /// Which way it is found is written down: most angles are small.
+    static R angle(const R& y, const R& x) {
+        const R small = small_angle(y, x);
+        return WrittenBase::written_decision(small.error < HUGE_VAL) ? small : any_angle(y, x);
     }
     static Near<WrittenBase, R> near(double value, double error) {
         return {WrittenBase(value), R(0, error, error)};

@@ -74,16 +74,35 @@ struct ReadBase {
         s = next();
         return next();
     }
+    template <std::size_t N>
+    friend HWY_INLINE void sinc_cos_series(const ReadBase&, ReadBase (&s)[N], ReadBase (&c)[N]) {
+        for (std::size_t k = 0; k < N; ++k) {
+            s[k] = next();
+            c[k] = next();
+        }
+    }
     friend HWY_INLINE bool is_negative(const ReadBase&) { return *t_next<Real> ++ != 0; }
     friend HWY_INLINE bool is_zero(const ReadBase&) { return *t_next<Real> ++ != 0; }
 };
+
+/// Angles beyond those that are small: few blocks read one.
+template <class Real>
+HWY_NOINLINE L<Real> AnyAngle(L<Real> y, L<Real> x) {
+    return atan2(y, x);
+}
 
 template <class Real>
 struct NearRest<ReadBase<Real>, L<Real>> {
     using Base = ReadBase<Real>;
     using Rest = L<Real>;
+    static constexpr int kSincDegree = sinc_degree<Real>;
     static HWY_INLINE Rest of(const Base& base) { return base.lanes(); }
     static HWY_INLINE Rest off(const Rest& rest, const Base&, double) { return rest; }
+    static HWY_INLINE Rest left_out(const Rest& rest, const Rest&, double) { return rest; }
+    static HWY_INLINE Rest within(const Rest& rest, const Rest&) { return rest; }
+    static HWY_INLINE Rest angle(const Rest& y, const Rest& x) {
+        return *t_next<Real> ++ != 0 ? small_angle(y, x) : AnyAngle<Real>(y, x);
+    }
     static HWY_INLINE Base choose(bool condition, const Base& a, const Base& b) { return condition ? a : b; }
     static HWY_INLINE Rest choose(bool condition, const Rest& a, const Rest& b) { return condition ? a : b; }
 };

@@ -104,6 +104,21 @@ struct CubeFamily : FlatFamily {
     }
 };
 
+/// The root of x^2 + y^2.
+template <class T>
+T length(const T& x, const T& y) {
+    return sqrt(T(square(x) + square(y)));
+}
+
+/// sin t / t and cos t for the square of t.
+template <class T>
+void sinc_cos(const T& t_squared, T& sinc, T& cos) {
+    const T t = sqrt(t_squared);
+    T sin;
+    sin_cos(t, sin, cos);
+    sinc = select(is_zero(t), T(1), T(sin / t));
+}
+
 /// The angle of (across, ahead), counted from `along`.
 template <class T>
 T tilt(const T& across, const T& ahead, const Heading& along) {
@@ -121,7 +136,7 @@ Ray<T> with_squares(const Ray<T>& r) {
 /// The length of a ray across the vertical axis.
 template <class T>
 T across_length(const Ray<T>& r) {
-    return sqrt(T(square(r.x) + square(r.z)));
+    return length(r.x, r.z);
 }
 
 /// n + z for n^2 = rho^2 + z^2, without cancelling where z is negative.

@@ -19,16 +19,14 @@ struct Fisheye : AxisFamily {
         const auto cos = measured<T>(s.around.cos, s.around.error),
                    sin = measured<T>(s.around.sin, s.around.error);
         const T u = p.x * cos + p.y * sin, v = p.y * cos - p.x * sin;
-        const T r = sqrt(T(square(u) + square(v)));
-        T st, ct;
-        sin_cos(r, st, ct);
-        const T k = select(is_zero(r), T(1), T(st / r));
+        T k, ct;
+        sinc_cos(T(square(u) + square(v)), k, ct);
         return {u * k, v * k, ct};
     }
     /// Straight ahead t / rho is 1 / z; straight behind it is all of the rim, of which one point is taken.
     template <class T>
     static Point<T> point(const Ray<T>& r, const Setting& s) {
-        const T rho = sqrt(T(square(r.x) + square(r.y)));
+        const T rho = length(r.x, r.y);
         const auto on_axis = is_zero(rho);
         const T k = select(on_axis, T(T(1) / r.z), T(tilt(rho, r.z, s.along) / rho));
         const auto cos = measured<T>(s.around.cos, s.around.error),

@@ -29,12 +29,11 @@ struct Hammer : CylinderFamily {
         const T across = x * z * 2.0, ahead = square(z) - square(x);
         const auto cos = measured<T>(s.around.cos, s.around.error),
                    sin = measured<T>(s.around.sin, s.around.error);
-        return {across * cos - ahead * sin, p.y * k * sqrt(T(square(x) + square(z))),
-                ahead * cos + across * sin};
+        return {across * cos - ahead * sin, p.y * k * length(x, z), ahead * cos + across * sin};
     }
     template <class T>
     static Point<T> point(const Ray<T>& r, const Setting& s) {
-        const T rho = across_length(r), n = sqrt(T(square(rho) + square(r.y))), cos_e = rho / n;
+        const T rho = across_length(r), n = length(rho, r.y), cos_e = rho / n;
         T sh, ch;
         sin_cos(T((atan2(r.x, r.z) + s.around.angle) * 0.5), sh, ch);
         const T k = sqrt(T(T(2) / (cos_e * ch + 1.0)));

@@ -29,8 +29,7 @@ struct Sinusoidal : CylinderFamily {
     static Point<T> point(const Ray<T>& r, const Setting& s) {
         const Ray<T> l = with_squares(r);
         const T rho = across_length(l);
-        return {(atan2(r.x, r.z) + s.around.angle) * (rho / sqrt(T(square(rho) + square(l.y)))),
-                tilt(l.y, rho, s.along)};
+        return {(atan2(r.x, r.z) + s.around.angle) * (rho / length(rho, l.y)), tilt(l.y, rho, s.along)};
     }
 };
 
