@@ -186,7 +186,7 @@ TYPED_TEST(Near, LengthsAreBoundedWhereverTheyAreNotZero) {
     std::mt19937 random(kSeed);
     std::uniform_real_distribution<double> uniform(-1, 1);
     for (int i = 0; i < 1000; ++i) {
-        // A box that comes near the centre, from 0.01 of its distance on.
+        // A box so wide that it may come near the centre, or hold it.
         const double x = uniform(random), y = uniform(random), distance = std::hypot(x, y);
         const double spread = 0.7 * distance * (1 + 0.4 * uniform(random));
         const RestBound<TypeParam> rest(0, spread, 0);
