@@ -143,6 +143,25 @@ TYPED_TEST(Near, AnAngleAcrossHalfATurnIsUnbounded) {
         atan2(Number{WrittenBase(0), Rest(0, 1, 0)}, Number{WrittenBase(1), Rest(0, 1, 0)}).rest.error < 1);
 }
 
+TYPED_TEST(Near, ATiltIsTheAngleWhateverItIsCountedFrom) {
+    const WrittenBases bases;
+    constexpr unsigned kSeed = 409;
+    SCOPED_TRACE(testing::Message() << "seed " << kSeed);
+    std::mt19937 random(kSeed);
+    std::uniform_real_distribution<double> uniform(0, 1);
+    for (int i = 0; i < 1000; ++i) {
+        const double from = std::numbers::pi * uniform(random), length = 0.5 + uniform(random);
+        const double across = length * std::sin(from), ahead = length * std::cos(from);
+        const double to_across = across + 0.1 * uniform(random),
+                     to_ahead = ahead + 0.1 * uniform(random) - 0.05;
+        const double counted_from = from + 0.2 * uniform(random) - 0.1;
+        const Heading along(std::sin(counted_from), std::cos(counted_from));
+        const auto found = tilt(number_near<TypeParam>(across, to_across - across),
+                                number_near<TypeParam>(ahead, to_ahead - ahead), along);
+        expect_encloses(found, std::atan2(to_across, to_ahead), "");
+    }
+}
+
 TYPED_TEST(Near, SinesOverAnglesAreBoundedFromTheAxisToHalfATurn) {
     using Number = NearBound<TypeParam>;
     const WrittenBases bases;

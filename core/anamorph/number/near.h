@@ -133,6 +133,10 @@ struct Near {
         const Rest across = x0 * y.rest - y0 * x.rest, along = x0 * x.whole() + y0 * y.whole();
         return {angle, Pair::off(Pair::angle(across, along), angle, 8)};
     }
+    /// Rests count from the base, wherever the formulas of other numbers count from.
+    friend ANAMORPH_INLINE Near tilt(const Near& across, const Near& ahead, const Heading&) {
+        return atan2(across, ahead);
+    }
     /// sin t / t and cos t for t^2 = A, by their power series about a. With r^2 = a the coefficients of the first are
     /// (-1/2)^k j_k(r) / (r^k k!), j_k the spherical Bessel functions: at most 1 / (2 k + 1)!, which they are at 0. Those of
     /// the second are -1 / (2 k) times the ones before: at most 1 / (2 k)!. That much of the next power is left out.

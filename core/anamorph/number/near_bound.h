@@ -12,9 +12,15 @@
 
 namespace anamorph {
 
+struct Heading;  // map/projection/facts.h
+
+#ifdef ANAMORPH_SANITIZED
 #define ANAMORPH_INLINE inline
+#else
+// As calls, operations would take twice as long.
+#define ANAMORPH_INLINE __attribute__((always_inline)) inline
+#endif
 #include "anamorph/number/near.h"
-#undef ANAMORPH_INLINE
 
 // --- rests ---
 
@@ -35,7 +41,7 @@ struct RestBound {
     static RestBound unbounded() { return {0, HUGE_VAL, HUGE_VAL}; }
     /// Of these values, off by `bound` before they are rounded by `unit` of their size. The middle is itself rounded, and so
     /// are the sums and products of which the others are made, fewer than 32 times, all of one sign.
-    static RestBound result(double middle, double radius, double bound, double unit) {
+    static ANAMORPH_INLINE RestBound result(double middle, double radius, double bound, double unit) {
         RestBound r{middle, radius + 0x1p-53 * std::fabs(middle), 0};
         r.radius = r.radius * rounded_detail::kUp + interval_detail::kSmallest;
         r.error = (bound + unit * (r.size() + bound)) * rounded_detail::kUp + R::kLeast;
@@ -54,12 +60,12 @@ struct RestBound {
     double size() const { return std::fabs(middle) + radius; }
     double computed_size() const { return size() + error; }
 
-    friend RestBound operator-(const RestBound& a) { return {-a.middle, a.radius, a.error}; }
-    friend RestBound operator+(const RestBound& a, const RestBound& b) {
+    friend ANAMORPH_INLINE RestBound operator-(const RestBound& a) { return {-a.middle, a.radius, a.error}; }
+    friend ANAMORPH_INLINE RestBound operator+(const RestBound& a, const RestBound& b) {
         return result(a.middle + b.middle, a.radius + b.radius, a.error + b.error, kUnit);
     }
-    friend RestBound operator-(const RestBound& a, const RestBound& b) { return a + -b; }
-    friend RestBound operator*(const RestBound& a, const RestBound& b) {
+    friend ANAMORPH_INLINE RestBound operator-(const RestBound& a, const RestBound& b) { return a + -b; }
+    friend ANAMORPH_INLINE RestBound operator*(const RestBound& a, const RestBound& b) {
         const double in_a = a.size(), in_b = b.size();
         return result(a.middle * b.middle, std::fabs(a.middle) * b.radius + a.radius * in_b,
                       a.error * in_b + b.error * in_a + a.error * b.error +
@@ -67,7 +73,7 @@ struct RestBound {
                       0);
     }
     /// F / G - q = (F - q G) / G, and f - q g is a rounding of f; errors as of Rounded.
-    friend RestBound operator/(const RestBound& f, const RestBound& g) {
+    friend ANAMORPH_INLINE RestBound operator/(const RestBound& f, const RestBound& g) {
         const double inverse = 1 / (std::fabs(g.middle) - g.radius);
         const double feedback = inverse * (g.error + 2 * kUnit * g.computed_size());
         if (!(inverse > 0 && feedback < 0.5)) return unbounded();
@@ -78,7 +84,7 @@ struct RestBound {
         return result(quotient, spread, bound, 0);
     }
     /// sqrt F - sqrt f = (F - f) / (sqrt F + sqrt f)
-    friend RestBound sqrt(const RestBound& f) {
+    friend ANAMORPH_INLINE RestBound sqrt(const RestBound& f) {
         const double low = f.middle - f.radius;
         if (!(low > f.error)) return unbounded();
         const double least = std::sqrt(low), root = std::sqrt(f.middle);
@@ -86,18 +92,22 @@ struct RestBound {
     }
     /// The root of the sum of squares, whose slopes are at most 1. Squares of less than kTiny may underflow, none of less
     /// than its inverse overflows.
-    friend RestBound length(const RestBound& a, const RestBound& b) {
+    friend ANAMORPH_INLINE RestBound length(const RestBound& a, const RestBound& b) {
         constexpr double kTiny = std::is_same_v<Real, float> ? 0x1p-60 : 0x1p-500;
-        const double least = std::hypot(std::max(std::fabs(a.middle) - a.radius, 0.0),
-                                        std::max(std::fabs(b.middle) - b.radius, 0.0));
-        const double most = std::hypot(a.size(), b.size()), about = std::hypot(a.middle, b.middle);
+        const auto root = [](double x, double y) { return std::sqrt(x * x + y * y); };
+        const double least = root(std::max(std::fabs(a.middle) - a.radius, 0.0),
+                                  std::max(std::fabs(b.middle) - b.radius, 0.0));
+        const double most = root(a.size(), b.size()), about = root(a.middle, b.middle);
         if (!(most + a.error + b.error < 1 / kTiny)) return unbounded();
-        const double spread = std::max(most - about, about - least) + 4 * interval_detail::kLibmMargin * most;
-        return result(about, spread, std::hypot(a.error, b.error) * rounded_detail::kUp + kTiny, 3 * kUnit);
+        const double spread =
+            std::max(most - about, about - least) + 4 * interval_detail::kLibmMargin * most + kTiny;
+        return result(about, spread, root(a.error, b.error) * rounded_detail::kUp + kTiny, 3 * kUnit);
     }
-    friend RestBound asinh(const RestBound& a) { return of_function(a, std::asinh, R::kLibm); }
+    friend ANAMORPH_INLINE RestBound asinh(const RestBound& a) {
+        return of_function(a, std::asinh, R::kLibm);
+    }
     /// tanh a, and 1 / cosh a, whose slope is at most |a|.
-    friend RestBound scaled_sinh(const RestBound& a, RestBound& s) {
+    friend ANAMORPH_INLINE RestBound scaled_sinh(const RestBound& a, RestBound& s) {
         if (!(a.computed_size() <= 1)) return s = unbounded();
         s = of_function(a, std::tanh, R::kLibm);
         const double secant = a.middle == 0 ? 1 : 1 / std::cosh(a.middle);
@@ -111,7 +121,7 @@ struct RestBound {
     /// No block is zero throughout, but for constants.
     friend bool is_zero(const RestBound& a) { return a.computed_size() == 0; }
     /// One of two, which are the same where rounding decides between them.
-    friend RestBound hull(const RestBound& a, const RestBound& b) {
+    friend ANAMORPH_INLINE RestBound hull(const RestBound& a, const RestBound& b) {
         const double between = 0.5 * (a.middle + b.middle), apart = 0.5 * std::fabs(a.middle - b.middle);
         return result(between, apart + rounded_detail::larger(a.radius, b.radius),
                       rounded_detail::larger(a.error, b.error), 0);
@@ -243,12 +253,12 @@ struct NearRest<WrittenBase, RestBound<Real>> {
     using R = RestBound<Real>;
     static constexpr int kSincDegree = sinc_degree<Real>;
 
-    static R of(const WrittenBase& base) {
+    static ANAMORPH_INLINE R of(const WrittenBase& base) {
         const bool kept = static_cast<double>(static_cast<Real>(base.value)) == base.value;
         return kept ? R(base.value) : R::result(base.value, 0, 0, R::kUnit);
     }
     /// Nor are bases known better than to the least scale, which is above what underflows.
-    static R off(const R& rest, const WrittenBase& base, double units) {
+    static ANAMORPH_INLINE R off(const R& rest, const WrittenBase& base, double units) {
         const double by = units * (0x1p-53 * std::fabs(base.value) + kLeastScale);
         return {rest.middle, (rest.radius + by) * rounded_detail::kUp,
                 (rest.error + by) * rounded_detail::kUp};
@@ -278,5 +288,7 @@ struct NearRest<WrittenBase, RestBound<Real>> {
 /// Writes down the bases of a formula, and bounds what Real does to it near them.
 template <class Real>
 using NearBound = Near<WrittenBase, RestBound<Real>>;
+
+#undef ANAMORPH_INLINE
 
 }  // namespace anamorph

@@ -6,6 +6,17 @@
 #include "hwy/foreach_target.h"  // must come before highway.h
 #include "hwy/highway.h"
 
+#ifndef ANAMORPH_SIMD_NEXT_BASE
+#define ANAMORPH_SIMD_NEXT_BASE
+namespace anamorph::simd {
+
+/// The bases that are still to be read, of the type that is read. Once a row's formula stands in one function its reads
+/// are at known places. (By the usual model plugins would call a function for each.)
+static thread_local const void* t_next __attribute__((tls_model("initial-exec"))) = nullptr;
+
+}  // namespace anamorph::simd
+#endif
+
 HWY_BEFORE_NAMESPACE();
 namespace anamorph::simd {
 namespace HWY_NAMESPACE {
@@ -38,10 +49,6 @@ using D = hn::CappedTag<Real, Block::kMaxSide>;
 template <class Real>
 using L = Lanes<D<Real>>;
 
-/// The bases that are still to be read. Once a row's formula stands in one function its reads are at known places.
-template <class Real>
-thread_local const Real* t_next = nullptr;
-
 /// A base: a constant, or one that was written down. Operations read their result in place of computing it.
 template <class Real>
 struct ReadBase {
@@ -49,7 +56,12 @@ struct ReadBase {
 
     ReadBase() = default;
     HWY_INLINE ReadBase(double k) : value(static_cast<Real>(k)) {}  // NOLINT: a number is a constant
-    static HWY_INLINE ReadBase next() { return known(*t_next<Real> ++); }
+    static HWY_INLINE ReadBase next() { return known(next_value()); }
+    static HWY_INLINE Real next_value() {
+        const Real* const next = static_cast<const Real*>(t_next);
+        t_next = next + 1;
+        return *next;
+    }
     static HWY_INLINE ReadBase known(Real value) {
         ReadBase base;
         base.value = value;
@@ -81,13 +93,13 @@ struct ReadBase {
             c[k] = next();
         }
     }
-    friend HWY_INLINE bool is_negative(const ReadBase&) { return *t_next<Real> ++ != 0; }
-    friend HWY_INLINE bool is_zero(const ReadBase&) { return *t_next<Real> ++ != 0; }
+    friend HWY_INLINE bool is_negative(const ReadBase&) { return next_value() != 0; }
+    friend HWY_INLINE bool is_zero(const ReadBase&) { return next_value() != 0; }
 };
 
 /// Angles beyond those that are small: few blocks read one.
 template <class Real>
-HWY_NOINLINE L<Real> AnyAngle(L<Real> y, L<Real> x) {
+HWY_NOINLINE __attribute__((const)) L<Real> AnyAngle(L<Real> y, L<Real> x) {
     return atan2(y, x);
 }
 
@@ -101,7 +113,8 @@ struct NearRest<ReadBase<Real>, L<Real>> {
     static HWY_INLINE Rest left_out(const Rest& rest, const Rest&, double) { return rest; }
     static HWY_INLINE Rest within(const Rest& rest, const Rest&) { return rest; }
     static HWY_INLINE Rest angle(const Rest& y, const Rest& x) {
-        return *t_next<Real> ++ != 0 ? small_angle(y, x) : AnyAngle<Real>(y, x);
+        const bool is_small = Base::next_value() != 0;
+        return HWY_LIKELY(is_small) ? small_angle(y, x) : AnyAngle<Real>(y, x);
     }
     static HWY_INLINE Base choose(bool condition, const Base& a, const Base& b) { return condition ? a : b; }
     static HWY_INLINE Rest choose(bool condition, const Rest& a, const Rest& b) { return condition ? a : b; }
@@ -144,18 +157,20 @@ ANAMORPH_FLATTEN void TargetRays(const DirectBlock<Real>& block, Real x, Real y,
                                  Rays<Real>& rays) {
     using Base = ReadBase<Real>;
     using Rest = L<Real>;
-    const Branch& branch = block.local.target;
+    // Copies stay in registers where what is stored could be them.
+    const Branch branch = block.local.target;
+    const glm::dmat3 rotation = block.local.rotation;
     const Chart::Plane plane = block.target.plane(branch.piece);
     const Rest lanes(hn::Iota(D<Real>(), 0));
     for (int i = 0; i < count; i += Rest::kCount) {
-        t_next<Real> = block.bases.data();
+        t_next = block.bases.data();
         const N<Real> px(Base::next(), lanes + Rest(x + static_cast<Real>(i)));
         const N<Real> py(Base::next(), Rest(hn::Set(D<Real>(), y)));
         Point<N<Real>> p{(px - plane.cx) * plane.per_x + branch.centre_x,
                          (py - plane.cy) * plane.per_y + branch.centre_y};
         if constexpr (Projection::lensed != Lensed::no)
             if (block.target.lens()) p = formulas::ideal_point(block.target.lens()->terms(), p);
-        const Ray<N<Real>> r = Transformed(block.local.rotation, Projection::ray(p, branch));
+        const Ray<N<Real>> r = Transformed(rotation, Projection::ray(p, branch));
         r.x.rest.store(rays.rest_x + i);
         r.y.rest.store(rays.rest_y + i);
         r.z.rest.store(rays.rest_z + i);
@@ -172,11 +187,11 @@ ANAMORPH_FLATTEN void SourcePoints(const DirectBlock<Real>& block, const Rays<Re
                                    Real* y) {
     using Base = ReadBase<Real>;
     using Rest = L<Real>;
-    const Branch& branch = block.local.source;
+    const Branch branch = block.local.source;
     const Chart::Plane plane = block.source.plane(branch.piece);
-    const Real* const first = t_next<Real>;
+    const void* const first = t_next;
     for (int i = 0; i < count; i += Rest::kCount) {
-        t_next<Real> = first;
+        t_next = first;
         const Ray<N<Real>> r{{Base::known(rays.x), Rest::load(rays.rest_x + i)},
                              {Base::known(rays.y), Rest::load(rays.rest_y + i)},
                              {Base::known(rays.z), Rest::load(rays.rest_z + i)}};
@@ -211,7 +226,7 @@ void ComputeDirectRow(const DirectBlock<Real>& block, int begin, int end, int ro
 #include "anamorph/map/projection/list.h"
 #undef ANAMORPH_PROJECTION
     }
-    HWY_DASSERT(t_next<Real> == block.bases.data() + block.bases.size());
+    HWY_DASSERT(t_next == block.bases.data() + block.bases.size());
 }
 
 void ComputeDirectRows(const DirectBlock<float>& block, const Box& part, const PointRows& to) {
