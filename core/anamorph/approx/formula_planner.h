@@ -55,6 +55,8 @@ inline constexpr double kPreciseGain = 512;
 // A Taylor polynomial costs as much as so many exact pixels. A pixel whose polynomial is evaluated in double costs
 // such a part of one more than in float.
 inline constexpr double kPolynomialCost = 40, kDoubleCost = 0.3;
+// And so many more where what rounding costs it is found for it alone.
+inline constexpr double kRoundingCost = 60;
 // Blocks are not counted in more parts than this.
 inline constexpr int kMostParts = 256;
 // The part of the tolerance that a remainder over a box may take up for a polynomial on it; and for one that
@@ -62,7 +64,7 @@ inline constexpr int kMostParts = 256;
 inline constexpr double kTailShare = 0.125, kPartShare = 0.25;
 
 // What a pixel of a polynomial saves, as a part of an exact pixel, where it could be direct instead, in float or in double.
-inline constexpr double kDirectSaving = 3.0 / 16, kPreciseSaving = 5.0 / 16;
+inline constexpr double kDirectSaving = 2.0 / 16, kPreciseSaving = 4.0 / 16;
 // Where a block in the middle of a box misses it by so much, others of it are not looked at.
 inline constexpr double kHopeless = 4;
 // To look whether direct blocks hold the tolerance costs as much as so many exact pixels.
@@ -257,17 +259,20 @@ class Planner {
         }
         return 0;
     }
-    /// Could polynomials in float pay where direct blocks are expected? What float rounds falls with a block's side: it
-    /// says how many blocks it takes.
+    /// Could polynomials in float pay where direct blocks are expected? Judges by the block in the middle of a box: into how
+    /// many parts cut it what float rounds, which falls with a block's side, and its error.
     bool may_beat_direct(const Box& box, const Local& local) const {
         if (!m_direct) return true;
         using J = Jet1<double>;
         const Box middle = middle_of(box);
+        const auto pays = [&](double blocks) {
+            return !(kPolynomialCost * blocks >= pixels_of(middle) * m_direct->saving);
+        };
         const Point<J> p = m_map(J::variable(0.5 * (middle.x0 + middle.x1), half(middle.width()), 0),
                                  J::variable(0.5 * (middle.y0 + middle.y1), 0, half(middle.height())), local);
         const double x[10] = {0, p.x.c[1], p.x.c[2]}, y[10] = {0, p.y.c[1], p.y.c[2]};
         const double finer = BlockWriter::cubic_rounding(x, y) / m_options.tol;
-        return !(kPolynomialCost * finer * finer >= pixels_of(middle) * m_direct->saving);
+        return pays(finer * finer) && pays(parts(Fit(taylor_of(middle, local)).error, 0));
     }
     /// What no polynomial serves.
     void leave(const Box& box) {
@@ -604,10 +609,10 @@ class Planner {
         double error;
     };
     Expansion expand(const Box& box, const Local& local, const Bound& bound, const Taylor& taylor) {
-        pay(kPolynomialCost);
-        const double rounding = bound.rounding < HUGE_VAL
-                                    ? bound.rounding
-                                    : rounding_over(box, half(box.width()), half(box.height()), local);
+        const bool shares = bound.rounding < HUGE_VAL;
+        pay(shares ? kPolynomialCost : kPolynomialCost + kRoundingCost);
+        const double rounding =
+            shares ? bound.rounding : rounding_over(box, half(box.width()), half(box.height()), local);
         return {box, taylor, tail_over(box, bound) + rounding};
     }
     /// On a part of its box.
