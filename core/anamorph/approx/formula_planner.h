@@ -259,8 +259,8 @@ class Planner {
         }
         return 0;
     }
-    /// Could polynomials in float pay where direct blocks are expected? Judges by the block in the middle of a box: into how
-    /// many parts cut it what float rounds, which falls with a block's side, and its error.
+    /// Could polynomials in float pay where direct blocks are expected? Judges by the block in the middle of a box: by the
+    /// number of parts into which its error cuts it, and what float rounds, which falls with a block's side.
     bool may_beat_direct(const Box& box, const Local& local) const {
         if (!m_direct) return true;
         using J = Jet1<double>;

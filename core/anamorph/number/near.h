@@ -133,7 +133,7 @@ struct Near {
         const Rest across = x0 * y.rest - y0 * x.rest, along = x0 * x.whole() + y0 * y.whole();
         return {angle, Pair::off(Pair::angle(across, along), angle, 8)};
     }
-    /// Rests count from the base, wherever the formulas of other numbers count from.
+    /// The angle itself: its rest counts from its base already, and needs no other heading.
     friend ANAMORPH_INLINE Near tilt(const Near& across, const Near& ahead, const Heading&) {
         return atan2(across, ahead);
     }
