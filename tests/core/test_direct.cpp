@@ -222,6 +222,13 @@ TYPED_TEST(Near, LengthsAreBoundedWhereverTheyAreNotZero) {
     }
 }
 
+TYPED_TEST(Near, LengthsOfWhatUnderflowsAreBounded) {
+    const RestBound<TypeParam> little(1e-170, 0, 1e-170), none(0.0), found = length(little, none);
+    EXPECT_LE(found.middle - found.radius, 1e-170);
+    EXPECT_GE(found.middle + found.radius, 1e-170);
+    EXPECT_GE(found.error, 1e-170);
+}
+
 TYPED_TEST(Near, ScalesAreKnownToTheLeastOne) {
     const WrittenBases bases;
     NearBound<TypeParam> sine;

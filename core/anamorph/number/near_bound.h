@@ -94,13 +94,15 @@ struct RestBound {
     /// than its inverse overflows.
     friend ANAMORPH_INLINE RestBound length(const RestBound& a, const RestBound& b) {
         constexpr double kTiny = std::is_same_v<Real, float> ? 0x1p-60 : 0x1p-500;
+        // In double squares underflow as well: their root is off by less than that.
+        constexpr double kLost = 0x1p-500;
         const auto root = [](double x, double y) { return std::sqrt(x * x + y * y); };
         const double least = root(std::max(std::fabs(a.middle) - a.radius, 0.0),
                                   std::max(std::fabs(b.middle) - b.radius, 0.0));
         const double most = root(a.size(), b.size()), about = root(a.middle, b.middle);
         if (!(most + a.error + b.error < 1 / kTiny)) return unbounded();
         const double spread =
-            std::max(most - about, about - least) + 4 * interval_detail::kLibmMargin * most + kTiny;
+            std::max(most - about, about - least) + 4 * interval_detail::kLibmMargin * most + kLost;
         return result(about, spread, root(a.error, b.error) * rounded_detail::kUp + kTiny, 3 * kUnit);
     }
     friend ANAMORPH_INLINE RestBound asinh(const RestBound& a) {

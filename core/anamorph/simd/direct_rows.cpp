@@ -157,7 +157,7 @@ ANAMORPH_FLATTEN void TargetRays(const DirectBlock<Real>& block, Real x, Real y,
                                  Rays<Real>& rays) {
     using Base = ReadBase<Real>;
     using Rest = L<Real>;
-    // Copies stay in registers where what is stored could be them.
+    // Copies, which no store below can change, stay in registers.
     const Branch branch = block.local.target;
     const glm::dmat3 rotation = block.local.rotation;
     const Chart::Plane plane = block.target.plane(branch.piece);
