@@ -539,6 +539,10 @@ TEST(PanoramaTruth, WhatIsCulledHasNoTexels) {
         {{rectilinear, 30000, 7, 20}, {equirectangular, 600, 300, 360}, {20, 30, 0}, 0.5, Scheme::blocks},
         {{stereographic, 9000, 9000, 100}, {fisheye, 300, 300, 360}, {0, 20, 40}, 0.5, Scheme::blocks},
         {{fisheye, 9000, 9000, 30}, {equirectangular, 300, 150, 360}, {0, 20, 40}, 0.5, Scheme::blocks},
+        // Direct blocks, and exact ones.
+        {{fisheye, 9000, 9000, 30}, {equirectangular, 300, 150, 360}, {0, 20, 40}, 0.5, Scheme::automatic},
+        {{rectilinear, 3000, 3000, 20}, {equirectangular, 600, 300, 360}, {20, 30, 0}, 0, Scheme::automatic},
+        {{cylindrical, 4095, 4095, 60}, {fisheye, 400, 400, 200}, {20, 10, 0}, 1e-6, Scheme::automatic},
     };
     std::int64_t all_culled = 0;
     double coarsest = 0;
@@ -577,6 +581,44 @@ TEST(PanoramaTruth, WhatIsCulledHasNoTexels) {
     }
     EXPECT_GT(all_culled, 1000);
     EXPECT_GT(coarsest, 1);
+}
+
+/// Where the first block is that is drawn though all its pixels have source points, each `margin` times farther beyond the
+/// image than it is steep.
+std::string first_beyond(const Panorama& map, const PanoramaPlan& plan, double margin) {
+    const Size size = map.source_size();
+    const auto may_show = [&](double x, double y, int target_piece) {
+        Point<double> p{};
+        int piece = 0;
+        if (!map.exact(x, y, target_piece, p, piece)) return true;
+        const Jacobian j = plan.jacobian(x, y, target_piece);
+        const double steps = std::fabs(j.x_i) + std::fabs(j.x_j) + std::fabs(j.y_i) + std::fabs(j.y_j);
+        const double reach = margin * std::max(1.0, steps);
+        return p.x > -reach && p.x < size.width + reach && p.y > -reach && p.y < size.height + reach;
+    };
+    for (std::int64_t region = 0; region < plan.regions(); ++region)
+        for (const Block& block : plan.blocks(region)) {
+            bool shows = block.kind == Block::Kind::outside;
+            for (int j = block.box.y0; j < block.box.y1 && !shows; ++j)
+                for (int i = block.box.x0; i < block.box.x1 && !shows; ++i)
+                    shows = may_show(i + 0.5, j + 0.5, block.piece);
+            if (!shows) return std::to_string(block.box.x0) + ", " + std::to_string(block.box.y0);
+        }
+    return "";
+}
+
+// Block by block, not only where all of a region lies beyond an edge. (Next to a fold bounds are too wide to tell.)
+TEST(PanoramaTruth, NoBlockIsDrawnThatLiesBeyondAnEdge) {
+    const Chart view(rectilinear, 1024, 1024, 60);
+    for (const char* lens : {"none", "3de4:k1=0.1,k2=0.03", "brown:k1=-0.1,k2=0.02,p1=0.002"})
+        for (const double tol : {0.01, 1e-3, 1e-6, 0.0}) {
+            const Chart source(rectilinear, 2048, 2048, 90, PixelSpacing::edges, "", 1,
+                               LensModel::parse(lens));
+            const Panorama map(source, view, {30, 20, 10});
+            PlanOptions options;
+            options.tol = tol;
+            EXPECT_EQ(first_beyond(map, PanoramaPlan(map, options), 50), "") << lens << ", tol " << tol;
+        }
 }
 
 TEST(Rotation, AnglesAreReducedExactly) {

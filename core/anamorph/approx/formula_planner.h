@@ -276,8 +276,12 @@ class Planner {
     }
     /// What no polynomial serves.
     void leave(const Box& box) {
-        if (!m_direct) return exact(box);
-        for_blocks(box, [&](const Box& b) { leave_direct(b); });
+        for_blocks(box, [&](const Box& b) {
+            if (has_edges() && cover(b, local_about(b)) == Cover::outside)
+                emit(b, Block::Kind::outside);
+            else
+                m_direct ? leave_direct(b) : emit(b, Block::Kind::exact);
+        });
     }
     /// For DirectBlocks.
     void leave_direct(const Box& box) {
@@ -310,6 +314,11 @@ class Planner {
         return found == Cover::inside && m_options.cull ? culled(box, local) : found;
     }
 
+    /// Does the source image have edges beyond which nothing is drawn?
+    bool has_edges() const {
+        const SourceEdges edges = m_map.source_edges();
+        return m_options.cull && (edges.across || edges.down);
+    }
     /// Outside when every pixel's footprint lies beyond the source image's edges.
     Cover culled(const Box& box, const Local& local) const {
         const Size size = m_map.source_size();
@@ -323,14 +332,16 @@ class Planner {
     /// Of what the map's Taylor coefficients over a box say.
     template <int N>
     bool lies_beyond(const Point<Jet<Interval, N>>& p) const {
+        return lie_beyond(p.x.c[0], p.y.c[0], footprint_reach(p, m_map.source_size()));
+    }
+    /// Of source points in these ranges, with texels that lie up to `reach` from them.
+    bool lie_beyond(const Interval& x, const Interval& y, double reach) const {
         const Size size = m_map.source_size();
         const SourceEdges edges = m_map.source_edges();
-        const double margin = footprint_reach(p, size);
         const auto beyond = [&](const Interval& a, int length) {
-            return a.hi < -margin || a.lo > length + margin;
+            return a.hi < -reach || a.lo > length + reach;
         };
-        return (edges.across && beyond(p.x.c[0], size.width)) ||
-               (edges.down && beyond(p.y.c[0], size.height));
+        return (edges.across && beyond(x, size.width)) || (edges.down && beyond(y, size.height));
     }
 
     /// Can no part of a box be culled, with its source points here?
@@ -369,7 +380,18 @@ class Planner {
     struct Bound {
         Tail x, y;
         double rounding;  ///< infinite where each has its own
+        double reach;     ///< of their footprints where some may lie beyond the image's edges; else -1
     };
+    /// Does all that blocks of a Taylor polynomial would read lie beyond an edge? It is off by `error`, in a box that `bound` is of.
+    bool lies_beyond(const Taylor& taylor, double error, const Bound& bound) const {
+        if (bound.reach < 0) return false;
+        const auto range = [error](const Jet<double, 4>& f) {
+            double spread = error;
+            for (int i = 1; i < 15; ++i) spread += std::fabs(f.c[i]);
+            return Interval{f.c[0] - spread, f.c[0] + spread};
+        };
+        return lie_beyond(range(taylor.x), range(taylor.y), bound.reach);
+    }
 
     /// What rounding costs the blocks in a box, of up to a given size; or values, for a size of 0.
     double rounding_over(const Box& box, double half_width, double half_height, const Local& local) const {
@@ -395,12 +417,11 @@ class Planner {
             know({&box, 1}, local, &one);
             return settle_blocks(box, local, &one);
         }
-        const Enclosed& p = known->enclosed;
         const Bound bound = bound_of(*known);
         if (is_block(box) ? tail_over(box, bound) < HUGE_VAL : serves(box, known->middle, bound))
             place_all_parts(box, local, bound, known);
         else
-            settle_quarters(box, is_kept(p.x.c[0], p.y.c[0]));
+            settle_quarters(box, bound.reach < 0);
     }
     static bool is_block(const Box& box) {
         return box.width() <= kBlockWidth && box.height() <= kBlockHeight;
@@ -427,11 +448,13 @@ class Planner {
             });
         });
     }
-    static Bound bound_of(const Known& known) {
-        return {Tail(known.enclosed.x), Tail(known.enclosed.y), HUGE_VAL};
+    Bound bound_of(const Known& known) const {
+        const Enclosed& p = known.enclosed;
+        const bool kept = is_kept(p.x.c[0], p.y.c[0]);
+        return {Tail(p.x), Tail(p.y), HUGE_VAL, kept ? -1 : footprint_reach(p, m_map.source_size())};
     }
     static Bound larger(const Bound& a, const Bound& b) {
-        return {Tail::larger(a.x, b.x), Tail::larger(a.y, b.y), HUGE_VAL};
+        return {Tail::larger(a.x, b.x), Tail::larger(a.y, b.y), HUGE_VAL, std::max(a.reach, b.reach)};
     }
     /// Does a bound serve a box, in no smaller parts than its own would?
     bool serves_as_well(const Known& known, const Bound& bound) const {
@@ -710,6 +733,7 @@ class Planner {
         if (box.width() > kBlockWidth || box.height() > kBlockHeight)
             return for_blocks(box, [&](const Box& b) { place(b, expansion, local, bound); });
         const Fit fit = fit_on(expansion, box);
+        if (lies_beyond(fit.taylor, expansion.error, bound)) return emit(box, Block::Kind::outside);
         if (emit_fit(box, local, fit, expansion.error) || emit_precise(box, local, fit, expansion.error))
             return;
         // About its own middle the remainder is smaller.
