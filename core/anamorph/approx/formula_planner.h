@@ -236,25 +236,31 @@ class Planner {
         if constexpr (DirectMap<Map>) {
             if (!may_be_direct()) return 0;
             Box middle = is_block(box) ? box : middle_of(box);
-            const auto error_in = [&](auto real) {
+            const auto error_in = [&](auto real, const Box& of) {
                 m_balance -= kDirectCost;
-                return read_near<decltype(real)>(m_map, middle, local_about(middle), m_bases).error;
+                return read_near<decltype(real)>(m_map, of, local_about(of), m_bases).error;
             };
             const auto expect = [&](bool precise, double saving) {
                 m_direct = {precise, saving};
                 return 0.0;
             };
-            double error = m_exact ? error_in(0.0) : error_in(0.0f);
+            const auto part_of = [](const Box& of) { return sub_box(of, of.width() > of.height(), false); };
+            double error = m_exact ? error_in(0.0, middle) : error_in(0.0f, middle);
             // Where blocks are too large for any bound, smaller ones may have one.
             while (!(error < HUGE_VAL) && pixels_of(middle) >= 2 * kLeastInFloat) {
-                middle = sub_box(middle, middle.width() > middle.height(), false);
-                error = m_exact ? error_in(0.0) : error_in(0.0f);
+                middle = part_of(middle);
+                error = m_exact ? error_in(0.0, middle) : error_in(0.0f, middle);
             }
             if (m_exact) return error <= m_goal ? expect(true, kPreciseSaving) : error;
+            if (error <= m_goal) return expect(false, kDirectSaving);
             // Where float holds it in smaller blocks only, a polynomial saves more.
-            if (serves_in_float(middle, error, m_goal))
-                return expect(false, error <= m_goal ? kDirectSaving : kPreciseSaving);
-            if (error < HUGE_VAL) error = error_in(0.0);
+            const auto in_parts = [&] {
+                Box part = middle;
+                while (pixels_of(part) >= 2 * kLeastInFloat) part = part_of(part);
+                return error_in(0.0f, part) <= m_goal;
+            };
+            if (serves_in_float(middle, error, m_goal) && in_parts()) return expect(false, kPreciseSaving);
+            if (error < HUGE_VAL) error = error_in(0.0, middle);
             return error <= m_goal ? expect(true, kPreciseSaving) : error;
         }
         return 0;
@@ -265,14 +271,30 @@ class Planner {
         if (!m_direct) return true;
         using J = Jet1<double>;
         const Box middle = middle_of(box);
+        // Bounds may cost as much again.
         const auto pays = [&](double blocks) {
-            return !(kPolynomialCost * blocks >= pixels_of(middle) * m_direct->saving);
+            return !(2 * kPolynomialCost * blocks >= pixels_of(middle) * m_direct->saving);
         };
         const Point<J> p = m_map(J::variable(0.5 * (middle.x0 + middle.x1), half(middle.width()), 0),
                                  J::variable(0.5 * (middle.y0 + middle.y1), 0, half(middle.height())), local);
         const double x[10] = {0, p.x.c[1], p.x.c[2]}, y[10] = {0, p.y.c[1], p.y.c[2]};
-        const double finer = BlockWriter::cubic_rounding(x, y) / m_options.tol;
-        return pays(finer * finer) && pays(parts(Fit(taylor_of(middle, local)).error, 0));
+        const double rounding = BlockWriter::cubic_rounding(x, y);
+        if (!pays(parts(0, 0, rounding))) return false;
+        const Taylor taylor = taylor_of(middle, local);
+        return pays(parts(Fit(taylor).error, expected_tail(taylor), rounding));
+    }
+    /// What the terms of degree 5 would be if they were as much smaller than those of degree 4 as those than degree 3's.
+    static double expected_tail(const Taylor& taylor) {
+        const auto size = [&](int from, int to) {
+            double x = 0, y = 0;
+            for (int i = from; i < to; ++i) {
+                x += std::fabs(taylor.x.c[i]);
+                y += std::fabs(taylor.y.c[i]);
+            }
+            return length(x, y);
+        };
+        const double third = size(6, 10), fourth = size(10, 15);
+        return third > 0 ? fourth * fourth / third : 0;
     }
     /// What no polynomial serves.
     void leave(const Box& box) {
@@ -614,11 +636,11 @@ class Planner {
     }
 
     /// Into how many parts a block is cut until a cubic holds the tolerance: its error falls with the fourth
-    /// power of the side, the remainder with the fifth.
-    double parts(double fit, double tail) const {
+    /// power of the side, the remainder with the fifth, and what rounding takes of the tolerance with the side itself.
+    double parts(double fit, double tail, double rounding = 0) const {
         double count = 1, side = 1;
-        while (count < kMostParts &&
-               !(std::max(fit + tail * side, tail * side / kTailShare) <= m_options.tol * (count * count))) {
+        while (count < kMostParts && !(std::max(fit + tail * side, tail * side / kTailShare) <=
+                                       (m_options.tol - rounding * side) * (count * count))) {
             count *= 2;
             side *= 0.70710678;
         }

@@ -127,7 +127,7 @@ std::vector<Box> Panorama::target_pieces() const {
 
 SourceEdges Panorama::source_edges() const {
     const bool whole = m_source.pieces().size() == 1;
-    return {whole && !m_source.closed(), whole};
+    return {whole && !m_source.closed(), whole && !m_source.reaches_poles()};
 }
 
 bool Panorama::ends_by_lens(const Ray<Interval>& ray, const Local& local) const {
