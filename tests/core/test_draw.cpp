@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <numbers>
 
 #include "anamorph/render/reproject.h"
 
@@ -56,10 +57,15 @@ TEST(Draw, StmapsStayOnASourceThatCloses) {
 
 TEST(Draw, StmapsGoOnBeyondASourceThatDoesNotClose) {
     using enum Projection;
-    const Panorama map({rectilinear, 300, 200, 60}, {rectilinear, 200, 150, 100}, {});
-    const std::vector<float> uv = stmap_of(map, 0.01);
-    EXPECT_LT(uv.front(), -0.1f);
-    EXPECT_GT(uv.back(), 1.1f);
+    // The larger one has regions that lie beyond the source's edges as a whole.
+    for (const int width : {200, 2000}) {
+        const Panorama map({rectilinear, 300, 200, 60}, {rectilinear, width, width * 3 / 4, 100}, {});
+        const std::vector<float> uv = stmap_of(map, 0.01);
+        // The corners of a view of 100 degrees on a source of 60: half (1 -+ tan 50 / tan 30) across.
+        const double u = 0.5 * (1 - std::tan(std::numbers::pi * 50 / 180) / std::tan(std::numbers::pi / 6));
+        EXPECT_NEAR(uv[0], u, 2.0 / width);
+        EXPECT_NEAR(uv[uv.size() - 2], 1 - u, 2.0 / width);
+    }
 }
 
 }  // namespace

@@ -63,6 +63,15 @@ TEST_F(LensRecipe, IsThePanoramaThroughTheSameLens) {
         }
 }
 
+// Whole regions of blocks lie beyond the picture, where nothing else would be drawn.
+TEST_F(LensRecipe, StmapsGoOnBeyondThePicture) {
+    const std::string stmap = "ramp.exr.lens?lens=3de4:k1=0.02,k2=0.005&output=stmap&size=1200x900";
+    const std::vector<float> uv = read_floats(stmap);
+    EXPECT_LT(uv[0], -1.1f);
+    EXPECT_LT(uv[1], -1.1f);
+    EXPECT_EQ(largest_difference(uv, read_floats(stmap + "&wrap=clamp")), 0);
+}
+
 TEST_F(LensRecipe, SizeAllKeepsAllAndComesBack) {
     const std::string lens = "lens=brown:k1=-0.25,k2=0.06,p1=0.002&fov=70&filter=bilinear&wrap=clamp";
     const Ran there = run("oiiotool 'ramp.exr.lens?" + lens + "&size=all' -o flat.exr");

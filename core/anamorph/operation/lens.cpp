@@ -93,14 +93,12 @@ LensRequest read_request(const ParameterValues& values, const SourceFacts& facts
                     "makes " + std::to_string(target.width) + "x" + std::to_string(target.height) +
                         " pixels: must be at most " + std::to_string(kMaxSide) + " either way");
     const auto wrap = chosen<Wrap>(values, "wrap");
+    const Output output = rows::chosen_output(values);
     PlanOptions plan;
     plan.scheme = chosen<Scheme>(values, "scheme");
     plan.tol = values.number("tol");
-    plan.cull = wrap == Wrap::automatic || wrap == Wrap::black;
-    return {observed, mode,
-            source,   target,
-            plan,     chosen<Filter>(values, "filter"),
-            wrap,     rows::chosen_output(values)};
+    plan.cull = ends_at_edges(wrap, output);
+    return {observed, mode, source, target, plan, chosen<Filter>(values, "filter"), wrap, output};
 }
 
 /// The map and its picture.

@@ -9,7 +9,7 @@ PlanOptions plan_options(const ReprojectOptions& options) {
     PlanOptions plan;
     plan.scheme = options.scheme;
     plan.tol = options.tol;
-    plan.cull = options.wrap == Wrap::automatic || options.wrap == Wrap::black;
+    plan.cull = ends_at_edges(options.wrap, options.output);
     plan.across_seam = options.wrap == Wrap::automatic;
     return plan;
 }
