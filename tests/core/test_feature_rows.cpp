@@ -67,7 +67,7 @@ TEST(FeatureRows, AreWithinTheBoundOfExactBlocks) {
     each_map([](const FeatureMap& map, const std::string& text) {
         for (int shape = 0; shape < 2; ++shape)
             for (const int y : {0, 17, 95}) {
-                const double bound = exact_bound(map, {shape}, {3, y, 3 + kCount, y + 1});
+                const double bound = exact_bound(map, {shape}, {3, y, 3 + kCount, y + 1}, 0);
                 const Row row(map, shape, 3, y);
                 for (std::size_t i = 0; i < kCount; ++i) {
                     const Point<long double> p = map(3.5L + static_cast<long double>(i), y + 0.5L, shape);
@@ -81,7 +81,7 @@ TEST(FeatureRows, AreWithinTheBoundOfExactBlocks) {
 TEST(FeatureRows, AddLittleToTheBoundFarFromLines) {
     const auto features = families::Maker(kSize, 3).make("outside", 12);
     for (const double b : {1.3, 2.0})
-        EXPECT_LT(exact_bound(map_of(*features, {1, b, 0.5}), {0, 1}, {8, 8, 12, 12}), 1e-9);
+        EXPECT_LT(exact_bound(map_of(*features, {1, b, 0.5}), {0, 1}, {8, 8, 12, 12}, 0), 1e-9);
 }
 
 TEST(FeatureRows, TheSameBitsOnAllInstructionSets) {

@@ -80,6 +80,20 @@ TEST(NearFar, NoPixelIsOverItsBoundAndNoBoundOverTheTolerance) {
         }
 }
 
+// Where every pixel is exact, its own rounding is bounded as finely as is asked for.
+TEST(NearFar, SmallTolerancesHold) {
+    for (const std::string& family : families::names())
+        for (const LineWeights& w :
+             {LineWeights{2, 1, 0.5}, LineWeights{1, 2, 0}, LineWeights{0.01, 1.5, 0.5}}) {
+            const auto features = families::Maker(150, 3).make(family, 60);
+            const FeatureMap map = map_of(*features, {150, 130}, w, 0.3);
+            for (const double tol : {1e-4, 1e-6, 1e-7}) {
+                SCOPED_TRACE(testing::Message() << family << " a " << w.a << " tol " << tol);
+                expect_holds(map, tol);
+            }
+        }
+}
+
 TEST(NearFar, ManySeedsHold) {
     for (unsigned seed = 100; seed < 112; ++seed)
         for (const std::string& family : families::names()) {

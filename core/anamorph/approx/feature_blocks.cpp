@@ -93,10 +93,10 @@ Jacobian FeatureBlocks::jacobian(double x, double y, int piece) const noexcept {
     return {p.x.c[1], p.y.c[1], p.x.c[2], p.y.c[2]};
 }
 
-void FeatureBlocks::add_exact(const Box& box, Blocks& blocks) const {
+void FeatureBlocks::add_exact(const Box& box, double tol, Blocks& blocks) const {
     Block block;
     block.box = box;
-    block.bound = exact_bound(m_map, m_shapes, box);
+    block.bound = exact_bound(m_map, m_shapes, box, tol);
     for (block.piece = 0; block.piece < layers(); ++block.piece) blocks.push_back(block);
 }
 

@@ -43,8 +43,8 @@ class FeatureBlocks : public BlockMap {
             for (int x = region.x0; x < region.x1; x += kSide)
                 body(intersection({x, y, x + kSide, y + kSide}, region));
     }
-    /// Writes a block for every layer.
-    void add_exact(const Box& box, Blocks& blocks) const;
+    /// Writes a block for every layer. Its bound is below `tol` where that can be told.
+    void add_exact(const Box& box, double tol, Blocks& blocks) const;
 
   private:
     /// Exact points of a layer's block, found with those of the layer before.

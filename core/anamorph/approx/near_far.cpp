@@ -63,8 +63,9 @@ NearFar::NearFar(const FeatureMap& map, const NearFarOptions& options) : Feature
 NearFar::~NearFar() = default;
 
 void NearFar::plan(const Box& box, int, Blocks& blocks) const {
-    if (m_state->options.tol == 0) {
-        each_square(box, [&](const Box& square) { add_exact(square, blocks); });
+    const double tol = m_state->options.tol;
+    if (tol == 0) {
+        each_square(box, [&](const Box& square) { add_exact(square, tol, blocks); });
         return;
     }
     const auto region = std::make_shared<Region>();
@@ -78,7 +79,7 @@ void NearFar::plan(const Box& box, int, Blocks& blocks) const {
     for (std::size_t i = 0; i < region->cells.size(); ++i) {
         const Cell& cell = region->cells[i];
         if (cell.exact)
-            add_exact(cell.box, blocks);
+            add_exact(cell.box, tol, blocks);
         else
             for (int k = 0; k < layers(); ++k) {
                 Block block;

@@ -54,7 +54,7 @@ namespace anamorph {
 namespace {
 
 constexpr double kHalfUlp = 0x1p-53;
-// Boxes are not cut for less than this, in pixels.
+// Boxes are not cut for less than this, in pixels, unless less is asked for.
 constexpr double kFineEnough = 1e-6;
 
 /// What is known of a line over a box.
@@ -73,14 +73,16 @@ double length(double x, double y) {
 
 class BoxBound {
   public:
-    BoxBound(const FeatureMap& map, const std::vector<int>& shapes) : m_map(map), m_shapes(shapes) {
+    BoxBound(const FeatureMap& map, const std::vector<int>& shapes, double goal)
+        : m_map(map), m_shapes(shapes), m_goal(goal) {
         m_lines.resize(map.size());
     }
 
     double of(const Box& box) {
         const Parts parts = bound(box);
-        const bool cut = parts.weights > std::max(kFineEnough, parts.places);
-        if (!cut || (box.width() == 1 && box.height() == 1)) return parts.places + parts.weights;
+        const double all = parts.places + parts.weights;
+        const bool may_fall = parts.weights > parts.places && !(box.width() == 1 && box.height() == 1);
+        if (all <= m_goal || !may_fall) return all;
         Box first = box, second = box;
         if (box.width() >= box.height())
             first.x1 = second.x0 = box.x0 + box.width() / 2;
@@ -228,6 +230,7 @@ class BoxBound {
 
     const FeatureMap& m_map;
     const std::vector<int>& m_shapes;
+    double m_goal;
     std::vector<LineOnBox> m_lines;
 };
 
@@ -243,8 +246,8 @@ LineOff line_off(const FeatureMap& map, std::size_t i, double rho, double farthe
             (3 + 2 * rounding.stretch) * 4 * (rounding.turn * rho + other) + 8 * rounding.place};
 }
 
-double exact_bound(const FeatureMap& map, const std::vector<int>& shapes, const Box& box) {
-    return BoxBound(map, shapes).of(box);
+double exact_bound(const FeatureMap& map, const std::vector<int>& shapes, const Box& box, double tol) {
+    return BoxBound(map, shapes, tol > 0 ? std::min(tol, kFineEnough) : kFineEnough).of(box);
 }
 
 }  // namespace anamorph
