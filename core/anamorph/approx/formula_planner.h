@@ -404,7 +404,8 @@ class Planner {
         double rounding;  ///< infinite where each has its own
         double reach;     ///< of their footprints where some may lie beyond the image's edges; else -1
     };
-    /// Does all that blocks of a Taylor polynomial would read lie beyond an edge? It is off by `error`, in a box that `bound` is of.
+    /// Does all that blocks of a Taylor polynomial would read lie beyond an edge? It is off by `error`, in a box that `bound` is
+    /// of.
     bool lies_beyond(const Taylor& taylor, double error, const Bound& bound) const {
         if (bound.reach < 0) return false;
         const auto range = [error](const Jet<double, 4>& f) {

@@ -81,8 +81,12 @@ class BoxBound {
     double of(const Box& box) {
         const Parts parts = bound(box);
         const double all = parts.places + parts.weights;
-        const bool may_fall = parts.weights > parts.places && !(box.width() == 1 && box.height() == 1);
-        if (all <= m_goal || !may_fall) return all;
+        if (all <= m_goal) return all;
+        if (parts.weights <= parts.places || (box.width() == 1 && box.height() == 1)) {
+            // What the rest is found to be matters as little as where nothing is asked for.
+            m_goal = std::max(m_goal, kFineEnough);
+            return all;
+        }
         Box first = box, second = box;
         if (box.width() >= box.height())
             first.x1 = second.x0 = box.x0 + box.width() / 2;
@@ -230,7 +234,7 @@ class BoxBound {
 
     const FeatureMap& m_map;
     const std::vector<int>& m_shapes;
-    double m_goal;
+    double m_goal;  ///< boxes are cut until they are below it
     std::vector<LineOnBox> m_lines;
 };
 
