@@ -54,6 +54,25 @@ TEST(MeshPlan, HoldsTheToleranceOnRandomMeshes) {
     }
 }
 
+// Pixels evaluated in double, too, in blocks of any size.
+TEST(MeshPlan, ExactPixelsKeepSmallTolerances) {
+    constexpr unsigned kSeed = 5302;
+    SCOPED_TRACE(::testing::Message() << "seed " << kSeed);
+    test::Random random(kSeed);
+    for (int n = 0; n < 4; ++n) {
+        const Size target{random.whole(200, 500), random.whole(100, 300)}, source{500, 400};
+        const ControlMesh mesh = test::random_mesh(random, target, source, 6, 6, 0.5, false, n % 2 ? 2 : 0);
+        for (const double tol : {1e-6, 1e-8, 1e-9, 1e-10}) {
+            SCOPED_TRACE(::testing::Message() << "mesh " << n << ", tol " << tol);
+            const MeshPlan plan(Mesh(mesh, target, source, 1), WarpScheme::automatic, tol);
+            const test::Findings found =
+                test::examine(plan, [&](double x, double y) { return truth(plan.mesh(), x, y); });
+            EXPECT_LE(found.worst_excess, 0);
+            EXPECT_LE(found.worst_exact_bound, tol);
+        }
+    }
+}
+
 TEST(MeshPlan, HoldsTheToleranceOnHardMeshes) {
     const Size target{300, 200}, source{320, 240};
     for (const auto& [name, mesh] : test::hard_meshes(target, source)) {

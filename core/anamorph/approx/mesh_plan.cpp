@@ -93,7 +93,12 @@ class Planner {
   public:
     Planner(const Mesh& mesh, bool lattice, WarpScheme scheme, double tol, const ResidualTables* tables,
             Blocks& blocks)
-        : m_mesh(mesh), m_lattice(lattice), m_scheme(scheme), m_tables(tables), m_writer(tol, blocks) {}
+        : m_mesh(mesh),
+          m_lattice(lattice),
+          m_scheme(scheme),
+          m_tol(tol),
+          m_tables(tables),
+          m_writer(tol, blocks) {}
 
     /// Point by point, in whichever cells.
     void exact(const Box& box) {
@@ -117,8 +122,10 @@ class Planner {
         constexpr double kHair = 1e-9;
         const Bounds all{box.x0 + 0.5 - kHair, box.y0 + 0.5 - kHair, box.x1 - 0.5 + kHair,
                          box.y1 - 0.5 + kHair};
-        if (m_lattice || (!m_mesh.has_levels() && has_small_cells(m_mesh, box)))
-            return exact_rounding(m_mesh, all);
+        if (m_lattice || (!m_mesh.has_levels() && has_small_cells(m_mesh, box))) {
+            const double rough = exact_rounding(m_mesh, all);
+            if (m_lattice || m_tol == 0 || rough <= m_tol) return rough;
+        }
         double bound = 0;
         m_mesh.each_cell(all.x0, all.y0, all.x1, all.y1, [&](const MeshCell& cell) {
             bound = std::max(bound, exact_rounding(m_mesh, cell, m_mesh.patch(cell)));
@@ -179,6 +186,7 @@ class Planner {
     const Mesh& m_mesh;
     bool m_lattice;
     WarpScheme m_scheme;
+    double m_tol;
     const ResidualTables* m_tables;
     BlockWriter m_writer;
 };
