@@ -68,5 +68,26 @@ TEST(Draw, StmapsGoOnBeyondASourceThatDoesNotClose) {
     }
 }
 
+// Regions that lie beyond the source's edges are black only where nothing stands there.
+TEST(Draw, WhatStandsBeyondTheEdgesIsDrawn) {
+    const Chart from(Projection::rectilinear, 300, 200, 40), to(Projection::rectilinear, 1000, 700, 100);
+    const std::vector<float> ones(300 * 200, 1.0f);
+    const MemorySource source(packed_view(reinterpret_cast<const std::byte*>(ones.data()), PixelType::float32,
+                                          from.width(), from.height(), 1));
+    for (const Wrap wrap : {Wrap::automatic, Wrap::black, Wrap::clamp, Wrap::periodic, Wrap::mirror}) {
+        ReprojectOptions options;
+        options.wrap = wrap;
+        std::vector<float> drawn(1000 * 700, -1.0f);
+        const ImageView view =
+            packed_view(reinterpret_cast<std::byte*>(drawn.data()), PixelType::float32, 1000, 700, 1);
+        ASSERT_TRUE(Reprojection(Panorama(from, to, {}), options).draw(&source, {0, 0, 1000, 700}, view));
+        const float beyond = wrap == Wrap::automatic || wrap == Wrap::black ? 0.0f : 1.0f;
+        SCOPED_TRACE(static_cast<int>(wrap));
+        EXPECT_NEAR(drawn.front(), beyond, 1e-6);
+        EXPECT_NEAR(drawn.back(), beyond, 1e-6);
+        EXPECT_NEAR(drawn[350 * 1000 + 500], 1, 1e-6);
+    }
+}
+
 }  // namespace
 }  // namespace anamorph

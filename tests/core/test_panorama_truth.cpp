@@ -539,6 +539,9 @@ TEST(PanoramaTruth, WhatIsCulledHasNoTexels) {
         {{rectilinear, 30000, 7, 20}, {equirectangular, 600, 300, 360}, {20, 30, 0}, 0.5, Scheme::blocks},
         {{stereographic, 9000, 9000, 100}, {fisheye, 300, 300, 360}, {0, 20, 40}, 0.5, Scheme::blocks},
         {{fisheye, 9000, 9000, 30}, {equirectangular, 300, 150, 360}, {0, 20, 40}, 0.5, Scheme::blocks},
+        // Magnified, where footprints reach least.
+        {{rectilinear, 300, 200, 40}, {rectilinear, 1000, 700, 90}, {20, 10, 5}, 0.5, Scheme::automatic},
+        {{fisheye, 200, 200, 60}, {rectilinear, 900, 700, 100}, {20, 10, 5}, 0.01, Scheme::blocks},
         // Direct blocks, and exact ones.
         {{fisheye, 9000, 9000, 30}, {equirectangular, 300, 150, 360}, {0, 20, 40}, 0.5, Scheme::automatic},
         {{rectilinear, 3000, 3000, 20}, {equirectangular, 600, 300, 360}, {20, 30, 0}, 0, Scheme::automatic},

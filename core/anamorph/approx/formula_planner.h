@@ -266,7 +266,7 @@ class Planner {
         return 0;
     }
     /// Could polynomials in float pay where direct blocks are expected? Judges by the block in the middle of a box: by the
-    /// number of parts into which its error cuts it, and what float rounds, which falls with a block's side.
+    /// number of parts into which its error, an expected remainder and the rounding of floats cut it.
     bool may_beat_direct(const Box& box, const Local& local) const {
         if (!m_direct) return true;
         using J = Jet1<double>;

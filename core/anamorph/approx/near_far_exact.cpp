@@ -83,7 +83,7 @@ class BoxBound {
         const double all = parts.places + parts.weights;
         if (all <= m_goal) return all;
         if (parts.weights <= parts.places || (box.width() == 1 && box.height() == 1)) {
-            // What the rest is found to be matters as little as where nothing is asked for.
+            // The goal cannot be reached: no other part is cut for it.
             m_goal = std::max(m_goal, kFineEnough);
             return all;
         }

@@ -20,7 +20,8 @@ LineOff line_off(const FeatureMap& map, std::size_t i, double rho, double farthe
 /// any of `shapes`, in pixels of their pictures. With a = 0 the map jumps where lines cross: where the
 /// distance of several from a pixel's centre is nothing but rounding the bound is as large as what they say
 /// differs, unless all of these are found at distance 0 and certainly pass through it
-/// (FeatureMap::passes_through). What is found of boxes is refined until it is below `tol`, as far as that goes.
+/// (FeatureMap::passes_through). Refined by parts of the box until it is below `tol`, unless a pixel shows that it
+/// cannot be.
 double exact_bound(const FeatureMap& map, const std::vector<int>& shapes, const Box& box, double tol);
 
 }  // namespace anamorph
