@@ -68,5 +68,44 @@ TEST(ExtendRange, FindsTheEndsAndWhatIsNoNumber) {
     });
 }
 
+TEST(PlaceIn, CountsTexelsFromTheCornerAndFindsThoseOutside) {
+    constexpr unsigned kSeed = 5;
+    SCOPED_TRACE(testing::Message() << "seed " << kSeed);
+    std::mt19937 random(kSeed);
+    constexpr int kCount = 61;
+    const simd::Readable all_around[] = {{{0, 3, 100, 40}, 1, 100, 100},
+                                         {{0, 3, 100, 40}, 2, 101, 100},
+                                         {{7, 3, 60, 40}, 1, 101, 0},
+                                         {{7, 3, 60, 40}, 0, 101, 0}};
+    for (const auto& readable : all_around)
+        test::on_every_instruction_set([&] {
+            const Box& box = readable.box;
+            const int reach = readable.reach;
+            std::uniform_int_distribution<std::int32_t> column(-150, 250), row(0, 43);
+            std::vector<std::int32_t> x(kCount + 16), y(kCount + 16), outside(kCount + 16);
+            for (auto& v : x) v = column(random);
+            for (auto& v : y) v = row(random);
+            const auto from_x = x, from_y = y;
+            const bool any = simd::place_in(readable, kCount, x.data(), y.data(), outside.data());
+            for (std::size_t i = 0; i < kCount; ++i) {
+                int at = from_x[i], end = box.x1;
+                if (readable.turn > 0 && (at + reach < 0 || at - reach >= readable.width)) {
+                    at += at < 0 ? readable.turn : -readable.turn;
+                    end = readable.turn;
+                }
+                const bool is_in = at - reach >= box.x0 && at + reach < end && from_y[i] - reach >= box.y0 &&
+                                   from_y[i] + reach < box.y1;
+                EXPECT_EQ(outside[i] == 0, is_in) << from_x[i] << ", " << from_y[i];
+                EXPECT_EQ(x[i], is_in ? at - box.x0 : reach);
+                EXPECT_EQ(y[i], is_in ? from_y[i] - box.y0 : reach);
+            }
+            EXPECT_TRUE(any);
+            // All inside.
+            std::fill(x.begin(), x.end(), box.x0 + reach);
+            std::fill(y.begin(), y.end(), box.y1 - 1 - reach);
+            EXPECT_FALSE(simd::place_in(readable, kCount, x.data(), y.data(), outside.data()));
+        });
+}
+
 }  // namespace
 }  // namespace anamorph

@@ -498,22 +498,16 @@ BlockReader::Got BlockReader::draw_scattered(const Filtering& f, const Block& bl
           std::numeric_limits<std::int32_t>::max()))
         return Got::too_large;
     const SplitBlock at = split(block, part, 1, 1, {0, 0});
-    const int turn = m_border.turn(size);
+    const simd::Readable readable{box, reach, size.width, m_border.turn(size)};
     m_over_edge.clear();
-    for (int j = part.y0; j < part.y1; ++j)
-        for (int i = part.x0; i < part.x1; ++i) {
-            const std::ptrdiff_t k = (j - block.box.y0) * at.stride + i - block.box.x0;
-            std::int32_t &tx = at.whole_x[k], &ty = at.whole_y[k];
-            // Around the sphere go those of which all texels lie beyond the same end.
-            const int around = turn == 0 ? 0 : tx + reach < 0 ? turn : tx - reach >= size.width ? -turn : 0;
-            tx += around;
-            const int end = around == 0 ? box.x1 : turn;
-            const bool inside =
-                tx - reach >= box.x0 && tx + reach < end && ty - reach >= box.y0 && ty + reach < box.y1;
-            if (!inside) m_over_edge.push_back({i, j});
-            tx = inside ? tx - box.x0 : reach;
-            ty = inside ? ty - box.y0 : reach;
-        }
+    for (int j = part.y0; j < part.y1; ++j) {
+        const std::ptrdiff_t first = (j - block.box.y0) * at.stride;
+        std::int32_t outside[simd::kRowRoom];
+        if (!simd::place_in(readable, block.box.width(), at.whole_x + first, at.whole_y + first, outside))
+            continue;
+        for (int i = part.x0; i < part.x1; ++i)
+            if (outside[i - block.box.x0] != 0) m_over_edge.push_back({i, j});
+    }
     draw_window(f, block, at.points(block), {box.x0, box.y0}, window, part, canvas);
     return draw_pixels(block, m_over_edge, canvas) ? Got::window : Got::failed;
 }

@@ -212,27 +212,33 @@ HWY_INLINE void Locate(hn::Vec<Floats> x, hn::Vec<Floats> y, hn::Vec<Ints> row, 
 /// Texels are fetched so many pixels before they are read, in whole rows of pixels, of which there is room for so many.
 constexpr int kAhead = 192, kRows = 8;
 
-/// Fetches the texels at these element offsets, `below` rows farther down. Where they lie far apart, each pixel's own;
-/// elsewhere it takes a few of them to fetch every cache line.
+/// Fetches what pixels read of one row of texels, `below` rows farther down: so many texels from `offset` elements on.
+/// Where those of neighbours lie far apart each pixel's own, of which a vector is loaded that may lie on two cache lines;
+/// elsewhere it takes a few pixels' first ones to fetch every line.
 template <class T, int kChannels>
-HWY_INLINE void Fetch(const Texels& s, const int32_t* offset, int count, int below) {
+HWY_INLINE void Fetch(const Texels& s, const int32_t* offset, int count, int below, int texels) {
     const auto* origin = reinterpret_cast<const T*>(s.texels + below * s.row_stride);
+    const int channels = kChannels ? kChannels : s.channels;
     if (s.apart) {
-        for (int i = 0; i < count; ++i) prefetch_to_second_level(origin + offset[i]);
+        constexpr int kLoaded = sizeof(T) == 1 ? 16 : 8, kLine = 64 / sizeof(T);
+        const int last = HWY_MAX(kLoaded, texels * channels) - 1;
+        for (int i = 0; i < count; ++i) {
+            for (int k = 0; k < last; k += kLine) prefetch_to_second_level(origin + offset[i] + k);
+            prefetch_to_second_level(origin + offset[i] + last);
+        }
         return;
     }
     // Texels of as many pixels span up to the root of 3 times that, less than a line's 64 bytes.
     constexpr int kBytes = 36;
-    const int step =
-        HWY_MAX(1, kBytes / ((kChannels ? kChannels : s.channels) * static_cast<int>(sizeof(T))));
+    const int step = HWY_MAX(1, kBytes / (channels * static_cast<int>(sizeof(T))));
     for (int i = 0; i < count; i += step) hwy::Prefetch(origin + offset[i]);
 }
 
 /// The two rows of a bilinear tap.
 template <class T, int kChannels>
 HWY_INLINE void FetchBilinear(const Texels& s, const int32_t* offset, int count) {
-    Fetch<T, kChannels>(s, offset, count, 0);
-    Fetch<T, kChannels>(s, offset, count, 1);
+    Fetch<T, kChannels>(s, offset, count, 0, 2);
+    Fetch<T, kChannels>(s, offset, count, 1, 2);
 }
 
 /// Where the pixels of a drawing's rows fall among its texels, of one bilinear tap.

@@ -207,15 +207,14 @@ HWY_INLINE void SampleNearest(const Texels& s, const Offsets& at, float* HWY_RES
 template <class T>
 HWY_INLINE void FetchRow(const Texels& s, const Offsets& at) {
     const auto row = static_cast<int32_t>(s.row_stride / static_cast<ptrdiff_t>(sizeof(T)));
-    const int last = s.kernel == Kernel::bicubic ? 2 : s.kernel == Kernel::bilinear ? 1 : 0;
-    const int rows = s.kernel == Kernel::bicubic ? 4 : last + 1;
+    const int side = s.kernel == Kernel::bicubic ? 4 : s.kernel == Kernel::bilinear ? 2 : 1;
+    const float shift = 0.5f * static_cast<float>(side - 1);
     // Where texels lie together those farther up came with an earlier row of pixels.
-    const int first = last + 1 - (s.apart ? rows : HWY_MIN(rows, 2));
-    const float shift = s.kernel == Kernel::nearest ? 0.0f : 0.5f;
+    const int first = s.apart ? 0 : HWY_MAX(0, side - 2);
     for (int tap = 0; tap < s.tap_count; tap += 4) {
         Positions<kRowRoom> p;
         Locate(at, 0, at.count, s.taps[tap], shift, s.channels, row, p);
-        for (int k = first; k <= last; ++k) Fetch<T, 0>(s, p.offset, at.count, k);
+        for (int k = first; k < side; ++k) Fetch<T, 0>(s, p.offset, at.count, k, side);
     }
 }
 

@@ -52,6 +52,36 @@ void ExtendRange(const double* HWY_RESTRICT values, int count, double& low, doub
     high += none;
 }
 
+bool PlaceIn(const Readable& readable, int count, std::int32_t* HWY_RESTRICT x, std::int32_t* HWY_RESTRICT y,
+             std::int32_t* HWY_RESTRICT outside) {
+    const hn::CappedTag<std::int32_t, 16> d;
+    const Box& box = readable.box;
+    const auto reach = hn::Set(d, readable.reach), turn = hn::Set(d, readable.turn);
+    // The first and the last texel that pixels may have; the last one of those that went around is another.
+    const auto left = hn::Set(d, box.x0 + readable.reach), right = hn::Set(d, box.x1 - 1 - readable.reach),
+               top = hn::Set(d, box.y0 + readable.reach), bottom = hn::Set(d, box.y1 - 1 - readable.reach);
+    const auto last = readable.turn == 0 ? right : hn::Set(d, readable.turn - 1 - readable.reach);
+    const auto beyond_left = hn::Set(d, -readable.reach),
+               beyond_right = hn::Set(d, readable.width - 1 + readable.reach);
+    const auto corner_x = hn::Set(d, box.x0), corner_y = hn::Set(d, box.y0);
+    auto any = hn::Zero(d);
+    for (int i = 0; i < count; i += static_cast<int>(hn::Lanes(d))) {
+        auto tx = hn::LoadU(d, x + i);
+        const auto ty = hn::LoadU(d, y + i);
+        const auto before = hn::Lt(tx, beyond_left), behind = hn::Gt(tx, beyond_right);
+        tx = hn::Sub(hn::Add(tx, hn::IfThenElseZero(before, turn)), hn::IfThenElseZero(behind, turn));
+        const auto out =
+            hn::Or(hn::Or(hn::Lt(tx, left), hn::Gt(tx, hn::IfThenElse(hn::Or(before, behind), last, right))),
+                   hn::Or(hn::Lt(ty, top), hn::Gt(ty, bottom)));
+        hn::StoreU(hn::IfThenElse(out, reach, hn::Sub(tx, corner_x)), d, x + i);
+        hn::StoreU(hn::IfThenElse(out, reach, hn::Sub(ty, corner_y)), d, y + i);
+        const auto is_out = hn::VecFromMask(d, out);
+        hn::StoreU(is_out, d, outside + i);
+        any = hn::Or(any, is_out);
+    }
+    return !hn::AllTrue(d, hn::Eq(any, hn::Zero(d)));
+}
+
 }  // namespace HWY_NAMESPACE
 }  // namespace anamorph::simd
 HWY_AFTER_NAMESPACE();
@@ -61,6 +91,7 @@ namespace anamorph::simd {
 
 HWY_EXPORT(SplitPoints);
 HWY_EXPORT(ExtendRange);
+HWY_EXPORT(PlaceIn);
 
 void split_points(const double* points, int count, double scale, std::int32_t base, std::int32_t* texels,
                   float* rests) {
@@ -69,6 +100,10 @@ void split_points(const double* points, int count, double scale, std::int32_t ba
 
 void extend_range(const double* values, int count, double& low, double& high) {
     HWY_DYNAMIC_DISPATCH(ExtendRange)(values, count, low, high);
+}
+
+bool place_in(const Readable& readable, int count, std::int32_t* x, std::int32_t* y, std::int32_t* outside) {
+    return HWY_DYNAMIC_DISPATCH(PlaceIn)(readable, count, x, y, outside);
 }
 
 }  // namespace anamorph::simd

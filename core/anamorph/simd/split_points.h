@@ -4,6 +4,8 @@
 
 #include <cstdint>
 
+#include "anamorph/geometry/box.h"
+
 namespace anamorph::simd {
 
 /// Of `count` points of one coordinate, times `scale`: the texel each falls into, less `base`, and the rest as a float
@@ -14,5 +16,17 @@ void split_points(const double* points, int count, double scale, std::int32_t ba
 
 /// Extends a range by `count` values; where one is not a number, to NaN.
 void extend_range(const double* values, int count, double& low, double& high);
+
+/// Where the texels of pixels may be read: in `box`, for each those up to `reach` <= 2 away from its own, both ways. Rows of
+/// `width` texels follow on themselves after `turn`, if that is not 0.
+struct Readable {
+    Box box;
+    int reach, width, turn;
+};
+
+/// Counts `count` texels within 2^30 of 0 from the corner of the box. Those whose neighbours all lie beyond the same end of a
+/// row that follows on itself go around. Those whose neighbours are not all in the box are `outside`, and come to stand at a
+/// texel that may be read. False when there are none for certain. Arrays have room for 16 more.
+bool place_in(const Readable& readable, int count, std::int32_t* x, std::int32_t* y, std::int32_t* outside);
 
 }  // namespace anamorph::simd
