@@ -43,27 +43,46 @@ TEST(SplitPoints, WholeAndRestAreThePoint) {
         });
 }
 
-TEST(ExtendRange, FindsTheEndsAndWhatIsNoNumber) {
-    constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+/// Rows of 2.5 with another value somewhere in them, and values behind them that do not count.
+template <class Real>
+void expect_ends(int width, int height) {
+    constexpr Real kNaN = std::numeric_limits<Real>::quiet_NaN();
+    const std::ptrdiff_t stride = width + 16;
+    std::vector<Real> values(std::size_t(stride * height), Real(1e9));
+    const auto at = [&](int i, int j) -> Real& { return values[std::size_t(j * stride + i)]; };
+    for (int j = 0; j < height; ++j)
+        for (int i = 0; i < width; ++i) at(i, j) = Real(2.5);
+    const simd::ValueRows<Real> rows{values.data(), stride, width, height};
+    for (int j = 0; j < height; ++j)
+        for (int i = 0; i < width; ++i) {
+            SCOPED_TRACE(testing::Message() << i << ", " << j << " of " << width << " x " << height);
+            at(i, j) = -7;
+            simd::Ends ends = simd::ends_of(rows);
+            EXPECT_EQ(ends.low, -7);
+            EXPECT_EQ(ends.high, width * height > 1 ? 2.5 : -7);
+            if (i > 0) {
+                // What leads from each to the next.
+                ends = simd::ends_of(simd::ValueRows<Real>{values.data(), stride, width - 1, height, 1});
+                EXPECT_EQ(ends.low, -9.5);
+                EXPECT_EQ(ends.high, i + 1 < width ? 9.5 : width > 2 || height > 1 ? 0 : -9.5);
+            }
+            at(i, j) = std::numeric_limits<Real>::max();
+            EXPECT_EQ(simd::ends_of(rows).high, std::numeric_limits<Real>::max());
+            for (const Real none : {kNaN, std::numeric_limits<Real>::infinity()}) {
+                at(i, j) = none;
+                ends = simd::ends_of(rows);
+                EXPECT_TRUE(std::isnan(ends.low) && std::isnan(ends.high));
+            }
+            at(i, j) = Real(2.5);
+        }
+}
+
+TEST(EndsOf, FindsTheEndsAndWhatIsNoNumber) {
     test::on_every_instruction_set([&] {
-        for (std::size_t count : {1U, 3U, 8U, 29U})
-            for (std::size_t at = 0; at < count; ++at) {
-                std::vector<double> values(count, 2.5);
-                double low = 2, high = 3;
-                values[at] = -7;
-                simd::extend_range(values.data(), int(count), low, high);
-                EXPECT_EQ(low, -7);
-                EXPECT_EQ(high, 3);
-                values[at] = 1e300;
-                simd::extend_range(values.data(), int(count), low, high);
-                EXPECT_EQ(high, 1e300);
-                values[at] = kNaN;
-                simd::extend_range(values.data(), int(count), low, high);
-                EXPECT_FALSE(low <= high);
-                // It stays so.
-                values[at] = 0;
-                simd::extend_range(values.data(), int(count), low, high);
-                EXPECT_FALSE(low <= high);
+        for (const int width : {1, 3, 8, 15, 16, 17, 29, 64})
+            for (const int height : {1, 3}) {
+                expect_ends<float>(width, height);
+                expect_ends<double>(width, height);
             }
     });
 }

@@ -241,13 +241,14 @@ double DrapeMap::bound_of(const SeenRegion& region, const Box& box) const {
 
 /// What the points of a box run over.
 DrapeMap::Range DrapeMap::range_of(const SeenRegion& region, const Box& box) {
-    Range r{{HUGE_VAL, -HUGE_VAL}, {HUGE_VAL, -HUGE_VAL}};
-    for (int y = box.y0; y < box.y1; ++y) {
-        const std::size_t at = region.pixels().index(box.x0, y);
-        simd::extend_range(region.pixels().u.data() + at, box.width(), r.u[0], r.u[1]);
-        simd::extend_range(region.pixels().v.data() + at, box.width(), r.v[0], r.v[1]);
-    }
-    return r;
+    const SeenPixels& pixels = region.pixels();
+    const std::size_t first = pixels.index(box.x0, box.y0);
+    const auto of = [&](const std::vector<double>& values) {
+        return simd::ends_of(
+            simd::ValueRows<double>{values.data() + first, pixels.stride, box.width(), box.height()});
+    };
+    const simd::Ends u = of(pixels.u), v = of(pixels.v);
+    return {{u.low, u.high}, {v.low, v.high}};
 }
 
 /// Do sheets that lie far apart on the picture meet in a box?

@@ -5,7 +5,6 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <numeric>
 
 #include "anamorph/approx/block_writer.h"
 #include "anamorph/render/pixel.h"
@@ -126,32 +125,6 @@ class Steps {
     Box m_size;
 };
 
-/// The least and the greatest of the values that value(j, i) gives for the pixels of a cell; NaN where one is not
-/// finite.
-template <class Value>
-void range_over(const Value& value, int width, int height, double& low, double& high) {
-    using Real = decltype(value(0, 0));
-    // In lanes, so that the compiler need not keep the order of comparisons.
-    constexpr int kLanes = 64 / sizeof(Real);
-    Real least[kLanes], greatest[kLanes], nothing[kLanes] = {};
-    std::fill_n(least, kLanes, std::numeric_limits<Real>::infinity());
-    std::fill_n(greatest, kLanes, -std::numeric_limits<Real>::infinity());
-    const auto take = [&](Real v, int lane) {
-        least[lane] = v < least[lane] ? v : least[lane];
-        greatest[lane] = v > greatest[lane] ? v : greatest[lane];
-        nothing[lane] += v - v;
-    };
-    for (int j = 0; j < height; ++j) {
-        int i = 0;
-        for (; i + kLanes <= width; i += kLanes)
-            for (int lane = 0; lane < kLanes; ++lane) take(value(j, i + lane), lane);
-        for (; i < width; ++i) take(value(j, i), 0);
-    }
-    const double zero = double{std::accumulate(nothing, nothing + kLanes, Real(0))};
-    low = *std::min_element(least, least + kLanes) + zero;
-    high = *std::max_element(greatest, greatest + kLanes) + zero;
-}
-
 /// Are all steps of a block's points, `ahead` entries from one to the next, so near to the axis (x, y) of a footprint that
 /// each is like it? At once for all of them; false where that is not certain.
 template <class Real>
@@ -159,12 +132,7 @@ bool all_alike(const PixelPoints<Real>& points, std::ptrdiff_t ahead, int width,
                double y) {
     double worst = 0, longest = 0;
     for (const auto& [at, axis] : {std::pair(points.x, x), std::pair(points.y, y)}) {
-        double low = 0, high = 0;
-        const Real* const p = at;
-        const auto step = [p, ahead, stride = points.row_stride](int j, int i) {
-            return p[j * stride + i + ahead] - p[j * stride + i];
-        };
-        range_over(step, width, height, low, high);
+        const auto [low, high] = simd::ends_of({at, points.row_stride, width, height, ahead});
         worst += square(std::max(std::fabs(low - axis), std::fabs(high - axis)));
         longest += square(std::max(std::fabs(low), std::fabs(high)));
     }
@@ -629,13 +597,13 @@ bool BlockReader::for_each_footprint(const Block& block, const At& at, const Bod
 bool BlockReader::ranges_of(const Block& block, const BlockPoints& points, const Box& cell, Range& x,
                             Range& y) {
     const std::ptrdiff_t first = cell.y0 * points.row_stride + cell.x0;
-    const auto range = [&](const float* at, Range& r) {
-        const float* const p = at + first;
-        range_over([p, stride = points.row_stride](int j, int i) { return p[j * stride + i]; }, cell.width(),
-                   cell.height(), r.low, r.high);
+    const auto range = [&](const float* at) {
+        const simd::Ends ends =
+            simd::ends_of(simd::ValueRows<float>{at + first, points.row_stride, cell.width(), cell.height()});
+        return Range{ends.low, ends.high};
     };
-    range(points.x, x);
-    range(points.y, y);
+    x = range(points.x);
+    y = range(points.y);
     return is_near(block.base_x + x.low) && is_near(block.base_x + x.high) && is_near(block.base_y + y.low) &&
            is_near(block.base_y + y.high);
 }
@@ -746,10 +714,11 @@ bool BlockReader::rows_in_double(const Block& block, const Box& part, const Row&
 /// Of the points of a cell that were read in double. False where they are too far away.
 bool BlockReader::ranges_in_double(const Box& cell, Range& x, Range& y) const {
     const PixelPoints<double> points = m_exact.points();
+    const std::ptrdiff_t first = cell.y0 * points.row_stride + cell.x0;
     const auto range = [&](const double* at, Range& r) {
-        r = {HUGE_VAL, -HUGE_VAL};
-        for (int j = cell.y0; j < cell.y1; ++j)
-            simd::extend_range(at + j * points.row_stride + cell.x0, cell.width(), r.low, r.high);
+        const simd::Ends ends = simd::ends_of(
+            simd::ValueRows<double>{at + first, points.row_stride, cell.width(), cell.height()});
+        r = {ends.low, ends.high};
         return is_near(r.low) && is_near(r.high);
     };
     const bool near_x = range(points.x, x);

@@ -27,29 +27,49 @@ void SplitPoints(const double* HWY_RESTRICT points, int count, double scale, std
     }
 }
 
-void ExtendRange(const double* HWY_RESTRICT values, int count, double& low, double& high) {
-    const hn::CappedTag<double, 16> d;
-    const int lanes = static_cast<int>(hn::Lanes(d));
-    // 0, or NaN; minima may lose a NaN.
-    double none = low == low ? 0 : low;
-    auto least = hn::Set(d, low), greatest = hn::Set(d, high), nothing = hn::Zero(d);
-    int i = 0;
-    for (; i + lanes <= count; i += lanes) {
-        const auto v = hn::LoadU(d, values + i);
+/// Of some values at once: lane by lane, and what is NaN where one is not finite (minima may lose a NaN).
+template <class D>
+struct LaneEnds {
+    hn::Vec<D> least, greatest, nothing;
+
+    HWY_INLINE explicit LaneEnds(hn::Vec<D> v) : least(v), greatest(v), nothing(hn::Sub(v, v)) {}
+    HWY_INLINE void Take(hn::Vec<D> v) {
         least = hn::Min(least, v);
         greatest = hn::Max(greatest, v);
         nothing = hn::Add(nothing, hn::Sub(v, v));
     }
-    low = hn::GetLane(hn::MinOfLanes(d, least));
-    high = hn::GetLane(hn::MaxOfLanes(d, greatest));
-    none += hn::GetLane(hn::SumOfLanes(d, nothing));
-    for (; i < count; ++i) {
-        low = HWY_MIN(low, values[i]);
-        high = HWY_MAX(high, values[i]);
-        none += values[i] - values[i];
+};
+
+/// Of rows at least as wide as a vector of D; the last vector of each may have values twice.
+template <class D, class Real>
+HWY_INLINE Ends EndsIn(D d, const ValueRows<Real>& rows) {
+    const auto at = [&](const Real* p) HWY_ATTR {
+        const auto v = hn::LoadU(d, p);
+        return rows.ahead == 0 ? v : hn::Sub(hn::LoadU(d, p + rows.ahead), v);
+    };
+    const int lanes = static_cast<int>(hn::Lanes(d)), last = rows.width - lanes;
+    LaneEnds<D> ends(at(rows.values));
+    for (int j = 0; j < rows.height; ++j) {
+        const Real* const row = rows.values + j * rows.stride;
+        for (int i = 0; i < last; i += lanes) ends.Take(at(row + i));
+        ends.Take(at(row + last));
     }
-    low += none;
-    high += none;
+    const double none{hn::GetLane(hn::SumOfLanes(d, ends.nothing))};
+    return {double{hn::GetLane(hn::MinOfLanes(d, ends.least))} + none,
+            double{hn::GetLane(hn::MaxOfLanes(d, ends.greatest))} + none};
+}
+
+template <class Real>
+HWY_INLINE Ends EndsOf(const ValueRows<Real>& rows) {
+    const hn::CappedTag<Real, 16> d;
+    const hn::CappedTag<Real, 1> one;
+    return rows.width >= static_cast<int>(hn::Lanes(d)) ? EndsIn(d, rows) : EndsIn(one, rows);
+}
+Ends EndsOfFloats(const ValueRows<float>& rows) {
+    return EndsOf(rows);
+}
+Ends EndsOfDoubles(const ValueRows<double>& rows) {
+    return EndsOf(rows);
 }
 
 bool PlaceIn(const Readable& readable, int count, std::int32_t* HWY_RESTRICT x, std::int32_t* HWY_RESTRICT y,
@@ -90,7 +110,8 @@ HWY_AFTER_NAMESPACE();
 namespace anamorph::simd {
 
 HWY_EXPORT(SplitPoints);
-HWY_EXPORT(ExtendRange);
+HWY_EXPORT(EndsOfFloats);
+HWY_EXPORT(EndsOfDoubles);
 HWY_EXPORT(PlaceIn);
 
 void split_points(const double* points, int count, double scale, std::int32_t base, std::int32_t* texels,
@@ -98,8 +119,12 @@ void split_points(const double* points, int count, double scale, std::int32_t ba
     HWY_DYNAMIC_DISPATCH(SplitPoints)(points, count, scale, base, texels, rests);
 }
 
-void extend_range(const double* values, int count, double& low, double& high) {
-    HWY_DYNAMIC_DISPATCH(ExtendRange)(values, count, low, high);
+Ends ends_of(const ValueRows<float>& rows) {
+    return HWY_DYNAMIC_DISPATCH(EndsOfFloats)(rows);
+}
+
+Ends ends_of(const ValueRows<double>& rows) {
+    return HWY_DYNAMIC_DISPATCH(EndsOfDoubles)(rows);
 }
 
 bool place_in(const Readable& readable, int count, std::int32_t* x, std::int32_t* y, std::int32_t* outside) {

@@ -2,6 +2,7 @@
 // Source points in double as samplers read them: a whole texel, and how far into it.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 
 #include "anamorph/geometry/box.h"
@@ -14,8 +15,20 @@ namespace anamorph::simd {
 void split_points(const double* points, int count, double scale, std::int32_t base, std::int32_t* texels,
                   float* rests);
 
-/// Extends a range by `count` values; where one is not a number, to NaN.
-void extend_range(const double* values, int count, double& low, double& high);
+/// Rows of values, `stride` entries apart; or of what is to be added to each to come to the one `ahead` entries farther on.
+template <class Real>
+struct ValueRows {
+    const Real* values;
+    std::ptrdiff_t stride;
+    int width, height;
+    std::ptrdiff_t ahead = 0;
+};
+/// The least and the greatest of at least one value; NaN where one is not a finite number.
+struct Ends {
+    double low, high;
+};
+Ends ends_of(const ValueRows<float>& rows);
+Ends ends_of(const ValueRows<double>& rows);
 
 /// Where the texels of pixels may be read: in `box`, for each those up to `reach` <= 2 away from its own, both ways. Rows of
 /// `width` texels follow on themselves after `turn`, if that is not 0.
