@@ -8,7 +8,6 @@
 
 #include "anamorph/approx/block_writer.h"
 #include "anamorph/render/pixel.h"
-#include "anamorph/simd/split_points.h"
 
 namespace anamorph {
 namespace {
@@ -124,6 +123,13 @@ class Steps {
     const At& m_at;
     Box m_size;
 };
+
+/// Of one coordinate of a block's points, over a cell counted from its corner.
+template <class Real>
+simd::Ends ends_over(const Real* values, std::ptrdiff_t stride, const Box& cell) {
+    return simd::ends_of(
+        simd::ValueRows<Real>{values + cell.y0 * stride + cell.x0, stride, cell.width(), cell.height()});
+}
 
 /// Are all steps of a block's points, `ahead` entries from one to the next, so near to the axis (x, y) of a footprint that
 /// each is like it? At once for all of them; false where that is not certain.
@@ -596,14 +602,8 @@ bool BlockReader::for_each_footprint(const Block& block, const At& at, const Bod
 /// Of the points of a cell. False where they are too far away.
 bool BlockReader::ranges_of(const Block& block, const BlockPoints& points, const Box& cell, Range& x,
                             Range& y) {
-    const std::ptrdiff_t first = cell.y0 * points.row_stride + cell.x0;
-    const auto range = [&](const float* at) {
-        const simd::Ends ends =
-            simd::ends_of(simd::ValueRows<float>{at + first, points.row_stride, cell.width(), cell.height()});
-        return Range{ends.low, ends.high};
-    };
-    x = range(points.x);
-    y = range(points.y);
+    x = ends_over(points.x, points.row_stride, cell);
+    y = ends_over(points.y, points.row_stride, cell);
     return is_near(block.base_x + x.low) && is_near(block.base_x + x.high) && is_near(block.base_y + y.low) &&
            is_near(block.base_y + y.high);
 }
@@ -714,15 +714,9 @@ bool BlockReader::rows_in_double(const Block& block, const Box& part, const Row&
 /// Of the points of a cell that were read in double. False where they are too far away.
 bool BlockReader::ranges_in_double(const Box& cell, Range& x, Range& y) const {
     const PixelPoints<double> points = m_exact.points();
-    const std::ptrdiff_t first = cell.y0 * points.row_stride + cell.x0;
-    const auto range = [&](const double* at, Range& r) {
-        const simd::Ends ends = simd::ends_of(
-            simd::ValueRows<double>{at + first, points.row_stride, cell.width(), cell.height()});
-        r = {ends.low, ends.high};
-        return is_near(r.low) && is_near(r.high);
-    };
-    const bool near_x = range(points.x, x);
-    return range(points.y, y) && near_x;
+    x = ends_over(points.x, points.row_stride, cell);
+    y = ends_over(points.y, points.row_stride, cell);
+    return is_near(x.low) && is_near(x.high) && is_near(y.low) && is_near(y.high);
 }
 
 bool BlockReader::exact_cell(const Filtering& f, const Block& block, const Box& cell, const Box& part,

@@ -15,6 +15,7 @@
 #include "anamorph/render/footprint.h"
 #include "anamorph/render/point_sampler.h"
 #include "anamorph/render/window.h"
+#include "anamorph/simd/split_points.h"
 
 namespace anamorph {
 
@@ -116,9 +117,7 @@ class BlockReader {
         std::array<simd::Tap, simd::kMaxTaps> taps{};
         double reach_x = 0, reach_y = 0;  ///< of the taps, level texels
     };
-    struct Range {
-        double low = 0, high = 0;
-    };
+    using Range = simd::Ends;
     /// Points as whole texels and rests.
     struct SplitBlock {
         std::int32_t *whole_x, *whole_y;

@@ -25,7 +25,7 @@ struct ValueRows {
 };
 /// The least and the greatest of at least one value; NaN where one is not a finite number.
 struct Ends {
-    double low, high;
+    double low = 0, high = 0;
 };
 Ends ends_of(const ValueRows<float>& rows);
 Ends ends_of(const ValueRows<double>& rows);
