@@ -158,6 +158,34 @@ TEST(Border, PlainModesStayOnTheirFace) {
     EXPECT_EQ(Border(chart, Wrap::periodic).interior(4, {12, 8}), (Box{4, 4, 8, 8}));
 }
 
+TEST(Border, TheQuartersOfAnOctahedronHaveNoEdgesWhereTheyMeet) {
+    const Chart chart = chart_for(Projection::octahedral, 8);
+    const Size level{16, 16};
+    for (int piece = 0; piece < 4; ++piece) {
+        SCOPED_TRACE(piece);
+        for (const Wrap wrap : {Wrap::automatic, Wrap::black, Wrap::clamp, Wrap::periodic, Wrap::mirror}) {
+            EXPECT_EQ(Border(chart, wrap).interior(piece, level), (Box{0, 0, 16, 16}));
+            EXPECT_EQ(Border(chart, wrap).resolve(7, 8, piece, level), (Texel{7, 8}));
+        }
+        EXPECT_EQ(Border(chart, Wrap::black).resolve(16, 8, piece, level), kNone);
+        EXPECT_EQ(Border(chart, Wrap::clamp).resolve(-3, 9, piece, level), (Texel{0, 9}));
+        EXPECT_EQ(Border(chart, Wrap::periodic).resolve(17, 9, piece, level), (Texel{1, 9}));
+        EXPECT_EQ(Border(chart, Wrap::mirror).resolve(3, -2, piece, level), (Texel{3, 1}));
+    }
+}
+
+TEST(Border, BesideALensOfTwoIsNotTheOther) {
+    // Each lens sees 60 degrees from its axis, which is as far as its half of the picture reaches.
+    const Chart chart(Projection::dual_fisheye, 40, 20, 120);
+    const Border border(chart, Wrap::automatic);
+    for (int piece = 0; piece < 2; ++piece)
+        for (const int x : {20 * piece - 1, 20 * piece + 20})
+            EXPECT_EQ(border.resolve(x, 9, piece, {40, 20}), kNone) << piece << ' ' << x;
+    // With more than 180 degrees one goes on in the other.
+    const Border wide(Chart(Projection::dual_fisheye, 40, 20, 200), Wrap::automatic);
+    EXPECT_FALSE(wide.resolve(20, 9, 0, {40, 20}).none);
+}
+
 TEST(Border, PanoramasCloseAndGoOverThePoles) {
     const Chart chart(Projection::equirectangular, 16, 8);
     const Border border(chart, Wrap::automatic);

@@ -158,6 +158,17 @@ TEST(ProjectionBake, SeamsAreReadAcrossAndFacesAreNot) {
     for (std::size_t i = 0; i < below.pixels.size(); i += 4) EXPECT_EQ(below.pixels[i], 1);
 }
 
+TEST(ProjectionBake, QuartersOfAnOctahedronAreReadAcross) {
+    // Ahead four texels meet, of which one has a value: the middle of the wall has a quarter of it.
+    std::vector<float> pixels = plain(64, 64, 0);
+    for (int c = 0; c < 3; ++c) pixels[static_cast<std::size_t>(3 * (64 * 32 + 32) + c)] = 4;
+    BakeOptions options;
+    options.size = {401, 401};
+    const Projector projector(Chart(Projection::octahedral, 64, 64));
+    const BakedTexture texture = bake(wall(), {{projector, pixels.data()}}, options);
+    EXPECT_NEAR(texture.pixels[static_cast<std::size_t>(4 * (401 * 200 + 200))], 1, 0.05);
+}
+
 TEST(ProjectionBake, TexelsBeyondABorderGoOnAndTheFirstTriangleHasThem) {
     std::vector<BakedTriangle> one{wall()[0]};
     const std::vector<float> pixels = plain(64, 32, 1);

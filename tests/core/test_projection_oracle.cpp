@@ -64,7 +64,11 @@ Plane turned(Real radius, const Vector& v) {
 class Oracle {
   public:
     explicit Oracle(const Chart& chart, Real d)
-        : m_projection(chart.projection()), m_width(chart.width()), m_height(chart.height()), m_d(d) {
+        : m_projection(chart.projection()),
+          m_width(chart.width()),
+          m_height(chart.height()),
+          m_d(d),
+          m_spans(m_width - (chart.spacing() == PixelSpacing::centers ? 1 : 0)) {
         const Real h = static_cast<Real>(chart.fov()) / 2 * kDegree;
         switch (m_projection) {
             case Projection::pannini:
@@ -112,7 +116,7 @@ class Oracle {
             default:
                 break;
         }
-        const Real scale = m_width / (2 * m_half);
+        const Real scale = m_spans / (2 * m_half);
         return of_plane((x - m_width / Real(2)) / scale, (y - m_height / Real(2)) / scale);
     }
 
@@ -134,6 +138,7 @@ class Oracle {
                 const Real side = m_width / Real(2);
                 const bool front = v.z > 0;
                 const Vector w = front ? v : Vector{-v.x, v.y, -v.z};
+                if (polar_of(w) > m_half) return kNoPoint;
                 const Plane p = turned(polar_of(w), w);
                 return {(front + 0.5L + p.x / (2 * m_half)) * side, (0.5L + p.y / (2 * m_half)) * side};
             }
@@ -141,7 +146,7 @@ class Oracle {
                 break;
         }
         const Plane p = in_plane(v);
-        const Real scale = m_width / (2 * m_half);
+        const Real scale = m_spans / (2 * m_half);
         return {p.x * scale + m_width / Real(2), p.y * scale + m_height / Real(2)};
     }
 
@@ -228,12 +233,14 @@ class Oracle {
     Projection m_projection;
     int m_width, m_height;
     Real m_d, m_half = 1;
+    int m_spans;  ///< pixels that 2 m_half cover, of pictures without faces and of the octahedron's
 };
 
 struct Case {
     Projection projection;
     int width, height;
     double fov = 0, d = 1;
+    PixelSpacing spacing = PixelSpacing::edges;
 };
 
 const Case kCases[] = {
@@ -251,7 +258,9 @@ const Case kCases[] = {
     {Projection::hammer, 31, 30, 140},
     {Projection::dual_fisheye, 40, 20},
     {Projection::dual_fisheye, 40, 20, 210},
+    {Projection::dual_fisheye, 40, 20, 120},
     {Projection::octahedral, 32, 32},
+    {Projection::octahedral, 32, 32, 0, 1, PixelSpacing::centers},
     {Projection::equisolid, 31, 31, 360},
     {Projection::equisolid, 30, 20, 100},
 };
@@ -315,7 +324,7 @@ TEST(ProjectionOracle, BothWays) {
     std::normal_distribution<double> normal;
     for (const Case& c : kCases) {
         SCOPED_TRACE(testing::Message() << name_of(c.projection) << " fov " << c.fov << " d " << c.d);
-        const Chart chart(c.projection, c.width, c.height, c.fov, PixelSpacing::edges, "", c.d);
+        const Chart chart(c.projection, c.width, c.height, c.fov, c.spacing, "", c.d);
         const Oracle oracle(chart, static_cast<Real>(c.d));
         Checked checked(chart, oracle);
         for (int j = 0; j < c.height; ++j)

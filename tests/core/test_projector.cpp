@@ -242,6 +242,21 @@ TEST(Projector, PointsWithoutDirectionReceiveNothing) {
     EXPECT_EQ(slide.receive({1.001, 0, -1}, texel), Received::nothing);
 }
 
+TEST(Projector, WhatNeitherOfTwoLensesSeesReceivesNothing) {
+    Point<double> texel{};
+    const Projector projector(Chart(Projection::dual_fisheye, 400, 200, 120));
+    const auto at = [&](double degrees) {
+        const double t = degrees / 180 * std::numbers::pi;
+        return projector.receive({std::sin(t), 0, -std::cos(t)}, texel);
+    };
+    for (const double degrees : {0.0, 59.9, 120.1, 180.0, -59.9, -120.1})
+        EXPECT_EQ(at(degrees), Received::texel) << degrees;
+    for (const double degrees : {60.1, 80.0, 90.0, 119.9, -60.1, -90.0, -119.9})
+        EXPECT_EQ(at(degrees), Received::nothing) << degrees;
+    ASSERT_EQ(at(30), Received::texel);
+    EXPECT_NEAR(texel.x, 350, 1e-9);
+}
+
 TEST(Projector, WhatIsNoPoseIsRefused) {
     const Chart chart(Projection::equirectangular, 400, 200);
     const auto error = [&](const ProjectorPose& pose) {

@@ -422,6 +422,92 @@ TEST(Reproject, ErrorPictureStaysUnderBoundPicture) {
     }
 }
 
+TEST(Reproject, BoundsGoOnWhereSourcePointsDo) {
+    using enum Projection;
+    // The view looks past all four edges of the photograph.
+    const Panorama map({rectilinear, 200, 160, 40}, {rectilinear, 300, 240, 120}, {10, 5, 20});
+    for (const Scheme scheme : {Scheme::automatic, Scheme::exact})
+        for (const Wrap wrap : {Wrap::automatic, Wrap::black}) {
+            ReprojectOptions options;
+            options.scheme = scheme;
+            options.wrap = wrap;
+            const auto picture_of = [&](Output output, int channels) {
+                options.output = output;
+                Picture p(PixelType::float32, 300, 240, channels);
+                EXPECT_TRUE(Reprojection(map, options).draw(nullptr, {0, 0, 300, 240}, p.view));
+                return p;
+            };
+            const Picture stmap = picture_of(Output::stmap, 2), bound = picture_of(Output::bound, 1);
+            int beyond = 0;
+            for (int y = 0; y < 240; ++y)
+                for (int x = 0; x < 300; ++x) {
+                    Point<double> p;
+                    int piece;
+                    ASSERT_TRUE(map.exact(x + 0.5, y + 0.5, 0, p, piece));
+                    beyond += p.x < 0 || p.x > 200 || p.y < 0 || p.y > 160;
+                    ASSERT_NEAR(stmap.at(x, y, 0), p.x / 200, 1e-4 * std::max(1.0, std::fabs(p.x) / 200));
+                    ASSERT_GT(bound.at(x, y, 0), 0) << x << ' ' << y;
+                }
+            EXPECT_GT(beyond, 300 * 240 / 2);
+        }
+}
+
+TEST(Reproject, WhatNeitherOfTwoLensesSeesIsBlack) {
+    // The lens that looks back is 5, the one that looks ahead is 7; each sees 60 degrees from its axis.
+    constexpr int kSize = 64;
+    Picture pixels(PixelType::float32, 2 * kSize, kSize, 1);
+    for (int y = 0; y < kSize; ++y)
+        for (int x = 0; x < 2 * kSize; ++x) pixels.set(x, y, 0, x < kSize ? 5.0f : 7.0f);
+    const MemorySource source(pixels.read());
+    const Chart from(Projection::dual_fisheye, 2 * kSize, kSize, 120);
+    const Panorama map(from, {Projection::equirectangular, 360, 180}, {});
+    for (const Filter filter : {Filter::nearest, Filter::bilinear, Filter::bicubic, Filter::antialias})
+        for (const double tol : {0.0, 0.01}) {
+            SCOPED_TRACE(testing::Message() << static_cast<int>(filter) << " tol " << tol);
+            ReprojectOptions options;
+            options.filter = filter;
+            options.tol = tol;
+            const Picture picture = draw(Reprojection(map, options), source);
+            for (int y = 0; y < 180; ++y)
+                for (int x = 0; x < 360; ++x) {
+                    const double azimuth = (x + 0.5 - 180) / 180 * std::numbers::pi,
+                                 elevation = (y + 0.5 - 90) / 180 * std::numbers::pi;
+                    const double z = std::cos(azimuth) * std::cos(elevation);
+                    const double from_axis = std::acos(std::fabs(z)) / std::numbers::pi * 180;
+                    const float value = picture.at(x, y, 0), own = z > 0 ? 7.0f : 5.0f;
+                    if (from_axis > 60) {
+                        ASSERT_EQ(value, 0) << x << ' ' << y;
+                    } else if (from_axis < 57) {
+                        // Two texels from the edge, whose own are mixed with what is not there.
+                        ASSERT_NEAR(value, own, 1e-5) << x << ' ' << y;
+                    } else {
+                        ASSERT_LE(value, own * 1.13f) << x << ' ' << y;
+                    }
+                }
+        }
+}
+
+TEST(Reproject, AnOctahedronIsOnePicture) {
+    // Of ones, whatever stands beyond its edges, and whether pixels' edges or centres are at them.
+    Picture pixels(PixelType::float32, 64, 64, 1);
+    for (int y = 0; y < 64; ++y)
+        for (int x = 0; x < 64; ++x) pixels.set(x, y, 0, 1);
+    const MemorySource source(pixels.read());
+    for (const PixelSpacing spacing : {PixelSpacing::edges, PixelSpacing::centers})
+        for (const Wrap wrap : {Wrap::automatic, Wrap::black, Wrap::clamp, Wrap::periodic, Wrap::mirror})
+            for (const Filter filter : {Filter::bilinear, Filter::bicubic, Filter::antialias}) {
+                ReprojectOptions options;
+                options.filter = filter;
+                options.wrap = wrap;
+                // Three quarters of the way to the diamond's edge, across all lines where quarters meet.
+                const Panorama map({Projection::octahedral, 64, 64, 0, spacing},
+                                   {Projection::rectilinear, 33, 33, 90}, {});
+                const Picture picture = draw(Reprojection(map, options), source);
+                for (int y = 0; y < 33; ++y)
+                    for (int x = 0; x < 33; ++x) ASSERT_FLOAT_EQ(picture.at(x, y, 0), 1) << x << ' ' << y;
+            }
+}
+
 class BrokenSource final : public Source {
   public:
     PixelType type() const noexcept override { return PixelType::float32; }

@@ -174,6 +174,9 @@ class BlockMap {
     virtual void exact_rows(const Block& block, int begin, int end, const DoubleRows& to) const noexcept;
     /// Source pixels per target pixel at a target point.
     virtual Jacobian jacobian(double x, double y, int piece) const noexcept = 0;
+    /// Do exact() and jacobian() answer at any point of a pixel, each in little time, and change from point to point as one
+    /// formula does?
+    virtual bool is_smooth_in_pixels() const noexcept { return false; }
     /// The polynomial of a bicubic block.
     virtual BlockPolynomial bicubic(const Block& block) const noexcept;
     /// Pixels [begin, end) of row `row` (0 is the block's first) of a computed block: source points less the

@@ -48,6 +48,7 @@ class FormulaPlan : public BlockMap {
     bool truth(double x, double y, int piece, Point<long double>& source_point,
                int& source_piece) const noexcept override;
     Jacobian jacobian(double x, double y, int piece) const noexcept override;
+    bool is_smooth_in_pixels() const noexcept override { return true; }
     BlockPolynomial bicubic(const Block& block) const noexcept override;
     void exact_rows(const Block& block, int begin, int end, const DoubleRows& to) const noexcept override;
 

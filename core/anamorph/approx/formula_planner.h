@@ -345,11 +345,15 @@ class Planner {
     Cover culled(const Box& box, const Local& local) const {
         const Size size = m_map.source_size();
         const SourceEdges edges = m_map.source_edges();
-        const Point<Interval> at = m_map(across(box), down(box), local);
+        // Of whole pixels: some are drawn in parts (render/block_reader.h).
+        const Interval x(box.x0, box.x1), y(box.y0, box.y1);
+        const Point<Interval> at = m_map(x, y, local);
         const auto meets = [](const Interval& a, int length) { return a.hi >= 0 && a.lo <= length; };
         if ((!edges.across || meets(at.x, size.width)) && (!edges.down || meets(at.y, size.height)))
             return Cover::inside;
-        return lies_beyond(enclose<1>(box, local)) ? Cover::outside : Cover::inside;
+        using J = Jet<Interval, 1>;
+        return lies_beyond(m_map(J::variable(x, 1, 0), J::variable(y, 0, 1), local)) ? Cover::outside
+                                                                                     : Cover::inside;
     }
     /// Of what the map's Taylor coefficients over a box say.
     template <int N>

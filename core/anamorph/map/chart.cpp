@@ -88,7 +88,7 @@ FieldOfView fov_of(Projection projection) {
 
 FaceGrid faces_of(Projection projection) {
     return with_projection(projection, [](auto formulas) {
-        return FaceGrid{formulas.columns, formulas.rows};
+        return FaceGrid{formulas.columns, formulas.rows, formulas.face_centre > 0};
     });
 }
 
@@ -129,8 +129,11 @@ void Chart::set_scale(const std::string& prefix, const LensModel& lens) {
         if (columns < 2 || rows < 2)
             throw Error(prefix + "size", std::to_string(m_width) + "x" + std::to_string(m_height),
                         "pixels=centers needs at least 2 pixels each way");
-        across = (columns - 1) / plane;
-        down = (rows - 1) / (plane * rows / columns);
+        // Of a face, or of all of those that are joined.
+        const FaceGrid grid = faces_of(m_projection);
+        const int faces_across = grid.joined ? grid.columns : 1, faces_down = grid.joined ? grid.rows : 1;
+        across = (columns * faces_across - 1) / (plane * faces_across);
+        down = (rows * faces_down - 1) / (plane * rows / columns * faces_down);
     }
     const double units =
         with_projection(m_projection, [&](auto formulas) { return formulas.width_units(m_fov, m_setting); });
@@ -158,10 +161,15 @@ void Chart::set_branches() {
             formulas.largest_tangent(0.5 * m_width / scale_x(), 0.5 * m_height / scale_y());
         m_setting.reach = kFarOut * std::max(1.0, tangent);
         const int across = m_pieces[0].box.width();
+        const bool joined = faces_of(m_projection).joined;
         for (std::size_t i = 0; i < m_pieces.size(); ++i) {
+            const Box& box = m_pieces[i].box;
             Branch b{m_setting, static_cast<int>(i), m_pieces[i].axes};
-            b.centre_x = m_pieces[i].box.x0 < across ? -formulas.face_centre : formulas.face_centre;
-            b.centre_y = m_pieces[i].box.y0 < across ? -formulas.face_centre : formulas.face_centre;
+            b.centre_x = box.x0 < across ? -formulas.face_centre : formulas.face_centre;
+            b.centre_y = box.y0 < across ? -formulas.face_centre : formulas.face_centre;
+            // Of joined faces the middle of all stands for (0, 0), without rounding: sides and scales are multiples of 1/2.
+            b.pixel_x = joined ? 0.5 * m_width + b.centre_x * scale_x() : 0.5 * (box.x0 + box.x1);
+            b.pixel_y = joined ? 0.5 * m_height + b.centre_y * scale_y() : 0.5 * (box.y0 + box.y1);
             m_branches.push_back(b);
         }
     });

@@ -75,6 +75,7 @@ FieldOfView fov_of(Projection projection);
 /// Faces across and down its picture; 0 where the picture is one piece of any shape.
 struct FaceGrid {
     int columns = 0, rows = 0;
+    bool joined = false;  ///< the faces are parts of one picture, which has no edges where they meet
 };
 /// How its picture is divided into faces.
 FaceGrid faces_of(Projection projection);
@@ -98,6 +99,7 @@ struct Piece {
 struct Branch : Setting {
     int piece = 0;
     glm::dmat3 axes{1};
+    double pixel_x = 0, pixel_y = 0;  ///< of the image, where the piece's (centre_x, centre_y) stands
 };
 
 /// A flat picture of directions: a projection, its field of view and its pixels.
@@ -174,6 +176,13 @@ class Chart {
     template <class T>
     T sees(const Ray<T>& local, int piece = 0) const;
 
+    /// Are there several pieces, and does each see all rays that are nearest to it?
+    bool pieces_see_all() const {
+        return m_pieces.size() > 1 && with_projection(m_projection, [&](auto formulas) {
+                   return formulas.faces_see_all(m_setting);
+               });
+    }
+
     /// Of one sign where one smooth formula holds, at an image point.
     template <class T>
     T crease(const T& x, const T& y, int piece) const;
@@ -211,9 +220,8 @@ class Chart {
     };
     /// Image and plane of a piece.
     Plane plane(int piece) const {
-        const Box& box = m_pieces[static_cast<std::size_t>(piece)].box;
-        return {0.5 * (box.x0 + box.x1), 0.5 * (box.y0 + box.y1), m_sx.value(), m_sy.value(),
-                m_per_x.value(),         m_per_y.value()};
+        const Branch& b = branch(piece);
+        return {b.pixel_x, b.pixel_y, m_sx.value(), m_sy.value(), m_per_x.value(), m_per_y.value()};
     }
 
   private:
@@ -243,9 +251,8 @@ class Chart {
 
 template <class T>
 Point<T> Chart::to_observed_plane(const T& x, const T& y, const Branch& branch) const {
-    const Box& box = m_pieces[static_cast<std::size_t>(branch.piece)].box;
-    const double cx = 0.5 * (box.x0 + box.x1), cy = 0.5 * (box.y0 + box.y1);
-    return {(x - cx) * m_per_x.as<T>() + branch.centre_x, (y - cy) * m_per_y.as<T>() + branch.centre_y};
+    return {(x - branch.pixel_x) * m_per_x.as<T>() + branch.centre_x,
+            (y - branch.pixel_y) * m_per_y.as<T>() + branch.centre_y};
 }
 
 template <class T>
@@ -296,9 +303,8 @@ Point<T> Chart::local_point(const Ray<T>& local, const Branch& branch) const {
     Point<T> p = with_projection(m_projection,
                                  [&](auto formulas) -> Point<T> { return formulas.point(local, branch); });
     if (m_lens) p = m_lens->observed(p);
-    const Box& box = m_pieces[static_cast<std::size_t>(branch.piece)].box;
-    return {(p.x - branch.centre_x) * m_sx.as<T>() + 0.5 * (box.x0 + box.x1),
-            (p.y - branch.centre_y) * m_sy.as<T>() + 0.5 * (box.y0 + box.y1)};
+    return {(p.x - branch.centre_x) * m_sx.as<T>() + branch.pixel_x,
+            (p.y - branch.centre_y) * m_sy.as<T>() + branch.pixel_y};
 }
 
 template <class T>

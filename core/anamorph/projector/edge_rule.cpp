@@ -155,11 +155,11 @@ bool beside(const Interval& range, double size) {
 
 Reading read(const Chart& chart, const RayTriangle& triangle, const Branch& branch, double on_plane,
              double wider) {
-    const bool faces = chart.pieces().size() > 1;
+    const bool faces = chart.pieces().size() > 1, all_seen = chart.pieces_see_all();
     const Ray<IntervalJet> local = triangle.jets(glm::transpose(branch.axes), faces ? on_plane : 0, wider);
     const Ray<Interval> range{local.x.c[0], local.y.c[0], local.z.c[0]};
     Reading reading;
-    if (!faces && chart.sees(range, branch.piece).hi < 0) {
+    if (!all_seen && chart.sees(range, branch.piece).hi < 0) {
         reading.outside = true;
         return reading;
     }
@@ -168,7 +168,7 @@ Reading read(const Chart& chart, const RayTriangle& triangle, const Branch& bran
     const bool one_branch = chart.counted() != Counted::azimuth || range.z.lo > 0;
     reading.outside = one_branch && ((!chart.closed() && beside(p.x.c[0], chart.width())) ||
                                      beside(p.y.c[0], chart.height()));
-    const bool seen = faces || chart.sees(range, branch.piece).lo > 0;
+    const bool seen = all_seen || chart.sees(range, branch.piece).lo > 0;
     reading.bound = bound_of(p);
     reading.smooth = one_branch && seen && std::isfinite(reading.bound);
     return reading;

@@ -58,10 +58,9 @@ std::string piece_function(const Chart& chart, int piece, const std::string& nam
     const Ray<GlslJet> local = transform(glm::transpose(branch.axes), ray_of(text));
     const Point<GlslJet> p = chart.local_point(local, branch);
     const GlslNumber on = on_picture(chart, p.x.c[0], p.y.c[0]);
-    // Pieces share all rays, but one alone may not see all of them.
-    const GlslNumber seen = chart.pieces().size() > 1
-                                ? GlslNumber(1)
-                                : chart.sees(Ray<GlslNumber>{local.x.c[0], local.y.c[0], local.z.c[0]});
+    const GlslNumber seen =
+        chart.pieces_see_all() ? GlslNumber(1)
+                               : chart.sees(Ray<GlslNumber>{local.x.c[0], local.y.c[0], local.z.c[0]}, piece);
     return "bool " + name + kArguments + " {\n" + text.lines() + "  texel = " + vec2(p.x.c[0], p.y.c[0]) +
            ";\n  alongA = " + vec2(p.x.c[1], p.y.c[1]) + ";\n  alongB = " + vec2(p.x.c[2], p.y.c[2]) +
            ";\n  return " + seen.written() + " > 0.0 && " + on.written() + " >= 0.0;\n}\n";

@@ -60,7 +60,7 @@ void read_pixel(const Chart& chart, const float* pixels, int channels, const Poi
                 const glm::dvec3& ray, double share, std::vector<double>& sum) {
     const Box& box =
         chart.pieces()[static_cast<std::size_t>(chart.piece_of(Ray<double>{ray.x, ray.y, ray.z}))].box;
-    const bool faces = chart.pieces().size() > 1;
+    const bool faces = chart.pieces().size() > 1 && !faces_of(chart.projection()).joined;
     const double x0 = faces ? box.x0 : 0, x1 = faces ? box.x1 : chart.width();
     const double y0 = faces ? box.y0 : 0, y1 = faces ? box.y1 : chart.height();
     const double x = texel.x - 0.5, y = std::clamp(texel.y - 0.5, y0, y1 - 1);

@@ -72,8 +72,10 @@ Received Projector::receive(const glm::dvec3& point, Point<double>& texel) const
     const Ray<double> direction{r.x, r.y, r.z};
     const bool on_axis = m_panorama.counted() == Counted::azimuth && r.x == 0 && r.z == 0;
     const auto unseen = on_axis ? Received::no_direction : Received::nothing;
-    if (m_panorama.pieces().size() == 1 && !(m_panorama.sees(direction) > 0)) return unseen;
-    const Point<double> found = m_panorama.point(direction, m_panorama.piece_of(direction));
+    const int piece = m_panorama.piece_of(direction);
+    const Ray<double> local = transform(glm::transpose(m_panorama.branch(piece).axes), direction);
+    if (!m_panorama.pieces_see_all() && !(m_panorama.sees(local, piece) > 0)) return unseen;
+    const Point<double> found = m_panorama.point(direction, piece);
     const bool inside =
         found.x >= 0 && found.x <= m_panorama.width() && found.y >= 0 && found.y <= m_panorama.height();
     if (!inside) return unseen;

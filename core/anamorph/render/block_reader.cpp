@@ -65,13 +65,39 @@ bool shares_footprint(const BlockPolynomial& p, const Block& block) {
            steady(p.c[1][0] / hy, p.c[1][4] / hy, along_t[0] / hy, along_t[1] / hy);
 }
 
-/// The source points of a block's pixels, counted from its corner, and the steps from one to the next.
+/// Into how many parts each way a pixel is cut so that one footprint serves each of them: 1, 2, 4 or kRays. What footprints
+/// are like, whichever way a face or a lens turns the source, is how long the map makes the pixel's sides and diagonals: those
+/// in its corners differ from those in its middle by half of what they change over the pixel, and by an n-th part of
+/// that over an n-th part of it. Where the map has no derivative in its middle, at a pole or on an axis, only rays serve; corners
+/// without one say nothing.
+constexpr int kRays = 16;
+int parts_of_pixel(const Jacobian& middle, const std::array<Jacobian, 4>& corners) {
+    const auto lengths = [](const Jacobian& j) {
+        return std::array{std::hypot(j.x_i, j.y_i), std::hypot(j.x_j, j.y_j),
+                          std::hypot(j.x_i + j.x_j, j.y_i + j.y_j), std::hypot(j.x_i - j.x_j, j.y_i - j.y_j)};
+    };
+    const std::array<double, 4> here = lengths(middle);
+    if (!std::all_of(here.begin(), here.end(), [](double l) { return std::isfinite(l); })) return kRays;
+    double parts = 1;
+    for (const Jacobian& corner : corners) {
+        const std::array<double, 4> there = lengths(corner);
+        for (std::size_t k = 0; k < here.size(); ++k) {
+            if (std::isnan(there[k])) continue;
+            const double least = std::min(here[k], there[k]);
+            parts = std::max(
+                parts, std::fabs(there[k] - here[k]) / std::max(kFootprintOff, kFootprintShare * least));
+        }
+    }
+    return parts <= 1 ? 1 : parts <= 2 ? 2 : parts <= 4 ? 4 : kRays;
+}
+
+/// The source points of a block's pixels, counted from its corner, and the steps from one to the next, of which there are
+/// some both ways.
 template <class At>
 class Steps {
   public:
     Steps(const At& at, const Block& block) : m_at(at), m_size{0, 0, block.box.width(), block.box.height()} {}
 
-    bool go_both_ways() const { return m_size.x1 > 1 && m_size.y1 > 1; }
     /// The map's derivative in the middle of a cell: of the two nearest steps within the block, either way,
     /// the shorter one, which does not cross a seam.
     Jacobian jacobian(const Box& cell) const {
@@ -107,17 +133,16 @@ class Steps {
         return square(a.x) + square(a.y) < square(b.x) + square(b.y) ? a : b;
     }
 
-    /// Where steps to the right, or down, begin; those of a single column or row go to a neighbour of the
-    /// block, if it has one.
+    /// Where steps to the right, or down, begin; those of a single column or row go to a neighbour in the block.
     Box across(const Box& cell) const {
         if (cell.width() > 1) return {cell.x0, cell.y0, cell.x1 - 1, cell.y1};
-        const int x = std::max(0, std::min(cell.x0, m_size.x1 - 2));
-        return {x, cell.y0, std::min(x + 1, m_size.x1 - 1), cell.y1};
+        const int x = std::min(cell.x0, m_size.x1 - 2);
+        return {x, cell.y0, x + 1, cell.y1};
     }
     Box down(const Box& cell) const {
         if (cell.height() > 1) return {cell.x0, cell.y0, cell.x1, cell.y1 - 1};
-        const int y = std::max(0, std::min(cell.y0, m_size.y1 - 2));
-        return {cell.x0, y, cell.x1, std::min(y + 1, m_size.y1 - 1)};
+        const int y = std::min(cell.y0, m_size.y1 - 2);
+        return {cell.x0, y, cell.x1, y + 1};
     }
 
     const At& m_at;
@@ -168,6 +193,9 @@ constexpr double kMostPutTogether = 8;
 // Cells of up to so many pixels whose texels lie too far apart are read pixel by pixel, larger ones are halved.
 constexpr int kSmallCell = 16;
 
+// Cells of two pixels each way have one step in a row, which is like itself.
+constexpr int kUnlike = 2;
+
 /// body(half) for the halves of a cell, cut across its longer side. False when any body was.
 template <class Body>
 bool for_halves(const Box& cell, const Body& body) {
@@ -181,13 +209,15 @@ bool for_halves(const Box& cell, const Body& body) {
 }
 
 /// body(cell, jacobian) for the largest cells of a block, counted from its corner, that share a footprint:
-/// those in whose middle the map's derivative is like all their steps, and single pixels. False when any
-/// body was.
+/// those in whose middle the map's derivative is like all their steps, and those of up to `least` pixels each way. False when
+/// any body was.
 template <class Derivative, class Alike, class Body>
-bool for_each_cell(const Box& cell, const Derivative& derivative, const Alike& alike, const Body& body) {
+bool for_each_cell(const Box& cell, int least, const Derivative& derivative, const Alike& alike,
+                   const Body& body) {
     const Jacobian jacobian = derivative(cell);
-    if ((cell.width() == 1 && cell.height() == 1) || alike(cell, jacobian)) return body(cell, jacobian);
-    return for_halves(cell, [&](const Box& half) { return for_each_cell(half, derivative, alike, body); });
+    if (std::max(cell.width(), cell.height()) <= least || alike(cell, jacobian)) return body(cell, jacobian);
+    return for_halves(cell,
+                      [&](const Box& half) { return for_each_cell(half, least, derivative, alike, body); });
 }
 
 bool is_near(double at) {
@@ -200,6 +230,11 @@ double texels_in(const Box& box) {
 
 Box whole(const Block& block) {
     return {0, 0, block.box.width(), block.box.height()};
+}
+
+/// Has a block steps one way only?
+bool is_line(const Block& block) {
+    return block.box.width() == 1 || block.box.height() == 1;
 }
 
 /// The part of a block's cell that lies in a box of the picture.
@@ -577,6 +612,7 @@ bool BlockReader::rows(const Block& block, const BlockPoints& points, const Box&
     if (m_filter == Filter::summed_area) return rows_one_by_one(block, points, part, row);
     const auto at = at_points(points);
     if (lie_apart(at, block)) return rows_apart(block, points, part, row);
+    if (averages(m_filter) && is_line(block)) return rows_one_by_one(block, points, part, row);
     const auto body = [&](const Box& cell, const Filtering& f) {
         return points_cell(f, block, points, cell, part, row);
     };
@@ -589,14 +625,17 @@ template <class At, class Body>
 bool BlockReader::for_each_footprint(const Block& block, const At& at, const Body& body) const {
     if (!averages(m_filter)) return body(whole(block), filtering({}));
     const Steps<At> steps(at, block);
-    const auto derivative = [&](const Box& cell) {
-        if (steps.go_both_ways()) return steps.jacobian(cell);
-        return m_map.jacobian(block.box.x0 + 0.5 * (cell.x0 + cell.x1),
-                              block.box.y0 + 0.5 * (cell.y0 + cell.y1), block.piece);
-    };
+    const auto derivative = [&](const Box& cell) { return steps.jacobian(cell); };
     const auto alike = [&](const Box& cell, const Jacobian& jacobian) { return steps.alike(cell, jacobian); };
-    return for_each_cell(whole(block), derivative, alike,
+    const int least = m_map.is_smooth_in_pixels() ? kUnlike : 1;
+    return for_each_cell(whole(block), least, derivative, alike,
                          [&](const Box& cell, const Jacobian& j) { return body(cell, filtering(j)); });
+}
+
+/// Has a cell too few steps to tell what its pixels' footprints are, so that the derivative of each is worth finding?
+bool BlockReader::has_few_steps(const Box& cell) const {
+    return averages(m_filter) && std::max(cell.width(), cell.height()) <= kUnlike &&
+           m_map.is_smooth_in_pixels();
 }
 
 /// Of the points of a cell. False where they are too far away.
@@ -612,6 +651,7 @@ bool BlockReader::points_cell(const Filtering& f, const Block& block, const Bloc
                               const Box& cell, const Box& part, const Row& row) {
     const Box own = part_of(cell, block, part);
     if (own.empty()) return true;
+    if (has_few_steps(cell)) return rows_one_by_one(block, points, own, row);
     Range x, y;
     const auto in_parts = [&] {
         if (texels_in(cell) <= kSmallCell) return rows_one_by_one(block, points, own, row);
@@ -706,7 +746,7 @@ bool BlockReader::rows_in_double(const Block& block, const Box& part, const Row&
     if (!averages(m_filter)) return body(whole(block), filtering({}));
     // Steps go from source point to source point.
     Range x, y;
-    if (!lie_together(whole(block)) || !ranges_in_double(whole(block), x, y))
+    if (is_line(block) || !lie_together(whole(block)) || !ranges_in_double(whole(block), x, y))
         return rows_one_by_one(block, {}, part, row);
     return for_each_footprint(block, at, body);
 }
@@ -723,6 +763,7 @@ bool BlockReader::exact_cell(const Filtering& f, const Block& block, const Box& 
                              const Row& row) {
     const Box own = part_of(cell, block, part);
     if (own.empty()) return true;
+    if (has_few_steps(cell)) return rows_one_by_one(block, {}, own, row);
     const auto in_parts = [&] {
         if (texels_in(cell) <= kSmallCell) return rows_one_by_one(block, {}, own, row);
         return for_halves(cell, [&](const Box& half) { return exact_cell(f, block, half, part, row); });
@@ -774,8 +815,8 @@ bool BlockReader::rows_one_by_one(const Block& block, const BlockPoints& points,
 /// Does the map minify so much that no cell of the block has its texels together? Judged by the steps in its middle.
 template <class At>
 bool BlockReader::lie_apart(const At& at, const Block& block) const {
+    if (averages(m_filter) || is_line(block)) return false;
     const Steps<At> steps(at, block);
-    if (averages(m_filter) || !steps.go_both_ways()) return false;
     const Jacobian j = steps.jacobian(whole(block));
     return (std::fabs(j.x_i) + std::fabs(j.x_j)) * (std::fabs(j.y_i) + std::fabs(j.y_j)) > kMostTexels;
 }
@@ -815,9 +856,40 @@ void BlockReader::take_apart(const Block& block, const BlockPoints& points, int 
 
 bool BlockReader::sample_point(int i, int j, int target_piece, const Point<double>& p, int piece,
                                float* pixel) {
-    const Jacobian jacobian =
-        averages(m_filter) ? m_map.jacobian(i + 0.5, j + 0.5, target_piece) : Jacobian{};
-    return m_points.sample(m_filter, m_chooser, jacobian, piece, p.x, p.y, pixel);
+    if (!averages(m_filter)) return m_points.sample(m_filter, 0, piece, p.x, p.y, pixel);
+    const Jacobian middle = m_map.jacobian(i + 0.5, j + 0.5, target_piece);
+    const int parts = !m_map.is_smooth_in_pixels()
+                          ? 1
+                          : parts_of_pixel(middle, {m_map.jacobian(i, j, target_piece),
+                                                    m_map.jacobian(i + 1, j, target_piece),
+                                                    m_map.jacobian(i, j + 1, target_piece),
+                                                    m_map.jacobian(i + 1, j + 1, target_piece)});
+    if (parts == 1) return m_points.sample(m_filter, m_chooser, middle, piece, p.x, p.y, pixel);
+    return sample_parts(i, j, target_piece, parts, pixel);
+}
+
+/// The mean over n x n parts of a pixel, each by a footprint of its own; over kRays x kRays of them by the source itself. Parts
+/// without a source point are 0.
+bool BlockReader::sample_parts(int i, int j, int target_piece, int n, float* pixel) {
+    const auto channels = static_cast<std::size_t>(m_source.channels());
+    m_part.resize(channels);
+    m_parts.assign(channels, 0.0);
+    for (int b = 0; b < n; ++b)
+        for (int a = 0; a < n; ++a) {
+            const double x = i + (a + 0.5) / n, y = j + (b + 0.5) / n;
+            Point<double> p;
+            int piece;
+            if (!m_map.exact(x, y, target_piece, p, piece)) continue;
+            Jacobian own;
+            if (n < kRays) {
+                own = m_map.jacobian(x, y, target_piece);
+                for (double* d : {&own.x_i, &own.y_i, &own.x_j, &own.y_j}) *d /= n;
+            }
+            if (!m_points.sample(m_filter, m_chooser, own, piece, p.x, p.y, m_part.data())) return false;
+            for (std::size_t c = 0; c < channels; ++c) m_parts[c] += static_cast<double>(m_part[c]);
+        }
+    for (std::size_t c = 0; c < channels; ++c) pixel[c] = static_cast<float>(m_parts[c] / (n * n));
+    return true;
 }
 
 void BlockReader::sample(const simd::Texels& texels, const simd::Offsets& offsets, PixelType type, int x,

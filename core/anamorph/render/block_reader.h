@@ -89,7 +89,8 @@ void block_row(const BlockMap& map, const Block& block, const Box& part, int j, 
 ///
 /// What it averages. An antialiased pixel takes a footprint whose axes are the map's own, its steps from
 /// pixel to pixel, to within a quarter of their lengths or half a source pixel: by blocks where one serves
-/// all of their pixels, else by parts of them, down to single pixels.
+/// all of their pixels, else by parts of them, down to single pixels. Where a pixel's own footprints differ by more than
+/// that it is drawn in parts (BlockMap::is_smooth_in_pixels).
 class BlockReader {
   public:
     /// The arguments outlive the reader.
@@ -155,7 +156,9 @@ class BlockReader {
                     ApartReader::Row& to) const;
     template <class At>
     bool lie_apart(const At& at, const Block& block) const;
+    bool has_few_steps(const Box& cell) const;
     bool sample_point(int i, int j, int target_piece, const Point<double>& p, int piece, float* pixel);
+    bool sample_parts(int i, int j, int target_piece, int n, float* pixel);
     void sample(const simd::Texels& texels, const simd::Offsets& offsets, PixelType type, int x, int y,
                 const Row& row);
     void finish(int x, int y, int count, float one, const Row& row);
@@ -193,6 +196,8 @@ class BlockReader {
     ApartReader::Row m_apart_rows[2];
     FootprintChooser m_chooser;
     std::vector<float> m_values;
+    std::vector<float> m_part;  ///< of a pixel
+    std::vector<double> m_parts;
     std::optional<BlockPlanes> m_planes;
     PointsInDouble m_exact;              ///< of the block that is being read
     std::vector<std::int32_t> m_texels;  ///< the texels they fall into, and the rests

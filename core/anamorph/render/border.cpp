@@ -41,6 +41,10 @@ Texel across_face_edge(const Chart& chart, double x, double y, int piece, const 
     const Ray<double> ray = chart.ray((x + 0.5) * kx, (y + 0.5) * ky, piece);
     const int other = chart.piece_of(ray);
     const Point<double> p = chart.point(ray, other);
+    // Where no face has the ray there is nothing. To a millionth of a pixel, which is more than rounding moves it.
+    const Box& own = chart.pieces()[static_cast<std::size_t>(other)].box;
+    const auto has = [](double at, int first, int end) { return at >= first - 1e-6 && at <= end + 1e-6; };
+    if (!has(p.x, own.x0, own.x1) || !has(p.y, own.y0, own.y1)) return {0, 0, true};
     const Box face = border.interior(other, level);
     const auto inside = [](double at, int first, int end) {
         return static_cast<int>(std::clamp(std::floor(at), double(first), double(end - 1)));
@@ -159,7 +163,8 @@ Border::Border(const Chart& chart, Wrap wrap) : m_chart(chart), m_wrap(wrap) {}
 
 Box Border::interior(int piece, const Size& level) const noexcept {
     if (m_wrap == Wrap::automatic && has_rounded_edge(m_chart)) return RoundedEdge(m_chart, level).middle();
-    if (m_chart.pieces().size() == 1) return {0, 0, level.width, level.height};
+    if (m_chart.pieces().size() == 1 || faces_of(m_chart.projection()).joined)
+        return {0, 0, level.width, level.height};
     const Box& box = m_chart.pieces()[static_cast<std::size_t>(piece)].box;
     const int w = m_chart.width(), h = m_chart.height();
     Box r{scaled(box.x0, w, level.width), scaled(box.y0, h, level.height), scaled(box.x1, w, level.width),

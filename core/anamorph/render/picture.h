@@ -23,9 +23,10 @@ namespace anamorph {
 /// beyond the edges of any other have values beyond; what is read there is the border's affair.
 enum class Output { color, stmap, error, bound };
 
-/// Is nothing drawn where all that a pixel would read lies beyond the source's edges? Source points go on there.
+/// Is nothing drawn where all that a pixel would read lies beyond the source's edges? Source points go on there, and so do
+/// their errors and bounds.
 constexpr bool ends_at_edges(Wrap wrap, Output output) {
-    return (wrap == Wrap::automatic || wrap == Wrap::black) && output != Output::stmap;
+    return (wrap == Wrap::automatic || wrap == Wrap::black) && output == Output::color;
 }
 
 /// Pixels of a box of the picture, row by row.

@@ -20,10 +20,12 @@ struct DualFisheye : Fisheye {
         const double radius = std::min(s.half_width, std::numbers::pi);
         return 1 * kSlack - (square(p.x) + square(p.y)) * (1 / (radius * radius));
     }
-    /// Each shows its half.
+    static bool faces_see_all(const Setting& s) { return s.half_width >= std::numbers::pi / 2; }
+    /// Each shows its half, or what its lens sees of it: z / rho is at least that of an angle of half_width.
     template <class T>
-    static T sees(const Ray<T>& r, const Setting&) {
-        return r.z;
+    static T sees(const Ray<T>& r, const Setting& s) {
+        if (faces_see_all(s)) return r.z;
+        return r.z * (std::sin(s.half_width) * kSlack) - length(r.x, r.y) * std::cos(s.half_width);
     }
 };
 

@@ -22,6 +22,8 @@ struct AnyProjection {
     static std::vector<Face> faces() { return {}; }
     /// Where the centre of a face stands in the plane, along x: -1 for a left one, 1 for a right one; and y.
     static constexpr double face_centre = 0;
+    /// Is every direction seen by the face that it is nearest to?
+    static bool faces_see_all(const Setting&) { return true; }
     static constexpr Lensed lensed = Lensed::no;
     /// Rows of a full turn close on themselves at a column.
     static constexpr bool closes = false;
