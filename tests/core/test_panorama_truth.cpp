@@ -572,7 +572,7 @@ TEST(PanoramaTruth, WhatIsCulledHasNoTexels) {
                         widest = std::max(widest, 1 / scale[0]);
                         for (int a = 0; a < f.taps_a; ++a)
                             for (int b = 0; b < f.taps_b; ++b) {
-                                const Point<double> o = tap_offset(f, jacobian, scale, a, b);
+                                const Point<double> o = TapOffsets(f, jacobian, scale)(a, b);
                                 const double u = p.x * scale[0] + o.x, v = p.y * scale[1] + o.y;
                                 hit += u > -0.5 && u < size.width + 0.5 && v > -0.5 && v < size.height + 0.5;
                             }

@@ -66,11 +66,11 @@ bool shares_footprint(const BlockPolynomial& p, const Block& block) {
 }
 
 /// Into how many parts each way a pixel is cut so that one footprint serves each of them: 1, 2, 4 or kRays. What footprints
-/// are like, whichever way a face or a lens turns the source, is how long the map makes the pixel's sides and diagonals: those
-/// in its corners differ from those in its middle by half of what they change over the pixel, and by an n-th part of
-/// that over an n-th part of it. Where the map has no derivative in its middle, at a pole or on an axis, only rays serve; corners
-/// without one say nothing.
-constexpr int kRays = 16;
+/// are like, whichever way a face or a lens turns the source, is how long the map makes the pixel's sides and diagonals. Those
+/// in its corners are to be like those in its middle to within twice what pixels of a cell are: what changes evenly about the
+/// middle cancels in the mean. Over an n-th part of the pixel they change by an n-th part of that. Where the map has no
+/// derivative in the middle, at a pole or on an axis, only rays serve; corners without one say nothing.
+constexpr int kRays = 8;
 int parts_of_pixel(const Jacobian& middle, const std::array<Jacobian, 4>& corners) {
     const auto lengths = [](const Jacobian& j) {
         return std::array{std::hypot(j.x_i, j.y_i), std::hypot(j.x_j, j.y_j),
@@ -84,8 +84,8 @@ int parts_of_pixel(const Jacobian& middle, const std::array<Jacobian, 4>& corner
         for (std::size_t k = 0; k < here.size(); ++k) {
             if (std::isnan(there[k])) continue;
             const double least = std::min(here[k], there[k]);
-            parts = std::max(
-                parts, std::fabs(there[k] - here[k]) / std::max(kFootprintOff, kFootprintShare * least));
+            const double off = std::fabs(there[k] - here[k]);
+            parts = std::max(parts, off / (2 * std::max(kFootprintOff, kFootprintShare * least)));
         }
     }
     return parts <= 1 ? 1 : parts <= 2 ? 2 : parts <= 4 ? 4 : kRays;
@@ -193,8 +193,12 @@ constexpr double kMostPutTogether = 8;
 // Cells of up to so many pixels whose texels lie too far apart are read pixel by pixel, larger ones are halved.
 constexpr int kSmallCell = 16;
 
-// Cells of two pixels each way have one step in a row, which is like itself.
-constexpr int kUnlike = 2;
+// Cells of so many pixels each way have one step in a row, which is like itself.
+constexpr int kFewSteps = 2;
+
+bool has_few_steps(const Box& cell) {
+    return std::max(cell.width(), cell.height()) <= kFewSteps;
+}
 
 /// body(half) for the halves of a cell, cut across its longer side. False when any body was.
 template <class Body>
@@ -612,30 +616,50 @@ bool BlockReader::rows(const Block& block, const BlockPoints& points, const Box&
     if (m_filter == Filter::summed_area) return rows_one_by_one(block, points, part, row);
     const auto at = at_points(points);
     if (lie_apart(at, block)) return rows_apart(block, points, part, row);
-    if (averages(m_filter) && is_line(block)) return rows_one_by_one(block, points, part, row);
     const auto body = [&](const Box& cell, const Filtering& f) {
         return points_cell(f, block, points, cell, part, row);
     };
-    return for_each_footprint(block, at, body);
+    return for_each_footprint(block, at, part, row, body);
 }
 
 /// body(cell, filtering) for the cells of a block that share a footprint; `at` gives the source points of its
-/// pixels, counted from its corner.
+/// pixels, counted from its corner. Pixels of `part` that no footprint serves are drawn.
 template <class At, class Body>
-bool BlockReader::for_each_footprint(const Block& block, const At& at, const Body& body) const {
+bool BlockReader::for_each_footprint(const Block& block, const At& at, const Box& part, const Row& row,
+                                     const Body& body) {
     if (!averages(m_filter)) return body(whole(block), filtering({}));
+    if (is_line(block)) return pixels_of_cell(block, whole(block), part, row, body);
     const Steps<At> steps(at, block);
     const auto derivative = [&](const Box& cell) { return steps.jacobian(cell); };
     const auto alike = [&](const Box& cell, const Jacobian& jacobian) { return steps.alike(cell, jacobian); };
-    const int least = m_map.is_smooth_in_pixels() ? kUnlike : 1;
-    return for_each_cell(whole(block), least, derivative, alike,
-                         [&](const Box& cell, const Jacobian& j) { return body(cell, filtering(j)); });
+    // The derivatives of a cell with few steps are found where that takes little time.
+    const bool by_pixels = m_map.is_smooth_in_pixels();
+    return for_each_cell(
+        whole(block), by_pixels ? kFewSteps : 1, derivative, alike, [&](const Box& cell, const Jacobian& j) {
+            return by_pixels && has_few_steps(cell) ? pixels_of_cell(block, cell, part, row, body)
+                                                    : body(cell, filtering(j));
+        });
 }
 
-/// Has a cell too few steps to tell what its pixels' footprints are, so that the derivative of each is worth finding?
-bool BlockReader::has_few_steps(const Box& cell) const {
-    return averages(m_filter) && std::max(cell.width(), cell.height()) <= kUnlike &&
-           m_map.is_smooth_in_pixels();
+/// The pixels of a cell, each by the map's derivative there.
+template <class Body>
+bool BlockReader::pixels_of_cell(const Block& block, const Box& cell, const Box& part, const Row& row,
+                                 const Body& body) {
+    const Box own = part_of(cell, block, part);
+    bool ok = true;
+    for (int y = own.y0; y < own.y1; ++y)
+        for (int x = own.x0; x < own.x1; ++x) {
+            Jacobian middle;
+            const int parts = parts_at(x, y, block.piece, middle);
+            if (parts == 1) {
+                const int i = x - block.box.x0, j = y - block.box.y0;
+                ok = body({i, j, i + 1, j + 1}, filtering(middle)) && ok;
+            } else {
+                ok = sample_parts(x, y, block.piece, parts, m_values.data()) && ok;
+                finish(x, y, 1, 1, row);
+            }
+        }
+    return ok;
 }
 
 /// Of the points of a cell. False where they are too far away.
@@ -651,7 +675,6 @@ bool BlockReader::points_cell(const Filtering& f, const Block& block, const Bloc
                               const Box& cell, const Box& part, const Row& row) {
     const Box own = part_of(cell, block, part);
     if (own.empty()) return true;
-    if (has_few_steps(cell)) return rows_one_by_one(block, points, own, row);
     Range x, y;
     const auto in_parts = [&] {
         if (texels_in(cell) <= kSmallCell) return rows_one_by_one(block, points, own, row);
@@ -746,9 +769,9 @@ bool BlockReader::rows_in_double(const Block& block, const Box& part, const Row&
     if (!averages(m_filter)) return body(whole(block), filtering({}));
     // Steps go from source point to source point.
     Range x, y;
-    if (is_line(block) || !lie_together(whole(block)) || !ranges_in_double(whole(block), x, y))
+    if (!lie_together(whole(block)) || !ranges_in_double(whole(block), x, y))
         return rows_one_by_one(block, {}, part, row);
-    return for_each_footprint(block, at, body);
+    return for_each_footprint(block, at, part, row, body);
 }
 
 /// Of the points of a cell that were read in double. False where they are too far away.
@@ -763,7 +786,6 @@ bool BlockReader::exact_cell(const Filtering& f, const Block& block, const Box& 
                              const Row& row) {
     const Box own = part_of(cell, block, part);
     if (own.empty()) return true;
-    if (has_few_steps(cell)) return rows_one_by_one(block, {}, own, row);
     const auto in_parts = [&] {
         if (texels_in(cell) <= kSmallCell) return rows_one_by_one(block, {}, own, row);
         return for_halves(cell, [&](const Box& half) { return exact_cell(f, block, half, part, row); });
@@ -857,15 +879,18 @@ void BlockReader::take_apart(const Block& block, const BlockPoints& points, int 
 bool BlockReader::sample_point(int i, int j, int target_piece, const Point<double>& p, int piece,
                                float* pixel) {
     if (!averages(m_filter)) return m_points.sample(m_filter, 0, piece, p.x, p.y, pixel);
-    const Jacobian middle = m_map.jacobian(i + 0.5, j + 0.5, target_piece);
-    const int parts = !m_map.is_smooth_in_pixels()
-                          ? 1
-                          : parts_of_pixel(middle, {m_map.jacobian(i, j, target_piece),
-                                                    m_map.jacobian(i + 1, j, target_piece),
-                                                    m_map.jacobian(i, j + 1, target_piece),
-                                                    m_map.jacobian(i + 1, j + 1, target_piece)});
+    Jacobian middle;
+    const int parts = parts_at(i, j, target_piece, middle);
     if (parts == 1) return m_points.sample(m_filter, m_chooser, middle, piece, p.x, p.y, pixel);
     return sample_parts(i, j, target_piece, parts, pixel);
+}
+
+/// Into how many parts each way pixel (i, j) is cut, and the derivative in its middle.
+int BlockReader::parts_at(int i, int j, int target_piece, Jacobian& middle) const {
+    middle = m_map.jacobian(i + 0.5, j + 0.5, target_piece);
+    if (!m_map.is_smooth_in_pixels()) return 1;
+    const auto corner = [&](int x, int y) { return m_map.jacobian(x, y, target_piece); };
+    return parts_of_pixel(middle, {corner(i, j), corner(i + 1, j), corner(i, j + 1), corner(i + 1, j + 1)});
 }
 
 /// The mean over n x n parts of a pixel, each by a footprint of its own; over kRays x kRays of them by the source itself. Parts
@@ -965,9 +990,10 @@ BlockReader::Filtering BlockReader::filtering(const Jacobian& steps) const {
     f.scale_x = m_chooser.scale(f.level)[0];
     f.scale_y = m_chooser.scale(f.level)[1];
     f.tap_count = 0;
+    const TapOffsets offset(footprint, jacobian, {f.scale_x, f.scale_y});
     for (int b = 0; b < footprint.taps_b; ++b)
         for (int a = 0; a < footprint.taps_a; ++a) {
-            Point<double> o = tap_offset(footprint, jacobian, {f.scale_x, f.scale_y}, a, b);
+            Point<double> o = offset(a, b);
             // Next to a point that is none a footprint has no direction; its taps stay in the middle.
             if (std::isnan(o.x) || std::isnan(o.y)) o = {};
             f.taps[static_cast<std::size_t>(f.tap_count++)] = {static_cast<float>(o.x),

@@ -156,7 +156,7 @@ class BlockReader {
                     ApartReader::Row& to) const;
     template <class At>
     bool lie_apart(const At& at, const Block& block) const;
-    bool has_few_steps(const Box& cell) const;
+    int parts_at(int i, int j, int target_piece, Jacobian& middle) const;
     bool sample_point(int i, int j, int target_piece, const Point<double>& p, int piece, float* pixel);
     bool sample_parts(int i, int j, int target_piece, int n, float* pixel);
     void sample(const simd::Texels& texels, const simd::Offsets& offsets, PixelType type, int x, int y,
@@ -164,7 +164,11 @@ class BlockReader {
     void finish(int x, int y, int count, float one, const Row& row);
 
     template <class At, class Body>
-    bool for_each_footprint(const Block& block, const At& at, const Body& body) const;
+    bool for_each_footprint(const Block& block, const At& at, const Box& part, const Row& row,
+                            const Body& body);
+    template <class Body>
+    bool pixels_of_cell(const Block& block, const Box& cell, const Box& part, const Row& row,
+                        const Body& body);
     static bool ranges_of(const Block& block, const BlockPoints& points, const Box& cell, Range& x, Range& y);
     bool points_cell(const Filtering& f, const Block& block, const BlockPoints& points, const Box& cell,
                      const Box& part, const Row& row);

@@ -62,14 +62,11 @@ Point<double> direction(double x, double y) {
 
 }  // namespace
 
-Point<double> tap_offset(const Footprint& footprint, const Jacobian& jacobian,
-                         const std::array<double, 2>& scale, int i, int j) noexcept {
-    const Point<double> a = direction(jacobian.x_i * scale[0], jacobian.y_i * scale[1]);
-    const Point<double> b = direction(jacobian.x_j * scale[0], jacobian.y_j * scale[1]);
-    const double da = (i - 0.5 * (footprint.taps_a - 1)) * static_cast<double>(footprint.spacing_a);
-    const double db = (j - 0.5 * (footprint.taps_b - 1)) * static_cast<double>(footprint.spacing_b);
-    return {da * a.x + db * b.x, da * a.y + db * b.y};
-}
+TapOffsets::TapOffsets(const Footprint& footprint, const Jacobian& jacobian,
+                       const std::array<double, 2>& scale) noexcept
+    : m_footprint(footprint),
+      m_a(direction(jacobian.x_i * scale[0], jacobian.y_i * scale[1])),
+      m_b(direction(jacobian.x_j * scale[0], jacobian.y_j * scale[1])) {}
 
 double box_energy(double width) {
     const double w = std::max(width, 1.0);

@@ -33,10 +33,24 @@ inline Jacobian covering_rectangle(const Jacobian& j) {
     return {std::fabs(j.x_i) + std::fabs(j.x_j), 0, 0, std::fabs(j.y_i) + std::fabs(j.y_j)};
 }
 
-/// The offset of tap (i, j) in texels of the footprint's level; `scale`: texels of the level per texel of
-/// level 0.
-Point<double> tap_offset(const Footprint& footprint, const Jacobian& jacobian,
-                         const std::array<double, 2>& scale, int i, int j) noexcept;
+/// Where the taps of a footprint are.
+class TapOffsets {
+  public:
+    /// `jacobian`: as given to the footprint; `scale`: texels of its level per texel of level 0.
+    TapOffsets(const Footprint& footprint, const Jacobian& jacobian,
+               const std::array<double, 2>& scale) noexcept;
+
+    /// Of tap (i, j), in texels of the footprint's level.
+    Point<double> operator()(int i, int j) const noexcept {
+        const double da = (i - 0.5 * (m_footprint.taps_a - 1)) * static_cast<double>(m_footprint.spacing_a);
+        const double db = (j - 0.5 * (m_footprint.taps_b - 1)) * static_cast<double>(m_footprint.spacing_b);
+        return {da * m_a.x + db * m_b.x, da * m_a.y + db * m_b.y};
+    }
+
+  private:
+    Footprint m_footprint;
+    Point<double> m_a, m_b;  ///< the sides' directions
+};
 
 /// Energy of white noise after an exact average over `width` >= 1 texels; below 1 as at 1.
 double box_energy(double width);

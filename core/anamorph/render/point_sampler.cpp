@@ -67,9 +67,10 @@ bool PointSampler::sample(const Footprint& footprint, const Jacobian& jacobian, 
     const double sx = static_cast<double>(size.width) / full.width,
                  sy = static_cast<double>(size.height) / full.height;
     std::fill(m_sum.begin(), m_sum.end(), 0.0);
+    const TapOffsets offset(footprint, jacobian, {sx, sy});
     for (int j = 0; j < footprint.taps_b; ++j)
         for (int i = 0; i < footprint.taps_a; ++i) {
-            const Point<double> tap = tap_offset(footprint, jacobian, {sx, sy}, i, j);
+            const Point<double> tap = offset(i, j);
             if (!sample(Filter::bilinear, footprint.level, piece, x * sx + tap.x, y * sy + tap.y,
                         m_tap.data()))
                 return false;
