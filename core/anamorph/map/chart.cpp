@@ -156,6 +156,7 @@ void Chart::set_branches() {
         m_counted = formulas.counted;
         m_closed = formulas.closes && m_fov == 360;
         m_turns = formulas.closes;
+        m_pieces_see_all = m_pieces.size() > 1 && formulas.faces_see_all(m_setting);
         m_poles = formulas.has_pole_rows && m_closed && m_width == 2 * m_height;
         const double tangent =
             formulas.largest_tangent(0.5 * m_width / scale_x(), 0.5 * m_height / scale_y());

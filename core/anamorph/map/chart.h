@@ -177,11 +177,7 @@ class Chart {
     T sees(const Ray<T>& local, int piece = 0) const;
 
     /// Are there several pieces, and does each see all rays that are nearest to it?
-    bool pieces_see_all() const {
-        return m_pieces.size() > 1 && with_projection(m_projection, [&](auto formulas) {
-                   return formulas.faces_see_all(m_setting);
-               });
-    }
+    bool pieces_see_all() const { return m_pieces_see_all; }
 
     /// Of one sign where one smooth formula holds, at an image point.
     template <class T>
@@ -241,7 +237,7 @@ class Chart {
     Counted m_counted = Counted::none;
     /// Pixels per unit of the plane, and units per pixel.
     Constant m_sx, m_sy, m_per_x, m_per_y;
-    bool m_closed = false, m_poles = false, m_turns = false;
+    bool m_closed = false, m_poles = false, m_turns = false, m_pieces_see_all = false;
     std::vector<Piece> m_pieces;
     std::vector<Branch> m_branches;
     std::shared_ptr<const Lens> m_lens;

@@ -138,6 +138,16 @@ bool Panorama::ends_by_lens(const Ray<Interval>& ray, const Local& local) const 
     return there.lo > 0;
 }
 
+bool Panorama::is_unseen(const Ray<Interval>& ray, const Local& local) const {
+    if (m_source.pieces_see_all()) return false;
+    if (m_source.pieces().size() == 1) return true;
+    // Lenses end a hair farther out than they see, which is more than axes are off.
+    const Ray<Interval> r = transform(local.source.axes, ray);
+    for (int piece = 0; piece < static_cast<int>(m_source.pieces().size()); ++piece)
+        if (piece != local.source.piece && !(seen(r, piece).hi < 0)) return false;
+    return true;
+}
+
 namespace {
 
 bool one_signed(const Interval& a) {
@@ -159,10 +169,10 @@ Cover Panorama::cover(const Interval& x, const Interval& y, int piece, const Loc
 }
 
 Cover Panorama::cover(const Ray<Interval>& ray, const Local& local, bool across_seam) const {
-    const Interval seen = m_source.sees(ray, local.source.piece);
-    if (seen.hi < 0 && m_source.pieces().size() == 1) return Cover::outside;
+    const Interval sees = m_source.sees(ray, local.source.piece);
+    if (sees.hi < 0 && is_unseen(ray, local)) return Cover::outside;
     if (!one_signed(m_source.crease(ray))) return Cover::mixed;
-    if (!(seen.lo > 0)) return ends_by_lens(ray, local) ? Cover::partial : Cover::mixed;
+    if (!(sees.lo > 0)) return ends_by_lens(ray, local) ? Cover::partial : Cover::mixed;
     if (m_source.counted() == Counted::azimuth) {
         // The branch serves less than half a turn. It must not cross the far side where the image has an
         // edge.
@@ -188,11 +198,6 @@ template <class Real>
 double Panorama::exact_error(const Ray<Rounded<Real>>& ray) const {
     using R = Rounded<Real>;
     const std::size_t pieces = m_source.pieces().size();
-    if (pieces == 1) {
-        const R seen = m_source.sees(ray);
-        if (seen.range.hi + seen.error <= 0) return 0;
-        if (!(lower_end(seen) > 0)) return HUGE_VAL;
-    }
     // Whichever piece may come out as the one that looks most along the ray.
     std::array<R, 6> along;
     double most = -HUGE_VAL;
@@ -204,6 +209,11 @@ double Panorama::exact_error(const Ray<Rounded<Real>>& ray) const {
     double error = 0;
     for (std::size_t i = 0; i < pieces; ++i) {
         if (pieces > 1 && along[i].range.hi + along[i].error < most) continue;
+        if (!m_source.pieces_see_all()) {
+            const R sees = seen(ray, static_cast<int>(i));
+            if (sees.range.hi + sees.error <= 0) continue;
+            if (!(lower_end(sees) > 0)) return HUGE_VAL;
+        }
         const Point<R> p = m_source.point(ray, static_cast<int>(i));
         const double distance = kept_error(p);
         if (!(distance <= error)) error = distance;

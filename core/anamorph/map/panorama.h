@@ -89,7 +89,7 @@ class Panorama {
     template <class T>
     bool exact(const Ray<T>& r, Point<T>& source_point, int& source_piece) const {
         source_piece = m_source.piece_of(r);
-        if (m_source.pieces().size() == 1 && !(m_source.sees(r) > 0)) return false;
+        if (!m_source.pieces_see_all() && !(seen(r, source_piece) > 0)) return false;
         source_point = m_source.point(r, source_piece);
         return std::isfinite(source_point.x) && std::isfinite(source_point.y);
     }
@@ -121,6 +121,14 @@ class Panorama {
     static constexpr double kLocalError = 6 * Heading::kError + 64 * 0x1p-53;
 
     Local local_around(const Ray<double>& target_ray, int piece, const Ray<double>& source_ray) const;
+    /// Chart::sees() of a ray of the source.
+    template <class T>
+    T seen(const Ray<T>& r, int piece) const {
+        if (m_source.pieces().size() == 1) return m_source.sees(r);
+        return m_source.sees(transform(glm::transpose(m_source.branch(piece).axes), r), piece);
+    }
+    /// Is it certain that no piece sees any of these local rays, which the piece that they are local to does not?
+    bool is_unseen(const Ray<Interval>& ray, const Local& local) const;
     /// Does the source see all these local rays, but for its lens's end?
     bool ends_by_lens(const Ray<Interval>& ray, const Local& local) const;
 

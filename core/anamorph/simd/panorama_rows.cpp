@@ -101,14 +101,14 @@ void SourcePoints(const Chart& source, const Rays& rays, int count, ExactRow& ro
         const Ray<L> r{L::load(rays.x + i), L::load(rays.y + i), L::load(rays.z + i)};
         const L piece = pieces > 1 ? PieceOf(source, r) : L(0);
         LaneMask<D> seen{hn::Ge(L::load(rays.inside + i).v, hn::Zero(D()))};
-        L x(0), y(0);
+        L x(0), y(0), sees(1);
         for (int k = 0; k < pieces; ++k) {
             const LaneMask<D> here = is_zero(piece - L(k));
             if (hn::AllFalse(D(), here.m)) continue;
             const Branch& branch = source.branch(k);
             const Chart::Plane plane = source.plane(k);
             const Ray<L> local = Transformed(MatrixOf(glm::transpose(branch.axes)), r);
-            if (pieces == 1) seen = both(seen, L(0) < Projection::sees(local, branch));
+            if (!source.pieces_see_all()) sees = select(here, Projection::sees(local, branch), sees);
             Point<L> p = Projection::point(local, branch);
             if constexpr (Projection::lensed != Lensed::no)
                 if (source.lens()) {
@@ -118,6 +118,7 @@ void SourcePoints(const Chart& source, const Rays& rays, int count, ExactRow& ro
             x = select(here, (p.x - branch.centre_x) * plane.sx + plane.cx, x);
             y = select(here, (p.y - branch.centre_y) * plane.sy + plane.cy, y);
         }
+        seen = both(seen, L(0) < sees);
         // Finite: what is infinite or no number less itself is not zero.
         seen = both(seen, both(is_zero(x - x), is_zero(y - y)));
         x.store(row.x + i);
