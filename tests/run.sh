@@ -4,7 +4,7 @@
 # Logs are in build/log; the log of a step that fails is printed.
 set -euo pipefail
 cd "$(dirname "$0")/.."
-tests/install_packages.sh build hosts tests peers plots vtk paraview
+tests/install_packages.sh build hosts tests bench peers plots vtk paraview
 vtk_prefix="$PWD/build/vtk-9.1"
 tests/unpack_vtk.sh "$vtk_prefix"
 

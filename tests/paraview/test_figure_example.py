@@ -97,15 +97,6 @@ with tempfile.TemporaryDirectory() as folder:
     printed = run(*xvfb_run(311), "pvbatch", EXAMPLE, WALKER, out)
     assert "49 frames" in printed, printed
     assert sorted(os.listdir(out)) == ["figures.png", "figures.pvsm"]
-    # The command of the README.
-    with open(SOURCE + "/plugins/paraview/README.md") as file:
-        commands = [line.strip() for line in file if line.startswith("    ") and "figures.py" in line]
-    assert len(commands) == 1, commands
-    environment = {**ENVIRONMENT, "PV_PLUGIN_PATH": os.path.dirname(ENVIRONMENT["ANAMORPH_PLUGIN"])}
-    del environment["ANAMORPH_PLUGIN"]
-    subprocess.run(commands[0].replace("OUT", folder + "/readme"), shell=True, check=True, cwd=SOURCE, env=environment,
-                   stdout=subprocess.DEVNULL, timeout=250)
-    assert sorted(os.listdir(folder + "/readme")) == ["figures.png", "figures.pvsm"]
     with open(folder + "/again.py", "w") as file:
         file.write(AGAIN)
     run(*xvfb_run(312), "pvbatch", folder + "/again.py", out)

@@ -1,0 +1,93 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The Python of the README about VTK: each block, with what it takes for granted before it and a look at what it made behind.
+Runs where the README's own exports have said where the packages are, on a screen in memory, in the README's tree."""
+import shutil
+
+import numpy as np
+import vtkmodules.vtkRenderingOpenGL2  # noqa: F401
+from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
+from vtkmodules.vtkCommonDataModel import vtkImageData
+from vtkmodules.vtkFiltersSources import vtkPlaneSource, vtkSphereSource
+from vtkmodules.vtkRenderingCore import (vtkActor, vtkPolyDataMapper, vtkRenderer, vtkRenderWindow, vtkTexture,
+                                         vtkWindowToImageFilter)
+
+import blocks
+
+TEXT = blocks.python_of("vtk")
+
+
+def run(name, names):
+    exec(compile(TEXT[name], "README.md, " + name, "exec"), names)
+    return names
+
+
+def points(data):
+    return vtk_to_numpy(data.GetPoints().GetData())
+
+
+def red_picture():
+    image = vtkImageData()
+    image.SetDimensions(64, 32, 1)
+    image.GetPointData().SetScalars(numpy_to_vtk(np.tile(np.uint8([250, 20, 20]), (64 * 32, 1)), deep=True))
+    return image
+
+
+def drawn(actor):
+    """What a window shows of it, [pixel, channel]; the background is black."""
+    renderer, window, grab = vtkRenderer(), vtkRenderWindow(), vtkWindowToImageFilter()
+    window.OffScreenRenderingOn()
+    window.SetSize(100, 100)
+    window.AddRenderer(renderer)
+    renderer.AddActor(actor)
+    renderer.ResetCamera()
+    window.Render()
+    grab.SetInput(window)
+    grab.Update()
+    return vtk_to_numpy(grab.GetOutput().GetPointData().GetScalars()).astype(int)
+
+
+def check_deform():
+    surface = vtkPlaneSource()
+    surface.SetResolution(20, 20)
+    deform = run("deform", {"surface": surface})["deform"]
+    # The bump in the middle is as high as its vector says.
+    assert abs(points(deform.GetOutput())[:, 2].max() - 1) < 1e-3, points(deform.GetOutput()).max(0)
+
+
+def check_project():
+    scene = vtkSphereSource()
+    scene.SetRadius(5)
+    projection = run("project", {"scene": scene})["projection"]
+    assert projection.GetOutput(0).GetNumberOfCells() > 0
+    assert projection.GetOutput(0).GetPointData().GetTCoords()
+
+
+def check_shader():
+    sphere, mapper, actor, texture = vtkSphereSource(), vtkPolyDataMapper(), vtkActor(), vtkTexture()
+    sphere.SetCenter(0, 1.6, -3)
+    mapper.SetInputConnection(sphere.GetOutputPort())
+    actor.SetMapper(mapper)
+    actor.GetProperty().LightingOff()
+    texture.SetInputData(red_picture())
+    texture.InterpolateOn()
+    run("shader", {"texture": texture, "actor": actor})
+    colors = drawn(actor)
+    assert (colors[:, 0] - colors[:, 1] > 100).sum() > 500, "nothing is red"
+
+
+def check_mapper():
+    shutil.copy("examples/figures/walker.nudes", "walker.nudes")
+    names = run("mapper", {})
+    assert (drawn(names["actor"]).sum(1) > 0).sum() > 200, "no walker is seen"
+    texture, image = vtkTexture(), names["anamorph"].vtkAnamorphFigureImage()
+    texture.SetInputData(red_picture())
+    run("textures", {**names, "texture": texture, "image": image, "picture": red_picture()})
+    image.SetInputConnection(names["reader"].GetOutputPort())
+    image.Update()
+    assert image.GetOutput().GetNumberOfPoints() > 0
+
+
+checks = {"deform": check_deform, "project": check_project, "shader": check_shader, "mapper": check_mapper}
+for check in checks.values():
+    check()
+assert set(TEXT) == {*checks, "textures"}, TEXT.keys()
