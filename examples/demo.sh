@@ -2,27 +2,57 @@
 # SPDX-License-Identifier: Apache-2.0
 # Shows what Anamorph does, on Debian 12 from a fresh machine on: builds it, and lets the stock oiiotool draw views of an
 # HDR panorama, warp a picture, film a morph of two and draw a figure. Everything it makes is in build/demo/out.
-# With --quick, the tables of speed against error are made of small pictures, in one round.
 set -euo pipefail
 cd "$(dirname "$0")/.."
-quick=""
+usage="usage: examples/demo.sh [--quick | --long]
+
+Builds Anamorph and draws pictures, films, and tables and plots of speed against error into build/demo/out. The packages of
+Debian that are missing are installed (as root or with sudo), and it says which.
+
+  --long   long tables: all cases, pictures 1024 pixels wide, 15 rounds; a quarter of an hour more
+  --quick  tables of small pictures in one round, for tests
+  --help   prints this"
+tables=short
 case "${1:-}" in
     "") ;;
-    --quick) quick=1 ;;
-    *) echo "demo.sh: $1: the only option is --quick" >&2; exit 1 ;;
+    --quick | --long) tables="${1#--}" ;;
+    --help | -h) echo "$usage"; exit 0 ;;
+    *) echo "demo.sh: $1: must be --quick, --long or --help" >&2; exit 1 ;;
 esac
-tests/install_packages.sh build hosts tests plots vtk
+if [ $# -gt 1 ]; then
+    echo "demo.sh: $2: one option at most" >&2
+    exit 1
+fi
+tests/install_packages.sh build hosts bench plots vtk
 tests/unpack_vtk.sh build/vtk-9.1 # a rival in the table of speed against error
 
 demo="$PWD/build/demo"
 out="$demo/out"
 mkdir -p "$out"
 
-echo "building"
-{
+# Reads what ninja prints and says how far it is: on a terminal in one line that changes, else a line for every tenth.
+show_progress() {
+    local line made all percent shown=-1 width=10 start=$SECONDS end=$'\n'
+    [ ! -t 1 ] || width=1 end=$'\r'
+    while IFS= read -r line; do
+        [[ "$line" =~ ^\[([0-9]+)/([0-9]+)\]\ (Building|Linking) ]] || continue
+        made="${BASH_REMATCH[1]}" all="${BASH_REMATCH[2]}"
+        percent=$((100 * made / all / width * width))
+        if [ "$percent" -gt "$shown" ]; then
+            shown=$percent
+            printf 'building: %d%% (%d of %d), %d s%s' "$percent" "$made" "$all" $((SECONDS - start)) "$end"
+        fi
+    done
+    [ ! -t 1 ] || [ "$shown" -lt 0 ] || echo
+}
+
+build() {
     cmake --preset release -DVTK_ROOT="$PWD/build/vtk-9.1/usr" &&
-        cmake --build --preset release --target anamorph.imageio anamorph_figure speed_vs_error
-} >"$demo/build.txt" 2>&1 || { cat "$demo/build.txt" >&2; exit 1; }
+        NINJA_STATUS="[%f/%t] " cmake --build --preset release --target anamorph.imageio anamorph_figure speed_vs_error
+}
+
+echo "building into build/release (the first time this takes about 6 minutes on 2 cores)"
+build 2>&1 | tee "$demo/build.txt" | show_progress || { cat "$demo/build.txt" >&2; exit 1; }
 export OIIO_LIBRARY_PATH="$PWD/build/release/plugins/imageio"
 
 # A real HDR panorama: one of the studio lights that come with Blender (CC0). Only the package's file is
@@ -133,21 +163,33 @@ echo "walker.png, walker.pdf: walker.nudes"
 ../../release/core/command/anamorph-figure png walker.nudes --frame 24 -o walker.png
 ../../release/core/command/anamorph-figure pdf walker.nudes --frame all -o walker.pdf
 
-# Speed against error of all operations: one table and one plot each.
-for op in pano warp morph drape; do
-    table="speed_vs_error_$op"
-    size=1024 cases=()
-    if [ "$op" = morph ]; then
-        # The table has four weights a and three b of each family of lines; the plot has the usual ones.
-        size=600
-        cases=(--cases smooth_a1_b2,face_a1_b2,random_a1_b2,crossing_a1_b2,short_a1_b2,outside_a1_b2,paper)
-    fi
-    rounds=15
-    [ -z "$quick" ] || size=128 rounds=1
-    echo "$table.csv, .png, .svg"
-    ../../release/tests/bench/speed_vs_error --op "$op" --size "$size" --rounds "$rounds" --csv "$table.csv" >"$table.txt"
-    /usr/bin/python3 ../../../examples/plot_speed_vs_error.py "${cases[@]}" "$table.csv" "$table.png" "$table.svg"
-done
+# Speed against error of all operations: one table and one plot each. Of morphs, the long table has four weights a and three b
+# of each family of lines, and the plot has the usual ones.
+morph_cases=smooth_a1_b2,face_a1_b2,random_a1_b2,crossing_a1_b2,short_a1_b2,outside_a1_b2,paper
+pano_cases=equirect,equirect_rotated,fisheye,planet,cube,mercator
+case "$tables" in
+    long) size=1024 morph_size=600 rounds=15 ;;
+    short) size=512 morph_size=300 rounds=3 ;;
+    quick) size=128 morph_size=128 rounds=1 ;;
+esac
+
+# table OP SIZE MEASURED PLOTTED: both are cases, or nothing for all.
+table() {
+    local name="speed_vs_error_$1"
+    echo "$name.csv, .png, .svg"
+    ../../release/tests/bench/speed_vs_error --op "$1" --size "$2" --rounds "$rounds" --case "$3" --csv "$name.csv" >"$name.txt"
+    /usr/bin/python3 ../../../examples/plot_speed_vs_error.py --cases "$4" "$name.csv" "$name.png" "$name.svg"
+}
+echo "tables and plots of speed against error, pictures $size pixels wide, rounds: $rounds"
+if [ "$tables" = short ]; then
+    table pano "$size" "$pano_cases" ""
+    table morph "$morph_size" "$morph_cases" ""
+else
+    table pano "$size" "" ""
+    table morph "$morph_size" "" "$morph_cases"
+fi
+table warp "$size" "" ""
+table drape "$size" "" ""
 
 /usr/bin/python3 ../../../examples/contact_sheet.py contact_sheet.png panorama.png rectilinear.png rolled.png fisheye.png \
     little_planet.png cylindrical.png mercator.png cube_faces.png error.png round.png warp.jpg \
