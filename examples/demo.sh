@@ -166,7 +166,7 @@ echo "walker.png, walker.pdf: walker.nudes"
 # Speed against error of all operations: one table and one plot each. Of morphs, the long table has four weights a and three b
 # of each family of lines, and the plot has the usual ones.
 morph_cases=smooth_a1_b2,face_a1_b2,random_a1_b2,crossing_a1_b2,short_a1_b2,outside_a1_b2,paper
-pano_cases=equirect,equirect_rotated,fisheye,planet,cube,mercator
+pano_cases=equirect,equirect_rotated,fisheye,planet,mercator,full_sphere
 case "$tables" in
     long) size=1024 morph_size=600 rounds=15 ;;
     short) size=512 morph_size=300 rounds=3 ;;

@@ -11,8 +11,10 @@ endif()
 file(WRITE ${PROJECT_BINARY_DIR}/AnamorphToolkit.cmake "# SPDX-License-Identifier: Apache-2.0\n${find_toolkit}\n")
 include(${PROJECT_BINARY_DIR}/AnamorphToolkit.cmake)
 install(FILES ${PROJECT_BINARY_DIR}/AnamorphToolkit.cmake DESTINATION ${package_dir})
-if(ANAMORPH_TESTS AND ANAMORPH_TOOLKIT STREQUAL "VTK")
-    find_package(VTK 9.1 REQUIRED COMPONENTS InteractionStyle RenderingFreeType) # of the example
+# What the example and anamorph-view take beyond that. It is found here, and not in their folders alone: the packages that VTK
+# finds for it (MPI) have to be known where VTK's own targets are, or nothing is generated.
+if(ANAMORPH_TOOLKIT STREQUAL "VTK" AND (ANAMORPH_TESTS OR ANAMORPH_VIEWER))
+    find_package(VTK 9.1 REQUIRED COMPONENTS InteractionStyle RenderingFreeType)
 endif()
 
 # One folder of libraries: a plugin then finds the modules from the build tree as from an installation.

@@ -71,9 +71,11 @@ def link_tree(folder, preset):
         (folder / "build/vtk-9.1").symlink_to(VTK_PREFIX)
 
 
-def shell(text, folder, **environment):
-    done = subprocess.run(["bash", "-c", text], cwd=folder, env={**os.environ, **environment}, stdout=subprocess.PIPE,
-                          stderr=subprocess.STDOUT, text=True, errors="replace", timeout=550)
+def shell(text, folder, screen=None, **environment):
+    """What bash prints; on a screen in memory of that number, or without one."""
+    display = ["xvfb-run", "-a", "-n", str(screen), "-s", "-screen 0 1280x1024x24 -noreset"] if screen else []
+    done = subprocess.run([*display, "bash", "-c", text], cwd=folder, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True,
+                          env={**os.environ, "LIBGL_ALWAYS_SOFTWARE": "1", **environment}, errors="replace", timeout=550)
     assert done.returncode == 0, f"{text}\n{done.stdout[-6000:]}"
     return done.stdout
 
@@ -111,12 +113,12 @@ def run_commands(folder):
 
 def run_vtk(folder):
     """Lines of the shell, and then Python with the paths that these have set."""
-    shell(f'/usr/bin/python3 examples/make_panorama.py panorama.exr 256 && oiiotool panorama.exr --ch R,G,B -d uint8 -o photo.jpg',
+    shell('/usr/bin/python3 examples/make_panorama.py panorama.exr 256 && oiiotool panorama.exr --ch R,G,B -d uint8 -o photo.jpg',
           folder)
-    lines = blocks.lines_of("vtk")
+    # Paths first: an example of an earlier section points to them.
+    lines = sorted(blocks.lines_of("vtk"), key=lambda line: not line.startswith(("tests/unpack_vtk.sh", "export ")))
     assert len(lines) > 8, lines
-    python = f'xvfb-run -a -n 371 -s "-screen 0 1280x1024x24 -noreset" /usr/bin/python3 {SOURCE}/tests/docs/python_blocks.py'
-    shell("set -ex\n" + "\n".join([*lines, python]), folder, LIBGL_ALWAYS_SOFTWARE="1")
+    shell("set -ex\n" + "\n".join([*lines, f"/usr/bin/python3 {SOURCE}/tests/docs/python_blocks.py"]), folder, screen=371)
     check_files(lines, folder)
     assert os.listdir(folder / "faces"), "the example of expressions wrote no pictures"
 
@@ -124,8 +126,7 @@ def run_vtk(folder):
 def run_paraview(folder):
     lines = blocks.lines_of("paraview")
     assert len(lines) == 3, lines
-    python = f'xvfb-run -a -n 372 -s "-screen 0 1280x1024x24 -noreset" pvpython {SOURCE}/tests/docs/paraview_blocks.py'
-    shell("set -ex\n" + "\n".join([*lines, python]), folder, LIBGL_ALWAYS_SOFTWARE="1")
+    shell("set -ex\n" + "\n".join([*lines, f"pvpython {SOURCE}/tests/docs/paraview_blocks.py"]), folder, screen=372)
     made = os.listdir(folder / "OUT")
     assert {"face.pvsm", "figures.png", "figures.pvsm"} <= set(made), made
 
