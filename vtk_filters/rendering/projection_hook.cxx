@@ -67,6 +67,16 @@ int loaded_components(vtkTexture* texture, vtkRenderer* renderer) {
     return loaded && loaded->GetTextureObject() ? loaded->GetTextureObject()->GetComponents() : 4;
 }
 
+/// Are shadows those of rays now? A window that wants several frames a second is being interacted with.
+bool follows_rays(vtkAnamorphPanoramaProjector& projector, vtkRenderWindow* window) {
+    constexpr double kStill = 1;
+    const int shadows = projector.GetShadows();
+    return (shadows == vtkAnamorphPanoramaProjector::SHADOW_RAYS ||
+            (shadows == vtkAnamorphPanoramaProjector::SHADOW_RAYS_IN_STILLS &&
+             window->GetDesiredUpdateRate() < kStill)) &&
+           count_triangles(projector.GetOccluders()) <= ShadowRays::kMostTriangles;
+}
+
 /// From world coordinates to those of gl_Position.
 glm::dmat4 clip_matrix(vtkRenderer* renderer) {
     vtkMatrix4x4 *view = nullptr, *projection = nullptr, *both = nullptr;
@@ -140,7 +150,8 @@ void ProjectionHook::take_off(vtkActor* actor) {
             if (property->GetTexture(name.c_str())) property->RemoveTexture(name.c_str());
         shaders->GetVertexCustomUniforms()->RemoveUniform(matrix_name(i).c_str());
         shaders->GetVertexCustomUniforms()->RemoveUniform(origin_name(i).c_str());
-        shaders->GetFragmentCustomUniforms()->RemoveUniform(frame_name(i).c_str());
+        for (const std::string& name : {frame_name(i), origin_name(i)})
+            shaders->GetFragmentCustomUniforms()->RemoveUniform(name.c_str());
     }
 }
 
@@ -155,10 +166,12 @@ const PreparedPanorama* ProjectionHook::prepared_for(vtkActor* actor, int projec
     return first && i < first->m_state->prepared.size() ? first->m_state->prepared[i].get() : nullptr;
 }
 
-const ShadowMap* ProjectionHook::shadow_map_for(vtkActor* actor, int projector) {
+int ProjectionHook::shadow_draws_for(vtkActor* actor, int projector) {
     const std::string name = texture_name(static_cast<std::size_t>(projector));
     auto* hook = ProjectionHook::SafeDownCast(actor->GetProperty()->GetTexture(name.c_str()));
-    return hook ? hook->m_shadow_map.get() : nullptr;
+    if (!hook) return 0;
+    return (hook->m_shadow_map ? hook->m_shadow_map->draws() : 0) +
+           (hook->m_shadow_rays ? hook->m_shadow_rays->draws() : 0);
 }
 
 vtkOpenGLTexture* ProjectionHook::panorama() const {
@@ -197,12 +210,14 @@ void ProjectionHook::ReleaseGraphicsResources(vtkWindow* window) {
     m_table_of = nullptr;
     m_shadows->SetTextureObject(nullptr);
     m_shadow_map = nullptr;
+    m_shadow_rays = nullptr;
 }
 
 void ProjectionHook::refresh_text(vtkRenderer* renderer) {
     if (!m_shaders) return;
     PreparedPanoramas& prepared = m_state->prepared;
     PreparedPanoramas now;
+    std::vector<bool> rays;
     std::string complaint;
     try {
         for (int i = 0; i < m_owner->GetNumberOfProjectors(); ++i) {
@@ -215,6 +230,7 @@ void ProjectionHook::refresh_text(vtkRenderer* renderer) {
             const auto at = static_cast<std::size_t>(i);
             const bool known = at < prepared.size() && prepared[at]->thrown == thrown;
             now.push_back(known ? prepared[at] : std::make_shared<const PreparedPanorama>(thrown));
+            rays.push_back(thrown.shadow_size > 0 && follows_rays(projector, renderer->GetRenderWindow()));
         }
     } catch (const anamorph::Error& error) {
         complaint = error.what();
@@ -222,11 +238,12 @@ void ProjectionHook::refresh_text(vtkRenderer* renderer) {
     }
     complain(complaint, m_state->complaint);
     const bool hides = m_owner->GetHideUnpainted();
-    if (m_state->has_text && now == prepared && hides == m_state->hides) return;
+    if (m_state->has_text && now == prepared && rays == m_state->rays && hides == m_state->hides) return;
     prepared = now;
+    m_state->rays = rays;
     m_state->hides = hides;
     m_state->has_text = true;
-    set_replacements(*m_shaders, projection_text(prepared, hides));
+    set_replacements(*m_shaders, projection_text(prepared, rays, hides));
 }
 
 void ProjectionHook::refresh_table(vtkRenderer* renderer) {
@@ -262,17 +279,39 @@ void ProjectionHook::refresh_shadows(vtkRenderer* renderer) {
     if (!prepared || prepared->thrown.shadow_size == 0) {
         m_shadows->SetTextureObject(this->GetTextureObject());
         m_shadow_map = nullptr;
+        m_shadow_rays = nullptr;
         return;
     }
-    m_shadow_map =
-        ShadowMap::of(m_projector, vtkOpenGLRenderWindow::SafeDownCast(renderer->GetRenderWindow()));
-    const double* at = m_projector->GetPosition();
-    // With a wrong pose, of which set_uniforms() tells, the last map stays.
+    const bool too_many = m_projector->GetShadows() != vtkAnamorphPanoramaProjector::SHADOW_MAP &&
+                          count_triangles(m_projector->GetOccluders()) > ShadowRays::kMostTriangles;
+    complain(too_many
+                 ? "Occluders: rays are followed through at most " +
+                       std::to_string(ShadowRays::kMostTriangles) + " triangles: shadows are those of the map"
+                 : "",
+             m_wrong_shadows);
+    // With a wrong pose, of which set_uniforms() tells, the last shadows stay.
     if (m_wrong_pose.empty())
-        m_shadows->SetTextureObject(m_shadow_map->refreshed(
-            m_projector->GetOccluders(), {at[0], at[1], at[2]}, prepared->thrown.shadow_size));
+        m_shadows->SetTextureObject(shadows_now(
+            vtkOpenGLRenderWindow::SafeDownCast(renderer->GetRenderWindow()), prepared->thrown.shadow_size));
     else if (!m_shadows->GetTextureObject())
         m_shadows->SetTextureObject(this->GetTextureObject());
+}
+
+vtkTextureObject* ProjectionHook::shadows_now(vtkOpenGLRenderWindow* window, int size) {
+    const bool rays = m_state->rays[m_index];
+    // Where stills have one and interaction the other, both are kept.
+    const bool both = m_projector->GetShadows() == vtkAnamorphPanoramaProjector::SHADOW_RAYS_IN_STILLS;
+    if (!rays && !both) m_shadow_rays = nullptr;
+    if (rays && !both) m_shadow_map = nullptr;
+    vtkPolyData* occluders = m_projector->GetOccluders();
+    const double* at = m_projector->GetPosition();
+    const glm::dvec3 position(at[0], at[1], at[2]);
+    if (rays) {
+        m_shadow_rays = shared_shadows<ShadowRays>(m_projector, window);
+        return m_shadow_rays->refreshed(occluders, position);
+    }
+    m_shadow_map = shared_shadows<ShadowMap>(m_projector, window);
+    return m_shadow_map->refreshed(occluders, position, size);
 }
 
 void ProjectionHook::set_uniforms(vtkRenderer* renderer) {
@@ -297,7 +336,9 @@ void ProjectionHook::write_uniforms(const glm::dmat4& matrix, const glm::dvec3& 
     vtkUniforms* uniforms = m_shaders->GetVertexCustomUniforms();
     uniforms->SetUniformMatrix4x4(matrix_name(m_index).c_str(), numbers);
     uniforms->SetUniform3f(origin_name(m_index).c_str(), vector);
-    m_shaders->GetFragmentCustomUniforms()->SetUniformMatrix3x3(frame_name(m_index).c_str(), axes);
+    vtkUniforms* of_fragments = m_shaders->GetFragmentCustomUniforms();
+    of_fragments->SetUniformMatrix3x3(frame_name(m_index).c_str(), axes);
+    of_fragments->SetUniform3f(origin_name(m_index).c_str(), vector);
 }
 
 }  // namespace anamorph_vtk

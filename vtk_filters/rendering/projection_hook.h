@@ -8,9 +8,11 @@
 #include <memory>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "projection_text.h"
 #include "shadow_map.h"
+#include "shadow_rays.h"
 #include "vtkOpenGLTexture.h"
 #include "vtkSmartPointer.h"
 #include "vtkWeakPointer.h"
@@ -43,8 +45,8 @@ class ProjectionHook : public LoadedTexture {
     /// What it throws as of the last frame; null: nothing.
     static const PreparedPanorama* prepared_for(vtkActor* actor, int projector);
 
-    /// Its map of what hides; null: none.
-    static const ShadowMap* shadow_map_for(vtkActor* actor, int projector);
+    /// How often its map of what hides has been drawn, and what its rays are followed through.
+    static int shadow_draws_for(vtkActor* actor, int projector);
 
     // As a texture.
     void Render(vtkRenderer* renderer) override;
@@ -55,6 +57,7 @@ class ProjectionHook : public LoadedTexture {
     /// What the hooks of an actor share.
     struct State {
         PreparedPanoramas prepared;
+        std::vector<bool> rays;  ///< of projectors: are shadows those of rays?
         bool hides = false, has_text = false;
         std::string complaint;
     };
@@ -66,8 +69,9 @@ class ProjectionHook : public LoadedTexture {
     void refresh_text(vtkRenderer* renderer);
     /// Draws or loads what the mode reads beside the panorama.
     void refresh_table(vtkRenderer* renderer);
-    /// Draws the map of distances around the projector.
+    /// Draws the map of distances around the projector, or what rays are followed through.
     void refresh_shadows(vtkRenderer* renderer);
+    vtkTextureObject* shadows_now(vtkOpenGLRenderWindow* window, int size);
     void set_uniforms(vtkRenderer* renderer);
     void write_uniforms(const glm::dmat4& matrix, const glm::dvec3& origin, const glm::dmat3& frame);
 
@@ -76,7 +80,7 @@ class ProjectionHook : public LoadedTexture {
     vtkWeakPointer<vtkShaderProperty> m_shaders;
     std::size_t m_index = 0;
     std::shared_ptr<State> m_state;
-    std::string m_wrong_pose, m_wrong_table;
+    std::string m_wrong_pose, m_wrong_table, m_wrong_shadows;
     /// None in mode direct.
     vtkSmartPointer<LoadedTexture> m_table;
     /// What the table was made of.
@@ -85,6 +89,7 @@ class ProjectionHook : public LoadedTexture {
     vtkSmartPointer<LoadedTexture> m_shadows;
     /// None where nothing is hidden.
     std::shared_ptr<ShadowMap> m_shadow_map;
+    std::shared_ptr<ShadowRays> m_shadow_rays;
 };
 
 }  // namespace anamorph_vtk

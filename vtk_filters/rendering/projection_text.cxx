@@ -10,6 +10,7 @@
 #include "anamorph/number/glsl_number.h"
 #include "anamorph/projector/panorama_glsl.h"
 #include "shadow_map.h"
+#include "shadow_rays.h"
 #include "vtkAlgorithm.h"
 #include "vtkAnamorphPanoramaProjector.h"
 #include "vtkAnamorphProjectionShader.h"
@@ -195,7 +196,7 @@ std::string second_pass_function(const PreparedPanorama& panorama) {
 }
 
 /// All functions of a projector.
-std::string functions(const PreparedPanorama& panorama, std::size_t i) {
+std::string functions(const PreparedPanorama& panorama, bool rays, std::size_t i) {
     std::string text = panorama_glsl(panorama.chart, numbered("Thrown", i)) + read_function(panorama) +
                        fade_function(panorama);
     if (panorama.groups.empty())
@@ -204,7 +205,8 @@ std::string functions(const PreparedPanorama& panorama, std::size_t i) {
         text += group_function(panorama) + (panorama.thrown.mode == Shader::RESIDUAL
                                                 ? residual_function(panorama)
                                                 : second_pass_function(panorama));
-    if (panorama.thrown.shadow_size > 0) text += hidden_function(panorama.thrown.shadow_size);
+    if (panorama.thrown.shadow_size > 0)
+        text += rays ? traced_function() : hidden_function(panorama.thrown.shadow_size);
     return with_number(text, i);
 }
 
@@ -310,7 +312,7 @@ double PreparedPanorama::bound() const {
     return most;
 }
 
-ProjectionText projection_text(const PreparedPanoramas& panoramas, bool hide) {
+ProjectionText projection_text(const PreparedPanoramas& panoramas, const std::vector<bool>& rays, bool hide) {
     ProjectionText text;
     text.fragment_functions = anamorph::panorama_glsl_prelude();
     text.fragment_code = "  vec4 anamorphSum = vec4(0.0);\n  float anamorphAll = 0.0;\n";
@@ -322,7 +324,7 @@ ProjectionText projection_text(const PreparedPanoramas& panoramas, bool hide) {
         text.geometry_declarations += "in vec3 " + to_fragments + "[];\nout vec3 " + from_geometry + ";\n";
         text.geometry_code += "  " + from_geometry + " = " + to_fragments + "[i];\n";
         text.fragment_declarations += "in vec3 " + to_fragments + ";\n";
-        text.fragment_functions += functions(*panoramas[i], i);
+        text.fragment_functions += functions(*panoramas[i], rays[i], i);
         text.fragment_code += fragment_code(i, panoramas.size() == 1, panoramas[i]->thrown.shadow_size > 0);
     }
     text.fragment_code += "  if (anamorphAll > 0.0) gl_FragData[0] *= anamorphSum / anamorphAll;\n";

@@ -53,8 +53,8 @@ struct ProjectionText {
     std::string fragment_declarations, fragment_functions, fragment_code;
 };
 
-/// `hide`: are fragments left out that receive nothing?
-ProjectionText projection_text(const PreparedPanoramas& panoramas, bool hide);
+/// `rays`: of each, are shadows those of rays, else of a map? `hide`: are fragments left out that receive nothing?
+ProjectionText projection_text(const PreparedPanoramas& panoramas, const std::vector<bool>& rays, bool hide);
 
 /// The fragment shader that draws a panorama on its projection planes, one above the other: colours times how much of them
 /// counts, and that.

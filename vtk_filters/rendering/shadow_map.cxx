@@ -9,10 +9,8 @@
 
 #include <array>
 #include <limits>
-#include <map>
 #include <numeric>
 
-#include "vtkAnamorphPanoramaProjector.h"
 #include "vtkIdList.h"
 #include "vtkNew.h"
 #include "vtkOpenGLFramebufferObject.h"
@@ -48,25 +46,11 @@ in float ahead;
 void main() { gl_FragData[0] = vec4(ahead); }
 )";
 
-/// The corners of all triangles, three each, from a position.
-std::vector<glm::vec3> corners_around(vtkPolyData* mesh, const glm::dvec3& position) {
-    vtkNew<vtkTriangleFilter> triangles;
-    triangles->SetInputData(mesh);
-    triangles->PassVertsOff();
-    triangles->PassLinesOff();
-    triangles->Update();
-    vtkPolyData* cut = triangles->GetOutput();
-    std::vector<glm::vec3> corners;
-    vtkNew<vtkIdList> ids;
-    for (vtkIdType cell = 0; cell < cut->GetNumberOfPolys(); ++cell) {
-        cut->GetPolys()->GetCellAtId(cell, ids);
-        for (vtkIdType i = 0; i < 3; ++i) {
-            double p[3];
-            cut->GetPoint(ids->GetId(i), p);
-            corners.emplace_back(glm::dvec3(p[0], p[1], p[2]) - position);
-        }
-    }
-    return corners;
+/// Corners from a position.
+std::vector<glm::vec3> seen_from(const glm::dvec3& position, const std::vector<glm::dvec3>& corners) {
+    std::vector<glm::vec3> seen;
+    for (const glm::dvec3& corner : corners) seen.emplace_back(corner - position);
+    return seen;
 }
 
 /// The triangles that may be seen in a face: not all beyond one of its sides.
@@ -115,31 +99,44 @@ void draw_faces(const std::vector<glm::vec3>& corners, int size, vtkOpenGLRender
 
 }  // namespace
 
+std::vector<glm::dvec3> corners_of(vtkPolyData* mesh) {
+    vtkNew<vtkTriangleFilter> triangles;
+    triangles->SetInputData(mesh);
+    triangles->PassVertsOff();
+    triangles->PassLinesOff();
+    triangles->Update();
+    vtkPolyData* cut = triangles->GetOutput();
+    std::vector<glm::dvec3> corners;
+    vtkNew<vtkIdList> ids;
+    for (vtkIdType cell = 0; cell < cut->GetNumberOfPolys(); ++cell) {
+        cut->GetPolys()->GetCellAtId(cell, ids);
+        for (vtkIdType i = 0; i < 3; ++i) {
+            double p[3];
+            cut->GetPoint(ids->GetId(i), p);
+            corners.emplace_back(p[0], p[1], p[2]);
+        }
+    }
+    return corners;
+}
+
 int most_shadow_size(vtkOpenGLRenderWindow* window) {
     const int most = vtkTextureObject::GetMaximumTextureSize(window);
     return most > 0 ? most / kAcross : std::numeric_limits<int>::max();
-}
-
-std::shared_ptr<ShadowMap> ShadowMap::of(vtkAnamorphPanoramaProjector* projector,
-                                         vtkOpenGLRenderWindow* window) {
-    static std::map<std::pair<void*, void*>, std::weak_ptr<ShadowMap>> all;
-    std::erase_if(all, [](const auto& entry) { return entry.second.expired(); });
-    std::weak_ptr<ShadowMap>& known = all[{projector, window}];
-    std::shared_ptr<ShadowMap> map = known.lock();
-    // Another window may stand where one was.
-    if (!map || map->m_window != window) known = map = std::make_shared<ShadowMap>(window);
-    return map;
 }
 
 ShadowMap::ShadowMap(vtkOpenGLRenderWindow* window) : m_window(window) {}
 
 ShadowMap::~ShadowMap() = default;
 
+bool ShadowMap::is_of(vtkOpenGLRenderWindow* window) const {
+    return m_window == window;
+}
+
 vtkTextureObject* ShadowMap::refreshed(vtkPolyData* occluders, const glm::dvec3& position, int size) {
     const bool same = m_texture && m_texture->GetHandle() && m_occluders == occluders &&
                       m_time == occluders->GetMTime() && m_position == position && m_size == size;
     if (same) return m_texture;
-    draw(corners_around(occluders, position), size);
+    draw(seen_from(position, corners_of(occluders)), size);
     m_occluders = occluders;
     m_time = occluders->GetMTime();
     m_position = position;

@@ -5,7 +5,6 @@
 #pragma once
 
 #include <glm/vec3.hpp>
-#include <memory>
 #include <string>
 #include <vector>
 
@@ -13,7 +12,6 @@
 #include "vtkType.h"
 #include "vtkWeakPointer.h"
 
-class vtkAnamorphPanoramaProjector;
 class vtkOpenGLFramebufferObject;
 class vtkOpenGLRenderWindow;
 class vtkPolyData;
@@ -21,15 +19,14 @@ class vtkTextureObject;
 
 namespace anamorph_vtk {
 
+/// The corners of a mesh's triangles, three each.
+std::vector<glm::dvec3> corners_of(vtkPolyData* mesh);
+
 /// Texels across a face, at most, that a window's textures have room for.
 int most_shadow_size(vtkOpenGLRenderWindow* window);
 
 class ShadowMap {
   public:
-    /// The one of a projector in a window, as long as anybody has it.
-    static std::shared_ptr<ShadowMap> of(vtkAnamorphPanoramaProjector* projector,
-                                         vtkOpenGLRenderWindow* window);
-
     explicit ShadowMap(vtkOpenGLRenderWindow* window);
     ~ShadowMap();
 
@@ -37,6 +34,7 @@ class ShadowMap {
     vtkTextureObject* refreshed(vtkPolyData* occluders, const glm::dvec3& position, int size);
     /// How often it has been drawn.
     int draws() const { return m_draws; }
+    bool is_of(vtkOpenGLRenderWindow* window) const;
 
   private:
     void draw(const std::vector<glm::vec3>& corners, int size);

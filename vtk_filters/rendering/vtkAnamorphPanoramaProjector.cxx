@@ -23,6 +23,7 @@ vtkAnamorphPanoramaProjector::~vtkAnamorphPanoramaProjector() {
 
 void vtkAnamorphPanoramaProjector::PrintSelf(ostream& os, vtkIndent indent) {
     this->Superclass::PrintSelf(os, indent);
+    constexpr const char* kShadows[] = {"map", "rays", "rays in stills"};
     const auto write = [&](const char* name, const double* v) {
         os << indent << name << ": " << v[0] << " " << v[1] << " " << v[2] << "\n";
     };
@@ -35,6 +36,7 @@ void vtkAnamorphPanoramaProjector::PrintSelf(ostream& os, vtkIndent indent) {
     write("Direction", this->Direction);
     write("ViewUp", this->ViewUp);
     os << indent << "Occluders: " << this->Occluders.Get() << "\n"
+       << indent << "Shadows: " << kShadows[this->Shadows] << "\n"
        << indent << "ShadowSize: " << this->ShadowSize << "\n"
        << indent << "Fade: " << this->Fade << "\n";
 }

@@ -92,7 +92,7 @@ class ANAMORPHRENDERING_EXPORT vtkAnamorphPanoramaProjector : public vtkObject {
     ///@{
     /**
      * What stands between the projector and the scene, in world coordinates: the scene itself, too, if it is to hide itself.
-     * What lies behind is not painted, by a map of distances around the projector. Default: none.
+     * What lies behind is not painted, as Shadows says. Default: none.
      */
     void SetOccluderConnection(vtkAlgorithmOutput* output);
     void SetOccluderData(vtkPolyData* mesh);
@@ -100,11 +100,37 @@ class ANAMORPHRENDERING_EXPORT vtkAnamorphPanoramaProjector : public vtkObject {
     vtkPolyData* GetOccluders();
     ///@}
 
+    /// How it is found out what a fragment does not receive.
+    enum ShadowModes {
+        SHADOW_MAP = 0,  ///< by a map of distances around the projector, as fine as ShadowSize
+        SHADOW_RAYS,  ///< by the ray to every fragment, which costs more and is exact but for the rounding of float
+        SHADOW_RAYS_IN_STILLS  ///< by rays, but by the map while a window is interacted with
+    };
     ///@{
     /**
-     * Texels across each of the six faces of that map. Borders of shadows are as coarse, and what is nearer to a point than
-     * 4 / ShadowSize of its distance does not hide it; where a driver's textures have no room for three faces beside each other
-     * they are smaller. The map is drawn when the position or what is around changes, not when the projector turns. Default: 1024.
+     * Rays are followed through the tree of boxes around the occluders (anamorph::Occluders, whose decisions they repeat in
+     * float), by the graphics hardware. What is nearer to a fragment than 2^-16 of its distance from the projector, or than
+     * 2e-6 of that and the camera's distance from it, as measured across the occluder's plane, does not hide it; up to 4194304
+     * triangles, and by the map where there are more. A window whose DesiredUpdateRate is 1 or more is being interacted with.
+     * Default: SHADOW_MAP.
+     */
+    vtkSetClampMacro(Shadows, int, SHADOW_MAP, SHADOW_RAYS_IN_STILLS);
+    vtkGetMacro(Shadows, int);
+    void SetShadowsToMap() { this->SetShadows(SHADOW_MAP); }
+    void SetShadowsToRays() { this->SetShadows(SHADOW_RAYS); }
+    void SetShadowsToRaysInStills() { this->SetShadows(SHADOW_RAYS_IN_STILLS); }
+    ///@}
+
+    ///@{
+    /**
+     * Texels across each of the six faces of the map, each of which sees 90 degrees. A fragment is judged by what the middle of
+     * its texel sees, with its surface continued there as a plane: on flat surfaces the border of a shadow is off by at most half
+     * a texel across and half a texel down, as seen from the projector, 0.71 in all. What is nearer to a surface than 4 /
+     * ShadowSize of its distance, which is the width of two texels there, does not hide it: shadows begin that far behind what
+     * touches a surface. Where a surface turns away from the projector, as at a ball's terminator, its plane leaves it within a
+     * texel, and the border is ragged by one, which lies long on the surface there. Where a driver's textures have no room for
+     * three faces beside each other they are smaller. The map is drawn when the position or what is around changes, not when the
+     * projector turns. Default: 1024.
      */
     vtkSetClampMacro(ShadowSize, int, 16, 4096);
     vtkGetMacro(ShadowSize, int);
@@ -129,7 +155,7 @@ class ANAMORPHRENDERING_EXPORT vtkAnamorphPanoramaProjector : public vtkObject {
     vtkSmartPointer<vtkTexture> Panorama;
     vtkSmartPointer<vtkAlgorithmOutput> Occluders;
     vtkSmartPointer<vtkTrivialProducer> OccluderData;
-    int Projection = 0, ShadowSize = 1024;
+    int Projection = 0, Shadows = SHADOW_MAP, ShadowSize = 1024;
     double FieldOfView = 0, PanniniDistance = 1;
     char* Lens = nullptr;
     double Position[3] = {0, 0, 0}, Direction[3] = {0, 0, -1}, ViewUp[3] = {0, 1, 0};

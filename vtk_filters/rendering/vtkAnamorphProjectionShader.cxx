@@ -91,8 +91,7 @@ double vtkAnamorphProjectionShader::GetResidualBound(vtkActor* actor, int projec
 }
 
 int vtkAnamorphProjectionShader::GetNumberOfShadowDraws(vtkActor* actor, int projector) {
-    const auto* map = actor && projector >= 0 ? ProjectionHook::shadow_map_for(actor, projector) : nullptr;
-    return map ? map->draws() : 0;
+    return actor && projector >= 0 ? ProjectionHook::shadow_draws_for(actor, projector) : 0;
 }
 
 void vtkAnamorphProjectionShader::AddTo(vtkActor* actor) {

@@ -57,16 +57,25 @@ class Occluders {
     /// Of a triangle.
     ShadowCover cover(const std::array<glm::dvec3, 3>& triangle, const ShadowScale& scale) const;
 
-  private:
+    /// A triangle: it hides a point, of ray r from the centre, if normals[k] . r >= 0 for its three sides and
+    /// normals[3] . r > depth.
     struct Occluder {
         std::array<glm::dvec3, 4> normals;
         double depth;
         double value(std::size_t k, const glm::dvec3& ray) const;
     };
+    /// A box around some of them, from the centre.
     struct Node {
         glm::dvec3 low, high;
         std::int32_t begin, end, right;  ///< of its occluders; its second half, or 0; the first one is next
     };
+    ///@{
+    /// All of them, and the boxes from the largest on, depth first: for those who follow rays themselves, as shaders do.
+    const std::vector<Occluder>& occluders() const { return m_occluders; }
+    const std::vector<Node>& nodes() const { return m_nodes; }
+    ///@}
+
+  private:
     /// normal . r + offset >= 0
     struct HalfSpace {
         glm::dvec3 normal;

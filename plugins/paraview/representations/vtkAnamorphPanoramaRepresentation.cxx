@@ -163,6 +163,10 @@ void vtkAnamorphPanoramaRepresentation::SetProjectorViewUp(double x, double y, d
     this->Projector->SetViewUp(x, y, z);
 }
 
+void vtkAnamorphPanoramaRepresentation::SetShadows(int mode) {
+    this->Projector->SetShadows(mode);
+}
+
 void vtkAnamorphPanoramaRepresentation::SetShadowSize(int texels) {
     this->Projector->SetShadowSize(texels);
 }

@@ -42,6 +42,7 @@ class ANAMORPHREPRESENTATIONS_EXPORT vtkAnamorphPanoramaRepresentation : public 
     void SetProjectorPosition(double x, double y, double z);
     void SetProjectorDirection(double x, double y, double z);
     void SetProjectorViewUp(double x, double y, double z);
+    void SetShadows(int mode);
     void SetShadowSize(int texels);
     ///@}
 

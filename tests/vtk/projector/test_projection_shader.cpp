@@ -659,7 +659,8 @@ TEST(VtkProjectionShader, HardTrianglesHarmNothing) {
     const auto projector = projector_of(chart, texture, {0, 0, 0});
     projector->SetOrientation(0, 90, 0);
     projector->SetOccluderData(hard_triangles(true));
-    for (const int mode : {0, 1, 2}) {
+    for (const int mode : {0, 1, 2, 3}) {
+        projector->SetShadows(mode % 2);
         Room room;
         room.look({0, 0, 0}, {0, 0, 0});
         room.mapper->SetInputData(hard_triangles(false));
