@@ -26,14 +26,14 @@
 #define vtkSMAnamorphDeformProxy_h
 
 #include "AnamorphServerManagerModule.h"  // for the export macro
-#include "vtkSMSourceProxy.h"
+#include "vtkSMAnamorphSourceProxy.h"
 
 #include <memory>  // for the edits
 
-class ANAMORPHSERVERMANAGER_EXPORT vtkSMAnamorphDeformProxy : public vtkSMSourceProxy {
+class ANAMORPHSERVERMANAGER_EXPORT vtkSMAnamorphDeformProxy : public vtkSMAnamorphSourceProxy {
   public:
     static vtkSMAnamorphDeformProxy* New();
-    vtkTypeMacro(vtkSMAnamorphDeformProxy, vtkSMSourceProxy);
+    vtkTypeMacro(vtkSMAnamorphDeformProxy, vtkSMAnamorphSourceProxy);
     void PrintSelf(ostream& os, vtkIndent indent) override;
 
     void UpdateVTKObjects() override;
