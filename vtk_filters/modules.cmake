@@ -52,6 +52,9 @@ vtk_module_wrap_python(MODULES ${anamorph_modules}
 # What VTK's wrapper writes leaves out what Pythons newer than it have in their types.
 target_compile_options(AnamorphFiltersPython PRIVATE -Wno-missing-field-initializers)
 target_compile_options(AnamorphRenderingPython PRIVATE -Wno-missing-field-initializers)
+file(GLOB drawing_classes CONFIGURE_DEPENDS RELATIVE ${PROJECT_SOURCE_DIR}/vtk_filters/rendering
+     ${PROJECT_SOURCE_DIR}/vtk_filters/rendering/vtkAnamorph*.h)
+list(TRANSFORM drawing_classes REPLACE "\\.h$" "")
 configure_file(${PROJECT_SOURCE_DIR}/vtk_filters/python/__init__.py
-               ${PROJECT_BINARY_DIR}/${python_dir}/anamorph/__init__.py COPYONLY)
-install(FILES vtk_filters/python/__init__.py DESTINATION ${python_dir}/anamorph)
+               ${PROJECT_BINARY_DIR}/${python_dir}/anamorph/__init__.py @ONLY)
+install(FILES ${PROJECT_BINARY_DIR}/${python_dir}/anamorph/__init__.py DESTINATION ${python_dir}/anamorph)

@@ -11,5 +11,10 @@ names = [header.stem for header in headers if "vtkAbstractTypeMacro" not in head
 assert "vtkAnamorphDeform" in names
 # What does not draw loads no OpenGL.
 assert not [name for name in sys.modules if "Rendering" in name], sys.modules
+assert set(names) <= set(dir(anamorph)), set(names) - set(dir(anamorph))
+assert not [name for name in sys.modules if "Rendering" in name], "dir() loads none either"
+everything = {}
+exec("from anamorph import *", everything)
+assert set(names) <= set(everything), set(names) - set(everything)
 for name in names:
     assert getattr(anamorph, name)().GetClassName() == name, name

@@ -4,7 +4,15 @@
 Classes that draw are loaded, and OpenGL with them, when the first of them is asked for.
 """
 
+from . import AnamorphFilters
 from .AnamorphFilters import *
+
+_DRAWING = "@drawing_classes@".split(";")
+__all__ = [name for name in dir(AnamorphFilters) if name.startswith("vtkAnamorph")] + _DRAWING
+
+
+def __dir__():
+    return sorted(set(globals()) | set(__all__))
 
 
 def __getattr__(name):
