@@ -21,6 +21,7 @@ inline Vector oracle_surface(const std::string& name, const SurfaceShape& s, Rea
     const Real x = s.aspect * u - s.aspect / Real(2), y = Real(1) / 2 - v, degrees = kHalfTurn / 180;
     const Real east = s.angle * degrees * u - s.angle * degrees / 2;
     if (name == "plane") return {x, y, 0};
+    if (name == "toy_saddle") return {x, y, (x - y) * (x + y) / 2};
     if (name == "cylinder") {
         const Real radius = s.radius > 0 ? Real(s.radius) : s.aspect / (s.angle * degrees);
         return {radius * std::sin(east), y, radius * std::cos(east)};

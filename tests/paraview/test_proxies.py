@@ -52,7 +52,9 @@ FAR = 1e9
 
 def proxies():
     """(group, element) of every proxy in the plugin's XML."""
-    for path in sorted(glob.glob(os.environ["ANAMORPH_SOURCE_DIR"] + "/plugins/paraview/anamorph/*.xml")):
+    # Those as they are written, and those that are made of the core's lists.
+    sources = [os.environ[place] + "/plugins/paraview/anamorph/*.xml" for place in ("ANAMORPH_SOURCE_DIR", "ANAMORPH_BUILD_DIR")]
+    for path in sorted(path for source in sources for path in glob.glob(source)):
         for group in xml.parse(path).getroot().iter("ProxyGroup"):
             for element in group:
                 if element.tag.endswith("Proxy"):
@@ -190,7 +192,9 @@ def check_whole(element, rows, menus):
             if menu in menus:
                 seen.add(menu)
                 words = [entry.get("text").lower().replace(" ", "_") for entry in domain]
-                assert words == menus[menu], (where, words, menus[menu])
+                # The menu of surfaces keeps the place of Positions, whatever is added behind it.
+                assert sorted(words) == sorted(menus[menu]), (where, words, menus[menu])
+                assert menu == "drape_surface" or words == menus[menu], (where, words, menus[menu])
             continue
         number = int if domain.tag == "IntRangeDomain" else float
         shown = {end: float(domain.get(end)) if domain.get(end) else None for end in ("min", "max")}
@@ -206,6 +210,16 @@ def check_whole(element, rows, menus):
             least, most = clamped_to(cls, command, int(p.get("number_of_elements")), number)
             assert shown == {"min": least, "max": most}, (where, shown, least, most)
     return seen
+
+
+def check_surfaces(element, words):
+    """The proxy has a weight, with its name, for every surface of the core's list."""
+    menu, weights = (next(p for p in properties(element) if p.get("name") == name) for name in ("Surface", "BlendWeights"))
+    texts = [entry.get("text") for entry in domain_of(menu)]
+    labels = [(int(label.get("component")), label.get("label")) for label in weights.iter("ComponentLabel")]
+    assert len(texts) == len(words) == int(weights.get("number_of_elements")), (texts, words)
+    assert labels == list(enumerate(texts)), labels
+    assert texts[anamorph.vtkAnamorphDrape.POSITIONS] == "Positions" and anamorph.vtkAnamorphDrape.POSITIONS == 7, texts
 
 
 def with_input(cls):
@@ -317,6 +331,8 @@ for group, element in found:
     compared, own = check_defaults(element), check_parameters(element)
     assert compared >= 4 and own >= 4, (name, compared, own)
     compared_rows |= check_whole(element, rows, menus)
+    if element.get("class") == "vtkAnamorphDrape":
+        check_surfaces(element, menus["drape_surface"])
     ends = check_ranges(element)
     assert ends >= 2, (name, ends)
     print(name, ":", compared, "defaults,", own, "parameters,", ends, "ends of ranges")

@@ -289,7 +289,8 @@ traced = set()
 for session in SESSIONS:
     traced |= check(session)
     print(session.__name__, "ok", flush=True)
-proxies = {element.get("name") for path in glob.glob(os.environ["ANAMORPH_SOURCE_DIR"] + "/plugins/paraview/anamorph/*.xml")
+proxies = {element.get("name") for place in ("ANAMORPH_SOURCE_DIR", "ANAMORPH_BUILD_DIR")
+           for path in glob.glob(os.environ[place] + "/plugins/paraview/anamorph/*.xml")
            for group in xml.parse(path).getroot().iter("ProxyGroup") for element in group
            if element.tag.endswith("Proxy") and group.get("name") != "representations"}
 assert proxies <= traced, proxies - traced

@@ -325,7 +325,7 @@ std::vector<double> wanted_of(const Case& c, vtkImageData* texture) {
 }
 
 TEST(VtkDrape, EverySurfaceHasThePixelsOfTheOperation) {
-    ASSERT_EQ(anamorph::surface_names().size(), std::size_t{Drape::RIPPLES + 1});
+    ASSERT_EQ(anamorph::surface_names().size(), std::size_t{Drape::NumberOfSurfaces - 1});
     for (int surface = Drape::PLANE; surface <= Drape::RIPPLES; ++surface)
         for (const bool parallel : {false, true})
             for (int i = 0; i < 9; ++i) {

@@ -80,6 +80,19 @@ int guarded(vtkObject* object, const std::function<void()>& body,
     return failed ? 0 : 1;
 }
 
+bool has_inputs(vtkAlgorithm* filter, std::initializer_list<const char*> names) {
+    int port = 0;
+    for (const char* name : names) {
+        if (filter->GetNumberOfInputConnections(port) == 0) {
+            vtkErrorWithObjectMacro(filter,
+                                    << name << " is not given: input port " << port << " must be connected");
+            return false;
+        }
+        ++port;
+    }
+    return true;
+}
+
 void make_output(vtkInformation* output, vtkDataObject* like) {
     vtkDataObject* there = vtkDataObject::GetData(output);
     if (there && std::strcmp(there->GetClassName(), like->GetClassName()) == 0) return;

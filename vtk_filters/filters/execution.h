@@ -40,6 +40,10 @@ class Execution {
 int guarded(vtkObject* object, const std::function<void()>& body,
             std::initializer_list<vtkDataObject*> outputs = {});
 
+/// Are the first ports connected, of which these are the names? An error of the filter tells the first that is not. For
+/// ProcessRequest(), of filters that call all of their ports optional, so that VTK does not complain in its own words.
+bool has_inputs(vtkAlgorithm* filter, std::initializer_list<const char*> names);
+
 /// Sees to it, in RequestDataObject(), that an output is of the class of `like`.
 void make_output(vtkInformation* output, vtkDataObject* like);
 

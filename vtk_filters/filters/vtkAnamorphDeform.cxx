@@ -275,6 +275,12 @@ vtkPolyData* vtkAnamorphDeform::GetOverlay() {
     return vtkPolyData::SafeDownCast(this->GetOutputDataObject(1));
 }
 
+vtkTypeBool vtkAnamorphDeform::ProcessRequest(vtkInformation* request, vtkInformationVector** inputs,
+                                              vtkInformationVector* outputs) {
+    if (!anamorph_vtk::has_inputs(this, {"the surface"})) return 0;
+    return this->Superclass::ProcessRequest(request, inputs, outputs);
+}
+
 int vtkAnamorphDeform::FillInputPortInformation(int port, vtkInformation* info) {
     if (port == 0) {
         // Trees first: the pipeline then leaves the leaves to us, who have to see them all.
@@ -283,8 +289,8 @@ int vtkAnamorphDeform::FillInputPortInformation(int port, vtkInformation* info) 
         info->Append(INPUT_REQUIRED_DATA_TYPE(), "vtkPointSet");
     } else {
         info->Set(INPUT_REQUIRED_DATA_TYPE(), "vtkTable");
-        info->Set(INPUT_IS_OPTIONAL(), 1);
     }
+    info->Set(INPUT_IS_OPTIONAL(), 1);  // has_inputs() tells of the surface in our own words
     return 1;
 }
 

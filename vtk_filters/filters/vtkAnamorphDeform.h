@@ -217,6 +217,8 @@ class ANAMORPHFILTERS_EXPORT vtkAnamorphDeform : public vtkPassInputTypeAlgorith
     int FillInputPortInformation(int port, vtkInformation* info) override;
     int FillOutputPortInformation(int port, vtkInformation* info) override;
     int RequestDataObject(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
+    vtkTypeBool ProcessRequest(vtkInformation* request, vtkInformationVector** inputs,
+                               vtkInformationVector* outputs) override;
     int RequestInformation(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
     int RequestUpdateExtent(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
     int RequestData(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;

@@ -60,8 +60,22 @@ const char* const kStyles[] = {"color", "texture coordinates", "depth", "normal"
 /// One of the choices of a row of the operation's table.
 const std::string& word_of(const char* row, int choice) {
     for (const anamorph::Parameter& parameter : *anamorph::drape_operation().parameters)
-        if (parameter.name == row) return parameter.choices[static_cast<std::size_t>(choice)];
+        if (parameter.name == row) return parameter.choices.at(static_cast<std::size_t>(choice));
     throw Error(std::string("there is no row ") + row);
+}
+
+// Header and core have been made of the same list.
+static_assert(vtkAnamorphDrape::NumberOfSurfaces == 1
+#define ANAMORPH_SURFACE(name, Type) +1
+#include "anamorph/map/surface/list.h"
+#undef ANAMORPH_SURFACE
+);
+
+/// The operation's word for a value of Surface. There, that of the positions comes last.
+const std::string& surface_word(int surface) {
+    if (surface == vtkAnamorphDrape::POSITIONS)
+        return word_of("surface", vtkAnamorphDrape::NumberOfSurfaces - 1);
+    return word_of("surface", surface - (surface > vtkAnamorphDrape::POSITIONS));
 }
 
 glm::dvec3 point(const char* name, const double* v) {
@@ -182,13 +196,12 @@ vtkAnamorphDrape::vtkAnamorphDrape() {
 vtkAnamorphDrape::~vtkAnamorphDrape() = default;
 
 void vtkAnamorphDrape::SetBlendWeight(int surface, double weight) {
-    if (surface < PLANE || surface > POSITIONS) {
-        vtkErrorMacro(<< "surface=" << surface << ": must be an integer from " << int{PLANE} << " to "
-                      << int{POSITIONS});
+    if (surface < 0 || surface >= NumberOfSurfaces) {
+        vtkErrorMacro(<< "surface=" << surface << ": must be an integer from 0 to " << NumberOfSurfaces - 1);
         return;
     }
-    double weights[8];
-    std::copy_n(this->BlendWeights, 8, weights);
+    double weights[NumberOfSurfaces];
+    std::copy_n(this->BlendWeights, NumberOfSurfaces, weights);
     weights[surface] = weight;
     this->SetBlendWeights(weights);
 }
@@ -229,11 +242,17 @@ double* vtkAnamorphDrape::GetLight(int index) {
     return this->IsLight(index) ? this->Lights[static_cast<std::size_t>(index)].data() : nullptr;
 }
 
+vtkTypeBool vtkAnamorphDrape::ProcessRequest(vtkInformation* request, vtkInformationVector** inputs,
+                                             vtkInformationVector* outputs) {
+    if (!anamorph_vtk::has_inputs(this, {"the texture"})) return 0;
+    return this->Superclass::ProcessRequest(request, inputs, outputs);
+}
+
 int vtkAnamorphDrape::FillInputPortInformation(int port, vtkInformation* info) {
     constexpr const char* kTypes[] = {"vtkImageData", "vtkStructuredGrid", "vtkImageData", "vtkTable"};
     info->Set(INPUT_REQUIRED_DATA_TYPE(), kTypes[port]);
     if (port == 1) info->Append(INPUT_REQUIRED_DATA_TYPE(), "vtkImageData");
-    if (port > 0) info->Set(INPUT_IS_OPTIONAL(), 1);
+    info->Set(INPUT_IS_OPTIONAL(), 1);  // has_inputs() tells of the first in our own words
     return 1;
 }
 
@@ -254,7 +273,7 @@ bool vtkAnamorphDrape::UsesPositions() const {
 
 /// The properties as the operation's values, checked by its table. Throws anamorph::Error.
 anamorph::ParameterValues vtkAnamorphDrape::Values() const {
-    std::vector<anamorph::Assignment> said = {{"surface", word_of("surface", this->Surface)},
+    std::vector<anamorph::Assignment> said = {{"surface", surface_word(this->Surface)},
                                               {"filter", word_of("filter", this->Filter)},
                                               {"shading", word_of("shading", this->Shading)}};
     for (const Number& number : Numbers())
@@ -264,9 +283,9 @@ anamorph::ParameterValues vtkAnamorphDrape::Values() const {
         list += (list.empty() ? "" : ",") + more;
     };
     std::string blend, weights, lights;
-    for (int surface = PLANE; surface <= POSITIONS; ++surface)
+    for (int surface = 0; surface < NumberOfSurfaces; ++surface)
         if (surface != this->Surface && this->BlendWeights[surface] != 0) {
-            add(blend, word_of("surface", surface));
+            add(blend, surface_word(surface));
             add(weights, anamorph::shortest(this->BlendWeights[surface]));
         }
     if (!blend.empty()) said.insert(said.end(), {{"blend", blend}, {"weights", weights}});
@@ -461,8 +480,8 @@ void vtkAnamorphDrape::PrintSelf(ostream& os, vtkIndent indent) {
         for (int i = 0; i < count; ++i) os << " " << v[i];
         os << "\n";
     };
-    os << indent << "Surface: " << word_of("surface", this->Surface) << "\n";
-    print("BlendWeights", this->BlendWeights, 8);
+    os << indent << "Surface: " << surface_word(this->Surface) << "\n";
+    print("BlendWeights", this->BlendWeights, NumberOfSurfaces);
     for (const Number& number : Numbers()) print(number.name, &(this->*number.value), 1);
     const auto print_text = [&](const char* name, const std::string& text) {
         os << indent << name << ": " << (text.empty() ? "(none)" : text) << "\n";

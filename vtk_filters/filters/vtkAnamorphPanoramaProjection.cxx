@@ -145,12 +145,19 @@ vtkMultiProcessController* vtkAnamorphPanoramaProjection::GetController() {
     return this->Controller;
 }
 
-int vtkAnamorphPanoramaProjection::FillInputPortInformation(int port, vtkInformation* info) {
+vtkTypeBool vtkAnamorphPanoramaProjection::ProcessRequest(vtkInformation* request,
+                                                          vtkInformationVector** inputs,
+                                                          vtkInformationVector* outputs) {
+    if (!anamorph_vtk::has_inputs(this, {"the scene"})) return 0;
+    return this->Superclass::ProcessRequest(request, inputs, outputs);
+}
+
+int vtkAnamorphPanoramaProjection::FillInputPortInformation(int, vtkInformation* info) {
     // Trees first: the pipeline then leaves the leaves to us, as they hide each other.
     info->Remove(INPUT_REQUIRED_DATA_TYPE());
     info->Append(INPUT_REQUIRED_DATA_TYPE(), "vtkDataObjectTree");
     info->Append(INPUT_REQUIRED_DATA_TYPE(), "vtkDataSet");
-    if (port == 1) info->Set(INPUT_IS_OPTIONAL(), 1);
+    info->Set(INPUT_IS_OPTIONAL(), 1);  // has_inputs() tells of the scene in our own words
     return 1;
 }
 

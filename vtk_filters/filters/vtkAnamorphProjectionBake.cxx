@@ -402,7 +402,7 @@ int vtkAnamorphProjectionBake::GetNumberOfProjectors() {
 int vtkAnamorphProjectionBake::FillInputPortInformation(int port, vtkInformation* info) {
     info->Set(INPUT_REQUIRED_DATA_TYPE(), port == 1 ? "vtkImageData" : "vtkPolyData");
     if (port == 1) info->Set(INPUT_IS_REPEATABLE(), 1);
-    if (port == 2) info->Set(INPUT_IS_OPTIONAL(), 1);
+    info->Set(INPUT_IS_OPTIONAL(), 1);  // has_inputs() tells of the first two in our own words
     // Of meshes, ranks take the same block at the same time; all blocks cast shadows at once.
     if (port != 1) info->Append(INPUT_REQUIRED_DATA_TYPE(), "vtkCompositeDataSet");
     return 1;
@@ -415,6 +415,7 @@ int vtkAnamorphProjectionBake::FillOutputPortInformation(int, vtkInformation* in
 
 vtkTypeBool vtkAnamorphProjectionBake::ProcessRequest(vtkInformation* request, vtkInformationVector** inputs,
                                                       vtkInformationVector* outputs) {
+    if (!anamorph_vtk::has_inputs(this, {"the mesh", "the panorama"})) return 0;
     if (request->Has(vtkDemandDrivenPipeline::REQUEST_DATA_OBJECT())) {
         vtkDataObject* input = vtkDataObject::GetData(inputs[0]);
         const vtkNew<vtkImageData> image;

@@ -6,13 +6,7 @@
 #include <glm/common.hpp>
 
 #include "anamorph/deform/deformation_reach.h"
-#include "anamorph/map/surface/cylinder.h"
-#include "anamorph/map/surface/page_turn.h"
-#include "anamorph/map/surface/plane.h"
-#include "anamorph/map/surface/ripples.h"
-#include "anamorph/map/surface/sphere.h"
-#include "anamorph/map/surface/torus.h"
-#include "anamorph/map/surface/waves.h"
+#include "anamorph/map/surface/all.h"
 
 namespace anamorph {
 namespace {

@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: Apache-2.0
+// A surface that was added by a file and a line (tests/toys) is drawn, blended and named by the filter and its proxy.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <vtkAnamorphDrape.h>
+#include <vtkDataArray.h>
+#include <vtkImageData.h>
+#include <vtkNew.h>
+#include <vtkPointData.h>
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <sstream>
+
+#include "anamorph/map/surface.h"
+
+namespace {
+
+using Drape = vtkAnamorphDrape;
+using testing::HasSubstr;
+
+constexpr int kSide = 64;
+
+/// How far, in pixels, points are seen from where the toy's formula, z = (x^2 - y^2) / 2, times a weight, has them: from the side,
+/// along (-1, 0, -1), without perspective. The texture is as wide as it is high.
+double off_the_toy(Drape& filter, double weight) {
+    vtkNew<vtkImageData> texture;
+    texture->SetDimensions(8, 8, 1);
+    texture->AllocateScalars(VTK_UNSIGNED_CHAR, 3);
+    filter.SetInputData(texture);
+    filter.SetViewSize(kSide, kSide);
+    filter.CameraParallelProjectionOn();
+    filter.SetCameraParallelScale(0.5);
+    filter.SetCameraPosition(2, 0, 2);
+    filter.SetTolerance(0.01);
+    filter.SetStyle(Drape::TEXTURE_COORDINATES);
+    filter.Update();
+    vtkDataArray* drawn = filter.GetOutput()->GetPointData()->GetScalars();
+    double most = 0;
+    int seen = 0;
+    for (int k = 0; drawn && k < kSide * kSide; ++k) {
+        const double x = drawn->GetComponent(k, 0) - 0.5, y = drawn->GetComponent(k, 1) - 0.5;
+        if (x < -0.5) continue;
+        const double z = weight * (x * x - y * y) / 2, across = (x - z) / std::sqrt(2.0);
+        most = std::max({most, std::fabs((across + 0.5) * kSide - (k % kSide + 0.5)),
+                         std::fabs((y + 0.5) * kSide - (k / kSide + 0.5))});
+        ++seen;
+    }
+    return seen > 1000 ? most : HUGE_VAL;
+}
+
+TEST(ToySurface, HasAnEnumeratorAndPositionsKeepsItsValue) {
+    EXPECT_EQ(anamorph::surface_names().back(), "toy_saddle");
+    EXPECT_EQ(int{Drape::TOY_SADDLE}, 8);
+    EXPECT_EQ(int{Drape::POSITIONS}, 7) << "saved states have that number";
+    EXPECT_EQ(int{Drape::NumberOfSurfaces}, 9);
+    vtkNew<Drape> filter;
+    filter->SetSurface(100);
+    EXPECT_EQ(filter->GetSurface(), 8);
+    filter->SetBlendWeight(8, 0.5);
+    EXPECT_EQ(filter->GetBlendWeights()[8], 0.5);
+}
+
+TEST(ToySurface, IsDrawnAndBlended) {
+    vtkNew<Drape> filter;
+    filter->SetSurface(Drape::TOY_SADDLE);
+    EXPECT_LT(off_the_toy(*filter, 1), 0.011);
+    vtkNew<Drape> blended;
+    blended->SetBlendWeight(Drape::TOY_SADDLE, 0.5);
+    EXPECT_LT(off_the_toy(*blended, 0.5), 0.011);
+    std::ostringstream text;
+    filter->Print(text);
+    EXPECT_THAT(text.str(), HasSubstr("Surface: toy_saddle"));
+}
+
+TEST(ToySurface, IsInTheProxy) {
+    std::ifstream file(TOY_PROXY);
+    std::stringstream text;
+    text << file.rdbuf();
+    EXPECT_THAT(text.str(), HasSubstr("<Entry value=\"7\" text=\"Positions\"/>"));
+    EXPECT_THAT(text.str(), HasSubstr("<Entry value=\"8\" text=\"Toy saddle\"/>"));
+    EXPECT_THAT(text.str(), HasSubstr("<ComponentLabel component=\"8\" label=\"Toy saddle\"/>"));
+    EXPECT_THAT(text.str(), HasSubstr("number_of_elements=\"9\" argument_is_array"));
+    EXPECT_THAT(text.str(), HasSubstr("default_values=\"0 0 0 0 0 0 0 0 0\""));
+}
+
+}  // namespace
