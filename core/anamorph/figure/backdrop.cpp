@@ -31,7 +31,7 @@ glm::dvec4 Backdrop::color(int x, int y, const glm::dvec4& below) {
                           m_pixel.data()))
         return below;
     const glm::dvec4 own = color_of_texel(m_pixel);
-    return own + (1 - own.a) * below;
+    return laid_over(own, own.a, below);
 }
 
 }  // namespace anamorph

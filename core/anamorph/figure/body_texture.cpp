@@ -59,7 +59,7 @@ glm::dvec3 BodyTexture::color(const TexturedSurface& body, double x, double y, b
         read = read_average({u.c[1], v.c[1], u.c[2], v.c[2]}, u.value(), v.value());
     if (!read) return below;
     const glm::dvec4 own = color_of_texel(m_pixel);
-    return glm::dvec3(own) + (1 - own.a) * below;
+    return laid_over(glm::dvec3(own), own.a, below);
 }
 
 bool BodyTexture::read_average(const Jacobian& jacobian, double u, double v) {
@@ -87,7 +87,10 @@ bool BodyTexture::read_trilinear(const Jacobian& jacobian, double u, double v) {
     if (level + 1 == m_chooser.levels() || !(longer > texel(level))) return true;
     if (!read_level(Filter::bilinear, level + 1, u, v, m_coarser.data())) return false;
     const double share = std::log(longer / texel(level)) / std::log(texel(level + 1) / texel(level));
-    for (std::size_t c = 0; c < m_pixel.size(); ++c)
+    // A level of weight 0 does not count.
+    if (share <= 0) return true;
+    if (share >= 1) m_pixel = m_coarser;
+    for (std::size_t c = 0; share < 1 && c < m_pixel.size(); ++c)
         m_pixel[c] = static_cast<float>((1 - share) * static_cast<double>(m_pixel[c]) +
                                         share * static_cast<double>(m_coarser[c]));
     return true;

@@ -25,6 +25,12 @@ struct TexturedSurface {
     double longest = 0;  ///< half of the body's longest axis, in pixels
 };
 
+/// A color, multiplied with its alpha, on another, which does not count where alpha is 1, be it infinite or no number.
+template <class Color>
+Color laid_over(const Color& color, double alpha, const Color& below) {
+    return alpha == 1 ? color : color + (1 - alpha) * below;
+}
+
 /// Red, green, blue and alpha of a texel of 1 to 4 channels, the last of 2 and of 4 alpha.
 glm::dvec4 color_of_texel(const std::vector<float>& texel);
 

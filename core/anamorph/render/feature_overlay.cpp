@@ -23,6 +23,12 @@ Box reach_of(const Line& line, const Box& box) {
             high(line.p.x, line.q.x, box.x1), high(line.p.y, line.q.y, box.y1)};
 }
 
+/// A line's color on a pixel's, which counts where it is not covered only, be it infinite or no number.
+float laid_over(float below, float line, float cover) {
+    if (std::isfinite(below)) return below + cover * (line - below);
+    return cover == 1 ? line : below;
+}
+
 void draw_line(const Line& line, const float* color, const PixelRows& pixels) {
     const Box reach = reach_of(line, pixels.box);
     const Point<double> e{line.q.x - line.p.x, line.q.y - line.p.y};
@@ -36,7 +42,7 @@ void draw_line(const Line& line, const float* color, const PixelRows& pixels) {
             const auto cover = static_cast<float>(std::clamp(kHalfWidth + 0.5 - distance, 0.0, 1.0));
             if (cover == 0) continue;
             float* p = pixels.at(x, y);
-            for (int c = 0; c < pixels.channels; ++c) p[c] += cover * ((c < 3 ? color[c] : 1) - p[c]);
+            for (int c = 0; c < pixels.channels; ++c) p[c] = laid_over(p[c], c < 3 ? color[c] : 1, cover);
         }
 }
 

@@ -6,6 +6,7 @@
 
 #include "anamorph/render/pixel.h"
 #include "anamorph/render/summed_areas.h"
+#include "anamorph/render/weightless.h"
 
 namespace anamorph {
 namespace {
@@ -16,15 +17,33 @@ struct Taps {
     std::array<double, 4> weight{1, 0, 0, 0};
 };
 
-Taps taps_at(Filter filter, double at) {
+/// A point nearer than `same` to the middle of a texel is there.
+Taps taps_at(Filter filter, double at, float same) {
     // Far beyond every edge all points are alike; int64 holds them, int must too.
     at = std::clamp(at, -0x1p30, 0x1p30);
     if (filter == Filter::nearest) return {static_cast<int>(std::floor(at)), 1, {1}};
-    const double floor = std::floor(at - 0.5), t = at - 0.5 - floor;
+    const double floor = std::floor(at - 0.5), past = at - 0.5 - floor;
+    const double t = past < same ? 0 : past > 1 - same ? 1 : past;
     const int below = static_cast<int>(floor);
     if (filter == Filter::bicubic) return {below - 1, 4, catmull_rom_weights(t)};
     const auto [first, second] = bilinear_weights(t);
     return {below, 2, {first, second}};
+}
+
+/// Of a channel of the texels from the corner of a window on.
+double sum_of(const Window& window, const Taps& across, const Taps& down, int channel) {
+    const std::ptrdiff_t size = size_of(window.type);
+    double sum = 0;
+    for (int j = 0; j < down.count; ++j)
+        for (int i = 0; i < across.count; ++i) {
+            const double weight =
+                across.weight[static_cast<std::size_t>(i)] * down.weight[static_cast<std::size_t>(j)];
+            if (weight == 0) continue;
+            const std::byte* texel =
+                window.texels + j * window.row_stride + (i * window.channels + channel) * size;
+            sum += weight * static_cast<double>(load_channel(texel, window.type));
+        }
+    return sum;
 }
 
 }  // namespace
@@ -40,23 +59,20 @@ bool PointSampler::sample(Filter filter, int level, int piece, double x, double 
     const int channels = m_source.channels();
     std::fill_n(pixel, channels, 0.0f);
     if (std::isnan(x) || std::isnan(y)) return true;
-    const Taps across = taps_at(filter, x), down = taps_at(filter, y);
+    const Taps across = taps_at(filter, x, 0), down = taps_at(filter, y, 0);
     const Box box{across.first, down.first, across.first + across.count, down.first + down.count};
     Window window;
     if (!m_reader.get(level, piece, box, window)) return false;
+    if (filter == Filter::nearest) {
+        load_channels(window.texels, window.type, channels, pixel);
+        return true;
+    }
 
-    const std::ptrdiff_t size = size_of(window.type);
     for (int c = 0; c < channels; ++c) {
-        double sum = 0;
-        for (int j = 0; j < down.count; ++j)
-            for (int i = 0; i < across.count; ++i) {
-                const double weight =
-                    across.weight[static_cast<std::size_t>(i)] * down.weight[static_cast<std::size_t>(j)];
-                if (weight == 0) continue;
-                const std::byte* texel = window.texels + j * window.row_stride + (i * channels + c) * size;
-                sum += weight * static_cast<double>(load_channel(texel, window.type));
-            }
-        pixel[c] = static_cast<float>(sum);
+        double value = sum_of(window, across, down, c);
+        if (!std::isfinite(value))
+            value = sum_of(window, taps_at(filter, x, kSameTexel), taps_at(filter, y, kSameTexel), c);
+        pixel[c] = static_cast<float>(value);
     }
     return true;
 }
@@ -78,6 +94,15 @@ bool PointSampler::sample(const Footprint& footprint, const Jacobian& jacobian, 
         }
     const double taps = footprint.taps_a * footprint.taps_b;
     for (std::size_t c = 0; c < m_sum.size(); ++c) pixel[c] = static_cast<float>(m_sum[c] / taps);
+    // Taps that lie together are one, where that makes a difference.
+    const Point<double> corner = tap_offset(footprint, jacobian, {sx, sy}, 0, 0);
+    const bool together =
+        taps > 1 && std::fabs(corner.x) + std::fabs(corner.y) < static_cast<double>(kSameTap);
+    if (!together || std::all_of(m_sum.begin(), m_sum.end(), [](double sum) { return std::isfinite(sum); }))
+        return true;
+    if (!sample(Filter::bilinear, footprint.level, piece, x * sx, y * sy, m_tap.data())) return false;
+    for (std::size_t c = 0; c < m_sum.size(); ++c)
+        if (!std::isfinite(m_sum[c])) pixel[c] = m_tap[c];
     return true;
 }
 

@@ -6,6 +6,7 @@
 
 #include "anamorph/error.h"
 #include "anamorph/render/pixel.h"
+#include "anamorph/render/weightless.h"
 
 namespace anamorph {
 namespace {
@@ -75,6 +76,11 @@ class Runs {
     int m_count = 0;
 };
 
+/// Of what is not finite: no number, +infinite, -infinite.
+std::size_t kind_of(double value) {
+    return std::isnan(value) ? 0 : value > 0 ? 1 : 2;
+}
+
 }  // namespace
 
 /// A source row by row, as it is averaged: in double, integers as they are stored, colour multiplied by alpha.
@@ -139,38 +145,42 @@ SummedAreas::SummedAreas(const Source& source)
 void SummedAreas::choose_units(Texels& texels) {
     const std::size_t channels = m_units.size();
     std::vector<double> total(channels, 0.0);
-    bool all = true;
+    std::array<bool, 3> there{};
     for (int y = 0; y < m_size.height; ++y) {
         const std::vector<double>& row = texels.row(y);
         for (std::size_t i = 0; i < row.size(); ++i)
             if (std::isfinite(row[i]))
                 total[i % channels] += std::fabs(row[i]);
             else
-                all = false;
+                there[kind_of(row[i])] = true;
     }
     for (std::size_t c = 0; c < channels; ++c)
         m_units[c] = total[c] > 0 ? std::ldexp(1.0, std::max(std::ilogb(total[c]) - 60, -1000)) : 1;
     const std::size_t room = at(0, m_size.height + 1);
     m_sums.resize(room);
-    if (!all) m_missing.resize(room);
+    for (std::size_t kind = 0; kind < there.size(); ++kind)
+        if (there[kind]) m_special[kind].resize(room);
 }
 
 void SummedAreas::add_up(Texels& texels) {
     const std::size_t channels = m_units.size();
-    std::vector<std::uint64_t> sum(channels), missing(channels);
+    std::vector<std::uint64_t> sum(channels);
+    std::array<std::vector<std::uint64_t>, 3> special;
     for (int y = 0; y < m_size.height; ++y) {
         const std::vector<double>& row = texels.row(y);
         std::fill(sum.begin(), sum.end(), 0);
-        std::fill(missing.begin(), missing.end(), 0);
+        for (std::vector<std::uint64_t>& of : special) of.assign(channels, 0);
         const std::size_t above = at(1, y), here = at(1, y + 1);
         for (std::size_t i = 0; i < row.size(); ++i) {
             const std::size_t c = i % channels;
-            const bool is_number = std::isfinite(row[i]);
-            if (is_number) sum[c] += static_cast<std::uint64_t>(std::llrint(row[i] / m_units[c]));
+            if (std::isfinite(row[i]))
+                sum[c] += static_cast<std::uint64_t>(std::llrint(row[i] / m_units[c]));
+            else
+                ++special[kind_of(row[i])][c];
             m_sums[here + i] = m_sums[above + i] + sum[c];
-            if (m_missing.empty()) continue;
-            missing[c] += !is_number;
-            m_missing[here + i] = m_missing[above + i] + missing[c];
+            for (std::size_t kind = 0; kind < special.size(); ++kind)
+                if (std::vector<std::uint64_t>& to = m_special[kind]; !to.empty())
+                    to[here + i] = to[above + i] + special[kind][c];
         }
     }
 }
@@ -224,15 +234,21 @@ void SummedAreas::mean_of(std::span<const Part> parts, double area, float* pixel
                    sums[at(i.first, j.first) + c];
         };
         double sum = 0;
-        std::uint64_t missing = 0;
+        std::array<std::uint64_t, 3> special{};
         for (const Part& part : parts)
             for (const Run& j : part.down)
                 for (const Run& i : part.across) {
                     sum += i.weight * j.weight *
                            static_cast<double>(static_cast<std::int64_t>(over(m_sums, i, j)));
-                    if (!m_missing.empty()) missing |= over(m_missing, i, j);
+                    const bool counts = i.weight >= kSameTexel && j.weight >= kSameTexel;
+                    for (std::size_t kind = 0; counts && kind < special.size(); ++kind)
+                        if (!m_special[kind].empty()) special[kind] |= over(m_special[kind], i, j);
                 }
-        pixel[c] = missing ? NAN : static_cast<float>(sum * m_units[c] * m_scales[c] / area);
+        const auto [none, high, low] = special;
+        pixel[c] = none || (high && low) ? NAN
+                   : high                ? HUGE_VALF
+                   : low                 ? -HUGE_VALF
+                                         : static_cast<float>(sum * m_units[c] * m_scales[c] / area);
     }
 }
 

@@ -7,6 +7,7 @@
 // alpha or without; half and float are rounded to the unit, at most 2^-60 of the sum of all magnitudes of the channel.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -26,8 +27,8 @@ class SummedAreas {
     /// The mean over the rectangle of width x height texels about (x, y), in which texels are squares of one color, to
     /// `pixel`: as many floats as channels, multiplied by alpha as PointSampler::sample says. Sides below 1, or that are
     /// no number, are 1, so that the smallest rectangle interpolates bilinearly. Beyond the edges as `wrap`, where
-    /// automatic is black. A texel that is no number or infinite makes no number of its channel's means over it; where
-    /// (x, y) is no number, they are 0.
+    /// automatic is black. A texel that is no number makes no number of its channel's means over it, and an infinite one
+    /// infinite ones, unless less than kSameTexel (weightless.h) of its side is covered; where (x, y) is no number, means are 0.
     void mean(double x, double y, double width, double height, Wrap wrap, float* pixel) const noexcept;
 
     /// The same of a picture in latitudes and longitudes, all around: left and right it repeats itself, and beyond its
@@ -49,10 +50,11 @@ class SummedAreas {
     void mean_of(std::span<const Part> parts, double area, float* pixel) const noexcept;
 
     Size m_size;
-    std::vector<double> m_units;           ///< channel by channel: of the sums
-    std::vector<double> m_scales;          ///< and of the channel's values
-    std::vector<std::uint64_t> m_sums;     ///< modulo 2^64
-    std::vector<std::uint64_t> m_missing;  ///< how many texels are no numbers; empty where all are
+    std::vector<double> m_units;        ///< channel by channel: of the sums
+    std::vector<double> m_scales;       ///< and of the channel's values
+    std::vector<std::uint64_t> m_sums;  ///< modulo 2^64
+    /// How many texels are no numbers, +infinite and -infinite; each empty where none is.
+    std::array<std::vector<std::uint64_t>, 3> m_special;
 };
 
 }  // namespace anamorph

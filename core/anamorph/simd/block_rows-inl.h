@@ -209,6 +209,62 @@ HWY_INLINE void Locate(hn::Vec<Floats> x, hn::Vec<Floats> y, hn::Vec<Ints> row, 
     hn::Store(fy, Floats(), p.fy + i);
 }
 
+/// Is each of `count` values a finite number? Behind them there is room to read a vector.
+HWY_INLINE bool AllFinite(const float* HWY_RESTRICT values, int count) {
+    const Ints d;
+    const auto bits = [&](int i) HWY_ATTR {
+        return hn::And(hn::BitCast(d, hn::LoadU(Floats(), values + i)), hn::Set(d, 0x7fffffff));
+    };
+    constexpr int n = static_cast<int>(kLanes);
+    auto most = hn::Zero(d);
+    int i = 0;
+    for (; i + n <= count; i += n) most = hn::Max(most, bits(i));
+    if (i < count)
+        most = hn::Max(most, hn::IfThenElseZero(hn::FirstN(d, static_cast<size_t>(count - i)), bits(i)));
+    return hn::AllTrue(d, hn::Lt(most, hn::Set(d, 0x7f800000)));
+}
+HWY_INLINE bool AllFinite(const hwy::float16_t* HWY_RESTRICT values, int count) {
+    const hn::CappedTag<int16_t, 32> d;
+    const auto bits = [&](int i) HWY_ATTR {
+        return hn::And(hn::LoadU(d, reinterpret_cast<const int16_t*>(values) + i), hn::Set(d, 0x7fff));
+    };
+    constexpr int n = static_cast<int>(hn::MaxLanes(d));
+    auto most = hn::Zero(d);
+    int i = 0;
+    for (; i + n <= count; i += n) most = hn::Max(most, bits(i));
+    if (i < count)
+        most = hn::Max(most, hn::IfThenElseZero(hn::FirstN(d, static_cast<size_t>(count - i)), bits(i)));
+    return hn::AllTrue(d, hn::Lt(most, hn::Set(d, 0x7c00)));
+}
+HWY_INLINE bool AllFinite(const uint16_t*, int) {
+    return true;
+}
+
+/// The points of pixels [begin, end) of a row, to arrays with room for a vector behind.
+HWY_INLINE void StorePoints(const Polynomials& block, int row, int begin, int end, float* HWY_RESTRICT x,
+                            float* HWY_RESTRICT y) {
+    const Floats d;
+    const RowPoints points(block, HalfSteps(block), row);
+    points.ForEach(begin, end - begin, [&](int i, hn::Vec<Floats> px, hn::Vec<Floats> py) HWY_ATTR {
+        hn::StoreU(px, d, x + i);
+        hn::StoreU(py, d, y + i);
+    });
+}
+
+/// Those of a drawing's row, put into x and y where they do not stand in memory.
+HWY_INLINE Offsets PointsOfRow(const Drawing& drawing, int row, float* HWY_RESTRICT x,
+                               float* HWY_RESTRICT y) {
+    const Polynomials& block = drawing.block;
+    const int count = drawing.end - drawing.begin;
+    if (block.x) {
+        const ptrdiff_t given = row * block.row_stride + drawing.begin;
+        return {block.x + given, block.y + given, count, block.whole_x ? block.whole_x + given : nullptr,
+                block.whole_x ? block.whole_y + given : nullptr};
+    }
+    StorePoints(block, row, drawing.begin, drawing.end, x, y);
+    return {x, y, count};
+}
+
 /// Texels are fetched so many pixels before they are read, in whole rows of pixels, of which there is room for so many.
 constexpr int kAhead = 192, kRows = 8;
 

@@ -3,6 +3,7 @@
 #define HWY_TARGET_INCLUDE "anamorph/simd/block_sampler.cpp"
 #include "anamorph/simd/block_sampler.h"
 
+#include <cmath>
 #include <cstring>
 #include <string>
 #include <vector>
@@ -11,6 +12,8 @@
 #include "hwy/foreach_target.h"  // must come before highway.h
 #include "hwy/highway.h"
 
+#include "anamorph/render/pixel.h"
+#include "anamorph/render/weightless.h"
 #include "anamorph/simd/block_rows-inl.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -20,12 +23,7 @@ namespace hn = hwy::HWY_NAMESPACE;
 
 void BlockPoints(const Polynomials& block, int row, int begin, int end, float* HWY_RESTRICT out_x,
                  float* HWY_RESTRICT out_y) {
-    const Floats d;
-    const RowPoints points(block, HalfSteps(block), row);
-    points.ForEach(begin, end - begin, [&](int i, hn::Vec<Floats> x, hn::Vec<Floats> y) HWY_ATTR {
-        hn::StoreU(x, d, out_x + i);
-        hn::StoreU(y, d, out_y + i);
-    });
+    StorePoints(block, row, begin, end, out_x, out_y);
 }
 
 /// half_from_float (number/half.h) of a vector, to `to`.
@@ -203,6 +201,74 @@ HWY_INLINE void SampleNearest(const Texels& s, const Offsets& at, float* HWY_RES
             hn::StoreU(LoadQuad(origin + p.offset[i] + c), Quad(), out + i * s.channels + c);
 }
 
+/// Weights of the texels about a fraction, of the kernel's, moved to the middle of one that is so near.
+HWY_INLINE void KernelWeights(Kernel kernel, float f, float* w) {
+    f = f < kSameTexel ? 0 : f > 1 - kSameTexel ? 1 : f;
+    if (kernel == Kernel::bicubic) return CubicWeights(f, w);
+    w[0] = 1 - f;
+    w[1] = f;
+}
+
+/// Are several taps as good as one in their middle?
+HWY_INLINE bool TapsLieTogether(const Texels& s) {
+    bool all = s.tap_count > 1;
+    for (int i = 0; i < s.tap_count; ++i)
+        all &= std::fabs(s.taps[i].x) < kSameTap && std::fabs(s.taps[i].y) < kSameTap;
+    return all;
+}
+
+/// The channels of a row that came out infinite or as no numbers, again, as weightless.h says.
+void MendChannels(const Texels& s, const Offsets& at, float* HWY_RESTRICT out) {
+    const int bytes = size_of(s.type), count = at.count * s.channels,
+              side = s.kernel == Kernel::bicubic ? 4 : 2;
+    const std::ptrdiff_t pixel = std::ptrdiff_t{s.channels} * bytes;
+    const auto row = static_cast<int32_t>(s.row_stride / bytes);
+    std::vector<double> sum(static_cast<size_t>(count));
+    const bool together = TapsLieTogether(s);
+    const int taps = together ? 1 : s.tap_count;
+    for (int tap = 0; tap < taps; ++tap) {
+        Positions<kRowRoom> p;
+        Locate(at, 0, at.count, together ? Tap{} : s.taps[tap], 0.5f, s.channels, row, p);
+        for (int i = 0; i < at.count; ++i) {
+            float wx[4], wy[4];
+            KernelWeights(s.kernel, p.fx[i], wx);
+            KernelWeights(s.kernel, p.fy[i], wy);
+            const std::byte* first = s.texels + std::ptrdiff_t{p.offset[i]} * bytes;
+            if (s.kernel == Kernel::bicubic) first -= s.row_stride + pixel;
+            for (int c = 0; c < s.channels; ++c) {
+                const int k = i * s.channels + c;
+                if (std::isfinite(out[k])) continue;
+                for (int j = 0; j < side; ++j)
+                    for (int n = 0; n < side; ++n) {
+                        const double weight = double{wy[j]} * double{wx[n]};
+                        const std::byte* texel = first + j * s.row_stride + n * pixel + c * bytes;
+                        if (weight != 0)
+                            sum[static_cast<size_t>(k)] += weight * double{load_channel(texel, s.type)};
+                    }
+            }
+        }
+    }
+    for (int k = 0; k < count; ++k)
+        if (!std::isfinite(out[k])) out[k] = static_cast<float>(sum[static_cast<size_t>(k)] / taps);
+}
+
+/// Can a filter make a channel infinite, or no number, where it should not be? Integers are finite, and nearest moves texels.
+HWY_INLINE bool NeedsMending(const Texels& s) {
+    return s.kernel != Kernel::nearest && (s.type == PixelType::half || s.type == PixelType::float32);
+}
+
+/// The same of a row that may have such channels.
+HWY_INLINE void Mend(const Texels& s, const Offsets& at, float* out) {
+    if (NeedsMending(s) && !AllFinite(out, at.count * s.channels)) MendChannels(s, at, out);
+}
+
+/// The same of a row of a drawing.
+HWY_INLINE void MendRow(const Drawing& to, int row, float* values) {
+    if (!NeedsMending(to.texels) || AllFinite(values, (to.end - to.begin) * to.texels.channels)) return;
+    HWY_ALIGN float x[kRowRoom], y[kRowRoom];
+    MendChannels(to.texels, PointsOfRow(to, row, x, y), values);
+}
+
 /// Fetches what SampleTyped is to read of a row: of several taps, which lie next to each other, one in four.
 template <class T>
 HWY_INLINE void FetchRow(const Texels& s, const Offsets& at) {
@@ -241,13 +307,17 @@ void SampleRow(const Texels& s, const Offsets& at, float* out) {
         case PixelType::uint16:
             return SampleTyped<uint16_t>(s, at, out);
         case PixelType::half:
-            return SampleTyped<hwy::float16_t>(s, at, out);
+            SampleTyped<hwy::float16_t>(s, at, out);
+            break;
         case PixelType::float32:
-            return SampleTyped<float>(s, at, out);
+            SampleTyped<float>(s, at, out);
+            break;
     }
+    Mend(s, at, out);
 }
 
-/// Float to float: whole aligned vectors bypass the cache.
+/// Float to float, multiplied or, with the very bits, moved: whole aligned vectors bypass the cache.
+template <bool kScales>
 void StoreFloats(const float* HWY_RESTRICT values, int count, float scale, float* HWY_RESTRICT to) {
     const hn::ScalableTag<float> d;
     constexpr size_t kLine = 64;
@@ -255,13 +325,15 @@ void StoreFloats(const float* HWY_RESTRICT values, int count, float scale, float
     int i = 0;
     const size_t misaligned = reinterpret_cast<uintptr_t>(to) % kLine;
     const int head = HWY_MIN(count, static_cast<int>(misaligned ? (kLine - misaligned) / sizeof(float) : 0));
-    for (; i < head; ++i) to[i] = values[i] * scale;
+    for (; i < head; ++i) to[i] = kScales ? values[i] * scale : values[i];
     const int lanes = static_cast<int>(hn::Lanes(d));
     const int line = static_cast<int>(kLine / sizeof(float));
     for (; i + line <= count; i += line)
-        for (int k = 0; k < line; k += lanes)
-            hn::Stream(hn::Mul(v, hn::LoadU(d, values + i + k)), d, to + i + k);
-    for (; i < count; ++i) to[i] = values[i] * scale;
+        for (int k = 0; k < line; k += lanes) {
+            const auto value = hn::LoadU(d, values + i + k);
+            hn::Stream(kScales ? hn::Mul(v, value) : value, d, to + i + k);
+        }
+    for (; i < count; ++i) to[i] = kScales ? values[i] * scale : values[i];
 }
 
 /// `values` where a whole vector can be read there, else a copy of the rest in `padded`.
@@ -320,7 +392,8 @@ void StoreRow(const float* values, int count, float scale, PixelType type, std::
         case PixelType::half:
             return StoreHalf(values, count, scale, reinterpret_cast<hwy::float16_t*>(to));
         case PixelType::float32:
-            return StoreFloats(values, count, scale, reinterpret_cast<float*>(to));
+            return scale == 1 ? StoreFloats<false>(values, count, scale, reinterpret_cast<float*>(to))
+                              : StoreFloats<true>(values, count, scale, reinterpret_cast<float*>(to));
     }
 }
 
@@ -345,6 +418,7 @@ void DrawBilinear(const Drawing& to) {
                        out + i * kChannels);
     };
     const auto store = [&](int j) HWY_ATTR {
+        MendRow(to, j, values[j & 1]);
         StoreRow(values[j & 1], count * kChannels, to.scale, to.type,
                  to.to + (j - to.row_begin) * to.row_stride);
     };
@@ -358,24 +432,18 @@ void DrawTyped(const Drawing& to) {
         if (s.channels == 3) return DrawBilinear<T, 3>(to);
         if (s.channels == 4) return DrawBilinear<T, 4>(to);
     }
-    const Polynomials& block = to.block;
     const int count = to.end - to.begin;
     HWY_ALIGN float x[kRows][kRowRoom], y[kRows][kRowRoom];
+    Offsets rows[kRows];
     const std::size_t room = static_cast<size_t>(kMaxRow * s.channels + 16);
     std::vector<float> values(2 * room);
-    const auto points = [&](int j) {
-        const ptrdiff_t given = j * block.row_stride + to.begin;
-        if (!block.x) return Offsets{x[j % kRows], y[j % kRows], count};
-        return Offsets{block.x + given, block.y + given, count,
-                       block.whole_x ? block.whole_x + given : nullptr,
-                       block.whole_x ? block.whole_y + given : nullptr};
-    };
     const auto locate = [&](int j) HWY_ATTR {
-        if (!block.x) BlockPoints(block, j, to.begin, to.end, x[j % kRows], y[j % kRows]);
-        FetchRow<T>(s, points(j));
+        rows[j % kRows] = PointsOfRow(to, j, x[j % kRows], y[j % kRows]);
+        FetchRow<T>(s, rows[j % kRows]);
     };
-    const auto sample = [&](int j) { SampleTyped<T>(s, points(j), values.data() + (j & 1) * room); };
-    const auto store = [&](int j) {
+    const auto sample = [&](int j) { SampleTyped<T>(s, rows[j % kRows], values.data() + (j & 1) * room); };
+    const auto store = [&](int j) HWY_ATTR {
+        MendRow(to, j, values.data() + (j & 1) * room);
         StoreRow(values.data() + (j & 1) * room, count * s.channels, to.scale, to.type,
                  to.to + (j - to.row_begin) * to.row_stride);
     };

@@ -320,6 +320,15 @@ HWY_INLINE void SampleEight(const T* HWY_RESTRICT origin, ptrdiff_t row, const P
     StoreEight<kChannels>(v, out);
 }
 
+/// A row that is not finite everywhere, by sample_row, which mends it.
+template <class T>
+void SampleAgain(const Drawing& to, int row, T* values) {
+    HWY_ALIGN float x[kRowRoom], y[kRowRoom], pixels[kRowRoom * 4];
+    const Offsets at = PointsOfRow(to, row, x, y);
+    sample_row(to.texels, at, pixels);
+    store_row(pixels, at.count * to.texels.channels, 1, to.type, reinterpret_cast<std::byte*>(values));
+}
+
 template <class T, int kChannels>
 void DrawFloats(const Drawing& to) {
     const Texels& s = to.texels;
@@ -339,6 +348,7 @@ void DrawFloats(const Drawing& to) {
             SampleEight<T, kChannels>(origin, row, positions[j % kRows], i, values[j & 1] + i * kChannels);
     };
     const auto store = [&](int j) HWY_ATTR {
+        if (!AllFinite(values[j & 1], count * kChannels)) SampleAgain(to, j, values[j & 1]);
         StreamRow(values[j & 1], count * kChannels * static_cast<int>(sizeof(T)),
                   to.to + (j - to.row_begin) * to.row_stride);
     };
