@@ -135,6 +135,21 @@ std::optional<Assignment> to_assignment(std::string_view text) {
     return Assignment{std::string(key), std::string(trimmed(text.substr(equals + 1)))};
 }
 
+/// The text behind an equals sign without its comment, from a # on that follows a blank; of one in double quotes, what
+/// stands between these.
+std::string_view without_comment(std::string_view text) {
+    const auto ends = [](std::string_view rest) {
+        return trimmed(rest).empty() || trimmed(rest).front() == '#';
+    };
+    const std::string_view value = trimmed(text);
+    const std::size_t quote = value.starts_with('"') ? value.find('"', 1) : std::string_view::npos;
+    if (quote != std::string_view::npos && ends(value.substr(quote + 1))) return value.substr(1, quote - 1);
+    for (std::size_t i = 1; i < text.size(); ++i)
+        if (text[i] == '#' && kBlanks.find(text[i - 1]) != std::string_view::npos)
+            return trimmed(text.substr(0, i));
+    return value;
+}
+
 /// The length of a "(NAME?...)" that is the whole of the value at the start of `text`; 0 where there is none.
 std::size_t bracketed_name(std::string_view text) {
     if (!text.starts_with('(')) return 0;
@@ -339,7 +354,8 @@ std::vector<Assignment> parse_recipe(std::string_view text) {
             throw Error(where + " holds a control character: must be text, one key=value a line");
         line = trimmed(line);
         if (line.empty() || line.front() == '#') continue;
-        const std::optional<Assignment> assignment = to_assignment(line);
+        std::optional<Assignment> assignment = to_assignment(line);
+        if (assignment) assignment->value = without_comment(line.substr(line.find('=') + 1));
         if (!assignment)
             throw Error(where + " is \"" + printable(line) +
                         "\": must be key=value, or a comment that begins with #");

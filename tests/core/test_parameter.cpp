@@ -151,6 +151,18 @@ TEST(Recipe, LinesCommentsAndBlanks) {
     EXPECT_TRUE(parse_recipe("\n\n#\n").empty());
 }
 
+TEST(Recipe, CommentsBehindValues) {
+    const auto a = parse_recipe(
+        "fov=100 # wide\nsrc=a#1.exr\t# a\nyaw = 3#4\nmesh=\"a #1.json\" # of the first\npoints=\"p\" "
+        "q\nlens=# none\n"
+        "machine={\"size\": 64}#\r\nroll=\"4 # 5\"");
+    const char* const expected[] = {"100",    "a#1.exr",         "3#4",  "a #1.json", "\"p\" q",
+                                    "# none", "{\"size\": 64}#", "4 # 5"};
+    ASSERT_EQ(a.size(), std::size(expected));
+    for (std::size_t i = 0; i < a.size(); ++i) EXPECT_EQ(a[i].value, expected[i]);
+    EXPECT_EQ(parse_recipe("fov= # none")[0].value, "");
+}
+
 TEST(Recipe, ErrorsNameTheLine) {
     EXPECT_THAT(error_of([] { parse_recipe("yaw=1\nnonsense\n"); }), HasSubstr("line 2 is \"nonsense\""));
     EXPECT_THAT(error_of([] { parse_recipe("\n=1"); }), HasSubstr("line 2"));
