@@ -14,20 +14,29 @@ constexpr int kRows = 64;      ///< decoded at a time: whole strips and blocks o
 constexpr int kMostOpen = 64;  ///< files kept open between two reads
 std::atomic<int> open_files{0};
 
-std::size_t bytes_of(const OIIO::ImageSpec& spec, PixelType type) {
+std::size_t bytes_of(const OIIO::ImageSpec& spec, const FileRows::Pixels& pixels) {
     return static_cast<std::size_t>(spec.image_pixels()) *
-           static_cast<std::size_t>(spec.nchannels * size_of(type));
+           static_cast<std::size_t>(pixels.channels * size_of(pixels.type));
+}
+
+/// kRows, or as many whole rows of tiles.
+int unit_of(const OIIO::ImageSpec& spec) {
+    if (spec.tile_width == 0) return kRows;
+    return std::max(1, kRows / spec.tile_height) * spec.tile_height;
 }
 
 }  // namespace
 
-FileRows::FileRows(Opener open, const std::string& file, const OIIO::ImageSpec& spec, PixelType type)
+FileRows::FileRows(Opener open, const std::string& file, const OIIO::ImageSpec& spec, const Pixels& pixels)
     : m_open(std::move(open)),
       m_file(file),
       m_state(file_state(file)),
       m_spec(spec),
-      m_pages(bytes_of(spec, type)),
-      m_view(packed_view<const std::byte>(m_pages.data(), type, spec.width, spec.height, spec.nchannels)) {}
+      m_format(pixels.format),
+      m_unit(unit_of(spec)),
+      m_pages(bytes_of(spec, pixels)),
+      m_view(packed_view<const std::byte>(m_pages.data(), pixels.type, spec.width, spec.height,
+                                          pixels.channels)) {}
 
 FileRows::~FileRows() {
     if (m_input) --open_files;
@@ -37,8 +46,8 @@ void FileRows::need(int first, int end) {
     if (has(first, end)) return;
     const std::lock_guard lock(m_mutex);
     if (has(first, end)) return;
-    first = first / kRows * kRows;
-    end = std::min((end + kRows - 1) / kRows * kRows, m_spec.height);
+    first = first / m_unit * m_unit;
+    end = std::min((end + m_unit - 1) / m_unit * m_unit, m_spec.height);
     const int have = m_first, until = m_end;
     if (until == 0) {
         decode(first, end);
@@ -48,7 +57,7 @@ void FileRows::need(int first, int end) {
     }
     if (first < have) {
         // Twice as many rows each time: a format without a way back begins anew.
-        first = std::max(0, std::min(first, have - (until - have)));
+        first = std::max(0, std::min(first, have - (until - have)) / m_unit * m_unit);
         decode(first, have);
         m_first.store(first, std::memory_order_release);
     }
@@ -68,13 +77,16 @@ void FileRows::decode(int first, int end) {
     const OIIO::ImageSpec& spec = input->spec();
     const std::string state = file_state(m_file);
     if (spec.width != m_spec.width || spec.height != m_spec.height || spec.nchannels != m_spec.nchannels ||
-        (!state.empty() && state != m_state))
+        spec.tile_height != m_spec.tile_height || (!state.empty() && state != m_state))
         throw Error("has changed since it was opened");
     // OpenImageIO's pool must not be waited on inside a read of its host.
     input->threads(1);
-    const bool done =
-        input->read_scanlines(0, 0, spec.y + first, spec.y + end, spec.z, 0, spec.nchannels,
-                              oiio_type(m_view.type), m_pages.data() + first * m_view.row_stride);
+    std::byte* const to = m_pages.data() + first * m_view.row_stride;
+    const bool done = spec.tile_width > 0
+                          ? input->read_tiles(0, 0, spec.x, spec.x + spec.width, spec.y + first, spec.y + end,
+                                              spec.z, spec.z + 1, 0, spec.nchannels, m_format, to)
+                          : input->read_scanlines(0, 0, spec.y + first, spec.y + end, spec.z, 0,
+                                                  spec.nchannels, m_format, to);
     // Some readers say that all went well and leave an error.
     if (!done || input->has_error()) {
         const std::string why = input->geterror();

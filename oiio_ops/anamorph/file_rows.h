@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The pixels of a file without tiles, decoded once and kept: an ImageCache would hold the whole file as one tile, and
-// in float where its host asks for that.
+// The pixels of a file, decoded once and kept: an ImageCache would hold a file without tiles as one tile, and in float
+// where its host asks for that, or what the cache has no type for.
 #pragma once
 
 #include <OpenImageIO/imageio.h>
@@ -25,8 +25,14 @@ class FileRows {
   public:
     using Opener = std::function<std::unique_ptr<OIIO::ImageInput>()>;
 
+    /// What is kept of each pixel: so many numbers of a type, decoded as `format`; unknown: as the file stores them.
+    struct Pixels {
+        PixelType type;
+        int channels;
+        OIIO::TypeDesc format;
+    };
     /// `file`: its name. `spec`: of the file when it was opened. Throws std::bad_alloc.
-    FileRows(Opener open, const std::string& file, const OIIO::ImageSpec& spec, PixelType type);
+    FileRows(Opener open, const std::string& file, const OIIO::ImageSpec& spec, const Pixels& pixels);
     ~FileRows();
     FileRows(const FileRows&) = delete;
     FileRows& operator=(const FileRows&) = delete;
@@ -47,6 +53,8 @@ class FileRows {
     const Opener m_open;
     const std::string m_file, m_state;
     const OIIO::ImageSpec m_spec;
+    const OIIO::TypeDesc m_format;
+    const int m_unit;  ///< rows that are decoded together: whole tiles, if there are any
     const Pages m_pages;
     const ConstImageView m_view;
     /// Rows that are there. The first is set before the end, so that a reader who sees the end sees it.

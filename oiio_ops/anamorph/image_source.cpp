@@ -150,6 +150,20 @@ TypeDesc oiio_type(PixelType type) {
     return OIIO::TypeFloat;
 }
 
+StoredPixels stored_pixels(const ImageSpec& spec) {
+    const auto bytes = static_cast<int>(spec.pixel_bytes(true));
+    const PixelType type = bytes % size_of(PixelType::float32) == 0  ? PixelType::float32
+                           : bytes % size_of(PixelType::uint16) == 0 ? PixelType::uint16
+                                                                     : PixelType::uint8;
+    return {type, bytes / size_of(type)};
+}
+
+bool loses_values(const ImageSpec& spec) {
+    const auto is_own = [](TypeDesc type) { return oiio_type(pixel_type(type)) == type; };
+    return !is_own(spec.format) ||
+           !std::all_of(spec.channelformats.begin(), spec.channelformats.end(), is_own);
+}
+
 Frame frame_of(const ImageSpec& spec) {
     const int full_width = spec.get_int_attribute("GPano:FullPanoWidthPixels");
     const int full_height = spec.get_int_attribute("GPano:FullPanoHeightPixels");
@@ -178,6 +192,12 @@ void check_source(const ImageSpec& spec, const std::string& name) {
     if (spec.width < 1 || spec.height < 1 || spec.full_width < 1 || spec.full_height < 1 ||
         spec.nchannels < 1)
         throw Error(image + " has no pixels");
+    const Frame frame = frame_of(spec);
+    constexpr int kMostSide = 1 << 24;
+    if (frame.width > kMostSide || frame.height > kMostSide)
+        throw Error(image + " has " + std::to_string(frame.width) + "x" + std::to_string(frame.height) +
+                    " pixels: must have 1x1 to " + std::to_string(kMostSide) + "x" +
+                    std::to_string(kMostSide));
     const float aspect = spec.get_float_attribute("PixelAspectRatio", 1.0f);
     if (!(std::fabs(aspect - 1) <= 1e-4f))
         throw Error(image + " has PixelAspectRatio=" + shortest(aspect) +
@@ -234,6 +254,7 @@ void CacheSource::read_levels(const SpecOf& spec_of, const std::function<std::st
     m_levels.push_back({base, frame_of(base)});
     m_type = pixel_type(base.format);
     m_alpha = unassociated_alpha_of(base);
+    m_channels = base.nchannels;
 
     const auto full = [](const Level& l) {
         return l.frame.data == Box{0, 0, l.frame.width, l.frame.height} && l.spec.width > 0 &&
@@ -289,6 +310,7 @@ bool CacheSource::read(int level, const Box& box, std::byte* texels,
         if (!(data == box)) clear_around(box, data, pixel, texels, row_stride);
         if (data.empty()) return true;
         std::byte* const to = texels + (data.y0 - box.y0) * row_stride + (data.x0 - box.x0) * pixel;
+        if (m_read_stored) return read_stored(data, to, row_stride);
         return m_rows ? read_rows(data, to, row_stride) : copy_tiles(level, data, to, row_stride);
     } catch (const std::exception& e) {
         return fail(message_of(e, "its pixels"));
@@ -298,10 +320,26 @@ bool CacheSource::read(int level, const Box& box, std::byte* texels,
 void CacheSource::keep_rows() try {
     if (levels() > 1 || spec().tile_width > 0) return;
     const std::string& name = m_name.string();
-    m_rows = std::make_unique<FileRows>([cache = m_cache, name] { return open_as_cache_does(*cache, name); },
-                                        name, spec(), m_type);
+    m_rows =
+        std::make_unique<FileRows>([cache = m_cache, name] { return open_as_cache_does(*cache, name); }, name,
+                                   spec(), FileRows::Pixels{m_type, m_channels, oiio_type(m_type)});
 } catch (const std::bad_alloc&) {
     // Larger than the address space that is left: by the cache, then.
+}
+
+void CacheSource::keep_stored(ReadStored read) {
+    m_levels.resize(1);
+    const StoredPixels stored = stored_pixels(spec());
+    m_type = stored.type;
+    m_channels = stored.channels;
+    m_alpha = -1;
+    m_rows.reset();
+    m_read_stored = std::move(read);
+    if (m_read_stored) return;
+    const std::string& name = m_name.string();
+    m_rows =
+        std::make_unique<FileRows>([cache = m_cache, name] { return open_as_cache_does(*cache, name); }, name,
+                                   spec(), FileRows::Pixels{m_type, m_channels, OIIO::TypeUnknown});
 }
 
 const ConstImageView* CacheSource::view(int) const noexcept {
@@ -327,6 +365,17 @@ bool CacheSource::read_rows(const Box& box, std::byte* texels, std::ptrdiff_t ro
     for (int y = box.y0; y < box.y1; ++y, texels += row_stride)
         std::memcpy(texels, from.at(box.x0 - data.x0, y - data.y0),
                     static_cast<std::size_t>(box.width() * from.pixel_stride));
+    return true;
+}
+
+/// `box` lies inside the data window.
+bool CacheSource::read_stored(const Box& box, std::byte* texels, std::ptrdiff_t row_stride) const {
+    const Box& data = m_levels.front().frame.data;
+    const std::ptrdiff_t row = box.width() * pixel_size(m_type, m_channels);
+    std::vector<std::byte> packed(static_cast<std::size_t>(row * box.height()));
+    m_read_stored({box.x0 - data.x0, box.y0 - data.y0, box.x1 - data.x0, box.y1 - data.y0}, packed.data());
+    for (int j = 0; j < box.height(); ++j)
+        std::memcpy(texels + j * row_stride, packed.data() + j * row, static_cast<std::size_t>(row));
     return true;
 }
 
@@ -384,18 +433,20 @@ bool CacheSource::copy_tiles(int level, const Box& box, std::byte* texels, std::
 
 // --- BufferSource ------------------------------------------------------------------------------------------
 
-BufferSource::BufferSource(const OIIO::ImageBuf& image)
+BufferSource::BufferSource(const OIIO::ImageBuf& image, bool stored)
     : m_image(image),
       m_frame(frame_of(image.spec())),
-      m_type(pixel_type(image.spec().format)),
-      m_alpha(unassociated_alpha_of(image.spec())) {
+      m_type(stored ? stored_pixels(image.spec()).type : pixel_type(image.spec().format)),
+      m_channels(stored ? stored_pixels(image.spec()).channels : image.nchannels()),
+      m_format(stored ? image.spec().format : oiio_type(m_type)),
+      m_alpha(stored ? -1 : unassociated_alpha_of(image.spec())) {
     const bool whole = m_frame.data == Box{0, 0, m_frame.width, m_frame.height};
-    if (whole && image.localpixels() && oiio_type(m_type) == image.spec().format)
+    if (whole && image.localpixels() && m_format == image.spec().format)
         m_view = ConstImageView{static_cast<const std::byte*>(image.localpixels()),
                                 m_type,
                                 m_frame.width,
                                 m_frame.height,
-                                image.nchannels(),
+                                m_channels,
                                 image.pixel_stride(),
                                 image.scanline_stride()};
 }
@@ -412,9 +463,9 @@ bool BufferSource::read(int, const Box& box, std::byte* texels, std::ptrdiff_t r
         const std::byte* from = pixels + (y - m_frame.data.y0) * m_image.scanline_stride() +
                                 (data.x0 - m_frame.data.x0) * m_image.pixel_stride();
         std::byte* to = texels + (y - box.y0) * row_stride + (data.x0 - box.x0) * pixel;
-        OIIO::convert_image(channels(), data.width(), 1, 1, from, format, m_image.pixel_stride(),
-                            OIIO::AutoStride, OIIO::AutoStride, to, oiio_type(m_type), pixel,
-                            OIIO::AutoStride, OIIO::AutoStride);
+        OIIO::convert_image(m_image.nchannels(), data.width(), 1, 1, from, format, m_image.pixel_stride(),
+                            OIIO::AutoStride, OIIO::AutoStride, to, m_format, pixel, OIIO::AutoStride,
+                            OIIO::AutoStride);
     }
     return true;
 }

@@ -3,7 +3,8 @@
 // space.
 //
 // The image of a source is the display window: pixels outside the data window are 0 (black, transparent).
-// Pixel types other than uint8, uint16, half and float are read as float.
+// Pixel types other than uint8, uint16, half and float are read as float, which loses digits of some; a picture whose
+// pixels are moved only, and never computed with, can have them as they are stored.
 #pragma once
 
 #include <OpenImageIO/color.h>
@@ -28,6 +29,16 @@ using ImageCacheRef = decltype(OIIO::ImageCache::create(true));
 /// The core's type for an OpenImageIO type: itself, or float.
 PixelType pixel_type(OIIO::TypeDesc type);
 OIIO::TypeDesc oiio_type(PixelType type);
+
+/// Pixels as an image stores them, of any type, as numbers of the core's that are as long together.
+struct StoredPixels {
+    PixelType type;
+    int channels;
+};
+StoredPixels stored_pixels(const OIIO::ImageSpec& spec);
+/// Are some of an image's channels of a type that the core reads as float, or in a file of several types of channels as
+/// float, though it holds more digits, or other ones?
+bool loses_values(const OIIO::ImageSpec& spec);
 
 /// The data window inside the panorama: from the display window, or from GPano's cropped area where the image
 /// has one. An environment of six faces that is as high as these is whole: OpenEXR's display window is one.
@@ -71,7 +82,7 @@ class CacheSource final : public Source {
     std::string error() const;
 
     PixelType type() const noexcept override { return m_type; }
-    int channels() const noexcept override { return spec().nchannels; }
+    int channels() const noexcept override { return m_channels; }
     int unassociated_alpha() const noexcept override { return m_alpha; }
     int levels() const noexcept override { return static_cast<int>(m_levels.size()); }
     Size size(int level) const noexcept override;
@@ -84,6 +95,10 @@ class CacheSource final : public Source {
     void keep_first_level() { m_levels.resize(1); }
     /// Has a file without tiles decode its rows once, past the cache; of other files nothing changes.
     void keep_rows();
+    /// Packed pixels of a box of level 0, in the format of the file. Throws Error.
+    using ReadStored = std::function<void(const Box& box, std::byte* pixels)>;
+    /// Hands out stored_pixels() of level 0 from now on: by `read`, or past the cache, which has float only.
+    void keep_stored(ReadStored read = {});
 
   private:
     struct Level {
@@ -95,6 +110,7 @@ class CacheSource final : public Source {
     /// `why_not`: the reason where there is no level 0.
     void read_levels(const SpecOf& spec_of, const std::function<std::string()>& why_not);
     bool read_rows(const Box& box, std::byte* texels, std::ptrdiff_t row_stride) const;
+    bool read_stored(const Box& box, std::byte* texels, std::ptrdiff_t row_stride) const;
     bool copy_tiles(int level, const Box& box, std::byte* texels, std::ptrdiff_t row_stride) const;
     bool fail(const std::string& message) const;
 
@@ -103,9 +119,10 @@ class CacheSource final : public Source {
     std::string m_shown;
     int m_subimage, m_first_level;
     PixelType m_type = PixelType::float32;
-    int m_alpha = -1;
+    int m_alpha = -1, m_channels = 0;
     std::vector<Level> m_levels;
     std::unique_ptr<FileRows> m_rows;
+    ReadStored m_read_stored;
     mutable std::mutex m_mutex;
     mutable std::string m_error;
 };
@@ -113,10 +130,11 @@ class CacheSource final : public Source {
 /// Pixels that an ImageBuf holds in memory; read in place where type and window allow it. Keeps a reference.
 class BufferSource final : public Source {
   public:
-    explicit BufferSource(const OIIO::ImageBuf& image);
+    /// `stored`: as stored_pixels().
+    explicit BufferSource(const OIIO::ImageBuf& image, bool stored = false);
 
     PixelType type() const noexcept override { return m_type; }
-    int channels() const noexcept override { return m_image.nchannels(); }
+    int channels() const noexcept override { return m_channels; }
     int unassociated_alpha() const noexcept override { return m_alpha; }
     int levels() const noexcept override { return 1; }
     Size size(int) const noexcept override { return {m_frame.width, m_frame.height}; }
@@ -128,6 +146,8 @@ class BufferSource final : public Source {
     const OIIO::ImageBuf& m_image;
     Frame m_frame;
     PixelType m_type;
+    int m_channels;
+    OIIO::TypeDesc m_format;  ///< that pixels are handed out in
     int m_alpha;
     std::optional<ConstImageView> m_view;
 };

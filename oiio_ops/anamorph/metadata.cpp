@@ -4,6 +4,7 @@
 #include <OpenImageIO/strutil.h>
 
 #include <algorithm>
+#include <cmath>
 #include <string_view>
 #include <utility>
 #include <vector>
@@ -114,11 +115,37 @@ void read_projection(const std::string& text, SourceFacts& facts) {
     if (Strutil::string_is_float(fov)) facts.fov = OIIO::Strutil::from_string<float>(fov);
 }
 
+/// The focal length by Exif, in the order in which Hugin asks for it: that of a camera with a film of 36 x 24 mm whose
+/// picture has the same diagonal, else by the pixels there are on the focal plane.
+void read_focal_length(const ImageSpec& spec, SourceFacts& facts) {
+    const auto number = [&](const char* name) { return double{spec.get_float_attribute(name)}; };
+    const auto take = [&](double pixels, const std::string& by) {
+        if (!(pixels > 0 && std::isfinite(pixels))) return false;
+        facts.focal_length = pixels;
+        facts.focal_length_said_by = by;
+        return true;
+    };
+    const double on_film = number("Exif:FocalLengthIn35mmFilm");
+    if (take(on_film * std::hypot(facts.width, facts.height) / std::hypot(36, 24),
+             "Exif:FocalLengthIn35mmFilm=" + shortest(on_film)))
+        return;
+    // Millimetres in an inch (which it is by default), a centimetre, a millimetre and a micrometre.
+    const int unit = spec.get_int_attribute("Exif:FocalPlaneResolutionUnit", 2);
+    const double millimetres = unit == 3 ? 10 : unit == 4 ? 1 : unit == 5 ? 0.001 : 25.4;
+    // Pixels are square, and as many as the camera stored, whatever the picture was resized to since, or turned.
+    const double stored = std::max(number("Exif:PixelXDimension"), number("Exif:PixelYDimension"));
+    const double resized = stored > 0 ? std::max(facts.width, facts.height) / stored : 1;
+    const double length = number("Exif:FocalLength");
+    take(length * number("Exif:FocalPlaneXResolution") / millimetres * resized,
+         "Exif:FocalLength=" + shortest(static_cast<float>(length)));
+}
+
 }  // namespace
 
 SourceFacts facts_of(const ImageSpec& spec) {
     const Frame frame = frame_of(spec);
     SourceFacts facts{frame.width, frame.height, {}, {}, {}};
+    read_focal_length(spec, facts);
     const auto says = [&](const char* attribute, Projection projection) {
         facts.projection = projection;
         facts.said_by = attribute;
@@ -192,7 +219,15 @@ void set_channels(ImageSpec& spec, const std::vector<std::string>& names) {
 
 }  // namespace
 
-ImageSpec picture_spec(const ImageSpec* source, const PictureRequest& picture) {
+bool moves_stored(const PictureRequest& picture, const std::vector<ImageSpec>& sources,
+                  const std::string& space) {
+    if (!picture.moves || *picture.moves >= sources.size() || !space.empty()) return false;
+    const ImageSpec &shown = sources[*picture.moves], &first = sources[0];
+    return loses_values(shown) && shown.nchannels == first.nchannels && shown.format == first.format &&
+           shown.channelformats == first.channelformats;
+}
+
+ImageSpec picture_spec(const ImageSpec* source, const PictureRequest& picture, bool stored) {
     ImageSpec spec = source ? *source : ImageSpec();
     spec.x = spec.y = spec.z = 0;
     spec.full_x = spec.full_y = spec.full_z = 0;
@@ -201,8 +236,10 @@ ImageSpec picture_spec(const ImageSpec* source, const PictureRequest& picture) {
     spec.depth = spec.full_depth = 1;
     spec.tile_width = spec.tile_height = 0;
     spec.tile_depth = 1;
-    spec.channelformats.clear();
-    spec.format = oiio_type(pixel_type(spec.format));
+    if (!stored) {
+        spec.channelformats.clear();
+        spec.format = oiio_type(pixel_type(spec.format));
+    }
     const bool color = picture.pixels == PixelKind::color;
     if (!color)
         set_channels(spec, picture.pixels == PixelKind::point    ? std::vector<std::string>{"R", "G"}

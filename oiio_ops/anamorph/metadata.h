@@ -4,6 +4,9 @@
 
 #include <OpenImageIO/imageio.h>
 
+#include <string>
+#include <vector>
+
 #include "anamorph/operation/operation.h"
 
 namespace anamorph {
@@ -11,8 +14,8 @@ namespace anamorph {
 /// What an operation may know of an upright image.
 SourceImage source_image(const OIIO::ImageSpec& spec);
 
-/// The panorama's size, and its projection as GPano, OpenEXR's envmap, a texture's format or a picture of
-/// ours names it.
+/// The panorama's size, its projection as GPano, OpenEXR's envmap, a texture's format or a picture of ours names it, and
+/// the focal length as Exif has it.
 SourceFacts facts_of(const OIIO::ImageSpec& spec);
 
 /// The options of a call as assignments: names with `prefix` (taken off), all names without one. Numbers are
@@ -21,8 +24,14 @@ std::vector<Assignment> assignments_of(const OIIO::ParamValueList& options, cons
 
 /// The picture's header: its size and channels, the metadata of the upright source that still holds, and what
 /// the picture says of itself. No tiles. `source`: the first one, null where there is none. Throws Error where
-/// the picture is larger than OpenImageIO's attribute limits:imagesize_MB.
-OIIO::ImageSpec picture_spec(const OIIO::ImageSpec* source, const PictureRequest& picture);
+/// the picture is larger than OpenImageIO's attribute limits:imagesize_MB. `stored`: as moves_stored() says.
+OIIO::ImageSpec picture_spec(const OIIO::ImageSpec* source, const PictureRequest& picture,
+                             bool stored = false);
+
+/// Are a picture's pixels those of one of its sources as they are stored, since they are only moved and the core has no
+/// numbers for them? `space`: the color space to filter in, if any.
+bool moves_stored(const PictureRequest& picture, const std::vector<OIIO::ImageSpec>& sources,
+                  const std::string& space);
 
 /// Sets attributes; numbers that are no integers as type float.
 void add_attributes(OIIO::ImageSpec& spec, const Attributes& attributes);

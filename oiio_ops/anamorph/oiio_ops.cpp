@@ -135,34 +135,46 @@ Box box_of(const ROI& roi, const ImageSpec& dst) {
     return {roi.xbegin - dst.full_x, roi.ybegin - dst.full_y, roi.xend - dst.full_x, roi.yend - dst.full_y};
 }
 
-void fill(ImageBuf& dst, const SolvedPicture& picture, const SourceStacks& stacks, int channels,
-          const ROI& roi, const ParallelFor& parallel_for) {
+/// The pixels that are drawn: their format, and as what the core sees them.
+struct Drawn {
+    OIIO::TypeDesc format;
+    StoredPixels pixels;
+};
+
+void fill(ImageBuf& dst, const SolvedPicture& picture, const SourceStacks& stacks, const ImageSpec& drawn,
+          bool stored, const ROI& roi, const ParallelFor& parallel_for) {
     const ImageSpec& spec = dst.spec();
     const Box box = box_of(roi, spec);
-    const bool all_channels = roi.chbegin == 0 && roi.chend == channels && spec.nchannels == roi.chend;
-    const PixelType type = pixel_type(spec.format);
-    if (all_channels && oiio_type(type) == spec.format) {
-        draw_picture(picture, stacks, box,
-                     {static_cast<std::byte*>(dst.pixeladdr(roi.xbegin, roi.ybegin)), type, box.width(),
-                      box.height(), spec.nchannels, dst.pixel_stride(), dst.scanline_stride()},
-                     parallel_for);
+    const bool all_channels = roi.chbegin == 0 && roi.chend == drawn.nchannels && spec.nchannels == roi.chend;
+    const Drawn own =
+        stored ? Drawn{drawn.format, stored_pixels(drawn)}
+               : Drawn{oiio_type(pixel_type(spec.format)), {pixel_type(spec.format), drawn.nchannels}};
+    if (all_channels && own.format == spec.format) {
+        draw_picture(
+            picture, stacks, box,
+            {static_cast<std::byte*>(dst.pixeladdr(roi.xbegin, roi.ybegin)), own.pixels.type, box.width(),
+             box.height(), own.pixels.channels, dst.pixel_stride(), dst.scanline_stride()},
+            parallel_for);
         return;
     }
-    // Other channels or types: by way of float, some rows at a time.
+    // Other channels or types: by way of float, or of what is stored, some rows at a time.
+    const Drawn way = stored ? own : Drawn{OIIO::TypeFloat, {PixelType::float32, drawn.nchannels}};
     constexpr int kRows = 512;
-    std::vector<float> pixels;
+    const auto channel = static_cast<std::ptrdiff_t>(way.format.size());
+    const std::ptrdiff_t pixel = channel * drawn.nchannels;
+    std::vector<std::byte> pixels;
     for (int y = roi.ybegin; y < roi.yend; y += kRows) {
         ROI rows = roi;
         rows.ybegin = y;
         rows.yend = std::min(y + kRows, roi.yend);
         const Box part = box_of(rows, spec);
-        pixels.resize(static_cast<std::size_t>(std::int64_t{part.width()} * part.height() * channels));
-        draw_picture(picture, stacks, part,
-                     packed_view(reinterpret_cast<std::byte*>(pixels.data()), PixelType::float32,
-                                 part.width(), part.height(), channels),
-                     parallel_for);
-        const auto pixel = OIIO::stride_t{channels} * OIIO::stride_t{sizeof(float)};
-        if (!dst.set_pixels(rows, OIIO::TypeFloat, pixels.data() + roi.chbegin, pixel, pixel * part.width()))
+        pixels.resize(static_cast<std::size_t>(std::int64_t{part.width()} * part.height() * pixel));
+        draw_picture(
+            picture, stacks, part,
+            packed_view(pixels.data(), way.pixels.type, part.width(), part.height(), way.pixels.channels),
+            parallel_for);
+        if (!dst.set_pixels(rows, way.format, pixels.data() + roi.chbegin * channel, pixel,
+                            pixel * part.width()))
             throw Error(dst.geterror());
     }
 }
@@ -215,16 +227,20 @@ void run(const Operation& operation, ImageBuf& dst, const std::vector<const Imag
         operation.read({values, known, named.files, side_file_reader(), missing});
     const PictureRequest request = *pictures->picture(0, 0);
     const ImageSpec first = sources.empty() ? ImageSpec() : upright(specs[0]);
-    const ImageSpec spec = picture_spec(sources.empty() ? nullptr : &first, request);
+    const std::string space = filtering_space(values, request.pixels);
+    // The pixels that a cache lends are of a type of its own.
+    const bool stored = moves_stored(request, specs, space) && sources[*request.moves]->localpixels() &&
+                        specs[*request.moves].channelformats.empty();
+    if (stored) images[*request.moves] = std::make_unique<BufferSource>(*sources[*request.moves], true);
+    const ImageSpec spec = picture_spec(sources.empty() ? nullptr : &first, request, stored);
     const ParallelFor parallel_for = default_parallel_for(nthreads);
     const std::unique_ptr<const SolvedPicture> picture = request.solve();
     const Attributes reached = picture->reached(parallel_for);
 
-    const SourceStacks stacks = make_source_stacks(std::move(images), specs, pictures->faces(),
-                                                   filtering_space(values, request.pixels));
+    const SourceStacks stacks = make_source_stacks(std::move(images), specs, pictures->faces(), space);
     const bool unwritten = prepare(dst, spec, roi);
     try {
-        fill(dst, *picture, stacks, spec.nchannels, roi, parallel_for);
+        fill(dst, *picture, stacks, spec, stored, roi, parallel_for);
     } catch (...) {
         if (unwritten) OIIO::ImageBufAlgo::zero(dst);
         throw;

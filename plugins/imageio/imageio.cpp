@@ -167,16 +167,16 @@ class FileInput final : public ImageInput {
                             ": must be from 0 to " + std::to_string(spec.nchannels));
             if (chend - chbegin == spec.nchannels) return read_rows(subimage, miplevel, ybegin, yend, data);
             constexpr int kRows = 256;
-            const std::size_t channel = spec.format.size(), pixel = spec.pixel_bytes();
-            const std::size_t part = channel * static_cast<std::size_t>(chend - chbegin);
-            std::vector<std::byte> all(spec.scanline_bytes() * kRows);
+            const std::size_t pixel = spec.pixel_bytes(true), part = spec.pixel_bytes(chbegin, chend, true);
+            const std::size_t before = chbegin > 0 ? spec.pixel_bytes(0, chbegin, true) : 0;
+            const std::size_t row = pixel * static_cast<std::size_t>(spec.width);
+            std::vector<std::byte> all(row * kRows);
             auto* to = static_cast<std::byte*>(data);
             for (int y = ybegin; y < yend; y += kRows) {
                 const int end = std::min(yend, y + kRows);
                 read_rows(subimage, miplevel, y, end, all.data());
-                const std::byte* from = all.data() + static_cast<std::size_t>(chbegin) * channel;
-                for (std::size_t n = spec.scanline_bytes() * static_cast<std::size_t>(end - y) / pixel; n > 0;
-                     --n) {
+                const std::byte* from = all.data() + before;
+                for (std::size_t n = row * static_cast<std::size_t>(end - y) / pixel; n > 0; --n) {
                     std::memcpy(to, from, part);
                     to += part;
                     from += pixel;

@@ -119,15 +119,14 @@ class RecipeContent final : public Content {
   public:
     RecipeContent(const Recipe& recipe, Opening& opening) {
         const ParameterValues& values = recipe.values;
-        std::vector<std::unique_ptr<Source>> images;
+        std::vector<OpenSource> images;
         std::vector<ImageSpec> specs;
         std::vector<SourceImage> known;
         std::string identity;
         for (const SideFile& file : sources_of(recipe)) {
-            std::unique_ptr<CacheSource> image = open_source(file, opening);
-            specs.push_back(image->spec());
-            known.push_back(source_image(upright(image->spec())));
-            images.push_back(std::move(image));
+            images.push_back(open_source(file, opening));
+            specs.push_back(images.back().image->spec());
+            known.push_back(source_image(upright(specs.back())));
             identity += file.identity;
         }
         if (!specs.empty()) m_source = upright(specs[0]);
@@ -135,24 +134,27 @@ class RecipeContent final : public Content {
         for (const std::string& key : recipe.linked_images) {
             const SideFile& file = recipe.files.at(key);
             identity += file.identity;
-            std::unique_ptr<CacheSource> image = open_or_none(file, opening);
-            if (!image) missing.push_back(key);
-            specs.push_back(image ? image->spec() : ImageSpec());
-            images.push_back(std::move(image));
+            images.push_back(open_or_none(file, opening));
+            if (!images.back().image) missing.push_back(key);
+            specs.push_back(images.back().image ? images.back().image->spec() : ImageSpec());
         }
         m_pictures = recipe.operation->read({values, known, recipe.files, side_file_reader(), missing});
         m_key = operation_key(*recipe.operation, values, known, recipe.files);
         m_tile = tile_of(values);
-        const PictureRequest first = level(0, 0).request;
-
+        const PictureRequest first = *m_pictures->picture(0, 0);
         const std::string space = filtering_space(values, first.pixels);
+        m_stored = moves_stored(first, specs, space);
+        if (m_stored) keep_stored(images[*first.moves]);
         const SourceFaces faces = m_pictures->faces();
         static auto& stacks = *new Memo<const SourceStacks>(2);
-        const std::string stack_key =
-            identity + space + "\n" + std::to_string(faces.columns) + "x" + std::to_string(faces.rows);
+        const std::string stack_key = identity + space + "\n" + std::to_string(faces.columns) + "x" +
+                                      std::to_string(faces.rows) +
+                                      (m_stored ? " stored " + std::to_string(*first.moves) : "");
         m_stacks = stacks.get(stack_key, [&] {
+            std::vector<std::unique_ptr<Source>> sources;
+            for (OpenSource& open : images) sources.push_back(std::move(open.image));
             return std::make_shared<const SourceStacks>(
-                make_source_stacks(std::move(images), specs, faces, space));
+                make_source_stacks(std::move(sources), specs, faces, space));
         });
 
         if (values.knows("mip") && values.toggle("mip"))
@@ -176,10 +178,11 @@ class RecipeContent final : public Content {
         const Level& l = this->level(subimage, level);
         const std::shared_ptr<Solved> solved = l.solved ? l.solved : solve(l);
         const bool small = std::int64_t{box.width()} * box.height() < kParallelPixels;
-        draw_picture(
-            solved->picture(), *m_stacks, box,
-            packed_view(pixels, pixel_type(l.spec.format), box.width(), box.height(), l.spec.nchannels),
-            small ? serial_for : own_threads());
+        const StoredPixels as =
+            m_stored ? stored_pixels(l.spec) : StoredPixels{pixel_type(l.spec.format), l.spec.nchannels};
+        draw_picture(solved->picture(), *m_stacks, box,
+                     packed_view(pixels, as.type, box.width(), box.height(), as.channels),
+                     small ? serial_for : own_threads());
     }
 
   private:
@@ -190,23 +193,40 @@ class RecipeContent final : public Content {
         std::shared_ptr<Solved> solved;
     };
 
+    struct OpenSource {
+        std::unique_ptr<CacheSource> image;
+        std::shared_ptr<const Content> content;  ///< of a recipe
+    };
+
+    /// A cache would make float of what is stored otherwise; recipes are read by what they show.
+    static void keep_stored(const OpenSource& open) {
+        if (const std::shared_ptr<const Content> content = open.content)
+            open.image->keep_stored(
+                [content](const Box& box, std::byte* pixels) { content->read(0, 0, box, pixels); });
+        else
+            open.image->keep_stored();
+    }
+
     /// A source that is a recipe stays open while this picture is, so that the cache that asks for it by its
     /// name does not make it again.
-    std::unique_ptr<CacheSource> open_source(const SideFile& file, Opening& opening) {
-        if (!operation_of(file.name)) return opening.open_file(file);
+    OpenSource open_source(const SideFile& file, Opening& opening) {
+        if (!operation_of(file.name)) return {opening.open_file(file), nullptr};
         const std::shared_ptr<const Content> content =
             in_recipe(file.name, [&] { return opening.open(file.name, {}); });
         m_nested.push_back(content);
-        return std::make_unique<CacheSource>(
-            shared_cache(), cached_name(file.name, file.identity), file.name,
-            [&](int level) { return level < content->levels(0) ? content->spec(0, level) : ImageSpec(); });
+        return {std::make_unique<CacheSource>(
+                    shared_cache(), cached_name(file.name, file.identity), file.name,
+                    [&](int level) {
+                        return level < content->levels(0) ? content->spec(0, level) : ImageSpec();
+                    }),
+                content};
     }
 
-    std::unique_ptr<CacheSource> open_or_none(const SideFile& file, Opening& opening) {
+    OpenSource open_or_none(const SideFile& file, Opening& opening) {
         try {
             return open_source(file, opening);
         } catch (const Error&) {
-            return nullptr;
+            return {};
         }
     }
 
@@ -245,7 +265,7 @@ class RecipeContent final : public Content {
             Level& made = found->second;
             made.request = *m_pictures->picture(subimage, number);
             made.key = m_key + "frame " + std::to_string(subimage) + " level " + std::to_string(number);
-            made.spec = picture_spec(m_source ? &*m_source : nullptr, made.request);
+            made.spec = picture_spec(m_source ? &*m_source : nullptr, made.request, m_stored);
             const bool tiled = m_tile.width > 0 && m_tile.height > 0;
             made.spec.tile_width = tiled ? m_tile.width : 0;
             made.spec.tile_height = tiled ? m_tile.height : 0;
@@ -260,6 +280,7 @@ class RecipeContent final : public Content {
     std::shared_ptr<const SourceStacks> m_stacks;
     Size m_tile;
     int m_levels = 1;
+    bool m_stored = false;  ///< as moves_stored() says
     mutable std::mutex m_mutex;
     mutable std::map<std::pair<int, int>, Level> m_known;  ///< by frame and MIP level
 };

@@ -218,6 +218,40 @@ TEST_F(CacheConformance, conformance_18_source_rewritten_twice_in_one_process) {
     EXPECT_NE(read_floats("v.pano"), seen[4]);
 }
 
+/// As the README says: whoever opens sees the new pixels, and of an ImageBuf by way of OpenImageIO's cache who has that
+/// forget the recipe's name.
+TEST_F(CacheConformance, conformance_18_source_rewritten_seen_by_image_buffers) {
+    const auto write = [](float value) {
+        OIIO::ImageBuf image(OIIO::ImageSpec(64, 32, 3, OIIO::TypeFloat));
+        const float color[] = {value, value, value};
+        OIIO::ImageBufAlgo::fill(image, color);
+        write_image(image, "flat.exr");
+    };
+    OIIO::ImageCache& cache = *OIIO::ImageCache::create(true);
+    write_text("v.pano", "src=flat.exr\nto=equirectangular\nsize=64x32\n");
+    float value = 1;
+    for (const std::string name : {"flat.exr.pano?to=equirectangular&size=64x32", "v.pano",
+                                   "w.pano?size=8&src=v.pano", "m.warp?mesh=grid.json&src=v.pano"}) {
+        SCOPED_TRACE(name);
+        write_text("grid.json", R"({"columns": 1, "rows": 1, "units": "fractions",
+                                    "vertices": [[0, 0], [1, 0], [0, 1], [1, 1]]})");
+        const auto seen = [&] { return OIIO::ImageBuf(name).getchannel(3, 3, 0, 0); };
+        write(value);
+        cache.invalidate(OIIO::ustring(name));
+        EXPECT_EQ(seen(), value);
+        write(++value);
+        EXPECT_EQ(read_floats(name)[0], value);
+        OIIO::ImageBuf read(name);
+        ASSERT_TRUE(read.read(0, 0, true, OIIO::TypeFloat)) << read.geterror();
+        EXPECT_EQ(read.getchannel(3, 3, 0, 0), value);
+        cache.invalidate(OIIO::ustring(name));
+        EXPECT_EQ(seen(), value);
+        write(++value);
+        cache.invalidate_all(true);
+        EXPECT_EQ(seen(), value);
+    }
+}
+
 TEST_F(CacheConformance, conformance_19_after_invalidate_all_and_statistics) {
     const std::string name = "x.pano?size=96x64&tile=16&src=city.exr.pano?to=equirectangular&size=256x128";
     const std::vector<float> expected = read_floats(name);

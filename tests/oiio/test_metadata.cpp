@@ -5,6 +5,8 @@
 #include <OpenImageIO/imagecache.h>
 #include <OpenImageIO/strutil.h>
 
+#include <cmath>
+
 #include "anamorph/oiio_ops.h"
 #include "host.h"
 
@@ -330,6 +332,106 @@ TEST_F(Metadata, WhatWasAssumedIsSaid) {
     ASSERT_TRUE(reproject(dst, panorama(64, 32))) << dst.geterror();
     EXPECT_EQ(dst.spec().get_string_attribute("anamorph:from"),
               "equirectangular (assumed from the 2:1 shape)");
+}
+
+/// 2 atan(w / 2 f) in degrees.
+std::string flat_fov(double pixels, double focal_length) {
+    return OIIO::Strutil::fmt::format(
+        "{:.6g}", 2 * std::atan(pixels / 2 / focal_length) * 180 / 3.14159265358979323846);
+}
+
+/// The attributes of a camera, all integers or floats.
+void take_photo(const std::string& name, int width, int height,
+                const std::vector<std::pair<const char*, float>>& exif, int orientation = 1) {
+    ImageBuf image = panorama(width, height, OIIO::TypeUInt8);
+    for (const auto& [key, value] : exif) {
+        const bool whole = std::string(key).find("Unit") != std::string::npos ||
+                           std::string(key).find("Dimension") != std::string::npos ||
+                           std::string(key).find("35mm") != std::string::npos;
+        if (whole)
+            image.specmod().attribute(key, static_cast<int>(value));
+        else
+            image.specmod().attribute(key, value);
+    }
+    image.specmod().attribute("Orientation", orientation);
+    write_image(image, name);
+}
+
+TEST_F(Metadata, FocalLengthsOfExifAreTaken) {
+    const double film = std::hypot(36, 24);
+    struct Case {
+        std::vector<std::pair<const char*, float>> exif;
+        int width, height, orientation;
+        double focal_length;  ///< pixels; 0: none
+        std::string by;
+    };
+    const Case cases[] = {
+        {{{"Exif:FocalLengthIn35mmFilm", 28}, {"Exif:FocalLength", 4.2f}},
+         60,
+         40,
+         1,
+         28 * std::hypot(60, 40) / film,
+         "Exif:FocalLengthIn35mmFilm=28"},
+        // Held upright: stored lying, as wide as the shorter side.
+        {{{"Exif:FocalLengthIn35mmFilm", 28}},
+         60,
+         40,
+         6,
+         28 * std::hypot(60, 40) / film,
+         "Exif:FocalLengthIn35mmFilm=28"},
+        // In centimetres, and made smaller by 100 since.
+        {{{"Exif:FocalLength", 35},
+          {"Exif:FocalPlaneXResolution", 2000},
+          {"Exif:FocalPlaneResolutionUnit", 3},
+          {"Exif:PixelXDimension", 6000},
+          {"Exif:PixelYDimension", 4000}},
+         60,
+         40,
+         1,
+         35 * 200 / 100.0,
+         "Exif:FocalLength=35"},
+        // In inches, which they are by default.
+        {{{"Exif:FocalLength", 50}, {"Exif:FocalPlaneXResolution", 100}},
+         64,
+         32,
+         1,
+         50 * 100 / 25.4,
+         "Exif:FocalLength=50"},
+        {{{"Exif:FocalLength", 50}}, 64, 32, 1, 0, ""},
+        {{{"Exif:FocalLengthIn35mmFilm", 0}, {"Exif:FocalLength", 0}, {"Exif:FocalPlaneXResolution", 9}},
+         64,
+         32,
+         1,
+         0,
+         ""},
+    };
+    for (const Case& c : cases) {
+        SCOPED_TRACE(c.by + " " + std::to_string(c.width));
+        take_photo("photo.jpg", c.width, c.height, c.exif, c.orientation);
+        const int across = c.orientation == 6 ? c.height : c.width;
+        const std::string fov = c.focal_length > 0 ? flat_fov(across, c.focal_length) : "90";
+        const std::string why = c.focal_length > 0 ? "as " + c.by + " says" : "assumed";
+        const std::string view = "photo.jpg.pano?to=fisheye&fov=120&size=40x30&from=";
+        EXPECT_EQ(spec_of(view + "rectilinear").get_string_attribute("anamorph:from"),
+                  "rectilinear (given, " + fov + " degrees " + why + ")");
+        EXPECT_LE(largest_difference(read_floats(view + "rectilinear"),
+                                     read_floats(view + "rectilinear&srcfov=" + fov)),
+                  1.01 / 255);
+        // What is asked for comes first; other projections are no business of a focal length.
+        EXPECT_EQ(spec_of(view + "rectilinear&srcfov=50").get_string_attribute("anamorph:from"),
+                  "rectilinear (given)");
+        EXPECT_EQ(spec_of(view + "fisheye").get_string_attribute("anamorph:from"), "fisheye (given)");
+        // Of a lens too.
+        const std::string lens = "photo.jpg.lens?lens=brown:k1=-0.1";
+        if (c.focal_length == 0) {
+            EXPECT_THAT(open_error(lens), HasSubstr("fov is not given"));
+            continue;
+        }
+        EXPECT_EQ(spec_of(lens).get_string_attribute("anamorph:fov"), fov + " degrees " + why);
+        EXPECT_LE(largest_difference(read_floats(lens), read_floats(lens + "&fov=" + fov)), 1.01 / 255);
+        EXPECT_FALSE(spec_of(lens + "&fov=50").find_attribute("anamorph:fov"));
+        EXPECT_THAT(open_error("photo.jpg.lens?lens=kb4:k1=0.1"), HasSubstr("fov is not given"));
+    }
 }
 
 TEST_F(Metadata, WhatWasReachedIsWrittenToFiles) {

@@ -306,6 +306,22 @@ TEST_F(RecipeFiles, ASourceIsCalledByItsName) {
     }
 }
 
+TEST_F(RecipeFiles, ASourceThatIsTooLargeIsNamed) {
+    write_text("huge.ppm", "P6\n2147483647 2147483647\n255\nabc");
+    write_text("wide.ppm", "P6\n16777217 1\n255\nabc");
+    for (const std::string name :
+         {"huge.ppm.pano?from=rectilinear", "huge.ppm.pano?from=fisheye&to=fisheye&size=8",
+          "huge.ppm.warp?mesh=grid.json", "huge.ppm.lens?lens=ptlens:b=0.1", "huge.ppm.drape?surface=sphere",
+          "huge.ppm.mosaic?circles=1", "city.exr.morph?b=huge.ppm&features=lines.csv",
+          "city.exr.drape?backdrop=huge.ppm"})
+        EXPECT_THAT(open_error(name),
+                    HasSubstr("source \"huge.ppm\" has 2147483647x2147483647 pixels: must have 1x1 to "
+                              "16777216x16777216"))
+            << name;
+    EXPECT_THAT(open_error("wide.ppm.pano?from=rectilinear"),
+                HasSubstr("source \"wide.ppm\" has 16777217x1 pixels"));
+}
+
 TEST_F(RecipeFiles, MemoryThatCannotBeHadIsCalledSo) {
     // 2 GB for an ST-map's values.
     const Ran ran =

@@ -225,6 +225,7 @@ class DrapeRequest {
     explicit DrapeRequest(const OperationInput& input)
         : m_values(input.values),
           m_source(input.sources[0].size()),
+          m_has_backdrop(input.sources.size() > 1),
           m_alpha(input.sources[0].alpha),
           m_backdrop_alpha(input.sources.size() > 1 ? input.sources[1].alpha : -1),
           m_surfaces(std::make_shared<DrapeSurfaces>(input, aspect())) {
@@ -239,6 +240,7 @@ class DrapeRequest {
     int frames() const { return m_frames; }
     /// The number of the i-th of these.
     int number_of(int i) const { return m_first + i; }
+    bool has_backdrop() const { return m_has_backdrop; }
     bool is_film() const { return m_frames > 1 || !m_keys.empty(); }
 
     /// A frame's values.
@@ -323,6 +325,7 @@ class DrapeRequest {
 
     ParameterValues m_values;
     Size m_source;
+    bool m_has_backdrop;
     int m_alpha, m_backdrop_alpha, m_frames = 1, m_first = 0;
     std::vector<NamedKeyFrames> m_keys;
     std::shared_ptr<const DrapeSurfaces> m_surfaces;
@@ -412,6 +415,10 @@ class Drapes final : public Pictures {
         picture.size = *size;
         picture.pixels = pixels_of(options);
         picture.says = {{"anamorph:tol", options.tol}};
+        const bool plain = options.lighting.shading == DrapeShading::none && options.background.empty() &&
+                           !m_request->has_backdrop();
+        if (picture.pixels == PixelKind::color && options.filter == Filter::nearest && plain)
+            picture.moves = 0;
         if (m_request->is_film()) picture.says.push_back({"anamorph:frame", number});
         if (!m_request->missing().empty()) picture.says.push_back({"anamorph:missing", m_request->missing()});
         picture.solve = [request = m_request, values,

@@ -9,6 +9,8 @@ namespace anamorph {
 namespace {
 
 using rows::chosen;
+using rows::flat_field_of_view;
+using rows::rounded_degrees;
 
 const char* const kAll = "all";
 
@@ -30,7 +32,7 @@ ParameterTable make_table() {
         above(number("fov", "degrees", "", 0, 360,
                      "horizontal field of view of the picture that was taken through the lens, without the "
                      "distortion, for brown (below 180) and kb4, whose unit is the focal length; by default "
-                     "what the image says of itself")),
+                     "what the image says of itself, for brown also by Exif's focal length")),
         extent,
         tile(),
         mip(),
@@ -43,8 +45,14 @@ ParameterTable make_table() {
     };
 }
 
+/// The picture as the lens gives it, and what was taken for its field of view, if that was not said outright.
+struct Observed {
+    Chart chart;
+    Attributes says = {};
+};
+
 struct LensRequest {
-    Chart observed;
+    Observed observed;
     LensMode mode;
     Size source, target;
     PlanOptions plan;
@@ -63,22 +71,25 @@ LensModel model_of(const ParameterValues& values, const SourceFacts& facts) {
     throw Error("lens is not given and the source does not say it: must be given, as in ptlens:b=-0.02");
 }
 
-/// The picture as the lens gives it.
-Chart observed_chart(const ParameterValues& values, const SourceFacts& facts, const Size& size) {
+Observed observed_picture(const ParameterValues& values, const SourceFacts& facts, const Size& size) {
     const LensModel model = model_of(values, facts);
     const bool fisheye = model.kind == LensModel::Kind::kb4;
     const bool by_focal_length = fisheye || model.kind == LensModel::Kind::brown;
     const Projection projection = fisheye ? Projection::fisheye : Projection::rectilinear;
+    const auto with = [&](double fov, Attributes says = {}) {
+        return Observed{Chart(projection, size.width, size.height, fov, PixelSpacing::edges, "", 1, model),
+                        std::move(says)};
+    };
     // Of the other models nothing depends on it.
-    double fov = Chart::default_fov(projection);
-    if (by_focal_length && values.given("fov"))
-        fov = values.number("fov");
-    else if (by_focal_length && facts.fov && facts.projection == projection)
-        fov = *facts.fov;
-    else if (by_focal_length)
-        throw Error("fov is not given and the source does not say it: must be given for lens=" +
-                    model.text());
-    return Chart(projection, size.width, size.height, fov, PixelSpacing::edges, "", 1, model);
+    if (!by_focal_length) return with(Chart::default_fov(projection));
+    if (values.given("fov")) return with(values.number("fov"));
+    if (facts.fov && facts.projection == projection) return with(*facts.fov);
+    if (!fisheye && facts.focal_length) {
+        const double fov = flat_field_of_view(size.width, *facts.focal_length);
+        return with(fov, {{"anamorph:fov",
+                           rounded_degrees(fov) + " degrees as " + facts.focal_length_said_by + " says"}});
+    }
+    throw Error("fov is not given and the source does not say it: must be given for lens=" + model.text());
 }
 
 LensRequest read_request(const ParameterValues& values, const SourceFacts& facts) {
@@ -86,8 +97,8 @@ LensRequest read_request(const ParameterValues& values, const SourceFacts& facts
     const auto mode = chosen<LensMode>(values, "mode");
     const bool all = values.text("size") == kAll;
     const Size asked = all ? source : rows::size_of(values, source);
-    const Chart observed = observed_chart(values, facts, mode == LensMode::distort ? asked : source);
-    const Size target = all ? LensMap::covering(observed, mode, source) : asked;
+    const Observed observed = observed_picture(values, facts, mode == LensMode::distort ? asked : source);
+    const Size target = all ? LensMap::covering(observed.chart, mode, source) : asked;
     if (target.width > kMaxSide || target.height > kMaxSide)
         throw Error("size", kAll,
                     "makes " + std::to_string(target.width) + "x" + std::to_string(target.height) +
@@ -105,7 +116,7 @@ LensRequest read_request(const ParameterValues& values, const SourceFacts& facts
 class LensPicture {
   public:
     LensPicture(const LensRequest& r, const Size& pixels) {
-        const LensMap map(r.observed, r.mode, r.target, pixels, r.source);
+        const LensMap map(r.observed.chart, r.mode, r.target, pixels, r.source);
         const Chart flat(Projection::rectilinear, r.source.width, r.source.height);
         m_picture.maps = {{std::make_shared<LensPlan>(map, r.plan), {{Border(flat, r.wrap)}}}};
         m_picture.filter = r.filter;
@@ -128,6 +139,9 @@ class LensPictures final : public Pictures {
         picture.size = *size;
         picture.pixels = pixels_of(m_request.output);
         picture.says = {{"anamorph:tol", m_request.plan.tol}};
+        picture.says.insert(picture.says.end(), m_request.observed.says.begin(),
+                            m_request.observed.says.end());
+        if (picture.pixels == PixelKind::color && m_request.filter == Filter::nearest) picture.moves = 0;
         picture.solve = [request = m_request, size = *size] {
             return std::make_unique<Solved<LensPicture>>(LensPicture(request, size));
         };

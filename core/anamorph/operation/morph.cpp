@@ -210,6 +210,9 @@ class Morphs final : public Pictures {
         picture.size = *size;
         picture.pixels = pixels_of(options.output);
         picture.says = {{"anamorph:tol", options.tol}};
+        // A film's frames are blends but for a few.
+        if (picture.pixels == PixelKind::color && m_request.frames == 1)
+            picture.moves = moved_picture(options, static_cast<int>(request.pictures.size()));
         if (options.shape_weights.empty()) picture.says.push_back({"anamorph:t", options.t});
         picture.solve = [request, options, features = m_features] {
             return std::make_unique<Solved<Morph>>(

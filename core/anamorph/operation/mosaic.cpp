@@ -173,6 +173,9 @@ class Mosaics final : public Pictures {
         picture.size = {request.target.width(), request.target.height()};
         picture.pixels = request.distortion ? PixelKind::value : pixels_of(request.options.output);
         picture.says = panorama_attributes(request.target, picture.pixels == PixelKind::color);
+        const bool single = request.circle || request.stack.circles == 1;
+        if (picture.pixels == PixelKind::color && request.options.filter == Filter::nearest && single)
+            picture.moves = 0;
         picture.says.push_back({"anamorph:tol", request.options.tol});
         picture.solve = [request] { return std::make_unique<SolvedMosaic>(request); };
         return picture;

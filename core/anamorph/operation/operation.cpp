@@ -40,6 +40,8 @@ std::string operation_key(const Operation& operation, const ParameterValues& val
         if (facts.projection) key += std::string(name_of(*facts.projection)) + " as " + facts.said_by;
         if (facts.fov) key += " fov=" + shortest(*facts.fov);
         if (facts.lens) key += " lens=" + facts.lens->text();
+        if (facts.focal_length)
+            key += " focal length=" + shortest(*facts.focal_length) + " by " + facts.focal_length_said_by;
         if (image.alpha >= 0) key += " alpha=" + std::to_string(image.alpha);
         key += "\n";
     }

@@ -35,6 +35,9 @@ struct SourceFacts {
     std::string said_by = {};
     std::optional<double> fov = {};
     std::optional<LensModel> lens = {};
+    /// The focal length of the camera it was taken with, in pixels, and what says so.
+    std::optional<double> focal_length = {};
+    std::string focal_length_said_by = {};
 };
 
 /// A source as its host has opened it.
@@ -80,6 +83,9 @@ struct PictureRequest {
     PixelKind pixels = PixelKind::color;
     std::vector<std::string> channels;  ///< of colour that no source says the channels of: as float
     Attributes says;                    ///< known beforehand: "anamorph:tol", the projection
+    /// The source whose pixels the picture shows as they are, moved and never computed with: a host may have it move what
+    /// the core has no numbers for.
+    std::optional<std::size_t> moves = {};
     std::function<std::unique_ptr<const SolvedPicture>()> solve;
 };
 

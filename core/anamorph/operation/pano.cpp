@@ -15,6 +15,8 @@ namespace anamorph {
 namespace {
 
 using rows::chosen;
+using rows::flat_field_of_view;
+using rows::rounded_degrees;
 
 /// "360 for equirectangular, cylindrical; 180 for fisheye": what each projection has by default.
 std::string default_fovs() {
@@ -54,10 +56,11 @@ ParameterTable make_table() {
                "projection of the source; by default what the image says of itself, else by its shape: 2:1 "
                "equirectangular, 1:6 cubemap (anamorph:from tells what was assumed)"),
         choice("to", "rectilinear", projection_name_list(), "projection of the picture"),
-        above(number("srcfov", "degrees", "", 0, 360,
-                     "horizontal field of view of the source, edge to edge, or of each of its faces; by "
-                     "default what the image says of itself, else " +
-                         default_fovs())),
+        above(number(
+            "srcfov", "degrees", "", 0, 360,
+            "horizontal field of view of the source, edge to edge, or of each of its faces; by "
+            "default what the image says of itself, of a rectilinear one also by Exif's focal length, else " +
+                default_fovs())),
         above(number("fov", "degrees", "", 0, 360,
                      "horizontal field of view of the picture, edge to edge, or of each of its faces: " +
                          limited_fovs() + "; defaults by projection as for srcfov")),
@@ -144,6 +147,27 @@ double field_of_view(const ParameterValues& values, std::string_view name, Proje
     return values.number(name);
 }
 
+struct TakenFieldOfView {
+    double degrees;
+    std::string reason;  ///< where it goes without saying, nothing
+};
+
+/// Of the source: what was asked for or what it says of itself, else by its camera's focal length, else the projection's.
+TakenFieldOfView source_field_of_view(const ParameterValues& values, const SourceFacts& facts,
+                                      Projection projection, PixelSpacing spacing) {
+    if (values.given("srcfov")) return {values.number("srcfov"), ""};
+    if (facts.fov && facts.projection == projection) return {*facts.fov, ""};
+    const auto with_reason = [](double degrees, const std::string& reason) {
+        return TakenFieldOfView{degrees, ", " + rounded_degrees(degrees) + " degrees " + reason};
+    };
+    const double standard = Chart::default_fov(projection);
+    if (projection != Projection::rectilinear) return {standard, ""};
+    if (!facts.focal_length) return with_reason(standard, "assumed");
+    return with_reason(
+        flat_field_of_view(facts.width - (spacing == PixelSpacing::centers ? 1 : 0), *facts.focal_length),
+        "as " + facts.focal_length_said_by + " says");
+}
+
 LensModel lens_of(const ParameterValues& values, const std::string& name) {
     return values.given(name) ? LensModel::parse(values.text(name), name) : LensModel{};
 }
@@ -194,12 +218,11 @@ ReprojectOptions read_reproject_options(const ParameterValues& values) {
 
 ReprojectRequest read_reproject_request(const ParameterValues& values, const SourceFacts& facts) {
     const auto [from, reason] = source_projection(values, facts);
-    const bool says_fov = !values.given("srcfov") && facts.fov && facts.projection == from;
+    const auto spacing = chosen<PixelSpacing>(values, "pixels");
+    const auto [fov, fov_reason] = source_field_of_view(values, facts, from, spacing);
     const bool says_lens = !values.given("srclens") && facts.lens && facts.projection == from;
     const LensModel srclens = says_lens ? *facts.lens : lens_of(values, "srclens");
-    const Chart source(from, facts.width, facts.height,
-                       says_fov ? *facts.fov : field_of_view(values, "srcfov", from),
-                       chosen<PixelSpacing>(values, "pixels"), "src", values.number("srcd"), srclens);
+    const Chart source(from, facts.width, facts.height, fov, spacing, "src", values.number("srcd"), srclens);
 
     ReprojectOptions options = read_reproject_options(values);
     const std::optional<BumpUnit> machine = machine_of(values);
@@ -209,7 +232,7 @@ ReprojectRequest read_reproject_request(const ParameterValues& values, const Sou
             read_orientation(values),
             {values.number("srcyaw"), values.number("srcpitch"), values.number("srcroll")},
             options,
-            reason,
+            reason + fov_reason,
             machine};
 }
 
@@ -259,6 +282,8 @@ class Panos final : public Pictures {
         picture.size = {request.target.width(), request.target.height()};
         picture.pixels = pixels_of(request.options.output);
         picture.says = panorama_attributes(request.target, picture.pixels == PixelKind::color);
+        if (picture.pixels == PixelKind::color && request.options.filter == Filter::nearest)
+            picture.moves = 0;
         picture.says.push_back({"anamorph:tol", request.options.tol});
         picture.says.push_back({"anamorph:from", std::string(name_of(request.source.projection())) + " (" +
                                                      request.source_reason + ")"});

@@ -20,7 +20,7 @@ struct ReprojectRequest {
     Orientation orientation;  ///< of the picture's camera
     Orientation held;         ///< of the source's
     ReprojectOptions options;
-    /// Why the source is taken for what it is: "given", "assumed from the 2:1 shape" ...
+    /// Why the source is taken for what it is: "given", "assumed from the 2:1 shape", "given, 90 degrees assumed" ...
     std::string source_reason;
     /// Of scheme hardware: what draws it, in place of options.scheme and tol.
     std::optional<BumpUnit> machine = {};
@@ -31,7 +31,8 @@ struct ReprojectRequest {
 /// Reads a table's values. Throws Error; it names `from` when the source does not say what it is.
 ///
 /// Without `from`: what the image says, else 2:1 is equirectangular and 1:6 a cubemap. Without `srcfov`: what
-/// the image says, where that is of the same projection, else the projection's default; so too `srclens`.
+/// the image says, where that is of the same projection, else, of a rectilinear one, what follows from its camera's
+/// focal length, else the projection's default; so too, but for the focal length, `srclens`.
 /// Without `size`: the source's pixels per degree at the centre of both, at most kMaxDefaultSize either way.
 /// With one number, the width; the height is then the projection's own: half the width for a full
 /// equirectangular image, 90 degrees for a cylindrical one, square faces for cubes, else the width.

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
+#include <numbers>
 
 #include "anamorph/render/source.h"
 
@@ -200,6 +202,16 @@ std::size_t chosen_index(const ParameterValues& values, std::string_view name) {
         std::find_if(table.begin(), table.end(), [&](const Parameter& p) { return p.name == name; });
     const auto found = std::find(row->choices.begin(), row->choices.end(), values.text(name));
     return static_cast<std::size_t>(found - row->choices.begin());
+}
+
+double flat_field_of_view(int width, double focal_length) {
+    return 2 * std::atan(width / (2 * focal_length)) * 180 / std::numbers::pi;
+}
+
+std::string rounded_degrees(double degrees) {
+    char text[32];
+    std::snprintf(text, sizeof text, "%.6g", degrees);
+    return text;
 }
 
 Output chosen_output(const ParameterValues& values) {

@@ -71,6 +71,12 @@ Enumeration chosen(const ParameterValues& values, std::string_view name) {
     return static_cast<Enumeration>(chosen_index(values, name));
 }
 
+/// The horizontal field of view, in degrees, of a flat picture so many pixels wide, of a camera of that focal length in
+/// pixels.
+double flat_field_of_view(int width, double focal_length);
+/// Degrees in six digits, for what a picture says of itself.
+std::string rounded_degrees(double degrees);
+
 /// Of `output`: colour for the operation's own words.
 Output chosen_output(const ParameterValues& values);
 

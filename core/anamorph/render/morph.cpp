@@ -40,6 +40,23 @@ bool only(const std::vector<double>& weights, std::size_t shape) {
     return true;
 }
 
+/// The weights of the pictures in what is drawn.
+std::vector<double> color_weights(const MorphOptions& options, int shapes) {
+    if (options.picture || options.output == Output::stmap) {
+        const int k = options.picture.value_or(0);
+        if (k < 0 || k >= shapes)
+            throw Error("picture", std::to_string(k),
+                        "must be an integer from 0 to " + std::to_string(shapes - 1));
+        std::vector<double> one(static_cast<std::size_t>(shapes), 0.0);
+        one[static_cast<std::size_t>(k)] = 1;
+        return one;
+    }
+    if (options.color_weights.empty() && !options.t_color)
+        return mixture(options.shape_weights, options.t, shapes, "shape_weights", "t");
+    return mixture(options.color_weights, options.t_color.value_or(options.t), shapes, "color_weights",
+                   "t_color");
+}
+
 std::vector<Size> sizes_of(const std::vector<Size>& pictures, int width, int height) {
     const auto check = [](const std::string& name, int w, int h) {
         if (!(w > 0 && h > 0 && w <= kMaxSide && h <= kMaxSide))
@@ -79,7 +96,7 @@ struct Morph::State {
               mixture(morph.shape_weights, morph.t, features->shapes(), "shape_weights", "t"),
               {morph.weight_a, morph.weight_b, morph.weight_p}),
           shape(mixture(morph.shape_weights, morph.t, features->shapes(), "shape_weights", "t")),
-          color(colors()) {
+          color(color_weights(morph, features->shapes())) {
         std::vector<int> drawn;
         for (int k = 0; k < map.shapes(); ++k)
             if (reads(k)) drawn.push_back(k);
@@ -104,24 +121,6 @@ struct Morph::State {
                 return k;
         }
         return {};
-    }
-
-    std::vector<double> only_picture(int k) const {
-        if (k < 0 || k >= map.shapes())
-            throw Error("picture", std::to_string(k),
-                        "must be an integer from 0 to " + std::to_string(map.shapes() - 1));
-        std::vector<double> one(static_cast<std::size_t>(map.shapes()), 0.0);
-        one[static_cast<std::size_t>(k)] = 1;
-        return one;
-    }
-
-    /// The weights of the pictures in what is drawn.
-    std::vector<double> colors() const {
-        if (options.picture || options.output == Output::stmap)
-            return only_picture(options.picture.value_or(0));
-        if (options.color_weights.empty() && !options.t_color) return shape;
-        return mixture(options.color_weights, options.t_color.value_or(options.t), map.shapes(),
-                       "color_weights", "t_color");
     }
 
     void make_maps(const std::vector<int>& drawn) {
@@ -159,6 +158,14 @@ void check_mixture(const std::string& name, const std::string& text, const std::
         throw Error(name, printable(text),
                     "must be " + std::to_string(shapes) + " numbers from " + shortest(-kMost) + " to " +
                         shortest(kMost) + ", one for each picture, with sum 1");
+}
+
+std::optional<std::size_t> moved_picture(const MorphOptions& options, int pictures) {
+    if (options.filter != Filter::nearest || options.lines) return {};
+    const std::vector<double> weights = color_weights(options, pictures);
+    for (std::size_t k = 0; k < weights.size(); ++k)
+        if (only(weights, k)) return k;
+    return {};
 }
 
 Morph::Morph(std::shared_ptr<const Features> features, const std::vector<Size>& pictures, int width,

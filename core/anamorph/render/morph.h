@@ -50,6 +50,9 @@ struct MorphOptions {
 void check_mixture(const std::string& name, const std::string& text, const std::vector<double>& weights,
                    int shapes);
 
+/// The one of so many pictures whose pixels a morph in colour shows as they are, moved and never blended; none, of others.
+std::optional<std::size_t> moved_picture(const MorphOptions& options, int pictures);
+
 /// One morph, ready to draw any box of the picture in any order from any number of threads: the bits of a
 /// pixel depend on nothing but the features, the options, the sizes and the pictures.
 ///
