@@ -145,6 +145,39 @@ TEST(StMapPlan, RefusesWhatIsNoNumberOrTooFar) {
     EXPECT_THROW(map_of(uv), Error);
 }
 
+/// Of plates of 20 and of 142 million pixels: more than 2^24, and wider than any other mesh.
+TEST(StMapPlan, TakesMapsOfLargePlates) {
+    const auto identity = [](const Size& size) {
+        std::vector<float> uv;
+        uv.reserve(2 * static_cast<std::size_t>(size.width) * static_cast<std::size_t>(size.height));
+        for (int y = 0; y < size.height; ++y)
+            for (int x = 0; x < size.width; ++x) {
+                uv.push_back(static_cast<float>((x + 0.5) / size.width));
+                uv.push_back(static_cast<float>((y + 0.5) / size.height));
+            }
+        return uv;
+    };
+    const Size plate{6144, 3240}, wide{16384, 40};
+    for (const Size& size : {plate, wide}) {
+        const WarpMap map = mesh_from_stmap(identity(size), size.width, size.height, "st.exr");
+        const MeshWarp warp(map, size.width, size.height, size.width, size.height, {});
+        EXPECT_EQ(warp.blocks().width(), size.width);
+        Point<double> p{};
+        int piece = 0;
+        ASSERT_TRUE(warp.blocks().exact(size.width - 0.5, size.height - 0.5, 0, p, piece));
+        EXPECT_NEAR(p.x, size.width - 0.5, 1e-3);
+        EXPECT_NEAR(p.y, size.height - 0.5, 1e-3);
+    }
+    // Of another size than its picture it is a mesh of all its pixels, as it is where it pushes.
+    const WarpMap map = mesh_from_stmap(identity(wide), wide.width, wide.height, "st.exr");
+    const MeshWarp half(map, wide.width, wide.height, wide.width / 2, wide.height / 2, {});
+    Point<double> p{};
+    int piece = 0;
+    ASSERT_TRUE(half.blocks().exact(100.5, 7.25, 0, p, piece));
+    EXPECT_NEAR(p.x, 201, 1e-2);
+    EXPECT_NEAR(p.y, 14.5, 1e-2);
+}
+
 TEST(StMapPlan, TheSameBitsOnAllInstructionSets) {
     std::vector<std::vector<double>> all;
     test::on_every_instruction_set([&] {

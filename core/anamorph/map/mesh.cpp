@@ -8,6 +8,7 @@
 #include <set>
 
 #include "anamorph/error.h"
+#include "anamorph/map/mesh_file.h"
 
 namespace anamorph {
 namespace {
@@ -288,13 +289,16 @@ class Mesh::Refiner {
 
 Mesh::Mesh(const ControlMesh& mesh, const Size& from, const Size& to, double amount, const std::string& name)
     : m_from(from), m_to(to) {
-    check_count(name, "columns", mesh.columns, 1, ControlMesh::kMaxCells);
-    check_count(name, "rows", mesh.rows, 1, ControlMesh::kMaxCells);
+    const bool is_stmap = mesh.width > 0 && mesh.levels.empty();
+    const int most_cells = is_stmap ? kMostStMapSide : ControlMesh::kMaxCells;
+    check_count(name, "columns", mesh.columns, 1, most_cells);
+    check_count(name, "rows", mesh.rows, 1, most_cells);
     const int across = mesh.columns + 1, down = mesh.rows + 1;
     if (mesh.vertex_count() != static_cast<std::size_t>(across) * static_cast<std::size_t>(down))
         throw Error(name + ": vertices", std::to_string(mesh.vertex_count()) + " positions",
                     "must be " + std::to_string(across) + " x " + std::to_string(down));
-    check_count(name, "vertices", static_cast<double>(mesh.vertex_count()), 4, ControlMesh::kMaxVertices);
+    check_count(name, "vertices", static_cast<double>(mesh.vertex_count()), 4,
+                is_stmap ? kMostStMapVertices : ControlMesh::kMaxVertices);
     check_count(name, "levels", static_cast<double>(mesh.levels.size()), 0, ControlMesh::kMaxLevels);
     if (!std::isfinite(amount)) throw Error("amount", text_of(amount), "must be a finite number");
     m_scale = {static_cast<double>(to.width) / from.width, static_cast<double>(to.height) / from.height};

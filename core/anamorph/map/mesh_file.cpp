@@ -224,12 +224,12 @@ ControlMesh stmap_lines(int width, int height, const std::vector<int>& columns, 
     mesh.height = height;
     mesh.columns = static_cast<int>(columns.size()) - 1;
     mesh.rows = static_cast<int>(rows.size()) - 1;
-    if (mesh.columns > ControlMesh::kMaxCells || mesh.rows > ControlMesh::kMaxCells ||
-        columns.size() * rows.size() > ControlMesh::kMaxVertices)
+    constexpr std::size_t kMost = kMostStMapVertices, kMostSide = kMostStMapSide;
+    if (columns.size() > kMostSide || rows.size() > kMostSide || columns.size() * rows.size() > kMost)
         throw Error(excerpt(name),
                     std::to_string(columns.size()) + "x" + std::to_string(rows.size()) + " vertices",
-                    "must be at most " + std::to_string(ControlMesh::kMaxVertices) + ", with at most " +
-                        std::to_string(ControlMesh::kMaxCells) + " cells either way: take a larger step");
+                    "must be at most " + std::to_string(kMost) + ", at most " + std::to_string(kMostSide) +
+                        " either way: take a larger step");
     for (const int x : columns) mesh.x_lines.push_back((x + 0.5) / width);
     for (const int y : rows) mesh.y_lines.push_back((y + 0.5) / height);
     return mesh;

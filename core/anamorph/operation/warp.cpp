@@ -126,14 +126,9 @@ WarpMap read_stmap(const std::string& name, int step, const SideFileReader& read
     const Size size = image->size();
     const std::string shape = std::to_string(size.width) + "x" + std::to_string(size.height);
     if (image->channels() < 2) throw Error(what + " has one channel: must have two, u and v");
-    constexpr std::int64_t kMostPixels = std::int64_t{1} << 28;
-    if (std::int64_t{size.width} * size.height > kMostPixels)
-        throw Error(what + " has " + shape + " pixels: must have at most " + std::to_string(kMostPixels));
-    const auto vertices = [&](int pixels) { return std::int64_t{(pixels - 1) / step} + 2; };
-    if (vertices(size.width) * vertices(size.height) > ControlMesh::kMaxVertices)
-        throw Error("step", std::to_string(step),
-                    what + " of " + shape + " makes too many vertices: must make at most " +
-                        std::to_string(ControlMesh::kMaxVertices));
+    if (std::int64_t{size.width} * size.height > kMostStMapVertices)
+        throw Error(what + " has " + shape + " pixels: must have at most " +
+                    std::to_string(kMostStMapVertices));
     std::vector<float> uv = image->read(2);
     if (step == 1) return mesh_from_stmap(std::move(uv), size.width, size.height, name);
     return mesh_from_stmap(uv.data(), size.width, size.height, 2, std::ptrdiff_t{2} * size.width, step, name);
@@ -206,6 +201,9 @@ class Warps final : public Pictures {
         picture.size = *size;
         picture.pixels = request.options.folds ? PixelKind::value : pixels_of(request.options.output);
         picture.says = {{"anamorph:tol", request.options.tol}};
+        if (picture.pixels == PixelKind::color && request.options.filter == Filter::nearest &&
+            !request.program)
+            picture.moves = 0;
         // Positions in pixels are pixels of the finest level.
         picture.solve = [request, level, map = m_map,
                          whole = m_request]() -> std::unique_ptr<const SolvedPicture> {
