@@ -49,7 +49,7 @@ class Machine(unittest.TestCase):
         status, out, error = run("assemble", "-", text="ps.2.0\ndcl t0.rg ; where\nmov r0, t0.x\nmov oC0, r0\n")
         self.assertEqual((status, error), (0, ""))
         self.assertEqual(out.decode(), "ps_2_0\ndcl t0.xy\nmov r0, t0.x\nmov oC0, r0\n"
-                         "; 2 of 64 arithmetic instructions, 0 of 32 texture instructions\n")
+                         "; 2 of 64 slots of arithmetic instructions, 0 of 32 texture instructions\n")
         self.assertEqual(run("assemble", "-", text=out.decode())[1], out)
 
     def test_runs_for_every_pixel(self):

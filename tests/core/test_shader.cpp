@@ -32,13 +32,14 @@ TEST(ShaderProgram, ErrorsNameTheLine) {
     EXPECT_EQ(message_of_shader("mov oC0, c0"), "");
     const std::string last = "\nmov oC0, r0";
     expect("frob r0, c0" + last,
-           "line 2: \"frob\": no such instruction; there are texld, mov, add, mul, mad, dp3, dp4, rcp, rsq, "
-           "min, "
-           "max, cmp");
+           "line 2: \"frob\": no such instruction; there are texld, texldp, texldb, texkill, nop, mov, add, "
+           "sub, mul, mad, lrp, abs, frc, dp2add, dp3, dp4, crs, nrm, rcp, rsq, exp, log, pow, sincos, min, "
+           "max, "
+           "cmp, m3x2, m3x3, m3x4, m4x3, m4x4");
     expect("mov r12, c0" + last, "line 2: \"r12\": must be r0 to r11");
     expect("mov r0, c32" + last, "line 2: \"c32\": must be c0 to c31");
     expect("mov r0, x0" + last,
-           "line 2: \"x0\": no such register; there are r, c, t, v, s and oC with a number");
+           "line 2: \"x0\": no such register; there are r, c, t, v, s and oC with a number, and oDepth");
     expect("mov r0.yx, c0" + last, "line 2: \"r0.yx\": components of a mask must be in the order x, y, z, w");
     expect("mov r0, c0.xyyz" + last,
            "line 2: \"c0.xyyz\": a swizzle must be one component, or xyzw, yzxw, zxyw or wzyx");
@@ -60,7 +61,7 @@ TEST(ShaderProgram, ErrorsNameTheLine) {
            "line 2: \"mov_sat_sat\": must have _sat and _pp at most behind it, each once");
     expect("add oC0, c0, c1", "line 2: \"oC0\": must be written by mov, all of it");
     expect("mov c0, c1" + last,
-           "line 2: \"c0\": must be a register that can be written, r0 to r11 or oC0 to oC3");
+           "line 2: \"c0\": must be a register that can be written, r0 to r11, oC0 to oC3 or oDepth");
     const char* const unwritten = "is the last one, and all of oC0 has not been written: must be by then";
     expect("mov r0, c0", std::string("line 2: ") + unwritten);
     expect("mov r0, c0\n\n; the end\n", std::string("line 4: ") + unwritten);
@@ -88,14 +89,133 @@ TEST(ShaderProgram, HasTheLimitsOfTheProfile) {
     const std::string declared = "dcl t0\ndcl_2d s0\n";
     EXPECT_EQ(message_of_shader(repeated("mov r0, c0", 63) + "mov oC0, r0"), "");
     EXPECT_EQ(message_of_shader(repeated("mov r0, c0", 64) + "mov oC0, r0"),
-              "warp.ps: line 66: is one instruction too many: a program can have 64 arithmetic instructions");
-    EXPECT_EQ(message_of_shader(declared + repeated("texld r0, t0, s0", 32) + "mov oC0, r0"), "");
-    EXPECT_EQ(message_of_shader(declared + repeated("texld r0, t0, s0", 33) + "mov oC0, r0"),
+              "warp.ps: line 66: is one instruction too many: a program can have 64 slots of arithmetic "
+              "instructions");
+    std::string reads;
+    for (int i = 0; i < 32; ++i) reads += "texld r" + std::to_string(i % 8) + ", t0, s0\n";
+    EXPECT_EQ(message_of_shader(declared + reads + "mov oC0, r0"), "");
+    EXPECT_EQ(message_of_shader(declared + reads + "texkill t0\nmov oC0, r0"),
               "warp.ps: line 36: is one instruction too many: a program can have 32 texture instructions");
     const std::string first = declared + "texld r0, t0, s0\n";
     EXPECT_EQ(message_of_shader(first + repeated("texld r0, r0, s0", 3) + "mov oC0, r0"), "");
+    const std::string fourth =
+        ": is a dependent read of order 4: must be of order 3 at most (one more than those whose registers "
+        "it "
+        "reads or writes again)";
     EXPECT_EQ(message_of_shader(first + repeated("texld r0, r0, s0", 4) + "mov oC0, r0"),
-              "warp.ps: line 8: a texture can be read by what was read of textures 3 times in a row at most");
+              "warp.ps: line 8" + fourth);
+    // Coordinates that were computed, and a register that is written again.
+    EXPECT_EQ(message_of_shader(declared + "mov r0, t0\n" + repeated("texld r0, r0, s0", 4) + "mov oC0, r0"),
+              "warp.ps: line 8" + fourth);
+    EXPECT_EQ(message_of_shader(first + repeated("texld r0, t0, s0", 4) + "mov oC0, r0"),
+              "warp.ps: line 8" + fourth);
+}
+
+/// Slots as the table "ps_2_0 Instructions" of Microsoft's reference has them.
+TEST(ShaderProgram, CountsTheSlotsOfTheProfile) {
+    const std::string ahead =
+        "ps_2_0\ndcl t0\ndcl_2d s0\ndef c30, -1.5500992e-6, -2.1701389e-5, 0.0026041667, 0.00026041668\n"
+        "def c31, -0.020833334, -0.125, 1, 0.5\nmov r1, t0\n";
+    struct Case {
+        const char* line;
+        int arithmetic, texture;
+    };
+    for (const Case& which : std::initializer_list<Case>{{"abs r0, r1", 1, 0},
+                                                         {"add r0, r1, c0", 1, 0},
+                                                         {"cmp r0, r1, c0, c1", 1, 0},
+                                                         {"crs r0.xyz, r1, c0", 2, 0},
+                                                         {"dp2add r0, r1, c0, c1.x", 2, 0},
+                                                         {"dp3 r0, r1, c0", 1, 0},
+                                                         {"dp4 r0, r1, c0", 1, 0},
+                                                         {"exp r0, r1.x", 1, 0},
+                                                         {"frc r0, r1", 1, 0},
+                                                         {"log r0, r1.x", 1, 0},
+                                                         {"lrp r0, r1, c0, c1", 2, 0},
+                                                         {"m3x2 r0.xy, r1, c0", 2, 0},
+                                                         {"m3x3 r0.xyz, r1, c0", 3, 0},
+                                                         {"m3x4 r0, r1, c0", 4, 0},
+                                                         {"m4x3 r0.xyz, r1, c0", 3, 0},
+                                                         {"m4x4 r0, r1, c0", 4, 0},
+                                                         {"mad r0, r1, c0, c1", 1, 0},
+                                                         {"max r0, r1, c0", 1, 0},
+                                                         {"min r0, r1, c0", 1, 0},
+                                                         {"mov r0, r1", 1, 0},
+                                                         {"mul r0, r1, c0", 1, 0},
+                                                         {"nop", 1, 0},
+                                                         {"nrm r0, r1", 3, 0},
+                                                         {"pow r0, r1.x, c0.y", 3, 0},
+                                                         {"rcp r0, r1.x", 1, 0},
+                                                         {"rsq r0, r1.x", 1, 0},
+                                                         {"sincos r0.xy, r1.x, c30, c31", 8, 0},
+                                                         {"sub r0, r1, c0", 1, 0},
+                                                         {"texkill r1", 0, 1},
+                                                         {"texld r0, r1, s0", 0, 1},
+                                                         {"texldb r0, r1, s0", 0, 1},
+                                                         {"texldp r0, r1, s0", 0, 1},
+                                                         {"mov oDepth, r1.x", 1, 0}}) {
+        const ShaderProgram program = assemble_shader(ahead + which.line + "\nmov oC0, r1\n", "slots");
+        EXPECT_EQ(program.arithmetic - 2, which.arithmetic) << which.line;
+        EXPECT_EQ(program.texture, which.texture) << which.line;
+        EXPECT_EQ(shader_listing(assemble_shader(shader_listing(program), "again")), shader_listing(program));
+    }
+}
+
+/// What the reference's pages of single instructions and registers refuse.
+TEST(ShaderProgram, RefusesWhatTheProfileDoes) {
+    const auto refused = [](const std::string& body, const std::string& why) {
+        const std::string message = message_of_shader(
+            "dcl t0\ndcl v0\ndcl v1\ndcl_2d s0\nmov r1, t0\nmov r2, r1\n" + body + "\nmov oC0, r1\n");
+        EXPECT_NE(message.find(why), std::string::npos) << body << ": " << message;
+    };
+    refused("add r0, v0, v1", "an instruction can read one of v0 and v1 at most");
+    refused("mad r0, v0, r1, -v1.x", "an instruction can read one of v0 and v1 at most");
+    EXPECT_EQ(message_of_shader("dcl v0\nadd r0, v0, v0\nmov oC0, r0"), "");
+    const char* const plain = "must be without swizzle and minus";
+    refused("mov oC0, -r1", plain);
+    refused("mov oC0, r1.wzyx", plain);
+    refused("mov_pp oC0, r1", "must be written by mov, all of it");
+    refused("mov oC0, r1", "\"oC0\": is written twice: must be written once");
+    refused("mov oC2, r1", "oC2 has been written and oC1 has not");
+    refused("mov oDepth, r1", "must be one component without a minus");
+    refused("mov oDepth, -r1.x", "must be one component without a minus");
+    refused("mov oDepth, r1.x\nmov oDepth, r1.x", "\"oDepth\": is written twice");
+    refused("add oDepth, r1.x, r1.x", "must be written by mov");
+    refused("mov r0, oDepth", "cannot be read");
+    const char* const other = "must be another register than the one that is written";
+    refused("nrm r1, r1", other);
+    refused("pow r1, r2.x, r1.x", other);
+    refused("pow r0, r1, r2.x", "must be one component");
+    refused("exp r0, r1", "must be one component");
+    refused("log r0, r1", "must be one component");
+    refused("dp2add r0, r1, r2, c0", "must be one component");
+    refused("crs r1.xyz, r1, r2", other);
+    refused("crs r0, r1, r2", "what crs writes must be of x, y and z alone");
+    refused("crs r0.xyz, r1.yzxw, r2", "must be without swizzle");
+    refused("frc_sat r0, r1", "cannot have _sat");
+    refused("texld_sat r0, t0, s0", "cannot have _sat");
+    refused("sincos r0, r1.x, c0, c1", "what sincos writes must be .x, .y or .xy");
+    refused("sincos r0.xy, r1, c0, c1", "must be one component");
+    refused("sincos r0.xy, r1.x, c0, c0", "must be one of two different constants");
+    refused("sincos r0.xy, r1.x, c0, r2", "must be one of two different constants");
+    refused("sincos r2.xy, r1.x, c0, c1\nmov r3.z, r2", "\"r2.z\": is read before it is written");
+    refused("sincos r2.x, r1.x, c0, c1\nmov r3.y, r2", "\"r2.y\": is read before it is written");
+    EXPECT_NE(
+        message_of_shader("dcl t0\ndef c0, 1, 2, 3, 4\nsincos r0.xy, t0.x, c0, c1\nmov oC0, t0")
+            .find("must be -1.5500992e-06, -2.1701389e-05, 0.0026041667, 0.00026041668 (D3DSINCOSCONST1)"),
+        std::string::npos);
+    refused("m3x2 r0.xyz, r1, c0", "what m3x2 writes must be the components .xy");
+    refused("m4x4 r0.x, r1, c0", "what m4x4 writes must be all of a register");
+    refused("m3x3 r0.xyz, r1, c30", "must be the first of 3 registers");
+    refused("m3x3 r1.xyz, r1, c0", other);
+    refused("m3x2 r2.xy, r1, r1", other);
+    refused("m3x2 r0.xy, r1, -c0", plain);
+    refused("texldp r0, v0, s0", "texldp must have a register r or t and a texture");
+    refused("texldp r0.xy, t0, s0", "must be all of a register");
+    refused("texkill c0", "texkill must have a register r or t");
+    refused("texkill r1.x", "texkill must have a register r or t, without components");
+    refused("mov r3.xy, r1\ntexldp r0, r3, s0", "\"r3.w\": is read before it is written");
+    refused("mov r3.xy, r1\ntexkill r3", "\"r3.z\": is read before it is written");
+    refused("nop r0", "must have 0 operands, and has 1");
 }
 
 TEST(ShaderProgram, ListingsAssembleToTheSame) {
@@ -177,6 +297,44 @@ TEST(ShaderMachine, InstructionsComputeAsTheProcessorDoes) {
         expect("min r0, c0, c1", [&](std::size_t i) { return std::min(a[i], b[i]); });
         expect("max r0, c0, c1", [&](std::size_t i) { return std::max(a[i], b[i]); });
         expect("cmp r0, r2, c0, c1", [&](std::size_t i) { return c[i] >= 0 ? a[i] : b[i]; });
+        expect("sub r0, c0, c1", [&](std::size_t i) { return a[i] - b[i]; });
+        expect("abs r0, c1", [&](std::size_t i) { return std::fabs(b[i]); });
+        expect("frc r0, c1", [&](std::size_t i) { return b[i] - std::floor(b[i]); });
+        expect("lrp r0, c0, c1, r2", [&](std::size_t i) {
+            const volatile float product = a[i] * (b[i] - c[i]);
+            return product + c[i];
+        });
+        expect("dp2add r0, c0, c1, r2.w", [&](std::size_t) {
+            const volatile float x = a[0] * b[0], y = a[1] * b[1], sum = x + y;
+            return sum + c[3];
+        });
+        expect("crs r0.xyz, c0, c1", [&](std::size_t i) {
+            const std::size_t j = (i + 1) % 3, k = (i + 2) % 3;
+            const volatile float first = a[j] * b[k], second = a[k] * b[j];
+            return i < 3 ? first - second : a[3];
+        });
+        expect("nrm r0, c1", [&](std::size_t i) {
+            const volatile float x = b[0] * b[0], y = b[1] * b[1], z = b[2] * b[2], xy = x + y;
+            return b[i] * (1 / std::sqrt(xy + z));
+        });
+        expect("exp r0, c1.x", [&](std::size_t) { return float(std::exp2(double(b[0]))); });
+        expect("log r0, c1.x", [&](std::size_t) { return float(std::log2(std::fabs(double(b[0])))); });
+        expect("pow r0, c0.y, c1.z", [&](std::size_t) {
+            const volatile float logarithm = float(std::log2(std::fabs(double(a[1]))));
+            const volatile float product = b[2] * logarithm;
+            return float(std::exp2(double(product)));
+        });
+        // Rows c0 and c1.
+        expect("m3x2 r0.xy, -r2.yzxw, c0", [&](std::size_t i) {
+            if (i > 1) return a[i];
+            const auto& row = i == 0 ? a : b;
+            volatile float sum = -c[1] * row[0];
+            for (std::size_t k = 1; k < 3; ++k) {
+                const volatile float product = -c[(k + 1) % 3] * row[k];
+                sum = sum + product;
+            }
+            return float(sum);
+        });
         expect("mov_sat r0, c1", [&](std::size_t i) { return std::clamp(b[i], 0.0f, 1.0f); });
         expect("mov_pp r0, c1", [&](std::size_t i) { return float_from_half(half_from_float(b[i])); });
         expect("add r0.yw, c0, c1.yzxw", [&](std::size_t i) {
@@ -190,6 +348,63 @@ TEST(ShaderMachine, InstructionsComputeAsTheProcessorDoes) {
     EXPECT_EQ(computed("mul r0, c0, c0", {huge, huge, huge})[0], HUGE_VALF);
     EXPECT_EQ(computed("mov_sat r0, c0", {huge, huge, huge}), (std::array<float, 4>{1, 0, 0, 0}));
     EXPECT_EQ(computed("rcp r0, c0.z", {huge, huge, huge})[0], HUGE_VALF);
+    // What the reference says of 0: FLT_MAX in place of infinities.
+    const std::array<float, 4> zero{};
+    constexpr float kMost = std::numeric_limits<float>::max();
+    EXPECT_EQ(computed("log r0, c0.x", {zero, zero, zero})[0], -kMost);
+    EXPECT_EQ(computed("nrm r0, c0", {{{0, -0.0f, 0, 1}, zero, zero}}),
+              (std::array<float, 4>{0, -0.0f, 0, kMost}));
+    EXPECT_EQ(computed("pow r0, c0.x, c0.x", {zero, zero, zero})[0], 1);
+}
+
+/// The reference of Direct3D states 0.002 as the largest error of sin and cos from -pi to pi.
+TEST(ShaderMachine, SincosIsWithinWhatTheReferenceStates) {
+    const ShaderProgram program = assemble_shader(
+        "ps_2_0\ndcl t0\ndef c4, -1.5500992e-6, -2.1701389e-5, 0.0026041667, 0.00026041668\n"
+        "def c5, -0.020833334, -0.125, 1, 0.5\nmov r0, t0\nsincos r0.xy, -t0.y, c4, c5\nmov r0.z, t0\n"
+        "mov oC0, r0\n",
+        "sincos");
+    ShaderInputs<Float32> inputs(program);
+    double most = 0;
+    for (int i = -1000; i <= 1000; ++i) {
+        const double angle = i * 3.14159265358979 / 1000;
+        inputs.coordinates[0] = {Float32(7.0), Float32(-angle), Float32(8.0), Float32(9.0)};
+        const auto got = ShaderMachine<Float32>(program, inputs).run([](int, Float32, Float32) {
+            return ShaderVector<Float32>{};
+        });
+        most = std::max(
+            {most, std::fabs(got[0].value - std::cos(angle)), std::fabs(got[1].value - std::sin(angle))});
+        EXPECT_EQ(got[3].value, 9);
+    }
+    EXPECT_LT(most, 0.002);
+    EXPECT_GT(most, 0.0015);  // the series are seen
+}
+
+TEST(ShaderMachine, TexturesAreReadProjectedAndPixelsKilled) {
+    const auto run = [](const std::string& line, const std::array<double, 4>& at, bool& killed) {
+        const ShaderProgram program =
+            assemble_shader("ps_2_0\ndcl t0\ndcl_2d s2\nmov r0, t0\n" + line + "\nmov oC0, r0\n", "one");
+        ShaderInputs<Float32> inputs(program);
+        for (std::size_t i = 0; i < 4; ++i) inputs.coordinates[0][i] = Float32(at[i]);
+        ShaderMachine<Float32> machine(program, inputs);
+        const auto result = machine.run([](int number, Float32 u, Float32 v) {
+            return ShaderVector<Float32>{u, v, Float32(number), Float32(1.0)};
+        });
+        killed = machine.killed();
+        return std::array<double, 4>{result[0].value, result[1].value, result[2].value, result[3].value};
+    };
+    bool killed = true;
+    EXPECT_EQ(run("texldp r0, t0, s2", {1, 3, 5, 4}, killed), (std::array<double, 4>{0.25, 0.75, 2, 1}));
+    EXPECT_FALSE(killed);
+    EXPECT_EQ(run("texldb r0, t0, s2", {0.5, 0.25, 0, 3}, killed), (std::array<double, 4>{0.5, 0.25, 2, 1}));
+    EXPECT_EQ(run("texkill t0", {0, -0.0, 2, -1}, killed), (std::array<double, 4>{0, 0, 2, -1}));
+    EXPECT_FALSE(killed);
+    for (std::size_t i = 0; i < 3; ++i) {
+        std::array<double, 4> at{1, 1, 1, 1};
+        at[i] = -1e-30;
+        EXPECT_EQ(run("texkill r0", at, killed), (std::array<double, 4>{}));
+        EXPECT_TRUE(killed);
+    }
 }
 
 /// Our own program against the mesh's formula: products from tables of n texels are off by (|f_ss| + |f_tt|) / (8 n^2)
@@ -252,6 +467,28 @@ TEST(ShadedWarp, RefusesWhatItCannotRepresent) {
     } catch (const Error& e) {
         EXPECT_STREQ(e.what(),
                      "machine: a source of 64x48 does not fit its textures: must be at most 32 either way");
+    }
+}
+
+TEST(ShadedWarp, KilledPixelsHaveNoPoint) {
+    const Size size{64, 48};
+    const ShadedWarp warp(
+        Mesh(test::identity_mesh(size, 2, 2), size, size, 1), ShaderUnit(),
+        assemble_shader("ps_2_0\ndcl t0\ndcl_2d s0\ndef c20, -0.5, 0, 0, 0\nadd r1, t0, c20\n"
+                        "texkill r1\ntexldp r0, t0, s0\nmov oC0, r0\n",
+                        "half", kWarpSlots));
+    const auto white = [](const Point<double>&) { return std::array<double, 4>{1, 1, 1, 1}; };
+    for (const Block& block : warp.blocks(0)) {
+        std::vector<double> x(64), y(64);
+        std::vector<std::int32_t> piece(64);
+        for (int row = 0; row < block.box.height(); ++row) {
+            warp.exact_rows(block, row, row + 1, {x.data(), y.data(), piece.data(), 64});
+            for (int i = 0; i < block.box.width(); ++i) {
+                const int px = block.box.x0 + i;
+                EXPECT_EQ(piece[std::size_t(i)], px < 32 ? -1 : 0);
+                EXPECT_EQ(warp.color(px, block.box.y0 + row, white)[0], px < 32 ? 0 : 1);
+            }
+        }
     }
 }
 

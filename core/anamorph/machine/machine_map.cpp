@@ -87,6 +87,7 @@ std::int64_t MachineMap::compute(const Box& box, int piece, Region& region) cons
             if (!m_exact->exact(x + 0.5, y + 0.5, piece, exact, source_piece)) continue;
             const UnitCoordinates found = coordinates(x, y, piece);
             saturated += found.beyond;
+            if (!found.seen) continue;
             pixel.used = source_point(found);
             pixel.off = distance(pixel.used, exact);
         }

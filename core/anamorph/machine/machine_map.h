@@ -17,7 +17,8 @@ namespace anamorph {
 /// Texture coordinates as a unit computed them: from 0 to 1 over the source image, u right, v down.
 struct UnitCoordinates {
     Point<double> at;
-    bool beyond;  ///< a number was beyond the range of its format
+    bool beyond;       ///< a number was beyond the range of its format
+    bool seen = true;  ///< the pixel is drawn
 };
 
 /// Blocks whose source points are a machine's. A block's bound is the largest distance of its pixels' source points from the

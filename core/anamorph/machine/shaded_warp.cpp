@@ -37,10 +37,9 @@ mov oC0, r0
 )";
 
 bool reads_picture_once(const ShaderProgram& program) {
-    return std::count_if(program.instructions.begin(), program.instructions.end(),
-                         [](const ShaderInstruction& i) {
-                             return i.opcode == ShaderOpcode::texld && i.sources[1].number == 0;
-                         }) == 1;
+    return std::count_if(
+               program.instructions.begin(), program.instructions.end(),
+               [](const ShaderInstruction& i) { return samples(i.opcode) && i.sources[1].number == 0; }) == 1;
 }
 
 namespace {
@@ -119,24 +118,27 @@ ShaderInputs<T> ShadedWarp::inputs(double x, double y) const {
 
 /// Runs the program for a pixel. read(u, v) -> ShaderVector<T> reads the picture.
 template <class T, class Read>
-ShaderVector<T> ShadedWarp::run(int x, int y, const Read& read) const {
+ShadedWarp::Drawn<T> ShadedWarp::run(int x, int y, const Read& read) const {
     const ShaderInputs<T> given = inputs<T>(x + 0.5, y + 0.5);
-    return ShaderMachine<T>(m_program, given).run([&](int number, const T& u, const T& v) {
+    ShaderMachine<T> machine(m_program, given);
+    const ShaderVector<T> color = machine.run([&](int number, const T& u, const T& v) {
         if (number == 0) return read(u, v);
         const double size = m_unit.table_size;
         return m_products[static_cast<std::size_t>(number - 1)].template read<T>(u.value * size,
                                                                                  v.value * size);
     });
+    return {color, machine.killed()};
 }
 
 UnitCoordinates ShadedWarp::coordinates(int x, int y, int) const {
     return with_format(m_unit.arithmetic, [&](auto number) {
         using T = decltype(number);
         UnitCoordinates found{};
-        run<T>(x, y, [&](const T& u, const T& v) {
+        const auto drawn = run<T>(x, y, [&](const T& u, const T& v) {
             found = {{u.value, v.value}, u.beyond || v.beyond};
             return ShaderVector<T>{};
         });
+        found.seen = !drawn.killed;
         return found;
     });
 }
@@ -144,10 +146,11 @@ UnitCoordinates ShadedWarp::coordinates(int x, int y, int) const {
 std::array<double, 4> ShadedWarp::color(int x, int y, const ReadPicture& read) const {
     return with_format(m_unit.arithmetic, [&](auto number) {
         using T = decltype(number);
-        const ShaderVector<T> made = run<T>(x, y, [&](const T& u, const T& v) {
+        const auto drawn = run<T>(x, y, [&](const T& u, const T& v) {
             const std::array<double, 4> at = read(source_point({{u.value, v.value}, false}));
             return ShaderVector<T>{T(at[0]), T(at[1]), T(at[2]), T(at[3])};
         });
+        const ShaderVector<T>& made = drawn.color;
         return std::array<double, 4>{made[0].value, made[1].value, made[2].value, made[3].value};
     });
 }

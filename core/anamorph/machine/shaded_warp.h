@@ -38,7 +38,7 @@ struct ShaderUnit {
 /// the picture that is drawn. All other constants are 0 or the program's own, which go before these.
 inline constexpr ShaderSlots kWarpSlots{5, 2, 0};
 
-/// Does a program of a warp read the picture once? Only then is it a map, to where it does.
+/// Does a program of a warp read the picture once? Only then is it a map, to where it does; pixels that it kills have no point.
 bool reads_picture_once(const ShaderProgram& program);
 
 /// Our program. The picture is read last.
@@ -56,7 +56,7 @@ class ShadedWarp final : public MachineMap {
     const MeshPlan& exact_plan() const { return *m_plan; }
     /// The picture's four components at a point of the source, in its pixels.
     using ReadPicture = std::function<std::array<double, 4>(const Point<double>& at)>;
-    /// What the program makes of the pixel whose left upper corner is (x, y): oC0.
+    /// What the program makes of the pixel whose left upper corner is (x, y): oC0; of one that it kills 0.
     std::array<double, 4> color(int x, int y, const ReadPicture& read) const;
 
   protected:
@@ -67,8 +67,14 @@ class ShadedWarp final : public MachineMap {
     ShadedWarp(std::shared_ptr<const MeshPlan> plan, const ShaderUnit& unit, ShaderProgram program);
     template <class T>
     ShaderInputs<T> inputs(double x, double y) const;
+    /// What a program leaves of a pixel.
+    template <class T>
+    struct Drawn {
+        ShaderVector<T> color;
+        bool killed;
+    };
     template <class T, class Read>
-    ShaderVector<T> run(int x, int y, const Read& read) const;
+    Drawn<T> run(int x, int y, const Read& read) const;
 
     std::shared_ptr<const MeshPlan> m_plan;
     ShaderUnit m_unit;

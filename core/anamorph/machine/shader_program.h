@@ -1,19 +1,26 @@
 // SPDX-License-Identifier: Apache-2.0
-// Programs of pixel shader 2.0, as far as Kim 2003 (5.4 and appendix A) needs the profile: the assembler.
+// Programs of pixel shader 2.0: the assembler of the profile, as Microsoft's reference of Direct3D 9 describes it
+// ("ps_2_0 Instructions", "ps_2_0 Registers").
 //
 //   ps_2_0
 //   dcl t0.xy              a coordinate that is interpolated over the triangle: t0 to t7; colors v0, v1
-//   dcl_2d s0              a texture: s0 to s15
+//   dcl_2d s0              a texture: s0 to s15; there are no cubes and volumes
 //   def c0, 1, 2, 3, 4     a constant: c0 to c31
 //   texld r0, t0, s0       reads a texture
 //   mad_sat r0.xy, -r1, c0.x, r2.wzyx
 //
-// Instructions: texld; mov, add, mul, mad, dp3, dp4, rcp, rsq, min, max, cmp, with _sat (to 0..1) and _pp (16 bits), a mask
-// behind the destination, and sources with a minus and one of the swizzles of the profile: a single component, or xyzw,
-// yzxw, zxyw, wzyx. x, y, z, w are also r, g, b, a. What stands behind ; or // is a comment. Results go to oC0 to oC3.
+// Texture instructions: texld, texldp (at x / w and y / w), texldb (with a bias of the level in w: textures have one level
+// here, so that it reads as texld does), texkill. Arithmetic: mov, add, sub, mul, mad, dp3, dp4, rcp, rsq, exp, log, min, max,
+// cmp, frc, abs, nop; lrp, crs, dp2add of two slots, nrm, pow of three, sincos of eight; m3x2, m3x3, m3x4, m4x3, m4x4, which
+// are expanded to dp3 and dp4. With _sat (to 0..1; not of frc, sincos and textures) and _pp (16 bits), a mask behind the
+// destination, and sources with a minus and one of the swizzles of the profile: a single component, or xyzw, yzxw, zxyw,
+// wzyx. x, y, z, w are also r, g, b, a. What stands behind ; or // is a comment. Results go to oC0 to oC3 and oDepth, each
+// written once by mov, without mask, modifier, minus and swizzle (of oDepth one component).
 //
-// The profile's limits: 64 arithmetic and 32 texture instructions, textures read by what was read of textures at most 3
-// times in a row, r0 to r11, two different constants and one coordinate in an instruction.
+// The profile's limits: 64 slots of arithmetic and 32 texture instructions; r0 to r11; two different constants, one
+// coordinate and one color in an instruction; dependent reads of the third order. A texture is read dependently where the
+// coordinates are in r#, or the destination has been written before: then its order is one more than that of the reads that
+// these registers hold.
 #pragma once
 
 #include <array>
@@ -24,10 +31,43 @@
 
 namespace anamorph {
 
-enum class ShaderOpcode : std::uint8_t { texld, mov, add, mul, mad, dp3, dp4, rcp, rsq, min, max, cmp };
+enum class ShaderOpcode : std::uint8_t {
+    texld,
+    texldp,
+    texldb,
+    texkill,
+    nop,
+    mov,
+    add,
+    sub,
+    mul,
+    mad,
+    lrp,
+    abs,
+    frc,
+    dp2add,
+    dp3,
+    dp4,
+    crs,
+    nrm,
+    rcp,
+    rsq,
+    exp,
+    log,
+    pow,
+    sincos,
+    min,
+    max,
+    cmp
+};
 
-/// Kinds of registers: r, c, t, v, s, oC.
-enum class ShaderBank : std::uint8_t { temporary, constant, coordinate, color, sampler, output };
+/// Does it read a texture, whose number is that of its second source?
+constexpr bool samples(ShaderOpcode opcode) {
+    return opcode == ShaderOpcode::texld || opcode == ShaderOpcode::texldp || opcode == ShaderOpcode::texldb;
+}
+
+/// Kinds of registers: r, c, t, v, s, oC, oDepth.
+enum class ShaderBank : std::uint8_t { temporary, constant, coordinate, color, sampler, output, depth };
 
 struct ShaderSource {
     ShaderBank bank = ShaderBank::temporary;
@@ -41,7 +81,7 @@ struct ShaderInstruction {
     bool saturated = false, partial = false;  ///< _sat, _pp
     ShaderBank bank = ShaderBank::temporary;  ///< of the destination
     int number = 0;
-    std::uint8_t mask = 15;  ///< bit i: component i is written
+    std::uint8_t mask = 15;  ///< bit i: component i is written; 0 of texkill and nop
     std::array<ShaderSource, 3> sources{};
 };
 
@@ -52,7 +92,7 @@ struct ShaderConstant {
 
 /// What a text was assembled to. Every component that an instruction reads has been written, declared or is a constant.
 struct ShaderProgram {
-    static constexpr int kMostArithmetic = 64, kMostTexture = 32, kMostDepth = 4;
+    static constexpr int kMostArithmetic = 64, kMostTexture = 32, kMostOrder = 3;
     static constexpr int kTemporaries = 12, kConstants = 32, kCoordinates = 8, kColors = 2, kSamplers = 16,
                          kOutputs = 4;
 
@@ -62,7 +102,7 @@ struct ShaderProgram {
     /// Bit i: component i is declared.
     std::array<std::uint8_t, kCoordinates> coordinates{};
     std::array<std::uint8_t, kColors> colors{};
-    int arithmetic = 0, texture = 0;  ///< instructions of either kind
+    int arithmetic = 0, texture = 0;  ///< slots of either kind
 };
 
 /// How many textures, coordinates and colors whoever runs a program gives it.

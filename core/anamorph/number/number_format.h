@@ -143,6 +143,8 @@ struct FormatNumber {
     double value = 0;
 
     FormatNumber() = default;
+    /// The largest number of the format.
+    static FormatNumber greatest() { return {largest(kFormat)}; }
     FormatNumber(double exact)
         : value(nearest_of<kFormat>(exact, beyond)) {}  // NOLINT: a number is one, rounded
 
@@ -171,6 +173,8 @@ struct FormatNumber {
     }
     friend FormatNumber exp(FormatNumber a) { return made_of(std::exp(a.value), a); }
     friend FormatNumber log(FormatNumber a) { return made_of(std::log(a.value), a); }
+    friend FormatNumber exp2(FormatNumber a) { return made_of(std::exp2(a.value), a); }
+    friend FormatNumber log2(FormatNumber a) { return made_of(std::log2(a.value), a); }
     friend FormatNumber asinh(FormatNumber a) { return made_of(std::asinh(a.value), a); }
     friend FormatNumber min(FormatNumber a, FormatNumber b) { return b.value < a.value ? b : a; }
     friend FormatNumber max(FormatNumber a, FormatNumber b) { return a.value < b.value ? b : a; }

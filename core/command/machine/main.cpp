@@ -215,7 +215,7 @@ class Command {
     void assemble() const {
         const ShaderProgram program = read_program();
         write(shader_listing(program) + "; " + std::to_string(program.arithmetic) + " of " +
-              std::to_string(ShaderProgram::kMostArithmetic) + " arithmetic instructions, " +
+              std::to_string(ShaderProgram::kMostArithmetic) + " slots of arithmetic instructions, " +
               std::to_string(program.texture) + " of " + std::to_string(ShaderProgram::kMostTexture) +
               " texture instructions\n");
     }
