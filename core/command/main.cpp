@@ -301,7 +301,9 @@ class Command {
             progress.clear();
             std::cerr << one_line(line) << "\n";
         };
-        return open_motion(m_settings.source, options);
+        std::unique_ptr<Motion> motion = open_motion(m_settings.source, options);
+        for (const std::string& warning : motion->warnings()) options.message(warning);
+        return motion;
     }
 
     FrameRange range_or(const char* standard) const {
@@ -323,7 +325,8 @@ class Command {
 
     int check() const {
         if (is_motion_file(m_settings.source.path)) {
-            open_motion(m_settings.source, {});
+            const std::unique_ptr<Motion> motion = open_motion(m_settings.source, {});
+            for (const std::string& warning : motion->warnings()) std::cout << warning << "\n";
             return 0;
         }
         const Script script = read_script(m_settings.source);

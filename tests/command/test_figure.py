@@ -93,6 +93,28 @@ class Case(unittest.TestCase):
 
 
 class Check(Case):
+    def test_a_score_of_labanotation_is_told_in_one_line(self):
+        score = self.write("dance.lbn", "".join("Dirn 1 %d 2 3 4 L * #%d\n" % (n, n) for n in range(300)))
+        for command in ("check", "frames"):
+            result = self.run_program(command, score)
+            self.assertEqual(result.returncode, 1)
+            text = (result.stdout + result.stderr).decode()
+            self.assertEqual(len(text.splitlines()), 1, text)
+            self.assertIn("is a score in Labanotation (.lbn), not a script", text)
+
+    def test_crystals_name_what_is_not_drawn_as_it_says(self):
+        crystal = self.write("flat.cif", "data_x\n" + "".join(
+            "_cell_%s %s\n" % pair for pair in [("length_a", 5), ("length_b", 5), ("length_c", 6), ("angle_alpha", 90),
+                                                ("angle_beta", 90), ("angle_gamma", 90)]) +
+            "_symmetry_space_group_name_H-M 'P 1 2 1 x'\nloop_\n_atom_site_label _atom_site_fract_x _atom_site_fract_y "
+            "_atom_site_fract_z\nC7 0 0 0\nloop_\n_atom_site_aniso_label _atom_site_aniso_U_11 _atom_site_aniso_U_22 "
+            "_atom_site_aniso_U_33 _atom_site_aniso_U_12 _atom_site_aniso_U_13 _atom_site_aniso_U_23\nC7 .02 .01 .01 .03 0 0\n")
+        lines = self.output("check", crystal).decode().splitlines()
+        self.assertEqual(len(lines), 2, lines)
+        self.assertIn("P 1 2 1 x", lines[0])
+        self.assertIn("flat.cif: C7: U11, U22, U33, U12, U13, U23 = 0.02, 0.01, 0.01, 0.03, 0, 0 is not positive definite", lines[1])
+        self.assertEqual(self.run_program("svg", crystal).stderr.decode().splitlines(), lines)
+
     def test_silent_when_nothing_is_wrong(self):
         for dialect in ("classic", "strict"):
             self.assertEqual(self.output("check", WALKER, "--dialect", dialect), b"")

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """anamorph-machine: programs are assembled and run, and what they draw is what they say, worked out by hand."""
 import csv
+import math
 import os
 import re
 import struct
@@ -10,6 +11,7 @@ import unittest
 import xml.etree.ElementTree as xml
 
 PROGRAM = os.environ["ANAMORPH_MACHINE"]
+README = os.environ["ANAMORPH_README"]
 
 
 def run(*arguments, text=""):
@@ -105,6 +107,36 @@ class Machine(unittest.TestCase):
         large = schedule("--picture", "1024", "--size", "1024")
         self.assertEqual(large["pixel processor"]["utilisation"], 1)
         self.assertGreater(large["pixel processor"]["ms"], 100)
+
+    def test_cycles_are_those_that_the_reference_says(self):
+        """The formulas of the README's table, with the numbers of its defaults."""
+        for keys, picture in [({}, 512), ({"block": 4}, 512), ({"processors": 3, "multipliers": 4}, 300),
+                              ({"surface_multiplies": 7, "division_cycles": 5, "pixel_units": 3, "block": 16}, 200),
+                              ({"host_cycles": 123, "block_cycles": 11, "segment_cycles": 5, "segment": 16}, 256)]:
+            value = dict({"processors": 2, "multipliers": 1, "surface_multiplies": 20, "division_cycles": 16,
+                          "host_cycles": 20000, "block_cycles": 8, "segment_cycles": 4, "pixel_units": 1}, **keys)
+            machine = ",".join("%s=%s" % item for item in keys.items())
+            status, out, error = run("schedule", "--picture", str(picture), "--machine", "oka-1987" + (machine and ":") + machine)
+            self.assertEqual((status, error), (0, ""))
+            stages = {row["stage"]: {key: float(x) for key, x in row.items() if key != "stage"}
+                      for row in csv.DictReader(out.decode().splitlines())}
+            blocks = stages["micro-coded processors"]["bytes_written"] / 24
+            pixels = stages["pixel processor"]["bytes_written"] / 3
+            cycles = math.ceil((value["surface_multiplies"] + 21) / value["multipliers"]) + 2 * value["division_cycles"]
+            if not keys:
+                self.assertEqual((cycles, blocks), (73, (picture / 8) ** 2))
+            self.assertEqual(stages["micro-coded processors"]["cycles"], math.ceil(blocks / value["processors"]) * cycles)
+            self.assertEqual(stages["host computer"]["cycles"], value["host_cycles"])
+            self.assertEqual(stages["pixel processor"]["cycles"], math.ceil(pixels / value["pixel_units"]))
+            self.assertEqual(stages["output"]["cycles"], 512 * 512)
+            segments = (stages["address controller"]["cycles"] - blocks * value["block_cycles"]) / value["segment_cycles"]
+            self.assertEqual(segments, int(segments))
+            self.assertGreaterEqual(segments, blocks)
+        with open(README) as file:
+            text = file.read()
+        for formula in ("(`surface_multiplies` + 21) / `multipliers` + 2 `division_cycles`", "20 + 21 + 2 x 16 = 73",
+                        "blocks times `block_cycles` + segments times `segment_cycles`", "pixels / `pixel_units`"):
+            self.assertIn(formula, text)
 
     def test_the_timeline_says_what_frames_do_and_when(self):
         path = os.path.join(self.folder, "timeline.svg")

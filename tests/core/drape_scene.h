@@ -44,6 +44,7 @@ class Shown {
                                                                                      : 1;
         return draw(nullptr, channels);
     }
+    std::vector<float> seen() { return values(Output::color, DrapeOutput::seen); }
     std::vector<float> coverage() { return values(Output::color, DrapeOutput::coverage); }
     std::vector<float> draw(const Source* source, int channels, const Source* backdrop = nullptr) {
         const Size& s = m_scene.screen;

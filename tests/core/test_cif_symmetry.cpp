@@ -4,7 +4,9 @@
 
 #include <gmock/gmock.h>
 
+#include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <numbers>
 #include <random>
 #include <set>
@@ -260,6 +262,117 @@ TEST(CrystalSymmetry, SaysWhatIsWrong) {
     EXPECT_THAT(error_of(cell_text(.1, .1, .1, 90, 90, 90) + operations_text({"x,y,z", "-x,y,z+1/3"}) +
                          atoms_text(rows)),
                 HasSubstr("over 500000 bonds"));
+}
+
+// --- Groups that are named alone -----------------------------------------------------------------------------
+
+/// Places of bodies in fractions of a cell, from 0 to 1, sorted.
+std::vector<std::string> places_text(const std::string& text) {
+    std::vector<std::string> names;
+    for (const Body& body : frame_of(text).bodies) {
+        const auto& c = body.shape.center;
+        char line[100];
+        std::snprintf(line, sizeof line, "%.6f %.6f %.6f", c.x, c.y, c.z);
+        names.push_back(line);
+    }
+    std::sort(names.begin(), names.end());
+    return names;
+}
+
+std::vector<std::string> warnings_of(const std::string& text) {
+    return read_motion(text, "test.cif")->warnings();
+}
+
+const std::string kQuartzCell = cell_text(4.9134, 4.9134, 5.4052, 90, 90, 120);
+const std::string kQuartzAtoms = atoms_text("Si .4697 0 .6666667\nO .4135 .2669 .7858\n");
+
+TEST(CrystalSymmetry, GroupsAreExpandedByTheirNames) {
+    // Quartz, with the operations of P 32 2 1 as the International Tables list them.
+    const std::vector<std::string> listed =
+        places_text(kQuartzCell +
+                    operations_text({"x,y,z", "-y,x-y,z+2/3", "-x+y,-x,z+1/3", "y,x,-z", "x-y,-y,-z+1/3",
+                                     "-x,-x+y,-z+2/3"}) +
+                    kQuartzAtoms);
+    ASSERT_EQ(listed.size(), 9u);
+    for (const char* name :
+         {"_symmetry_space_group_name_H-M 'P 32 2 1'", "_space_group_name_H-M_alt 'P3221'",
+          "_symmetry_space_group_name_H-M 'P 3_2 2 1'", "_space_group_name_Hall 'P 32 2\"'",
+          "_symmetry_Int_Tables_number 154", "_space_group_IT_number 154",
+          "_symmetry_space_group_name_H-M 'P 32 2 1'\n_symmetry_Int_Tables_number 154\nloop_\n"
+          "_symmetry_equiv_pos_as_xyz\n?"}) {
+        const std::string text = kQuartzCell + std::string(name) + "\n" + kQuartzAtoms;
+        EXPECT_EQ(places_text(text), listed) << name;
+        EXPECT_TRUE(warnings_of(text).empty()) << name;
+    }
+    // Operations that are listed come first.
+    EXPECT_EQ(frame_of(kQuartzCell + "_symmetry_space_group_name_H-M 'P 32 2 1'\n" +
+                       operations_text({"x,y,z", "-x,-y,-z"}) + kQuartzAtoms)
+                  .bodies.size(),
+              4u);
+}
+
+TEST(CrystalSymmetry, SettingsAreTold) {
+    const auto bodies = [](const std::string& cell, const std::string& name) {
+        return frame_of(cell + "_symmetry_space_group_name_H-M '" + name + "'\n" +
+                        atoms_text("Q .11 .23 .37\n"))
+            .bodies.size();
+    };
+    const std::string hexagonal = cell_text(15, 15, 21, 90, 90, 120),
+                      cubic = cell_text(20, 20, 20, 90, 90, 90);
+    EXPECT_EQ(bodies(hexagonal, "R -3 m"), 36u);
+    EXPECT_EQ(bodies(hexagonal, "R -3 m H"), 36u);
+    EXPECT_EQ(bodies(cell_text(15, 15, 15, 70, 70, 70), "R -3 m"), 12u);
+    EXPECT_EQ(bodies(cubic, "F m -3 m"), 192u);
+    // Diamond's two origins: an atom at 1/8 1/8 1/8 has 8 images about the second, 16 about the first.
+    const auto carbon = [&](const std::string& name) {
+        return cubic + "_symmetry_space_group_name_H-M '" + name + "'\n" + atoms_text("Q .125 .125 .125\n");
+    };
+    for (const char* second : {"F d -3 m :2", "F d -3 m Z", "Fd-3m:2"}) {
+        EXPECT_EQ(frame_of(carbon(second)).bodies.size(), 8u) << second;
+        EXPECT_TRUE(warnings_of(carbon(second)).empty());
+    }
+    EXPECT_EQ(frame_of(carbon("F d -3 m S")).bodies.size(), 16u);
+    EXPECT_EQ(frame_of(carbon("F d -3 m")).bodies.size(), 16u);
+    EXPECT_THAT(warnings_of(carbon("F d -3 m")),
+                testing::ElementsAre(
+                    "test.cif: line 8: _symmetry_space_group_name_h-m=\"F d -3 m\": has two origins, "
+                    "and no operations are listed: F d -3 m:1 is taken"));
+}
+
+TEST(CrystalSymmetry, UnknownGroupsAreNamed) {
+    for (const char* name : {"'P 99'", "154x", "'?'", "'::'", "'12'"}) {
+        const std::string text = kQuartzCell + "_symmetry_space_group_name_H-M " + name + "\n" + kQuartzAtoms;
+        EXPECT_EQ(frame_of(text).bodies.size(), 2u);
+        EXPECT_THAT(
+            warnings_of(text),
+            testing::ElementsAre(HasSubstr("is no space group that is known, and no operations are listed")))
+            << name;
+    }
+    for (const char* number : {"0", "231", "1.5", "nan"})
+        EXPECT_EQ(
+            warnings_of(kQuartzCell + "_symmetry_Int_Tables_number " + number + "\n" + kQuartzAtoms).size(),
+            1u);
+    EXPECT_TRUE(warnings_of(kQuartzCell + kQuartzAtoms).empty());
+    EXPECT_TRUE(warnings_of(kQuartzCell + "_symmetry_space_group_name_H-M ?\n" + kQuartzAtoms).empty());
+}
+
+TEST(CrystalSymmetry, AtomsWhoseTensorIsNotPositiveDefiniteAreNamed) {
+    const std::string ahead = kQuartzCell +
+                              "loop_\n_atom_site_label _atom_site_fract_x _atom_site_fract_y "
+                              "_atom_site_fract_z _atom_site_U_iso_or_equiv\n"
+                              "Si1 .4697 0 0 .01\nO1 .4135 .2669 .1191 .02\nO2 .1 .2 .3 -.005\n"
+                              "loop_\n_atom_site_aniso_label\n_atom_site_aniso_U_11\n"
+                              "_atom_site_aniso_U_22\n_atom_site_aniso_U_33\n_atom_site_aniso_U_12\n"
+                              "_atom_site_aniso_U_13\n_atom_site_aniso_U_23\nSi1 .01 .01 .01 .005 0 0\n";
+    EXPECT_THAT(warnings_of(ahead),
+                testing::ElementsAre("test.cif: O2: U = -0.005 is negative: the atom is drawn as a "
+                                     "small sphere"));
+    EXPECT_THAT(warnings_of(ahead + "O1 .02 .01 -.004 0 0 0\n"),
+                testing::ElementsAre(
+                    "test.cif: O1: U11, U22, U33, U12, U13, U23 = 0.02, 0.01, -0.004, 0, 0, 0 is not "
+                    "positive definite (the least of its principal values is -0.004): the ellipsoid is "
+                    "drawn flat",
+                    HasSubstr("O2")));
 }
 
 }  // namespace

@@ -193,7 +193,7 @@ TEST(DrapedSurface, RangesHoldDifferencesOfWendlandsKernelAboutItsCentre) {
 /// output=error says so, to within `agree`. Returns the number of pixels.
 int expect_points_in_place(Shown& shown, const Scene& scene, double tol, double agree = 1e-6) {
     const std::vector<float> points = shown.values(Output::stmap), bounds = shown.values(Output::bound),
-                             errors = shown.values(Output::error), covered = shown.coverage();
+                             errors = shown.values(Output::error), covered = shown.seen();
     const DrapeMap map(cut_into_facets(shown.tree()->tree, shown.camera(), tol), shown.camera(),
                        scene.picture, tol);
     int seen = 0, over = 0;
@@ -243,7 +243,7 @@ TEST(Drape, AnalyticSilhouettesAreCoveredWithoutHoles) {
             scene.screen = screen;
             DrapeOptions options;
             options.tol = tol;
-            const std::vector<float> covered = Shown(scene, options).coverage();
+            const std::vector<float> covered = Shown(scene, options).seen();
             const glm::dvec3 ahead = glm::normalize(scene.pose.target - scene.pose.position),
                              right = glm::normalize(glm::cross(ahead, scene.pose.up)),
                              up = glm::cross(right, ahead);
@@ -280,7 +280,7 @@ TEST(Drape, FromInsideThereIsNoHole) {
             scene.pose.fov = fov;
             DrapeOptions options;
             options.tol = tol;
-            const std::vector<float> covered = Shown(scene, options).coverage();
+            const std::vector<float> covered = Shown(scene, options).seen();
             EXPECT_EQ(std::count(covered.begin(), covered.end(), 0.0f), 0) << fov << " " << tol;
         }
 }
@@ -295,7 +295,7 @@ TEST(Drape, ASurfaceSeenWholeHidesWhatIsBehindIt) {
             scene.shape.direction = 20;
             DrapeOptions options;
             options.tol = tol;
-            const std::vector<float> covered = Shown(scene, options).coverage();
+            const std::vector<float> covered = Shown(scene, options).seen();
             EXPECT_EQ(std::count(covered.begin(), covered.end(), 0.0f), 0) << name;
         }
 }
@@ -321,7 +321,7 @@ TEST(Drape, SheetsCloseTogetherStayInTheirOrder) {
 
 TEST(Drape, HardCasesAreDrawn) {
     const auto covered = [](const Scene& scene) {
-        const std::vector<float> all = Shown(scene).coverage();
+        const std::vector<float> all = Shown(scene).seen();
         return std::count(all.begin(), all.end(), 1.0f);
     };
     Scene edge_on;
@@ -337,7 +337,7 @@ TEST(Drape, HardCasesAreDrawn) {
     ground.pose.target = {0, 0.3, 0.05};
     ground.pose.up = {0, 0, 1};
     ground.pose.fov = 90;
-    const std::vector<float> below = Shown(ground).coverage();
+    const std::vector<float> below = Shown(ground).seen();
     EXPECT_EQ(std::count(below.begin(), below.begin() + 160 * 60, 1.0f), 0);
     EXPECT_EQ(std::count(below.begin() + 160 * 100, below.end(), 1.0f), 160 * 20);
     Scene torus{"torus"};
@@ -466,7 +466,7 @@ TEST(Drape, ShadingFollowsTheNormals) {
     scene.pose.extent = 1.2;
     scene.pose.position = {0, 0, 5};
     const std::vector<float> normals = Shown(scene).values(Output::color, DrapeOutput::normal),
-                             covered = Shown(scene).coverage();
+                             covered = Shown(scene).seen();
     const std::vector<float> texels(64 * 64 * 3, 1);
     const MemorySource source(
         packed_view(reinterpret_cast<const std::byte*>(texels.data()), PixelType::float32, 64, 64, 3));
@@ -506,7 +506,7 @@ TEST(Drape, AConstantPictureStaysConstant) {
             DrapeOptions options;
             options.filter = filter;
             Shown shown(scene, options);
-            const std::vector<float> drawn = shown.draw(&source, 1), covered = shown.coverage();
+            const std::vector<float> drawn = shown.draw(&source, 1), covered = shown.seen();
             const int width = scene.screen.width, height = scene.screen.height;
             int slits = 0;
             for (int y = 0; y < height; ++y)
@@ -663,7 +663,7 @@ TEST(Drape, WhatIsSeenFromVeryNearIsDrawnOrRefused) {
     scene.pose.position = {0.0005, 0.001, 0};
     scene.pose.up = {0, 0, 1};
     scene.pose.extent = 1e-9;
-    EXPECT_THROW(Shown(scene).coverage(), Error);
+    EXPECT_THROW(Shown(scene).seen(), Error);
     scene.pose.extent = 1e-3;
     Shown shown(scene);
     expect_points_in_place(shown, scene, 0.125, 1e-3);
@@ -676,7 +676,7 @@ TEST(Drape, NarrowDeformationsAreDrawn) {
         scene.deformations = {{{0, 0, 0.5}, {0.5, 0.5}, extent}};
         scene.pose.position = {0.3, 0.3, 1.5};
         scene.screen = {64, 64};
-        const std::vector<float> covered = Shown(scene).coverage();
+        const std::vector<float> covered = Shown(scene).seen();
         EXPECT_GT(std::count(covered.begin(), covered.end(), 1.0f), 500);
     }
     Scene dense{"ripples"};
@@ -684,10 +684,48 @@ TEST(Drape, NarrowDeformationsAreDrawn) {
     dense.shape.wavelength = 0.01;
     dense.pose.position = {0.3, 0.3, 1.5};
     try {
-        Shown(dense).coverage();
+        Shown(dense).seen();
         ADD_FAILURE() << "four million patches";
     } catch (const Error& error) {
-        EXPECT_THAT(error.what(), testing::HasSubstr("tol=0.125: takes more than"));
+        const std::string text = error.what(), ahead = "patches of the surface: must be at least ";
+        EXPECT_THAT(text, testing::HasSubstr("tol=0.125: takes more than"));
+        // It takes no more with the tolerance that the message names, and more with three quarters of it.
+        const std::size_t at = text.find(ahead);
+        ASSERT_NE(at, std::string::npos) << text;
+        DrapeOptions options;
+        options.tol = std::stod(text.substr(at + ahead.size()));
+        EXPECT_NO_THROW(Shown(dense, options).seen());
+        options.tol *= 0.75;
+        EXPECT_THROW(Shown(dense, options).seen(), Error);
+    }
+}
+
+TEST(Drape, CoverageIsTheShareThatColorsAreFadedBy) {
+    for (const DrapeScheme scheme : {DrapeScheme::automatic, DrapeScheme::exact, DrapeScheme::oka}) {
+        Scene scene{"sphere"};
+        scene.shape.angle = 360;
+        scene.pose.position = {0.3, 0.2, 1.9};
+        scene.screen = {150, 140};
+        DrapeOptions options;
+        options.scheme = scheme;
+        const Plain white({64, 64}, {1, 1, 1});
+        for (const Filter filter : {Filter::antialias, Filter::pyramid, Filter::bilinear}) {
+            options.filter = filter;
+            Shown shown(scene, options);
+            const std::vector<float> drawn = Shown(scene, options).draw(white.source(), 3),
+                                     covered = shown.coverage(), seen = shown.seen();
+            int shares = 0, pixels = 0;
+            double area = 0;
+            for (std::size_t i = 0; i < covered.size(); ++i) {
+                ASSERT_NEAR(covered[i], drawn[3 * i], 1e-6) << i;
+                ASSERT_TRUE(seen[i] == 0 || seen[i] == 1);
+                shares += covered[i] > 0 && covered[i] < 1;
+                pixels += seen[i] == 1;
+                area += covered[i];
+            }
+            EXPECT_EQ(shares > 100, averages(filter)) << shares;
+            EXPECT_NEAR(area, pixels, 0.01 * pixels);
+        }
     }
 }
 
@@ -716,7 +754,7 @@ TEST(Drape, WhatIsTransparentShowsWhatIsBehind) {
     DrapeOptions options;
     options.alpha = 1;
     options.background = {0.5f, 0.5f};
-    const std::vector<float> covered = Shown(scene, options).coverage();
+    const std::vector<float> covered = Shown(scene, options).seen();
     const Plain multiplied({64, 64}, {0.2f, 0.5f}), straight({64, 64}, {0.4f, 0.5f}, 1),
         opaque({32, 32}, {0.6f}), veil({32, 32}, {0.45f, 0.75f});
     struct Case {
@@ -762,7 +800,7 @@ TEST(Drape, ABackdropOfTheScreensSizeIsSeenAsItStands) {
         packed_view(reinterpret_cast<const std::byte*>(behind.data()), PixelType::float32, 160, 120, 1));
     const Plain front({64, 64}, {2.0f});
     const std::vector<float> drawn = Shown(scene).draw(front.source(), 1, &backdrop),
-                             covered = Shown(scene).coverage();
+                             covered = Shown(scene).seen();
     int seen = 0;
     for (int y = 1; y < 119; ++y)
         for (int x = 1; x < 159; ++x) {
@@ -1037,12 +1075,12 @@ TEST(Drape, HolesAreThePixelsOfTheSurfaceThatBlocksLeaveOut) {
         return Drape(Shown(scene).tree(), Shown(scene).camera(), scene.picture, options).holes(serial_for);
     };
     EXPECT_EQ(holes(), 0);
-    const std::vector<float> cover = Shown(scene, options).coverage();
+    const std::vector<float> cover = Shown(scene, options).seen();
     for (const DrapeScheme scheme : {DrapeScheme::oka, DrapeScheme::oka_z})
         for (const double overlap : {0.0, 0.5}) {
             options.scheme = scheme;
             options.overlap = overlap;
-            const std::vector<float> drawn = Shown(scene, options).coverage();
+            const std::vector<float> drawn = Shown(scene, options).seen();
             int wanted = 0;
             for (int y = 1; y < 199; ++y)
                 for (int x = 1; x < 299; ++x) {
@@ -1066,12 +1104,12 @@ TEST(Drape, RefusesWhatIsNoCamera) {
     EXPECT_THROW(make(), Error);
     DrapeOptions options;
     options.tol = 1e-9;
-    EXPECT_THROW(Shown(Scene{}, options).coverage(), Error);
+    EXPECT_THROW(Shown(Scene{}, options).seen(), Error);
     options.scheme = DrapeScheme::oka;
     options.block = 0.25;
     Scene large;
     large.picture = {4096, 4096};
-    EXPECT_THROW(Shown(large, options).coverage(), Error);
+    EXPECT_THROW(Shown(large, options).seen(), Error);
 }
 
 TEST(Drape, NothingIsProvenOfParallelogramsOverWhatIsMissing) {

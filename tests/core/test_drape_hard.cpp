@@ -76,7 +76,7 @@ TEST(DrapeHard, ExtentsOfNothingAreRefusedAndTheLeastAreDrawn) {
     Scene scene;
     scene.deformations = {{{0, 0, 0.1}, {0.5, 0.5}, {1e-12, 1e-12}}};
     scene.pose.fov = 20;
-    const std::vector<float> covered = Shown(scene).coverage();
+    const std::vector<float> covered = Shown(scene).seen();
     EXPECT_EQ(std::count(covered.begin(), covered.end(), 0.0f), 0);
 }
 
@@ -109,7 +109,7 @@ TEST(DrapeHard, AHeightThatIsNoNumberIsAHoleAndNoMore) {
     scene.pose.perspective = false;
     scene.pose.extent = 1;
     scene.screen = {200, 200};
-    const std::vector<float> covered = Shown(scene).coverage();
+    const std::vector<float> covered = Shown(scene).seen();
     int wrong = 0, holes = 0;
     for (int y = 1; y < 199; ++y)
         for (int x = 1; x < 199; ++x) {

@@ -322,7 +322,7 @@ TEST(Drape, WhatIsNoNumberIsAHoleAndNoMore) {
         for (const double tol : {1.0, 0.05}) {
             DrapeOptions options;
             options.tol = tol;
-            const std::vector<float> covered = Shown(scene, options).coverage();
+            const std::vector<float> covered = Shown(scene, options).seen();
             int holes = 0, wrong = 0;
             for (int y = 1; y < 199; ++y)
                 for (int x = 1; x < 199; ++x) {
@@ -346,7 +346,7 @@ TEST(Drape, ASurfaceThatIsMissingIsNotSeen) {
     sum.positions = std::make_shared<SampledField>(texels, Size{4, 4}, 3);
     Scene scene;
     scene.own = make_surface(sum);
-    EXPECT_THAT(Shown(scene).coverage(), testing::Each(0.0f));
+    EXPECT_THAT(Shown(scene).seen(), testing::Each(0.0f));
 }
 
 TEST(DeformationReach, WhatIsFarAddsNoMoreThanItSays) {

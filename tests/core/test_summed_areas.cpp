@@ -249,7 +249,7 @@ TEST(SummedAreas, DrapesReadThePapersRectangle) {
     options.filter = Filter::summed_area;
     Shown shown(scene, options);
     const MemorySource source = texels.source();
-    const std::vector<float> drawn = shown.draw(&source, 1), covered = shown.coverage();
+    const std::vector<float> drawn = shown.draw(&source, 1), covered = shown.seen();
     const DrapeMap map(cut_into_facets(shown.tree()->tree, shown.camera(), options.tol), shown.camera(),
                        scene.picture, options.tol);
     options.filter = Filter::pyramid;

@@ -450,6 +450,21 @@ TEST_F(Metadata, WhatWasReachedIsWrittenToFiles) {
     }
 }
 
+TEST_F(Metadata, ToleranceIsSaidWhereOneIsHeld) {
+    const auto says = [](const std::string& name) {
+        return spec_of(name).find_attribute("anamorph:tol") != nullptr;
+    };
+    for (const char* held : {"city.exr.pano?size=16", "city.exr.lens?lens=brown:k1=-0.1&fov=60&size=16",
+                             "city.exr.drape?size=16", "city.exr.drape?size=16&scheme=exact"})
+        EXPECT_TRUE(says(held)) << held;
+    for (const char* none :
+         {"city.exr.pano?size=16&scheme=hardware", "city.exr.drape?size=16&scheme=hardware",
+          "city.exr.drape?size=16&scheme=oka", "city.exr.drape?size=16&scheme=oka-z"}) {
+        EXPECT_FALSE(says(none)) << none;
+        EXPECT_GE(spec_of(none).get_float_attribute("anamorph:max_error", -1), 0) << none;
+    }
+}
+
 TEST_F(Metadata, StockProgramsKnowAnEnvironment) {
     // maketx keeps what the picture says; OpenEXR's own attribute comes back as a texture's format.
     write_text("sky.pano", "src=city.exr\nto=equirectangular\nsize=64x32\nyaw=10\n");

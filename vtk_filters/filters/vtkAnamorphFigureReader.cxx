@@ -179,6 +179,7 @@ void vtkAnamorphFigureReader::Prepare() {
         open_motion(this->FileName, this->Libraries,
                     this->Dialect == STRICT ? anamorph::Dialect::strict : anamorph::Dialect::classic));
     this->Current->since = this->GetMTime();
+    for (const std::string& warning : this->Current->motion->warnings()) vtkWarningMacro(<< warning);
 }
 
 int vtkAnamorphFigureReader::RequestInformation(vtkInformation*, vtkInformationVector**,

@@ -7,6 +7,7 @@
 #include <deque>
 #include <glm/geometric.hpp>
 
+#include "anamorph/drape/drape_rows.h"
 #include "anamorph/drape/oka.h"
 #include "anamorph/parameter.h"
 #include "anamorph/render/pixel.h"
@@ -38,6 +39,51 @@ std::shared_ptr<const DrapeMap> map_of(SharedTree& surface, const Camera& camera
         std::move(room), camera, picture, options.tol,
         options.scheme == DrapeScheme::exact ? surface.tree.shared_surface() : nullptr, surface.pool,
         surface.facet_pool);
+}
+
+/// `value` with two digits, rounded up.
+double with_two_digits(double value) {
+    const double place = std::pow(10, std::floor(std::log10(value)) - 1);
+    return std::ceil(value / place) * place;
+}
+
+/// A tolerance above `tol`, which takes too many patches, that does not, within an eighth above the least one; nothing
+/// where there is none of up to 1000 pixels.
+std::optional<double> least_tol(SharedTree& surface, const Camera& camera, double tol) {
+    FacetRoom room;
+    const std::lock_guard lock(surface.mutex);
+    const auto works = [&](double more) {
+        try {
+            cut_into_facets(surface.tree, camera, more, room);
+            return true;
+        } catch (const TooManyPatches&) {
+            return false;
+        }
+    };
+    double too_small = tol, enough = 2 * tol;
+    for (; !works(enough); enough *= 2) {
+        if (enough > kDrapeTolRow.most) return {};
+        too_small = enough;
+    }
+    for (int halving = 0; halving < 3; ++halving) {
+        const double middle = std::sqrt(too_small * enough);
+        (works(middle) ? enough : too_small) = middle;
+    }
+    const double rounded = with_two_digits(enough);
+    return works(rounded) ? rounded : enough;
+}
+
+/// map_of; where patches are too many, the error says with which tolerance they are not.
+std::shared_ptr<const DrapeMap> map_or_least_tol(SharedTree& surface, const Camera& camera,
+                                                 const Size& picture, const DrapeOptions& options) {
+    try {
+        return map_of(surface, camera, picture, options);
+    } catch (const TooManyPatches& error) {
+        const std::optional<double> least = least_tol(surface, camera, options.tol);
+        if (!least) throw;
+        throw TooManyPatches(options.tol, error.most,
+                             ": must be at least " + shortest(static_cast<float>(*least)));
+    }
 }
 
 /// body(pixels, part) for the regions that meet a box.
@@ -91,7 +137,9 @@ struct Drape::Spot {
 
 Drape::Drape(std::shared_ptr<SharedTree> surface, const Camera& camera, const Size& picture,
              const DrapeOptions& options)
-    : m_surface(std::move(surface)), m_options(options), m_map(map_of(*m_surface, camera, picture, options)) {
+    : m_surface(std::move(surface)),
+      m_options(options),
+      m_map(map_or_least_tol(*m_surface, camera, picture, options)) {
     if (options.lighting.shading != DrapeShading::none || options.own == DrapeOutput::normal)
         for (const FacetCorner& corner : m_map->facets().corners) m_lit.push_back(lit(corner));
     const Chart flat(Projection::rectilinear, picture.width, picture.height);
@@ -208,6 +256,7 @@ void Drape::put_values(const Spot& spot, int x, int y, float* to) const {
             *to = seen ? static_cast<float>(spot.facet->leaf) : -1;
             return;
         case DrapeOutput::coverage:
+        case DrapeOutput::seen:
             *to = seen ? 1 : 0;
             return;
         case DrapeOutput::shared:
@@ -240,6 +289,13 @@ bool Drape::draw_values(const Box& box, const ImageView& view, const ParallelFor
         });
         simd::finish_stores();
     });
+    if (m_options.own == DrapeOutput::coverage && averages(m_options.filter))
+        for_edges(inside, parallel_for, [&](const std::vector<EdgePixel>& edges) {
+            for (const EdgePixel& edge : edges) {
+                const float covered = edge.covered();
+                canvas.store(edge.x, edge.y, 1, &covered);
+            }
+        });
     return true;
 }
 
@@ -336,17 +392,15 @@ class Drape::EdgePainter {
         const int channels = m_layers.source.channels();
         const AlphaChannel& alpha = m_layers.alpha;
         std::fill_n(pixel, channels, 0.0f);
-        float covered = 0;
         bool ok = true;
         for (const EdgePart& part : edge.parts) {
             ok = read(part) && ok;
             const auto share = static_cast<float>(part.share);
-            covered += share;
             for (int c = 0; c < channels; ++c) pixel[c] += share * m_part[static_cast<std::size_t>(c)];
         }
         if (m_backdrop) {
             ok = m_backdrop->at(edge.x, edge.y, m_under.data()) && ok;
-            lay_over(pixel, m_under.data(), channels, alpha.channel, covered, pixel);
+            lay_over(pixel, m_under.data(), channels, alpha.channel, edge.covered(), pixel);
         }
         if (alpha.straight()) unassociate_alpha(pixel, channels, alpha.channel);
         return ok;
@@ -379,20 +433,28 @@ class Drape::EdgePainter {
     std::vector<float> m_part, m_under;
 };
 
+/// body(edges) for the edge pixels of a box, region by region.
+template <class Body>
+void Drape::for_edges(const Box& box, const ParallelFor& parallel_for, const Body& body) const {
+    const std::vector<std::int64_t> regions = m_map->regions_in(box);
+    parallel_for(static_cast<std::int64_t>(regions.size()), [&](std::int64_t i) {
+        const Box part = intersection(m_map->region_box(regions[static_cast<std::size_t>(i)]), box);
+        body(edges_in(*m_map, *m_map->region_at(part.x0, part.y0), part));
+        simd::finish_stores();
+    });
+}
+
 /// Draws edge pixels again, by what is seen at their samples.
 bool Drape::draw_edges(const Layers& layers, const Box& box, const Canvas& canvas,
                        const ParallelFor& parallel_for) const {
     std::atomic<bool> ok{true};
-    const std::vector<std::int64_t> regions = m_map->regions_in(box);
-    parallel_for(static_cast<std::int64_t>(regions.size()), [&](std::int64_t i) {
-        const Box part = intersection(m_map->region_box(regions[static_cast<std::size_t>(i)]), box);
+    for_edges(box, parallel_for, [&](const std::vector<EdgePixel>& edges) {
         EdgePainter painter(*this, layers);
         std::vector<float> pixel(static_cast<std::size_t>(canvas.channels()) + 16);
-        for (const EdgePixel& edge : edges_in(*m_map, *m_map->region_at(part.x0, part.y0), part)) {
+        for (const EdgePixel& edge : edges) {
             if (!painter.draw(edge, pixel.data())) ok = false;
             canvas.store(edge.x, edge.y, 1, pixel.data());
         }
-        simd::finish_stores();
     });
     return ok;
 }

@@ -46,8 +46,9 @@ enum class DrapeScheme {
 };
 
 /// What is drawn beside what every picture can show (Output): the depth ahead of the camera, infinite where nothing is
-/// seen; the surface's unit normal on the viewer's side, in space; the number of the patch; whether anything is seen.
-enum class DrapeOutput { shared, depth, normal, patch, coverage };
+/// seen; the surface's unit normal on the viewer's side, in space; the number of the patch; the share of the pixel in which
+/// anything is seen, by which colours of the same filter are faded; whether anything is seen in its middle.
+enum class DrapeOutput { shared, depth, normal, patch, coverage, seen };
 
 /// How a drape is drawn.
 struct DrapeOptions {
@@ -119,6 +120,8 @@ class Drape {
     Lit lit(const FacetCorner& corner) const;
     glm::dvec3 normal(const Spot& spot) const;
     double landing_error(const Spot& spot, int x, int y) const;
+    template <class Body>
+    void for_edges(const Box& box, const ParallelFor& parallel_for, const Body& body) const;
     bool draw_values(const Box& box, const ImageView& view, const ParallelFor& parallel_for) const;
     void put_values(const Spot& spot, int x, int y, float* to) const;
     float light(const glm::dvec3& normal, const glm::dvec3& ray, float& highlight) const;

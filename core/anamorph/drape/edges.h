@@ -20,6 +20,13 @@ struct EdgePart {
 struct EdgePixel {
     int x, y;
     std::vector<EdgePart> parts;
+
+    /// The share of the pixel that shows anything.
+    float covered() const {
+        float sum = 0;
+        for (const EdgePart& part : parts) sum += static_cast<float>(part.share);
+        return sum;
+    }
 };
 
 /// Samples of an edge pixel either way.

@@ -212,8 +212,7 @@ class FacetMaker {
             open.resize(open.size() - count);
             for (visited += count; const std::int32_t index : std::span(some).first(count)) visit(index);
             if (std::max(4 * m_made.leaves.size(), visited) > 4 * m_most_leaves)
-                throw Error("tol", shortest(m_tol),
-                            "takes more than " + std::to_string(m_most_leaves) + " patches of the surface");
+                throw TooManyPatches(m_tol, m_most_leaves);
         }
     }
     /// Keeps a patch, or opens its halves.
@@ -375,6 +374,11 @@ class FacetMaker {
 };
 
 }  // namespace
+
+TooManyPatches::TooManyPatches(double tol, std::size_t most_made, const std::string& rule)
+    : Error("tol", shortest(tol),
+            "takes more than " + std::to_string(most_made) + " patches of the surface" + rule),
+      most(most_made) {}
 
 int grid_bits_of(const Size& screen) {
     // Twice as far as the screen's edges.

@@ -19,10 +19,12 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <string>
 #include <vector>
 
 #include "anamorph/drape/camera.h"
 #include "anamorph/drape/surface_tree.h"
+#include "anamorph/error.h"
 #include "anamorph/geometry/box.h"
 
 namespace anamorph {
@@ -100,9 +102,17 @@ double grid_error(int bits);
 /// The share of a tolerance that is left to points in float (DrapeMap).
 inline constexpr double kFloatShare = 1.0 / 64;
 
+/// A tolerance takes more patches than are made.
+class TooManyPatches final : public Error {
+  public:
+    TooManyPatches(double tol, std::size_t most, const std::string& rule = "");
+
+    std::size_t most;  ///< that are made
+};
+
 /// Cuts what the camera sees so that every bound, with its share for points in float, is at most `tol` pixels. Throws
-/// Error where tol is less than the grid or double allow, or takes more patches than twice the pixels over tol (at least
-/// 2^16, at most 2^20).
+/// Error where tol is less than the grid or double allow, TooManyPatches where it takes more patches than twice the pixels
+/// over tol (at least 2^16, at most 2^20).
 void cut_into_facets(SurfaceTree& tree, const Camera& camera, double tol, FacetRoom& room);
 Facets cut_into_facets(SurfaceTree& tree, const Camera& camera, double tol);
 

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// gemmi reads such files too, but its headers (0.5.7) do not compile as C++20.
+// gemmi reads such files too, but the headers of it that do (0.5.7) do not compile as C++20.
 #include <algorithm>
 #include <array>
 #include <cctype>
 #include <cmath>
+#include <functional>
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
 #include <map>
@@ -15,6 +16,7 @@
 #include "anamorph/figure/elements.h"
 #include "anamorph/figure/motion_file.h"
 #include "anamorph/figure/rotation.h"
+#include "anamorph/figure/space_group.h"
 #include "anamorph/figure/window_fit.h"
 #include "anamorph/parameter.h"
 #include "anamorph/text_file.h"
@@ -22,7 +24,7 @@
 namespace anamorph {
 namespace {
 
-constexpr std::size_t kMostAtoms = 20000, kMostBonds = 500000, kMostOperations = 1000;
+constexpr std::size_t kMostAtoms = 20000, kMostBonds = 500000, kMostOperations = 1000, kMostWarnings = 20;
 /// Of a cell's edge, in Angstrom.
 constexpr double kLeastLength = 0.1;
 /// The ellipsoid x^T U^-1 x = s^2 holds half of a Gaussian in three dimensions.
@@ -199,6 +201,7 @@ struct Atom {
     Ellipsoid shape;                   ///< Angstrom, right-handed
     glm::dvec3 place{0.0};             ///< in fractions of the cell
     std::optional<glm::dmat3> tensor;  ///< mean square displacement, where it is anisotropic
+    std::optional<double> isotropic;   ///< the same, where it is not and given
 
     /// How far its bonds reach.
     double bond_radius() const { return element ? element->covalent_radius + 0.5 * kBondSlack : 0; }
@@ -212,7 +215,9 @@ class Structure {
         read_cell();
         read_displacements();
         read_atoms();
-        const std::vector<SymmetryOperation> operations = read_operations();
+        std::vector<SymmetryOperation> operations = read_operations();
+        if (operations.empty()) operations = operations_of_group();
+        find_flat_atoms();
         if (operations.size() > 1)
             expand(operations);
         else
@@ -221,8 +226,15 @@ class Structure {
 
     std::vector<Atom> atoms;
     std::vector<CrystalBond> bonds;
+    std::vector<std::string> warnings;
 
   private:
+    void warn(const std::string& where, const std::string& what) {
+        if (warnings.size() == kMostWarnings)
+            warnings.push_back(printable(m_file) + ": and more of that kind");
+        if (warnings.size() > kMostWarnings) return;
+        warnings.push_back(printable(m_file) + ": " + where + ": " + what);
+    }
     const Column* find(const std::string& tag) const {
         const auto found = m_block.find(tag);
         return found == m_block.end() ? nullptr : &found->second;
@@ -342,6 +354,7 @@ class Structure {
                 u = number_if_given("_atom_site_b_iso_or_equiv", row, 1e6);
                 if (u) *u /= kEightPiSquared;
             }
+            atom.isotropic = u;
             atom.shape.axes = glm::dvec3(u && *u > 0 ? kHalfProbability * std::sqrt(*u) : kPlainRadius);
             return;
         }
@@ -356,22 +369,90 @@ class Structure {
     static void set_tensor(Atom& atom, const glm::dmat3& tensor) {
         atom.tensor = tensor;
         atom.shape.rotation = eigenvectors(tensor);
-        // Where U is not positive definite the ellipsoid is flat.
+        // Where U is not positive definite the ellipsoid is flat, which find_flat_atoms() says.
         for (int c = 0; c < 3; ++c) {
             const glm::dvec3 axis = atom.shape.rotation[c];
             atom.shape.axes[c] = kHalfProbability * std::sqrt(std::max(glm::dot(axis, tensor * axis), 0.0));
         }
     }
 
-    /// x,y,z and the others, in the order of the file.
+    static std::string text_of_tensor(const glm::dmat3& u) {
+        std::string text;
+        for (const auto& [i, j] : {std::pair{0, 0}, {1, 1}, {2, 2}, {0, 1}, {0, 2}, {1, 2}})
+            text += (text.empty() ? "" : ", ") + shortest(static_cast<float>(u[i][j]));
+        return text;
+    }
+
+    /// Names the atoms whose U is not positive definite.
+    void find_flat_atoms() {
+        for (const Atom& atom : atoms) {
+            if (atom.isotropic && *atom.isotropic < 0)
+                warn(printable(atom.label), "U = " + shortest(static_cast<float>(*atom.isotropic)) +
+                                                " is negative: the atom is drawn as a small sphere");
+            const auto given = m_aniso.find(atom.label);
+            if (!atom.tensor || given == m_aniso.end()) continue;
+            const glm::dvec3& axis = atom.shape.rotation[2];
+            const double least = glm::dot(axis, *atom.tensor * axis);
+            if (least > 0) continue;
+            const std::array<double, 6>& u = given->second;
+            warn(printable(atom.label),
+                 "U11, U22, U33, U12, U13, U23 = " +
+                     text_of_tensor({{u[0], u[3], u[4]}, {u[3], u[1], u[5]}, {u[4], u[5], u[2]}}) +
+                     " is not positive definite (the least of its principal values is " +
+                     shortest(static_cast<float>(least)) + "): the ellipsoid is drawn flat");
+        }
+    }
+
+    /// The first value of the tags that is known.
+    std::string text_of(std::initializer_list<const char*> tags, std::string* tag_of = nullptr) const {
+        for (const char* tag : tags)
+            if (const Column* column = find(tag);
+                column && !column->values.empty() && !column->values[0].empty()) {
+                if (tag_of) *tag_of = "line " + std::to_string(column->lines[0]) + ": " + tag;
+                return column->values[0];
+            }
+        return "";
+    }
+
+    /// Of a file that lists none: those of the space group that it names, or none.
+    std::vector<SymmetryOperation> operations_of_group() {
+        SpaceGroupName name;
+        std::string tag;
+        name.number = text_of({"_space_group_it_number", "_symmetry_int_tables_number"}, &tag);
+        name.short_name = text_of({"_space_group_name_h-m_alt", "_symmetry_space_group_name_h-m",
+                                   "_space_group_name_h-m_full", "_space_group_name_h-m_ref"},
+                                  &tag);
+        name.hall = text_of({"_space_group_name_hall", "_symmetry_space_group_name_hall"},
+                            name.short_name.empty() ? &tag : nullptr);
+        name.alpha = number("_cell_angle_alpha", 0, 180);
+        name.gamma = number("_cell_angle_gamma", 0, 180);
+        if (tag.empty()) return {};
+        SpaceGroup group = space_group(name);
+        const std::string& said = !name.short_name.empty() ? name.short_name
+                                  : !name.hall.empty()     ? name.hall
+                                                           : name.number;
+        if (group.operations.empty())
+            warn(tag + "=" + text_file::excerpt(said),
+                 "is no space group that is known, and no operations are listed: atoms are drawn as they are "
+                 "listed");
+        if (!group.one_of_two.empty())
+            warn(tag + "=" + text_file::excerpt(said),
+                 "has two origins, and no operations are listed: " + group.one_of_two + " is taken");
+        return std::move(group.operations);
+    }
+
+    /// x,y,z and the others, in the order of the file; nothing where none is listed.
     std::vector<SymmetryOperation> read_operations() const {
         std::vector<SymmetryOperation> operations{{}};
         for (const std::string_view tag : kOperations)
             if (const Column* column = find(std::string(tag))) {
+                if (std::all_of(column->values.begin(), column->values.end(),
+                                std::mem_fn(&std::string::empty)))
+                    continue;
                 read_operations(std::string(tag), *column, operations);
-                break;
+                return operations;
             }
-        return operations;
+        return {};
     }
 
     void read_operations(const std::string& tag, const Column& column,
@@ -472,6 +553,7 @@ class CrystalMotion final : public Motion {
   public:
     CrystalMotion(std::string_view text, std::string_view name) {
         const Structure structure(text, name);
+        m_warnings = structure.warnings;
         const std::vector<Atom>& atoms = structure.atoms;
         const WindowFit fit = fit_of(atoms);
         m_frame.number = 1;
@@ -499,9 +581,11 @@ class CrystalMotion final : public Motion {
         frame.number = number;
         return frame;
     }
+    const std::vector<std::string>& warnings() const override { return m_warnings; }
 
   private:
     FigureFrame m_frame;
+    std::vector<std::string> m_warnings;
 };
 
 }  // namespace

@@ -14,9 +14,21 @@ void Motion::for_each_frame(const std::function<bool(const FigureFrame&)>& body)
         if (!body(frame(static_cast<int>(f)))) return;
 }
 
+namespace {
+
+const std::vector<std::string>& none() {
+    static const std::vector<std::string> texts;
+    return texts;
+}
+
+}  // namespace
+
+const std::vector<std::string>& Motion::warnings() const {
+    return none();
+}
+
 const std::vector<std::string>& Motion::images() const {
-    static const std::vector<std::string> none;
-    return none;
+    return none();
 }
 
 }  // namespace anamorph

@@ -32,6 +32,8 @@ class Motion {
 
     /// How fast the frames are meant to be shown.
     virtual double frames_per_second() const { return 25; }
+    /// What a file says that is not drawn as it says, one line each, with the file's name.
+    virtual const std::vector<std::string>& warnings() const;
     /// The names of the pictures that bodies may have for textures.
     virtual const std::vector<std::string>& images() const;
 };

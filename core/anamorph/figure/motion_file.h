@@ -6,8 +6,8 @@
 // the window of 1000 units.
 //
 // CIF (crystallographic information file; .cif): the atoms of the first structure, in one frame, and where the
-// file lists operations of symmetry all that these make of them in a cell (cif_symmetry.h; of a modulated
-// structure, the average one), as ellipsoids of anisotropic displacement that hold the atom with a probability
+// file lists operations of symmetry, or else names a space group (space_group.h), all that these make of them in a
+// cell (cif_symmetry.h; of a modulated structure, the average one), as ellipsoids of anisotropic displacement that hold the atom with a probability
 // of 1/2, spheres where displacement is isotropic, and small spheres where none is given. Joints are bonds:
 // where two atoms are closer than their covalent radii (Cordero et al. 2008) and 0.4 Angstrom together.
 //

@@ -205,6 +205,13 @@ bool Script::ok() const {
 
 Script parse_script(std::string_view text, std::string_view name, const ScriptOptions& options) {
     Script script;
+    if (text_file::ends_with(name, ".lbn")) {
+        // The editor LED writes such scores, and the program lintel makes scripts of them.
+        script.diagnostics.push_back(
+            {Severity::error, std::string(name), 1, 1, "", "",
+             "is a score in Labanotation (.lbn), not a script: must be made one (.n) by lintel", ""});
+        return script;
+    }
     ScriptParser parser(script, options);
     try {
         parser.parse(text, name);

@@ -115,10 +115,15 @@ ParameterTable look_rows() {
               "a picture behind the surface and over the background, as large as the screen; with as many "
               "colors, with alpha or without"),
         colorspace("color space to filter in; by default the source's own"),
-        output({{"depth", "the distance ahead of the camera, infinite where nothing is seen"},
-                {"normal", "the unit normal on the viewer's side"},
-                {"patch", "the number of the patch of the surface that is drawn, -1 where none is"},
-                {"coverage", "1 where the surface is seen, else 0"}}),
+        output(
+            {{"depth", "the distance ahead of the camera, infinite where nothing is seen"},
+             {"normal", "the unit normal on the viewer's side"},
+             {"patch", "the number of the patch of the surface that is drawn, -1 where none is"},
+             {"coverage",
+              "the share of the pixel in which the surface is seen, by which its colours are faded at edges "
+              "into the background; 0 or 1 with the filters nearest, bilinear and bicubic, which fade "
+              "nothing"},
+             {"seen", "1 where the surface is seen in the pixel's middle, else 0"}}),
     };
 }
 
@@ -176,7 +181,7 @@ DrapeOptions options_of(const ParameterValues& values) {
     if (options.wrap == Wrap::automatic) options.wrap = Wrap::clamp;
     options.output = rows::chosen_output(values);
     constexpr std::array kOwn = {DrapeOutput::depth, DrapeOutput::normal, DrapeOutput::patch,
-                                 DrapeOutput::coverage};
+                                 DrapeOutput::coverage, DrapeOutput::seen};
     const std::size_t shared = static_cast<std::size_t>(Output::bound) + 1,
                       output = rows::chosen_index(values, "output");
     if (output >= shared) options.own = kOwn[output - shared];
@@ -414,7 +419,9 @@ class Drapes final : public Pictures {
         PictureRequest picture;
         picture.size = *size;
         picture.pixels = pixels_of(options);
-        picture.says = {{"anamorph:tol", options.tol}};
+        // What the paper's blocks and its machine come to is no tolerance that they hold.
+        if (values.text("scheme") == "auto" || values.text("scheme") == "exact")
+            picture.says = {{"anamorph:tol", options.tol}};
         const bool plain = options.lighting.shading == DrapeShading::none && options.background.empty() &&
                            !m_request->has_backdrop();
         if (picture.pixels == PixelKind::color && options.filter == Filter::nearest && plain)

@@ -232,6 +232,8 @@ LinkedFiles linked_files(const ParameterValues& values, const SideFiles& files,
 class Film {
   public:
     explicit Film(std::unique_ptr<Motion> motion) : m_motion(std::move(motion)) {
+        for (const std::string& warning : m_motion->warnings())
+            m_warnings += (m_warnings.empty() ? "" : "; ") + warning;
         m_first = m_motion->first_frame();
         m_step = m_motion->frame_step();
     }
@@ -241,6 +243,8 @@ class Film {
         const std::lock_guard lock(*m_mutex);
         return std::max(1, m_motion->frame_count());
     }
+    /// Those of the file, in one line.
+    const std::string& warnings() const { return m_warnings; }
     /// The number of the i-th of these.
     int number(int i) const {
         const std::lock_guard lock(*m_mutex);
@@ -255,6 +259,7 @@ class Film {
   private:
     std::unique_ptr<std::mutex> m_mutex = std::make_unique<std::mutex>();
     std::unique_ptr<Motion> m_motion;
+    std::string m_warnings;
     int m_first = 1, m_step = 1;
 };
 
@@ -445,6 +450,7 @@ class Figures final : public Pictures {
         picture.says.push_back({"anamorph:frame", number});
         if (!m_request.missing.empty())
             picture.says.push_back({"anamorph:missing_textures", m_request.missing});
+        if (!m_film->warnings().empty()) picture.says.push_back({"anamorph:warnings", m_film->warnings()});
     }
 
     FigureRequest m_request;

@@ -284,7 +284,7 @@ class Panos final : public Pictures {
         picture.says = panorama_attributes(request.target, picture.pixels == PixelKind::color);
         if (picture.pixels == PixelKind::color && request.options.filter == Filter::nearest)
             picture.moves = 0;
-        picture.says.push_back({"anamorph:tol", request.options.tol});
+        if (!request.machine) picture.says.push_back({"anamorph:tol", request.options.tol});
         picture.says.push_back({"anamorph:from", std::string(name_of(request.source.projection())) + " (" +
                                                      request.source_reason + ")"});
         picture.solve = [request]() -> std::unique_ptr<const SolvedPicture> {

@@ -200,7 +200,7 @@ class Warps final : public Pictures {
         PictureRequest picture;
         picture.size = *size;
         picture.pixels = request.options.folds ? PixelKind::value : pixels_of(request.options.output);
-        picture.says = {{"anamorph:tol", request.options.tol}};
+        if (!request.machine) picture.says = {{"anamorph:tol", request.options.tol}};
         if (picture.pixels == PixelKind::color && request.options.filter == Filter::nearest &&
             !request.program)
             picture.moves = 0;
