@@ -13,10 +13,52 @@
 #include "anamorph/approx/panorama_plan.h"
 #include "anamorph/render/block_reader.h"
 #include "anamorph/simd/block_sampler.h"
+#include "anamorph/simd/direct_rows.h"
 #include "panorama_oracle.h"
 #include "projection_cases.h"
 
 namespace anamorph {
+namespace {
+
+/// A base read from where it was written, one at a time: as the loops over a block's pixels have it (simd/direct_rows.cpp).
+struct Replayed {
+    using Number = ReadingOrder::Number;
+    static inline const double* next_value = nullptr;
+    static inline ReadingOrder order;
+
+    double value = 0;
+    Number number = 0;
+
+    Replayed() = default;
+    Replayed(double k) : value(k) {}  // NOLINT: a number is a constant
+    static Replayed next(BaseOperation operation, Number a, Number b = 0) {
+        Replayed base(*next_value++);
+        base.number = order.next(operation, a, b);
+        return base;
+    }
+    friend Replayed operator-(const Replayed& a, const Replayed& b) {
+        return next(BaseOperation::difference, a.number, b.number);
+    }
+    friend Replayed operator+(const Replayed& a, const Replayed& b) {
+        return next(BaseOperation::sum, a.number, b.number);
+    }
+    friend Replayed operator*(const Replayed& a, const Replayed& b) {
+        return next(BaseOperation::product, a.number, b.number);
+    }
+    friend Replayed operator/(const Replayed& a, const Replayed& b) {
+        return next(BaseOperation::quotient, a.number, b.number);
+    }
+    friend Replayed sqrt(const Replayed& a) { return next(BaseOperation::root, a.number); }
+};
+
+}  // namespace
+
+template <>
+struct NearRest<Replayed, double> {
+    static double of(const Replayed& base) { return base.value; }
+    static double off(double rest, const Replayed&, double) { return rest; }
+};
+
 namespace {
 
 /// The points of all direct blocks of a plan, in their order.
@@ -86,11 +128,15 @@ Interval whole_of(const NearBound<Real>& number) {
 /// Room for bases that nobody reads.
 class WrittenBases {
   public:
-    WrittenBases() { WrittenBase::to = &m_bases; }
+    WrittenBases() { WrittenBase::to = &m_writer; }
     ~WrittenBases() { WrittenBase::to = nullptr; }
+
+    const Bases& bases() const { return m_bases; }
+    ReadingOrder& order() { return m_writer.order; }
 
   private:
     Bases m_bases;
+    BaseWriter m_writer{m_bases, {}};
 };
 
 /// Is base and rest together the value, and its rounding bounded?
@@ -320,6 +366,195 @@ TYPED_TEST(Near, NumbersEncloseEveryLens) {
                    ", observed");
         }
     }
+}
+
+// Formulas whose two operands are both made in one expression, as a compiler does that begins with the left one, or with the
+// right one. Of the first the operations differ, of the second their operands alone, of the third what they lead to alone.
+template <int Formula, bool LeftFirst, class T>
+Point<T> in_order(const T& x, const T& y) {
+    const auto in_turn = [](const auto& left, const auto& right, const auto& together) -> Point<T> {
+        if (LeftFirst) {
+            const T a = left();
+            return together(a, T(right()));
+        }
+        const T b = right();
+        return together(T(left()), b);
+    };
+    const auto apart = [](const T& a, const T& b) { return Point<T>{a, b}; };
+    const auto less = [](const T& a, const T& b) { return Point<T>{a - b, a / b}; };
+    if (Formula == 0) return in_turn([&] { return sqrt(T(x + 2.0)); }, [&] { return y * y; }, less);
+    if (Formula == 1) return in_turn([&] { return x * 2.0; }, [&] { return y * 3.0; }, less);
+    return in_turn([&] { return x * 2.0; }, [&] { return x * 3.0; }, apart);
+}
+
+/// What comes of a formula that was written in one order and is read in one.
+struct Replay {
+    std::uint64_t written, read;
+    double error, bound;  ///< the distance from the exact point, and what was said of it
+};
+
+template <int Formula, bool LeftWritten, bool LeftRead>
+Replay replay(double x, double y, double dx, double dy) {
+    using Written = NearBound<double>;
+    using Read = anamorph::Near<Replayed, double>;
+    WrittenBases written;
+    const Written at_x{WrittenBase::input(x), RestBound<double>(0, std::fabs(dx), 0)};
+    const Written at_y{WrittenBase::input(y), RestBound<double>(0, std::fabs(dy), 0)};
+    const Point<Written> base = in_order<Formula, LeftWritten>(at_x, at_y);
+    const auto end_of = [](ReadingOrder& order, const auto& p) {
+        order.next(BaseOperation::output, p.x.base.number);
+        order.next(BaseOperation::output, p.y.base.number);
+        return order.sum();
+    };
+    Replayed::next_value = written.bases().data();
+    Replayed::order = {};
+    const Read read_x{Replayed::next(BaseOperation::input, 0), dx};
+    const Read read_y{Replayed::next(BaseOperation::input, 0), dy};
+    const Point<Read> found = in_order<Formula, LeftRead>(read_x, read_y);
+    const Point<long double> exact =
+        in_order<Formula, true>(static_cast<long double>(x) + dx, static_cast<long double>(y) + dy);
+    const auto off = [](const Read& number, const Written& at, long double value) {
+        return std::fabs(static_cast<long double>(at.base.value) + number.rest - value);
+    };
+    return {end_of(written.order(), base), end_of(Replayed::order, found),
+            static_cast<double>(std::hypot(off(found.x, base.x, exact.x), off(found.y, base.y, exact.y))),
+            std::hypot(base.x.rest.error, base.y.rest.error)};
+}
+
+template <int Formula>
+void expect_order_is_noticed() {
+    constexpr unsigned kSeed = 415;
+    SCOPED_TRACE(testing::Message() << "formula " << Formula << ", seed " << kSeed);
+    std::mt19937 random(kSeed);
+    std::uniform_real_distribution<double> uniform(0, 1);
+    for (int i = 0; i < 100; ++i) {
+        const double x = 1 + uniform(random), y = 3 + uniform(random), dx = 0.1 * uniform(random),
+                     dy = 0.1 * uniform(random);
+        for (const Replay& same :
+             {replay<Formula, true, true>(x, y, dx, dy), replay<Formula, false, false>(x, y, dx, dy)}) {
+            EXPECT_EQ(same.written, same.read);
+            EXPECT_LE(same.error, same.bound);
+        }
+        for (const Replay& other :
+             {replay<Formula, true, false>(x, y, dx, dy), replay<Formula, false, true>(x, y, dx, dy)}) {
+            EXPECT_NE(other.written, other.read);
+            // Nor would the bound hold, where something is made of the bases.
+            EXPECT_TRUE(Formula == 2 || other.error > other.bound);
+        }
+    }
+}
+
+TEST(Direct, AnotherOrderOfOperandsIsNoticed) {
+    expect_order_is_noticed<0>();
+    expect_order_is_noticed<1>();
+    expect_order_is_noticed<2>();
+}
+
+/// Its blocks would be read in an order in which no bases are written.
+class MisreadPlan final : public FormulaPlan<Panorama> {
+  public:
+    using FormulaPlan::FormulaPlan;
+
+  protected:
+    ReadOrders read_orders(const Box&, int) const override { return {1, 2}; }
+};
+
+TEST(Direct, BasesThatWouldBeReadInAnotherOrderAreNot) {
+    const Panorama map({Projection::equirectangular, 4096, 2048}, {Projection::fisheye, 300, 300, 180},
+                       {150, 40, 0});
+    for (const Scheme scheme : {Scheme::automatic, Scheme::direct, Scheme::exact})
+        for (const double tol : {0.01, 1e-7, 0.0}) {
+            PlanOptions options;
+            options.scheme = scheme;
+            options.tol = tol;
+            const auto count = [](const BlockMap& plan) {
+                int direct = 0;
+                for (std::int64_t r = 0; r < plan.regions(); ++r)
+                    for (const Block& block : plan.blocks(r)) {
+                        direct += block.kind == Block::Kind::computed;
+                        EXPECT_TRUE(block.kind == Block::Kind::outside || block.bound <= 0.01);
+                    }
+                return direct;
+            };
+            EXPECT_EQ(count(MisreadPlan(map, options)), 0);
+            EXPECT_TRUE(scheme != Scheme::direct || count(PanoramaPlan(map, options)) > 0);
+        }
+}
+
+template <class Real>
+void expect_read_as_written(const Panorama& map) {
+    const double x = 0.3 * map.target_size().width, y = 0.4 * map.target_size().height;
+    for (std::size_t piece = 0; piece < map.target_pieces().size(); ++piece) {
+        const Panorama::Local local = map.local_around(x, y, static_cast<int>(piece));
+        Bases bases;
+        const NearReading found = map.direct<Real>(x, y, 8, 8, local, bases);
+        const std::vector<Real> read(bases.begin(), bases.end());
+        const simd::DirectBlock<Real> block{map.target(), map.source(), local, read, 1, 1, {0, 0}};
+        EXPECT_EQ(simd::direct_order(block), found.order);
+    }
+}
+/// On the set that is in use.
+void expect_read_as_written_in_float_and_double(const Panorama& map) {
+    expect_read_as_written<float>(map);
+    expect_read_as_written<double>(map);
+}
+
+TEST(Direct, BasesAreReadInTheOrderInWhichTheyAreWritten) {
+    for (const char* const* set = simd::instruction_sets(); *set; ++set) {
+        ASSERT_TRUE(simd::use_instruction_set(*set));
+        for (const Projection source : kProjections)
+            for (const Projection target : kProjections) {
+                SCOPED_TRACE(testing::Message()
+                             << *set << ", " << name_of(source) << " -> " << name_of(target));
+                expect_read_as_written_in_float_and_double(Panorama(
+                    test::chart_of_width(source, 2048), test::chart_of_width(target, 96), {30, 20, 10}));
+            }
+        for (const char* text : kLenses) {
+            SCOPED_TRACE(testing::Message() << *set << ", " << text);
+            const Chart observed = oracle::chart_of(oracle::view_through(text, {96, 96}, 90)),
+                        sphere(Projection::equirectangular, 2048, 1024);
+            expect_read_as_written_in_float_and_double(Panorama(sphere, observed, {30, 20, 10}));
+            expect_read_as_written_in_float_and_double(
+                Panorama(observed, Chart(Projection::rectilinear, 96, 96, 40), {30, 20, 10}));
+        }
+    }
+    simd::use_instruction_set("");
+}
+
+/// One operation in Real on values that are exact, and its bound: the largest part of the bound that rounding takes.
+template <class Real, class Compute, class Exact>
+double part_of_bound(const Compute& compute, const Exact& exact) {
+    constexpr unsigned kSeed = 416;
+    std::mt19937 random(kSeed);
+    std::uniform_real_distribution<double> uniform(1, 2);
+    double most = 0;
+    for (int i = 0; i < 20000; ++i) {
+        const Real a = static_cast<Real>(uniform(random)), b = static_cast<Real>(uniform(random));
+        const double bound = compute(RestBound<Real>(double{a}), RestBound<Real>(double{b})).error;
+        const long double computed = compute(a, b),
+                          truth = exact(static_cast<long double>(a), static_cast<long double>(b));
+        EXPECT_LE(std::fabs(computed - truth), bound);
+        most = std::max(most, static_cast<double>(std::fabs(computed - truth) / bound));
+    }
+    return most;
+}
+
+template <class Real>
+void expect_operations_come_near_their_bounds() {
+    const auto expect = [](const char* what, double least, const auto& operation) {
+        EXPECT_GT(part_of_bound<Real>(operation, operation), least) << what;
+    };
+    using std::sqrt;
+    expect("+", 0.9, [](const auto& a, const auto& b) { return a + b; });
+    expect("-", 0.45, [](const auto& a, const auto& b) { return a * b - b; });
+    expect("*", 0.9, [](const auto& a, const auto& b) { return a * b; });
+    expect("sqrt", 0.6, [](const auto& a, const auto&) { return sqrt(a); });
+}
+
+// Half of what a RestBound says does not hold.
+TEST(Direct, OperationsComeNearTheirBounds) {
+    expect_operations_come_near_their_bounds<float>();
+    expect_operations_come_near_their_bounds<double>();
 }
 
 class DirectTo : public testing::TestWithParam<double> {};

@@ -71,12 +71,20 @@ inline void turn_into_image(Block& block, int period) {
         block.base_x -= static_cast<int>(std::floor(static_cast<double>(block.base_x) / period)) * period;
 }
 
-/// Reads the middle of a box for blocks of its size.
+/// Is a block read as its bases are written?
+template <class Real>
+bool is_read_as_written(const NearReading& found, const ReadOrders& orders) {
+    return found.order == (std::is_same_v<Real, float> ? orders.in_float : orders.in_double);
+}
+/// Reads the middle of a box for blocks of its size. The error is infinite where blocks would read other bases than these.
 template <class Real, class Map>
-NearReading read_near(const Map& map, const Box& box, const typename Map::Local& local, Bases& bases) {
+NearReading read_near(const Map& map, const Box& box, const typename Map::Local& local,
+                      const ReadOrders& orders, Bases& bases) {
     bases.clear();
-    return map.template direct<Real>(0.5 * (box.x0 + box.x1), 0.5 * (box.y0 + box.y1), half(box.width()),
-                                     half(box.height()), local, bases);
+    NearReading found = map.template direct<Real>(0.5 * (box.x0 + box.x1), 0.5 * (box.y0 + box.y1),
+                                                  half(box.width()), half(box.height()), local, bases);
+    if (!is_read_as_written<Real>(found, orders)) found.error = HUGE_VAL;
+    return found;
 }
 /// May parts in float of a box that is off by `error` keep the tolerance, and pay? A known error falls at least as the sides,
 /// and these as the root of the pixels; large boxes, whose bounds count their width many times over, have an error that
@@ -92,8 +100,8 @@ class DirectBlocks {
   public:
     using Local = typename Map::Local;
 
-    DirectBlocks(const Map& map, double goal, DirectRecords<Local>& records)
-        : m_map(map), m_goal(goal), m_records(records) {}
+    DirectBlocks(const Map& map, double goal, const ReadOrders& orders, DirectRecords<Local>& records)
+        : m_map(map), m_goal(goal), m_orders(orders), m_records(records) {}
 
     /// Appends the blocks of one that lies on one branch of the map; exact ones where none holds the tolerance.
     void place(const Block& left, Blocks& blocks) {
@@ -125,7 +133,7 @@ class DirectBlocks {
     template <class Real>
     double read(const Block& left, const Local& local, Blocks& blocks) {
         constexpr bool kPrecise = std::is_same_v<Real, double>;
-        const NearReading found = read_near<Real>(m_map, left.box, local, m_bases);
+        const NearReading found = read_near<Real>(m_map, left.box, local, m_orders, m_bases);
         if (!BlockWriter(m_goal, blocks).computed(left.box, found.middle, found.error, kPrecise))
             return found.error > m_goal ? found.error : HUGE_VAL;
         Block& block = blocks.back();
@@ -158,6 +166,7 @@ class DirectBlocks {
 
     const Map& m_map;
     double m_goal;
+    ReadOrders m_orders;
     DirectRecords<Local>& m_records;
     Bases m_bases;
 };

@@ -7,6 +7,7 @@
 // and one source file includes approx/formula_planner.h and instantiates it. See approx/panorama_plan.h.
 #pragma once
 
+#include <cstdint>
 #include <span>
 
 #include "anamorph/approx/block.h"
@@ -33,6 +34,12 @@ struct NearBlock {
     std::span<const Real> bases;
 };
 
+/// The orders in which computed blocks read their bases, in float and in double, as NearReading has that in which they were
+/// written. A block whose bases come in another one is exact.
+struct ReadOrders {
+    std::uint64_t in_float = 0, in_double = 0;
+};
+
 /// The blocks of a FormulaMap.
 template <class Map>
 class FormulaPlan : public BlockMap {
@@ -54,6 +61,9 @@ class FormulaPlan : public BlockMap {
 
   protected:
     void plan(const Box& box, int piece, Blocks& blocks) const override;
+
+    /// How bases are read by what overrides computed() and exact_rows(), over a region.
+    virtual ReadOrders read_orders(const Box&, int /*piece*/) const { return {}; }
 
     /// How a computed block is read, in float or in double.
     static NearBlock<typename Map::Local, float> near_in_float(const Block& block);

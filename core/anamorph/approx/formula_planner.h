@@ -134,10 +134,11 @@ class Planner {
     using Local = typename Map::Local;
 
   public:
-    Planner(const Map& map, const PlanOptions& options, const Box& region, int piece, Blocks& blocks,
-            Records<Local>& records)
+    Planner(const Map& map, const PlanOptions& options, const ReadOrders& orders, const Box& region,
+            int piece, Blocks& blocks, Records<Local>& records)
         : m_map(map),
           m_options(options),
+          m_orders(orders),
           m_piece(piece),
           m_blocks(blocks),
           m_records(records),
@@ -151,7 +152,7 @@ class Planner {
     double goal() const { return m_goal; }
     bool may_be_direct() const {
         if constexpr (DirectMap<Map>)
-            return m_map.may_be_direct();
+            return m_read_as_written && m_map.may_be_direct();
         else
             return false;
     }
@@ -237,8 +238,11 @@ class Planner {
             if (!may_be_direct()) return 0;
             Box middle = is_block(box) ? box : middle_of(box);
             const auto error_in = [&](auto real, const Box& of) {
+                using Real = decltype(real);
                 m_balance -= kDirectCost;
-                return read_near<decltype(real)>(m_map, of, local_about(of), m_bases).error;
+                const NearReading found = read_near<Real>(m_map, of, local_about(of), m_orders, m_bases);
+                m_read_as_written = m_read_as_written && is_read_as_written<Real>(found, m_orders);
+                return found.error;
             };
             const auto expect = [&](bool precise, double saving) {
                 m_direct = {precise, saving};
@@ -246,6 +250,7 @@ class Planner {
             };
             const auto part_of = [](const Box& of) { return sub_box(of, of.width() > of.height(), false); };
             double error = m_exact ? error_in(0.0, middle) : error_in(0.0f, middle);
+            if (!m_read_as_written) return 0;
             // Where blocks are too large for any bound, smaller ones may have one.
             while (!(error < HUGE_VAL) && pixels_of(middle) >= 2 * kLeastInFloat) {
                 middle = part_of(middle);
@@ -969,6 +974,8 @@ class Planner {
 
     const Map& m_map;
     const PlanOptions& m_options;
+    ReadOrders m_orders;
+    bool m_read_as_written = true;  ///< would direct blocks read the bases that are written for them?
     int m_piece;
     Blocks& m_blocks;
     Records<Local>& m_records;
@@ -1048,13 +1055,14 @@ void FormulaPlan<Map>::plan(const Box& box, int piece, Blocks& blocks) const {
     Blocks planned;
     planned.reserve(2 * kRegion * kRegion / (kBlockWidth * kBlockHeight));
     const auto records = std::make_shared<Records<typename Map::Local>>();
-    Planner<Map> planner(m_map, m_options, box, piece, planned, *records);
+    const ReadOrders orders = read_orders(box, piece);
+    Planner<Map> planner(m_map, m_options, orders, box, piece, planned, *records);
     if (planner.is_exact() && !planner.may_be_direct())
         planner.exact(box);
     else
         planner.settle(box);
     if constexpr (DirectMap<Map>)
-        planned = DirectBlocks<Map>(m_map, planner.goal(), records->direct).placed(planned);
+        planned = DirectBlocks<Map>(m_map, planner.goal(), orders, records->direct).placed(planned);
     blocks.reserve(planned.size());
     ExactBounds<Map> exact(m_map, m_options.tol, blocks);
     for (const Block& block : planned)

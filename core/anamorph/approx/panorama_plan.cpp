@@ -48,6 +48,24 @@ void PanoramaPlan::direct_rows(const Block& block, int begin, int end, const Dou
     }
 }
 
+namespace {
+
+/// Of a block of one pixel whose bases, more than there ever are, are all 0.
+template <class Real>
+std::uint64_t read_order(const Panorama& map, const Panorama::Local& local) {
+    static const std::vector<Real> bases(4096);
+    return simd::direct_order(
+        simd::DirectBlock<Real>{map.target(), map.source(), local, bases, 1, 1, {0, 0}});
+}
+
+}  // namespace
+
+ReadOrders PanoramaPlan::read_orders(const Box& box, int piece) const {
+    if (!map().may_be_direct()) return {};
+    const Panorama::Local local = map().local_around(0.5 * (box.x0 + box.x1), 0.5 * (box.y0 + box.y1), piece);
+    return {read_order<float>(map(), local), read_order<double>(map(), local)};
+}
+
 /// Of a part of a block, counted from its corner.
 void PanoramaPlan::direct_rows(const Block& block, const Box& part, const PointRows& to) const {
     const NearBlock<Panorama::Local, float> near = near_in_float(block);

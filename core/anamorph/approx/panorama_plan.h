@@ -21,6 +21,9 @@ class PanoramaPlan final : public FormulaPlan<Panorama> {
                       float* y) const noexcept override;
     void computed(std::span<const Block> layers, const PointRows* to) const noexcept override;
 
+  protected:
+    ReadOrders read_orders(const Box& box, int piece) const override;
+
   private:
     void direct_rows(const Block& block, const Box& part, const PointRows& to) const;
     void direct_rows(const Block& block, int begin, int end, const DoubleRows& to) const;

@@ -79,7 +79,8 @@ concept FormulaMap = requires(const Map& map, const typename Map::Local& local, 
 /// What a map is near the middle of a block: the source point there, and a bound of the error of its pixels'.
 struct NearReading {
     Point<double> middle;
-    double error;
+    double error;         ///< where the bases are read in the order in which they were written
+    std::uint64_t order;  ///< that order (number/reading_order.h)
 };
 
 /// A map whose plan reads it pixel by pixel near the middles of blocks as well (FormulaPlan's computed blocks), because

@@ -507,7 +507,8 @@ NearBound<Real> shrink(const LensTerms& lens, const NearBound<Real>& value) {
     const double far = rest.computed_size(), base = value.base.value;
     const auto series = lens_detail::shrink_series<kDegree>(lens, lens_formula::radial_root(lens, base));
     WrittenBase bases[kDegree + 1];
-    for (int k = kDegree; k >= 0; --k) bases[k] = WrittenBase::written(series.c[k]);
+    for (int k = kDegree; k >= 0; --k)
+        bases[k] = WrittenBase::written(series.c[k], BaseOperation::power_series, value.base.number);
     NearBound<Real> found = NearBound<Real>::series(bases, rest);
     const ComputedSeries at = computed_shrink(lens, Interval(base));
     const Interval all = Interval(base) + Interval(-far, far);

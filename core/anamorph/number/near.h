@@ -12,7 +12,7 @@
 //
 // Base and Rest are numbers. They are read in two pairs:
 //
-//   double                    RestBound        the bases, written down in order, and a bound of |computed - exact| over all
+//   double                    RestBound        the bases, written down in turn, and a bound of |computed - exact| over all
 //                                              pixels of a block (number/near_bound.h)
 //   read from there           lanes            a block's pixels (simd/direct_rows.cpp)
 //
@@ -23,8 +23,19 @@
 // sine_versine(a, s, v), sin a and 1 - cos a for |a| <= pi / 4, and length(a, b); bases sinc_cos_series(a, s, c)
 // (number/sinc_series.h).
 //
-// Bases are read in the order in which they were written: that in which the compiler evaluates the operands of a formula,
-// which is the same for both as long as one compiler makes both. tests/core/test_direct.cpp reads every formula.
+// Bases are read in the order in which they were written, which is that in which the operands of a formula are evaluated.
+// C++ leaves that to the compiler, for the two pairs apart. So both number their operations as they do them, and a base
+// carries the number of the one whose result it is (0 is a constant). Both join what is done, and the numbers of its operands,
+// into a sum (number/reading_order.h), at the end those of the results: where the sums differ a bound is infinite.
+//
+// Where they are the same, every operation that the results depend on has one number in both, and so reads its own bases:
+// - Both are one formula's operations. Those of this file do their parts in a fixed order, each in statements of their own, and
+//   calls never interleave: an operation's parts have consecutive numbers, all known by that of its result; so have its bases.
+// - One sum means one sequence of entries (a different one has the same sum by chance, once in 2^64). The last ones give the
+//   results one number in both. The entry of that number names, in both, the operands of one and the same operation: they have
+//   one number in both as well, and so on down to the inputs, which are numbered in a fixed order.
+// An operation that no result depends on may read any base: nothing is made of it. tests/core/test_direct.cpp reads formulas
+// whose operands come in another order, and every formula that there is.
 //
 // No include guard and no namespace, as in map/lens_formula.h: lanes are compiled for each instruction set.
 // ANAMORPH_INLINE says how.
@@ -85,7 +96,10 @@ struct Near {
         const Base result = a.base + Base(k);
         return {result, Pair::off(a.rest, result, 1)};
     }
-    friend ANAMORPH_INLINE Near operator+(double k, const Near& a) { return a + k; }
+    friend ANAMORPH_INLINE Near operator+(double k, const Near& a) {
+        const Base result = Base(k) + a.base;
+        return {result, Pair::off(a.rest, result, 1)};
+    }
     friend ANAMORPH_INLINE Near operator-(const Near& a, double k) {
         const Base result = a.base - Base(k);
         return {result, Pair::off(a.rest, result, 1)};
@@ -98,7 +112,10 @@ struct Near {
         const Base result = a.base * Base(k);
         return {result, Pair::off(a.rest * Pair::of(Base(k)), result, 1)};
     }
-    friend ANAMORPH_INLINE Near operator*(double k, const Near& a) { return a * k; }
+    friend ANAMORPH_INLINE Near operator*(double k, const Near& a) {
+        const Base result = Base(k) * a.base;
+        return {result, Pair::off(a.rest * Pair::of(Base(k)), result, 1)};
+    }
 
     friend ANAMORPH_INLINE Near square(const Near& a) {
         const Base result = a.base * a.base;
@@ -111,7 +128,8 @@ struct Near {
     }
     /// The root of A^2 + B^2: with L that of the bases, L'^2 - L^2 = da (A + a) + db (B + b), over L' + L.
     friend ANAMORPH_INLINE Near length(const Near& a, const Near& b) {
-        const Base squared = a.base * a.base + b.base * b.base, root = sqrt(squared);
+        const Base square_a = a.base * a.base, square_b = b.base * b.base;
+        const Base squared = square_a + square_b, root = sqrt(squared);
         const Rest whole_a = a.whole(), whole_b = b.whole(), of_root = Pair::of(root);
         const Rest whole = length(whole_a, whole_b);
         const Rest grown = a.rest * (whole_a + Pair::of(a.base)) + b.rest * (whole_b + Pair::of(b.base));
@@ -170,7 +188,7 @@ struct Near {
     }
     /// asinh A - asinh a = asinh(A r - a R), r and R the roots of 1 + a^2 and 1 + A^2; A r - a R = da r - a (R - r).
     friend ANAMORPH_INLINE Near asinh(const Near& a) {
-        const Base root = sqrt(a.base * a.base + Base(1.0)), result = asinh(a.base);
+        const Base squared = a.base * a.base, root = sqrt(squared + Base(1.0)), result = asinh(a.base);
         const Rest of_a = Pair::of(a.base), of_root = Pair::of(root);
         const Rest whole = a.whole(), other = sqrt(whole * whole + Rest(1.0));
         const Rest grown = a.rest * (whole + of_a) / (other + of_root);
@@ -197,12 +215,11 @@ struct Near {
     template <class AtBase, class AtRest>
     friend ANAMORPH_INLINE Near select(const NearCondition<AtBase, AtRest>& where, const Near& a,
                                        const Near& b) {
-        const Base apart = b.base - a.base;
+        const Base apart = b.base - a.base, chosen = Pair::choose(where.base, a.base, b.base);
         const Rest from_a = Pair::off(b.rest + Pair::of(apart), apart, 1);
         const Rest from_b = Pair::off(a.rest - Pair::of(apart), apart, 1);
-        return {
-            Pair::choose(where.base, a.base, b.base),
-            Pair::choose(where.base, select(where.rest, a.rest, from_a), select(where.rest, from_b, b.rest))};
+        return {chosen, Pair::choose(where.base, select(where.rest, a.rest, from_a),
+                                     select(where.rest, from_b, b.rest))};
     }
     friend ANAMORPH_INLINE Near min(const Near& a, const Near& b) { return select(is_negative(b - a), b, a); }
     friend ANAMORPH_INLINE Near max(const Near& a, const Near& b) { return select(is_negative(a - b), b, a); }

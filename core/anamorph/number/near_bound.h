@@ -7,6 +7,7 @@
 #include <numbers>
 #include <vector>
 
+#include "anamorph/number/reading_order.h"
 #include "anamorph/number/rounded.h"
 #include "anamorph/number/sinc_series.h"
 
@@ -191,50 +192,85 @@ RestBound<Real> any_angle(const RestBound<Real>& y, const RestBound<Real>& x) {
 /// The bases of readings of a formula, in order.
 using Bases = std::vector<double>;
 
+/// Where bases are written, behind those that are there, and in which order they come.
+struct BaseWriter {
+    Bases& bases;
+    ReadingOrder order;
+};
+
 /// A base in double. The result of every operation is written down where WrittenBase::to points; decisions as 1 or 0.
 struct WrittenBase {
-    static inline thread_local Bases* to = nullptr;
+    using Number = ReadingOrder::Number;
+
+    static inline thread_local BaseWriter* to = nullptr;
 
     double value = 0;
+    Number number = 0;  ///< of the operation whose result it is; 0 of a constant
 
     WrittenBase() = default;
     WrittenBase(double k) : value(k) {}  // NOLINT: a number is a constant
-    static WrittenBase written(double value) {
-        to->push_back(value);
-        return value;
-    }
-    static bool written_decision(bool holds) {
-        to->push_back(holds ? 1.0 : 0.0);
-        return holds;
-    }
+    WrittenBase(double result, Number of) : value(result), number(of) {}
 
-    friend WrittenBase operator-(const WrittenBase& a) { return written(-a.value); }
+    /// Whether a condition holds.
+    struct Decision {
+        bool holds;
+        Number number;
+
+        friend Decision both(const Decision& a, const Decision& b) {
+            return {a.holds && b.holds, next(BaseOperation::both, a.number, b.number)};
+        }
+    };
+
+    static ANAMORPH_INLINE Number next(BaseOperation operation, Number a, Number b = 0, Number c = 0) {
+        return to->order.next(operation, a, b, c);
+    }
+    static ANAMORPH_INLINE WrittenBase written(double value, BaseOperation operation, Number a,
+                                               Number b = 0) {
+        to->bases.push_back(value);
+        return {value, next(operation, a, b)};
+    }
+    static Decision written_decision(bool holds, BaseOperation operation, Number a) {
+        to->bases.push_back(holds ? 1.0 : 0.0);
+        return {holds, next(operation, a)};
+    }
+    static WrittenBase input(double value) { return written(value, BaseOperation::input, 0); }
+
+    friend WrittenBase operator-(const WrittenBase& a) {
+        return written(-a.value, BaseOperation::negation, a.number);
+    }
     friend WrittenBase operator+(const WrittenBase& a, const WrittenBase& b) {
-        return written(a.value + b.value);
+        return written(a.value + b.value, BaseOperation::sum, a.number, b.number);
     }
     friend WrittenBase operator-(const WrittenBase& a, const WrittenBase& b) {
-        return written(a.value - b.value);
+        return written(a.value - b.value, BaseOperation::difference, a.number, b.number);
     }
     friend WrittenBase operator*(const WrittenBase& a, const WrittenBase& b) {
-        return written(a.value * b.value);
+        return written(a.value * b.value, BaseOperation::product, a.number, b.number);
     }
     friend WrittenBase operator/(const WrittenBase& a, const WrittenBase& b) {
-        return written(a.value / b.value);
+        return written(a.value / b.value, BaseOperation::quotient, a.number, b.number);
     }
-    friend WrittenBase sqrt(const WrittenBase& a) { return written(std::sqrt(a.value)); }
+    friend WrittenBase sqrt(const WrittenBase& a) {
+        return written(std::sqrt(a.value), BaseOperation::root, a.number);
+    }
     friend void sin_cos(const WrittenBase& a, WrittenBase& s, WrittenBase& c) {
-        s = written(std::sin(a.value));
-        c = written(std::cos(a.value));
+        const Number of = a.number;
+        const double angle = a.value;
+        s = written(std::sin(angle), BaseOperation::sine_and_cosine, of);
+        c = written(std::cos(angle), BaseOperation::sine_and_cosine, of);
     }
     friend WrittenBase atan2(const WrittenBase& y, const WrittenBase& x) {
-        return written(std::atan2(y.value, x.value));
+        return written(std::atan2(y.value, x.value), BaseOperation::angle, y.number, x.number);
     }
-    friend WrittenBase asinh(const WrittenBase& a) { return written(std::asinh(a.value)); }
+    friend WrittenBase asinh(const WrittenBase& a) {
+        return written(std::asinh(a.value), BaseOperation::area_sine, a.number);
+    }
     friend WrittenBase scaled_sinh(const WrittenBase& a, WrittenBase& s) {
+        const Number of = a.number;
         double t = 0;
         const double c = scaled_sinh(a.value, t);
-        s = written(t);
-        return written(c);
+        s = written(t, BaseOperation::scaled_sine, of);
+        return written(c, BaseOperation::scaled_sine, of);
     }
     /// The first coefficients of the series of sin t / t and cos t in powers of t^2, about a; NaN beyond half a turn.
     template <std::size_t N>
@@ -242,12 +278,16 @@ struct WrittenBase {
         double sinc[N], cosine[N];
         sinc_cos_series(a.value, sinc, cosine);
         for (std::size_t k = 0; k < N; ++k) {
-            s[k] = written(sinc[k]);
-            c[k] = written(cosine[k]);
+            s[k] = written(sinc[k], BaseOperation::sinc_and_cosine, a.number);
+            c[k] = written(cosine[k], BaseOperation::sinc_and_cosine, a.number);
         }
     }
-    friend bool is_negative(const WrittenBase& a) { return written_decision(a.value < 0); }
-    friend bool is_zero(const WrittenBase& a) { return written_decision(a.value == 0); }
+    friend Decision is_negative(const WrittenBase& a) {
+        return written_decision(a.value < 0, BaseOperation::is_negative, a.number);
+    }
+    friend Decision is_zero(const WrittenBase& a) {
+        return written_decision(a.value == 0, BaseOperation::is_zero, a.number);
+    }
 };
 
 template <class Real>
@@ -276,14 +316,20 @@ struct NearRest<WrittenBase, RestBound<Real>> {
     /// Which way it is found is written down: most angles are small.
     static R angle(const R& y, const R& x) {
         const R small = small_angle(y, x);
-        return WrittenBase::written_decision(small.error < HUGE_VAL) ? small : any_angle(y, x);
+        const auto is_small =
+            WrittenBase::written_decision(small.error < HUGE_VAL, BaseOperation::is_small_angle, 0);
+        return is_small.holds ? small : any_angle(y, x);
     }
     static Near<WrittenBase, R> near(double value, double error) {
         return {WrittenBase(value), R(0, error, error)};
     }
-    template <class T>
-    static T choose(bool condition, const T& a, const T& b) {
-        return condition ? a : b;
+    static WrittenBase choose(const WrittenBase::Decision& condition, const WrittenBase& a,
+                              const WrittenBase& b) {
+        return {condition.holds ? a.value : b.value,
+                WrittenBase::next(BaseOperation::choice, condition.number, a.number, b.number)};
+    }
+    static R choose(const WrittenBase::Decision& condition, const R& a, const R& b) {
+        return condition.holds ? a : b;
     }
 };
 

@@ -14,7 +14,7 @@ struct DirectBlock {
     const Chart& target;
     const Chart& source;
     const Panorama::Local& local;
-    /// As Panorama::direct() wrote them down about the middle of the block.
+    /// As Panorama::direct() wrote them down about the middle of the block, in the order of direct_order().
     std::span<const Real> bases;
     int width, height;
     /// What is added to the rests: the source point of the middle of the block, or what it is less the block's base.
@@ -28,5 +28,10 @@ void direct_rows(const DirectBlock<float>& block, const Box& part, const PointRo
 
 /// The source points of row `row` of the block, likewise. There is room for 16 more.
 void direct_row(const DirectBlock<double>& block, int row, double* x, double* y);
+
+/// The order in which these read the bases of a block, as NearReading has that in which they were written. It does not depend on
+/// their values; `block` has at least as many as are read.
+std::uint64_t direct_order(const DirectBlock<float>& block);
+std::uint64_t direct_order(const DirectBlock<double>& block);
 
 }  // namespace anamorph::simd
