@@ -25,6 +25,8 @@
 #include <concepts>
 #include <limits>
 
+#include "anamorph/number/arithmetic.h"
+
 namespace anamorph {
 
 using std::asinh;

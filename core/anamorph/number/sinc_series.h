@@ -7,6 +7,8 @@
 #include <cstddef>
 #include <type_traits>
 
+#include "anamorph/number/arithmetic.h"
+
 namespace anamorph {
 
 /// 1 / n!, to within n units.

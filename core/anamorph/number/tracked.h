@@ -10,6 +10,8 @@
 #include <cmath>
 #include <limits>
 
+#include "anamorph/number/arithmetic.h"
+
 namespace anamorph {
 
 template <class T>
