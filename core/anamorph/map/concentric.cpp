@@ -102,6 +102,20 @@ ConcentricMap::Local ConcentricMap::local_around(double x, double y, int piece) 
     return local;
 }
 
+double ConcentricMap::offset_error(const Interval& x, const Interval& y, int piece) const {
+    using R = Rounded<double>;
+    const Ray<R> ray = m_view.source_ray(R(x, 0, 0), R(y, 0, 0), piece);
+    const auto least = [](const Interval& a) { return std::max({a.lo, -a.hi, 0.0}); };
+    const double moved = std::hypot(ray.x.error, ray.z.error);
+    const double nearest = std::hypot(least(ray.x.range), least(ray.z.range)) * (1 - 0x1p-50);
+    if (!(nearest > moved)) return HUGE_VAL;
+    // Directions of vectors a and b are at most |a - b| / sqrt(|a| |b|) apart, and offsets as much, as the viewpoint is at most
+    // 1 from the centre, a hair aside. In units of 2^-53: hypot is off by 8 of a direction, its quotients by 1, the products and
+    // the difference of an offset by 2; weight()'s sum and product by 4 when they are counted as an offset; and the radius of
+    // the circle, the way to the next one, their sum and the difference from that by 10. That is 25.
+    return (moved / (nearest - moved) + 40 * 0x1p-53) * (1 + 0x1p-30);
+}
+
 Cover ConcentricMap::cover(const Interval& x, const Interval& y, int piece, const Local& local,
                            bool across_seam) const {
     const Cover target = m_view.target_cover(x, y, piece);
@@ -111,10 +125,9 @@ Cover ConcentricMap::cover(const Interval& x, const Interval& y, int piece, cons
     const auto px = measured<Interval>(local.viewpoint.x, kLocalError);
     const auto pz = measured<Interval>(local.viewpoint.y, kLocalError);
     const Interval offset = sight(ray, px, pz).offset;
-    const double reach = 2.0 / std::max(1, m_stack.circles - 1), slack = 1e-9;
-    const double radius = m_stack.radius(m_circle);
-    if (!m_whole && (offset.lo > radius + reach + slack || offset.hi < radius - reach - slack))
-        return Cover::outside;
+    const double reach = 2.0 / std::max(1, m_stack.circles - 1), radius = m_stack.radius(m_circle);
+    const double beyond = std::max(offset.lo - (radius + reach), (radius - reach) - offset.hi);
+    if (!m_whole && beyond > 0 && beyond > offset_error(x, y, piece)) return Cover::outside;
     return m_view.cover(slit_ray(ray, px, pz), local.view, across_seam);
 }
 

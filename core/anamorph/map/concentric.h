@@ -106,6 +106,10 @@ class ConcentricMap {
         const Ray<T> u{r.x / length, r.y / length, r.z / length};
         return {u, u.z * px - u.x * pz, u.x * px + u.z * pz};
     }
+    /// How far the offset that a stack says of a ray as doubles have it (ConcentricStack::offset()) may be from the exact one,
+    /// together with what weight() loses of it, over a box of target points.
+    double offset_error(const Interval& x, const Interval& y, int piece) const;
+
     template <class T>
     static Ray<T> with_enlarged(const Ray<T>& r) {
         const auto k = enlarger(r.x, r.z);

@@ -113,13 +113,19 @@ class Panorama {
     NearReading direct(double x, double y, double half_width, double half_height, const Local& local,
                        Bases& bases) const;
 
-  private:
-    /// The entries of a product of rotations to and from a local frame: each of its two angles may be off
-    /// by Heading::kError, which turns a ray by as much; the frames' entries may be off by that again, in two
-    /// places of a row or column each; and the products of unit rows, 12 of them and as many sums, by less
-    /// than 64 units.
+    /// How far the entries of Local::rotation may be off, a product of rotations to and from a local frame, S^T M T: of the exact
+    /// M and the exact frames about the angles that the branches say.
+    ///
+    /// S and T are off in four entries, each by Heading::kError, which is h here, as it counts the angle's error too. A column of
+    /// such errors meets one of a rotation, of length 1: each frame brings sqrt 2 h at most, and terms of h^2 are next to nothing.
+    /// With u = 2^-53: M's entries are rounded by u of each, which meets a column of S and one of T, of length 1: sqrt 3 u at
+    /// most, as the squares of M's entries add up to 3; the .07 u that long double left meet two entries of each: .14 u. An entry
+    /// of S^T M, three products and two sums, is off by 3 u times the product of two lengths, 1, and of such errors three meet a
+    /// column of T with two entries: 3 sqrt 2 u. The other product brings 3 u. That is 2 sqrt 2 h + 10 u at most, about half of
+    /// what is returned.
     static constexpr double kLocalError = 6 * Heading::kError + 64 * 0x1p-53;
 
+  private:
     Local local_around(const Ray<double>& target_ray, int piece, const Ray<double>& source_ray) const;
     /// Chart::sees() of a ray of the source.
     template <class T>

@@ -8,11 +8,17 @@ ANAMORPH_PROJECTION(pannini, Pannini)
 struct Pannini : AnyProjection {
     static constexpr FieldOfView fov{180, 360, true};
 
-    /// cos a stays above this: nearer to the back the picture turns round (d > 1) or its scale has no end.
-    static double least_cosine(const Setting& s) { return -std::min(s.distance.d, 1 / s.distance.d); }
+    /// cos a stays above this: nearer to the back the picture turns round (d > 1) or its scale has no end. Where it is -1 / d it
+    /// is rounded towards 0: near -1 an angle changes by many times what its cosine does.
+    static double least_cosine(const Setting& s) {
+        const double d = s.distance.d;
+        if (d <= 1) return -d;
+        const double inverse = 1 / d;
+        return -(std::fma(inverse, d, -1.0) > 0 ? std::nextafter(inverse, 0.0) : inverse);
+    }
     static double most_fov(const FieldOfView& most, const Setting& s) {
-        // No more than it is, however acos and the products round.
-        constexpr double kBelow = 1 - 4 * 0x1p-52;
+        // No more than it is: acos may be off by kLibmError, 4 x 2^-52, each of three operations and the double pi by half of 2^-52.
+        constexpr double kBelow = 1 - 8 * 0x1p-52;
         return std::min(most.most, 2 * std::acos(least_cosine(s)) * 180 / std::numbers::pi * kBelow);
     }
     /// By t = tan(a / 2): sin a / (d + cos a) = 2 t / ((d + 1) + (d - 1) t^2), which cancels for d < 1 only.
@@ -20,10 +26,12 @@ struct Pannini : AnyProjection {
         const long double t = tan_of(degrees / 4);
         return 4 * (s.distance.d + 1.0L) * t / (s.distance.d + 1.0L + (s.distance.d - 1.0L) * t * t);
     }
-    /// t is off by 6 units, and its square by 13; where the sum cancels, that counts as often as its terms are larger.
+    /// t is off by 14 units (AnyProjection::width_units), 4 (d + 1) t by 16. Of the sum below, d + 1 is off by 1, (d - 1) t^2 by
+    /// 14 twice and 3 more, 31, and the sum itself by 1: all of it by 32 times its terms' magnitudes. With the quotient, and 4
+    /// for what is made of the width, that is 21 units and 32 times the magnitudes over the sum, which are at least 1.
     static double width_units(long double degrees, const Setting& s) {
         const long double t = tan_of(degrees / 4), falling = (s.distance.d - 1.0L) * t * t;
-        return 32 * static_cast<double>((s.distance.d + 1.0L + std::fabs(falling)) /
+        return 56 * static_cast<double>((s.distance.d + 1.0L + std::fabs(falling)) /
                                         (s.distance.d + 1.0L + falling));
     }
     static double largest_tangent(double half_width, double half_height) {
