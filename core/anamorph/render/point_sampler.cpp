@@ -95,7 +95,7 @@ bool PointSampler::sample(const Footprint& footprint, const Jacobian& jacobian, 
     const double taps = footprint.taps_a * footprint.taps_b;
     for (std::size_t c = 0; c < m_sum.size(); ++c) pixel[c] = static_cast<float>(m_sum[c] / taps);
     // Taps that lie together are one, where that makes a difference.
-    const Point<double> corner = tap_offset(footprint, jacobian, {sx, sy}, 0, 0);
+    const Point<double> corner = offset(0, 0);
     const bool together =
         taps > 1 && std::fabs(corner.x) + std::fabs(corner.y) < static_cast<double>(kSameTap);
     if (!together || std::all_of(m_sum.begin(), m_sum.end(), [](double sum) { return std::isfinite(sum); }))
