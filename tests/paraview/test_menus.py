@@ -68,8 +68,8 @@ def errors_of(filter, **values):
 
 
 picture = Wavelet(WholeExtent=[0, 9, 0, 9, 0, 0])
-lists = [(AnamorphDeform(Input=sphere), "Deformations", 9), (AnamorphInbetween(Input=[sphere]), "Keys", 3),
-         (AnamorphDrape(Input=picture), "Lights", 3), (AnamorphProjectionBake(Input=sphere, Panoramas=[picture]), "Projectors", 9)]
+lists = [(simple.AnamorphDeform(Input=sphere), "Deformations", 9), (simple.AnamorphInbetween(Input=[sphere]), "Keys", 3),
+         (simple.AnamorphDrape(Input=picture), "Lights", 3), (simple.AnamorphProjectionBake(Input=sphere, Panoramas=[picture]), "Projectors", 9)]
 for filter, name, row in lists:
     for count in (row - 1, 2 * row + 1):
         told = errors_of(filter, **{name: [1] * count})
