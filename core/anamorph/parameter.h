@@ -2,9 +2,9 @@
 // The parameters of an operation: one table says what there is, and the parser of recipe files and names, the
 // checks and the reference page all read that table.
 //
-// A recipe file has one `key=value` a line. Blank lines and lines that start with # say nothing; blanks
-// around key and value do not count; a byte order mark and Windows line ends are read over. A recipe name is
-// `BASE?key=value&key=value`. Its values may hold any character but `&`, with one exception: a value that is
+// A recipe file has one `key=value` a line. Blank lines say nothing, nor what follows a # that begins a line or stands behind a
+// blank, unless the value is in double quotes; blanks around key and value do not count; a byte order mark and Windows line
+// ends are read over. A recipe name is `BASE?key=value&key=value`. Its values may hold any character but `&`, with one exception: a value that is
 // itself a recipe name with arguments (it holds a `?`) takes all the rest of the name, so it stands last, or
 // it stands in brackets: `a=(x.pano?yaw=3&fov=40)&b=y.exr`. Nothing is decoded: %20 stays %20. Keys are read
 // in upper or lower case.
