@@ -19,6 +19,8 @@
  * asked for, in any order, and is the same to the bit. A script that shows no frame is the figures at rest,
  * without times.
  *
+ * What a file says that is not drawn as it says, such as an atom whose U is not positive definite, is a warning.
+ *
  * Motions (.bvh) and crystal structures (.cif) become ellipsoids in the same window, and frames that were
  * written (.3) are read back.
  *

@@ -7,7 +7,6 @@
 #include <deque>
 #include <glm/geometric.hpp>
 
-#include "anamorph/drape/drape_rows.h"
 #include "anamorph/drape/oka.h"
 #include "anamorph/parameter.h"
 #include "anamorph/render/pixel.h"
@@ -48,7 +47,7 @@ double with_two_digits(double value) {
 }
 
 /// A tolerance above `tol`, which takes too many patches, that does not, within an eighth above the least one; nothing
-/// where there is none of up to 1000 pixels.
+/// where there is none up to 64 times as large, as it takes a while to find.
 std::optional<double> least_tol(SharedTree& surface, const Camera& camera, double tol) {
     FacetRoom room;
     const std::lock_guard lock(surface.mutex);
@@ -62,7 +61,7 @@ std::optional<double> least_tol(SharedTree& surface, const Camera& camera, doubl
     };
     double too_small = tol, enough = 2 * tol;
     for (; !works(enough); enough *= 2) {
-        if (enough > kDrapeTolRow.most) return {};
+        if (enough >= 64 * tol) return {};
         too_small = enough;
     }
     for (int halving = 0; halving < 3; ++halving) {

@@ -121,7 +121,7 @@ ParameterTable look_rows() {
              {"patch", "the number of the patch of the surface that is drawn, -1 where none is"},
              {"coverage",
               "the share of the pixel in which the surface is seen, by which its colours are faded at edges "
-              "into the background; 0 or 1 with the filters nearest, bilinear and bicubic, which fade "
+              "into the background, and 0 or 1 with the filters nearest, bilinear and bicubic, which fade "
               "nothing"},
              {"seen", "1 where the surface is seen in the pixel's middle, else 0"}}),
     };
