@@ -120,7 +120,8 @@ TEST_F(StoredValues, OfEveryTypeThatFilesHave) {
     check<std::uint32_t>("u.exr", TypeDesc::UINT32, 3);
     write(ids<std::int32_t>(TypeDesc::INT32, 2), "i.tif", 0);
     check<std::int32_t>("i.tif", TypeDesc::INT32, 2);
-    write(ids<double>(TypeDesc::DOUBLE, 3), "d.tif", 16);
+    // OpenImageIO 2.4 does not read back the doubles that it writes to tiles.
+    write(ids<double>(TypeDesc::DOUBLE, 3), "d.tif", 0);
     check<double>("d.tif", TypeDesc::DOUBLE, 3);
     write(ids<std::int16_t>(TypeDesc::INT16, 1), "s.tif", 0);
     check<std::int16_t>("s.tif", TypeDesc::INT16, 1);
@@ -175,8 +176,7 @@ TEST_F(StoredValues, StockProgramsWriteThem) {
         "'u.tif.pano?from=equirectangular&to=equirectangular&size=64x32&filter=nearest'";
     for (const std::string& command :
          {"oiiotool --native " + recipe + " -o out.tif", "iconvert " + recipe + " out.tif",
-          "oiiotool --native " + recipe +
-              " -d uint -o out.exr && oiiotool --native out.exr -d uint -o out.tif"}) {
+          "oiiotool --native " + recipe + " -o out.exr && oiiotool --native out.exr -o out.tif"}) {
         SCOPED_TRACE(command);
         const Ran ran = run(command);
         ASSERT_EQ(ran.status, 0) << ran.text;
