@@ -42,8 +42,10 @@ WarpMap parse_points_csv(std::string_view text, std::string_view name);
 /// Chooses by the end of the name: .csv, else JSON.
 WarpMap parse_warp_file(std::string_view text, std::string_view name);
 
-/// Of an ST-map: the pixels that may be vertices, and those either way.
-inline constexpr int kMostStMapVertices = 1 << 28, kMostStMapSide = 1 << 20;
+/// Of an ST-map: so many pixels may be vertices.
+inline constexpr int kMostStMapVertices = 1 << 28;
+/// And so many either way.
+inline constexpr int kMostStMapSide = 1 << 20;
 
 /// A pull mesh from an ST-map: pixel (i, j) of an image of width x height says where in the source the centre
 /// of that pixel (of an image that covers the target) comes from, as fractions (u right, v down, edge to

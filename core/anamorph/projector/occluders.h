@@ -62,6 +62,7 @@ class Occluders {
     struct Occluder {
         std::array<glm::dvec3, 4> normals;
         double depth;
+        /// normals[k] . ray, of the last one less depth: what is 0 at least where a point is hidden.
         double value(std::size_t k, const glm::dvec3& ray) const;
     };
     /// A box around some of them, from the centre.
