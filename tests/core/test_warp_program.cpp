@@ -183,9 +183,10 @@ TEST(WarpProgram, ReadsThePictureAsOftenAsItLikes) {
 TEST(WarpProgram, ChannelsThatThePictureHasNotAreZeroAndOne) {
     const std::string start = "ps_2_0\ndcl t0.xy\ndcl_2d s0\ntexld r0, t0, s0\n";
     EXPECT_NEAR(drawn_by(start + "mov oC0, r0\n", kExactly, 1).at(5, 5, 0, 1), texel(5, 5, 0), 1e-5);
-    EXPECT_EQ(drawn_by(start + "mov oC0, r0.z\n", kExactly, 1).at(5, 5, 0, 1), 0);
-    EXPECT_EQ(drawn_by(start + "mov oC0, r0.w\n", kExactly, 3).at(5, 5, 0, 3), 1);
-    EXPECT_NEAR(drawn_by(start + "mov oC0, r0.w\n", kExactly, 4).at(5, 5, 0, 4), texel(5, 5, 3), 1e-5);
+    EXPECT_EQ(drawn_by(start + "mov r1, r0.z\nmov oC0, r1\n", kExactly, 1).at(5, 5, 0, 1), 0);
+    EXPECT_EQ(drawn_by(start + "mov r1, r0.w\nmov oC0, r1\n", kExactly, 3).at(5, 5, 0, 3), 1);
+    EXPECT_NEAR(drawn_by(start + "mov r1, r0.w\nmov oC0, r1\n", kExactly, 4).at(5, 5, 0, 4), texel(5, 5, 3),
+                1e-5);
     EXPECT_EQ(refusal_of(start + "mov oC0, r0\n", {}, 5),
               "src has 5 channels: must have at most 4 with program");
 }
