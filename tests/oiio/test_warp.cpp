@@ -320,7 +320,7 @@ TEST_F(Warp, RecipesOfMachinesOpenWithoutComputingTheirPixels) {
         OIIO::ImageInput::open("city.exr.warp?scheme=hardware&mesh=grid.json&size=16384&tile=64");
     ASSERT_TRUE(input) << OIIO::geterror();
     EXPECT_EQ(input->spec().find_attribute("anamorph:max_error"), nullptr);
-    EXPECT_NE(input->spec().find_attribute("anamorph:tol"), nullptr);
+    EXPECT_EQ(input->spec().find_attribute("anamorph:tol"), nullptr);
     std::vector<float> tile(static_cast<std::size_t>(64 * 64 * input->spec().nchannels));
     EXPECT_TRUE(input->read_tile(64, 64, 0, OIIO::TypeFloat, tile.data())) << input->geterror();
 }
@@ -365,7 +365,6 @@ TEST_F(Warp, WhatFailsFailsWithStatus1AndALine) {
         {"city.exr.warp?mesh=huge.json", "104857600 bytes"},
         {"city.exr.warp?mesh=folder.json", "is not a file"},
         {"city.exr.warp?mesh=big.null?RES=20000x20000&CHANNELS=3&TYPE=uint8", "20000x20000 pixels"},
-        {"city.exr.warp?mesh=big.null?RES=8000x8000&CHANNELS=3", "step=1"},
         {"city.exr.warp?mesh=grid.json&amount=inf", "amount=inf"},
         {"city.exr.warp?mesh=grid.json&amount=1e300", "amount"},
         {"city.exr.warp?mesh=grid.json&tol=-1", "tol=-1"},
