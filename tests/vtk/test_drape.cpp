@@ -639,7 +639,7 @@ TEST(VtkDrape, WhatCannotBeDoneIsAnErrorThatNamesTheProperty) {
         return errors_of<Drape>(picture(8, 8), set);
     };
     EXPECT_EQ(error([](Drape*) {}), "");
-    EXPECT_THAT(errors_of<Drape>(nullptr), HasSubstr("0 connections"));
+    EXPECT_THAT(errors_of<Drape>(nullptr), HasSubstr("the texture is not given"));
     const std::pair<const char*, void (Drape::*)(double)> numbers_of[] = {
         {"Angle", &Drape::SetAngle},
         {"Radius", &Drape::SetRadius},

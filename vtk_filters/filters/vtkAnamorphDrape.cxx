@@ -244,7 +244,9 @@ double* vtkAnamorphDrape::GetLight(int index) {
 
 vtkTypeBool vtkAnamorphDrape::ProcessRequest(vtkInformation* request, vtkInformationVector** inputs,
                                              vtkInformationVector* outputs) {
-    if (!anamorph_vtk::has_inputs(this, {"the texture"})) return 0;
+    // There is an output, if an empty one, whatever is missing.
+    if (!request->Has(Executive::REQUEST_DATA_OBJECT()) && !anamorph_vtk::has_inputs(this, {"the texture"}))
+        return 0;
     return this->Superclass::ProcessRequest(request, inputs, outputs);
 }
 
