@@ -118,9 +118,15 @@ void read_projection(const std::string& text, SourceFacts& facts) {
 /// The focal length by Exif, in the order in which Hugin asks for it: that of a camera with a film of 36 x 24 mm whose
 /// picture has the same diagonal, else by the pixels there are on the focal plane.
 void read_focal_length(const ImageSpec& spec, SourceFacts& facts) {
-    const auto number = [&](const char* name) { return double{spec.get_float_attribute(name)}; };
+    // EXR and TIFF bring whole numbers as integers, which are no floats to OpenImageIO.
+    const auto number = [&](const char* name) {
+        const double value = spec.get_float_attribute(name);
+        return value != 0 ? value : static_cast<double>(spec.get_int_attribute(name));
+    };
+    // What is no lens's, below .03 degrees or above 178 across, is taken for a slip.
+    const double longer = std::max(facts.width, facts.height);
     const auto take = [&](double pixels, const std::string& by) {
-        if (!(pixels > 0 && std::isfinite(pixels))) return false;
+        if (!(pixels >= longer / 200 && pixels <= longer * 2000)) return false;
         facts.focal_length = pixels;
         facts.focal_length_said_by = by;
         return true;
@@ -131,7 +137,8 @@ void read_focal_length(const ImageSpec& spec, SourceFacts& facts) {
         return;
     // Millimetres in an inch (which it is by default), a centimetre, a millimetre and a micrometre.
     const int unit = spec.get_int_attribute("Exif:FocalPlaneResolutionUnit", 2);
-    const double millimetres = unit == 3 ? 10 : unit == 4 ? 1 : unit == 5 ? 0.001 : 25.4;
+    const double millimetres = unit == 2 ? 25.4 : unit == 3 ? 10 : unit == 4 ? 1 : unit == 5 ? 0.001 : 0;
+    if (millimetres == 0) return;
     // Pixels are square, and as many as the camera stored, whatever the picture was resized to since, or turned.
     const double stored = std::max(number("Exif:PixelXDimension"), number("Exif:PixelYDimension"));
     const double resized = stored > 0 ? std::max(facts.width, facts.height) / stored : 1;

@@ -311,6 +311,19 @@ TEST(CrystalSymmetry, GroupsAreExpandedByTheirNames) {
               4u);
 }
 
+TEST(CrystalSymmetry, BlanksOfHallSymbolsCount) {
+    const auto bodies = [](const std::string& hall) {
+        return frame_of(cell_text(15, 15, 21, 90, 90, 120) + "_space_group_name_Hall '" + hall + "'\n" +
+                        atoms_text("Q .11 .23 .37\n"))
+            .bodies.size();
+    };
+    EXPECT_EQ(bodies("P 3 2"), 6u);  // P 3 1 2
+    EXPECT_EQ(bodies("P 32"), 3u);
+    EXPECT_EQ(bodies("P 6 2"), 12u);  // P 6 2 2
+    EXPECT_EQ(bodies("P_3_2"), 6u);
+    EXPECT_EQ(bodies("-P2ybc"), 4u);  // only one group is meant
+}
+
 TEST(CrystalSymmetry, SettingsAreTold) {
     const auto bodies = [](const std::string& cell, const std::string& name) {
         return frame_of(cell + "_symmetry_space_group_name_H-M '" + name + "'\n" +
@@ -373,6 +386,10 @@ TEST(CrystalSymmetry, AtomsWhoseTensorIsNotPositiveDefiniteAreNamed) {
                     "positive definite (the least of its principal values is -0.004): the ellipsoid is "
                     "drawn flat",
                     HasSubstr("O2")));
+    // One principal value of three is not 0, but for rounding.
+    EXPECT_THAT(warnings_of(ahead + "O1 .05 .05 .05 .05 .05 .05\n"),
+                testing::ElementsAre(HasSubstr("O1: U11, U22, U33, U12, U13, U23 = 0.05, 0.05, 0.05"),
+                                     HasSubstr("O2")));
 }
 
 }  // namespace

@@ -136,6 +136,30 @@ TEST(FootprintRays, PixelsShowTheShareOfTheSourceThatTheirRaysMeet) {
     EXPECT_LE(worst_by_tol, 0.15);
 }
 
+TEST(FootprintRays, WhereAPictureEndsItsPixelsAreWhole) {
+    // The source shows all directions, so that a pixel is 1 wherever its middle has a ray, however few of its parts have.
+    constexpr unsigned kSeed = 8;
+    SCOPED_TRACE(testing::Message() << "seed " << kSeed);
+    std::mt19937_64 random(kSeed);
+    const Ones ones({128, 64});
+    for (int k = 0; k < 60; ++k) {
+        Scene s = strong_distortion(random);
+        s.source = {equirectangular, 128, 64, 360};
+        const Panorama map(oracle::chart_of(s.source), oracle::chart_of(s.target), s.look);
+        const Piece all{{0, 0, s.target.width, s.target.height}};
+        for (const double tol : {0.0, 0.01}) {
+            const std::vector<float> values = ones.seen_through(map, tol);
+            Vector ray;
+            for (int y = 0; y < s.target.height; ++y)
+                for (int x = 0; x < s.target.width; ++x)
+                    ASSERT_NEAR(values[static_cast<std::size_t>(y * s.target.width + x)],
+                                oracle::ray_of(s.target, all, x + Real(0.5), y + Real(0.5), ray) ? 1 : 0,
+                                1e-5)
+                        << x << ' ' << y;
+        }
+    }
+}
+
 TEST(FootprintRays, BehindAFisheyeIsWhatStandsThere) {
     // Straight behind is all of a circle. Where the picture ends before it, nothing is seen about it; a picture of all
     // directions has it as its rim.

@@ -256,6 +256,7 @@ TEST(ShaderMachine, BothZerosHaveTheSameRoot) {
     const std::array<std::array<float, 4>, 3> v{{{0, 0, 0, 0}, {-0.0f, 0, 0, 0}, {0, 0, 0, 0}}};
     EXPECT_EQ(computed("rsq_sat r0, -c0.x", v)[0], 1);
     EXPECT_EQ(computed("rsq_sat r0, c1.x", v)[0], 1);
+    EXPECT_EQ(computed("rsq_sat r0, c1.xxxx", v)[0], 1);
 }
 
 TEST(ShaderMachine, InstructionsComputeAsTheProcessorDoes) {

@@ -357,6 +357,27 @@ void take_photo(const std::string& name, int width, int height,
     write_image(image, name);
 }
 
+TEST_F(Metadata, FocalLengthsAreWholeNumbersTooAndThoseOfNoLensAreNot) {
+    const auto from = [](const auto& value, const char* name = "Exif:FocalLengthIn35mmFilm", int unit = 2) {
+        ImageBuf image = panorama(60, 40, OIIO::TypeHalf);
+        image.specmod().attribute(name, value);
+        image.specmod().attribute("Exif:FocalPlaneXResolution", 100.0f);
+        image.specmod().attribute("Exif:FocalPlaneResolutionUnit", unit);
+        write_image(image, "photo.exr");
+        return std::string(
+            spec_of("photo.exr.pano?from=rectilinear&size=8").get_string_attribute("anamorph:from"));
+    };
+    // EXR keeps the type.
+    EXPECT_THAT(from(28), HasSubstr("as Exif:FocalLengthIn35mmFilm=28 says"));
+    EXPECT_THAT(from(28.0f), HasSubstr("as Exif:FocalLengthIn35mmFilm=28 says"));
+    EXPECT_THAT(from(50, "Exif:FocalLength"), HasSubstr("as Exif:FocalLength=50 says"));
+    for (const float none : {1e-30f, 1e30f, -28.0f, NAN, HUGE_VALF})
+        EXPECT_THAT(from(none), HasSubstr("90 degrees assumed")) << none;
+    // Pixels for no unit, or for one that Exif does not know.
+    for (const int unit : {1, 99})
+        EXPECT_THAT(from(50, "Exif:FocalLength", unit), HasSubstr("90 degrees assumed")) << unit;
+}
+
 TEST_F(Metadata, FocalLengthsOfExifAreTaken) {
     const double film = std::hypot(36, 24);
     struct Case {

@@ -130,7 +130,7 @@ void ProjectionHook::put_on(vtkActor* actor, vtkAnamorphProjectionShader* owner)
         hook->m_index = static_cast<std::size_t>(i);
         hook->m_state = state;
         // Until there is a right pose nothing has a direction.
-        hook->write_uniforms(glm::dmat4(0.0), glm::dvec3(0.0), glm::dmat3(0.0));
+        hook->write_uniforms(glm::dmat4(0.0), glm::dvec3(0.0), glm::dmat3(0.0), 0);
         // By name, tables and shadows come behind panoramas, and are loaded when these have been.
         actor->GetProperty()->SetTexture(texture_name(hook->m_index).c_str(), hook);
         hook->m_shadows = vtkSmartPointer<LoadedTexture>::New();
@@ -150,7 +150,7 @@ void ProjectionHook::take_off(vtkActor* actor) {
             if (property->GetTexture(name.c_str())) property->RemoveTexture(name.c_str());
         shaders->GetVertexCustomUniforms()->RemoveUniform(matrix_name(i).c_str());
         shaders->GetVertexCustomUniforms()->RemoveUniform(origin_name(i).c_str());
-        for (const std::string& name : {frame_name(i), origin_name(i)})
+        for (const std::string& name : {frame_name(i), origin_name(i), away_name(i)})
             shaders->GetFragmentCustomUniforms()->RemoveUniform(name.c_str());
     }
 }
@@ -319,7 +319,7 @@ void ProjectionHook::set_uniforms(vtkRenderer* renderer) {
     try {
         const anamorph::ProjectorPose pose = pose_of(*m_projector);
         const RayFromClip from(clip_matrix(renderer), pose);
-        write_uniforms(from.matrix, from.origin, frame_of(pose));
+        write_uniforms(from.matrix, from.origin, frame_of(pose), glm::length(pose.position));
         complain("", m_wrong_pose);
     } catch (const anamorph::Error& error) {
         // The last right pose stays.
@@ -328,7 +328,7 @@ void ProjectionHook::set_uniforms(vtkRenderer* renderer) {
 }
 
 void ProjectionHook::write_uniforms(const glm::dmat4& matrix, const glm::dvec3& origin,
-                                    const glm::dmat3& frame) {
+                                    const glm::dmat3& frame, double away) {
     float numbers[16], vector[3], axes[9];
     for (int i = 0; i < 16; ++i) numbers[i] = static_cast<float>(matrix[i / 4][i % 4]);
     for (int i = 0; i < 3; ++i) vector[i] = static_cast<float>(origin[i]);
@@ -339,6 +339,7 @@ void ProjectionHook::write_uniforms(const glm::dmat4& matrix, const glm::dvec3& 
     vtkUniforms* of_fragments = m_shaders->GetFragmentCustomUniforms();
     of_fragments->SetUniformMatrix3x3(frame_name(m_index).c_str(), axes);
     of_fragments->SetUniform3f(origin_name(m_index).c_str(), vector);
+    of_fragments->SetUniformf(away_name(m_index).c_str(), static_cast<float>(away));
 }
 
 }  // namespace anamorph_vtk

@@ -73,7 +73,9 @@ class ProjectionHook : public LoadedTexture {
     void refresh_shadows(vtkRenderer* renderer);
     vtkTextureObject* shadows_now(vtkOpenGLRenderWindow* window, int size);
     void set_uniforms(vtkRenderer* renderer);
-    void write_uniforms(const glm::dmat4& matrix, const glm::dvec3& origin, const glm::dmat3& frame);
+    /// `away`: how far the projector is from the origin of the scene.
+    void write_uniforms(const glm::dmat4& matrix, const glm::dvec3& origin, const glm::dmat3& frame,
+                        double away);
 
     vtkSmartPointer<vtkAnamorphProjectionShader> m_owner;
     vtkSmartPointer<vtkAnamorphPanoramaProjector> m_projector;

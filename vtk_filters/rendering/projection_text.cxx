@@ -250,6 +250,9 @@ std::string matrix_name(std::size_t projector) {
 std::string origin_name(std::size_t projector) {
     return numbered("Origin", projector);
 }
+std::string away_name(std::size_t projector) {
+    return numbered("Away", projector);
+}
 std::string frame_name(std::size_t projector) {
     return numbered("Frame", projector);
 }

@@ -67,6 +67,7 @@ std::string table_name(std::size_t projector);
 std::string shadow_name(std::size_t projector);
 std::string matrix_name(std::size_t projector);
 std::string origin_name(std::size_t projector);
+std::string away_name(std::size_t projector);
 /// A matrix that turns such rays into the scene's axes.
 std::string frame_name(std::size_t projector);
 

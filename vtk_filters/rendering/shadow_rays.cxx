@@ -95,8 +95,9 @@ vtkIdType count_triangles(vtkPolyData* mesh) {
 }
 
 // The slack: gl_Position and the ray are sums of four products each, interpolated across a triangle, turned, and multiplied with
-// a plane: at most some 30 roundings of 2^-24 of what is added up, which is no longer than the ray and the way from the projector
-// to the camera. Without it a surface would hide itself where it is seen edge-on.
+// a plane: at most some 30 roundings of 2^-24 of what is added up, which is no longer than the ray, the way from the projector
+// to the camera, and that from the origin to the projector, as points are floats counted from there. Without it a surface would
+// hide itself where it is seen edge-on.
 std::string traced_function() {
     return R"(
 vec4 anamorphTree#(int i) {
@@ -104,7 +105,7 @@ vec4 anamorphTree#(int i) {
   return texelFetch(anamorphShadow#, ivec2(i % across, i / across), 0);
 }
 bool anamorphHidden#(vec3 r, vec3 normal) {
-  float slack = 2e-6 * (length(r) + length(anamorphOrigin#));
+  float slack = 2e-6 * (length(r) + length(anamorphOrigin#) + anamorphAway#);
   vec3 per = 1.0 / mix(r, vec3(1e-20), equal(r, vec3(0.0)));
   int boxes = int(anamorphTree#(0).x), triangles = 1 + 2 * boxes;
   for (int at = 0; at < boxes;) {

@@ -46,8 +46,10 @@ double with_two_digits(double value) {
     return std::ceil(value / place) * place;
 }
 
+constexpr double kMostTimes = 64;
+
 /// A tolerance above `tol`, which takes too many patches, that does not, within an eighth above the least one; nothing
-/// where there is none up to 64 times as large, as it takes a while to find.
+/// where there is none up to kMostTimes as large, as it takes a while to find.
 std::optional<double> least_tol(SharedTree& surface, const Camera& camera, double tol) {
     FacetRoom room;
     const std::lock_guard lock(surface.mutex);
@@ -59,12 +61,9 @@ std::optional<double> least_tol(SharedTree& surface, const Camera& camera, doubl
             return false;
         }
     };
-    double too_small = tol, enough = 2 * tol;
-    for (; !works(enough); enough *= 2) {
-        if (enough >= 64 * tol) return {};
-        too_small = enough;
-    }
-    for (int halving = 0; halving < 3; ++halving) {
+    double too_small = tol, enough = kMostTimes * tol;
+    if (!works(enough)) return {};
+    for (int halving = 0; halving < 5; ++halving) {
         const double middle = std::sqrt(too_small * enough);
         (works(middle) ? enough : too_small) = middle;
     }
@@ -79,7 +78,9 @@ std::shared_ptr<const DrapeMap> map_or_least_tol(SharedTree& surface, const Came
         return map_of(surface, camera, picture, options);
     } catch (const TooManyPatches& error) {
         const std::optional<double> least = least_tol(surface, camera, options.tol);
-        if (!least) throw;
+        if (!least)
+            throw TooManyPatches(options.tol, error.most,
+                                 ", and so does " + shortest(kMostTimes * options.tol));
         throw TooManyPatches(options.tol, error.most,
                              ": must be at least " + shortest(static_cast<float>(*least)));
     }

@@ -393,7 +393,9 @@ class Structure {
             if (!atom.tensor || given == m_aniso.end()) continue;
             const glm::dvec3& axis = atom.shape.rotation[2];
             const double least = glm::dot(axis, *atom.tensor * axis);
-            if (least > 0) continue;
+            const glm::dmat3& tensor = *atom.tensor;
+            // A value that is all rounding is none.
+            if (least > 1e-9 * (tensor[0][0] + tensor[1][1] + tensor[2][2])) continue;
             const std::array<double, 6>& u = given->second;
             warn(printable(atom.label),
                  "U11, U22, U33, U12, U13, U23 = " +

@@ -15,7 +15,18 @@ const auto& table() {
     return gemmi::spacegroup_tables::main;
 }
 
-/// Without blanks, in small letters.
+/// With one blank for several and for `_`, in small letters.
+std::string spaced(std::string_view symbol) {
+    std::string text;
+    for (const char c : symbol)
+        if (c != '_' && !std::isspace(static_cast<unsigned char>(c)))
+            text += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+        else if (!text.empty() && text.back() != ' ')
+            text += ' ';
+    return std::string(text_file::trimmed(text));
+}
+
+/// Without blanks.
 std::string plain(std::string_view symbol) {
     std::string text;
     for (const char c : symbol)
@@ -24,11 +35,18 @@ std::string plain(std::string_view symbol) {
     return text;
 }
 
+/// A file may leave blanks out where no other group is meant then, as `P 3 2` would be by `P 32`.
 const gemmi::SpaceGroup* by_hall(const std::string& symbol) {
-    const auto found =
-        std::find_if(std::begin(table()), std::end(table()),
-                     [&](const gemmi::SpaceGroup& group) { return plain(group.hall) == plain(symbol); });
-    return found == std::end(table()) ? nullptr : &*found;
+    const gemmi::SpaceGroup* without_blanks = nullptr;
+    int count = 0;
+    for (const gemmi::SpaceGroup& group : table()) {
+        if (spaced(group.hall) == spaced(symbol)) return &group;
+        if (plain(group.hall) != plain(symbol)) continue;
+        // Settings of one group may share a symbol.
+        count += !without_blanks || spaced(group.hall) != spaced(without_blanks->hall);
+        if (!without_blanks) without_blanks = &group;
+    }
+    return count == 1 ? without_blanks : nullptr;
 }
 
 const gemmi::SpaceGroup* by_symbol(std::string_view symbol, const SpaceGroupName& name) {

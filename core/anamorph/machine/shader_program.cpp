@@ -153,7 +153,7 @@ std::uint8_t mask_of(std::string_view word, const std::string& components) {
 }
 
 std::array<std::uint8_t, 4> swizzle_of(std::string_view word, const std::string& components) {
-    const std::string full = components.size() == 1 ? std::string(4, components[0])
+    const std::string full = components.size() == 1 ? std::string(4, components[0])  // r0.x is r0.xxxx
                              : components.empty()   ? "xyzw"
                                                     : components;
     if (components.size() > 1 &&
@@ -402,7 +402,8 @@ class Assembler {
             source.negated = true;
             name = text_file::trimmed(name.substr(1));
         }
-        const RegisterText r = parse_register(name);
+        RegisterText r = parse_register(name);
+        if (r.components == std::string(4, r.components[0])) r.components.resize(1);
         source.bank = r.bank;
         source.number = r.number;
         source.swizzle = swizzle_of(word, r.components);

@@ -209,7 +209,8 @@ class Morphs final : public Pictures {
         PictureRequest picture;
         picture.size = *size;
         picture.pixels = pixels_of(options.output);
-        picture.says = {{"anamorph:tol", options.tol}};
+        // A mesh of cells holds none.
+        if (options.scheme != MorphScheme::mesh) picture.says = {{"anamorph:tol", options.tol}};
         // A film's frames are blends but for a few.
         if (picture.pixels == PixelKind::color && m_request.frames == 1)
             picture.moves = moved_picture(options, static_cast<int>(request.pictures.size()));

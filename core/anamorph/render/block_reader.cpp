@@ -894,17 +894,19 @@ int BlockReader::parts_at(int i, int j, int target_piece, Jacobian& middle) cons
 }
 
 /// The mean over n x n parts of a pixel, each by a footprint of its own; over kRays x kRays of them by the source itself. Parts
-/// without a source point are 0.
+/// without a source point do not count: where a picture ends pixels are whole, as all of them are whose middle has one.
 bool BlockReader::sample_parts(int i, int j, int target_piece, int n, float* pixel) {
     const auto channels = static_cast<std::size_t>(m_source.channels());
     m_part.resize(channels);
     m_parts.assign(channels, 0.0);
+    int count = 0;
     for (int b = 0; b < n; ++b)
         for (int a = 0; a < n; ++a) {
             const double x = i + (a + 0.5) / n, y = j + (b + 0.5) / n;
             Point<double> p;
             int piece;
             if (!m_map.exact(x, y, target_piece, p, piece)) continue;
+            ++count;
             Jacobian own;
             if (n < kRays) {
                 own = m_map.jacobian(x, y, target_piece);
@@ -913,7 +915,7 @@ bool BlockReader::sample_parts(int i, int j, int target_piece, int n, float* pix
             if (!m_points.sample(m_filter, m_chooser, own, piece, p.x, p.y, m_part.data())) return false;
             for (std::size_t c = 0; c < channels; ++c) m_parts[c] += static_cast<double>(m_part[c]);
         }
-    for (std::size_t c = 0; c < channels; ++c) pixel[c] = static_cast<float>(m_parts[c] / (n * n));
+    for (std::size_t c = 0; c < channels; ++c) pixel[c] = static_cast<float>(m_parts[c] / std::max(count, 1));
     return true;
 }
 
