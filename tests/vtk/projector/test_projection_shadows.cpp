@@ -327,7 +327,8 @@ TEST(VtkProjectionShadows, ThoseOfRaysAreExactAndThoseOfTheMapWithinItsBound) {
 }
 
 TEST(VtkProjectionShadows, FarFromTheOriginNoSurfaceHidesItself) {
-    // The points of the mesh are floats there, 6e-5 off at 1000: what is lit within a body stays lit.
+    // The points of the mesh are floats there, 6e-5 off at 1000. A surface that hid itself would be thousands of pixels; along
+    // borders and where bodies touch 80 are wrong at 1000, few at 100.
     Scene scene;
     scene.projector->SetShadowsToRays();
     scene.look(kViews[0][0], kViews[0][1]);
@@ -335,7 +336,7 @@ TEST(VtkProjectionShadows, FarFromTheOriginNoSurfaceHidesItself) {
     for (const double away : {100.0, 1000.0}) {
         scene.move(away);
         scene.look(kViews[0][0], kViews[0][1]);
-        EXPECT_LE(wrong_in(scene.painted(), truth).size(), 60U) << away;
+        EXPECT_LE(wrong_in(scene.painted(), truth).size(), away / 8) << away;
     }
 }
 
