@@ -34,8 +34,8 @@ struct NearBlock {
     std::span<const Real> bases;
 };
 
-/// The orders in which computed blocks read their bases, in float and in double, as NearReading has that in which they were
-/// written. A block whose bases come in another one is exact.
+/// The orders in which computed() and exact_rows() read a block's bases, in float and in double, as NearReading has that in
+/// which they were written. A block whose bases come in another one is exact.
 struct ReadOrders {
     std::uint64_t in_float = 0, in_double = 0;
 };
@@ -45,7 +45,7 @@ template <class Map>
 class FormulaPlan : public BlockMap {
   public:
     /// Throws Error when tol is negative or not a number.
-    FormulaPlan(const Map& map, const PlanOptions& options);
+    FormulaPlan(const Map& map, const PlanOptions& options, const ReadOrders& orders = {});
 
     const Map& map() const { return m_map; }
     const PlanOptions& options() const { return m_options; }
@@ -62,9 +62,6 @@ class FormulaPlan : public BlockMap {
   protected:
     void plan(const Box& box, int piece, Blocks& blocks) const override;
 
-    /// How bases are read by what overrides computed() and exact_rows(), over a region.
-    virtual ReadOrders read_orders(const Box&, int /*piece*/) const { return {}; }
-
     /// How a computed block is read, in float or in double.
     static NearBlock<typename Map::Local, float> near_in_float(const Block& block);
     static NearBlock<typename Map::Local, double> near_in_double(const Block& block);
@@ -72,6 +69,7 @@ class FormulaPlan : public BlockMap {
   private:
     Map m_map;
     PlanOptions m_options;
+    ReadOrders m_orders;
 };
 
 }  // namespace anamorph

@@ -1042,10 +1042,11 @@ class ExactBounds {
 }  // namespace planner_detail
 
 template <class Map>
-FormulaPlan<Map>::FormulaPlan(const Map& map, const PlanOptions& options)
+FormulaPlan<Map>::FormulaPlan(const Map& map, const PlanOptions& options, const ReadOrders& orders)
     : BlockMap(map.target_size().width, map.target_size().height, map.target_pieces()),
       m_map(map),
-      m_options(options) {
+      m_options(options),
+      m_orders(orders) {
     check_tol(options.tol);
 }
 
@@ -1055,14 +1056,13 @@ void FormulaPlan<Map>::plan(const Box& box, int piece, Blocks& blocks) const {
     Blocks planned;
     planned.reserve(2 * kRegion * kRegion / (kBlockWidth * kBlockHeight));
     const auto records = std::make_shared<Records<typename Map::Local>>();
-    const ReadOrders orders = read_orders(box, piece);
-    Planner<Map> planner(m_map, m_options, orders, box, piece, planned, *records);
+    Planner<Map> planner(m_map, m_options, m_orders, box, piece, planned, *records);
     if (planner.is_exact() && !planner.may_be_direct())
         planner.exact(box);
     else
         planner.settle(box);
     if constexpr (DirectMap<Map>)
-        planned = DirectBlocks<Map>(m_map, planner.goal(), orders, records->direct).placed(planned);
+        planned = DirectBlocks<Map>(m_map, planner.goal(), m_orders, records->direct).placed(planned);
     blocks.reserve(planned.size());
     ExactBounds<Map> exact(m_map, m_options.tol, blocks);
     for (const Block& block : planned)

@@ -10,6 +10,22 @@ namespace anamorph {
 
 template class FormulaPlan<Panorama>;
 
+namespace {
+
+/// Of all blocks: no formula asks where it is read.
+ReadOrders read_orders(const Panorama& map) {
+    if (!map.may_be_direct()) return {};
+    const Size size = map.target_size();
+    const Panorama::Local local = map.local_around(0.5 * size.width, 0.5 * size.height, 0);
+    return {simd::direct_order<float>(map.target(), map.source(), local),
+            simd::direct_order<double>(map.target(), map.source(), local)};
+}
+
+}  // namespace
+
+PanoramaPlan::PanoramaPlan(const Panorama& map, const PlanOptions& options)
+    : FormulaPlan(map, options, read_orders(map)) {}
+
 void PanoramaPlan::exact_rows(const Block& block, int begin, int end, const DoubleRows& to) const noexcept {
     if (block.kind == Block::Kind::computed) return direct_rows(block, begin, end, to);
     if (block.precise || block.kind != Block::Kind::exact)
@@ -46,24 +62,6 @@ void PanoramaPlan::direct_rows(const Block& block, int begin, int end, const Dou
         simd::direct_row(at, row, to.x + k, to.y + k);
         std::fill_n(to.piece + k, block.box.width(), block.source_piece);
     }
-}
-
-namespace {
-
-/// Of a block of one pixel whose bases, more than there ever are, are all 0.
-template <class Real>
-std::uint64_t read_order(const Panorama& map, const Panorama::Local& local) {
-    static const std::vector<Real> bases(4096);
-    return simd::direct_order(
-        simd::DirectBlock<Real>{map.target(), map.source(), local, bases, 1, 1, {0, 0}});
-}
-
-}  // namespace
-
-ReadOrders PanoramaPlan::read_orders(const Box& box, int piece) const {
-    if (!map().may_be_direct()) return {};
-    const Panorama::Local local = map().local_around(0.5 * (box.x0 + box.x1), 0.5 * (box.y0 + box.y1), piece);
-    return {read_order<float>(map(), local), read_order<double>(map(), local)};
 }
 
 /// Of a part of a block, counted from its corner.

@@ -12,7 +12,7 @@ extern template class FormulaPlan<Panorama>;
 class PanoramaPlan final : public FormulaPlan<Panorama> {
   public:
     using FormulaPlan::exact;
-    using FormulaPlan::FormulaPlan;
+    PanoramaPlan(const Panorama& map, const PlanOptions& options);
 
     /// Exact pixels by vectors, and direct ones in double.
     void exact_rows(const Block& block, int begin, int end, const DoubleRows& to) const noexcept override;
@@ -20,9 +20,6 @@ class PanoramaPlan final : public FormulaPlan<Panorama> {
     void computed_row(const Block& block, int row, int begin, int end, float* x,
                       float* y) const noexcept override;
     void computed(std::span<const Block> layers, const PointRows* to) const noexcept override;
-
-  protected:
-    ReadOrders read_orders(const Box& box, int piece) const override;
 
   private:
     void direct_rows(const Block& block, const Box& part, const PointRows& to) const;

@@ -34,8 +34,9 @@
 // - One sum means one sequence of entries (a different one has the same sum by chance, once in 2^64). The last ones give the
 //   results one number in both. The entry of that number names, in both, the operands of one and the same operation: they have
 //   one number in both as well, and so on down to the inputs, which are numbered in a fixed order.
-// An operation that no result depends on may read any base: nothing is made of it. tests/core/test_direct.cpp reads formulas
-// whose operands come in another order, and every formula that there is.
+// An operation that no result depends on may read any base: nothing is made of it. Drawing reads bases without numbers, and is
+// compared with a reading that numbers them (simd/direct_rows.h). tests/core/test_direct.cpp reads formulas whose operands come in
+// another order, and every formula that there is.
 //
 // No include guard and no namespace, as in map/lens_formula.h: lanes are compiled for each instruction set.
 // ANAMORPH_INLINE says how.

@@ -29,9 +29,9 @@ void direct_rows(const DirectBlock<float>& block, const Box& part, const PointRo
 /// The source points of row `row` of the block, likewise. There is room for 16 more.
 void direct_row(const DirectBlock<double>& block, int row, double* x, double* y);
 
-/// The order in which these read the bases of a block, as NearReading has that in which they were written. It does not depend on
-/// their values; `block` has at least as many as are read.
-std::uint64_t direct_order(const DirectBlock<float>& block);
-std::uint64_t direct_order(const DirectBlock<double>& block);
+/// The order in which these read the bases of a block, as NearReading has that in which they were written; 0 if it cannot be told.
+/// Drawing keeps no order: rows of any bases are computed once more with it, and it is theirs if all have the same bits.
+template <class Real>
+std::uint64_t direct_order(const Chart& target, const Chart& source, const Panorama::Local& local);
 
 }  // namespace anamorph::simd
