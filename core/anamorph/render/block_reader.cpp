@@ -886,11 +886,19 @@ bool BlockReader::sample_point(int i, int j, int target_piece, const Point<doubl
 }
 
 /// Into how many parts each way pixel (i, j) is cut, and the derivative in its middle.
-int BlockReader::parts_at(int i, int j, int target_piece, Jacobian& middle) const {
+int BlockReader::parts_at(int i, int j, int target_piece, Jacobian& middle) {
     middle = m_map.jacobian(i + 0.5, j + 0.5, target_piece);
     if (!m_map.is_smooth_in_pixels()) return 1;
-    const auto corner = [&](int x, int y) { return m_map.jacobian(x, y, target_piece); };
+    const auto corner = [&](int x, int y) { return derivative_at(x, y, target_piece); };
     return parts_of_pixel(middle, {corner(i, j), corner(i + 1, j), corner(i, j + 1), corner(i + 1, j + 1)});
+}
+
+/// In the corner of a pixel, which neighbours share.
+const Jacobian& BlockReader::derivative_at(int x, int y, int target_piece) {
+    Corner& corner = m_corners[static_cast<std::size_t>((x & 7) + 8 * (y & 7))];
+    if (corner.x != x || corner.y != y || corner.piece != target_piece)
+        corner = {x, y, target_piece, m_map.jacobian(x, y, target_piece)};
+    return corner.derivative;
 }
 
 /// The mean over n x n parts of a pixel, each by a footprint of its own; over kRays x kRays of them by the source itself. Parts

@@ -156,7 +156,8 @@ class BlockReader {
                     ApartReader::Row& to) const;
     template <class At>
     bool lie_apart(const At& at, const Block& block) const;
-    int parts_at(int i, int j, int target_piece, Jacobian& middle) const;
+    int parts_at(int i, int j, int target_piece, Jacobian& middle);
+    const Jacobian& derivative_at(int x, int y, int target_piece);
     bool sample_point(int i, int j, int target_piece, const Point<double>& p, int piece, float* pixel);
     bool sample_parts(int i, int j, int target_piece, int n, float* pixel);
     void sample(const simd::Texels& texels, const simd::Offsets& offsets, PixelType type, int x, int y,
@@ -200,7 +201,12 @@ class BlockReader {
     ApartReader::Row m_apart_rows[2];
     FootprintChooser m_chooser;
     std::vector<float> m_values;
-    std::vector<float> m_part;  ///< of a pixel
+    struct Corner {
+        int x = 0, y = 0, piece = -1;
+        Jacobian derivative;
+    };
+    std::array<Corner, 64> m_corners;  ///< of pixels, the last ones that were asked for
+    std::vector<float> m_part;         ///< of a pixel
     std::vector<double> m_parts;
     std::optional<BlockPlanes> m_planes;
     PointsInDouble m_exact;              ///< of the block that is being read

@@ -30,20 +30,48 @@ Taps taps_at(Filter filter, double at, float same) {
     return {below, 2, {first, second}};
 }
 
-/// Of a channel of the texels from the corner of a window on.
-double sum_of(const Window& window, const Taps& across, const Taps& down, int channel) {
+/// The texels that a filter reads around a point.
+Box box_at(Filter filter, double x, double y) {
+    const Taps across = taps_at(filter, x, 0), down = taps_at(filter, y, 0);
+    return {across.first, down.first, across.first + across.count, down.first + down.count};
+}
+
+// More texels than this for each tap take longer to fetch together than by tap.
+constexpr double kMostForTap = 64;
+
+/// The texels that all taps of a footprint read; empty where there are too many. Those in its corners reach farthest.
+template <class TapAt>
+Box box_of_taps(const Footprint& footprint, const TapAt& tap_at) {
+    const int a = footprint.taps_a - 1, b = footprint.taps_b - 1;
+    Point<double> low = tap_at(0, 0), high = low;
+    for (const Point<double>& corner : {tap_at(a, 0), tap_at(0, b), tap_at(a, b)}) {
+        low = {std::min(low.x, corner.x), std::min(low.y, corner.y)};
+        high = {std::max(high.x, corner.x), std::max(high.y, corner.y)};
+    }
+    const double texels = (high.x - low.x + 3) * (high.y - low.y + 3);
+    if (!(texels <= kMostForTap * footprint.taps_a * footprint.taps_b)) return {};
+    const Box first = box_at(Filter::bilinear, low.x, low.y), last = box_at(Filter::bilinear, high.x, high.y);
+    return {first.x0, first.y0, last.x1, last.y1};
+}
+
+/// The sums of texels within a window, channel by channel; `texels` has room for four.
+void weigh(const Window& window, const Taps& across, const Taps& down, std::vector<float>& texels,
+           std::vector<double>& sums) {
+    const std::size_t channels = sums.size();
     const std::ptrdiff_t size = size_of(window.type);
-    double sum = 0;
-    for (int j = 0; j < down.count; ++j)
-        for (int i = 0; i < across.count; ++i) {
-            const double weight =
-                across.weight[static_cast<std::size_t>(i)] * down.weight[static_cast<std::size_t>(j)];
+    const std::byte* const first = window.texels + (down.first - window.box.y0) * window.row_stride +
+                                   std::ptrdiff_t{across.first - window.box.x0} * window.channels * size;
+    std::fill(sums.begin(), sums.end(), 0.0);
+    for (std::size_t j = 0; j < static_cast<std::size_t>(down.count); ++j) {
+        load_channels(first + static_cast<std::ptrdiff_t>(j) * window.row_stride, window.type,
+                      across.count * window.channels, texels.data());
+        for (std::size_t i = 0; i < static_cast<std::size_t>(across.count); ++i) {
+            const double weight = across.weight[i] * down.weight[j];
             if (weight == 0) continue;
-            const std::byte* texel =
-                window.texels + j * window.row_stride + (i * window.channels + channel) * size;
-            sum += weight * static_cast<double>(load_channel(texel, window.type));
+            for (std::size_t c = 0; c < channels; ++c)
+                sums[c] += weight * static_cast<double>(texels[i * channels + c]);
         }
-    return sum;
+    }
 }
 
 }  // namespace
@@ -53,28 +81,38 @@ PointSampler::PointSampler(const Source& source, const Border& border)
       m_wrap(border.wrap()),
       m_reader(source, border),
       m_tap(static_cast<std::size_t>(source.channels())),
-      m_sum(static_cast<std::size_t>(source.channels())) {}
+      m_sum(m_tap.size()),
+      m_values(m_tap.size()),
+      m_mended(m_tap.size()),
+      m_texels(4 * m_tap.size()) {}
 
 bool PointSampler::sample(Filter filter, int level, int piece, double x, double y, float* pixel) noexcept {
+    Window window;
+    if (!std::isnan(x) && !std::isnan(y) && !m_reader.get(level, piece, box_at(filter, x, y), window))
+        return false;
+    sample(filter, window, x, y, pixel);
+    return true;
+}
+
+/// The same, from a window that has the texels.
+void PointSampler::sample(Filter filter, const Window& window, double x, double y, float* pixel) noexcept {
     const int channels = m_source.channels();
     std::fill_n(pixel, channels, 0.0f);
-    if (std::isnan(x) || std::isnan(y)) return true;
+    if (std::isnan(x) || std::isnan(y)) return;
     const Taps across = taps_at(filter, x, 0), down = taps_at(filter, y, 0);
-    const Box box{across.first, down.first, across.first + across.count, down.first + down.count};
-    Window window;
-    if (!m_reader.get(level, piece, box, window)) return false;
     if (filter == Filter::nearest) {
         load_channels(window.texels, window.type, channels, pixel);
-        return true;
+        return;
     }
-
-    for (int c = 0; c < channels; ++c) {
-        double value = sum_of(window, across, down, c);
-        if (!std::isfinite(value))
-            value = sum_of(window, taps_at(filter, x, kSameTexel), taps_at(filter, y, kSameTexel), c);
-        pixel[c] = static_cast<float>(value);
+    weigh(window, across, down, m_texels, m_values);
+    const auto is_finite = [](double value) { return std::isfinite(value); };
+    if (!std::all_of(m_values.begin(), m_values.end(), is_finite)) {
+        weigh(window, taps_at(filter, x, kSameTexel), taps_at(filter, y, kSameTexel), m_texels, m_mended);
+        for (std::size_t c = 0; c < m_values.size(); ++c)
+            if (!is_finite(m_values[c])) m_values[c] = m_mended[c];
     }
-    return true;
+    std::transform(m_values.begin(), m_values.end(), pixel,
+                   [](double value) { return static_cast<float>(value); });
 }
 
 bool PointSampler::sample(const Footprint& footprint, const Jacobian& jacobian, int piece, double x, double y,
@@ -84,11 +122,21 @@ bool PointSampler::sample(const Footprint& footprint, const Jacobian& jacobian, 
                  sy = static_cast<double>(size.height) / full.height;
     std::fill(m_sum.begin(), m_sum.end(), 0.0);
     const TapOffsets offset(footprint, jacobian, {sx, sy});
+    const auto tap_at = [&](int i, int j) {
+        const Point<double> tap = offset(i, j);
+        return Point<double>{x * sx + tap.x, y * sy + tap.y};
+    };
+    // Taps that lie close to each other are read from one window.
+    const Box all = box_of_taps(footprint, tap_at);
+    Window window;
+    const bool at_once = !all.empty();
+    if (at_once && !m_reader.get(footprint.level, piece, all, window)) return false;
     for (int j = 0; j < footprint.taps_b; ++j)
         for (int i = 0; i < footprint.taps_a; ++i) {
-            const Point<double> tap = offset(i, j);
-            if (!sample(Filter::bilinear, footprint.level, piece, x * sx + tap.x, y * sy + tap.y,
-                        m_tap.data()))
+            const Point<double> at = tap_at(i, j);
+            if (at_once)
+                sample(Filter::bilinear, window, at.x, at.y, m_tap.data());
+            else if (!sample(Filter::bilinear, footprint.level, piece, at.x, at.y, m_tap.data()))
                 return false;
             for (std::size_t c = 0; c < m_sum.size(); ++c) m_sum[c] += static_cast<double>(m_tap[c]);
         }

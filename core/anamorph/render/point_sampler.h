@@ -53,6 +53,7 @@ class PointSampler {
                 double y, float* pixel) noexcept;
 
   private:
+    void sample(Filter filter, const Window& window, double x, double y, float* pixel) noexcept;
     bool mean(const Jacobian& rectangle, double x, double y, float* pixel) noexcept;
 
     const Source& m_source;
@@ -60,7 +61,8 @@ class PointSampler {
     const SummedAreas* m_sums = nullptr;
     WindowReader m_reader;
     std::vector<float> m_tap;
-    std::vector<double> m_sum;
+    std::vector<double> m_sum, m_values, m_mended;
+    std::vector<float> m_texels;
 };
 
 }  // namespace anamorph
