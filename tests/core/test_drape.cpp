@@ -687,7 +687,9 @@ TEST(Drape, NarrowDeformationsAreDrawn) {
         Shown(dense).seen();
         ADD_FAILURE() << "four million patches";
     } catch (const Error& error) {
-        EXPECT_THAT(error.what(), testing::HasSubstr("tol=0.125: takes more than"));
+        // No tolerance up to 64 times as large works either.
+        EXPECT_THAT(error.what(), testing::StartsWith("tol=0.125: takes more than"));
+        EXPECT_THAT(error.what(), testing::HasSubstr(" patches of the surface, and so does 8"));
     }
 }
 
