@@ -29,6 +29,9 @@ namespace anamorph {
 template <class Real>
 struct Rounded;
 
+template <class Real>
+double lower_end(const Rounded<Real>& a);
+
 namespace rounded_detail {
 
 template <class Real>
@@ -208,6 +211,32 @@ Rounded<Real> scaled_sinh(const Rounded<Real>& a, Rounded<Real>& s) {
     if (a.is_zero()) s = a;
     // |sech'| <= sech
     return rounded_detail::result<Real>(sech, 0, magnitude(sech) * (moved + R::kLibm) + least, 2 * R::kUnit);
+}
+/// E g = g E a. |e^b - e^a| <= |e^a| (e^|b - a| - 1), and |e^n| <= e^|n|. The residual of the equation is
+/// kSum kDegree r e^r; over e^a and times it again that is less than what two such equations add up to.
+template <class Real>
+Rounded<Real> exp(const Rounded<Real>& a) {
+    using R = Rounded<Real>;
+    const Interval range = exp(a.range);
+    const double most = magnitude(range), grown = std::exp(a.radius);
+    const double relative =
+        grown * (std::expm1(a.error) + R::kLibm) + rounded_detail::oscillation_error<Real>(a.radius);
+    return rounded_detail::result<Real>(range, most * (grown - 1), most * relative, 0);
+}
+/// E g = E a / a. Of the constant parts, |log b - log a| <= |b - a| over the lesser of both.
+template <class Real>
+Rounded<Real> log(const Rounded<Real>& a) {
+    using R = Rounded<Real>;
+    const Interval range = log(a.range);
+    const double least = lower_end(a);
+    if (!(least > 0)) return R(range, a.is_jet() ? HUGE_VAL : 0, HUGE_VAL);
+    double error = a.error / least + R::kLibm * magnitude(range);
+    if (a.is_jet()) {
+        const double steps = R::kDegree * (a.radius + a.error);
+        error +=
+            rounded_detail::quotient(R(Interval(0), steps, R::kDegree * a.error + R::kSum * steps), a).error;
+    }
+    return rounded_detail::result<Real>(range, a.radius / least, error, 0);
 }
 /// sqrt(1 + a^2) E g = E a
 template <class Real>

@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: Apache-2.0
+// Formulas that are written as text: from a point of a picture to one of its source.
+//
+// Text. Numbers as in 12, .5 and 1e-3, pi; + - * / with the usual order, % (as mod), ^ (a power, from right to left, before a
+// minus sign); < <= > >= == !=, and, or, not make conditions, which if(condition, a, b) takes. Names:
+//
+//   x y                     the point: pixels of the picture, the middle of the first one at (.5, .5), y down
+//   s t                     the same in parts of width and height, from 0 to 1
+//   px py                   the same about the middle of the picture, in halves of its smaller side, y up
+//   r a                     the same in polar coordinates: the length of (px, py), and its angle from -pi to pi,
+//                           counterclockwise from the right
+//   width height            of the picture
+//   src_width src_height    of the source
+//   frame                   a number that callers give
+//
+// and those that definitions make before. Functions: sin cos tan asin acos atan(y) atan(y, x) atan2(y, x) sinh cosh tanh
+// asinh exp log sqrt cbrt pow hypot abs sign min max mod floor ceil round clamp mix step smoothstep, as GLSL has them
+// (mod(a, b) has the sign of b); angles in radians. Conditions compare exactly. cbrt and a power with an exponent that is no
+// whole number written as such are made of exp and log.
+//
+// Domain. A point has no source where a root or a logarithm of what is not positive, an asin or acos of what is not between -1
+// and 1, a power of what is not positive with such an exponent, or a quotient by 0 would be needed; an `if` needs what it
+// chooses.
+#pragma once
+
+#include <string>
+
+#include "anamorph/geometry/size.h"
+#include "anamorph/number/formula_program.h"
+
+namespace anamorph {
+
+/// What users write. Each expression is named in errors by the member that it stands in.
+struct FormulaText {
+    std::string u = "x", v = "y";  ///< source pixels
+    std::string let;               ///< "name=expression;name=expression"
+};
+
+/// What the names stand for.
+struct FormulaSetting {
+    Size picture, source;
+    double frame = 0;
+    bool in_fractions = false;  ///< u and v are in parts of the source's width and height
+};
+
+/// A text as programs.
+struct PlaneFormula {
+    FormulaProgram<2> point;   ///< u and v, in source pixels
+    FormulaProgram<1> domain;  ///< positive where there is a source point
+    bool is_everywhere;        ///< the domain is the whole plane
+};
+
+/// Throws Error with the column, counted from 1, and what was expected there.
+PlaneFormula parse_formula(const FormulaText& text, const FormulaSetting& setting);
+
+}  // namespace anamorph

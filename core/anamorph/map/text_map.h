@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: Apache-2.0
+// A flat map whose formula is text.
+#pragma once
+
+#include "anamorph/map/formula_map.h"
+#include "anamorph/map/formula_text.h"
+
+namespace anamorph {
+
+/// Pixels, x right, y down, pixel centres at + 0.5.
+class TextMap : public PlaneMap<TextMap> {
+  public:
+    /// `picture`: the size that the formula speaks of. `target`: the pixels that the picture has.
+    TextMap(PlaneFormula formula, const Size& picture, const Size& target, const Size& source)
+        : PlaneMap(target, source),
+          m_formula(std::move(formula)),
+          m_is_scaled(!(picture == target)),
+          m_per_x(static_cast<long double>(picture.width) / target.width),
+          m_per_y(static_cast<long double>(picture.height) / target.height) {}
+
+    template <class T>
+    Point<T> source_point(const T& x, const T& y) const {
+        const std::array<T, 2> p = read(m_formula.point, x, y);
+        return {p[0], p[1]};
+    }
+    template <class T>
+    T inside(const T& x, const T& y) const {
+        return m_formula.is_everywhere ? T(1) : read(m_formula.domain, x, y)[0];
+    }
+
+  private:
+    template <class T, std::size_t Outputs>
+    std::array<T, Outputs> read(const FormulaProgram<Outputs>& program, const T& x, const T& y) const {
+        if (!m_is_scaled) return read_program(program, x, y);
+        return read_program(program, T(x * m_per_x.as<T>()), T(y * m_per_y.as<T>()));
+    }
+
+    PlaneFormula m_formula;
+    bool m_is_scaled;
+    Constant m_per_x, m_per_y;
+};
+
+}  // namespace anamorph

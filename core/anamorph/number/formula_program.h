@@ -1,0 +1,280 @@
+// SPDX-License-Identifier: Apache-2.0
+// A formula as a program: a straight line of operations on the point (x, y), which is read with any number of number.h. There are
+// no branches: both sides of a choice are computed.
+//
+// Unlike the formulas of map/, a program may jump or have a crease wherever its text says so. Numbers that stand for all points of
+// a box notice: where a choice is not the same for all of them, intervals hold both sides, what Rounded says counts their
+// distance, and jets, whose derivatives end there, are not bounded. So the box is cut until it is decided, or exact.
+#pragma once
+
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <new>
+#include <vector>
+
+#include "anamorph/geometry/point.h"
+#include "anamorph/number/interval.h"
+#include "anamorph/number/jet.h"
+#include "anamorph/number/number.h"
+#include "anamorph/number/rounded.h"
+#include "anamorph/simd/jets.h"
+
+namespace anamorph {
+
+/// What a step of a program computes from its operands a, b and c.
+enum class StepKind : std::uint8_t {
+    number,    ///< numbers[a]
+    constant,  ///< constants[a]
+    sum,
+    difference,
+    product,
+    quotient,
+    add_number,      ///< a + numbers[b]
+    times_number,    ///< a * numbers[b]
+    times_constant,  ///< a * constants[b]
+    negation,
+    square,
+    sqrt,
+    sine_and_cosine,  ///< to result and result + 1
+    angle,            ///< of (b, a), a up, from -pi to pi
+    exp,
+    log,
+    asinh,
+    floor,
+    choice  ///< b where a < 0, else c
+};
+
+/// Operands and results are numbers of registers.
+struct ProgramStep {
+    StepKind kind;
+    std::uint8_t result, a = 0, b = 0, c = 0;
+};
+
+/// Computes `Outputs` numbers from x and y, which are registers 0 and 1.
+template <std::size_t Outputs>
+struct FormulaProgram {
+    /// Registers are reused; more are alive at once in no program.
+    static constexpr int kRegisters = 64;
+
+    std::vector<ProgramStep> steps;
+    std::vector<double> numbers;
+    std::vector<Constant> constants;
+    std::array<std::uint8_t, Outputs> outputs{};
+};
+
+namespace program_detail {
+
+using simd::Four;
+using simd::FourConditions;
+using simd::Jets;
+using simd::kJets;
+
+// --- choices ---
+
+template <class T>
+T choose(bool condition, const T& a, const T& b) {
+    return condition ? a : b;
+}
+inline Interval choose(Certainty condition, const Interval& a, const Interval& b) {
+    return select(condition, a, b);
+}
+/// What is computed may be one side, and the exact value on the other.
+template <class Real>
+Rounded<Real> choose(Certainty condition, const Rounded<Real>& a, const Rounded<Real>& b) {
+    Rounded<Real> r = select(condition, a, b);
+    if (condition == Certainty::open) r.error += (r.range.hi - r.range.lo) * rounded_detail::kUp;
+    return r;
+}
+template <int N>
+Jet<Interval, N> unbounded() {
+    Jet<Interval, N> r;
+    for (Interval& c : r.c) c = Interval::all();
+    return r;
+}
+template <int N>
+Jet<Interval, N> choose(Certainty condition, const Jet<Interval, N>& a, const Jet<Interval, N>& b) {
+    if (condition == Certainty::open) return unbounded<N>();
+    return condition == Certainty::yes ? a : b;
+}
+/// One of four, with no bound.
+template <int N>
+void set_unbounded(Jets<Interval, N>& jets, int i) {
+    // Coefficients above the degree are not stored: those of the others are 0.
+    for (int k = jets.terms(); k < jets.kSize; ++k)
+        for (int j = 0; j < kJets; ++j) jets.c[k].set(j, Interval(0));
+    jets.degree = N;
+    for (int k = 0; k < jets.kSize; ++k) jets.c[k].set(i, Interval::all());
+}
+template <int N>
+Jets<double, N> choose(const FourConditions<bool>& condition, const Jets<double, N>& a,
+                       const Jets<double, N>& b) {
+    return select(condition, a, b);
+}
+template <int N>
+Jets<Interval, N> choose(const FourConditions<Certainty>& condition, const Jets<Interval, N>& a,
+                         const Jets<Interval, N>& b) {
+    Jets<Interval, N> r = select(condition, a, b);
+    for (int i = 0; i < kJets; ++i)
+        if (condition.of[i] == Certainty::open) set_unbounded(r, i);
+    return r;
+}
+
+// --- whole numbers ---
+
+template <std::floating_point T>
+T floor_of(T a) {
+    return std::floor(a);
+}
+inline Interval floor_of(const Interval& a) {
+    return {std::floor(a.lo), std::floor(a.hi)};
+}
+/// A whole number that lies within the error may be on either side.
+template <class Real>
+Rounded<Real> floor_of(const Rounded<Real>& a) {
+    Rounded<Real> r(floor_of(a.range), 0, 0);
+    const bool decided = std::floor(a.range.lo - a.error) == std::floor(a.range.hi + a.error);
+    if (!decided && a.error != 0) r.error = std::floor(a.error) + 1;
+    return r;
+}
+template <int N>
+Jet<double, N> floor_of(const Jet<double, N>& a) {
+    return Jet<double, N>(std::floor(a.c[0]));
+}
+template <int N>
+Jet<Interval, N> floor_of(const Jet<Interval, N>& a) {
+    const double floor = std::floor(a.c[0].lo);
+    return floor == std::floor(a.c[0].hi) ? Jet<Interval, N>(floor) : unbounded<N>();
+}
+template <class T, int N>
+Jets<T, N> floor_of(const Jets<T, N>& a) {
+    Jets<T, N> r(0);
+    for (int i = 0; i < kJets; ++i) r.c[0].set(i, floor_of(a.c[0][i]));
+    if constexpr (std::is_same_v<T, Interval>)
+        for (int i = 0; i < kJets; ++i)
+            if (!(r.c[0].lo[i] == r.c[0].hi[i])) set_unbounded(r, i);
+    return r;
+}
+
+// --- angles: they jump by a turn on the half line y = 0, x < 0 ---
+
+template <class T>
+bool may_jump(const T&, const T&) {
+    return false;
+}
+inline bool may_jump(const Interval& y, const Interval& x) {
+    return !(x.lo > 0 || y.lo > 0 || y.hi < 0);
+}
+template <class T>
+T angle_of(const T& y, const T& x) {
+    return atan2(y, x);
+}
+/// Rounded takes angles modulo a turn.
+template <class Real>
+Rounded<Real> angle_of(const Rounded<Real>& y, const Rounded<Real>& x) {
+    constexpr double kTurn = 6.283185307179587;
+    const auto near = [](const Rounded<Real>& a) {
+        return Interval(a.range.lo - a.error, a.range.hi + a.error);
+    };
+    Rounded<Real> r = atan2(y, x);
+    if (y.error + x.error > 0 && may_jump(near(y), near(x)) && !(r.error > kTurn)) r.error = kTurn;
+    return r;
+}
+template <int N>
+Jet<Interval, N> angle_of(const Jet<Interval, N>& y, const Jet<Interval, N>& x) {
+    return may_jump(y.c[0], x.c[0]) ? unbounded<N>() : atan2(y, x);
+}
+template <int N>
+Jets<Interval, N> angle_of(const Jets<Interval, N>& y, const Jets<Interval, N>& x) {
+    Jets<Interval, N> r = atan2(y, x);
+    for (int i = 0; i < kJets; ++i)
+        if (may_jump(y.c[0][i], x.c[0][i])) set_unbounded(r, i);
+    return r;
+}
+
+}  // namespace program_detail
+
+/// What a program gives at (x, y), read with T.
+template <class T, std::size_t Outputs>
+std::array<T, Outputs> read_program(const FormulaProgram<Outputs>& program, const T& x, const T& y) {
+    using namespace program_detail;
+    // Registers are written before they are read, and no step writes over its own operands.
+    alignas(alignof(T) > 64 ? alignof(T) : 64)
+        std::byte room[FormulaProgram<Outputs>::kRegisters * sizeof(T)];
+    T* const r = reinterpret_cast<T*>(room);
+    new (r) T(x);
+    new (r + 1) T(y);
+    const double* const numbers = program.numbers.data();
+    const Constant* const constants = program.constants.data();
+    for (const ProgramStep& step : program.steps) {
+        const T &a = r[step.a], &b = r[step.b], &c = r[step.c];
+        T* const to = r + step.result;
+        switch (step.kind) {
+            case StepKind::number:
+                new (to) T(numbers[step.a]);
+                break;
+            case StepKind::constant:
+                new (to) T(constants[step.a].template as<T>());
+                break;
+            case StepKind::sum:
+                new (to) T(a + b);
+                break;
+            case StepKind::difference:
+                new (to) T(a - b);
+                break;
+            case StepKind::product:
+                new (to) T(a * b);
+                break;
+            case StepKind::quotient:
+                new (to) T(a / b);
+                break;
+            case StepKind::add_number:
+                new (to) T(a + numbers[step.b]);
+                break;
+            case StepKind::times_number:
+                new (to) T(a * numbers[step.b]);
+                break;
+            case StepKind::times_constant:
+                new (to) T(a * constants[step.b].template as<T>());
+                break;
+            case StepKind::negation:
+                new (to) T(-a);
+                break;
+            case StepKind::square:
+                new (to) T(square(a));
+                break;
+            case StepKind::sqrt:
+                new (to) T(sqrt(a));
+                break;
+            case StepKind::sine_and_cosine:
+                new (to) T;
+                new (to + 1) T;
+                sin_cos(a, to[0], to[1]);
+                break;
+            case StepKind::angle:
+                new (to) T(angle_of(a, b));
+                break;
+            case StepKind::exp:
+                new (to) T(exp(a));
+                break;
+            case StepKind::log:
+                new (to) T(log(a));
+                break;
+            case StepKind::asinh:
+                new (to) T(asinh(a));
+                break;
+            case StepKind::floor:
+                new (to) T(floor_of(a));
+                break;
+            case StepKind::choice:
+                new (to) T(choose(is_negative(a), b, c));
+                break;
+        }
+    }
+    std::array<T, Outputs> results;
+    for (std::size_t i = 0; i < Outputs; ++i) results[i] = r[program.outputs[i]];
+    return results;
+}
+
+}  // namespace anamorph

@@ -1,0 +1,461 @@
+// SPDX-License-Identifier: Apache-2.0
+// Formulas that are text: what they say, where there is no point, and blocks whose bounds hold wherever a formula jumps.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+#include <numbers>
+#include <random>
+
+#include "anamorph/approx/text_plan.h"
+#include "anamorph/error.h"
+#include "block_points.h"
+
+namespace anamorph {
+namespace {
+
+constexpr Size kPicture{48, 32}, kSource{200, 100};
+
+Point<double> point_of(const FormulaText& text, double x, double y,
+                       FormulaSetting setting = {kPicture, kSource}) {
+    const PlaneFormula formula = parse_formula(text, setting);
+    const std::array<double, 2> p = read_program(formula.point, x, y);
+    return {p[0], p[1]};
+}
+double value_of(const std::string& expression, double x = 20.5, double y = 10.5) {
+    FormulaText text;
+    text.u = expression;
+    return point_of(text, x, y).x;
+}
+bool is_inside(const std::string& expression, double x = 20.5, double y = 10.5) {
+    FormulaText text;
+    text.u = expression;
+    const PlaneFormula formula = parse_formula(text, {kPicture, kSource});
+    return formula.is_everywhere || read_program(formula.domain, x, y)[0] > 0;
+}
+
+TEST(TextMap, NamesStandForThePlaceOfAPixel) {
+    const double px = (20.5 - 24) / 16, py = (16 - 10.5) / 16;
+    EXPECT_EQ(value_of("x"), 20.5);
+    EXPECT_EQ(value_of("y"), 10.5);
+    EXPECT_DOUBLE_EQ(value_of("s"), 20.5 / 48);
+    EXPECT_DOUBLE_EQ(value_of("t"), 10.5 / 32);
+    EXPECT_DOUBLE_EQ(value_of("px"), px);
+    EXPECT_DOUBLE_EQ(value_of("py"), py);
+    EXPECT_DOUBLE_EQ(value_of("r"), std::hypot(px, py));
+    EXPECT_DOUBLE_EQ(value_of("a"), std::atan2(py, px));
+    EXPECT_EQ(value_of("width*1000+height"), 48032);
+    EXPECT_EQ(value_of("src_width*1000+src_height"), 200100);
+    EXPECT_DOUBLE_EQ(value_of("pi"), std::numbers::pi);
+    FormulaText text;
+    text.u = "s+frame";
+    text.v = "t";
+    const Point<double> p = point_of(text, 24, 8, {kPicture, kSource, 2, true});
+    EXPECT_DOUBLE_EQ(p.x, 500);
+    EXPECT_DOUBLE_EQ(p.y, 25);
+}
+
+TEST(TextMap, OperatorsBindAsInMathematics) {
+    for (const auto& [text, value] :
+         std::vector<std::pair<std::string, double>>{{"1+2*3", 7},
+                                                     {"(1+2)*3", 9},
+                                                     {"10-4-3", 3},
+                                                     {"64/4/2", 8},
+                                                     {"-2^2", -4},
+                                                     {"2^3^2", 512},
+                                                     {"2^-1", 0.5},
+                                                     {"--3", 3},
+                                                     {"2*-3", -6},
+                                                     {"7%3", 1},
+                                                     {"-7%3", 2},
+                                                     {"1e3+.5+1.25E-2", 1000.5125},
+                                                     {"if(1<2,3,4)", 3},
+                                                     {"if(2<=2 and not 2!=2,3,4)", 3},
+                                                     {"if(1>2 or 2>=3 or 1==2,3,4)", 4},
+                                                     {"if(not(1<2) or 1<2 and 2<1,3,4)", 4},
+                                                     {"if((1<2),(3),(4))", 3}})
+        EXPECT_DOUBLE_EQ(value_of(text), value) << text;
+}
+
+TEST(TextMap, FunctionsAreThoseOfGlsl) {
+    const double k = 0.3;
+    for (const auto& [text, value] :
+         std::vector<std::pair<std::string, double>>{{"sin(.3)", std::sin(k)},
+                                                     {"cos(.3)", std::cos(k)},
+                                                     {"tan(.3)", std::tan(k)},
+                                                     {"asin(.3)", std::asin(k)},
+                                                     {"acos(.3)", std::acos(k)},
+                                                     {"atan(.3)", std::atan(k)},
+                                                     {"atan(.3,-2)", std::atan2(k, -2)},
+                                                     {"atan2(-.3,-2)", std::atan2(-k, -2)},
+                                                     {"sinh(.3)", std::sinh(k)},
+                                                     {"cosh(.3)", std::cosh(k)},
+                                                     {"tanh(.3)", std::tanh(k)},
+                                                     {"asinh(.3)", std::asinh(k)},
+                                                     {"exp(.3)", std::exp(k)},
+                                                     {"log(.3)", std::log(k)},
+                                                     {"sqrt(.3)", std::sqrt(k)},
+                                                     {"cbrt(-.3)", std::cbrt(-k)},
+                                                     {"pow(.3,1.7)", std::pow(k, 1.7)},
+                                                     {"pow(-.3,3)", std::pow(-k, 3)},
+                                                     {"hypot(.3,.4)", 0.5},
+                                                     {"abs(-.3)", k},
+                                                     {"sign(-.3)+sign(0)*10+sign(2)*100", 99},
+                                                     {"min(.3,.2)", 0.2},
+                                                     {"max(.3,.2)", k},
+                                                     {"mod(-.3,1)", 0.7},
+                                                     {"floor(-.3)", -1},
+                                                     {"ceil(-.3)+ceil(1.2)", 2},
+                                                     {"round(2.6)", 3},
+                                                     {"clamp(.3,.4,1)", 0.4},
+                                                     {"mix(2,4,.3)", 2.6},
+                                                     {"step(.3,.2)+2*step(.3,.3)", 2},
+                                                     {"smoothstep(0,1,.3)", k * k * (3 - 2 * k)}})
+        EXPECT_NEAR(value_of(text), value, 1e-15 * std::max(1.0, std::fabs(value))) << text;
+}
+
+TEST(TextMap, DefinitionsAreKnownToWhatFollows) {
+    FormulaText text;
+    text.let = "k = 0.5; wide = k*4 ;k=wide+1";
+    text.u = "k*10+wide";
+    EXPECT_EQ(point_of(text, 1, 1).x, 32);
+    text.let += ";";
+    EXPECT_EQ(point_of(text, 1, 1).x, 32);
+}
+
+TEST(TextMap, ThereIsNoPointWhereAFormulaHasNoValue) {
+    for (const char* none : {"sqrt(-x)", "log(-1)", "log(x-20.5)", "asin(2)", "acos(-1.5)", "1/(x-20.5)",
+                             "pow(-2,.5)", "if(x>3,sqrt(-1),1)", "min(1,log(-1))"})
+        EXPECT_FALSE(is_inside(none)) << none;
+    for (const char* some :
+         {"sqrt(x)", "log(x)", "asin(.5)", "1/x", "pow(-2,3)", "if(x<3,sqrt(-1),1)", "if(x>3,1,1/(x-20.5))"})
+        EXPECT_TRUE(is_inside(some)) << some;
+}
+
+TEST(TextMap, ErrorsNameTheColumn) {
+    const auto error_of = [](const std::string& u, const std::string& let = "") {
+        FormulaText text;
+        text.u = u;
+        text.let = let;
+        try {
+            parse_formula(text, {kPicture, kSource});
+        } catch (const Error& error) {
+            return std::string(error.what());
+        }
+        return std::string("no error");
+    };
+    EXPECT_EQ(error_of("x+"), "u=x+: column 3: expected a number, a name or (");
+    EXPECT_EQ(error_of("sin(x"), "u=sin(x: column 6: expected )");
+    EXPECT_EQ(error_of("x*foo"), "u=x*foo: column 3: expected a name that is known");
+    EXPECT_EQ(error_of("x<y"), "u=x<y: column 1: expected a number");
+    EXPECT_EQ(error_of("1+(x<y)"), "u=1+(x<y): column 3: expected a number");
+    EXPECT_EQ(error_of("if(x,1,2)"), "u=if(x,1,2): column 4: expected a condition");
+    EXPECT_EQ(error_of("1e999"), "u=1e999: column 1: expected a number that double can hold");
+    EXPECT_EQ(error_of("clamp(x,1)"), "u=clamp(x,1): column 1: expected clamp with 3 arguments");
+    EXPECT_EQ(error_of("atan(1,2,3)"), "u=atan(1,2,3): column 1: expected atan with 1 or 2 arguments");
+    EXPECT_EQ(error_of("x y"), "u=x y: column 3: expected an operator or the end");
+    EXPECT_EQ(error_of("x", "k=2 k"), "let=k=2 k: column 5: expected ;");
+    EXPECT_EQ(error_of("x", "sin=2"), "let=sin=2: column 1: expected a name that is no function's");
+    EXPECT_THAT(error_of(std::string(100000, '(')),
+                testing::HasSubstr("no more than 200 expressions in each other"));
+    EXPECT_THAT(error_of(std::string(100000, '-') + "x"), testing::HasSubstr("no more than 200"));
+    EXPECT_THAT(error_of(std::string(100000, 'q')), testing::HasSubstr("a name that is known"));
+    EXPECT_THAT(error_of("1" + std::string(100000, '0')),
+                testing::HasSubstr("a number that double can hold"));
+    std::string wide = "x";
+    for (int i = 0; i < 100; ++i) wide = "sin(x*" + std::to_string(i + 2) + ")+(" + wide + ")";
+    EXPECT_THAT(error_of(wide), testing::HasSubstr("must be simpler"));
+}
+
+// --- random formulas against long double ---
+
+using Real = long double;
+
+/// A formula as text, and as a function that shares nothing with what reads the text. `margin` becomes how far the formula is
+/// from having no value, at most.
+struct Formula {
+    std::string text;
+    std::function<Real(Real, Real, Real&)> value;
+};
+
+class Generator {
+  public:
+    explicit Generator(unsigned seed) : m_random(seed) {}
+
+    Formula make(int depth) {
+        if (depth == 0 || below(8) == 0) return leaf();
+        switch (below(24)) {
+            case 0:
+            case 1:
+                return binary("(", "+", ")", depth, [](Real a, Real b, Real&) { return a + b; });
+            case 2:
+                return binary("(", "-", ")", depth, [](Real a, Real b, Real&) { return a - b; });
+            case 3:
+            case 4:
+                return binary("(", "*", ")", depth, [](Real a, Real b, Real&) { return a * b; });
+            case 5:
+                return binary("(", "/", ")", depth, [](Real a, Real b, Real& margin) {
+                    margin = std::min(margin, std::fabs(b));
+                    return a / b;
+                });
+            case 6:
+                return binary("min(", ",", ")", depth, [](Real a, Real b, Real&) { return std::min(a, b); });
+            case 7:
+                return binary("max(", ",", ")", depth, [](Real a, Real b, Real&) { return std::max(a, b); });
+            case 8:
+                return binary("mod(", ",", ")", depth, [](Real a, Real b, Real& margin) {
+                    margin = std::min(margin, std::fabs(b));
+                    return a - b * std::floor(a / b);
+                });
+            case 9:
+                return binary("hypot(", ",", ")", depth,
+                              [](Real a, Real b, Real&) { return std::hypot(a, b); });
+            case 10:
+                return binary("atan2(", ",", ")", depth,
+                              [](Real a, Real b, Real&) { return std::atan2(a + 0, b); });
+            case 11:
+                return unary("sin(", depth, [](Real a, Real&) { return std::sin(a); });
+            case 12:
+                return unary("cos(", depth, [](Real a, Real&) { return std::cos(a); });
+            case 13:
+                return unary(
+                    "exp(-abs(", depth, [](Real a, Real&) { return std::exp(-std::fabs(a)); }, "))");
+            case 14:
+                return unary("sqrt(", depth, [](Real a, Real& margin) {
+                    margin = std::min(margin, a);
+                    return std::sqrt(a);
+                });
+            case 15:
+                return unary("log(", depth, [](Real a, Real& margin) {
+                    margin = std::min(margin, a);
+                    return std::log(a);
+                });
+            case 16:
+                return unary("abs(", depth, [](Real a, Real&) { return std::fabs(a); });
+            case 17:
+                return unary("floor(", depth, [](Real a, Real&) { return std::floor(a); });
+            case 18:
+                return unary("asinh(", depth, [](Real a, Real&) { return std::asinh(a); });
+            case 19:
+                return unary("tanh(", depth, [](Real a, Real&) { return std::tanh(a); });
+            case 20:
+                return unary(
+                    "(", depth, [](Real a, Real&) { return a * a; }, ")^2");
+            case 21:
+                return unary("asin(", depth, [](Real a, Real& margin) {
+                    margin = std::min(margin, (1 - a) * (1 + a));
+                    return std::asin(a);
+                });
+            default:
+                return choice(depth);
+        }
+    }
+    /// Without a jump, a crease or an end.
+    Formula make_smooth(int depth) {
+        if (depth == 0 && below(2) == 0) return {"px", [](Real x, Real, Real&) { return px(x); }};
+        if (depth == 0) return {"py", [](Real, Real y, Real&) { return py(y); }};
+        const Formula a = make_smooth(depth - 1), b = make_smooth(depth - 1);
+        const auto of_one = [&](const std::string& before, const std::string& behind, Real (*f)(Real)) {
+            return Formula{before + a.text + behind,
+                           [a, f](Real x, Real y, Real& m) { return f(a.value(x, y, m)); }};
+        };
+        switch (below(9)) {
+            case 0:
+                return {"(" + a.text + "+" + b.text + ")",
+                        [a, b](Real x, Real y, Real& m) { return a.value(x, y, m) + b.value(x, y, m); }};
+            case 1:
+                return {"(" + a.text + "*" + b.text + ")",
+                        [a, b](Real x, Real y, Real& m) { return a.value(x, y, m) * b.value(x, y, m); }};
+            case 2:
+                return of_one("sin(", ")", [](Real v) { return std::sin(v); });
+            case 3:
+                return of_one("exp(-(", ")^2)", [](Real v) { return std::exp(-v * v); });
+            case 4:
+                return of_one("log(1+(", ")^2)", [](Real v) { return std::log(1 + v * v); });
+            case 5:
+                return of_one("sqrt(1+(", ")^2)", [](Real v) { return std::sqrt(1 + v * v); });
+            case 6:
+                return of_one("asinh(", ")", [](Real v) { return std::asinh(v); });
+            case 7:
+                return of_one("tanh(", ")", [](Real v) { return std::tanh(v); });
+            default:
+                return of_one("1/(2+cos(", "))", [](Real v) { return 1 / (2 + std::cos(v)); });
+        }
+    }
+    int below(int n) { return static_cast<int>(m_random() % static_cast<unsigned>(n)); }
+
+  private:
+    static Real px(Real x) { return (x - kPicture.width / 2.0L) / (kPicture.height / 2.0L); }
+    static Real py(Real y) { return (kPicture.height / 2.0L - y) / (kPicture.height / 2.0L); }
+
+    template <class Function>
+    Formula unary(const std::string& before, int depth, const Function& f, const std::string& behind = ")") {
+        const Formula a = make(depth - 1);
+        return {before + a.text + behind, [a, f](Real x, Real y, Real& margin) {
+                    const Real of_a = a.value(x, y, margin);
+                    return static_cast<Real>(f(of_a, margin));
+                }};
+    }
+    template <class Function>
+    Formula binary(const std::string& before, const std::string& between, const std::string& behind,
+                   int depth, const Function& f) {
+        const Formula a = make(depth - 1), b = make(depth - 1);
+        return {before + a.text + between + b.text + behind, [a, b, f](Real x, Real y, Real& margin) {
+                    const Real of_a = a.value(x, y, margin), of_b = b.value(x, y, margin);
+                    return static_cast<Real>(f(of_a, of_b, margin));
+                }};
+    }
+    Formula choice(int depth) {
+        const Formula a = make(depth - 1), b = make(depth - 1), c = make(depth - 1), d = make(depth - 1);
+        return {"if(" + a.text + "<" + b.text + "," + c.text + "," + d.text + ")",
+                [a, b, c, d](Real x, Real y, Real& margin) {
+                    const bool is_less = a.value(x, y, margin) < b.value(x, y, margin);
+                    return (is_less ? c : d).value(x, y, margin);
+                }};
+    }
+    Formula leaf() {
+        const Real w = kPicture.width;
+        switch (below(9)) {
+            case 0:
+                return {"x", [](Real x, Real, Real&) { return x; }};
+            case 1:
+                return {"y", [](Real, Real y, Real&) { return y; }};
+            case 2:
+                return {"s", [=](Real x, Real, Real&) { return x / w; }};
+            case 3:
+                return {"px", [](Real x, Real, Real&) { return px(x); }};
+            case 4:
+                return {"py", [](Real, Real y, Real&) { return py(y); }};
+            case 5:
+                return {"r", [](Real x, Real y, Real&) { return std::hypot(px(x), py(y)); }};
+            case 6:
+                return {"a", [](Real x, Real y, Real&) { return std::atan2(py(y), px(x)); }};
+            default: {
+                const double value = std::pow(10.0, std::uniform_real_distribution<double>(-6, 6)(m_random)) *
+                                     (below(2) == 0 ? -1 : 1);
+                char text[40];
+                std::snprintf(text, sizeof text, "(%.17g)", value);
+                return {text, [value](Real, Real, Real&) { return static_cast<Real>(value); }};
+            }
+        }
+    }
+
+    std::mt19937 m_random;
+};
+
+struct Findings {
+    int pixels = 0, exact = 0, unknown = 0;  ///< of all, those computed exactly and those on a jump
+    int over = 0, above_tol = 0, lost = 0,
+        extra = 0;  ///< bounds and tolerances broken, points that are or are not there
+};
+
+/// Compares all pixels of a plan with the truth.
+Findings examine(const TextPlan& plan, double tol, const Formula& u, const Formula& v) {
+    Findings found;
+    for (std::int64_t region = 0; region < plan.regions(); ++region)
+        for (const Block& block : plan.blocks(region))
+            for (int j = block.box.y0; j < block.box.y1; ++j) {
+                const test::BlockRow row(plan, block, j);
+                for (int i = block.box.x0; i < block.box.x1; ++i) {
+                    ++found.pixels;
+                    const bool is_exact = block.kind == Block::Kind::exact;
+                    found.exact += is_exact;
+                    Real margin = 1;
+                    const Real x = u.value(i + 0.5L, j + 0.5L, margin),
+                               y = v.value(i + 0.5L, j + 0.5L, margin);
+                    const bool is_seen = margin > 0 && std::isfinite(x) && std::isfinite(y);
+                    // No one can tell on which side of a jump such a pixel lies.
+                    if (!std::isfinite(block.bound)) {
+                        found.unknown += 1;
+                        continue;
+                    }
+                    Point<double> p{};
+                    int piece = 0;
+                    const bool is_drawn =
+                        is_exact ? static_cast<const BlockMap&>(plan).exact(block, i + 0.5, j + 0.5, p, piece)
+                                 : test::has_points(block);
+                    if (!is_exact && is_drawn) p = row.at(i);
+                    if (is_drawn && is_seen) {
+                        const Real error = std::hypot(p.x - x, p.y - y);
+                        // What long double itself is off.
+                        const Real slack = 0x1p-60L * (std::fabs(x) + std::fabs(y));
+                        found.over += !(error <= block.bound + slack);
+                        found.above_tol += !is_exact && !(block.bound <= tol);
+                    }
+                    found.lost +=
+                        !is_drawn && is_seen && margin > 1e-12L && std::fabs(x) < 1e6L && std::fabs(y) < 1e6L;
+                    found.extra += is_drawn && !is_seen && margin < -1e-12L;
+                }
+            }
+    return found;
+}
+
+TEST(TextMap, RandomFormulasHoldTheirBounds) {
+    constexpr unsigned kSeed = 2026;
+    SCOPED_TRACE(testing::Message() << "seed " << kSeed);
+    Generator generator(kSeed);
+    const double tols[] = {1, 0.01, 1e-4, 1e-8, 0};
+    int pixels = 0, unknown = 0;
+    for (int k = 0; k < 200; ++k) {
+        const Formula u = generator.make(1 + k % 12), v = generator.make(1 + k / 17);
+        FormulaText text;
+        text.u = u.text;
+        text.v = v.text;
+        SCOPED_TRACE(testing::Message() << k << ": u=" << u.text << " v=" << v.text);
+        PlanOptions options;
+        options.tol = tols[k % 5];
+        options.cull = false;
+        PlaneFormula formula;
+        try {
+            formula = parse_formula(text, {kPicture, kSource});
+        } catch (const Error& error) {
+            EXPECT_THAT(error.what(), testing::HasSubstr("needs more than"));
+            continue;
+        }
+        const Findings found =
+            examine(TextPlan(TextMap(formula, kPicture, kPicture, kSource), options), options.tol, u, v);
+        EXPECT_EQ(found.over, 0);
+        EXPECT_EQ(found.above_tol, 0);
+        EXPECT_EQ(found.lost, 0);
+        EXPECT_EQ(found.extra, 0);
+        pixels += found.pixels;
+        unknown += found.unknown;
+    }
+    EXPECT_GT(pixels, 250000);
+    EXPECT_LT(unknown, pixels / 10);
+}
+
+// A picture eight times as large as the one that the formulas speak of: large enough for blocks.
+TEST(TextMap, SmoothFormulasAreDrawnByBlocks) {
+    constexpr unsigned kSeed = 87;
+    SCOPED_TRACE(testing::Message() << "seed " << kSeed);
+    Generator generator(kSeed);
+    constexpr int kTimes = 8;
+    const Size large{kTimes * kPicture.width, kTimes * kPicture.height};
+    const auto shrunk = [](const Formula& f) {
+        return Formula{f.text,
+                       [f](Real x, Real y, Real& m) { return 100 * f.value(x / kTimes, y / kTimes, m); }};
+    };
+    int pixels = 0, exact = 0;
+    for (int k = 0; k < 30; ++k) {
+        const Formula u = generator.make_smooth(1 + k % 4), v = generator.make_smooth(1 + k / 8);
+        FormulaText text;
+        text.u = "100*(" + u.text + ")";
+        text.v = "100*(" + v.text + ")";
+        SCOPED_TRACE(testing::Message() << k << ": u=" << u.text << " v=" << v.text);
+        PlanOptions options;
+        options.tol = k % 2 == 0 ? 0.01 : 1e-4;
+        options.cull = false;
+        const TextMap map(parse_formula(text, {kPicture, kSource}), kPicture, large, kSource);
+        const Findings found = examine(TextPlan(map, options), options.tol, shrunk(u), shrunk(v));
+        EXPECT_EQ(found.over + found.above_tol + found.lost + found.extra + found.unknown, 0);
+        if (options.tol < 0.01) continue;
+        pixels += found.pixels;
+        exact += found.exact;
+    }
+    EXPECT_LT(exact, pixels / 10);
+}
+
+}  // namespace
+}  // namespace anamorph
