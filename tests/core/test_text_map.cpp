@@ -74,7 +74,12 @@ TEST(TextMap, OperatorsBindAsInMathematics) {
                                                      {"if(2<=2 and not 2!=2,3,4)", 3},
                                                      {"if(1>2 or 2>=3 or 1==2,3,4)", 4},
                                                      {"if(not(1<2) or 1<2 and 2<1,3,4)", 4},
-                                                     {"if((1<2),(3),(4))", 3}})
+                                                     {"if((1<2),(3),(4))", 3},
+                                                     {"(-2)^101/2^101", -1},
+                                                     {"(0.1*3-0.3)*2^54", 1},
+                                                     {"atan2(0,-(y-y))", 0},
+                                                     {"atan2(-(y-y),-1)", std::numbers::pi},
+                                                     {"round(2.5)+round(-2.5)", 1}})
         EXPECT_DOUBLE_EQ(value_of(text), value) << text;
 }
 
@@ -126,10 +131,11 @@ TEST(TextMap, DefinitionsAreKnownToWhatFollows) {
 
 TEST(TextMap, ThereIsNoPointWhereAFormulaHasNoValue) {
     for (const char* none : {"sqrt(-x)", "log(-1)", "log(x-20.5)", "asin(2)", "acos(-1.5)", "1/(x-20.5)",
-                             "pow(-2,.5)", "if(x>3,sqrt(-1),1)", "min(1,log(-1))"})
+                             "pow(-2,.5)", "if(x>3,sqrt(-1),1)", "min(1,log(-1))", "sqrt(-1)^0", "0*log(-1)",
+                             "cbrt(y-10.5)", "if(sqrt(-s)<1 or s<2,1,0)"})
         EXPECT_FALSE(is_inside(none)) << none;
-    for (const char* some :
-         {"sqrt(x)", "log(x)", "asin(.5)", "1/x", "pow(-2,3)", "if(x<3,sqrt(-1),1)", "if(x>3,1,1/(x-20.5))"})
+    for (const char* some : {"sqrt(x)", "log(x)", "asin(.5)", "1/x", "pow(-2,3)", "(-2)^1000",
+                             "if(x<3,sqrt(-1),1)", "if(x>3,1,1/(x-20.5))", "if(s<2 or sqrt(-s)<1,1,0)"})
         EXPECT_TRUE(is_inside(some)) << some;
 }
 
@@ -154,6 +160,7 @@ TEST(TextMap, ErrorsNameTheColumn) {
     EXPECT_EQ(error_of("1e999"), "u=1e999: column 1: expected a number that double can hold");
     EXPECT_EQ(error_of("clamp(x,1)"), "u=clamp(x,1): column 1: expected clamp with 3 arguments");
     EXPECT_EQ(error_of("atan(1,2,3)"), "u=atan(1,2,3): column 1: expected atan with 1 or 2 arguments");
+    EXPECT_EQ(error_of("if(x=1,1,2)"), "u=if(x=1,1,2): column 5: expected ==");
     EXPECT_EQ(error_of("x y"), "u=x y: column 3: expected an operator or the end");
     EXPECT_EQ(error_of("x", "k=2 k"), "let=k=2 k: column 5: expected ;");
     EXPECT_EQ(error_of("x", "sin=2"), "let=sin=2: column 1: expected a name that is no function's");
@@ -166,6 +173,51 @@ TEST(TextMap, ErrorsNameTheColumn) {
     std::string wide = "x";
     for (int i = 0; i < 100; ++i) wide = "sin(x*" + std::to_string(i + 2) + ")+(" + wide + ")";
     EXPECT_THAT(error_of(wide), testing::HasSubstr("must be simpler"));
+}
+
+TextPlan plan_of(const FormulaText& text, const Size& picture) {
+    PlanOptions options;
+    options.cull = false;
+    return TextPlan(TextMap(parse_formula(text, {picture, kSource}), picture, picture, kSource), options);
+}
+
+// Beyond double nothing is known, and that is said.
+TEST(TextMap, WhatOverflowsHasNoBound) {
+    for (const char* u :
+         {"x+sin(3e28*s)", "x+sin(exp(y*20))", "x+5*exp(20*y)*exp(-20*y)", "x+min(1,exp(exp(y)))",
+          "x+1e200*x*1e200/1e200/1e200", "x+exp(1000)-exp(1000)", "x+(x-x)*exp(1000)", "x+(y-y)*exp(y*1000)",
+          "x+floor(s)*exp(y*1000)", "x+hypot(1e200*x,1e200*y)/1e200"}) {
+        FormulaText text;
+        text.u = u;
+        const TextPlan plan = plan_of(text, kPicture);
+        for (std::int64_t region = 0; region < plan.regions(); ++region)
+            for (const Block& block : plan.blocks(region)) {
+                ASSERT_FALSE(std::isnan(block.bound)) << u;
+                Point<double> p{};
+                int piece = 0;
+                const bool is_drawn = static_cast<const BlockMap&>(plan).exact(block, block.box.x0 + 0.5,
+                                                                               block.box.y0 + 0.5, p, piece);
+                if (block.kind == Block::Kind::exact && !is_drawn) {
+                    EXPECT_EQ(block.bound, HUGE_VAL) << u;
+                }
+            }
+    }
+}
+
+// What is a whole number, or on the axis, without rounding is on no side of a jump but its own.
+TEST(TextMap, JumpsAreDecidedWhereNothingIsRounded) {
+    for (const char* u :
+         {"x+if(mod(floor(x/8)+floor(y/8),2)<1,5,-5)", "x+8*floor(floor(x/8)/2)", "x+mod(floor(x/8),2)*8",
+          "x+floor(x-.5)", "x+round(x)", "x+floor(width/2)+mod(width,2)+mod(8,4)", "x+5*cos(a)",
+          "width/2+height/2*r*cos(a+0.6*exp(-4*r^2))", "x+5*sin(2*a)", "x+tanh(50*(x-20))"})
+        for (const Size picture : {kPicture, Size{47, 31}}) {
+            FormulaText text;
+            text.u = u;
+            const TextPlan plan = plan_of(text, picture);
+            for (std::int64_t region = 0; region < plan.regions(); ++region)
+                for (const Block& block : plan.blocks(region))
+                    EXPECT_LE(block.bound, 0.01) << u << " at " << block.box.x0 << ", " << block.box.y0;
+        }
 }
 
 // --- random formulas against long double ---

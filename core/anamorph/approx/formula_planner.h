@@ -1001,13 +1001,13 @@ class ExactBounds {
     /// Appends the blocks of an exact block.
     void place(Block block) {
         const Interval x{block.box.x0 + 0.5, block.box.x1 - 0.5}, y{block.box.y0 + 0.5, block.box.y1 - 0.5};
-        block.bound = m_map.template exact_error<double>(x, y, block.piece);
+        block.bound = bound_of<double>(block, x, y);
         const int pixels = pixels_of(block.box);
         const bool may_help =
             pixels == 1 || (pixels <= kPrecisePixels && block.bound <= kPreciseGain * m_goal);
         if (!(block.bound <= m_goal) && may_help) {
             block.precise = true;
-            block.bound = m_map.template exact_error<long double>(x, y, block.piece);
+            block.bound = bound_of<long double>(block, x, y);
         }
         if (block.bound <= m_goal || pixels == 1)
             m_blocks.push_back(block);
@@ -1032,7 +1032,13 @@ class ExactBounds {
         m_blocks[first].box = block.box;
         m_blocks[first].bound = bound;
     }
-    static double larger(double a, double b) { return a >= b || std::isnan(a) ? a : b; }
+    static double larger(double a, double b) { return a >= b ? a : b; }
+    /// Infinite where none is known.
+    template <class Real>
+    double bound_of(const Block& block, const Interval& x, const Interval& y) const {
+        const double bound = m_map.template exact_error<Real>(x, y, block.piece);
+        return std::isnan(bound) ? HUGE_VAL : bound;
+    }
 
     const Map& m_map;
     double m_goal;

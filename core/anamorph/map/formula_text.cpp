@@ -82,7 +82,7 @@ class Graph {
     Result add(const Node& node) {
         const auto [known, is_new] = m_known.try_emplace(node, static_cast<int>(m_nodes.size()));
         if (is_new) m_nodes.push_back(node);
-        if (m_nodes.size() > kMostNodes) throw Error("needs more than 16384 operations");
+        if (m_nodes.size() > kMostNodes) throw Error("the formula needs more than 16384 operations");
         return {known->second};
     }
 
@@ -104,7 +104,8 @@ class Registers {
                 std::fill_n(&m_free[i], count, false);
                 return static_cast<std::uint8_t>(i);
             }
-        throw Error("needs more than " + std::to_string(m_free.size()) + " numbers at once: must be simpler");
+        throw Error("the formula needs more than " + std::to_string(m_free.size()) +
+                    " numbers at once: must be simpler");
     }
     void give_back(std::uint8_t i) { m_free[i] = true; }
 
@@ -112,9 +113,20 @@ class Registers {
     std::vector<char> m_free;
 };
 
+/// In a program's own list, from which it may be missing yet.
+inline double key_of(double number) {
+    return number;
+}
+inline long double key_of(const Constant& constant) {
+    return constant.precise();
+}
 template <class T>
 std::uint8_t place_of(std::vector<T>& values, const T& value) {
-    if (values.size() == 256) throw Error("needs more than 256 numbers");
+    const auto known = std::find_if(values.begin(), values.end(), [&](const T& other) {
+        return key_of(other) == key_of(value) && std::signbit(key_of(other)) == std::signbit(key_of(value));
+    });
+    if (known != values.end()) return static_cast<std::uint8_t>(known - values.begin());
+    if (values.size() == 256) throw Error("the formula needs more than 256 different numbers");
     values.push_back(value);
     return static_cast<std::uint8_t>(values.size() - 1);
 }
@@ -201,6 +213,8 @@ class Maker {
         return {m_graph.make(StepKind::negation, a.at), a.domain};
     }
     Value sum(const Value& a, const Value& b) {
+        const auto x = m_graph.known_number(a.at), y = m_graph.known_number(b.at);
+        if (x && y && program_detail::is_exact_sum(*x, *y, *x + *y)) return number(*x + *y);
         if (const auto k = m_graph.known_number(b.at)) return {added(a.at, *k), a.domain};
         if (const auto k = m_graph.known_number(a.at)) return {added(b.at, *k), b.domain};
         return {m_graph.make(StepKind::sum, a.at, b.at), needs(a, b)};
@@ -211,6 +225,9 @@ class Maker {
         return {m_graph.make(StepKind::difference, a.at, b.at), needs(a, b)};
     }
     Value product(const Value& a, const Value& b) {
+        const auto x = m_graph.known_number(a.at), y = m_graph.known_number(b.at);
+        if (x && y && program_detail::is_exact_product(*x, *y, *x * *y)) return number(*x * *y);
+        if ((x && *x == 0) || (y && *y == 0)) return {m_graph.number(0), needs(a, b)};
         if (const auto k = m_graph.known_number(b.at)) return {scaled(a.at, *k), a.domain};
         if (const auto k = m_graph.known_number(a.at)) return {scaled(b.at, *k), b.domain};
         if (const auto k = m_graph.known_constant(b.at)) return {m_graph.times_constant(a.at, *k), a.domain};
@@ -221,7 +238,9 @@ class Maker {
     Value quotient(const Value& a, const Value& b) {
         if (const auto k = m_graph.known_constant(b.at))
             return {m_graph.times_constant(a.at, 1 / *k), a.domain};
-        const auto k = m_graph.known_number(b.at);
+        const auto k = m_graph.known_number(b.at), of_a = m_graph.known_number(a.at);
+        if (k && of_a && *k != 0 && program_detail::is_exact_product(*of_a / *k, *k, *of_a))
+            return number(*of_a / *k);
         if (k && std::isnormal(*k) && std::isnormal(1 / *k)) {
             // A power of two has an exact inverse.
             int exponent = 0;
@@ -276,16 +295,17 @@ class Maker {
         return of_one(StepKind::exp, product(b, of_one(StepKind::log, a)));
     }
     Value whole_power(const Value& a, int n) {
-        if (n == 0) return number(1);
+        if (n == 0) return {m_graph.number(1), a.domain};
         if (n < 0) return quotient(number(1), whole_power(a, -n));
         if (n == 1) return a;
         const Value half = whole_power(a, n / 2), even = product(half, half);
         return n % 2 == 0 ? even : product(even, a);
     }
     /// The whole number written as such, if it is one of few.
+    static constexpr double kMostPower = 1024;
     std::optional<int> few(const Value& a) const {
         const auto k = m_graph.known_number(a.at);
-        if (!k || std::fabs(*k) > 64 || *k != std::floor(*k)) return {};
+        if (!k || std::fabs(*k) > kMostPower || *k != std::floor(*k)) return {};
         return static_cast<int>(*k);
     }
 
@@ -359,7 +379,9 @@ Value half_sum(Maker& m, const Value& a, double sign) {
     return m.product(m.sum(up, m.product(down, m.number(sign))), m.number(0.5));
 }
 Value hyperbolic_tangent(Maker& m, const Value& a) {
-    const Value grown = m.of_one(StepKind::exp, m.product(a, m.number(2)));
+    // From there on it is 1 to 300 digits.
+    const Value twice = m.least(m.product(a, m.number(2)), m.number(700));
+    const Value grown = m.of_one(StepKind::exp, twice);
     return m.difference(m.number(1), m.quotient(m.number(2), m.sum(grown, m.number(1))));
 }
 
@@ -518,6 +540,7 @@ class Parser {
         const std::size_t first = m_at;
         const Value a = sum();
         const char* const signs[] = {"<=", ">=", "==", "!=", "<", ">"};
+        if (!at_end() && m_text[m_at] == '=' && m_text.substr(m_at, 2) != "==") fail("==");
         for (const std::string_view sign : signs) {
             if (!accept(sign)) continue;
             if (a.is_condition) fail(first, "a number");

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Formulas that are written as text: from a point of a picture to one of its source.
 //
-// Text. Numbers as in 12, .5 and 1e-3, pi; + - * / with the usual order, % (as mod), ^ (a power, from right to left, before a
+// Text. Numbers as in 12, .5 and 1e-3, which are the doubles next to them, and pi; + - * / with the usual order, % (as mod), ^ (a power, from right to left, before a
 // minus sign); < <= > >= == !=, and, or, not make conditions, which if(condition, a, b) takes. Names:
 //
 //   x y                     the point: pixels of the picture, the middle of the first one at (.5, .5), y down
@@ -15,12 +15,12 @@
 //
 // and those that definitions make before. Functions: sin cos tan asin acos atan(y) atan(y, x) atan2(y, x) sinh cosh tanh
 // asinh exp log sqrt cbrt pow hypot abs sign min max mod floor ceil round clamp mix step smoothstep, as GLSL has them
-// (mod(a, b) has the sign of b); angles in radians. Conditions compare exactly. cbrt and a power with an exponent that is no
-// whole number written as such are made of exp and log.
+// (mod(a, b) has the sign of b, round takes halves up, atan2(0, 0) is 0); angles in radians. Conditions compare exactly. cbrt, and
+// a power whose exponent is no known whole number of at most 1024, are made of exp and log.
 //
 // Domain. A point has no source where a root or a logarithm of what is not positive, an asin or acos of what is not between -1
-// and 1, a power of what is not positive with such an exponent, or a quotient by 0 would be needed; an `if` needs what it
-// chooses.
+// and 1 (which are left out), cbrt(0), a power of what is not positive with such an exponent, or a quotient by 0 would be needed; an
+// `if` needs what it chooses, `and` and `or` what they have not decided from the left.
 #pragma once
 
 #include <string>

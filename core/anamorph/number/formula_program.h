@@ -157,6 +157,61 @@ Jets<T, N> floor_of(const Jets<T, N>& a) {
     return r;
 }
 
+// --- sums, products and quotients ---
+
+template <class T, class U>
+T sum_of(const T& a, const U& b) {
+    return a + b;
+}
+template <class T, class U>
+T product_of(const T& a, const U& b) {
+    return a * b;
+}
+template <class T>
+T quotient_of(const T& a, const T& b) {
+    return a / b;
+}
+/// The one value of a number that is known to be computed exactly; NaN if there is no such.
+template <class Real>
+double only_value(const Rounded<Real>& a) {
+    return a.error == 0 && a.radius == 0 && a.range.lo == a.range.hi ? a.range.lo : NAN;
+}
+/// Is a rounded result of a and b the exact one? What rounding took is computed without an error (Knuth; an fma).
+inline bool is_exact_sum(double a, double b, double sum) {
+    const double of_b = sum - a, of_a = sum - of_b;
+    return (a - of_a) + (b - of_b) == 0;
+}
+inline bool is_exact_product(double a, double b, double product) {
+    return std::fma(a, b, -product) == 0 && (product == 0 || std::fabs(product) > 0x1p-900);
+}
+/// Whole numbers, and what lies on a pixel's own column or row, stay exact, so that choices are decided there.
+template <class Real>
+Rounded<Real> sum_of(const Rounded<Real>& a, const Rounded<Real>& b) {
+    const double x = only_value(a), y = only_value(b), sum = x + y;
+    return is_exact_sum(x, y, sum) ? Rounded<Real>(sum) : a + b;
+}
+template <class Real>
+Rounded<Real> sum_of(const Rounded<Real>& a, double b) {
+    return sum_of(a, Rounded<Real>(b));
+}
+/// Zero times what may be infinite is no number.
+template <class Real>
+Rounded<Real> product_of(const Rounded<Real>& a, const Rounded<Real>& b) {
+    const double x = only_value(a), y = only_value(b), product = x * y;
+    if (is_exact_product(x, y, product)) return Rounded<Real>(product);
+    const bool is_known = std::isfinite(a.computed_size()) && std::isfinite(b.computed_size());
+    return is_known ? a * b : Rounded<Real>(Interval::all(), 0, HUGE_VAL);
+}
+template <class Real>
+Rounded<Real> product_of(const Rounded<Real>& a, double b) {
+    return product_of(a, Rounded<Real>(b));
+}
+template <class Real>
+Rounded<Real> quotient_of(const Rounded<Real>& a, const Rounded<Real>& b) {
+    const double x = only_value(a), y = only_value(b), quotient = x / y;
+    return y != 0 && is_exact_product(quotient, y, x) ? Rounded<Real>(quotient) : a / b;
+}
+
 // --- angles: they jump by a turn on the half line y = 0, x < 0 ---
 
 template <class T>
@@ -168,7 +223,11 @@ inline bool may_jump(const Interval& y, const Interval& x) {
 }
 template <class T>
 T angle_of(const T& y, const T& x) {
-    return atan2(y, x);
+    // There is one zero.
+    if constexpr (std::is_floating_point_v<T>)
+        return std::atan2(y + 0, x + 0);
+    else
+        return atan2(y, x);
 }
 /// Rounded takes angles modulo a turn.
 template <class Real>
@@ -178,7 +237,8 @@ Rounded<Real> angle_of(const Rounded<Real>& y, const Rounded<Real>& x) {
         return Interval(a.range.lo - a.error, a.range.hi + a.error);
     };
     Rounded<Real> r = atan2(y, x);
-    if (y.error + x.error > 0 && may_jump(near(y), near(x)) && !(r.error > kTurn)) r.error = kTurn;
+    // Where y is exact, its sign is.
+    if (y.error > 0 && may_jump(near(y), near(x)) && !(r.error > kTurn)) r.error = kTurn;
     return r;
 }
 template <int N>
@@ -218,22 +278,22 @@ std::array<T, Outputs> read_program(const FormulaProgram<Outputs>& program, cons
                 new (to) T(constants[step.a].template as<T>());
                 break;
             case StepKind::sum:
-                new (to) T(a + b);
+                new (to) T(sum_of(a, b));
                 break;
             case StepKind::difference:
-                new (to) T(a - b);
+                new (to) T(sum_of(a, T(-b)));
                 break;
             case StepKind::product:
-                new (to) T(a * b);
+                new (to) T(product_of(a, b));
                 break;
             case StepKind::quotient:
-                new (to) T(a / b);
+                new (to) T(quotient_of(a, b));
                 break;
             case StepKind::add_number:
-                new (to) T(a + numbers[step.b]);
+                new (to) T(sum_of(a, numbers[step.b]));
                 break;
             case StepKind::times_number:
-                new (to) T(a * numbers[step.b]);
+                new (to) T(product_of(a, numbers[step.b]));
                 break;
             case StepKind::times_constant:
                 new (to) T(a * constants[step.b].template as<T>());
