@@ -20,8 +20,7 @@ constexpr Size kPicture{48, 32}, kSource{200, 100};
 Point<double> point_of(const FormulaText& text, double x, double y,
                        FormulaSetting setting = {kPicture, kSource}) {
     const PlaneFormula formula = parse_formula(text, setting);
-    const std::array<double, 2> p = read_program(formula.point, x, y);
-    return {p[0], p[1]};
+    return read_program(formula.point, x, y);
 }
 double value_of(const std::string& expression, double x = 20.5, double y = 10.5) {
     FormulaText text;
@@ -32,7 +31,7 @@ bool is_inside(const std::string& expression, double x = 20.5, double y = 10.5) 
     FormulaText text;
     text.u = expression;
     const PlaneFormula formula = parse_formula(text, {kPicture, kSource});
-    return formula.is_everywhere || read_program(formula.domain, x, y)[0] > 0;
+    return formula.is_everywhere || read_program(formula.domain, x, y).x > 0;
 }
 
 TEST(TextMap, NamesStandForThePlaceOfAPixel) {

@@ -60,8 +60,7 @@ class Graph {
         return known(r, StepKind::constant, m_constants);
     }
 
-    template <std::size_t Outputs>
-    FormulaProgram<Outputs> program(const std::array<Result, Outputs>& outputs) const;
+    FormulaProgram program(const std::array<Result, 2>& outputs) const;
 
   private:
     template <class T>
@@ -131,9 +130,8 @@ std::uint8_t place_of(std::vector<T>& values, const T& value) {
     return static_cast<std::uint8_t>(values.size() - 1);
 }
 
-template <std::size_t Outputs>
-FormulaProgram<Outputs> Graph::program(const std::array<Result, Outputs>& outputs) const {
-    FormulaProgram<Outputs> program;
+FormulaProgram Graph::program(const std::array<Result, 2>& outputs) const {
+    FormulaProgram program;
     constexpr int kNever = -1, kAlways = 1 << 30;
     const std::size_t count = m_nodes.size();
     // Which node is the last one to read each result.
@@ -149,7 +147,7 @@ FormulaProgram<Outputs> Graph::program(const std::array<Result, Outputs>& output
             if (operand.node >= 0 && is_read(i) && last_of(operand) == kNever)
                 last_of(operand) = static_cast<int>(i);
 
-    Registers registers(FormulaProgram<Outputs>::kRegisters);
+    Registers registers(FormulaProgram::kRegisters);
     std::vector<std::uint8_t> at(count);
     at[0] = registers.take(1);
     at[1] = registers.take(1);
@@ -184,7 +182,7 @@ FormulaProgram<Outputs> Graph::program(const std::array<Result, Outputs>& output
         done.erase(std::unique(done.begin(), done.end()), done.end());
         for (const Result& r : done) registers.give_back(place(r));
     }
-    for (std::size_t i = 0; i < Outputs; ++i) program.outputs[i] = place(outputs[i]);
+    for (std::size_t i = 0; i < outputs.size(); ++i) program.outputs[i] = place(outputs[i]);
     return program;
 }
 
@@ -711,8 +709,8 @@ PlaneFormula parse_formula(const FormulaText& text, const FormulaSetting& settin
     const Value u = coordinate("u", text.u, setting.source.width),
                 v = coordinate("v", text.v, setting.source.height);
     const std::optional<Result> domain = maker.needs(u, v);
-    return {graph.program<2>({u.at, v.at}), graph.program<1>({domain ? *domain : graph.number(1)}),
-            !domain.has_value()};
+    const Result positive = domain ? *domain : graph.number(1);
+    return {graph.program({u.at, v.at}), graph.program({positive, positive}), !domain.has_value()};
 }
 
 }  // namespace anamorph

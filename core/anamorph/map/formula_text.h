@@ -45,9 +45,9 @@ struct FormulaSetting {
 
 /// A text as programs.
 struct PlaneFormula {
-    FormulaProgram<2> point;   ///< u and v, in source pixels
-    FormulaProgram<1> domain;  ///< positive where there is a source point
-    bool is_everywhere;        ///< the domain is the whole plane
+    FormulaProgram point;   ///< u and v, in source pixels
+    FormulaProgram domain;  ///< positive, twice, where there is a source point
+    bool is_everywhere;     ///< the domain is the whole plane
 };
 
 /// Throws Error with the column, counted from 1, and what was expected there.

@@ -20,17 +20,16 @@ class TextMap : public PlaneMap<TextMap> {
 
     template <class T>
     Point<T> source_point(const T& x, const T& y) const {
-        const std::array<T, 2> p = read(m_formula.point, x, y);
-        return {p[0], p[1]};
+        return read(m_formula.point, x, y);
     }
     template <class T>
     T inside(const T& x, const T& y) const {
-        return m_formula.is_everywhere ? T(1) : read(m_formula.domain, x, y)[0];
+        return m_formula.is_everywhere ? T(1) : read(m_formula.domain, x, y).x;
     }
 
   private:
-    template <class T, std::size_t Outputs>
-    std::array<T, Outputs> read(const FormulaProgram<Outputs>& program, const T& x, const T& y) const {
+    template <class T>
+    Point<T> read(const FormulaProgram& program, const T& x, const T& y) const {
         if (!m_is_scaled) return read_program(program, x, y);
         return read_program(program, T(x * m_per_x.as<T>()), T(y * m_per_y.as<T>()));
     }

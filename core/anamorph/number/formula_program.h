@@ -52,8 +52,7 @@ struct ProgramStep {
     std::uint8_t result, a = 0, b = 0, c = 0;
 };
 
-/// Computes `Outputs` numbers from x and y, which are registers 0 and 1.
-template <std::size_t Outputs>
+/// Computes two numbers from x and y, which are registers 0 and 1.
 struct FormulaProgram {
     /// Registers are reused; more are alive at once in no program.
     static constexpr int kRegisters = 64;
@@ -61,7 +60,7 @@ struct FormulaProgram {
     std::vector<ProgramStep> steps;
     std::vector<double> numbers;
     std::vector<Constant> constants;
-    std::array<std::uint8_t, Outputs> outputs{};
+    std::array<std::uint8_t, 2> outputs{};
 };
 
 namespace program_detail {
@@ -256,12 +255,11 @@ Jets<Interval, N> angle_of(const Jets<Interval, N>& y, const Jets<Interval, N>& 
 }  // namespace program_detail
 
 /// What a program gives at (x, y), read with T.
-template <class T, std::size_t Outputs>
-std::array<T, Outputs> read_program(const FormulaProgram<Outputs>& program, const T& x, const T& y) {
+template <class T>
+Point<T> read_program(const FormulaProgram& program, const T& x, const T& y) {
     using namespace program_detail;
     // Registers are written before they are read, and no step writes over its own operands.
-    alignas(alignof(T) > 64 ? alignof(T) : 64)
-        std::byte room[FormulaProgram<Outputs>::kRegisters * sizeof(T)];
+    alignas(alignof(T) > 64 ? alignof(T) : 64) std::byte room[FormulaProgram::kRegisters * sizeof(T)];
     T* const r = reinterpret_cast<T*>(room);
     new (r) T(x);
     new (r + 1) T(y);
@@ -332,9 +330,7 @@ std::array<T, Outputs> read_program(const FormulaProgram<Outputs>& program, cons
                 break;
         }
     }
-    std::array<T, Outputs> results;
-    for (std::size_t i = 0; i < Outputs; ++i) results[i] = r[program.outputs[i]];
-    return results;
+    return {r[program.outputs[0]], r[program.outputs[1]]};
 }
 
 }  // namespace anamorph

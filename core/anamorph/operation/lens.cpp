@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // A lens's distortion taken off a picture, or put on one.
 #include "anamorph/approx/lens_plan.h"
-#include "anamorph/operation/operation.h"
+#include "anamorph/operation/flat_picture.h"
 #include "anamorph/operation/rows.h"
-#include "anamorph/operation/solved.h"
 
 namespace anamorph {
 namespace {
@@ -51,16 +50,6 @@ struct Observed {
     Attributes says = {};
 };
 
-struct LensRequest {
-    Observed observed;
-    LensMode mode;
-    Size source, target;
-    PlanOptions plan;
-    Filter filter;
-    Wrap wrap;
-    Output output;
-};
-
 LensModel model_of(const ParameterValues& values, const SourceFacts& facts) {
     const LensModel model = values.given("lens") ? LensModel::parse(values.text("lens"))
                             : facts.lens         ? *facts.lens
@@ -92,7 +81,7 @@ Observed observed_picture(const ParameterValues& values, const SourceFacts& fact
     throw Error("fov is not given and the source does not say it: must be given for lens=" + model.text());
 }
 
-LensRequest read_request(const ParameterValues& values, const SourceFacts& facts) {
+std::unique_ptr<const Pictures> pictures_of(const ParameterValues& values, const SourceFacts& facts) {
     const Size source{facts.width, facts.height};
     const auto mode = chosen<LensMode>(values, "mode");
     const bool all = values.text("size") == kAll;
@@ -103,54 +92,13 @@ LensRequest read_request(const ParameterValues& values, const SourceFacts& facts
         throw Error("size", kAll,
                     "makes " + std::to_string(target.width) + "x" + std::to_string(target.height) +
                         " pixels: must be at most " + std::to_string(kMaxSide) + " either way");
-    const auto wrap = chosen<Wrap>(values, "wrap");
-    const Output output = rows::chosen_output(values);
-    PlanOptions plan;
-    plan.scheme = chosen<Scheme>(values, "scheme");
-    plan.tol = values.number("tol");
-    plan.cull = ends_at_edges(wrap, output);
-    return {observed, mode, source, target, plan, chosen<Filter>(values, "filter"), wrap, output};
+    FlatRequest request = flat_request(values, source, target);
+    request.says = observed.says;
+    return flat_pictures(request, [request, observed, mode](const Size& pixels) {
+        return std::make_shared<LensPlan>(
+            LensMap(observed.chart, mode, request.target, pixels, request.source), request.plan);
+    });
 }
-
-/// The map and its picture.
-class LensPicture {
-  public:
-    LensPicture(const LensRequest& r, const Size& pixels) {
-        const LensMap map(r.observed.chart, r.mode, r.target, pixels, r.source);
-        const Chart flat(Projection::rectilinear, r.source.width, r.source.height);
-        m_picture.maps = {{std::make_shared<LensPlan>(map, r.plan), {{Border(flat, r.wrap)}}}};
-        m_picture.filter = r.filter;
-        m_picture.output = r.output;
-    }
-    const Picture& picture() const { return m_picture; }
-
-  private:
-    Picture m_picture;
-};
-
-class LensPictures final : public Pictures {
-  public:
-    explicit LensPictures(const LensRequest& request) : m_request(request) {}
-
-    std::optional<PictureRequest> picture(int, int level) const override {
-        const std::optional<Size> size = level_size(m_request.target, level);
-        if (!size) return {};
-        PictureRequest picture;
-        picture.size = *size;
-        picture.pixels = pixels_of(m_request.output);
-        picture.says = {{"anamorph:tol", m_request.plan.tol}};
-        picture.says.insert(picture.says.end(), m_request.observed.says.begin(),
-                            m_request.observed.says.end());
-        if (picture.pixels == PixelKind::color && m_request.filter == Filter::nearest) picture.moves = 0;
-        picture.solve = [request = m_request, size = *size] {
-            return std::make_unique<Solved<LensPicture>>(LensPicture(request, size));
-        };
-        return picture;
-    }
-
-  private:
-    LensRequest m_request;
-};
 
 }  // namespace
 
@@ -163,9 +111,7 @@ const Operation& lens_operation() {
         {"src"},
         1,
         {"fov=120&lens=kb4:k1=0.05,k2=0.01", {}},
-        [](const OperationInput& input) -> std::unique_ptr<const Pictures> {
-            return std::make_unique<LensPictures>(read_request(input.values, input.sources[0].facts));
-        }};
+        [](const OperationInput& input) { return pictures_of(input.values, input.sources[0].facts); }};
     return operation;
 }
 
