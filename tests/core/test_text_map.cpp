@@ -130,8 +130,9 @@ TEST(TextMap, DefinitionsAreKnownToWhatFollows) {
 
 TEST(TextMap, ThereIsNoPointWhereAFormulaHasNoValue) {
     for (const char* none : {"sqrt(-x)", "log(-1)", "log(x-20.5)", "asin(2)", "acos(-1.5)", "1/(x-20.5)",
-                             "pow(-2,.5)", "if(x>3,sqrt(-1),1)", "min(1,log(-1))", "sqrt(-1)^0", "0*log(-1)",
-                             "cbrt(y-10.5)", "if(sqrt(-s)<1 or s<2,1,0)"})
+                             "pow(-2,.5)", "if(x>3,sqrt(-1),1)", "min(1,log(-1))", "sqrt(-1)^0",
+                             "x+sqrt(-1)^0", "sqrt(-1)^0*2", "-(sqrt(-1)^0)", "1/log(-1)^0", "0*log(-1)",
+                             "(x-x)*log(-1)", "cbrt(y-10.5)", "if(sqrt(-s)<1 or s<2,1,0)"})
         EXPECT_FALSE(is_inside(none)) << none;
     for (const char* some : {"sqrt(x)", "log(x)", "asin(.5)", "1/x", "pow(-2,3)", "(-2)^1000",
                              "if(x<3,sqrt(-1),1)", "if(x>3,1,1/(x-20.5))", "if(s<2 or sqrt(-s)<1,1,0)"})
@@ -217,6 +218,83 @@ TEST(TextMap, JumpsAreDecidedWhereNothingIsRounded) {
                 for (const Block& block : plan.blocks(region))
                     EXPECT_LE(block.bound, 0.01) << u << " at " << block.box.x0 << ", " << block.box.y0;
         }
+}
+
+TEST(TextMap, WhatUnderflowsIsOffByNoMoreThanItsBound) {
+    for (const char* u : {"-.3^612", "1e-200*(x*1e-150)", "exp(-740)*1.1", "(1e-170*x)^2", "x*1e-320/3"}) {
+        FormulaText text;
+        text.u = u;
+        text.v = "0";
+        const TextPlan plan = plan_of(text, kPicture);
+        for (const Block& block : plan.blocks(0)) {
+            if (block.kind != Block::Kind::exact) continue;
+            const double x = block.box.x0 + 0.5, y = block.box.y0 + 0.5;
+            Point<double> p{};
+            Point<long double> truth{};
+            int piece = 0;
+            ASSERT_TRUE(static_cast<const BlockMap&>(plan).exact(block, x, y, p, piece)) << u;
+            ASSERT_TRUE(plan.truth(x, y, 0, truth, piece)) << u;
+            EXPECT_LE(std::fabs(p.x - truth.x), block.bound) << u;
+        }
+    }
+}
+
+// --- what rounding does to exp and log of jets ---
+
+/// The sum of magnitudes of coefficients, from that of degree `first` on.
+template <class T>
+long double norm_of(const Jet<T, 4>& jet, int first = 0) {
+    long double sum = 0;
+    for (int k = first; k < Jet<T, 4>::kSize; ++k) sum += std::fabs(static_cast<long double>(jet.c[k]));
+    return sum;
+}
+
+/// Jets in Real, whose constant parts are off by `off` and the others up to `spread`, and what Rounded says of a function of
+/// them.
+template <class Real, class Function>
+void expect_bounded(const Function& function, double off, double spread) {
+    constexpr unsigned kSeed = 53;
+    SCOPED_TRACE(testing::Message() << "seed " << kSeed << ", off " << off << ", spread " << spread);
+    std::mt19937 random(kSeed);
+    std::uniform_real_distribution<double> uniform(-1, 1);
+    long double most = 0;
+    for (int i = 0; i < 2000; ++i) {
+        Jet<Real, 4> computed(static_cast<Real>(1.5 + 0.4 * uniform(random)));
+        for (int k = 1; k < Jet<Real, 4>::kSize; ++k)
+            computed.c[k] = static_cast<Real>(spread * uniform(random));
+        Jet<long double, 4> exact;
+        for (int k = 0; k < Jet<Real, 4>::kSize; ++k) exact.c[k] = static_cast<long double>(computed.c[k]);
+        exact.c[0] -= off;
+        const double about = static_cast<double>(exact.c[0]);
+        const Rounded<Real> said = function(
+            Rounded<Real>(Interval(about - 1e-9, about + 1e-9), static_cast<double>(norm_of(exact, 1)), off));
+        const Jet<Real, 4> found = function(computed);
+        const Jet<long double, 4> truth = function(exact);
+        long double error = 0;
+        for (int k = 0; k < Jet<Real, 4>::kSize; ++k)
+            error += std::fabs(static_cast<long double>(found.c[k]) - truth.c[k]);
+        ASSERT_LE(error, said.error);
+        ASSERT_LE(norm_of(truth, 1), said.radius);
+        most = std::max(most, error / said.error);
+    }
+    // Half of what is said of numbers that are off does not hold.
+    if (off > 0 && spread == 0) {
+        EXPECT_GT(most, 0.9L);
+    }
+}
+
+template <class Real>
+void expect_exp_and_log_bounded() {
+    for (const double off : {0.0, 1e-3})
+        for (const double spread : {0.0, 0.02}) {
+            expect_bounded<Real>([](const auto& a) { return exp(a); }, off, spread);
+            expect_bounded<Real>([](const auto& a) { return log(a); }, off, spread);
+        }
+}
+
+TEST(TextMap, RoundingOfExpAndLogIsBounded) {
+    expect_exp_and_log_bounded<float>();
+    expect_exp_and_log_bounded<double>();
 }
 
 // --- random formulas against long double ---

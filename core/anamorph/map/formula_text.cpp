@@ -9,7 +9,6 @@
 #include <numbers>
 #include <optional>
 #include <string_view>
-#include <tuple>
 
 #include "anamorph/error.h"
 #include "anamorph/parameter.h"
@@ -207,44 +206,18 @@ class Maker {
     Value y() const { return everywhere(m_graph.y()); }
 
     Value negated(const Value& a) {
-        if (const auto k = m_graph.known_number(a.at)) return number(-*k);
-        return {m_graph.make(StepKind::negation, a.at), a.domain};
+        const auto k = m_graph.known_number(a.at);
+        return {k ? m_graph.number(-*k) : m_graph.make(StepKind::negation, a.at), a.domain};
     }
-    Value sum(const Value& a, const Value& b) {
-        const auto x = m_graph.known_number(a.at), y = m_graph.known_number(b.at);
-        if (x && y && program_detail::is_exact_sum(*x, *y, *x + *y)) return number(*x + *y);
-        if (const auto k = m_graph.known_number(b.at)) return {added(a.at, *k), a.domain};
-        if (const auto k = m_graph.known_number(a.at)) return {added(b.at, *k), b.domain};
-        return {m_graph.make(StepKind::sum, a.at, b.at), needs(a, b)};
-    }
+    Value sum(const Value& a, const Value& b) { return {sum(a.at, b.at), needs(a, b)}; }
     Value difference(const Value& a, const Value& b) {
         if (a.at == b.at) return {m_graph.number(0), needs(a, b)};
         if (m_graph.known_number(a.at) || m_graph.known_number(b.at)) return sum(a, negated(b));
         return {m_graph.make(StepKind::difference, a.at, b.at), needs(a, b)};
     }
-    Value product(const Value& a, const Value& b) {
-        const auto x = m_graph.known_number(a.at), y = m_graph.known_number(b.at);
-        if (x && y && program_detail::is_exact_product(*x, *y, *x * *y)) return number(*x * *y);
-        if ((x && *x == 0) || (y && *y == 0)) return {m_graph.number(0), needs(a, b)};
-        if (const auto k = m_graph.known_number(b.at)) return {scaled(a.at, *k), a.domain};
-        if (const auto k = m_graph.known_number(a.at)) return {scaled(b.at, *k), b.domain};
-        if (const auto k = m_graph.known_constant(b.at)) return {m_graph.times_constant(a.at, *k), a.domain};
-        if (const auto k = m_graph.known_constant(a.at)) return {m_graph.times_constant(b.at, *k), b.domain};
-        if (a.at == b.at) return {m_graph.make(StepKind::square, a.at), a.domain};
-        return {m_graph.make(StepKind::product, a.at, b.at), needs(a, b)};
-    }
+    Value product(const Value& a, const Value& b) { return {product(a.at, b.at), needs(a, b)}; }
     Value quotient(const Value& a, const Value& b) {
-        if (const auto k = m_graph.known_constant(b.at))
-            return {m_graph.times_constant(a.at, 1 / *k), a.domain};
-        const auto k = m_graph.known_number(b.at), of_a = m_graph.known_number(a.at);
-        if (k && of_a && *k != 0 && program_detail::is_exact_product(*of_a / *k, *k, *of_a))
-            return number(*of_a / *k);
-        if (k && std::isnormal(*k) && std::isnormal(1 / *k)) {
-            // A power of two has an exact inverse.
-            int exponent = 0;
-            if (std::frexp(std::fabs(*k), &exponent) == 0.5) return {scaled(a.at, 1 / *k), a.domain};
-            return {m_graph.times_constant(a.at, 1 / static_cast<long double>(*k)), a.domain};
-        }
+        if (const auto by = divided(a.at, b.at)) return {*by, needs(a, b)};
         return {m_graph.make(StepKind::quotient, a.at, b.at), needs(needs(a, b), magnitude(b).at)};
     }
     Value of_one(StepKind kind, const Value& a) { return {m_graph.make(kind, a.at), a.domain}; }
@@ -299,8 +272,8 @@ class Maker {
         const Value half = whole_power(a, n / 2), even = product(half, half);
         return n % 2 == 0 ? even : product(even, a);
     }
-    /// The whole number written as such, if it is one of few.
     static constexpr double kMostPower = 1024;
+    /// The whole number that is known, if it is one of few.
     std::optional<int> few(const Value& a) const {
         const auto k = m_graph.known_number(a.at);
         if (!k || std::fabs(*k) > kMostPower || *k != std::floor(*k)) return {};
@@ -317,6 +290,33 @@ class Maker {
 
   private:
     static Value everywhere(Result at) { return {at, {}, false}; }
+    Result sum(Result a, Result b) {
+        const auto x = m_graph.known_number(a), y = m_graph.known_number(b);
+        if (x && y && program_detail::is_exact_sum(*x, *y, *x + *y)) return m_graph.number(*x + *y);
+        return y ? added(a, *y) : x ? added(b, *x) : m_graph.make(StepKind::sum, a, b);
+    }
+    Result product(Result a, Result b) {
+        const auto x = m_graph.known_number(a), y = m_graph.known_number(b);
+        if (x && y && program_detail::is_exact_product(*x, *y, *x * *y)) return m_graph.number(*x * *y);
+        if ((x && *x == 0) || (y && *y == 0)) return m_graph.number(0);
+        if (y) return scaled(a, *y);
+        if (x) return scaled(b, *x);
+        if (const auto k = m_graph.known_constant(b)) return m_graph.times_constant(a, *k);
+        if (const auto k = m_graph.known_constant(a)) return m_graph.times_constant(b, *k);
+        return a == b ? m_graph.make(StepKind::square, a) : m_graph.make(StepKind::product, a, b);
+    }
+    /// By what is known and has an inverse.
+    std::optional<Result> divided(Result a, Result b) {
+        if (const auto k = m_graph.known_constant(b)) return m_graph.times_constant(a, 1 / *k);
+        const auto x = m_graph.known_number(a), y = m_graph.known_number(b);
+        if (x && y && *y != 0 && program_detail::is_exact_product(*x / *y, *y, *x))
+            return m_graph.number(*x / *y);
+        if (!y || !std::isnormal(*y) || !std::isnormal(1 / *y)) return {};
+        // A power of two has an exact inverse.
+        int exponent = 0;
+        if (std::frexp(std::fabs(*y), &exponent) == 0.5) return scaled(a, 1 / *y);
+        return m_graph.times_constant(a, 1 / static_cast<long double>(*y));
+    }
     Result added(Result a, double k) { return k == 0 ? a : m_graph.with_number(StepKind::add_number, a, k); }
     Result scaled(Result a, double k) {
         return k == 1 ? a : m_graph.with_number(StepKind::times_number, a, k);

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Formulas that are written as text: from a point of a picture to one of its source.
 //
-// Text. Numbers as in 12, .5 and 1e-3, which are the doubles next to them, and pi; + - * / with the usual order, % (as mod), ^ (a power, from right to left, before a
-// minus sign); < <= > >= == !=, and, or, not make conditions, which if(condition, a, b) takes. Names:
+// Text. Numbers as in 12, .5 and 1e-3, which are the doubles next to them, and pi; + - * / with the usual order, % (as mod),
+// ^ (a power, from right to left, before a minus sign); < <= > >= == !=, and, or, not make conditions, which
+// if(condition, a, b) takes. Names:
 //
 //   x y                     the point: pixels of the picture, the middle of the first one at (.5, .5), y down
 //   s t                     the same in parts of width and height, from 0 to 1

@@ -65,7 +65,6 @@ struct FormulaProgram {
 
 namespace program_detail {
 
-using simd::Four;
 using simd::FourConditions;
 using simd::Jets;
 using simd::kJets;
@@ -79,11 +78,12 @@ T choose(bool condition, const T& a, const T& b) {
 inline Interval choose(Certainty condition, const Interval& a, const Interval& b) {
     return select(condition, a, b);
 }
-/// What is computed may be one side, and the exact value on the other.
+/// What is computed may be one side, and the exact value the other.
 template <class Real>
 Rounded<Real> choose(Certainty condition, const Rounded<Real>& a, const Rounded<Real>& b) {
     Rounded<Real> r = select(condition, a, b);
-    if (condition == Certainty::open) r.error += (r.range.hi - r.range.lo) * rounded_detail::kUp;
+    if (condition == Certainty::open)
+        r.error += (r.range.hi - r.range.lo + a.radius + b.radius) * rounded_detail::kUp;
     return r;
 }
 template <int N>
@@ -133,8 +133,10 @@ inline Interval floor_of(const Interval& a) {
 template <class Real>
 Rounded<Real> floor_of(const Rounded<Real>& a) {
     Rounded<Real> r(floor_of(a.range), 0, 0);
-    const bool decided = std::floor(a.range.lo - a.error) == std::floor(a.range.hi + a.error);
-    if (!decided && a.error != 0) r.error = std::floor(a.error) + 1;
+    if (a.error == 0) return r;
+    const double lowest = std::nextafter(a.range.lo - a.error, -HUGE_VAL),
+                 highest = std::nextafter(a.range.hi + a.error, HUGE_VAL);
+    if (!(std::floor(lowest) == std::floor(highest))) r.error = std::floor(a.error) + 1;
     return r;
 }
 template <int N>
@@ -181,7 +183,9 @@ inline bool is_exact_sum(double a, double b, double sum) {
     return (a - of_a) + (b - of_b) == 0;
 }
 inline bool is_exact_product(double a, double b, double product) {
-    return std::fma(a, b, -product) == 0 && (product == 0 || std::fabs(product) > 0x1p-900);
+    if (product == 0) return (a == 0 && std::isfinite(b)) || (b == 0 && std::isfinite(a));
+    // What rounding took of smaller ones may underflow.
+    return std::fabs(product) > 0x1p-900 && std::fma(a, b, -product) == 0;
 }
 /// Whole numbers, and what lies on a pixel's own column or row, stay exact, so that choices are decided there.
 template <class Real>
@@ -213,10 +217,6 @@ Rounded<Real> quotient_of(const Rounded<Real>& a, const Rounded<Real>& b) {
 
 // --- angles: they jump by a turn on the half line y = 0, x < 0 ---
 
-template <class T>
-bool may_jump(const T&, const T&) {
-    return false;
-}
 inline bool may_jump(const Interval& y, const Interval& x) {
     return !(x.lo > 0 || y.lo > 0 || y.hi < 0);
 }
@@ -237,7 +237,7 @@ Rounded<Real> angle_of(const Rounded<Real>& y, const Rounded<Real>& x) {
     };
     Rounded<Real> r = atan2(y, x);
     // Where y is exact, its sign is.
-    if (y.error > 0 && may_jump(near(y), near(x)) && !(r.error > kTurn)) r.error = kTurn;
+    if (y.error > 0 && may_jump(near(y), near(x))) r.error += kTurn;
     return r;
 }
 template <int N>

@@ -97,7 +97,9 @@ Rounded<Real> result(const Interval& range, double radius, double error, double 
     using R = Rounded<Real>;
     R r(range, radius * kUp, 0);
     const double rounding = unit * (r.size() + error);
-    r.error = error + rounding > 0 || std::isnan(error + rounding) ? (error + rounding) * kUp + R::kLeast : 0;
+    // Only what is 0 is free of errors: those of what is next to it may underflow themselves.
+    const bool is_zero = r.size() == 0 && error == 0;
+    r.error = is_zero ? 0 : (error + rounding) * kUp + R::kLeast;
     // Beyond double's range intervals are infinite by themselves.
     if (std::is_same_v<Real, float> && !(r.computed_size() < double{std::numeric_limits<float>::max()} / 4))
         r.error = HUGE_VAL;
