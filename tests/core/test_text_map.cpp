@@ -259,7 +259,7 @@ void expect_bounded(const Function& function, double off, double spread) {
     std::uniform_real_distribution<double> uniform(-1, 1);
     long double most = 0;
     for (int i = 0; i < 2000; ++i) {
-        Jet<Real, 4> computed(static_cast<Real>(1.5 + 0.4 * uniform(random)));
+        Jet<Real, 4> computed(static_cast<Real>(1 + 0.4 * uniform(random)));
         for (int k = 1; k < Jet<Real, 4>::kSize; ++k)
             computed.c[k] = static_cast<Real>(spread * uniform(random));
         Jet<long double, 4> exact;
@@ -553,6 +553,75 @@ TEST(TextMap, RandomFormulasHoldTheirBounds) {
     }
     EXPECT_GT(pixels, 250000);
     EXPECT_LT(unknown, pixels / 10);
+}
+
+TEST(TextMap, JetsAcrossAJumpAreNotBounded) {
+    using J = simd::BoundJets;
+    const double one[] = {1, 1, 1, 1}, none[] = {0, 0, 0, 0};
+    // Boxes from x = 10 to 20, from 20 to 30, and so on; only the second one meets x = 24.
+    const Interval x[] = {{10, 20}, {20, 30}, {30, 40}, {40, 48}}, y[] = {{2, 30}, {2, 30}, {2, 30}, {2, 30}};
+    for (const char* u : {"if(x<24,y,x)", "abs(x-24)", "floor(x/24)", "atan2((x-24)/100,-1)"}) {
+        FormulaText text;
+        text.u = u;
+        const PlaneFormula formula = parse_formula(text, {kPicture, kSource});
+        const J found = read_program(formula.point, J::variable(x, one, none), J::variable(y, none, one)).x;
+        for (int i = 0; i < 4; ++i) {
+            const bool crosses = i == 1 || (i == 3 && text.u == "floor(x/24)");
+            EXPECT_EQ(std::isfinite(found.at(i).c[0].hi) && std::isfinite(found.at(i).c[1].hi), !crosses)
+                << u << ", box " << i;
+            using One = Jet<Interval, 1>;
+            const One alone =
+                read_program(formula.point, One::variable(x[i], 1, 0), One::variable(y[i], 0, 1)).x;
+            EXPECT_EQ(std::isfinite(alone.c[1].hi), !crosses) << u << ", box " << i;
+        }
+    }
+}
+
+/// A formula of a picture, with v = y.
+Findings examine(const Formula& u, const Size& picture) {
+    FormulaText text;
+    text.u = u.text;
+    const Formula v{"y", [](Real, Real y, Real&) { return y; }};
+    return examine(plan_of(text, picture), 0.01, u, v);
+}
+
+// In a picture that is large enough for blocks none of them crosses a jump or a crease.
+TEST(TextMap, BlocksEndWhereFormulasJump) {
+    const Size picture{384, 256};
+    const auto px = [](Real x) { return (x - 192) / 128; };
+    const auto py = [](Real y) { return (128 - y) / 128; };
+    for (const Formula& u : std::vector<Formula>{
+             {"if(px<py,100*px,100*py+3)",
+              [&](Real x, Real y, Real&) { return px(x) < py(y) ? 100 * px(x) : 100 * py(y) + 3; }},
+             {"if(px<.3,7,9)", [&](Real x, Real, Real&) { return px(x) < Real{0.3} ? 7.0L : 9.0L; }},
+             {"100*abs(px)", [&](Real x, Real, Real&) { return 100 * std::fabs(px(x)); }},
+             {"100*max(px,py)", [&](Real x, Real y, Real&) { return 100 * std::max(px(x), py(y)); }},
+             {"20*floor(3*px)+10*px",
+              [&](Real x, Real, Real&) { return 20 * std::floor(3 * px(x)) + 10 * px(x); }},
+             {"30*a", [&](Real x, Real y, Real&) { return 30 * std::atan2(py(y), px(x)); }},
+             {"30*atan2(.2-py,px)",
+              [&](Real x, Real y, Real&) { return 30 * std::atan2(Real{0.2} - py(y), px(x)); }},
+             {"step(.1,px)*50", [&](Real x, Real, Real&) { return px(x) < Real{0.1} ? 0.0L : 50.0L; }}}) {
+        SCOPED_TRACE(u.text);
+        const Findings found = examine(u, picture);
+        EXPECT_EQ(found.over + found.above_tol + found.lost + found.extra + found.unknown, 0);
+        EXPECT_LT(found.exact, found.pixels / 2);
+    }
+}
+
+// Double lands on the other side of a jump: 0.3 and 0.1 are less and more than they say, and what is made of them is rounded.
+TEST(TextMap, JumpsThatRoundingCrossesAreNoticed) {
+    for (const Formula& u : std::vector<Formula>{
+             {"if(x<x*.1*10,50,0)",
+              [](Real x, Real, Real&) { return x < x * Real{0.1} * 10 ? 50.0L : 0.0L; }},
+             {"5*floor((x-.5)*.3*10)",
+              [](Real x, Real, Real&) { return 5 * std::floor((x - 0.5L) * Real{0.3} * 10); }},
+             {"10*atan2(x*.3*10-x*3,-1)",
+              [](Real x, Real, Real&) { return 10 * std::atan2(x * Real{0.3} * 10 - x * 3, -1.0L); }}}) {
+        SCOPED_TRACE(u.text);
+        const Findings found = examine(u, kPicture);
+        EXPECT_EQ(found.over + found.lost + found.extra, 0);
+    }
 }
 
 // A picture eight times as large as the one that the formulas speak of: large enough for blocks.
