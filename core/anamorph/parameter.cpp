@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <cstdio>
 #include <new>
 #include <optional>
 #include <set>
@@ -210,6 +211,11 @@ std::string shortest(double value) {
 }
 std::string shortest(float value) {
     return fewest_digits(value);
+}
+std::string brief(double value) {
+    char text[32];
+    std::snprintf(text, sizeof text, "%.10g", value);
+    return text;
 }
 
 std::string printable(std::string_view text) {

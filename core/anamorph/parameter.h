@@ -121,6 +121,8 @@ std::string message_of(const std::exception& error, const std::string& what);
 std::string shortest(double value);
 /// The same for a float.
 std::string shortest(float value);
+/// A number to ten digits, for messages.
+std::string brief(double value);
 
 /// The table as a page of Markdown.
 std::string reference_page(const std::string& title, const ParameterTable& table);

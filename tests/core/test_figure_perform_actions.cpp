@@ -105,7 +105,7 @@ TEST(FigureOwnScripts, LimitHolds) {
     const double held[] = {0, 30, 45, 45};
     for (int f = 1; f <= 3; ++f) {
         SCOPED_TRACE(f);
-        const double angle = held[f] * kDegree, free = 30 * f * kDegree;
+        const double angle = held[f] * kRadiansPerDegree, free = 30 * f * kRadiansPerDegree;
         expect_near(center(strict.frame(f), "b"), {0, 40 + 40 * std::cos(angle), 40 * std::sin(angle)}, 1e-9);
         expect_near(center(classic.frame(f), "b"), {0, 40 + 40 * std::cos(free), 40 * std::sin(free)}, 1e-9);
     }
@@ -116,7 +116,7 @@ TEST(FigureOwnScripts, LimitHolds) {
 TEST(FigureOwnScripts, LimitHoldsTheOtherSide) {
     Performance p =
         perform(kTwo + "limit j -30 45 0 0 0 0\nrepeat 0 1 bendby a j world 60 x\nstop", Dialect::strict);
-    const double angle = 30 * kDegree;
+    const double angle = 30 * kRadiansPerDegree;
     expect_near(center(p.frame(1), "a"), {0, 40 - 40 * std::cos(angle), -40 * std::sin(angle)}, 1e-9);
     EXPECT_EQ(center(p.frame(1), "b"), glm::dvec3(0, 80, 0));
 }
@@ -182,13 +182,13 @@ TEST(FigureOwnScripts, Drag) {
     expect_near(center(exact, "a"), {0, 10, 0}, 1e-9);
     expect_near(center(exact, "b"), {0, 10 + 30 * std::cos(t), 30 * std::sin(t)}, 1e-9);
     for (int f = 2; f <= 7; ++f) {
-        const double angle = (30 + 11.1 * (f - 1)) * kDegree;
+        const double angle = (30 + 11.1 * (f - 1)) * kRadiansPerDegree;
         expect_near(center(classic.frame(f), "b"), {0, 10 + 30 * std::cos(angle), 30 * std::sin(angle)},
                     1e-9);
     }
     // Then it is as close as its smallest step, 0.01 degrees, lets it.
     const glm::dvec3 b = center(classic.frame(12), "b");
-    EXPECT_NEAR(std::atan2(b.z, b.y - 10), t, 0.0051 * kDegree);
+    EXPECT_NEAR(std::atan2(b.z, b.y - 10), t, 0.0051 * kRadiansPerDegree);
 }
 
 // A long ellipsoid: its lowest point is found by looking at many of its surface.
@@ -274,7 +274,7 @@ TEST(FigureOwnScripts, TouchIsTheNearest) {
         };
         // The joint is in the origin, about which the centre turned; b was not turned before.
         const glm::dvec3 x = body_named(after, "b").shape.rotation[0];
-        const double angle = std::atan2(x.y, x.x) / kDegree;
+        const double angle = std::atan2(x.y, x.x) / kRadiansPerDegree;
         const bool touches =
             std::abs(contact_of(body_named(after, "b").shape, body_named(after, "c").shape).ratio - 1) < 1e-9;
         touching += touches;

@@ -75,8 +75,8 @@ TEST(FrameFile, TurnsComeBack) {
 // The formula of the originals, R = c I + (1 - c) u u^T - s [u]x, written out.
 TEST(Rotation, AnglesAreOfAnAxisAndATurn) {
     const glm::dvec3 angles(25, -40, 70);
-    const double a1 = 25 * kDegree, a2 = -40 * kDegree, c = std::cos(70 * kDegree),
-                 s = std::sin(70 * kDegree);
+    const double a1 = 25 * kRadiansPerDegree, a2 = -40 * kRadiansPerDegree,
+                 c = std::cos(70 * kRadiansPerDegree), s = std::sin(70 * kRadiansPerDegree);
     const double u[3] = {std::cos(a1) * std::cos(a2), std::sin(a1) * std::cos(a2), std::sin(a2)};
     const double cross[3][3] = {{0, -u[2], u[1]}, {u[2], 0, -u[0]}, {-u[1], u[0], 0}};
     const glm::dmat3 r = glm::mat3_cast(turn_of_angles(angles));

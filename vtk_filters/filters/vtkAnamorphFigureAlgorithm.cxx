@@ -57,7 +57,8 @@ anamorph::View vtkAnamorphFigureAlgorithm::ViewOf(vtkPolyData* figures) const {
         anamorph::kViewAngleRow.check(this->CameraViewAngle, "CameraViewAngle");
         view.eye_distance = distance;
         view.near = kNear * distance;
-        view.scale = height / (2 * std::tan(0.5 * this->CameraViewAngle * anamorph::kDegree) * distance);
+        view.scale =
+            height / (2 * std::tan(0.5 * this->CameraViewAngle * anamorph::kRadiansPerDegree) * distance);
     }
     return view;
 }

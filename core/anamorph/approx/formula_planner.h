@@ -130,12 +130,12 @@ NearBlock<Local, Real> near_block(const Block& block) {
 
 /// Plans one piece of the target; blocks are appended to `blocks`, and to `records` what they are made of.
 template <FormulaMap Map>
-class Planner {
+class FormulaPlanner {
     using Local = typename Map::Local;
 
   public:
-    Planner(const Map& map, const PlanOptions& options, const ReadOrders& orders, const Box& region,
-            int piece, Blocks& blocks, Records<Local>& records)
+    FormulaPlanner(const Map& map, const PlanOptions& options, const ReadOrders& orders, const Box& region,
+                   int piece, Blocks& blocks, Records<Local>& records)
         : m_map(map),
           m_options(options),
           m_orders(orders),
@@ -508,7 +508,7 @@ class Planner {
         const Local* local;
         double rounding = -1;
 
-        double rounding_of(const Planner& planner) {
+        double rounding_of(const FormulaPlanner& planner) {
             if (rounding < 0) rounding = planner.shared_rounding(box, *local);
             return rounding;
         }
@@ -706,7 +706,7 @@ class Planner {
     /// The Taylor polynomials of boxes that are asked for in the order in which they were added: several at once.
     class InTurn {
       public:
-        InTurn(const Planner& planner, const Local& local, const Known& known)
+        InTurn(const FormulaPlanner& planner, const Local& local, const Known& known)
             : m_planner(planner), m_local(local), m_known(known) {}
 
         void add(const Box& box) { m_boxes.push_back(box); }
@@ -724,7 +724,7 @@ class Planner {
         }
 
       private:
-        const Planner& m_planner;
+        const FormulaPlanner& m_planner;
         const Local& m_local;
         const Known& m_known;
         std::vector<Box> m_boxes;
@@ -1062,7 +1062,7 @@ void FormulaPlan<Map>::plan(const Box& box, int piece, Blocks& blocks) const {
     Blocks planned;
     planned.reserve(2 * kRegion * kRegion / (kBlockWidth * kBlockHeight));
     const auto records = std::make_shared<Records<typename Map::Local>>();
-    Planner<Map> planner(m_map, m_options, m_orders, box, piece, planned, *records);
+    FormulaPlanner<Map> planner(m_map, m_options, m_orders, box, piece, planned, *records);
     if (planner.is_exact() && !planner.may_be_direct())
         planner.exact(box);
     else

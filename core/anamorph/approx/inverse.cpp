@@ -289,9 +289,9 @@ struct Bicubics : RegionData {
 };
 
 /// Plans one region.
-class Planner {
+class InversePlanner {
   public:
-    Planner(const InversePlan& plan, double tol, Blocks& blocks)
+    InversePlanner(const InversePlan& plan, double tol, Blocks& blocks)
         : m_plan(plan), m_mesh(plan.mesh()), m_tol(tol), m_blocks(blocks), m_writer(tol, blocks) {}
 
     void exact(const Box& box) {
@@ -744,7 +744,7 @@ InversePlan::InversePlan(Mesh mesh, WarpScheme scheme, double tol, const std::st
 }
 
 void InversePlan::plan(const Box& box, int, Blocks& blocks) const {
-    Planner planner(*this, m_tol, blocks);
+    InversePlanner planner(*this, m_tol, blocks);
     if (m_tol == 0 || m_scheme == WarpScheme::exact)
         planner.exact(box);
     else

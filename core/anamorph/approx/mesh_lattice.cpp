@@ -5,7 +5,7 @@
 
 namespace anamorph {
 
-LineWeights::LineWeights(std::span<const double> lines, double at) {
+LatticeWeights::LatticeWeights(std::span<const double> lines, double at) {
     const int last = static_cast<int>(lines.size()) - 1, cell = Mesh::line_below(lines, at);
     const auto line = [&](int i) { return lines[static_cast<std::size_t>(i)]; };
     first = std::clamp(cell - 1, 0, last - 3);
@@ -39,13 +39,13 @@ auto vertices_of(const Mesh& mesh) {
 
 }  // namespace
 
-Point<double> lattice_point(const Mesh& mesh, const LineWeights& across, const LineWeights& down, double x,
-                            double y) {
+Point<double> lattice_point(const Mesh& mesh, const LatticeWeights& across, const LatticeWeights& down,
+                            double x, double y) {
     const Point<double> d = lattice_displacement(vertices_of(mesh), across, down);
     return {x * mesh.scale().x + d.x, y * mesh.scale().y + d.y};
 }
 
-Jacobian lattice_jacobian(const Mesh& mesh, const LineWeights& across, const LineWeights& down) {
+Jacobian lattice_jacobian(const Mesh& mesh, const LatticeWeights& across, const LatticeWeights& down) {
     return lattice_jacobian(vertices_of(mesh), mesh.scale(), across, down);
 }
 

@@ -20,7 +20,7 @@ namespace anamorph {
 
 /// Four lines about a position, first ... first + 3, and what the values there count in a function's value
 /// and in its derivative per pixel. Those of [begin, end) alone count in the value.
-struct LineWeights {
+struct LatticeWeights {
     int first = 0, begin = 0, end = 4;
     double value[4] = {}, slope[4] = {};
 
@@ -29,9 +29,9 @@ struct LineWeights {
     /// The first line whose value counts.
     int line() const { return first + begin; }
 
-    LineWeights() = default;
+    LatticeWeights() = default;
     /// `lines` ascend; at least 4.
-    LineWeights(std::span<const double> lines, double at);
+    LatticeWeights(std::span<const double> lines, double at);
 };
 
 /// Is a mesh the sum above: of one level, with four lines either way?
@@ -40,10 +40,10 @@ inline bool is_lattice(const Mesh& mesh) {
 }
 
 /// The map at (x, y), whose weights are given.
-Point<double> lattice_point(const Mesh& mesh, const LineWeights& across, const LineWeights& down, double x,
-                            double y);
+Point<double> lattice_point(const Mesh& mesh, const LatticeWeights& across, const LatticeWeights& down,
+                            double x, double y);
 /// Its derivatives.
-Jacobian lattice_jacobian(const Mesh& mesh, const LineWeights& across, const LineWeights& down);
+Jacobian lattice_jacobian(const Mesh& mesh, const LatticeWeights& across, const LatticeWeights& down);
 
 namespace lattice_detail {
 
@@ -63,7 +63,7 @@ Point<double> sum(const double* weights, int begin, int end, const At& at) {
 
 /// The displacement of a lattice whose vertices are displaced by at(column, row).
 template <class At>
-Point<double> lattice_displacement(const At& at, const LineWeights& across, const LineWeights& down) {
+Point<double> lattice_displacement(const At& at, const LatticeWeights& across, const LatticeWeights& down) {
     using lattice_detail::sum;
     return sum(down.value, down.begin, down.end, [&](int j) {
         return sum(across.value, across.begin, across.end,
@@ -72,8 +72,8 @@ Point<double> lattice_displacement(const At& at, const LineWeights& across, cons
 }
 /// The derivatives of its map, `scale` being those of the identity.
 template <class At>
-Jacobian lattice_jacobian(const At& at, const Point<double>& scale, const LineWeights& across,
-                          const LineWeights& down) {
+Jacobian lattice_jacobian(const At& at, const Point<double>& scale, const LatticeWeights& across,
+                          const LatticeWeights& down) {
     using lattice_detail::sum;
     const auto along = [&](const double* weights, int begin, int end) {
         return [&at, &across, &down, weights, begin, end](int j) {

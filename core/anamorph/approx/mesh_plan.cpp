@@ -89,10 +89,10 @@ bool has_small_cells(const Mesh& mesh, const Box& box) {
 }
 
 /// Plans one region; blocks are appended to `blocks`.
-class Planner {
+class MeshPlanner {
   public:
-    Planner(const Mesh& mesh, bool lattice, WarpScheme scheme, double tol, const ResidualTables* tables,
-            Blocks& blocks)
+    MeshPlanner(const Mesh& mesh, bool lattice, WarpScheme scheme, double tol, const ResidualTables* tables,
+                Blocks& blocks)
         : m_mesh(mesh),
           m_lattice(lattice),
           m_scheme(scheme),
@@ -119,9 +119,9 @@ class Planner {
   private:
     double exact_bound(const Box& box) const {
         // A hair more: points on an edge may be evaluated in the neighbour.
-        constexpr double kHair = 1e-9;
-        const Bounds all{box.x0 + 0.5 - kHair, box.y0 + 0.5 - kHair, box.x1 - 0.5 + kHair,
-                         box.y1 - 0.5 + kHair};
+        constexpr double kMore = 1e-9;
+        const Bounds all{box.x0 + 0.5 - kMore, box.y0 + 0.5 - kMore, box.x1 - 0.5 + kMore,
+                         box.y1 - 0.5 + kMore};
         if (m_lattice || (!m_mesh.has_levels() && has_small_cells(m_mesh, box))) {
             const double rough = exact_rounding(m_mesh, all);
             if (m_lattice || m_tol == 0 || rough <= m_tol) return rough;
@@ -211,7 +211,7 @@ MeshPlan::MeshPlan(Mesh mesh, WarpScheme scheme, double tol)
 }
 
 void MeshPlan::plan(const Box& box, int, Blocks& blocks) const {
-    Planner planner(m_mesh, m_lattice, m_scheme, m_tol, m_tables.get(), blocks);
+    MeshPlanner planner(m_mesh, m_lattice, m_scheme, m_tol, m_tables.get(), blocks);
     if (m_tol == 0)
         planner.exact(box);
     else if (m_lattice && m_scheme != WarpScheme::exact)
@@ -256,16 +256,16 @@ void MeshPlan::computed(std::span<const Block> layers, const PointRows* to) cons
 
 /// The points of a part of a block of a lattice.
 void MeshPlan::lattice_rows(const Block& block, const Box& part, const PointRows& to) const noexcept {
-    std::array<LineWeights, Block::kMaxSide> across;
+    std::array<LatticeWeights, Block::kMaxSide> across;
     bool on_lines = true;
     for (int i = 0; i < part.width(); ++i) {
-        LineWeights& weights = across[static_cast<std::size_t>(i)];
+        LatticeWeights& weights = across[static_cast<std::size_t>(i)];
         weights = {m_mesh.x_lines(), part.x0 + i + 0.5};
         on_lines &= weights.on_line();
     }
     for (int j = 0; j < part.height(); ++j) {
         const double at_y = part.y0 + j + 0.5;
-        const LineWeights down(m_mesh.y_lines(), at_y);
+        const LatticeWeights down(m_mesh.y_lines(), at_y);
         float *x = to.x + j * to.stride, *y = to.y + j * to.stride;
         // What lattice_point says where every pixel of the row is a vertex.
         if (const Point<double>* d = m_mesh.displacements(down.line()); on_lines && down.on_line()) {
@@ -301,12 +301,12 @@ void MeshPlan::computed_row(const Block& block, int row, int begin, int end, flo
 }
 
 std::int64_t MeshPlan::folded_pixels_of_lattice(const Box& box) const {
-    std::vector<LineWeights> across;
+    std::vector<LatticeWeights> across;
     for (int x = box.x0; x < box.x1; ++x) across.emplace_back(m_mesh.x_lines(), x + 0.5);
     std::int64_t folded = 0;
     for (int y = box.y0; y < box.y1; ++y) {
-        const LineWeights down(m_mesh.y_lines(), y + 0.5);
-        for (const LineWeights& at : across) folded += folds(lattice_jacobian(m_mesh, at, down));
+        const LatticeWeights down(m_mesh.y_lines(), y + 0.5);
+        for (const LatticeWeights& at : across) folded += folds(lattice_jacobian(m_mesh, at, down));
     }
     return folded;
 }

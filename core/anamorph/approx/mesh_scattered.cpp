@@ -123,9 +123,9 @@ struct Run {
 };
 
 /// Plans one region.
-class Planner {
+class ScatteredPlanner {
   public:
-    Planner(const Scattered& map, double tol, Blocks& blocks, Pieces& records)
+    ScatteredPlanner(const Scattered& map, double tol, Blocks& blocks, Pieces& records)
         : m_map(map), m_blocks(blocks), m_records(records), m_writer(tol, blocks) {}
 
     void exact(const Box& box) {
@@ -373,7 +373,7 @@ ScatteredPlan::ScatteredPlan(Scattered map, WarpScheme scheme, double tol)
 
 void ScatteredPlan::plan(const Box& box, int, Blocks& blocks) const {
     const auto records = std::make_shared<Pieces>();
-    Planner planner(m_map, m_tol, blocks, *records);
+    ScatteredPlanner planner(m_map, m_tol, blocks, *records);
     if (m_tol == 0 || m_scheme == WarpScheme::exact)
         planner.exact(box);
     else
@@ -421,7 +421,7 @@ float ScatteredPlan::folds(double x, double y) const noexcept {
 std::int64_t ScatteredPlan::folded_pixels(const Box& box) const {
     Blocks unused;
     Pieces no_pieces;
-    Planner planner(m_map, m_tol, unused, no_pieces);
+    ScatteredPlanner planner(m_map, m_tol, unused, no_pieces);
     const int orientation = m_map.orientation() < 0 ? -1 : 1;
     return count_folded(
         box, [&](const Box& b) { return planner.sign(b) * orientation; },

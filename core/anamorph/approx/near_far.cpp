@@ -33,8 +33,8 @@ struct NearFar::State {
     FeatureMap map;  ///< along_curve
     NearFarOptions options;
     Chebyshev chebyshev;
-    std::vector<float> slopes;   ///< line by line: the most that its displacement changes over a pixel
-    RoomPool<Planner> planners;  ///< which keep their memory from region to region
+    std::vector<float> slopes;          ///< line by line: the most that its displacement changes over a pixel
+    RoomPool<NearFarPlanner> planners;  ///< which keep their memory from region to region
 
     State(const FeatureMap& given, const NearFarOptions& near_far)
         : map(given.along_curve()), options(near_far), chebyshev(degree_for(near_far.tol)) {
@@ -70,8 +70,9 @@ void NearFar::plan(const Box& box, int, Blocks& blocks) const {
     }
     const auto region = std::make_shared<Region>();
     State& state = *m_state;
-    auto planner = state.planners.take(
-        [&] { return std::make_unique<Planner>(state.map, state.options, state.chebyshev, state.slopes); });
+    auto planner = state.planners.take([&] {
+        return std::make_unique<NearFarPlanner>(state.map, state.options, state.chebyshev, state.slopes);
+    });
     planner->plan(box.x0, box.y0, *region);
     state.planners.give_back(std::move(planner));
 

@@ -73,10 +73,10 @@ struct NearError {
 };
 
 /// Plans one region.
-class Planner {
+class NearFarPlanner {
   public:
-    Planner(const FeatureMap& map, const NearFarOptions& options, const Chebyshev& chebyshev,
-            const std::vector<float>& slopes)
+    NearFarPlanner(const FeatureMap& map, const NearFarOptions& options, const Chebyshev& chebyshev,
+                   const std::vector<float>& slopes)
         : m_map(map),
           m_options(options),
           m_chebyshev(chebyshev),

@@ -74,7 +74,7 @@ Point<double> StMapPlan::displacement(int column, int row) const {
 
 bool StMapPlan::exact(double x, double y, int, Point<double>& source_point,
                       int& source_piece) const noexcept {
-    const LineWeights across(m_x, x), down(m_y, y);
+    const LatticeWeights across(m_x, x), down(m_y, y);
     const bool inside = x > 0 && x < width() && y > 0 && y < height();
     if (inside && across.on_line() && down.on_line()) {
         source_point = point(across.line() - 1, down.line() - 1);
@@ -138,7 +138,7 @@ void StMapPlan::computed_row(const Block& block, int row, int begin, int end, fl
     simd::sample_places(sample(column, line), end - begin, across, down, x, y);
 }
 
-Jacobian StMapPlan::jacobian(const LineWeights& across, const LineWeights& down) const {
+Jacobian StMapPlan::jacobian(const LatticeWeights& across, const LatticeWeights& down) const {
     const auto at = [this](int column, int row) { return displacement(column, row); };
     return lattice_jacobian(at, m_scale, across, down);
 }
@@ -170,12 +170,12 @@ float StMapPlan::folds(double x, double y) const noexcept {
 }
 
 std::int64_t StMapPlan::folded_pixels(const Box& box) const {
-    std::vector<LineWeights> across;
+    std::vector<LatticeWeights> across;
     for (int x = box.x0; x < box.x1; ++x) across.emplace_back(m_x, x + 0.5);
     std::int64_t folded = 0;
     for (int y = box.y0; y < box.y1; ++y) {
-        const LineWeights down(m_y, y + 0.5);
-        for (const LineWeights& at : across) {
+        const LatticeWeights down(m_y, y + 0.5);
+        for (const LatticeWeights& at : across) {
             const Jacobian j = jacobian(at, down);
             folded += (j.x_i * j.y_j - j.x_j * j.y_i) * orientation() < 0;
         }

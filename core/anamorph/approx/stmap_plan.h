@@ -38,7 +38,7 @@ class StMapPlan final : public WarpPlan {
     const float* sample(int column, int row) const;
     Point<double> point(int column, int row) const;
     Point<double> displacement(int column, int row) const;
-    Jacobian jacobian(const LineWeights& across, const LineWeights& down) const;
+    Jacobian jacobian(const LatticeWeights& across, const LatticeWeights& down) const;
     double rounding() const;
     double orientation() const;
 

@@ -10,10 +10,10 @@
 namespace anamorph {
 namespace {
 
-constexpr double kMost = 1e300;
+constexpr double kLargest = 1e300;
 
 void check_number(const std::string& name, double value) {
-    if (!(std::fabs(value) <= kMost))
+    if (!(std::fabs(value) <= kLargest))
         throw Error(name, shortest(value), "must be a number from -1e300 to 1e300");
 }
 

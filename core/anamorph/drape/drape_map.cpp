@@ -17,7 +17,7 @@ constexpr int kMostSide = 32, kLeastSide = 8;
 
 // So are those over so many texels for a pixel, and so many times as many as the steps at their corners say: sheets that lie
 // far apart on the picture meet there, and all that lies between them would be read.
-constexpr double kMostTexels = 16, kMostTimes = 4;
+constexpr double kMostTexels = 16, kManyTexels = 4;
 
 /// How many pixels of a box show something.
 int seen_in(const SeenPixels& pixels, const Box& box) {
@@ -270,7 +270,7 @@ bool DrapeMap::torn(const SeenRegion& region, const Box& box, const Range& range
             u = std::max(u, reach(pixels.u));
             v = std::max(v, reach(pixels.v));
         }
-    return texels > kMostTimes * u * m_picture.width * v * m_picture.height;
+    return texels > kManyTexels * u * m_picture.width * v * m_picture.height;
 }
 
 /// Gives a block a base to count its points from, and adds what is lost where they are floats: half of 2^-24 of their

@@ -205,7 +205,7 @@ glm::dquat part_of_turn(const glm::dquat& from, const glm::dquat& to, double sha
     const glm::dvec3 v(whole.x, whole.y, whole.z);
     const double sine = glm::length(v);
     if (sine == 0) return {1, 0, 0, 0};
-    return turn_about(v / sine, 2 * std::atan2(sine, whole.w) / kDegree * share);
+    return turn_about(v / sine, 2 * std::atan2(sine, whole.w) / kRadiansPerDegree * share);
 }
 
 }  // namespace

@@ -104,7 +104,7 @@ double farthest_from_line(const Ellipsoid& e, const glm::dvec3& point, const glm
 }
 
 Ellipsoid turned(Ellipsoid e, const glm::dvec3& about, const glm::dvec3& unit, double radians) {
-    const glm::dmat3 by = glm::mat3_cast(turn_about(unit, radians / kDegree));
+    const glm::dmat3 by = glm::mat3_cast(turn_about(unit, radians / kRadiansPerDegree));
     e.center = about + by * (e.center - about);
     e.rotation = by * e.rotation;
     return e;
@@ -138,7 +138,7 @@ void FigureAction::touch() const {
         const double way = c.ratio > 1 ? c.gap : (1 - c.ratio) * inner;
         return Probe{c.ratio - 1, std::max(way, 0.0) / speed};
     });
-    bend(bent, at, turn_about(unit, angle / kDegree));
+    bend(bent, at, turn_about(unit, angle / kRadiansPerDegree));
 }
 
 void FigureAction::abut() const {
@@ -200,14 +200,14 @@ void FigureAction::drag_exactly(int dragged, int bent, int at, const glm::dvec3&
         const double low = lowest_of(turned(shape, pivot, unit, radians));
         return Probe{low, std::abs(low) / speed};
     });
-    bend(bent, at, turn_about(unit, angle / kDegree));
+    bend(bent, at, turn_about(unit, angle / kRadiansPerDegree));
 }
 
 void FigureAction::drag_coarsely(int dragged, int bent, int at, const glm::dvec3& unit) const {
     const Ellipsoid shape = shape_of(body(dragged));
     const glm::dvec3 pivot = joint_position(at);
     const auto height = [&](double degrees) {
-        return std::abs(lowest_of(turned(shape, pivot, unit, degrees * kDegree)));
+        return std::abs(lowest_of(turned(shape, pivot, unit, degrees * kRadiansPerDegree)));
     };
     double angle = 0;
     for (const double step : {1.0, 0.1, 0.01}) {
@@ -234,7 +234,7 @@ void FigureAction::balance() const {
     const glm::dvec3 d = moment / mass;
     const double cosine = glm::dot(d, up) - glm::dot(d, unit) * glm::dot(up, unit);
     const double sine = glm::dot(unit, glm::cross(d, up));
-    bend(bent, at, turn_about(unit, std::atan2(sine, cosine) / kDegree));
+    bend(bent, at, turn_about(unit, std::atan2(sine, cosine) / kRadiansPerDegree));
 }
 
 void check_overlaps(const Program& program, const FigureState& state, int frame) {

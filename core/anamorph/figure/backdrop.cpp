@@ -18,7 +18,7 @@ glm::dvec4 band_color(const std::vector<BackgroundBand>& bands, int y, int heigh
     return {sum, 1};
 }
 
-Backdrop::Backdrop(const Source& source, const Size& size)
+FigureBackdrop::FigureBackdrop(const Source& source, const Size& size)
     : m_jacobian{static_cast<double>(source.size(0).width) / size.width, 0, 0,
                  static_cast<double>(source.size(0).height) / size.height},
       m_border(Chart(Projection::rectilinear, source.size(0).width, source.size(0).height), Wrap::clamp),
@@ -26,7 +26,7 @@ Backdrop::Backdrop(const Source& source, const Size& size)
       m_sampler(source, m_border),
       m_pixel(static_cast<std::size_t>(source.channels())) {}
 
-glm::dvec4 Backdrop::color(int x, int y, const glm::dvec4& below) {
+glm::dvec4 FigureBackdrop::color(int x, int y, const glm::dvec4& below) {
     if (!m_sampler.sample(m_footprint, m_jacobian, 0, (x + 0.5) * m_jacobian.x_i, (y + 0.5) * m_jacobian.y_j,
                           m_pixel.data()))
         return below;

@@ -18,9 +18,9 @@ namespace anamorph {
 glm::dvec4 band_color(const std::vector<BackgroundBand>& bands, int y, int height);
 
 /// A picture that is drawn as large as another. One for each thread. Keeps a reference to the source.
-class Backdrop {
+class FigureBackdrop {
   public:
-    Backdrop(const Source& source, const Size& size);
+    FigureBackdrop(const Source& source, const Size& size);
 
     /// What it has in a pixel, over `below`; colours are multiplied by alpha. `below` itself where the source
     /// cannot be read.

@@ -31,9 +31,9 @@ struct BvhJoint {
 };
 
 /// Words with the lines that they stand in.
-class Words {
+class BvhWords {
   public:
-    Words(std::string_view text, std::string_view file) : m_text(text), m_file(file) {}
+    BvhWords(std::string_view text, std::string_view file) : m_text(text), m_file(file) {}
 
     /// The next word; empty at the end.
     std::string_view next() {
@@ -90,7 +90,7 @@ class Words {
     int m_line = 1;
 };
 
-std::vector<Channel> read_channels(Words& words) {
+std::vector<Channel> read_channels(BvhWords& words) {
     static constexpr std::pair<std::string_view, Channel> kNames[] = {
         {"Xposition", Channel::x},      {"Yposition", Channel::y},      {"Zposition", Channel::z},
         {"Xrotation", Channel::turn_x}, {"Yrotation", Channel::turn_y}, {"Zrotation", Channel::turn_z}};
@@ -100,7 +100,7 @@ std::vector<Channel> read_channels(Words& words) {
         const auto* known = std::find_if(std::begin(kNames), std::end(kNames),
                                          [&](const auto& name) { return name.first == word; });
         if (known == std::end(kNames))
-            words.fail(Words::found(word) +
+            words.fail(BvhWords::found(word) +
                        ", but a channel must be here: Xposition, Yposition, Zposition, Xrotation, Yrotation "
                        "or Zrotation");
         channel = known->second;
@@ -109,7 +109,7 @@ std::vector<Channel> read_channels(Words& words) {
 }
 
 /// Joints in the order of the file, parents before their children.
-std::vector<BvhJoint> read_hierarchy(Words& words) {
+std::vector<BvhJoint> read_hierarchy(BvhWords& words) {
     words.expect("HIERARCHY");
     std::vector<BvhJoint> joints;
     int parent = -1;
@@ -132,7 +132,7 @@ std::vector<BvhJoint> read_hierarchy(Words& words) {
             parent = static_cast<int>(joints.size());
             joints.push_back(std::move(joint));
         } else {
-            words.fail(Words::found(word) +
+            words.fail(BvhWords::found(word) +
                        (parent < 0 ? ", but ROOT or MOTION must be here"
                                    : ", but OFFSET, CHANNELS, JOINT, End Site or } must be here"));
         }
@@ -162,7 +162,7 @@ class BvhMotion final : public Motion {
   public:
     BvhMotion(std::string_view text, std::string_view name) {
         text_file::check_size(text, name);
-        Words words(text, name);
+        BvhWords words(text, name);
         m_joints = read_hierarchy(words);
         for (const BvhJoint& joint : m_joints) m_channels += joint.channels.size();
         words.expect("Frames:");
@@ -232,7 +232,7 @@ class BvhMotion final : public Motion {
         return posed;
     }
 
-    void make_bones(const Words& words) {
+    void make_bones(const BvhWords& words) {
         const std::vector<Posed> rest = pose(0);
         glm::dvec3 least = rest[0].position, most = least;
         for (const Posed& p : rest) {

@@ -267,7 +267,7 @@ class Structure {
             for (const char* tag : {kLengths[c], kAngles[c]})
                 if (!number_if_given(tag, 0, 1e6)) text_file::fail(m_file, tag, "is missing");
             length[c] = number(kLengths[c], 0, 1e6);
-            const double angle = number(kAngles[c], 0, 180) * kDegree;
+            const double angle = number(kAngles[c], 0, 180) * kRadiansPerDegree;
             cosine[c] = std::cos(angle);
             sine[c] = std::sin(angle);
             if (!(length[c] >= kLeastLength)) text_file::fail(m_file, kLengths[c], "must be at least 0.1");

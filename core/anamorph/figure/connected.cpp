@@ -3,14 +3,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include "anamorph/figure/outline_arcs.h"
+#include "anamorph/figure/rotation.h"
 
 namespace anamorph {
 namespace {
 
-constexpr double kTurn = 2 * std::numbers::pi;
 constexpr int kSteps = 256;
 
 using ScreenEllipse = Ellipse<glm::dvec2>;
@@ -61,11 +60,6 @@ struct Tangents {
         return 0.5 * (low + high);
     }
 };
-
-double in_turn(double t) {
-    t -= kTurn * std::floor(t / kTurn);
-    return t < kTurn ? t : 0;
-}
 
 /// The arc of a limb with normals from `from` to `to`.
 Arc limb_arc(const Outline& outline, double from, double to, const View& view) {

@@ -70,10 +70,10 @@ class Textures {
         return m_open[i].get();
     }
     /// The same of the backdrop, of a picture of this size.
-    Backdrop* backdrop(const Size& size) {
+    FigureBackdrop* backdrop(const Size& size) {
         const std::size_t i = m_look.textures.size();
         if (!m_look.backdrop || i >= m_sources.size() || !m_sources[i]) return nullptr;
-        if (!m_backdrop) m_backdrop = std::make_unique<Backdrop>(*m_sources[i], size);
+        if (!m_backdrop) m_backdrop = std::make_unique<FigureBackdrop>(*m_sources[i], size);
         return m_backdrop.get();
     }
 
@@ -81,7 +81,7 @@ class Textures {
     const std::vector<const Source*>& m_sources;
     const FigureLook& m_look;
     std::vector<std::unique_ptr<BodyTexture>> m_open;
-    std::unique_ptr<Backdrop> m_backdrop;
+    std::unique_ptr<FigureBackdrop> m_backdrop;
 };
 
 }  // namespace
@@ -138,7 +138,7 @@ struct FigurePicture::Impl {
             color = glm::dvec4(*look.background, 1);
         else if (!bands.empty())
             color = band_color(bands, y, size.height);
-        Backdrop* picture = open.backdrop(size);
+        FigureBackdrop* picture = open.backdrop(size);
         return picture ? picture->color(x, y, color) : color;
     }
 

@@ -41,9 +41,9 @@ std::string head(std::size_t count, int number, const FigureFrame& frame) {
 }
 
 /// The words of a line.
-class Words {
+class FrameWords {
   public:
-    explicit Words(std::string_view line) : m_line(line) {}
+    explicit FrameWords(std::string_view line) : m_line(line) {}
 
     std::string_view next() {
         const auto blank = [](char c) { return c == ' ' || c == '\t' || c == '\r'; };
@@ -73,13 +73,13 @@ class Words {
     std::string_view m_line;
 };
 
-std::string name_from(Words& words, const char* what) {
+std::string name_from(FrameWords& words, const char* what) {
     const std::string_view word = words.next();
     if (word.empty()) throw Error(std::string("found the end of the line, expected ") + what);
     return std::string(word);
 }
 
-Body read_body(Words words) {
+Body read_body(FrameWords words) {
     Body body;
     body.shape.axes = words.vector("half an axis");
     if (body.shape.axes.x < 0 || body.shape.axes.y < 0 || body.shape.axes.z < 0)
@@ -181,7 +181,7 @@ bool FrameReader::read(FigureFrame& frame) {
             line = next_line();
         } while (blank(line));
         frame = FigureFrame();
-        Words words(line);
+        FrameWords words(line);
         const int count = words.integer("a count of ellipsoids");
         frame.number = words.integer("a frame");
         if (count < 0) throw Error("a count is negative");
@@ -192,13 +192,13 @@ bool FrameReader::read(FigureFrame& frame) {
             m_ended = true;
             return false;
         }
-        for (int i = 0; i < count; ++i) frame.bodies.push_back(read_body(Words(next_line())));
-        Words joints(next_line());
+        for (int i = 0; i < count; ++i) frame.bodies.push_back(read_body(FrameWords(next_line())));
+        FrameWords joints(next_line());
         if (joints.integer("-1") != -1) throw Error("expected -1 and a count of joints");
         const int joint_count = joints.integer("a count of joints");
         if (joint_count < 0) throw Error("a count is negative");
         for (int i = 0; i < joint_count; ++i) {
-            Words row(next_line());
+            FrameWords row(next_line());
             Joint joint;
             joint.first = row.integer("an ellipsoid");
             joint.second = row.integer("an ellipsoid");

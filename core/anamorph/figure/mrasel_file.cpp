@@ -13,12 +13,12 @@
 namespace anamorph {
 namespace {
 
-constexpr double kRows = 512, kUnitsOfPixel = 1000 / kRows;
+constexpr double kScreenRows = 512, kUnitsOfPixel = 1000 / kScreenRows;
 constexpr int kMostBodies = 100000;
 
-class Words {
+class MraselWords {
   public:
-    Words(std::string_view text, std::string_view file) : m_text(text), m_file(file) {}
+    MraselWords(std::string_view text, std::string_view file) : m_text(text), m_file(file) {}
 
     /// Skips blanks. Whether that is all that is left.
     bool at_end() {
@@ -71,7 +71,7 @@ class Words {
 FigureFrame mrasel_frame(std::string_view text, std::string_view name) {
     text_file::check_size(text, name);
     constexpr double kFar = 1e9, kTenths = 10;
-    Words words(text, name);
+    MraselWords words(text, name);
     FigureFrame frame;
     frame.number = 1;
     const int bodies = words.count("the number of ellipsoids");
@@ -79,9 +79,9 @@ FigureFrame mrasel_frame(std::string_view text, std::string_view name) {
     const int bands = words.count("the number of bands");
     double above = 0;
     for (int i = 0; i < bands; ++i) {
-        const double end = words.number("a band's last row", above, kRows - 1);
+        const double end = words.number("a band's last row", above, kScreenRows - 1);
         above = end;
-        frame.bands.push_back({(end + 1) / kRows, words.vector("a colour", 0, 255)});
+        frame.bands.push_back({(end + 1) / kScreenRows, words.vector("a colour", 0, 255)});
     }
     if (bodies > 0) frame.figures = {"frame"};
     for (int i = 0; i < bodies; ++i) {

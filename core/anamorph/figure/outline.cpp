@@ -4,23 +4,16 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numbers>
 
 #include "anamorph/figure/outline_arcs.h"
 #include "anamorph/figure/outline_body.h"
 #include "anamorph/figure/outline_crossing.h"
 #include "anamorph/figure/outline_hiding.h"
+#include "anamorph/figure/rotation.h"
 #include "anamorph/parameter.h"
 
 namespace anamorph {
 namespace {
-
-constexpr double kTurn = 2 * std::numbers::pi;
-
-double in_turn(double t) {
-    t -= kTurn * std::floor(t / kTurn);
-    return t < kTurn ? t : 0;
-}
 
 /// Depth along the limb: w + reach cos(t - peak).
 struct Depth {

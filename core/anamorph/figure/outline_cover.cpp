@@ -13,9 +13,6 @@
 namespace anamorph {
 namespace {
 
-// Roundings of an operation or two per term.
-constexpr double kRounding = 32 * 0x1p-52;
-
 struct Range {
     double low = 0, high = 0;
 
@@ -34,7 +31,7 @@ Range lengths(const Vector& a, const Vector& b) {
 struct Shadow {
     Range across, area, beyond;
 
-    Shadow(const SeenBody& body, const Piece& piece, bool perspective) {
+    Shadow(const SeenBody& body, const SurfacePiece& piece, bool perspective) {
         const glm::dvec3 d = piece.center - body.viewed.center;
         const auto both = [&](const glm::dvec3& row) {
             return glm::dvec2(glm::dot(row, d), glm::dot(row, piece.half));
@@ -52,36 +49,37 @@ double size_of(const SeenBody& body, const glm::dvec3& point) {
 
 }  // namespace
 
-Cover cover_of(const SeenBody& body, const Piece& piece, bool perspective) {
+Covered cover_of(const SeenBody& body, const SurfacePiece& piece, bool perspective) {
     Range surface{HUGE_VAL, HUGE_VAL};
     const double size = size_of(body, piece.center) + glm::length(piece.half);
-    const double noise = kRounding * body.unit_size * size;
+    const double noise = kHidingRounding * body.unit_size * size;
     if (body.solid)
         surface = lengths((piece.center - body.center) * body.unit, piece.half * body.unit)
                       .wider(body.unit_size * piece.around + noise);
     if (body.kind == OutlineKind::around_eye)
-        return surface.low > 1 ? Cover::all : surface.high < 1 ? Cover::none : Cover::partly;
-    if (surface.high < 1) return Cover::all;
+        return surface.low > 1 ? Covered::all : surface.high < 1 ? Covered::none : Covered::partly;
+    if (surface.high < 1) return Covered::all;
     bool beside = true;
     if (body.covers) {
         const Shadow shadow(body, piece, perspective);
-        const double rim = kRounding * body.cone_size * size, plane = kRounding * body.beyond_size * size;
-        if (shadow.beyond.low > plane && shadow.across.high < shadow.area.low - rim) return Cover::all;
+        const double rim = kHidingRounding * body.cone_size * size,
+                     plane = kHidingRounding * body.beyond_size * size;
+        if (shadow.beyond.low > plane && shadow.across.high < shadow.area.low - rim) return Covered::all;
         beside = shadow.beyond.high < -plane || shadow.across.low > shadow.area.high + rim;
     }
-    return beside && surface.low > 1 ? Cover::none : Cover::partly;
+    return beside && surface.low > 1 ? Covered::none : Covered::partly;
 }
 
-Cover far_side_of(const SeenBody& body, const Piece& piece) {
-    if (!body.covers) return Cover::none;
+Covered far_side_of(const SeenBody& body, const SurfacePiece& piece) {
+    if (!body.covers) return Covered::none;
     const Range beyond = Shadow(body, piece, false).beyond;
-    return beyond.low > 0 ? Cover::all : beyond.high <= 0 ? Cover::none : Cover::partly;
+    return beyond.low > 0 ? Covered::all : beyond.high <= 0 ? Covered::none : Covered::partly;
 }
 
 bool hides(const SeenBody& body, const glm::dvec3& point, bool perspective) {
-    const double size = size_of(body, point), surface_noise = kRounding * body.unit_size * size,
-                 cone_noise = kRounding * body.cone_size * size,
-                 beyond_noise = kRounding * body.beyond_size * size;
+    const double size = size_of(body, point), surface_noise = kHidingRounding * body.unit_size * size,
+                 cone_noise = kHidingRounding * body.cone_size * size,
+                 beyond_noise = kHidingRounding * body.beyond_size * size;
     const glm::dvec3 u = (point - body.center) * body.unit;
     const double surface = glm::dot(u, u) - 1;
     if (body.kind == OutlineKind::around_eye) return body.solid && surface > surface_noise;
@@ -97,7 +95,7 @@ bool is_on_far_side(const SeenBody& body, const glm::dvec3& point) {
     return body.covers && glm::dot(body.beyond, point - body.viewed.center) > 0;
 }
 
-bool may_meet(const SeenBody& body, const Piece& piece) {
+bool may_meet(const SeenBody& body, const SurfacePiece& piece) {
     const Range surface = lengths((piece.center - body.center) * body.unit, piece.half * body.unit)
                               .wider(body.unit_size * piece.around);
     return surface.low <= 1 && surface.high >= 1;
@@ -120,9 +118,9 @@ Surface::Surface(const SeenBody& body, const glm::dmat3& from_unit, bool perspec
 }
 
 /// A flat triangle's points are no farther from a point than its corners; the sphere's are little above it.
-Piece Surface::piece_of(const Triangle& corners) const {
+SurfacePiece Surface::piece_of(const Triangle& corners) const {
     const glm::dvec3 middle = glm::normalize(corners[0] + corners[1] + corners[2]);
-    Piece piece;
+    SurfacePiece piece;
     piece.center = m_body.center + m_from_unit * middle;
     double radius = 0;
     for (const glm::dvec3& corner : corners) {
@@ -136,7 +134,7 @@ Piece Surface::piece_of(const Triangle& corners) const {
 namespace {
 
 /// A piece's box on the screen; in perspective, everything if some of it is not before the eye.
-ScreenBox box_of(const Piece& piece, bool perspective) {
+ScreenBox box_of_piece(const SurfacePiece& piece, bool perspective) {
     const glm::dvec3 reach = (glm::abs(piece.half) + piece.around) * (1 + 0x1p-30),
                      low = piece.center - reach, high = piece.center + reach;
     if (!perspective) return {glm::dvec2(low), glm::dvec2(high), high.z};
@@ -148,17 +146,18 @@ ScreenBox box_of(const Piece& piece, bool perspective) {
 }  // namespace
 
 /// Appends those of a range of others that may hide a part of a piece; false where one hides all of it.
-bool Surface::leave_doubts(const Piece& piece, Others& others, std::size_t from, std::size_t to) const {
-    const ScreenBox box = box_of(piece, m_perspective);
+bool Surface::leave_doubts(const SurfacePiece& piece, Others& others, std::size_t from,
+                           std::size_t to) const {
+    const ScreenBox box = box_of_piece(piece, m_perspective);
     for (std::size_t k = from; k < to; ++k) {
         if (!may_hide(*others[k], box)) continue;
-        const Cover cover = cover_of(*others[k], piece, m_perspective);
-        if (cover == Cover::all) {
+        const Covered cover = cover_of(*others[k], piece, m_perspective);
+        if (cover == Covered::all) {
             // What hides one piece often hides its neighbour.
             std::swap(others[from], others[k]);
             return false;
         }
-        if (cover == Cover::partly) others.push_back(others[k]);
+        if (cover == Covered::partly) others.push_back(others[k]);
     }
     return true;
 }
@@ -167,8 +166,8 @@ void Surface::add_seen(const Triangle& corners, Others& others, std::size_t from
                        std::size_t most, std::vector<Part>& found) const {
     constexpr int kLevels = 2;
     if (found.size() >= most) return;
-    const Piece piece = piece_of(corners);
-    if (far_side_of(m_body, piece) == Cover::all) return;
+    const SurfacePiece piece = piece_of(corners);
+    if (far_side_of(m_body, piece) == Covered::all) return;
     const std::size_t next = others.size();
     if (leave_doubts(piece, others, from, to)) {
         const std::size_t end = others.size();
@@ -197,9 +196,9 @@ std::vector<Surface::Part> Surface::seen(Others others, std::size_t most) const 
 bool Surface::shows(const Triangle& corners, const SeenBody& other, Others& others, std::size_t from,
                     std::size_t to, int level) const {
     constexpr int kLevels = 1;
-    const Piece piece = piece_of(corners);
-    if (!may_meet(other, piece) || far_side_of(m_body, piece) == Cover::all ||
-        far_side_of(other, piece) == Cover::all)
+    const SurfacePiece piece = piece_of(corners);
+    if (!may_meet(other, piece) || far_side_of(m_body, piece) == Covered::all ||
+        far_side_of(other, piece) == Covered::all)
         return false;
     const std::size_t next = others.size();
     bool found = false;

@@ -11,18 +11,21 @@
 
 namespace anamorph {
 
+/// Roundings of an operation or two per term of what decides whether a body hides something.
+inline constexpr double kHidingRounding = 32 * 0x1p-52;
+
 /// All that lies within `around` of the line from center - half to center + half, as View::to_view gives it.
-struct Piece {
+struct SurfacePiece {
     glm::dvec3 center{0.0}, half{0.0};
     double around = 0;
 };
 
-enum class Cover { none, partly, all };
+enum class Covered { none, partly, all };
 
 /// What of a piece a body hides; `partly` also where this is not sure.
-Cover cover_of(const SeenBody& body, const Piece& piece, bool perspective);
+Covered cover_of(const SeenBody& body, const SurfacePiece& piece, bool perspective);
 /// What of a piece of a body's surface is on the far side of it.
-Cover far_side_of(const SeenBody& body, const Piece& piece);
+Covered far_side_of(const SeenBody& body, const SurfacePiece& piece);
 
 /// Does a body hide a point? To rounding: not where the point is on its surface or its limb.
 bool hides(const SeenBody& body, const glm::dvec3& point, bool perspective);
@@ -30,7 +33,7 @@ bool hides(const SeenBody& body, const glm::dvec3& point, bool perspective);
 bool is_on_far_side(const SeenBody& body, const glm::dvec3& point);
 
 /// May the body's surface pass through a piece?
-bool may_meet(const SeenBody& body, const Piece& piece);
+bool may_meet(const SeenBody& body, const SurfacePiece& piece);
 
 /// A solid body's surface by spherical triangles on the unit sphere, of which `from_unit` and the body's
 /// center make it.
@@ -40,8 +43,8 @@ class Surface {
     using Others = std::vector<const SeenBody*>;
     struct Part {
         Triangle corners;
-        Piece piece;    ///< holds it
-        Others others;  ///< those that may hide some of it
+        SurfacePiece piece;  ///< holds it
+        Others others;       ///< those that may hide some of it
     };
 
     Surface(const SeenBody& body, const glm::dmat3& from_unit, bool perspective);
@@ -52,12 +55,12 @@ class Surface {
     bool may_show_meeting(const SeenBody& other, const Part& part) const;
 
   private:
-    Piece piece_of(const Triangle& corners) const;
+    SurfacePiece piece_of(const Triangle& corners) const;
     void add_seen(const Triangle& corners, Others& others, std::size_t from, std::size_t to, int level,
                   std::size_t most, std::vector<Part>& found) const;
     bool shows(const Triangle& corners, const SeenBody& other, Others& others, std::size_t from,
                std::size_t to, int level) const;
-    bool leave_doubts(const Piece& piece, Others& others, std::size_t from, std::size_t to) const;
+    bool leave_doubts(const SurfacePiece& piece, Others& others, std::size_t from, std::size_t to) const;
 
     const SeenBody& m_body;
     glm::dmat3 m_from_unit;

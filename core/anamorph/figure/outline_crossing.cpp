@@ -204,17 +204,17 @@ class Pair {
     }
 
     /// Appends those doubts of a range that a piece does not settle; true where one hides all of it.
-    bool doubts_left(const Piece& piece, std::size_t from, std::size_t to) {
+    bool doubts_left(const SurfacePiece& piece, std::size_t from, std::size_t to) {
         for (std::size_t k = from; k < to; ++k) {
             const Doubt doubt = m_doubts[k];
-            const Cover cover = doubt.own ? far_side_of(*doubt.body, piece)
-                                          : cover_of(*doubt.body, piece, m_view.perspective());
-            if (cover == Cover::all) {
+            const Covered cover = doubt.own ? far_side_of(*doubt.body, piece)
+                                            : cover_of(*doubt.body, piece, m_view.perspective());
+            if (cover == Covered::all) {
                 // What hides one part often hides the next.
                 std::swap(m_doubts[from], m_doubts[k]);
                 return true;
             }
-            if (cover == Cover::partly) m_doubts.push_back(doubt);
+            if (cover == Covered::partly) m_doubts.push_back(doubt);
         }
         return false;
     }
@@ -222,7 +222,7 @@ class Pair {
     /// Adds what is hidden between two points of the loop, as far as the doubts of a range say.
     void mark(std::size_t first, std::size_t last, std::size_t from, std::size_t to) {
         if (last - first == 1) return mark_chord(first, from, to);
-        Piece piece;
+        SurfacePiece piece;
         double deviation = 0;
         for (std::size_t k = first; k <= last; ++k)
             piece.center += point(k) / static_cast<double>(last - first + 1);
@@ -267,7 +267,7 @@ class Pair {
 
     void mark_part(const Chord& chord, const End& a, const End& b, double deviation, std::size_t from,
                    std::size_t to) {
-        const Piece piece{0.5 * (a.point + b.point), 0.5 * (b.point - a.point), deviation};
+        const SurfacePiece piece{0.5 * (a.point + b.point), 0.5 * (b.point - a.point), deviation};
         const std::size_t next = m_doubts.size();
         const bool all = doubts_left(piece, from, to);
         const std::size_t end = m_doubts.size();

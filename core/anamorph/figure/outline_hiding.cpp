@@ -4,18 +4,14 @@
 #include <algorithm>
 #include <cmath>
 #include <glm/common.hpp>
-#include <numbers>
 #include <numeric>
 
 #include "anamorph/figure/outline_arcs.h"
 #include "anamorph/figure/outline_cover.h"
+#include "anamorph/figure/rotation.h"
 
 namespace anamorph {
 namespace {
-
-constexpr double kTurn = 2 * std::numbers::pi;
-// Roundings of an operation or two per term.
-constexpr double kRounding = 32 * 0x1p-52;
 
 /// row . (a point of the limb - origin), as the point moves along the limb.
 Wave wave_of(const glm::dvec3& row, const Ellipse<glm::dvec3>& limb, const glm::dvec3& from_origin) {
@@ -43,7 +39,7 @@ struct Path {
             surface.y = wave_of(other.unit[1], body.viewed, d);
             surface.z = wave_of(other.unit[2], body.viewed, d);
             surface.w.k = 1;
-            surface.noise = kRounding * other.unit_size * reach;
+            surface.noise = kHidingRounding * other.unit_size * reach;
         }
         if (other.covers) {
             const glm::dvec3 d = body.viewed.center - other.viewed.center;
@@ -52,15 +48,15 @@ struct Path {
             beyond = wave_of(other.beyond, body.viewed, d);
             if (perspective) cone.w = beyond;
             cone.w.k += 1;
-            cone.noise = kRounding * other.cone_size * reach;
-            beyond_noise = kRounding * other.beyond_size * reach;
+            cone.noise = kHidingRounding * other.cone_size * reach;
+            beyond_noise = kHidingRounding * other.beyond_size * reach;
         }
     }
 };
 
 /// Hidden: inside the body, or behind it. Around the eye: outside it.
 bool is_hidden(const Path& path, const SeenBody& other, double t) {
-    const Direction d = direction(t);
+    const UnitVector d = direction(t);
     if (other.kind == OutlineKind::around_eye) return path.surface.at(d) > path.surface.noise;
     if (other.solid && path.surface.at(d) < -path.surface.noise) return true;
     return other.covers && path.beyond.at(d) > path.beyond_noise && path.cone.at(d) < -path.cone.noise;

@@ -14,15 +14,14 @@
 #include <cmath>
 #include <cstdint>
 #include <glm/geometric.hpp>
-#include <numbers>
 
 #include "anamorph/figure/eigenvectors.h"
 #include "anamorph/figure/outline_roots.h"
+#include "anamorph/figure/rotation.h"
 
 namespace anamorph {
 namespace {
 
-constexpr double kTurn = 2 * std::numbers::pi;
 constexpr int kFirstStrips = 16, kDeepestStrip = 44;
 // Bodies that nearly coincide meet nearly everywhere: what is then left of the curve is cut short.
 constexpr int kMostStrips = 1 << 20, kMostDoubtfulStrips = 20000, kMostBoxes = 1 << 19;
@@ -30,7 +29,7 @@ constexpr int kMostStrips = 1 << 20, kMostDoubtfulStrips = 20000, kMostBoxes = 1
 constexpr double kNegligible = 0.02;
 
 /// An interval of latitudes, in parts of the turn, so that neighbours share their ends to the bit.
-struct Box {
+struct LatitudeBox {
     static constexpr int kLevels = 40;
     static constexpr std::int64_t kAll = std::int64_t{8} << kLevels;
     std::int64_t low = 0, size = 0;
@@ -52,13 +51,13 @@ struct Root {
 
 /// Neighbouring boxes that the curve may pass.
 struct Group {
-    std::int64_t low = 0, high = 0;  ///< in the parts of Box; high may be beyond the turn
+    std::int64_t low = 0, high = 0;  ///< in the parts of a LatitudeBox; high may be beyond the turn
     bool certain = true;             ///< one branch passes, or none
     double bend = 0;                 ///< bounds the second derivative of the branch by the longitude
     std::int64_t unknown_low = 0, unknown_high = 0;  ///< where it is not
     std::vector<Root> left, right;
 
-    double extent() const { return Box::angle(unknown_high - unknown_low); }
+    double extent() const { return LatitudeBox::angle(unknown_high - unknown_low); }
 };
 
 class Sweep {
@@ -81,9 +80,9 @@ class Sweep {
 
     std::vector<std::vector<glm::dvec3>> loops() {
         if (coincides()) return {};
-        std::vector<Box> all;
+        std::vector<LatitudeBox> all;
         all.reserve(8);
-        for (int k = 0; k < 8; ++k) all.push_back({k * (Box::kAll / 8), Box::kAll / 8});
+        for (int k = 0; k < 8; ++k) all.push_back({k * (LatitudeBox::kAll / 8), LatitudeBox::kAll / 8});
         // The strips begin at an angle that no symmetry prefers.
         constexpr double from = 0.3;
         const Meridian first = meridian(from);
@@ -278,7 +277,8 @@ class Sweep {
     }
 
     /// Divides a box until it is known, or only a narrower strip helps; adds what is not free.
-    void divide(const Strip& strip, const Box& box, std::vector<Box>& boxes, std::vector<Group>& groups) {
+    void divide(const Strip& strip, const LatitudeBox& box, std::vector<LatitudeBox>& boxes,
+                std::vector<Group>& groups) {
         const Findings found = examine(strip, box.middle(), box.radius());
         if (found.kind == Kind::free) return;
         if (found.kind == Kind::unknown && !found.hopeless && box.size > 1 && ++m_boxes < kMostBoxes) {
@@ -301,13 +301,13 @@ class Sweep {
 
     /// Joins the last group to the first where they meet at 0.
     static void close(std::vector<Group>& groups) {
-        if (groups.size() < 2 || groups.front().low > 0 || groups.back().high < Box::kAll) return;
+        if (groups.size() < 2 || groups.front().low > 0 || groups.back().high < LatitudeBox::kAll) return;
         Group& last = groups.back();
         const Group& front = groups.front();
         last.high += front.high;
         if (!front.certain) {
-            if (last.certain) last.unknown_low = Box::kAll + front.unknown_low;
-            last.unknown_high = Box::kAll + front.unknown_high;
+            if (last.certain) last.unknown_low = LatitudeBox::kAll + front.unknown_low;
+            last.unknown_high = LatitudeBox::kAll + front.unknown_high;
             last.certain = false;
         }
         last.bend = std::max(last.bend, front.bend);
@@ -322,7 +322,8 @@ class Sweep {
             for (Group& g : groups)
                 for (const double turn : {0.0, kTurn}) {
                     const double t = root.latitude + turn;
-                    const double away = std::max({Box::angle(g.low) - t, t - Box::angle(g.high), 0.0});
+                    const double away =
+                        std::max({LatitudeBox::angle(g.low) - t, t - LatitudeBox::angle(g.high), 0.0});
                     if (away < least) least = away, nearest = &g;
                 }
             if (!nearest || least > 1e-9) return false;
@@ -343,7 +344,7 @@ class Sweep {
 
     /// Is all that matters known of a group in a strip of this width?
     bool settled(const Group& g, const Strip& strip, double width) const {
-        const double middle = 0.5 * (Box::angle(g.unknown_low) + Box::angle(g.unknown_high));
+        const double middle = 0.5 * (LatitudeBox::angle(g.unknown_low) + LatitudeBox::angle(g.unknown_high));
         if (g.certain && g.left.size() == g.right.size() && g.left.size() < 2) {
             if (g.left.empty()) return true;
             const glm::dvec3 &p = point(g.left[0]), &q = point(g.right[0]);
@@ -380,16 +381,17 @@ class Sweep {
         for (std::size_t k = 0; k < std::min(left.size(), right.size()); ++k) link(left[k], 1, right[k], 0);
     }
 
-    void strip(const Meridian& left, const Meridian& right, const std::vector<Box>& boxes, int depth) {
+    void strip(const Meridian& left, const Meridian& right, const std::vector<LatitudeBox>& boxes,
+               int depth) {
         const double width = right.longitude - left.longitude;
         m_middle = 0.5 * (left.longitude + right.longitude);
         Strip strip_here;
         strip_here.half = 0.5 * width * (1 + 0x1p-40);
         strip_here.at = m_curve.matrix * equator(m_middle);
         strip_here.across = m_curve.matrix * equator(m_middle + 0.25 * kTurn);
-        std::vector<Box> finer;
+        std::vector<LatitudeBox> finer;
         std::vector<Group> groups;
-        for (const Box& box : boxes) divide(strip_here, box, finer, groups);
+        for (const LatitudeBox& box : boxes) divide(strip_here, box, finer, groups);
         close(groups);
         const bool assigned = assign(left, groups, true) && assign(right, groups, false);
         const bool doubtful = !assigned || std::any_of(groups.begin(), groups.end(), [](const Group& g) {

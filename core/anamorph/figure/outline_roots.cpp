@@ -3,16 +3,16 @@
 
 #include <algorithm>
 #include <array>
-#include <numbers>
+
+#include "anamorph/figure/rotation.h"
 
 namespace anamorph {
 namespace {
 
-constexpr double kTurn = 2 * std::numbers::pi;
 constexpr int kIntervals = 8, kMostLevels = 40;
 
 /// cos and sin of an angle of at most pi / 16, to rounding: their series to t^10 and t^11.
-Direction small_angle(double t) {
+UnitVector small_angle(double t) {
     const double q = t * t;
     const double c =
         1 + q * (-1. / 2 + q * (1. / 24 + q * (-1. / 720 + q * (1. / 40320 + q * (-1. / 3628800)))));
@@ -24,9 +24,9 @@ Direction small_angle(double t) {
 
 struct Tables {
     /// Ends (even) and middles (odd) of the first intervals.
-    std::array<Direction, 2 * kIntervals + 1> first;
+    std::array<UnitVector, 2 * kIntervals + 1> first;
     /// The turn from the middle of an interval of a level to that of its second half.
-    std::array<Direction, kMostLevels> half;
+    std::array<UnitVector, kMostLevels> half;
 
     Tables() {
         for (std::size_t i = 0; i < first.size(); ++i) {
@@ -77,7 +77,7 @@ class Search {
     struct Value {
         double f, slope;
     };
-    Value value(const Direction& d) const {
+    Value value(const UnitVector& d) const {
         Value v{kW ? 0 : -m_f.w.k * m_f.w.k, 0};
         const auto add = [&](const Wave& q, double sign) {
             const double at = q.at(d);
@@ -90,14 +90,14 @@ class Search {
         if (kW) add(m_f.w, -1);
         return v;
     }
-    double second_derivative(const Direction& d) const {
+    double second_derivative(const UnitVector& d) const {
         const double cosine2 = d.cosine * d.cosine - d.sine * d.sine, sine2 = 2 * d.cosine * d.sine;
         return -(m_c1 * d.cosine + m_s1 * d.sine) - 4 * (m_c2 * cosine2 + m_s2 * sine2);
     }
 
     /// Finds the sign changes within `radius` of `middle`.
-    void interval(int level, double middle, double radius, const Direction& at_middle,
-                  const Direction& at_begin, const Direction& at_end) {
+    void interval(int level, double middle, double radius, const UnitVector& at_middle,
+                  const UnitVector& at_begin, const UnitVector& at_end) {
         const auto [f, slope] = value(at_middle);
         // Taylor's theorem about the middle bounds f and f'.
         const double bend = std::fabs(second_derivative(at_middle)) + m_third * radius + m_magnitude;
@@ -109,7 +109,7 @@ class Search {
             return;
         }
         const double half = 0.5 * radius;
-        const Direction step = kTables.half[static_cast<std::size_t>(level)];
+        const UnitVector step = kTables.half[static_cast<std::size_t>(level)];
         interval(level + 1, middle - half, half, at_middle.turned({step.cosine, -step.sine}), at_begin,
                  at_middle);
         interval(level + 1, middle + half, half, at_middle.turned(step), at_middle, at_end);
@@ -141,10 +141,10 @@ class Search {
 
 }  // namespace
 
-Direction direction(double t) {
+UnitVector direction(double t) {
     // NOLINTNEXTLINE(bugprone-incorrect-roundings): t is not negative.
     const int steps = static_cast<int>(t * (2 * kIntervals / kTurn) + 0.5);
-    const Direction& nearest = kTables.first[static_cast<std::size_t>(steps % (2 * kIntervals))];
+    const UnitVector& nearest = kTables.first[static_cast<std::size_t>(steps % (2 * kIntervals))];
     return nearest.turned(small_angle(t - steps * (kTurn / (2 * kIntervals))));
 }
 

@@ -11,22 +11,22 @@
 
 namespace anamorph {
 
-struct Direction {
+struct UnitVector {
     double cosine = 1, sine = 0;
 
-    Direction turned(const Direction& by) const {
+    UnitVector turned(const UnitVector& by) const {
         return {cosine * by.cosine - sine * by.sine, sine * by.cosine + cosine * by.sine};
     }
 };
 /// cos(t) and sin(t) to rounding, for 0 <= t < 100.
-Direction direction(double t);
+UnitVector direction(double t);
 
 /// k + c cos(t) + s sin(t).
 struct Wave {
     double k = 0, c = 0, s = 0;
 
-    double at(const Direction& d) const { return k + c * d.cosine + s * d.sine; }
-    double slope(const Direction& d) const { return s * d.cosine - c * d.sine; }
+    double at(const UnitVector& d) const { return k + c * d.cosine + s * d.sine; }
+    double slope(const UnitVector& d) const { return s * d.cosine - c * d.sine; }
     double amplitude() const { return std::sqrt(c * c + s * s); }
 };
 
@@ -34,7 +34,7 @@ struct WaveSquares {
     Wave x, y, z, w;
     double noise = 0;  ///< what rounding may add to f near its roots
 
-    double at(const Direction& d) const {
+    double at(const UnitVector& d) const {
         const double a = x.at(d), b = y.at(d), c = z.at(d), e = w.at(d);
         return a * a + b * b + c * c - e * e;
     }

@@ -10,11 +10,11 @@
 #include "anamorph/error.h"
 #include "anamorph/figure/actions.h"
 #include "anamorph/figure/figure_state.h"
+#include "anamorph/figure/script_parser.h"
 
 namespace anamorph {
 namespace {
 
-constexpr int kLargestFrame = 1000000000;
 constexpr int kMostUnknownFrames = 1000000;
 constexpr std::size_t kDeepestCall = 200;
 constexpr int kMostCalls = 10000;  // of subroutines in one frame

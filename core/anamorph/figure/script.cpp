@@ -46,15 +46,15 @@ class Checker {
         for (const JointDeclaration& joint : m_program.joints)
             if (!joint.attached && !components.join(joint.first, joint.second))
                 report(m_program.dialect == Dialect::strict, joint.position,
-                       "the joint " + quoted(joint.name) + " closes a ring");
+                       "the joint " + in_quotes(joint.name) + " closes a ring");
         for (const FigureDeclaration& figure : m_program.figures) {
             const auto apart = std::find_if(figure.ellipsoids.begin(), figure.ellipsoids.end(), [&](int e) {
                 return components.find(e) != components.find(figure.ellipsoids.front());
             });
             if (apart != figure.ellipsoids.end())
                 report(false, figure.position,
-                       "no joint connects " + quoted(ellipsoid(*apart)) + " with " +
-                           quoted(ellipsoid(figure.ellipsoids.front())) +
+                       "no joint connects " + in_quotes(ellipsoid(*apart)) + " with " +
+                           in_quotes(ellipsoid(figure.ellipsoids.front())) +
                            ": it will not move with the figure");
         }
         if (m_program.dialect == Dialect::strict) check_calls();
@@ -94,7 +94,7 @@ class Checker {
             if (calls[i] > 0)
                 return report(
                     true, m_program.subroutines[i].position,
-                    "subroutines call themselves, by way of " + quoted(m_program.subroutines[i].name));
+                    "subroutines call themselves, by way of " + in_quotes(m_program.subroutines[i].name));
     }
 
     /// Which subroutines the script may come to: all, where a variable says which.
@@ -163,9 +163,10 @@ class Checker {
                 if (end.index != joint.first && end.index != joint.second)
                     report(reached[s] && !runs_backwards(m), m.position,
                            std::string(name_of(m.action)) + ": the ellipsoid " +
-                               quoted(ellipsoid(end.index)) + " is not at the joint " + quoted(joint.name) +
-                               ", which connects " + quoted(ellipsoid(joint.first)) + " and " +
-                               quoted(ellipsoid(joint.second)));
+                               in_quotes(ellipsoid(end.index)) + " is not at the joint " +
+                               in_quotes(joint.name) + ", which connects " +
+                               in_quotes(ellipsoid(joint.first)) + " and " +
+                               in_quotes(ellipsoid(joint.second)));
             }
     }
 

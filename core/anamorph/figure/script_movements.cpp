@@ -38,7 +38,7 @@ void ScriptParser::movement(Distribution distribution) {
         m_entry_position = m.position;
         if (entry->keyword == script_table::Keyword::ignored) {
             report(Severity::warning, m.position, std::string(token.text), "",
-                   quoted(token.text) + " is passed over");
+                   in_quotes(token.text) + " is passed over");
             return skip_to_statement();
         }
     }
@@ -67,7 +67,7 @@ Operand ScriptParser::take_value(char letter, Pending& pending, bool& waits, boo
     const auto refuse = [&] {
         usable = false;
         report(Severity::error, position, std::string(token.text), expected,
-               "found " + quoted(token.text) + ", expected " + expected +
+               "found " + in_quotes(token.text) + ", expected " + expected +
                    suggestion(m_symbols.nearest(letter, token.text)) + usage());
         return Operand{};
     };
@@ -83,7 +83,7 @@ Operand ScriptParser::take_value(char letter, Pending& pending, bool& waits, boo
     // Joints, figures and pictures may be new here.
     const auto made = [&](OperandKind kind) {
         if (const auto other = m_symbols.other_kind(kind, token.text))
-            fault(position, quoted(token.text) + " is the name of " + description_of(*other) + " as well");
+            fault(position, in_quotes(token.text) + " is the name of " + description_of(*other) + " as well");
         return Operand{kind, 0, m_symbols.make(kind, token.text, position)};
     };
     if (letter == 'J') return made(OperandKind::joint);
@@ -107,7 +107,7 @@ void ScriptParser::resolve_pending() {
             found && found->kind == OperandKind::subroutine && !m_defined_subroutines.contains(found->index);
         if (!found || wrong || undefined) {
             report(Severity::error, p.position, p.name, description_of(p.letter),
-                   "found " + quoted(p.name) + ", expected " + description_of(p.letter) +
+                   "found " + in_quotes(p.name) + ", expected " + description_of(p.letter) +
                        suggestion(m_symbols.nearest(p.letter, p.name)) + p.usage);
             continue;
         }
@@ -118,7 +118,7 @@ void ScriptParser::resolve_pending() {
     for (std::size_t i = 1; i < m_program.ellipsoids.size(); ++i)
         if (!m_shaped.contains(static_cast<int>(i)))
             error(m_program.ellipsoids[i].position,
-                  "the ellipsoid " + quoted(m_program.ellipsoids[i].name) + " is declared nowhere");
+                  "the ellipsoid " + in_quotes(m_program.ellipsoids[i].name) + " is declared nowhere");
 }
 
 }  // namespace anamorph

@@ -18,7 +18,6 @@ namespace {
 constexpr int kMostMessages = 100;  // of errors, and of warnings
 constexpr std::size_t kDeepestInclude = 16;
 constexpr int kMostCount = 1 << 20;
-constexpr int kLargestFrame = 1000000000;
 // Shorter words are not taken for the beginning of a statement where something is wrong.
 constexpr std::size_t kShortestForm = 3;
 
@@ -140,7 +139,7 @@ void ScriptParser::unexpected(const ScriptToken& token, const std::string& expec
     // Where a statement is cut short by the next, it is the one that is wrong.
     const bool cut_short = m_entry && (token.text.empty() || begins_statement(token));
     const std::string what =
-        "found " + (token.text.empty() ? found : quoted(found)) + ", expected " + expected;
+        "found " + (token.text.empty() ? found : in_quotes(found)) + ", expected " + expected;
     report(Severity::error, cut_short ? m_entry_position : position_of(token), found, expected,
            (cut_short ? std::string(m_entry->word) + " is not complete: " + what : what) + usage());
     throw Abandoned{};
@@ -165,11 +164,11 @@ const ScriptToken& ScriptParser::peek() {
         const bool harmless = *odd == '/' || *odd == '_' || (!strict() && !control);
         if (!harmless)
             error(position_of(m_token), "the character " +
-                                            (control ? std::to_string(code) : quoted({&*odd, 1})) +
+                                            (control ? std::to_string(code) : in_quotes({&*odd, 1})) +
                                             " is not allowed in a name");
         else if (*odd != '/')
             report(Severity::warning, position_of(m_token), std::string(m_token.text), "",
-                   "the original does not read the character " + quoted({&*odd, 1}));
+                   "the original does not read the character " + in_quotes({&*odd, 1}));
     }
     return m_token;
 }
@@ -211,7 +210,7 @@ std::string ScriptParser::take_name(OperandKind kind) {
     const ScriptToken token = take();
     if (const auto other = m_symbols.other_kind(kind, token.text))
         fault(position_of(token),
-              quoted(token.text) + " is the name of " + description_of(*other) + " as well");
+              in_quotes(token.text) + " is the name of " + description_of(*other) + " as well");
     return std::string(token.text);
 }
 
@@ -245,7 +244,7 @@ void ScriptParser::end_statement() {
     const ScriptToken token = m_lexer.skip_line();
     if (token.text.empty()) return;
     report(Severity::warning, position_of(token), std::string(token.text), "",
-           "found " + quoted(token.text) + " after the end of a statement: " +
+           "found " + in_quotes(token.text) + " after the end of a statement: " +
                (script_table::find_statement(token.text) && begins_statement(token)
                     ? "a statement begins on a new line, and the rest of this one is passed over"
                     : "the rest of the line is passed over"));
@@ -265,9 +264,9 @@ void ScriptParser::warn_of_short_form(const ScriptToken& token, const script_tab
                                       bool action) {
     const auto* rival = script_table::rival_of(entry, token.text, action);
     if (!rival || !m_short_forms.emplace(token.text).second) return;
-    report(
-        Severity::warning, position_of(token), std::string(token.text), "",
-        quoted(token.text) + " is taken for " + quoted(entry.word) + ", and not for " + quoted(rival->word));
+    report(Severity::warning, position_of(token), std::string(token.text), "",
+           in_quotes(token.text) + " is taken for " + in_quotes(entry.word) + ", and not for " +
+               in_quotes(rival->word));
 }
 
 bool ScriptParser::statement(bool library) {
@@ -331,7 +330,7 @@ bool ScriptParser::rest_of_statement(const script_table::Entry& entry, const Scr
             break;
         case Keyword::ignored:
             report(Severity::warning, position_of(word), std::string(word.text), "",
-                   quoted(word.text) + " is passed over");
+                   in_quotes(word.text) + " is passed over");
             skip_to_statement();
             break;
         default:
@@ -347,7 +346,7 @@ void ScriptParser::figure() {
     const int index = m_symbols.make(OperandKind::figure, name, position_of(token));
     FigureDeclaration declared = m_program.figures[static_cast<std::size_t>(index)];
     if (index < 2 || !declared.ellipsoids.empty())
-        error(position_of(token), "the figure " + quoted(name) + " is declared twice");
+        error(position_of(token), "the figure " + in_quotes(name) + " is declared twice");
     declared.ellipsoids.clear();
     const int count = take_integer("the number of ellipsoids, an integer of at least 1", 1, kMostCount);
     for (int i = 0; i < count; ++i) {
@@ -363,7 +362,7 @@ void ScriptParser::ellipsoid() {
     const ScriptToken token = peek();
     const int index = take_mention(OperandKind::ellipsoid);
     if (index == 0 || !m_shaped.insert(index).second)
-        error(position_of(token), "the ellipsoid " + quoted(token.text) + " is declared twice");
+        error(position_of(token), "the ellipsoid " + in_quotes(token.text) + " is declared twice");
     glm::dvec3 axes(0.0);
     for (int i = 0; i < 3; ++i) axes[i] = take_number("a number, half the length of an axis");
     if (axes.x < 0 || axes.y < 0 || axes.z < 0) fault(position_of(token), "an axis is negative");
@@ -375,7 +374,7 @@ void ScriptParser::joint() {
     const std::string name = take_name(OperandKind::joint);
     const auto index = static_cast<std::size_t>(m_symbols.make(OperandKind::joint, name, position_of(token)));
     if (!m_program.joints[index].attached)
-        error(position_of(token), "the joint " + quoted(name) + " is declared twice");
+        error(position_of(token), "the joint " + in_quotes(name) + " is declared twice");
     check_size(index, position_of(token));
     JointDeclaration declared = m_program.joints[index];
     declared.attached = false;
@@ -409,7 +408,7 @@ void ScriptParser::variables() {
         const std::string name = take_name(OperandKind::variable);
         // All are global: what looks like one of a subroutine's own is not.
         if (strict() && m_symbols.find(OperandKind::variable, name))
-            error(position_of(token), "the variable " + quoted(name) + " is declared twice");
+            error(position_of(token), "the variable " + in_quotes(name) + " is declared twice");
         m_symbols.make(OperandKind::variable, name, position_of(token));
         check_size(m_program.variables.size(), position_of(token));
     }
@@ -421,7 +420,7 @@ void ScriptParser::begin_subroutine() {
     if (m_subroutine != 0) error(position_of(token), "a subroutine begins inside of another");
     const int index = m_symbols.make(OperandKind::subroutine, name, position_of(token));
     if (!m_defined_subroutines.insert(index).second) {
-        error(position_of(token), "the subroutine " + quoted(name) + " is declared twice");
+        error(position_of(token), "the subroutine " + in_quotes(name) + " is declared twice");
         return;
     }
     m_subroutine = index;
@@ -434,7 +433,7 @@ void ScriptParser::end_subroutine() {
         error(position_of(token), "a subroutine ends that has not begun");
     else if (current != token.text)
         report(Severity::error, position_of(token), std::string(token.text), current,
-               "found the end of " + quoted(token.text) + ", expected the end of " + quoted(current));
+               "found the end of " + in_quotes(token.text) + ", expected the end of " + in_quotes(current));
     m_subroutine = 0;
 }
 

@@ -14,6 +14,9 @@
 
 namespace anamorph {
 
+/// Numbers of frames beyond it are taken for it.
+inline constexpr int kLargestFrame = 1000000000;
+
 class ScriptParser {
   public:
     ScriptParser(Script& script, const ScriptOptions& options);

@@ -104,7 +104,7 @@ const char* description_of(OperandKind kind) {
     return "";
 }
 
-std::string quoted(std::string_view text) {
+std::string in_quotes(std::string_view text) {
     std::string out(1, '"');
     out += text_file::excerpt(text);
     out += '"';
@@ -153,7 +153,7 @@ std::string nearest_of(std::string_view word, const std::vector<std::string_view
 }
 
 std::string suggestion(const std::string& name) {
-    return name.empty() ? std::string() : ", did you mean " + quoted(name) + "?";
+    return name.empty() ? std::string() : ", did you mean " + in_quotes(name) + "?";
 }
 
 ScriptSymbols::ScriptSymbols(Program& program) : m_program(program) {

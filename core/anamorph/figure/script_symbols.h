@@ -18,7 +18,7 @@ const char* description_of(char letter);
 const char* description_of(OperandKind kind);
 
 /// Fit for a message: in quotes, on one line, not endless.
-std::string quoted(std::string_view text);
+std::string in_quotes(std::string_view text);
 
 /// The candidate that `word` is most likely a misspelling of; empty where none is near.
 std::string nearest_of(std::string_view word, const std::vector<std::string_view>& candidates);

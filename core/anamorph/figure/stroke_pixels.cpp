@@ -10,7 +10,7 @@
 namespace anamorph {
 namespace {
 
-constexpr int kSide = 16, kSamples = kSide * kSide;
+constexpr int kSampleRows = 16, kPixelSamples = kSampleRows * kSampleRows;
 // Half the diagonal of a pixel, and a little for rounding.
 constexpr double kHalfPixel = 0.7072;
 
@@ -62,7 +62,7 @@ class StrokeCover {
                     m_masks.emplace_back();
                     m_touched.push_back({x, y});
                 }
-                std::bitset<kSamples>& mask = m_masks[static_cast<std::size_t>(at)];
+                std::bitset<kPixelSamples>& mask = m_masks[static_cast<std::size_t>(at)];
                 if (half > kHalfPixel && square <= all * all)
                     mask.set();
                 else
@@ -77,7 +77,7 @@ class StrokeCover {
             const auto [x, y] = m_touched[k];
             m_pixel[index(x, y)] = kNone;
             if (const std::size_t count = m_masks[k].count())
-                body(x, y, static_cast<double>(count) / kSamples);
+                body(x, y, static_cast<double>(count) / kPixelSamples);
         }
         m_touched.clear();
         m_masks.clear();
@@ -95,9 +95,10 @@ class StrokeCover {
     }
 
     static void sample(int x, int y, const glm::dvec2& a, const glm::dvec2& b, double square,
-                       std::bitset<kSamples>& mask) {
-        for (int i = 0; i < kSamples; ++i) {
-            const glm::dvec2 p(x + (i % kSide + 0.5) / kSide, y + (i / kSide + 0.5) / kSide);
+                       std::bitset<kPixelSamples>& mask) {
+        for (int i = 0; i < kPixelSamples; ++i) {
+            const glm::dvec2 p(x + (i % kSampleRows + 0.5) / kSampleRows,
+                               y + (i / kSampleRows + 0.5) / kSampleRows);
             if (square_distance(p, a, b) <= square) mask.set(static_cast<std::size_t>(i));
         }
     }
@@ -105,7 +106,7 @@ class StrokeCover {
     Box m_box;
     std::vector<int> m_pixel;  ///< of the box: the position in the two below
     std::vector<Place> m_touched;
-    std::vector<std::bitset<kSamples>> m_masks;
+    std::vector<std::bitset<kPixelSamples>> m_masks;
 };
 
 }  // namespace

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "anamorph/map/chart.h"
 
-#include <cstdio>
-
 #include "anamorph/error.h"
+#include "anamorph/parameter.h"
 
 namespace anamorph {
 namespace {
@@ -18,12 +17,6 @@ constexpr std::string_view kNames[] = {
 #undef ANAMORPH_PROJECTION
 };
 
-std::string print(double value) {
-    char text[32];
-    std::snprintf(text, sizeof text, "%.10g", value);
-    return text;
-}
-
 std::string_view alias_of(Projection projection) {
     return with_projection(projection, [](auto formulas) -> std::string_view { return formulas.alias; });
 }
@@ -36,10 +29,10 @@ void check_fov(Projection projection, double fov, const Setting& setting, const 
     const std::string name(name_of(projection));
     if (limits.fixed) {
         if (fov != limits.standard)
-            throw Error(parameter, print(fov), name + " always has " + print(limits.standard) + " degrees");
+            throw Error(parameter, brief(fov), name + " always has " + brief(limits.standard) + " degrees");
     } else if (!(fov > 0 && (fov < most || (!limits.open && fov == most))))
-        throw Error(parameter, print(fov),
-                    "must be above 0 and " + std::string(limits.open ? "below " : "up to ") + print(most) +
+        throw Error(parameter, brief(fov),
+                    "must be above 0 and " + std::string(limits.open ? "below " : "up to ") + brief(most) +
                         " degrees for " + name);
 }
 
@@ -107,7 +100,7 @@ Chart::Chart(Projection projection, int width, int height, double fov, PixelSpac
     if (width < 1 || height < 1 || width > kMaxSize || height > kMaxSize)
         throw Error(prefix + "size", size, "must be 1x1 to 16777216x16777216 pixels");
     if (!(d >= 0 && d <= kMostDistance))
-        throw Error(prefix + "d", print(d), "must be from 0 to " + print(kMostDistance));
+        throw Error(prefix + "d", brief(d), "must be from 0 to " + brief(kMostDistance));
     m_setting.distance = d;
     if (m_fov == 0) m_fov = default_fov(projection);
     check_fov(projection, m_fov, m_setting, prefix + "fov");

@@ -334,7 +334,7 @@ bool continues_name(char c) {
     return starts_name(c) || std::isdigit(static_cast<unsigned char>(c));
 }
 
-using Names = std::map<std::string, Value, std::less<>>;
+using NamedValues = std::map<std::string, Value, std::less<>>;
 
 struct Function {
     std::size_t least, most;  ///< arguments
@@ -426,7 +426,7 @@ const std::map<std::string, Function, std::less<>>& functions() {
 /// One expression, or definitions, by recursive descent; from the weakest operator to the strongest.
 class Parser {
   public:
-    Parser(Maker& maker, const Names& names, const std::string& parameter, std::string_view text)
+    Parser(Maker& maker, const NamedValues& names, const std::string& parameter, std::string_view text)
         : m_maker(maker), m_names(names), m_parameter(parameter), m_text(text) {}
 
     /// All of the text.
@@ -436,7 +436,8 @@ class Parser {
         return value;
     }
     /// name=expression; ...
-    static void define(Maker& maker, Names& names, const std::string& parameter, std::string_view text) {
+    static void define(Maker& maker, NamedValues& names, const std::string& parameter,
+                       std::string_view text) {
         Parser parser(maker, names, parameter, text);
         while (!parser.at_end()) {
             const std::string name(parser.name());
@@ -667,14 +668,14 @@ class Parser {
     };
 
     Maker& m_maker;
-    const Names& m_names;
+    const NamedValues& m_names;
     std::string m_parameter;
     std::string_view m_text;
     std::size_t m_at = 0;
     int m_depth = 0;
 };
 
-Names names_of(Maker& m, const FormulaSetting& setting) {
+NamedValues names_of(Maker& m, const FormulaSetting& setting) {
     const double width = setting.picture.width, height = setting.picture.height;
     const Value x = m.x(), y = m.y(), per_half = m.number(0.5 * std::min(width, height));
     const Value px = m.quotient(m.difference(x, m.number(0.5 * width)), per_half),
@@ -700,7 +701,7 @@ Names names_of(Maker& m, const FormulaSetting& setting) {
 PlaneFormula parse_formula(const FormulaText& text, const FormulaSetting& setting) {
     Graph graph;
     Maker maker(graph);
-    Names names = names_of(maker, setting);
+    NamedValues names = names_of(maker, setting);
     Parser::define(maker, names, "let", text.let);
     const auto coordinate = [&](const char* name, const std::string& expression, int length) {
         const Value value = Parser(maker, names, name, expression).expression();

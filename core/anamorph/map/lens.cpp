@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <cstdio>
 #include <set>
 
 #include "anamorph/error.h"
@@ -43,12 +42,6 @@ template <class List, class Name>
 std::string listed(const List& list, const Name& name) {
     std::string text;
     for (const auto& item : list) text += (text.empty() ? "" : ", ") + std::string(name(item));
-    return text;
-}
-
-std::string print(double value) {
-    char text[32];
-    std::snprintf(text, sizeof text, "%.10g", value);
     return text;
 }
 
@@ -113,8 +106,8 @@ LensModel LensModel::parse(std::string_view text, const std::string& parameter) 
         const auto [end, error] = std::from_chars(number.data(), number.data() + number.size(), value);
         if (error != std::errc() || end != number.data() + number.size() || !(std::fabs(value) <= kMostValue))
             throw Error(parameter, whole,
-                        std::string(key) + " must be a number from " + print(-kMostValue) + " to " +
-                            print(kMostValue));
+                        std::string(key) + " must be a number from " + brief(-kMostValue) + " to " +
+                            brief(kMostValue));
     }
     return model;
 }
@@ -166,7 +159,7 @@ Lens::Lens(const LensModel& model, Lensed lensed, const std::string& projection,
     const double asked = in_units(smaller + std::hypot(d, e));
     if (!(m_terms.observed_end >= asked * (1 - 1e-4))) {
         const auto pixels = [&](double length) {
-            return print(std::round(10 * length * static_cast<double>(unit / plane.per_x)) / 10);
+            return brief(std::round(10 * length * static_cast<double>(unit / plane.per_x)) / 10);
         };
         throw Error(parameter, model.text(),
                     std::string(folds && !m_terms.tangential ? "folds" : "ends") + " at a radius of " +

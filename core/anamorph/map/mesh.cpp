@@ -3,12 +3,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <map>
 #include <set>
 
 #include "anamorph/error.h"
 #include "anamorph/map/mesh_file.h"
+#include "anamorph/parameter.h"
 
 namespace anamorph {
 namespace {
@@ -16,20 +16,13 @@ namespace {
 // Knots of level 0 are kept for meshes of at most so many vertices, else computed when needed.
 constexpr std::size_t kKeptKnots = std::size_t{1} << 20;
 
-std::string text_of(double value) {
-    char text[32];
-    std::snprintf(text, sizeof text, "%g", value);
-    return text;
-}
-
 std::string text_of(int column, int row) {
     return "[" + std::to_string(column) + ", " + std::to_string(row) + "]";
 }
 
 void check_count(const std::string& name, const char* what, double value, double least, double most) {
     if (!(value >= least && value <= most))
-        throw Error(name + ": " + what, text_of(value),
-                    "must be from " + text_of(least) + " to " + text_of(most));
+        throw Error(name + ": " + what, brief(value), "must be from " + brief(least) + " to " + brief(most));
 }
 
 /// The lines in pixels, from edge to edge of an image of `size` pixels; `before` counts those added in front.
@@ -49,11 +42,11 @@ std::vector<double> lines_of(const std::vector<double>& given, int cells, int si
     for (std::size_t i = 0; i < lines.size(); ++i) {
         lines[i] = given[i] * unit;
         if (!(std::fabs(lines[i]) <= ControlMesh::kMaxPosition) || (i > 0 && !(lines[i] > lines[i - 1])))
-            throw Error(name + ": " + key + "[" + std::to_string(i) + "]", text_of(given[i]),
+            throw Error(name + ": " + key + "[" + std::to_string(i) + "]", brief(given[i]),
                         "positions must ascend");
         // Cells so thin that their derivatives lose all digits.
         if (i > 0 && !(lines[i] - lines[i - 1] >= 1e-6))
-            throw Error(name + ": " + key + "[" + std::to_string(i) + "]", text_of(given[i]),
+            throw Error(name + ": " + key + "[" + std::to_string(i) + "]", brief(given[i]),
                         "lines are at least 1e-6 pixels apart");
     }
     // Lines a hair inside the edge stand on it.
@@ -300,7 +293,7 @@ Mesh::Mesh(const ControlMesh& mesh, const Size& from, const Size& to, double amo
     check_count(name, "vertices", static_cast<double>(mesh.vertex_count()), 4,
                 is_stmap ? kMostStMapVertices : ControlMesh::kMaxVertices);
     check_count(name, "levels", static_cast<double>(mesh.levels.size()), 0, ControlMesh::kMaxLevels);
-    if (!std::isfinite(amount)) throw Error("amount", text_of(amount), "must be a finite number");
+    if (!std::isfinite(amount)) throw Error("amount", brief(amount), "must be a finite number");
     m_scale = {static_cast<double>(to.width) / from.width, static_cast<double>(to.height) / from.height};
 
     int before_x = 0, before_y = 0;
@@ -339,14 +332,14 @@ Mesh::Uncertain Mesh::displacement(const Point<double>& to, Units units, double 
     const Uncertain at{pixels ? Number(to.x) : Number(to.x) * Number(m_to.width),
                        pixels ? Number(to.y) : Number(to.y) * Number(m_to.height)};
     if (!(at.x.size() <= ControlMesh::kMaxPosition && at.y.size() <= ControlMesh::kMaxPosition))
-        throw Error(entry(), "[" + text_of(to.x) + ", " + text_of(to.y) + "]",
+        throw Error(entry(), "[" + brief(to.x) + ", " + brief(to.y) + "]",
                     "must stand for at most 1e8 pixels");
     const auto moved = [&](const Number& there, double line, int to_size, int from_size) {
         return (there - place(line) * (Number(to_size) / Number(from_size))) * Number(amount);
     };
     const Uncertain d{moved(at.x, x, m_to.width, m_from.width), moved(at.y, y, m_to.height, m_from.height)};
     if (!(d.x.size() <= 1e3 * ControlMesh::kMaxPosition && d.y.size() <= 1e3 * ControlMesh::kMaxPosition))
-        throw Error("amount", text_of(amount), "it moves a vertex by more than 1e11 pixels");
+        throw Error("amount", brief(amount), "it moves a vertex by more than 1e11 pixels");
     return d;
 }
 

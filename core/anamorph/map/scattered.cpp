@@ -4,10 +4,10 @@
 #include <algorithm>
 #include <boost/polygon/voronoi.hpp>
 #include <cmath>
-#include <cstdio>
 #include <map>
 
 #include "anamorph/error.h"
+#include "anamorph/parameter.h"
 
 namespace anamorph {
 namespace {
@@ -46,12 +46,6 @@ struct Node {
 
 using Corners = std::array<std::size_t, 3>;
 
-std::string text_of(double value) {
-    char text[32];
-    std::snprintf(text, sizeof text, "%g", value);
-    return text;
-}
-
 /// The points in pixels with their displacements.
 std::vector<Node> nodes_of(const ControlPoints& points, const Size& from, const Size& to, double amount,
                            const std::string& name) {
@@ -72,12 +66,12 @@ std::vector<Node> nodes_of(const ControlPoints& points, const Size& from, const 
             there{in_pixels(p.u, to.width), in_pixels(p.v, to.height)};
         for (const Number& v : {at.x, at.y, there.x, there.y})
             if (!(v.size() <= ControlMesh::kMaxPosition))
-                throw Error(name + ": points[" + std::to_string(i) + "]", text_of(rounded(v)),
+                throw Error(name + ": points[" + std::to_string(i) + "]", brief(rounded(v)),
                             "must stand for at most 1e8 pixels");
         const Vector d{moved(there.x, at.x, to.width, from.width),
                        moved(there.y, at.y, to.height, from.height)};
         if (!(d.x.size() <= 1e11 && d.y.size() <= 1e11))
-            throw Error("amount", text_of(amount), "it moves a point by more than 1e11 pixels");
+            throw Error("amount", brief(amount), "it moves a point by more than 1e11 pixels");
         nodes.push_back({at, d});
     }
     return nodes;
@@ -157,7 +151,7 @@ std::vector<Corners> triangulate(const std::vector<Node>& nodes, std::size_t giv
         const auto [at, is_new] = taken.try_emplace({x, y}, i);
         if (!is_new)
             throw Error(name + ": points[" + std::to_string(std::min(i, given - 1)) + "]",
-                        "[" + text_of(nodes[i].x()) + ", " + text_of(nodes[i].y()) + "]",
+                        "[" + brief(nodes[i].x()) + ", " + brief(nodes[i].y()) + "]",
                         "points[" + std::to_string(at->second) + "] stands at the same place");
         places.emplace_back(x, y);
     }
@@ -390,7 +384,7 @@ bool CubicTriangle::meets(const Bounds& box) const {
 Scattered::Scattered(const ControlPoints& points, const Size& from, const Size& to, double amount,
                      const std::string& name)
     : m_from(from), m_to(to) {
-    if (!std::isfinite(amount)) throw Error("amount", text_of(amount), "must be a finite number");
+    if (!std::isfinite(amount)) throw Error("amount", brief(amount), "must be a finite number");
     m_scale = {static_cast<double>(to.width) / from.width, static_cast<double>(to.height) / from.height};
     std::vector<Node> nodes = nodes_of(points, from, to, amount, name);
     const std::size_t given = nodes.size();

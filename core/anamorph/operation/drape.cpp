@@ -127,7 +127,7 @@ ParameterTable look_rows() {
     };
 }
 
-ParameterTable make_table() {
+ParameterTable make_drape_table() {
     ParameterTable table = {
         rows::image("src", "the picture that is draped; by default the recipe's name without .drape")};
     for (const ParameterTable& part :
@@ -460,7 +460,7 @@ std::vector<glm::dvec3> drape_lights(const std::vector<double>& numbers) {
 }
 
 const Operation& drape_operation() {
-    static const ParameterTable table = make_table();
+    static const ParameterTable table = make_drape_table();
     static const Operation operation{
         "drape",
         "A picture laid on a surface in space",

@@ -21,7 +21,7 @@ namespace anamorph {
 namespace {
 
 constexpr int kSide = 1000;
-constexpr int kMostFrames = 1'000'000;
+constexpr int kMostFrameNumber = 1'000'000;
 // A host that asks how many subimages there are looks at each.
 constexpr int kMostSubimages = 100'000;
 // Of the angles and places that users set.
@@ -65,7 +65,7 @@ ParameterTable script_rows() {
         choice("dialect", "classic", {"classic", "strict"},
                "classic: as the programs of 2003 ran scripts, but abut and touch end in exact contact; "
                "strict: as the language is documented"),
-        whole("frame", "", "", 0, kMostFrames,
+        whole("frame", "", "", 0, kMostFrameNumber,
               "the frame of the script that is drawn, 0 the figures at rest; by default all that it shows, "
               "each a subimage"),
     };
@@ -103,7 +103,7 @@ ParameterTable style_rows() {
 }
 
 /// Who sees them, before what.
-ParameterTable view_rows() {
+ParameterTable figure_view_rows() {
     using namespace rows;
     return {
         numbers("camera", -kInfinity,
@@ -136,9 +136,9 @@ ParameterTable line_rows() {
     };
 }
 
-ParameterTable make_table() {
+ParameterTable make_figure_table() {
     ParameterTable table;
-    for (const ParameterTable& part : {script_rows(), style_rows(), view_rows(), line_rows()})
+    for (const ParameterTable& part : {script_rows(), style_rows(), figure_view_rows(), line_rows()})
         table.insert(table.end(), part.begin(), part.end());
     return table;
 }
@@ -510,7 +510,7 @@ stop
 }  // namespace
 
 const Operation& figure_operation() {
-    static const ParameterTable table = make_table();
+    static const ParameterTable table = make_figure_table();
     static const Operation operation{
         .name = "figure",
         .title = "Figures of ellipsoids, performed from a script of NUDES",

@@ -13,7 +13,7 @@ using rows::rounded_degrees;
 
 const char* const kAll = "all";
 
-ParameterTable make_table() {
+ParameterTable make_lens_table() {
     using namespace rows;
     Parameter extent = size(
         "width and height of the picture, or its width alone, about the same middle and as fine as the "
@@ -81,7 +81,7 @@ Observed observed_picture(const ParameterValues& values, const SourceFacts& fact
     throw Error("fov is not given and the source does not say it: must be given for lens=" + model.text());
 }
 
-std::unique_ptr<const Pictures> pictures_of(const ParameterValues& values, const SourceFacts& facts) {
+std::unique_ptr<const Pictures> pictures_of_lens(const ParameterValues& values, const SourceFacts& facts) {
     const Size source{facts.width, facts.height};
     const auto mode = chosen<LensMode>(values, "mode");
     const bool all = values.text("size") == kAll;
@@ -103,7 +103,7 @@ std::unique_ptr<const Pictures> pictures_of(const ParameterValues& values, const
 }  // namespace
 
 const Operation& lens_operation() {
-    static const ParameterTable table = make_table();
+    static const ParameterTable table = make_lens_table();
     static const Operation operation{
         "lens",
         "The distortion of a lens taken off a flat picture, or put on one",
@@ -111,7 +111,7 @@ const Operation& lens_operation() {
         {"src"},
         1,
         {"fov=120&lens=kb4:k1=0.05,k2=0.01", {}},
-        [](const OperationInput& input) { return pictures_of(input.values, input.sources[0].facts); }};
+        [](const OperationInput& input) { return pictures_of_lens(input.values, input.sources[0].facts); }};
     return operation;
 }
 

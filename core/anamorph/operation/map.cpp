@@ -7,7 +7,7 @@
 namespace anamorph {
 namespace {
 
-ParameterTable make_table() {
+ParameterTable make_map_table() {
     using namespace rows;
     return {
         image("src", "the source image; by default the recipe's name without .map"),
@@ -32,7 +32,7 @@ ParameterTable make_table() {
     };
 }
 
-std::unique_ptr<const Pictures> pictures_of(const ParameterValues& values, const SourceFacts& facts) {
+std::unique_ptr<const Pictures> pictures_of_map(const ParameterValues& values, const SourceFacts& facts) {
     const Size source{facts.width, facts.height}, target = rows::size_of(values, source);
     FormulaText text;
     if (values.given("u")) text.u = values.text("u");
@@ -49,7 +49,7 @@ std::unique_ptr<const Pictures> pictures_of(const ParameterValues& values, const
 }  // namespace
 
 const Operation& map_operation() {
-    static const ParameterTable table = make_table();
+    static const ParameterTable table = make_map_table();
     static const Operation operation{
         "map",
         "A picture drawn along a formula that you write",
@@ -57,7 +57,7 @@ const Operation& map_operation() {
         {"src"},
         1,
         {"let=w=(0.6+frame)*exp(-4*r^2)&u=width/2+height/2*r*cos(a+w)&v=height/2-height/2*r*sin(a+w)", {}},
-        [](const OperationInput& input) { return pictures_of(input.values, input.sources[0].facts); }};
+        [](const OperationInput& input) { return pictures_of_map(input.values, input.sources[0].facts); }};
     return operation;
 }
 

@@ -34,7 +34,7 @@ Parameter output_row() {
     return row;
 }
 
-ParameterTable make_table() {
+ParameterTable make_morph_table() {
     using namespace rows;
     ParameterTable table = {
         image("a", "the first picture; by default the recipe's name without .morph"),
@@ -242,7 +242,7 @@ std::unique_ptr<const Pictures> read_morphs(const OperationInput& input) {
 }  // namespace
 
 const Operation& morph_operation() {
-    static const ParameterTable table = make_table();
+    static const ParameterTable table = make_morph_table();
     static const Operation operation{
         "morph", "Pictures that turn into each other along corresponding lines", &table,     morph_pictures(),
         2,       {"features=lines.json", {{"lines.json", kExampleFeatures}}},    read_morphs};

@@ -28,7 +28,7 @@ std::vector<std::string> turning_projections() {
     return names;
 }
 
-ParameterTable make_table() {
+ParameterTable make_mosaic_table() {
     using namespace rows;
     const auto as_pano = [](const char* name) {
         const ParameterTable& pano = *pano_operation().parameters;
@@ -189,7 +189,7 @@ class Mosaics final : public Pictures {
 }  // namespace
 
 const Operation& mosaic_operation() {
-    static const ParameterTable table = make_table();
+    static const ParameterTable table = make_mosaic_table();
     static const Operation operation{
         "mosaic",
         "Concentric mosaics, slit panoramas on circles, seen from a point inside",

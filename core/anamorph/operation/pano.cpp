@@ -46,7 +46,7 @@ std::string limited_fovs() {
     return text;
 }
 
-ParameterTable make_table() {
+ParameterTable make_pano_table() {
     using namespace rows;
     return {
         image("src",
@@ -309,7 +309,7 @@ class Panos final : public Pictures {
 }  // namespace
 
 const Operation& pano_operation() {
-    static const ParameterTable table = make_table();
+    static const ParameterTable table = make_pano_table();
     static const Operation operation{
         "pano",
         "A panorama seen through another lens",

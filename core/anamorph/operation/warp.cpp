@@ -16,7 +16,7 @@ using rows::chosen;
 
 constexpr int kMaxStep = 1 << 16;
 
-ParameterTable make_table() {
+ParameterTable make_warp_table() {
     using namespace rows;
     return {
         image("src", "the source image; by default the recipe's name without .warp"),
@@ -58,7 +58,7 @@ ParameterTable make_table() {
 }
 
 /// Of scheme hardware. What is said of a machine is checked with the other schemes too.
-std::optional<ShaderUnit> machine_of(const ParameterValues& values) {
+std::optional<ShaderUnit> shader_of(const ParameterValues& values) {
     const ShaderUnit unit =
         values.given("machine") ? shader_unit_from_text(values.text("machine")) : ShaderUnit{};
     if (values.text("scheme") != "hardware") return {};
@@ -83,7 +83,7 @@ WarpRequest read_warp_request(const ParameterValues& values, const Size& source)
     request.source = source;
     request.target = warp_target(values, source);
     MeshWarpOptions& options = request.options;
-    request.machine = machine_of(values);
+    request.machine = shader_of(values);
     if (!request.machine) options.scheme = chosen<WarpScheme>(values, "scheme");
     options.tol = values.number("tol");
     options.filter = chosen<Filter>(values, "filter");
@@ -240,7 +240,7 @@ std::unique_ptr<const Pictures> read_warps(const OperationInput& input) {
 }  // namespace
 
 const Operation& warp_operation() {
-    static const ParameterTable table = make_table();
+    static const ParameterTable table = make_warp_table();
     static const Operation operation{
         "warp",    "A picture drawn through a control mesh, an ST-map or pairs of points",
         &table,    {"src"},

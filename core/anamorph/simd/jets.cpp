@@ -1,8 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-// Four doubles fill the vectors of AVX2; larger ones would bring nothing, and smaller sets differ little.
-#ifndef HWY_DISABLED_TARGETS
-#define HWY_DISABLED_TARGETS (HWY_SSSE3 | HWY_AVX3 | HWY_AVX3_DL)
-#endif
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "anamorph/simd/jets.cpp"
 #include "anamorph/simd/jets.h"

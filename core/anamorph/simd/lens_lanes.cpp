@@ -1,8 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-// Four doubles fill the vectors of AVX2, as in jets.cpp.
-#ifndef HWY_DISABLED_TARGETS
-#define HWY_DISABLED_TARGETS (HWY_SSSE3 | HWY_AVX3 | HWY_AVX3_DL)
-#endif
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "anamorph/simd/lens_lanes.cpp"
 #include "anamorph/simd/lens_lanes.h"

@@ -26,7 +26,7 @@ HWY_INLINE bool somewhere(const LaneMask<Tag>& condition) {
 using D = hn::CappedTag<double, kExactRow>;
 using L = Lanes<D>;
 
-struct Rays {
+struct RowRays {
     HWY_ALIGN double x[kExactRow], y[kExactRow], z[kExactRow];
     HWY_ALIGN double inside[kExactRow];
 };
@@ -59,7 +59,7 @@ Matrix MatrixOf(const glm::dmat3& axes) {
 /// With the lens of the target, if it has one and its projection may have one.
 template <class Projection>
 void TargetRays(const Chart& target, const Matrix& turn, int piece, double x0, double y, int count,
-                Rays& rays) {
+                RowRays& rays) {
     const Branch& branch = target.branch(piece);
     const Chart::Plane plane = target.plane(piece);
     const Matrix axes = MatrixOf(branch.axes);
@@ -95,7 +95,7 @@ HWY_INLINE L PieceOf(const Chart& source, const Ray<L>& r) {
 }
 
 template <class Projection>
-void SourcePoints(const Chart& source, const Rays& rays, int count, ExactRow& row) {
+void SourcePoints(const Chart& source, const RowRays& rays, int count, ExactRow& row) {
     const int pieces = static_cast<int>(source.pieces().size());
     for (int i = 0; i < count; i += L::kCount) {
         const Ray<L> r{L::load(rays.x + i), L::load(rays.y + i), L::load(rays.z + i)};
@@ -130,7 +130,7 @@ void SourcePoints(const Chart& source, const Rays& rays, int count, ExactRow& ro
 
 void ComputeExactRow(const Chart& target, const Chart& source, const Turn& turn, int piece, double x,
                      double y, int count, ExactRow& row) {
-    Rays rays;
+    RowRays rays;
     const Matrix matrix = MatrixOf(turn);
     switch (target.projection()) {
 #define ANAMORPH_PROJECTION(name, Type)                                       \
