@@ -121,6 +121,20 @@ const Parameter* find(const ParameterTable& table, std::string_view key) {
     return nullptr;
 }
 
+bool takes_definitions(const ParameterTable& table) {
+    return std::any_of(table.begin(), table.end(), [](const Parameter& p) { return p.definitions; });
+}
+
+/// Letters, digits and underscores, a digit not first.
+bool is_name(std::string_view key) {
+    const auto is_letter = [](char c) {
+        return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_';
+    };
+    return !key.empty() && is_letter(key.front()) && std::all_of(key.begin(), key.end(), [&](char c) {
+        return is_letter(c) || (c >= '0' && c <= '9');
+    });
+}
+
 std::vector<std::string> names(const ParameterTable& table) {
     std::vector<std::string> out;
     for (const Parameter& parameter : table) out.push_back(parameter.name);
@@ -283,15 +297,30 @@ std::string Parameter::rule() const {
     }
 }
 
+void ParameterValues::define(const Assignment& name) {
+    const auto found = std::find_if(m_definitions.begin(), m_definitions.end(),
+                                    [&](const Assignment& known) { return known.key == name.key; });
+    if (found == m_definitions.end())
+        m_definitions.push_back(name);
+    else
+        found->value = name.value;
+}
+
 void ParameterValues::assign(const std::vector<Assignment>& place) {
     std::set<std::string> seen;
     for (const Assignment& a : place) {
         const Parameter* parameter = find(*m_table, a.key);
-        if (!parameter)
+        const bool defines = !parameter && takes_definitions(*m_table) && is_name(a.key);
+        if (!parameter && !defines)
             throw Error(printable(a.key), printable(a.value),
                         "there is no such parameter: must be one of " + joined(names(*m_table)));
-        if (!seen.insert(parameter->name).second)
-            throw Error(parameter->name, printable(a.value), "given twice in one place: must be given once");
+        const std::string& name = defines ? a.key : parameter->name;
+        if (!seen.insert(name).second)
+            throw Error(name, printable(a.value), "given twice in one place: must be given once");
+        if (defines) {
+            define(a);
+            continue;
+        }
         if (!is_allowed(*parameter, a.value))
             throw Error(parameter->name, printable(a.value), parameter->rule());
         m_given[parameter->name] = a.value;
@@ -341,6 +370,7 @@ std::string ParameterValues::key(const std::vector<std::string>& without) const 
         // No value holds a line break, and none that is given is empty.
         key += parameter.name + "=" + text(parameter.name) + "\n";
     }
+    for (const Assignment& name : m_definitions) key += name.key + "=" + name.value + "\n";
     return key;
 }
 

@@ -46,6 +46,7 @@ struct Parameter {
     bool above_minimum = false;       ///< the minimum itself is not accepted (of number and numbers)
     std::string documentation;        ///< one line
     std::string alias;                ///< another key for the same
+    bool definitions = false;         ///< keys that are not in the table define names for it
 
     /// What a value may be: "a number from 0 to 10", "edges, centers".
     std::string accepted() const;
@@ -68,7 +69,8 @@ class ParameterValues {
     explicit ParameterValues(const ParameterTable& table) : m_table(&table) {}
 
     /// Takes the assignments of one place (a file, a name, a call). Throws Error on an unknown key, a key
-    /// given twice and a value that is not allowed.
+    /// given twice and a value that is not allowed. Where a parameter takes definitions, a key that is a name is never
+    /// unknown: whoever reads them has to say which are of no use.
     void assign(const std::vector<Assignment>& place);
 
     const ParameterTable& table() const { return *m_table; }
@@ -89,12 +91,18 @@ class ParameterValues {
     /// Its height is -1 where only one number was given.
     Size extent(std::string_view name) const;
 
+    /// What keys that are not in the table define, in the order in which they came first.
+    const std::vector<Assignment>& definitions() const { return m_definitions; }
+
     /// All values as one text, which differs where any value does; `without`: the names of those left out.
     std::string key(const std::vector<std::string>& without = {}) const;
 
   private:
     const ParameterTable* m_table;
     std::map<std::string, std::string> m_given;
+    std::vector<Assignment> m_definitions;
+
+    void define(const Assignment& name);
 };
 
 /// The assignments of a recipe file's text. Throws Error naming the line.

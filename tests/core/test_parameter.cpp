@@ -62,6 +62,23 @@ TEST(Parameter, LaterPlacesOverrideEarlierOnes) {
     EXPECT_FALSE(v.given("roll"));
 }
 
+TEST(Parameter, KeysThatDefineNames) {
+    Parameter definitions;
+    definitions.name = "let";
+    definitions.definitions = true;
+    const ParameterTable table{definitions};
+    ParameterValues values(table);
+    values.assign({{"b", "1"}, {"a", "2"}, {"LET", "z=1"}, {"B", "3"}});
+    values.assign({{"a", "4"}});
+    ASSERT_EQ(values.definitions().size(), 3);
+    EXPECT_EQ(values.definitions()[1].key, "a");
+    EXPECT_EQ(values.definitions()[1].value, "4");
+    EXPECT_EQ(values.definitions()[2].key, "B");
+    EXPECT_EQ(values.key(), "let=z=1\nb=1\na=4\nB=3\n");
+    EXPECT_THROW(values.assign({{"a", "1"}, {"a", "2"}}), Error);
+    EXPECT_THROW(values.assign({{"a b", "1"}}), Error);
+}
+
 TEST(Parameter, KeysAndAliasesInAnyCase) {
     const ParameterValues v = values({{"RES", "64x32"}, {"Tile", "16"}, {"MIP", "1"}});
     EXPECT_EQ(v.extent("size").width, 64);

@@ -139,6 +139,34 @@ TEST(TextMap, ThereIsNoPointWhereAFormulaHasNoValue) {
         EXPECT_TRUE(is_inside(some)) << some;
 }
 
+TEST(TextMap, KeysOfTheirOwnDefineNames) {
+    const auto value_of = [](const std::vector<Assignment>& definitions, const std::string& let,
+                             const std::string& u) {
+        FormulaText text;
+        text.definitions = definitions;
+        text.let = let;
+        text.u = u;
+        return read_program(parse_formula(text, {kPicture, kSource}).point, 0.5, 0.5).x;
+    };
+    EXPECT_EQ(value_of({{"k", "3"}, {"c", "k+1"}}, "", "c*10"), 40);
+    // They stand before `let`, and stay what they are.
+    EXPECT_EQ(value_of({{"k", "3"}}, "k=5;c=k+1", "c"), 4);
+    const auto error_of = [&](const std::vector<Assignment>& definitions, const std::string& let = "") {
+        try {
+            value_of(definitions, let, "x+c");
+        } catch (const Error& error) {
+            return std::string(error.what());
+        }
+        return std::string("no error");
+    };
+    EXPECT_EQ(error_of({{"c", "k"}, {"k", "3"}}), "c=k: column 1: expected a name that is known");
+    EXPECT_EQ(error_of({{"c", ""}}), "c=: column 1: expected a number, a name or (");
+    EXPECT_EQ(error_of({{"tool", "0.1"}}, "c=1"), "tool=0.1: is no key, and no formula uses the name");
+    EXPECT_EQ(error_of({{"width", "3"}}, "c=1"), "width=3: every formula has this name: must be another");
+    EXPECT_EQ(error_of({{"sin", "3"}}, "c=1"), "sin=3: must be a name that is no function's");
+    EXPECT_EQ(error_of({{"2c", "3"}}, "c=1"), "2c=3: must be a name that is no function's");
+}
+
 TEST(TextMap, ErrorsNameTheColumn) {
     const auto error_of = [](const std::string& u, const std::string& let = "") {
         FormulaText text;

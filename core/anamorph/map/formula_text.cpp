@@ -8,6 +8,7 @@
 #include <map>
 #include <numbers>
 #include <optional>
+#include <set>
 #include <string_view>
 
 #include "anamorph/error.h"
@@ -334,7 +335,11 @@ bool continues_name(char c) {
     return starts_name(c) || std::isdigit(static_cast<unsigned char>(c));
 }
 
-using NamedValues = std::map<std::string, Value, std::less<>>;
+struct NamedValue {
+    Value value;
+    bool used = false;
+};
+using NamedValues = std::map<std::string, NamedValue, std::less<>>;
 
 struct Function {
     std::size_t least, most;  ///< arguments
@@ -426,7 +431,7 @@ const std::map<std::string, Function, std::less<>>& functions() {
 /// One expression, or definitions, by recursive descent; from the weakest operator to the strongest.
 class Parser {
   public:
-    Parser(Maker& maker, const NamedValues& names, const std::string& parameter, std::string_view text)
+    Parser(Maker& maker, NamedValues& names, const std::string& parameter, std::string_view text)
         : m_maker(maker), m_names(names), m_parameter(parameter), m_text(text) {}
 
     /// All of the text.
@@ -435,18 +440,25 @@ class Parser {
         if (!at_end()) fail("an operator or the end");
         return value;
     }
-    /// name=expression; ...
-    static void define(Maker& maker, NamedValues& names, const std::string& parameter,
-                       std::string_view text) {
+    /// name=expression; ... What is in `given` already stays.
+    static void define(Maker& maker, NamedValues& names, const std::string& parameter, std::string_view text,
+                       const std::set<std::string>& given) {
         Parser parser(maker, names, parameter, text);
         while (!parser.at_end()) {
             const std::string name(parser.name());
             parser.expect("=");
             // Only what stands before is known.
             const Value value = parser.number();
-            names.insert_or_assign(name, value);
+            if (!given.count(name)) names.insert_or_assign(name, NamedValue{value});
             if (!parser.at_end()) parser.expect(";");
         }
+    }
+
+    /// Of a definition by itself.
+    static void check_name(std::string_view name, std::string_view expression) {
+        if (name.empty() || !starts_name(name.front()) ||
+            !std::all_of(name.begin(), name.end(), continues_name) || is_taken(name))
+            throw Error(printable(name), printable(expression), "must be a name that is no function's");
     }
 
   private:
@@ -482,9 +494,12 @@ class Parser {
         if (m_at == m_text.size() || !starts_name(m_text[m_at])) fail("a name");
         while (m_at < m_text.size() && continues_name(m_text[m_at])) ++m_at;
         const std::string_view word = m_text.substr(first, m_at - first);
-        if (functions().count(word) || word == "if" || word == "and" || word == "or" || word == "not")
-            fail(first, "a name that is no function's");
+        if (is_taken(word)) fail(first, "a name that is no function's");
         return word;
+    }
+    /// By a function or an operator?
+    static bool is_taken(std::string_view word) {
+        return functions().count(word) || word == "if" || word == "and" || word == "or" || word == "not";
     }
 
     Value number() {
@@ -628,7 +643,8 @@ class Parser {
             return call(first, function->first, function->second);
         const auto name = m_names.find(word);
         if (name == m_names.end()) fail(first, "a name that is known");
-        return name->second;
+        name->second.used = true;
+        return name->second.value;
     }
     Value choice() {
         expect("(");
@@ -668,7 +684,7 @@ class Parser {
     };
 
     Maker& m_maker;
-    const NamedValues& m_names;
+    NamedValues& m_names;
     std::string m_parameter;
     std::string_view m_text;
     std::size_t m_at = 0;
@@ -680,20 +696,35 @@ NamedValues names_of(Maker& m, const FormulaSetting& setting) {
     const Value x = m.x(), y = m.y(), per_half = m.number(0.5 * std::min(width, height));
     const Value px = m.quotient(m.difference(x, m.number(0.5 * width)), per_half),
                 py = m.quotient(m.difference(m.number(0.5 * height), y), per_half);
-    return {{"x", x},
-            {"y", y},
-            {"s", m.quotient(x, m.number(width))},
-            {"t", m.quotient(y, m.number(height))},
-            {"px", px},
-            {"py", py},
-            {"r", m.root(m.sum(m.square(px), m.square(py)))},
-            {"a", m.angle(py, px)},
-            {"width", m.number(width)},
-            {"height", m.number(height)},
-            {"src_width", m.number(setting.source.width)},
-            {"src_height", m.number(setting.source.height)},
-            {"frame", m.number(setting.frame)},
-            {"pi", m.constant(std::numbers::pi_v<long double>)}};
+    return {{"x", {x}},
+            {"y", {y}},
+            {"s", {m.quotient(x, m.number(width))}},
+            {"t", {m.quotient(y, m.number(height))}},
+            {"px", {px}},
+            {"py", {py}},
+            {"r", {m.root(m.sum(m.square(px), m.square(py)))}},
+            {"a", {m.angle(py, px)}},
+            {"width", {m.number(width)}},
+            {"height", {m.number(height)}},
+            {"src_width", {m.number(setting.source.width)}},
+            {"src_height", {m.number(setting.source.height)}},
+            {"frame", {m.number(setting.frame)}},
+            {"pi", {m.constant(std::numbers::pi_v<long double>)}}};
+}
+
+/// Names by keys of their own. Returns them.
+std::set<std::string> define(Maker& maker, NamedValues& names, const std::vector<Assignment>& definitions) {
+    std::set<std::string> given;
+    for (const auto& [name, expression] : definitions) {
+        Parser::check_name(name, expression);
+        if (!given.count(name) && names.count(name))
+            throw Error(printable(name), printable(expression),
+                        "every formula has this name: must be another");
+        const Value value = Parser(maker, names, name, expression).expression();
+        names.insert_or_assign(name, NamedValue{value});
+        given.insert(name);
+    }
+    return given;
 }
 
 }  // namespace
@@ -702,13 +733,17 @@ PlaneFormula parse_formula(const FormulaText& text, const FormulaSetting& settin
     Graph graph;
     Maker maker(graph);
     NamedValues names = names_of(maker, setting);
-    Parser::define(maker, names, "let", text.let);
+    const std::set<std::string> given = define(maker, names, text.definitions);
+    Parser::define(maker, names, "let", text.let, given);
     const auto coordinate = [&](const char* name, const std::string& expression, int length) {
         const Value value = Parser(maker, names, name, expression).expression();
         return setting.in_fractions ? maker.product(value, maker.number(length)) : value;
     };
     const Value u = coordinate("u", text.u, setting.source.width),
                 v = coordinate("v", text.v, setting.source.height);
+    for (const auto& [name, expression] : text.definitions)
+        if (!names.at(name).used)
+            throw Error(printable(name), printable(expression), "is no key, and no formula uses the name");
     const std::optional<Result> domain = maker.needs(u, v);
     const Result positive = domain ? *domain : graph.number(1);
     return {graph.program({u.at, v.at}), graph.program({positive, positive}), !domain.has_value()};

@@ -25,16 +25,20 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "anamorph/geometry/size.h"
 #include "anamorph/number/formula_program.h"
+#include "anamorph/parameter.h"
 
 namespace anamorph {
 
-/// What users write. Each expression is named in errors by the member that it stands in.
+/// What users write. Each expression is named in errors by the member that it stands in, or by the name that it defines.
 struct FormulaText {
     std::string u = "x", v = "y";  ///< source pixels
-    std::string let;               ///< "name=expression;name=expression"
+    /// Names with their expressions, before `let`: what that defines them to be does not count.
+    std::vector<Assignment> definitions;
+    std::string let;  ///< "name=expression;name=expression"
 };
 
 /// What the names stand for.
@@ -51,7 +55,8 @@ struct PlaneFormula {
     bool is_everywhere;     ///< the domain is the whole plane
 };
 
-/// Throws Error with the column, counted from 1, and what was expected there.
+/// Throws Error with the column, counted from 1, and what was expected there; and of a definition that none of the other
+/// expressions uses.
 PlaneFormula parse_formula(const FormulaText& text, const FormulaSetting& setting);
 
 }  // namespace anamorph

@@ -15,7 +15,10 @@ ParameterTable make_map_table() {
              "where a pixel is taken from, across: a formula of x, y, s, t, px, py, r, a and others; x by "
              "default"),
         text("v", "the same, down; y by default"),
-        text("let", "definitions before both, as in k=0.3;c=cos(k)"),
+        definitions("let",
+                    "definitions before both, as in k=0.3;c=cos(k); any other key k=0.3 is one too, and "
+                    "stands before "
+                    "these"),
         choice("units", "pixels", {"pixels", "fractions"},
                "of u and v: pixels of the source, or parts of its width and height"),
         number("frame", "", "0", -1e9, 1e9, "the number that frame is in the formulas"),
@@ -38,6 +41,7 @@ std::unique_ptr<const Pictures> pictures_of_map(const ParameterValues& values, c
     if (values.given("u")) text.u = values.text("u");
     if (values.given("v")) text.v = values.text("v");
     if (values.given("let")) text.let = values.text("let");
+    text.definitions = values.definitions();
     const FormulaSetting setting{target, source, values.number("frame"), values.text("units") == "fractions"};
     const FlatRequest request = flat_request(values, source, target);
     return flat_pictures(request, [request, formula = parse_formula(text, setting)](const Size& pixels) {

@@ -120,6 +120,11 @@ Parameter toggle(const char* name, const char* value, const std::string& doc) {
 Parameter text(const char* name, const std::string& doc) {
     return row(name, ParameterType::text, doc);
 }
+Parameter definitions(const char* name, const std::string& doc) {
+    Parameter parameter = text(name, doc);
+    parameter.definitions = true;
+    return parameter;
+}
 Parameter image(const char* name, const std::string& doc) {
     return row(name, ParameterType::image, doc);
 }

@@ -31,6 +31,8 @@ Parameter whole(const char* name, const char* unit, std::string value, int least
 Parameter toggle(const char* name, const char* value, const std::string& doc);
 Parameter numbers(const char* name, double least, const std::string& doc);
 Parameter text(const char* name, const std::string& doc);
+/// A text for which other keys define names.
+Parameter definitions(const char* name, const std::string& doc);
 Parameter image(const char* name, const std::string& doc);
 Parameter file(const char* name, const std::string& doc);
 
