@@ -12,7 +12,8 @@ log_dir=build/log
 mkdir -p "$log_dir"
 jobs="$(nproc)"
 fuzz_seconds=5
-export CMAKE_CXX_COMPILER_LAUNCHER=ccache  # the core is built with its hosts, alone, and for VTK and ParaView
+# The core is built with its hosts, for VTK and for ParaView: in folders that ccache is to take for one.
+export CMAKE_CXX_COMPILER_LAUNCHER=ccache CCACHE_BASEDIR="$PWD" CCACHE_NOHASHDIR=1
 export ANAMORPH_WERROR=ON                  # in the demo as well, so that the tests need not build it all again
 
 # step NAME COMMAND...: quiet when it succeeds; prints its log and ends the run when it fails.
