@@ -518,13 +518,13 @@ DeformedPoints::DeformedPoints(std::span<const glm::dvec2> points, const DeformO
         return static_cast<std::size_t>(part_of(p.y, least.y, most.y, across) * across +
                                         part_of(p.x, least.x, most.x, across));
     };
-    constexpr double kFar = std::numeric_limits<double>::infinity();
+    constexpr double kEndless = std::numeric_limits<double>::infinity();
     std::vector<std::size_t> count(static_cast<std::size_t>(across) * static_cast<std::size_t>(across));
     for (const glm::dvec2& p : points) ++count[cell_of(p)];
     std::size_t end = 0;
     for (std::size_t c = 0; c < count.size(); ++c) {
         if (c % static_cast<std::size_t>(across) == 0) m_cell_rows.push_back(c);
-        m_cells.push_back({end, end, glm::dvec2(kFar), glm::dvec2(-kFar)});
+        m_cells.push_back({end, end, glm::dvec2(kEndless), glm::dvec2(-kEndless)});
         end += (count[c] + simd::kPointBlock - 1) / simd::kPointBlock * simd::kPointBlock;
     }
     m_cell_rows.push_back(count.size());

@@ -70,7 +70,7 @@ class MraselWords {
 
 FigureFrame mrasel_frame(std::string_view text, std::string_view name) {
     text_file::check_size(text, name);
-    constexpr double kFar = 1e9, kTenths = 10;
+    constexpr double kFar = 1e9, kPerUnit = 10;
     MraselWords words(text, name);
     FigureFrame frame;
     frame.number = 1;
@@ -87,8 +87,9 @@ FigureFrame mrasel_frame(std::string_view text, std::string_view name) {
     for (int i = 0; i < bodies; ++i) {
         Body body;
         body.shape.axes = words.vector("half an axis", 0, kFar) * kUnitsOfPixel;
-        body.shape.center = words.vector("a coordinate", -kFar, kFar) * (kUnitsOfPixel / kTenths);
-        body.shape.rotation = glm::mat3_cast(turn_of_angles(words.vector("an angle", -kFar, kFar) / kTenths));
+        body.shape.center = words.vector("a coordinate", -kFar, kFar) * (kUnitsOfPixel / kPerUnit);
+        body.shape.rotation =
+            glm::mat3_cast(turn_of_angles(words.vector("an angle", -kFar, kFar) / kPerUnit));
         body.texture = body.name = words.next("the name of a map");
         frame.bodies.push_back(std::move(body));
     }

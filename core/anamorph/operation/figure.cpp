@@ -20,7 +20,7 @@
 namespace anamorph {
 namespace {
 
-constexpr int kSide = 1000;
+constexpr int kDefaultSide = 1000;
 constexpr int kMostFrameNumber = 1'000'000;
 // A host that asks how many subimages there are looks at each.
 constexpr int kMostSubimages = 100'000;
@@ -353,7 +353,7 @@ void read_background(const ParameterValues& values, FigureLook& look) {
 
 FigureRequest read_request(const ParameterValues& values) {
     FigureRequest request;
-    request.size = rows::size_of(values, {kSide, kSide});
+    request.size = rows::size_of(values, {kDefaultSide, kDefaultSide});
     FigureLook& look = request.look;
     look.style = rows::chosen<FigureStyle>(values, "style");
     look.light = read_light(values);
