@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstring>
 #include <functional>
 #include <numbers>
 #include <random>
@@ -11,6 +12,7 @@
 #include "anamorph/approx/text_plan.h"
 #include "anamorph/error.h"
 #include "block_points.h"
+#include "each_instruction_set.h"
 
 namespace anamorph {
 namespace {
@@ -514,9 +516,14 @@ Findings examine(const TextPlan& plan, double tol, const Formula& u, const Formu
         for (const Block& block : plan.blocks(region))
             for (int j = block.box.y0; j < block.box.y1; ++j) {
                 const test::BlockRow row(plan, block, j);
+                const bool is_exact = block.kind == Block::Kind::exact;
+                std::vector<double> exact_x(static_cast<std::size_t>(block.box.width())), exact_y = exact_x;
+                std::vector<std::int32_t> piece(exact_x.size());
+                if (is_exact)
+                    plan.exact_rows(block, j - block.box.y0, j - block.box.y0 + 1,
+                                    {exact_x.data(), exact_y.data(), piece.data(), block.box.width()});
                 for (int i = block.box.x0; i < block.box.x1; ++i) {
                     ++found.pixels;
-                    const bool is_exact = block.kind == Block::Kind::exact;
                     found.exact += is_exact;
                     Real margin = 1;
                     const Real x = u.value(i + 0.5L, j + 0.5L, margin),
@@ -527,12 +534,10 @@ Findings examine(const TextPlan& plan, double tol, const Formula& u, const Formu
                         found.unknown += 1;
                         continue;
                     }
+                    const auto k = static_cast<std::size_t>(i - block.box.x0);
+                    const bool is_drawn = is_exact ? piece[k] >= 0 : test::has_points(block);
                     Point<double> p{};
-                    int piece = 0;
-                    const bool is_drawn =
-                        is_exact ? static_cast<const BlockMap&>(plan).exact(block, i + 0.5, j + 0.5, p, piece)
-                                 : test::has_points(block);
-                    if (!is_exact && is_drawn) p = row.at(i);
+                    if (is_drawn) p = is_exact ? Point<double>{exact_x[k], exact_y[k]} : row.at(i);
                     if (is_drawn && is_seen) {
                         const Real error = std::hypot(p.x - x, p.y - y);
                         // What long double itself is off.
@@ -611,6 +616,82 @@ Findings examine(const Formula& u, const Size& picture) {
     text.u = u.text;
     const Formula v{"y", [](Real, Real y, Real&) { return y; }};
     return examine(plan_of(text, picture), 0.01, u, v);
+}
+
+// Every step, over all that its operands may be.
+TEST(TextMap, RowsHoldTheBoundOfExactPixelsOnEveryInstructionSet) {
+    const Size picture{100, 3};
+    for (const char* u : {"sin(x)",
+                          "sin(1e3*x)",
+                          "cos(3e5*x)",
+                          "sin(1e17*x)",
+                          "tan(x)",
+                          "exp(x)",
+                          "exp(-20*x)",
+                          "exp(20*x)",
+                          "log(x)",
+                          "log(x*1e-300)",
+                          "log(x*1e-160*1e-160)",
+                          "log(x*1e300)",
+                          "log(50-x)",
+                          "asinh(x-50)",
+                          "asinh(x*1e200)",
+                          "asinh(x*1e-200)",
+                          "atan2(y-1.5,x-50.5)",
+                          "atan2((y-1.5)*1e200,(x-50)*1e200)",
+                          "atan2((y-1.5)*1e-200,(x-50)*1e-200)",
+                          "atan2(y-1.5,(x-50)*1e-300)",
+                          "atan2(-(y-y),x-50)",
+                          "sqrt(x-50)",
+                          "1/(x-50.5)",
+                          "floor(x/7)",
+                          "floor(x*1e17)",
+                          "floor(7/(x-50.5))",
+                          "if(x<50,y,2*x)",
+                          "(x-50)^3",
+                          "x^2.5",
+                          "mod(x,7)",
+                          "cbrt(x-50)",
+                          "cosh(x)",
+                          "tanh(x-50)",
+                          "hypot(x,y)",
+                          "x*1e308*10",
+                          "exp(1/(x-50.5))"}) {
+        SCOPED_TRACE(u);
+        FormulaText text;
+        text.u = u;
+        const TextMap map(parse_formula(text, {picture, kSource}), picture, picture, kSource);
+        std::vector<double> first;
+        test::on_every_instruction_set([&] {
+            for (int j = 0; j < picture.height; ++j) {
+                std::vector<double> x(100), y(100), alone(1), alone_y(1);
+                std::vector<std::int32_t> piece(100), piece_alone(1);
+                map.exact_row(0.5, j + 0.5, 100, x.data(), y.data(), piece.data());
+                for (int i = 0; i < 100; ++i) {
+                    const auto k = static_cast<std::size_t>(i);
+                    // The same, whatever stands beside it.
+                    map.exact_row(i + 0.5, j + 0.5, 1, alone.data(), alone_y.data(), piece_alone.data());
+                    EXPECT_EQ(std::memcmp(&alone[0], &x[k], sizeof(double)), 0) << i;
+                    EXPECT_EQ(piece_alone[0], piece[k]) << i;
+                    const double bound =
+                        map.exact_error<double>(Interval(i + 0.5), Interval(j + 0.5), 0) +
+                        map.exact_error<long double>(Interval(i + 0.5), Interval(j + 0.5), 0);
+                    Point<long double> truth{};
+                    int at = 0;
+                    const bool is_seen = map.exact<long double>(i + 0.5L, j + 0.5L, 0, truth, at);
+                    if (!std::isfinite(bound)) continue;
+                    ASSERT_EQ(piece[k] >= 0, is_seen) << i;
+                    if (is_seen) {
+                        EXPECT_LE(std::fabs(x[k] - truth.x), bound) << i;
+                    }
+                }
+                if (j == 0 && first.empty()) first = x;
+                if (j == 0) {
+                    EXPECT_EQ(std::memcmp(first.data(), x.data(), 100 * sizeof(double)), 0);
+                }
+            }
+        });
+    }
 }
 
 // In a picture that is large enough for blocks none of them crosses a jump or a crease.

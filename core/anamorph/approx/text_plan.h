@@ -9,6 +9,12 @@ namespace anamorph {
 
 extern template class FormulaPlan<TextMap>;
 
-using TextPlan = FormulaPlan<TextMap>;
+class TextPlan final : public FormulaPlan<TextMap> {
+  public:
+    using FormulaPlan::FormulaPlan;
+
+    /// Exact pixels by vectors.
+    void exact_rows(const Block& block, int begin, int end, const DoubleRows& to) const noexcept override;
+};
 
 }  // namespace anamorph

@@ -2,6 +2,8 @@
 // A flat map whose formula is text.
 #pragma once
 
+#include <cstdint>
+
 #include "anamorph/map/formula_map.h"
 #include "anamorph/map/formula_text.h"
 
@@ -26,6 +28,9 @@ class TextMap : public PlaneMap<TextMap> {
     T inside(const T& x, const T& y) const {
         return m_formula.is_everywhere ? T(1) : read(m_formula.domain, x, y).x;
     }
+
+    /// The points (x + i, y): as exact() has them, within the same bound. `piece` is 0, or -1 where there is no source point.
+    void exact_row(double x, double y, int count, double* to_x, double* to_y, std::int32_t* piece) const;
 
   private:
     template <class T>

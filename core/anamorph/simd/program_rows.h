@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: Apache-2.0
+// Formulas that are programs, read for rows of points with vectors of doubles.
+#pragma once
+
+#include "anamorph/number/formula_program.h"
+
+namespace anamorph::simd {
+
+/// Points that are read together.
+inline constexpr int kProgramRow = 64;
+
+/// What a program gives at points.
+struct ProgramRow {
+    alignas(64) double x[kProgramRow], y[kProgramRow];
+};
+
+/// At `count` <= kProgramRow points, whose coordinates have room for kProgramRow. What is computed and in what order is what
+/// read_program<double> does, with functions that err less than Rounded<double> allows for: its bound holds. The same bits on
+/// all instruction sets, and for a point whatever stands beside it.
+void read_program_row(const FormulaProgram& program, const ProgramRow& at, int count, ProgramRow& to);
+
+}  // namespace anamorph::simd
