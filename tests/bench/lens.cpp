@@ -12,9 +12,8 @@
 
 #include "anamorph/approx/lens_plan.h"
 #include "anamorph/approx/panorama_plan.h"
-#include "anamorph/render/picture.h"
 #include "bench.h"
-#include "pixels.h"
+#include "drawn_map.h"
 
 namespace anamorph::bench {
 namespace {
@@ -32,19 +31,6 @@ constexpr NamedLens kLenses[] = {{"3de4", "3de4:k1=0.1,k2=0.03"},
                                  {"brown_p", "brown:k1=-0.1,k2=0.02,p1=0.002,p2=-0.003"},
                                  {"kb4", "kb4:k1=0.05,k2=-0.01,k3=0.002,k4=-0.0003"}};
 
-PlanOptions options_of(double tol) {
-    PlanOptions options;
-    options.tol = tol;
-    return options;
-}
-
-/// One map that is drawn, made anew for every drawing: its blocks, and the chart of its source.
-struct Case {
-    std::string name;
-    Chart source;
-    std::function<std::shared_ptr<const BlockMap>(double tol)> plan;
-};
-
 /// The charts of a lens's pictures: rectilinear views, or fisheyes.
 struct Charts {
     Projection projection;
@@ -56,20 +42,21 @@ struct Charts {
     }
 };
 
-Case panorama(const std::string& name, const Chart& source, const Chart& target) {
+DrawnMap panorama(const std::string& name, const Chart& source, const Chart& target) {
     const Panorama map(source, target, kTurned);
-    return {name, source, [map](double tol) { return std::make_shared<PanoramaPlan>(map, options_of(tol)); }};
+    return {name, source,
+            [map](const PlanOptions& options) { return std::make_shared<PanoramaPlan>(map, options); }};
 }
 
-Case lens_picture(const std::string& name, const Chart& observed, LensMode mode) {
+DrawnMap lens_picture(const std::string& name, const Chart& observed, LensMode mode) {
     const Size size{observed.width(), observed.height()};
     const LensMap map(observed, mode, size, size, size);
     return {name, Chart(Projection::rectilinear, size.width, size.height),
-            [map](double tol) { return std::make_shared<LensPlan>(map, options_of(tol)); }};
+            [map](const PlanOptions& options) { return std::make_shared<LensPlan>(map, options); }};
 }
 
 /// A target of this chart sees a whole sphere; a source of this chart is seen as a flat view.
-std::vector<Case> cases_of(const Charts& charts, const NamedLens& lens) {
+std::vector<DrawnMap> cases_of(const Charts& charts, const NamedLens& lens) {
     const int wide = 4 * charts.size;
     const Chart sphere(Projection::equirectangular, wide, wide / 2, 360);
     const Chart flat(Projection::rectilinear, charts.size, charts.size, 60);
@@ -82,81 +69,30 @@ std::vector<Case> cases_of(const Charts& charts, const NamedLens& lens) {
             lens_picture("distort", observed, LensMode::distort)};
 }
 
-/// Draws cases of one lens, or only plans them.
-class Drawing {
-  public:
-    Drawing(const Settings& settings)
-        : m_settings(settings),
-          m_pool(settings.threads),
-          m_texels(bytes_of(4 * settings.size, 2 * settings.size)),
-          m_picture(bytes_of(settings.size, settings.size)) {
-        float* values = m_texels.as<float>();
-        const std::size_t count = bytes_of(4 * settings.size, 2 * settings.size) / sizeof(float);
-        for (std::size_t i = 0; i < count; ++i)
-            values[i] = static_cast<float>(i * 2654435761u % 65536) / 65536;
-    }
-
-    void draw(const Case& c, double tol) {
-        Picture picture;
-        picture.maps = {{c.plan(tol), {{Border(c.source, Wrap::automatic)}}}};
-        picture.filter = Filter::bilinear;
-        const MemorySource source(packed_view<const std::byte>(m_texels.bytes(), PixelType::float32,
-                                                               c.source.width(), c.source.height(), 3));
-        const int side = m_settings.size;
-        picture.draw({&source}, {0, 0, side, side},
-                     packed_view(m_picture.bytes(), PixelType::float32, side, side, 3),
-                     m_pool.parallel_for());
-    }
-    void plan(const Case& c, double tol) { static_cast<void>(c.plan(tol)->reached(m_pool.parallel_for())); }
-
-  private:
-    static std::size_t bytes_of(int width, int height) {
-        return sizeof(float) * 3 * static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
-    }
-
-    const Settings& m_settings;
-    Pool m_pool;
-    Buffer m_texels, m_picture;
-};
-
 /// The panorama that a case is to be compared with: of .lens, the one from the sphere.
 std::string plain_of(const std::string& name) {
     return name == "source" ? "plain source" : "plain target";
 }
 
-void measure(const Settings& settings, Report& report, const NamedLens& lens, const std::vector<Case>& cases,
-             Drawing& drawing) {
-    std::vector<Timed> timed;
-    std::vector<Row> rows;
+void measure(const Settings& settings, Report& report, const NamedLens& lens,
+             const std::vector<DrawnMap>& cases, MapDrawing& drawing) {
+    std::vector<TimedRow> timed;
     for (const double tol : kTols)
-        for (const Case& c : cases)
+        for (const DrawnMap& map : cases)
             for (const char* scheme : {"automatic", "plan"}) {
                 if (!settings.wants_scheme(scheme)) continue;
-                const bool draws = scheme[0] == 'a';
-                timed.push_back(
-                    {[&drawing, &c, tol, draws] { draws ? drawing.draw(c, tol) : drawing.plan(c, tol); },
-                     settings.threads});
-                const Reached reached = c.plan(tol)->reached(serial_for);
-                Row row;
+                const PlanOptions options = options_of(tol);
+                Row row = row_of(settings, map, options);
                 row.op = "lens";
-                row.case_name = std::string(lens.name) + " " + c.name;
+                row.case_name = std::string(lens.name) + " " + map.name;
                 row.scheme = scheme;
-                row.tol_px = tol;
-                row.size = settings.size;
-                row.threads = settings.threads;
-                row.ratio_to_exact = kNone;
-                row.bound_px = reached.max_error;
-                row.exact_fraction = reached.exact_fraction;
-                rows.push_back(row);
+                const bool draws = row.scheme == "automatic";
+                timed.push_back({row, [&drawing, &map, options, draws] {
+                                     draws ? drawing.draw(map, options) : drawing.plan(map, options);
+                                 }});
             }
-    const std::vector<Times> times = time_interleaved(timed, settings.rounds);
-    const double pixels = double(settings.size) * settings.size;
-    for (std::size_t k = 0; k < rows.size(); ++k) {
-        rows[k].ns_per_px = times[k].median / pixels;
-        rows[k].best_ns_per_px = times[k].best / pixels;
-        report.add(rows[k]);
-    }
-    for (const Row& row : rows) {
+    time_all(settings, report, timed);
+    for (const auto& [row, draw] : timed) {
         const std::string name = row.case_name.substr(row.case_name.find(' ') + 1);
         const Row* plain = report.find(std::string(lens.name) + " " + plain_of(name), row.scheme, row.tol_px);
         if (!plain || name.starts_with("plain")) continue;
@@ -169,7 +105,7 @@ void measure(const Settings& settings, Report& report, const NamedLens& lens, co
 }
 
 void run(const Settings& settings, Report& report) {
-    Drawing drawing(settings);
+    MapDrawing drawing(settings);
     for (const NamedLens& lens : kLenses) {
         if (!settings.wants_case(lens.name)) continue;
         const bool fisheye = std::string(lens.name) == "kb4";

@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: Apache-2.0
+// Maps whose blocks are made anew for every drawing, and what draws them: square pictures of three channels of floats, bilinear.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "anamorph/approx/block.h"
+#include "anamorph/approx/formula_plan.h"
+#include "bench.h"
+#include "pixels.h"
+
+namespace anamorph::bench {
+
+/// One map that is drawn: its blocks, and the chart of its source.
+struct DrawnMap {
+    std::string name;
+    Chart source;
+    std::function<std::shared_ptr<const BlockMap>(const PlanOptions&)> plan;
+};
+
+/// The defaults, with this tolerance.
+PlanOptions options_of(double tol);
+
+/// Draws maps of one size, or only plans them.
+class MapDrawing {
+  public:
+    explicit MapDrawing(const Settings& settings);
+
+    void draw(const DrawnMap& map, const PlanOptions& options);
+    /// Draws by blocks that are there.
+    void draw(const DrawnMap& map, const std::shared_ptr<const BlockMap>& blocks);
+    void plan(const DrawnMap& map, const PlanOptions& options);
+
+  private:
+    static std::size_t bytes_of(int width, int height);
+
+    const Settings& m_settings;
+    Pool m_pool;
+    Buffer m_texels, m_picture;
+};
+
+/// What is to be timed, and the row of the table that says so; the times are not in it yet.
+struct TimedRow {
+    Row row;
+    std::function<void()> draw;
+};
+/// Bound and exact fraction of a map's blocks, in a row of the table.
+Row row_of(const Settings& settings, const DrawnMap& map, const PlanOptions& options);
+/// Times all of them in the same rounds, and adds their rows.
+void time_all(const Settings& settings, Report& report, std::vector<TimedRow>& timed);
+
+}  // namespace anamorph::bench
