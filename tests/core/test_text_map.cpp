@@ -163,7 +163,8 @@ TEST(TextMap, KeysOfTheirOwnDefineNames) {
     };
     EXPECT_EQ(error_of({{"c", "k"}, {"k", "3"}}), "c=k: column 1: expected a name that is known");
     EXPECT_EQ(error_of({{"c", ""}}), "c=: column 1: expected a number, a name or (");
-    EXPECT_EQ(error_of({{"tool", "0.1"}}, "c=1"), "tool=0.1: is no key, and no formula uses the name");
+    EXPECT_EQ(error_of({{"tool", "0.1"}}, "c=1"),
+              "tool=0.1: there is no such parameter, and no formula uses the name");
     EXPECT_EQ(error_of({{"width", "3"}}, "c=1"), "width=3: every formula has this name: must be another");
     EXPECT_EQ(error_of({{"sin", "3"}}, "c=1"), "sin=3: must be a name that is no function's");
     EXPECT_EQ(error_of({{"2c", "3"}}, "c=1"), "2c=3: must be a name that is no function's");

@@ -743,7 +743,8 @@ PlaneFormula parse_formula(const FormulaText& text, const FormulaSetting& settin
                 v = coordinate("v", text.v, setting.source.height);
     for (const auto& [name, expression] : text.definitions)
         if (!names.at(name).used)
-            throw Error(printable(name), printable(expression), "is no key, and no formula uses the name");
+            throw Error(printable(name), printable(expression),
+                        "there is no such parameter, and no formula uses the name");
     const std::optional<Result> domain = maker.needs(u, v);
     const Result positive = domain ? *domain : graph.number(1);
     return {graph.program({u.at, v.at}), graph.program({positive, positive}), !domain.has_value()};
