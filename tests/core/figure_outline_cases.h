@@ -15,7 +15,7 @@
 
 namespace anamorph::test {
 
-struct Scene {
+struct OutlineScene {
     std::vector<Ellipsoid> bodies;
     View view;
 };
@@ -68,8 +68,8 @@ class SceneMaker {
         return v;
     }
 
-    Scene scene(Family family, bool perspective) {
-        Scene s;
+    OutlineScene scene(Family family, bool perspective) {
+        OutlineScene s;
         s.view = view(perspective);
         switch (family) {
             case Family::small:
@@ -206,7 +206,7 @@ inline bool hides(const Ellipsoid& e, const View& view, const Vec& p) {
     return std::any_of(roots, roots + 2, [&](Real s) { return s > first && s < 0; });
 }
 
-inline bool is_hidden(const Scene& scene, std::size_t body, const Vec& p) {
+inline bool is_hidden(const OutlineScene& scene, std::size_t body, const Vec& p) {
     for (std::size_t j = 0; j < scene.bodies.size(); ++j)
         if (j != body && hides(scene.bodies[j], scene.view, p)) return true;
     return false;
@@ -230,14 +230,14 @@ inline double limb_distance(const Ellipsoid& e, const View& view, const Vec& p) 
     return static_cast<double>(glm::length(nearest - p)) / size_of(e);
 }
 
-struct Findings {
+struct OutlineFindings {
     std::int64_t samples = 0, hidden = 0, wrong = 0;
     std::int64_t near = 0;     ///< within 1e-6 of a crossing along the limb, and differing
     std::int64_t grazing = 0;  ///< differing, but a move by 1e-9 of the body's size changes the truth
     double worst_limb = 0;
     std::int64_t gaps = 0;  ///< arcs that do not make up the circle
 
-    void add(const Findings& f) {
+    void add(const OutlineFindings& f) {
         samples += f.samples;
         hidden += f.hidden;
         wrong += f.wrong;
@@ -256,8 +256,8 @@ inline bool in_arcs(const std::vector<Arc>& arcs, double t) {
 }
 
 /// May the truth about the sample be either?
-inline bool is_excused(const Scene& scene, std::size_t i, const Outline& outline, double t, bool truth,
-                       Findings& found) {
+inline bool is_excused(const OutlineScene& scene, std::size_t i, const Outline& outline, double t, bool truth,
+                       OutlineFindings& found) {
     for (const double step : {-1e-6, 1e-6, -5e-7, 5e-7})
         if (is_hidden(scene, i, Vec(outline.limb(t + step))) != truth) return ++found.near, true;
     const Real move = 1e-9L * size_of(scene.bodies[i]);
@@ -269,9 +269,9 @@ inline bool is_excused(const Scene& scene, std::size_t i, const Outline& outline
 }
 
 /// Compares the arcs of outlines with the truth, at even angles and on both sides of the arcs' ends.
-inline Findings examine(const Scene& scene, const Outlines& outlines, int samples) {
+inline OutlineFindings examine(const OutlineScene& scene, const Outlines& outlines, int samples) {
     constexpr double turn = 2 * std::numbers::pi;
-    Findings found;
+    OutlineFindings found;
     for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
         const Outline& outline = outlines.bodies[i];
         double covered = 0;

@@ -10,12 +10,13 @@ namespace {
 TEST(FigureOutline, ArcsAgreeWithDepthTests) {
     for (const test::Family family : test::kFamilies)
         for (const bool perspective : {false, true}) {
-            test::Findings all;
+            test::OutlineFindings all;
             for (std::uint64_t seed = 1; seed <= 40; ++seed) {
                 SCOPED_TRACE(::testing::Message() << test::name_of(family) << ", perspective " << perspective
                                                   << ", seed " << seed);
-                const test::Scene scene = test::SceneMaker(seed).scene(family, perspective);
-                const test::Findings found = test::examine(scene, outlines(scene.bodies, scene.view), 32);
+                const test::OutlineScene scene = test::SceneMaker(seed).scene(family, perspective);
+                const test::OutlineFindings found =
+                    test::examine(scene, outlines(scene.bodies, scene.view), 32);
                 EXPECT_EQ(found.wrong, 0);
                 EXPECT_EQ(found.gaps, 0);
                 EXPECT_LE(found.worst_limb, 1e-9);

@@ -102,7 +102,7 @@ TEST(FigureOutlineCrossing, HoldsItsTolerance) {
         for (std::uint64_t seed = 1; seed <= 12; ++seed) {
             SCOPED_TRACE(::testing::Message() << test::name_of(family) << ", seed " << seed);
             test::SceneMaker random(seed);
-            const test::Scene scene = random.scene(family, seed % 2 == 0);
+            const test::OutlineScene scene = random.scene(family, seed % 2 == 0);
             const Outlines found = outlines(scene.bodies, scene.view, with_crossings(kTol));
             double worst_surface = 0, worst_off = 0;
             int wrong = 0;

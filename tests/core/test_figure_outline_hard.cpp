@@ -29,8 +29,8 @@ std::vector<double> hidden_parts(const std::vector<Ellipsoid>& bodies, const Vie
 }
 
 void expect_truth(const std::vector<Ellipsoid>& bodies, const View& view) {
-    const test::Scene scene{bodies, view};
-    const test::Findings found = test::examine(scene, outlines(bodies, view), 90);
+    const test::OutlineScene scene{bodies, view};
+    const test::OutlineFindings found = test::examine(scene, outlines(bodies, view), 90);
     EXPECT_GT(found.samples, 0);
     EXPECT_EQ(found.wrong, 0);
     EXPECT_EQ(found.gaps, 0);
@@ -99,7 +99,7 @@ TEST(FigureOutlineHard, AxesOfZeroAndBelow) {
     for (std::uint64_t seed = 1; seed <= 40; ++seed) {
         SCOPED_TRACE(::testing::Message() << "seed " << seed);
         test::SceneMaker random(seed);
-        test::Scene scene = random.scene(test::Family::large, seed % 2 == 0);
+        test::OutlineScene scene = random.scene(test::Family::large, seed % 2 == 0);
         for (std::size_t k = 0; k < scene.bodies.size(); k += 2) scene.bodies[k].axes[random.whole(0, 2)] = 0;
         expect_truth(scene.bodies, scene.view);
     }
@@ -119,7 +119,7 @@ TEST(FigureOutlineHard, Needles) {
     for (std::uint64_t seed = 1; seed <= 40; ++seed) {
         SCOPED_TRACE(::testing::Message() << "seed " << seed);
         test::SceneMaker random(seed);
-        test::Scene scene = random.scene(test::Family::large, seed % 2 == 0);
+        test::OutlineScene scene = random.scene(test::Family::large, seed % 2 == 0);
         for (Ellipsoid& e : scene.bodies)
             if (random.whole(0, 1))
                 e.axes *= random.whole(0, 1) ? glm::dvec3(1, 1, 1e-6) : glm::dvec3(1, 1e-6, 1e-6);
@@ -149,7 +149,7 @@ TEST(FigureOutlineHard, BodiesAcrossTheEyePlaneAndAroundTheEye) {
                     for (const double part : {0.0, 0.3, 1.0})
                         EXPECT_GE(outline.viewed(arc.begin + part * arc.length()).z, view.near * (1 - 1e-9));
         }
-        const test::Findings found = test::examine({bodies, view}, outlines(bodies, view), 60);
+        const test::OutlineFindings found = test::examine({bodies, view}, outlines(bodies, view), 60);
         EXPECT_EQ(found.wrong, 0);
     }
     EXPECT_GT(cut, 30);
@@ -163,7 +163,7 @@ TEST(FigureOutlineHard, NoArcsWithoutLength) {
     for (std::uint64_t seed = 1; seed <= 400; ++seed) {
         SCOPED_TRACE(::testing::Message() << "seed " << seed);
         test::SceneMaker random(seed);
-        const test::Scene scene =
+        const test::OutlineScene scene =
             random.scene(seed % 2 ? test::Family::large : test::Family::small, seed % 4 < 2);
         for (const Outline& outline : outlines(scene.bodies, scene.view).bodies)
             for (const auto* list : {&outline.visible, &outline.hidden})
@@ -215,7 +215,7 @@ TEST(FigureOutlineHard, TenThousandBodies) {
     const View view = random.view(false);
     const Outlines found = outlines(bodies, view);
     ASSERT_EQ(found.bodies.size(), bodies.size());
-    const test::Scene scene{bodies, view};
+    const test::OutlineScene scene{bodies, view};
     int wrong = 0, hidden = 0;
     for (std::size_t i = 0; i < bodies.size(); i += 400)
         for (int k = 0; k < 8; ++k) {
@@ -358,7 +358,7 @@ TEST(FigureOutlineHard, LinesAreHiddenAsDepthTestsSay) {
     for (std::uint64_t seed = 1; seed <= 60; ++seed) {
         SCOPED_TRACE(::testing::Message() << "seed " << seed);
         test::SceneMaker random(seed);
-        test::Scene scene =
+        test::OutlineScene scene =
             random.scene(seed % 3 ? test::Family::large : test::Family::needle, seed % 2 == 0);
         std::vector<SeenLine> lines(10);
         for (SeenLine& line : lines) {

@@ -10,11 +10,11 @@ import pathlib
 import re
 import sys
 
-FOLDERS = ("core", "oiio_ops", "plugins", "vtk_filters")
+FOLDERS = ("core", "oiio_ops", "plugins", "vtk_filters", "tests/core", "tests/oiio", "tests/vtk", "tests/bench")
 NAMESPACE = re.compile(r"(?:inline )?namespace(?: ([\w:]+))? \{")
 END_OF_NAMESPACE = re.compile(r"\}.*// namespace")
-# At the beginning of a line, and not in a class: `class Name::Impl` is its class's.
-CLASS = re.compile(r"(?:template <.*> )?(?:class|struct|union|enum class|enum) (?:[A-Z_]+_EXPORT )?(\w+)\b(?!::)[^;]*\{")
+# At the beginning of a line, and not in a class: `class Name::Impl` is its class's, `struct Name<int>` a template's.
+CLASS = re.compile(r"(?:template <.*> )?(?:class|struct|union|enum class|enum) (?:[A-Z_]+_EXPORT )?(\w+)\b(?![:<])[^;]*\{")
 
 
 def classes(text):
