@@ -123,9 +123,9 @@ void draw_all(const Frames& frames, const View& view, const OutlineOptions& opti
 /// Samples of some frames against the truth, unless they hold so many bodies that it takes too long.
 void add_errors(const Contender& c, Row& row, Report& report) {
     if (!c.frames || !c.options.hide || c.frames->front().size() > 1000) return;
-    test::Findings all;
+    test::OutlineFindings all;
     for (std::size_t k = 0; k < c.frames->size(); k += 64) {
-        test::Scene scene{(*c.frames)[k], c.view};
+        test::OutlineScene scene{(*c.frames)[k], c.view};
         const Outlines found = outlines(scene.bodies, c.view, c.options);
         all.add(test::examine(scene, found, 24));
     }
@@ -210,11 +210,12 @@ void report_scenes(const Settings& settings) {
     for (const test::Family family : test::kFamilies)
         for (const bool perspective : {false, true}) {
             std::mutex mutex;
-            test::Findings all;
+            test::OutlineFindings all;
             pool.parallel_for()(scenes, [&](std::int64_t k) {
-                const test::Scene scene =
+                const test::OutlineScene scene =
                     test::SceneMaker(static_cast<std::uint64_t>(k)).scene(family, perspective);
-                const test::Findings found = test::examine(scene, outlines(scene.bodies, scene.view), 48);
+                const test::OutlineFindings found =
+                    test::examine(scene, outlines(scene.bodies, scene.view), 48);
                 const std::lock_guard lock(mutex);
                 all.add(found);
             });
