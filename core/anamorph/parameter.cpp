@@ -125,16 +125,6 @@ bool takes_definitions(const ParameterTable& table) {
     return std::any_of(table.begin(), table.end(), [](const Parameter& p) { return p.definitions; });
 }
 
-/// Letters, digits and underscores, a digit not first.
-bool is_name(std::string_view key) {
-    const auto is_letter = [](char c) {
-        return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_';
-    };
-    return !key.empty() && is_letter(key.front()) && std::all_of(key.begin(), key.end(), [&](char c) {
-        return is_letter(c) || (c >= '0' && c <= '9');
-    });
-}
-
 std::vector<std::string> names(const ParameterTable& table) {
     std::vector<std::string> out;
     for (const Parameter& parameter : table) out.push_back(parameter.name);
@@ -310,7 +300,7 @@ void ParameterValues::assign(const std::vector<Assignment>& place) {
     std::set<std::string> seen;
     for (const Assignment& a : place) {
         const Parameter* parameter = find(*m_table, a.key);
-        const bool defines = !parameter && takes_definitions(*m_table) && is_name(a.key);
+        const bool defines = !parameter && takes_definitions(*m_table) && text_file::is_name(a.key);
         if (!parameter && !defines)
             throw Error(printable(a.key), printable(a.value),
                         "there is no such parameter: must be one of " + joined(names(*m_table)));

@@ -9,6 +9,17 @@
 
 namespace anamorph::text_file {
 
+bool starts_name(char c) {
+    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_';
+}
+bool continues_name(char c) {
+    return starts_name(c) || (c >= '0' && c <= '9');
+}
+bool is_name(std::string_view text) {
+    return !text.empty() && starts_name(text.front()) &&
+           std::all_of(text.begin(), text.end(), continues_name);
+}
+
 std::string excerpt(std::string_view text) {
     return printable(text);
 }

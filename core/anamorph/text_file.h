@@ -11,6 +11,11 @@
 
 namespace anamorph::text_file {
 
+/// A name is letters of ASCII, digits and underscores, a digit not first.
+bool starts_name(char c);
+bool continues_name(char c);
+bool is_name(std::string_view text);
+
 /// Text from outside, fit for a message: no line breaks, not endless.
 std::string excerpt(std::string_view text);
 

@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <functional>
@@ -668,6 +669,17 @@ TEST(TextMap, RowsHoldTheBoundOfExactPixelsOnEveryInstructionSet) {
                 std::vector<double> x(100), y(100), alone(1), alone_y(1);
                 std::vector<std::int32_t> piece(100), piece_alone(1);
                 map.exact_row(0.5, j + 0.5, 100, x.data(), y.data(), piece.data());
+                // Rows of any length.
+                for (const int count : {9, 31, 33, 64}) {
+                    std::vector<double> part(100), part_y(100);
+                    std::vector<std::int32_t> part_piece(100);
+                    map.exact_row(0.5, j + 0.5, count, part.data(), part_y.data(), part_piece.data());
+                    const auto length = static_cast<std::size_t>(count);
+                    EXPECT_EQ(std::memcmp(part.data(), x.data(), length * sizeof(double)), 0) << count;
+                    EXPECT_EQ(std::memcmp(part_y.data(), y.data(), length * sizeof(double)), 0) << count;
+                    EXPECT_TRUE(std::equal(part_piece.begin(), part_piece.begin() + count, piece.begin()))
+                        << count;
+                }
                 for (int i = 0; i < 100; ++i) {
                     const auto k = static_cast<std::size_t>(i);
                     // The same, whatever stands beside it.

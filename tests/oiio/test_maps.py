@@ -208,7 +208,6 @@ class Maps(unittest.TestCase):
     def compare(self, function, size, settings):
         wanted = function(Places(*size), **settings)
         u, v = source_points(function.__name__, size, settings)
-        # Beyond this the picture says that the source is far.
         there = np.isfinite(wanted[0]) & np.isfinite(wanted[1])
         differing = np.isnan(u) == there
         # This file's own rounding decides at the rim of what is seen.

@@ -13,6 +13,7 @@
 
 #include "anamorph/error.h"
 #include "anamorph/parameter.h"
+#include "anamorph/text_file.h"
 
 namespace anamorph {
 namespace {
@@ -328,12 +329,7 @@ class Maker {
 
 // --- the text ---
 
-bool starts_name(char c) {
-    return std::isalpha(static_cast<unsigned char>(c)) || c == '_';
-}
-bool continues_name(char c) {
-    return starts_name(c) || std::isdigit(static_cast<unsigned char>(c));
-}
+using text_file::continues_name, text_file::starts_name;
 
 struct NamedValue {
     Value value;
@@ -456,8 +452,7 @@ class Parser {
 
     /// Of a definition by itself.
     static void check_name(std::string_view name, std::string_view expression) {
-        if (name.empty() || !starts_name(name.front()) ||
-            !std::all_of(name.begin(), name.end(), continues_name) || is_taken(name))
+        if (!text_file::is_name(name) || is_taken(name))
             throw Error(printable(name), printable(expression), "must be a name that is no function's");
     }
 

@@ -15,10 +15,10 @@ ParameterTable make_map_table() {
              "where a pixel is taken from, across: a formula of x, y, s, t, px, py, r, a and others; x by "
              "default"),
         text("v", "the same, down; y by default"),
-        definitions("let",
-                    "definitions before both, as in k=0.3;c=cos(k); any other key k=0.3 is one too, and "
-                    "stands before "
-                    "these"),
+        definitions(
+            "let",
+            "definitions before both, as in k=0.3;c=cos(k); any other key k=0.3 is one too, and stands "
+            "before these"),
         choice("units", "pixels", {"pixels", "fractions"},
                "of u and v: pixels of the source, or parts of its width and height"),
         number("frame", "", "0", -1e9, 1e9, "the number that frame is in the formulas"),

@@ -48,120 +48,119 @@ HWY_INLINE L OrElse(const Mask& where, const L& value, const L& a, const L& b, c
     return L::load(result);
 }
 
-/// One step for all points: registers are rows.
-class Reader {
-  public:
-    Reader(const FormulaProgram& program, int count)
-        : m_program(program), m_vectors((count + kLanes - 1) / kLanes) {}
+/// N points as a number that read_program reads. Its functions are not for inlining: the program's reader is compiled for no
+/// instruction set.
+template <int N>
+struct Row {
+    alignas(64) double v[N];
 
-    void read(const ProgramRow& at, ProgramRow& to) {
-        each(0, [&](int i) { return L::load(at.x + i); });
-        each(1, [&](int i) { return L::load(at.y + i); });
-        for (const ProgramStep& step : m_program.steps) read(step);
-        const auto& [x, y] = m_program.outputs;
-        for (int k = 0; k < m_vectors; ++k) {
-            of(x, k * kLanes).store(to.x + k * kLanes);
-            of(y, k * kLanes).store(to.y + k * kLanes);
-        }
+    Row() = default;
+    HWY_NOINLINE Row(double k) {  // NOLINT: a number is many
+        set([k](int) { return L(k); });
     }
-
-  private:
-    HWY_INLINE L of(int r, int i) const { return L::load(m_registers[r] + i); }
+    HWY_NOINLINE explicit Row(const double* from) {
+        set([from](int i) { return L::load(from + i); });
+    }
     template <class Value>
-    HWY_INLINE void each(int r, const Value& value) {
-        for (int k = 0; k < m_vectors; ++k) value(k * kLanes).store(m_registers[r] + k * kLanes);
+    HWY_INLINE void set(const Value& value) {
+        for (int i = 0; i < N; i += kLanes) value(i).store(v + i);
     }
-    double number(int i) const { return m_program.numbers[static_cast<std::size_t>(i)]; }
-    double constant(int i) const {
-        return m_program.constants[static_cast<std::size_t>(i)].template as<double>();
+    template <class Value>
+    static HWY_INLINE Row of(const Value& value) {
+        Row row;
+        row.set(value);
+        return row;
     }
+    HWY_INLINE L at(int i) const { return L::load(v + i); }
 
-    void read(const ProgramStep& step) {
-        const int to = step.result;
-        const auto a = [&](int i) { return of(step.a, i); };
-        const auto b = [&](int i) { return of(step.b, i); };
-        switch (step.kind) {
-            case StepKind::number:
-                return each(to, [k = L(number(step.a))](int) { return k; });
-            case StepKind::constant:
-                return each(to, [k = L(constant(step.a))](int) { return k; });
-            case StepKind::sum:
-                return each(to, [&](int i) { return a(i) + b(i); });
-            case StepKind::difference:
-                return each(to, [&](int i) { return a(i) - b(i); });
-            case StepKind::product:
-                return each(to, [&](int i) { return a(i) * b(i); });
-            case StepKind::quotient:
-                return each(to, [&](int i) { return a(i) / b(i); });
-            case StepKind::add_number:
-                return each(to, [&, k = L(number(step.b))](int i) { return a(i) + k; });
-            case StepKind::times_number:
-                return each(to, [&, k = L(number(step.b))](int i) { return a(i) * k; });
-            case StepKind::times_constant:
-                return each(to, [&, k = L(constant(step.b))](int i) { return a(i) * k; });
-            case StepKind::negation:
-                return each(to, [&](int i) { return -a(i); });
-            case StepKind::square:
-                return each(to, [&](int i) { return square(a(i)); });
-            case StepKind::sqrt:
-                return each(to, [&](int i) { return sqrt(a(i)); });
-            case StepKind::sine_and_cosine:
-                return sine_and_cosine(step);
-            case StepKind::angle:
-                return each(to, [&](int i) { return angle(a(i), b(i)); });
-            case StepKind::exp:
-                return each(to, [&](int i) {
-                    return OrElse(IsAtMost(a(i), kMostExponent), exp(a(i)), a(i), a(i),
-                                  [](double x, double) { return std::exp(x); });
-                });
-            case StepKind::log:
-                return each(to, [&](int i) {
-                    return OrElse(IsOrdinary(a(i)), log(a(i)), a(i), a(i),
-                                  [](double x, double) { return std::log(x); });
-                });
-            case StepKind::asinh:
-                return each(to, [&](int i) {
-                    return OrElse(IsOrdinary(a(i)), asinh(a(i)), a(i), a(i),
-                                  [](double x, double) { return std::asinh(x); });
-                });
-            case StepKind::floor:
-                return each(to, [&](int i) { return L(hn::Floor(a(i).v)); });
-            case StepKind::choice:
-                return each(to, [&](int i) { return select(is_negative(a(i)), b(i), of(step.c, i)); });
-        }
+    friend HWY_NOINLINE Row operator+(const Row& a, const Row& b) {
+        return of([&](int i) { return a.at(i) + b.at(i); });
     }
-
-    void sine_and_cosine(const ProgramStep& step) {
-        for (int k = 0; k < m_vectors; ++k) {
-            const int i = k * kLanes;
-            const L a = of(step.a, i);
-            L sine, cosine;
-            sin_cos(a, sine, cosine);
-            const Mask near = IsAtMost(a, kMostAngle);
-            OrElse(near, sine, a, a, [](double x, double) {
-                return std::sin(x);
-            }).store(m_registers[step.result] + i);
-            OrElse(near, cosine, a, a, [](double x, double) {
-                return std::cos(x);
-            }).store(m_registers[step.result + 1] + i);
-        }
+    friend HWY_NOINLINE Row operator+(const Row& a, double b) {
+        return of([&](int i) { return a.at(i) + L(b); });
     }
-
+    friend HWY_NOINLINE Row operator*(const Row& a, const Row& b) {
+        return of([&](int i) { return a.at(i) * b.at(i); });
+    }
+    friend HWY_NOINLINE Row operator*(const Row& a, double b) {
+        return of([&](int i) { return a.at(i) * L(b); });
+    }
+    friend HWY_NOINLINE Row operator/(const Row& a, const Row& b) {
+        return of([&](int i) { return a.at(i) / b.at(i); });
+    }
+    friend HWY_NOINLINE Row operator-(const Row& a) {
+        return of([&](int i) { return -a.at(i); });
+    }
+    friend HWY_NOINLINE Row square(const Row& a) {
+        return of([&](int i) { return square(a.at(i)); });
+    }
+    friend HWY_NOINLINE Row sqrt(const Row& a) {
+        return of([&](int i) { return sqrt(a.at(i)); });
+    }
+    friend HWY_NOINLINE Row floor_of(const Row& a) {
+        return of([&](int i) { return L(hn::Floor(a.at(i).v)); });
+    }
+    friend HWY_NOINLINE Row exp(const Row& a) {
+        return of([&](int i) {
+            return OrElse(IsAtMost(a.at(i), kMostExponent), exp(a.at(i)), a.at(i), a.at(i),
+                          [](double x, double) { return std::exp(x); });
+        });
+    }
+    friend HWY_NOINLINE Row log(const Row& a) {
+        return of([&](int i) {
+            return OrElse(IsOrdinary(a.at(i)), log(a.at(i)), a.at(i), a.at(i),
+                          [](double x, double) { return std::log(x); });
+        });
+    }
+    friend HWY_NOINLINE Row asinh(const Row& a) {
+        return of([&](int i) {
+            return OrElse(IsOrdinary(a.at(i)), asinh(a.at(i)), a.at(i), a.at(i),
+                          [](double x, double) { return std::asinh(x); });
+        });
+    }
     /// There is one zero.
-    static HWY_INLINE L angle(const L& y_given, const L& x_given) {
-        const L y = y_given + L(0), x = x_given + L(0);
-        return OrElse(both(IsOrdinary(y), IsOrdinary(x)), atan2(y, x), y, x,
-                      [](double up, double right) { return std::atan2(up, right); });
+    friend HWY_NOINLINE Row atan2(const Row& up, const Row& right) {
+        return of([&](int i) {
+            const L y = up.at(i) + L(0), x = right.at(i) + L(0);
+            return OrElse(both(IsOrdinary(y), IsOrdinary(x)), atan2(y, x), y, x,
+                          [](double of_y, double of_x) { return std::atan2(of_y, of_x); });
+        });
     }
-
-    const FormulaProgram& m_program;
-    int m_vectors;
-    HWY_ALIGN double m_registers[FormulaProgram::kRegisters][kProgramRow];
+    friend HWY_NOINLINE void sin_cos(const Row& a, Row& sine, Row& cosine) {
+        for (int i = 0; i < N; i += kLanes) {
+            const L angle = a.at(i);
+            const Mask near = IsAtMost(angle, kMostAngle);
+            L s, c;
+            sin_cos(angle, s, c);
+            OrElse(near, s, angle, angle, [](double x, double) { return std::sin(x); }).store(sine.v + i);
+            OrElse(near, c, angle, angle, [](double x, double) { return std::cos(x); }).store(cosine.v + i);
+        }
+    }
+    /// The condition is the number itself, which choose() asks.
+    struct Negative {
+        const Row& of;
+    };
+    friend Negative is_negative(const Row& a) { return {a}; }
+    friend HWY_NOINLINE Row choose(const Negative& where, const Row& a, const Row& b) {
+        return of([&](int i) { return select(is_negative(where.of.at(i)), a.at(i), b.at(i)); });
+    }
 };
 
+/// The points from `first` on.
+template <int N>
+void ReadRow(const FormulaProgram& program, const ProgramRow& at, int first, ProgramRow& to) {
+    const Point<Row<N>> p = read_program(program, Row<N>(at.x + first), Row<N>(at.y + first));
+    for (int i = 0; i < N; i += kLanes) {
+        p.x.at(i).store(to.x + first + i);
+        p.y.at(i).store(to.y + first + i);
+    }
+}
+
 void ReadProgramRow(const FormulaProgram& program, const ProgramRow& at, int count, ProgramRow& to) {
-    Reader reader(program, count);
-    reader.read(at, to);
+    // What is left of a row takes short ones.
+    constexpr int kShort = HWY_MAX(8, kLanes);
+    if (count > kProgramRow / 2) return ReadRow<kProgramRow>(program, at, 0, to);
+    for (int first = 0; first < count; first += kShort) ReadRow<kShort>(program, at, first, to);
 }
 
 }  // namespace HWY_NAMESPACE
