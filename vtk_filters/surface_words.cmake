@@ -2,10 +2,11 @@
 # The surfaces of the core's list as words of vtkAnamorphDrape and of its proxy.
 
 # anamorph_surface_words(LIST...): reads lists as map/surface/list.h is, one after the other, and sets in the caller
-#   drape_surface_count  how many there are, with that of the input Positions
+#   drape_surface_count  how many there are, with that of the input Positions and that of formulas
 #   drape_enumerators    of C++ and Python, such as PLANE = 0
+#   drape_formula        the value of FORMULA
 #   drape_menu, drape_labels, drape_zeros   of the proxy's properties Surface and BlendWeights
-# Saved states have numbers: a surface keeps its own when others are added behind it, and POSITIONS always.
+# Saved states have numbers: a surface keeps its own when others are added behind it, and POSITIONS and FORMULA always.
 function(anamorph_surface_words)
     set(positions 7)
     set(names "")
@@ -19,7 +20,7 @@ function(anamorph_surface_words)
     if(count LESS positions)
         message(FATAL_ERROR "${ARGN}: ${count} surfaces: must be at least ${positions}")
     endif()
-    list(INSERT names ${positions} positions)
+    list(INSERT names ${positions} positions formula)
     set(value 0)
     foreach(name IN LISTS names)
         string(TOUPPER ${name} enumerator)
@@ -34,6 +35,8 @@ function(anamorph_surface_words)
     endforeach()
     list(JOIN enumerators ", " enumerators)
     list(JOIN zeros " " zeros)
+    math(EXPR formula "${positions} + 1")
+    set(drape_formula ${formula} PARENT_SCOPE)
     set(drape_surface_count ${value} PARENT_SCOPE)
     set(drape_enumerators "${enumerators}" PARENT_SCOPE)
     set(drape_menu "${menu}" PARENT_SCOPE)

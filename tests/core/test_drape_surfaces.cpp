@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Surfaces that are sampled, raised, summed and moved by many deformations: their formulas, their bounds, and that pictures
-// on them keep the tolerance.
+// Surfaces that are sampled, raised, summed, moved by many deformations and written as text: their formulas, their bounds, and
+// that pictures on them keep the tolerance.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -176,9 +176,11 @@ TEST(SampledField, SmoothingKeepsMeansAndLeavesOutWhatIsNoNumber) {
 }
 
 /// The points of a picture on a surface are seen within the tolerance. Returns the number of pixels that show it.
-int expect_in_place(const Scene& scene, double tol, const std::function<Vector(Real, Real)>& surface) {
+int expect_in_place(const Scene& scene, double tol, const std::function<Vector(Real, Real)>& surface,
+                    DrapeScheme scheme = DrapeScheme::automatic) {
     DrapeOptions options;
     options.tol = tol;
+    options.scheme = scheme;
     const std::vector<float> points = Shown(scene, options).values(Output::stmap);
     int seen = 0, over = 0;
     for (int y = 0; y < scene.screen.height; ++y)
@@ -295,6 +297,194 @@ TEST(DrapedSurface, SumsAreThoseOfTheirPartsPointByPoint) {
     scene.own = make_surface(sum);
     scene.pose.position = {0.5, 0.6, 1.9};
     for (const double tol : {0.5, 0.05}) EXPECT_GT(expect_in_place(scene, tol, point), 2000);
+}
+
+/// A surface that is text, and the same in long double.
+struct TextSurface {
+    const char* name;
+    SurfaceText text;
+    std::function<Vector(Real, Real)> point;  ///< v up; not a number where there is no surface
+    glm::dvec3 camera{0.5, 0.6, 1.9};
+};
+
+SurfaceText text_of(const std::string& px, const std::string& py, const std::string& pz,
+                    const std::string& let = "") {
+    return {px, py, pz, {}, let};
+}
+
+const SurfaceText kFlat;
+
+std::vector<TextSurface> text_surfaces() {
+    const Real turn = 2 * test::kHalfTurn;
+    const auto raised = [](const std::function<Real(Real, Real)>& height) {
+        return [height](Real u, Real v) { return Vector{u - 0.5L, v - 0.5L, height(u, v)}; };
+    };
+    const auto over = [](const std::string& pz) { return text_of(kFlat.px, kFlat.py, pz); };
+    return {
+        {"flag", over("0.2*u*sin(2*pi*(2*u-0.3))"),
+         raised([=](Real u, Real) { return u * std::sin(turn * (2 * u - Real(0.3))) / 5; })},
+        {"saddle", over("((u-.5)^2-(v-.5)^2)*2"),
+         raised([](Real u, Real v) { return 2 * (u - v) * (u + v - 1); })},
+        {"moebius",
+         text_of("cos(c)*(1+w*cos(c/2))", "sin(c)*(1+w*cos(c/2))", "w*sin(c/2)", "w=(v-.5)*.6;c=2*pi*u"),
+         [=](Real u, Real v) {
+             const Real w = (v - 0.5L) * Real(0.6), c = turn * u, far = 1 + w * std::cos(c / 2);
+             return Vector{std::cos(c) * far, std::sin(c) * far, w * std::sin(c / 2)};
+         },
+         {0, -2.5, 3}},
+        // Creases: along a column of patches, between such, about a point.
+        {"roof", over("-abs(u-0.5)"), raised([](Real u, Real) { return -std::fabs(u - 0.5L); })},
+        {"crooked roof", over("-abs(u+0.3*v-0.6)"),
+         raised([](Real u, Real v) { return -std::fabs(u + Real(0.3) * v - Real(0.6)); })},
+        {"cone", over("-hypot(u-.4,v-.5)"),
+         raised([](Real u, Real v) { return -std::hypot(u - Real(0.4), v - 0.5L); })},
+        {"steps", over("0.1*clamp(8*u-4,0,1)"),
+         raised([](Real u, Real) { return std::min(std::max(8 * u - 4, Real(0)), Real(1)) * Real(0.1); })},
+        // Parts that are left out, by a condition, and by a root.
+        {"ring", over("if(hypot(u-.5,v-.5)<0.2,1/0,0.1*sin(9*u))"),
+         [=](Real u, Real v) {
+             const bool hole = std::hypot(u - 0.5L, v - 0.5L) < Real(0.2);
+             return Vector{hole ? NAN : u - 0.5L, v - 0.5L, std::sin(9 * u) * Real(0.1)};
+         }},
+        {"arch", over("sqrt(0.2-(u-.5)^2)"),
+         [=](Real u, Real v) {
+             return Vector{u - 0.5L, v - 0.5L, std::sqrt(Real(0.2) - (u - 0.5L) * (u - 0.5L))};
+         }},
+    };
+}
+
+std::shared_ptr<const DrapedSurface> make_text_surface(const SurfaceText& text) {
+    SurfaceSum sum;
+    sum.parts = {{surface_names().size() + 1, 1}};
+    sum.formula = parse_surface(text, {1, 0});
+    return make_surface(sum);
+}
+
+TEST(DrapedSurface, TextIsSeenWithinTheTolerance) {
+    for (const TextSurface& surface : text_surfaces())
+        for (const double tol : {1.0, 0.125})
+            for (const DrapeScheme scheme : {DrapeScheme::automatic, DrapeScheme::exact}) {
+                SCOPED_TRACE(testing::Message() << surface.name << " " << tol);
+                Scene scene;
+                scene.own = make_text_surface(surface.text);
+                scene.pose.position = surface.camera;
+                EXPECT_GT(expect_in_place(
+                              scene, tol, [&](Real u, Real v) { return surface.point(u, 1 - v); }, scheme),
+                          2000);
+            }
+}
+
+TEST(DrapedSurface, TextIsEnclosedByItsRanges) {
+    constexpr unsigned kSeed = 27;
+    SCOPED_TRACE(testing::Message() << "seed " << kSeed);
+    std::mt19937 random(kSeed);
+    std::uniform_real_distribution<double> uniform(0, 1);
+    for (const TextSurface& text : text_surfaces()) {
+        SCOPED_TRACE(text.name);
+        const auto surface = make_text_surface(text.text);
+        int finite = 0, defined = 0;
+        for (int i = 0; i < 3000; ++i) {
+            const double side = std::exp(-12 * uniform(random)), u0 = uniform(random) * (1 - side),
+                         v0 = uniform(random) * (1 - side);
+            const Interval u(u0, u0 + side), v(v0, v0 + side);
+            const SurfaceRange range = surface->range(u, v);
+            const double lost = surface->rounding(u, v);
+            const Certainty missing = surface->missing(u, v);
+            for (int k = 0; k < 4; ++k) {
+                const double s = u0 + side * uniform(random), t = v0 + side * uniform(random);
+                const Vector exact = text.point(s, 1 - Real(t));
+                const bool is_defined = std::isfinite(exact[0] + exact[1] + exact[2]);
+                EXPECT_TRUE(missing == Certainty::open || is_defined == (missing == Certainty::no));
+                if (!is_defined) continue;
+                ++defined;
+                const glm::dvec3 computed = surface->position(s, t);
+                for (std::size_t axis = 0; axis < 3; ++axis) {
+                    const Interval& place = range[axis].c[0];
+                    EXPECT_GE(exact[axis], place.lo);
+                    EXPECT_LE(exact[axis], place.hi);
+                    const Real off = std::fabs(exact[axis] - computed[static_cast<int>(axis)]);
+                    EXPECT_LE(off, lost);
+                    EXPECT_LE(off, surface->rounding(s, t));
+                    // By the mean value theorem, from the middle of the box.
+                    const Interval slopes = range[axis].c[1] * Interval(s - (u0 + side / 2)) +
+                                            range[axis].c[2] * Interval(t - (v0 + side / 2));
+                    const Real middle = text.point(u0 + side / 2, 1 - Real(v0 + side / 2))[axis];
+                    if (!std::isfinite(magnitude(slopes)) || !std::isfinite(middle)) continue;
+                    ++finite;
+                    EXPECT_GE(exact[axis] - middle, slopes.lo - 1e-15);
+                    EXPECT_LE(exact[axis] - middle, slopes.hi + 1e-15);
+                }
+            }
+        }
+        EXPECT_GT(defined, 5000);
+        EXPECT_GT(finite, 5000);
+    }
+}
+
+TEST(DrapedSurface, WhatTextLeavesOutIsNotSeen) {
+    const TextSurface ring = text_surfaces()[7];
+    ASSERT_STREQ(ring.name, "ring");
+    Scene scene;
+    scene.own = make_text_surface(ring.text);
+    scene.pose.perspective = false;
+    scene.pose.extent = 1;
+    scene.pose.position = {0, 0, 1};
+    scene.screen = {200, 200};
+    for (const double tol : {1.0, 0.05}) {
+        DrapeOptions options;
+        options.tol = tol;
+        const std::vector<float> seen = Shown(scene, options).seen();
+        int wrong = 0, holes = 0;
+        for (int y = 1; y < 199; ++y)
+            for (int x = 1; x < 199; ++x) {
+                const double from_rim = std::hypot(x - 99.5, y - 99.5) - 40;
+                const bool hole = seen[static_cast<std::size_t>(y * 200 + x)] == 0;
+                wrong += from_rim < -0.1 ? !hole : from_rim > tol + 0.1 ? hole : 0;
+                holes += hole;
+            }
+        EXPECT_EQ(wrong, 0) << tol;
+        EXPECT_GT(holes, 4900);
+    }
+    Scene nothing;
+    nothing.own = make_text_surface(text_of("u", "v", "if(u<2,0/0,1)"));
+    EXPECT_THAT(Shown(nothing).seen(), testing::Each(0.0f));
+}
+
+TEST(DrapedSurface, TextThatIsTornSaysWhere) {
+    for (const char* pz : {"if(u<0.3,0,0.2)", "floor(3.1*v)", "atan2(v-.5,u-.7)", "1/(u-.3)"}) {
+        Scene scene;
+        scene.own = make_text_surface(text_of(kFlat.px, kFlat.py, pz));
+        scene.pose.position = {0, 0, 5};
+        try {
+            Shown(scene).seen();
+            FAIL() << pz;
+        } catch (const Error& error) {
+            EXPECT_THAT(error.what(), testing::HasSubstr("the surface is torn near u=")) << pz;
+        }
+    }
+}
+
+TEST(DrapedSurface, TextOfTheListsSurfacesGivesTheirPoints) {
+    constexpr unsigned kSeed = 28;
+    SCOPED_TRACE(testing::Message() << "seed " << kSeed);
+    std::mt19937 random(kSeed);
+    std::uniform_real_distribution<double> uniform(0, 1);
+    const std::pair<const char*, SurfaceText> all[] = {
+        {"plane", {}},
+        {"cylinder", text_of("sin(pi*(u-.5))/pi", "v-.5", "cos(pi*(u-.5))/pi")},
+        {"sphere", text_of("sin(b)*sin(a)/2", "cos(b)/2", "sin(b)*cos(a)/2", "a=pi*(u-.5);b=pi*(1-v)")},
+        {"torus", text_of("o*sin(a)", "0.2*sin(b)", "o*cos(a)", "a=pi*(u-.5);b=2*pi*(1-v);o=.5-.2*cos(b)")},
+        {"waves", text_of(kFlat.px, kFlat.py, "0.1*sin(4*pi*(u-.5))")},
+        {"ripples", text_of(kFlat.px, kFlat.py, "0.1*sin(4*pi*hypot(hypot(u-.5,v-.5),1/16))")}};
+    for (const auto& [name, text] : all) {
+        const auto written = make_text_surface(text), listed = make_surface(number_of(name), {});
+        for (int i = 0; i < 1000; ++i) {
+            const double u = uniform(random), v = uniform(random);
+            const glm::dvec3 p = written->position(u, v), q = listed->position(u, v);
+            const double lost = written->rounding(u, v) + listed->rounding(u, v);
+            for (int k = 0; k < 3; ++k) EXPECT_NEAR(p[k], q[k], lost) << name;
+        }
+    }
 }
 
 TEST(Drape, WhatIsNoNumberIsAHoleAndNoMore) {

@@ -23,7 +23,7 @@ constexpr Size kPicture{48, 32}, kSource{200, 100};
 Point<double> point_of(const FormulaText& text, double x, double y,
                        FormulaSetting setting = {kPicture, kSource}) {
     const PlaneFormula formula = parse_formula(text, setting);
-    return read_program(formula.point, x, y);
+    return read_point(formula.point, x, y);
 }
 double value_of(const std::string& expression, double x = 20.5, double y = 10.5) {
     FormulaText text;
@@ -34,7 +34,7 @@ bool is_inside(const std::string& expression, double x = 20.5, double y = 10.5) 
     FormulaText text;
     text.u = expression;
     const PlaneFormula formula = parse_formula(text, {kPicture, kSource});
-    return formula.is_everywhere || read_program(formula.domain, x, y).x > 0;
+    return formula.is_everywhere || read_point(formula.domain, x, y).x > 0;
 }
 
 TEST(TextMap, NamesStandForThePlaceOfAPixel) {
@@ -149,7 +149,7 @@ TEST(TextMap, KeysOfTheirOwnDefineNames) {
         text.definitions = definitions;
         text.let = let;
         text.u = u;
-        return read_program(parse_formula(text, {kPicture, kSource}).point, 0.5, 0.5).x;
+        return read_point(parse_formula(text, {kPicture, kSource}).point, 0.5, 0.5).x;
     };
     EXPECT_EQ(value_of({{"k", "3"}, {"c", "k+1"}}, "", "c*10"), 40);
     // They stand before `let`, and stay what they are.
@@ -599,14 +599,14 @@ TEST(TextMap, JetsAcrossAJumpAreNotBounded) {
         FormulaText text;
         text.u = u;
         const PlaneFormula formula = parse_formula(text, {kPicture, kSource});
-        const J found = read_program(formula.point, J::variable(x, one, none), J::variable(y, none, one)).x;
+        const J found = read_point(formula.point, J::variable(x, one, none), J::variable(y, none, one)).x;
         for (int i = 0; i < 4; ++i) {
             const bool crosses = i == 1 || (i == 3 && text.u == "floor(x/24)");
             EXPECT_EQ(std::isfinite(found.at(i).c[0].hi) && std::isfinite(found.at(i).c[1].hi), !crosses)
                 << u << ", box " << i;
             using One = Jet<Interval, 1>;
             const One alone =
-                read_program(formula.point, One::variable(x[i], 1, 0), One::variable(y[i], 0, 1)).x;
+                read_point(formula.point, One::variable(x[i], 1, 0), One::variable(y[i], 0, 1)).x;
             EXPECT_EQ(std::isfinite(alone.c[1].hi), !crosses) << u << ", box " << i;
         }
     }

@@ -113,12 +113,43 @@ TEST_F(DrapeFiles, SaysWhatDoesNotGoTogether) {
              {"surface=positions", "positions is not given"},
              {"positions=page.exr", "positions is given: surface must be positions"},
              {"surface=positions&positions=half.exr", "has 1 channels: must have 3"},
-             {"surface=page_turn&height=half.exr", "whose normals turn abruptly"},
+             {"surface=page_turn&height=half.exr", "whose normals may turn abruptly"},
+             {"surface=formula&height=half.exr", "surface must not be formula"},
+             {"pz=1", "pz=1: is of surface=formula: surface must be formula, or blend name it"},
+             {"surface=sphere&blend=formula&weights=1&pz=u+", "pz=u+: column 3: expected a number"},
+             {"surface=formula&let=k=x", "let=k=x: column 3: expected a name that is known"},
+             {"surface=formula&pz=k", "column 1: expected a name that is known"},
+             {"surface=formula&k=2", "k=2: there is no such parameter, and no formula uses the name"},
+             {"surface=formula&u=2&pz=u", "u=2: every formula has this name"},
+             {"k=2", "k=2: there is no such parameter: must be one of src, surface"},
+             {"surface=formula&pz=floor(9*u)&size=99", "the surface is torn near u="},
              {"blend=sphere", "weights=0 numbers: must be as many as surfaces in blend, 1"},
              {"blend=cube&weights=1", "blend=cube: must be names of surfaces"},
              {"height=none.exr", "none.exr"},
              {"keys=none.json", "none.json"}})
         EXPECT_THAT(open_error(std::string("page.exr.drape?") + arguments), HasSubstr(error)) << arguments;
+}
+
+TEST_F(DrapeFiles, FormulasHaveFramesKeysAndNames) {
+    const std::string film =
+        "page.exr.drape?surface=formula&pz=h*sin(2*pi*(u-frame/8))&h=0.1&output=stmap&size=60";
+    write_text("h.json", R"({"keys": {"h": [[0, 0.1], [4, 0.3]]}, "interpolation": "linear"})");
+    const auto still = [&](const std::string& height, const std::string& frame) {
+        return read_floats("page.exr.drape?surface=formula&output=stmap&size=60&pz=" + height +
+                           "*sin(2*pi*(u-" + frame + "/8))");
+    };
+    EXPECT_EQ(read_floats(film), still("0.1", "0"));
+    EXPECT_EQ(read_floats(film + "&frame=3"), still("0.1", "3"));
+    EXPECT_EQ(read_floats(film + "&keys=h.json&frame=2"), still("0.2", "2"));
+    int frames = 0;
+    for (const auto input = open(film + "&keys=h.json"); input->seek_subimage(frames, 0);) ++frames;
+    EXPECT_EQ(frames, 5);
+    // The waves of the list, by a recipe's file.
+    write_text("w.drape", "src=page.exr\nsurface=formula\nk=2*pi/0.5\npz=0.05*sin(k*(u-0.5)*aspect)\n");
+    EXPECT_LT(
+        largest_difference(read_floats("w.drape?size=60&output=stmap&camera=1,1,3"),
+                           read_floats("page.exr.drape?surface=waves&size=60&output=stmap&camera=1,1,3")),
+        0.01);
 }
 
 TEST_F(DrapeFiles, KeyFramesAreAFilm) {

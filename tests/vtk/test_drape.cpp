@@ -576,6 +576,33 @@ TEST(VtkDrape, BlendsHaveThePixelsOfTheOperation) {
     expect_pixels_of_operation(relief);
 }
 
+TEST(VtkDrape, FormulasHaveThePixelsOfTheOperation) {
+    expect_pixels_of_operation({[](Drape* f) {
+                                    f->SetSurface(Drape::FORMULA);
+                                    f->SetFormulaX("cos(c)*(1+w*cos(c/2))/2");
+                                    f->SetFormulaY("sin(c)*(1+w*cos(c/2))/2");
+                                    f->SetFormulaZ("w*sin(c/2)/2");
+                                    f->SetFormulaDefinitions("w=(v-.5)*.6;c=2*pi*u+frame");
+                                    f->SetFrame(2);
+                                    f->SetInputData(3, table_of_bumps());
+                                    f->SetShading(Drape::PHONG);
+                                },
+                                {{"surface", "formula"},
+                                 {"px", "cos(c)*(1+w*cos(c/2))/2"},
+                                 {"py", "sin(c)*(1+w*cos(c/2))/2"},
+                                 {"pz", "w*sin(c/2)/2"},
+                                 {"let", "w=(v-.5)*.6;c=2*pi*u+frame"},
+                                 {"frame", "2"},
+                                 {"deform", "deform"},
+                                 {"shading", "phong"}},
+                                {{{"deform", bumps_as_file()}}}});
+    expect_pixels_of_operation({[](Drape* f) {
+                                    f->SetBlendWeight(Drape::FORMULA, 0.5);
+                                    f->SetFormulaZ("-abs(u-.3)");
+                                },
+                                {{"blend", "formula"}, {"weights", "0.5"}, {"pz", "-abs(u-.3)"}}});
+}
+
 TEST(VtkDrape, ANewPictureOrListOfAnInputIsSeen) {
     const Folder folder;
     const Picture heights = picture(17, 13, VTK_FLOAT, 1);
@@ -710,7 +737,7 @@ TEST(VtkDrape, WhatIsNotInAListIsAnErrorAndChangesNothing) {
         {[&] { filter->SetNumberOfLights(-1); }, "NumberOfLights=-1: must be"},
         {[&] { filter->SetNumberOfLights(1 << 30); }, "must be an integer from 0 to"},
         {[&] { filter->SetBlendWeight(-1, 1); }, "surface=-1: must be"},
-        {[&] { filter->SetBlendWeight(8, 1); }, "surface=8: must be an integer from 0 to 7"}};
+        {[&] { filter->SetBlendWeight(9, 1); }, "surface=9: must be an integer from 0 to 8"}};
     for (const auto& [call, text] : calls) {
         errors.clear();
         call();
@@ -725,6 +752,11 @@ TEST(VtkDrape, WhatOtherInputsLackIsAnError) {
     };
     EXPECT_THAT(error([](Drape* f) { f->SetSurface(Drape::POSITIONS); }),
                 HasSubstr("positions is not given"));
+    EXPECT_THAT(error([](Drape* f) {
+                    f->SetSurface(Drape::FORMULA);
+                    f->SetFormulaZ("2*w");
+                }),
+                HasSubstr("pz=2*w: column 3: expected a name that is known"));
     EXPECT_THAT(error([](Drape* f) { f->SetBlendWeight(Drape::POSITIONS, 0.5); }),
                 HasSubstr("positions is not given"));
     const auto positions = [&](vtkDataObject* data) {
@@ -987,6 +1019,11 @@ TEST(VtkDrape, UpdatesOnlyAfterAChangeOfAValue) {
                                [](Drape* f) { f->SetHeightSmooth(0.3); },
                                [](Drape* f) { f->SetDeformationFileName("none.csv"); },
                                [](Drape* f) { f->SetDeformationFileName(nullptr); },
+                               [](Drape* f) { f->SetFormulaX("u"); },
+                               [](Drape* f) { f->SetFormulaY("v"); },
+                               [](Drape* f) { f->SetFormulaZ("u*v"); },
+                               [](Drape* f) { f->SetFormulaDefinitions("k=1"); },
+                               [](Drape* f) { f->SetFrame(3); },
                                [](Drape* f) { f->SetShading(Drape::PHONG); },
                                [](Drape* f) { f->SetNumberOfLights(2); },
                                [](Drape* f) { f->SetLight(1, 1, 0, 0); },
@@ -997,7 +1034,7 @@ TEST(VtkDrape, UpdatesOnlyAfterAChangeOfAValue) {
                                [](Drape* f) { f->SetPositionsConnection(f->GetInputConnection(0, 0)); },
                                [](Drape* f) { f->SetHeightConnection(f->GetInputConnection(0, 0)); }});
     filter->SetSurface(99);
-    EXPECT_EQ(filter->GetSurface(), Drape::POSITIONS);
+    EXPECT_EQ(filter->GetSurface(), Drape::FORMULA);
     filter->SetSurface(Drape::SPHERE);
     expect_executed_once(filter);
 }
@@ -1024,10 +1061,13 @@ TEST(VtkDrape, PrintsItsState) {
                             "Tolerance: 0.125",
                             "Filter: antialias",
                             "Background: 0 0 0 0",
-                            "BlendWeights: 0 0 0 0 0 0 0 0",
+                            "BlendWeights: 0 0 0 0 0 0 0 0 0",
                             "HeightScale: 0.1",
                             "HeightSmooth: 1",
                             "DeformationFileName: (none)",
+                            "FormulaX: (none)",
+                            "FormulaDefinitions: (none)",
+                            "Frame: 0",
                             "PositionsArrayName: (none)",
                             "HeightArrayName: (none)",
                             "Shading: none",

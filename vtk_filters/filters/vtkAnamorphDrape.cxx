@@ -65,17 +65,20 @@ const std::string& word_of(const char* row, int choice) {
 }
 
 // Header and core have been made of the same list.
-static_assert(vtkAnamorphDrape::NumberOfSurfaces == 1
+static_assert(vtkAnamorphDrape::NumberOfSurfaces == 2
 #define ANAMORPH_SURFACE(name, Type) +1
 #include "anamorph/map/surface/list.h"
 #undef ANAMORPH_SURFACE
 );
 
-/// The operation's word for a value of Surface. There, that of the positions comes last.
+/// The operation's word for a value of Surface. There, that of the positions and that of formulas come last.
 const std::string& surface_word(int surface) {
-    if (surface == vtkAnamorphDrape::POSITIONS)
-        return word_of("surface", vtkAnamorphDrape::NumberOfSurfaces - 1);
-    return word_of("surface", surface - (surface > vtkAnamorphDrape::POSITIONS));
+    static_assert(vtkAnamorphDrape::FORMULA == vtkAnamorphDrape::POSITIONS + 1);
+    constexpr int kListed = vtkAnamorphDrape::NumberOfSurfaces - 2;
+    if (surface < vtkAnamorphDrape::POSITIONS) return word_of("surface", surface);
+    if (surface <= vtkAnamorphDrape::FORMULA)
+        return word_of("surface", kListed + surface - vtkAnamorphDrape::POSITIONS);
+    return word_of("surface", surface - 2);
 }
 
 glm::dvec3 point(const char* name, const double* v) {
@@ -269,8 +272,8 @@ anamorph::Size vtkAnamorphDrape::Screen() const {
     return {this->ViewSize[0], this->ViewSize[1]};
 }
 
-bool vtkAnamorphDrape::UsesPositions() const {
-    return this->Surface == POSITIONS || this->BlendWeights[POSITIONS] != 0;
+bool vtkAnamorphDrape::Uses(int surface) const {
+    return this->Surface == surface || this->BlendWeights[surface] != 0;
 }
 
 /// The properties as the operation's values, checked by its table. Throws anamorph::Error.
@@ -294,6 +297,16 @@ anamorph::ParameterValues vtkAnamorphDrape::Values() const {
     for (const auto& light : this->Lights)
         for (const double number : light) add(lights, anamorph::shortest(number));
     if (!lights.empty()) said.push_back({"light", lights});
+    if (this->Uses(FORMULA)) {
+        const auto say = [&](const char* row, const std::string& text) {
+            if (!text.empty()) said.push_back({row, text});
+        };
+        say("px", this->FormulaX);
+        say("py", this->FormulaY);
+        say("pz", this->FormulaZ);
+        say("let", this->FormulaDefinitions);
+        said.push_back({"frame", std::to_string(this->Frame)});
+    }
     anamorph::ParameterValues values(*anamorph::drape_operation().parameters);
     values.assign(said);
     return values;
@@ -304,7 +317,7 @@ const anamorph::DrapeSurfaces& vtkAnamorphDrape::SurfacesOf(const anamorph::Para
                                                             vtkInformationVector** inputs, double aspect) {
     auto* positions = vtkDataSet::GetData(inputs[1]);
     auto* heights = vtkImageData::GetData(inputs[2]);
-    if (!this->UsesPositions()) positions = nullptr;
+    if (!this->Uses(POSITIONS)) positions = nullptr;
     std::vector<anamorph_vtk::Numbers> bumps = anamorph_vtk::numbers_in(vtkTable::GetData(inputs[3]));
     if (!this->DeformationFileName.empty()) {
         const auto more = anamorph_vtk::read_deformations(this->DeformationFileName);
@@ -491,6 +504,11 @@ void vtkAnamorphDrape::PrintSelf(ostream& os, vtkIndent indent) {
     print_text("PositionsArrayName", this->PositionsArrayName);
     print_text("HeightArrayName", this->HeightArrayName);
     print_text("DeformationFileName", this->DeformationFileName);
+    print_text("FormulaX", this->FormulaX);
+    print_text("FormulaY", this->FormulaY);
+    print_text("FormulaZ", this->FormulaZ);
+    print_text("FormulaDefinitions", this->FormulaDefinitions);
+    os << indent << "Frame: " << this->Frame << "\n";
     os << indent << "ViewSize: " << this->ViewSize[0] << " " << this->ViewSize[1] << "\n";
     print("CameraPosition", this->CameraPosition, 3);
     print("CameraFocalPoint", this->CameraFocalPoint, 3);

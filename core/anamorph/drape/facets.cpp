@@ -68,23 +68,18 @@ class PatchView {
     /// The bound (E) on the screen.
     struct Bound {
         double bound;
-        double least;  ///< what of it no finer patch could mend; infinite where that is not known yet
         double depth;  ///< of what is drawn, at least
         Sight sight;
     };
     Bound bound(const SurfacePatch& patch, const FrameRange& p) const {
-        Bound b{0, HUGE_VAL, 0, sight_of(p)};
-        const double rounding = 2 * patch.rounding * m_size +
-                                kFrameRounding * (largest(glm::abs(p.middle) + p.radius) + 2 * m_offset_size);
+        Bound b{0, 0, sight_of(p)};
+        const double rounding = 2 * patch.rounding * m_size + frame_rounding(p);
         double reach[3][4];
         simd::reach_along(b.sight.axes, patch.bends, 3, reach);
         for (int k = 0; k < 3; ++k) reach[0][k] += reach[1][k] + reach[2][k];
         b.depth = std::max(p.low(2), m_camera.near()) - (reach[0][2] + rounding);
-        const glm::dvec2 bends = across(b.sight, reach[0]), rounds(rounding * 2);
-        b.bound = on_screen(bends + rounds, b.depth);
-        const bool deep = m_camera.perspective() && !(p.radius.z < b.depth / 2);
-        if (!deep && !(glm::dot(bends, bends) * 256 > glm::dot(rounds, rounds)))
-            b.least = on_screen(rounds, 2 * b.depth);
+        b.bound = on_screen(across(b.sight, reach[0]) + glm::dvec2(2 * rounding), b.depth);
+        if (!std::isfinite(b.bound)) return bound_by_place(b, p);
         return b;
     }
     /// A patch that is drawn, and how fast the surface moves there.
@@ -100,6 +95,26 @@ class PatchView {
     }
 
   private:
+    double frame_rounding(const FrameRange& p) const {
+        return kFrameRounding * (largest(glm::abs(p.middle) + p.radius) + 2 * m_offset_size);
+    }
+    /// Where nothing is known of derivatives or of rounding: no two points of a patch, exact or computed, are seen farther from
+    /// each other than its place is wide on the screen.
+    Bound bound_by_place(Bound b, const FrameRange& p) const {
+        const double rounding = frame_rounding(p);
+        b.depth = std::max(p.low(2), m_camera.near()) - rounding;
+        glm::dvec2 width(0.0);
+        for (int i = 0; i < 2; ++i) {
+            width[i] = p.high(i) - p.low(i);
+            // Of X / Z, in units of the least depth.
+            if (m_camera.perspective()) {
+                const double shrunk = b.depth / p.high(2);
+                width[i] = p.high(i) * (p.high(i) > 0 ? 1 : shrunk) - p.low(i) * (p.low(i) > 0 ? shrunk : 1);
+            }
+        }
+        b.bound = on_screen(width * (1 + 1e-9) + glm::dvec2(4 * rounding), b.depth);
+        return b;
+    }
     FrameRange turned(const VectorRange& range, const glm::dvec3& offset = glm::dvec3(0.0)) const {
         return {m_camera.matrix() * range.middle + offset, m_sizes * range.radius};
     }
@@ -224,6 +239,11 @@ class FacetMaker {
             return;
         }
         const PatchView::Bound found = m_view.bound(patch, place);
+        if (found.bound <= m_wanted && patch.open) {
+            // What is left of it is no wider than what is drawn may be off.
+            m_room.hidden.push_back(index);
+            return;
+        }
         if (found.bound <= m_wanted) {
             m_made.leaves.push_back(m_view.leaf(patch, index, place, found));
             m_made.leaves.back().bound += grid_error(m_made.grid_bits);
@@ -231,13 +251,30 @@ class FacetMaker {
             return;
         }
         const std::int32_t halves = m_tree.halves(index);
-        if (halves == SurfacePatch::kNone || (found.least > m_wanted && found.least < HUGE_VAL))
-            throw Error("tol", shortest(m_tol),
-                        "is less than what double makes of this surface from so near");
+        if (halves == SurfacePatch::kNone) refuse(patch);
         for (const std::int32_t half : {halves + 1, halves}) {
             m_tree.prefetch(half);
             m_room.open.push_back(half);
         }
+    }
+
+    /// A patch that is as small as they get, and too large: the surface jumps there, or double tells no more of it.
+    [[noreturn]] void refuse(const SurfacePatch& patch) const {
+        const double u = patch.u0(), v = patch.v0();
+        double lost = HUGE_VAL;
+        for (const std::int32_t corner : patch.corners) {
+            const SurfaceCorner& c = m_tree.corners()[static_cast<std::size_t>(corner)];
+            lost = std::min(lost, m_tree.surface().rounding(c.u, c.v));
+        }
+        const bool bends = std::all_of(std::begin(patch.bends), std::end(patch.bends), [](const auto& bend) {
+            return std::isfinite(bend.radius[0] + bend.radius[1] + bend.radius[2]);
+        });
+        // On so small a patch a smooth surface is rounded alike.
+        if (bends && patch.rounding <= 1000 * lost)
+            throw Error("tol", shortest(m_tol),
+                        "is less than what double makes of this surface from so near");
+        throw Error("the surface is torn near u=" + brief(u) + ", v=" + brief(1 - v) +
+                    ": must be continuous wherever it is defined");
     }
 
     SpacePoint space_point(double u, double v) const {

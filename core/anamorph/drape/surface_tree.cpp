@@ -154,15 +154,18 @@ SurfacePatch SurfaceTree::bounded(std::uint64_t iu, std::uint64_t iv, int level_
     const double u = patch.u0(), v = patch.v0(), width = patch.side_u(), height = patch.side_v();
     const Certainty missing = m_surface->missing({u, u + width}, {v, v + height});
     patch.missing = missing == Certainty::yes;
+    patch.open = missing == Certainty::open;
+    patch.across = (level_u <= level_v && level_u < kMostLevels) || level_v == kMostLevels;
+    const auto range_here = [&] { return m_surface->range({u, u + width}, {v, v + height}); };
     if (missing != Certainty::no) {
-        // Nothing is said of a patch with a part that is missing: it is cut until it is whole or missing.
-        patch.position.radius = glm::dvec3(HUGE_VAL);
-        for (simd::FloatRange& bend : patch.bends) bend = to_floats(patch.position, 1);
-        for (simd::FloatRange& slope : patch.slopes) slope = to_floats(patch.position, 1);
-        patch.across = (level_u <= level_v && level_u < kMostLevels) || level_v == kMostLevels;
+        // Of a patch with a part that is missing, no more is said than where the rest is.
+        const VectorRange unknown{glm::dvec3(0.0), glm::dvec3(HUGE_VAL)};
+        patch.position = patch.open ? range_of(range_here(), 0, 1) : unknown;
+        for (simd::FloatRange& bend : patch.bends) bend = to_floats(unknown, 1);
+        for (simd::FloatRange& slope : patch.slopes) slope = to_floats(unknown, 1);
         return patch;
     }
-    const SurfaceRange range = m_surface->range({u, u + width}, {v, v + height});
+    const SurfaceRange range = range_here();
     // A Taylor coefficient of degree 2 along one variable is half of the derivative.
     patch.position = range_of(range, 0, 1);
     const VectorRange by_u = range_of(range, 1, 1), by_v = range_of(range, 2, 1),
@@ -173,19 +176,17 @@ SurfacePatch SurfaceTree::bounded(std::uint64_t iu, std::uint64_t iv, int level_
     patch.bends[2] = to_floats(by_vv, height * height / 8);
     patch.slopes[0] = to_floats(by_u, 1);
     patch.slopes[1] = to_floats(by_v, 1);
-    // It grows with the magnitudes that a formula meets, which are largest at corners.
-    patch.rounding = m_surface->rounding(u + width / 2, v + height / 2);
+    patch.rounding = m_surface->rounding(Interval(u, u + width), Interval(v, v + height));
     tighten(patch.position, m_surface->position(u + width / 2, v + height / 2), patch.rounding, by_u, by_v,
             width, height);
-    for (const double s : {u, u + width})
-        for (const double t : {v, v + height})
-            patch.rounding = std::max(patch.rounding, m_surface->rounding(s, t));
-    // Across the direction that bends more; where neither bends, or that is not known, across the longer side.
+    // Across the direction that bends more; where neither bends, or that is not known, across the longer side of the surface,
+    // and where that is not known, of the parameters.
     const double bends_u = longest(by_uu) * width * width, bends_v = longest(by_vv) * height * height;
     const double long_u = longest(by_u) * width, long_v = longest(by_v) * height;
-    patch.across = std::isfinite(bends_u + bends_v) && bends_u + bends_v > kFlat * (long_u + long_v)
-                       ? bends_u >= bends_v
-                       : long_u >= long_v;
+    if (std::isfinite(long_u + long_v))
+        patch.across = std::isfinite(bends_u + bends_v) && bends_u + bends_v > kFlat * (long_u + long_v)
+                           ? bends_u >= bends_v
+                           : long_u >= long_v;
     if (level_u == kMostLevels) patch.across = false;
     if (level_v == kMostLevels) patch.across = true;
     return patch;

@@ -40,6 +40,7 @@ struct SurfacePatch {
     std::uint8_t level_u = 0, level_v = 0;
     bool across = false;            ///< it is halved along u
     bool missing = false;           ///< there is no surface
+    bool open = false;              ///< there is none of a part, or that is not known
     std::int32_t children = kNone;  ///< the first of two that follow each other
     double rounding = 0;            ///< of positions on it, DrapedSurface::rounding
     VectorRange position;

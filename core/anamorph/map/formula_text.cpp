@@ -61,7 +61,7 @@ class Graph {
         return known(r, StepKind::constant, m_constants);
     }
 
-    FormulaProgram program(const std::array<Result, 2>& outputs) const;
+    FormulaProgram program(const std::vector<Result>& outputs) const;
 
   private:
     template <class T>
@@ -131,7 +131,7 @@ std::uint8_t place_of(std::vector<T>& values, const T& value) {
     return static_cast<std::uint8_t>(values.size() - 1);
 }
 
-FormulaProgram Graph::program(const std::array<Result, 2>& outputs) const {
+FormulaProgram Graph::program(const std::vector<Result>& outputs) const {
     FormulaProgram program;
     constexpr int kNever = -1, kAlways = 1 << 30;
     const std::size_t count = m_nodes.size();
@@ -183,7 +183,7 @@ FormulaProgram Graph::program(const std::array<Result, 2>& outputs) const {
         done.erase(std::unique(done.begin(), done.end()), done.end());
         for (const Result& r : done) registers.give_back(place(r));
     }
-    for (std::size_t i = 0; i < outputs.size(); ++i) program.outputs[i] = place(outputs[i]);
+    for (const Result& output : outputs) program.outputs.push_back(place(output));
     return program;
 }
 
@@ -245,7 +245,12 @@ class Maker {
     }
     /// a where the condition holds, else b.
     Value choice(const Value& condition, const Value& a, const Value& b) {
-        Value r{m_graph.make(StepKind::choice, condition.at, a.at, b.at), condition.domain, a.is_condition};
+        if (const auto k = m_graph.known_number(condition.at); k && !condition.domain) return *k < 0 ? a : b;
+        // Only the domain tells a value from one that is nowhere.
+        const Result at = is_never(a.domain)   ? b.at
+                          : is_never(b.domain) ? a.at
+                                               : m_graph.make(StepKind::choice, condition.at, a.at, b.at);
+        Value r{at, condition.domain, a.is_condition};
         if (!a.domain && !b.domain) return r;
         const Result one = m_graph.number(1);
         r.domain = needs(r.domain, m_graph.make(StepKind::choice, condition.at, a.domain.value_or(one),
@@ -285,6 +290,7 @@ class Maker {
     /// The lesser of two domains. Where the first is not positive the second may not be a number.
     std::optional<Result> needs(const std::optional<Result>& a, const std::optional<Result>& b) {
         if (!a || !b || a == b) return a ? a : b;
+        if (is_never(a) || is_never(b)) return is_never(a) ? a : b;
         const Result apart = m_graph.make(StepKind::difference, *b, *a);
         return m_graph.make(StepKind::choice, *a, *a, m_graph.make(StepKind::choice, apart, *b, *a));
     }
@@ -292,6 +298,11 @@ class Maker {
 
   private:
     static Value everywhere(Result at) { return {at, {}, false}; }
+    /// Is a domain known to be empty?
+    bool is_never(const std::optional<Result>& domain) const {
+        const auto k = domain ? m_graph.known_number(*domain) : std::nullopt;
+        return k && !(*k > 0);
+    }
     Result sum(Result a, Result b) {
         const auto x = m_graph.known_number(a), y = m_graph.known_number(b);
         if (x && y && program_detail::is_exact_sum(*x, *y, *x + *y)) return m_graph.number(*x + *y);
@@ -707,6 +718,15 @@ NamedValues names_of(Maker& m, const FormulaSetting& setting) {
             {"pi", {m.constant(std::numbers::pi_v<long double>)}}};
 }
 
+/// v counts up.
+NamedValues names_of(Maker& m, const SurfaceSetting& setting) {
+    return {{"u", {m.x()}},
+            {"v", {m.difference(m.number(1), m.y())}},
+            {"aspect", {m.number(setting.aspect)}},
+            {"frame", {m.number(setting.frame)}},
+            {"pi", {m.constant(std::numbers::pi_v<long double>)}}};
+}
+
 /// Names by keys of their own. Returns them.
 std::set<std::string> define(Maker& maker, NamedValues& names, const std::vector<Assignment>& definitions) {
     std::set<std::string> given;
@@ -722,27 +742,71 @@ std::set<std::string> define(Maker& maker, NamedValues& names, const std::vector
     return given;
 }
 
+/// The expressions, each with the name that errors give it, after all definitions.
+std::vector<Value> values_of(Maker& maker, NamedValues& names, const std::vector<Assignment>& definitions,
+                             const std::string& let, const std::vector<Assignment>& expressions) {
+    const std::set<std::string> given = define(maker, names, definitions);
+    Parser::define(maker, names, "let", let, given);
+    std::vector<Value> values;
+    for (const auto& [name, expression] : expressions)
+        values.push_back(Parser(maker, names, name, expression).expression());
+    for (const auto& [name, expression] : definitions)
+        if (!names.at(name).used)
+            throw Error(printable(name), printable(expression),
+                        "there is no such parameter, and no formula uses the name");
+    return values;
+}
+
+/// Where all of them are to be had.
+std::optional<Result> domain_of(Maker& maker, const std::vector<Value>& values) {
+    std::optional<Result> domain;
+    for (const Value& value : values) domain = maker.needs(domain, value.domain);
+    return domain;
+}
+
+bool is_same(const FormulaProgram& a, const FormulaProgram& b) {
+    const auto parts = [](const ProgramStep& s) { return std::array{s.result, s.a, s.b, s.c}; };
+    return std::equal(a.steps.begin(), a.steps.end(), b.steps.begin(), b.steps.end(),
+                      [&](const ProgramStep& p, const ProgramStep& q) {
+                          return p.kind == q.kind && parts(p) == parts(q);
+                      }) &&
+           std::equal(a.constants.begin(), a.constants.end(), b.constants.begin(), b.constants.end(),
+                      [](const Constant& p, const Constant& q) { return p.precise() == q.precise(); }) &&
+           a.numbers == b.numbers && a.outputs == b.outputs;
+}
+
 }  // namespace
 
 PlaneFormula parse_formula(const FormulaText& text, const FormulaSetting& setting) {
     Graph graph;
     Maker maker(graph);
     NamedValues names = names_of(maker, setting);
-    const std::set<std::string> given = define(maker, names, text.definitions);
-    Parser::define(maker, names, "let", text.let, given);
-    const auto coordinate = [&](const char* name, const std::string& expression, int length) {
-        const Value value = Parser(maker, names, name, expression).expression();
-        return setting.in_fractions ? maker.product(value, maker.number(length)) : value;
-    };
-    const Value u = coordinate("u", text.u, setting.source.width),
-                v = coordinate("v", text.v, setting.source.height);
-    for (const auto& [name, expression] : text.definitions)
-        if (!names.at(name).used)
-            throw Error(printable(name), printable(expression),
-                        "there is no such parameter, and no formula uses the name");
-    const std::optional<Result> domain = maker.needs(u, v);
+    std::vector<Value> point =
+        values_of(maker, names, text.definitions, text.let, {{"u", text.u}, {"v", text.v}});
+    if (setting.in_fractions) {
+        point[0] = maker.product(point[0], maker.number(setting.source.width));
+        point[1] = maker.product(point[1], maker.number(setting.source.height));
+    }
+    const std::optional<Result> domain = domain_of(maker, point);
     const Result positive = domain ? *domain : graph.number(1);
-    return {graph.program({u.at, v.at}), graph.program({positive, positive}), !domain.has_value()};
+    return {graph.program({point[0].at, point[1].at}), graph.program({positive, positive}),
+            !domain.has_value()};
+}
+
+SpaceFormula parse_surface(const SurfaceText& text, const SurfaceSetting& setting) {
+    Graph graph;
+    Maker maker(graph);
+    NamedValues names = names_of(maker, setting);
+    const std::vector<Value> point = values_of(maker, names, text.definitions, text.let,
+                                               {{"px", text.px}, {"py", text.py}, {"pz", text.pz}});
+    const std::optional<Result> domain = domain_of(maker, point);
+    const Result positive = domain ? *domain : graph.number(1);
+    return {graph.program({point[0].at, point[1].at, point[2].at}), graph.program({positive}),
+            !domain.has_value()};
+}
+
+bool operator==(const SpaceFormula& a, const SpaceFormula& b) {
+    return is_same(a.point, b.point) && is_same(a.domain, b.domain) && a.is_everywhere == b.is_everywhere;
 }
 
 }  // namespace anamorph

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// Formulas that are written as text: from a point of a picture to one of its source.
+// Formulas that are written as text: from a point of a picture to one of its source, or to one in space.
 //
 // Text. Numbers as in 12, .5 and 1e-3, which are the doubles next to them, and pi; + - * / with the usual order, % (as mod),
 // ^ (a power, from right to left, before a minus sign); < <= > >= == !=, and, or, not make conditions, which
-// if(condition, a, b) takes. Names:
+// if(condition, a, b) takes. Names of formulas of a picture:
 //
 //   x y                     the point: pixels of the picture, the middle of the first one at (.5, .5), y down
 //   s t                     the same in parts of width and height, from 0 to 1
@@ -13,6 +13,12 @@
 //   width height            of the picture
 //   src_width src_height    of the source
 //   frame                   a number that callers give
+//
+// those of formulas of a surface:
+//
+//   u v                     the point of the picture that is laid on it: from 0 at the left to 1, from 0 at the bottom to 1
+//   aspect                  width over height of that picture
+//   frame                   as above
 //
 // and those that definitions make before. Functions: sin cos tan asin acos atan(y) atan(y, x) atan2(y, x) sinh cosh tanh
 // asinh exp log sqrt cbrt pow hypot abs sign min max mod floor ceil round clamp mix step smoothstep, as GLSL has them
@@ -58,5 +64,30 @@ struct PlaneFormula {
 /// Throws Error with the column, counted from 1, and what was expected there; and of a definition that none of the other
 /// expressions uses.
 PlaneFormula parse_formula(const FormulaText& text, const FormulaSetting& setting);
+
+/// A surface in space, by default the flat picture as map/surface/shape.h has it: x to the right, y up, z towards the viewer.
+struct SurfaceText {
+    std::string px = "(u-0.5)*aspect", py = "v-0.5", pz = "0";
+    std::vector<Assignment> definitions;  ///< as those of FormulaText
+    std::string let;
+};
+
+/// What the names stand for.
+struct SurfaceSetting {
+    double aspect = 1, frame = 0;
+};
+
+/// A text as programs of u and 1 - v.
+struct SpaceFormula {
+    FormulaProgram point;   ///< x, y and z
+    FormulaProgram domain;  ///< positive where there is a surface
+    bool is_everywhere;     ///< there is one for all u and v
+
+    /// Do both compute the same?
+    friend bool operator==(const SpaceFormula& a, const SpaceFormula& b);
+};
+
+/// Throws as parse_formula() does.
+SpaceFormula parse_surface(const SurfaceText& text, const SurfaceSetting& setting);
 
 }  // namespace anamorph

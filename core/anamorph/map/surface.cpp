@@ -7,6 +7,7 @@
 
 #include "anamorph/deform/deformation_reach.h"
 #include "anamorph/map/surface/all.h"
+#include "anamorph/number/rounded.h"
 
 namespace anamorph {
 namespace {
@@ -178,6 +179,43 @@ struct PositionsReader {
     }
 };
 
+/// A formula that is text, raised along nothing.
+struct TextReader {
+    SpaceFormula formula;
+
+    template <class T>
+    SurfacePoint<T> read(const T& u, const T& v) const {
+        const auto [x, y, z] = read_program<3>(formula.point, u, v);
+        return {x, y, z};
+    }
+    SurfacePoint<Interval> read(const Interval& u, const Interval& v) const {
+        const auto [x, y, z] = read_program<3, DefinedInterval>(formula.point, u, v);
+        return {x, y, z};
+    }
+    /// Jets, which are not bounded where a derivative jumps, do not know of positions what intervals do.
+    SurfacePoint<Jet<Interval, 2>> read(const Jet<Interval, 2>& u, const Jet<Interval, 2>& v) const {
+        auto [x, y, z] = read_program<3>(formula.point, u, v);
+        const SurfacePoint<Interval> p = read(u.value(), v.value());
+        x.c[0] = p.x;
+        y.c[0] = p.y;
+        z.c[0] = p.z;
+        return {x, y, z};
+    }
+    /// Of read() in double, over a box.
+    double rounding(const Interval& u, const Interval& v) const {
+        using R = Rounded<double>;
+        double most = 0;
+        for (const R& p : read_program<3>(formula.point, R(u, 0, 0), R(v, 0, 0)))
+            most = p.error <= HUGE_VAL ? std::max(most, p.error) : HUGE_VAL;
+        return most;
+    }
+    Certainty missing(const Interval& u, const Interval& v) const {
+        if (formula.is_everywhere) return Certainty::no;
+        const Interval domain = read_program<1, DefinedInterval>(formula.domain, u, v)[0];
+        return domain.lo > 0 ? Certainty::no : domain.hi <= 0 ? Certainty::yes : Certainty::open;
+    }
+};
+
 /// The box of a number's constant part.
 Interval box_of(const Interval& a) {
     return a;
@@ -230,6 +268,10 @@ class SummedSurface final : public DrapedSurface {
         const SurfacePoint<Interval> p = point(Interval(u), Interval(v));
         return 8 * std::max({p.x.hi - p.x.lo, p.y.hi - p.y.lo, p.z.hi - p.z.lo});
     }
+    double rounding(const Interval& u, const Interval& v) const noexcept override {
+        const double known = DrapedSurface::rounding(u, v);
+        return m_text ? known + m_text_weight * m_text->rounding(u, v) : known;
+    }
     SurfaceFrame frame(double u, double v) const noexcept override {
         using J = Jet<double, 1>;
         const SurfacePoint<J> p = point(J::variable(u, 1, 0), J::variable(v, 0, 1));
@@ -248,9 +290,11 @@ class SummedSurface final : public DrapedSurface {
     }
     Certainty missing(const Interval& u, const Interval& v) const noexcept override {
         Certainty all = Certainty::no;
-        for (const auto& field : m_fields)
-            if (const Certainty one = field->missing(u, v); one != Certainty::no)
-                all = all == Certainty::yes ? all : one;
+        const auto add = [&](Certainty one) {
+            if (one != Certainty::no && all != Certainty::yes) all = one;
+        };
+        for (const auto& field : m_fields) add(field->missing(u, v));
+        if (m_text) add(m_text->missing(u, v));
         return all;
     }
 
@@ -327,6 +371,8 @@ class SummedSurface final : public DrapedSurface {
     std::vector<std::unique_ptr<SurfacePart>> m_parts;
     std::vector<double> m_weights;
     std::vector<std::shared_ptr<const SampledField>> m_fields;
+    std::optional<TextReader> m_text;
+    double m_text_weight = 0;                 ///< the sum of its magnitudes
     std::vector<Deformation> m_deformations;  ///< with v down
     DeformationReach m_reach;
 };
@@ -346,7 +392,9 @@ std::unique_ptr<SurfacePart> make_part_of(std::size_t which, const SurfaceSum& s
 #undef ANAMORPH_SURFACE
     };
     if (which < makers.size()) return makers[which](sum);
-    return std::make_unique<ReadPart<PositionsReader>>(PositionsReader{sum.positions});
+    if (which == makers.size())
+        return std::make_unique<ReadPart<PositionsReader>>(PositionsReader{sum.positions});
+    return std::make_unique<ReadPart<TextReader>>(TextReader{sum.formula.value()});
 }
 
 /// Those that are enabled, checked, with v counted up as it is down here. Differences from a centre are exact near by,
@@ -365,9 +413,11 @@ SummedSurface::SummedSurface(const SurfaceSum& sum)
     for (const SurfaceSum::Part& part : sum.parts) {
         m_parts.push_back(make_part_of(part.which, sum));
         m_weights.push_back(part.weight);
+        if (part.which == surface_names().size() + 1) m_text_weight += std::fabs(part.weight);
     }
     for (const auto& field : {sum.positions, sum.heights})
         if (field) m_fields.push_back(field);
+    if (sum.formula) m_text = TextReader{*sum.formula};
 }
 
 }  // namespace
@@ -378,6 +428,15 @@ const std::vector<std::string>& surface_names() {
 #include "anamorph/map/surface/list.h"
 #undef ANAMORPH_SURFACE
     };
+    return names;
+}
+
+const std::vector<std::string>& all_surface_names() {
+    static const std::vector<std::string> names = [] {
+        std::vector<std::string> all = surface_names();
+        all.insert(all.end(), {"positions", "formula"});
+        return all;
+    }();
     return names;
 }
 

@@ -3,14 +3,17 @@
 // on curves.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <glm/vec3.hpp>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "anamorph/deform/deformation.h"
+#include "anamorph/map/formula_text.h"
 #include "anamorph/map/sampled_field.h"
 #include "anamorph/map/surface/shape.h"
 #include "anamorph/number/interval.h"
@@ -39,11 +42,19 @@ class DrapedSurface {
     }
     /// How far position() may be from the exact point, coordinate by coordinate, at most.
     virtual double rounding(double u, double v) const noexcept = 0;
+    /// The same at any point of a box. It grows with the magnitudes that a formula meets, which are largest at corners; of
+    /// text, whose numbers may be largest anywhere, all points are asked. Infinite where that is not known.
+    virtual double rounding(const Interval& u, const Interval& v) const noexcept {
+        double most = rounding(u.lo / 2 + u.hi / 2, v.lo / 2 + v.hi / 2);
+        for (const double s : {u.lo, u.hi})
+            for (const double t : {v.lo, v.hi}) most = std::max(most, rounding(s, t));
+        return most;
+    }
     virtual SurfaceFrame frame(double u, double v) const noexcept = 0;
     /// As exactly as is known: what errors are measured against.
     virtual std::array<long double, 3> truth(long double u, long double v) const noexcept = 0;
     /// Encloses the Taylor coefficients at every point of the box that is not missing; those of the second degree wherever
-    /// they exist.
+    /// they exist. Derivatives may be infinite, and say nothing then.
     virtual SurfaceRange range(const Interval& u, const Interval& v) const noexcept = 0;
     /// Is there no surface over a box (SampledField::missing)?
     virtual Certainty missing(const Interval& u, const Interval& v) const noexcept = 0;
@@ -51,22 +62,25 @@ class DrapedSurface {
 
 /// The names of surfaces, in the order of map/surface/list.h.
 const std::vector<std::string>& surface_names();
+/// Names, and what sums have besides: `positions` and `formula`.
+const std::vector<std::string>& all_surface_names();
 /// Has it normals that are once continuously differentiable, along which a relief can be raised?
 bool has_smooth_normals(std::size_t which);
 
 /// A surface as a sum of others (Oka 1987, eq. 4.3), each raised along its own normal, moved by deformations (eq. 4.1).
 struct SurfaceSum {
     struct Part {
-        std::size_t which = 0;  ///< of surface_names(), or one past the last: `positions`
+        std::size_t which = 0;  ///< of surface_names(); after the last one `positions`, and then `formula`
         double weight = 1;
         bool operator==(const Part&) const = default;
     };
     std::vector<Part> parts = {{}};
     SurfaceShape shape = {};
     std::shared_ptr<const SampledField> positions = {};  ///< x, y and z
-    std::shared_ptr<const SampledField> heights = {};    ///< of parts that has_smooth_normals() allows
-    double height_scale = 0;                             ///< of those of weight 1
-    std::vector<Deformation> deformations = {};          ///< u and v run from 0 to 1 with v up
+    std::optional<SpaceFormula> formula = {};
+    std::shared_ptr<const SampledField> heights = {};  ///< of parts that has_smooth_normals() allows
+    double height_scale = 0;                           ///< of those of weight 1
+    std::vector<Deformation> deformations = {};        ///< u and v run from 0 to 1 with v up
 
     bool operator==(const SurfaceSum&) const = default;
 };

@@ -35,8 +35,8 @@ class TextMap : public PlaneMap<TextMap> {
   private:
     template <class T>
     Point<T> read(const FormulaProgram& program, const T& x, const T& y) const {
-        if (!m_is_scaled) return read_program(program, x, y);
-        return read_program(program, T(x * m_per_x.as<T>()), T(y * m_per_y.as<T>()));
+        if (!m_is_scaled) return read_point(program, x, y);
+        return read_point(program, T(x * m_per_x.as<T>()), T(y * m_per_y.as<T>()));
     }
 
     PlaneFormula m_formula;

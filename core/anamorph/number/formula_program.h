@@ -12,6 +12,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <new>
+#include <utility>
 #include <vector>
 
 #include "anamorph/geometry/point.h"
@@ -52,7 +53,7 @@ struct ProgramStep {
     std::uint8_t result, a = 0, b = 0, c = 0;
 };
 
-/// Computes two numbers from x and y, which are registers 0 and 1.
+/// Computes numbers from x and y, which are registers 0 and 1.
 struct FormulaProgram {
     /// Registers are reused; more are alive at once in no program.
     static constexpr int kRegisters = 64;
@@ -60,8 +61,24 @@ struct FormulaProgram {
     std::vector<ProgramStep> steps;
     std::vector<double> numbers;
     std::vector<Constant> constants;
-    std::array<std::uint8_t, 2> outputs{};
+    std::vector<std::uint8_t> outputs;
 };
+
+/// An interval that leaves out what has no root or no logarithm, and knows how far constants are off: of the values that a
+/// program has for the members of x and y, all that are defined.
+struct DefinedInterval : Interval {
+    using Interval::Interval;
+    DefinedInterval(const Interval& a) : Interval(a) {}  // NOLINT: it is one
+    static DefinedInterval near(double value, double error) {
+        return Interval(value) + Interval(-error, error);
+    }
+};
+inline DefinedInterval sqrt(const DefinedInterval& a) {
+    return sqrt(Interval(a.lo < 0 && a.hi >= 0 ? 0 : a.lo, a.hi));
+}
+inline DefinedInterval log(const DefinedInterval& a) {
+    return log(Interval(a.lo < 0 && a.hi >= 0 ? 0 : a.lo, a.hi));
+}
 
 namespace program_detail {
 
@@ -254,9 +271,9 @@ Jets<Interval, N> angle_of(const Jets<Interval, N>& y, const Jets<Interval, N>& 
 
 }  // namespace program_detail
 
-/// What a program gives at (x, y), read with T.
-template <class T>
-Point<T> read_program(const FormulaProgram& program, const T& x, const T& y) {
+/// The first N numbers that a program computes at (x, y), read with T.
+template <std::size_t N, class T>
+std::array<T, N> read_program(const FormulaProgram& program, const T& x, const T& y) {
     using namespace program_detail;
     // Registers are written before they are read, and no step writes over its own operands.
     alignas(alignof(T) > 64 ? alignof(T) : 64) std::byte room[FormulaProgram::kRegisters * sizeof(T)];
@@ -330,7 +347,17 @@ Point<T> read_program(const FormulaProgram& program, const T& x, const T& y) {
                 break;
         }
     }
-    return {r[program.outputs[0]], r[program.outputs[1]]};
+    return [&]<std::size_t... I>(std::index_sequence<I...>) {
+        return std::array<T, N>{r[program.outputs[I]]...};
+    }
+    (std::make_index_sequence<N>());
+}
+
+/// Of a program that computes two.
+template <class T>
+Point<T> read_point(const FormulaProgram& program, const T& x, const T& y) {
+    const auto [to_x, to_y] = read_program<2>(program, x, y);
+    return {to_x, to_y};
 }
 
 }  // namespace anamorph

@@ -41,8 +41,10 @@ ParameterTable sequence_rows() {
               "frame, and 1 without keys"),
         whole("frame", "", "", 0, kMostFrames, "one frame alone"),
         file("keys",
-             "key frames of any numbers here, JSON: {\"keys\": {\"turn\": [[0, 0.1], [24, 0.9]]}}, each a "
-             "frame and its numbers; optional \"interpolation\": step, linear, catmull_rom, or "
+             "key frames of any numbers here, and of names of formulas, JSON: {\"keys\": {\"turn\": [[0, "
+             "0.1], "
+             "[24, 0.9]]}}, each a frame and its numbers; optional \"interpolation\": step, linear, "
+             "catmull_rom, or "
              "monotone_cubic, the default"),
     };
 }
@@ -251,6 +253,7 @@ class DrapeRequest {
     /// A frame's values.
     ParameterValues values_at(int frame) const {
         ParameterValues values = m_values;
+        values.assign({{"frame", std::to_string(frame)}});
         for (const NamedKeyFrames& keys : m_keys) {
             std::string text;
             for (const double number : keys.frames.at(frame))
@@ -296,9 +299,13 @@ class DrapeRequest {
                                           [&](const Parameter& p) { return p.name == keys.name; });
             const bool number = row != table.end() &&
                                 (row->type == ParameterType::number || row->type == ParameterType::numbers);
-            if (!number || keys.name == "height_smooth")
+            const auto& own = m_values.definitions();
+            const bool defined =
+                std::any_of(own.begin(), own.end(), [&](const Assignment& a) { return a.key == keys.name; });
+            if ((!number || keys.name == "height_smooth") && !defined)
                 throw Error("keys", printable(keys.name),
-                            "must be keys of numbers other than whole ones and height_smooth");
+                            "must be keys of numbers other than whole ones and height_smooth, or names that "
+                            "the recipe defines");
         }
     }
     void choose_frames() {

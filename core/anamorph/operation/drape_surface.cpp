@@ -17,13 +17,6 @@ namespace {
 // Weights are from minus this to this.
 constexpr double kMostWeight = 1e6;
 
-/// Formulas, and what is read from a file.
-std::vector<std::string> surfaces() {
-    std::vector<std::string> names = surface_names();
-    names.push_back("positions");
-    return names;
-}
-
 SurfaceShape shape_of(const ParameterValues& values, double aspect) {
     SurfaceShape shape;
     shape.aspect = aspect;
@@ -49,7 +42,7 @@ std::vector<std::string> blended(const ParameterValues& values) {
 
 /// The surface and those that it is blended with, with weights of sum 1.
 std::vector<SurfaceSum::Part> parts_of(const ParameterValues& values) {
-    const std::vector<std::string> names = surfaces(), blend = blended(values);
+    const std::vector<std::string>&names = all_surface_names(), blend = blended(values);
     const std::vector<double> weights =
         values.given("weights") ? values.numbers("weights") : std::vector<double>{};
     if (weights.size() != blend.size())
@@ -106,6 +99,21 @@ std::shared_ptr<const SampledField> read_heights(const SideFile& file, double si
     });
 }
 
+/// What a formula is made of is for a surface that has one.
+void check_formula_keys(const ParameterValues& values, bool has_formula) {
+    if (has_formula) return;
+    for (const char* name : {"px", "py", "pz", "let"})
+        if (values.given(name))
+            throw Error(name, printable(values.text(name)),
+                        "is of surface=formula: surface must be formula, or blend name it");
+    if (values.definitions().empty()) return;
+    std::string known;
+    for (const Parameter& row : values.table()) known += (known.empty() ? "" : ", ") + row.name;
+    const Assignment& first = values.definitions()[0];
+    throw Error(printable(first.key), printable(first.value),
+                "there is no such parameter: must be one of " + known);
+}
+
 /// What is missing of a surface, in words.
 std::string missing_of(const char* key, const SampledField& field) {
     if (field.missing_texels() == 0) return "";
@@ -118,11 +126,13 @@ std::string missing_of(const char* key, const SampledField& field) {
 ParameterTable drape_surface_rows() {
     using namespace rows;
     return {
-        choice("surface", "plane", surfaces(),
-               "undeformed the picture is 1 high, about the origin, in the plane z = 0, with x to the right "
-               "and y up. cylinder: about the y axis; sphere: about the origin, with all latitudes; torus: "
-               "about the y axis; page_turn: a sheet curls round a cylinder that rolls over it; waves, "
-               "ripples: plane and circular; positions: of the picture that the key positions names"),
+        choice(
+            "surface", "plane", all_surface_names(),
+            "undeformed the picture is 1 high, about the origin, in the plane z = 0, with x to the right "
+            "and y up. cylinder: about the y axis; sphere: about the origin, with all latitudes; torus: "
+            "about the y axis; page_turn: a sheet curls round a cylinder that rolls over it; waves, "
+            "ripples: plane and circular; positions: of the picture that the key positions names; formula: "
+            "of px, py and pz"),
         text("blend", "names of surfaces, separated by commas, that the surface is blended with, by weights"),
         numbers("weights", -kInfinity,
                 "one for each surface of blend; what they lack to 1 is the weight of surface itself, and any "
@@ -130,6 +140,14 @@ ParameterTable drape_surface_rows() {
         image("positions",
               "of surface=positions: a picture whose first three channels are x, y and z, over the whole of "
               "the draped picture, interpolated by smooth cubics"),
+        text("px",
+             "of surface=formula: x in space, a formula of u and v, from 0 to 1 with v up, of aspect, the "
+             "picture's width over its height, and of frame; (u-0.5)*aspect by default"),
+        text("py", "the same for y; v-0.5 by default"),
+        text("pz", "the same for z; 0 by default"),
+        definitions("let",
+                    "definitions before these, as in k=0.3;c=cos(k); any other key k=0.3 is one too, and "
+                    "stands before these"),
         image("height",
               "a picture by whose brightness, the mean of up to three channels, the surface is raised along "
               "its normal, interpolated by smooth cubics"),
@@ -174,21 +192,36 @@ DrapeSurfaces::DrapeSurfaces(const OperationInput& input, double aspect) : m_asp
         m_files.deformations = parse_deformations_file(input.reader.text(list->name), list->name);
 }
 
+SpaceFormula DrapeSurfaces::formula_of(const ParameterValues& values) const {
+    SurfaceText text;
+    if (values.given("px")) text.px = values.text("px");
+    if (values.given("py")) text.py = values.text("py");
+    if (values.given("pz")) text.pz = values.text("pz");
+    if (values.given("let")) text.let = values.text("let");
+    text.definitions = values.definitions();
+    return parse_surface(text, {m_aspect, values.given("frame") ? values.number("frame") : 0});
+}
+
 SurfaceSum DrapeSurfaces::sum_of(const ParameterValues& values) const {
     SurfaceSum sum = m_files;
     sum.parts = parts_of(values);
     sum.shape = shape_of(values, m_aspect);
     sum.height_scale = values.number("height_scale");
-    const bool sampled = std::any_of(sum.parts.begin(), sum.parts.end(), [](const SurfaceSum::Part& part) {
-        return part.which == surface_names().size();
-    });
+    const auto has = [&](const char* name) {
+        return std::any_of(sum.parts.begin(), sum.parts.end(), [&](const SurfaceSum::Part& part) {
+            return all_surface_names()[part.which] == name;
+        });
+    };
+    check_formula_keys(values, has("formula"));
+    if (has("formula")) sum.formula = formula_of(values);
+    const bool sampled = has("positions");
     if (sampled && !sum.positions) throw Error("positions is not given: must be a picture of x, y and z");
     if (!sampled && sum.positions)
         throw Error("positions is given: surface must be positions, or blend name it");
     for (const SurfaceSum::Part& part : sum.parts)
         if (sum.heights && !has_smooth_normals(part.which))
-            throw Error("height is given: surface must not be " + surfaces()[part.which] +
-                        ", whose normals turn abruptly");
+            throw Error("height is given: surface must not be " + all_surface_names()[part.which] +
+                        ", whose normals may turn abruptly");
     return sum;
 }
 

@@ -24,7 +24,7 @@ class DrapeSurfaces {
 
     /// What in the files is no number, in words; empty where there is nothing.
     const std::string& missing() const { return m_missing; }
-    /// The surface of a frame's values. Throws Error.
+    /// The surface of a frame's values, in which `frame` is the frame. Throws Error.
     SurfaceSum sum_of(const ParameterValues& values) const;
     /// Its patches, which frames share as long as the surface stays.
     std::shared_ptr<SharedTree> tree_of(const SurfaceSum& sum) const;
@@ -34,6 +34,8 @@ class DrapeSurfaces {
         std::mutex mutex;
         std::vector<std::pair<SurfaceSum, std::shared_ptr<SharedTree>>> trees;  ///< the last one first
     };
+
+    SpaceFormula formula_of(const ParameterValues& values) const;
 
     double m_aspect;
     SurfaceSum m_files;

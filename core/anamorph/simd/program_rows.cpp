@@ -149,7 +149,7 @@ struct Row {
 /// The points from `first` on.
 template <int N>
 void ReadRow(const FormulaProgram& program, const ProgramRow& at, int first, ProgramRow& to) {
-    const Point<Row<N>> p = read_program(program, Row<N>(at.x + first), Row<N>(at.y + first));
+    const Point<Row<N>> p = read_point(program, Row<N>(at.x + first), Row<N>(at.y + first));
     for (int i = 0; i < N; i += kLanes) {
         p.x.at(i).store(to.x + first + i);
         p.y.at(i).store(to.y + first + i);
