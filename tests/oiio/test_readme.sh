@@ -21,7 +21,7 @@ oiiotool "panorama.exr.pano?to=cylindrical&fov=360&size=256x64" -o slits.exr
 oiiotool $(for i in {1..32}; do echo slits.exr; done) --mosaic 1x32 -o room.exr
 
 "$PYTHON" "$blocks" oiio . >one_liners.sh
-[ "$(wc -l <one_liners.sh)" -eq 36 ]
+[ "$(wc -l <one_liners.sh)" -eq 39 ]
 if ! command -v ffmpeg >/dev/null; then
     sed -i '/^ffmpeg /d' one_liners.sh
 fi
@@ -44,6 +44,9 @@ iinfo hardware.exr | tr -d ' ' | grep ":480x360,"
 [ -s straight.jpg ]
 iinfo twirl.jpg | tr -d ' ' | grep ":480x480,3channel,uint8jpeg"
 iinfo unrolled.jpg | tr -d ' ' | grep ":480x240,3channel,uint8jpeg"
+iinfo saddle.jpg | tr -d ' ' | grep ":480x480,3channel,uint8jpeg"
+iinfo moebius.jpg | tr -d ' ' | grep ":480x480,3channel,uint8jpeg"
+[ "$(ls flag.*.jpg | wc -l)" -eq 12 ]
 iinfo ripple_error.exr | tr -d ' ' | grep ":480x480,1channel"
 [ -s film.mp4 ] || ! command -v ffmpeg
 # The distortion taken off and put on again, but for what is filtered twice; by way of a larger picture.

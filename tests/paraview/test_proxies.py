@@ -220,6 +220,7 @@ def check_surfaces(element, words):
     assert len(texts) == len(words) == int(weights.get("number_of_elements")), (texts, words)
     assert labels == list(enumerate(texts)), labels
     assert texts[anamorph.vtkAnamorphDrape.POSITIONS] == "Positions" and anamorph.vtkAnamorphDrape.POSITIONS == 7, texts
+    assert texts[anamorph.vtkAnamorphDrape.FORMULA] == "Formula" and anamorph.vtkAnamorphDrape.FORMULA == 8, texts
 
 
 def with_input(cls):

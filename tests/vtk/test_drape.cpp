@@ -325,7 +325,7 @@ std::vector<double> wanted_of(const Case& c, vtkImageData* texture) {
 }
 
 TEST(VtkDrape, EverySurfaceHasThePixelsOfTheOperation) {
-    ASSERT_EQ(anamorph::surface_names().size(), std::size_t{Drape::NumberOfSurfaces - 1});
+    ASSERT_EQ(anamorph::all_surface_names().size(), std::size_t{Drape::NumberOfSurfaces});
     for (int surface = Drape::PLANE; surface <= Drape::RIPPLES; ++surface)
         for (const bool parallel : {false, true})
             for (int i = 0; i < 9; ++i) {
@@ -577,30 +577,32 @@ TEST(VtkDrape, BlendsHaveThePixelsOfTheOperation) {
 }
 
 TEST(VtkDrape, FormulasHaveThePixelsOfTheOperation) {
-    expect_pixels_of_operation({[](Drape* f) {
-                                    f->SetSurface(Drape::FORMULA);
-                                    f->SetFormulaX("cos(c)*(1+w*cos(c/2))/2");
-                                    f->SetFormulaY("sin(c)*(1+w*cos(c/2))/2");
-                                    f->SetFormulaZ("w*sin(c/2)/2");
-                                    f->SetFormulaDefinitions("w=(v-.5)*.6;c=2*pi*u+frame");
-                                    f->SetFrame(2);
-                                    f->SetInputData(3, table_of_bumps());
-                                    f->SetShading(Drape::PHONG);
-                                },
-                                {{"surface", "formula"},
-                                 {"px", "cos(c)*(1+w*cos(c/2))/2"},
-                                 {"py", "sin(c)*(1+w*cos(c/2))/2"},
-                                 {"pz", "w*sin(c/2)/2"},
-                                 {"let", "w=(v-.5)*.6;c=2*pi*u+frame"},
-                                 {"frame", "2"},
-                                 {"deform", "deform"},
-                                 {"shading", "phong"}},
-                                {{{"deform", bumps_as_file()}}}});
-    expect_pixels_of_operation({[](Drape* f) {
-                                    f->SetBlendWeight(Drape::FORMULA, 0.5);
-                                    f->SetFormulaZ("-abs(u-.3)");
-                                },
-                                {{"blend", "formula"}, {"weights", "0.5"}, {"pz", "-abs(u-.3)"}}});
+    Scene moebius{[](Drape* f) {
+                      f->SetSurface(Drape::FORMULA);
+                      f->SetFormulaX("cos(c)*(1+w*cos(c/2))/2");
+                      f->SetFormulaY("sin(c)*(1+w*cos(c/2))/2");
+                      f->SetFormulaZ("w*sin(c/2)/2");
+                      f->SetFormulaDefinitions("w=(v-.5)*.6;c=2*pi*u+frame");
+                      f->SetFrame(2);
+                      f->SetInputData(3, table_of_bumps());
+                      f->SetShading(Drape::PHONG);
+                  },
+                  {{"surface", "formula"},
+                   {"px", "cos(c)*(1+w*cos(c/2))/2"},
+                   {"py", "sin(c)*(1+w*cos(c/2))/2"},
+                   {"pz", "w*sin(c/2)/2"},
+                   {"let", "w=(v-.5)*.6;c=2*pi*u+frame"},
+                   {"frame", "2"},
+                   {"deform", "deform"},
+                   {"shading", "phong"}}};
+    moebius.files.all = {{"deform", bumps_as_file()}};
+    expect_pixels_of_operation(moebius);
+    const Scene half_a_roof{[](Drape* f) {
+                                f->SetBlendWeight(Drape::FORMULA, 0.5);
+                                f->SetFormulaZ("-abs(u-.3)");
+                            },
+                            {{"blend", "formula"}, {"weights", "0.5"}, {"pz", "-abs(u-.3)"}}};
+    expect_pixels_of_operation(half_a_roof);
 }
 
 TEST(VtkDrape, ANewPictureOrListOfAnInputIsSeen) {
@@ -756,7 +758,7 @@ TEST(VtkDrape, WhatOtherInputsLackIsAnError) {
                     f->SetSurface(Drape::FORMULA);
                     f->SetFormulaZ("2*w");
                 }),
-                HasSubstr("pz=2*w: column 3: expected a name that is known"));
+                HasSubstr("FormulaZ=2*w: column 3: expected a name that is known"));
     EXPECT_THAT(error([](Drape* f) { f->SetBlendWeight(Drape::POSITIONS, 0.5); }),
                 HasSubstr("positions is not given"));
     const auto positions = [&](vtkDataObject* data) {

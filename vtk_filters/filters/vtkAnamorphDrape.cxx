@@ -132,6 +132,10 @@ std::string property_of(const std::string& row) {
     static const std::map<std::string, std::string> kOthers = {{"camera", "CameraPosition"},
                                                                {"up", "CameraViewUp"},
                                                                {"tol", "Tolerance"},
+                                                               {"px", "FormulaX"},
+                                                               {"py", "FormulaY"},
+                                                               {"pz", "FormulaZ"},
+                                                               {"let", "FormulaDefinitions"},
                                                                {"light", "Light"},
                                                                {"weights", "BlendWeights"}};
     if (const auto other = kOthers.find(row); other != kOthers.end()) return other->second;

@@ -52,15 +52,15 @@ double off_the_toy(Drape& filter, double weight) {
 
 TEST(ToySurface, HasAnEnumeratorAndPositionsKeepsItsValue) {
     EXPECT_EQ(anamorph::surface_names().back(), "toy_saddle");
+    EXPECT_EQ(int{Drape::POSITIONS}, 7) << "saved states have that number";
     EXPECT_EQ(int{Drape::FORMULA}, 8) << "and that one";
     EXPECT_EQ(int{Drape::TOY_SADDLE}, 9);
-    EXPECT_EQ(int{Drape::POSITIONS}, 7) << "saved states have that number";
-    EXPECT_EQ(int{Drape::NumberOfSurfaces}, 9);
+    EXPECT_EQ(int{Drape::NumberOfSurfaces}, 10);
     vtkNew<Drape> filter;
     filter->SetSurface(100);
-    EXPECT_EQ(filter->GetSurface(), 8);
-    filter->SetBlendWeight(8, 0.5);
-    EXPECT_EQ(filter->GetBlendWeights()[8], 0.5);
+    EXPECT_EQ(filter->GetSurface(), 9);
+    filter->SetBlendWeight(9, 0.5);
+    EXPECT_EQ(filter->GetBlendWeights()[9], 0.5);
 }
 
 TEST(ToySurface, IsDrawnAndBlended) {
@@ -82,8 +82,8 @@ TEST(ToySurface, IsInTheProxy) {
     EXPECT_THAT(text.str(), HasSubstr("<Entry value=\"7\" text=\"Positions\"/>"));
     EXPECT_THAT(text.str(), HasSubstr("<Entry value=\"9\" text=\"Toy saddle\"/>"));
     EXPECT_THAT(text.str(), HasSubstr("<ComponentLabel component=\"9\" label=\"Toy saddle\"/>"));
-    EXPECT_THAT(text.str(), HasSubstr("number_of_elements=\"9\" argument_is_array"));
-    EXPECT_THAT(text.str(), HasSubstr("default_values=\"0 0 0 0 0 0 0 0 0\""));
+    EXPECT_THAT(text.str(), HasSubstr("number_of_elements=\"10\" argument_is_array"));
+    EXPECT_THAT(text.str(), HasSubstr("default_values=\"0 0 0 0 0 0 0 0 0 0\""));
 }
 
 }  // namespace
