@@ -142,6 +142,25 @@ TEST(TextMap, ThereIsNoPointWhereAFormulaHasNoValue) {
         EXPECT_TRUE(is_inside(some)) << some;
 }
 
+TEST(TextMap, PixelsWithoutAPointAreCounted) {
+    const Size target{150, 97};
+    for (const char* u : {"x", "sqrt(r-0.5)", "log(px*py)", "1/floor(4*s)", "asin(2*px)", "sqrt(-1-r)",
+                          "1e308*r", "if(hypot(px,py)<0.7,x,1/0)", "1/(x-50.5)"}) {
+        FormulaText text;
+        text.u = u;
+        const TextMap map(parse_formula(text, {target, kSource}), target, target, kSource);
+        std::int64_t count = 0;
+        for (int y = 0; y < target.height; ++y)
+            for (int x = 0; x < target.width; ++x) {
+                const Point<long double> at{x + 0.5L, y + 0.5L};
+                const Point<long double> p = map.source_point(at.x, at.y);
+                count +=
+                    !(map.inside(at.x, at.y) > 0 && std::fabs(p.x) <= std::numeric_limits<double>::max());
+            }
+        EXPECT_EQ(map.undefined_pixels({0, 0, target.width, target.height}), count) << u;
+    }
+}
+
 TEST(TextMap, KeysOfTheirOwnDefineNames) {
     const auto value_of = [](const std::vector<Assignment>& definitions, const std::string& let,
                              const std::string& u) {

@@ -486,6 +486,16 @@ TEST_F(Metadata, ToleranceIsSaidWhereOneIsHeld) {
     }
 }
 
+TEST_F(Metadata, AFormulaSaysHowMuchOfThePictureHasNoPoint) {
+    const auto fraction = [](const std::string& u) {
+        return spec_of("city.exr.map?size=64&u=" + u).get_float_attribute("anamorph:undefined_fraction", -1);
+    };
+    EXPECT_EQ(fraction("x"), 0);
+    EXPECT_EQ(fraction("x+1000"), 0) << "beyond the source is no matter of the formula";
+    EXPECT_EQ(fraction("if(s<0.25,1/0,x)"), 0.25f);
+    EXPECT_EQ(fraction("sqrt(-x)"), 1);
+}
+
 TEST_F(Metadata, StockProgramsKnowAnEnvironment) {
     // maketx keeps what the picture says; OpenEXR's own attribute comes back as a texture's format.
     write_text("sky.pano", "src=city.exr\nto=equirectangular\nsize=64x32\nyaw=10\n");

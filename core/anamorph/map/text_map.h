@@ -32,7 +32,13 @@ class TextMap : public PlaneMap<TextMap> {
     /// The points (x + i, y): as exact() has them, within the same bound. `piece` is 0, or -1 where there is no source point.
     void exact_row(double x, double y, int count, double* to_x, double* to_y, std::int32_t* piece) const;
 
+    /// The pixels of a box whose middles have no source point, wherever the source ends.
+    std::int64_t undefined_pixels(const Box& box) const;
+
   private:
+    /// Have the middles of all pixels of a box source points?
+    Certainty is_defined(const Box& box) const;
+
     template <class T>
     Point<T> read(const FormulaProgram& program, const T& x, const T& y) const {
         if (!m_is_scaled) return read_point(program, x, y);

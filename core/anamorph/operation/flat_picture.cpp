@@ -10,22 +10,26 @@ namespace {
 /// The map and its picture.
 class FlatPicture {
   public:
-    FlatPicture(const FlatRequest& r, std::shared_ptr<const BlockMap> blocks) {
+    FlatPicture(const FlatRequest& r, FlatMap map) : m_says(std::move(map.says)) {
         const Chart flat(Projection::rectilinear, r.source.width, r.source.height);
-        m_picture.maps = {{std::move(blocks), {{Border(flat, r.wrap)}}}};
+        m_picture.maps = {{std::move(map.blocks), {{Border(flat, r.wrap)}}}};
         m_picture.filter = r.filter;
         m_picture.output = r.output;
     }
     const Picture& picture() const { return m_picture; }
+    Attributes says(const ParallelFor& parallel_for) const {
+        return m_says ? m_says(parallel_for) : Attributes{};
+    }
 
   private:
     Picture m_picture;
+    std::function<Attributes(const ParallelFor&)> m_says;
 };
 
 class FlatPictures final : public Pictures {
   public:
-    FlatPictures(const FlatRequest& request, FlatBlocks blocks)
-        : m_request(request), m_blocks(std::move(blocks)) {}
+    FlatPictures(const FlatRequest& request, MakeFlatMap make_map)
+        : m_request(request), m_make_map(std::move(make_map)) {}
 
     std::optional<PictureRequest> picture(int, int level) const override {
         const std::optional<Size> size = level_size(m_request.target, level);
@@ -36,15 +40,17 @@ class FlatPictures final : public Pictures {
         picture.says = {{"anamorph:tol", m_request.plan.tol}};
         picture.says.insert(picture.says.end(), m_request.says.begin(), m_request.says.end());
         if (picture.pixels == PixelKind::color && m_request.filter == Filter::nearest) picture.moves = 0;
-        picture.solve = [request = m_request, blocks = m_blocks, size = *size] {
-            return std::make_unique<Solved<FlatPicture>>(FlatPicture(request, blocks(size)));
+        picture.solve = [request = m_request, make_map = m_make_map, size = *size] {
+            return std::make_unique<Solved<FlatPicture>>(
+                FlatPicture(request, make_map(size)),
+                [](const FlatPicture& of, const ParallelFor& parallel_for) { return of.says(parallel_for); });
         };
         return picture;
     }
 
   private:
     FlatRequest m_request;
-    FlatBlocks m_blocks;
+    MakeFlatMap m_make_map;
 };
 
 }  // namespace
@@ -62,8 +68,8 @@ FlatRequest flat_request(const ParameterValues& values, const Size& source, cons
     return r;
 }
 
-std::unique_ptr<const Pictures> flat_pictures(const FlatRequest& request, const FlatBlocks& blocks) {
-    return std::make_unique<FlatPictures>(request, blocks);
+std::unique_ptr<const Pictures> flat_pictures(const FlatRequest& request, const MakeFlatMap& make_map) {
+    return std::make_unique<FlatPictures>(request, make_map);
 }
 
 }  // namespace anamorph

@@ -23,9 +23,14 @@ struct FlatRequest {
 /// What rows of the table say: filter, wrap, output, scheme and tol.
 FlatRequest flat_request(const ParameterValues& values, const Size& source, const Size& target);
 
-/// The blocks of the map, of a picture of so many pixels.
-using FlatBlocks = std::function<std::shared_ptr<const BlockMap>(const Size& pixels)>;
+/// The map, and what it says of its picture beyond what every picture reached.
+struct FlatMap {
+    std::shared_ptr<const BlockMap> blocks;
+    std::function<Attributes(const ParallelFor& parallel_for)> says = {};
+};
+/// That of a picture of so many pixels.
+using MakeFlatMap = std::function<FlatMap(const Size& pixels)>;
 
-std::unique_ptr<const Pictures> flat_pictures(const FlatRequest& request, const FlatBlocks& blocks);
+std::unique_ptr<const Pictures> flat_pictures(const FlatRequest& request, const MakeFlatMap& make_map);
 
 }  // namespace anamorph

@@ -95,8 +95,8 @@ std::unique_ptr<const Pictures> pictures_of_lens(const ParameterValues& values, 
     FlatRequest request = flat_request(values, source, target);
     request.says = observed.says;
     return flat_pictures(request, [request, observed, mode](const Size& pixels) {
-        return std::make_shared<LensPlan>(
-            LensMap(observed.chart, mode, request.target, pixels, request.source), request.plan);
+        return FlatMap{std::make_shared<LensPlan>(
+            LensMap(observed.chart, mode, request.target, pixels, request.source), request.plan)};
     });
 }
 

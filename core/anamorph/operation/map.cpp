@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // A picture drawn along a formula that is written as text.
+#include <algorithm>
+#include <atomic>
+
 #include "anamorph/approx/text_plan.h"
 #include "anamorph/operation/flat_picture.h"
 #include "anamorph/operation/rows.h"
@@ -35,6 +38,18 @@ ParameterTable make_map_table() {
     };
 }
 
+/// Of the pixels, those whose middles have no source point.
+double undefined_fraction(const TextMap& map, const ParallelFor& parallel_for) {
+    constexpr int kRows = 128;
+    const Size size = map.target_size();
+    std::atomic<std::int64_t> count{0};
+    parallel_for((size.height + kRows - 1) / kRows, [&](std::int64_t i) {
+        const int top = static_cast<int>(i) * kRows;
+        count += map.undefined_pixels({0, top, size.width, std::min(top + kRows, size.height)});
+    });
+    return static_cast<double>(count) / (static_cast<double>(size.width) * size.height);
+}
+
 std::unique_ptr<const Pictures> pictures_of_map(const ParameterValues& values, const SourceFacts& facts) {
     const Size source{facts.width, facts.height}, target = rows::size_of(values, source);
     FormulaText text;
@@ -45,8 +60,12 @@ std::unique_ptr<const Pictures> pictures_of_map(const ParameterValues& values, c
     const FormulaSetting setting{target, source, values.number("frame"), values.text("units") == "fractions"};
     const FlatRequest request = flat_request(values, source, target);
     return flat_pictures(request, [request, formula = parse_formula(text, setting)](const Size& pixels) {
-        return std::make_shared<TextPlan>(TextMap(formula, request.target, pixels, request.source),
-                                          request.plan);
+        const auto plan = std::make_shared<TextPlan>(TextMap(formula, request.target, pixels, request.source),
+                                                     request.plan);
+        return FlatMap{plan, [plan](const ParallelFor& parallel_for) {
+                           return Attributes{{"anamorph:undefined_fraction",
+                                              undefined_fraction(plan->map(), parallel_for)}};
+                       }};
     });
 }
 
