@@ -215,6 +215,8 @@ TEST(TextMap, ErrorsNameTheColumn) {
     EXPECT_EQ(error_of("x y"), "u=x y: column 3: expected an operator or the end");
     EXPECT_EQ(error_of("x", "k=2 k"), "let=k=2 k: column 5: expected ;");
     EXPECT_EQ(error_of("x", "sin=2"), "let=sin=2: column 1: expected a name that is no function's");
+    EXPECT_EQ(error_of("x", "k=1; r=2"),
+              "let=k=1; r=2: column 6: expected another name: every formula has this one");
     EXPECT_THAT(error_of(std::string(100000, '(')),
                 testing::HasSubstr("no more than 200 expressions in each other"));
     EXPECT_THAT(error_of(std::string(100000, '-') + "x"), testing::HasSubstr("no more than 200"));

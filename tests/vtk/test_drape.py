@@ -10,8 +10,9 @@ for name, value in [("Surface", drape.TORUS), ("Angle", 90.5), ("Radius", 0.4), 
                     ("CameraPosition", (1, 2, 3)), ("CameraFocalPoint", (0, 1, 0)), ("CameraViewUp", (0, 1, 1)),
                     ("CameraParallelProjection", True), ("CameraParallelScale", 0.8), ("CameraViewAngle", 50),
                     ("Tolerance", 0.5), ("Filter", drape.BICUBIC), ("Background", (0.1, 0.2, 0.3, 1)),
-                    ("Style", drape.DEPTH), ("BlendWeights", (0, 0, 0.5, 0, 0, 0, 0, 0)), ("HeightScale", 0.3),
+                    ("Style", drape.DEPTH), ("BlendWeights", (0, 0, 0.5, 0, 0, 0, 0, 0, 0.1)), ("HeightScale", 0.3),
                     ("HeightSmooth", 2), ("DeformationFileName", "bumps.csv"),
+                    ("FormulaX", "u"), ("FormulaY", "v"), ("FormulaZ", "u*v*k"), ("FormulaDefinitions", "k=2"), ("Frame", 3),
                     ("PositionsArrayName", "place"), ("HeightArrayName", "height"), ("Shading", drape.PHONG),
                     ("NumberOfLights", 2), ("Ambient", 0.3), ("Diffuse", 0.4), ("Specular", 0.5), ("Shininess", 6)]:
     getattr(drape, "Set" + name)(value)

@@ -447,12 +447,15 @@ class Parser {
         if (!at_end()) fail("an operator or the end");
         return value;
     }
-    /// name=expression; ... What is in `given` already stays.
+    /// name=expression; ... What is in `given` already stays, and what is in `fixed` must not be there.
     static void define(Maker& maker, NamedValues& names, const std::string& parameter, std::string_view text,
-                       const std::set<std::string>& given) {
+                       const std::set<std::string>& given, const std::set<std::string>& fixed) {
         Parser parser(maker, names, parameter, text);
         while (!parser.at_end()) {
+            parser.skip_blanks();
+            const std::size_t first = parser.m_at;
             const std::string name(parser.name());
+            if (fixed.count(name)) parser.fail(first, "another name: every formula has this one");
             parser.expect("=");
             // Only what stands before is known.
             const Value value = parser.number();
@@ -745,8 +748,10 @@ std::set<std::string> define(Maker& maker, NamedValues& names, const std::vector
 /// The expressions, each with the name that errors give it, after all definitions.
 std::vector<Value> values_of(Maker& maker, NamedValues& names, const std::vector<Assignment>& definitions,
                              const std::string& let, const std::vector<Assignment>& expressions) {
+    std::set<std::string> fixed;
+    for (const auto& [name, value] : names) fixed.insert(name);
     const std::set<std::string> given = define(maker, names, definitions);
-    Parser::define(maker, names, "let", let, given);
+    Parser::define(maker, names, "let", let, given, fixed);
     std::vector<Value> values;
     for (const auto& [name, expression] : expressions)
         values.push_back(Parser(maker, names, name, expression).expression());

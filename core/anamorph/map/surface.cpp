@@ -201,12 +201,17 @@ struct TextReader {
         z.c[0] = p.z;
         return {x, y, z};
     }
-    /// Of read() in double, over a box.
+    /// Of read() in double, over a box: no more than what there is of exact and of rounded points, which one interval holds.
     double rounding(const Interval& u, const Interval& v) const {
         using R = Rounded<double>;
+        const auto rounded = read_program<3>(formula.point, R(u, 0, 0), R(v, 0, 0));
+        const SurfacePoint<Interval> all = read(u, v);
         double most = 0;
-        for (const R& p : read_program<3>(formula.point, R(u, 0, 0), R(v, 0, 0)))
-            most = p.error <= HUGE_VAL ? std::max(most, p.error) : HUGE_VAL;
+        for (const auto& [axis, range] : {std::pair(0, all.x), std::pair(1, all.y), std::pair(2, all.z)}) {
+            const double error = rounded[axis].error, width = (range.hi - range.lo) * (1 + 1e-15),
+                         least = error <= width ? error : width;
+            most = least <= HUGE_VAL ? std::max(most, least) : HUGE_VAL;
+        }
         return most;
     }
     Certainty missing(const Interval& u, const Interval& v) const {

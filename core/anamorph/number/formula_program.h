@@ -245,6 +245,14 @@ T angle_of(const T& y, const T& x) {
     else
         return atan2(y, x);
 }
+/// Where y is not negative nothing jumps: on the half line the angle is pi, and at the origin 0.
+inline DefinedInterval angle_of(const DefinedInterval& y, const DefinedInterval& x) {
+    if (!(y.lo == 0 && x.lo <= 0)) return atan2(y, x);
+    constexpr double kBelowPi = 3.141592653589793, kAbovePi = 3.1415926535897936;
+    const double most = x.lo < 0 ? kAbovePi : kAbovePi / 2;
+    if (x.hi >= 0) return Interval(0, most);
+    return y.hi == 0 ? Interval(kBelowPi, most) : Interval(atan2(Interval(y.hi), Interval(x.hi)).lo, most);
+}
 /// Rounded takes angles modulo a turn.
 template <class Real>
 Rounded<Real> angle_of(const Rounded<Real>& y, const Rounded<Real>& x) {

@@ -41,7 +41,8 @@ ParameterTable sequence_rows() {
               "frame, and 1 without keys"),
         whole("frame", "", "", 0, kMostFrames, "one frame alone"),
         file("keys",
-             "key frames of any numbers here, and of names of formulas, JSON: {\"keys\": {\"turn\": [[0, "
+             "key frames of any numbers here, and of keys that define names of formulas, JSON: {\"keys\": "
+             "{\"turn\": [[0, "
              "0.1], "
              "[24, 0.9]]}}, each a frame and its numbers; optional \"interpolation\": step, linear, "
              "catmull_rom, or "
@@ -304,8 +305,8 @@ class DrapeRequest {
                 std::any_of(own.begin(), own.end(), [&](const Assignment& a) { return a.key == keys.name; });
             if ((!number || keys.name == "height_smooth") && !defined)
                 throw Error("keys", printable(keys.name),
-                            "must be keys of numbers other than whole ones and height_smooth, or names that "
-                            "the recipe defines");
+                            "must be keys of numbers other than whole ones and height_smooth, or keys that "
+                            "define names of a formula");
         }
     }
     void choose_frames() {
