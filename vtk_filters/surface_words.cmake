@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 # The surfaces of the core's list as words of vtkAnamorphDrape and of its proxy.
 
-# anamorph_surface_words(LIST...): reads lists as map/surface/list.h is, one after the other, and sets in the caller
+# anamorph_surface_words(LIST...): reads lists as surface/shape/list.h is, one after the other, and sets in the caller
 #   drape_surface_count  how many there are, with that of the input Positions and that of formulas
 #   drape_enumerators    of C++ and Python, such as PLANE = 0
 #   drape_formula        the value of FORMULA
@@ -45,8 +45,8 @@ function(anamorph_surface_words)
 endfunction()
 
 # The lists that the core is compiled with.
-set(surface_lists ${PROJECT_SOURCE_DIR}/core/anamorph/map/surface/list.h)
-set(toy_surface_lists ${surface_lists} ${PROJECT_SOURCE_DIR}/tests/toys/anamorph/map/surface/list.h)
+set(surface_lists ${PROJECT_SOURCE_DIR}/core/anamorph/surface/shape/list.h)
+set(toy_surface_lists ${surface_lists} ${PROJECT_SOURCE_DIR}/tests/toys/anamorph/surface/shape/list.h)
 if(ANAMORPH_TOYS)
     set(surface_lists ${toy_surface_lists})
 endif()

@@ -12,7 +12,7 @@
 #include <filesystem>
 
 #include "anamorph/error.h"
-#include "anamorph/parameter.h"
+#include "anamorph/parameter/parameter.h"
 #include "output_file.h"
 
 extern char** environ;

@@ -18,7 +18,7 @@
 #include "anamorph/figure/language.h"
 #include "anamorph/figure/motion_file.h"
 #include "anamorph/figure/scene_file.h"
-#include "anamorph/parameter.h"
+#include "anamorph/parameter/parameter.h"
 #include "anamorph/version.h"
 #include "film_writer.h"
 #include "frame_range.h"

@@ -8,7 +8,7 @@
 
 #include "anamorph/error.h"
 #include "anamorph/figure/motion_file.h"
-#include "anamorph/text_file.h"
+#include "anamorph/parameter/text_file.h"
 
 namespace anamorph::command {
 namespace {

@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "anamorph/render/pyramid.h"
-#include "anamorph/render/source.h"
+#include "anamorph/image/pyramid.h"
+#include "anamorph/image/source.h"
 
 namespace anamorph::command {
 

@@ -10,7 +10,7 @@
 #include <filesystem>
 #include <string_view>
 
-#include "anamorph/parameter.h"
+#include "anamorph/parameter/parameter.h"
 
 namespace anamorph {
 namespace {

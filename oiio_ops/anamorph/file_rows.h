@@ -12,8 +12,8 @@
 #include <mutex>
 #include <string>
 
-#include "anamorph/render/pages.h"
-#include "anamorph/render/view.h"
+#include "anamorph/image/pages.h"
+#include "anamorph/image/view.h"
 
 namespace anamorph {
 

@@ -8,8 +8,8 @@
 #include <string_view>
 
 #include "anamorph/error.h"
-#include "anamorph/parameter.h"
-#include "anamorph/render/pixel.h"
+#include "anamorph/image/pixel.h"
+#include "anamorph/parameter/parameter.h"
 
 namespace anamorph {
 namespace {

@@ -19,7 +19,7 @@
 #include <vector>
 
 #include "anamorph/file_rows.h"
-#include "anamorph/render/source.h"
+#include "anamorph/image/source.h"
 
 namespace anamorph {
 

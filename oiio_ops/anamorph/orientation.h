@@ -7,8 +7,8 @@
 
 #include <vector>
 
-#include "anamorph/map/chart.h"
-#include "anamorph/render/source.h"
+#include "anamorph/chart/chart.h"
+#include "anamorph/image/source.h"
 
 namespace anamorph {
 

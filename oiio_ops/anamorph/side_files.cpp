@@ -10,8 +10,8 @@
 #include "anamorph/file_names.h"
 #include "anamorph/image_source.h"
 #include "anamorph/orientation.h"
-#include "anamorph/parameter.h"
-#include "anamorph/text_file.h"
+#include "anamorph/parameter/parameter.h"
+#include "anamorph/parameter/text_file.h"
 
 namespace anamorph {
 namespace {

@@ -4,9 +4,9 @@
 #include <algorithm>
 #include <vector>
 
+#include "anamorph/image/pixel.h"
+#include "anamorph/image/pyramid.h"
 #include "anamorph/orientation.h"
-#include "anamorph/render/pixel.h"
-#include "anamorph/render/pyramid.h"
 
 namespace anamorph {
 

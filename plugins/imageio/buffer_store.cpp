@@ -7,7 +7,7 @@
 #include <map>
 #include <mutex>
 
-#include "anamorph/parameter.h"
+#include "anamorph/parameter/parameter.h"
 #include "recipe.h"
 
 namespace anamorph {

@@ -6,7 +6,7 @@
 
 #include <cstddef>
 
-#include "anamorph/map/chart.h"
+#include "anamorph/chart/chart.h"
 
 namespace anamorph {
 

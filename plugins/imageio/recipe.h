@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "anamorph/operation/operation.h"
-#include "anamorph/parameter.h"
+#include "anamorph/parameter/parameter.h"
 
 namespace anamorph {
 

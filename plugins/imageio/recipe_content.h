@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "anamorph/parameter.h"
+#include "anamorph/parameter/parameter.h"
 #include "content.h"
 
 namespace anamorph {

@@ -12,10 +12,10 @@
 #include <string>
 #include <vector>
 
-#include "anamorph/drape/drape.h"
+#include "anamorph/image/picture.h"
 #include "anamorph/machine/block_machine_map.h"
 #include "anamorph/machine/block_schedule.h"
-#include "anamorph/render/picture.h"
+#include "anamorph/surface/drape.h"
 #include "pixels.h"
 
 namespace anamorph::bench {

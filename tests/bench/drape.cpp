@@ -24,9 +24,9 @@
 #include <string>
 #include <vector>
 
-#include "anamorph/drape/drape.h"
-#include "anamorph/drape/oka.h"
-#include "anamorph/render/pyramid.h"
+#include "anamorph/image/pyramid.h"
+#include "anamorph/surface/drape.h"
+#include "anamorph/surface/oka.h"
 #include "bench.h"
 #include "pixels.h"
 

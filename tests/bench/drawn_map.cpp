@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "drawn_map.h"
 
-#include "anamorph/render/picture.h"
+#include "anamorph/image/picture.h"
 
 namespace anamorph::bench {
 

@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "anamorph/approx/block.h"
-#include "anamorph/approx/formula_plan.h"
+#include "anamorph/plan/block.h"
+#include "anamorph/plan/formula_plan.h"
 #include "bench.h"
 #include "pixels.h"
 

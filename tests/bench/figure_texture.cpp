@@ -18,7 +18,7 @@
 #include "anamorph/figure/figure_picture.h"
 #include "anamorph/figure/performance.h"
 #include "anamorph/figure/script.h"
-#include "anamorph/render/pyramid.h"
+#include "anamorph/image/pyramid.h"
 #include "bench.h"
 
 namespace anamorph::bench {

@@ -10,8 +10,8 @@
 #include <string>
 #include <vector>
 
-#include "anamorph/approx/lens_plan.h"
-#include "anamorph/approx/panorama_plan.h"
+#include "anamorph/lens/lens_plan.h"
+#include "anamorph/panorama/panorama_plan.h"
 #include "bench.h"
 #include "drawn_map.h"
 

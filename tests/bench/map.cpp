@@ -10,10 +10,10 @@
 #include <string>
 #include <vector>
 
-#include "anamorph/approx/lens_plan.h"
-#include "anamorph/approx/panorama_plan.h"
-#include "anamorph/approx/text_plan.h"
-#include "anamorph/parameter.h"
+#include "anamorph/formula/text_plan.h"
+#include "anamorph/lens/lens_plan.h"
+#include "anamorph/panorama/panorama_plan.h"
+#include "anamorph/parameter/parameter.h"
 #include "bench.h"
 #include "drawn_map.h"
 

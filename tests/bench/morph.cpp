@@ -28,12 +28,12 @@
 
 #include "../core/each_feature_block.h"
 #include "../core/feature_families.h"
-#include "anamorph/approx/near_far.h"
-#include "anamorph/approx/near_far_line.h"
-#include "anamorph/approx/near_far_mesh.h"
-#include "anamorph/render/morph.h"
-#include "anamorph/simd/feature_rows.h"
-#include "anamorph/simd/near_far.h"
+#include "anamorph/morph/feature_rows.h"
+#include "anamorph/morph/morph.h"
+#include "anamorph/morph/near_far.h"
+#include "anamorph/morph/near_far_kernels.h"
+#include "anamorph/morph/near_far_line.h"
+#include "anamorph/morph/near_far_mesh.h"
 #include "bench.h"
 #include "pixels.h"
 

@@ -18,9 +18,9 @@
 #include <string>
 #include <utility>
 
+#include "anamorph/image/pyramid.h"
 #include "anamorph/number/half.h"
-#include "anamorph/render/pyramid.h"
-#include "anamorph/render/reproject.h"
+#include "anamorph/panorama/reproject.h"
 #include "bench.h"
 #include "pano_points.h"
 #include "pano_rivals.h"

@@ -4,10 +4,10 @@
 
 #include <vector>
 
-#include "anamorph/approx/panorama_plan.h"
-#include "anamorph/map/panorama.h"
+#include "anamorph/image/block_reader.h"
+#include "anamorph/panorama/panorama.h"
+#include "anamorph/panorama/panorama_plan.h"
 #include "anamorph/parallel_for.h"
-#include "anamorph/render/block_reader.h"
 
 namespace anamorph::bench {
 

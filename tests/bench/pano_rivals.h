@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "anamorph/error.h"
-#include "anamorph/map/panorama.h"
+#include "anamorph/panorama/panorama.h"
 #include "anamorph/parallel_for.h"
 #include "pixels.h"
 

@@ -6,7 +6,7 @@
 #include <cstring>
 #include <initializer_list>
 
-#include "anamorph/simd/prefetch.h"
+#include "anamorph/image/prefetch.h"
 #include "pano_rivals.h"
 
 #undef HWY_TARGET_INCLUDE

@@ -6,8 +6,8 @@
 #include <numbers>
 #include <vector>
 
-#include "anamorph/render/concentric.h"
-#include "anamorph/render/strip_source.h"
+#include "anamorph/image/strip_source.h"
+#include "anamorph/panorama/concentric_view.h"
 #include "pixels.h"
 #include "projection_rows.h"
 

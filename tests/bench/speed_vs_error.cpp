@@ -19,7 +19,7 @@
 #include <string_view>
 #include <utility>
 
-#include "anamorph/simd/block_sampler.h"
+#include "anamorph/image/block_sampler.h"
 #include "bench.h"
 #include "output_file.h"
 

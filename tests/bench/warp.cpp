@@ -15,11 +15,11 @@
 #include <mutex>
 #include <random>
 
-#include "anamorph/map/mesh_file.h"
-#include "anamorph/map/scattered.h"
-#include "anamorph/render/block_reader.h"
-#include "anamorph/render/mesh_warp.h"
-#include "anamorph/simd/block_sampler.h"
+#include "anamorph/image/block_reader.h"
+#include "anamorph/image/block_sampler.h"
+#include "anamorph/mesh/mesh_file.h"
+#include "anamorph/mesh/mesh_warp.h"
+#include "anamorph/mesh/scattered.h"
 #include "bench.h"
 #include "pixels.h"
 #include "warp_rivals.h"

@@ -10,8 +10,8 @@
 #include <string>
 #include <vector>
 
-#include "anamorph/map/mesh.h"
-#include "anamorph/render/view.h"
+#include "anamorph/image/view.h"
+#include "anamorph/mesh/mesh.h"
 
 namespace anamorph::bench {
 

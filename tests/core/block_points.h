@@ -4,8 +4,8 @@
 
 #include <vector>
 
-#include "anamorph/render/block_reader.h"
-#include "anamorph/simd/block_sampler.h"
+#include "anamorph/image/block_reader.h"
+#include "anamorph/image/block_sampler.h"
 
 namespace anamorph::test {
 

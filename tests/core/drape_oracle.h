@@ -6,8 +6,8 @@
 #include <cmath>
 #include <string>
 
-#include "anamorph/drape/camera.h"
-#include "anamorph/map/surface.h"
+#include "anamorph/surface/camera.h"
+#include "anamorph/surface/surface.h"
 
 namespace anamorph::test {
 

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "anamorph/drape/drape.h"
+#include "anamorph/surface/drape.h"
 
 namespace anamorph::test {
 

@@ -2,7 +2,7 @@
 // Draws through a map that stands on the stack.
 #pragma once
 
-#include "anamorph/render/picture.h"
+#include "anamorph/image/picture.h"
 
 namespace anamorph::test {
 

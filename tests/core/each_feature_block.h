@@ -2,8 +2,8 @@
 // The blocks of a morph's maps with their points, for tests and benchmarks.
 #pragma once
 
-#include "anamorph/approx/feature_blocks.h"
-#include "anamorph/render/block_reader.h"
+#include "anamorph/image/block_reader.h"
+#include "anamorph/morph/feature_blocks.h"
 
 namespace anamorph {
 

@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-#include "anamorph/simd/block_sampler.h"
+#include "anamorph/image/block_sampler.h"
 
 namespace anamorph::test {
 

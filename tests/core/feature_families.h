@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "anamorph/map/feature_lines.h"
+#include "anamorph/morph/feature_lines.h"
 
 namespace anamorph::families {
 

@@ -4,7 +4,7 @@
 
 #include <functional>
 
-#include "anamorph/approx/block_writer.h"
+#include "anamorph/plan/block_writer.h"
 
 namespace anamorph::test {
 

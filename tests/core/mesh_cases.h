@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "anamorph/map/mesh.h"
+#include "anamorph/mesh/mesh.h"
 
 namespace anamorph::test {
 

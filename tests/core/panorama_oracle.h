@@ -9,7 +9,7 @@
 #include <numbers>
 #include <string>
 
-#include "anamorph/map/panorama.h"
+#include "anamorph/panorama/panorama.h"
 
 namespace anamorph::oracle {
 

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <vector>
 
-#include "anamorph/map/chart.h"
+#include "anamorph/chart/chart.h"
 
 namespace anamorph::test {
 

@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-#include "anamorph/render/source.h"
+#include "anamorph/image/source.h"
 
 namespace anamorph::test {
 

@@ -6,7 +6,7 @@
 #include <thread>
 #include <vector>
 
-#include "anamorph/map/chart.h"
+#include "anamorph/chart/chart.h"
 #include "draw_map.h"
 
 namespace anamorph {

@@ -9,9 +9,9 @@
 #include <random>
 #include <tuple>
 
-#include "anamorph/render/block_reader.h"
-#include "anamorph/render/pixel.h"
-#include "anamorph/render/pyramid.h"
+#include "anamorph/image/block_reader.h"
+#include "anamorph/image/pixel.h"
+#include "anamorph/image/pyramid.h"
 #include "draw_map.h"
 #include "function_map.h"
 #include "guarded_memory.h"

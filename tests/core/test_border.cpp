@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "anamorph/render/border.h"
+#include "anamorph/image/border.h"
 #include "projection_cases.h"
 
 #include <gtest/gtest.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "anamorph/map/chart.h"
+#include "anamorph/chart/chart.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "anamorph/error.h"
-#include "anamorph/map/panorama.h"
+#include "anamorph/panorama/panorama.h"
 #include "projection_cases.h"
 
 namespace {

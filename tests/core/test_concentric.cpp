@@ -8,9 +8,9 @@
 #include <deque>
 #include <numbers>
 
+#include "anamorph/image/strip_source.h"
 #include "anamorph/operation/operation.h"
-#include "anamorph/render/concentric.h"
-#include "anamorph/render/strip_source.h"
+#include "anamorph/panorama/concentric_view.h"
 
 namespace anamorph {
 namespace {

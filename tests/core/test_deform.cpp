@@ -14,7 +14,7 @@
 
 #include "anamorph/deform/deformation.h"
 #include "anamorph/deform/deformed_surface.h"
-#include "anamorph/simd/block_sampler.h"
+#include "anamorph/image/block_sampler.h"
 
 namespace anamorph {
 namespace {

@@ -9,7 +9,7 @@
 
 #include "anamorph/deform/deformation_file.h"
 #include "anamorph/error.h"
-#include "anamorph/text_file.h"
+#include "anamorph/parameter/text_file.h"
 
 namespace anamorph {
 namespace {

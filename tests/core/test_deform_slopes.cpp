@@ -14,7 +14,7 @@
 #include <vector>
 
 #include "anamorph/deform/deformed_surface.h"
-#include "anamorph/simd/block_sampler.h"
+#include "anamorph/image/block_sampler.h"
 #include "each_instruction_set.h"
 
 namespace anamorph {

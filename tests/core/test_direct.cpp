@@ -10,17 +10,17 @@
 #include <string>
 #include <vector>
 
-#include "anamorph/approx/panorama_plan.h"
-#include "anamorph/render/block_reader.h"
-#include "anamorph/simd/block_sampler.h"
-#include "anamorph/simd/direct_rows.h"
+#include "anamorph/image/block_reader.h"
+#include "anamorph/image/block_sampler.h"
+#include "anamorph/panorama/direct_rows.h"
+#include "anamorph/panorama/panorama_plan.h"
 #include "panorama_oracle.h"
 #include "projection_cases.h"
 
 namespace anamorph {
 namespace {
 
-/// A base read from where it was written, one at a time: as the loops over a block's pixels have it (simd/direct_rows.cpp).
+/// A base read from where it was written, one at a time: as the loops over a block's pixels have it (panorama/direct_rows_lanes.cpp).
 struct Replayed {
     using Number = ReadingOrder::Number;
     static inline const double* next_value = nullptr;

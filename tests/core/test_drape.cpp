@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Pictures on surfaces: the tolerance on the screen, no holes, and hard cases.
-#include "anamorph/drape/drape.h"
+#include "anamorph/surface/drape.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -14,9 +14,9 @@
 #include <set>
 #include <span>
 
-#include "anamorph/drape/oka.h"
-#include "anamorph/simd/block_sampler.h"
-#include "anamorph/simd/facet_rows.h"
+#include "anamorph/image/block_sampler.h"
+#include "anamorph/surface/facet_rows.h"
+#include "anamorph/surface/oka.h"
 #include "drape_oracle.h"
 #include "drape_scene.h"
 #include "each_instruction_set.h"

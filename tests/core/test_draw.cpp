@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "anamorph/render/reproject.h"
+#include "anamorph/panorama/reproject.h"
 
 namespace anamorph {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "anamorph/map/feature_lines.h"
+#include "anamorph/morph/feature_lines.h"
 
 #include <gtest/gtest.h>
 

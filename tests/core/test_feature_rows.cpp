@@ -7,8 +7,8 @@
 #include <cmath>
 #include <vector>
 
-#include "anamorph/approx/near_far_exact.h"
-#include "anamorph/simd/feature_rows.h"
+#include "anamorph/morph/feature_rows.h"
+#include "anamorph/morph/near_far_exact.h"
 #include "each_instruction_set.h"
 #include "feature_families.h"
 

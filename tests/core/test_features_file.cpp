@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "anamorph/map/features_file.h"
+#include "anamorph/morph/features_file.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -7,7 +7,7 @@
 #include <string>
 
 #include "anamorph/error.h"
-#include "anamorph/text_file.h"
+#include "anamorph/parameter/text_file.h"
 
 namespace anamorph {
 namespace {

@@ -8,7 +8,7 @@
 
 #include "anamorph/figure/backdrop.h"
 #include "anamorph/figure/figure_picture.h"
-#include "anamorph/render/pyramid.h"
+#include "anamorph/image/pyramid.h"
 #include "figure_picture_cases.h"
 
 namespace anamorph {

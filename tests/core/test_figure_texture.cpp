@@ -5,7 +5,7 @@
 #include <numbers>
 
 #include "anamorph/figure/figure_picture.h"
-#include "anamorph/render/pyramid.h"
+#include "anamorph/image/pyramid.h"
 #include "figure_picture_cases.h"
 
 namespace anamorph {

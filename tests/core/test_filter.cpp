@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "anamorph/render/point_sampler.h"
+#include "anamorph/image/point_sampler.h"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 #include <random>
 #include <vector>
 
-#include "anamorph/render/pixel.h"
+#include "anamorph/image/pixel.h"
 
 namespace {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "anamorph/render/footprint.h"
+#include "anamorph/image/footprint.h"
 
 #include <gtest/gtest.h>
 
@@ -9,8 +9,8 @@
 #include <random>
 #include <vector>
 
-#include "anamorph/render/point_sampler.h"
-#include "anamorph/render/pyramid.h"
+#include "anamorph/image/point_sampler.h"
+#include "anamorph/image/pyramid.h"
 
 namespace {
 

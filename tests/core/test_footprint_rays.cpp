@@ -5,8 +5,8 @@
 #include <cmath>
 #include <random>
 
-#include "anamorph/render/pyramid.h"
-#include "anamorph/render/reproject.h"
+#include "anamorph/image/pyramid.h"
+#include "anamorph/panorama/reproject.h"
 #include "panorama_oracle.h"
 
 namespace anamorph {

@@ -3,7 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "anamorph/map/chart.h"
+#include "anamorph/chart/chart.h"
 #include "anamorph/number/glsl_number.h"
 #include "anamorph/projector/panorama_glsl.h"
 

@@ -7,8 +7,8 @@
 #include <limits>
 #include <random>
 
+#include "anamorph/image/pixel.h"
 #include "anamorph/number/half.h"
-#include "anamorph/render/pixel.h"
 
 namespace {
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Four jets at once: polynomials and bounds of formulas, held against the formulas in long double; each of four as if it
 // were alone, with the same bits on every instruction set.
-#include "anamorph/simd/jets.h"
+#include "anamorph/number/jets.h"
 
 #include <gtest/gtest.h>
 

@@ -9,8 +9,8 @@
 #include "anamorph/deform/key_frames_file.h"
 #include "anamorph/error.h"
 #include "anamorph/machine/machine_text.h"
-#include "anamorph/map/features_file.h"
-#include "anamorph/map/mesh_file.h"
+#include "anamorph/mesh/mesh_file.h"
+#include "anamorph/morph/features_file.h"
 
 namespace anamorph {
 namespace {

@@ -25,7 +25,8 @@ namespace anamorph::test::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
 #include "anamorph/number/lanes.h"
-#include "anamorph/simd/exp_of_minus.h"
+// It is made of those.
+#include "anamorph/number/exp_of_minus.h"
 
 static_assert(FormulaNumber<Lanes<hn::ScalableTag<double>>> && FormulaNumber<Lanes<hn::ScalableTag<float>>>);
 

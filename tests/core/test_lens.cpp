@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Distortion both ways, with every number, up to where lenses fold; against the formulas written out in long double.
-#include "anamorph/map/lens.h"
+#include "anamorph/chart/lens.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -9,8 +9,8 @@
 #include <cstdint>
 #include <random>
 
+#include "anamorph/chart/chart.h"
 #include "anamorph/error.h"
-#include "anamorph/map/chart.h"
 #include "panorama_oracle.h"
 
 namespace anamorph {

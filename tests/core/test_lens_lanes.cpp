@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Roots of lenses for four points at once: as for one, whatever stands beside it, and the same bits on every instruction set;
 // and polynomials through lenses, held against derivatives in long double.
-#include "anamorph/simd/lens_lanes.h"
+#include "anamorph/chart/lens_lanes.h"
 
 #include <gtest/gtest.h>
 
@@ -9,7 +9,7 @@
 #include <cstring>
 #include <random>
 
-#include "anamorph/approx/chart_jets.h"
+#include "anamorph/panorama/chart_jets.h"
 #include "each_instruction_set.h"
 #include "panorama_oracle.h"
 

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 // A lens's distortion taken off a picture or put on one, in blocks: against the models in long double.
-#include "anamorph/map/lens_map.h"
+#include "anamorph/lens/lens_map.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <random>
 
-#include "anamorph/approx/lens_plan.h"
 #include "anamorph/error.h"
+#include "anamorph/lens/lens_plan.h"
 #include "block_points.h"
 #include "panorama_oracle.h"
 

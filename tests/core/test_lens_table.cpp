@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 // The coefficients of lenses over rings enclose the derivatives of the root, found by halving in long double; panoramas
 // through lenses are blocks nearly everywhere, whichever way their formula goes.
-#include "anamorph/map/lens_table.h"
+#include "anamorph/chart/lens_table.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <random>
 
-#include "anamorph/approx/lens_plan.h"
-#include "anamorph/approx/panorama_plan.h"
+#include "anamorph/lens/lens_plan.h"
+#include "anamorph/panorama/panorama_plan.h"
 #include "panorama_oracle.h"
 
 namespace anamorph {

@@ -4,10 +4,10 @@
 #include <atomic>
 #include <cstring>
 
-#include "anamorph/approx/mesh_plan.h"
+#include "anamorph/image/picture.h"
 #include "anamorph/machine/machine_map.h"
+#include "anamorph/mesh/mesh_plan.h"
 #include "anamorph/operation/operation.h"
-#include "anamorph/render/picture.h"
 
 namespace anamorph {
 namespace {

@@ -7,7 +7,7 @@
 #include <functional>
 
 #include "anamorph/error.h"
-#include "anamorph/map/mesh.h"
+#include "anamorph/mesh/mesh.h"
 #include "mesh_cases.h"
 
 namespace anamorph {

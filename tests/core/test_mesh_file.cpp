@@ -6,8 +6,8 @@
 #include <cmath>
 
 #include "anamorph/error.h"
-#include "anamorph/map/mesh.h"
-#include "anamorph/map/mesh_file.h"
+#include "anamorph/mesh/mesh.h"
+#include "anamorph/mesh/mesh_file.h"
 
 namespace anamorph {
 namespace {

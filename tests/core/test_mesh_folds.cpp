@@ -7,8 +7,8 @@
 #include <random>
 #include <vector>
 
-#include "anamorph/map/mesh_file.h"
-#include "anamorph/render/mesh_warp.h"
+#include "anamorph/mesh/mesh_file.h"
+#include "anamorph/mesh/mesh_warp.h"
 
 namespace anamorph {
 namespace {

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "anamorph/approx/inverse.h"
+#include "anamorph/mesh/inverse.h"
 #include "mesh_cases.h"
 #include "warp_findings.h"
 

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <random>
 
-#include "anamorph/approx/mesh_plan.h"
+#include "anamorph/mesh/mesh_plan.h"
 #include "mesh_cases.h"
 #include "warp_findings.h"
 

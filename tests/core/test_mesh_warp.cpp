@@ -6,8 +6,8 @@
 #include <cmath>
 #include <thread>
 
-#include "anamorph/render/mesh_warp.h"
-#include "anamorph/render/pyramid.h"
+#include "anamorph/image/pyramid.h"
+#include "anamorph/mesh/mesh_warp.h"
 #include "mesh_cases.h"
 
 namespace anamorph {

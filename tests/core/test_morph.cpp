@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "anamorph/render/morph.h"
+#include "anamorph/morph/morph.h"
 
 #include <gtest/gtest.h>
 
@@ -9,7 +9,7 @@
 #include <random>
 #include <thread>
 
-#include "anamorph/parameter.h"
+#include "anamorph/parameter/parameter.h"
 
 namespace anamorph {
 namespace {

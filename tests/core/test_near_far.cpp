@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "anamorph/approx/near_far.h"
+#include "anamorph/morph/near_far.h"
 
 #include <gtest/gtest.h>
 
@@ -7,10 +7,10 @@
 #include <cmath>
 #include <numbers>
 
-#include "anamorph/approx/near_far_mesh.h"
 #include "anamorph/error.h"
-#include "anamorph/simd/block_sampler.h"
-#include "anamorph/simd/near_far.h"
+#include "anamorph/image/block_sampler.h"
+#include "anamorph/morph/near_far_kernels.h"
+#include "anamorph/morph/near_far_mesh.h"
 #include "each_feature_block.h"
 #include "feature_families.h"
 

@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-#include "anamorph/approx/near_far.h"
+#include "anamorph/morph/near_far.h"
 #include "each_feature_block.h"
 
 namespace {

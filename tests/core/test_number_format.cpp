@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Number formats of hardware against lists of all their values, made another way.
-#include "anamorph/number/number_format.h"
+#include "anamorph/machine/number_format.h"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Rows of numbers, and that what the core accepts is what they say, to the last bit of both ends.
-#include "anamorph/number_row.h"
+#include "anamorph/parameter/number_row.h"
 
 #include <gmock/gmock.h>
 

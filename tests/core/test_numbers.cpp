@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Every formula of map/projection/, of deformations, of feature lines and of meshes, read with every number, those of
+// Every formula of chart/projection/, of deformations, of feature lines and of meshes, read with every number, those of
 // hardware among them.
-#include "anamorph/number/number_format.h"
+#include "anamorph/machine/number_format.h"
 
 #include <gtest/gtest.h>
 
@@ -10,11 +10,11 @@
 #include <random>
 #include <type_traits>
 
-#include "anamorph/approx/residual.h"
 #include "anamorph/deform/deformation.h"
-#include "anamorph/map/feature_lines.h"
-#include "anamorph/map/mesh.h"
-#include "anamorph/map/panorama.h"
+#include "anamorph/mesh/mesh.h"
+#include "anamorph/morph/feature_lines.h"
+#include "anamorph/panorama/panorama.h"
+#include "anamorph/plan/residual.h"
 #include "projection_cases.h"
 
 namespace anamorph {

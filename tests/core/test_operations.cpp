@@ -8,7 +8,7 @@
 #include <set>
 
 #include "anamorph/operation/operation.h"
-#include "anamorph/text_file.h"
+#include "anamorph/parameter/text_file.h"
 
 namespace anamorph {
 namespace {

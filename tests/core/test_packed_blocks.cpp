@@ -8,10 +8,10 @@
 #include <random>
 #include <vector>
 
+#include "anamorph/image/block_sampler.h"
+#include "anamorph/image/source.h"
 #include "anamorph/number/half.h"
-#include "anamorph/render/reproject.h"
-#include "anamorph/render/source.h"
-#include "anamorph/simd/block_sampler.h"
+#include "anamorph/panorama/reproject.h"
 #include "each_instruction_set.h"
 #include "guarded_memory.h"
 

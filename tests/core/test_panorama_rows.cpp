@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 // Rows of exact points by vectors, for every pair of projections in the list: against the formulas in long double,
 // within the bound that exact blocks state.
-#include "anamorph/simd/panorama_rows.h"
+#include "anamorph/panorama/panorama_rows.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <random>
 
-#include "anamorph/map/panorama.h"
-#include "anamorph/simd/block_sampler.h"
+#include "anamorph/image/block_sampler.h"
+#include "anamorph/panorama/panorama.h"
 #include "projection_cases.h"
 
 namespace anamorph {

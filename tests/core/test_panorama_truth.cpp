@@ -6,9 +6,9 @@
 #include <cstdlib>
 #include <random>
 
-#include "anamorph/approx/panorama_plan.h"
-#include "anamorph/approx/taylor.h"
-#include "anamorph/render/footprint.h"
+#include "anamorph/image/footprint.h"
+#include "anamorph/panorama/panorama_plan.h"
+#include "anamorph/plan/taylor.h"
 #include "block_points.h"
 #include "draw_map.h"
 #include "panorama_oracle.h"

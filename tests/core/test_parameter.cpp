@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "anamorph/parameter.h"
+#include "anamorph/parameter/parameter.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -11,7 +11,7 @@
 
 #include "anamorph/operation/pano.h"
 #include "anamorph/operation/rows.h"
-#include "anamorph/render/reproject.h"
+#include "anamorph/panorama/reproject.h"
 
 namespace anamorph {
 namespace {

@@ -9,10 +9,10 @@
 #include <numbers>
 #include <set>
 
+#include "anamorph/chart/chart.h"
 #include "anamorph/error.h"
-#include "anamorph/map/chart.h"
-#include "anamorph/map/surface.h"
-#include "anamorph/map/surface/all.h"
+#include "anamorph/surface/shape/all.h"
+#include "anamorph/surface/surface.h"
 #include "places_file.h"
 
 namespace anamorph {
@@ -348,7 +348,7 @@ Numbers normal_of(const SurfaceShape& shape, const Numbers& at) {
 /// In the order of surface_names().
 constexpr Numbers (*kNormals[])(const SurfaceShape&, const Numbers&) = {
 #define ANAMORPH_SURFACE(name, Type) normal_of<surfaces::Type>,
-#include "anamorph/map/surface/list.h"
+#include "anamorph/surface/shape/list.h"
 #undef ANAMORPH_SURFACE
 };
 

@@ -6,8 +6,8 @@
 #include <algorithm>
 #include <random>
 
-#include "anamorph/approx/panorama_plan.h"
-#include "anamorph/simd/block_sampler.h"
+#include "anamorph/image/block_sampler.h"
+#include "anamorph/panorama/panorama_plan.h"
 #include "block_points.h"
 #include "projection_cases.h"
 

@@ -11,8 +11,8 @@
 #include <string>
 #include <vector>
 
-#include "anamorph/approx/panorama_plan.h"
-#include "anamorph/map/chart.h"
+#include "anamorph/chart/chart.h"
+#include "anamorph/panorama/panorama_plan.h"
 #include "panorama_oracle.h"
 
 namespace anamorph {

@@ -7,7 +7,7 @@
 #include <numbers>
 #include <random>
 
-#include "anamorph/map/concentric.h"
+#include "anamorph/panorama/concentric.h"
 #include "panorama_oracle.h"
 
 namespace anamorph {

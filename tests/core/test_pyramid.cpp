@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "anamorph/render/pyramid.h"
+#include "anamorph/image/pyramid.h"
 
 #include <gtest/gtest.h>
 
@@ -12,7 +12,7 @@
 #include <thread>
 #include <vector>
 
-#include "anamorph/render/pixel.h"
+#include "anamorph/image/pixel.h"
 
 namespace {
 

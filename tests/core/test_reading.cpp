@@ -9,8 +9,8 @@
 #include <numbers>
 #include <random>
 
-#include "anamorph/render/mesh_warp.h"
-#include "anamorph/render/reproject.h"
+#include "anamorph/mesh/mesh_warp.h"
+#include "anamorph/panorama/reproject.h"
 
 namespace anamorph {
 namespace {

@@ -5,8 +5,8 @@
 #include <fstream>
 #include <sstream>
 
-#include "anamorph/map/features_file.h"
-#include "anamorph/map/mesh_file.h"
+#include "anamorph/mesh/mesh_file.h"
+#include "anamorph/morph/features_file.h"
 #include "anamorph/operation/operation.h"
 #include "anamorph/projector/tour_file.h"
 

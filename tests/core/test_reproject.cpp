@@ -8,11 +8,11 @@
 #include <random>
 #include <thread>
 
-#include "anamorph/render/pixel.h"
-#include "anamorph/render/point_sampler.h"
-#include "anamorph/render/pyramid.h"
-#include "anamorph/render/reproject.h"
-#include "anamorph/simd/block_sampler.h"
+#include "anamorph/image/block_sampler.h"
+#include "anamorph/image/pixel.h"
+#include "anamorph/image/point_sampler.h"
+#include "anamorph/image/pyramid.h"
+#include "anamorph/panorama/reproject.h"
 
 namespace anamorph {
 namespace {

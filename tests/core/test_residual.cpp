@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "anamorph/approx/residual.h"
+#include "anamorph/panorama/panorama_residual.h"
 
 namespace anamorph {
 namespace {

@@ -5,8 +5,8 @@
 
 #include <cmath>
 
-#include "anamorph/approx/mesh_scattered.h"
 #include "anamorph/error.h"
+#include "anamorph/mesh/mesh_scattered.h"
 #include "each_instruction_set.h"
 #include "mesh_cases.h"
 #include "warp_findings.h"

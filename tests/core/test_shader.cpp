@@ -6,10 +6,10 @@
 #include <functional>
 #include <random>
 
-#include "anamorph/approx/mesh_residual.h"
 #include "anamorph/error.h"
 #include "anamorph/machine/machine_text.h"
 #include "anamorph/machine/shader_run.h"
+#include "anamorph/mesh/mesh_residual.h"
 #include "anamorph/number/half.h"
 #include "mesh_cases.h"
 

@@ -9,8 +9,8 @@
 #include <random>
 #include <vector>
 
-#include "anamorph/simd/block_sampler.h"
-#include "anamorph/simd/split_points.h"
+#include "anamorph/image/block_sampler.h"
+#include "anamorph/image/split_points.h"
 #include "each_instruction_set.h"
 
 namespace anamorph {

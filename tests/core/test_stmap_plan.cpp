@@ -6,11 +6,11 @@
 #include <cmath>
 #include <random>
 
-#include "anamorph/approx/stmap_plan.h"
 #include "anamorph/error.h"
-#include "anamorph/map/mesh_file.h"
-#include "anamorph/render/block_reader.h"
-#include "anamorph/render/mesh_warp.h"
+#include "anamorph/image/block_reader.h"
+#include "anamorph/mesh/mesh_file.h"
+#include "anamorph/mesh/mesh_warp.h"
+#include "anamorph/mesh/stmap_plan.h"
 #include "each_instruction_set.h"
 
 namespace anamorph {

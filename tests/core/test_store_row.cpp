@@ -7,9 +7,9 @@
 #include <cstring>
 #include <vector>
 
-#include "anamorph/render/pixel.h"
-#include "anamorph/render/window.h"
-#include "anamorph/simd/block_sampler.h"
+#include "anamorph/image/block_sampler.h"
+#include "anamorph/image/pixel.h"
+#include "anamorph/image/window.h"
 #include "guarded_memory.h"
 
 namespace anamorph {

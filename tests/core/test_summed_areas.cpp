@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Means over rectangles from a table of sums, against means of all texels one by one in long double; and drapes that read
 // with them.
-#include "anamorph/render/summed_areas.h"
+#include "anamorph/image/summed_areas.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -11,8 +11,8 @@
 #include <random>
 #include <vector>
 
-#include "anamorph/render/pixel.h"
-#include "anamorph/render/pyramid.h"
+#include "anamorph/image/pixel.h"
+#include "anamorph/image/pyramid.h"
 #include "drape_scene.h"
 
 namespace anamorph {

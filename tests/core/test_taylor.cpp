@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Polynomials of lower degree are as near to those of degree 4 as they say.
-#include "anamorph/approx/taylor.h"
+#include "anamorph/plan/taylor.h"
 
 #include <gtest/gtest.h>
 

@@ -10,8 +10,8 @@
 #include <numbers>
 #include <random>
 
-#include "anamorph/approx/text_plan.h"
 #include "anamorph/error.h"
+#include "anamorph/formula/text_plan.h"
 #include "block_points.h"
 #include "each_instruction_set.h"
 

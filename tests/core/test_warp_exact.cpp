@@ -3,10 +3,10 @@
 // farther off than its block says.
 #include <gtest/gtest.h>
 
-#include "anamorph/approx/inverse.h"
-#include "anamorph/approx/mesh_plan.h"
-#include "anamorph/approx/mesh_scattered.h"
-#include "anamorph/map/mesh_file.h"
+#include "anamorph/mesh/inverse.h"
+#include "anamorph/mesh/mesh_file.h"
+#include "anamorph/mesh/mesh_plan.h"
+#include "anamorph/mesh/mesh_scattered.h"
 #include "mesh_cases.h"
 #include "warp_findings.h"
 #include "warp_oracles.h"

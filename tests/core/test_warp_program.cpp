@@ -8,9 +8,9 @@
 #include <string>
 #include <vector>
 
+#include "anamorph/image/source.h"
 #include "anamorph/machine/shaded_warp.h"
 #include "anamorph/operation/operation.h"
-#include "anamorph/render/source.h"
 
 namespace anamorph {
 namespace {

@@ -8,11 +8,11 @@
 #include <limits>
 #include <random>
 
+#include "anamorph/image/pixel.h"
+#include "anamorph/image/point_sampler.h"
+#include "anamorph/image/pyramid.h"
+#include "anamorph/image/summed_areas.h"
 #include "anamorph/number/half.h"
-#include "anamorph/render/pixel.h"
-#include "anamorph/render/point_sampler.h"
-#include "anamorph/render/pyramid.h"
-#include "anamorph/render/summed_areas.h"
 #include "draw_map.h"
 #include "each_instruction_set.h"
 #include "function_map.h"

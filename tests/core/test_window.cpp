@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "anamorph/render/window.h"
+#include "anamorph/image/window.h"
 
 #include <gtest/gtest.h>
 
@@ -11,7 +11,7 @@
 #include <random>
 #include <vector>
 
-#include "anamorph/render/pixel.h"
+#include "anamorph/image/pixel.h"
 #include "remote_source.h"
 
 namespace {

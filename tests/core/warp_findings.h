@@ -6,9 +6,9 @@
 #include <cmath>
 #include <vector>
 
-#include "anamorph/approx/block.h"
-#include "anamorph/render/block_reader.h"
-#include "anamorph/simd/block_sampler.h"
+#include "anamorph/image/block_reader.h"
+#include "anamorph/image/block_sampler.h"
+#include "anamorph/plan/block.h"
 
 namespace anamorph::test {
 

@@ -10,8 +10,8 @@
 #include <utility>
 #include <vector>
 
-#include "anamorph/map/mesh.h"
-#include "anamorph/map/scattered.h"
+#include "anamorph/mesh/mesh.h"
+#include "anamorph/mesh/scattered.h"
 
 namespace anamorph::test {
 

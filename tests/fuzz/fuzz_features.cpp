@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <string_view>
 
-#include "anamorph/map/features_file.h"
+#include "anamorph/morph/features_file.h"
 #include "expect_error.h"
 
 using namespace anamorph;

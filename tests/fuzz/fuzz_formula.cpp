@@ -6,7 +6,7 @@
 #include <string>
 #include <string_view>
 
-#include "anamorph/approx/text_plan.h"
+#include "anamorph/formula/text_plan.h"
 #include "expect_error.h"
 
 using namespace anamorph;

@@ -5,8 +5,8 @@
 #include <cstdint>
 #include <string_view>
 
-#include "anamorph/map/mesh_file.h"
-#include "anamorph/render/mesh_warp.h"
+#include "anamorph/mesh/mesh_file.h"
+#include "anamorph/mesh/mesh_warp.h"
 #include "expect_error.h"
 
 using namespace anamorph;

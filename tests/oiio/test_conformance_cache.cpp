@@ -12,7 +12,7 @@
 #include <thread>
 
 #include "anamorph/image_source.h"
-#include "anamorph/map/panorama.h"
+#include "anamorph/panorama/panorama.h"
 #include "host.h"
 
 namespace anamorph {

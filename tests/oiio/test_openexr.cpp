@@ -5,7 +5,7 @@
 
 #include <random>
 
-#include "anamorph/map/chart.h"
+#include "anamorph/chart/chart.h"
 
 namespace anamorph {
 namespace {

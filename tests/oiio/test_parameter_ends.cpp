@@ -7,8 +7,8 @@
 #include <cfloat>
 #include <cmath>
 
-#include "anamorph/map/concentric.h"
 #include "anamorph/operation/morph.h"
+#include "anamorph/panorama/concentric.h"
 #include "host.h"
 
 namespace anamorph {

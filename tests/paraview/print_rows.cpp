@@ -5,11 +5,11 @@
 #include <string>
 
 #include "anamorph/deform/deform_rows.h"
-#include "anamorph/drape/drape_rows.h"
 #include "anamorph/figure/figure_rows.h"
 #include "anamorph/operation/operation.h"
-#include "anamorph/parameter.h"
+#include "anamorph/parameter/parameter.h"
 #include "anamorph/projector/projector_rows.h"
+#include "anamorph/surface/drape_rows.h"
 
 namespace {
 

@@ -24,10 +24,10 @@
 #include <map>
 #include <random>
 
-#include "anamorph/map/surface.h"
+#include "anamorph/image/pyramid.h"
 #include "anamorph/operation/operation.h"
 #include "anamorph/operation/side_files.h"
-#include "anamorph/render/pyramid.h"
+#include "anamorph/surface/surface.h"
 #include "support.h"
 
 namespace {

@@ -8,8 +8,8 @@
 
 #include "anamorph/deform/deformation_file.h"
 #include "anamorph/error.h"
-#include "anamorph/parameter.h"
-#include "anamorph/text_file.h"
+#include "anamorph/parameter/parameter.h"
+#include "anamorph/parameter/text_file.h"
 #include "vtkDoubleArray.h"
 #include "vtkNew.h"
 #include "vtkTable.h"

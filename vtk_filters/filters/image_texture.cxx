@@ -4,7 +4,7 @@
 #include <algorithm>
 
 #include "anamorph/error.h"
-#include "anamorph/render/source.h"
+#include "anamorph/image/source.h"
 #include "vtkDataArray.h"
 #include "vtkImageData.h"
 

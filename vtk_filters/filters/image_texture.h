@@ -5,7 +5,7 @@
 #include <string>
 
 #include "anamorph/geometry/size.h"
-#include "anamorph/render/view.h"
+#include "anamorph/image/view.h"
 #include "vtkSmartPointer.h"
 
 class vtkDataArray;

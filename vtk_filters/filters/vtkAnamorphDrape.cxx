@@ -12,17 +12,17 @@
 #include <utility>
 #include <vector>
 
-#include "anamorph/drape/drape.h"
-#include "anamorph/drape/drape_rows.h"
 #include "anamorph/error.h"
 #include "anamorph/figure/figure_rows.h"
-#include "anamorph/map/surface.h"
+#include "anamorph/image/pyramid.h"
+#include "anamorph/image/source.h"
 #include "anamorph/operation/drape.h"
 #include "anamorph/operation/drape_surface.h"
 #include "anamorph/operation/rows.h"
-#include "anamorph/parameter.h"
-#include "anamorph/render/pyramid.h"
-#include "anamorph/render/source.h"
+#include "anamorph/parameter/parameter.h"
+#include "anamorph/surface/drape.h"
+#include "anamorph/surface/drape_rows.h"
+#include "anamorph/surface/surface.h"
 #include "drape_inputs.h"
 #include "execution.h"
 #include "image_texture.h"
@@ -67,7 +67,7 @@ const std::string& word_of(const char* row, int choice) {
 // Header and core have been made of the same list.
 static_assert(vtkAnamorphDrape::NumberOfSurfaces == 2
 #define ANAMORPH_SURFACE(name, Type) +1
-#include "anamorph/map/surface/list.h"
+#include "anamorph/surface/shape/list.h"
 #undef ANAMORPH_SURFACE
 );
 

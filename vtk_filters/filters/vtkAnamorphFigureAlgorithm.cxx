@@ -8,7 +8,7 @@
 #include "anamorph/figure/figure_rows.h"
 #include "anamorph/figure/outline_view.h"
 #include "anamorph/figure/rotation.h"
-#include "anamorph/parameter.h"
+#include "anamorph/parameter/parameter.h"
 #include "execution.h"
 #include "figure_data.h"
 #include "vtkDataObject.h"

@@ -11,7 +11,7 @@
 
 #include "anamorph/error.h"
 #include "anamorph/figure/figure_rows.h"
-#include "anamorph/parameter.h"
+#include "anamorph/parameter/parameter.h"
 #include "execution.h"
 #include "figure_data.h"
 #include "vtkAOSDataArrayTemplate.h"

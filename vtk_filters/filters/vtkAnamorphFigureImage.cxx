@@ -9,9 +9,9 @@
 
 #include "anamorph/error.h"
 #include "anamorph/figure/figure_picture.h"
-#include "anamorph/parameter.h"
-#include "anamorph/render/pyramid.h"
-#include "anamorph/render/source.h"
+#include "anamorph/image/pyramid.h"
+#include "anamorph/image/source.h"
+#include "anamorph/parameter/parameter.h"
 #include "execution.h"
 #include "figure_data.h"
 #include "figure_lines.h"

@@ -10,7 +10,7 @@
 #include "anamorph/figure/connected.h"
 #include "anamorph/figure/outline.h"
 #include "anamorph/figure/outline_arcs.h"
-#include "anamorph/parameter.h"
+#include "anamorph/parameter/parameter.h"
 #include "execution.h"
 #include "figure_data.h"
 #include "figure_lines.h"

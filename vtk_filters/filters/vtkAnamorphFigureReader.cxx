@@ -13,7 +13,7 @@
 #include "anamorph/figure/motion_file.h"
 #include "anamorph/figure/performance.h"
 #include "anamorph/figure/script.h"
-#include "anamorph/text_file.h"
+#include "anamorph/parameter/text_file.h"
 #include "execution.h"
 #include "figure_data.h"
 #include "vtkDataObject.h"

@@ -7,7 +7,7 @@
 #include "anamorph/figure/level_of_detail.h"
 #include "anamorph/figure/skeleton.h"
 #include "anamorph/figure/spheres.h"
-#include "anamorph/parameter.h"
+#include "anamorph/parameter/parameter.h"
 #include "execution.h"
 #include "figure_data.h"
 #include "figure_lines.h"

@@ -10,7 +10,7 @@
 
 #include "anamorph/deform/inbetween.h"
 #include "anamorph/deform/key_frames.h"
-#include "anamorph/parameter.h"
+#include "anamorph/parameter/parameter.h"
 #include "execution.h"
 #include "smp_for.h"
 #include "vtkAOSDataArrayTemplate.h"

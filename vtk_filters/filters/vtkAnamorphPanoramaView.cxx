@@ -5,8 +5,8 @@
 #include <string>
 
 #include "anamorph/error.h"
+#include "anamorph/image/pyramid.h"
 #include "anamorph/operation/pano.h"
-#include "anamorph/render/pyramid.h"
 #include "execution.h"
 #include "image_texture.h"
 #include "vtkDataArray.h"

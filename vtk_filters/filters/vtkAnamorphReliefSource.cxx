@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "anamorph/error.h"
-#include "anamorph/parameter.h"
+#include "anamorph/parameter/parameter.h"
 #include "execution.h"
 #include "png_file.h"
 #include "smp_for.h"

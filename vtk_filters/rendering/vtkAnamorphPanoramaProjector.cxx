@@ -5,7 +5,7 @@
 #include <iterator>
 
 #include "anamorph/error.h"
-#include "anamorph/map/panorama.h"
+#include "anamorph/panorama/panorama.h"
 #include "vtkAlgorithm.h"
 #include "vtkAlgorithmOutput.h"
 #include "vtkObjectFactory.h"

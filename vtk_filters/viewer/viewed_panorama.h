@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "anamorph/map/panorama.h"
 #include "anamorph/operation/operation.h"
+#include "anamorph/panorama/panorama.h"
 #include "anamorph/source_stack.h"
 
 namespace anamorph_viewer {

@@ -6,7 +6,7 @@
 #include <tuple>
 
 #include "anamorph/error.h"
-#include "anamorph/parameter.h"
+#include "anamorph/parameter/parameter.h"
 
 namespace anamorph {
 namespace {

@@ -5,8 +5,8 @@
 #include <cctype>
 #include <cmath>
 
-#include "anamorph/json_file.h"
-#include "anamorph/parameter.h"
+#include "anamorph/parameter/json_file.h"
+#include "anamorph/parameter/parameter.h"
 
 namespace anamorph {
 namespace {

@@ -3,7 +3,7 @@
 // surface's normal. Templates over the number (number/number.h), read with double, jets and vectors.
 //
 // No include guard and no namespace: vectors need the templates compiled for each instruction set, so whoever
-// reads them includes this file inside a namespace of his own (deform/deformation.h, simd/deform.cpp).
+// reads them includes this file inside a namespace of his own (deform/deformation.h, deform/deform_lanes.cpp).
 
 /// exp(-r^2) of r^2.
 template <class T>

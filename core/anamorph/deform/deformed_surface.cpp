@@ -11,8 +11,8 @@
 #include <numbers>
 #include <stdexcept>
 
-#include "anamorph/parameter.h"
-#include "anamorph/simd/deform.h"
+#include "anamorph/deform/deform_kernels.h"
+#include "anamorph/parameter/parameter.h"
 
 namespace anamorph {
 namespace {

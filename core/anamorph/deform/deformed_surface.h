@@ -8,7 +8,7 @@
 //
 // Errors. A Gaussian is cut off where it is certain to be below `cutoff`: a point whose distance from the
 // centre, along u or along v, is more than sqrt(-log(cutoff)) extents is not moved. A contribution is off by
-// at most half a resolution and by 16 2^-53 of V (simd/deform.h). error_bound() is the sum of all this.
+// at most half a resolution and by 16 2^-53 of V (deform/deform_kernels.h). error_bound() is the sum of all this.
 // Range: a component of V is less than 2^50 resolutions, their magnitudes together less than 2^62.
 //
 // Surfaces are arrays of points x, y, z without gaps, float or double, rounded once from base + displacement.

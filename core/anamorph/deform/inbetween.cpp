@@ -5,8 +5,8 @@
 #include <cmath>
 #include <string>
 
-#include "anamorph/parameter.h"
-#include "anamorph/simd/deform.h"
+#include "anamorph/deform/deform_kernels.h"
+#include "anamorph/parameter/parameter.h"
 
 namespace anamorph {
 namespace {

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <string>
 
-#include "anamorph/parameter.h"
+#include "anamorph/parameter/parameter.h"
 
 namespace anamorph {
 namespace {

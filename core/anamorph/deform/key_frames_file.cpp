@@ -4,7 +4,7 @@
 #include <array>
 #include <utility>
 
-#include "anamorph/json_file.h"
+#include "anamorph/parameter/json_file.h"
 
 namespace anamorph {
 namespace {

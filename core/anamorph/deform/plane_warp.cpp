@@ -11,7 +11,7 @@
 
 #include "anamorph/error.h"
 #include "anamorph/number/interval.h"
-#include "anamorph/parameter.h"
+#include "anamorph/parameter/parameter.h"
 
 namespace anamorph {
 namespace {

@@ -5,7 +5,7 @@
 #include <limits>
 
 #include "anamorph/figure/actions.h"
-#include "anamorph/text_file.h"
+#include "anamorph/parameter/text_file.h"
 
 namespace anamorph {
 

@@ -7,9 +7,9 @@
 
 #include "anamorph/error.h"
 #include "anamorph/figure/actions.h"
+#include "anamorph/figure/ellipsoid_distance.h"
 #include "anamorph/figure/rotation.h"
-#include "anamorph/map/ellipsoid_distance.h"
-#include "anamorph/text_file.h"
+#include "anamorph/parameter/text_file.h"
 
 namespace anamorph {
 namespace {
@@ -90,9 +90,6 @@ double zero_or_closest(const Function& probe) {
     return zero ? *zero : closest_to_zero(probe);
 }
 
-double longest(const glm::dvec3& v) {
-    return std::max({v.x, v.y, v.z});
-}
 double shortest_of(const glm::dvec3& v) {
     return std::min({v.x, v.y, v.z});
 }

@@ -7,9 +7,9 @@
 
 #include "anamorph/figure/frame.h"
 #include "anamorph/geometry/size.h"
-#include "anamorph/render/border.h"
-#include "anamorph/render/footprint.h"
-#include "anamorph/render/point_sampler.h"
+#include "anamorph/image/border.h"
+#include "anamorph/image/footprint.h"
+#include "anamorph/image/point_sampler.h"
 
 namespace anamorph {
 

@@ -10,11 +10,11 @@
 
 #include "anamorph/figure/body_mapping.h"
 #include "anamorph/figure/seen_surface.h"
-#include "anamorph/render/border.h"
-#include "anamorph/render/filter.h"
-#include "anamorph/render/footprint.h"
-#include "anamorph/render/point_sampler.h"
-#include "anamorph/render/summed_areas.h"
+#include "anamorph/image/border.h"
+#include "anamorph/image/filter.h"
+#include "anamorph/image/footprint.h"
+#include "anamorph/image/point_sampler.h"
+#include "anamorph/image/summed_areas.h"
 
 namespace anamorph {
 

@@ -7,7 +7,7 @@
 #include "anamorph/figure/motion_file.h"
 #include "anamorph/figure/rotation.h"
 #include "anamorph/figure/window_fit.h"
-#include "anamorph/text_file.h"
+#include "anamorph/parameter/text_file.h"
 
 namespace anamorph {
 namespace {

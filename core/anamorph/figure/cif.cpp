@@ -18,8 +18,8 @@
 #include "anamorph/figure/rotation.h"
 #include "anamorph/figure/space_group.h"
 #include "anamorph/figure/window_fit.h"
-#include "anamorph/parameter.h"
-#include "anamorph/text_file.h"
+#include "anamorph/parameter/parameter.h"
+#include "anamorph/parameter/text_file.h"
 
 namespace anamorph {
 namespace {

@@ -11,7 +11,7 @@
 #include <string>
 #include <utility>
 
-#include "anamorph/text_file.h"
+#include "anamorph/parameter/text_file.h"
 
 namespace anamorph {
 namespace {

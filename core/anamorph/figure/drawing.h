@@ -10,8 +10,8 @@
 #include "anamorph/figure/figure_rows.h"
 #include "anamorph/figure/frame.h"
 #include "anamorph/figure/outline_view.h"
-#include "anamorph/number_row.h"
 #include "anamorph/parallel_for.h"
+#include "anamorph/parameter/number_row.h"
 
 namespace anamorph {
 

@@ -11,8 +11,8 @@
 #include "anamorph/figure/body_texture.h"
 #include "anamorph/figure/stroke_pixels.h"
 #include "anamorph/figure/visible_surfaces.h"
-#include "anamorph/render/pixel.h"
-#include "anamorph/render/strips.h"
+#include "anamorph/image/pixel.h"
+#include "anamorph/image/strips.h"
 
 namespace anamorph {
 namespace {

@@ -19,10 +19,10 @@
 #include "anamorph/figure/shading.h"
 #include "anamorph/geometry/box.h"
 #include "anamorph/geometry/size.h"
+#include "anamorph/image/filter.h"
+#include "anamorph/image/source.h"
+#include "anamorph/image/view.h"
 #include "anamorph/parallel_for.h"
-#include "anamorph/render/filter.h"
-#include "anamorph/render/source.h"
-#include "anamorph/render/view.h"
 
 namespace anamorph {
 

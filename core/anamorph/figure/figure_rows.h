@@ -2,7 +2,7 @@
 // The numbers that users set of figures and of the views that they are drawn in.
 #pragma once
 
-#include "anamorph/number_row.h"
+#include "anamorph/parameter/number_row.h"
 
 namespace anamorph {
 

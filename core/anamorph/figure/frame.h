@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "anamorph/map/ellipsoid.h"
+#include "anamorph/figure/ellipsoid.h"
 
 namespace anamorph {
 

@@ -5,7 +5,7 @@
 
 #include "anamorph/error.h"
 #include "anamorph/figure/script_table.h"
-#include "anamorph/parameter.h"
+#include "anamorph/parameter/parameter.h"
 
 namespace anamorph {
 namespace {

@@ -4,7 +4,7 @@
 #include <utility>
 
 #include "anamorph/figure/outline.h"
-#include "anamorph/parameter.h"
+#include "anamorph/parameter/parameter.h"
 
 namespace anamorph {
 namespace {

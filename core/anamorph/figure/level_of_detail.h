@@ -5,9 +5,9 @@
 #include <span>
 #include <vector>
 
+#include "anamorph/figure/ellipsoid.h"
 #include "anamorph/figure/figure_rows.h"
 #include "anamorph/figure/outline_view.h"
-#include "anamorph/map/ellipsoid.h"
 
 namespace anamorph {
 

@@ -5,7 +5,7 @@
 
 #include "anamorph/figure/frame_file.h"
 #include "anamorph/figure/mrasel_file.h"
-#include "anamorph/text_file.h"
+#include "anamorph/parameter/text_file.h"
 
 namespace anamorph {
 namespace {

@@ -7,8 +7,8 @@
 
 #include "anamorph/error.h"
 #include "anamorph/figure/rotation.h"
-#include "anamorph/parameter.h"
-#include "anamorph/text_file.h"
+#include "anamorph/parameter/parameter.h"
+#include "anamorph/parameter/text_file.h"
 
 namespace anamorph {
 namespace {

@@ -10,7 +10,7 @@
 #include "anamorph/figure/outline_crossing.h"
 #include "anamorph/figure/outline_hiding.h"
 #include "anamorph/figure/rotation.h"
-#include "anamorph/parameter.h"
+#include "anamorph/parameter/parameter.h"
 
 namespace anamorph {
 namespace {

@@ -17,10 +17,10 @@
 #include <vector>
 
 #include "anamorph/error.h"
+#include "anamorph/figure/ellipse.h"
+#include "anamorph/figure/ellipsoid.h"
 #include "anamorph/figure/figure_rows.h"
 #include "anamorph/figure/outline_view.h"
-#include "anamorph/map/ellipse.h"
-#include "anamorph/map/ellipsoid.h"
 #include "anamorph/parallel_for.h"
 
 namespace anamorph {

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-#include "anamorph/parameter.h"
+#include "anamorph/parameter/parameter.h"
 
 namespace anamorph {
 namespace {

@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "anamorph/figure/outline.h"
-#include "anamorph/parameter.h"
+#include "anamorph/parameter/parameter.h"
 
 namespace anamorph {
 namespace {

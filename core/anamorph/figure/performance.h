@@ -11,7 +11,7 @@
 // bit, in whatever order it is asked for.
 //
 // Where the original searches: `touch` and `abut` find exact contact in both dialects (the contact function
-// of map/ellipsoid_distance.h is 1), the one closest to where the ellipsoids are, or where there is none the
+// of figure/ellipsoid_distance.h is 1), the one closest to where the ellipsoids are, or where there is none the
 // place where that function is closest to 1. Contacts of `touch` that come and go within 0.06 degrees may be
 // missed. `drag` takes, in the classic dialect, the original's three rounds of samples, 0.01 degrees apart in
 // the end and 11.1 degrees a frame at most. `movjnt`, which stops the original, works in both.

@@ -18,7 +18,7 @@
 
 #include "anamorph/error.h"
 #include "anamorph/figure/window_fit.h"
-#include "anamorph/parameter.h"
+#include "anamorph/parameter/parameter.h"
 #include "anamorph/version.h"
 
 namespace anamorph {

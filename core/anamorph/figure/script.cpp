@@ -7,7 +7,7 @@
 
 #include "anamorph/error.h"
 #include "anamorph/figure/script_parser.h"
-#include "anamorph/text_file.h"
+#include "anamorph/parameter/text_file.h"
 
 namespace anamorph {
 namespace {

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <string>
 
-#include "anamorph/text_file.h"
+#include "anamorph/parameter/text_file.h"
 
 namespace anamorph {
 namespace {

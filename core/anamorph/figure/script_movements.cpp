@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "anamorph/figure/script_parser.h"
-#include "anamorph/text_file.h"
+#include "anamorph/parameter/text_file.h"
 
 namespace anamorph {
 

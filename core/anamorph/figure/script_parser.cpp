@@ -6,7 +6,7 @@
 #include <cmath>
 #include <limits>
 
-#include "anamorph/text_file.h"
+#include "anamorph/parameter/text_file.h"
 
 namespace anamorph {
 

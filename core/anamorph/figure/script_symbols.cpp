@@ -5,7 +5,7 @@
 #include <numeric>
 #include <utility>
 
-#include "anamorph/text_file.h"
+#include "anamorph/parameter/text_file.h"
 
 namespace anamorph {
 namespace {

@@ -10,7 +10,7 @@ namespace {
 
 using Vector = glm::vec<3, long double>;
 
-constexpr double kThinnest = 1e-9;
+constexpr double kThinnestSeen = 1e-9;
 constexpr int kFarOut = 1 << 30;
 
 /// Axes f, g, n of the unit sphere's coordinates, n given.
@@ -43,7 +43,7 @@ SeenSurface::SeenSurface(Ellipsoid body, const View& view, double height)
     : m_perspective(view.perspective()) {
     body.axes = glm::abs(body.axes);
     const double longest = std::max({body.axes.x, body.axes.y, body.axes.z});
-    body.axes = glm::max(body.axes, kThinnest * longest);
+    body.axes = glm::max(body.axes, kThinnestSeen * longest);
     const SeenBody seen = see(body, view);
     // A body that is a point covers no pixel.
     if (!seen.solid || seen.kind == OutlineKind::behind) return;

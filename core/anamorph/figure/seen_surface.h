@@ -22,9 +22,9 @@
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 
+#include "anamorph/figure/ellipsoid.h"
 #include "anamorph/figure/outline_view.h"
 #include "anamorph/geometry/box.h"
-#include "anamorph/map/ellipsoid.h"
 #include "anamorph/number/number.h"
 
 namespace anamorph {

@@ -6,7 +6,7 @@
 #include <gemmi/symmetry.hpp>
 #include <string_view>
 
-#include "anamorph/text_file.h"
+#include "anamorph/parameter/text_file.h"
 
 namespace anamorph {
 namespace {

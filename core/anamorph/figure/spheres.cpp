@@ -16,7 +16,7 @@
 #include <numbers>
 
 #include "anamorph/figure/outline_body.h"
-#include "anamorph/parameter.h"
+#include "anamorph/parameter/parameter.h"
 
 namespace anamorph {
 namespace {

@@ -5,8 +5,8 @@
 #include <glm/vec3.hpp>
 #include <vector>
 
+#include "anamorph/figure/ellipsoid.h"
 #include "anamorph/figure/figure_rows.h"
-#include "anamorph/map/ellipsoid.h"
 
 namespace anamorph {
 

@@ -6,7 +6,7 @@
 #include <glm/matrix.hpp>
 #include <glm/vec3.hpp>
 
-#include "anamorph/map/ellipsoid.h"
+#include "anamorph/figure/ellipsoid.h"
 
 namespace anamorph {
 

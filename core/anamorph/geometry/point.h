@@ -2,6 +2,8 @@
 // Points of a picture, rays, and the derivative of a map between pictures.
 #pragma once
 
+#include <algorithm>
+#include <cmath>
 #include <glm/mat3x3.hpp>
 #include <type_traits>
 
@@ -26,6 +28,11 @@ inline Point<double> operator-(const Point<double>& a, const Point<double>& b) {
 /// A vector k times as long.
 inline Point<double> operator*(const Point<double>& a, double k) {
     return {a.x * k, a.y * k};
+}
+
+/// The magnitude of its larger coordinate.
+inline double largest(const Point<double>& p) {
+    return std::max(std::fabs(p.x), std::fabs(p.y));
 }
 
 /// How far the source point moves, in source pixels (level 0), for a step of one target pixel: to the right,

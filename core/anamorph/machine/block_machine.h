@@ -3,17 +3,17 @@
 // each block of the picture, an address controller visits the pixels of the block on the screen, segment by segment, and a
 // pixel processor interpolates four texels for each.
 //
-// The machine draws a real drape: blocks are those of drape/oka.h, its addresses fixed-point numbers. What it visits is
+// The machine draws a real drape: blocks are those of surface/oka.h, its addresses fixed-point numbers. What it visits is
 // counted: blocks, segments and pixels, and no others; how long that takes is block_schedule.h's.
 #pragma once
 
 #include <cstdint>
 #include <vector>
 
-#include "anamorph/drape/oka.h"
 #include "anamorph/geometry/box.h"
-#include "anamorph/number/number_format.h"
-#include "anamorph/number_row.h"
+#include "anamorph/machine/number_format.h"
+#include "anamorph/parameter/number_row.h"
+#include "anamorph/surface/oka.h"
 
 namespace anamorph {
 

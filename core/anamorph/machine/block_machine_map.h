@@ -4,8 +4,8 @@
 
 #include <memory>
 
-#include "anamorph/approx/block.h"
 #include "anamorph/machine/block_machine.h"
+#include "anamorph/plan/block.h"
 
 namespace anamorph {
 

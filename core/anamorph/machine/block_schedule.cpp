@@ -5,7 +5,7 @@
 #include <charconv>
 #include <cmath>
 
-#include "anamorph/parameter.h"
+#include "anamorph/parameter/parameter.h"
 
 namespace anamorph {
 namespace {

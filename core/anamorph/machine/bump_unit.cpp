@@ -5,8 +5,8 @@
 #include <cmath>
 #include <string>
 
-#include "anamorph/approx/panorama_plan.h"
 #include "anamorph/error.h"
+#include "anamorph/panorama/panorama_plan.h"
 
 namespace anamorph {
 namespace {

@@ -9,11 +9,11 @@
 #include <memory>
 #include <vector>
 
-#include "anamorph/approx/residual.h"
 #include "anamorph/machine/machine_map.h"
 #include "anamorph/machine/machine_texture.h"
-#include "anamorph/number/number_format.h"
-#include "anamorph/number_row.h"
+#include "anamorph/machine/number_format.h"
+#include "anamorph/panorama/panorama_residual.h"
+#include "anamorph/parameter/number_row.h"
 
 namespace anamorph {
 

@@ -9,8 +9,8 @@
 #include <mutex>
 #include <vector>
 
-#include "anamorph/approx/block.h"
 #include "anamorph/geometry/size.h"
+#include "anamorph/plan/block.h"
 
 namespace anamorph {
 

@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "anamorph/json_file.h"
-#include "anamorph/parameter.h"
+#include "anamorph/parameter/json_file.h"
+#include "anamorph/parameter/parameter.h"
 
 namespace anamorph {
 namespace {

@@ -3,8 +3,8 @@
 
 #include <algorithm>
 
-#include "anamorph/approx/mesh_residual.h"
 #include "anamorph/machine/shader_run.h"
+#include "anamorph/mesh/mesh_residual.h"
 
 namespace anamorph {
 

@@ -8,12 +8,12 @@
 #include <memory>
 #include <vector>
 
-#include "anamorph/approx/mesh_plan.h"
 #include "anamorph/machine/machine_map.h"
 #include "anamorph/machine/machine_texture.h"
+#include "anamorph/machine/number_format.h"
 #include "anamorph/machine/shader_run.h"
-#include "anamorph/number/number_format.h"
-#include "anamorph/number_row.h"
+#include "anamorph/mesh/mesh_plan.h"
+#include "anamorph/parameter/number_row.h"
 
 namespace anamorph {
 

@@ -6,8 +6,8 @@
 #include <optional>
 #include <set>
 
-#include "anamorph/parameter.h"
-#include "anamorph/text_file.h"
+#include "anamorph/parameter/parameter.h"
+#include "anamorph/parameter/text_file.h"
 
 namespace anamorph {
 namespace {

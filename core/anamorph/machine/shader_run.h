@@ -2,8 +2,8 @@
 // Pixel shaders, run with the numbers of the hardware: the interpreter of what shader_program.h assembles.
 #pragma once
 
+#include "anamorph/machine/number_format.h"
 #include "anamorph/machine/shader_program.h"
-#include "anamorph/number/number_format.h"
 
 namespace anamorph {
 

@@ -2,7 +2,7 @@
 // A formula as a program: a straight line of operations on the point (x, y), which is read with any number of number.h. There are
 // no branches: both sides of a choice are computed.
 //
-// Unlike the formulas of map/, a program may jump or have a crease wherever its text says so. Numbers that stand for all points of
+// Unlike formulas that are compiled, a program may jump or have a crease wherever its text says so. Numbers that stand for all points of
 // a box notice: where a choice is not the same for all of them, intervals hold both sides, what Rounded says counts their
 // distance, and jets, whose derivatives end there, are not bounded. So the box is cut until it is decided, or exact.
 #pragma once
@@ -15,12 +15,11 @@
 #include <utility>
 #include <vector>
 
-#include "anamorph/geometry/point.h"
 #include "anamorph/number/interval.h"
 #include "anamorph/number/jet.h"
+#include "anamorph/number/jets.h"
 #include "anamorph/number/number.h"
 #include "anamorph/number/rounded.h"
-#include "anamorph/simd/jets.h"
 
 namespace anamorph {
 
@@ -359,13 +358,6 @@ std::array<T, N> read_program(const FormulaProgram& program, const T& x, const T
         return std::array<T, N>{r[program.outputs[I]]...};
     }
     (std::make_index_sequence<N>());
-}
-
-/// Of a program that computes two.
-template <class T>
-Point<T> read_point(const FormulaProgram& program, const T& x, const T& y) {
-    const auto [to_x, to_y] = read_program<2>(program, x, y);
-    return {to_x, to_y};
 }
 
 }  // namespace anamorph

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Jets and their recurrences (number/jet.h), over any number.
 //
-// No include guard and no namespace: vectors need them compiled for each instruction set (simd/jets.cpp). Whoever includes
+// No include guard and no namespace: vectors need them compiled for each instruction set (number/jets_lanes.cpp). Whoever includes
 // this says with ANAMORPH_UNROLLED how a function is written into its callers, and with ToldDegree<T> what jets of T are
 // told of their degree as polynomials: nothing where it is to be seen, or `degree`; and with kJetSteps<T, N> whether recurrences
 // are unrolled whole: a constant N, or not: the number N.

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Several numbers at a time: a vector of double or float (Highway's) as a number that formulas are read with.
 //
-// Compiled for each instruction set, so there is no include guard and no namespace: a source file of simd/
+// Compiled for each instruction set, so there is no include guard and no namespace: a file *_lanes.cpp
 // includes this inside its HWY_NAMESPACE, after highway.h, with hn for hwy::HWY_NAMESPACE.
 //
 // Every result is made of sums, products, quotients and roots that are rounded once, each on its own (no

@@ -14,7 +14,7 @@
 //
 //   double                    RestBound        the bases, written down in turn, and a bound of |computed - exact| over all
 //                                              pixels of a block (number/near_bound.h)
-//   read from there           lanes            a block's pixels (simd/direct_rows.cpp)
+//   read from there           lanes            a block's pixels (panorama/direct_rows_lanes.cpp)
 //
 // NearRest<Base, Rest> says what belongs to a pair: of(base), the base as a rest; off(rest, base, units), the rest
 // where the base was rounded by so many units of 2^-53 of another; left_out(rest, d, factor), the rest where up to
@@ -35,10 +35,10 @@
 //   results one number in both. The entry of that number names, in both, the operands of one and the same operation: they have
 //   one number in both as well, and so on down to the inputs, which are numbered in a fixed order.
 // An operation that no result depends on may read any base: nothing is made of it. Drawing reads bases without numbers, and is
-// compared with a reading that numbers them (simd/direct_rows.h). tests/core/test_direct.cpp reads formulas whose operands come in
+// compared with a reading that numbers them (panorama/direct_rows.h). tests/core/test_direct.cpp reads formulas whose operands come in
 // another order, and every formula that there is.
 //
-// No include guard and no namespace, as in map/lens_formula.h: lanes are compiled for each instruction set.
+// No include guard and no namespace, as in chart/lens_formula.h: lanes are compiled for each instruction set.
 // ANAMORPH_INLINE says how.
 
 template <class Base, class Rest>

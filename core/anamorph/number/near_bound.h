@@ -13,7 +13,7 @@
 
 namespace anamorph {
 
-struct Heading;  // map/projection/facts.h
+struct Heading;  // chart/projection/facts.h
 
 #ifdef ANAMORPH_SANITIZED
 #define ANAMORPH_INLINE inline

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a number offers, so that the formulas of map/ and deform/ can be read with it.
+// What a number offers, so that formulas (of chart/, mesh/, morph/, deform/ and surface/) can be read with it.
 //
 // A formula is a template over its scalar T and is written once. With a, b of type T and k a double it uses
 //
@@ -15,7 +15,7 @@
 // lanes, a Certainty of an interval. A branch that would save time is no use to a vector, so there is none.
 //
 // Numbers: double and long double (here), Interval (interval.h), Jet (jet.h), Lanes (lanes.h), four jets at once
-// (simd/jets.h). Rounded (rounded.h), which bounds rounding over a box, offers what projections ask for; Tracked (tracked.h)
+// (number/jets.h). Rounded (rounded.h), which bounds rounding over a box, offers what projections ask for; Tracked (tracked.h)
 // follows a single evaluation. FormatNumber (number_format.h) is rounded as hardware does. GlslNumber (glsl_number.h) writes a
 // shader. A new one gives the list above in its own namespace and works at once in every formula.
 #pragma once

@@ -8,14 +8,14 @@
 #include <optional>
 
 #include "anamorph/deform/key_frames_file.h"
-#include "anamorph/drape/drape.h"
-#include "anamorph/drape/drape_rows.h"
 #include "anamorph/machine/block_machine_map.h"
 #include "anamorph/machine/block_schedule.h"
 #include "anamorph/machine/machine_text.h"
 #include "anamorph/operation/drape_surface.h"
 #include "anamorph/operation/rows.h"
 #include "anamorph/operation/solved.h"
+#include "anamorph/surface/drape.h"
+#include "anamorph/surface/drape_rows.h"
 
 namespace anamorph {
 namespace {

@@ -7,9 +7,9 @@
 #include <utility>
 
 #include "anamorph/deform/deformation_file.h"
-#include "anamorph/drape/drape_rows.h"
 #include "anamorph/operation/read_once.h"
 #include "anamorph/operation/rows.h"
+#include "anamorph/surface/drape_rows.h"
 
 namespace anamorph {
 namespace {

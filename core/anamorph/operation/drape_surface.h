@@ -8,8 +8,8 @@
 #include <utility>
 #include <vector>
 
-#include "anamorph/drape/drape.h"
 #include "anamorph/operation/operation.h"
+#include "anamorph/surface/drape.h"
 
 namespace anamorph {
 

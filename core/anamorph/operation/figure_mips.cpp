@@ -4,9 +4,9 @@
 #include <algorithm>
 #include <utility>
 
-#include "anamorph/render/border.h"
-#include "anamorph/render/pixel.h"
-#include "anamorph/render/window.h"
+#include "anamorph/image/border.h"
+#include "anamorph/image/pixel.h"
+#include "anamorph/image/window.h"
 
 namespace anamorph {
 namespace {

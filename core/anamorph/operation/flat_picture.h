@@ -5,9 +5,9 @@
 #include <functional>
 #include <memory>
 
-#include "anamorph/approx/formula_plan.h"
+#include "anamorph/image/picture.h"
 #include "anamorph/operation/operation.h"
-#include "anamorph/render/picture.h"
+#include "anamorph/plan/formula_plan.h"
 
 namespace anamorph {
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // A lens's distortion taken off a picture, or put on one.
-#include "anamorph/approx/lens_plan.h"
+#include "anamorph/lens/lens_plan.h"
 #include "anamorph/operation/flat_picture.h"
 #include "anamorph/operation/rows.h"
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <atomic>
 
-#include "anamorph/approx/text_plan.h"
+#include "anamorph/formula/text_plan.h"
 #include "anamorph/operation/flat_picture.h"
 #include "anamorph/operation/rows.h"
 

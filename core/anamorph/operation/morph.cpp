@@ -3,8 +3,8 @@
 
 #include <algorithm>
 
-#include "anamorph/approx/near_far_mesh.h"
-#include "anamorph/map/features_file.h"
+#include "anamorph/morph/features_file.h"
+#include "anamorph/morph/near_far_mesh.h"
 #include "anamorph/operation/read_once.h"
 #include "anamorph/operation/rows.h"
 #include "anamorph/operation/solved.h"

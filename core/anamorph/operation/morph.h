@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "anamorph/geometry/size.h"
+#include "anamorph/morph/morph.h"
 #include "anamorph/operation/operation.h"
-#include "anamorph/render/morph.h"
 
 namespace anamorph {
 

@@ -4,13 +4,13 @@
 #include <cmath>
 #include <deque>
 
+#include "anamorph/image/strip_source.h"
 #include "anamorph/operation/operation.h"
 #include "anamorph/operation/pano.h"
 #include "anamorph/operation/panorama_attributes.h"
 #include "anamorph/operation/rows.h"
 #include "anamorph/operation/solved.h"
-#include "anamorph/render/concentric.h"
-#include "anamorph/render/strip_source.h"
+#include "anamorph/panorama/concentric_view.h"
 
 namespace anamorph {
 namespace {

@@ -16,13 +16,13 @@
 #include <variant>
 #include <vector>
 
+#include "anamorph/chart/chart.h"
 #include "anamorph/error.h"
 #include "anamorph/geometry/size.h"
-#include "anamorph/map/chart.h"
+#include "anamorph/image/source.h"
 #include "anamorph/operation/side_files.h"
 #include "anamorph/parallel_for.h"
-#include "anamorph/parameter.h"
-#include "anamorph/render/source.h"
+#include "anamorph/parameter/parameter.h"
 
 namespace anamorph {
 

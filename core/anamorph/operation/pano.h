@@ -8,7 +8,7 @@
 
 #include "anamorph/machine/bump_unit.h"
 #include "anamorph/operation/operation.h"
-#include "anamorph/render/reproject.h"
+#include "anamorph/panorama/reproject.h"
 
 namespace anamorph {
 

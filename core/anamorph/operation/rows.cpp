@@ -6,7 +6,7 @@
 #include <cstdio>
 #include <numbers>
 
-#include "anamorph/render/source.h"
+#include "anamorph/image/source.h"
 
 namespace anamorph::rows {
 namespace {

@@ -10,9 +10,9 @@
 #include <vector>
 
 #include "anamorph/geometry/size.h"
-#include "anamorph/number_row.h"
-#include "anamorph/parameter.h"
-#include "anamorph/render/picture.h"
+#include "anamorph/image/picture.h"
+#include "anamorph/parameter/number_row.h"
+#include "anamorph/parameter/parameter.h"
 
 namespace anamorph::rows {
 

@@ -5,12 +5,12 @@
 #include <array>
 #include <atomic>
 
+#include "anamorph/image/canvas.h"
+#include "anamorph/image/pixel.h"
+#include "anamorph/image/point_sampler.h"
+#include "anamorph/image/strips.h"
 #include "anamorph/machine/machine_text.h"
 #include "anamorph/operation/solved.h"
-#include "anamorph/render/canvas.h"
-#include "anamorph/render/pixel.h"
-#include "anamorph/render/point_sampler.h"
-#include "anamorph/render/strips.h"
 
 namespace anamorph {
 namespace {

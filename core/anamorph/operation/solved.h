@@ -5,8 +5,8 @@
 #include <memory>
 #include <utility>
 
+#include "anamorph/image/picture.h"
 #include "anamorph/operation/operation.h"
-#include "anamorph/render/picture.h"
 
 namespace anamorph {
 

@@ -2,12 +2,12 @@
 #include "anamorph/operation/warp.h"
 
 #include "anamorph/machine/machine_text.h"
-#include "anamorph/map/mesh_file.h"
+#include "anamorph/mesh/mesh_file.h"
 #include "anamorph/operation/read_once.h"
 #include "anamorph/operation/rows.h"
 #include "anamorph/operation/shaded_picture.h"
 #include "anamorph/operation/solved.h"
-#include "anamorph/text_file.h"
+#include "anamorph/parameter/text_file.h"
 
 namespace anamorph {
 namespace {

@@ -6,8 +6,8 @@
 
 #include "anamorph/geometry/size.h"
 #include "anamorph/machine/shaded_warp.h"
+#include "anamorph/mesh/mesh_warp.h"
 #include "anamorph/operation/operation.h"
-#include "anamorph/render/mesh_warp.h"
 
 namespace anamorph {
 

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // The map from a ray to a panorama (projector.h; Kim 2003, eq. 4.1 for cylinders) as a function of GLSL: what
-// Projector::receive() finds, once a fragment. The formulas of map/projection/ write it themselves (number/glsl_number.h), with
+// Projector::receive() finds, once a fragment. The formulas of chart/projection/ write it themselves (number/glsl_number.h), with
 // their derivatives: these lead to the level of detail on each face by itself, so that no seam shows.
 #pragma once
 
 #include <string>
 #include <string_view>
 
-#include "anamorph/map/chart.h"
+#include "anamorph/chart/chart.h"
 
 namespace anamorph {
 
@@ -18,7 +18,7 @@ std::string_view panorama_glsl_prelude();
 ///
 ///   bool NAME(vec3 ray, vec3 right, vec3 up, out vec2 texel, out vec2 alongRight, out vec2 alongUp)
 ///
-/// `ray`: in the frame of rays (map/chart.h), of any length; `right` and `up`: how it changes from a fragment to the next
+/// `ray`: in the frame of rays (chart/chart.h), of any length; `right` and `up`: how it changes from a fragment to the next
 /// ones. Set are the texel, in pixels of the panorama, x right and y down, and how it changes. False where the ray is not in
 /// the panorama, or has no direction. Lenses that need a root get 10 steps of Newton's iteration.
 std::string panorama_glsl(const Chart& panorama, const std::string& name);

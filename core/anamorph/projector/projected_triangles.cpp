@@ -6,7 +6,7 @@
 #include <glm/geometric.hpp>
 #include <optional>
 
-#include "anamorph/parameter.h"
+#include "anamorph/parameter/parameter.h"
 
 namespace anamorph {
 namespace {

@@ -8,7 +8,7 @@
 #include <optional>
 
 #include "anamorph/error.h"
-#include "anamorph/parameter.h"
+#include "anamorph/parameter/parameter.h"
 
 namespace anamorph {
 namespace {

@@ -6,9 +6,9 @@
 #include <glm/geometric.hpp>
 #include <numbers>
 
-#include "anamorph/approx/residual.h"
 #include "anamorph/error.h"
-#include "anamorph/parameter.h"
+#include "anamorph/panorama/panorama_residual.h"
+#include "anamorph/parameter/parameter.h"
 
 namespace anamorph {
 namespace {

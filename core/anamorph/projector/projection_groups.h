@@ -28,7 +28,7 @@ struct GroupOptions {
 
 /// A direction of projection with its linear part and residuals.
 struct ProjectionGroup {
-    glm::dmat3 axes{1};  ///< e, f and d in the frame of rays (map/chart.h), as columns
+    glm::dmat3 axes{1};  ///< e, f and d in the frame of rays (chart/chart.h), as columns
     /// Times a ray: texel x and y of the linear part, both times r . d, and r . d. Rows go to these, as with GLM's product.
     glm::dmat3 linear{1};
     std::vector<std::array<float, 2>> residuals;  ///< texels, in rows from y' = -y_max, x' = -x_max

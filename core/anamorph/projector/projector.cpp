@@ -5,7 +5,7 @@
 #include <glm/geometric.hpp>
 
 #include "anamorph/error.h"
-#include "anamorph/parameter.h"
+#include "anamorph/parameter/parameter.h"
 
 namespace anamorph {
 namespace {

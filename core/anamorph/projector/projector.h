@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // A panorama thrown like a slide from its centre onto a scene (Kim 2003, chapter 4): where on the panorama is what a point
-// of the scene receives. It is eq. 4.1 for cylindrical panoramas, and the same for every other projection and lens of map/.
+// of the scene receives. It is eq. 4.1 for cylindrical panoramas, and the same for every other projection and lens of chart/.
 //
 // The scene is in any unit, right-handed. The panorama's middle is thrown towards `direction`, with `up` upwards.
 #pragma once
@@ -8,7 +8,7 @@
 #include <glm/mat3x3.hpp>
 #include <glm/vec3.hpp>
 
-#include "anamorph/map/chart.h"
+#include "anamorph/chart/chart.h"
 
 namespace anamorph {
 
@@ -41,7 +41,7 @@ class Projector {
     /// frame_of() the pose.
     const glm::dmat3& frame() const { return m_frame; }
 
-    /// From the centre to a point of the scene, in the frame of rays (map/chart.h), in units of the scene.
+    /// From the centre to a point of the scene, in the frame of rays (chart/chart.h), in units of the scene.
     glm::dvec3 ray(const glm::dvec3& point) const { return (point - m_pose.position) * m_frame; }
 
     /// No ray of the panorama has a smaller part forward, relative to its length: a proven bound, -1 where none is known.

@@ -2,7 +2,7 @@
 // The numbers that users set of a projector (projector.h, projected_triangles.h).
 #pragma once
 
-#include "anamorph/number_row.h"
+#include "anamorph/parameter/number_row.h"
 
 namespace anamorph {
 

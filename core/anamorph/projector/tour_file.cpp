@@ -7,7 +7,7 @@
 #include <numbers>
 #include <set>
 
-#include "anamorph/json_file.h"
+#include "anamorph/parameter/json_file.h"
 
 namespace anamorph {
 namespace {

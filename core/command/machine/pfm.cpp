@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <cstring>
 
-#include "anamorph/text_file.h"
+#include "anamorph/parameter/text_file.h"
 
 namespace anamorph::command {
 namespace {

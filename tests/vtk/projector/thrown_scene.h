@@ -24,7 +24,7 @@
 #include <string>
 #include <vector>
 
-#include "anamorph/map/panorama.h"
+#include "anamorph/panorama/panorama.h"
 #include "anamorph/projector/projector.h"
 
 /// A picture whose rows are counted from the top.

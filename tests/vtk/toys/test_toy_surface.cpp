@@ -13,7 +13,7 @@
 #include <fstream>
 #include <sstream>
 
-#include "anamorph/map/surface.h"
+#include "anamorph/surface/surface.h"
 
 namespace {
 

@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "anamorph/image/pixel.h"
 #include "anamorph/operation/operation.h"
 #include "anamorph/operation/rows.h"
-#include "anamorph/render/pixel.h"
 
 namespace anamorph {
 namespace {

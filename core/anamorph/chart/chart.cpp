@@ -1,0 +1,197 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "anamorph/chart/chart.h"
+
+#include "anamorph/error.h"
+#include "anamorph/parameter/parameter.h"
+
+namespace anamorph {
+namespace {
+
+// How much farther out than an image, or than 45 degrees, the points of its lens may lie.
+constexpr double kFarOut = 1024;
+constexpr int kMaxSize = 1 << 24;
+
+constexpr std::string_view kNames[] = {
+#define ANAMORPH_PROJECTION(name, Type) #name,
+#include "anamorph/chart/projection/list.h"
+#undef ANAMORPH_PROJECTION
+};
+
+std::string_view alias_of(Projection projection) {
+    return with_projection(projection, [](auto formulas) -> std::string_view { return formulas.alias; });
+}
+
+/// Throws Error unless the projection has this field of view.
+void check_fov(Projection projection, double fov, const Setting& setting, const std::string& parameter) {
+    const FieldOfView limits = fov_of(projection);
+    const double most =
+        with_projection(projection, [&](auto formulas) { return formulas.most_fov(limits, setting); });
+    const std::string name(name_of(projection));
+    if (limits.fixed) {
+        if (fov != limits.standard)
+            throw Error(parameter, brief(fov), name + " always has " + brief(limits.standard) + " degrees");
+    } else if (!(fov > 0 && (fov < most || (!limits.open && fov == most))))
+        throw Error(parameter, brief(fov),
+                    "must be above 0 and " + std::string(limits.open ? "below " : "up to ") + brief(most) +
+                        " degrees for " + name);
+}
+
+/// The faces of a layout at their places. Throws Error unless they are square.
+std::vector<Piece> face_pieces(Projection projection, int width, int height, const std::string& parameter) {
+    const FaceGrid grid = faces_of(projection);
+    if (width % grid.columns != 0 || height % grid.rows != 0 || width / grid.columns != height / grid.rows)
+        throw Error(parameter, std::to_string(width) + "x" + std::to_string(height),
+                    std::string(name_of(projection)) + " needs square faces, " +
+                        std::to_string(grid.columns) + " across and " + std::to_string(grid.rows) + " down");
+    const int n = width / grid.columns;
+    std::vector<Piece> pieces;
+    for (const Face& f : with_projection(projection, [](auto formulas) { return formulas.faces(); }))
+        pieces.push_back({{f.column * n, f.row * n, (f.column + 1) * n, (f.row + 1) * n}, f.axes, f.toward});
+    return pieces;
+}
+
+}  // namespace
+
+Projection projection_from_name(std::string_view name, const std::string& parameter) {
+    for (const Projection p : kProjections)
+        if (!name.empty() && (name == name_of(p) || name == alias_of(p))) return p;
+    throw Error(parameter, std::string(name), "must be one of " + projection_names());
+}
+
+std::string_view name_of(Projection projection) {
+    return kNames[static_cast<std::size_t>(projection)];
+}
+
+std::vector<std::string> projection_name_list() {
+    std::vector<std::string> names(std::begin(kNames), std::end(kNames));
+    for (const Projection p : kProjections)
+        if (!alias_of(p).empty()) names.emplace_back(alias_of(p));
+    return names;
+}
+
+std::string projection_names() {
+    std::string names;
+    for (const std::string_view name : kNames) names += (names.empty() ? "" : ", ") + std::string(name);
+    return names;
+}
+
+FieldOfView fov_of(Projection projection) {
+    return with_projection(projection, [](auto formulas) { return formulas.fov; });
+}
+
+FaceGrid faces_of(Projection projection) {
+    return with_projection(projection, [](auto formulas) {
+        return FaceGrid{formulas.columns, formulas.rows, formulas.face_centre > 0};
+    });
+}
+
+double natural_aspect(Projection projection, double fov) {
+    return with_projection(projection, [&](auto formulas) { return formulas.aspect(fov); });
+}
+
+double Chart::default_fov(Projection projection) {
+    return fov_of(projection).standard;
+}
+
+Chart::Chart(Projection projection, int width, int height, double fov, PixelSpacing spacing,
+             const std::string& prefix, double d, const LensModel& lens)
+    : m_projection(projection), m_width(width), m_height(height), m_fov(fov), m_spacing(spacing) {
+    const std::string size = std::to_string(width) + "x" + std::to_string(height);
+    if (width < 1 || height < 1 || width > kMaxSize || height > kMaxSize)
+        throw Error(prefix + "size", size, "must be 1x1 to 16777216x16777216 pixels");
+    if (!(d >= 0 && d <= kMostDistance))
+        throw Error(prefix + "d", brief(d), "must be from 0 to " + brief(kMostDistance));
+    m_setting.distance = d;
+    if (m_fov == 0) m_fov = default_fov(projection);
+    check_fov(projection, m_fov, m_setting, prefix + "fov");
+    if (faces_of(projection).columns > 0)
+        m_pieces = face_pieces(projection, width, height, prefix + "size");
+    else
+        m_pieces = {Piece{{0, 0, width, height}}};
+    set_scale(prefix, lens);
+    set_branches();
+}
+
+void Chart::set_scale(const std::string& prefix, const LensModel& lens) {
+    const int columns = m_pieces[0].box.width(), rows = m_pieces[0].box.height();
+    const long double plane =
+        with_projection(m_projection, [&](auto formulas) { return formulas.width(m_fov, m_setting); });
+    m_setting.half_width = static_cast<double>(plane / 2);
+    long double across = columns / plane, down = across;
+    if (m_spacing == PixelSpacing::centers) {
+        if (columns < 2 || rows < 2)
+            throw Error(prefix + "size", std::to_string(m_width) + "x" + std::to_string(m_height),
+                        "pixels=centers needs at least 2 pixels each way");
+        // Of a face, or of all of those that are joined.
+        const FaceGrid grid = faces_of(m_projection);
+        const int faces_across = grid.joined ? grid.columns : 1, faces_down = grid.joined ? grid.rows : 1;
+        across = (columns * faces_across - 1) / (plane * faces_across);
+        down = (rows * faces_down - 1) / (plane * rows / columns * faces_down);
+    }
+    const double units =
+        with_projection(m_projection, [&](auto formulas) { return formulas.width_units(m_fov, m_setting); });
+    const auto constant = [&](long double value) {
+        return Constant(value, static_cast<double>(value) * units * Rounded<long double>::kUnit);
+    };
+    m_sx = constant(across);
+    m_sy = constant(down);
+    m_per_x = constant(1 / across);
+    m_per_y = constant(1 / down);
+    if (lens.kind == LensModel::Kind::none) return;
+    const Lens::Plane half{plane / 2, plane / 2 * rows / columns, 1 / across, 1 / down};
+    const Lensed lensed = with_projection(m_projection, [](auto formulas) { return formulas.lensed; });
+    m_lens =
+        std::make_shared<const Lens>(lens, lensed, std::string(name_of(m_projection)), half, prefix + "lens");
+}
+
+void Chart::set_branches() {
+    with_projection(m_projection, [&](auto formulas) {
+        m_counted = formulas.counted;
+        m_closed = formulas.closes && m_fov == 360;
+        m_turns = formulas.closes;
+        m_pieces_see_all = m_pieces.size() > 1 && formulas.faces_see_all(m_setting);
+        m_poles = formulas.has_pole_rows && m_closed && m_width == 2 * m_height;
+        const double tangent =
+            formulas.largest_tangent(0.5 * m_width / scale_x(), 0.5 * m_height / scale_y());
+        m_setting.reach = kFarOut * std::max(1.0, tangent);
+        const int across = m_pieces[0].box.width();
+        const bool joined = faces_of(m_projection).joined;
+        for (std::size_t i = 0; i < m_pieces.size(); ++i) {
+            const Box& box = m_pieces[i].box;
+            Branch b{m_setting, static_cast<int>(i), m_pieces[i].axes};
+            b.centre_x = box.x0 < across ? -formulas.face_centre : formulas.face_centre;
+            b.centre_y = box.y0 < across ? -formulas.face_centre : formulas.face_centre;
+            // Of joined faces the middle of all stands for (0, 0), without rounding: sides and scales are multiples of 1/2.
+            b.pixel_x = joined ? 0.5 * m_width + b.centre_x * scale_x() : 0.5 * (box.x0 + box.x1);
+            b.pixel_y = joined ? 0.5 * m_height + b.centre_y * scale_y() : 0.5 * (box.y0 + box.y1);
+            m_branches.push_back(b);
+        }
+    });
+}
+
+Chart Chart::resized(int width, int height) const {
+    Chart chart(m_projection, width, height, m_fov, m_spacing, "", m_setting.distance.d);
+    chart.m_lens = m_lens;
+    return chart;
+}
+
+Branch Chart::branch_around(double x, double y, int piece) const {
+    return branch_around(ray(x, y, piece));
+}
+
+Branch Chart::branch_around(const Ray<double>& ray) const {
+    Branch b = branch(piece_of(ray));
+    const Ray<double> r = transform(glm::transpose(b.axes), ray);
+    if (m_counted == Counted::azimuth) {
+        b.around = {r.x, r.z};
+        b.along = {r.y, std::hypot(r.x, r.z)};
+        b.axes *= glm::dmat3(b.around.cos, 0, -b.around.sin, 0, 1, 0, b.around.sin, 0, b.around.cos);
+    } else if (m_counted == Counted::axis) {
+        b.around = {r.y, r.x};
+        b.along = {std::hypot(r.x, r.y), r.z};
+        b.axes *= glm::dmat3(b.around.cos, b.around.sin, 0, -b.around.sin, b.around.cos, 0, 0, 0, 1);
+    }
+    return b;
+}
+
+}  // namespace anamorph

@@ -1,0 +1,328 @@
+// SPDX-License-Identifier: Apache-2.0
+// Charts: the flat pictures of the sphere of directions. A chart maps a point of its image to a ray and a ray
+// to a point of its image; each formula is written once, as a template over the scalar.
+//
+// Frames. Image: pixels, x right, y down, the centre of pixel (i, j) at (i + 0.5, j + 0.5). Ray: x right, y
+// down, z forward, any length. Chart plane: (X, Y) = (image - centre) / pixels per unit, in the unit of the
+// projection (radians for angles). A picture taken through a lens (lens.h) is in the observed plane, from which
+// the lens leads to that of the projection.
+//
+// Projections: chart/projection/, one a file, in the order of chart/projection/list.h.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <glm/mat3x3.hpp>
+#include <memory>
+#include <numbers>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "anamorph/chart/lens.h"
+#include "anamorph/chart/projection/facts.h"
+#include "anamorph/geometry/box.h"
+#include "anamorph/geometry/point.h"
+#include "anamorph/number/jet.h"
+
+namespace anamorph {
+
+/// One a file of chart/projection/.
+enum class Projection {
+#define ANAMORPH_PROJECTION(name, Type) name,
+#include "anamorph/chart/projection/list.h"
+#undef ANAMORPH_PROJECTION
+};
+
+/// All of them, in the order of their list.
+inline constexpr Projection kProjections[] = {
+#define ANAMORPH_PROJECTION(name, Type) Projection::name,
+#include "anamorph/chart/projection/list.h"
+#undef ANAMORPH_PROJECTION
+};
+
+namespace projection {
+#include "anamorph/chart/projection/list.h"
+}  // namespace projection
+
+/// body(P()) with the formulas of a projection, P of namespace projection.
+template <class Body>
+decltype(auto) with_projection(Projection projection, const Body& body) {
+    switch (projection) {
+#define ANAMORPH_PROJECTION(name, Type) \
+    case Projection::name:              \
+        return body(projection::Type());
+#include "anamorph/chart/projection/list.h"
+#undef ANAMORPH_PROJECTION
+    }
+    return body(projection::Equirectangular());
+}
+
+/// How a field of view spreads over W pixels: edge to edge, or from the first pixel's centre to the last
+/// one's.
+enum class PixelSpacing { edges, centers };
+
+/// "equirectangular" and so on; "latlong" is an alias. Throws Error naming `parameter`.
+Projection projection_from_name(std::string_view name, const std::string& parameter = "projection");
+/// The name that recipes have for it; never an alias.
+std::string_view name_of(Projection projection);
+/// All names, separated by ", ", for messages and documentation.
+std::string projection_names();
+/// The names one by one, with the aliases behind.
+std::vector<std::string> projection_name_list();
+/// Its default field of view and its limits.
+FieldOfView fov_of(Projection projection);
+/// Faces across and down its picture; 0 where the picture is one piece of any shape.
+struct FaceGrid {
+    int columns = 0, rows = 0;
+    bool joined = false;  ///< the faces are parts of one picture, which has no edges where they meet
+};
+/// How its picture is divided into faces.
+FaceGrid faces_of(Projection projection);
+/// Is its picture divided into faces?
+inline bool has_faces(Projection projection) {
+    return faces_of(projection).columns > 0;
+}
+/// Height over width of a picture of a field of view in degrees.
+double natural_aspect(Projection projection, double fov);
+
+/// One smooth piece of a chart: where it stands in the image, and its axes (right, down, forward) as columns
+/// in the frame of rays. Layouts of faces have more than one.
+struct Piece {
+    Box box;
+    glm::dmat3 axes{1};
+    glm::dvec3 toward{0, 0, 1};  ///< a ray belongs to the piece whose `toward` it is nearest to
+};
+
+/// Where on a chart its formulas are read: the piece, and the direction from which angles are counted. A
+/// local ray has that direction straight ahead: ray = axes * local ray.
+struct Branch : Setting {
+    int piece = 0;
+    glm::dmat3 axes{1};
+    double pixel_x = 0, pixel_y = 0;  ///< of the image, where the piece's (centre_x, centre_y) stands
+};
+
+/// A flat picture of directions: a projection, its field of view and its pixels.
+class Chart {
+  public:
+    /// Of Pannini's d.
+    static constexpr double kMostDistance = 1000;
+
+    /// `fov`: the horizontal field of view of the whole image in degrees, or of each face; 0 takes the
+    /// projection's default (default_fov); without distortion. `d`: Pannini's distance. `prefix` is put before
+    /// "fov", "size", "d" and "lens" in errors. Throws Error.
+    Chart(Projection projection, int width, int height, double fov = 0,
+          PixelSpacing spacing = PixelSpacing::edges, const std::string& prefix = "", double d = 1,
+          const LensModel& lens = {});
+
+    /// The field of view that a chart of this projection has unless it is given one, in degrees.
+    static double default_fov(Projection projection);
+    /// The same picture with other pixels; faces stay square. Throws Error.
+    Chart resized(int width, int height) const;
+
+    Projection projection() const { return m_projection; }
+    int width() const { return m_width; }
+    int height() const { return m_height; }
+    double fov() const { return m_fov; }
+    PixelSpacing spacing() const { return m_spacing; }
+    const std::vector<Piece>& pieces() const { return m_pieces; }
+    /// None of most pictures.
+    const Lens* lens() const { return m_lens.get(); }
+
+    /// Does azimuth close on itself in this image (a full turn)? Its period in pixels is then period().
+    bool closed() const { return m_closed; }
+    /// Pixels of a full turn: the width, or one less where fields of view run between pixel centres.
+    int period() const { return m_spacing == PixelSpacing::edges ? m_width : m_width - 1; }
+    /// Do the first and last rows touch the poles (equirectangular over the full 180 degrees)?
+    bool reaches_poles() const { return m_poles; }
+    /// Pixels per unit of the chart plane at pieces()[0].
+    double scale_x() const { return m_sx.value(); }
+    double scale_y() const { return m_sy.value(); }
+    /// Across, known better than double holds them.
+    const Constant& pixels_per_unit() const { return m_sx; }
+    const Constant& units_per_pixel() const { return m_per_x; }
+    /// Pixels for a radian straight ahead of a piece.
+    double pixels_per_radian() const {
+        return scale_x() * (m_lens ? m_lens->model().magnification() : 1) *
+               with_projection(m_projection, [](auto formulas) { return formulas.per_radian; });
+    }
+    /// Source points of one ray lie so many pixels apart, or any multiple: a full turn, infinite where rows do
+    /// not run around the sphere.
+    double turn() const {
+        return m_closed ? period() : m_turns ? 2 * std::numbers::pi * scale_x() : HUGE_VAL;
+    }
+    /// A computed point of a ray and the exact one of another lie no farther apart, where the plane has an end; else infinite.
+    ///
+    /// Exact points lie within the plane's radius R of its middle. Computed ones do but for rounding, at most that of a lens's
+    /// polynomial: 14 units of 2^-53 times its condition, which lens.cpp takes to be below 2^40. But straight behind, next to the
+    /// axis, x^2 + y^2 may underflow: it is a multiple of 2^-1074, and each square is off by half of that at most. Where the sum
+    /// is not 0 it then is at least half of the exact one, and the radius, for which formulas divide by its root, at most
+    /// sqrt 2 R, or infinite, which is no point. The two are less than 2.42 R apart. Of the 2.5 R that are returned the rest is
+    /// more than a thirtieth of 2 R, which is a pixel at least: far above the rounding of coordinates, which are below 2^24.
+    double widest() const {
+        const double diameter =
+            m_lens ? 2 * m_lens->reach()
+                   : with_projection(m_projection, [](auto formulas) -> double { return formulas.diameter; });
+        return diameter * std::max(scale_x(), scale_y()) * 1.25;
+    }
+
+    /// The local ray through an image point. Meaningful where inside() >= 0.
+    template <class T>
+    Ray<T> local_ray(const T& x, const T& y, const Branch& branch) const;
+
+    /// >= 0 where the image point has a ray; the sign holds for all members of an interval, or is open.
+    template <class T>
+    T inside(const T& x, const T& y, int piece = 0) const;
+
+    /// The image point of a local ray.
+    template <class T>
+    Point<T> local_point(const Ray<T>& local, const Branch& branch) const;
+
+    /// > 0 where a local ray is seen by the lens and lies on the piece. A lens that cannot see all directions
+    /// ends where their tangents are 1024 times those of its image's edges, and of 45 degrees.
+    template <class T>
+    T sees(const Ray<T>& local, int piece = 0) const;
+
+    /// Are there several pieces, and does each see all rays that are nearest to it?
+    bool pieces_see_all() const { return m_pieces_see_all; }
+
+    /// Of one sign where one smooth formula holds, at an image point.
+    template <class T>
+    T crease(const T& x, const T& y, int piece) const;
+    /// The same at a local ray.
+    template <class T>
+    T crease(const Ray<T>& local) const;
+    /// Do formulas count azimuths, or angles about the axis of sight?
+    Counted counted() const { return m_counted; }
+
+    /// The branch for single points of a piece: azimuths counted from straight ahead, in [-180, 180].
+    const Branch& branch(int piece = 0) const { return m_branches[static_cast<std::size_t>(piece)]; }
+    /// The branch for a neighbourhood of an image point.
+    Branch branch_around(double x, double y, int piece) const;
+    /// The branch for a neighbourhood of a ray.
+    Branch branch_around(const Ray<double>& ray) const;
+
+    /// The piece that sees a ray.
+    template <class T>
+    int piece_of(const Ray<T>& ray) const;
+
+    /// The ray through an image point.
+    template <class T>
+    Ray<T> ray(const T& x, const T& y, int piece = 0) const {
+        return transform(branch(piece).axes, local_ray(x, y, branch(piece)));
+    }
+    /// The image point of a ray, on the piece that sees it.
+    template <class T>
+    Point<T> point(const Ray<T>& ray, int piece) const {
+        return local_point(transform(glm::transpose(branch(piece).axes), ray), branch(piece));
+    }
+
+    /// Image and plane of a piece, in double: plane = (image - c) * per + the branch's centre.
+    struct Plane {
+        double cx, cy, sx, sy, per_x, per_y;
+    };
+    /// Image and plane of a piece.
+    Plane plane(int piece) const {
+        const Branch& b = branch(piece);
+        return {b.pixel_x, b.pixel_y, m_sx.value(), m_sy.value(), m_per_x.value(), m_per_y.value()};
+    }
+
+  private:
+    template <class T>
+    Point<T> to_observed_plane(const T& x, const T& y, const Branch& branch) const;
+    template <class T>
+    Point<T> to_plane(const T& x, const T& y, const Branch& branch) const;
+
+    void set_scale(const std::string& prefix, const LensModel& lens);
+    void set_branches();
+
+    Projection m_projection;
+    int m_width, m_height;
+    double m_fov;
+    PixelSpacing m_spacing;
+    Setting m_setting;
+    Counted m_counted = Counted::none;
+    /// Pixels per unit of the plane, and units per pixel.
+    Constant m_sx, m_sy, m_per_x, m_per_y;
+    bool m_closed = false, m_poles = false, m_turns = false, m_pieces_see_all = false;
+    std::vector<Piece> m_pieces;
+    std::vector<Branch> m_branches;
+    std::shared_ptr<const Lens> m_lens;
+};
+
+// ---------------------------------------------------------------------------------------------------------
+
+template <class T>
+Point<T> Chart::to_observed_plane(const T& x, const T& y, const Branch& branch) const {
+    return {(x - branch.pixel_x) * m_per_x.as<T>() + branch.centre_x,
+            (y - branch.pixel_y) * m_per_y.as<T>() + branch.centre_y};
+}
+
+template <class T>
+Point<T> Chart::to_plane(const T& x, const T& y, const Branch& branch) const {
+    Point<T> p = to_observed_plane(x, y, branch);
+    if (m_lens) p = m_lens->ideal(p);
+    return p;
+}
+
+template <class T>
+T Chart::inside(const T& x, const T& y, int piece) const {
+    const Point<T> p = to_plane(x, y, branch(piece));
+    const T there =
+        with_projection(m_projection, [&](auto formulas) { return formulas.inside(p, branch(piece)); });
+    return m_lens ? min(there, m_lens->inside(to_observed_plane(x, y, branch(piece)))) : there;
+}
+
+template <class T>
+Ray<T> Chart::local_ray(const T& x, const T& y, const Branch& branch) const {
+    const Point<T> p = to_plane(x, y, branch);
+    return with_projection(m_projection, [&](auto formulas) { return formulas.ray(p, branch); });
+}
+
+template <class T>
+T Chart::sees(const Ray<T>& local, int piece) const {
+    const T there =
+        with_projection(m_projection, [&](auto formulas) { return formulas.sees(local, branch(piece)); });
+    if (!m_lens) return there;
+    // What the projection does not see may have no point in its plane.
+    const Point<T> p = with_projection(
+        m_projection, [&](auto formulas) -> Point<T> { return formulas.point(local, branch(piece)); });
+    return select(is_negative(there), there, min(there, m_lens->sees(p)));
+}
+
+template <class T>
+T Chart::crease(const T& x, const T& y, int piece) const {
+    // No projection of one piece that may have a lens has a crease.
+    const Point<T> p = to_observed_plane(x, y, branch(piece));
+    return with_projection(m_projection, [&](auto formulas) { return formulas.plane_crease(p); });
+}
+template <class T>
+T Chart::crease(const Ray<T>& local) const {
+    return with_projection(m_projection, [&](auto formulas) { return formulas.ray_crease(local); });
+}
+
+template <class T>
+Point<T> Chart::local_point(const Ray<T>& local, const Branch& branch) const {
+    Point<T> p = with_projection(m_projection,
+                                 [&](auto formulas) -> Point<T> { return formulas.point(local, branch); });
+    if (m_lens) p = m_lens->observed(p);
+    return {(p.x - branch.centre_x) * m_sx.as<T>() + branch.pixel_x,
+            (p.y - branch.centre_y) * m_sy.as<T>() + branch.pixel_y};
+}
+
+template <class T>
+int Chart::piece_of(const Ray<T>& ray) const {
+    int best = 0;
+    T most = T(0);
+    for (std::size_t i = 0; i < m_pieces.size() && m_pieces.size() > 1; ++i) {
+        const glm::dvec3& f = m_pieces[i].toward;
+        const T along = ray.x * f[0] + ray.y * f[1] + ray.z * f[2];
+        if (i == 0 || along > most) {
+            most = along;
+            best = static_cast<int>(i);
+        }
+    }
+    return best;
+}
+
+}  // namespace anamorph

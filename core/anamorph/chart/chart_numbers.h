@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: Apache-2.0
+// The formulas of charts and lenses read with the numbers that most source files need: compiled once, in chart_numbers.cpp.
+#pragma once
+
+#include "anamorph/chart/chart.h"
+#include "anamorph/number/rounded.h"
+
+namespace anamorph {
+
+/// From points to rays and back, read with T; `external` is extern, or nothing where they are compiled.
+#define ANAMORPH_CHART_POINTS(external, T)                                              \
+    external template Ray<T> Chart::local_ray(const T&, const T&, const Branch&) const; \
+    external template Point<T> Chart::local_point(const Ray<T>&, const Branch&) const;  \
+    external template Point<T> Lens::ideal(const Point<T>&) const;                      \
+    external template Point<T> Lens::observed(const Point<T>&) const;
+/// Whether there are such.
+#define ANAMORPH_CHART_SIGHT(external, T)                             \
+    external template T Chart::inside(const T&, const T&, int) const; \
+    external template T Chart::sees(const Ray<T>&, int) const;
+/// With all such numbers.
+#define ANAMORPH_CHART_NUMBERS(external)                  \
+    ANAMORPH_CHART_POINTS(external, double)               \
+    ANAMORPH_CHART_POINTS(external, long double)          \
+    ANAMORPH_CHART_POINTS(external, Interval)             \
+    ANAMORPH_CHART_POINTS(external, Rounded<double>)      \
+    ANAMORPH_CHART_POINTS(external, Rounded<long double>) \
+    ANAMORPH_CHART_POINTS(external, Jet1<double>)         \
+    ANAMORPH_CHART_POINTS(external, Jet1<Interval>)       \
+    ANAMORPH_CHART_POINTS(external, Jet2<Interval>)       \
+    ANAMORPH_CHART_SIGHT(external, double)                \
+    ANAMORPH_CHART_SIGHT(external, long double)           \
+    ANAMORPH_CHART_SIGHT(external, Interval)
+
+ANAMORPH_CHART_NUMBERS(extern)
+
+}  // namespace anamorph

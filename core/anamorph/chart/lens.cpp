@@ -1,0 +1,381 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "anamorph/chart/lens.h"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <set>
+
+#include "anamorph/chart/lens_table.h"
+#include "anamorph/error.h"
+#include "anamorph/parameter/parameter.h"
+
+namespace anamorph {
+namespace {
+
+using lens_formula::Series;
+
+// How far a lens reaches, in distances of the picture's farthest corner: in the observed and in the ideal picture.
+constexpr double kObservedReach = 4, kIdealReach = 16;
+constexpr double kMostValue = 1e6;
+
+struct KindOfLens {
+    LensModel::Kind kind;
+    std::string name;
+    std::vector<std::string> values;
+};
+const std::vector<KindOfLens>& kinds() {
+    using enum LensModel::Kind;
+    static const std::vector<KindOfLens> all = {
+        {none, "none", {}},
+        {ptlens, "ptlens", {"a", "b", "c", "d", "e"}},
+        {brown, "brown", {"k1", "k2", "k3", "k4", "k5", "k6", "p1", "p2", "d", "e"}},
+        {three_de4, "3de4", {"k1", "k2", "d", "e"}},
+        {kb4, "kb4", {"k1", "k2", "k3", "k4", "d", "e"}}};
+    return all;
+}
+const KindOfLens& kind_of(LensModel::Kind kind) {
+    return kinds()[static_cast<std::size_t>(kind)];
+}
+
+template <class List, class Name>
+std::string listed(const List& list, const Name& name) {
+    std::string text;
+    for (const auto& item : list) text += (text.empty() ? "" : ", ") + std::string(name(item));
+    return text;
+}
+
+/// sum |c_i| t^i
+double magnitude_of(const Constant* c, int count, double t) {
+    double sum = 0;
+    for (int i = count - 1; i >= 0; --i) sum = sum * t + std::fabs(c[i].value());
+    return sum;
+}
+
+/// How much the radial part stretches the least, along the radius or across it, over all of these t; less than nothing
+/// where a pole is near.
+double least_stretch(const LensTerms& lens, const Interval& t) {
+    using S = Series<Interval, 1>;
+    const S at = S::variable(t);
+    if (lens.under_count > 1) {
+        const Interval under = lens_formula::sum_of_powers(lens.under, lens.under_count, t);
+        if (!(under.lo > 0x1p-40 * magnitude_of(lens.under, lens.under_count, t.hi))) return -1;
+    }
+    const S stretch = lens_formula::stretch_at(lens, at);
+    const Interval slope = stretch.c[0] + stretch.c[1] * t * (lens.in_radius ? 1.0 : 2.0);
+    return stretch.c[0].lo > 0 && slope.lo > 0 ? std::min(stretch.c[0].lo, slope.lo) : -1;
+}
+
+/// How much the tangential part stretches the most, up to t: its slope is 2 (m.u) + 2 (u m^T + m u^T).
+double most_tangential(const LensTerms& lens, double t) {
+    return 6 * std::hypot(lens.mx, lens.my) * std::sqrt(t) * (1 + 8 * interval_detail::kUlp);
+}
+
+}  // namespace
+
+const std::vector<std::string>& LensModel::names(Kind kind) {
+    return kind_of(kind).values;
+}
+
+LensModel LensModel::parse(std::string_view text, const std::string& parameter) {
+    const std::string whole(text);
+    const std::string_view name = text.substr(0, text.find(':'));
+    const auto kind =
+        std::find_if(kinds().begin(), kinds().end(), [&](const auto& k) { return k.name == name; });
+    if (kind == kinds().end())
+        throw Error(parameter, whole,
+                    "must begin with one of " + listed(kinds(), [](const auto& k) { return k.name; }));
+    LensModel model{kind->kind, std::vector<double>(kind->values.size())};
+    std::set<std::string_view> seen;
+    for (std::size_t at = name.size(); at < text.size();) {
+        // What stands before is a colon or a comma.
+        const std::string_view part = text.substr(at + 1, text.find(',', at + 1) - (at + 1));
+        at += 1 + part.size();
+        const std::size_t equals = std::min(part.find('='), part.size());
+        const std::string_view key = part.substr(0, equals);
+        const auto found = std::find(kind->values.begin(), kind->values.end(), key);
+        if (found == kind->values.end())
+            throw Error(parameter, whole,
+                        kind->values.empty() ? "none has no values"
+                                             : kind->name + " must be followed by values of " +
+                                                   listed(kind->values, [](const auto& v) { return v; }) +
+                                                   ", as in " + kind->name + ":" + kind->values[0] + "=0.1");
+        if (!seen.insert(key).second) throw Error(parameter, whole, std::string(key) + " must be given once");
+        double& value = model.values[static_cast<std::size_t>(found - kind->values.begin())];
+        const std::string_view number = part.substr(std::min(equals + 1, part.size()));
+        const auto [end, error] = std::from_chars(number.data(), number.data() + number.size(), value);
+        if (error != std::errc() || end != number.data() + number.size() || !(std::fabs(value) <= kMostValue))
+            throw Error(parameter, whole,
+                        std::string(key) + " must be a number from " + brief(-kMostValue) + " to " +
+                            brief(kMostValue));
+    }
+    return model;
+}
+
+std::string LensModel::text() const {
+    std::string text = kind_of(kind).name;
+    char separator = ':';
+    for (std::size_t i = 0; i < values.size(); ++i) {
+        if (values[i] == 0) continue;
+        text += separator + names(kind)[i] + "=" + shortest(values[i]);
+        separator = ',';
+    }
+    return text;
+}
+
+double LensModel::magnification() const {
+    return kind == Kind::ptlens ? 1 - values[0] - values[1] - values[2] : 1;
+}
+
+Lens::Lens(const LensModel& model, Lensed lensed, const std::string& projection, const Plane& plane,
+           const std::string& parameter)
+    : m_model(model) {
+    using enum LensModel::Kind;
+    if (lensed == Lensed::no)
+        throw Error(parameter, model.text(), "must be none for " + projection + ", which has no lens");
+    if ((model.kind == brown && lensed != Lensed::flat) ||
+        (model.kind == kb4 && lensed != Lensed::equidistant))
+        throw Error(parameter, model.text(),
+                    kind_of(model.kind).name + " must be of a " +
+                        (model.kind == brown ? "rectilinear" : "fisheye") + " picture, not " + projection);
+    set_terms();
+    const long double smaller = std::min(plane.half_width, plane.half_height);
+    const long double unit = model.kind == ptlens      ? smaller
+                             : model.kind == three_de4 ? std::hypot(plane.half_width, plane.half_height)
+                                                       : 1;
+    const long double d = model.values[model.values.size() - 2] * plane.per_x,
+                      e = model.values[model.values.size() - 1] * plane.per_y;
+    m_terms.unit = unit == 1 ? Constant(1, 0) : Constant(unit);
+    m_terms.per_unit = unit == 1 ? Constant(1, 0) : Constant(1 / unit);
+    m_terms.has_unit = unit != 1;
+    m_terms.shift_x = Constant(d);
+    m_terms.shift_y = Constant(e);
+    m_terms.shifted = d != 0 || e != 0;
+    const auto in_units = [&](long double length) { return static_cast<double>(length / unit); };
+    const double corner =
+        in_units(std::hypot(plane.half_width + std::fabs(d), plane.half_height + std::fabs(e)));
+    const bool folds = set_ends(corner);
+    // The circle in the picture's middle, about the lens's centre.
+    const double asked = in_units(smaller + std::hypot(d, e));
+    if (!(m_terms.observed_end >= asked * (1 - 1e-4))) {
+        const auto pixels = [&](double length) {
+            return brief(std::round(10 * length * static_cast<double>(unit / plane.per_x)) / 10);
+        };
+        throw Error(parameter, model.text(),
+                    std::string(folds && !m_terms.tangential ? "folds" : "ends") + " at a radius of " +
+                        pixels(m_terms.observed_end) + " pixels: must not within " + pixels(asked) +
+                        ", the circle that the picture holds");
+    }
+    m_terms.table = std::make_shared<const LensTable>(m_terms, corner);
+}
+
+void Lens::set_terms() {
+    using enum LensModel::Kind;
+    LensTerms& terms = m_terms;
+    const std::vector<double>& v = m_model.values;
+    const auto exact = [](double value) { return Constant(value, 0); };
+    terms.over[0] = exact(1);
+    terms.under[0] = exact(1);
+    const auto powers = [&](Constant* c, std::size_t first, int count) {
+        int used = 1;
+        for (int i = 0; i < count; ++i) {
+            const double k = v[first + static_cast<std::size_t>(i)];
+            c[i + 1] = exact(k);
+            if (k != 0) used = i + 2;
+        }
+        return used;
+    };
+    if (m_model.kind == ptlens) {
+        const long double a = v[0], b = v[1], c = v[2];
+        terms.in_radius = true;
+        // Three differences, each rounded, of no more than all of them together.
+        const double largest = static_cast<double>(1 + std::fabs(a) + std::fabs(b) + std::fabs(c));
+        terms.over[0] = Constant(1 - a - b - c, 3 * Rounded<long double>::kUnit * largest);
+        terms.over[1] = exact(v[2]);
+        terms.over[2] = exact(v[1]);
+        terms.over[3] = exact(v[0]);
+        terms.over_count = v[0] != 0 ? 4 : v[1] != 0 ? 3 : v[2] != 0 ? 2 : 1;
+        // Then only r^2 is needed, which is smooth at the centre.
+        if (v[0] == 0 && v[2] == 0) {
+            terms.in_radius = false;
+            terms.over[1] = exact(v[1]);
+            terms.over_count = v[1] != 0 ? 2 : 1;
+        }
+    } else if (m_model.kind == brown) {
+        terms.over_count = powers(terms.over, 0, 3);
+        terms.under_count = powers(terms.under, 3, 3);
+        terms.mx = v[7];
+        terms.my = v[6];
+        terms.tangential = terms.mx != 0 || terms.my != 0;
+    } else {
+        terms.to_observed = m_model.kind == kb4;
+        terms.over_count = powers(terms.over, 0, m_model.kind == kb4 ? 4 : 2);
+    }
+}
+
+bool Lens::set_ends(double corner) {
+    LensTerms& terms = m_terms;
+    const double farthest = corner * (terms.to_observed ? kIdealReach : kObservedReach);
+    const double most = corner * (terms.to_observed ? kObservedReach : kIdealReach);
+    const double last = terms.in_radius ? farthest : farthest * farthest;
+    const double value_limit = terms.in_radius ? most : most * most;
+    // From the centre in steps over which the radius certainly rises, larger ones after such and smaller ones before
+    // others, down to where it folds. A tangential part may take up half of what all of the disc so far is stretched:
+    // then each step of settled(), which undoes the radial part of a distance that the other changed, halves it.
+    double at = 0, step = last / 64, least = HUGE_VAL;
+    bool folds = false;
+    while (at < last && step > last * 0x1p-48) {
+        const Interval part(at, std::min(at + step, last));
+        const double here = std::min(least, least_stretch(terms, part));
+        folds = !(here > 2 * most_tangential(terms, part.hi));
+        const bool goes_on = !folds && lens_formula::radial_at(terms, Interval(part.hi)).hi <= value_limit;
+        step *= goes_on ? 2 : 0.5;
+        if (!goes_on) continue;
+        at = part.hi;
+        least = here;
+        terms.condition = std::max(terms.condition, condition_over(part));
+    }
+    terms.end = at;
+    terms.value_end = std::max(0.0, lens_formula::radial_at(terms, Interval(at)).lo);
+    // A hair less, so that rounding does not lead beyond the end.
+    constexpr double kLess = 1 - 0x1p-40;
+    const double argument = kLess * (terms.in_radius ? at : std::sqrt(at));
+    double value = kLess * (terms.in_radius ? terms.value_end : std::sqrt(terms.value_end));
+    // Wherever |u| is the end's, |F| is at least that less 3 |m| |u|^2.
+    value -= (1 + 0x1p-40) * 3 * std::hypot(terms.mx, terms.my) * argument * argument;
+    terms.ideal_end = terms.to_observed ? argument : value;
+    terms.observed_end = terms.to_observed ? value : argument;
+    const double centre = terms.over[0].value();
+    terms.slope = terms.in_radius ? 1 / centre : 1 / (centre * centre);
+    return folds;
+}
+
+// Rounding of radial_at() in Real, with u its unit, N = sum |c_i| t^i, D the same below the line and d what is below the
+// line. The constants over the line are off by 3 u and 1 u of N (1 - a - b - c of ptlens counts with 1 + |a| + |b| + |c|
+// in N; all others are exact in double), Horner's rule by 2 u for each of 4 degrees: 13 u N in all; below the line by
+// 7 u D. Then S is off by (13 u N + S 7 u D) / d + u S, at most 14 u A with A = (N + S D) / d; t S by 15 u t A, and
+// t S^2 by (2 * 14 + 2) u t A^2. With condition >= A / S or (A / S)^2 that is kOff; terms of second order are below 2 u
+// as long as D / d is below 2^40.
+//
+// Where the iteration's bracket has come down to neighbours, 2 u t apart, their exact values differ by 2 u t times the
+// slope, and the computed ones by 2 kOff more: within kResidual where the condition is at least t slope / 8 over the
+// value.
+double Lens::condition_over(const Interval& t) const {
+    const LensTerms& terms = m_terms;
+    const Series<Interval, 1> stretch = lens_formula::stretch_at(terms, Series<Interval, 1>::variable(t));
+    double over = magnitude_of(terms.over, terms.over_count, t.hi);
+    if (m_model.kind == LensModel::Kind::ptlens)
+        over +=
+            1 + std::fabs(m_model.values[0]) + std::fabs(m_model.values[1]) + std::fabs(m_model.values[2]);
+    const Interval below = lens_formula::sum_of_powers(terms.under, terms.under_count, t);
+    const double under = magnitude_of(terms.under, terms.under_count, t.hi);
+    const double ratio = (over + stretch.c[0].hi * under) / below.lo / stretch.c[0].lo;
+    const double steep = 1 + 2 * magnitude(stretch.c[1] * t / stretch.c[0]);
+    return std::max(terms.in_radius ? ratio : ratio * ratio, steep / 8) * (1 + 0x1p-40);
+}
+
+namespace lens_detail {
+
+Interval radial_root(const LensTerms& lens, const Interval& value) {
+    if (!(value.lo <= value.hi)) return {0, lens.end};
+    // Outwards from the root in double until the values there are certainly beyond.
+    const auto beyond = [&](double of, double sign) {
+        const double root = lens_formula::radial_root(lens, of);
+        for (double off = 0x1p-47 * root + 0x1p-100 * lens.end;; off *= 4) {
+            const double t = root + sign * off;
+            if (!(t > 0)) return 0.0;
+            if (!(t < lens.end)) return lens.end;
+            const Interval at = lens_formula::radial_at(lens, Interval(t));
+            if (sign < 0 ? at.hi <= of : at.lo >= of) return t;
+        }
+    };
+    return {value.lo > 0 ? beyond(std::min(value.lo, lens.value_end), -1) : 0,
+            value.hi < lens.value_end ? beyond(value.hi, 1) : lens.end};
+}
+
+double least_slope(const LensTerms& lens, const Interval& t) {
+    return lens_formula::radial_at(lens, Series<Interval, 1>::variable(t)).c[1].lo;
+}
+
+namespace {
+
+/// The coefficients about computed values that are off by `error` from those of an interval: their derivatives are the next
+/// ones.
+Series<Rounded<double>, ComputedSeries::kDegree> about_rounded(const ComputedSeries& series, double error) {
+    Series<Rounded<double>, ComputedSeries::kDegree> rounded;
+    for (int k = 0; k <= ComputedSeries::kDegree; ++k) {
+        const double moved = (k + 1) * magnitude(series.exact.c[k + 1]) * error;
+        rounded.c[k] = {series.exact.c[k], 0, (series.error[k] + moved) * rounded_detail::kUp};
+    }
+    return rounded;
+}
+
+}  // namespace
+
+std::optional<Rounded<double>> shrink_by_table(const LensTerms& lens, const Rounded<double>& value) {
+    using R = Rounded<double>;
+    if (!lens.table) return {};
+    // All that are computed are within.
+    const Interval around = value.range + Interval(-value.error, value.error);
+    const ComputedSeries series = computed_shrink(lens, {std::max(around.lo, 0.0), around.hi});
+    if (!(series.error[0] < HUGE_VAL && magnitude(series.exact.c[1]) < HUGE_VAL)) return {};
+    const Series<R, ComputedSeries::kDegree> rounded = about_rounded(series, value.error);
+    if (!value.is_jet()) return R(shrink(lens, value.range), 0, rounded.c[0].error);
+    if (!(rounded.c[ComputedSeries::kDegree].error < HUGE_VAL)) return {};
+    return compose(rounded, R(Interval(0), value.radius, value.error));
+}
+
+}  // namespace lens_detail
+
+LensCoefficients stretch_coefficients(const LensTerms& lens, const Interval& squared) {
+    return lens.table->stretch(squared);
+}
+LensCoefficients shrink_coefficients(const LensTerms& lens, const Interval& squared) {
+    return lens.table->shrink(squared);
+}
+ComputedSeries computed_shrink(const LensTerms& lens, const Interval& value) {
+    return lens.table ? lens.table->computed_shrink(value) : ComputedSeries::unbounded();
+}
+double near_root(const LensTerms& lens, double value) {
+    return lens.table ? lens.table->near_root(value) : value * lens.slope;
+}
+
+/// By the mean value theorem from what double computes in the middle, where the table knows by how much that is off.
+Interval shrink(const LensTerms& lens, const Interval& value) {
+    const Interval within{std::max(value.lo, 0.0), value.hi};
+    const ComputedSeries series = computed_shrink(lens, within);
+    if (series.error[0] < HUGE_VAL && magnitude(series.exact.c[1]) < HUGE_VAL) {
+        const double middle = 0.5 * (within.lo + within.hi), there = lens_formula::shrink(lens, middle);
+        const Interval moved = Interval(there) + Interval(-series.error[0], series.error[0]) +
+                               series.exact.c[1] * (within - middle);
+        return {std::max(moved.lo, series.exact.c[0].lo), std::min(moved.hi, series.exact.c[0].hi)};
+    }
+    return Interval(1) / lens_formula::stretch_at(lens, lens_detail::radial_root(lens, value));
+}
+
+/// Wherever the members' points are, a step from a point in the middle ends no farther from it than half of that; more
+/// steps, with all of them, come nearer.
+Point<Interval> settled(const LensTerms& lens, const Point<Interval>& v) {
+    const auto middle = [](const Interval& a) { return 0.5 * a.lo + 0.5 * a.hi; };
+    const Point<double> u = lens_formula::settled(lens, Point<double>{middle(v.x), middle(v.y)});
+    const Point<Interval> next = lens_formula::nearer(lens, v, Point<Interval>{u.x, u.y});
+    const double far = magnitude(next.x - u.x) + magnitude(next.y - u.y);
+    if (!(far < HUGE_VAL)) return {Interval::all(), Interval::all()};
+    Point<Interval> box{{u.x - 2.01 * far, u.x + 2.01 * far}, {u.y - 2.01 * far, u.y + 2.01 * far}};
+    const auto common = [](const Interval& a, const Interval& b) {
+        return Interval(std::max(a.lo, b.lo), std::min(a.hi, b.hi));
+    };
+    const auto size = [](const Point<Interval>& p) { return p.x.hi - p.x.lo + (p.y.hi - p.y.lo); };
+    for (int i = 0; i < 6; ++i) {
+        const Point<Interval> nearer = lens_formula::nearer(lens, v, box);
+        const Point<Interval> smaller{common(box.x, nearer.x), common(box.y, nearer.y)};
+        if (!(smaller.x.lo <= smaller.x.hi && smaller.y.lo <= smaller.y.hi)) break;
+        const double before = size(box);
+        box = smaller;
+        // A step more would gain less still.
+        if (!(size(box) < 0.75 * before)) break;
+    }
+    return box;
+}
+
+}  // namespace anamorph

@@ -1,0 +1,330 @@
+// SPDX-License-Identifier: Apache-2.0
+// A lens's distortion in its own units, about its own centre: F(u) = (S + 2 m.u) u + |u|^2 m, with S a polynomial in
+// r = |u| or r^2, or a quotient of two, and m = (p2, p1), the tangential part (Brown 1966), of one model only. What
+// the models are is said in chart/lens.h.
+//
+// No include guard and no namespace: vectors need the templates compiled for each instruction set, so whoever reads
+// them includes this file inside a namespace of his own (chart/lens.h, panorama/panorama_rows_lanes.cpp), where somewhere(condition)
+// is known for his numbers: does it hold for any lane?
+
+/// A Taylor polynomial in one variable, of degree N.
+template <class T, int N>
+struct Series {
+    static constexpr int kDegree = N;
+
+    T c[N + 1];
+
+    Series() {
+        for (T& k : c) k = T(0);
+    }
+    Series(const T& constant) : Series() { c[0] = constant; }  // NOLINT: a number is a series
+    static Series variable(const T& value) {
+        Series s(value);
+        s.c[1] = T(1);
+        return s;
+    }
+};
+
+template <class T, int N>
+Series<T, N> operator+(const Series<T, N>& a, const Series<T, N>& b) {
+    Series<T, N> s;
+    for (int k = 0; k <= N; ++k) s.c[k] = a.c[k] + b.c[k];
+    return s;
+}
+template <class T, int N>
+Series<T, N> operator*(const Series<T, N>& a, const Series<T, N>& b) {
+    Series<T, N> s;
+    for (int k = 0; k <= N; ++k) {
+        s.c[k] = a.c[0] * b.c[k];
+        for (int j = 1; j <= k; ++j) s.c[k] = s.c[k] + a.c[j] * b.c[k - j];
+    }
+    return s;
+}
+/// q with q b = a: b_0 q_k = a_k - sum_(j<k) q_j b_(k-j)
+template <class T, int N>
+Series<T, N> operator/(const Series<T, N>& a, const Series<T, N>& b) {
+    Series<T, N> q;
+    for (int k = 0; k <= N; ++k) {
+        T rest = a.c[k];
+        for (int j = 0; j < k; ++j) rest = rest - q.c[j] * b.c[k - j];
+        q.c[k] = rest / b.c[0];
+    }
+    return q;
+}
+
+/// What a constant is read as beside a number, or a series of numbers.
+template <class T>
+auto read_constant(const Constant& k, const T&) {
+    return k.template as<T>();
+}
+template <class T, int N>
+T read_constant(const Constant& k, const Series<T, N>&) {
+    return T(k.template as<T>());
+}
+
+/// c[0] + c[1] t + ..., by Horner's rule.
+template <class T>
+T sum_of_powers(const Constant* c, int count, const T& t) {
+    T sum = T(read_constant(c[count - 1], t));
+    for (int i = count - 2; i >= 0; --i) sum = sum * t + T(read_constant(c[i], t));
+    return sum;
+}
+
+/// S, with t = r where the polynomials are in r, else r^2.
+template <class T>
+T stretch_at(const LensTerms& lens, const T& t) {
+    const T over = sum_of_powers(lens.over, lens.over_count, t);
+    if (lens.under_count == 1) return over;
+    return over / sum_of_powers(lens.under, lens.under_count, t);
+}
+
+/// What t becomes: the radius |F|, or its square; of a lens without a tangential part.
+template <class T>
+T radial_at(const LensTerms& lens, const T& t) {
+    const T stretch = stretch_at(lens, t);
+    return lens.in_radius ? T(t * stretch) : T(t * (stretch * stretch));
+}
+
+/// t of a point.
+template <class T>
+T radial_of(const LensTerms& lens, const Point<T>& u) {
+    const T squared = square(u.x) + square(u.y);
+    if (!lens.in_radius) return squared;
+    const auto centre = is_zero(squared);
+    return select(centre, T(0), sqrt(T(select(centre, T(1), squared))));
+}
+
+/// S at a point.
+template <class T>
+T stretch_of(const LensTerms& lens, const Point<T>& u) {
+    return stretch_at(lens, radial_of(lens, u));
+}
+
+/// F's tangential part, `squared` the distance from the centre.
+template <class T>
+Point<T> tangential_at(const LensTerms& lens, const Point<T>& u, const T& squared) {
+    const T along = (u.x * lens.mx + u.y * lens.my) * 2.0;
+    return {u.x * along + squared * lens.mx, u.y * along + squared * lens.my};
+}
+template <class T>
+Point<T> tangential_at(const LensTerms& lens, const Point<T>& u) {
+    return tangential_at(lens, u, T(square(u.x) + square(u.y)));
+}
+
+/// F. Of lenses with a tangential part S is a function of r^2.
+template <class T>
+Point<T> distorted(const LensTerms& lens, const Point<T>& u) {
+    if (!lens.tangential) {
+        const T stretch = stretch_of(lens, u);
+        return {u.x * stretch, u.y * stretch};
+    }
+    const T squared = square(u.x) + square(u.y), along = (u.x * lens.mx + u.y * lens.my) * 2.0;
+    const T stretch = stretch_at(lens, squared) + along;
+    return {u.x * stretch + squared * lens.mx, u.y * stretch + squared * lens.my};
+}
+
+/// What rounding to T is relative to the number; 0 where that is not known.
+template <class T>
+constexpr double unit_of() {
+    if constexpr (requires { typename T::Scalar; })
+        return unit_of<typename T::Scalar>();
+    else if constexpr (std::numeric_limits<T>::is_specialized)
+        return static_cast<double>(std::numeric_limits<T>::epsilon()) / 2;
+    else
+        return 0;
+}
+
+/// Where the iteration for it begins.
+template <class T>
+T near_root(const LensTerms& lens, const T& value) {
+    return T(value * lens.slope);
+}
+/// t with radial_at(t) = value, which rises up to the lens's end: Newton's iteration in a bracket. It ends where
+/// what is missing is within kResidual roundings, which is all that is relied upon. Each lane stands still from then
+/// on, so it does not depend on its neighbours.
+template <class T>
+T radial_root(const LensTerms& lens, const T& value) {
+    // So many steps are Newton's where they stay in the bracket. Beyond, every other one halves it, more often than
+    // numbers have digits, down to kSmall.
+    constexpr int kFree = 10, kMost = 10 + 2 * (64 + 24 + 12);
+    const T goal = min(value, T(lens.value_end));
+    const double unit = LensTerms::kResidual * unit_of<T>() * lens.condition;
+    const T residual = (goal + LensTerms::kSmall * lens.value_end) * unit;
+    T low(0), high(lens.end), t = min(near_root(lens, goal), high);
+    for (int i = 0; i < kMost; ++i) {
+        const Series<T, 1> at = radial_at(lens, Series<T, 1>::variable(t));
+        const T off = at.c[0] - goal;
+        const auto open = is_negative(T(residual - max(off, T(-off))));
+        if (!somewhere(open)) break;
+        const auto below = is_negative(off);
+        low = select(below, t, low);
+        high = select(below, high, t);
+        const T middle = (low + high) * 0.5, step = t - off / at.c[1];
+        const bool halve = i >= kFree && i % 2 == 0;
+        const T next = halve ? middle : select(is_negative(T((step - low) * (high - step))), middle, step);
+        t = select(open, next, t);
+    }
+    return t;
+}
+
+/// The inverse of a power series without its constant: x with g_1 x + g_2 x^2 + ... = y, by powers of y (Lagrange).
+template <class T, int N>
+Series<T, N> reversed(const Series<T, N>& g) {
+    static_assert(N >= 1 && N <= 5);
+    Series<T, N> x;
+    const T r = T(1) / g.c[1];
+    T b[6] = {T(0), T(1), T(0), T(0), T(0), T(0)}, power = r;
+    for (int k = 2; k <= N; ++k) b[k] = g.c[k] * r;
+    const T b22 = b[2] * b[2];
+    const T a[6] = {T(0),
+                    T(1),
+                    -b[2],
+                    b22 * 2.0 - b[3],
+                    b[2] * b[3] * 5.0 - b22 * b[2] * 5.0 - b[4],
+                    b22 * b22 * 14.0 - b22 * b[3] * 21.0 + b[2] * b[4] * 6.0 + b[3] * b[3] * 3.0 - b[5]};
+    for (int k = 1; k <= N; ++k, power = power * r) x.c[k] = a[k] * power;
+    return x;
+}
+
+/// shrink() by powers of what is added to a value, whose root is `t`.
+template <int N, class T>
+Series<T, N> shrink_series(const LensTerms& lens, const T& t) {
+    using S = Series<T, N>;
+    S root = reversed(radial_at(lens, S::variable(t)));
+    root.c[0] = t;
+    return S(T(1)) / stretch_at(lens, root);
+}
+
+/// u = v shrink(t of v) for v = F(u), of a lens without a tangential part.
+template <class T>
+T shrink(const LensTerms& lens, const T& value) {
+    return T(1) / stretch_at(lens, radial_root(lens, value));
+}
+
+/// The same for a point.
+template <class T>
+T shrink_of(const LensTerms& lens, const Point<T>& v) {
+    return shrink(lens, radial_of(lens, v));
+}
+
+/// u whose radial part is v.
+template <class T>
+Point<T> radially_undistorted(const LensTerms& lens, const Point<T>& v) {
+    const T k = shrink_of(lens, v);
+    return {v.x * k, v.y * k};
+}
+
+/// A step towards u with F(u) = v: what is left of v without u's tangential part. The distance to u becomes half as large
+/// at most, as far as the lens goes (set_ends() in lens.cpp).
+template <class T>
+Point<T> nearer(const LensTerms& lens, const Point<T>& v, const Point<T>& u) {
+    const Point<T> more = tangential_at(lens, u);
+    return radially_undistorted(lens, Point<T>{v.x - more.x, v.y - more.y});
+}
+
+/// The derivative of F, a symmetric matrix: S + 2 m.u along the diagonal, 2 S' u u^T with S' by |u|^2, and
+/// 2 (u m^T + m u^T).
+template <class T>
+struct Slope {
+    T stretch, xx, xy, yy, determinant;
+
+    Slope(const LensTerms& lens, const Point<T>& u) {
+        const T squared = square(u.x) + square(u.y);
+        const auto series = stretch_at(lens, Series<T, 1>::variable(squared));
+        stretch = series.c[0];
+        const T along = stretch + (u.x * lens.mx + u.y * lens.my) * 2.0;
+        xx = along + (series.c[1] * square(u.x) + u.x * lens.mx * 2.0) * 2.0;
+        yy = along + (series.c[1] * square(u.y) + u.y * lens.my * 2.0) * 2.0;
+        xy = (series.c[1] * (u.x * u.y) + u.x * lens.my + u.y * lens.mx) * 2.0;
+        determinant = xx * yy - square(xy);
+    }
+    /// Where the derivative takes to (x, y).
+    Point<T> solved(const T& x, const T& y) const {
+        return {(yy * x - xy * y) / determinant, (xx * y - xy * x) / determinant};
+    }
+};
+
+/// Newton's step towards u with F(u) = v, unless it leads out of the lens.
+template <class T>
+Point<T> newton_step(const LensTerms& lens, const Point<T>& v, const Point<T>& u) {
+    const Slope<T> slope(lens, u);
+    const Point<T> more = tangential_at(lens, u);
+    const Point<T> step =
+        slope.solved(v.x - u.x * slope.stretch - more.x, v.y - u.y * slope.stretch - more.y);
+    const Point<T> next{u.x + step.x, u.y + step.y};
+    const auto within = is_negative(T(square(next.x) + square(next.y) - lens.ideal_end * lens.ideal_end));
+    return {select(within, next.x, u.x), select(within, next.y, u.y)};
+}
+
+/// u with F(u) = v, of a lens with a tangential part: by Newton's iteration, which is fast, and then by steps that are
+/// sure to lead there until one is next to nothing, or too many to matter.
+template <class T>
+Point<T> settled(const LensTerms& lens, const Point<T>& v) {
+    Point<T> u = radially_undistorted(lens, v);
+    for (int i = 0; i < LensTerms::kFastSteps; ++i) u = newton_step(lens, v, u);
+    for (int i = 0; i < LensTerms::kSteps; ++i) {
+        const Point<T> next = nearer(lens, v, u);
+        const T x = next.x - u.x, y = next.y - u.y;
+        const T left = LensTerms::kStill * unit_of<T>() * lens.ideal_end - max(max(x, T(-x)), max(y, T(-y)));
+        const auto open = is_negative(left);
+        u = {select(open, next.x, u.x), select(open, next.y, u.y)};
+        if (!somewhere(open)) break;
+    }
+    return u;
+}
+
+/// u with F(u) = v.
+template <class T>
+Point<T> undistorted(const LensTerms& lens, const Point<T>& v) {
+    return lens.tangential ? settled(lens, v) : radially_undistorted(lens, v);
+}
+
+/// Is it derivatives or bounds that are read, for which it pays to leave out what changes nothing? A pixel's numbers are read
+/// faster without branches.
+template <class T>
+constexpr bool leaves_out() {
+    return requires {
+        T::kDegree;
+    };
+}
+
+/// Between the plane and the lens's own units (per_unit, unit).
+template <class T>
+Point<T> scaled(const LensTerms& lens, const Point<T>& p, const Constant& scale) {
+    if (leaves_out<T>() && !lens.has_unit) return p;
+    const auto k = scale.as<T>();
+    return {p.x * k, p.y * k};
+}
+/// A point of the observed plane in those units, about the lens's centre.
+template <class T>
+Point<T> centred(const LensTerms& lens, const Point<T>& observed) {
+    if (leaves_out<T>() && !lens.shifted) return scaled(lens, observed, lens.per_unit);
+    return scaled(lens, Point<T>{observed.x - lens.shift_x.as<T>(), observed.y - lens.shift_y.as<T>()},
+                  lens.per_unit);
+}
+
+/// The point of the ideal plane of one of the observed plane, and back.
+template <class T>
+Point<T> ideal_point(const LensTerms& lens, const Point<T>& observed) {
+    const Point<T> p = centred(lens, observed);
+    return scaled(lens, lens.to_observed ? undistorted(lens, p) : distorted(lens, p), lens.unit);
+}
+template <class T>
+Point<T> observed_point(const LensTerms& lens, const Point<T>& ideal) {
+    const Point<T> p = scaled(lens, ideal, lens.per_unit);
+    const Point<T> q = scaled(lens, lens.to_observed ? distorted(lens, p) : undistorted(lens, p), lens.unit);
+    if (leaves_out<T>() && !lens.shifted) return q;
+    return {q.x + lens.shift_x.as<T>(), q.y + lens.shift_y.as<T>()};
+}
+
+/// >= 0 where a point of the observed plane has one of the ideal plane; and the other way round.
+template <class T>
+T has_ideal(const LensTerms& lens, const Point<T>& observed) {
+    const Point<T> p = centred(lens, observed);
+    return lens.observed_end * lens.observed_end - (square(p.x) + square(p.y));
+}
+template <class T>
+T has_observed(const LensTerms& lens, const Point<T>& ideal) {
+    const Point<T> p = scaled(lens, ideal, lens.per_unit);
+    return lens.ideal_end * lens.ideal_end - (square(p.x) + square(p.y));
+}

@@ -1,0 +1,605 @@
+// SPDX-License-Identifier: Apache-2.0
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "anamorph/deform/deform_lanes.cpp"
+#include "anamorph/deform/deform_kernels.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <type_traits>
+#include <vector>
+
+#include "anamorph/number/number.h"
+
+#include "hwy/cache_control.h"
+#include "hwy/foreach_target.h"  // must come before highway.h
+#include "hwy/highway.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace anamorph::simd {
+namespace HWY_NAMESPACE {
+namespace hn = hwy::HWY_NAMESPACE;
+
+#include "anamorph/number/lanes.h"
+// It is made of those.
+#include "anamorph/number/exp_of_minus.h"
+// Templates over the number, compiled once for every instruction set.
+#include "anamorph/deform/deformation_formula.h"
+
+using D = hn::CappedTag<double, kPointBlock>;
+using DI = hn::RebindToSigned<D>;
+using V = hn::Vec<D>;
+using VI = hn::Vec<DI>;
+using L = Lanes<D>;
+constexpr int kLanes = static_cast<int>(hn::MaxLanes(D()));
+
+/// A number in [-2^51, 2^51] plus this has the rounded number in its last bits.
+constexpr double kRounder = 0x1.8p52;
+constexpr std::int64_t kRounderBits = 0x4338000000000000;
+
+/// sum + round(a b), and kRounderBits too many. The product is rounded on its own: all instruction sets give
+/// the same bits.
+HWY_INLINE VI AddRounded(VI sum, V a, V b) {
+    return hn::Add(sum, hn::BitCast(DI(), hn::Add(hn::Mul(a, b), hn::Set(D(), kRounder))));
+}
+/// Takes away what `times` calls of AddRounded added too many, modulo 2^64.
+HWY_INLINE VI WithoutRounders(VI sum, std::size_t times) {
+    const auto bits = static_cast<std::uint64_t>(kRounderBits) * static_cast<std::uint64_t>(times);
+    return hn::Sub(sum, hn::Set(DI(), static_cast<std::int64_t>(bits)));
+}
+
+/// A number and its derivative: as much of a number as kernels ask for.
+struct Slope {
+    L value, by;
+
+    HWY_INLINE Slope(double k) : value(k), by(0.0) {}  // NOLINT: a number has a slope
+    HWY_INLINE Slope(const L& v, const L& d) : value(v), by(d) {}
+
+    friend HWY_INLINE Slope operator-(const Slope& a) { return {-a.value, -a.by}; }
+    friend HWY_INLINE Slope operator+(const Slope& a, const Slope& b) {
+        return {a.value + b.value, a.by + b.by};
+    }
+    friend HWY_INLINE Slope operator-(const Slope& a, const Slope& b) {
+        return {a.value - b.value, a.by - b.by};
+    }
+    friend HWY_INLINE Slope operator*(const Slope& a, const Slope& b) {
+        return {a.value * b.value, a.value * b.by + a.by * b.value};
+    }
+    friend HWY_INLINE Slope square(const Slope& a) { return {square(a.value), L(2.0) * a.value * a.by}; }
+    friend HWY_INLINE Slope sqrt(const Slope& a) {
+        const L r = sqrt(a.value);
+        return {r, a.by * (L(0.5) / r)};
+    }
+    friend HWY_INLINE Slope exp_of_minus(const Slope& a) {
+        const L e = exp_of_minus(a.value);
+        return {e, -(e * a.by)};
+    }
+    friend HWY_INLINE L::M is_zero(const Slope& a) { return is_zero(a.value); }
+    friend HWY_INLINE L::M is_negative(const Slope& a) { return is_negative(a.value); }
+    friend HWY_INLINE Slope select(L::M where, const Slope& a, const Slope& b) {
+        return {select(where, a.value, b.value), select(where, a.by, b.by)};
+    }
+};
+
+HWY_INLINE L ZeroUnless(L::M inside, const L& a) {
+    return L(hn::IfThenElseZero(inside.m, a.v));
+}
+HWY_INLINE Slope ZeroUnless(L::M inside, const Slope& a) {
+    return {ZeroUnless(inside, a.value), ZeroUnless(inside, a.by)};
+}
+
+HWY_INLINE L DistanceOf(const AxisKernel& kernel, const L& x) {
+    return (x - L(kernel.center)) * L(kernel.inverse_extent);
+}
+/// t, as a number of which the derivative by x is asked, or not.
+template <class T>
+HWY_INLINE T NumberOf(const AxisKernel& kernel, const L& t) {
+    if constexpr (std::is_same_v<T, L>) {
+        return t;
+    } else {
+        // As far out as this the factors are 0 in double, and their derivatives are finite.
+        const double most = kernel.gaussian ? 30.0 : 2.0;
+        return Slope(L(hn::Max(hn::Min(t.v, L(most).v), L(-most).v)), L(kernel.inverse_extent));
+    }
+}
+/// The factor of t in one direction, not cut off. T: L, or Slope for its derivative by x too.
+template <class T>
+HWY_INLINE T FactorOf(const AxisKernel& kernel, const L& t) {
+    const T squared = square(NumberOf<T>(kernel, t));
+    return kernel.gaussian ? gaussian_of(squared) : squared;
+}
+template <class T>
+HWY_INLINE T CutFactorOf(const AxisKernel& kernel, const L& t) {
+    const T factor = FactorOf<T>(kernel, t);
+    return kernel.gaussian ? ZeroUnless(L::M{hn::Le(abs(t).v, hn::Set(D(), kernel.reach))}, factor) : factor;
+}
+
+void AxisFactors(const AxisKernel& kernel, const double* x, int count, double* out, double* slope) {
+    const auto at = [&](const double* from, double* to, double* slope_to) HWY_ATTR {
+        const L t = DistanceOf(kernel, L::load(from));
+        if (!slope_to) {
+            CutFactorOf<L>(kernel, t).store(to);
+            return;
+        }
+        const Slope factor = CutFactorOf<Slope>(kernel, t);
+        factor.value.store(to);
+        factor.by.store(slope_to);
+    };
+    int i = 0;
+    for (; i + kLanes <= count; i += kLanes) at(x + i, out + i, slope ? slope + i : nullptr);
+    if (i >= count) return;
+    HWY_ALIGN double last[kLanes] = {}, last_slope[kLanes];
+    std::copy(x + i, x + count, last);
+    at(last, last, slope ? last_slope : nullptr);
+    std::copy(last, last + (count - i), out + i);
+    if (slope) std::copy(last_slope, last_slope + (count - i), slope + i);
+}
+
+/// A term on a pair of rows.
+struct PairTerm {
+    const double* column;  ///< of column_begin
+    int column_begin, column_end;
+    bool gaussian;
+    double row[kGridRows];        ///< squared distances
+    double weight[kGridRows][3];  ///< units, times the row's factor for Gaussians
+};
+
+PairTerm OnRows(const GridTerm& term, int row) {
+    PairTerm pair{term.column, term.column_begin, term.column_end, term.gaussian, {}, {}};
+    for (int r = 0; r < kGridRows; ++r) {
+        pair.row[r] = term.row[row + r - term.row_begin];
+        for (int c = 0; c < 3; ++c) pair.weight[r][c] = term.units[c] * (term.gaussian ? pair.row[r] : 1);
+    }
+    return pair;
+}
+
+// Sums that stay in registers: two rows, three components, and as many vectors as there is room for.
+constexpr int kAcross = HWY_TARGET <= HWY_AVX3 ? 4 : 1;
+constexpr int kStep = std::min(kAcross * kLanes, kGridBlock);
+constexpr int kVectors = kStep / kLanes;
+
+constexpr int kBlockSums = 3 * kGridRows * kGridBlock;
+
+/// Adds terms to a block of kGridBlock columns from `column` on; sums as in grid_sums().
+void AddToBlock(const PairTerm* const* terms, std::size_t count, int column, std::int64_t* sums) {
+    const D d;
+    const DI di;
+    for (int at = 0; at < kGridBlock; at += kStep) {
+        VI sum[kGridRows][3][kVectors];
+        const auto place = [&](int r, int c, int v) {
+            return sums + (3 * r + c) * kGridBlock + at + v * kLanes;
+        };
+        for (int r = 0; r < kGridRows; ++r)
+            for (int c = 0; c < 3; ++c)
+                for (int v = 0; v < kVectors; ++v)
+                    sum[r][c][v] = WithoutRounders(hn::LoadU(di, place(r, c, v)), count);
+        for (std::size_t k = 0; k < count; ++k) {
+            const PairTerm& term = *terms[k];
+            const double* from = term.column + (column - term.column_begin) + at;
+            for (int v = 0; v < kVectors; ++v) {
+                const V across = hn::LoadU(d, from + v * kLanes);
+                for (int r = 0; r < kGridRows; ++r) {
+                    const V f =
+                        term.gaussian ? across : wendland_of(L(hn::Add(across, hn::Set(d, term.row[r])))).v;
+                    for (int c = 0; c < 3; ++c)
+                        sum[r][c][v] = AddRounded(sum[r][c][v], hn::Set(d, term.weight[r][c]), f);
+                }
+            }
+        }
+        for (int r = 0; r < kGridRows; ++r)
+            for (int c = 0; c < 3; ++c)
+                for (int v = 0; v < kVectors; ++v) hn::StoreU(sum[r][c][v], di, place(r, c, v));
+    }
+}
+
+HWY_INLINE V LoadDoubles(const float*, hn::Vec<hn::Rebind<float, D>> v) {
+    return hn::PromoteTo(D(), v);
+}
+HWY_INLINE V LoadDoubles(const double*, V v) {
+    return v;
+}
+HWY_INLINE hn::Vec<hn::Rebind<float, D>> StoreAs(const float*, V v) {
+    return hn::DemoteTo(hn::Rebind<float, D>(), v);
+}
+HWY_INLINE V StoreAs(const double*, V v) {
+    return v;
+}
+
+constexpr std::uintptr_t kStreamed = 16;  ///< bytes that are written past the caches at once
+
+/// Writes points; past the caches if `stream`, to multiples of kStreamed.
+template <class T, class VT>
+HWY_INLINE void StorePoints(VT x, VT y, VT z, bool stream, T* out) {
+    const hn::Rebind<T, D> dt;
+    constexpr int kValues = 3 * kLanes, kPart = static_cast<int>(kStreamed / sizeof(T));
+    if (!stream || kValues % kPart != 0) {
+        hn::StoreInterleaved3(x, y, z, dt, out);
+        return;
+    }
+    HWY_ALIGN T values[kValues];
+    hn::StoreInterleaved3(x, y, z, dt, values);
+    const hn::CappedTag<T, kPart> part;
+    constexpr int kAtOnce = static_cast<int>(hn::MaxLanes(part));
+    for (int i = 0; i < kValues; i += kAtOnce) hn::Stream(hn::Load(part, values + i), part, out + i);
+}
+
+/// out = base + sums * resolution for `count` <= kGridBlock points of a row, without gaps. The product is
+/// exact.
+template <class T>
+void WritePoints(const std::int64_t* sums, int count, double resolution, bool stream, const T* base, T* out) {
+    const D d;
+    const DI di;
+    const hn::Rebind<T, D> dt;
+    const V unit = hn::Set(d, resolution);
+    int i = 0;
+    for (; i + kLanes <= count; i += kLanes) {
+        V p[3] = {hn::Zero(d), hn::Zero(d), hn::Zero(d)};
+        if (base) {
+            hn::Vec<decltype(dt)> x, y, z;
+            hn::LoadInterleaved3(dt, base + 3 * i, x, y, z);
+            p[0] = LoadDoubles(base, x);
+            p[1] = LoadDoubles(base, y);
+            p[2] = LoadDoubles(base, z);
+        }
+        for (int c = 0; c < 3; ++c)
+            p[c] = hn::MulAdd(hn::ConvertTo(d, hn::LoadU(di, sums + c * kGridBlock + i)), unit, p[c]);
+        StorePoints(StoreAs(out, p[0]), StoreAs(out, p[1]), StoreAs(out, p[2]), stream, out + 3 * i);
+    }
+    for (; i < count; ++i)
+        for (int c = 0; c < 3; ++c) {
+            const double start = base ? static_cast<double>(base[3 * i + c]) : 0;
+            out[3 * i + c] =
+                static_cast<T>(static_cast<double>(sums[c * kGridBlock + i]) * resolution + start);
+        }
+}
+
+template <class T>
+void DeformBand(const GridBand<T>& band) {
+    HWY_ALIGN std::int64_t room[kBlockSums];
+    std::vector<PairTerm> on_rows;
+    std::vector<const PairTerm*> on_block;
+    for (int row = band.row_begin; row < band.row_end; row += kGridRows) {
+        on_rows.clear();
+        for (std::size_t k = 0; k < band.count; ++k)
+            if (band.terms[k].row_begin <= row && row < band.terms[k].row_end)
+                on_rows.push_back(OnRows(band.terms[k], row));
+        if (on_rows.empty() && !band.all) continue;
+        for (int column = 0; column < band.columns; column += kGridBlock) {
+            on_block.clear();
+            for (const PairTerm& term : on_rows)
+                if (term.column_begin <= column && column < term.column_end) on_block.push_back(&term);
+            if (on_block.empty() && !band.all) continue;
+            std::int64_t* sums = room;
+            if (band.sums)
+                sums = band.sums + grid_sums(row, band.columns) + 3 * kGridRows * std::ptrdiff_t{column};
+            else
+                std::memset(room, 0, sizeof(room));
+            if (!on_block.empty()) AddToBlock(on_block.data(), on_block.size(), column, sums);
+            if (!band.out) continue;
+            const int count = std::min(kGridBlock, band.columns - column);
+            for (int r = 0; r < kGridRows && row + r < band.row_end; ++r) {
+                const std::ptrdiff_t first = 3 * (std::ptrdiff_t{row + r} * band.columns + column);
+                T* const out = band.out + first;
+                const bool stream = band.stream && reinterpret_cast<std::uintptr_t>(out) % kStreamed == 0;
+                WritePoints(sums + 3 * r * kGridBlock, count, band.resolution, stream,
+                            band.base ? band.base + first : nullptr, out);
+            }
+        }
+    }
+    if (band.stream) hwy::FlushStream();
+}
+void DeformBandFloat(const GridBand<float>& band) {
+    DeformBand(band);
+}
+void DeformBandDouble(const GridBand<double>& band) {
+    DeformBand(band);
+}
+
+/// A deformation at the points of a vector.
+struct AtPoints {
+    AxisKernel across, down;
+    L x, y;
+    L::M inside;
+
+    HWY_INLINE AtPoints(const PointTerm& term, const L& u, const L& v)
+        : across{term.center[0], term.inverse_extent[0], term.reach, term.gaussian},
+          down{term.center[1], term.inverse_extent[1], term.reach, term.gaussian},
+          x(DistanceOf(across, u)),
+          y(DistanceOf(down, v)),
+          inside{hn::And(hn::Le(abs(x).v, hn::Set(D(), term.reach)),
+                         hn::Le(abs(y).v, hn::Set(D(), term.reach)))} {}
+};
+
+/// Adds V dF/du and V dF/dv of a term with these factors.
+HWY_INLINE void AddSlopes(const Slope& across, const Slope& down, bool gaussian, const double (&vector)[3],
+                          L (&sum)[6]) {
+    L by_u, by_v;
+    if (gaussian) {
+        by_u = across.by * down.value;
+        by_v = across.value * down.by;
+    } else {
+        const L f = wendland_of(Slope(across.value + down.value, L(1.0))).by;
+        by_u = f * across.by;
+        by_v = f * down.by;
+    }
+    for (int c = 0; c < 3; ++c) {
+        sum[c] = sum[c] + L(vector[c]) * by_u;
+        sum[c + 3] = sum[c + 3] + L(vector[c]) * by_v;
+    }
+}
+
+void AddRowSlopes(const RowTerm* terms, std::size_t term_count, std::size_t count, double* const* sums) {
+    for (std::size_t i = 0; i < count; i += static_cast<std::size_t>(kLanes)) {
+        L sum[6];
+        for (int c = 0; c < 6; ++c) sum[c] = L::load(sums[c] + i);
+        for (std::size_t k = 0; k < term_count; ++k) {
+            const RowTerm& term = terms[k];
+            AddSlopes(Slope(L::load(term.column + i), L::load(term.column_slope + i)),
+                      Slope(L(term.row), L(term.row_slope)), term.gaussian, term.vector, sum);
+        }
+        for (int c = 0; c < 6; ++c) sum[c].store(sums[c] + i);
+    }
+}
+
+HWY_INLINE const L& ValueOf(const L& a) {
+    return a;
+}
+HWY_INLINE const L& ValueOf(const Slope& a) {
+    return a.value;
+}
+
+/// Adds terms at points to displacements, to slopes, or to both.
+template <bool kSums, bool kSlopes>
+HWY_INLINE void AddAtPoints(const PointTerm* const* terms, std::size_t term_count, const double* u,
+                            const double* v, std::size_t count, std::int64_t* const* sums,
+                            double* const* slopes) {
+    using Factor = std::conditional_t<kSlopes, Slope, L>;
+    const D d;
+    const DI di;
+    for (std::size_t i = 0; i < count; i += static_cast<std::size_t>(kLanes)) {
+        const L pu = L::load(u + i), pv = L::load(v + i);
+        VI sum[3];
+        L slope[6];
+        if constexpr (kSums)
+            for (int c = 0; c < 3; ++c) sum[c] = hn::LoadU(di, sums[c] + i);
+        if constexpr (kSlopes)
+            for (int c = 0; c < 6; ++c) slope[c] = L::load(slopes[c] + i);
+        std::size_t added = 0;
+        for (std::size_t k = 0; k < term_count; ++k) {
+            const PointTerm& term = *terms[k];
+            const AtPoints at(term, pu, pv);
+            if (hn::AllFalse(d, at.inside.m)) continue;
+            Factor across = FactorOf<Factor>(at.across, at.x);
+            const Factor down = FactorOf<Factor>(at.down, at.y);
+            if (term.gaussian) across = ZeroUnless(at.inside, across);
+            if constexpr (kSums) {
+                // Products as on grids, so that a point gets the same bits there and here.
+                const L f = term.gaussian
+                                ? ValueOf(across)
+                                : ZeroUnless(at.inside, wendland_of(ValueOf(across) + ValueOf(down)));
+                const L weight = term.gaussian ? ZeroUnless(at.inside, ValueOf(down)) : L(1.0);
+                for (int c = 0; c < 3; ++c) sum[c] = AddRounded(sum[c], (L(term.units[c]) * weight).v, f.v);
+                ++added;
+            }
+            if constexpr (kSlopes) AddSlopes(across, down, term.gaussian, term.vector, slope);
+        }
+        if constexpr (kSums)
+            for (int c = 0; c < 3; ++c) hn::StoreU(WithoutRounders(sum[c], added), di, sums[c] + i);
+        if constexpr (kSlopes)
+            for (int c = 0; c < 6; ++c) slope[c].store(slopes[c] + i);
+    }
+}
+void DeformPoints(const PointTerm* const* terms, std::size_t term_count, const double* u, const double* v,
+                  std::size_t count, std::int64_t* const* sums) {
+    AddAtPoints<true, false>(terms, term_count, u, v, count, sums, nullptr);
+}
+void AddPointSlopes(const PointTerm* const* terms, std::size_t term_count, const double* u, const double* v,
+                    std::size_t count, double* const* slopes) {
+    AddAtPoints<false, true>(terms, term_count, u, v, count, nullptr, slopes);
+}
+void DeformPointsWithSlopes(const PointTerm* const* terms, std::size_t term_count, const double* u,
+                            const double* v, std::size_t count, std::int64_t* const* sums,
+                            double* const* slopes) {
+    AddAtPoints<true, true>(terms, term_count, u, v, count, sums, slopes);
+}
+
+/// The vector of length 1 in the same direction; 0 where the length is 0 or not finite.
+HWY_INLINE Triple<L> UnitOf(const Triple<L>& a) {
+    const L length = sqrt(dot_product(a, a)), inverse = L(1.0) / length;
+    const L::M good = both(L(0.0) < length, length < L(HUGE_VAL));
+    return {ZeroUnless(good, a.x * inverse), ZeroUnless(good, a.y * inverse),
+            ZeroUnless(good, a.z * inverse)};
+}
+
+void TurnNormals(const double* const* slopes, const double (&gradients)[2][3], std::size_t count,
+                 double* const* normals) {
+    const auto gradient = [&](int i) HWY_ATTR {
+        return Triple<L>{gradients[i][0], gradients[i][1], gradients[i][2]};
+    };
+    const Triple<L> g = gradient(0), h = gradient(1), gh = cross_product(g, h);
+    for (std::size_t i = 0; i < count; i += static_cast<std::size_t>(kLanes)) {
+        const auto loaded = [i](const double* const* from) HWY_ATTR {
+            return Triple<L>{L::load(from[0] + i), L::load(from[1] + i), L::load(from[2] + i)};
+        };
+        const Triple<L> n = UnitOf(loaded(normals));
+        const Triple<L> turned = UnitOf(turned_normal(n, loaded(slopes), loaded(slopes + 3), g, h, gh));
+        turned.x.store(normals[0] + i);
+        turned.y.store(normals[1] + i);
+        turned.z.store(normals[2] + i);
+    }
+}
+
+void CornerNormals(const CornerEdges& corners, double unit, std::size_t count, double* const* out) {
+    const L inverse(1 / unit);
+    for (std::size_t i = 0; i < count; i += static_cast<std::size_t>(kLanes)) {
+        const auto edge = [&](const double* const(&undeformed)[3], const double* const(&by)[2]) HWY_ATTR {
+            const L du = L::load(by[0] + i), dv = L::load(by[1] + i);
+            const auto moved = [&](int c) HWY_ATTR {
+                return L::load(undeformed[c] + i) + du * L::load(corners.by[c] + i) +
+                       dv * L::load(corners.by[3 + c] + i);
+            };
+            return UnitOf({moved(0), moved(1), moved(2)});
+        };
+        L angle;
+        const Triple<L> normal = corner_normal(edge(corners.next, corners.next_by),
+                                               edge(corners.previous, corners.previous_by), angle);
+        const L weight = (angle - L::load(corners.turns + i)) * inverse;
+        L(hn::Round((normal.x * weight).v)).store(out[0] + i);
+        L(hn::Round((normal.y * weight).v)).store(out[1] + i);
+        L(hn::Round((normal.z * weight).v)).store(out[2] + i);
+    }
+}
+
+/// Values i, i + 1, ... of `from` as doubles.
+HWY_INLINE V At(const float* from, std::size_t i) {
+    return hn::PromoteTo(D(), hn::LoadU(hn::Rebind<float, D>(), from + i));
+}
+HWY_INLINE V At(const double* from, std::size_t i) {
+    return hn::LoadU(D(), from + i);
+}
+
+template <class T>
+void Blend(const T* const* shapes, const double* weights, std::size_t shape_count, std::size_t count,
+           T* out) {
+    const D d;
+    const hn::Rebind<T, D> dt;
+    constexpr std::size_t kUnrolled = 4, kLane = static_cast<std::size_t>(kLanes);
+    std::size_t i = 0;
+    for (; i + kUnrolled * kLane <= count; i += kUnrolled * kLane) {
+        V a = hn::Zero(d), b = a, c = a, e = a;
+        for (std::size_t k = 0; k < shape_count; ++k) {
+            const V w = hn::Set(d, weights[k]);
+            a = hn::MulAdd(w, At(shapes[k], i), a);
+            b = hn::MulAdd(w, At(shapes[k], i + kLane), b);
+            c = hn::MulAdd(w, At(shapes[k], i + 2 * kLane), c);
+            e = hn::MulAdd(w, At(shapes[k], i + 3 * kLane), e);
+        }
+        hn::StoreU(StoreAs(out, a), dt, out + i);
+        hn::StoreU(StoreAs(out, b), dt, out + i + kLane);
+        hn::StoreU(StoreAs(out, c), dt, out + i + 2 * kLane);
+        hn::StoreU(StoreAs(out, e), dt, out + i + 3 * kLane);
+    }
+    const hn::CappedTag<double, 1> one;
+    for (; i < count; ++i) {
+        auto sum = hn::Zero(one);
+        for (std::size_t k = 0; k < shape_count; ++k)
+            sum = hn::MulAdd(hn::Set(one, weights[k]), hn::Set(one, static_cast<double>(shapes[k][i])), sum);
+        out[i] = static_cast<T>(hn::GetLane(sum));
+    }
+}
+void BlendFloat(const float* const* shapes, const double* weights, std::size_t shape_count, std::size_t count,
+                float* out) {
+    Blend(shapes, weights, shape_count, count, out);
+}
+void BlendDouble(const double* const* shapes, const double* weights, std::size_t shape_count,
+                 std::size_t count, double* out) {
+    Blend(shapes, weights, shape_count, count, out);
+}
+
+template <class T>
+void BlendMasked(const T* const* shapes, const float* const* masks, const double* weights,
+                 std::size_t shape_count, const T* base, std::size_t count, T* out) {
+    const auto sum_at = [&](auto d, std::size_t i, auto&& load) HWY_ATTR {
+        const auto start = load(d, base, i);
+        auto sum = start;
+        for (std::size_t k = 0; k < shape_count; ++k) {
+            auto w = hn::Set(d, weights[k]);
+            if (masks[k]) w = hn::Mul(w, load(d, masks[k], i));
+            sum = hn::MulAdd(w, hn::Sub(load(d, shapes[k], i), start), sum);
+        }
+        return sum;
+    };
+    std::size_t i = 0;
+    for (; i + static_cast<std::size_t>(kLanes) <= count; i += static_cast<std::size_t>(kLanes)) {
+        const V sum = sum_at(D(), i, [](D, const auto* p, std::size_t at) HWY_ATTR { return At(p, at); });
+        hn::StoreU(StoreAs(out, sum), hn::Rebind<T, D>(), out + i);
+    }
+    for (; i < count; ++i) {
+        const hn::CappedTag<double, 1> one;
+        out[i] =
+            static_cast<T>(hn::GetLane(sum_at(one, i, [](auto d, const auto* p, std::size_t at) HWY_ATTR {
+                return hn::Set(d, static_cast<double>(p[at]));
+            })));
+    }
+}
+void BlendMaskedFloat(const float* const* shapes, const float* const* masks, const double* weights,
+                      std::size_t shape_count, const float* base, std::size_t count, float* out) {
+    BlendMasked(shapes, masks, weights, shape_count, base, count, out);
+}
+void BlendMaskedDouble(const double* const* shapes, const float* const* masks, const double* weights,
+                       std::size_t shape_count, const double* base, std::size_t count, double* out) {
+    BlendMasked(shapes, masks, weights, shape_count, base, count, out);
+}
+
+}  // namespace HWY_NAMESPACE
+}  // namespace anamorph::simd
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace anamorph::simd {
+
+HWY_EXPORT(AxisFactors);
+HWY_EXPORT(AddRowSlopes);
+HWY_EXPORT(AddPointSlopes);
+HWY_EXPORT(TurnNormals);
+HWY_EXPORT(CornerNormals);
+HWY_EXPORT(DeformBandFloat);
+HWY_EXPORT(DeformBandDouble);
+HWY_EXPORT(DeformPoints);
+HWY_EXPORT(DeformPointsWithSlopes);
+HWY_EXPORT(BlendFloat);
+HWY_EXPORT(BlendDouble);
+HWY_EXPORT(BlendMaskedFloat);
+HWY_EXPORT(BlendMaskedDouble);
+
+void axis_factors(const AxisKernel& kernel, const double* x, int count, double* out, double* slope) {
+    HWY_DYNAMIC_DISPATCH(AxisFactors)(kernel, x, count, out, slope);
+}
+void add_row_slopes(const RowTerm* terms, std::size_t term_count, std::size_t count, double* const sums[6]) {
+    HWY_DYNAMIC_DISPATCH(AddRowSlopes)(terms, term_count, count, sums);
+}
+void add_point_slopes(const PointTerm* const* terms, std::size_t term_count, const double* u, const double* v,
+                      std::size_t count, double* const sums[6]) {
+    HWY_DYNAMIC_DISPATCH(AddPointSlopes)(terms, term_count, u, v, count, sums);
+}
+void turn_normals(const double* const slopes[6], const double (&gradients)[2][3], std::size_t count,
+                  double* const normals[3]) {
+    HWY_DYNAMIC_DISPATCH(TurnNormals)(slopes, gradients, count, normals);
+}
+void corner_normals(const CornerEdges& corners, double unit, std::size_t count, double* const out[3]) {
+    HWY_DYNAMIC_DISPATCH(CornerNormals)(corners, unit, count, out);
+}
+void deform_band(const GridBand<float>& band) {
+    HWY_DYNAMIC_DISPATCH(DeformBandFloat)(band);
+}
+void deform_band(const GridBand<double>& band) {
+    HWY_DYNAMIC_DISPATCH(DeformBandDouble)(band);
+}
+void deform_points(const PointTerm* const* terms, std::size_t term_count, const double* u, const double* v,
+                   std::size_t count, std::int64_t* const sums[3]) {
+    HWY_DYNAMIC_DISPATCH(DeformPoints)(terms, term_count, u, v, count, sums);
+}
+void deform_points_with_slopes(const PointTerm* const* terms, std::size_t term_count, const double* u,
+                               const double* v, std::size_t count, std::int64_t* const sums[3],
+                               double* const slopes[6]) {
+    HWY_DYNAMIC_DISPATCH(DeformPointsWithSlopes)(terms, term_count, u, v, count, sums, slopes);
+}
+void blend(const float* const* shapes, const double* weights, std::size_t shape_count, std::size_t count,
+           float* out) {
+    HWY_DYNAMIC_DISPATCH(BlendFloat)(shapes, weights, shape_count, count, out);
+}
+void blend(const double* const* shapes, const double* weights, std::size_t shape_count, std::size_t count,
+           double* out) {
+    HWY_DYNAMIC_DISPATCH(BlendDouble)(shapes, weights, shape_count, count, out);
+}
+void blend_masked(const float* const* shapes, const float* const* masks, const double* weights,
+                  std::size_t shape_count, const float* base, std::size_t count, float* out) {
+    HWY_DYNAMIC_DISPATCH(BlendMaskedFloat)(shapes, masks, weights, shape_count, base, count, out);
+}
+void blend_masked(const double* const* shapes, const float* const* masks, const double* weights,
+                  std::size_t shape_count, const double* base, std::size_t count, double* out) {
+    HWY_DYNAMIC_DISPATCH(BlendMaskedDouble)(shapes, masks, weights, shape_count, base, count, out);
+}
+
+}  // namespace anamorph::simd
+#endif

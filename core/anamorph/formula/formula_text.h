@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: Apache-2.0
+// Formulas that are written as text: from a point of a picture to one of its source, or to one in space.
+//
+// Text. Numbers as in 12, .5 and 1e-3, which are the doubles next to them, and pi; + - * / with the usual order, % (as mod),
+// ^ (a power, from right to left, before a minus sign); < <= > >= == !=, and, or, not make conditions, which
+// if(condition, a, b) takes. Names of formulas of a picture:
+//
+//   x y                     the point: pixels of the picture, the middle of the first one at (.5, .5), y down
+//   s t                     the same in parts of width and height, from 0 to 1
+//   px py                   the same about the middle of the picture, in halves of its smaller side, y up
+//   r a                     the same in polar coordinates: the length of (px, py), and its angle from -pi to pi,
+//                           counterclockwise from the right
+//   width height            of the picture
+//   src_width src_height    of the source
+//   frame                   a number that callers give
+//
+// those of formulas of a surface:
+//
+//   u v                     the point of the picture that is laid on it: from 0 at the left to 1, from 0 at the bottom to 1
+//   aspect                  width over height of that picture
+//   frame                   as above
+//
+// and those that definitions make before. Functions: sin cos tan asin acos atan(y) atan(y, x) atan2(y, x) sinh cosh tanh
+// asinh exp log sqrt cbrt pow hypot abs sign min max mod floor ceil round clamp mix step smoothstep, as GLSL has them
+// (mod(a, b) has the sign of b, round takes halves up, atan2(0, 0) is 0); angles in radians. Conditions compare exactly. cbrt, and
+// a power whose exponent is no known whole number of at most 1024, are made of exp and log.
+//
+// Domain. A point has no source where a root or a logarithm of what is not positive, an asin or acos of what is not between -1
+// and 1 (which are left out), cbrt(0), a power of what is not positive with such an exponent, or a quotient by 0 would be needed; an
+// `if` needs what it chooses, `and` and `or` what they have not decided from the left.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "anamorph/geometry/size.h"
+#include "anamorph/number/formula_program.h"
+#include "anamorph/parameter/parameter.h"
+
+namespace anamorph {
+
+/// What users write. Each expression is named in errors by the member that it stands in, or by the name that it defines.
+struct FormulaText {
+    std::string u = "x", v = "y";  ///< source pixels
+    /// Names with their expressions, before `let`: what that defines them to be does not count.
+    std::vector<Assignment> definitions;
+    std::string let;  ///< "name=expression;name=expression"
+};
+
+/// What the names stand for.
+struct FormulaSetting {
+    Size picture, source;
+    double frame = 0;
+    bool in_fractions = false;  ///< u and v are in parts of the source's width and height
+};
+
+/// A text as programs.
+struct PlaneFormula {
+    FormulaProgram point;   ///< u and v, in source pixels
+    FormulaProgram domain;  ///< positive, twice, where there is a source point
+    bool is_everywhere;     ///< the domain is the whole plane
+};
+
+/// Throws Error with the column, counted from 1, and what was expected there; and of a definition that none of the other
+/// expressions uses.
+PlaneFormula parse_formula(const FormulaText& text, const FormulaSetting& setting);
+
+/// A surface in space, by default the flat picture as surface/shape/shape.h has it: x to the right, y up, z towards the viewer.
+struct SurfaceText {
+    std::string px = "(u-0.5)*aspect", py = "v-0.5", pz = "0";
+    std::vector<Assignment> definitions;  ///< as those of FormulaText
+    std::string let;
+};
+
+/// What the names stand for.
+struct SurfaceSetting {
+    double aspect = 1, frame = 0;
+};
+
+/// A text as programs of u and 1 - v.
+struct SpaceFormula {
+    FormulaProgram point;   ///< x, y and z
+    FormulaProgram domain;  ///< positive where there is a surface
+    bool is_everywhere;     ///< there is one for all u and v
+
+    /// Do both compute the same?
+    friend bool operator==(const SpaceFormula& a, const SpaceFormula& b);
+};
+
+/// Throws as parse_formula() does.
+SpaceFormula parse_surface(const SurfaceText& text, const SurfaceSetting& setting);
+
+}  // namespace anamorph

@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: Apache-2.0
+// A flat map whose formula is text.
+#pragma once
+
+#include <cstdint>
+
+#include "anamorph/formula/formula_text.h"
+#include "anamorph/plan/formula_map.h"
+
+namespace anamorph {
+
+/// Of a program that computes two.
+template <class T>
+Point<T> read_point(const FormulaProgram& program, const T& x, const T& y) {
+    const auto [to_x, to_y] = read_program<2>(program, x, y);
+    return {to_x, to_y};
+}
+
+/// Pixels, x right, y down, pixel centres at + 0.5.
+class TextMap : public PlaneMap<TextMap> {
+  public:
+    /// `picture`: the size that the formula speaks of. `target`: the pixels that the picture has.
+    TextMap(PlaneFormula formula, const Size& picture, const Size& target, const Size& source)
+        : PlaneMap(target, source),
+          m_formula(std::move(formula)),
+          m_is_scaled(!(picture == target)),
+          m_per_x(static_cast<long double>(picture.width) / target.width),
+          m_per_y(static_cast<long double>(picture.height) / target.height) {}
+
+    template <class T>
+    Point<T> source_point(const T& x, const T& y) const {
+        return read(m_formula.point, x, y);
+    }
+    template <class T>
+    T inside(const T& x, const T& y) const {
+        return m_formula.is_everywhere ? T(1) : read(m_formula.domain, x, y).x;
+    }
+
+    /// The points (x + i, y): as exact() has them, within the same bound. `piece` is 0, or -1 where there is no source point.
+    void exact_row(double x, double y, int count, double* to_x, double* to_y, std::int32_t* piece) const;
+
+    /// The pixels of a box whose middles have no source point, wherever the source ends.
+    std::int64_t undefined_pixels(const Box& box) const;
+
+  private:
+    /// Have the middles of all pixels of a box source points?
+    Certainty is_defined(const Box& box) const;
+
+    template <class T>
+    Point<T> read(const FormulaProgram& program, const T& x, const T& y) const {
+        if (!m_is_scaled) return read_point(program, x, y);
+        return read_point(program, T(x * m_per_x.as<T>()), T(y * m_per_y.as<T>()));
+    }
+
+    PlaneFormula m_formula;
+    bool m_is_scaled;
+    Constant m_per_x, m_per_y;
+};
+
+}  // namespace anamorph

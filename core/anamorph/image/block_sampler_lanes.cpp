@@ -1,0 +1,559 @@
+// SPDX-License-Identifier: Apache-2.0
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "anamorph/image/block_sampler_lanes.cpp"
+#include "anamorph/image/block_sampler.h"
+
+#include <cmath>
+#include <cstring>
+#include <string>
+#include <vector>
+
+#include "hwy/cache_control.h"
+#include "hwy/foreach_target.h"  // must come before highway.h
+#include "hwy/highway.h"
+
+#include "anamorph/image/pixel.h"
+#include "anamorph/image/weightless.h"
+// Compiled for each instruction set.
+#include "anamorph/image/block_rows-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace anamorph::simd {
+namespace HWY_NAMESPACE {
+namespace hn = hwy::HWY_NAMESPACE;
+
+void BlockPoints(const Polynomials& block, int row, int begin, int end, float* HWY_RESTRICT out_x,
+                 float* HWY_RESTRICT out_y) {
+    StorePoints(block, row, begin, end, out_x, out_y);
+}
+
+/// half_from_float (number/half.h) of a vector, to `to`.
+template <class D>
+HWY_INLINE void StoreHalves(hn::Vec<D> v, D d, hwy::float16_t* to) {
+    if constexpr (kHasHalf) {
+        const hn::Rebind<hwy::float16_t, D> dh;
+        hn::StoreU(hn::DemoteTo(dh, v), dh, to);
+    } else {
+        const hn::RebindToSigned<D> di;
+        const hn::Rebind<uint16_t, D> dh;
+        const auto bits = hn::BitCast(di, v), magnitude = hn::And(bits, hn::Set(di, 0x7fffffff));
+        const auto sign = hn::And(hn::ShiftRight<16>(bits), hn::Set(di, 0x8000));
+        const auto short_bits = hn::ShiftRight<13>(magnitude);
+        const auto nan = hn::Or(hn::Set(di, 0x7e00), hn::And(short_bits, hn::Set(di, 0x3ff)));
+        const auto large =
+            hn::IfThenElse(hn::Gt(magnitude, hn::Set(di, 0x7f800000)), nan, hn::Set(di, 0x7c00));
+        const auto small = hn::Sub(hn::BitCast(di, hn::Add(hn::BitCast(d, magnitude), hn::Set(d, 0.5f))),
+                                   hn::Set(di, 0x3f000000));
+        const auto odd = hn::And(short_bits, hn::Set(di, 1));
+        const auto normal =
+            hn::ShiftRight<13>(hn::Add(hn::Add(magnitude, hn::Set(di, 0xfff - ((127 - 15) << 23))), odd));
+        const auto half =
+            hn::IfThenElse(hn::Lt(magnitude, hn::Set(di, 0x38800000)), small,
+                           hn::IfThenElse(hn::Lt(magnitude, hn::Set(di, 0x47800000)), normal, large));
+        hn::StoreU(hn::DemoteTo(dh, hn::Or(sign, half)), dh, reinterpret_cast<uint16_t*>(to));
+    }
+}
+
+template <class T>
+HWY_INLINE hn::Vec<Quad> LoadQuad(const T* p) {
+    return LoadFloats(Quad(), p);
+}
+
+/// The same for `count` points from `first` on, moved by a tap and back by `shift`.
+template <int kCount>
+HWY_INLINE void Locate(const Offsets& at, int first, int count, const Tap& tap, float shift, int channels,
+                       int32_t row_elements, Positions<kCount>& p) {
+    const Floats d;
+    const Ints di;
+    const auto dx = hn::Set(d, tap.x - shift), dy = hn::Set(d, tap.y - shift);
+    const auto row = hn::Set(di, row_elements), pixel = hn::Set(di, channels);
+    for (int i = 0; i < count; i += static_cast<int>(kLanes))
+        Locate(hn::Add(hn::LoadU(d, at.x + first + i), dx), hn::Add(hn::LoadU(d, at.y + first + i), dy), row,
+               pixel, i, p, at.whole_x ? at.whole_x + first + i : nullptr,
+               at.whole_y ? at.whole_y + first + i : nullptr);
+}
+
+/// The texel pair at `p` and the pair below, mixed by fy then fx: kQuad channels of a pixel.
+template <class T, int kChannels>
+HWY_INLINE hn::Vec<Quad> Bilinear(const T* HWY_RESTRICT p, ptrdiff_t row, int channels, float fx, float fy) {
+    const Quad d;
+    const int next = kChannels ? kChannels : channels;
+    const auto vx = hn::Set(d, fx), vy = hn::Set(d, fy);
+#if HWY_TARGET != HWY_SCALAR
+    if constexpr (kHasPair && (kChannels == 3 || kChannels == 4)) {
+        // Both texels of a row at once.
+        const Pair d2;
+        const auto above = LoadFloats(d2, p), below = LoadFloats(d2, p + row);
+        const auto both = hn::MulAdd(hn::Set(d2, fy), hn::Sub(below, above), above);
+        const auto first = hn::LowerHalf(d, both);
+        auto second = hn::UpperHalf(d, both);
+        if constexpr (kChannels == 3) {
+            HWY_ALIGN static constexpr int32_t kShift[8] = {3, 4, 5, 6, 7, 7, 7, 7};
+            second = hn::LowerHalf(d, hn::TableLookupLanes(both, hn::SetTableIndices(d2, kShift)));
+        }
+        return hn::MulAdd(vx, hn::Sub(second, first), first);
+    }
+#endif
+    const auto a = LoadQuad(p), b = LoadQuad(p + row);
+    const auto left = hn::MulAdd(vy, hn::Sub(b, a), a);
+    const auto e = LoadQuad(p + next), f = LoadQuad(p + row + next);
+    const auto right = hn::MulAdd(vy, hn::Sub(f, e), e);
+    return hn::MulAdd(vx, hn::Sub(right, left), left);
+}
+
+/// One bilinear tap a pixel. kChannels 0: any number, four at a time; a store's surplus lanes are overwritten
+/// by the next pixel's.
+template <class T, int kChannels>
+HWY_INLINE void SampleBilinear(const Texels& s, const Offsets& at, float* HWY_RESTRICT out) {
+    const Quad d;
+    const auto* origin = reinterpret_cast<const T*>(s.texels);
+    const ptrdiff_t row = s.row_stride / static_cast<ptrdiff_t>(sizeof(T));
+    const int channels = kChannels ? kChannels : s.channels;
+    Positions<kRowRoom> p;
+    Locate(at, 0, at.count, s.taps[0], 0.5f, channels, static_cast<int32_t>(row), p);
+    for (int i = 0; i < at.count; ++i)
+        for (int c = 0; c < channels; c += kQuad)
+            hn::StoreU(Bilinear<T, kChannels>(origin + p.offset[i] + c, row, channels, p.fx[i], p.fy[i]), d,
+                       out + i * channels + c);
+}
+
+/// The mean of several bilinear taps a pixel.
+template <class T, int kChannels>
+HWY_INLINE void SampleTaps(const Texels& s, const Offsets& at, float* HWY_RESTRICT out) {
+    const Quad d;
+    const auto* origin = reinterpret_cast<const T*>(s.texels);
+    const ptrdiff_t row = s.row_stride / static_cast<ptrdiff_t>(sizeof(T));
+    const int channels = kChannels ? kChannels : s.channels;
+    // Some pixels at a time, so that the positions of all taps stay near.
+    constexpr int kGroup = 16;
+    Positions<kGroup> p[4];
+    const auto weight = hn::Set(d, 1.0f / static_cast<float>(s.tap_count));
+    for (int first = 0; first < at.count; first += kGroup) {
+        const int n = HWY_MIN(kGroup, at.count - first);
+        HWY_ALIGN float sum[kGroup * kQuad];
+        for (int c = 0; c < channels; c += kQuad) {
+            for (int tap = 0; tap < s.tap_count; tap += 4) {
+                const int taps = HWY_MIN(4, s.tap_count - tap);
+                for (int k = 0; k < taps; ++k)
+                    Locate(at, first, n, s.taps[tap + k], 0.5f, channels, static_cast<int32_t>(row), p[k]);
+                for (int i = 0; i < n; ++i) {
+                    auto v = tap == 0 ? hn::Zero(d) : hn::Load(d, sum + kQuad * i);
+                    for (int k = 0; k < taps; ++k)
+                        v = hn::Add(v, Bilinear<T, kChannels>(origin + p[k].offset[i] + c, row, channels,
+                                                              p[k].fx[i], p[k].fy[i]));
+                    hn::Store(v, d, sum + kQuad * i);
+                }
+            }
+            // Ascending pixels: a surplus lane is overwritten by the next pixel, or by this one's next
+            // channels.
+            for (int i = 0; i < n; ++i) {
+                HWY_ALIGN float v[kQuad];
+                hn::Store(hn::Mul(hn::Load(d, sum + kQuad * i), weight), d, v);
+                std::memcpy(out + (first + i) * channels + c, v,
+                            sizeof(float) * static_cast<size_t>(HWY_MIN(kQuad, channels - c)));
+            }
+        }
+    }
+}
+
+/// Catmull-Rom weights of the four texels about a fraction f.
+HWY_INLINE void CubicWeights(float f, float* w) {
+    const float g = 1 - f;
+    w[0] = -0.5f * f * g * g;
+    w[1] = 1 + f * f * (1.5f * f - 2.5f);
+    w[2] = 1 + g * g * (1.5f * g - 2.5f);
+    w[3] = -0.5f * g * f * f;
+}
+
+template <class T>
+HWY_INLINE void SampleBicubic(const Texels& s, const Offsets& at, float* HWY_RESTRICT out) {
+    const Quad d;
+    const auto* origin = reinterpret_cast<const T*>(s.texels);
+    const ptrdiff_t row = s.row_stride / static_cast<ptrdiff_t>(sizeof(T));
+    Positions<kRowRoom> p;
+    // The first of four texels is one before the one a bilinear tap starts with.
+    Locate(at, 0, at.count, s.taps[0], 0.5f, s.channels, static_cast<int32_t>(row), p);
+    for (int i = 0; i < at.count; ++i) {
+        float wx[4], wy[4];
+        CubicWeights(p.fx[i], wx);
+        CubicWeights(p.fy[i], wy);
+        for (int c = 0; c < s.channels; c += kQuad) {
+            const T* texel = origin + p.offset[i] + c - row - s.channels;
+            auto sum = hn::Zero(d);
+            for (int j = 0; j < 4; ++j) {
+                auto line = hn::Zero(d);
+                for (int k = 0; k < 4; ++k)
+                    line = hn::MulAdd(hn::Set(d, wx[k]), LoadQuad(texel + j * row + k * s.channels), line);
+                sum = hn::MulAdd(hn::Set(d, wy[j]), line, sum);
+            }
+            hn::StoreU(sum, d, out + i * s.channels + c);
+        }
+    }
+}
+
+template <class T>
+HWY_INLINE void SampleNearest(const Texels& s, const Offsets& at, float* HWY_RESTRICT out) {
+    const auto* origin = reinterpret_cast<const T*>(s.texels);
+    const ptrdiff_t row = s.row_stride / static_cast<ptrdiff_t>(sizeof(T));
+    Positions<kRowRoom> p;
+    Locate(at, 0, at.count, s.taps[0], 0.0f, s.channels, static_cast<int32_t>(row), p);
+    for (int i = 0; i < at.count; ++i)
+        for (int c = 0; c < s.channels; c += kQuad)
+            hn::StoreU(LoadQuad(origin + p.offset[i] + c), Quad(), out + i * s.channels + c);
+}
+
+/// Weights of the texels about a fraction, of the kernel's, moved to the middle of one that is so near.
+HWY_INLINE void KernelWeights(Kernel kernel, float f, float* w) {
+    f = f < kSameTexel ? 0 : f > 1 - kSameTexel ? 1 : f;
+    if (kernel == Kernel::bicubic) return CubicWeights(f, w);
+    w[0] = 1 - f;
+    w[1] = f;
+}
+
+/// Are several taps as good as one in their middle?
+HWY_INLINE bool TapsLieTogether(const Texels& s) {
+    bool all = s.tap_count > 1;
+    for (int i = 0; i < s.tap_count; ++i)
+        all &= std::fabs(s.taps[i].x) < kSameTap && std::fabs(s.taps[i].y) < kSameTap;
+    return all;
+}
+
+/// The channels of a row that came out infinite or as no numbers, again, as weightless.h says.
+void MendChannels(const Texels& s, const Offsets& at, float* HWY_RESTRICT out) {
+    const int bytes = size_of(s.type), count = at.count * s.channels,
+              side = s.kernel == Kernel::bicubic ? 4 : 2;
+    const std::ptrdiff_t pixel = std::ptrdiff_t{s.channels} * bytes;
+    const auto row = static_cast<int32_t>(s.row_stride / bytes);
+    std::vector<double> sum(static_cast<size_t>(count));
+    const bool together = TapsLieTogether(s);
+    const int taps = together ? 1 : s.tap_count;
+    for (int tap = 0; tap < taps; ++tap) {
+        Positions<kRowRoom> p;
+        Locate(at, 0, at.count, together ? Tap{} : s.taps[tap], 0.5f, s.channels, row, p);
+        for (int i = 0; i < at.count; ++i) {
+            float wx[4], wy[4];
+            KernelWeights(s.kernel, p.fx[i], wx);
+            KernelWeights(s.kernel, p.fy[i], wy);
+            const std::byte* first = s.texels + std::ptrdiff_t{p.offset[i]} * bytes;
+            if (s.kernel == Kernel::bicubic) first -= s.row_stride + pixel;
+            for (int c = 0; c < s.channels; ++c) {
+                const int k = i * s.channels + c;
+                if (std::isfinite(out[k])) continue;
+                for (int j = 0; j < side; ++j)
+                    for (int n = 0; n < side; ++n) {
+                        const double weight = double{wy[j]} * double{wx[n]};
+                        const std::byte* texel = first + j * s.row_stride + n * pixel + c * bytes;
+                        if (weight != 0)
+                            sum[static_cast<size_t>(k)] += weight * double{load_channel(texel, s.type)};
+                    }
+            }
+        }
+    }
+    for (int k = 0; k < count; ++k)
+        if (!std::isfinite(out[k])) out[k] = static_cast<float>(sum[static_cast<size_t>(k)] / taps);
+}
+
+/// Can a filter make a channel infinite, or no number, where it should not be? Integers are finite, and nearest moves texels.
+HWY_INLINE bool NeedsMending(const Texels& s) {
+    return s.kernel != Kernel::nearest && (s.type == PixelType::half || s.type == PixelType::float32);
+}
+
+/// The same of a row that may have such channels.
+HWY_INLINE void Mend(const Texels& s, const Offsets& at, float* out) {
+    if (NeedsMending(s) && !AllFinite(out, at.count * s.channels)) MendChannels(s, at, out);
+}
+
+/// The same of a row of a drawing.
+HWY_INLINE void MendRow(const Drawing& to, int row, float* values) {
+    if (!NeedsMending(to.texels) || AllFinite(values, (to.end - to.begin) * to.texels.channels)) return;
+    HWY_ALIGN float x[kRowRoom], y[kRowRoom];
+    MendChannels(to.texels, PointsOfRow(to, row, x, y), values);
+}
+
+/// Fetches what SampleTyped is to read of a row: of several taps, which lie next to each other, one in four.
+template <class T>
+HWY_INLINE void FetchRow(const Texels& s, const Offsets& at) {
+    const auto row = static_cast<int32_t>(s.row_stride / static_cast<ptrdiff_t>(sizeof(T)));
+    const int side = s.kernel == Kernel::bicubic ? 4 : s.kernel == Kernel::bilinear ? 2 : 1;
+    const float shift = 0.5f * static_cast<float>(side - 1);
+    // Where texels lie together those farther up came with an earlier row of pixels.
+    const int first = s.apart ? 0 : HWY_MAX(0, side - 2);
+    for (int tap = 0; tap < s.tap_count; tap += 4) {
+        Positions<kRowRoom> p;
+        Locate(at, 0, at.count, s.taps[tap], shift, s.channels, row, p);
+        for (int k = first; k < side; ++k) Fetch<T, 0>(s, p.offset, at.count, k, side);
+    }
+}
+
+template <class T>
+void SampleTyped(const Texels& s, const Offsets& at, float* out) {
+    if (s.kernel == Kernel::nearest) return SampleNearest<T>(s, at, out);
+    if (s.kernel == Kernel::bicubic) return SampleBicubic<T>(s, at, out);
+    const auto with = [&](auto channels) {
+        constexpr int k = decltype(channels)::value;
+        if (s.tap_count == 1)
+            SampleBilinear<T, k>(s, at, out);
+        else
+            SampleTaps<T, k>(s, at, out);
+    };
+    if (s.channels == 3) return with(std::integral_constant<int, 3>{});
+    if (s.channels == 4) return with(std::integral_constant<int, 4>{});
+    with(std::integral_constant<int, 0>{});
+}
+
+void SampleRow(const Texels& s, const Offsets& at, float* out) {
+    switch (s.type) {
+        case PixelType::uint8:
+            return SampleTyped<uint8_t>(s, at, out);
+        case PixelType::uint16:
+            return SampleTyped<uint16_t>(s, at, out);
+        case PixelType::half:
+            SampleTyped<hwy::float16_t>(s, at, out);
+            break;
+        case PixelType::float32:
+            SampleTyped<float>(s, at, out);
+            break;
+    }
+    Mend(s, at, out);
+}
+
+/// Float to float, multiplied or, with the very bits, moved: whole aligned vectors bypass the cache.
+template <bool kScales>
+void StoreFloats(const float* HWY_RESTRICT values, int count, float scale, float* HWY_RESTRICT to) {
+    const hn::ScalableTag<float> d;
+    constexpr size_t kLine = 64;
+    const auto v = hn::Set(d, scale);
+    int i = 0;
+    const size_t misaligned = reinterpret_cast<uintptr_t>(to) % kLine;
+    const int head = HWY_MIN(count, static_cast<int>(misaligned ? (kLine - misaligned) / sizeof(float) : 0));
+    for (; i < head; ++i) to[i] = kScales ? values[i] * scale : values[i];
+    const int lanes = static_cast<int>(hn::Lanes(d));
+    const int line = static_cast<int>(kLine / sizeof(float));
+    for (; i + line <= count; i += line)
+        for (int k = 0; k < line; k += lanes) {
+            const auto value = hn::LoadU(d, values + i + k);
+            hn::Stream(kScales ? hn::Mul(v, value) : value, d, to + i + k);
+        }
+    for (; i < count; ++i) to[i] = kScales ? values[i] * scale : values[i];
+}
+
+/// `values` where a whole vector can be read there, else a copy of the rest in `padded`.
+const float* whole_vector(const float* values, int rest, float* padded) {
+    if (rest >= static_cast<int>(kLanes)) return values;
+    std::memcpy(padded, values, sizeof(float) * static_cast<size_t>(rest));
+    return padded;
+}
+
+/// Float to 8 or 16 bits: rounded to nearest, clamped, NaN to 0.
+template <class T>
+void StoreIntegers(const float* HWY_RESTRICT values, int count, float scale, T* HWY_RESTRICT to) {
+    const Floats d;
+    const hn::Rebind<T, Floats> dt;
+    const auto v = hn::Set(d, scale), zero = hn::Zero(d),
+               most = hn::Set(d, static_cast<float>(hwy::LimitsMax<T>()));
+    HWY_ALIGN T tail[kLanes];
+    HWY_ALIGN float padded[kLanes] = {};
+    for (int i = 0; i < count; i += static_cast<int>(kLanes)) {
+        auto x = hn::Mul(v, hn::LoadU(d, whole_vector(values + i, count - i, padded)));
+        x = hn::Min(hn::IfThenElse(hn::Gt(x, zero), x, zero), most);
+        const auto n = hn::DemoteTo(dt, hn::NearestInt(x));
+        const int rest = count - i;
+        if (rest >= static_cast<int>(kLanes)) {
+            hn::StoreU(n, dt, to + i);
+        } else {
+            hn::StoreU(n, dt, tail);
+            std::memcpy(to + i, tail, sizeof(T) * static_cast<size_t>(rest));
+        }
+    }
+}
+
+void StoreHalf(const float* HWY_RESTRICT values, int count, float scale, hwy::float16_t* HWY_RESTRICT to) {
+    const Floats d;
+    const auto v = hn::Set(d, scale);
+    HWY_ALIGN hwy::float16_t tail[kLanes];
+    HWY_ALIGN float padded[kLanes] = {};
+    for (int i = 0; i < count; i += static_cast<int>(kLanes)) {
+        const int rest = count - i;
+        const auto x = hn::Mul(v, hn::LoadU(d, whole_vector(values + i, rest, padded)));
+        if (rest >= static_cast<int>(kLanes)) {
+            StoreHalves(x, d, to + i);
+        } else {
+            StoreHalves(x, d, tail);
+            std::memcpy(to + i, tail, sizeof(hwy::float16_t) * static_cast<size_t>(rest));
+        }
+    }
+}
+
+void StoreRow(const float* values, int count, float scale, PixelType type, std::byte* to) {
+    switch (type) {
+        case PixelType::uint8:
+            return StoreIntegers(values, count, scale, reinterpret_cast<uint8_t*>(to));
+        case PixelType::uint16:
+            return StoreIntegers(values, count, scale, reinterpret_cast<uint16_t*>(to));
+        case PixelType::half:
+            return StoreHalf(values, count, scale, reinterpret_cast<hwy::float16_t*>(to));
+        case PixelType::float32:
+            return scale == 1 ? StoreFloats<false>(values, count, scale, reinterpret_cast<float*>(to))
+                              : StoreFloats<true>(values, count, scale, reinterpret_cast<float*>(to));
+    }
+}
+
+/// The common case without detours: one bilinear tap, three or four channels.
+template <class T, int kChannels>
+void DrawBilinear(const Drawing& to) {
+    const Texels& s = to.texels;
+    const auto* origin = reinterpret_cast<const T*>(s.texels);
+    const ptrdiff_t row = s.row_stride / static_cast<ptrdiff_t>(sizeof(T));
+    const int count = to.end - to.begin;
+    const RowLocator<T, kChannels> locator(to);
+    Positions<kRowRoom> positions[kRows];
+    HWY_ALIGN float values[2][kRowRoom * kChannels];
+
+    const auto locate = [&](int j) HWY_ATTR { locator.Row(j, positions[j % kRows]); };
+    const auto sample = [&](int j) HWY_ATTR {
+        const Positions<kRowRoom>& p = positions[j % kRows];
+        float* HWY_RESTRICT out = values[j & 1];
+        HWY_UNROLL(8)
+        for (int i = 0; i < count; ++i)
+            hn::StoreU(Bilinear<T, kChannels>(origin + p.offset[i], row, kChannels, p.fx[i], p.fy[i]), Quad(),
+                       out + i * kChannels);
+    };
+    const auto store = [&](int j) HWY_ATTR {
+        MendRow(to, j, values[j & 1]);
+        StoreRow(values[j & 1], count * kChannels, to.scale, to.type,
+                 to.to + (j - to.row_begin) * to.row_stride);
+    };
+    InStages(to, locate, sample, store);
+}
+
+template <class T>
+void DrawTyped(const Drawing& to) {
+    const Texels& s = to.texels;
+    if (s.kernel == Kernel::bilinear && s.tap_count == 1 && kQuad == 4) {
+        if (s.channels == 3) return DrawBilinear<T, 3>(to);
+        if (s.channels == 4) return DrawBilinear<T, 4>(to);
+    }
+    const int count = to.end - to.begin;
+    HWY_ALIGN float x[kRows][kRowRoom], y[kRows][kRowRoom];
+    Offsets rows[kRows];
+    const std::size_t room = static_cast<size_t>(kMaxRow * s.channels + 16);
+    std::vector<float> values(2 * room);
+    const auto locate = [&](int j) HWY_ATTR {
+        rows[j % kRows] = PointsOfRow(to, j, x[j % kRows], y[j % kRows]);
+        FetchRow<T>(s, rows[j % kRows]);
+    };
+    const auto sample = [&](int j) { SampleTyped<T>(s, rows[j % kRows], values.data() + (j & 1) * room); };
+    const auto store = [&](int j) HWY_ATTR {
+        MendRow(to, j, values.data() + (j & 1) * room);
+        StoreRow(values.data() + (j & 1) * room, count * s.channels, to.scale, to.type,
+                 to.to + (j - to.row_begin) * to.row_stride);
+    };
+    InStages(to, locate, sample, store);
+}
+
+void DrawBlock(const Drawing& drawing) {
+    switch (drawing.texels.type) {
+        case PixelType::uint8:
+            return DrawTyped<uint8_t>(drawing);
+        case PixelType::uint16:
+            return DrawTyped<uint16_t>(drawing);
+        case PixelType::half:
+            return DrawTyped<hwy::float16_t>(drawing);
+        case PixelType::float32:
+            return DrawTyped<float>(drawing);
+    }
+}
+
+}  // namespace HWY_NAMESPACE
+}  // namespace anamorph::simd
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace anamorph::simd {
+
+HWY_EXPORT(BlockPoints);
+HWY_EXPORT(SampleRow);
+HWY_EXPORT(StoreRow);
+HWY_EXPORT(DrawBlock);
+
+void block_points(const Polynomials& block, int row, int begin, int end, float* out_x, float* out_y) {
+    HWY_DYNAMIC_DISPATCH(BlockPoints)(block, row, begin, end, out_x, out_y);
+}
+
+void draw_block(const Texels& texels, const Polynomials& block, int begin, int end, int row_begin,
+                int row_end, float scale, PixelType type, std::byte* to, std::ptrdiff_t row_stride) {
+    const Drawing drawing{texels, block, begin, end, row_begin, row_end, scale, type, to, row_stride};
+    if (!draw_packed_block(drawing)) HWY_DYNAMIC_DISPATCH(DrawBlock)(drawing);
+}
+
+void sample_row(const Texels& texels, const Offsets& offsets, float* out) {
+    HWY_DYNAMIC_DISPATCH(SampleRow)(texels, offsets, out);
+}
+
+namespace {
+
+/// The row of a pixel's own texel, and the other row that is read.
+void fetch(const std::byte* texel, float y, std::ptrdiff_t row_stride) {
+    prefetch_to_second_level(texel);
+    prefetch_to_second_level(texel + (y < 0.5f ? -row_stride : row_stride));
+}
+
+}  // namespace
+
+void fetch_row(const Texels& s, const Offsets& at) {
+    const std::ptrdiff_t pixel = std::ptrdiff_t{s.channels} * size_of(s.type);
+    for (int i = 0; i < at.count; ++i)
+        fetch(s.texels + at.whole_y[i] * s.row_stride + at.whole_x[i] * pixel, at.y[i], s.row_stride);
+}
+
+void fetch_row(const std::byte* const* texels, const float* y, int count, std::ptrdiff_t row_stride) {
+    for (int i = 0; i < count; ++i)
+        if (texels[i]) fetch(texels[i], y[i], row_stride);
+}
+
+void store_row(const float* values, int count, float scale, PixelType type, std::byte* to) {
+    HWY_DYNAMIC_DISPATCH(StoreRow)(values, count, scale, type, to);
+}
+
+void finish_stores() {
+    hwy::FlushStream();
+}
+
+namespace {
+
+const std::vector<std::pair<int64_t, std::string>>& available() {
+    static const auto sets = [] {
+        std::vector<std::pair<int64_t, std::string>> list;
+        // Better instruction sets have lower bits.
+        for (int64_t left = hwy::SupportedTargets() & HWY_TARGETS; left != 0; left &= left - 1)
+            list.emplace_back(left & -left, hwy::TargetName(left & -left));
+        return list;
+    }();
+    return sets;
+}
+
+}  // namespace
+
+const char* const* instruction_sets() {
+    static const auto names = [] {
+        std::vector<const char*> list;
+        for (const auto& set : available()) list.push_back(set.second.c_str());
+        list.push_back(nullptr);
+        return list;
+    }();
+    return names.data();
+}
+
+bool use_instruction_set(const char* name) {
+    // With a set go the weaker ones, for source files that are not compiled for this one; with none, all.
+    int64_t sets = 0;
+    for (const auto& set : available())
+        if (sets != 0 || set.second == name) sets |= set.first;
+    if (sets == 0 && *name != '\0') return false;
+    hwy::SetSupportedTargetsForTest(sets);
+    hwy::GetChosenTarget().Update(hwy::SupportedTargets());
+    return true;
+}
+
+}  // namespace anamorph::simd
+#endif

@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: Apache-2.0
+// A picture drawn through maps of blocks, any part of it at a time: one source is seen through each layer of
+// each map, and their colours are mixed. A panorama and a warp have one layer, a morph one for each picture.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "anamorph/error.h"
+#include "anamorph/image/border.h"
+#include "anamorph/image/filter.h"
+#include "anamorph/image/source.h"
+#include "anamorph/parallel_for.h"
+#include "anamorph/plan/block.h"
+
+namespace anamorph {
+
+/// What is drawn: colour; the source point as (u, v), v down, (-1, -1) where there is none; the distance of
+/// the source point used from the exact one; its proven bound. Distances in source pixels, of several layers
+/// the largest. u and v are in 0..1 on the source: across the seam of one that closes they start anew. Points
+/// beyond the edges of any other have values beyond; what is read there is the border's affair.
+enum class Output { color, stmap, error, bound };
+
+/// Is nothing drawn where all that a pixel would read lies beyond the source's edges? Source points go on there, and so do
+/// their errors and bounds.
+constexpr bool ends_at_edges(Wrap wrap, Output output) {
+    return (wrap == Wrap::automatic || wrap == Wrap::black) && output == Output::color;
+}
+
+/// Pixels of a box of the picture, row by row.
+struct PixelRows {
+    Box box;
+    int channels;
+    float* values;
+
+    /// The channels of pixel (x, y) of the picture.
+    float* at(int x, int y) const {
+        return values + (std::ptrdiff_t{y - box.y0} * box.width() + x - box.x0) * channels;
+    }
+};
+
+/// Ready to draw any box in any order from any number of threads: the bits of a pixel depend on nothing but
+/// the members and the sources.
+struct Picture {
+    /// A source seen through one layer of a map.
+    struct Layer {
+        Border border;      ///< knows the source's chart, which has the size of its level 0
+        int source = 0;     ///< which one of those that draw() is given
+        double weight = 1;  ///< of its colour; the sum over all layers is 1
+        /// Where it is given: how often `weight` that is at each pixel of a box, row by row. False where it is 0 everywhere.
+        std::function<bool(const Box& box, float* weights)> weights = {};
+    };
+    /// A map, and what is seen through each of its layers.
+    struct Map {
+        std::shared_ptr<const BlockMap> blocks;
+        std::vector<Layer> layers;  ///< as many as the map has
+    };
+
+    /// At least one; all cover the same pixels of the same target. ST-maps need a single layer.
+    std::vector<Map> maps;
+    Filter filter = Filter::antialias;
+    Output output = Output::color;
+    /// Where it is given, the picture shows what it says of each pixel's centre, in one channel, in place of
+    /// `output`.
+    std::function<float(double x, double y)> value;
+    /// Draws over the colours before they are stored.
+    std::function<void(const PixelRows& pixels)> overlay;
+    /// A source that is the picture as it stands, pixel for pixel and whatever the filter.
+    std::optional<int> same_as;
+
+    int width() const { return maps.front().blocks->width(); }
+    int height() const { return maps.front().blocks->height(); }
+
+    /// Is what is drawn made of the sources' colours?
+    bool shows_color() const { return !value && output == Output::color; }
+    /// Channels of the picture: those of the sources, of which `first` is one, for colour; 2 for stmap; else
+    /// 1. Throws Error where colour lacks a source.
+    int channels(const Source* first) const;
+
+    /// The largest proven bound in use (source pixels) and the fraction of pixels computed exactly, over the
+    /// whole picture and all layers.
+    Reached reached(const ParallelFor& parallel_for) const;
+
+    /// Draws the pixels of `box` (of the picture) to `view`, whose pixel (0, 0) is (box.x0, box.y0). Sources
+    /// that no layer names may be null, and all but for colour. False when one could not be read: the picture
+    /// is then incomplete. Throws Error where sizes or channels do not fit.
+    bool draw(const std::vector<const Source*>& sources, const Box& box, const ImageView& view,
+              const ParallelFor& parallel_for) const;
+};
+
+}  // namespace anamorph

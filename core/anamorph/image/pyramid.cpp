@@ -1,0 +1,266 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "anamorph/image/pyramid.h"
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <cstring>
+#include <exception>
+#include <mutex>
+
+#include "anamorph/image/pages.h"
+#include "anamorph/image/pixel.h"
+#include "anamorph/image/summed_areas.h"
+
+namespace anamorph {
+namespace {
+
+/// The texels of the finer level that one texel of the coarser one averages, along one axis: 2 to 4.
+struct Span {
+    int first, count;
+    std::array<float, 4> weight;
+};
+
+/// Texel `i` of `coarse` covers [i r, (i + 1) r) of `fine`, r = fine / coarse; here in units of 1 / coarse.
+Span span_of(std::int64_t i, std::int64_t fine, std::int64_t coarse) {
+    const std::int64_t from = i * fine, to = from + fine;
+    Span span{static_cast<int>(from / coarse), 0, {}};
+    for (std::int64_t k = span.first; k * coarse < to; ++k) {
+        const std::int64_t overlap = std::min((k + 1) * coarse, to) - std::max(k * coarse, from);
+        span.weight[static_cast<std::size_t>(span.count++)] =
+            static_cast<float>(static_cast<double>(overlap) / static_cast<double>(fine));
+    }
+    return span;
+}
+
+std::vector<Span> spans_of(int first, int end, int fine, int coarse) {
+    std::vector<Span> spans;
+    for (int i = first; i < end; ++i) spans.push_back(span_of(i, fine, coarse));
+    return spans;
+}
+
+// Channels as plain numbers: integers need not be normalised to be averaged.
+float number(std::uint8_t value) {
+    return value;
+}
+float number(std::uint16_t value) {
+    return value;
+}
+float number(float value) {
+    return value;
+}
+struct Half {
+    std::uint16_t bits;
+};
+float number(Half value) {
+    return float_from_half(value.bits);
+}
+
+/// To the nearest integer, ties to even, for 0 <= value < 2^22.
+float nearest(float value) {
+    return (value + 0x1.8p23f) - 0x1.8p23f;
+}
+void assign(float value, std::uint8_t& to) {
+    to = static_cast<std::uint8_t>(nearest(value));
+}
+void assign(float value, std::uint16_t& to) {
+    to = static_cast<std::uint16_t>(nearest(value));
+}
+void assign(float value, float& to) {
+    to = value;
+}
+void assign(float value, Half& to) {
+    to.bits = half_from_float(value);
+}
+
+/// sum += weight * row, pixel by pixel; colour multiplied by alpha where `alpha` >= 0.
+template <class T>
+void add_row(const std::byte* __restrict row, float weight, int values, int channels, int alpha,
+             float* __restrict sum) {
+    const auto at = [&](int i) { return number(pixel_detail::get<T>(row + i * std::ptrdiff_t{sizeof(T)})); };
+    if (alpha < 0) {
+        for (int i = 0; i < values; ++i) sum[i] += weight * at(i);
+        return;
+    }
+    for (int i = 0; i < values; i += channels) {
+        const float a = at(i + alpha);
+        for (int c = 0; c < channels && a != 0; ++c) sum[i + c] += weight * (c == alpha ? a : a * at(i + c));
+    }
+}
+
+/// Averages a row, which begins at texel `first` of the finer level.
+void average_row(const float* __restrict row, const std::vector<Span>& spans, int first, int channels,
+                 float* __restrict average) {
+    for (const Span& span : spans) {
+        const float* from = row + std::ptrdiff_t{span.first - first} * channels;
+        const float w0 = span.weight[0], w1 = span.weight[1];
+        for (int c = 0; c < channels; ++c) average[c] = w0 * from[c] + w1 * from[channels + c];
+        for (int k = 2; k < span.count; ++k)
+            for (int c = 0; c < channels; ++c)
+                average[c] += span.weight[static_cast<std::size_t>(k)] * from[k * channels + c];
+        average += channels;
+    }
+}
+
+template <class T>
+void store_row(const float* __restrict values, int count, std::byte* __restrict row) {
+    for (int i = 0; i < count; ++i) {
+        T stored;
+        assign(values[i], stored);
+        pixel_detail::put(stored, row + i * std::ptrdiff_t{sizeof(T)});
+    }
+}
+
+/// Averages `fine`, whose texel (0, 0) is `corner` of the finer level, to the coarser rows of `coarse`.
+template <class T>
+void reduce(const ConstImageView& fine, int corner_x, int corner_y, const std::vector<Span>& across,
+            const std::vector<Span>& down, int alpha, std::byte* coarse, std::ptrdiff_t row_stride) {
+    const int channels = fine.channels, values = fine.width * channels;
+    const int count = static_cast<int>(across.size()) * channels;
+    std::vector<float> sum(static_cast<std::size_t>(values)), average(static_cast<std::size_t>(count));
+    for (const Span& span : down) {
+        std::fill(sum.begin(), sum.end(), 0.0f);
+        for (int k = 0; k < span.count; ++k)
+            add_row<T>(fine.at(0, span.first - corner_y + k), span.weight[static_cast<std::size_t>(k)],
+                       values, channels, alpha, sum.data());
+        average_row(sum.data(), across, corner_x, channels, average.data());
+        for (int i = 0; alpha >= 0 && i < count; i += channels)
+            unassociate_alpha(&average[static_cast<std::size_t>(i)], channels, alpha);
+        store_row<T>(average.data(), count, coarse);
+        coarse += row_stride;
+    }
+}
+
+}  // namespace
+
+struct Pyramid::Level {
+    Level(Size level_size, PixelType type, int channels)
+        : size(level_size),
+          tiles_x((size.width + kTile - 1) / kTile),
+          tiles_y((size.height + kTile - 1) / kTile),
+          pages(static_cast<std::size_t>(size.width) * static_cast<std::size_t>(size.height) *
+                static_cast<std::size_t>(channels * size_of(type))),
+          view(packed_view<const std::byte>(pages.data(), type, size.width, size.height, channels)),
+          ready(std::make_unique<std::atomic<bool>[]>(static_cast<std::size_t>(tiles_x) *
+                                                      static_cast<std::size_t>(tiles_y))) {}
+
+    Size size;
+    int tiles_x, tiles_y;
+    Pages pages;
+    ConstImageView view;
+    std::unique_ptr<std::atomic<bool>[]> ready;
+    // One for every 16th tile. A thread holds at most one of a level, and goes from coarse to fine.
+    mutable std::array<std::mutex, 16> making;
+};
+
+Pyramid::Pyramid(const Source& base, int columns, int rows) : m_base(base) {
+    if (base.levels() != 1) return;
+    const bool pieces = columns > 1 || rows > 1;
+    Size size = base.size(0);
+    for (;;) {
+        const Size next{size.width / 2, size.height / 2};
+        if (next.width / columns < kLeast || next.height / rows < kLeast) return;
+        if (pieces && (size.width % (2 * columns) != 0 || size.height % (2 * rows) != 0)) return;
+        m_made.push_back(std::make_unique<Level>(next, base.type(), base.channels()));
+        size = next;
+    }
+}
+
+Pyramid::~Pyramid() = default;
+
+Size Pyramid::size(int level) const noexcept {
+    return made(level) ? at(level).size : m_base.size(level);
+}
+
+const ConstImageView* Pyramid::view(int level) const noexcept {
+    return made(level) ? &at(level).view : m_base.view(level);
+}
+
+bool Pyramid::read(int level, const Box& box, std::byte* texels, std::ptrdiff_t row_stride) const noexcept {
+    if (!made(level)) return m_base.read(level, box, texels, row_stride);
+    if (!prepare(level, box)) return false;
+    const ConstImageView& from = at(level).view;
+    for (int y = box.y0; y < box.y1; ++y, texels += row_stride)
+        std::memcpy(texels, from.at(box.x0, y), static_cast<std::size_t>(from.pixel_stride * box.width()));
+    return true;
+}
+
+bool Pyramid::prepare(int level, const Box& box) const noexcept try {
+    if (!made(level)) return m_base.prepare(level, box);
+    if (box.empty()) return true;
+    const Level& to = at(level);
+    for (int ty = box.y0 / kTile; ty <= (box.y1 - 1) / kTile; ++ty)
+        for (int tx = box.x0 / kTile; tx <= (box.x1 - 1) / kTile; ++tx) {
+            const std::size_t tile = static_cast<std::size_t>(ty) * static_cast<std::size_t>(to.tiles_x) +
+                                     static_cast<std::size_t>(tx);
+            std::atomic<bool>& ready = to.ready[tile];
+            if (ready.load(std::memory_order_acquire)) continue;
+            const std::lock_guard lock(to.making[tile % to.making.size()]);
+            if (ready.load(std::memory_order_relaxed)) continue;
+            const Box all{0, 0, to.size.width, to.size.height};
+            if (!make_tile(level,
+                           intersection(all, {tx * kTile, ty * kTile, (tx + 1) * kTile, (ty + 1) * kTile})))
+                return false;
+            ready.store(true, std::memory_order_release);
+        }
+    return true;
+} catch (const std::exception&) {
+    return false;
+}
+
+const SummedAreas* Pyramid::summed_areas() const noexcept try {
+    const std::lock_guard lock(m_summing);
+    if (!m_sums) m_sums = std::make_unique<const SummedAreas>(m_base);
+    return m_sums.get();
+} catch (const std::exception&) {
+    return nullptr;
+}
+
+bool Pyramid::make_tile(int level, const Box& tile) const {
+    const Level& to = at(level);
+    const Size finer = size(level - 1);
+    const std::vector<Span> across = spans_of(tile.x0, tile.x1, finer.width, to.size.width);
+    const std::vector<Span> down = spans_of(tile.y0, tile.y1, finer.height, to.size.height);
+    const Box box{across.front().first, down.front().first, across.back().first + across.back().count,
+                  down.back().first + down.back().count};
+
+    // The finer texels where they stand, or copied.
+    ConstImageView fine;
+    std::vector<std::byte> copy;
+    const ConstImageView* whole = view(level - 1);
+    if (whole && whole->packed()) {
+        if (!prepare(level - 1, box)) return false;
+        fine = *whole;
+        fine.data = whole->at(box.x0, box.y0);
+        fine.width = box.width();
+        fine.height = box.height();
+    } else {
+        const std::ptrdiff_t stride = std::ptrdiff_t{box.width()} * channels() * size_of(type());
+        copy.resize(static_cast<std::size_t>(stride * box.height()));
+        if (!read(level - 1, box, copy.data(), stride)) return false;
+        fine = packed_view<const std::byte>(copy.data(), type(), box.width(), box.height(), channels());
+    }
+
+    const std::ptrdiff_t offset = to.view.at(tile.x0, tile.y0) - to.view.data;
+    const auto run = [&]<class T>(T) {
+        reduce<T>(fine, box.x0, box.y0, across, down, unassociated_alpha(), to.pages.data() + offset,
+                  to.view.row_stride);
+    };
+    switch (type()) {
+        case PixelType::uint8:
+            run(std::uint8_t{});
+            break;
+        case PixelType::uint16:
+            run(std::uint16_t{});
+            break;
+        case PixelType::half:
+            run(Half{});
+            break;
+        case PixelType::float32:
+            run(float{});
+            break;
+    }
+    return true;
+}
+
+}  // namespace anamorph

@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: Apache-2.0
+// Coarser and coarser copies of an image, made where and when they are read.
+#pragma once
+
+#include <memory>
+#include <mutex>
+#include <vector>
+
+#include "anamorph/geometry/size.h"
+#include "anamorph/image/source.h"
+
+namespace anamorph {
+
+/// A source with levels: the base's own if it has more than one, else each level is half of the one before
+/// (floor(w / 2) x floor(h / 2) texels), its texel i the average of [i r, (i + 1) r) with r
+/// the ratio of the sizes. Levels have the base's pixel type, rounded to nearest even, so that a level of
+/// uint8 adds a third of a step (standard deviation) at most; unassociated alpha weighs colour while
+/// averaging, and is as unassociated in the result.
+///
+/// Levels are made in tiles of kTile texels when first read; memory is used for tiles that were. Any order of
+/// reading and any number of threads give the same bits.
+class Pyramid final : public Source {
+  public:
+    static constexpr int kTile = 128;
+    static constexpr int kLeast =
+        4;  ///< No level is smaller than this (each way, or per piece) but the base.
+
+    /// An image of `columns` x `rows` pieces that must not mix (the faces of a cube) has levels only while
+    /// their sizes are even. The base is kept by reference. Throws std::bad_alloc.
+    explicit Pyramid(const Source& base, int columns = 1, int rows = 1);
+    ~Pyramid() override;
+    Pyramid(const Pyramid&) = delete;
+    Pyramid& operator=(const Pyramid&) = delete;
+
+    PixelType type() const noexcept override { return m_base.type(); }
+    int channels() const noexcept override { return m_base.channels(); }
+    int unassociated_alpha() const noexcept override { return m_base.unassociated_alpha(); }
+    int levels() const noexcept override { return m_base.levels() + static_cast<int>(m_made.size()); }
+    Size size(int level) const noexcept override;
+    bool read(int level, const Box& box, std::byte* texels,
+              std::ptrdiff_t row_stride) const noexcept override;
+    const ConstImageView* view(int level) const noexcept override;
+    bool prepare(int level, const Box& box) const noexcept override;
+    const SummedAreas* summed_areas() const noexcept override;
+
+  private:
+    struct Level;
+
+    bool made(int level) const noexcept { return level >= m_base.levels(); }
+    const Level& at(int level) const noexcept {
+        return *m_made[static_cast<std::size_t>(level - m_base.levels())];
+    }
+    bool make_tile(int level, const Box& tile) const;
+
+    const Source& m_base;
+    std::vector<std::unique_ptr<Level>> m_made;
+    mutable std::mutex m_summing;
+    mutable std::unique_ptr<const SummedAreas> m_sums;
+};
+
+}  // namespace anamorph

@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: Apache-2.0
+// Where a resampler gets its texels: an image in memory, a file behind a cache, a pyramid over either.
+#pragma once
+
+#include "anamorph/geometry/size.h"
+#include "anamorph/image/view.h"
+
+namespace anamorph {
+
+inline constexpr int kMaxSide = 1 << 20;  ///< pixels of a picture, either way
+
+class SummedAreas;
+
+/// The pixels of one image at one or more resolutions, level 0 the finest. Reading is thread safe.
+class Source {
+  public:
+    virtual ~Source() = default;
+
+    virtual PixelType type() const noexcept = 0;
+    virtual int channels() const noexcept = 0;
+    /// The channel by which colour is to be weighted while filtering (alpha that is not yet multiplied in),
+    /// or -1: filter all channels as they are.
+    virtual int unassociated_alpha() const noexcept { return -1; }
+    virtual int levels() const noexcept = 0;
+    /// The size of a level.
+    virtual Size size(int level) const noexcept = 0;
+
+    /// Copies the texels of `box`, which lies inside the level, to `texels`: packed pixels of type(), rows
+    /// `row_stride` bytes apart. False when they cannot be had; the source keeps the reason for its owner.
+    virtual bool read(int level, const Box& box, std::byte* texels,
+                      std::ptrdiff_t row_stride) const noexcept = 0;
+
+    /// The level's pixels when they stand in memory as a whole, else null. Only what prepare() has been asked
+    /// for need hold its texels.
+    virtual const ConstImageView* view(int level) const noexcept {
+        static_cast<void>(level);
+        return nullptr;
+    }
+
+    /// Makes the texels of `box`, which lies inside the level, ready to be read through view(level). False
+    /// when they cannot be had.
+    virtual bool prepare(int level, const Box& box) const noexcept {
+        static_cast<void>(level), static_cast<void>(box);
+        return true;
+    }
+
+    /// The table of sums of level 0, made when it is first asked for and kept. Null where the source keeps none, or it
+    /// could not be made.
+    virtual const SummedAreas* summed_areas() const noexcept { return nullptr; }
+};
+
+/// An image in memory, not owned.
+class MemorySource final : public Source {
+  public:
+    /// `unassociated_alpha`: as Source::unassociated_alpha().
+    explicit MemorySource(const ConstImageView& image, int unassociated_alpha = -1)
+        : m_image(image), m_alpha(unassociated_alpha) {}
+    PixelType type() const noexcept override { return m_image.type; }
+    int channels() const noexcept override { return m_image.channels; }
+    int unassociated_alpha() const noexcept override { return m_alpha; }
+    int levels() const noexcept override { return 1; }
+    Size size(int) const noexcept override { return {m_image.width, m_image.height}; }
+    bool read(int level, const Box& box, std::byte* texels,
+              std::ptrdiff_t row_stride) const noexcept override;
+    const ConstImageView* view(int) const noexcept override { return &m_image; }
+
+  private:
+    ConstImageView m_image;
+    int m_alpha;
+};
+
+}  // namespace anamorph

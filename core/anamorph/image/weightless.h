@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: Apache-2.0
+// Texels that are infinite, or no numbers, in filters.
+//
+// Filters add up texels by their weights, and 0 times infinity, or times no number, is no number. So a channel that comes out
+// infinite or as no number is computed again texel by texel, and those of weight 0 are left out. What is finite keeps its bits.
+#pragma once
+
+namespace anamorph {
+
+/// For such a channel a point that is nearer to the middle of a texel than this, either way, is there: the texels beside it
+/// have no weight. So much a block of 64 source pixels loses of its points, offsets of up to 32 from its base, in float: each
+/// of some ten roundings by 2^-24 of 32 at most (term_rounding, plan/block_writer.h). An identity is off by less.
+inline constexpr float kSameTexel = 0x1p-15f;
+
+/// And several taps that lie within this of their middle, each way, are one there. A step of one texel that is off by as much as
+/// two points, 2^-14, asks for less energy of noise by a third of that (footprint.h), which two taps d apart have where d^2 / 2
+/// is as much: each is d / 2 < 2^-8 from the middle.
+inline constexpr float kSameTap = 0x1p-8f;
+
+}  // namespace anamorph

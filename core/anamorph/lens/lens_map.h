@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: Apache-2.0
+// The distortion of a lens taken off a picture, or put on one. Both pictures have the scale and the middle of the
+// observed one, so that only their sizes differ. Pixels, x right, y down, pixel centres at + 0.5.
+#pragma once
+
+#include "anamorph/chart/chart_numbers.h"
+#include "anamorph/plan/formula_map.h"
+
+namespace anamorph {
+
+/// undistort: from the picture as it was taken (observed) to the one that a lens without distortion would have
+/// given (ideal). distort: the other way round.
+enum class LensMode { undistort, distort };
+
+class LensMap : public PlaneMap<LensMap> {
+  public:
+    /// `observed`: the chart that has the lens, of rectangular pixels edge to edge. `covered`: how much the target
+    /// shows, in pixels of the observed picture. `target`: the pixels it has; `source`: those of the source. Throws
+    /// Error when the chart has no lens.
+    LensMap(const Chart& observed, LensMode mode, const Size& covered, const Size& target,
+            const Size& source);
+
+    /// The source point of a target point.
+    template <class T>
+    Point<T> source_point(const T& x, const T& y) const {
+        const Point<T> at = in_plane(x, y);
+        const Point<T> p = m_mode == LensMode::undistort ? lens().observed(at) : lens().ideal(at);
+        const auto scale = m_scale.as<T>();
+        return {p.x * scale + 0.5 * source_size().width, p.y * scale + 0.5 * source_size().height};
+    }
+    /// Positive before the lens ends.
+    template <class T>
+    T inside(const T& x, const T& y) const {
+        const Point<T> at = in_plane(x, y);
+        return m_mode == LensMode::undistort ? lens().sees(at) : lens().inside(at);
+    }
+
+    /// The least size that shows all of a source of `size` pixels that has a counterpart, with the same middle and
+    /// with pixels that lie on those of the source. It may be larger than any picture.
+    static Size covering(const Chart& observed, LensMode mode, const Size& size);
+
+  private:
+    const Lens& lens() const { return *m_observed.lens(); }
+
+    template <class T>
+    Point<T> in_plane(const T& x, const T& y) const {
+        return {(x - 0.5 * target_size().width) * m_per_x.as<T>(),
+                (y - 0.5 * target_size().height) * m_per_y.as<T>()};
+    }
+
+    Chart m_observed;
+    LensMode m_mode;
+    /// Units of the plane per target pixel, and source pixels per unit.
+    Constant m_per_x, m_per_y, m_scale;
+};
+
+}  // namespace anamorph

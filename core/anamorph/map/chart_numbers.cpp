@@ -1,8 +1,0 @@
-// SPDX-License-Identifier: Apache-2.0
-#include "anamorph/map/chart_numbers.h"
-
-namespace anamorph {
-
-ANAMORPH_CHART_NUMBERS()
-
-}  // namespace anamorph

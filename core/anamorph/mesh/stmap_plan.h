@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: Apache-2.0
+// The blocks of an ST-map that is as large as the picture and taken pixel for pixel: the source point of a
+// pixel is its sample, and nothing is interpolated. Between the samples the map is that of the mesh that they
+// make (mesh_lattice.h), which gives derivatives and folds.
+#pragma once
+
+#include <memory>
+#include <mutex>
+
+#include "anamorph/mesh/mesh_lattice.h"
+#include "anamorph/mesh/mesh_plan.h"
+
+namespace anamorph {
+
+class StMapPlan final : public WarpPlan {
+  public:
+    /// Does a mesh say where each pixel of a target comes from?
+    static bool serves(const ControlMesh& mesh, const Size& target);
+
+    /// Of a mesh that serves. `tol`: source pixels; 0 or scheme exact: every pixel in double. Throws Error when
+    /// tol is negative or not a number, and where Mesh does.
+    StMapPlan(const ControlMesh& mesh, const Size& target, const Size& source, double amount,
+              WarpScheme scheme, double tol, const std::string& name);
+
+    bool exact(double x, double y, int piece, Point<double>& source_point,
+               int& source_piece) const noexcept override;
+    void exact_rows(const Block& block, int begin, int end, const DoubleRows& to) const noexcept override;
+    Jacobian jacobian(double x, double y, int piece) const noexcept override;
+    void computed_row(const Block& block, int row, int begin, int end, float* x,
+                      float* y) const noexcept override;
+    float folds(double x, double y) const noexcept override;
+    std::int64_t folded_pixels(const Box& box) const override;
+
+  protected:
+    void plan(const Box& box, int piece, Blocks& blocks) const override;
+
+  private:
+    const float* sample(int column, int row) const;
+    Point<double> point(int column, int row) const;
+    Point<double> displacement(int column, int row) const;
+    Jacobian jacobian(const LatticeWeights& across, const LatticeWeights& down) const;
+    double rounding() const;
+    double orientation() const;
+
+    std::shared_ptr<const StSamples> m_samples;
+    Size m_source;
+    Point<double> m_scale;
+    double m_amount, m_tol;
+    std::vector<double> m_x, m_y;  ///< the lines of the lattice: edge, centres of pixels, edge
+    mutable std::once_flag m_turned;
+    mutable double m_orientation = 1;
+};
+
+}  // namespace anamorph

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: Apache-2.0
+// What one feature line says about a pixel (Kim 2003, eq. 5.9 to 5.11; Beier and Neely 1992): templates over
+// the number, read with double, jets, and vectors of floats.
+//
+// No include guard and no namespace: vectors need the templates compiled for each instruction set, so whoever
+// reads them includes this file inside a namespace of his own (morph/feature_lines.h, morph/near_far_lanes.cpp), where
+// max(T, T) and root(T) are known for his numbers.
+//
+// A pixel X in the frame of a line from p to q: along = (X - p) . e / |e| = u |e| and beside = v, with
+// e = q - p.
+
+/// Along a line of unit direction (ux, uy), of X - p = (dx, dy).
+template <class T, class U>
+inline T along_line(const T& dx, const T& dy, const U& ux, const U& uy) {
+    return dx * ux + dy * uy;
+}
+/// And beside it.
+template <class T, class U>
+inline T beside_line(const T& dx, const T& dy, const U& ux, const U& uy) {
+    return dy * ux - dx * uy;
+}
+
+/// The square of dist of eq. 5.11, from how far X lies before p (-along), behind q (along - |e|) and beside the
+/// line.
+template <class T>
+inline T square_to_line(const T& before, const T& behind, const T& beside) {
+    const T beyond = max(max(before, behind), T(0));
+    return beyond * beyond + beside * beside;
+}
+/// dist itself.
+template <class T>
+inline T distance_to_line(const T& before, const T& behind, const T& beside) {
+    return root(square_to_line(before, behind, beside));
+}
+
+/// Eq. 5.10 less X, along one axis: how far the line moves the pixel. `origin`: at p; the rates: per unit of
+/// along and beside.
+template <class T>
+inline T displacement_by_line(const T& origin, const T& along_rate, const T& along, const T& beside_rate,
+                              const T& beside) {
+    return origin + along_rate * along + beside_rate * beside;
+}

@@ -1,0 +1,278 @@
+// SPDX-License-Identifier: Apache-2.0
+// Features: lines that correspond to each other in two or more pictures (key shapes), and the pull map that
+// they make (Beier and Neely 1992; Kim 2003, eq. 5.9 to 5.11).
+//
+// Frames. Pixels of each key shape's own picture, x right, y down, the centre of pixel (i, j) at (i + 0.5,
+// j + 0.5). A picture of another size than the features were drawn for (Features::frame) is taken to show the
+// same, scaled. The map works in the target's pixels: every shape's lines are scaled onto the target, and
+// what comes out is scaled back to that shape's picture. With the shapes' weights at one shape, the map to
+// that shape is hence exactly the scaling (the identity where the sizes agree).
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <string>
+#include <type_traits>
+#include <vector>
+
+#include "anamorph/chart/chart.h"
+#include "anamorph/geometry/size.h"
+#include "anamorph/number/jet.h"
+
+namespace anamorph {
+
+/// A directed line from p to q, in pixels.
+struct Line {
+    Point<double> p, q;
+};
+
+/// The lines that correspond in `shapes` pictures.
+class Features {
+  public:
+    /// A size in pixels.
+    struct Frame {
+        double width = 0, height = 0;
+    };
+
+    /// Throws Error when there are fewer than two shapes.
+    explicit Features(int shapes = 2);
+
+    int shapes() const { return m_shapes; }
+    /// The number of lines.
+    std::size_t size() const { return m_weights.size(); }
+    /// Line i as a shape has it.
+    const Line& line(std::size_t i, int shape) const {
+        return m_lines[i * static_cast<std::size_t>(m_shapes) + static_cast<std::size_t>(shape)];
+    }
+    /// A factor of the line's weight (eq. 5.11); 1 unless said.
+    double weight(std::size_t i) const { return m_weights[i]; }
+    /// What messages call the line: its name or "line 7" (the first is 1).
+    std::string name(std::size_t i) const;
+
+    /// `line`: one a shape. Throws Error, naming the line, when one has no length (in the pixels that it is
+    /// given in) or is not finite, and when the weight is not finite or below 0.
+    void add_line(const std::vector<Line>& line, double weight = 1, const std::string& name = {});
+    /// A chain of lines from vertex to vertex; as many vertices in every shape.
+    void add_polyline(const std::vector<std::vector<Point<double>>>& vertices, double weight = 1,
+                      const std::string& name = {});
+    /// Cubic Bezier segments, 3 n + 1 control points in every shape. Each segment becomes a chain of lines
+    /// between points at equal steps of its parameter, as many as keep every shape's chain within
+    /// kCurveDeviation of its curve, at most kMostCurveLines.
+    void add_curve(const std::vector<std::vector<Point<double>>>& control_points, double weight = 1,
+                   const std::string& name = {});
+    static constexpr double kCurveDeviation = 0.25;  ///< pixels
+    static constexpr int kMostCurveLines = 64;
+
+    /// Holds the picture's border: its four edges become lines of this weight in every shape. 0: not.
+    void pin_border(double weight);
+    double border_weight() const { return m_border; }
+
+    /// The size of the picture for which a shape's lines are given; {0, 0}: whatever size the picture has.
+    Frame frame(int shape) const { return m_frames[static_cast<std::size_t>(shape)]; }
+    /// Throws Error unless the size is above 0 and at most 1e9 pixels either way.
+    void set_frame(int shape, const Frame& frame);
+
+  private:
+    int m_shapes;
+    std::vector<Line> m_lines;  ///< line by line, shape by shape
+    std::vector<double> m_weights;
+    std::vector<std::string> m_names;
+    std::vector<Frame> m_frames;
+    double m_border = 0;
+};
+
+/// The weights of eq. 5.11 between lines: weight = (length^p / (a + dist))^b.
+struct LineWeights {
+    static constexpr double kMostA = 1e6, kMostB = 16, kMostP = 16;
+    double a = 1, b = 2, p = 0.5;  ///< 0 or more
+};
+
+namespace feature_detail {
+
+template <class T>
+inline T max(const T& x, const T& y) {
+    return constant_part(x) < constant_part(y) ? y : x;
+}
+template <class T>
+inline T root(const T& square) {
+    using std::sqrt;
+    // The root has a kink on a line, where its derivative is taken to be 0.
+    if (constant_part(square) == 0) return T(0);
+    return sqrt(square);
+}
+/// Distances nearer than this count in units of it: its reciprocal, and the powers of what is nearer, are finite.
+inline constexpr double kLeastUnit = 1e-307;
+
+/// x^-b.
+template <class T>
+inline T inverse_power(const T& x, double b) {
+    using std::pow;
+    using std::sqrt;
+    const auto c = constant_part(x);
+    const auto value = b == 2 ? 1 / (c * c) : b == 1 ? 1 / c : b == 0.5 ? 1 / sqrt(c) : pow(c, -b);
+    if constexpr (std::is_floating_point_v<T>)
+        return value;
+    else
+        return T(value) + (x - c) * (-b * value / c);
+}
+
+#include "anamorph/morph/feature_formula.h"
+
+}  // namespace feature_detail
+
+/// The maps from the target to every shape's picture that features make, at one mixture of the shapes. All
+/// share the target's lines, hence u, v and the weights.
+///
+/// Limits. With a = 0 a pixel on a line goes exactly where that line says; on several at once, to the mean of
+/// what they say, by their weights at equal distance (what a -> 0 tends to). Far from all lines, and for any
+/// b, the weights are taken relative to the nearest line's: none overflows, and those that underflow are 0.
+class FeatureMap {
+  public:
+    /// A line of the target and what it says: see feature_formula.h.
+    struct TargetLine {
+        Point<double> p, along;  ///< along: unit vector from p to q
+        double length;
+        double factor;  ///< weight * length^(p b), relative to the greatest of each
+        bool moves;     ///< not the same line in every shape
+    };
+    /// What one line says for one shape, in the target's pixels.
+    struct Displacement {
+        Point<double> origin, along_rate, beside_rate;
+    };
+    /// How far the numbers of a line are off, which are doubles made of others.
+    struct Rounding {
+        double place;    ///< its ends, in the target's pixels
+        double turn;     ///< its direction, and the rates of its displacements
+        double weight;   ///< its weight in proportion, but for the distance
+        double stretch;  ///< no rounding: the greatest length in a shape over that in the target
+        bool exact;      ///< its ends p and q are not off at all
+        Point<double> q;
+    };
+
+    /// `mixture`: the shapes' weights, with sum 1. Throws Error naming a line that has no length in the
+    /// target, and sizes or weights that do not fit.
+    FeatureMap(const Features& features, const std::vector<Size>& pictures, const Size& target,
+               const std::vector<double>& mixture, const LineWeights& weights);
+
+    int shapes() const { return m_shapes; }
+    Size target() const { return m_target; }
+    /// The same map, but lines that lie together come one after the other (along Morton's curve), so that
+    /// what is read of the lines about a place is one stretch of memory; sums round in another order.
+    FeatureMap along_curve() const;
+
+    /// The size of a shape's picture.
+    Size picture(int shape) const { return m_pictures[static_cast<std::size_t>(shape)]; }
+    const LineWeights& weights() const { return m_weights; }
+    std::size_t size() const { return m_lines.size(); }
+    /// Line i of the target.
+    const TargetLine& line(std::size_t i) const { return m_lines[i]; }
+    /// What line i says for a shape.
+    const Displacement& displacement(std::size_t i, int shape) const {
+        return m_displacements[i * static_cast<std::size_t>(m_shapes) + static_cast<std::size_t>(shape)];
+    }
+    /// How far the numbers of line i are off.
+    const Rounding& rounding(std::size_t i) const { return m_roundings[i]; }
+    /// Does a line as the given numbers define it certainly pass through this point, to the last digit?
+    bool passes_through(std::size_t i, double x, double y) const;
+    /// Pixels of a shape's picture per pixel of the target.
+    Point<double> scale(int shape) const { return m_scales[static_cast<std::size_t>(shape)]; }
+
+    /// The point of one shape's picture that is seen at (x, y) of the target.
+    template <class T>
+    Point<T> operator()(const T& x, const T& y, int shape) const;
+    /// The points of all shapes' pictures.
+    template <class T>
+    void all(const T& x, const T& y, Point<T>* points) const;
+
+    /// Where a point lies in a line's frame.
+    template <class T>
+    struct Frame {
+        T along, beside;
+    };
+    /// Finds where a point lies along and beside a line.
+    template <class T>
+    Frame<T> frame(const TargetLine& line, const T& x, const T& y) const {
+        const T dx = x - line.p.x, dy = y - line.p.y;
+        return {feature_detail::along_line(dx, dy, line.along.x, line.along.y),
+                feature_detail::beside_line(dx, dy, line.along.x, line.along.y)};
+    }
+    /// a + dist of eq. 5.11.
+    template <class T>
+    T distance(const TargetLine& line, const Frame<T>& at) const {
+        return feature_detail::distance_to_line<T>(-at.along, at.along - line.length, at.beside) +
+               m_weights.a;
+    }
+
+  private:
+    class Builder;
+
+    template <class T>
+    void sum(const T& x, const T& y, int first, int last, Point<T>* points) const;
+
+    int m_shapes;
+    Size m_target;
+    std::vector<Size> m_pictures;
+    std::vector<Point<double>> m_scales;
+    LineWeights m_weights;
+    std::vector<TargetLine> m_lines;
+    std::vector<Displacement> m_displacements;  ///< line by line, shape by shape
+    std::vector<Rounding> m_roundings;          ///< line by line
+};
+
+template <class T>
+void FeatureMap::sum(const T& x, const T& y, int first, int last, Point<T>* points) const {
+    // The nearest line's a + dist, to which weights are relative.
+    auto nearest = constant_part(T(std::numeric_limits<double>::infinity()));
+    for (const TargetLine& line : m_lines)
+        nearest = std::min(nearest, constant_part(distance(line, frame(line, x, y))));
+
+    // Rounded once for all lines, which moves no quotient of weights.
+    const T per_nearest(1 / std::max<decltype(nearest)>(nearest, feature_detail::kLeastUnit));
+
+    T weights(0);
+    for (int k = first; k < last; ++k) points[k - first] = {T(0), T(0)};
+    for (std::size_t i = 0; i < m_lines.size(); ++i) {
+        const TargetLine& line = m_lines[i];
+        const Frame<T> at = frame(line, x, y);
+        const T far = distance(line, at);
+        T weight(line.factor);
+        if (m_weights.b > 0) {
+            if (nearest > 0)
+                weight = feature_detail::inverse_power<T>(far * per_nearest, m_weights.b) * line.factor;
+            else if (constant_part(far) > 0)
+                continue;
+        }
+        weights = weights + weight;
+        if (!line.moves) continue;
+        for (int k = first; k < last; ++k) {
+            const Displacement& d = displacement(i, k);
+            Point<T>& p = points[k - first];
+            const auto along = [&](double origin, double along_rate, double beside_rate) {
+                return feature_detail::displacement_by_line<T>(T(origin), T(along_rate), at.along,
+                                                               T(beside_rate), at.beside);
+            };
+            p.x = p.x + weight * along(d.origin.x, d.along_rate.x, d.beside_rate.x);
+            p.y = p.y + weight * along(d.origin.y, d.along_rate.y, d.beside_rate.y);
+        }
+    }
+    for (int k = first; k < last; ++k) {
+        Point<T>& p = points[k - first];
+        const Point<double> s = scale(k);
+        p = {(x + p.x / weights) * s.x, (y + p.y / weights) * s.y};
+    }
+}
+
+template <class T>
+Point<T> FeatureMap::operator()(const T& x, const T& y, int shape) const {
+    Point<T> point{};
+    sum(x, y, shape, shape + 1, &point);
+    return point;
+}
+
+template <class T>
+void FeatureMap::all(const T& x, const T& y, Point<T>* points) const {
+    sum(x, y, 0, m_shapes, points);
+}
+
+}  // namespace anamorph

@@ -1,0 +1,11 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "anamorph/panorama/concentric_plan.h"
+
+#include "anamorph/panorama/chart_jets.h"
+#include "anamorph/plan/formula_planner.h"
+
+namespace anamorph {
+
+template class FormulaPlan<ConcentricMap>;
+
+}  // namespace anamorph

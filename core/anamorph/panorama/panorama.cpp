@@ -1,0 +1,228 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "anamorph/panorama/panorama.h"
+
+#include "anamorph/error.h"
+
+namespace anamorph {
+namespace {
+
+using Turn = std::array<std::array<Constant, 3>, 3>;
+
+/// Sine and cosine of an angle in degrees. A turn is taken off, then right angles, all of them exactly: no
+/// angle is too large, and multiples of 90 degrees give 0 and 1.
+struct Angle {
+    long double sin, cos;
+
+    explicit Angle(double degrees) {
+        const long double angle = std::fmod(degrees, 360.0);
+        const long double quarters = std::round(angle / 90);
+        const long double rest = (angle - 90 * quarters) * (std::numbers::pi_v<long double> / 180);
+        const long double s = std::sin(rest), c = std::cos(rest);
+        switch (static_cast<int>(quarters) & 3) {
+            case 0:
+                sin = s, cos = c;
+                break;
+            case 1:
+                sin = c, cos = -s;
+                break;
+            case 2:
+                sin = -s, cos = -c;
+                break;
+            default:
+                sin = -c, cos = s;
+        }
+    }
+};
+
+/// yaw * pitch * roll, by columns.
+Turn turn_of(const Orientation& orientation) {
+    const Angle y(orientation.yaw), p(orientation.pitch), r(orientation.roll);
+    // A sine or cosine is off by its argument's rounding and libm's, two products and a sum by a unit each:
+    // 32 units of each term.
+    const auto sum = [](long double a, long double b) {
+        return Constant(a + b,
+                        static_cast<double>(std::fabs(a) + std::fabs(b)) * 32 * Rounded<long double>::kUnit);
+    };
+    const auto product = [](long double a) { return Constant(a); };
+    return {{{sum(y.cos * r.cos, y.sin * p.sin * r.sin), product(p.cos * r.sin),
+              sum(-y.sin * r.cos, y.cos * p.sin * r.sin)},
+             {sum(-y.cos * r.sin, y.sin * p.sin * r.cos), product(p.cos * r.cos),
+              sum(y.sin * r.sin, y.cos * p.sin * r.cos)},
+             {product(y.sin * p.cos), product(-p.sin), product(y.cos * p.cos)}}};
+}
+
+/// The inverse of the one times the other, by columns: dot products of their columns. Sums of three products are off by
+/// 3 units of each in long double; the entries are off by 33 units at most each.
+Turn relative(const Turn& held, const Turn& look) {
+    Turn turn;
+    for (std::size_t column = 0; column < 3; ++column)
+        for (std::size_t row = 0; row < 3; ++row) {
+            long double sum = 0, size = 0;
+            for (std::size_t i = 0; i < 3; ++i) {
+                const long double product = held[row][i].precise() * look[column][i].precise();
+                sum += product;
+                size += std::fabs(product);
+            }
+            // An entry that is known no better than that it is small.
+            const double error = static_cast<double>(size) * 72 * Rounded<long double>::kUnit;
+            turn[column][row] = Constant(sum == 0 && size > 0 ? error * 0x1p-20L : sum, 2 * error);
+        }
+    return turn;
+}
+
+glm::dmat3 matrix_of(const Turn& turn) {
+    glm::dmat3 matrix;
+    for (int column = 0; column < 3; ++column)
+        for (int row = 0; row < 3; ++row)
+            matrix[column][row] =
+                turn[static_cast<std::size_t>(column)][static_cast<std::size_t>(row)].value();
+    return matrix;
+}
+
+}  // namespace
+
+glm::dmat3 rotation(const Orientation& orientation) {
+    return matrix_of(turn_of(orientation));
+}
+
+Panorama::Panorama(const Chart& source, const Chart& target, const Orientation& orientation,
+                   const Orientation& held)
+    : m_source(source), m_target(target) {
+    const std::pair<const char*, double> angles[] = {{"yaw", orientation.yaw},   {"pitch", orientation.pitch},
+                                                     {"roll", orientation.roll}, {"srcyaw", held.yaw},
+                                                     {"srcpitch", held.pitch},   {"srcroll", held.roll}};
+    for (const auto& [name, value] : angles)
+        if (!std::isfinite(value))
+            throw Error(name, std::to_string(value), "must be a finite angle in degrees");
+    m_turn = turn_of(orientation);
+    if (held.yaw != 0 || held.pitch != 0 || held.roll != 0) m_turn = relative(turn_of(held), m_turn);
+    m_rotation = matrix_of(m_turn);
+}
+
+Panorama::Local Panorama::local_around(double x, double y, int piece) const {
+    const Ray<double> ray = m_target.ray(x, y, piece);
+    return local_around(ray, piece, transform(m_rotation, ray));
+}
+
+Panorama::Local Panorama::local_around(double x, double y, int piece, const Ray<double>& source_ray) const {
+    return local_around(m_target.ray(x, y, piece), piece, source_ray);
+}
+
+Panorama::Local Panorama::local_around(const Ray<double>& target_ray, int piece,
+                                       const Ray<double>& source_ray) const {
+    Local local;
+    // The target's own angles count from this point only where that narrows intervals; its piece is given.
+    local.target = m_target.branch_around(target_ray);
+    if (local.target.piece != piece) local.target = m_target.branch(piece);
+    local.source = m_source.branch_around(source_ray);
+    local.rotation = glm::transpose(local.source.axes) * m_rotation * local.target.axes;
+    return local;
+}
+
+std::vector<Box> Panorama::target_pieces() const {
+    std::vector<Box> boxes;
+    for (const Piece& piece : m_target.pieces()) boxes.push_back(piece.box);
+    return boxes;
+}
+
+SourceEdges Panorama::source_edges() const {
+    const bool whole = m_source.pieces().size() == 1;
+    return {whole && !m_source.closed(), whole && !m_source.reaches_poles()};
+}
+
+bool Panorama::ends_by_lens(const Ray<Interval>& ray, const Local& local) const {
+    // The lens's formula goes on behind its end; its root does not.
+    if (!m_source.lens() || !m_source.lens()->terms().to_observed) return false;
+    const Interval there = with_projection(m_source.projection(),
+                                           [&](auto formulas) { return formulas.sees(ray, local.source); });
+    return there.lo > 0;
+}
+
+bool Panorama::is_unseen(const Ray<Interval>& ray, const Local& local) const {
+    if (m_source.pieces_see_all()) return false;
+    if (m_source.pieces().size() == 1) return true;
+    // Lenses end a hair farther out than they see, which is more than axes are off.
+    const Ray<Interval> r = transform(local.source.axes, ray);
+    for (int piece = 0; piece < static_cast<int>(m_source.pieces().size()); ++piece)
+        if (piece != local.source.piece && !(seen(r, piece).hi < 0)) return false;
+    return true;
+}
+
+namespace {
+
+bool one_signed(const Interval& a) {
+    return a.lo > 0 || a.hi < 0;
+}
+
+}  // namespace
+
+Cover Panorama::target_cover(const Interval& x, const Interval& y, int piece) const {
+    const Interval in = m_target.inside(x, y, piece);
+    if (in.hi < 0) return Cover::outside;
+    return in.lo >= 0 && one_signed(m_target.crease(x, y, piece)) ? Cover::inside : Cover::mixed;
+}
+
+Cover Panorama::cover(const Interval& x, const Interval& y, int piece, const Local& local,
+                      bool across_seam) const {
+    const Cover target = target_cover(x, y, piece);
+    return target == Cover::inside ? cover(local_ray(x, y, local), local, across_seam) : target;
+}
+
+Cover Panorama::cover(const Ray<Interval>& ray, const Local& local, bool across_seam) const {
+    const Interval sees = m_source.sees(ray, local.source.piece);
+    if (sees.hi < 0 && is_unseen(ray, local)) return Cover::outside;
+    if (!one_signed(m_source.crease(ray))) return Cover::mixed;
+    if (!(sees.lo > 0)) return ends_by_lens(ray, local) ? Cover::partial : Cover::mixed;
+    if (m_source.counted() == Counted::azimuth) {
+        // The branch serves less than half a turn. It must not cross the far side where the image has an
+        // edge.
+        if (!(ray.z.lo > 0)) return Cover::mixed;
+        const Interval azimuth = atan2(ray.x, ray.z) + local.source.around.angle;
+        if (!(m_source.closed() && across_seam) &&
+            !(azimuth.lo > -std::numbers::pi && azimuth.hi < std::numbers::pi))
+            return Cover::mixed;
+    }
+    return Cover::inside;
+}
+
+template <class Real>
+double Panorama::exact_error(const Interval& x, const Interval& y, int piece) const {
+    using R = Rounded<Real>;
+    if (!(m_target.inside(x, y, piece).hi >= 0)) return 0;
+    return exact_error(source_ray(R(x, 0, 0), R(y, 0, 0), piece));
+}
+template double Panorama::exact_error<double>(const Interval&, const Interval&, int) const;
+template double Panorama::exact_error<long double>(const Interval&, const Interval&, int) const;
+
+template <class Real>
+double Panorama::exact_error(const Ray<Rounded<Real>>& ray) const {
+    using R = Rounded<Real>;
+    const std::size_t pieces = m_source.pieces().size();
+    // Whichever piece may come out as the one that looks most along the ray.
+    std::array<R, 6> along;
+    double most = -HUGE_VAL;
+    for (std::size_t i = 0; i < pieces && pieces > 1; ++i) {
+        const glm::dvec3& f = m_source.pieces()[i].toward;
+        along[i] = ray.x * f[0] + ray.y * f[1] + ray.z * f[2];
+        most = std::max(most, lower_end(along[i]));
+    }
+    double error = 0;
+    for (std::size_t i = 0; i < pieces; ++i) {
+        if (pieces > 1 && along[i].range.hi + along[i].error < most) continue;
+        if (!m_source.pieces_see_all()) {
+            const R sees = seen(ray, static_cast<int>(i));
+            if (sees.range.hi + sees.error <= 0) continue;
+            if (!(lower_end(sees) > 0)) return HUGE_VAL;
+        }
+        const Point<R> p = m_source.point(ray, static_cast<int>(i));
+        const double distance = kept_error(p);
+        if (!(distance <= error)) error = distance;
+    }
+    // Straight behind a lens that shows it all around its rim, nothing is known but that.
+    const double widest = m_source.widest();
+    return error <= widest ? error : widest;
+}
+template double Panorama::exact_error(const Ray<Rounded<double>>&) const;
+template double Panorama::exact_error(const Ray<Rounded<long double>>&) const;
+
+}  // namespace anamorph

@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: Apache-2.0
+// The blocks of a panorama's pull map.
+#pragma once
+
+#include "anamorph/panorama/panorama.h"
+#include "anamorph/plan/formula_plan.h"
+
+namespace anamorph {
+
+extern template class FormulaPlan<Panorama>;
+
+class PanoramaPlan final : public FormulaPlan<Panorama> {
+  public:
+    using FormulaPlan::exact;
+    PanoramaPlan(const Panorama& map, const PlanOptions& options);
+
+    /// Exact pixels by vectors, and direct ones in double.
+    void exact_rows(const Block& block, int begin, int end, const DoubleRows& to) const noexcept override;
+    /// Direct ones in float.
+    void computed_row(const Block& block, int row, int begin, int end, float* x,
+                      float* y) const noexcept override;
+    void computed(std::span<const Block> layers, const PointRows* to) const noexcept override;
+
+  private:
+    void direct_rows(const Block& block, const Box& part, const PointRows& to) const;
+    void direct_rows(const Block& block, int begin, int end, const DoubleRows& to) const;
+};
+
+}  // namespace anamorph

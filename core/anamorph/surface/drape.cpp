@@ -1,0 +1,485 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "anamorph/surface/drape.h"
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <deque>
+#include <glm/geometric.hpp>
+
+#include "anamorph/image/pixel.h"
+#include "anamorph/image/pyramid.h"
+#include "anamorph/image/strips.h"
+#include "anamorph/parameter/parameter.h"
+#include "anamorph/surface/oka.h"
+
+namespace anamorph {
+namespace {
+
+std::shared_ptr<const DrapeMap> map_of(SharedTree& surface, const Camera& camera, const Size& picture,
+                                       const DrapeOptions& options) {
+    if (options.scheme == DrapeScheme::oka || options.scheme == DrapeScheme::oka_z)
+        return std::make_shared<DrapeMap>(
+            std::make_shared<OkaRaster>(
+                surface.tree.shared_surface(), camera, picture,
+                OkaBlocks{options.block, options.overlap, options.scheme == DrapeScheme::oka_z},
+                DrapeMap::kSquare, surface.oka_pool),
+            camera, picture, options.tol, surface.pool);
+    const double least = 2 * grid_error(grid_bits_of(camera.screen()));
+    if (!(options.tol >= least))
+        throw Error("tol", shortest(options.tol),
+                    "must be at least " + shortest(least) + " for a picture of this size");
+    std::unique_ptr<FacetRoom> room = surface.facet_pool->take();
+    {
+        const std::lock_guard lock(surface.mutex);
+        cut_into_facets(surface.tree, camera, options.tol, *room);
+    }
+    return std::make_shared<DrapeMap>(
+        std::move(room), camera, picture, options.tol,
+        options.scheme == DrapeScheme::exact ? surface.tree.shared_surface() : nullptr, surface.pool,
+        surface.facet_pool);
+}
+
+/// `value` with two digits, rounded up.
+double with_two_digits(double value) {
+    const double place = std::pow(10, std::floor(std::log10(value)) - 1);
+    return std::ceil(value / place) * place;
+}
+
+constexpr double kMostTimes = 64;
+
+/// A tolerance above `tol`, which takes too many patches, that does not, within an eighth above the least one; nothing
+/// where there is none up to kMostTimes as large, as it takes a while to find.
+std::optional<double> least_tol(SharedTree& surface, const Camera& camera, double tol) {
+    FacetRoom room;
+    const std::lock_guard lock(surface.mutex);
+    const auto works = [&](double more) {
+        try {
+            cut_into_facets(surface.tree, camera, more, room);
+            return true;
+        } catch (const TooManyPatches&) {
+            return false;
+        }
+    };
+    double too_small = tol, enough = kMostTimes * tol;
+    if (!works(enough)) return {};
+    for (int halving = 0; halving < 5; ++halving) {
+        const double middle = std::sqrt(too_small * enough);
+        (works(middle) ? enough : too_small) = middle;
+    }
+    const double rounded = with_two_digits(enough);
+    return works(rounded) ? rounded : enough;
+}
+
+/// map_of; where patches are too many, the error says with which tolerance they are not.
+std::shared_ptr<const DrapeMap> map_or_least_tol(SharedTree& surface, const Camera& camera,
+                                                 const Size& picture, const DrapeOptions& options) {
+    try {
+        return map_of(surface, camera, picture, options);
+    } catch (const TooManyPatches& error) {
+        const std::optional<double> least = least_tol(surface, camera, options.tol);
+        if (!least)
+            throw TooManyPatches(options.tol, error.most,
+                                 ", and so does " + shortest(kMostTimes * options.tol));
+        throw TooManyPatches(options.tol, error.most,
+                             ": must be at least " + shortest(static_cast<float>(*least)));
+    }
+}
+
+/// body(pixels, part) for the regions that meet a box.
+template <class Body>
+void for_regions(const DrapeMap& map, const Box& box, const Body& body) {
+    for (const std::int64_t region : map.regions_in(box)) {
+        const Box part = intersection(map.region_box(region), box);
+        const auto seen = map.region_at(part.x0, part.y0);
+        body(seen->pixels(), part);
+    }
+}
+
+/// The facets that show where the surface is; null where they are too many.
+std::shared_ptr<const DrapeMap> cover_of(SharedTree& surface, const DrapeMap& map) {
+    DrapeOptions options;
+    options.tol = std::max(Drape::kCoverTol, 2 * grid_error(grid_bits_of(map.camera().screen())));
+    try {
+        return map_of(surface, map.camera(), map.picture(), options);
+    } catch (const Error&) {
+        return nullptr;
+    }
+}
+
+bool shows(const SeenPixels& pixels, int x, int y) {
+    return pixels.facet[pixels.index(x, y)] != SeenPixels::kNone;
+}
+
+/// The pixels of a box that show nothing where a cover does, also around them.
+int holes_in(const SeenPixels& drawn, const SeenPixels& cover, const Box& box) {
+    const auto within = [&](int x, int y) {
+        for (int j = y - 1; j <= y + 1; ++j)
+            for (int i = x - 1; i <= x + 1; ++i)
+                if (!shows(cover, i, j)) return false;
+        return true;
+    };
+    int count = 0;
+    for (int y = box.y0; y < box.y1; ++y)
+        for (int x = box.x0; x < box.x1; ++x)
+            if (!shows(drawn, x, y) && within(x, y)) ++count;
+    return count;
+}
+
+}  // namespace
+
+/// A pixel's facet, and the weights of its corners in space.
+struct Drape::Spot {
+    const Facet* facet = nullptr;  ///< null where nothing is seen
+    double u = 0, v = 0, nearness = 0, bound = 0;
+    double weight[3] = {};
+};
+
+Drape::Drape(std::shared_ptr<SharedTree> surface, const Camera& camera, const Size& picture,
+             const DrapeOptions& options)
+    : m_surface(std::move(surface)),
+      m_options(options),
+      m_map(map_or_least_tol(*m_surface, camera, picture, options)) {
+    if (options.lighting.shading != DrapeShading::none || options.own == DrapeOutput::normal)
+        for (const FacetCorner& corner : m_map->facets().corners) m_lit.push_back(lit(corner));
+    const Chart flat(Projection::rectilinear, picture.width, picture.height);
+    m_picture.maps = {{m_map, {{Border(flat, options.wrap)}}}};
+    m_picture.filter = options.filter;
+    m_picture.output = options.output;
+}
+
+Reached Drape::reached(const ParallelFor& parallel_for) const {
+    // So that they are not found in the midst of drawing, on one thread.
+    if (m_options.output == Output::bound) m_map->find_bounds(parallel_for);
+    return m_map->exact_points() ? m_map->reached(parallel_for) : Reached{m_map->max_error(parallel_for), 0};
+}
+
+std::optional<int> Drape::holes(const ParallelFor& parallel_for) const {
+    if (m_options.scheme == DrapeScheme::automatic || m_options.scheme == DrapeScheme::exact) return 0;
+    if (double(m_map->width()) * m_map->height() > kMostCounted) return {};
+    const auto cover = cover_of(*m_surface, *m_map);
+    if (!cover) return {};
+    const Box screen{0, 0, m_map->width(), m_map->height()};
+    const std::vector<std::int64_t> regions = m_map->regions_in(screen);
+    std::atomic<int> count{0};
+    parallel_for(static_cast<std::int64_t>(regions.size()), [&](std::int64_t i) {
+        const Box box = m_map->region_box(regions[static_cast<std::size_t>(i)]);
+        const auto drawn = m_map->region_at(box.x0, box.y0), covered = cover->region_at(box.x0, box.y0);
+        count += holes_in(drawn->pixels(), covered->pixels(),
+                          intersection(box, {1, 1, screen.x1 - 1, screen.y1 - 1}));
+    });
+    return count.load();
+}
+
+Drape::Lit Drape::lit(const FacetCorner& corner) const {
+    const Camera& camera = m_map->camera();
+    const SurfaceFrame frame = m_surface->tree.surface().frame(corner.u, corner.v);
+    const glm::dvec3 across = glm::cross(camera.turned(frame.by_u), camera.turned(frame.by_v));
+    const glm::dvec3 ray = camera.ray_to(camera.in_frame(frame.position));
+    const double length = glm::length(across);
+    const double inverse = length > 0 ? (glm::dot(across, ray) > 0 ? -1 : 1) / length : 0;
+    return {camera.in_space(across * inverse), camera.in_space(ray)};
+}
+
+Drape::Spot Drape::spot(const SeenPixels& pixels, int x, int y) const {
+    const std::size_t at = pixels.index(x, y);
+    Spot spot;
+    if (pixels.facet[at] == SeenPixels::kNone) return spot;
+    const Facets& facets = m_map->facets();
+    spot.facet = &facets.facets[static_cast<std::size_t>(pixels.facet[at])];
+    spot.u = pixels.u[at];
+    spot.v = pixels.v[at];
+    spot.nearness = m_map->nearness_at(pixels, at);
+    if (m_options.own == DrapeOutput::shared && m_options.output == Output::bound)
+        spot.bound = m_map->bound_at(pixels, at);
+    weigh(spot, x + 0.5, y + 0.5);
+    return spot;
+}
+
+/// The weights of a point of the screen.
+void Drape::weigh(Spot& spot, double x, double y) const {
+    const Facets& facets = m_map->facets();
+    spot.facet = &m_map->part_of(*spot.facet, spot.u, spot.v);
+    const double unit = std::ldexp(1.0, facets.grid_bits);
+    const double px = (x - m_map->width() / 2.0) * unit, py = (y - m_map->height() / 2.0) * unit;
+    double sum = 0;
+    for (int k = 0; k < 3; ++k) {
+        const FacetCorner &a = facets.corners[spot.facet->corner[(k + 1) % 3]],
+                          &b = facets.corners[spot.facet->corner[(k + 2) % 3]],
+                          &c = facets.corners[spot.facet->corner[k]];
+        spot.weight[k] = std::fabs(edge_function(a, b, px, py)) * c.weight;
+        sum += spot.weight[k];
+    }
+    for (double& weight : spot.weight) weight = sum > 0 ? weight / sum : 1.0 / 3;
+}
+
+glm::dvec3 Drape::normal(const Spot& spot) const {
+    glm::dvec3 sum(0.0);
+    const glm::dvec3& first = m_lit[spot.facet->corner[0]].normal;
+    for (int k = 0; k < 3; ++k) {
+        const glm::dvec3& n = m_lit[spot.facet->corner[k]].normal;
+        // On a silhouette the corners may show different sides.
+        sum += spot.weight[k] * (glm::dot(n, first) < 0 ? -n : n);
+    }
+    const double length = glm::length(sum);
+    return length > 0 ? sum / length : glm::dvec3(0.0);
+}
+
+/// How far the point that is drawn at a pixel is seen from its centre.
+double Drape::landing_error(const Spot& spot, int x, int y) const {
+    const std::array<long double, 3> p = m_surface->tree.surface().truth(spot.u, spot.v);
+    const Camera& camera = m_map->camera();
+    long double seen[3];
+    for (int i = 0; i < 3; ++i)
+        seen[i] = camera.matrix()[0][i] * p[0] + camera.matrix()[1][i] * p[1] + camera.matrix()[2][i] * p[2] +
+                  camera.offset()[i];
+    const long double scale = camera.focal() / (camera.perspective() ? seen[2] : 1);
+    const long double dx = seen[0] * scale + m_map->width() / 2.0L - (x + 0.5L),
+                      dy = seen[1] * scale + m_map->height() / 2.0L - (y + 0.5L);
+    return static_cast<double>(std::hypot(dx, dy));
+}
+
+void Drape::put_values(const Spot& spot, int x, int y, float* to) const {
+    const bool seen = spot.facet != nullptr;
+    switch (m_options.own) {
+        case DrapeOutput::depth: {
+            const double depth = m_map->facets().inverse_depth ? 1 / spot.nearness : -spot.nearness;
+            *to = static_cast<float>(seen ? depth : HUGE_VAL);
+            return;
+        }
+        case DrapeOutput::normal: {
+            const glm::dvec3 n = seen ? normal(spot) : glm::dvec3(0.0);
+            for (int i = 0; i < 3; ++i) to[i] = static_cast<float>(n[i]);
+            return;
+        }
+        case DrapeOutput::patch:
+            *to = seen ? static_cast<float>(spot.facet->leaf) : -1;
+            return;
+        case DrapeOutput::coverage:
+        case DrapeOutput::seen:
+            *to = seen ? 1 : 0;
+            return;
+        case DrapeOutput::shared:
+            break;
+    }
+    switch (m_options.output) {
+        case Output::stmap:
+            to[0] = seen ? static_cast<float>(spot.u) : -1;
+            to[1] = seen ? static_cast<float>(spot.v) : -1;
+            return;
+        case Output::error:
+            *to = seen ? static_cast<float>(landing_error(spot, x, y)) : 0;
+            return;
+        default:
+            *to = seen ? static_cast<float>(spot.bound) : 0;
+    }
+}
+
+bool Drape::draw_values(const Box& box, const ImageView& view, const ParallelFor& parallel_for) const {
+    const Canvas canvas(view, box);
+    const Box inside = intersection(box, {0, 0, m_map->width(), m_map->height()});
+    for_each_square(inside, parallel_for, [&](const Box& square) {
+        for_regions(*m_map, square, [&](const SeenPixels& pixels, const Box& part) {
+            float value[3];
+            for (int y = part.y0; y < part.y1; ++y)
+                for (int x = part.x0; x < part.x1; ++x) {
+                    put_values(spot(pixels, x, y), x, y, value);
+                    canvas.store(x, y, 1, value);
+                }
+        });
+        simd::finish_stores();
+    });
+    if (m_options.own == DrapeOutput::coverage && averages(m_options.filter))
+        for_edges(inside, parallel_for, [&](const std::vector<EdgePixel>& edges) {
+            for (const EdgePixel& edge : edges) {
+                const float covered = edge.covered();
+                canvas.store(edge.x, edge.y, 1, &covered);
+            }
+        });
+    return true;
+}
+
+float Drape::light(const glm::dvec3& n, const glm::dvec3& ray, float& highlight) const {
+    const DrapeLighting& l = m_options.lighting;
+    double diffuse = 0, specular = 0;
+    for (const glm::dvec3& to_light : l.lights) {
+        const double facing = glm::dot(n, to_light);
+        if (!(facing > 0)) continue;
+        diffuse += facing;
+        const glm::dvec3 middle = to_light - ray;
+        const double length = glm::length(middle);
+        if (l.specular > 0 && length > 0)
+            specular += std::pow(std::max(0.0, glm::dot(n, middle) / length), l.shininess);
+    }
+    highlight = static_cast<float>(l.specular * specular);
+    return static_cast<float>(l.ambient + l.diffuse * diffuse);
+}
+
+void Drape::light_pixel(const Spot& spot, float* pixel, int channels, const AlphaChannel& alpha) const {
+    float share = 0, highlight = 0;
+    glm::dvec3 ray(0.0);
+    for (int k = 0; k < 3; ++k) {
+        const Lit& corner = m_lit[spot.facet->corner[k]];
+        ray += spot.weight[k] * corner.ray;
+        if (m_options.lighting.shading == DrapeShading::phong) continue;
+        float more = 0;
+        const auto weight = static_cast<float>(spot.weight[k]);
+        share += weight * light(corner.normal, corner.ray, more);
+        highlight += weight * more;
+    }
+    if (m_options.lighting.shading == DrapeShading::phong)
+        share = light(normal(spot), glm::normalize(ray), highlight);
+    // What is not there does not shine.
+    if (alpha.exists() && alpha.multiplied) highlight *= pixel[alpha.channel];
+    for (int c = 0; c < channels; ++c)
+        if (c != alpha.channel) pixel[c] = pixel[c] * share + highlight;
+}
+
+struct Drape::Layers {
+    const Source& source;
+    const Source* backdrop;
+    AlphaChannel alpha;  ///< of the source, and so of the picture
+
+    bool has_backdrop(const DrapeOptions& options) const { return backdrop || !options.background.empty(); }
+    /// Behind a picture of these options.
+    std::unique_ptr<Backdrop> make_backdrop(const DrapeOptions& options, const Size& screen) const {
+        return std::make_unique<Backdrop>(options.background, backdrop, options.backdrop_alpha, screen,
+                                          options.filter, source.channels(), alpha);
+    }
+};
+
+/// Light, and what is behind.
+bool Drape::finish(const PixelRows& rows, const Layers& layers) const {
+    const bool lit = m_options.lighting.shading != DrapeShading::none,
+               behind = layers.has_backdrop(m_options);
+    const AlphaChannel& alpha = layers.alpha;
+    const int channels = rows.channels;
+    const auto backdrop = layers.make_backdrop(m_options, {m_map->width(), m_map->height()});
+    std::vector<float> under(static_cast<std::size_t>(channels));
+    bool ok = true;
+    for_regions(*m_map, rows.box, [&](const SeenPixels& pixels, const Box& part) {
+        for (int y = part.y0; y < part.y1; ++y)
+            for (int x = part.x0; x < part.x1; ++x) {
+                float* const pixel = rows.at(x, y);
+                const bool seen = pixels.facet[pixels.index(x, y)] != SeenPixels::kNone;
+                if (seen && lit) light_pixel(spot(pixels, x, y), pixel, channels, alpha);
+                if (!behind || (seen && !alpha.exists())) continue;
+                if (alpha.straight()) associate_alpha(pixel, channels, alpha.channel);
+                if (!seen) std::fill_n(pixel, channels, 0.0f);
+                ok = backdrop->at(x, y, under.data()) && ok;
+                lay_over(pixel, under.data(), channels, alpha.channel, 0, pixel);
+                if (alpha.straight()) unassociate_alpha(pixel, channels, alpha.channel);
+            }
+    });
+    return ok;
+}
+
+class Drape::EdgePainter {
+  public:
+    EdgePainter(const Drape& drape, const Layers& layers)
+        : m_drape(drape),
+          m_layers(layers),
+          m_chooser(layers.source),
+          m_sampler(layers.source, drape.m_picture.maps.front().layers.front().border),
+          m_part(static_cast<std::size_t>(layers.source.channels()) + 16),
+          m_under(m_part) {
+        if (layers.has_backdrop(drape.m_options))
+            m_backdrop = layers.make_backdrop(drape.m_options, {drape.m_map->width(), drape.m_map->height()});
+    }
+
+    /// Each part by itself, and behind them what is behind the surface. False when a source could not be read.
+    bool draw(const EdgePixel& edge, float* pixel) {
+        const int channels = m_layers.source.channels();
+        const AlphaChannel& alpha = m_layers.alpha;
+        std::fill_n(pixel, channels, 0.0f);
+        bool ok = true;
+        for (const EdgePart& part : edge.parts) {
+            ok = read(part) && ok;
+            const auto share = static_cast<float>(part.share);
+            for (int c = 0; c < channels; ++c) pixel[c] += share * m_part[static_cast<std::size_t>(c)];
+        }
+        if (m_backdrop) {
+            ok = m_backdrop->at(edge.x, edge.y, m_under.data()) && ok;
+            lay_over(pixel, m_under.data(), channels, alpha.channel, edge.covered(), pixel);
+        }
+        if (alpha.straight()) unassociate_alpha(pixel, channels, alpha.channel);
+        return ok;
+    }
+
+  private:
+    /// What a part shows, multiplied with its alpha.
+    bool read(const EdgePart& part) {
+        const int channels = m_layers.source.channels();
+        const AlphaChannel& alpha = m_layers.alpha;
+        const DrapeMap& map = *m_drape.m_map;
+        Spot spot{&map.facets().facets[part.facet], part.u, part.v};
+        m_drape.weigh(spot, part.x, part.y);
+        const Jacobian jacobian = map.jacobian_of(*spot.facet, part.x, part.y);
+        const Size& size = map.picture();
+        const bool ok = m_sampler.sample(m_drape.m_options.filter, m_chooser, jacobian, 0,
+                                         part.u * size.width, part.v * size.height, m_part.data());
+        if (m_drape.m_options.lighting.shading == DrapeShading::none) return ok;
+        if (alpha.straight()) unassociate_alpha(m_part.data(), channels, alpha.channel);
+        m_drape.light_pixel(spot, m_part.data(), channels, alpha);
+        if (alpha.straight()) associate_alpha(m_part.data(), channels, alpha.channel);
+        return ok;
+    }
+
+    const Drape& m_drape;
+    const Layers& m_layers;
+    FootprintChooser m_chooser;
+    PointSampler m_sampler;
+    std::unique_ptr<Backdrop> m_backdrop;
+    std::vector<float> m_part, m_under;
+};
+
+/// body(edges) for the edge pixels of a box, region by region.
+template <class Body>
+void Drape::for_edges(const Box& box, const ParallelFor& parallel_for, const Body& body) const {
+    const std::vector<std::int64_t> regions = m_map->regions_in(box);
+    parallel_for(static_cast<std::int64_t>(regions.size()), [&](std::int64_t i) {
+        const Box part = intersection(m_map->region_box(regions[static_cast<std::size_t>(i)]), box);
+        body(edges_in(*m_map, *m_map->region_at(part.x0, part.y0), part));
+        simd::finish_stores();
+    });
+}
+
+/// Draws edge pixels again, by what is seen at their samples.
+bool Drape::draw_edges(const Layers& layers, const Box& box, const Canvas& canvas,
+                       const ParallelFor& parallel_for) const {
+    std::atomic<bool> ok{true};
+    for_edges(box, parallel_for, [&](const std::vector<EdgePixel>& edges) {
+        EdgePainter painter(*this, layers);
+        std::vector<float> pixel(static_cast<std::size_t>(canvas.channels()) + 16);
+        for (const EdgePixel& edge : edges) {
+            if (!painter.draw(edge, pixel.data())) ok = false;
+            canvas.store(edge.x, edge.y, 1, pixel.data());
+        }
+    });
+    return ok;
+}
+
+bool Drape::draw(const Source* source, const Box& box, const ImageView& view, const ParallelFor& parallel_for,
+                 const Source* backdrop) const {
+    if (m_options.own != DrapeOutput::shared || m_options.output != Output::color)
+        return draw_values(box, view, parallel_for);
+    if (!source) return m_picture.draw({source}, box, view, parallel_for);
+    // Sources that keep no sums are lent a place for them.
+    std::deque<Pyramid> lent;
+    if (m_options.filter == Filter::summed_area)
+        for (const Source** s : {&source, &backdrop})
+            if (*s && !(*s)->summed_areas()) *s = &lent.emplace_back(**s);
+    const int straight = source->unassociated_alpha();
+    const Layers layers{*source, backdrop, {straight >= 0 ? straight : m_options.alpha, straight < 0}};
+    Picture picture = m_picture;
+    std::atomic<bool> ok{true};
+    if (m_options.lighting.shading != DrapeShading::none || layers.has_backdrop(m_options))
+        picture.overlay = [&](const PixelRows& rows) {
+            if (!finish(rows, layers)) ok = false;
+        };
+    if (!picture.draw({source}, box, view, parallel_for)) return false;
+    const Box inside = intersection(box, {0, 0, m_map->width(), m_map->height()});
+    return ok && (!averages(m_options.filter) || draw_edges(layers, inside, Canvas(view, box), parallel_for));
+}
+
+}  // namespace anamorph

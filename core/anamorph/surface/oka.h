@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: Apache-2.0
+// The locally linear approximation of Oka et al. 1987: the picture in square blocks, each drawn as a parallelogram.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "anamorph/parallel_for.h"
+#include "anamorph/room_pool.h"
+#include "anamorph/surface/facet_raster.h"
+#include "anamorph/surface/facets.h"
+#include "anamorph/surface/parallelogram_rows.h"
+
+namespace anamorph {
+
+/// How a picture is cut into blocks.
+struct OkaBlocks {
+    double side = 8;       ///< d, pixels of the picture; either way at most all of them
+    double overlap = 0.5;  ///< width of the common area of two neighbours, pixels of the picture
+    /// Depth within a block: false, that of its centre, so that nearer blocks are drawn over farther ones (section 3); true,
+    /// linear (section 5).
+    bool linear_depth = false;
+};
+
+/// A block of the picture and its linear map: x, y (pixels from the middle of the screen) and depth of its centre, and what
+/// they gain by u and by v.
+struct OkaBlock {
+    double u, v;            ///< its centre
+    double u0, u1, v0, v1;  ///< its rectangle and its share of the common area, within the picture
+    glm::dvec3 centre, by_u, by_v;
+};
+
+/// Blocks across and down a picture. Throws Error where there are more than four million.
+Size oka_block_count(const Size& picture, const OkaBlocks& blocks);
+/// Block (i, j). False where one of its points is not in front of the camera.
+bool oka_block(const DrapedSurface& surface, const Camera& camera, const Size& picture,
+               const OkaBlocks& blocks, int i, int j, OkaBlock& block);
+
+/// What the blocks that a camera sees are made of, used again for other views.
+struct OkaRoom {
+    /// Columns and rows of squares of the screen, from the first to the last.
+    struct Squares {
+        std::uint16_t x0, y0, x1, y1;
+    };
+
+    std::vector<simd::Parallelogram> blocks;
+    std::vector<Squares> squares;  ///< of the blocks and the pixels around them
+    std::vector<std::uint32_t> keys, order, sorted, lists;
+    std::vector<std::size_t> first;
+    std::vector<double> columns, rows;
+    std::vector<glm::dvec3> seen;
+};
+
+/// The blocks that are on the screen as parallelograms: each block's linear map (2.8), whose matrix comes from central
+/// differences (2.4 to 2.7) over the block's side, on the block and half of the common area around it. They are drawn from
+/// the farthest to the nearest, those as far as each other in their order in the picture, or each with its depths.
+/// Neighbours need not meet. Blocks that are not in front of the camera as oka_block() says, and those whose parallelogram
+/// is a line but for rounding, are left out.
+class OkaRaster {
+  public:
+    /// `square`: side of the squares that draw() finds blocks by. `pool`: room that other views may leave and use. Throws
+    /// Error where there are more than four million blocks.
+    OkaRaster(std::shared_ptr<const DrapedSurface> surface, const Camera& camera, const Size& picture,
+              const OkaBlocks& blocks, int square, std::shared_ptr<RoomPool<OkaRoom>> pool);
+    ~OkaRaster();
+    OkaRaster(const OkaRaster&) = delete;
+    OkaRaster& operator=(const OkaRaster&) = delete;
+
+    /// As FacetRaster::draw. A pixel's facet is the first of its block's in facets(); nearness is that of linear depth,
+    /// and empty without.
+    void draw(const Box& box, SeenPixels& seen, int times = 1) const;
+
+    std::size_t count() const { return m_room->blocks.size(); }
+    /// Of a block's centre.
+    double nearness(std::size_t block) const { return -m_room->blocks[block].z; }
+    /// Pixels on the screen per unit of u and of v: at most, of all blocks.
+    double most_by_u() const { return m_most_by_u; }
+    double most_by_v() const { return m_most_by_v; }
+    /// Two facets for each block, in the order of blocks; leaves have no bound. Corners are where they are, off any grid.
+    Facets facets() const;
+    /// How far a point of a block may be seen from where it is drawn, pixels. By Taylor's formula (2.9) about the block's
+    /// centre, axis by axis, of g, the map to the screen, and the linear map a that is drawn, whatever it is made of,
+    ///     |g - a0 + (g_u - a1) s + (g_v - a2) t + g_uu s^2 / 2 + g_uv s t + g_vv t^2 / 2|
+    /// with g, g_u and g_v at the centre and, for (s, t) in each sixteenth of each quarter of the block, a mean of the second
+    /// derivatives over the quarters of that quarter that the way there from the centre passes, part by part of the way.
+    /// Infinite where that is not known, and where a part of the block is missing.
+    double bound_of(std::size_t block) const;
+    /// Of all blocks, the largest bound: only of those is it worked out of which a quick one does not say that another's is
+    /// larger.
+    double most_bound(const ParallelFor& parallel_for) const;
+
+  private:
+    double quick_bound_of(std::size_t block) const;
+    double lost_by(const OkaBlock& block) const;
+    void find_blocks();
+    void find_row(int row, const glm::dvec3* above, const glm::dvec3* here, const glm::dvec3* below);
+    void sort_by_depth();
+    OkaRoom::Squares squares_of(const Box& pixels) const;
+    void list_squares();
+    OkaBlock block_of(const simd::Parallelogram& p) const;
+
+    std::shared_ptr<const DrapedSurface> m_surface;
+    Camera m_camera;
+    Size m_picture, m_count;
+    OkaBlocks m_blocks;
+    simd::ParallelogramGrid m_grid;
+    int m_square, m_columns;
+    double m_most_by_u = 0, m_most_by_v = 0;
+    std::shared_ptr<RoomPool<OkaRoom>> m_pool;
+    std::unique_ptr<OkaRoom> m_room;
+};
+
+}  // namespace anamorph

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: Apache-2.0
+// Parallelograms with linear maps, drawn to planes of points one over the other (Oka 1987, eq. 2.12).
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+#include "anamorph/geometry/box.h"
+#include "anamorph/surface/facet_rows.h"
+
+namespace anamorph::simd {
+
+/// A block of a picture on the screen.
+struct Parallelogram {
+    double x, y, z;             ///< its centre, pixels from the middle of the screen, and depth there
+    double u_x, u_y, v_x, v_y;  ///< what u and v gain from pixel to pixel
+    double z_u, z_v;            ///< what the depth gains by u and by v
+    std::int32_t column, row;   ///< of the block
+    Box pixels;                 ///< of the screen, that it may cover
+};
+
+/// All blocks have their centres at ((column + 1/2) side_u, (row + 1/2) side_v), reach as far as half_u and half_v from
+/// there, but not beyond 0 to 1.
+struct ParallelogramGrid {
+    double side_u, side_v, half_u, half_v;
+};
+
+/// Pixels of a box of a screen of width x height, whose side is 1 / `times` of those of the screen.
+struct ParallelogramView {
+    Box box;
+    int width, height, times;
+};
+
+/// Draws the `count` of `all` that `list` names: point and id (twice the number in `all`) at the pixels whose centres lie
+/// within, each over those before it or, if `by_depth`, where its depth there, linear, is less: the nearness is less the
+/// depth, and is only then read and written. The planes begin at the box's first pixel. The same bits for every box and on
+/// all instruction sets.
+void draw_parallelograms(const Parallelogram* all, const std::uint32_t* list, std::size_t count,
+                         const ParallelogramGrid& grid, const ParallelogramView& view, bool by_depth,
+                         const FacetPlanes& to);
+
+}  // namespace anamorph::simd

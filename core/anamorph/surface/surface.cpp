@@ -1,0 +1,470 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "anamorph/surface/surface.h"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/common.hpp>
+
+#include "anamorph/deform/deformation_reach.h"
+#include "anamorph/number/rounded.h"
+#include "anamorph/surface/shape/all.h"
+
+namespace anamorph {
+namespace {
+
+/// What influence() encloses over a box of (u, v), for Wendland's kernel, which is smooth at r = 0 though r is not. With
+/// x and y in extents and r^2 = x^2 + y^2, up to r = 1:
+///     F_x = -20 (1 - r)^3 x,  F_xx = -20 (1 - r)^3 + 60 (1 - r)^2 x^2 / r,  F_xy = 60 (1 - r)^2 x y / r,
+/// where x^2 / r is at most r, and |x y| / r at most r / 2.
+Jet<Interval, 2> wendland_range(const Deformation& d, const Interval& u, const Interval& v) {
+    const Interval a = Interval(1) / Interval(d.extent.x), b = Interval(1) / Interval(d.extent.y);
+    const Interval x = (u - d.center.x) * a, y = (v - d.center.y) * b;
+    const Interval r = min(sqrt(square(x) + square(y)), Interval(1)), rest = max(1.0 - r, Interval(0));
+    const Interval squared = square(rest), cubed = squared * rest;
+    const auto over_r = [&](const Interval& product, const Interval& bound) {
+        const Interval quotient = r.lo > 0 ? product / r : bound;
+        return Interval(std::max(quotient.lo, bound.lo), std::min(quotient.hi, bound.hi));
+    };
+    const Interval xx = over_r(square(x), {0, r.hi}), yy = over_r(square(y), {0, r.hi}),
+                   xy = over_r(x * y, {-r.hi / 2, r.hi / 2});
+    Jet<Interval, 2> f(square(squared) * (r * 4.0 + 1.0));
+    f.c[1] = cubed * x * -20.0 * a;
+    f.c[2] = cubed * y * -20.0 * b;
+    f.c[3] = (cubed * -10.0 + squared * xx * 30.0) * square(a);
+    f.c[4] = squared * xy * 60.0 * a * b;
+    f.c[5] = (cubed * -10.0 + squared * yy * 30.0) * square(b);
+    return f;
+}
+
+/// What encloses g(x) = e^(-x^2), g' = -2 x g and g''/2 = (2 x^2 - 1) g over an interval: their values at its ends and at
+/// the extrema within, +-1/sqrt(2) of g', and 0 and +-sqrt(3/2) of g''.
+struct GaussianRange {
+    Interval value, slope, bend;
+
+    explicit GaussianRange(const Interval& x) {
+        *this = at(x.lo);
+        const GaussianRange end = at(x.hi);
+        value = hull(value, end.value);
+        slope = hull(slope, end.slope);
+        bend = hull(bend, end.bend);
+        // A little beyond the numbers below, and beyond where they are met.
+        const auto meets = [&](double place) { return x.lo <= place + 1e-12 && x.hi >= place - 1e-12; };
+        if (meets(0)) {
+            value = hull(value, 1);
+            bend = hull(bend, -1);
+        }
+        if (meets(-std::sqrt(0.5))) slope.hi = std::max(slope.hi, 0.857763884961);
+        if (meets(std::sqrt(0.5))) slope.lo = std::min(slope.lo, -0.857763884961);
+        if (meets(-std::sqrt(1.5)) || meets(std::sqrt(1.5))) bend.hi = std::max(bend.hi, 0.446260320297);
+    }
+
+  private:
+    GaussianRange() = default;
+    static GaussianRange at(double x) {
+        GaussianRange r;
+        // The square is half a unit of 2^-52 off, which the exponential multiplies by itself.
+        const double squared = x * x, g = std::exp(-squared);
+        r.value = g > 4 * interval_detail::kSmallest
+                      ? interval_detail::widen(g, g, (squared + 16) * interval_detail::kUlp)
+                      : Interval(0, 8 * interval_detail::kSmallest);
+        r.slope = r.value * (-2 * x);
+        r.bend = r.value * Interval(2 * squared - 1 - (squared + 1) * 0x1p-50,
+                                    2 * squared - 1 + (squared + 1) * 0x1p-50);
+        return r;
+    }
+};
+
+/// What influence() encloses over a box of (u, v), for the Gaussian, a product of two of one variable.
+Jet<Interval, 2> gaussian_range(const Deformation& d, const Interval& u, const Interval& v) {
+    const Interval a = Interval(1) / Interval(d.extent.x), b = Interval(1) / Interval(d.extent.y);
+    const GaussianRange x((u - d.center.x) * a), y((v - d.center.y) * b);
+    Jet<Interval, 2> f(x.value * y.value);
+    f.c[1] = x.slope * y.value * a;
+    f.c[2] = x.value * y.slope * b;
+    f.c[3] = x.bend * y.value * square(a);
+    f.c[4] = x.slope * y.slope * (a * b);
+    f.c[5] = x.value * y.bend * square(b);
+    return f;
+}
+
+/// influence(), and what encloses it.
+template <class T>
+T influence_of(const Deformation& d, const T& u, const T& v) {
+    return influence(d, u, v);
+}
+/// Of the variables u and v themselves.
+Jet<Interval, 2> influence_of(const Deformation& d, const Jet<Interval, 2>& u, const Jet<Interval, 2>& v) {
+    return d.kernel == DeformationKernel::wendland_c2 ? wendland_range(d, u.value(), v.value())
+                                                      : gaussian_range(d, u.value(), v.value());
+}
+
+/// What is added up, read with the numbers that a DrapedSurface is read with. Jets are of u and v, the variables
+/// themselves.
+class SurfacePart {
+  public:
+    virtual ~SurfacePart() = default;
+    virtual SurfacePoint<double> point(const double& u, const double& v) const = 0;
+    virtual SurfacePoint<long double> point(const long double& u, const long double& v) const = 0;
+    virtual SurfacePoint<Interval> point(const Interval& u, const Interval& v) const = 0;
+    virtual SurfacePoint<Jet<double, 1>> point(const Jet<double, 1>& u, const Jet<double, 1>& v) const = 0;
+    virtual SurfacePoint<Jet<Interval, 2>> point(const Jet<Interval, 2>& u,
+                                                 const Jet<Interval, 2>& v) const = 0;
+};
+
+/// Reads `Reader::read`, a template, with those.
+template <class Reader>
+class ReadPart final : public SurfacePart {
+  public:
+    explicit ReadPart(Reader reader) : m_reader(std::move(reader)) {}
+    SurfacePoint<double> point(const double& u, const double& v) const override {
+        return m_reader.read(u, v);
+    }
+    SurfacePoint<long double> point(const long double& u, const long double& v) const override {
+        return m_reader.read(u, v);
+    }
+    SurfacePoint<Interval> point(const Interval& u, const Interval& v) const override {
+        return m_reader.read(u, v);
+    }
+    SurfacePoint<Jet<double, 1>> point(const Jet<double, 1>& u, const Jet<double, 1>& v) const override {
+        return m_reader.read(u, v);
+    }
+    SurfacePoint<Jet<Interval, 2>> point(const Jet<Interval, 2>& u,
+                                         const Jet<Interval, 2>& v) const override {
+        return m_reader.read(u, v);
+    }
+
+  private:
+    Reader m_reader;
+};
+
+template <class Formula>
+concept HasNormal = requires(const Formula& formula) {
+    formula.normal(0.0, 0.0);
+};
+
+/// p + k q.
+template <class T>
+SurfacePoint<T> plus(const SurfacePoint<T>& p, const SurfacePoint<T>& q, const T& k) {
+    return {p.x + k * q.x, p.y + k * q.y, p.z + k * q.z};
+}
+
+/// A formula, raised along its normal.
+template <class Formula>
+struct FormulaReader {
+    Formula formula;
+    std::shared_ptr<const SampledField> heights;
+    double scale;
+
+    template <class T>
+    SurfacePoint<T> read(const T& u, const T& v) const {
+        const SurfacePoint<T> p = formula.point(u, v);
+        if constexpr (HasNormal<Formula>)
+            if (heights) {
+                T height(0.0);
+                heights->read(u, v, &height);
+                return plus(p, formula.normal(u, v), T(height * scale));
+            }
+        return p;
+    }
+};
+
+struct PositionsReader {
+    std::shared_ptr<const SampledField> positions;
+
+    template <class T>
+    SurfacePoint<T> read(const T& u, const T& v) const {
+        std::array<T, 3> p{T(0.0), T(0.0), T(0.0)};
+        positions->read(u, v, p.data());
+        return {p[0], p[1], p[2]};
+    }
+};
+
+/// A formula that is text, raised along nothing.
+struct TextReader {
+    SpaceFormula formula;
+
+    template <class T>
+    SurfacePoint<T> read(const T& u, const T& v) const {
+        const auto [x, y, z] = read_program<3>(formula.point, u, v);
+        return {x, y, z};
+    }
+    SurfacePoint<Interval> read(const Interval& u, const Interval& v) const {
+        const auto [x, y, z] = read_program<3, DefinedInterval>(formula.point, u, v);
+        return {x, y, z};
+    }
+    /// Jets, which are not bounded where a derivative jumps, do not know of positions what intervals do.
+    SurfacePoint<Jet<Interval, 2>> read(const Jet<Interval, 2>& u, const Jet<Interval, 2>& v) const {
+        auto [x, y, z] = read_program<3>(formula.point, u, v);
+        const SurfacePoint<Interval> p = read(u.value(), v.value());
+        x.c[0] = p.x;
+        y.c[0] = p.y;
+        z.c[0] = p.z;
+        return {x, y, z};
+    }
+    /// Of read() in double, over a box: no more than what there is of exact and of rounded points, which one interval holds.
+    double rounding(const Interval& u, const Interval& v) const {
+        using R = Rounded<double>;
+        const auto rounded = read_program<3>(formula.point, R(u, 0, 0), R(v, 0, 0));
+        const SurfacePoint<Interval> all = read(u, v);
+        double most = 0;
+        for (const auto& [axis, range] : {std::pair(0, all.x), std::pair(1, all.y), std::pair(2, all.z)}) {
+            const double error = rounded[axis].error, width = (range.hi - range.lo) * (1 + 1e-15),
+                         least = error <= width ? error : width;
+            most = least <= HUGE_VAL ? std::max(most, least) : HUGE_VAL;
+        }
+        return most;
+    }
+    Certainty missing(const Interval& u, const Interval& v) const {
+        if (formula.is_everywhere) return Certainty::no;
+        const Interval domain = read_program<1, DefinedInterval>(formula.domain, u, v)[0];
+        return domain.lo > 0 ? Certainty::no : domain.hi <= 0 ? Certainty::yes : Certainty::open;
+    }
+};
+
+/// The box of a number's constant part.
+Interval box_of(const Interval& a) {
+    return a;
+}
+Interval box_of(double a) {
+    return a;
+}
+template <class T, int N>
+Interval box_of(const Jet<T, N>& a) {
+    return box_of(a.c[0]);
+}
+
+/// What is not known but for its size, where a number says so.
+template <class T>
+void add_unknown(SurfacePoint<T>&, const glm::dvec3&) {}
+Interval unknown(double size) {
+    return {-size, size};
+}
+void add_unknown(SurfacePoint<Interval>& p, const glm::dvec3& size) {
+    p = {p.x + unknown(size.x), p.y + unknown(size.y), p.z + unknown(size.z)};
+}
+void add_unknown(SurfacePoint<Jet<Interval, 2>>& p, const glm::dvec3& size) {
+    for (int k = 0; k < Jet<Interval, 2>::kSize; ++k) {
+        p.x.c[k] += unknown(size.x);
+        p.y.c[k] += unknown(size.y);
+        p.z.c[k] += unknown(size.z);
+    }
+}
+
+class SummedSurface final : public DrapedSurface {
+  public:
+    explicit SummedSurface(const SurfaceSum& sum);
+
+    glm::dvec3 position(double u, double v) const noexcept override {
+        const SurfacePoint<double> p = point(u, v);
+        return {p.x, p.y, p.z};
+    }
+    void positions(std::span<const double> u, std::span<const double> v, glm::dvec3* to) const override {
+        for (std::size_t j = 0; j < v.size(); ++j)
+            for (std::size_t i = 0; i < u.size(); ++i) {
+                const SurfacePoint<double> p = sum_of_parts(u[i], v[j]);
+                to[j * u.size() + i] = {p.x, p.y, p.z};
+            }
+        std::vector<double> across;
+        for (std::size_t k = 0; k < m_deformations.size(); ++k) move_grid(k, u, v, across, to);
+    }
+    double rounding(double u, double v) const noexcept override {
+        // Whatever an operation rounds, intervals enclose it. Eight times that: a surface's own numbers, such as turns in
+        // radians, have been rounded too.
+        const SurfacePoint<Interval> p = point(Interval(u), Interval(v));
+        return 8 * std::max({p.x.hi - p.x.lo, p.y.hi - p.y.lo, p.z.hi - p.z.lo});
+    }
+    double rounding(const Interval& u, const Interval& v) const noexcept override {
+        const double known = DrapedSurface::rounding(u, v);
+        return m_text ? known + m_text_weight * m_text->rounding(u, v) : known;
+    }
+    SurfaceFrame frame(double u, double v) const noexcept override {
+        using J = Jet<double, 1>;
+        const SurfacePoint<J> p = point(J::variable(u, 1, 0), J::variable(v, 0, 1));
+        const auto part = [&](int i) { return glm::dvec3(p.x.c[i], p.y.c[i], p.z.c[i]); };
+        return {part(0), part(1), part(2)};
+    }
+    std::array<long double, 3> truth(long double u, long double v) const noexcept override {
+        SurfacePoint<long double> p = sum_of_parts(u, v);
+        for (const Deformation& d : m_deformations) p = moved(p, d, u, v);
+        return {p.x, p.y, p.z};
+    }
+    SurfaceRange range(const Interval& u, const Interval& v) const noexcept override {
+        using J = Jet<Interval, 2>;
+        const SurfacePoint<J> p = point(J::variable(u, 1.0, 0.0), J::variable(v, 0.0, 1.0));
+        return {p.x, p.y, p.z};
+    }
+    Certainty missing(const Interval& u, const Interval& v) const noexcept override {
+        Certainty all = Certainty::no;
+        const auto add = [&](Certainty one) {
+            if (one != Certainty::no && all != Certainty::yes) all = one;
+        };
+        for (const auto& field : m_fields) add(field->missing(u, v));
+        if (m_text) add(m_text->missing(u, v));
+        return all;
+    }
+
+  private:
+    template <class T>
+    SurfacePoint<T> sum_of_parts(const T& u, const T& v) const {
+        SurfacePoint<T> sum = m_parts[0]->point(u, v);
+        if (m_weights[0] != 1) sum = {sum.x * m_weights[0], sum.y * m_weights[0], sum.z * m_weights[0]};
+        for (std::size_t i = 1; i < m_parts.size(); ++i)
+            sum = plus(sum, m_parts[i]->point(u, v), T(m_weights[i]));
+        return sum;
+    }
+    template <class T>
+    static SurfacePoint<T> moved(const SurfacePoint<T>& p, const Deformation& d, const T& u, const T& v) {
+        const T share = influence_of(d, u, v);
+        const auto add = [&](const T& a, double k) { return k == 0 ? a : T(a + share * k); };
+        return {add(p.x, d.vector.x), add(p.y, d.vector.y), add(p.z, d.vector.z)};
+    }
+    /// Moves the points of a grid that a deformation reaches. A Gaussian is a product of a column's and a row's: off by less
+    /// than 8 (r^2 + 1) F, where point(Interval) allows 16.
+    void move_grid(std::size_t index, std::span<const double> u, std::span<const double> v,
+                   std::vector<double>& across, glm::dvec3* to) const {
+        const Deformation& d = m_deformations[index];
+        const DeformationReach::Reached& box = m_reach.reached(index);
+        const auto reaches = [](double at, double low, double high) { return at >= low && at <= high; };
+        const auto kernel = [&](double x) { return kernel_value(d.kernel, x, 0.0); };
+        const bool product = d.kernel == DeformationKernel::gaussian;
+        std::size_t first = u.size(), end = 0;
+        across.assign(u.size(), 0);
+        for (std::size_t i = 0; i < u.size(); ++i) {
+            if (!reaches(u[i], box.u0, box.u1)) continue;
+            if (product) across[i] = kernel((u[i] - d.center.x) * (1 / d.extent.x));
+            first = std::min(first, i);
+            end = i + 1;
+        }
+        for (std::size_t j = 0; j < v.size() && first < end; ++j) {
+            if (!reaches(v[j], box.v0, box.v1)) continue;
+            const double down = product ? kernel((v[j] - d.center.y) * (1 / d.extent.y)) : 0;
+            glm::dvec3* const row = to + j * u.size();
+            for (std::size_t i = first; i < end; ++i) {
+                if (!product && !reaches(u[i], box.u0, box.u1)) continue;
+                row[i] += (product ? across[i] * down : influence(d, u[i], v[j])) * d.vector;
+            }
+        }
+    }
+    template <class T>
+    SurfacePoint<T> point(const T& u, const T& v) const {
+        SurfacePoint<T> p = sum_of_parts(u, v);
+        std::size_t near = 0;
+        m_reach.each_near(box_of(u), box_of(v), [&](std::size_t i) {
+            p = moved(p, m_deformations[i], u, v);
+            ++near;
+        });
+        if (near < m_deformations.size()) add_unknown(p, m_reach.far());
+        return p;
+    }
+    /// How far point() in double may be from the exact point, for rounding() alone: where deformations are concerned, the
+    /// point itself is not known. x and y of a kernel are off by 3 units of 2^-53 of themselves, r^2 by 8, and, with what
+    /// exp or the polynomial lose, F by less than 16 (r^2 + 1) F; each sum, by one unit of what is added up.
+    SurfacePoint<Interval> point(const Interval& u, const Interval& v) const {
+        SurfacePoint<Interval> p = sum_of_parts(u, v);
+        glm::dvec3 lost(0.0), added(magnitude(p.x), magnitude(p.y), magnitude(p.z));
+        m_reach.each_near(u, v, [&](std::size_t i) {
+            const Deformation& d = m_deformations[i];
+            const double x = (u.lo - d.center.x) / d.extent.x, y = (v.lo - d.center.y) / d.extent.y;
+            const glm::dvec3 moved = glm::abs(d.vector) * kernel_value(d.kernel, x, y);
+            added += moved;
+            lost += added + moved * (16 * (x * x + y * y + 1));
+        });
+        add_unknown(p, lost * 0x1p-53 + m_reach.far());
+        return p;
+    }
+
+    std::vector<std::unique_ptr<SurfacePart>> m_parts;
+    std::vector<double> m_weights;
+    std::vector<std::shared_ptr<const SampledField>> m_fields;
+    std::optional<TextReader> m_text;
+    double m_text_weight = 0;                 ///< the sum of its magnitudes
+    std::vector<Deformation> m_deformations;  ///< with v down
+    DeformationReach m_reach;
+};
+
+using MakePart = std::unique_ptr<SurfacePart> (*)(const SurfaceSum&);
+
+template <class Formula>
+std::unique_ptr<SurfacePart> make_part(const SurfaceSum& sum) {
+    using Reader = FormulaReader<Formula>;
+    return std::make_unique<ReadPart<Reader>>(Reader{Formula(sum.shape), sum.heights, sum.height_scale});
+}
+
+std::unique_ptr<SurfacePart> make_part_of(std::size_t which, const SurfaceSum& sum) {
+    static const std::vector<MakePart> makers = {
+#define ANAMORPH_SURFACE(name, Type) make_part<surfaces::Type>,
+#include "anamorph/surface/shape/list.h"
+#undef ANAMORPH_SURFACE
+    };
+    if (which < makers.size()) return makers[which](sum);
+    if (which == makers.size())
+        return std::make_unique<ReadPart<PositionsReader>>(PositionsReader{sum.positions});
+    return std::make_unique<ReadPart<TextReader>>(TextReader{sum.formula.value()});
+}
+
+/// Those that are enabled, checked, with v counted up as it is down here. Differences from a centre are exact near by,
+/// and one from 1 would not be.
+std::vector<Deformation> enabled(std::vector<Deformation> list) {
+    for (Deformation& d : list) {
+        check_deformation(d);
+        d.center.y = 1 - d.center.y;
+    }
+    std::erase_if(list, [](const Deformation& d) { return !d.enabled; });
+    return list;
+}
+
+SummedSurface::SummedSurface(const SurfaceSum& sum)
+    : m_deformations(enabled(sum.deformations)), m_reach(m_deformations) {
+    for (const SurfaceSum::Part& part : sum.parts) {
+        m_parts.push_back(make_part_of(part.which, sum));
+        m_weights.push_back(part.weight);
+        if (part.which == surface_names().size() + 1) m_text_weight += std::fabs(part.weight);
+    }
+    for (const auto& field : {sum.positions, sum.heights})
+        if (field) m_fields.push_back(field);
+    if (sum.formula) m_text = TextReader{*sum.formula};
+}
+
+}  // namespace
+
+const std::vector<std::string>& surface_names() {
+    static const std::vector<std::string> names = {
+#define ANAMORPH_SURFACE(name, Type) #name,
+#include "anamorph/surface/shape/list.h"
+#undef ANAMORPH_SURFACE
+    };
+    return names;
+}
+
+const std::vector<std::string>& all_surface_names() {
+    static const std::vector<std::string> names = [] {
+        std::vector<std::string> all = surface_names();
+        all.insert(all.end(), {"positions", "formula"});
+        return all;
+    }();
+    return names;
+}
+
+bool has_smooth_normals(std::size_t which) {
+    static const std::vector<bool> smooth = {
+#define ANAMORPH_SURFACE(name, Type) HasNormal<surfaces::Type>,
+#include "anamorph/surface/shape/list.h"
+#undef ANAMORPH_SURFACE
+    };
+    return which < smooth.size() && smooth[which];
+}
+
+std::shared_ptr<const DrapedSurface> make_surface(const SurfaceSum& sum) {
+    return std::make_shared<SummedSurface>(sum);
+}
+
+std::shared_ptr<const DrapedSurface> make_surface(std::size_t which, const SurfaceShape& shape,
+                                                  const std::vector<Deformation>& deformations) {
+    SurfaceSum sum;
+    sum.parts = {{which, 1}};
+    sum.shape = shape;
+    sum.deformations = deformations;
+    return make_surface(sum);
+}
+
+}  // namespace anamorph
