@@ -7,7 +7,7 @@
 #include <string>
 #include <string_view>
 
-#include "anamorph/figure/motion.h"
+#include "anamorph/figure/body/motion.h"
 
 namespace anamorph::command {
 

@@ -11,13 +11,13 @@
 #include <map>
 #include <thread>
 
-#include "anamorph/figure/drawing.h"
-#include "anamorph/figure/figure_picture.h"
-#include "anamorph/figure/fit.h"
-#include "anamorph/figure/frame_file.h"
-#include "anamorph/figure/language.h"
-#include "anamorph/figure/motion_file.h"
-#include "anamorph/figure/scene_file.h"
+#include "anamorph/figure/files/frame_file.h"
+#include "anamorph/figure/files/motion_file.h"
+#include "anamorph/figure/files/scene_file.h"
+#include "anamorph/figure/image/figure_picture.h"
+#include "anamorph/figure/language/language.h"
+#include "anamorph/figure/outline/drawing.h"
+#include "anamorph/figure/outline/fit.h"
 #include "anamorph/parameter/parameter.h"
 #include "anamorph/version.h"
 #include "film_writer.h"

@@ -7,7 +7,7 @@
 #include <iostream>
 
 #include "anamorph/error.h"
-#include "anamorph/figure/motion_file.h"
+#include "anamorph/figure/files/motion_file.h"
 #include "anamorph/parameter/text_file.h"
 
 namespace anamorph::command {

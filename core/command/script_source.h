@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "anamorph/figure/performance.h"
-#include "anamorph/figure/script.h"
+#include "anamorph/figure/language/performance.h"
+#include "anamorph/figure/language/script.h"
 
 namespace anamorph::command {
 

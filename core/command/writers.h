@@ -5,7 +5,7 @@
 #include <memory>
 #include <string>
 
-#include "anamorph/figure/drawing.h"
+#include "anamorph/figure/outline/drawing.h"
 #include "output_file.h"
 
 namespace anamorph::command {

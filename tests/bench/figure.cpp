@@ -20,7 +20,7 @@
 #include <vector>
 
 #include "../core/figure_outline_cases.h"
-#include "anamorph/figure/outline.h"
+#include "anamorph/figure/outline/outline.h"
 #include "bench.h"
 #include "pixels.h"
 

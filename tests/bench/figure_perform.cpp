@@ -10,8 +10,8 @@
 #include <utility>
 #include <vector>
 
-#include "anamorph/figure/performance.h"
-#include "anamorph/figure/script.h"
+#include "anamorph/figure/language/performance.h"
+#include "anamorph/figure/language/script.h"
 #include "bench.h"
 
 namespace anamorph::bench {

@@ -18,7 +18,7 @@
 #include <string>
 
 #include "../core/figure_picture_cases.h"
-#include "anamorph/figure/figure_picture.h"
+#include "anamorph/figure/image/figure_picture.h"
 #include "bench.h"
 
 namespace anamorph::bench {

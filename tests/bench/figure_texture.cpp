@@ -15,9 +15,9 @@
 #include <numbers>
 #include <random>
 
-#include "anamorph/figure/figure_picture.h"
-#include "anamorph/figure/performance.h"
-#include "anamorph/figure/script.h"
+#include "anamorph/figure/image/figure_picture.h"
+#include "anamorph/figure/language/performance.h"
+#include "anamorph/figure/language/script.h"
 #include "anamorph/image/pyramid.h"
 #include "bench.h"
 

@@ -14,9 +14,9 @@
 #include <vector>
 
 #include "anamorph/error.h"
-#include "anamorph/figure/performance.h"
-#include "anamorph/figure/rotation.h"
-#include "anamorph/figure/script.h"
+#include "anamorph/figure/body/rotation.h"
+#include "anamorph/figure/language/performance.h"
+#include "anamorph/figure/language/script.h"
 
 namespace anamorph::figure_cases {
 

@@ -11,7 +11,7 @@
 #include <random>
 #include <vector>
 
-#include "anamorph/figure/outline.h"
+#include "anamorph/figure/outline/outline.h"
 
 namespace anamorph::test {
 

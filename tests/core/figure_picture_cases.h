@@ -10,8 +10,8 @@
 #include <random>
 #include <vector>
 
-#include "anamorph/figure/ellipsoid.h"
-#include "anamorph/figure/outline_view.h"
+#include "anamorph/figure/body/ellipsoid.h"
+#include "anamorph/figure/outline/outline_view.h"
 
 namespace anamorph::figure_picture_cases {
 

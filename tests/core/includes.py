@@ -16,8 +16,8 @@ OWN = re.compile(r'# *include *"anamorph/([^"]+)"')
 
 
 def folder_of(path):
-    """What lies in none, below all others, is one too, but for the header that gathers all."""
-    return path.parts[0] if len(path.parts) > 1 else "."
+    """What lies in none, below all others, is one too, but for the header that gathers all. Those of figures are many."""
+    return "/".join(path.parts[:-1][:2 if path.parts[0] == "figure" else 1]) or "."
 
 
 def way_back(arrows, start):

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Crystals expanded by the operations of symmetry that a file lists.
-#include "anamorph/figure/cif_symmetry.h"
+#include "anamorph/figure/files/cif_symmetry.h"
 
 #include <gmock/gmock.h>
 
@@ -12,7 +12,7 @@
 #include <set>
 
 #include "anamorph/error.h"
-#include "anamorph/figure/motion_file.h"
+#include "anamorph/figure/files/motion_file.h"
 
 namespace anamorph {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "anamorph/figure/ellipsoid_distance.h"
+#include "anamorph/figure/body/ellipsoid_distance.h"
 
 #include <gtest/gtest.h>
 

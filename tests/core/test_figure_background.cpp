@@ -6,8 +6,8 @@
 #include <cmath>
 #include <random>
 
-#include "anamorph/figure/backdrop.h"
-#include "anamorph/figure/figure_picture.h"
+#include "anamorph/figure/image/backdrop.h"
+#include "anamorph/figure/image/figure_picture.h"
 #include "anamorph/image/pyramid.h"
 #include "figure_picture_cases.h"
 

@@ -6,9 +6,9 @@
 #include <random>
 #include <set>
 
-#include "anamorph/figure/figure_state.h"
-#include "anamorph/figure/performance.h"
-#include "anamorph/figure/script.h"
+#include "anamorph/figure/language/figure_state.h"
+#include "anamorph/figure/language/performance.h"
+#include "anamorph/figure/language/script.h"
 
 namespace anamorph {
 namespace {

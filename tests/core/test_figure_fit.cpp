@@ -5,8 +5,8 @@
 #include <glm/geometric.hpp>
 #include <random>
 
-#include "anamorph/figure/fit.h"
-#include "anamorph/figure/rotation.h"
+#include "anamorph/figure/body/rotation.h"
+#include "anamorph/figure/outline/fit.h"
 
 namespace anamorph {
 namespace {

@@ -3,8 +3,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "anamorph/figure/language.h"
-#include "anamorph/figure/script_table.h"
+#include "anamorph/figure/language/language.h"
+#include "anamorph/figure/language/script_table.h"
 #include "figure_cases.h"
 
 namespace anamorph {

@@ -5,7 +5,7 @@
 
 #include <thread>
 
-#include "anamorph/figure/outline_roots.h"
+#include "anamorph/figure/outline/outline_roots.h"
 #include "figure_outline_cases.h"
 
 namespace anamorph {

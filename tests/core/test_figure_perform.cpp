@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Time, names, calls; frames in any order; and what no script should do.
-#include "anamorph/figure/performance.h"
+#include "anamorph/figure/language/performance.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -9,7 +9,7 @@
 #include <cstring>
 #include <random>
 
-#include "anamorph/figure/timing.h"
+#include "anamorph/figure/language/timing.h"
 #include "figure_cases.h"
 
 namespace anamorph {

@@ -8,7 +8,7 @@
 #include <numbers>
 #include <random>
 
-#include "anamorph/figure/ellipsoid_distance.h"
+#include "anamorph/figure/body/ellipsoid_distance.h"
 #include "figure_cases.h"
 
 namespace anamorph {

@@ -7,8 +7,8 @@
 #include <cstdio>
 #include <cstdlib>
 
-#include "anamorph/figure/ellipsoid_distance.h"
-#include "anamorph/figure/frame_file.h"
+#include "anamorph/figure/body/ellipsoid_distance.h"
+#include "anamorph/figure/files/frame_file.h"
 #include "figure_cases.h"
 
 namespace anamorph {

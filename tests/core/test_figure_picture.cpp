@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Pictures of figures in all styles.
-#include "anamorph/figure/figure_picture.h"
+#include "anamorph/figure/image/figure_picture.h"
 
 #include <gtest/gtest.h>
 

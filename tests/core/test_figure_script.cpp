@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The language: what is read, and what is said about what is not.
-#include "anamorph/figure/script.h"
+#include "anamorph/figure/language/script.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -11,8 +11,8 @@
 #include <string>
 
 #include "anamorph/error.h"
-#include "anamorph/figure/performance.h"
-#include "anamorph/figure/script_table.h"
+#include "anamorph/figure/language/performance.h"
+#include "anamorph/figure/language/script_table.h"
 
 namespace anamorph {
 namespace {

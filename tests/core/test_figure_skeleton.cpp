@@ -2,10 +2,10 @@
 // Sticks, level of detail, spheres along limbs, connected outlines.
 #include <gtest/gtest.h>
 
-#include "anamorph/figure/connected.h"
-#include "anamorph/figure/level_of_detail.h"
-#include "anamorph/figure/skeleton.h"
-#include "anamorph/figure/spheres.h"
+#include "anamorph/figure/body/skeleton.h"
+#include "anamorph/figure/outline/connected.h"
+#include "anamorph/figure/outline/level_of_detail.h"
+#include "anamorph/figure/outline/spheres.h"
 #include "figure_outline_cases.h"
 
 namespace anamorph {

@@ -6,7 +6,7 @@
 #include <numbers>
 
 #include "anamorph/error.h"
-#include "anamorph/figure/visible_surfaces.h"
+#include "anamorph/figure/image/visible_surfaces.h"
 #include "figure_picture_cases.h"
 
 namespace anamorph {

@@ -4,7 +4,7 @@
 
 #include <numbers>
 
-#include "anamorph/figure/figure_picture.h"
+#include "anamorph/figure/image/figure_picture.h"
 #include "anamorph/image/pyramid.h"
 #include "figure_picture_cases.h"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "anamorph/figure/frame_file.h"
+#include "anamorph/figure/files/frame_file.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -10,9 +10,9 @@
 #include <random>
 
 #include "anamorph/error.h"
-#include "anamorph/figure/eigenvectors.h"
-#include "anamorph/figure/frame_file.h"
-#include "anamorph/figure/motion_file.h"
+#include "anamorph/figure/body/eigenvectors.h"
+#include "anamorph/figure/files/frame_file.h"
+#include "anamorph/figure/files/motion_file.h"
 
 namespace anamorph {
 namespace {

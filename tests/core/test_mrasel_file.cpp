@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // MRASEL's frames: the example of the essay's appendix.
-#include "anamorph/figure/mrasel_file.h"
+#include "anamorph/figure/files/mrasel_file.h"
 
 #include <gmock/gmock.h>
 
 #include <cmath>
 
 #include "anamorph/error.h"
-#include "anamorph/figure/motion_file.h"
+#include "anamorph/figure/files/motion_file.h"
 
 namespace anamorph {
 namespace {

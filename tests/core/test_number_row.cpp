@@ -10,10 +10,10 @@
 
 #include "anamorph/deform/deform_rows.h"
 #include "anamorph/deform/deformed_surface.h"
-#include "anamorph/figure/figure_rows.h"
-#include "anamorph/figure/level_of_detail.h"
-#include "anamorph/figure/outline.h"
-#include "anamorph/figure/spheres.h"
+#include "anamorph/figure/body/figure_rows.h"
+#include "anamorph/figure/outline/level_of_detail.h"
+#include "anamorph/figure/outline/outline.h"
+#include "anamorph/figure/outline/spheres.h"
 
 namespace anamorph {
 namespace {

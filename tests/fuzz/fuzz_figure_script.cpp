@@ -6,9 +6,9 @@
 #include <cstdint>
 #include <string_view>
 
-#include "anamorph/figure/frame_file.h"
-#include "anamorph/figure/performance.h"
-#include "anamorph/figure/script.h"
+#include "anamorph/figure/files/frame_file.h"
+#include "anamorph/figure/language/performance.h"
+#include "anamorph/figure/language/script.h"
 #include "expect_error.h"
 
 using namespace anamorph;

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <string_view>
 
-#include "anamorph/figure/frame_file.h"
+#include "anamorph/figure/files/frame_file.h"
 #include "expect_error.h"
 
 using namespace anamorph;

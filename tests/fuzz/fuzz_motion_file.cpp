@@ -7,8 +7,8 @@
 #include <string_view>
 #include <vector>
 
-#include "anamorph/figure/motion_file.h"
-#include "anamorph/figure/scene_file.h"
+#include "anamorph/figure/files/motion_file.h"
+#include "anamorph/figure/files/scene_file.h"
 #include "expect_error.h"
 
 using namespace anamorph;

@@ -5,7 +5,7 @@
 #include <string>
 
 #include "anamorph/deform/deform_rows.h"
-#include "anamorph/figure/figure_rows.h"
+#include "anamorph/figure/body/figure_rows.h"
 #include "anamorph/operation/operation.h"
 #include "anamorph/parameter/parameter.h"
 #include "anamorph/projector/projector_rows.h"

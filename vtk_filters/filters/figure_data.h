@@ -19,8 +19,8 @@
 #include <optional>
 #include <vector>
 
-#include "anamorph/figure/frame.h"
-#include "anamorph/figure/outline_view.h"
+#include "anamorph/figure/body/frame.h"
+#include "anamorph/figure/outline/outline_view.h"
 #include "vtkType.h"
 
 class vtkCellData;

@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "anamorph/error.h"
-#include "anamorph/figure/figure_rows.h"
+#include "anamorph/figure/body/figure_rows.h"
 #include "anamorph/image/pyramid.h"
 #include "anamorph/image/source.h"
 #include "anamorph/operation/drape.h"

@@ -5,9 +5,9 @@
 #include <glm/geometric.hpp>
 
 #include "anamorph/error.h"
-#include "anamorph/figure/figure_rows.h"
-#include "anamorph/figure/outline_view.h"
-#include "anamorph/figure/rotation.h"
+#include "anamorph/figure/body/figure_rows.h"
+#include "anamorph/figure/body/rotation.h"
+#include "anamorph/figure/outline/outline_view.h"
 #include "anamorph/parameter/parameter.h"
 #include "execution.h"
 #include "figure_data.h"

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "anamorph/error.h"
-#include "anamorph/figure/figure_rows.h"
+#include "anamorph/figure/body/figure_rows.h"
 #include "anamorph/parameter/parameter.h"
 #include "execution.h"
 #include "figure_data.h"

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "anamorph/error.h"
-#include "anamorph/figure/figure_picture.h"
+#include "anamorph/figure/image/figure_picture.h"
 #include "anamorph/image/pyramid.h"
 #include "anamorph/image/source.h"
 #include "anamorph/parameter/parameter.h"

@@ -7,9 +7,9 @@
 #include <vector>
 
 #include "anamorph/error.h"
-#include "anamorph/figure/connected.h"
-#include "anamorph/figure/outline.h"
-#include "anamorph/figure/outline_arcs.h"
+#include "anamorph/figure/outline/connected.h"
+#include "anamorph/figure/outline/outline.h"
+#include "anamorph/figure/outline/outline_arcs.h"
 #include "anamorph/parameter/parameter.h"
 #include "execution.h"
 #include "figure_data.h"

@@ -6,7 +6,7 @@
  * The limb of an ellipsoid, where view rays touch it, is an ellipse in space. The output has it as polylines
  * along its visible and hidden arcs, in space: where they are when seen from the view that they were made
  * for. The ends of arcs are exact; the picture of a chord is no further than Tolerance pixels from that of
- * the limb, proven as in anamorph/figure/outline.h.
+ * the limb, proven as in anamorph/figure/outline/outline.h.
  *
  * The cells' arrays are Visible (1 or 0), BodyId (the point of the input), and the arrays of the input's
  * points but Axes and Orientation. Bodies hide each other within one input; blocks of composite data do not.

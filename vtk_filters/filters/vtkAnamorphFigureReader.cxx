@@ -10,9 +10,9 @@
 #include <optional>
 
 #include "anamorph/error.h"
-#include "anamorph/figure/motion_file.h"
-#include "anamorph/figure/performance.h"
-#include "anamorph/figure/script.h"
+#include "anamorph/figure/files/motion_file.h"
+#include "anamorph/figure/language/performance.h"
+#include "anamorph/figure/language/script.h"
 #include "anamorph/parameter/text_file.h"
 #include "execution.h"
 #include "figure_data.h"

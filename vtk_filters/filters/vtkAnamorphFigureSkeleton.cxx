@@ -4,9 +4,9 @@
 #include <vector>
 
 #include "anamorph/error.h"
-#include "anamorph/figure/level_of_detail.h"
-#include "anamorph/figure/skeleton.h"
-#include "anamorph/figure/spheres.h"
+#include "anamorph/figure/body/skeleton.h"
+#include "anamorph/figure/outline/level_of_detail.h"
+#include "anamorph/figure/outline/spheres.h"
 #include "anamorph/parameter/parameter.h"
 #include "execution.h"
 #include "figure_data.h"

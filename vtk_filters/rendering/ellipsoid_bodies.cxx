@@ -9,7 +9,7 @@
 #include <limits>
 
 #include "anamorph/error.h"
-#include "anamorph/figure/eigenvectors.h"
+#include "anamorph/figure/body/eigenvectors.h"
 #include "ellipsoid_shader.h"
 #include "vtkDataArray.h"
 #include "vtkDataSet.h"

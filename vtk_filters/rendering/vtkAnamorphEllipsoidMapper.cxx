@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "anamorph/error.h"
-#include "anamorph/figure/body_mapping_glsl.h"
+#include "anamorph/figure/body/body_mapping_glsl.h"
 #include "block_looks.h"
 #include "ellipsoid_bodies.h"
 #include "ellipsoid_shader.h"

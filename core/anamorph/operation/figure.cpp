@@ -6,12 +6,12 @@
 #include <limits>
 #include <mutex>
 
-#include "anamorph/figure/figure_picture.h"
-#include "anamorph/figure/fit.h"
-#include "anamorph/figure/motion_file.h"
-#include "anamorph/figure/performance.h"
-#include "anamorph/figure/rotation.h"
-#include "anamorph/figure/script.h"
+#include "anamorph/figure/body/rotation.h"
+#include "anamorph/figure/files/motion_file.h"
+#include "anamorph/figure/image/figure_picture.h"
+#include "anamorph/figure/language/performance.h"
+#include "anamorph/figure/language/script.h"
+#include "anamorph/figure/outline/fit.h"
 #include "anamorph/operation/figure_mips.h"
 #include "anamorph/operation/operation.h"
 #include "anamorph/operation/read_once.h"

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: Apache-2.0
+// Motions and figures of other programs, as frames of ellipsoids.
+//
+// BVH (Biovision hierarchy; .bvh): a bone, from a joint to the next, is an ellipsoid along it; the file's
+// frames are numbered from 1, and frame 0 is the skeleton at rest. The whole motion is moved and scaled into
+// the window of 1000 units.
+//
+// CIF (crystallographic information file; .cif): the atoms of the first structure, in one frame, and where the
+// file lists operations of symmetry, or else names a space group (space_group.h), all that these make of them in a
+// cell (cif_symmetry.h; of a modulated structure, the average one), as ellipsoids of anisotropic displacement that hold the atom with a probability
+// of 1/2, spheres where displacement is isotropic, and small spheres where none is given. Joints are bonds:
+// where two atoms are closer than their covalent radii (Cordero et al. 2008) and 0.4 Angstrom together.
+//
+// Frames as the original programs print them (.3; frame_file.h), and the one that MRASEL draws (.mrasel;
+// mrasel_file.h).
+//
+// Right-handed coordinates are mirrored to those of frame.h, z becoming -z.
+#pragma once
+
+#include <memory>
+#include <string_view>
+
+#include "anamorph/figure/body/motion.h"
+
+namespace anamorph {
+
+/// Whether a file with this name holds frames (.bvh, .cif, .3, .mrasel), in small letters or capitals.
+bool is_motion_file(std::string_view name);
+
+/// Reads the text of a file, by the ending of its name. Throws Error naming the file and the line or entry.
+std::unique_ptr<Motion> read_motion(std::string_view text, std::string_view name);
+
+/// The same, of BVH whatever the name.
+std::unique_ptr<Motion> read_bvh(std::string_view text, std::string_view name);
+/// The same, of CIF.
+std::unique_ptr<Motion> read_cif(std::string_view text, std::string_view name);
+
+}  // namespace anamorph

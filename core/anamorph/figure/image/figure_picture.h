@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: Apache-2.0
+// A frame of a figure as pixels.
+//
+// Every pixel's rays meet the ellipsoids themselves: nothing is tessellated. Colours are the mean of 16 x 16
+// samples of a pixel: one that shows one body alone has its colour in the middle of it, any other what the
+// bodies have in the middle of their samples, each by its share. Depth, id and uv are what the ray through
+// the middle of a pixel meets. Pixels are the same for any box that they are drawn in.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "anamorph/figure/body/body_mapping.h"
+#include "anamorph/figure/body/frame.h"
+#include "anamorph/figure/image/shading.h"
+#include "anamorph/figure/outline/drawing.h"
+#include "anamorph/figure/outline/outline_view.h"
+#include "anamorph/geometry/box.h"
+#include "anamorph/geometry/size.h"
+#include "anamorph/image/filter.h"
+#include "anamorph/image/source.h"
+#include "anamorph/image/view.h"
+#include "anamorph/parallel_for.h"
+
+namespace anamorph {
+
+/// What is drawn of a figure.
+enum class FigureStyle {
+    shaded,   ///< bodies in their colours, lit
+    outline,  ///< outlines, hidden lines removed
+    stick,    ///< lines from joint to joint, or where there are no joints the longest axes
+    depth,    ///< as View::to_view gives it; kNoDepth where there is no body
+    id,       ///< 1 for the frame's first body, 2 for the second ...; 0 where there is none
+    uv,       ///< the point of the body's texture; (-1, -1) where there is no body
+    textured  ///< shaded, with textures
+};
+
+/// The depth of nothing.
+inline constexpr float kNoDepth = 1e30f;
+
+/// How a figure is drawn.
+struct FigureLook {
+    FigureStyle style = FigureStyle::shaded;
+    Light light;
+    bool antialias = true;                 ///< false: colours of the rays through the middle alone
+    std::optional<glm::dvec3> background;  ///< red, green, blue, 0 to 1; else the bands
+    std::vector<BackgroundBand> bands;     ///< the background; by default the frame's, or transparent
+    bool backdrop = false;                 ///< a picture lies before that, as large as what is drawn: the
+                                           ///< source after those of the textures
+    BodyMapping mapping = BodyMapping::latlong;
+    Filter filter = Filter::antialias;                   ///< of textures
+    TextureAverage average = TextureAverage::footprint;  ///< of Filter::antialias
+    std::vector<std::string> textures;                   ///< the names of those that are given
+    DrawingOptions lines;                                ///< of outline and stick
+};
+
+/// Channels of a picture: red, green, blue and alpha, colour multiplied by alpha; u and v; or one.
+int channels_of(FigureStyle style);
+
+/// Thread safe.
+class FigurePicture {
+  public:
+    /// `view`: the origin of its screen is the picture's lower left corner. Throws Error as `outlines` does.
+    FigurePicture(FigureFrame frame, const View& view, const Size& size, const FigureLook& look,
+                  const ParallelFor& parallel_for = serial_for);
+    ~FigurePicture();
+    FigurePicture(FigurePicture&&) noexcept;
+
+    /// Fills `pixels`, which has channels_of(style) channels, with the pixels of `box`; 0 beyond the picture.
+    /// `textures`: in the order of their names, then the backdrop, null where one is missing. Bodies whose texture is not there,
+    /// or cannot be read, have their own colour. A texture's fourth channel (the second of two) is alpha.
+    void draw(const Box& box, const ImageView& pixels, const ParallelFor& parallel_for = serial_for,
+              const std::vector<const Source*>& textures = {}) const;
+
+  private:
+    struct Impl;
+    std::unique_ptr<const Impl> m_impl;
+};
+
+}  // namespace anamorph

@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: Apache-2.0
+// Reads scripts of NUDES, the animation language of Herbison-Evans (Chapman 1986, section 2), into a Program.
+// The core opens no files: a host hands over what it has read, and names for messages.
+//
+// A script is free text: tokens between blanks, `*` starts a comment, keywords may be shortened (the first in
+// the order of the language's table that begins so is meant), `stop` ends it. Figure libraries are texts
+// without `stop`, included in two ways: ahead of the script (ScriptOptions::libraries), or where it says
+// `include NAME`, a statement that the original does not have.
+//
+//     declarations   figure F N ellipsoid{N}    ellipsoid E x y z    joint J E x y z E x y z
+//                    limit J xmin xmax ymin ymax zmin zmax    variables N variable{N}
+//                    subroutine S ... endsub S    speed k    view f0 f1    debug n    include NAME
+//     movements      DISTRIBUTION f0 f1 ACTION operands    call f0 f1 S
+//
+// Operands are numbers and names; any of them may be a variable. In the classic dialect every statement
+// begins on a new line, and what follows a complete one on its line is passed over with a warning;
+// ellipsoids, joints and figures may also be named before they are declared, a `-` anywhere in a number turns
+// its sign, and names that clash give warnings. In the strict dialect only subroutines may be named early,
+// and these are errors: clashes of names, declaring something twice, negative axes, joints that form a ring,
+// subroutines that call themselves, frames that run backwards.
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "anamorph/figure/language/program.h"
+
+namespace anamorph {
+
+/// Longer texts are refused.
+inline constexpr std::size_t kMaxScriptText = std::size_t{64} << 20;
+/// Programs with more of anything than this are refused.
+inline constexpr std::size_t kMaxScriptItems = std::size_t{1} << 20;
+
+/// An error makes a script unfit to be performed, a warning does not.
+enum class Severity { warning, error };
+
+/// What is wrong with a script, and where.
+struct Diagnostic {
+    Severity severity = Severity::error;
+    std::string file;
+    int line = 0, column = 0;     ///< from 1; bytes
+    std::string found, expected;  ///< empty where they do not apply
+    std::string message;
+    std::string included_from;  ///< where an included file is included; empty otherwise
+
+    /// One line: "walk.n:12:5: error: found \"hed\", expected an ellipsoid".
+    std::string text() const;
+};
+
+/// How a script is read, and where it finds others.
+struct ScriptOptions {
+    Dialect dialect = Dialect::classic;
+    /// The text of an included file; nothing when there is none of that name.
+    std::function<std::optional<std::string>(const std::string& name)> include;
+    std::vector<std::string> libraries;  ///< names of files to include ahead of the script
+};
+
+/// What was read, and what is wrong with it.
+struct Script {
+    Program program;  ///< to be performed only when ok()
+    std::vector<Diagnostic> diagnostics;
+
+    bool ok() const;
+};
+
+/// Never throws for what a script says: that is in the diagnostics, several of them where it can go on.
+Script parse_script(std::string_view text, std::string_view name, const ScriptOptions& options = {});
+
+/// The program alone. Throws Error with the first error's text.
+Program parse_program(std::string_view text, std::string_view name, const ScriptOptions& options = {});
+
+}  // namespace anamorph

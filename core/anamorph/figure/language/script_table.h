@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: Apache-2.0
+// The keywords of the language, in the order in which a shortened one is looked up.
+#pragma once
+
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include "anamorph/figure/language/program.h"
+
+namespace anamorph::script_table {
+
+enum class Keyword {
+    figure,
+    ellipsoid,
+    joint,
+    limit,
+    variables,
+    subroutine,
+    endsub,
+    speed,
+    view,
+    debug,
+    include,
+    stop,
+    distribution,  ///< and `call` where a statement begins
+    action,
+    ignored,  ///< a statement or action that is passed over
+    dead      ///< keywords of the first versions
+};
+
+struct Entry {
+    std::string_view word;
+    Keyword keyword;
+    Distribution distribution = Distribution::repeat;
+    Action action = Action::call;
+    /// What the operands of an action are, a letter each: n number, v variable, e ellipsoid, j joint, J joint
+    /// made here, f figure, F figure made here, a axis, s subroutine, i image, * anything.
+    std::string_view operands = {};
+    /// What follows the word, for people: a name for each operand.
+    std::string_view usage = {};
+};
+
+std::span<const Entry> entries();
+
+/// The first entry that begins with `word` and can begin a statement; nullptr where there is none.
+const Entry* find_statement(std::string_view word);
+/// The same among actions and what is ignored.
+const Entry* find_action(std::string_view word);
+/// Another entry that a shortened `word` may mean where `entry` is the first; nullptr where there is none.
+const Entry* rival_of(const Entry& entry, std::string_view word, bool among_actions);
+/// All that may stand in one of the two places.
+std::vector<std::string_view> words(bool of_actions);
+/// Whether `word` is a keyword, written in full.
+bool is_keyword(std::string_view word);
+
+}  // namespace anamorph::script_table

@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: Apache-2.0
+// A frame as strokes on a page, which all formats draw.
+#pragma once
+
+#include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
+#include <string>
+#include <vector>
+
+#include "anamorph/figure/body/figure_rows.h"
+#include "anamorph/figure/body/frame.h"
+#include "anamorph/figure/outline/outline_view.h"
+#include "anamorph/parallel_for.h"
+#include "anamorph/parameter/number_row.h"
+
+namespace anamorph {
+
+/// What becomes of hidden lines; draw: bodies are transparent.
+enum class HiddenLines { remove, dash, draw };
+/// What is drawn instead of outlines: the longest axis of each body, or lines from joint to joint.
+enum class Sticks { none, axes, joints };
+
+// The numbers that users set of drawings, beside those of figure_rows.h.
+/// Maximum chord error, in pixels. Files have four decimals, whose rounding is less than a hundredth of the
+/// least tolerance.
+inline constexpr NumberRow kDrawingTolRow{"tol", kOutlineTolRow.standard, 0.01};
+/// Width of lines, in pixels.
+inline constexpr NumberRow kLineWidthRow{"line-width", 1, 0.01, 1000};
+/// The gap on either side of a nearer line, in pixels.
+inline constexpr NumberRow kHaloRow{"halo", 0, 0, 1000};
+
+/// How a frame is drawn.
+struct DrawingOptions {
+    HiddenLines hidden = HiddenLines::remove;
+    Sticks sticks = Sticks::none;
+    bool crossings = false;                      ///< also the curves in which bodies pass through each other
+    double lod = kLevelOfDetailRow.standard;     ///< bodies no wider are dots and lines; pixels
+    double tol = kDrawingTolRow.standard;        ///< maximum chord error; pixels
+    double line_width = kLineWidthRow.standard;  ///< pixels
+    double halo = kHaloRow.standard;             ///< the gap on either side of a nearer line, in pixels
+    bool colors = false;                         ///< of the bodies; black otherwise
+    bool fill = false;                           ///< bodies are filled with their colors, from far to near
+};
+
+/// What a stroke stands for.
+enum class StrokeKind { visible, hidden, stick, dot, fill };
+
+/// A line on the page, or the closed line around what is filled.
+struct Stroke {
+    StrokeKind kind = StrokeKind::visible;
+    std::vector<glm::dvec2> points;  ///< on the page, pixels from its upper left, y down; a dot's is one
+    std::string body;                ///< its name
+    glm::dvec3 color{0};             ///< 0 to 255
+    double depth = 0;
+    int position = -1;  ///< of its body in the frame
+    /// Parts of the line beside which there is a gap, where there are gaps: all of it but where a line of a body that is joined
+    /// to its own ends at it.
+    std::vector<std::vector<glm::dvec2>> halo;
+};
+
+/// A frame on a page.
+struct Drawing {
+    int frame = 0;
+    glm::dvec2 size{0.0};  ///< of the page
+    double line_width = 1, halo = 0;
+    std::vector<Stroke> strokes;  ///< what is filled first, then hidden ones, each from far to near
+};
+
+/// The frame as `view` sees it, on a page of `size` pixels whose lower left corner is the origin of the view's
+/// screen. Throws Error as outlines and levels_of_detail do.
+Drawing draw(const FigureFrame& frame, const View& view, const glm::dvec2& size,
+             const DrawingOptions& options, const ParallelFor& parallel_for = serial_for);
+
+}  // namespace anamorph
