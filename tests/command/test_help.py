@@ -1,13 +1,13 @@
 # SPDX-License-Identifier: Apache-2.0
-"""anamorph help: what it prints is what the README's tables of keys say."""
+"""anamorph help: what it prints is what the tables of keys in docs/ say."""
 import os
+import pathlib
 import re
 import subprocess
 import unittest
 
 PROGRAM = os.environ["ANAMORPH"]
-with open(os.environ["ANAMORPH_README"], encoding="utf-8") as file:
-    README = file.read()
+PAGES = "".join(path.read_text(encoding="utf-8") for path in sorted(pathlib.Path(os.environ["ANAMORPH_DOCS"]).glob("*.md")))
 
 
 def run(*arguments):
@@ -17,7 +17,7 @@ def run(*arguments):
 
 def tables():
     """Of each operation its rows: key, default, unit, allowed, meaning."""
-    for name, table in re.findall(r"<!-- keys of (\w+): begin -->(.*?)<!-- keys of \1: end -->", README, re.DOTALL):
+    for name, table in re.findall(r"<!-- keys of (\w+): begin -->(.*?)<!-- keys of \1: end -->", PAGES, re.DOTALL):
         yield name, [[cell.strip().replace("`", "") for cell in line.split("|")[1:-1]]
                      for line in table.strip().split("\n")[2:]]
 
@@ -40,7 +40,7 @@ class Help(unittest.TestCase):
         toys = "  toy " in run("help")[1]
         for name, rows in tables():
             if toys and name in ("pano", "mosaic", "drape"):
-                continue  # the README's lists of projections and surfaces have no toys
+                continue  # the pages' lists of projections and surfaces have no toys
             page = " ".join(run("help", name)[1].split("defaults]:", 1)[1].split())
             expected = ""
             for key, default, unit, allowed, meaning in rows:

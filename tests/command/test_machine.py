@@ -11,7 +11,7 @@ import unittest
 import xml.etree.ElementTree as xml
 
 PROGRAM = os.environ["ANAMORPH_MACHINE"]
-README = os.environ["ANAMORPH_README"]
+PAGE = os.path.join(os.environ["ANAMORPH_DOCS"], "machines.md")
 
 
 def run(*arguments, text=""):
@@ -109,7 +109,7 @@ class Machine(unittest.TestCase):
         self.assertGreater(large["pixel processor"]["ms"], 100)
 
     def test_cycles_are_those_that_the_reference_says(self):
-        """The formulas of the README's table, with the numbers of its defaults."""
+        """The formulas of the page's table, with the numbers of its defaults."""
         for keys, picture in [({}, 512), ({"block": 4}, 512), ({"processors": 3, "multipliers": 4}, 300),
                               ({"surface_multiplies": 7, "division_cycles": 5, "pixel_units": 3, "block": 16}, 200),
                               ({"host_cycles": 123, "block_cycles": 11, "segment_cycles": 5, "segment": 16}, 256)]:
@@ -132,7 +132,7 @@ class Machine(unittest.TestCase):
             segments = (stages["address controller"]["cycles"] - blocks * value["block_cycles"]) / value["segment_cycles"]
             self.assertEqual(segments, int(segments))
             self.assertGreaterEqual(segments, blocks)
-        with open(README) as file:
+        with open(PAGE) as file:
             text = file.read()
         for formula in ("(`surface_multiplies` + 21) / `multipliers` + 2 `division_cycles`", "20 + 21 + 2 x 16 = 73",
                         "blocks times `block_cycles` + segments times `segment_cycles`", "pixels / `pixel_units`"):

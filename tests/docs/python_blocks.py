@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The Python of the README about VTK: each block, with what it takes for granted before it and a look at what it made behind.
-Runs where the README's own exports have said where the packages are, on a screen in memory, in the README's tree."""
+"""The Python of docs/vtk.md: each block, with what it takes for granted before it and a look at what it made behind.
+Runs where the page's own exports have said where the packages are, on a screen in memory, in the tree."""
 import shutil
 
 import numpy as np
@@ -17,7 +17,7 @@ TEXT = blocks.python_of("vtk")
 
 
 def run(name, names):
-    exec(compile(TEXT[name], "README.md, " + name, "exec"), names)
+    exec(compile(TEXT[name], "docs/vtk.md, " + name, "exec"), names)
     return names
 
 

@@ -1,6 +1,6 @@
 #!/bin/bash
 # SPDX-License-Identifier: Apache-2.0
-# The README's one-liners, as they stand there, make the pictures they name. They are run in a tree of their own with the
+# The one-liners of README.md and docs/, as they stand there, make the pictures they name. They are run in a tree of their own with the
 # names of the real one, in which the demo's pictures are.
 set -euo pipefail
 examples="$ANAMORPH_SOURCE_DIR/examples"
@@ -21,7 +21,7 @@ oiiotool "panorama.exr.pano?to=cylindrical&fov=360&size=256x64" -o slits.exr
 oiiotool $(for i in {1..32}; do echo slits.exr; done) --mosaic 1x32 -o room.exr
 
 "$PYTHON" "$blocks" oiio . >one_liners.sh
-[ "$(wc -l <one_liners.sh)" -eq 39 ]
+[ "$(wc -l <one_liners.sh)" -eq 44 ]
 if ! command -v ffmpeg >/dev/null; then
     sed -i '/^ffmpeg /d' one_liners.sh
 fi
@@ -44,6 +44,7 @@ iinfo hardware.exr | tr -d ' ' | grep ":480x360,"
 [ -s straight.jpg ]
 iinfo twirl.jpg | tr -d ' ' | grep ":480x480,3channel,uint8jpeg"
 iinfo unrolled.jpg | tr -d ' ' | grep ":480x240,3channel,uint8jpeg"
+iinfo tin.jpg | tr -d ' ' | grep ":480x480,3channel,uint8jpeg"
 iinfo saddle.jpg | tr -d ' ' | grep ":480x480,3channel,uint8jpeg"
 iinfo moebius.jpg | tr -d ' ' | grep ":480x480,3channel,uint8jpeg"
 [ "$(ls flag.*.jpg | wc -l)" -eq 12 ]
