@@ -181,11 +181,13 @@ TEST(TextMap, KeysOfTheirOwnDefineNames) {
         }
         return std::string("no error");
     };
-    EXPECT_EQ(error_of({{"c", "k"}, {"k", "3"}}), "c=k: column 1: expected a name that is known");
+    EXPECT_EQ(error_of({{"c", "k"}, {"k", "3"}}), "c=k: column 1: expected a name that is known, not k");
     EXPECT_EQ(error_of({{"c", ""}}), "c=: column 1: expected a number, a name or (");
     EXPECT_EQ(error_of({{"tool", "0.1"}}, "c=1"),
               "tool=0.1: there is no such parameter, and no formula uses the name");
-    EXPECT_EQ(error_of({{"width", "3"}}, "c=1"), "width=3: every formula has this name: must be another");
+    EXPECT_EQ(error_of({{"camra", "0,0,2"}}, "c=1"),
+              "camra=0,0,2: there is no such parameter, and no formula uses the name");
+    EXPECT_EQ(error_of({{"width", "3"}}, "c=width"), "width=3: every formula has this name: must be another");
     EXPECT_EQ(error_of({{"sin", "3"}}, "c=1"), "sin=3: must be a name that is no function's");
     EXPECT_EQ(error_of({{"2c", "3"}}, "c=1"), "2c=3: must be a name that is no function's");
 }
@@ -204,7 +206,7 @@ TEST(TextMap, ErrorsNameTheColumn) {
     };
     EXPECT_EQ(error_of("x+"), "u=x+: column 3: expected a number, a name or (");
     EXPECT_EQ(error_of("sin(x"), "u=sin(x: column 6: expected )");
-    EXPECT_EQ(error_of("x*foo"), "u=x*foo: column 3: expected a name that is known");
+    EXPECT_EQ(error_of("x*foo"), "u=x*foo: column 3: expected a name that is known, not foo");
     EXPECT_EQ(error_of("x<y"), "u=x<y: column 1: expected a number");
     EXPECT_EQ(error_of("1+(x<y)"), "u=1+(x<y): column 3: expected a number");
     EXPECT_EQ(error_of("if(x,1,2)"), "u=if(x,1,2): column 4: expected a condition");

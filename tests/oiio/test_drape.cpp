@@ -122,7 +122,7 @@ TEST_F(DrapeFiles, SaysWhatDoesNotGoTogether) {
              {"surface=formula&k=2", "k=2: there is no such parameter, and no formula uses the name"},
              {"surface=formula&u=2&pz=u", "u=2: every formula has this name"},
              {"k=2", "k=2: there is no such parameter: must be one of src, surface"},
-             {"surface=formula&pz=floor(9*u)&size=99", "the surface is torn or has no end near u="},
+             {"surface=formula&pz=floor(9*u)&size=99", "the surface is torn near u="},
              {"blend=sphere", "weights=0 numbers: must be as many as surfaces in blend, 1"},
              {"blend=cube&weights=1", "blend=cube: must be names of surfaces"},
              {"height=none.exr", "none.exr"},

@@ -651,7 +651,7 @@ class Parser {
         if (const auto function = functions().find(word); function != functions().end())
             return call(first, function->first, function->second);
         const auto name = m_names.find(word);
-        if (name == m_names.end()) fail(first, "a name that is known");
+        if (name == m_names.end()) fail(first, "a name that is known, not " + printable(word));
         name->second.used = true;
         return name->second.value;
     }
@@ -734,7 +734,6 @@ NamedValues names_of(Maker& m, const SurfaceSetting& setting) {
 std::set<std::string> define(Maker& maker, NamedValues& names, const std::vector<Assignment>& definitions) {
     std::set<std::string> given;
     for (const auto& [name, expression] : definitions) {
-        Parser::check_name(name, expression);
         if (!given.count(name) && names.count(name))
             throw Error(printable(name), printable(expression),
                         "every formula has this name: must be another");
@@ -745,20 +744,47 @@ std::set<std::string> define(Maker& maker, NamedValues& names, const std::vector
     return given;
 }
 
+/// Does a name stand in a text, as a word?
+bool has_word(std::string_view text, std::string_view name) {
+    for (std::size_t at = text.find(name); at != text.npos; at = text.find(name, at + 1)) {
+        const std::size_t end = at + name.size();
+        const bool begins = at == 0 || !continues_name(text[at - 1]);
+        if (begins && (end == text.size() || !continues_name(text[end]))) return true;
+    }
+    return false;
+}
+
+[[noreturn]] void throw_unused(const std::string& name, const std::string& value) {
+    throw Error(printable(name), printable(value),
+                "there is no such parameter, and no formula uses the name");
+}
+
+/// A misspelt key is to be told before its value makes no sense as a formula.
+void expect_words(const std::vector<Assignment>& definitions, const std::string& let,
+                  const std::vector<Assignment>& expressions) {
+    for (const auto& [name, value] : definitions) {
+        Parser::check_name(name, value);
+        bool stands = has_word(let, name);
+        for (const auto& [other, expression] : expressions) stands = stands || has_word(expression, name);
+        for (const auto& [other, expression] : definitions)
+            stands = stands || (other != name && has_word(expression, name));
+        if (!stands) throw_unused(name, value);
+    }
+}
+
 /// The expressions, each with the name that errors give it, after all definitions.
 std::vector<Value> values_of(Maker& maker, NamedValues& names, const std::vector<Assignment>& definitions,
                              const std::string& let, const std::vector<Assignment>& expressions) {
     std::set<std::string> fixed;
     for (const auto& [name, value] : names) fixed.insert(name);
+    expect_words(definitions, let, expressions);
     const std::set<std::string> given = define(maker, names, definitions);
     Parser::define(maker, names, "let", let, given, fixed);
     std::vector<Value> values;
     for (const auto& [name, expression] : expressions)
         values.push_back(Parser(maker, names, name, expression).expression());
     for (const auto& [name, expression] : definitions)
-        if (!names.at(name).used)
-            throw Error(printable(name), printable(expression),
-                        "there is no such parameter, and no formula uses the name");
+        if (!names.at(name).used) throw_unused(name, expression);
     return values;
 }
 

@@ -273,8 +273,10 @@ class FacetMaker {
         if (bends && patch.rounding <= 1000 * lost)
             throw Error("tol", shortest(m_tol),
                         "is less than what double makes of this surface from so near");
-        throw Error("the surface is torn or has no end near u=" + brief(u) + ", v=" + brief(1 - v) +
-                    ", as far as intervals can tell: must be continuous wherever it is defined");
+        const auto place = [](double at) { return brief(std::round(at * 1e9) / 1e9); };
+        throw Error("the surface is torn near u=" + place(u) + ", v=" + place(1 - v) +
+                    ", or grows beyond all bounds, or intervals cannot tell that it does not: must be "
+                    "continuous wherever it is defined");
     }
 
     SpacePoint space_point(double u, double v) const {
