@@ -54,7 +54,8 @@ TEST(Docs, ItsFilesCanBeRead) {
     const anamorph::WarpMap mesh = anamorph::parse_mesh_json(block_with("columns", "warp"), "docs");
     EXPECT_EQ(std::get<anamorph::ControlMesh>(mesh.shape).columns, 2);
     EXPECT_EQ(std::get<anamorph::ControlMesh>(mesh.shape).levels.size(), 1u);
-    const anamorph::Features features = anamorph::parse_features_json(block_with("features", "morph"), "docs");
+    const anamorph::Features features =
+        anamorph::parse_features_json(block_with("features", "morph"), "docs");
     EXPECT_EQ(features.shapes(), 2);
     EXPECT_GE(features.size(), 4u);
     EXPECT_EQ(features.border_weight(), 1);
