@@ -129,8 +129,8 @@ TEST(DrapeFilm, RefusesWhatIsNoNumberOfThePicture) {
         }
         return std::string();
     };
-    EXPECT_THAT(error(R"({"keys": {"none": [[0, 1]]}})"), HasSubstr("keys=none: must be keys of numbers"));
-    EXPECT_THAT(error(R"({"keys": {"filter": [[0, 1]]}})"), HasSubstr("keys=filter"));
+    EXPECT_THAT(error(R"({"keys": {"none": [[0, 1]]}})"), HasSubstr("none: is no key of numbers"));
+    EXPECT_THAT(error(R"({"keys": {"filter": [[0, 1]]}})"), HasSubstr("filter: is no key of numbers"));
     EXPECT_THAT(error(R"({"keys": {"turn": [[0, 0.5], [3, 1.5]]}})"), HasSubstr("frame 2: turn=1.16"));
     EXPECT_THAT(error(R"({"keys": {"turn": [[0, 0.5, 0.5]]}})"), HasSubstr("frame 0: turn"));
     EXPECT_THAT(error(R"({"keys": {"camera": [[0, 1, 1]]}})"), HasSubstr("frame 0: camera"));

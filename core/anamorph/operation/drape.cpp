@@ -14,6 +14,7 @@
 #include "anamorph/operation/drape_surface.h"
 #include "anamorph/operation/rows.h"
 #include "anamorph/operation/solved.h"
+#include "anamorph/parameter/text_file.h"
 #include "anamorph/surface/drape.h"
 #include "anamorph/surface/drape_rows.h"
 
@@ -304,9 +305,9 @@ class DrapeRequest {
             const bool defined =
                 std::any_of(own.begin(), own.end(), [&](const Assignment& a) { return a.key == keys.name; });
             if ((!number || keys.name == "height_smooth") && !defined)
-                throw Error("keys", printable(keys.name),
-                            "must be keys of numbers other than whole ones and height_smooth, or keys that "
-                            "define names of a formula");
+                text_file::fail(name, printable(keys.name),
+                                "is no key of numbers (but for whole ones and height_smooth), and none "
+                                "that defines a name of a formula");
         }
     }
     void choose_frames() {
