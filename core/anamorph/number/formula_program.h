@@ -75,6 +75,12 @@ struct DefinedInterval : Interval {
 inline DefinedInterval sqrt(const DefinedInterval& a) {
     return sqrt(Interval(a.lo < 0 && a.hi >= 0 ? 0 : a.lo, a.hi));
 }
+/// Of what is infinite there is none.
+inline void sin_cos(const DefinedInterval& a, DefinedInterval& s, DefinedInterval& c) {
+    const bool is_finite = std::isfinite(magnitude(a));
+    s = is_finite ? sin(a) : Interval::all();
+    c = is_finite ? cos(a) : Interval::all();
+}
 inline DefinedInterval log(const DefinedInterval& a) {
     return log(Interval(a.lo < 0 && a.hi >= 0 ? 0 : a.lo, a.hi));
 }
