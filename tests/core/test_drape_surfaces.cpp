@@ -346,6 +346,8 @@ std::vector<TextSurface> text_surfaces() {
              const bool hole = std::hypot(u - 0.5L, v - 0.5L) < Real(0.2);
              return Vector{hole ? NAN : u - 0.5L, v - 0.5L, std::sin(9 * u) * Real(0.1)};
          }},
+        // A constant that double does not hold.
+        {"far", over("pi"), raised([](Real, Real) { return test::kHalfTurn; }), {0.1, 0.1, 7}},
         // What ends at 0, where rounding might jump, and at acos(-1).
         {"ramps", over("mod(u,2)*.1+acos(1.7*(u-v))*.1"),
          [](Real u, Real v) {
@@ -458,7 +460,7 @@ TEST(DrapedSurface, WhatTextLeavesOutIsNotSeen) {
 }
 
 TEST(DrapedSurface, TextThatIsTornSaysWhere) {
-    for (const char* pz : {"if(u<0.3,0,0.2)", "floor(3.1*v)", "atan2(v-.5,u-.7)", "1/(u-.3)"}) {
+    for (const char* pz : {"if(u<0.3,0,0.2)", "floor(3.1*v)", "floor(9*u)", "atan2(v-.5,u-.7)", "1/(u-.3)"}) {
         Scene scene;
         scene.own = make_text_surface(text_of(kFlat.px, kFlat.py, pz));
         scene.pose.position = {0, 0, 5};

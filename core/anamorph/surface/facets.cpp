@@ -260,21 +260,14 @@ class FacetMaker {
 
     /// A patch that is as small as they get, and too large: the surface jumps there, or double tells no more of it.
     [[noreturn]] void refuse(const SurfacePatch& patch) const {
-        const double u = patch.u0(), v = patch.v0();
-        double lost = HUGE_VAL;
-        for (const std::int32_t corner : patch.corners) {
-            const SurfaceCorner& c = m_tree.corners()[static_cast<std::size_t>(corner)];
-            lost = std::min(lost, m_tree.surface().rounding(c.u, c.v));
-        }
         const bool bends = std::all_of(std::begin(patch.bends), std::end(patch.bends), [](const auto& bend) {
             return std::isfinite(bend.radius[0] + bend.radius[1] + bend.radius[2]);
         });
-        // On so small a patch a smooth surface is rounded alike.
-        if (bends && patch.rounding <= 1000 * lost)
+        if (bends)
             throw Error("tol", shortest(m_tol),
                         "is less than what double makes of this surface from so near");
         const auto place = [](double at) { return brief(std::round(at * 1e9) / 1e9); };
-        throw Error("the surface is torn near u=" + place(u) + ", v=" + place(1 - v) +
+        throw Error("the surface is torn near u=" + place(patch.u0()) + ", v=" + place(1 - patch.v0()) +
                     ", or grows beyond all bounds, or intervals cannot tell that it does not: must be "
                     "continuous wherever it is defined");
     }
