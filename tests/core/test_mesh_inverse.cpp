@@ -39,7 +39,7 @@ test::Findings expect_promise(const ControlMesh& given, const Size& source, cons
             for (int y = block.box.y0; y < block.box.y1; ++y)
                 for (int x = block.box.x0; x < block.box.x1; ++x) {
                     if (block.kind == Block::Kind::exact) continue;
-                    const InversePlan::Preimages all = plan.preimages(x + 0.5, y + 0.5);
+                    const Preimages all = plan.preimages(x + 0.5, y + 0.5);
                     unseen_folds += all.on_fold || all.count != (block.kind == Block::Kind::outside ? 0 : 1);
                 }
     EXPECT_EQ(unseen_folds, 0);

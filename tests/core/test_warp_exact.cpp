@@ -256,7 +256,7 @@ TEST(WarpExact, ManyLayersAreToldApart) {
         for (int c = 0; c <= kLayers; ++c) mesh.vertices.push_back({c % 2 ? 170.0 : 10.0, 130.0 * r});
     const InversePlan plan(Mesh(mesh, kSource, kTarget, 1), WarpScheme::automatic, 0.01, "mesh");
     EXPECT_EQ(plan.folds(90.5, 60.5), kLayers - 1);
-    const InversePlan::Preimages all = plan.preimages(90.5, 60.5);
+    const Preimages all = plan.preimages(90.5, 60.5);
     EXPECT_FALSE(all.best.turned);
     EXPECT_GE(all.best.at.x, 320.0 * (kLayers - 2) / kLayers);
 }

@@ -6,9 +6,10 @@
 #include <array>
 #include <cmath>
 
+#include "anamorph/geometry/bounds_tree.h"
 #include "anamorph/mesh/mesh.h"
-#include "anamorph/mesh/mesh_tree.h"
 #include "anamorph/plan/block.h"
+#include "anamorph/plan/sheets.h"
 
 namespace anamorph {
 
@@ -45,11 +46,6 @@ inline Bicubic power_form(const Patch& patch) {
     convert(&Point<double>::y, form.y);
     return form;
 }
-
-/// The interval [middle - half, middle + half] of a parameter.
-struct Part {
-    double middle, half;
-};
 
 /// The polynomial in powers on [s.middle -+ s.half] x [t.middle -+ t.half], as powers of parameters in [-1,
 /// 1].

@@ -11,30 +11,9 @@
 namespace anamorph {
 namespace {
 
-using Sheet = InversePlan::Sheet;
-
 // Parts of a mesh that turns over nearly everywhere need never end.
 constexpr std::size_t kMostSheets = std::size_t{1} << 21;
 constexpr int kMostCuts = 80;
-// Parameters of a part run a hair beyond it, at least.
-constexpr double kHair = 1e-9, kMostHair = 1.0 / 16;
-
-struct Matrix {
-    double a11, a12, a21, a22;
-
-    double determinant() const { return a11 * a22 - a12 * a21; }
-    Point<double> operator()(double x, double y) const { return {a11 * x + a12 * y, a21 * x + a22 * y}; }
-    /// The largest sum of a row's magnitudes.
-    double norm() const { return std::max(std::fabs(a11) + std::fabs(a12), std::fabs(a21) + std::fabs(a22)); }
-    /// Of magnitudes: what a box of half sizes (x, y) spans.
-    Point<double> span(double x, double y) const {
-        return {std::fabs(a11) * x + std::fabs(a12) * y, std::fabs(a21) * x + std::fabs(a22) * y};
-    }
-    Matrix inverse() const {
-        const double k = 1 / determinant();
-        return {a22 * k, -a12 * k, -a21 * k, a11 * k};
-    }
-};
 
 /// The map on a part of a cell, in powers of parameters in [-1, 1].
 Bicubic map_on(const Mesh& mesh, const MeshCell& cell, const Bicubic& powers, const Part& s, const Part& t) {
@@ -44,8 +23,10 @@ Bicubic map_on(const Mesh& mesh, const MeshCell& cell, const Bicubic& powers, co
     return f;
 }
 
+}  // namespace
+
 /// One cell, and what is known of its parts.
-class CellParts {
+class InversePlan::CellParts {
   public:
     CellParts(const Mesh& mesh, const MeshCell& cell, int number)
         : m_mesh(mesh),
@@ -57,34 +38,28 @@ class CellParts {
         m_exact = exact_rounding(mesh, cell, m_patch);
     }
 
-    struct Seen {
-        Bounds bounds;
-        double size;  ///< half of it
-        std::optional<Sheet> sheet;
-        bool cut_s;  ///< which way to cut if there is no sheet
-    };
-
-    const MeshCell& cell() const { return m_cell; }
-    const Patch& patch() const { return m_patch; }
     double width() const { return m_cell.x1 - m_cell.x0; }
     double height() const { return m_cell.y1 - m_cell.y0; }
+    Point<double> source(double s, double t) const {
+        return {m_cell.x0 + s * width(), m_cell.y0 + t * height()};
+    }
 
-    Seen see(const Part& s, const Part& t) const {
+    SeenPart see(const Part& s, const Part& t) const {
         const Bicubic f = map_on(m_mesh, m_cell, m_powers, s, t);
         const double rx = sum_of_magnitudes(f.x) - std::fabs(f.x[0][0]) + m_rounding,
                      ry = sum_of_magnitudes(f.y) - std::fabs(f.y[0][0]) + m_rounding;
-        Seen seen{{f.x[0][0] - rx, f.y[0][0] - ry, f.x[0][0] + rx, f.y[0][0] + ry},
-                  std::max(rx, ry),
-                  std::nullopt,
-                  true};
-        const Matrix a{f.x[1][0], f.x[0][1], f.y[1][0], f.y[0][1]};
+        SeenPart seen{{f.x[0][0] - rx, f.y[0][0] - ry, f.x[0][0] + rx, f.y[0][0] + ry},
+                      std::max(rx, ry),
+                      std::nullopt,
+                      true};
+        const Matrix2 a{f.x[1][0], f.x[0][1], f.y[1][0], f.y[0][1]};
         const double size = std::max(largest({a.a11, a.a12}), largest({a.a21, a.a22}));
         const bool regular = std::fabs(a.determinant()) > 1e-9 * size * size;
         const Bend bend = regular ? bend_of(f, a.inverse()) : Bend{};
         if (regular) {
             const Sheet sheet = sheet_of(a.inverse(), s, t, bend.reach);
-            if (bend.now + slope_rounding(a.inverse(), s, t) <= InversePlan::kContraction &&
-                sheet.hair <= kMostHair) {
+            if (bend.now + slope_rounding(a.inverse(), s, t) <= Sheet::kContraction &&
+                sheet.hair <= Sheet::kMostHair) {
                 seen.sheet = sheet;
                 return seen;
             }
@@ -106,8 +81,7 @@ class CellParts {
 
     /// A part that is left as a fold.
     Sheet fold(const Part& s, const Part& t) const {
-        const Point<double> at = m_mesh.inside(m_patch, s.middle, t.middle);
-        return {m_number, true, s.middle, t.middle, s.half, t.half, at, 0, 0, 0, 0, 0, 0, 0, 0, 0};
+        return Sheet::of_fold(m_number, s, t, m_mesh.inside(m_patch, s.middle, t.middle));
     }
 
   private:
@@ -115,7 +89,7 @@ class CellParts {
     struct Bend {
         double now = 0, after_s = 0, after_t = 0, reach = 0;
     };
-    static Bend bend_of(const Bicubic& f, const Matrix& y) {
+    static Bend bend_of(const Bicubic& f, const Matrix2& y) {
         double now[2] = {}, after_s[2] = {}, after_t[2] = {};
         Bend bend;
         for (int i = 0; i < 4; ++i)
@@ -141,24 +115,21 @@ class CellParts {
     /// Of N's slope. The rounding of all coefficients together is at most m_rounding; on a part of half sizes
     /// h and k they are shifted and scaled, so that a slope has h (1 + h)^2 (1 + k)^3 times 3 of it and the
     /// same the other way round, with h and k of at most 1/2.
-    double slope_rounding(const Matrix& y, const Part& s, const Part& t) const {
+    double slope_rounding(const Matrix2& y, const Part& s, const Part& t) const {
         return 8 * (s.half + t.half) * y.norm() * m_rounding;
     }
 
-    Sheet sheet_of(const Matrix& y, const Part& s, const Part& t, double reach) const {
+    Sheet sheet_of(const Matrix2& y, const Part& s, const Part& t, double reach) const {
         // Of z: the parameters s and t round, and the map in double errs; the iteration is a contraction.
-        const double noise = (y.norm() * m_exact + 0x1p-51 * (1 + 1 / std::min(s.half, t.half))) /
-                             (1 - InversePlan::kContraction);
-        const double hair = std::max(kHair, 4 * noise);
+        const double noise =
+            (y.norm() * m_exact + 0x1p-51 * (1 + 1 / std::min(s.half, t.half))) / (1 - Sheet::kContraction);
+        const double hair = std::max(Sheet::kHair, 4 * noise);
         const double diameter = 2 * std::hypot(s.half * width(), t.half * height());
         const double place = std::max(std::fabs(m_cell.x0), std::fabs(m_cell.x1)) +
                              std::max(std::fabs(m_cell.y0), std::fabs(m_cell.y1));
         Sheet sheet = fold(s, t);
         sheet.fold = false;
-        sheet.y11 = y.a11;
-        sheet.y12 = y.a12;
-        sheet.y21 = y.a21;
-        sheet.y22 = y.a22;
+        sheet.to_parameters = y;
         sheet.reach = reach + slope_rounding(y, s, t) + hair;
         sheet.hair = hair;
         sheet.noise = noise;
@@ -176,48 +147,7 @@ class CellParts {
     double m_rounding, m_exact;  ///< of the forms and of Mesh::inside, target pixels
 };
 
-/// body(half of s, t) or body(s, half of t) for both halves.
-template <class Body>
-void each_half(const Part& s, const Part& t, bool cut_s, const Body& body) {
-    for (const double side : {-0.5, 0.5}) {
-        const Part half_s{s.middle + side * s.half, 0.5 * s.half},
-            half_t{t.middle + side * t.half, 0.5 * t.half};
-        cut_s ? body(half_s, t) : body(s, half_t);
-    }
-}
-
-/// Cuts one patch into sheets; those that do not meet the target are left out.
-class Cutter {
-  public:
-    Cutter(const Mesh& mesh, const std::string& name, std::vector<Sheet>& sheets, std::vector<Bounds>& bounds)
-        : m_mesh(mesh), m_name(name), m_sheets(sheets), m_bounds(bounds) {}
-
-    void cut(const MeshCell& cell, int number) {
-        cut(CellParts(m_mesh, cell, number), {0.5, 0.5}, {0.5, 0.5}, 0);
-    }
-
-  private:
-    void cut(const CellParts& cell, const Part& s, const Part& t, int depth) {
-        const CellParts::Seen seen = cell.see(s, t);
-        if (!seen.bounds.meets({0, 0, double(m_mesh.to().width), double(m_mesh.to().height)})) return;
-        if (seen.sheet) return add(*seen.sheet, seen.bounds);
-        if (seen.size <= 0.5 * InversePlan::kFoldSize || depth == kMostCuts)
-            return add(cell.fold(s, t), seen.bounds);
-        each_half(s, t, seen.cut_s, [&](const Part& a, const Part& b) { cut(cell, a, b, depth + 1); });
-    }
-
-    void add(const Sheet& sheet, const Bounds& bounds) {
-        if (m_sheets.size() >= kMostSheets)
-            throw Error(m_name + ": the mesh turns over at too many places to be inverted");
-        m_sheets.push_back(sheet);
-        m_bounds.push_back(bounds);
-    }
-
-    const Mesh& m_mesh;
-    const std::string& m_name;
-    std::vector<Sheet>& m_sheets;
-    std::vector<Bounds>& m_bounds;
-};
+namespace {
 
 // ----------------------------------------------------------------------------------------------------------
 
@@ -385,30 +315,10 @@ class InversePlanner {
         return fold;
     }
 
-    /// Krawczyk's operator for all pixels of the block at once: z = w - N(z), and in a box about c
-    /// N(z) = N(c) +- contraction * its half size.
     std::optional<Near> narrowed(const Sheet& sheet) const {
-        const Matrix y{sheet.y11, sheet.y12, sheet.y21, sheet.y22};
-        const Point<double> w = y(m_x - sheet.at.x, m_y - sheet.at.y), span = y.span(m_hx, m_hy);
-        const auto cut = [&](double middle, double half_size) {
-            const double low = std::max(middle - half_size, -1 - sheet.hair),
-                         high = std::min(middle + half_size, 1 + sheet.hair);
-            return Part{0.5 * (low + high), 0.5 * (high - low)};
-        };
-        Near near{&sheet, cut(w.x, span.x + sheet.reach), cut(w.y, span.y + sheet.reach)};
-        if (near.s.half < 0 || near.t.half < 0) return std::nullopt;
-        constexpr int kSteps = 3;
-        for (int n = 0; n < kSteps; ++n) {
-            const double half_size = std::max(near.s.half, near.t.half);
-            if (half_size < 1.5 * std::max(span.x, span.y)) break;
-            const Point<double> c{near.s.middle, near.t.middle}, f = m_plan.on_sheet(sheet, c);
-            const Point<double> off = y(f.x - m_x, f.y - m_y);
-            const double slack = InversePlan::kContraction * half_size + sheet.hair;
-            near.s = cut(c.x - off.x, span.x + slack);
-            near.t = cut(c.y - off.y, span.y + slack);
-            if (near.s.half < 0 || near.t.half < 0) return std::nullopt;
-        }
-        return near;
+        const auto on_sheet = [&](const Point<double>& z) { return m_plan.on_sheet(sheet, z); };
+        const auto near = sheet.narrowed(m_x, m_y, m_hx, m_hy, on_sheet);
+        return near ? std::optional(Near{&sheet, near->first, near->second}) : std::nullopt;
     }
 
     /// A cell, and what is made of it.
@@ -429,7 +339,7 @@ class InversePlanner {
         KnownCell cell;
         Point<double> at;    ///< source pixels
         Bicubic powers;      ///< of the cell's map about it
-        Matrix to_source;    ///< M
+        Matrix2 to_source;   ///< M
         Point<double> span;  ///< of the ball of radius 1, source pixels
         Form<2> q[2];
         Form<3> c[2];
@@ -437,13 +347,13 @@ class InversePlanner {
     };
 
     /// The source point of the block's middle. False where there is none, or several.
-    bool find_middle(InversePlan::Preimage& at) const {
+    bool find_middle(Preimage& at) const {
         if (m_near.size() == 1) {
             const Sheet& only = *m_near.front().sheet;
             const KnownCell& cell = known(m_plan.cells()[static_cast<std::size_t>(only.cell)]);
             return m_plan.find(only, cell.patch, m_x, m_y, at);
         }
-        const InversePlan::Preimages found = m_plan.preimages(m_x, m_y);
+        const Preimages found = m_plan.preimages(m_x, m_y);
         at = found.best;
         return found.count == 1;
     }
@@ -451,15 +361,15 @@ class InversePlanner {
     /// See inverse.h. The error is infinite where nothing is proven.
     LocalInverse invert() {
         LocalInverse result;
-        InversePlan::Preimage at{};
+        Preimage at{};
         if (!find_middle(at)) return result;
         Middle middle{
             known(m_plan.cells()[static_cast<std::size_t>(at.cell)]), at.at, {}, {}, {}, {}, {}, {}};
         middle.powers = about(middle.cell, middle.at);
         const Bicubic& f = middle.powers;
-        const Matrix j{f.x[1][0], f.x[0][1], f.y[1][0], f.y[0][1]};
+        const Matrix2 j{f.x[1][0], f.x[0][1], f.y[1][0], f.y[0][1]};
         if (j.determinant() == 0) return result;
-        const Matrix ji = j.inverse();
+        const Matrix2 ji = j.inverse();
         middle.to_source = {ji.a11 * m_hx, ji.a12 * m_hy, ji.a21 * m_hx, ji.a22 * m_hy};
         middle.span = middle.to_source.span(1, 1);
         set_terms(middle);
@@ -502,7 +412,7 @@ class InversePlanner {
 
     /// Q, C and F: the patch's own, of what M makes of z.
     void set_terms(Middle& middle) const {
-        const Matrix& m = middle.to_source;
+        const Matrix2& m = middle.to_source;
         const Form<1> a{m.a11, m.a12}, b{m.a21, m.a22};
         const Form<2> aa = times(a, a), ab = times(a, b), bb = times(b, b);
         const Form<3> aaa = times(aa, a), aab = times(aa, b), abb = times(a, bb), bbb = times(bb, b);
@@ -560,7 +470,7 @@ class InversePlanner {
     /// z - Q + T + U, through M to source pixels. Fourth powers are economised: s^4 is within 1/8 of s^2 - 1/8.
     static void set_inverse(const Middle& middle, const Form<3> (&third)[2], const Form<4> (&fourth)[2],
                             LocalInverse& result) {
-        const Matrix& m = middle.to_source;
+        const Matrix2& m = middle.to_source;
         double dropped[2];
         for (int k = 0; k < 2; ++k) {
             auto& to = k ? result.y : result.x;
@@ -628,7 +538,7 @@ class InversePlanner {
     }
 
     /// How far from the block's middle, in its units, the sheets' source points can be.
-    double reach_of_sheets(const Point<double>& m, const Matrix& to_block) const {
+    double reach_of_sheets(const Point<double>& m, const Matrix2& to_block) const {
         double reach = 0;
         for (const Near& near : m_near) {
             const Sheet& sheet = *near.sheet;
@@ -708,7 +618,7 @@ class InversePlanner {
     /// [middle - radius, middle + radius] and [low, high], less the middle; a hair more.
     static Part common(double middle, double radius, double low, double high) {
         const double from = std::max(low - middle, -radius), to = std::min(high - middle, radius);
-        return {0.5 * (from + to), 0.5 * (to - from) + kHair};
+        return {0.5 * (from + to), 0.5 * (to - from) + Sheet::kHair};
     }
 
     const InversePlan& m_plan;
@@ -733,10 +643,13 @@ InversePlan::InversePlan(Mesh mesh, WarpScheme scheme, double tol, const std::st
     check_tol(tol);
     m_mesh.each_cell(0, 0, m_mesh.from().width, m_mesh.from().height,
                      [&](const MeshCell& cell) { m_cells.push_back(cell); });
-    std::vector<Bounds> bounds;
-    Cutter cutter(m_mesh, name, m_sheets, bounds);
-    for (std::size_t i = 0; i < m_cells.size(); ++i) cutter.cut(m_cells[i], static_cast<int>(i));
-    m_tree = BoundsTree(std::move(bounds));
+    SheetCutter cutter({0, 0, double(m_mesh.to().width), double(m_mesh.to().height)},
+                       {kFoldSize, kMostCuts, kMostSheets});
+    for (std::size_t i = 0; i < m_cells.size(); ++i)
+        if (!cutter.cut(cell(static_cast<int>(i))))
+            throw Error(name + ": the mesh turns over at too many places to be inverted");
+    m_sheets = std::move(cutter.sheets);
+    m_tree = BoundsTree(std::move(cutter.bounds));
 }
 
 void InversePlan::plan(const Box& box, int, Blocks& blocks) const {
@@ -756,44 +669,26 @@ Point<double> InversePlan::on_sheet(const Sheet& sheet, const Point<double>& z) 
                          sheet.s + sheet.hs * z.x, sheet.t + sheet.ht * z.y);
 }
 
-/// Does a sheet that is no fold come near a target point?
-bool InversePlan::reaches(const Sheet& sheet, double x, double y) const noexcept {
-    const Matrix to_sheet{sheet.y11, sheet.y12, sheet.y21, sheet.y22};
-    return largest(to_sheet(x - sheet.at.x, y - sheet.at.y)) <= 1 + sheet.reach;
+InversePlan::CellParts InversePlan::cell(int number) const {
+    return {m_mesh, m_cells[static_cast<std::size_t>(number)], number};
 }
 
-/// The source point on a sheet that is no fold, if there is one.
+bool InversePlan::find(const Sheet& sheet, double x, double y, Preimage& found) const noexcept {
+    return find(sheet, m_mesh.patch(m_cells[static_cast<std::size_t>(sheet.cell)]), x, y, found);
+}
+
 bool InversePlan::find(const Sheet& sheet, const Patch& patch, double x, double y,
                        Preimage& found) const noexcept {
-    if (!reaches(sheet, x, y)) return false;
-    const Matrix to_sheet{sheet.y11, sheet.y12, sheet.y21, sheet.y22};
-    const Point<double> first = to_sheet(x - sheet.at.x, y - sheet.at.y);
-    // Beyond the part by more than what is accepted, so that no end is taken for a solution.
-    const double end = 1 + 2 * sheet.hair;
-    const auto clamped = [&](double a, double b) {
-        return Point<double>{std::clamp(a, -end, end), std::clamp(b, -end, end)};
+    Point<double> z{};
+    const auto f = [&](const Point<double>& at) {
+        return m_mesh.inside(patch, sheet.s + sheet.hs * at.x, sheet.t + sheet.ht * at.y);
     };
-    Point<double> z = clamped(first.x, first.y);
-    double moved = HUGE_VAL;
-    // Each step gains two bits, or at least one beyond the part's edges.
-    for (int n = 0; n < 64 && !(moved <= sheet.noise); ++n) {
-        const Point<double> f = m_mesh.inside(patch, sheet.s + sheet.hs * z.x, sheet.t + sheet.ht * z.y);
-        const Point<double> step = to_sheet(f.x - x, f.y - y);
-        // A solution is no farther from where the step leads than its length times rho / (1 - rho), and rounding
-        // is less than the hair.
-        if (largest({z.x - step.x, z.y - step.y}) >
-            end + kContraction / (1 - kContraction) * largest(step) + sheet.hair)
-            return false;
-        const Point<double> next = clamped(z.x - step.x, z.y - step.y);
-        moved = largest(next - z);
-        z = next;
-    }
-    if (!(moved <= sheet.noise && largest(z) <= 1 + sheet.hair)) return false;
+    if (!sheet.find(x, y, f, z)) return false;
     const bool at_edge = largest(z) >= 1 - 2 * sheet.hair;
     found = {{patch.x0 + (sheet.s + sheet.hs * z.x) * (patch.x1 - patch.x0),
               patch.y0 + (sheet.t + sheet.ht * z.y) * (patch.y1 - patch.y0)},
              sheet.cell,
-             to_sheet.determinant() * m_mesh.orientation() < 0,
+             sheet.to_parameters.determinant() * m_mesh.orientation() < 0,
              sheet.error,
              at_edge ? sheet.edge : 0};
     return true;
@@ -810,85 +705,8 @@ bool InversePlan::before(const Preimage& a, const Preimage& b) const noexcept {
     return a.at.y != b.at.y ? a.at.y > b.at.y : a.at.x > b.at.x;
 }
 
-/// Collects the source points of one pixel.
-class InversePlan::Search {
-  public:
-    Search(const InversePlan& plan, double x, double y) : m_plan(plan), m_x(x), m_y(y) {}
-
-    void look(const Sheet& sheet) {
-        const MeshCell& cell = m_plan.m_cells[static_cast<std::size_t>(sheet.cell)];
-        if (sheet.fold)
-            return look(CellParts(m_plan.m_mesh, cell, sheet.cell), {sheet.s, sheet.hs}, {sheet.t, sheet.ht});
-        if (!m_plan.reaches(sheet, m_x, m_y)) return;
-        Preimage found{};
-        if (m_plan.find(sheet, m_plan.m_mesh.patch(cell), m_x, m_y, found)) take(found);
-    }
-
-    Preimages result() {
-        for (int k = 0; k < m_edges; ++k) compare(m_on_edge[k]);
-        // What cannot be told apart may be any of them.
-        m_all.error = m_all.on_fold ? std::hypot(m_places.x1 - m_places.x0, m_places.y1 - m_places.y0)
-                                    : m_all.best.error;
-        return m_all;
-    }
-
-  private:
-    /// Cuts a fold on, as far as it takes.
-    void look(const CellParts& cell, const Part& s, const Part& t) {
-        const CellParts::Seen seen = cell.see(s, t);
-        if (!seen.bounds.meets({m_x, m_y, m_x, m_y})) return;
-        ++m_visits;
-        if (seen.sheet) {
-            Preimage found{};
-            if (m_plan.find(*seen.sheet, cell.patch(), m_x, m_y, found)) take(found);
-            return;
-        }
-        const double size = std::max(s.half * cell.width(), t.half * cell.height());
-        if (size <= kUndecided || m_visits >= kMostVisits) return give_up(cell.fold(s, t), cell);
-        each_half(s, t, seen.cut_s, [&](const Part& a, const Part& b) { look(cell, a, b); });
-    }
-
-    /// A part that may hold a source point or none.
-    void give_up(const Sheet& part, const CellParts& cell) {
-        m_all.on_fold = true;
-        const Point<double> at{cell.cell().x0 + part.s * cell.width(),
-                               cell.cell().y0 + part.t * cell.height()};
-        const double size = 2 * std::hypot(part.hs * cell.width(), part.ht * cell.height());
-        take({at, part.cell, false, size, 2 * size});
-    }
-
-    void take(const Preimage& found) {
-        const double e = found.error;
-        const Bounds place{found.at.x - e, found.at.y - e, found.at.x + e, found.at.y + e};
-        m_all.count == 0 && m_edges == 0 ? m_places = place : (m_places.add(place), m_places);
-        if (found.edge == 0) return compare(found);
-        for (int k = 0; k < m_edges; ++k) {
-            Preimage& other = m_on_edge[k];
-            if (largest(other.at - found.at) > other.edge + found.edge) continue;
-            // The same, from two parts that share an edge.
-            if (m_plan.before(found, other)) other = found;
-            return;
-        }
-        // No room to compare: counted, and maybe again.
-        if (m_edges == kMostEdges) m_all.on_fold = true;
-        m_edges < kMostEdges ? void(m_on_edge[m_edges++] = found) : compare(found);
-    }
-    void compare(const Preimage& found) {
-        if (m_all.count++ == 0 || m_plan.before(found, m_all.best)) m_all.best = found;
-    }
-
-    static constexpr int kMostEdges = 64;
-
-    const InversePlan& m_plan;
-    double m_x, m_y;
-    Preimages m_all{};
-    Bounds m_places{};
-    Preimage m_on_edge[kMostEdges];
-    int m_edges = 0, m_visits = 0;
-};
-
-InversePlan::Preimages InversePlan::preimages(double x, double y) const noexcept {
-    Search search(*this, x, y);
+Preimages InversePlan::preimages(double x, double y) const noexcept {
+    PreimageSearch search(*this, x, y);
     m_tree.each({x, y, x, y}, [&](std::int32_t i) { search.look(m_sheets[static_cast<std::size_t>(i)]); });
     return search.result();
 }
@@ -909,7 +727,7 @@ Jacobian InversePlan::jacobian(double x, double y, int) const noexcept {
     const MeshCell& cell = m_cells[static_cast<std::size_t>(all.best.cell)];
     const Point<J> f =
         m_mesh.at(m_mesh.patch(cell), J::variable(all.best.at.x, 1, 0), J::variable(all.best.at.y, 0, 1));
-    const Matrix inverse = Matrix{f.x.c[1], f.x.c[2], f.y.c[1], f.y.c[2]}.inverse();
+    const Matrix2 inverse = Matrix2{f.x.c[1], f.x.c[2], f.y.c[1], f.y.c[2]}.inverse();
     return {inverse.a11, inverse.a21, inverse.a12, inverse.a22};
 }
 

@@ -12,9 +12,9 @@
 
 #include <array>
 
+#include "anamorph/geometry/bounds_tree.h"
 #include "anamorph/geometry/size.h"
 #include "anamorph/mesh/mesh.h"
-#include "anamorph/mesh/mesh_tree.h"
 
 namespace anamorph {
 
