@@ -8,9 +8,11 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
 
 #include "anamorph/plan/block.h"
+#include "anamorph/plan/costs.h"
 #include "anamorph/plan/formula_map.h"
 #include "anamorph/plan/scheme.h"
 
@@ -24,6 +26,8 @@ struct PlanOptions {
     bool cull = true;
     /// Blocks may run over the seam of a source that closes on itself, with x beyond its edges.
     bool across_seam = true;
+    /// What things are taken to cost: by default costs_of() the map.
+    std::optional<PlanCosts> costs = {};
 };
 
 /// A computed block as it is read near its middle: where, the source point there, and its bases.

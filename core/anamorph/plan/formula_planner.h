@@ -25,14 +25,6 @@ inline constexpr int kBlockWidth = BlockWriter::kWidth, kBlockHeight = BlockWrit
 // Below this a polynomial costs more than its pixels.
 inline constexpr int kFloor = 8, kResidualFloor = 4;
 
-// A bound costs as much as so many exact pixels, and is not tried over boxes that it could not pay for.
-inline constexpr int kBoundCost = 170, kBoundPixels = 512;
-// And so many more for each further one at once.
-inline constexpr int kFurtherCost = 10;
-// Where only the fastest way is asked for, bounds may cost more than they have saved so far by this part of
-// the region's pixels.
-inline constexpr double kCredit = 1.0 / 16;
-
 // What a Taylor polynomial goes through once its coefficients are known, in units of rounding of their sum:
 // moved and scaled to a part of its box, 25 operations for each variable, of which the shift's own rounding
 // counts four times more, on magnitudes that a part's outermost pixel may double; rearranged in Chebyshev
@@ -52,23 +44,14 @@ inline constexpr int kPrecisePixels = 64;
 // Long double is at most so many times more precise: 11 bits less those by which constants are known worse.
 inline constexpr double kPreciseGain = 512;
 
-// A Taylor polynomial costs as much as so many exact pixels. A pixel whose polynomial is evaluated in double costs
-// such a part of one more than in float.
-inline constexpr double kPolynomialCost = 40, kDoubleCost = 0.3;
-// And so many more where what rounding costs it is found for it alone.
-inline constexpr double kRoundingCost = 60;
 // Blocks are not counted in more parts than this.
 inline constexpr int kMostParts = 256;
 // The part of the tolerance that a remainder over a box may take up for a polynomial on it; and for one that
 // serves parts of it.
 inline constexpr double kTailShare = 0.125, kPartShare = 0.25;
 
-// What a pixel of a polynomial saves, as a part of an exact pixel, where it could be direct instead, in float or in double.
-inline constexpr double kDirectSaving = 2.0 / 16, kPreciseSaving = 4.0 / 16;
 // Where a block in the middle of a box misses it by so much, others of it are not looked at.
 inline constexpr double kHopeless = 4;
-// To look whether direct blocks hold the tolerance costs as much as so many exact pixels.
-inline constexpr int kDirectCost = 60;
 
 inline int pixels_of(const Box& box) {
     return box.width() * box.height();
@@ -138,13 +121,14 @@ class FormulaPlanner {
                    int piece, Blocks& blocks, Records<Local>& records)
         : m_map(map),
           m_options(options),
+          m_costs(options.costs.value_or(costs_of<Map>())),
           m_orders(orders),
           m_piece(piece),
           m_blocks(blocks),
           m_records(records),
           m_exact(options.scheme == Scheme::exact || options.tol == 0),
           m_goal(m_exact ? std::min(options.tol > 0 ? options.tol : kExactError, kExactError) : options.tol),
-          m_balance(kCredit * pixels_of(region)),
+          m_balance(m_costs.credit * pixels_of(region)),
           m_over_direct(m_balance),
           m_margin(options.scheme == Scheme::residual ? 0 : 0.5) {}
 
@@ -180,7 +164,7 @@ class FormulaPlanner {
     bool is_free() const { return m_options.scheme == Scheme::automatic || m_exact; }
     /// May a bound over the box pay? Where only the fastest way is asked for.
     bool worth_a_bound(const Box& box) const {
-        return worth_a_polynomial() && (!is_free() || pixels_of(box) * saving() >= kBoundPixels);
+        return worth_a_polynomial() && (!is_free() || pixels_of(box) * saving() >= m_costs.bound_pixels);
     }
     bool worth_a_polynomial() const { return !is_free() || (m_direct ? m_over_direct : m_balance) >= 0; }
     /// What a polynomial's pixel saves, in exact pixels.
@@ -239,7 +223,7 @@ class FormulaPlanner {
             Box middle = is_block(box) ? box : middle_of(box);
             const auto error_in = [&](auto real, const Box& of) {
                 using Real = decltype(real);
-                m_balance -= kDirectCost;
+                m_balance -= m_costs.direct_trial;
                 const NearReading found = read_near<Real>(m_map, of, local_about(of), m_orders, m_bases);
                 m_read_as_written = m_read_as_written && is_read_as_written<Real>(found, m_orders);
                 return found.error;
@@ -256,17 +240,18 @@ class FormulaPlanner {
                 middle = part_of(middle);
                 error = m_exact ? error_in(0.0, middle) : error_in(0.0f, middle);
             }
-            if (m_exact) return error <= m_goal ? expect(true, kPreciseSaving) : error;
-            if (error <= m_goal) return expect(false, kDirectSaving);
+            if (m_exact) return error <= m_goal ? expect(true, m_costs.precise_pixel) : error;
+            if (error <= m_goal) return expect(false, m_costs.direct_pixel);
             // Where float holds it in smaller blocks only, a polynomial saves more.
             const auto in_parts = [&] {
                 Box part = middle;
                 while (pixels_of(part) >= 2 * kLeastInFloat) part = part_of(part);
                 return error_in(0.0f, part) <= m_goal;
             };
-            if (serves_in_float(middle, error, m_goal) && in_parts()) return expect(false, kPreciseSaving);
+            if (serves_in_float(middle, error, m_goal) && in_parts())
+                return expect(false, m_costs.precise_pixel);
             if (error < HUGE_VAL) error = error_in(0.0, middle);
-            return error <= m_goal ? expect(true, kPreciseSaving) : error;
+            return error <= m_goal ? expect(true, m_costs.precise_pixel) : error;
         }
         return 0;
     }
@@ -278,7 +263,7 @@ class FormulaPlanner {
         const Box middle = middle_of(box);
         // Bounds may cost as much again.
         const auto pays = [&](double blocks) {
-            return !(2 * kPolynomialCost * blocks >= pixels_of(middle) * m_direct->saving);
+            return !(2 * m_costs.polynomial * blocks >= pixels_of(middle) * m_direct->saving);
         };
         const Point<J> p = m_map(J::variable(0.5 * (middle.x0 + middle.x1), half(middle.width()), 0),
                                  J::variable(0.5 * (middle.y0 + middle.y1), 0, half(middle.height())), local);
@@ -548,7 +533,7 @@ class FormulaPlanner {
     }
     /// Of up to kJets boxes.
     void know(std::span<const Box> boxes, const Local& local, Known* known) {
-        pay(kBoundCost + kFurtherCost * (static_cast<double>(boxes.size()) - 1));
+        pay(m_costs.bound + m_costs.further_bound * (static_cast<double>(boxes.size()) - 1));
         Box middles[simd::kJets];
         const auto enclosed = enclose_all(boxes, local);
         bool single = true, blocks = true;
@@ -630,7 +615,7 @@ class FormulaPlanner {
         const Fit fit(in_middle);
         const double error = cheaper_in_double(middle, fit) ? 0 : fit.error;
         const double blocks = pixels_of(box) / double{kBlockWidth * kBlockHeight};
-        return blocks * (parts(error, tail) - parts(error, least)) * kPolynomialCost <= 2 * kBoundCost;
+        return blocks * (parts(error, tail) - parts(error, least)) * m_costs.polynomial <= 2 * m_costs.bound;
     }
     static Box middle_of(const Box& box) {
         const int x0 = (box.x0 + box.x1) / 2, y0 = (box.y0 + box.y1) / 2;
@@ -642,7 +627,8 @@ class FormulaPlanner {
     bool cheaper_in_double(const Box& box, const Fit& fit) const {
         if (m_direct) return false;
         const double finer = BlockWriter::cubic_rounding(fit.x.c, fit.y.c) / m_options.tol;
-        return kPolynomialCost * std::max(parts(fit.error, 0), finer * finer) >= kDoubleCost * pixels_of(box);
+        return m_costs.polynomial * std::max(parts(fit.error, 0), finer * finer) >=
+               m_costs.double_pixel * pixels_of(box);
     }
 
     /// Into how many parts a block is cut until a cubic holds the tolerance: its error falls with the fourth
@@ -665,7 +651,7 @@ class FormulaPlanner {
     };
     Expansion expand(const Box& box, const Local& local, const Bound& bound, const Taylor& taylor) {
         const bool shares = bound.rounding < HUGE_VAL;
-        pay(shares ? kPolynomialCost : kPolynomialCost + kRoundingCost);
+        pay(shares ? m_costs.polynomial : m_costs.polynomial + m_costs.rounding);
         const double rounding =
             shares ? bound.rounding : rounding_over(box, half(box.width()), half(box.height()), local);
         return {box, taylor, tail_over(box, bound) + rounding};
@@ -694,7 +680,7 @@ class FormulaPlanner {
             const bool of_one = p.width <= kBlockWidth && p.height <= kBlockHeight;
             if (tail <= (of_one ? kTailShare : kPartShare) * m_options.tol) return p;
             p.are = p.width <= kFloor && p.height <= kFloor ? Parts::left : Parts::renewed;
-            const bool dear = parts(0, tail) * kPolynomialCost > 2 * kBoundCost;
+            const bool dear = parts(0, tail) * m_costs.polynomial > 2 * m_costs.bound;
             if (p.are == Parts::left || (dear && p.width * p.height <= kBlockWidth * kBlockHeight)) return p;
             bool vertical_cut = tail_over(0.5 * hx, hy, bound) <= tail_over(hx, 0.5 * hy, bound);
             if (vertical_cut ? p.width <= kFloor : p.height <= kFloor) vertical_cut = !vertical_cut;
@@ -877,7 +863,7 @@ class FormulaPlanner {
         c.x[0] -= block.base_x;
         c.y[0] -= block.base_y;
         finish(box, m_map.source_piece(local));
-        pay(kDoubleCost * pixels_of(box));
+        pay(m_costs.double_pixel * pixels_of(box));
         m_blocks.back().data = &m_records;
         m_blocks.back().record = static_cast<int>(m_records.precise.size()) - 1;
         return true;
@@ -974,6 +960,7 @@ class FormulaPlanner {
 
     const Map& m_map;
     const PlanOptions& m_options;
+    PlanCosts m_costs;
     ReadOrders m_orders;
     bool m_read_as_written = true;  ///< would direct blocks read the bases that are written for them?
     int m_piece;

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: Apache-2.0
+// What the ways to plan and to draw a map cost, by which planners choose among them. A cost that is wrong makes pictures slower,
+// never a bound.
+#pragma once
+
+namespace anamorph {
+
+/// In exact pixels of the map. The defaults are those of panoramas.
+struct PlanCosts {
+    double bound = 170;         ///< a bound over a box
+    double further_bound = 10;  ///< each further one at once
+    /// Where only the fastest way is asked for, what bounds may cost beyond what they have saved so far: a part of the region's pixels.
+    double credit = 1.0 / 16;
+    double bound_pixels = 512;    ///< a box of fewer is not bounded: that could not pay
+    double polynomial = 40;       ///< a Taylor polynomial
+    double rounding = 60;         ///< to find for a block alone what rounding costs it
+    double double_pixel = 0.3;    ///< what a polynomial's pixel costs more in double than in float
+    double direct_trial = 60;     ///< to look whether direct blocks hold the tolerance
+    double direct_pixel = 0.125;  ///< what a polynomial's pixel saves where it could be direct, in float
+    double precise_pixel = 0.25;  ///< or in double
+};
+
+/// Those of a map, unless it has its own.
+template <class Map>
+PlanCosts costs_of() {
+    if constexpr (requires { Map::kCosts; })
+        return Map::kCosts;
+    else
+        return {};
+}
+
+}  // namespace anamorph
