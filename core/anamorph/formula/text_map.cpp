@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "anamorph/geometry/count_pixels.h"
 #include "anamorph/number/program_rows.h"
 
 namespace anamorph {
@@ -45,25 +46,23 @@ Certainty TextMap::is_defined(const Box& box) const {
 std::int64_t TextMap::undefined_pixels(const Box& box) const {
     // Of fewer pixels, their own points cost no more than intervals.
     constexpr int kFew = 16;
-    const std::int64_t all = std::int64_t{box.width()} * box.height();
-    if (const Certainty defined = is_defined(box); defined != Certainty::open)
-        return defined == Certainty::yes ? 0 : all;
-    if (box.width() <= kFew && box.height() <= kFew) {
+    const auto is_undefined = [&](const Box& b) {
+        const Certainty defined = is_defined(b);
+        return defined == Certainty::yes  ? Certainty::no
+               : defined == Certainty::no ? Certainty::yes
+                                          : defined;
+    };
+    const auto is_small = [](const Box& b) { return b.width() <= kFew && b.height() <= kFew; };
+    return count_pixels(box, is_undefined, is_small, [&](const Box& b) {
         std::int64_t count = 0;
         double x[kFew], y[kFew];
         std::int32_t piece[kFew];
-        for (int row = box.y0; row < box.y1; ++row) {
-            exact_row(box.x0 + 0.5, row + 0.5, box.width(), x, y, piece);
-            count += std::count(piece, piece + box.width(), -1);
+        for (int row = b.y0; row < b.y1; ++row) {
+            exact_row(b.x0 + 0.5, row + 0.5, b.width(), x, y, piece);
+            count += std::count(piece, piece + b.width(), -1);
         }
         return count;
-    }
-    Box first = box, second = box;
-    if (box.width() >= box.height())
-        first.x1 = second.x0 = box.x0 + box.width() / 2;
-    else
-        first.y1 = second.y0 = box.y0 + box.height() / 2;
-    return undefined_pixels(first) + undefined_pixels(second);
+    });
 }
 
 }  // namespace anamorph

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstdint>
 
+#include "anamorph/geometry/count_pixels.h"
 #include "anamorph/mesh/hermite.h"
 #include "anamorph/plan/block_writer.h"
 
@@ -42,16 +43,11 @@ inline int sign_of_determinant(const Bicubic& f, double rounding) {
 /// count(box) looks at the pixels of a small box one by one.
 template <class Sign, class Count>
 std::int64_t count_folded(const Box& box, const Sign& sign, const Count& count) {
-    const int all = sign(box);
-    if (all > 0) return 0;
-    if (all < 0) return std::int64_t{box.width()} * box.height();
-    if (BlockWriter::below_floor(box)) return count(box);
-    Box first = box, second = box;
-    if (box.width() > box.height())
-        first.x1 = second.x0 = (box.x0 + box.x1) / 2;
-    else
-        first.y1 = second.y0 = (box.y0 + box.y1) / 2;
-    return count_folded(first, sign, count) + count_folded(second, sign, count);
+    const auto certainty = [&](const Box& b) {
+        const int all = sign(b);
+        return all > 0 ? Certainty::no : all < 0 ? Certainty::yes : Certainty::open;
+    };
+    return count_pixels(box, certainty, BlockWriter::below_floor, count);
 }
 
 }  // namespace anamorph
