@@ -701,7 +701,8 @@ class Parser {
 };
 
 NamedValues names_of(Maker& m, const FormulaSetting& setting) {
-    const double width = setting.picture.width, height = setting.picture.height;
+    const Size& place = setting.pushes ? setting.source : setting.picture;
+    const double width = place.width, height = place.height;
     const Value x = m.x(), y = m.y(), per_half = m.number(0.5 * std::min(width, height));
     const Value px = m.quotient(m.difference(x, m.number(0.5 * width)), per_half),
                 py = m.quotient(m.difference(m.number(0.5 * height), y), per_half);
@@ -713,8 +714,8 @@ NamedValues names_of(Maker& m, const FormulaSetting& setting) {
             {"py", {py}},
             {"r", {m.root(m.sum(m.square(px), m.square(py)))}},
             {"a", {m.angle(py, px)}},
-            {"width", {m.number(width)}},
-            {"height", {m.number(height)}},
+            {"width", {m.number(setting.picture.width)}},
+            {"height", {m.number(setting.picture.height)}},
             {"src_width", {m.number(setting.source.width)}},
             {"src_height", {m.number(setting.source.height)}},
             {"frame", {m.number(setting.frame)}},
@@ -815,8 +816,9 @@ PlaneFormula parse_formula(const FormulaText& text, const FormulaSetting& settin
     std::vector<Value> point =
         values_of(maker, names, text.definitions, text.let, {{"u", text.u}, {"v", text.v}});
     if (setting.in_fractions) {
-        point[0] = maker.product(point[0], maker.number(setting.source.width));
-        point[1] = maker.product(point[1], maker.number(setting.source.height));
+        const Size& to = setting.pushes ? setting.picture : setting.source;
+        point[0] = maker.product(point[0], maker.number(to.width));
+        point[1] = maker.product(point[1], maker.number(to.height));
     }
     const std::optional<Result> domain = domain_of(maker, point);
     const Result positive = domain ? *domain : graph.number(1);

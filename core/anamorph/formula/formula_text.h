@@ -14,6 +14,8 @@
 //   src_width src_height    of the source
 //   frame                   a number that callers give
 //
+// (where a formula pushes, x, y, s, t, px, py, r and a are of the source, and u and v pixels of the picture)
+//
 // those of formulas of a surface:
 //
 //   u v                     the point of the picture that is laid on it: from 0 at the left to 1, from 0 at the bottom to 1
@@ -41,7 +43,7 @@ namespace anamorph {
 
 /// What users write. Each expression is named in errors by the member that it stands in, or by the name that it defines.
 struct FormulaText {
-    std::string u = "x", v = "y";  ///< source pixels
+    std::string u = "x", v = "y";  ///< source pixels; target pixels of what pushes
     /// Names with their expressions, before `let`: what that defines them to be does not count.
     std::vector<Assignment> definitions;
     std::string let;  ///< "name=expression;name=expression"
@@ -51,13 +53,15 @@ struct FormulaText {
 struct FormulaSetting {
     Size picture, source;
     double frame = 0;
-    bool in_fractions = false;  ///< u and v are in parts of the source's width and height
+    bool in_fractions =
+        false;  ///< u and v are in parts of the source's width and height; of the picture's where it pushes
+    bool pushes = false;  ///< the formula leads from the source to the picture
 };
 
 /// A text as programs.
 struct PlaneFormula {
-    FormulaProgram point;   ///< u and v, in source pixels
-    FormulaProgram domain;  ///< positive, twice, where there is a source point
+    FormulaProgram point;   ///< u and v, in source pixels; in target pixels where it pushes
+    FormulaProgram domain;  ///< positive, twice, where they have values
     bool is_everywhere;     ///< the domain is the whole plane
 };
 

@@ -12,7 +12,7 @@ namespace anamorph {
 namespace {
 
 // Parts of a mesh that turns over nearly everywhere need never end.
-constexpr std::size_t kMostSheets = std::size_t{1} << 21;
+constexpr std::size_t kMostParts = std::size_t{1} << 22;
 constexpr int kMostCuts = 80;
 
 /// The map on a part of a cell, in powers of parameters in [-1, 1].
@@ -44,7 +44,7 @@ class InversePlan::CellParts {
         return {m_cell.x0 + s * width(), m_cell.y0 + t * height()};
     }
 
-    SeenPart see(const Part& s, const Part& t) const {
+    SeenPart see(const Part& s, const Part& t, const Bounds&) const {
         const Bicubic f = map_on(m_mesh, m_cell, m_powers, s, t);
         const double rx = sum_of_magnitudes(f.x) - std::fabs(f.x[0][0]) + m_rounding,
                      ry = sum_of_magnitudes(f.y) - std::fabs(f.y[0][0]) + m_rounding;
@@ -644,7 +644,7 @@ InversePlan::InversePlan(Mesh mesh, WarpScheme scheme, double tol, const std::st
     m_mesh.each_cell(0, 0, m_mesh.from().width, m_mesh.from().height,
                      [&](const MeshCell& cell) { m_cells.push_back(cell); });
     SheetCutter cutter({0, 0, double(m_mesh.to().width), double(m_mesh.to().height)},
-                       {kFoldSize, kMostCuts, kMostSheets});
+                       {kFoldSize, kMostCuts, kMostParts});
     for (std::size_t i = 0; i < m_cells.size(); ++i)
         if (!cutter.cut(cell(static_cast<int>(i))))
             throw Error(name + ": the mesh turns over at too many places to be inverted");
@@ -685,12 +685,13 @@ bool InversePlan::find(const Sheet& sheet, const Patch& patch, double x, double 
     };
     if (!sheet.find(x, y, f, z)) return false;
     const bool at_edge = largest(z) >= 1 - 2 * sheet.hair;
-    found = {{patch.x0 + (sheet.s + sheet.hs * z.x) * (patch.x1 - patch.x0),
-              patch.y0 + (sheet.t + sheet.ht * z.y) * (patch.y1 - patch.y0)},
+    const double width = patch.x1 - patch.x0, height = patch.y1 - patch.y0;
+    found = {{patch.x0 + (sheet.s + sheet.hs * z.x) * width, patch.y0 + (sheet.t + sheet.ht * z.y) * height},
              sheet.cell,
              sheet.to_parameters.determinant() * m_mesh.orientation() < 0,
              sheet.error,
-             at_edge ? sheet.edge : 0};
+             at_edge ? sheet.edge : 0,
+             sheet.to_source(width, height)};
     return true;
 }
 

@@ -36,6 +36,8 @@ class InversePlan final : public WarpPlan {
     std::int64_t folded_pixels(const Box& box) const override;
 
     static constexpr double kFoldSize = 1.0 / 4;
+    /// For a pixel near a fold.
+    static constexpr int most_visits() { return 1024; }
 
     /// The target point of parameters z of a sheet.
     Point<double> on_sheet(const Sheet& sheet, const Point<double>& z) const noexcept;

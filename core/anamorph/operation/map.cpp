@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <atomic>
 
+#include "anamorph/formula/pushed_plan.h"
 #include "anamorph/formula/text_plan.h"
 #include "anamorph/operation/flat_picture.h"
 #include "anamorph/operation/rows.h"
@@ -15,15 +16,19 @@ ParameterTable make_map_table() {
     return {
         image("src", "the source image; by default the recipe's name without .map"),
         text("u",
-             "where a pixel is taken from, across: a formula of x, y, s, t, px, py, r, a and others; x by "
-             "default"),
+             "where a pixel is taken from (pull) or goes (push), across: a formula of x, y, s, t, px, py, "
+             "r, a and others; x by default"),
         text("v", "the same, down; y by default"),
         definitions(
             "let",
             "definitions before both, as in k=0.3;c=cos(k); any other key k=0.3 is one too, and stands "
             "before these"),
+        choice("direction", "pull", {"pull", "push"},
+               "pull: u and v are the point of the source that a pixel of the picture shows; push: they are "
+               "where in the picture a point of the source goes, and the formulas are inverted"),
         choice("units", "pixels", {"pixels", "fractions"},
-               "of u and v: pixels of the source, or parts of its width and height"),
+               "of u and v: pixels of the source (pull) or the picture (push), or parts of its width and "
+               "height"),
         number("frame", "", "0", -1e9, 1e9, "the number that frame is in the formulas"),
         size("width and height of the picture, or its width alone, in the source's shape; by default the "
              "source's"),
@@ -39,7 +44,8 @@ ParameterTable make_map_table() {
 }
 
 /// Of the pixels, those whose middles have no source point.
-double undefined_fraction(const TextMap& map, const ParallelFor& parallel_for) {
+template <class Map>
+double undefined_fraction(const Map& map, const ParallelFor& parallel_for) {
     constexpr int kRows = 128;
     const Size size = map.target_size();
     std::atomic<std::int64_t> count{0};
@@ -50,6 +56,17 @@ double undefined_fraction(const TextMap& map, const ParallelFor& parallel_for) {
     return static_cast<double>(count) / (static_cast<double>(size.width) * size.height);
 }
 
+template <class Plan, class MakeMap>
+std::unique_ptr<const Pictures> pictures_of(const FlatRequest& request, const MakeMap& make_map) {
+    return flat_pictures(request, [request, make_map](const Size& pixels) {
+        const auto plan = std::make_shared<Plan>(make_map(pixels), request.plan);
+        return FlatMap{plan, [plan](const ParallelFor& parallel_for) {
+                           return Attributes{{"anamorph:undefined_fraction",
+                                              undefined_fraction(plan->map(), parallel_for)}};
+                       }};
+    });
+}
+
 std::unique_ptr<const Pictures> pictures_of_map(const ParameterValues& values, const SourceFacts& facts) {
     const Size source{facts.width, facts.height}, target = rows::size_of(values, source);
     FormulaText text;
@@ -57,15 +74,17 @@ std::unique_ptr<const Pictures> pictures_of_map(const ParameterValues& values, c
     if (values.given("v")) text.v = values.text("v");
     if (values.given("let")) text.let = values.text("let");
     text.definitions = values.definitions();
-    const FormulaSetting setting{target, source, values.number("frame"), values.text("units") == "fractions"};
+    const bool pushes = values.text("direction") == "push";
+    const FormulaSetting setting{target, source, values.number("frame"), values.text("units") == "fractions",
+                                 pushes};
     const FlatRequest request = flat_request(values, source, target);
-    return flat_pictures(request, [request, formula = parse_formula(text, setting)](const Size& pixels) {
-        const auto plan = std::make_shared<TextPlan>(TextMap(formula, request.target, pixels, request.source),
-                                                     request.plan);
-        return FlatMap{plan, [plan](const ParallelFor& parallel_for) {
-                           return Attributes{{"anamorph:undefined_fraction",
-                                              undefined_fraction(plan->map(), parallel_for)}};
-                       }};
+    const PlaneFormula formula = parse_formula(text, setting);
+    if (pushes)
+        return pictures_of<PushedPlan>(request, [request, formula](const Size& pixels) {
+            return PushedMap(formula, request.target, pixels, request.source);
+        });
+    return pictures_of<TextPlan>(request, [request, formula](const Size& pixels) {
+        return TextMap(formula, request.target, pixels, request.source);
     });
 }
 

@@ -8,9 +8,10 @@
 //     which this iteration (the chord form of Newton's, with Krawczyk's bound) converges;
 //   - it has none where |w| > 1 + max |N|.
 // Where no such part can be had (the derivative is singular: a fold), cutting ends at parts that are smaller than a given size in
-// target pixels. Pixels on such parts are computed one by one, and the parts cut on for each of them as far as it takes to tell its
-// source points apart: down to kUndecided source pixels, or kMostVisits parts. What then is left (a pixel within rounding of a fold's
-// edge, or what is squeezed to a line) counts as a source point and as a fold, with a bound that spans all that it may be.
+// target pixels. Pixels on such parts are computed one by one, and the parts cut on for each of them as far as it takes to tell
+// its source points apart: down to kUndecided source pixels, or so many parts as a map allows. What then is left (a pixel within
+// rounding of a fold's edge, or what is squeezed to a line) counts as a source point and as a fold, with a bound that spans all
+// that it may be.
 //
 // The map in double errs by e, so that the iteration ends within |Y| e / (1 - kContraction) of the exact source point, in z; parts
 // overlap by more than that, and points found on the edges of two parts are compared.
@@ -20,6 +21,7 @@
 #include <cmath>
 #include <cstdint>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "anamorph/geometry/bounds_tree.h"
@@ -56,14 +58,20 @@ struct Sheet {
     }
     /// Does it come near a target point? Of one that is no fold.
     bool reaches(double x, double y) const { return largest(to_parameters(x - at.x, y - at.y)) <= 1 + reach; }
+    /// Source pixels per target pixel, about, in a cell of that size.
+    Matrix2 to_source(double width, double height) const {
+        const Matrix2& y = to_parameters;
+        const double w = hs * width, h = ht * height;
+        return {w * y.a11, w * y.a12, h * y.a21, h * y.a22};
+    }
     /// Finds the parameters of (x, y), of one that is no fold, where f(z) is the target point of parameters z. False where there
     /// are none.
     template <class Map>
     bool find(double x, double y, const Map& f, Point<double>& z) const;
     /// The box of parameters that may be those of points up to (hx, hy) from (x, y): none if there is no such.
     template <class Map>
-    std::optional<std::pair<Part, Part>> narrowed(double x, double y, double hx, double hy,
-                                                  const Map& f) const;
+    std::optional<std::pair<Part, Part>> narrowed(double x, double y, double hx, double hy, const Map& f,
+                                                  int steps = 3) const;
 };
 
 /// What is known of a part.
@@ -71,7 +79,8 @@ struct SeenPart {
     Bounds bounds;  ///< target pixels; those of nothing meet nothing
     double size;    ///< half of it
     std::optional<Sheet> sheet;
-    bool cut_s;  ///< which way to cut if there is no sheet
+    bool cut_s;            ///< which way to cut if there is no sheet
+    bool is_torn = false;  ///< is it small, and does the map jump there?
 };
 
 /// body(half of s, t) or body(s, half of t) for both halves.
@@ -85,34 +94,40 @@ void each_half(const Part& s, const Part& t, bool cut_s, const Body& body) {
 }
 
 /// Cuts cells into sheets; parts that do not meet the target are left out. A cell gives
-///   SeenPart see(const Part& s, const Part& t) const
+///   SeenPart see(const Part& s, const Part& t, const Bounds& target) const
 ///   Sheet fold(const Part& s, const Part& t) const
+/// where less is asked of a part that does not meet the target.
 class SheetCutter {
   public:
-    /// A part is cut no further at this size in target pixels, or after so many cuts.
     struct Limits {
-        double fold_size;
-        int cuts;
-        std::size_t sheets;
+        double fold_size;   ///< a part is cut no further at this size in target pixels,
+        int cuts;           ///< or after so many cuts
+        std::size_t parts;  ///< no more are looked at
+        int torn = 0;       ///< nor more that are torn
     };
     SheetCutter(const Bounds& target, const Limits& limits) : m_target(target), m_limits(limits) {}
 
-    /// False where there are too many.
+    /// False where there are too many parts, or too many that are torn.
     template <class Cell>
     bool cut(const Cell& cell) {
         return cut(cell, {0.5, 0.5}, {0.5, 0.5}, 0);
     }
     std::vector<Sheet> sheets;
     std::vector<Bounds> bounds;
+    int torn = 0;
+    Point<double> stopped_at{};  ///< parameters of the cell where there were too many
 
   private:
     template <class Cell>
     bool cut(const Cell& cell, const Part& s, const Part& t, int depth) {
-        const SeenPart seen = cell.see(s, t);
+        const SeenPart seen = cell.see(s, t, m_target);
         if (!seen.bounds.meets(m_target)) return true;
-        const bool is_fold = seen.size <= 0.5 * m_limits.fold_size || depth == m_limits.cuts;
-        if (seen.sheet || is_fold) {
-            if (sheets.size() >= m_limits.sheets) return false;
+        torn += seen.is_torn;
+        if (++m_parts > m_limits.parts || torn > m_limits.torn) {
+            stopped_at = {s.middle, t.middle};
+            return false;
+        }
+        if (seen.sheet || seen.size <= 0.5 * m_limits.fold_size || depth == m_limits.cuts) {
             sheets.push_back(seen.sheet ? *seen.sheet : cell.fold(s, t));
             bounds.push_back(seen.bounds);
             return true;
@@ -125,6 +140,7 @@ class SheetCutter {
 
     Bounds m_target;
     Limits m_limits;
+    std::size_t m_parts = 0;
 };
 
 /// One source point of a target point.
@@ -134,6 +150,8 @@ struct Preimage {
     bool turned;   ///< is the map turned over there?
     double error;  ///< of the point
     double edge;   ///< above 0: on the edge of its part, as far as others may be the same point
+    /// About that of the derivative, source pixels per target pixel; 0 where it is not known.
+    Matrix2 inverse{0, 0, 0, 0};
 };
 struct Preimages {
     Preimage best;
@@ -143,7 +161,8 @@ struct Preimages {
 };
 
 /// Collects the source points of one target point. An inverse gives
-///   Cell cell(int number) const                     as SheetCutter wants it, with
+///   int most_visits() const                          parts that are looked at, at most
+///   Cell cell(int number) const                      as SheetCutter wants it, with
 ///     Point<double> source(double s, double t) const  the source point of parameters
 ///     double width() const, height() const            source pixels
 ///   bool find(const Sheet& sheet, double x, double y, Preimage& found) const   of one that is no fold
@@ -152,7 +171,6 @@ template <class Inverse>
 class PreimageSearch {
   public:
     static constexpr double kUndecided = 0x1p-20;
-    static constexpr int kMostVisits = 1024;
 
     PreimageSearch(const Inverse& inverse, double x, double y) : m_inverse(inverse), m_x(x), m_y(y) {}
 
@@ -178,12 +196,13 @@ class PreimageSearch {
     /// Cuts a fold on, as far as it takes.
     template <class Cell>
     void look(const Cell& cell, const Part& s, const Part& t) {
-        const SeenPart seen = cell.see(s, t);
-        if (!seen.bounds.meets({m_x, m_y, m_x, m_y})) return;
+        const Bounds target{m_x, m_y, m_x, m_y};
+        const SeenPart seen = cell.see(s, t, target);
+        if (!seen.bounds.meets(target)) return;
         ++m_visits;
         if (seen.sheet) return find(*seen.sheet);
         const double size = std::max(s.half * cell.width(), t.half * cell.height());
-        if (size <= kUndecided || m_visits >= kMostVisits) return give_up(cell, s, t);
+        if (size <= kUndecided || m_visits >= m_inverse.most_visits()) return give_up(cell, s, t);
         each_half(s, t, seen.cut_s, [&](const Part& a, const Part& b) { look(cell, a, b); });
     }
 
@@ -250,8 +269,8 @@ bool Sheet::find(double x, double y, const Map& f, Point<double>& z) const {
 /// Krawczyk's operator for all of the points at once: z = w - N(z), and in a box about c
 /// N(z) = N(c) +- contraction * its half size.
 template <class Map>
-std::optional<std::pair<Part, Part>> Sheet::narrowed(double x, double y, double hx, double hy,
-                                                     const Map& f) const {
+std::optional<std::pair<Part, Part>> Sheet::narrowed(double x, double y, double hx, double hy, const Map& f,
+                                                     int steps) const {
     const Point<double> w = to_parameters(x - at.x, y - at.y), span = to_parameters.span(hx, hy);
     const auto cut = [&](double middle, double half_size) {
         const double low = std::max(middle - half_size, -1 - hair),
@@ -261,8 +280,7 @@ std::optional<std::pair<Part, Part>> Sheet::narrowed(double x, double y, double 
     std::pair<Part, Part> near{cut(w.x, span.x + reach), cut(w.y, span.y + reach)};
     const auto is_empty = [&] { return near.first.half < 0 || near.second.half < 0; };
     if (is_empty()) return std::nullopt;
-    constexpr int kSteps = 3;
-    for (int n = 0; n < kSteps; ++n) {
+    for (int n = 0; n < steps; ++n) {
         const double half_size = std::max(near.first.half, near.second.half);
         if (half_size < 1.5 * std::max(span.x, span.y)) break;
         const Point<double> c{near.first.middle, near.second.middle}, p = f(c);

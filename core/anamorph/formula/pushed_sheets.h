@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: Apache-2.0
+// The source of a formula that pushes, cut into sheets on which it is one to one (plan/sheets.h): they give the source points of single
+// target points.
+#pragma once
+
+#include <concepts>
+#include <cstddef>
+#include <optional>
+#include <vector>
+
+#include "anamorph/formula/pushed_formula.h"
+#include "anamorph/plan/sheets.h"
+
+namespace anamorph {
+
+/// Pixels, as those of PushedFormula.
+class PushedSheets {
+  public:
+    /// Throws Error where the formula folds, jumps or ends at so many places that the source would be cut into more parts than that.
+    /// Nor are more looked at for one point.
+    PushedSheets(PushedFormula formula, const Size& target, const Size& source, std::size_t most_parts);
+
+    const PushedFormula& formula() const { return m_formula; }
+    const Size& source_size() const { return m_source; }
+    const std::vector<Sheet>& sheets() const { return m_sheets; }
+
+    /// All source points of a target point. The best of them: those where the map is not turned over first, of these the lowest, of
+    /// these the rightmost.
+    Preimages preimages(double x, double y) const;
+    /// The best one. False where there is none.
+    template <std::floating_point Real>
+    bool exact(const Real& x, const Real& y, Point<Real>& p) const;
+
+    /// Bounds the error of source points in double, of a box that no fold is near; else there is none.
+    std::optional<double> error(const Interval& x, const Interval& y) const;
+    /// The same of exact() in Real, kept in double; near folds by looking at all pixels of the box.
+    template <class Real>
+    double exact_error(const Interval& x, const Interval& y) const;
+
+    /// The box of a frame's parameters that holds all source points of a box of the target; and how large sheets around are, in source
+    /// pixels.
+    struct Reached {
+        Point<Interval> z{{HUGE_VAL, -HUGE_VAL}, {HUGE_VAL, -HUGE_VAL}};
+        Point<double> largest_sheet{0, 0};
+
+        bool is_empty() const { return !(z.x.lo <= z.x.hi); }
+    };
+    /// Nothing where a fold is near.
+    std::optional<Reached> reached(const Interval& x, const Interval& y, const PlaneFrame& frame) const;
+
+  private:
+    friend class PreimageSearch<PushedSheets>;
+    class Cell;
+
+    int most_visits() const { return m_most_visits; }
+    Cell cell(int number) const;
+    bool find(const Sheet& sheet, double x, double y, Preimage& found) const;
+    bool before(const Preimage& a, const Preimage& b) const;
+    Point<double> on_sheet(const Sheet& sheet, const Point<double>& z) const;
+    Point<double> about_sheet(const Sheet& sheet, const Point<double>& z) const;
+    double precise_error(const Interval& x, const Interval& y) const;
+
+    PushedFormula m_formula;
+    Size m_source;
+    int m_most_visits;
+    std::vector<Sheet> m_sheets;
+    BoundsTree m_tree;
+    bool m_mirrors = false;  ///< is more of the target covered by what is turned over than by what is not?
+};
+
+}  // namespace anamorph
