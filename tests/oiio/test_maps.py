@@ -130,6 +130,71 @@ def albers(p, lat1=29.5, lat2=45.5, lat0=38, lon0=-96, zoom=2):
     return of_longitude(lon0 + theta / n, np.arcsin(np.clip(sine, -1, 1)), seen)
 
 
+def solved(function, target, low, high):
+    """Where a rising function has a value, by halving."""
+    low, high = np.full_like(target, low), np.full_like(target, high)
+    for _ in range(60):
+        middle = (low + high) / 2
+        below = function(middle) < target
+        low, high = np.where(below, middle, low), np.where(below, high, middle)
+    return (low + high) / 2
+
+
+# Robinson's own table, every 5 degrees: the length of a parallel, and its distance from the equator.
+ROBINSON = np.array([
+    (1, 0), (0.9986, 0.062), (0.9954, 0.124), (0.99, 0.186), (0.9822, 0.248), (0.973, 0.31), (0.96, 0.372),
+    (0.9427, 0.434), (0.9216, 0.4958), (0.8962, 0.5571), (0.8679, 0.6176), (0.835, 0.6769), (0.7986, 0.7346),
+    (0.7597, 0.7903), (0.7186, 0.8435), (0.6732, 0.8936), (0.6213, 0.9394), (0.5722, 0.9761), (0.5322, 1)])
+
+
+def robinson_parallel(sine_of_place):
+    """Length and height of the parallel at so many parts of 90 degrees, by the file's polynomials."""
+    even = sine_of_place**2
+    length = np.polynomial.polynomial.polyval(
+        even, [1, -0.358, 0.312, -4.844, 15.664, -22.921, 15.814, -4.135])
+    height = sine_of_place * np.polynomial.polynomial.polyval(even, [1.1123, 0.0762, -0.3584, 0.4001, -0.23])
+    return length, height
+
+
+def robinson(p, lon0=0):
+    scale = min(p.width / (2 * np.pi * 0.8487), p.height / (2 * 1.3523))
+    place = solved(lambda q: robinson_parallel(q)[1], -p.down / scale / 1.3523, -1.0, 1.0)
+    length, height = robinson_parallel(place)
+    longitude = p.across / scale / 0.8487 / length
+    seen = (np.abs(longitude) < np.pi) & (np.abs(height + p.down / scale / 1.3523) < 1e-9)
+    return of_longitude(longitude + np.radians(lon0), place * np.pi / 2, seen)
+
+
+def winkel_place(longitude, latitude, lat1):
+    """Where a place on the globe goes, with the globe's radius 1."""
+    arc = np.arccos(np.cos(latitude) * np.cos(longitude / 2))
+    over = np.where(arc > 1e-4, arc / np.sin(np.maximum(arc, 1e-4)), 1 + arc**2 / 6)
+    return ((longitude * np.cos(lat1) + 2 * np.cos(latitude) * np.sin(longitude / 2) * over) / 2,
+            (latitude + np.sin(latitude) * over) / 2)
+
+
+def winkel_tripel(p, lon0=0, lat1=50.459776):
+    lat1 = np.radians(lat1)
+    scale = min(p.width / (np.pi * (1 + np.cos(lat1))), p.height / np.pi)
+    x, y = p.across / scale, -p.down / scale
+    # By Newton's method with differences, over and over, from a sinusoidal guess.
+    latitude = np.clip(y, -1.5, 1.5)
+    longitude = np.clip(x / (0.3 + 0.5 * np.cos(latitude)), -3.1, 3.1)
+    step = 1e-6
+    for _ in range(60):
+        at = winkel_place(longitude, latitude, lat1)
+        east = winkel_place(longitude + step, latitude, lat1)
+        north = winkel_place(longitude, latitude + step, lat1)
+        a, b = (east[0] - at[0]) / step, (north[0] - at[0]) / step
+        c, d = (east[1] - at[1]) / step, (north[1] - at[1]) / step
+        right, up = x - at[0], y - at[1]
+        longitude = np.clip(longitude + (d * right - b * up) / (a * d - b * c), -3.4, 3.4)
+        latitude = np.clip(latitude + (a * up - c * right) / (a * d - b * c), -np.pi / 2, np.pi / 2)
+    at = winkel_place(longitude, latitude, lat1)
+    seen = (np.hypot(at[0] - x, at[1] - y) < 1e-9) & (np.abs(longitude) < np.pi)
+    return of_longitude(longitude + np.radians(lon0), latitude, seen)
+
+
 def dome(p, fov=40, tilt=8, projector=(0, 0.2, -0.1), mirror=(0, 0.8, -0.15), radius=0.25):
     side = np.tan(np.radians(fov / 2)) * min(p.width, p.height) / p.width
     light = np.stack([side * p.right, np.ones_like(p.right), side * p.up], axis=-1)
@@ -172,6 +237,8 @@ TRIED = {
     ripple: [{}, {"frame": 7}],
     mollweide: [{}, {"lon0": 100}],
     albers: [{}, {"zoom": 0.5}, {"lat1": -20, "lat2": -40, "lat0": -30, "lon0": 135}],
+    robinson: [{}, {"lon0": 100}],
+    winkel_tripel: [{}, {"lon0": -70, "lat1": 30}],
     dome: [{}, {"fov": 30, "tilt": 0}],
 }
 
@@ -204,6 +271,11 @@ class Maps(unittest.TestCase):
                     with self.subTest(map=function.__name__, **settings, size=size):
                         with np.errstate(invalid="ignore", divide="ignore"):
                             self.compare(function, size, settings)
+
+    def test_robinson_keeps_to_his_table(self):
+        length, height = robinson_parallel(np.arange(19) / 18)
+        self.assertLess(np.abs(length - ROBINSON[:, 0]).max(), 0.001)
+        self.assertLess(np.abs(height - ROBINSON[:, 1]).max(), 0.001)
 
     def compare(self, function, size, settings):
         wanted = function(Places(*size), **settings)
