@@ -91,6 +91,8 @@ class PushedSheets::Cell {
     Sheet fold(const Part& s, const Part& t) const { return Sheet::of_fold(0, s, t, {}); }
 
   private:
+    /// What rounding makes of a source point by its parameters, at most.
+    double position_error() const { return 8 * 0x1p-53 * (width() + height()); }
     static Interval within(const Part& part, double length, double gap) {
         return {(part.middle - part.half) * length + gap, (part.middle + part.half) * length - gap};
     }
@@ -167,6 +169,12 @@ class PushedSheets::Cell {
 
         const Point<Rounded<double>> rounded =
             m_sheets.m_formula.target_point(Rounded<double>(x, 0, 0), Rounded<double>(y, 0, 0));
+        // What rounding of the formula, or of the source point, makes of a target point.
+        const auto rounding = [&](const BoundJet& j, double error) {
+            return error + (magnitude(j.c[1]) + magnitude(j.c[2])) * position_error();
+        };
+        seen.is_point =
+            reach_x <= rounding(f.x, rounded.x.error) && reach_y <= rounding(f.y, rounded.y.error);
         const double size = std::max(largest({a.a11, a.a12}), largest({a.a21, a.a22}));
         if (std::fabs(a.determinant()) > kRegular * size * size) {
             const auto slope_of = [&](const PushedFormula::Series& g) {
@@ -228,7 +236,7 @@ class PushedSheets::Cell {
         sheet.reach = slope + 2 * sheet.hair;
         sheet.noise = noise;
         // The stop at a step of `noise`, and the rounding of the position.
-        sheet.error = diameter * 1.5 * noise + 8 * 0x1p-53 * (width() + height());
+        sheet.error = diameter * 1.5 * noise + position_error();
         sheet.edge = diameter * 2 * sheet.hair;
         return sheet;
     }

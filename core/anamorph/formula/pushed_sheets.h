@@ -22,7 +22,6 @@ class PushedSheets {
 
     const PushedFormula& formula() const { return m_formula; }
     const Size& source_size() const { return m_source; }
-    const std::vector<Sheet>& sheets() const { return m_sheets; }
 
     /// All source points of a target point. The best of them: those where the map is not turned over first, of these the lowest, of
     /// these the rightmost.

@@ -9,9 +9,9 @@
 //   - it has none where |w| > 1 + max |N|.
 // Where no such part can be had (the derivative is singular: a fold), cutting ends at parts that are smaller than a given size in
 // target pixels. Pixels on such parts are computed one by one, and the parts cut on for each of them as far as it takes to tell
-// its source points apart: down to kUndecided source pixels, or so many parts as a map allows. What then is left (a pixel within
-// rounding of a fold's edge, or what is squeezed to a line) counts as a source point and as a fold, with a bound that spans all
-// that it may be.
+// its source points apart: down to kUndecided source pixels, to what rounding hides, or so many parts as a map allows. What then
+// is left (a pixel within rounding of a fold's edge, or what is squeezed to a line) counts as a source point and as a fold, with a
+// bound that spans all that it may be.
 //
 // The map in double errs by e, so that the iteration ends within |Y| e / (1 - kContraction) of the exact source point, in z; parts
 // overlap by more than that, and points found on the edges of two parts are compared.
@@ -79,8 +79,9 @@ struct SeenPart {
     Bounds bounds;  ///< target pixels; those of nothing meet nothing
     double size;    ///< half of it
     std::optional<Sheet> sheet;
-    bool cut_s;            ///< which way to cut if there is no sheet
-    bool is_torn = false;  ///< is it small, and does the map jump there?
+    bool cut_s;             ///< which way to cut if there is no sheet
+    bool is_torn = false;   ///< is it small, and does the map jump there?
+    bool is_point = false;  ///< is all that it leads to within rounding, so that cuts tell no more?
 };
 
 /// body(half of s, t) or body(s, half of t) for both halves.
@@ -202,7 +203,8 @@ class PreimageSearch {
         ++m_visits;
         if (seen.sheet) return find(*seen.sheet);
         const double size = std::max(s.half * cell.width(), t.half * cell.height());
-        if (size <= kUndecided || m_visits >= m_inverse.most_visits()) return give_up(cell, s, t);
+        if (size <= kUndecided || seen.is_point || m_visits >= m_inverse.most_visits())
+            return give_up(cell, s, t);
         each_half(s, t, seen.cut_s, [&](const Part& a, const Part& b) { look(cell, a, b); });
     }
 
