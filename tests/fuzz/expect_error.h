@@ -10,6 +10,9 @@
 
 namespace anamorph::fuzz {
 
+/// Where it is false, replay.cpp lets no allocation fail.
+inline bool memory_may_fail = true;
+
 inline void require(bool holds, const char* what) {
     if (holds) return;
     std::cerr << "broken: " << what << "\n";

@@ -26,7 +26,10 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
                         fuzz::require(std::isfinite(body.shape.center[c]) && body.shape.axes[c] >= 0 &&
                                           std::isfinite(body.shape.axes[c]),
                                       "an ellipsoid is finite");
+            // The library that writes JSON asks for memory to free what it built, and ends the program where there is none.
+            fuzz::memory_may_fail = false;
             fuzz::require(glb_file(frames, 25).starts_with("glTF"), "frames become glTF");
+            fuzz::memory_may_fail = true;
         });
     return 0;
 }

@@ -41,6 +41,19 @@ Value parsed(std::string_view text, std::string_view file) {
     }
 }
 
+/// From the leaves up: the library's own way to free a tree asks for memory, and ends the program where there is none.
+void clear(Value& tree) {
+    if (!tree.is_structured()) return;
+    for (Value& part : tree) clear(part);
+    tree.clear();
+}
+std::shared_ptr<void> shared(Value&& tree) {
+    return {new Value(std::move(tree)), [](Value* value) {
+                clear(*value);
+                delete value;
+            }};
+}
+
 }  // namespace
 
 bool Json::is_object() const {
@@ -102,9 +115,8 @@ std::vector<std::pair<std::string, Json>> Json::members() const {
     return all;
 }
 
-JsonFile::JsonFile() : m_top(std::make_shared<Value>(Value::object())) {}
-JsonFile::JsonFile(std::string_view text, std::string_view file)
-    : m_top(std::make_shared<Value>(parsed(text, file))) {}
+JsonFile::JsonFile() : m_top(shared(Value::object())) {}
+JsonFile::JsonFile(std::string_view text, std::string_view file) : m_top(shared(parsed(text, file))) {}
 
 void JsonFile::set(const std::string& key, double number) {
     (*static_cast<Value*>(m_top.get()))[key] = number;
