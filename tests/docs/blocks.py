@@ -54,7 +54,8 @@ LINES = [
          why="its tests are run one by one; test_blocks.py looks whether the filter finds some"),
     Line(r"ctest --preset ", (), why="this test is one of them; test_blocks.py looks for the presets and the tests' names"),
     Line(r"examples/demo\.sh ", (), why="tests/run.sh runs it"),
-    Line(r"tests/run\.sh ", (), why="it runs this test, among all"),
+    Line(r"tests/run\.sh ", (), why="it runs this test, among others"),
+    Line(r"tests/nightly\.sh ", (), why="it takes hours, and runs this test before them"),
     Line(r"sudo apt-get install ", (), why="these packages conflict with ParaView's; test_blocks.py looks for their names"),
     Line(r"tests/install_packages\.sh ", (), why="tests install nothing; test_blocks.py looks for the sections"),
     # Builds: configured in a fresh folder; of building, ninja says what it would do.
