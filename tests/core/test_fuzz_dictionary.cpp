@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The fuzz targets' dictionary has every key, alias and choice of every operation.
+// The fuzz targets' dictionary has every key and choice of every operation.
 #include <gtest/gtest.h>
 
 #include <fstream>
@@ -29,7 +29,6 @@ TEST(FuzzDictionary, HasTheWordsOfEveryOperation) {
         words.insert("." + operation->name + "?");
         for (const Parameter& p : *operation->parameters) {
             words.insert(p.name + "=");
-            if (!p.alias.empty()) words.insert(p.alias + "=");
             words.insert(p.choices.begin(), p.choices.end());
         }
     }

@@ -81,7 +81,7 @@ TEST_F(BadInput, conformance_21_values) {
     expect_refused("tol=-0.1", "tol=-0.1");
     expect_refused("mip=2", "mip=2");
     expect_refused("yaw=1&yaw=2", "yaw=2: given twice");
-    expect_refused("size=8&RES=8", "size=8: given twice");
+    expect_refused("size=8&SIZE=8", "size=8: given twice");
     expect_refused("jaw=1", "there is no such parameter");
     expect_refused("colorspace=nonsense", "colorspace=nonsense");
     expect_refused("=3", "argument \"=3\"");

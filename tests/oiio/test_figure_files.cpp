@@ -89,7 +89,7 @@ TEST_P(FigureFiles, EndingsInCapitals) {
 }
 
 TEST_P(FigureFiles, OnePictureInAnyTilesThreadsAndCuts) {
-    expect_one_picture(name() + "&style=textured&average=summed_area&backdrop=city.exr", 20, 10);
+    expect_one_picture(name() + "&style=textured&filter=summed_area&backdrop=city.exr", 20, 10);
 }
 
 TEST_P(FigureFiles, FilesCutOffOrNonsenseAreErrors) {

@@ -56,7 +56,7 @@ TEST_F(Metadata, ValuesThatAreNoColourAreWrittenAsTheyAre) {
         }
         for (const char* output : {"stmap", "error", "bound", "folds"})
             recipes.push_back(source + ".warp?mesh=grid.json&output=" + output);
-        for (const char* output : {"stmap_a", "stmap_b", "error", "bound"})
+        for (const char* output : {"stmap&picture=a", "stmap&picture=b", "error", "bound"})
             recipes.push_back(source + ".morph?features=lines.csv&b=" + source + "&output=" + output);
         const auto written = [](std::size_t i) { return "out" + std::to_string(i); };
         std::string command = "oiiotool";

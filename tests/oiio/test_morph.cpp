@@ -93,8 +93,7 @@ TEST_F(Morph, TheEndsAreThePictures) {
     EXPECT_EQ(read_pixels(name + "&t=0").bytes, read_pixels("a.exr").bytes);
     EXPECT_EQ(read_pixels(name + "&t=1&size=200x80").bytes, read_pixels("wide.exr").bytes);
     // The colour of one, the shape of the other.
-    EXPECT_EQ(read_pixels(kMorph + "&t=0.5&t_color=0"), read_pixels(kMorph + "&t=0.5&output=warp_a"));
-    EXPECT_EQ(read_pixels(kMorph + "&t=0.5&t_color=1"), read_pixels(kMorph + "&t=0.5&output=warp_b"));
+    EXPECT_EQ(read_pixels(kMorph + "&t=0.5&t_color=0"), read_pixels(kMorph + "&t=0.5&picture=a"));
     EXPECT_EQ(read_pixels(kMorph + "&t=0.5&t_color=1"), read_pixels(kMorph + "&t=0.5&picture=b"));
 }
 
@@ -115,30 +114,25 @@ TEST_F(Morph, ToleranceIsSaidWhereOneIsHeld) {
 
 TEST_F(Morph, TilesThreadsAndCropsNeverChangePixels) {
     for (const char* arguments : {"&t=0.4&size=300x200", "&t=0.7&weight_b=1&weight_a=0.01", "&scheme=mesh",
-                                  "&tol=0&t=0.5", "&output=lines", "&output=stmap_b&pin_border=1"})
+                                  "&tol=0&t=0.5", "&output=lines", "&output=stmap&picture=b&pin_border=1"})
         expect_one_picture(kMorph + arguments, 20, 25);
 }
 
 TEST_F(Morph, EachOutputIsWhatItsNameSays) {
-    for (const char* output : {"color", "lines", "warp_a", "warp_b"})
+    for (const char* output : {"color", "lines", "color&picture=a", "color&picture=b"})
         EXPECT_EQ(read_pixels(kMorph + "&output=" + output).spec.nchannels, 3) << output;
     EXPECT_NE(read_pixels(kMorph + "&output=lines").bytes, read_pixels(kMorph).bytes);
-    for (const char* output : {"stmap_a", "stmap_b"})
+    for (const char* output : {"stmap&picture=a", "stmap&picture=b"})
         EXPECT_EQ(read_pixels(kMorph + "&output=" + output).spec.nchannels, 2) << output;
-    for (const std::string which : {"a", "b"}) {
-        EXPECT_EQ(read_pixels(kMorph + "&output=stmap&picture=" + which),
-                  read_pixels(kMorph + "&output=stmap_" + which));
-        EXPECT_EQ(read_pixels(kMorph + "&picture=" + which), read_pixels(kMorph + "&output=warp_" + which));
-    }
-    EXPECT_EQ(read_pixels(kMorph + "&output=stmap"), read_pixels(kMorph + "&output=stmap_a"));
+    EXPECT_EQ(read_pixels(kMorph + "&output=stmap"), read_pixels(kMorph + "&output=stmap&picture=a"));
     EXPECT_THAT(open_error(kMorph + "&picture=c"), HasSubstr("picture=c: must be one of"));
-    // Drawn along its map, a picture is what warp_a and warp_b show.
+    // Drawn along its map, a picture is what it is by itself.
     for (const std::string which : {"a", "b"}) {
-        const Ran map = run("oiiotool '" + kMorph + "&tol=0&output=stmap_" + which + "' -o st.exr");
+        const Ran map = run("oiiotool '" + kMorph + "&tol=0&output=stmap&picture=" + which + "' -o st.exr");
         ASSERT_EQ(map.status, 0) << map.text;
         const std::vector<float> along =
                                      read_floats(which + ".exr.warp?mesh=st.exr&filter=bilinear&wrap=clamp"),
-                                 warped = read_floats(kMorph + "&tol=0&filter=bilinear&output=warp_" + which);
+                                 warped = read_floats(kMorph + "&tol=0&filter=bilinear&picture=" + which);
         ASSERT_EQ(along.size(), warped.size());
         // Float fractions of 120 pixels; the picture changes by less than 0.4 a pixel.
         EXPECT_LT(largest_difference(along, warped), 1e-3) << which;

@@ -44,7 +44,7 @@ std::unique_ptr<const anamorph::Pictures> read(const anamorph::Operation& operat
 ViewedPanorama::ViewedPanorama(const std::string& file, const std::vector<Assignment>& options)
     : m_operation(anamorph::find_operation(has_key(options, "circles") ? "mosaic" : "pano")),
       m_options(options) {
-    for (const char* key : {"src", "yaw", "pitch", "roll", "fov", "size", "res", "output"})
+    for (const char* key : {"src", "yaw", "pitch", "roll", "fov", "size", "output"})
         if (has_key(options, key)) throw Error(std::string(key) + " is the viewer's own: must not be given");
     anamorph::check_file_name("src", file);
     auto image = std::make_unique<anamorph::CacheSource>(OIIO::ImageCache::create(true), file, 0, 0);

@@ -12,22 +12,6 @@
 // Range: a component of V is less than 2^50 resolutions, their magnitudes together less than 2^62.
 //
 // Surfaces are arrays of points x, y, z without gaps, float or double, rounded once from base + displacement.
-//
-// What an edit costs. Of a point of a grid that a changed bump reaches, three sums are read and written (48
-// bytes), its base read and the point written (24 bytes as float; 12 more are fetched to be overwritten unless
-// points go past the caches, as on grids of 8 MB of points and more). A core of an EPYC 9004 changes 28 GB/s of
-// memory and copies 18 GB/s past the caches: 24 / 28 + 12 / 18 = 1.5 ns. Arithmetic takes 1.8 ns with all in
-// the caches, and the two hardly overlap: 3.0 ns. Of a million points, wide bumps reach .81 and local ones .12.
-//
-//                     50 bumps anew    an edit    times as fast    fifteen times would be, a reached point
-//   wide   ns/point        11.4           2.4          4.7              .93 ns
-//   local  ns/point         3.4            .54         6.3             1.9 ns
-//
-// Of wide bumps, copying points (.67 ns) and the arithmetic of two bumps (.5 ns, a 20th of that of the 41 of 50 that
-// reach a point) exceed it: they would have to overlap entirely, and no sums be stored. Local ones would need sums of
-// 32 bits (1.1 ns for memory) and arithmetic in .8 ns. 32 bits hold 8 units in steps of 2^-28, which of 50 bumps
-// adds 9e-8 to an error of 5.5e-7; 48 bits lose nothing (.2 ns less), but 18 more operations unpack and pack those of 8
-// points, which takes about as long. One sum in place of three needs vectors that are all parallel.
 #pragma once
 
 #include <cstdint>

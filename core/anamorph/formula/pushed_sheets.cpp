@@ -17,6 +17,8 @@ using BoundJet = PushedFormula::BoundJet;
 // Parts of a formula that jumps, or turns over nearly everywhere, need never end.
 constexpr double kFoldSize = 1;
 constexpr int kMostCuts = 80;
+// What looks as if it took so many times the parts it may have is given up at once: the source is not hard in one corner only.
+constexpr double kForeseen = 4;
 // For a pixel near a fold.
 constexpr std::size_t kMostVisits = std::size_t{1} << 14;
 // Sheets are looked at without their outermost this many source pixels, or this part of them, which count as their hair: so a jump
@@ -251,8 +253,9 @@ PushedSheets::PushedSheets(PushedFormula formula, const Size& target, const Size
       m_source(source),
       m_most_visits(static_cast<int>(std::min(most_parts, kMostVisits))) {
     const Cell whole(*this, true);
-    SheetCutter cutter({0, 0, double(target.width), double(target.height)},
-                       {kFoldSize, kMostCuts, most_parts, kMostTorn});
+    SheetCutter cutter(
+        {0, 0, double(target.width), double(target.height)},
+        {kFoldSize, kMostCuts, most_parts, kMostTorn, kForeseen * static_cast<double>(most_parts)});
     if (!cutter.cut(whole)) {
         const Point<double> at = whole.source(cutter.stopped_at.x, cutter.stopped_at.y);
         const std::string place = " near source pixel " + std::to_string(std::lround(at.x)) + "," +

@@ -42,7 +42,6 @@ Parameter texture_filter() {
                                    "what a pixel shows, from a table of sums (Crow 1984)"},
                                   {"mrasel", "the nearest texel of the level that MRASEL takes"}});
     row.documentation = "of style textured: " + row.documentation;
-    row.alias = "average";
     return row;
 }
 

@@ -23,17 +23,6 @@ Parameter weights(const char* name, const char* doc) {
     return row;
 }
 
-Parameter output_row() {
-    Parameter row = rows::output({{"lines", "color with the features of all pictures drawn over it"},
-                                  {"warp_a"},
-                                  {"warp_b"},
-                                  {"stmap_a"},
-                                  {"stmap_b"}});
-    row.documentation +=
-        "; warp_a, warp_b, stmap_a, stmap_b are older words for color and stmap with picture=a or b";
-    return row;
-}
-
 ParameterTable make_morph_table() {
     using namespace rows;
     ParameterTable table = {
@@ -72,7 +61,7 @@ ParameterTable make_morph_table() {
         whole("mesh_levels", "", "1", 0, FeatureMesh::kMostLevels,
               "of scheme mesh: how often cells near a line are cut into four"),
         colorspace("color space to filter and blend in; by default that of the pictures"),
-        output_row(),
+        output({{"lines", "color with the features of all pictures drawn over it"}}),
         choice("picture", "", morph_pictures(),
                "one picture alone, warped, in place of the blend: its color, stmap, error, bound; by default "
                "stmap is that of a, error and bound are the largest"),
@@ -81,17 +70,12 @@ ParameterTable make_morph_table() {
     return table;
 }
 
-/// What is drawn, and of which picture. Older words of `output` say both: stmap_b.
+/// What is drawn, and of which picture.
 void read_output(const ParameterValues& values, std::size_t pictures, MorphOptions& options) {
-    const std::string& output = values.text("output");
-    const std::size_t bar = output.find('_');
-    const bool both = bar != std::string::npos;
-    if (both && values.given("picture"))
-        throw Error("picture", values.text("picture"), "must not be given together with output=" + output);
-    options.output = output.starts_with("stmap") ? Output::stmap : rows::chosen_output(values);
-    options.lines = output == "lines";
-    if (!both && !values.given("picture")) return;
-    const std::string key = both ? output.substr(bar + 1) : values.text("picture");
+    options.output = rows::chosen_output(values);
+    options.lines = values.text("output") == "lines";
+    if (!values.given("picture")) return;
+    const std::string& key = values.text("picture");
     const std::vector<std::string>& keys = morph_pictures();
     const auto index = static_cast<std::size_t>(std::find(keys.begin(), keys.end(), key) - keys.begin());
     if (index >= pictures)

@@ -133,9 +133,7 @@ Parameter file(const char* name, const std::string& doc) {
 }
 
 Parameter size(const std::string& doc) {
-    Parameter parameter = extent("size", "", 1, kMaxSide, doc);
-    parameter.alias = "res";
-    return parameter;
+    return extent("size", "", 1, kMaxSide, doc);
 }
 
 Parameter tile() {

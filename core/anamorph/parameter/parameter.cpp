@@ -116,8 +116,7 @@ bool is_allowed(const Parameter& parameter, const std::string& value) {
 const Parameter* find(const ParameterTable& table, std::string_view key) {
     const std::string name = lower(key);
     for (const Parameter& parameter : table)
-        if (parameter.name == name || (!parameter.alias.empty() && parameter.alias == name))
-            return &parameter;
+        if (parameter.name == name) return &parameter;
     return nullptr;
 }
 
@@ -419,9 +418,8 @@ std::string reference_page(const std::string& title, const ParameterTable& table
     std::string page =
         "# " + title + "\n\n| key | default | unit | values | meaning |\n|---|---|---|---|---|\n";
     for (const Parameter& p : table) {
-        const std::string key = p.alias.empty() ? "`" + p.name + "`" : "`" + p.name + "` (`" + p.alias + "`)";
-        page += "| " + key + " | " + (p.default_value.empty() ? "" : "`" + p.default_value + "`") + " | " +
-                p.unit + " | " + p.accepted() + " | " + p.documentation + " |\n";
+        page += "| `" + p.name + "` | " + (p.default_value.empty() ? "" : "`" + p.default_value + "`") +
+                " | " + p.unit + " | " + p.accepted() + " | " + p.documentation + " |\n";
     }
     return page;
 }

@@ -45,7 +45,6 @@ struct Parameter {
     double minimum = 0, maximum = 0;  ///< of number, whole, numbers and extent
     bool above_minimum = false;       ///< the minimum itself is not accepted (of number and numbers)
     std::string documentation;        ///< one line
-    std::string alias;                ///< another key for the same
     bool definitions = false;         ///< keys that are not in the table define names for it
 
     /// What a value may be: "a number from 0 to 10", "edges, centers".

@@ -100,11 +100,14 @@ void each_half(const Part& s, const Part& t, bool cut_s, const Body& body) {
 /// where less is asked of a part that does not meet the target.
 class SheetCutter {
   public:
+    static constexpr std::size_t kFirst = std::size_t{1} << 15;
     struct Limits {
         double fold_size;   ///< a part is cut no further at this size in target pixels,
         int cuts;           ///< or after so many cuts
         std::size_t parts;  ///< no more are looked at
         int torn = 0;       ///< nor more that are torn
+        /// Nor, once kFirst are done, if all of the cell would take more by what they have done of it.
+        double foreseen = HUGE_VAL;
     };
     SheetCutter(const Bounds& target, const Limits& limits) : m_target(target), m_limits(limits) {}
 
@@ -122,15 +125,22 @@ class SheetCutter {
     template <class Cell>
     bool cut(const Cell& cell, const Part& s, const Part& t, int depth) {
         const SeenPart seen = cell.see(s, t, m_target);
-        if (!seen.bounds.meets(m_target)) return true;
+        const double share = 4 * s.half * t.half;
+        if (!seen.bounds.meets(m_target)) {
+            m_done += share;
+            return true;
+        }
         torn += seen.is_torn;
-        if (++m_parts > m_limits.parts || torn > m_limits.torn) {
+        const bool is_hopeless =
+            m_parts > kFirst && static_cast<double>(m_parts) > m_limits.foreseen * m_done;
+        if (++m_parts > m_limits.parts || torn > m_limits.torn || is_hopeless) {
             stopped_at = {s.middle, t.middle};
             return false;
         }
         if (seen.sheet || seen.size <= 0.5 * m_limits.fold_size || depth == m_limits.cuts) {
             sheets.push_back(seen.sheet ? *seen.sheet : cell.fold(s, t));
             bounds.push_back(seen.bounds);
+            m_done += share;
             return true;
         }
         bool all = true;
@@ -142,6 +152,7 @@ class SheetCutter {
     Bounds m_target;
     Limits m_limits;
     std::size_t m_parts = 0;
+    double m_done = 0;  ///< of the cell's area
 };
 
 /// One source point of a target point.

@@ -27,7 +27,7 @@ std::string lines_of(const std::string& text, std::size_t indent) {
 }
 
 std::string row_of(const Parameter& p) {
-    std::string line = p.name + (p.alias.empty() ? "" : " (" + p.alias + ")") + ": " + p.accepted();
+    std::string line = p.name + ": " + p.accepted();
     if (!p.unit.empty()) line += " (" + p.unit + ")";
     if (!p.default_value.empty()) line += " [" + p.default_value + "]";
     return lines_of(line, 2) + lines_of(p.documentation, 6);
