@@ -390,6 +390,31 @@ TEST(PushedMap, IsReadAtOtherSizesOfThePicture) {
     }
 }
 
+// The last levels of a pyramid, and what a formula makes smaller than a pixel, have a picture as well.
+TEST(PushedMap, LessThanAPixelIsNoLine) {
+    const Case c = case_named("swirl");
+    for (const Size& size : {Size{1, 1}, {2, 2}, {5, 3}}) {
+        const PushedMap map(pushing(c.u, c.v, c.picture, c.source, c.let), c.picture, size, c.source);
+        for (int j = 0; j < size.height; ++j)
+            for (int i = 0; i < size.width; ++i) {
+                const Point<Real> truth = c.inverse((i + Real{0.5}) * c.picture.width / size.width,
+                                                    (j + Real{0.5}) * c.picture.height / size.height);
+                Point<double> p{};
+                int piece = 0;
+                ASSERT_TRUE(map.exact(i + 0.5, j + 0.5, 0, p, piece)) << i << "," << j;
+                EXPECT_LE(std::hypot(p.x - truth.x, p.y - truth.y), 1e-4) << i << "," << j;
+            }
+    }
+    // Mirrored, too: of what comes over itself, what is not turned over by itself counts.
+    const Size picture{64, 48}, source{32, 24};
+    const PushedMap small = map_of("20.9-.6*s-.2*s^2", "20.3+.4*t", picture, source);
+    Point<double> p{};
+    int piece = 0;
+    ASSERT_TRUE(small.exact(20.5, 20.5, 0, p, piece));
+    EXPECT_NEAR(p.x, 32 * (std::sqrt(0.36 + 4 * 0.2 * 0.4) - 0.6) / 0.4, 1e-9);
+    EXPECT_NEAR(p.y, 12, 1e-9);
+}
+
 /// All source points of a target point, by Newton's method from everywhere, in long double.
 std::vector<Point<Real>> searched(const std::function<Point<Real>(Real, Real)>& f, const Size& source, Real x,
                                   Real y) {

@@ -266,14 +266,23 @@ PushedSheets::PushedSheets(PushedFormula formula, const Size& target, const Size
                               ": must be continuous to be inverted"
                         : "the formula folds or ends at too many places to be inverted, as" + place);
     }
-    const auto is_fold = [](const Sheet& sheet) { return sheet.fold; };
-    if (!cutter.sheets.empty() && std::all_of(cutter.sheets.begin(), cutter.sheets.end(), is_fold))
+    // What is smaller than a pixel is a fold as well, but has an area: the determinant of its derivative.
+    const auto area_of_fold = [&](const Sheet& sheet) {
+        const Matrix2 d = m_formula.derivative(whole.source(sheet.s, sheet.t));
+        const double size = std::max(largest({d.a11, d.a12}), largest({d.a21, d.a22}));
+        return std::fabs(d.determinant()) > kRegular * size * size ? d.determinant() * sheet.hs * sheet.ht
+                                                                   : 0;
+    };
+    const auto is_squeezed = [&](const Sheet& sheet) { return sheet.fold && area_of_fold(sheet) == 0; };
+    if (!cutter.sheets.empty() && std::all_of(cutter.sheets.begin(), cutter.sheets.end(), is_squeezed))
         throw Error("direction", "push",
                     "the formula squeezes the source to a line or a point: must lead to an area");
+    const bool has_sheets = std::any_of(cutter.sheets.begin(), cutter.sheets.end(),
+                                        [](const Sheet& sheet) { return !sheet.fold; });
     double turned = 0, straight = 0;
     for (const Sheet& sheet : cutter.sheets) {
-        if (sheet.fold) continue;
-        const double area = 1 / sheet.to_parameters.determinant();
+        if (sheet.fold && has_sheets) continue;
+        const double area = sheet.fold ? area_of_fold(sheet) : 1 / sheet.to_parameters.determinant();
         (area < 0 ? turned : straight) += std::fabs(area);
     }
     m_mirrors = turned > straight;
