@@ -405,14 +405,46 @@ TEST(PushedMap, LessThanAPixelIsNoLine) {
                 EXPECT_LE(std::hypot(p.x - truth.x, p.y - truth.y), 1e-4) << i << "," << j;
             }
     }
-    // Mirrored, too: of what comes over itself, what is not turned over by itself counts.
-    const Size picture{64, 48}, source{32, 24};
-    const PushedMap small = map_of("20.9-.6*s-.2*s^2", "20.3+.4*t", picture, source);
+    // Most of it is mirrored, so what is not is what comes last.
+    const PushedMap small = map_of("20.502-.004*s+.01*max(s-.75,0)", "20.499+.002*t", {64, 48}, {32, 24});
     Point<double> p{};
     int piece = 0;
     ASSERT_TRUE(small.exact(20.5, 20.5, 0, p, piece));
-    EXPECT_NEAR(p.x, 32 * (std::sqrt(0.36 + 4 * 0.2 * 0.4) - 0.6) / 0.4, 1e-9);
-    EXPECT_NEAR(p.y, 12, 1e-9);
+    EXPECT_EQ(small.preimages(20.5, 20.5).count, 2);
+    EXPECT_NEAR(p.x, 16, 1e-6);
+    EXPECT_NEAR(p.y, 12, 1e-6);
+}
+
+/// Of a source whose first `share` of a side is cut on for ever, if it meets the target; the rest is one to one.
+struct HardCell {
+    double share;
+    int* seen;
+    SeenPart see(const Part& s, const Part&, const Bounds& target) const {
+        ++*seen;
+        SeenPart part{target, 8, std::nullopt, s.half * 16 > share};
+        if (s.middle - s.half >= share) part.sheet = Sheet::of_fold(0, s, s, {});
+        return part;
+    }
+    Sheet fold(const Part& s, const Part& t) const { return Sheet::of_fold(0, s, t, {}); }
+};
+
+// By what the first parts do of the source it is foreseen whether all of it takes too many.
+TEST(PushedMap, WhatIsHopelessIsGivenUpEarly) {
+    constexpr std::size_t kMost = SheetCutter::kFirst * 4;
+    const auto seen_with = [](int cuts, double foreseen, bool* all) {
+        int seen = 0;
+        SheetCutter cutter({0, 0, 1, 1}, {1, cuts, kMost, 0, foreseen});
+        *all = cutter.cut(HardCell{0.25, &seen});
+        return seen;
+    };
+    bool all = true;
+    EXPECT_EQ(seen_with(40, HUGE_VAL, &all), static_cast<int>(kMost + 1));
+    EXPECT_FALSE(all);
+    EXPECT_LE(seen_with(40, 4.0 * kMost, &all), static_cast<int>(SheetCutter::kFirst + 2));
+    EXPECT_FALSE(all);
+    // Its quarter takes 2^16 parts, and the rest few.
+    EXPECT_LT(seen_with(17, 4.0 * kMost, &all), static_cast<int>(kMost));
+    EXPECT_TRUE(all);
 }
 
 /// All source points of a target point, by Newton's method from everywhere, in long double.
@@ -672,8 +704,6 @@ TEST(PushedMap, WhatCannotBeInvertedIsRefused) {
             EXPECT_THAT(error.what(), testing::HasSubstr("direction=push: ")) << u;
         }
     }
-    // Given up by what the first parts have done of the source.
-    EXPECT_THROW(map_of("x+sin(1e9*x)", "y", size, size), Error);
     // Nothing of these lies in the picture.
     for (const auto& [u, v] :
          std::vector<std::pair<std::string, std::string>>{{"x+1000", "y"}, {"log(-1-x)", "y"}}) {

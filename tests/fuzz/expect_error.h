@@ -12,6 +12,8 @@ namespace anamorph::fuzz {
 
 /// Where it is false, replay.cpp lets no allocation fail.
 inline bool memory_may_fail = true;
+/// How many bodies ran to their ends.
+inline long accepted = 0;
 
 inline void require(bool holds, const char* what) {
     if (holds) return;
@@ -24,6 +26,7 @@ template <class Body>
 void expect_no_failure_but_error(Body&& body) {
     try {
         body();
+        ++accepted;
     } catch (const Error& error) {
         const std::string message = error.what();
         require(!message.empty(), "an error has a message");

@@ -17,7 +17,7 @@ using BoundJet = PushedFormula::BoundJet;
 // Parts of a formula that jumps, or turns over nearly everywhere, need never end.
 constexpr double kFoldSize = 1;
 constexpr int kMostCuts = 80;
-// What looks as if it took so many times the parts it may have is given up at once: the source is not hard in one corner only.
+// A source that looks as if it took so many times the parts it may have is given up early. It may be hard in its first corner only.
 constexpr double kForeseen = 4;
 // For a pixel near a fold.
 constexpr std::size_t kMostVisits = std::size_t{1} << 14;
