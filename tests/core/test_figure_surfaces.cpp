@@ -94,7 +94,8 @@ TEST(FigureSurfaces, MiddlesOfPixelsMeetWhatRaysMeet) {
 }
 
 TEST(FigureSurfaces, FromAmongAndInsideBodies) {
-    for (unsigned seed = 0; seed < 30; ++seed) {
+    // In some, the near plane leaves nothing of a body but the inside of what is beyond its limb.
+    for (unsigned seed = 0; seed < 150; ++seed) {
         SCOPED_TRACE(seed);
         SceneMaker make(seed);
         // The eye is where the bodies are, and in a room.

@@ -16,8 +16,8 @@ TEST(Residual, MinimaxCoefficientsBalanceTheirExtremes) {
     for (const double x_max : {0.1, 0.5, 1.0, 3.0}) {
         const double height = 2;
         const auto [a, b] = minimax_coefficients(x_max, height);
-        const auto theta = [&](double x) { return std::atan(x) / kTurn - a * x; };
-        const auto v = [&](double x) { return 1 / height / std::sqrt(1 + x * x) - b; };
+        const auto theta = [&, a = a](double x) { return std::atan(x) / kTurn - a * x; };
+        const auto v = [&, b = b](double x) { return 1 / height / std::sqrt(1 + x * x) - b; };
         const double x_c = std::sqrt(1 / (kTurn * a) - 1);
         EXPECT_NEAR(theta(x_c), -theta(x_max), 1e-14);
         EXPECT_NEAR(v(0), -v(x_max), 1e-14);

@@ -46,8 +46,11 @@ SeenSurface::SeenSurface(Ellipsoid body, const View& view, double height)
     body.axes = glm::max(body.axes, kThinnestSeen * longest);
     const SeenBody seen = see(body, view);
     // A body that is a point covers no pixel.
-    if (!seen.solid || seen.kind == OutlineKind::behind) return;
+    if (!seen.solid) return;
     if (m_perspective) {
+        // Of one whose limb is behind the near plane, the inside may be seen beyond that.
+        const double farthest = 2 * seen.center.z - seen.nearest;
+        if (farthest < view.near) return;
         m_near_limit = 1 / view.near;
         m_meets_near = !(seen.nearest >= view.near);
         m_nearest = m_meets_near ? m_near_limit : 1 / seen.nearest;
