@@ -115,12 +115,41 @@ bool any_about(const glm::dvec3& point, double texels, const Chart& chart, const
     return false;
 }
 
+/// The same of what lies in a piece, sides included: a shadow may be so small that those ways miss it.
+bool any_in(const PaintedTriangle& piece, const glm::dvec3& point, double texels, const Chart& chart,
+            const Triangles& before, bool hidden) {
+    constexpr int kSteps = 128;
+    const auto& c = piece.corners;
+    for (int i = 0; i <= kSteps; ++i)
+        for (int k = 0; i + k <= kSteps; ++k) {
+            const double u = double(i) / kSteps, v = double(k) / kSteps;
+            const glm::dvec3 p = c[0].point * (1 - u - v) + c[1].point * u + c[2].point * v;
+            const double angle = glm::length(glm::normalize(p) - glm::normalize(point));
+            if (angle * chart.pixels_per_radian() <= texels && is_hidden(p, before) == hidden) return true;
+        }
+    return false;
+}
+
+/// Is a piece so narrow, as it is seen, that it counts as what its middle is (ShadowScale::thin)? By its height over the longest
+/// side in the plane that faces the projector.
+bool is_needle(const PaintedTriangle& piece, double texels, const Chart& chart) {
+    const auto& c = piece.corners;
+    const glm::dvec3 axis = glm::normalize(c[0].point + c[1].point + c[2].point);
+    glm::dvec3 flat[3];
+    for (std::size_t k = 0; k < 3; ++k) flat[k] = c[k].point / glm::dot(axis, c[k].point);
+    double longest = 0;
+    for (std::size_t k = 0; k < 3; ++k) longest = std::max(longest, glm::length(flat[(k + 1) % 3] - flat[k]));
+    const double height = glm::length(glm::cross(flat[1] - flat[0], flat[2] - flat[0])) / longest;
+    return height * chart.pixels_per_radian() <= texels;
+}
+
 /// Every point within pieces is as rays say, but next to borders of shadows.
 void expect_as_rays_say(const Chart& chart, const Painted& painted, const Triangles& before, double tol,
                         std::mt19937& random, int each) {
     std::uniform_real_distribution<double> share(0, 1);
     for (const PaintedTriangle& p : painted.pieces) {
         if (p.painting != Painting::painted && p.painting != Painting::hidden) continue;
+        if (is_needle(p, std::min(tol, 1.0) / 32, chart)) continue;
         for (int i = 0; i < each; ++i) {
             double a = share(random), b = share(random);
             if (a + b > 1) a = 1 - a, b = 1 - b;
@@ -129,8 +158,9 @@ void expect_as_rays_say(const Chart& chart, const Painted& painted, const Triang
             const bool says = p.painting == Painting::hidden, is = is_hidden(point, before);
             if (says == is) continue;
             // What is lit may be hidden as part of a small piece; what is hidden is painted in narrow strips at most.
-            EXPECT_TRUE(
-                any_about(point, says ? std::min(tol, 1.0) : std::min(tol, 1.0) / 8, chart, before, says))
+            const double texels = says ? std::min(tol, 1.0) : std::min(tol, 1.0) / 8;
+            EXPECT_TRUE(any_about(point, texels, chart, before, says) ||
+                        any_in(p, point, texels, chart, before, says))
                 << (says ? "hidden but lit" : "painted but hidden") << " at " << point.x << " " << point.y
                 << " " << point.z;
         }
@@ -213,7 +243,7 @@ TEST(Occluders, ManyTrianglesCastOneShadow) {
 }
 
 TEST(Occluders, RandomTrianglesBeforeAWall) {
-    for (unsigned seed = 1; seed <= 12; ++seed) {
+    for (unsigned seed = 1; seed <= 60; ++seed) {
         SCOPED_TRACE(seed);
         std::mt19937 random(seed);
         std::uniform_real_distribution<double> part(-1, 1);

@@ -54,6 +54,7 @@ double first_end(std::vector<Stretch>& dark, double hair) {
 
 /// A convex part of a triangle, by weights of its corners.
 using Part = std::vector<glm::dvec3>;
+const Part kWhole = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
 
 /// The parts of a convex part where a linear function of the weights is at least 0, and at most.
 void divide(const Part& part, const glm::dvec3& at_corners, Part& above, Part& below) {
@@ -253,7 +254,7 @@ class ShadowParts {
     ShadowParts(const Rays& rays, const ShadowScale& scale) : m_rays(rays), m_scale(scale) {
         for (const glm::dvec3& r : rays) m_size = std::max(m_size, glm::length(r));
         set_flat();
-        m_lit.push_back({{1, 0, 0}, {0, 1, 0}, {0, 0, 1}});
+        m_lit.push_back(kWhole);
     }
 
     /// Takes a shadow away; false if all of the triangle is in it.
@@ -279,15 +280,16 @@ class ShadowParts {
     }
 
     /// Is it too narrow to be divided?
-    bool is_narrow() const { return !is_wide({{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}); }
+    bool is_narrow() const { return !is_wide(kWhole); }
 
     ShadowCover cover() const {
         if (m_dark.empty() && !m_all_dark) return {ShadowCover::lit};
         Part light;
         for (const Part& part : m_lit) light.insert(light.end(), part.begin(), part.end());
-        if (!is_wide(light)) return {ShadowCover::hidden};
-        if (!m_all_dark && !is_wide(m_dark)) return {ShadowCover::lit};
-        return corner();
+        const bool dark_is_wide = m_all_dark || is_wide(m_dark);
+        if (is_wide(light)) return dark_is_wide ? corner() : ShadowCover{ShadowCover::lit};
+        // What has but strips of both is what most of it is.
+        return {!dark_is_wide && 2 * lit_area() > area(kWhole) ? ShadowCover::lit : ShadowCover::hidden};
     }
 
   private:
@@ -314,6 +316,11 @@ class ShadowParts {
             sum += p.x * q.y - p.y * q.x;
         }
         return 0.5 * std::fabs(sum);
+    }
+    double lit_area() const {
+        double sum = 0;
+        for (const Part& part : m_lit) sum += area(part);
+        return sum;
     }
     /// Are points farther from the line through the two that are farthest apart?
     bool is_wide(const Part& part) const {
@@ -378,7 +385,7 @@ class ShadowParts {
     ShadowCover corner() const {
         Part points = m_dark;
         for (const Part& part : m_lit) points.insert(points.end(), part.begin(), part.end());
-        const double whole = 2 * area({{1, 0, 0}, {0, 1, 0}, {0, 0, 1}});
+        const double whole = 2 * area(kWhole);
         ShadowCover best{ShadowCover::both};
         double best_worth = 0;
         for (const glm::dvec3& l : points) {

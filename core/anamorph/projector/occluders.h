@@ -19,8 +19,10 @@ namespace anamorph {
 /// What is too small to count in shadows, as seen from the centre.
 struct ShadowScale {
     double per_radian = 1;  ///< texels
-    double thin = 0;        ///< in texels: narrower strips of light or shadow are left where they are
-    double on_plane = 0;    ///< relative to its distance, a ray as near to a plane as this lies in it
+    double thin =
+        0;  ///< in texels: narrower strips of light or shadow are left where they are, and a narrower triangle
+            ///< is what its middle is
+    double on_plane = 0;  ///< relative to its distance, a ray as near to a plane as this lies in it
 };
 
 /// How much of a triangle is in shadows.
