@@ -56,8 +56,7 @@ ParameterValues values_of(const Operation& operation, const OIIO::ParamValueList
     const ParameterTable& table = *operation.parameters;
     ParameterValues values(table);
     if (values.knows("size") && dst.initialized() && dst.spec().full_width > 0 && dst.spec().full_height > 0)
-        values.assign(
-            {{"size", std::to_string(dst.spec().full_width) + "x" + std::to_string(dst.spec().full_height)}});
+        values.set("size", Size{dst.spec().full_width, dst.spec().full_height});
     const std::vector<Assignment> assignments = assignments_of(options);
     ParameterValues asked(table);
     asked.assign(assignments);

@@ -148,6 +148,58 @@ TEST(Parameter, WholeNumbersAndLists) {
     refuses("gains", "1,-2", "must be numbers of at least 0, separated by commas");
 }
 
+TEST(Parameter, TypedValuesAreThoseThatAreWritten) {
+    const ParameterTable table = {rows::number("part", "", "", 0, 1, ""),
+                                  rows::above(rows::number("above", "", "", 0, 1, "")),
+                                  rows::whole("count", "", "", 1, 99, ""),
+                                  rows::toggle("on", "0", ""),
+                                  rows::numbers("gains", 0, ""),
+                                  rows::size(""),
+                                  rows::wrap("is black"),
+                                  rows::text("note", "")};
+    ParameterValues typed(table), written(table);
+    typed.set("part", 0.1);
+    typed.set("COUNT", 7);
+    typed.set("on", true);
+    typed.set("gains", std::vector<double>{0.25, 1e-300, 1.0 / 3});
+    typed.set("size", Size{640, 480});
+    typed.set("wrap", "mirror");
+    typed.set("note", "a = b");
+    written.assign({{"part", "0.1"},
+                    {"count", "7"},
+                    {"on", "1"},
+                    {"gains", "0.25,1e-300,0.3333333333333333"},
+                    {"size", "640x480"},
+                    {"wrap", "mirror"},
+                    {"note", "a = b"}});
+    EXPECT_EQ(typed.key(), written.key());
+    for (const ParameterValues& v : {typed, written}) {
+        EXPECT_EQ(v.number("part"), 0.1);
+        EXPECT_EQ(v.whole("count"), 7);
+        EXPECT_TRUE(v.toggle("on"));
+        EXPECT_EQ(v.numbers("gains"), (std::vector<double>{0.25, 1e-300, 1.0 / 3}));
+        EXPECT_EQ(v.extent("size").height, 480);
+        EXPECT_EQ(rows::chosen<Wrap>(v, "wrap"), Wrap::mirror);
+    }
+    const auto refuses = [&](const char* name, const auto& value) {
+        EXPECT_THAT(error_of([&] { typed.set(name, value); }), AllOf(HasSubstr(name), HasSubstr("must")));
+    };
+    for (const double bad : {-0.1, 1.5, double(NAN), HUGE_VAL}) refuses("part", bad);
+    refuses("above", 0.0);
+    for (const double bad : {0.0, 1.5, 100.0, 1e300, double(NAN)}) refuses("count", bad);
+    for (const double bad : {0.5, 2.0, double(NAN)}) refuses("on", bad);
+    refuses("gains", std::vector<double>{});
+    refuses("gains", std::vector<double>{1, -1});
+    refuses("part", std::vector<double>{0.1, 0.2});
+    refuses("size", Size{0, 5});
+    refuses("size", Size{640, 1 << 30});
+    refuses("wrap", 1.0);
+    refuses("wrap", "Mirror");
+    refuses("note", "");
+    EXPECT_THAT(error_of([&] { typed.set("nonesuch", 1); }), HasSubstr("nonesuch"));
+    EXPECT_EQ(typed.key(), written.key()) << "what is refused changes nothing";
+}
+
 TEST(Parameter, NumbersDoNotDependOnTheLocale) {
     for (const char* name : {"de_DE.UTF-8", "fr_FR.UTF-8", "C"})
         if (std::setlocale(LC_ALL, name)) break;

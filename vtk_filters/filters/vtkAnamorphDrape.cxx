@@ -2,6 +2,7 @@
 #include "vtkAnamorphDrape.h"
 
 #include <algorithm>
+#include <array>
 #include <cctype>
 #include <cmath>
 #include <glm/geometric.hpp>
@@ -56,13 +57,11 @@ constexpr float kFar = 1e30f;  ///< the depth where nothing is seen
 constexpr anamorph::NumberRow kCoordinateRow{"coordinate", 0, -1e6, 1e6};
 
 const char* const kStyles[] = {"color", "texture coordinates", "depth", "normal"};
-
-/// One of the choices of a row of the operation's table.
-const std::string& word_of(const char* row, int choice) {
-    for (const anamorph::Parameter& parameter : *anamorph::drape_operation().parameters)
-        if (parameter.name == row) return parameter.choices.at(static_cast<std::size_t>(choice));
-    throw Error(std::string("there is no row ") + row);
-}
+// The operation's words for the values of Filter and Shading.
+constexpr std::array kFilters = {"nearest", "bilinear", "bicubic", "antialias", "pyramid", "summed_area"};
+static_assert(kFilters.size() == vtkAnamorphDrape::SUMMED_AREA + 1);
+constexpr std::array kShadings = {"none", "gouraud", "phong"};
+static_assert(kShadings.size() == vtkAnamorphDrape::PHONG + 1);
 
 // Header and core have been made of the same list.
 static_assert(vtkAnamorphDrape::NumberOfSurfaces == 2
@@ -75,10 +74,10 @@ static_assert(vtkAnamorphDrape::NumberOfSurfaces == 2
 const std::string& surface_word(int surface) {
     static_assert(vtkAnamorphDrape::FORMULA == vtkAnamorphDrape::POSITIONS + 1);
     constexpr int kListed = vtkAnamorphDrape::NumberOfSurfaces - 2;
-    if (surface < vtkAnamorphDrape::POSITIONS) return word_of("surface", surface);
-    if (surface <= vtkAnamorphDrape::FORMULA)
-        return word_of("surface", kListed + surface - vtkAnamorphDrape::POSITIONS);
-    return word_of("surface", surface - 2);
+    const int index = surface < vtkAnamorphDrape::POSITIONS  ? surface
+                      : surface <= vtkAnamorphDrape::FORMULA ? kListed + surface - vtkAnamorphDrape::POSITIONS
+                                                             : surface - 2;
+    return anamorph::all_surface_names().at(static_cast<std::size_t>(index));
 }
 
 glm::dvec3 point(const char* name, const double* v) {
@@ -282,37 +281,36 @@ bool vtkAnamorphDrape::Uses(int surface) const {
 
 /// The properties as the operation's values, checked by its table. Throws anamorph::Error.
 anamorph::ParameterValues vtkAnamorphDrape::Values() const {
-    std::vector<anamorph::Assignment> said = {{"surface", surface_word(this->Surface)},
-                                              {"filter", word_of("filter", this->Filter)},
-                                              {"shading", word_of("shading", this->Shading)}};
+    anamorph::ParameterValues values(*anamorph::drape_operation().parameters);
+    values.set("surface", surface_word(this->Surface));
+    values.set("filter", kFilters[static_cast<std::size_t>(this->Filter)]);
+    values.set("shading", kShadings[static_cast<std::size_t>(this->Shading)]);
     for (const Number& number : Numbers())
         if (number.value != &vtkAnamorphDrape::Radius || this->Radius != 0)
-            said.push_back({number.row, anamorph::shortest(this->*number.value)});
-    const auto add = [](std::string& list, const std::string& more) {
-        list += (list.empty() ? "" : ",") + more;
-    };
-    std::string blend, weights, lights;
+            values.set(number.row, this->*number.value);
+    std::string blend;
+    std::vector<double> weights, lights;
     for (int surface = 0; surface < NumberOfSurfaces; ++surface)
         if (surface != this->Surface && this->BlendWeights[surface] != 0) {
-            add(blend, surface_word(surface));
-            add(weights, anamorph::shortest(this->BlendWeights[surface]));
+            blend += (blend.empty() ? "" : ",") + surface_word(surface);
+            weights.push_back(this->BlendWeights[surface]);
         }
-    if (!blend.empty()) said.insert(said.end(), {{"blend", blend}, {"weights", weights}});
-    for (const auto& light : this->Lights)
-        for (const double number : light) add(lights, anamorph::shortest(number));
-    if (!lights.empty()) said.push_back({"light", lights});
+    if (!blend.empty()) {
+        values.set("blend", blend);
+        values.set("weights", weights);
+    }
+    for (const auto& light : this->Lights) lights.insert(lights.end(), light.begin(), light.end());
+    if (!lights.empty()) values.set("light", lights);
     if (this->Uses(FORMULA)) {
         const auto say = [&](const char* row, const std::string& text) {
-            if (!text.empty()) said.push_back({row, text});
+            if (!text.empty()) values.set(row, text);
         };
         say("px", this->FormulaX);
         say("py", this->FormulaY);
         say("pz", this->FormulaZ);
         say("let", this->FormulaDefinitions);
-        said.push_back({"frame", std::to_string(this->Frame)});
+        values.set("frame", this->Frame);
     }
-    anamorph::ParameterValues values(*anamorph::drape_operation().parameters);
-    values.assign(said);
     return values;
 }
 
@@ -520,9 +518,9 @@ void vtkAnamorphDrape::PrintSelf(ostream& os, vtkIndent indent) {
     os << indent << "CameraParallelProjection: " << this->CameraParallelProjection << "\n"
        << indent << "CameraParallelScale: " << this->CameraParallelScale << "\n"
        << indent << "CameraViewAngle: " << this->CameraViewAngle << "\n"
-       << indent << "Filter: " << word_of("filter", this->Filter) << "\n";
+       << indent << "Filter: " << kFilters[static_cast<std::size_t>(this->Filter)] << "\n";
     print("Background", this->Background, 4);
-    os << indent << "Shading: " << word_of("shading", this->Shading) << "\n";
+    os << indent << "Shading: " << kShadings[static_cast<std::size_t>(this->Shading)] << "\n";
     for (const auto& light : this->Lights) print("Light", light.data(), 3);
     os << indent << "Style: " << kStyles[this->Style] << "\n"
        << indent << "MaxError: " << this->MaxError << "\n";

@@ -169,14 +169,18 @@ void vtkAnamorphFigureImage::AskedExtent(int extent[6]) {
 anamorph::FigureLook vtkAnamorphFigureImage::GetLook() const {
     static constexpr FigureStyle kStyles[] = {FigureStyle::shaded, FigureStyle::outline, FigureStyle::stick,
                                               FigureStyle::depth, FigureStyle::id};
+    using anamorph::BodyMapping, anamorph::Lighting;
+    static constexpr Lighting kLightings[] = {Lighting::rasel, Lighting::lambert, Lighting::blinn};
+    static constexpr BodyMapping kMappings[] = {BodyMapping::latlong, BodyMapping::mirrored,
+                                                BodyMapping::linear, BodyMapping::octahedral};
     anamorph::FigureLook look;
     look.style = kStyles[this->Style];
-    look.light.lighting = static_cast<anamorph::Lighting>(this->Lighting);
+    look.light.lighting = kLightings[this->Lighting];
     look.light.toward = anamorph::usual_light(look.light.lighting);
     look.antialias = this->Antialias;
     if (this->Style != SHADED || this->Textures.empty()) return look;
     look.style = FigureStyle::textured;
-    look.mapping = static_cast<anamorph::BodyMapping>(this->TextureMapping);
+    look.mapping = kMappings[this->TextureMapping];
     for (const auto& texture : this->Textures) look.textures.push_back(texture.first);
     return look;
 }

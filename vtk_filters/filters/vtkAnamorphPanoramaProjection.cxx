@@ -45,7 +45,7 @@ using anamorph::Painting;
 using anamorph_vtk::distributed;
 using anamorph_vtk::TriangleList;
 
-static_assert(std::size(anamorph::kProjections) == vtkAnamorphPanoramaProjection::OCTAHEDRAL + 1);
+static_assert(std::size(anamorph::kProjections) == vtkAnamorphPanoramaProjection::NumberOfProjections);
 
 /// The surface of a data set, in triangles.
 vtkSmartPointer<vtkPolyData> triangles_of(vtkDataSet* data) {

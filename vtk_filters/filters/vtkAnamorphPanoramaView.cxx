@@ -111,18 +111,16 @@ void vtkAnamorphPanoramaView::Draw(vtkInformationVector** inputs, const int* ext
     const anamorph_vtk::ImageTexture panorama(vtkImageData::GetData(inputs[0]),
                                               this->GetInputArrayToProcess(0, inputs), kName);
     anamorph::ParameterValues values(*anamorph::pano_operation().parameters);
-    std::vector<anamorph::Assignment> given = {
-        {"from", std::string(anamorph::name_of(anamorph::kProjections[this->Projection]))},
-        {"srcd", anamorph::shortest(this->PanniniDistance)},
-        {"fov", anamorph::shortest(this->ViewAngle)},
-        {"yaw", anamorph::shortest(this->Yaw)},
-        {"pitch", anamorph::shortest(this->Pitch)},
-        {"roll", anamorph::shortest(this->Roll)},
-        {"size", std::to_string(this->ViewSize[0]) + "x" + std::to_string(this->ViewSize[1])},
-        {"tol", anamorph::shortest(this->Tolerance)}};
-    if (this->FieldOfView != 0) given.push_back({"srcfov", anamorph::shortest(this->FieldOfView)});
-    if (this->Lens && *this->Lens) given.push_back({"srclens", this->Lens});
-    values.assign(given);
+    values.set("from", std::string(anamorph::name_of(anamorph::kProjections[this->Projection])));
+    values.set("srcd", this->PanniniDistance);
+    values.set("fov", this->ViewAngle);
+    values.set("yaw", this->Yaw);
+    values.set("pitch", this->Pitch);
+    values.set("roll", this->Roll);
+    values.set("size", anamorph::Size{this->ViewSize[0], this->ViewSize[1]});
+    values.set("tol", this->Tolerance);
+    if (this->FieldOfView != 0) values.set("srcfov", this->FieldOfView);
+    if (this->Lens && *this->Lens) values.set("srclens", this->Lens);
     const anamorph::ReprojectRequest request =
         anamorph::read_reproject_request(values, {panorama.size().width, panorama.size().height});
 

@@ -28,8 +28,7 @@ class ANAMORPHFILTERS_EXPORT vtkAnamorphPanoramaView : public vtkImageAlgorithm 
     /**
      * The projection of the panorama, one of vtkAnamorphPanoramaProjection::Projections. Default: EQUIRECTANGULAR.
      */
-    vtkSetClampMacro(Projection, int, vtkAnamorphPanoramaProjection::EQUIRECTANGULAR,
-                     vtkAnamorphPanoramaProjection::OCTAHEDRAL);
+    vtkSetClampMacro(Projection, int, 0, vtkAnamorphPanoramaProjection::NumberOfProjections - 1);
     vtkGetMacro(Projection, int);
     ///@}
 

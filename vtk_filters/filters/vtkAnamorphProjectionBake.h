@@ -24,6 +24,7 @@
 #include <memory>  // for the members
 
 #include "AnamorphFiltersModule.h"  // for the export macro
+#include "vtkAnamorphPanoramaProjection.h"
 #include "vtkImageAlgorithm.h"
 #include "vtkSmartPointer.h"  // for the members
 
@@ -50,7 +51,7 @@ class ANAMORPHFILTERS_EXPORT vtkAnamorphProjectionBake : public vtkImageAlgorith
     /**
      * The projection of the panoramas, as vtkAnamorphPanoramaProjection counts them. Default: 0, equirectangular.
      */
-    vtkSetClampMacro(Projection, int, 0, 16);
+    vtkSetClampMacro(Projection, int, 0, vtkAnamorphPanoramaProjection::NumberOfProjections - 1);
     vtkGetMacro(Projection, int);
     ///@}
 

@@ -81,10 +81,10 @@ void ViewedPanorama::move(double right, double ahead) {
 anamorph::ParameterValues ViewedPanorama::values(const View& view, const anamorph::Size& size) const {
     anamorph::ParameterValues values(*m_operation->parameters);
     values.assign(m_options);
-    values.assign({{"yaw", anamorph::shortest(view.yaw)},
-                   {"pitch", anamorph::shortest(view.pitch)},
-                   {"fov", anamorph::shortest(view.fov)},
-                   {"size", std::to_string(size.width) + "x" + std::to_string(size.height)}});
+    values.set("yaw", view.yaw);
+    values.set("pitch", view.pitch);
+    values.set("fov", view.fov);
+    values.set("size", size);
     return values;
 }
 

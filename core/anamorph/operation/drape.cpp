@@ -77,20 +77,21 @@ ParameterTable view_rows() {
 ParameterTable accuracy_rows() {
     using namespace rows;
     return {
-        filter({{"pyramid",
+        filter({{"pyramid", Filter::pyramid,
                  "the mean over the least rectangle along the source's sides that covers what a pixel shows, "
                  "from a pyramid (Oka 1987, Williams 1983)"},
-                {"summed_area", "the same of all texels, from a table of sums (Crow 1984)"}}),
+                {"summed_area", Filter::summed_area,
+                 "the same of all texels, from a table of sums (Crow 1984)"}}),
         wrap("goes on as at the edge"),
         number("tol", "pixels", kDrapeTolRow,
                "how far, on the screen, a point of the picture may be drawn from where it belongs"),
-        scheme({{"auto"},
-                {"exact"},
-                {"oka",
+        scheme({{"auto", DrapeScheme::automatic},
+                {"exact", DrapeScheme::exact},
+                {"oka", DrapeScheme::oka,
                  "blocks of the picture as parallelograms, the nearer over the farther, with the tolerance "
                  "that comes out (Oka 1987)"},
-                {"oka-z", "the same with a depth for each pixel"},
-                {"hardware"}}),
+                {"oka-z", DrapeScheme::oka_z, "the same with a depth for each pixel"},
+                {"hardware", Word::kNone}}),
         text("machine",
              "of scheme hardware: oka-1987, the machine of Oka 1987, and what differs from it, "
              "oka-1987:block=4,fraction_bits=8 or {\"block\": 4, \"fraction_bits\": 8}; by default oka-1987"),
@@ -105,8 +106,11 @@ ParameterTable accuracy_rows() {
 ParameterTable look_rows() {
     using namespace rows;
     return {
-        choice("shading", "none", {"none", "gouraud", "phong"},
-               "none; by the light at corners of patches; by the normals there"),
+        enumeration("shading", "none",
+                    {{"none", DrapeShading::none},
+                     {"gouraud", DrapeShading::gouraud},
+                     {"phong", DrapeShading::phong}},
+                    "none; by the light at corners of patches; by the normals there"),
         vector("light", "0,0,1", "directions towards the lights, three numbers each"),
         number("ambient", "", "0.2", 0, 1000, "share of the colour that is seen without light"),
         number("diffuse", "", "0.8", 0, 1000, "share of the colour that light adds"),
@@ -120,14 +124,16 @@ ParameterTable look_rows() {
               "colors, with alpha or without"),
         colorspace("color space to filter in; by default the source's own"),
         output(
-            {{"depth", "the distance ahead of the camera, infinite where nothing is seen"},
-             {"normal", "the unit normal on the viewer's side"},
-             {"patch", "the number of the patch of the surface that is drawn, -1 where none is"},
-             {"coverage",
+            {{"depth", DrapeOutput::depth,
+              "the distance ahead of the camera, infinite where nothing is seen"},
+             {"normal", DrapeOutput::normal, "the unit normal on the viewer's side"},
+             {"patch", DrapeOutput::patch,
+              "the number of the patch of the surface that is drawn, -1 where none is"},
+             {"coverage", DrapeOutput::coverage,
               "the share of the pixel in which the surface is seen, by which its colours are faded at edges "
               "into the background, and 0 or 1 with the filters nearest, bilinear and bicubic, which fade "
               "nothing"},
-             {"seen", "1 where the surface is seen in the pixel's middle, else 0"}}),
+             {"seen", DrapeOutput::seen, "1 where the surface is seen in the pixel's middle, else 0"}}),
     };
 }
 
@@ -184,11 +190,7 @@ DrapeOptions options_of(const ParameterValues& values) {
     options.wrap = chosen<Wrap>(values, "wrap");
     if (options.wrap == Wrap::automatic) options.wrap = Wrap::clamp;
     options.output = rows::chosen_output(values);
-    constexpr std::array kOwn = {DrapeOutput::depth, DrapeOutput::normal, DrapeOutput::patch,
-                                 DrapeOutput::coverage, DrapeOutput::seen};
-    const std::size_t shared = static_cast<std::size_t>(Output::bound) + 1,
-                      output = rows::chosen_index(values, "output");
-    if (output >= shared) options.own = kOwn[output - shared];
+    if (!rows::has_shared_output(values)) options.own = chosen<DrapeOutput>(values, "output");
     options.lighting = {chosen<DrapeShading>(values, "shading"),
                         drape_lights(values.numbers("light")),
                         values.number("ambient"),
@@ -255,13 +257,8 @@ class DrapeRequest {
     /// A frame's values.
     ParameterValues values_at(int frame) const {
         ParameterValues values = m_values;
-        values.assign({{"frame", std::to_string(frame)}});
-        for (const NamedKeyFrames& keys : m_keys) {
-            std::string text;
-            for (const double number : keys.frames.at(frame))
-                text += (text.empty() ? "" : ",") + shortest(number);
-            values.assign({{keys.name, text}});
-        }
+        values.set("frame", frame);
+        for (const NamedKeyFrames& keys : m_keys) values.set(keys.name, keys.frames.at(frame));
         return values;
     }
     Size target(const ParameterValues& values) const { return rows::size_of(values, m_source); }

@@ -48,7 +48,7 @@ std::vector<SurfaceSum::Part> parts_of(const ParameterValues& values) {
     if (weights.size() != blend.size())
         throw Error("weights", std::to_string(weights.size()) + " numbers",
                     "must be as many as surfaces in blend, " + std::to_string(blend.size()));
-    std::vector<SurfaceSum::Part> parts = {{rows::chosen_index(values, "surface"), 1}};
+    std::vector<SurfaceSum::Part> parts = {{values.choice("surface"), 1}};
     for (std::size_t i = 0; i < blend.size(); ++i) {
         const auto found = std::find(names.begin(), names.end(), blend[i]);
         if (found == names.end())

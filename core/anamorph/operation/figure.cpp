@@ -29,27 +29,29 @@ constexpr double kFar = 1e9;
 // Chords of outlines, in pixels.
 constexpr double kChordError = 0.02;
 
-/// What Filter::antialias, the last of the shared words, averages by; then those words that follow it.
-constexpr TextureAverage kAverages[] = {TextureAverage::footprint, TextureAverage::trilinear,
-                                        TextureAverage::summed_area, TextureAverage::mrasel};
+/// What else Filter::antialias may average by.
+const std::vector<rows::Word>& averages() {
+    static const std::vector<rows::Word> words = {
+        {"trilinear", TextureAverage::trilinear,
+         "between the two levels of a pyramid next to the longer side of what a pixel shows (Williams 1983)"},
+        {"summed_area", TextureAverage::summed_area,
+         "the mean over the least rectangle along the texture's sides that covers what a pixel shows, from a "
+         "table of sums (Crow 1984)"},
+        {"mrasel", TextureAverage::mrasel, "the nearest texel of the level that MRASEL takes"}};
+    return words;
+}
 
 Parameter texture_filter() {
-    Parameter row = rows::filter({{"trilinear",
-                                   "between the two levels of a pyramid next to the longer side of what a "
-                                   "pixel shows (Williams 1983)"},
-                                  {"summed_area",
-                                   "the mean over the least rectangle along the texture's sides that covers "
-                                   "what a pixel shows, from a table of sums (Crow 1984)"},
-                                  {"mrasel", "the nearest texel of the level that MRASEL takes"}});
+    Parameter row = rows::filter(averages());
     row.documentation = "of style textured: " + row.documentation;
     return row;
 }
 
 void read_filter(const ParameterValues& values, FigureLook& look) {
-    const auto word = static_cast<int>(rows::chosen_index(values, "filter"));
-    const int beyond = word - static_cast<int>(Filter::antialias);
-    look.filter = beyond > 0 ? Filter::antialias : static_cast<Filter>(word);
-    look.average = kAverages[std::max(beyond, 0)];
+    const bool own = std::any_of(averages().begin(), averages().end(),
+                                 [&](const rows::Word& word) { return word.name == values.text("filter"); });
+    look.filter = own ? Filter::antialias : rows::chosen<Filter>(values, "filter");
+    look.average = own ? rows::chosen<TextureAverage>(values, "filter") : TextureAverage::footprint;
 }
 
 /// What is performed, and which of it.
@@ -61,9 +63,9 @@ ParameterTable script_rows() {
              "MRASEL (.mrasel); by default the recipe's name without .figure, and of a name that ends in .n, "
              ".nudes, .bvh, .cif or .mrasel that file itself"),
         file("library", "a file of figures without stop, included ahead of the script"),
-        choice("dialect", "classic", {"classic", "strict"},
-               "classic: as the programs of 2003 ran scripts, but abut and touch end in exact contact; "
-               "strict: as the language is documented"),
+        enumeration("dialect", "classic", {{"classic", Dialect::classic}, {"strict", Dialect::strict}},
+                    "classic: as the programs of 2003 ran scripts, but abut and touch end in exact contact; "
+                    "strict: as the language is documented"),
         whole("frame", "", "", 0, kMostFrameNumber,
               "the frame of the script that is drawn, 0 the figures at rest; by default all that it shows, "
               "each a subimage"),
@@ -78,20 +80,30 @@ ParameterTable style_rows() {
                    "each unit of the script's window, which is as large as fits"),
         tile(),
         mip(),
-        choice("style", "shaded", {"shaded", "outline", "stick", "depth", "id", "uv", "textured"},
-               "shaded, bodies in their colors; outline, without hidden lines; stick, from joint to joint; "
-               "depth, from the eye, without perspective from the plane through the place, in units, 1e30 "
-               "where there is no body; id, 1 for the first body, 0 for none; uv, the point of a body's "
-               "texture, (-1, -1) for none; textured, shaded, with the pictures that the script names"),
+        enumeration(
+            "style", "shaded",
+            {{"shaded", FigureStyle::shaded},
+             {"outline", FigureStyle::outline},
+             {"stick", FigureStyle::stick},
+             {"depth", FigureStyle::depth},
+             {"id", FigureStyle::id},
+             {"uv", FigureStyle::uv},
+             {"textured", FigureStyle::textured}},
+            "shaded, bodies in their colors; outline, without hidden lines; stick, from joint to joint; "
+            "depth, from the eye, without perspective from the plane through the place, in units, 1e30 "
+            "where there is no body; id, 1 for the first body, 0 for none; uv, the point of a body's "
+            "texture, (-1, -1) for none; textured, shaded, with the pictures that the script names"),
         choice("output", "picture", {"picture", "mips"},
                "picture; mips, the pyramid of each texture in one picture, each a subimage: the level in "
                "three quarters, red, green and blue, in the fourth the next level alike"),
         toggle("antialias", "1",
                "of styles shaded and textured: pixels are the mean of 16 x 16 samples; 0: what is in their "
                "middle"),
-        choice("lighting", "rasel", {"rasel", "lambert", "blinn"},
-               "of styles shaded and textured: rasel, soft from one pole of a body to the other; lambert; "
-               "blinn, with highlights"),
+        enumeration(
+            "lighting", "rasel",
+            {{"rasel", Lighting::rasel}, {"lambert", Lighting::lambert}, {"blinn", Lighting::blinn}},
+            "of styles shaded and textured: rasel, soft from one pole of a body to the other; lambert; "
+            "blinn, with highlights"),
         numbers("light", -kInfinity,
                 "x,y,z: the direction to the light, x to the right, y up, z away; by default 0,1,0, and for "
                 "lambert and blinn -1,2,-2"),
@@ -127,10 +139,15 @@ ParameterTable line_rows() {
     return {
         number("line_width", "pixels", "1.5", 0.01, 1000, "of styles outline and stick"),
         toggle("line_colors", "0", "of styles outline and stick: 1, lines in the colors of the bodies"),
-        choice("mapping", "latlong", {"latlong", "mirrored", "linear", "octahedral"},
-               "of styles uv and textured, how a texture lies on a body: latlong, once around, the seam at "
-               "the back; mirrored, over the front and again over the back; linear, stripes stay straight; "
-               "octahedral, without a pole"),
+        enumeration(
+            "mapping", "latlong",
+            {{"latlong", BodyMapping::latlong},
+             {"mirrored", BodyMapping::mirrored},
+             {"linear", BodyMapping::linear},
+             {"octahedral", BodyMapping::octahedral}},
+            "of styles uv and textured, how a texture lies on a body: latlong, once around, the seam at "
+            "the back; mirrored, over the front and again over the back; linear, stripes stay straight; "
+            "octahedral, without a pole"),
         texture_filter(),
     };
 }

@@ -21,9 +21,10 @@ ParameterTable make_lens_table() {
     extent.choices = {kAll};
     return {
         image("src", "the source image; by default the recipe's name without .lens"),
-        choice("mode", "undistort", {"undistort", "distort"},
-               "undistort: the source was taken through the lens, and the picture is free of it; distort: "
-               "the other way round, with the picture of the size that the lens is of"),
+        enumeration(
+            "mode", "undistort", {{"undistort", LensMode::undistort}, {"distort", LensMode::distort}},
+            "undistort: the source was taken through the lens, and the picture is free of it; distort: "
+            "the other way round, with the picture of the size that the lens is of"),
         text("lens",
              "MODEL:name=value,name=value with ptlens (a, b, c), brown (k1 to k6, p1, p2), 3de4 (k1, k2) or "
              "kb4 (k1 to k4), and d, e, the shift of its centre in pixels; by default what the image says of "
@@ -38,7 +39,10 @@ ParameterTable make_lens_table() {
         filter(),
         wrap("is black"),
         tol(),
-        scheme({{"auto"}, {"exact"}, {"blocks"}, {"residual"}}),
+        scheme({{"auto", Scheme::automatic},
+                {"exact", Scheme::exact},
+                {"blocks", Scheme::blocks},
+                {"residual", Scheme::residual}}),
         colorspace("color space to filter in; by default the source's own"),
         output(),
     };

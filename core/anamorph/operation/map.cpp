@@ -37,7 +37,10 @@ ParameterTable make_map_table() {
         filter(),
         wrap("is black"),
         tol(),
-        scheme({{"auto"}, {"exact"}, {"blocks"}, {"residual"}}),
+        scheme({{"auto", Scheme::automatic},
+                {"exact", Scheme::exact},
+                {"blocks", Scheme::blocks},
+                {"residual", Scheme::residual}}),
         colorspace("color space to filter in; by default the source's own"),
         output(),
     };

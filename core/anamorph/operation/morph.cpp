@@ -55,13 +55,14 @@ ParameterTable make_morph_table() {
         filter(),
         wrap("is clamp"),
         tol(),
-        scheme(
-            {{"auto"}, {"exact"}, {"mesh", "on a grid with cells cut near the lines, which holds no tol"}}),
+        scheme({{"auto", MorphScheme::automatic},
+                {"exact", MorphScheme::exact},
+                {"mesh", MorphScheme::mesh, "on a grid with cells cut near the lines, which holds no tol"}}),
         whole("mesh_cells", "", "12", 1, FeatureMesh::kMostCells, "of scheme mesh: cells each way"),
         whole("mesh_levels", "", "1", 0, FeatureMesh::kMostLevels,
               "of scheme mesh: how often cells near a line are cut into four"),
         colorspace("color space to filter and blend in; by default that of the pictures"),
-        output({{"lines", "color with the features of all pictures drawn over it"}}),
+        output({{"lines", Word::kNone, "color with the features of all pictures drawn over it"}}),
         choice("picture", "", morph_pictures(),
                "one picture alone, warped, in place of the blend: its color, stmap, error, bound; by default "
                "stmap is that of a, error and bound are the largest"),

@@ -67,9 +67,12 @@ ParameterTable make_mosaic_table() {
         filter(),
         as_pano("wrap"),
         tol(),
-        scheme({{"auto"}, {"exact"}, {"blocks"}, {"residual"}}),
+        scheme({{"auto", Scheme::automatic},
+                {"exact", Scheme::exact},
+                {"blocks", Scheme::blocks},
+                {"residual", Scheme::residual}}),
         colorspace("color space to filter in; by default the source's own"),
-        output({{kDistortion, "how far heights may be from 1 times the true ones"}}),
+        output({{kDistortion, Word::kNone, "how far heights may be from 1 times the true ones"}}),
     };
 }
 

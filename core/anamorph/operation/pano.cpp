@@ -92,9 +92,15 @@ ParameterTable make_pano_table() {
         filter(),
         wrap("goes on across the seam, the poles and cube edges"),
         tol(),
-        choice("pixels", "edges", {"edges", "centers"},
-               "where the source's field of view ends: at the edges of its outer pixels or at their centers"),
-        scheme({{"auto"}, {"exact"}, {"blocks"}, {"residual"}, {"direct"}, {"hardware"}}),
+        enumeration(
+            "pixels", "edges", {{"edges", PixelSpacing::edges}, {"centers", PixelSpacing::centers}},
+            "where the source's field of view ends: at the edges of its outer pixels or at their centers"),
+        scheme({{"auto", Scheme::automatic},
+                {"exact", Scheme::exact},
+                {"blocks", Scheme::blocks},
+                {"residual", Scheme::residual},
+                {"direct", Scheme::direct},
+                {"hardware", Word::kNone}}),
         text("machine",
              "of scheme hardware: embm-2003, the bump mapping of Kim 2003, and what differs from it, "
              "embm-2003:size=64,texel=V8U8 or {\"size\": 64, \"texel\": \"V8U8\"}; by default embm-2003"),

@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "anamorph/image/source.h"
+#include "anamorph/plan/scheme.h"
 
 namespace anamorph::rows {
 namespace {
@@ -33,30 +34,25 @@ Parameter extent(const char* name, std::string value, double least, double most,
 // What the words of all operations mean. In functions, since tables may be made before main() begins.
 const std::vector<Word>& shared_schemes() {
     static const std::vector<Word> words = {
-        {"auto", "the fastest that holds tol"},
-        {"exact", "every pixel by the formula"},
-        {"blocks", "polynomials of degree 2 to 4 on blocks"},
-        {"residual", "linear maps and a table of what remains"},
-        {"direct", "every pixel by the formula, in float where that holds tol, near the middle of its block"},
-        {"hardware",
+        {"auto", Scheme::automatic, "the fastest that holds tol"},
+        {"exact", Scheme::exact, "every pixel by the formula"},
+        {"blocks", Scheme::blocks, "polynomials of degree 2 to 4 on blocks"},
+        {"residual", Scheme::residual, "linear maps and a table of what remains"},
+        {"direct", Scheme::direct,
+         "every pixel by the formula, in float where that holds tol, near the middle of its block"},
+        {"hardware", Word::kNone,
          "as the number formats and the stages of a machine make it, with the error that comes out"}};
     return words;
 }
 const std::vector<Word>& shared_outputs() {
     static const std::vector<Word> words = {
-        {"color", ""},
-        {"stmap",
+        {"color", Output::color},
+        {"stmap", Output::stmap,
          "the source point (u, v) with v down, in 0 to 1 on the source, "
          "beyond that beyond its edges, (-1, -1) where there is none or the source is far"},
-        {"error", "its distance from the exact one in source pixels"},
-        {"bound", "the proven bound of that"}};
+        {"error", Output::error, "its distance from the exact one in source pixels"},
+        {"bound", Output::bound, "the proven bound of that"}};
     return words;
-}
-
-std::vector<std::string> names_of(const std::vector<Word>& words) {
-    std::vector<std::string> names;
-    for (const Word& word : words) names.push_back(word.name);
-    return names;
 }
 
 /// "exact, every pixel by the formula; blocks, ...", of those that have a meaning.
@@ -68,6 +64,16 @@ std::string meanings_of(const std::vector<Word>& words) {
 }
 
 }  // namespace
+
+Parameter enumeration(const char* name, std::string value, const std::vector<Word>& words,
+                      const std::string& doc) {
+    Parameter parameter = choice(name, std::move(value), {}, doc);
+    for (const Word& word : words) {
+        parameter.choices.push_back(word.name);
+        parameter.enumerators.push_back(word.enumerator);
+    }
+    return parameter;
+}
 
 Parameter choice(const char* name, std::string value, std::vector<std::string> choices,
                  const std::string& doc) {
@@ -154,30 +160,38 @@ Parameter colorspace(const std::string& doc) {
 }
 
 Parameter filter(const std::vector<Word>& own) {
-    Parameter row = choice("filter", "antialias", {"nearest", "bilinear", "bicubic", "antialias"},
-                           "antialias is bilinear where the map magnifies");
-    for (const Word& word : own) row.choices.push_back(word.name);
-    if (!own.empty()) row.documentation += "; " + meanings_of(own);
-    return row;
+    std::vector<Word> words = {{"nearest", Filter::nearest},
+                               {"bilinear", Filter::bilinear},
+                               {"bicubic", Filter::bicubic},
+                               {"antialias", Filter::antialias}};
+    words.insert(words.end(), own.begin(), own.end());
+    return enumeration(
+        "filter", "antialias", words,
+        "antialias is bilinear where the map magnifies" + (own.empty() ? "" : "; " + meanings_of(own)));
 }
 
 Parameter wrap(const std::string& automatic) {
-    return choice("wrap", "automatic", {"automatic", "black", "clamp", "periodic", "mirror"},
-                  "what lies beyond a source's edge; automatic " + automatic);
+    return enumeration("wrap", "automatic",
+                       {{"automatic", Wrap::automatic},
+                        {"black", Wrap::black},
+                        {"clamp", Wrap::clamp},
+                        {"periodic", Wrap::periodic},
+                        {"mirror", Wrap::mirror}},
+                       "what lies beyond a source's edge; automatic " + automatic);
 }
 
 Parameter scheme(const std::vector<Word>& words) {
     std::vector<Word> known = words;
     for (Word& word : known)
         for (const Word& shared : shared_schemes())
-            if (word.name == shared.name) word = shared;
-    return choice("scheme", "auto", names_of(known), "how source points are found: " + meanings_of(known));
+            if (word.name == shared.name) word.meaning = shared.meaning;
+    return enumeration("scheme", "auto", known, "how source points are found: " + meanings_of(known));
 }
 
 Parameter output(const std::vector<Word>& own) {
     std::vector<Word> words = shared_outputs();
     words.insert(words.end(), own.begin(), own.end());
-    return choice("output", "color", names_of(words), "color, or per pixel: " + meanings_of(words));
+    return enumeration("output", "color", words, "color, or per pixel: " + meanings_of(words));
 }
 
 Size size_of(const ParameterValues& values, const Size& natural) {
@@ -199,14 +213,6 @@ glm::dvec3 three_numbers(const ParameterValues& values, std::string_view name, d
     return {v[0], v[1], v[2]};
 }
 
-std::size_t chosen_index(const ParameterValues& values, std::string_view name) {
-    const ParameterTable& table = values.table();
-    const auto row =
-        std::find_if(table.begin(), table.end(), [&](const Parameter& p) { return p.name == name; });
-    const auto found = std::find(row->choices.begin(), row->choices.end(), values.text(name));
-    return static_cast<std::size_t>(found - row->choices.begin());
-}
-
 double flat_field_of_view(int width, double focal_length) {
     return 2 * std::atan(width / (2 * focal_length)) * 180 / std::numbers::pi;
 }
@@ -217,9 +223,12 @@ std::string rounded_degrees(double degrees) {
     return text;
 }
 
+bool has_shared_output(const ParameterValues& values) {
+    return values.choice("output") < shared_outputs().size();
+}
+
 Output chosen_output(const ParameterValues& values) {
-    const std::size_t index = chosen_index(values, "output");
-    return index < shared_outputs().size() ? static_cast<Output>(index) : Output::color;
+    return has_shared_output(values) ? chosen<Output>(values, "output") : Output::color;
 }
 
 }  // namespace anamorph::rows

@@ -7,6 +7,7 @@
 #include <limits>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "anamorph/geometry/size.h"
@@ -18,6 +19,20 @@ namespace anamorph::rows {
 
 inline constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
+/// One of the values of a choice: its enumerator, and what it means where the row says so.
+struct Word {
+    template <class Enumeration>
+    Word(const char* word, Enumeration value, std::string means = {})
+        : name(word), meaning(std::move(means)), enumerator(static_cast<int>(value)) {}
+
+    std::string name, meaning;
+    int enumerator;
+    static constexpr int kNone = -1;  ///< of a word that is no enumerator, and is asked for itself
+};
+
+Parameter enumeration(const char* name, std::string value, const std::vector<Word>& words,
+                      const std::string& doc);
+/// Of words that are counted, or mean what they say.
 Parameter choice(const char* name, std::string value, std::vector<std::string> choices,
                  const std::string& doc);
 Parameter number(const char* name, const char* unit, std::string value, double least, double most,
@@ -42,19 +57,13 @@ Parameter mip();
 Parameter tol();
 Parameter colorspace(const std::string& doc);
 
-/// One of the values of a choice, and what it means.
-struct Word {
-    std::string name, meaning = {};
-};
-
-/// The filters that all operations share, in the order of anamorph::Filter, then those that follow them there.
+/// The filters that all operations share, then the operation's own.
 Parameter filter(const std::vector<Word>& own = {});
-/// In the order of anamorph::Wrap. `automatic`: what that is here, "is black".
+/// `automatic`: what that is here, "is black".
 Parameter wrap(const std::string& automatic);
-/// In the order of the operation's enumeration. The words auto, exact, blocks, residual and hardware mean the same
-/// everywhere and need no meaning here.
+/// The words auto, exact, blocks, residual, direct and hardware mean the same everywhere and need no meaning here.
 Parameter scheme(const std::vector<Word>& words);
-/// The words that all operations share, in the order of anamorph::Output, then the operation's own.
+/// The words that all operations share, then the operation's own.
 Parameter output(const std::vector<Word>& own = {});
 
 /// Width and height asked for by `size`: those of `natural` where none is, its shape where only a width is
@@ -64,13 +73,10 @@ Size size_of(const ParameterValues& values, const Size& natural);
 /// A row of numbers that must be three, each from `least` to `most`. Throws Error.
 glm::dvec3 three_numbers(const ParameterValues& values, std::string_view name, double least, double most);
 
-/// Which of its choices a row has.
-std::size_t chosen_index(const ParameterValues& values, std::string_view name);
-
-/// The same of a row whose choices are in the order of an enumeration.
+/// The enumerator of the word that a row has.
 template <class Enumeration>
 Enumeration chosen(const ParameterValues& values, std::string_view name) {
-    return static_cast<Enumeration>(chosen_index(values, name));
+    return static_cast<Enumeration>(values.enumerator(name));
 }
 
 /// The horizontal field of view, in degrees, of a flat picture so many pixels wide, of a camera of that focal length in
@@ -79,6 +85,8 @@ double flat_field_of_view(int width, double focal_length);
 /// Degrees in six digits, for what a picture says of itself.
 std::string rounded_degrees(double degrees);
 
+/// Has `output` one of the words that all operations share?
+bool has_shared_output(const ParameterValues& values);
 /// Of `output`: colour for the operation's own words.
 Output chosen_output(const ParameterValues& values);
 

@@ -27,8 +27,8 @@ ParameterTable make_warp_table() {
         file(
             "points",
             "in place of a mesh: pairs of points x, y (in the picture), u, v (in the source), .csv or .json"),
-        choice(
-            "direction", "", {"pull", "push"},
+        enumeration(
+            "direction", "", {{"pull", Direction::pull}, {"push", Direction::push}},
             "pull: the mesh lies in the picture, its vertices say where in the source; push: the mesh lies "
             "in the source, its vertices say where they go; by default what the file says, else pull"),
         number("amount", "", "1", -kInfinity, kInfinity,
@@ -40,11 +40,11 @@ ParameterTable make_warp_table() {
         filter(),
         wrap("is black"),
         tol(),
-        scheme({{"auto"},
-                {"exact"},
-                {"hermite", "the mesh's bicubic patches in float"},
-                {"residual"},
-                {"hardware"}}),
+        scheme({{"auto", WarpScheme::automatic},
+                {"exact", WarpScheme::exact},
+                {"hermite", WarpScheme::hermite, "the mesh's bicubic patches in float"},
+                {"residual", WarpScheme::residual},
+                {"hardware", Word::kNone}}),
         text("machine",
              "of scheme hardware: ps20, the pixel shader of Kim 2003, and what differs from it, "
              "ps20:table_size=32,arithmetic=fixed16 or {\"table_size\": 32, \"arithmetic\": \"fixed16\"}; by "
@@ -53,7 +53,7 @@ ParameterTable make_warp_table() {
              "of scheme hardware: a program of pixel shader 2.0 that is run for each pixel in place of ours; "
              "it needs no mesh"),
         colorspace("color space to filter in; by default the source's own"),
-        output({{"folds", "not 0 where the warp folds"}}),
+        output({{"folds", Word::kNone, "not 0 where the warp folds"}}),
     };
 }
 

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <climits>
 #include <cmath>
 #include <cstdio>
 #include <new>
@@ -76,41 +77,80 @@ std::optional<std::vector<double>> to_numbers(std::string_view text) {
     }
 }
 
-bool is_allowed(const Parameter& parameter, const std::string& value) {
+bool is_choice(const Parameter& parameter, const std::string& word) {
+    return std::find(parameter.choices.begin(), parameter.choices.end(), word) != parameter.choices.end();
+}
+
+/// The numbers that a text says; none where it is a word, or says none. Of an extent its width, and its height if that is given.
+std::vector<double> numbers_in(const Parameter& parameter, std::string_view text) {
+    switch (parameter.type) {
+        case ParameterType::number:
+            if (const auto v = to_number(text)) return {*v};
+            return {};
+        case ParameterType::whole:
+        case ParameterType::toggle:
+            if (const auto v = to_whole(text)) return {static_cast<double>(*v)};
+            return {};
+        case ParameterType::extent: {
+            const std::optional<Size> v = to_extent(text);
+            if (!v) return {};
+            if (text.find_first_of("xX") == std::string_view::npos) return {static_cast<double>(v->width)};
+            return {static_cast<double>(v->width), static_cast<double>(v->height)};
+        }
+        case ParameterType::numbers:
+            return to_numbers(text).value_or(std::vector<double>{});
+        default:
+            return {};
+    }
+}
+
+/// Are these numbers what a parameter takes?
+bool are_allowed(const Parameter& parameter, const std::vector<double>& values) {
     const auto in_range = [&](double v) {
         const bool low = parameter.above_minimum ? v > parameter.minimum : v >= parameter.minimum;
-        return low && v <= parameter.maximum;
+        return std::isfinite(v) && low && v <= parameter.maximum;
     };
-    const bool is_choice =
-        std::find(parameter.choices.begin(), parameter.choices.end(), value) != parameter.choices.end();
+    const auto is_int = [](double v) { return v == std::trunc(v) && std::fabs(v) <= INT_MAX; };
+    const bool all = !values.empty() && std::all_of(values.begin(), values.end(), in_range);
     switch (parameter.type) {
-        case ParameterType::number: {
-            const std::optional<double> v = to_number(value);
-            return v && in_range(*v);
-        }
-        case ParameterType::whole: {
-            const std::optional<int> v = to_whole(value);
-            return v && in_range(*v);
-        }
+        case ParameterType::number:
+            return values.size() == 1 && all;
+        case ParameterType::whole:
+            return values.size() == 1 && all && is_int(values[0]);
         case ParameterType::toggle:
-            return value == "0" || value == "1";
+            return values.size() == 1 && (values[0] == 0 || values[0] == 1);
+        case ParameterType::extent:
+            return values.size() <= 2 && all && std::all_of(values.begin(), values.end(), is_int);
+        case ParameterType::numbers:
+            return all;
+        default:
+            return false;
+    }
+}
+
+bool is_allowed(const Parameter& parameter, const std::string& text, const std::vector<double>& numbers) {
+    switch (parameter.type) {
+        case ParameterType::toggle:
+            return text == "0" || text == "1";
         case ParameterType::choice:
-            return is_choice;
-        case ParameterType::extent: {
-            const std::optional<Size> v = to_extent(value);
-            const bool one = value.find_first_of("xX") == std::string::npos;
-            return is_choice || (v && in_range(v->width) && (one || in_range(v->height)));
-        }
-        case ParameterType::numbers: {
-            const std::optional<std::vector<double>> v = to_numbers(value);
-            return v && std::all_of(v->begin(), v->end(), in_range);
-        }
+            return is_choice(parameter, text);
+        case ParameterType::extent:
+            return is_choice(parameter, text) || are_allowed(parameter, numbers);
         case ParameterType::image:
         case ParameterType::file:
         case ParameterType::text:
-            return !value.empty();
+            return !text.empty();
+        default:
+            return are_allowed(parameter, numbers);
     }
-    return false;
+}
+
+/// Numbers as a recipe has them.
+std::string written(const Parameter& parameter, const std::vector<double>& values) {
+    const char* between = parameter.type == ParameterType::extent ? "x" : ",";
+    std::string text;
+    for (const double value : values) text += (text.empty() ? "" : between) + shortest(value);
+    return text;
 }
 
 const Parameter* find(const ParameterTable& table, std::string_view key) {
@@ -310,10 +350,32 @@ void ParameterValues::assign(const std::vector<Assignment>& place) {
             define(a);
             continue;
         }
-        if (!is_allowed(*parameter, a.value))
-            throw Error(parameter->name, printable(a.value), parameter->rule());
-        m_given[parameter->name] = a.value;
+        set(name, a.value);
     }
+}
+
+const Parameter& ParameterValues::row_of(std::string_view name) const {
+    const Parameter* parameter = find(*m_table, name);
+    if (!parameter) throw Error("there is no parameter " + std::string(name));
+    return *parameter;
+}
+
+void ParameterValues::set(std::string_view name, const std::string& word) {
+    const Parameter& parameter = row_of(name);
+    std::vector<double> numbers = numbers_in(parameter, word);
+    if (!is_allowed(parameter, word, numbers)) throw Error(parameter.name, printable(word), parameter.rule());
+    m_given[parameter.name] = {word, std::move(numbers)};
+}
+
+void ParameterValues::set(std::string_view name, const std::vector<double>& values) {
+    const Parameter& parameter = row_of(name);
+    std::string text = written(parameter, values);
+    if (!are_allowed(parameter, values)) throw Error(parameter.name, printable(text), parameter.rule());
+    m_given[parameter.name] = {std::move(text), values};
+}
+
+void ParameterValues::set(std::string_view name, const Size& value) {
+    set(name, std::vector<double>{static_cast<double>(value.width), static_cast<double>(value.height)});
 }
 
 bool ParameterValues::knows(std::string_view name) const {
@@ -321,35 +383,43 @@ bool ParameterValues::knows(std::string_view name) const {
 }
 
 const std::string& ParameterValues::text(std::string_view name) const {
-    const auto given = m_given.find(std::string(name));
-    if (given != m_given.end()) return given->second;
-    const Parameter* parameter = find(*m_table, name);
-    if (!parameter) throw Error("there is no parameter " + std::string(name));
-    return parameter->default_value;
+    const auto given = m_given.find(name);
+    return given != m_given.end() ? given->second.text : row_of(name).default_value;
+}
+
+std::vector<double> ParameterValues::numbers_of(std::string_view name) const {
+    const auto given = m_given.find(name);
+    if (given != m_given.end() && !given->second.numbers.empty()) return given->second.numbers;
+    const Parameter& parameter = row_of(name);
+    std::vector<double> numbers = numbers_in(parameter, text(name));
+    if (numbers.empty()) throw Error(parameter.name, text(name), parameter.rule());
+    return numbers;
 }
 
 double ParameterValues::number(std::string_view name) const {
-    const std::optional<double> value = to_number(text(name));
-    if (!value) throw Error(std::string(name), text(name), "must be a number");
-    return *value;
+    return numbers_of(name)[0];
 }
 
 int ParameterValues::whole(std::string_view name) const {
-    const std::optional<int> value = to_whole(text(name));
-    if (!value) throw Error(std::string(name), text(name), "must be an integer");
-    return *value;
+    return static_cast<int>(numbers_of(name)[0]);
 }
 
 std::vector<double> ParameterValues::numbers(std::string_view name) const {
-    const std::optional<std::vector<double>> values = to_numbers(text(name));
-    if (!values) throw Error(std::string(name), text(name), "must be numbers");
-    return *values;
+    return numbers_of(name);
 }
 
 Size ParameterValues::extent(std::string_view name) const {
-    const std::optional<Size> value = to_extent(text(name));
-    if (!value) throw Error(std::string(name), text(name), "must be N or NxM");
-    return *value;
+    const std::vector<double> sides = numbers_of(name);
+    return {static_cast<int>(sides[0]), sides.size() > 1 ? static_cast<int>(sides[1]) : -1};
+}
+
+std::size_t ParameterValues::choice(std::string_view name) const {
+    const std::vector<std::string>& choices = row_of(name).choices;
+    return static_cast<std::size_t>(std::find(choices.begin(), choices.end(), text(name)) - choices.begin());
+}
+
+int ParameterValues::enumerator(std::string_view name) const {
+    return row_of(name).enumerators.at(choice(name));
 }
 
 std::string ParameterValues::key(const std::vector<std::string>& without) const {

@@ -12,6 +12,7 @@
 
 #include <cstddef>
 #include <exception>
+#include <functional>
 #include <map>
 #include <string>
 #include <string_view>
@@ -42,6 +43,8 @@ struct Parameter {
     std::string unit;
     std::string default_value;  ///< as written in a recipe; may be empty, which `documentation` then explains
     std::vector<std::string> choices;
+    std::vector<int>
+        enumerators;  ///< of choice: what each means in an enumeration of the core, where there is one
     double minimum = 0, maximum = 0;  ///< of number, whole, numbers and extent
     bool above_minimum = false;       ///< the minimum itself is not accepted (of number and numbers)
     std::string documentation;        ///< one line
@@ -72,14 +75,24 @@ class ParameterValues {
     /// unknown: whoever reads them has to say which are of no use.
     void assign(const std::vector<Assignment>& place);
 
+    ///@{
+    /// Takes one value, which need not be printed and read again: numbers for the types number, whole, toggle and numbers, width
+    /// and height for extent, words for all. Throws Error on a name that is not in the table and a value that is not allowed.
+    void set(std::string_view name, double value) { set(name, std::vector<double>{value}); }
+    void set(std::string_view name, const std::vector<double>& values);
+    void set(std::string_view name, const Size& value);
+    void set(std::string_view name, const std::string& word);
+    ///@}
+
     const ParameterTable& table() const { return *m_table; }
     /// Is there such a parameter?
     bool knows(std::string_view name) const;
     /// Was it assigned a value?
-    bool given(std::string_view name) const { return m_given.count(std::string(name)) != 0; }
+    bool given(std::string_view name) const { return m_given.find(name) != m_given.end(); }
     /// As written, or the default.
     const std::string& text(std::string_view name) const;
-    /// For parameters of type number, whole, numbers, toggle and extent that were given or have a default.
+    /// For parameters of type number, whole, numbers, toggle and extent that were given or have a default. Numbers are those
+    /// that were given, read once.
     double number(std::string_view name) const;
     /// Of a whole number.
     int whole(std::string_view name) const;
@@ -87,6 +100,10 @@ class ParameterValues {
     std::vector<double> numbers(std::string_view name) const;
     /// Of a toggle: is it on?
     bool toggle(std::string_view name) const { return text(name) == "1"; }
+    /// Which of its choices a row has, counted from 0.
+    std::size_t choice(std::string_view name) const;
+    /// What that choice means in its enumeration.
+    int enumerator(std::string_view name) const;
     /// Its height is -1 where only one number was given.
     Size extent(std::string_view name) const;
 
@@ -97,11 +114,20 @@ class ParameterValues {
     std::string key(const std::vector<std::string>& without = {}) const;
 
   private:
+    /// A value as written, and the numbers that it says, if it does: of an extent its width and height.
+    struct Given {
+        std::string text;
+        std::vector<double> numbers;
+    };
+
     const ParameterTable* m_table;
-    std::map<std::string, std::string> m_given;
+    std::map<std::string, Given, std::less<>> m_given;
     std::vector<Assignment> m_definitions;
 
     void define(const Assignment& name);
+    const Parameter& row_of(std::string_view name) const;
+    /// The numbers of a value that was given, else those of the default. Throws Error where it says none.
+    std::vector<double> numbers_of(std::string_view name) const;
 };
 
 /// The assignments of a recipe file's text. Throws Error naming the line.

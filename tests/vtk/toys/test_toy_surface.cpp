@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// A surface that was added by a file and a line (tests/toys) is drawn, blended and named by the filter and its proxy.
+// What was added by a file and a line (tests/toys): the surface is drawn, blended and named by the filter and its proxy, the
+// projection named.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <vtkAnamorphDrape.h>
+#include <vtkAnamorphPanoramaProjection.h>
 #include <vtkDataArray.h>
 #include <vtkImageData.h>
 #include <vtkNew.h>
@@ -75,10 +77,26 @@ TEST(ToySurface, IsDrawnAndBlended) {
     EXPECT_THAT(text.str(), HasSubstr("Surface: toy_saddle"));
 }
 
-TEST(ToySurface, IsInTheProxy) {
-    std::ifstream file(TOY_PROXY);
+/// The file of a proxy.
+std::stringstream proxy(const std::string& name) {
+    std::ifstream file(TOY_PROXIES "/" + name + ".xml");
     std::stringstream text;
     text << file.rdbuf();
+    return text;
+}
+
+TEST(ToyProjection, HasAnEnumeratorAndIsInTheProxy) {
+    EXPECT_EQ(int{vtkAnamorphPanoramaProjection::CUBEMAP_3X2}, 8);
+    EXPECT_EQ(int{vtkAnamorphPanoramaProjection::TOY}, 17);
+    EXPECT_EQ(int{vtkAnamorphPanoramaProjection::NumberOfProjections}, 18);
+    const std::string menu = proxy("panorama_view").str();
+    EXPECT_THAT(menu, HasSubstr("<Entry value=\"0\" text=\"Equirectangular\"/>"));
+    EXPECT_THAT(menu, HasSubstr("<Entry value=\"8\" text=\"Cubemap 3 x 2\"/>"));
+    EXPECT_THAT(menu, HasSubstr("<Entry value=\"17\" text=\"Toy\"/>"));
+}
+
+TEST(ToySurface, IsInTheProxy) {
+    const std::stringstream text = proxy("drape");
     EXPECT_THAT(text.str(), HasSubstr("<Entry value=\"7\" text=\"Positions\"/>"));
     EXPECT_THAT(text.str(), HasSubstr("<Entry value=\"9\" text=\"Toy saddle\"/>"));
     EXPECT_THAT(text.str(), HasSubstr("<ComponentLabel component=\"9\" label=\"Toy saddle\"/>"));

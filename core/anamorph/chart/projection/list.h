@@ -6,7 +6,7 @@
 // row of a table. Where it is not, the file is the formulas, included inside a namespace: the one of chart.h, and
 // one for every instruction set whose vectors read them.
 //
-// The order is that of menus and documentation.
+// The order is that of menus and documentation, and of numbers in saved states: new ones come last.
 //
 // clang-format off
 #include "anamorph/chart/projection/families.h"
