@@ -33,8 +33,8 @@
 #include "anamorph/morph/near_far.h"
 #include "anamorph/morph/near_far_kernels.h"
 #include "anamorph/morph/near_far_line.h"
-#include "anamorph/morph/near_far_mesh.h"
 #include "bench.h"
+#include "feature_mesh.h"
 #include "pixels.h"
 
 namespace anamorph::bench {
@@ -471,8 +471,6 @@ void run_frame(Bench& bench) {
         f.options.tol = tol;
         frames.push_back(f);
     }
-    frames.push_back({"mesh_12_plus_1", {}});
-    frames.back().options.scheme = MorphScheme::mesh;
     frames.push_back({"exact", {}});
     frames.back().options.scheme = MorphScheme::exact;
     std::vector<Timed> timed;

@@ -134,7 +134,7 @@ TEST(Morph, BlendsTheTwoWarps) {
 TEST(Morph, BitsDependOnNeitherCropNorThreads) {
     const FloatPicture a = noise(kWidth, kHeight, 3, 6), b = noise(kWidth, kHeight, 3, 7);
     const MemorySource sa(a.source()), sb(b.source());
-    for (const MorphScheme scheme : {MorphScheme::automatic, MorphScheme::exact, MorphScheme::mesh})
+    for (const MorphScheme scheme : {MorphScheme::automatic, MorphScheme::exact})
         for (const char* shown : {"color", "stmap", "lines"}) {
             SCOPED_TRACE(shown);
             MorphOptions options;
@@ -254,22 +254,6 @@ TEST(Morph, ThreePicturesMixByTheirWeights) {
     EXPECT_THROW(Morph(features, {kSize, kSize, kSize}, kWidth, kHeight, options), Error);
 }
 
-TEST(Morph, TheMeshSaysThatItHoldsNothing) {
-    MorphOptions options;
-    options.scheme = MorphScheme::mesh;
-    options.mesh_levels = 0;
-    options.output = Output::bound;
-    const Morph morph(face(), {kSize, kSize}, kWidth, kHeight, options);
-    EXPECT_TRUE(std::isinf(morph.reached().max_error));
-    EXPECT_TRUE(std::isinf(draw(morph, {nullptr, nullptr}, 1).pixels[0]));
-    options.output = Output::error;
-    options.mesh_cells = 96;
-    options.weight_a = 20;
-    const FloatPicture error =
-        draw(Morph(face(), {kSize, kSize}, kWidth, kHeight, options), {nullptr, nullptr}, 1);
-    for (const float e : error.pixels) ASSERT_LT(e, 0.1f);
-}
-
 TEST(Morph, BadParametersAreNamed) {
     const auto message = [](MorphOptions options, Size b = kSize) -> std::string {
         try {
@@ -297,9 +281,6 @@ TEST(Morph, BadParametersAreNamed) {
     EXPECT_EQ(message(options), "weight_b=nan: must be a number from 0 to 16");
     options = {};
     EXPECT_NE(message(options, {0, 5}), "no error");
-    options.scheme = MorphScheme::mesh;
-    options.mesh_cells = 0;
-    EXPECT_EQ(message(options), "mesh_cells=0: must be an integer from 1 to 1024");
     options = {};
     for (const std::vector<double>& weights :
          {std::vector<double>{1.5, 1.5}, {0.25, 0.25, 0.5}, {1}, {NAN, 1}, {-1e7, 1e7 + 1}}) {

@@ -10,7 +10,6 @@
 #include "anamorph/error.h"
 #include "anamorph/image/block_sampler.h"
 #include "anamorph/morph/near_far_kernels.h"
-#include "anamorph/morph/near_far_mesh.h"
 #include "each_feature_block.h"
 #include "feature_families.h"
 
@@ -706,13 +705,6 @@ TEST(NearFar, ARowAloneIsThatOfBothShapesTogether) {
         }
     });
     EXPECT_GT(compared, 1000);
-}
-
-TEST(NearFar, TheMeshIsEvaluatedAtItsVertices) {
-    const auto features = families::Maker(150, 9).make("face", 32);
-    const FeatureMap map = map_of(*features, {150, 150}, {1, 2, 0.5});
-    EXPECT_EQ(FeatureMesh(map, 12, 0, {0, 1}).evaluations(), 169);
-    EXPECT_GT(FeatureMesh(map, 12, 1, {0, 1}).evaluations(), 169);
 }
 
 TEST(NearFar, BadTolerancesAreNamed) {

@@ -8,7 +8,6 @@
 
 #include "anamorph/morph/feature_overlay.h"
 #include "anamorph/morph/near_far.h"
-#include "anamorph/morph/near_far_mesh.h"
 #include "anamorph/parameter/parameter.h"
 
 namespace anamorph {
@@ -124,10 +123,6 @@ struct Morph::State {
     }
 
     void make_maps(const std::vector<int>& drawn) {
-        if (options.scheme == MorphScheme::mesh) {
-            add(std::make_shared<FeatureMesh>(map, options.mesh_cells, options.mesh_levels, drawn));
-            return;
-        }
         NearFarOptions near_far;
         near_far.tol = options.scheme == MorphScheme::exact && options.tol >= 0 ? 0 : options.tol;
         // Two at a time share one plan.

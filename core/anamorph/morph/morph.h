@@ -15,10 +15,8 @@
 
 namespace anamorph {
 
-/// exact: every pixel in double. automatic: near/far, the fastest that holds the tolerance. mesh: Kim's, the
-/// map evaluated at the vertices of a grid only, with Hermite patches in between; it holds no tolerance: its
-/// bound is infinite, and output error says what it does.
-enum class MorphScheme { automatic, exact, mesh };
+/// exact: every pixel in double. automatic: near/far, the fastest that holds the tolerance.
+enum class MorphScheme { automatic, exact };
 
 /// What a morph shows, and how it is drawn.
 struct MorphOptions {
@@ -40,9 +38,6 @@ struct MorphOptions {
     std::vector<double> shape_weights, color_weights;
 
     double weight_a = 1, weight_b = 2, weight_p = 0.5;  ///< a, b and p of eq. 5.11
-
-    int mesh_cells = 12;  ///< of scheme mesh, each way
-    int mesh_levels = 1;  ///< times that its cells near a line are cut into four
 };
 
 /// Are these weights of the key shapes? Throws Error: `name`, the value as it was written and what it must
@@ -80,7 +75,7 @@ class Morph {
     /// Channels of the picture: the first picture's for colours, 2 for ST-maps, else 1.
     int channels(const Source* first) const;
 
-    /// The largest proven bound in use (source pixels; infinite for scheme mesh) and the fraction of pixels
+    /// The largest proven bound in use (source pixels) and the fraction of pixels
     /// computed exactly, over the whole picture.
     Reached reached(const ParallelFor& parallel_for = serial_for) const;
 

@@ -4,7 +4,6 @@
 #include <algorithm>
 
 #include "anamorph/morph/features_file.h"
-#include "anamorph/morph/near_far_mesh.h"
 #include "anamorph/operation/read_once.h"
 #include "anamorph/operation/rows.h"
 #include "anamorph/operation/solved.h"
@@ -55,12 +54,7 @@ ParameterTable make_morph_table() {
         filter(),
         wrap("is clamp"),
         tol(),
-        scheme({{"auto", MorphScheme::automatic},
-                {"exact", MorphScheme::exact},
-                {"mesh", MorphScheme::mesh, "on a grid with cells cut near the lines, which holds no tol"}}),
-        whole("mesh_cells", "", "12", 1, FeatureMesh::kMostCells, "of scheme mesh: cells each way"),
-        whole("mesh_levels", "", "1", 0, FeatureMesh::kMostLevels,
-              "of scheme mesh: how often cells near a line are cut into four"),
+        scheme({{"auto", MorphScheme::automatic}, {"exact", MorphScheme::exact}}),
         colorspace("color space to filter and blend in; by default that of the pictures"),
         output({{"lines", Word::kNone, "color with the features of all pictures drawn over it"}}),
         choice("picture", "", morph_pictures(),
@@ -117,8 +111,6 @@ MorphRequest read_morph_request(const ParameterValues& values, const std::vector
     options.weight_a = values.number("weight_a");
     options.weight_b = values.number("weight_b");
     options.weight_p = values.number("weight_p");
-    options.mesh_cells = values.whole("mesh_cells");
-    options.mesh_levels = values.whole("mesh_levels");
     if (values.given("pin_border")) request.pin_border = values.number("pin_border");
 
     for (const char* name : {"shape_weights", "color_weights"})
@@ -194,8 +186,7 @@ class Morphs final : public Pictures {
         PictureRequest picture;
         picture.size = *size;
         picture.pixels = pixels_of(options.output);
-        // A mesh of cells holds none.
-        if (options.scheme != MorphScheme::mesh) picture.says = {{"anamorph:tol", options.tol}};
+        picture.says = {{"anamorph:tol", options.tol}};
         // A film's frames are blends but for a few.
         if (picture.pixels == PixelKind::color && m_request.frames == 1)
             picture.moves = moved_picture(options, static_cast<int>(request.pictures.size()));

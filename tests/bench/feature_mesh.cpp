@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "anamorph/morph/near_far_mesh.h"
+#include "feature_mesh.h"
 
 #include <algorithm>
 #include <cmath>
@@ -8,7 +8,6 @@
 #include <set>
 #include <utility>
 
-#include "anamorph/error.h"
 #include "anamorph/mesh/mesh.h"
 
 namespace anamorph {
@@ -166,16 +165,7 @@ struct FeatureMesh::State {
 };
 
 FeatureMesh::FeatureMesh(const FeatureMap& map, int cells, int levels, const std::vector<int>& shapes)
-    : FeatureBlocks(map, shapes) {
-    const auto check = [](const char* name, int value, int least, int most) {
-        if (value < least || value > most)
-            throw Error(name, std::to_string(value),
-                        "must be an integer from " + std::to_string(least) + " to " + std::to_string(most));
-    };
-    check("mesh_cells", cells, 1, kMostCells);
-    check("mesh_levels", levels, 0, kMostLevels);
-    m_state = std::make_unique<State>(map, cells, levels, shapes);
-}
+    : FeatureBlocks(map, shapes), m_state(std::make_unique<State>(map, cells, levels, shapes)) {}
 FeatureMesh::~FeatureMesh() = default;
 
 std::int64_t FeatureMesh::evaluations() const {

@@ -13,10 +13,8 @@ namespace anamorph {
 
 class FeatureMesh final : public FeatureBlocks {
   public:
-    static constexpr int kMostCells = 1024, kMostLevels = 4;
-
     /// `cells` each way, those near a line cut `levels` times into four; `shapes` become the layers. The map
-    /// outlives this. Throws Error when there are more than allowed, or less than one cell.
+    /// outlives this.
     FeatureMesh(const FeatureMap& map, int cells, int levels, const std::vector<int>& shapes);
     ~FeatureMesh() override;
 
