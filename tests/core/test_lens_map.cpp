@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <numbers>
 #include <random>
 
 #include "anamorph/error.h"
@@ -36,20 +37,34 @@ const char* const kLenses[] = {"ptlens:a=0.01,b=-0.03,c=0.02",
                                "3de4:k1=0.1,k2=0.03",
                                "kb4:k1=0.05,k2=-0.01,k3=0.002,k4=-0.0003"};
 
+/// Where a lens's centre is, from the picture's middle, in pixels: its last two values.
+Point<Real> centre_of(const View& view) {
+    const std::vector<double>& values = chart_of(view).lens()->model().values;
+    return {values[values.size() - 2], values.back()};
+}
+
 /// The true source point of a target point; not a number where there is none.
 class Truth {
   public:
     Truth(const View& view, LensMode mode, const Size& covered, const Size& target, const Size& source)
-        : m_view(view), m_lens(view), m_mode(mode), m_covered(covered), m_target(target), m_source(source) {}
+        : m_view(view),
+          m_lens(view),
+          m_mode(mode),
+          m_covered(covered),
+          m_target(target),
+          m_source(source),
+          m_centre(centre_of(view)) {}
 
     Point<Real> operator()(Real x, Real y) const {
         const auto from_middle = [](Real at, int pixels, int shown) {
             return (at / pixels - Real(1) / 2) * shown;
         };
-        const Point<Real> p{from_middle(x, m_target.width, m_covered.width) + Real(kPicture.width) / 2,
-                            from_middle(y, m_target.height, m_covered.height) + Real(kPicture.height) / 2};
-        const Point<Real> q =
-            m_mode == LensMode::undistort ? m_lens.observed(m_view, p) : m_lens.ideal(m_view, p);
+        Point<Real> p{from_middle(x, m_target.width, m_covered.width) + Real(kPicture.width) / 2,
+                      from_middle(y, m_target.height, m_covered.height) + Real(kPicture.height) / 2};
+        // The oracle's ideal picture has the axis in its middle; the centre stands where it is in the observed one.
+        if (m_mode == LensMode::undistort) p = {p.x - m_centre.x, p.y - m_centre.y};
+        Point<Real> q = m_mode == LensMode::undistort ? m_lens.observed(m_view, p) : m_lens.ideal(m_view, p);
+        if (m_mode == LensMode::distort) q = {q.x + m_centre.x, q.y + m_centre.y};
         return {q.x - Real(kPicture.width) / 2 + Real(m_source.width) / 2,
                 q.y - Real(kPicture.height) / 2 + Real(m_source.height) / 2};
     }
@@ -59,6 +74,7 @@ class Truth {
     LensOracle m_lens;
     LensMode m_mode;
     Size m_covered, m_target, m_source;
+    Point<Real> m_centre;
 };
 
 struct Findings {
@@ -154,8 +170,10 @@ TEST(LensMap, CoveringCutsNothingOff) {
             for (int i = 0; i <= 4000; ++i) {
                 const Real s = i / Real(4000), w = kPicture.width, h = kPicture.height;
                 for (const Point<Real> p : {Point<Real>{s * w, 0}, {s * w, h}, {0, s * h}, {w, s * h}}) {
-                    const Point<Real> q =
-                        mode == LensMode::undistort ? lens.ideal(view, p) : lens.observed(view, p);
+                    const Point<Real> c = centre_of(view);
+                    Point<Real> q = mode == LensMode::undistort ? lens.ideal(view, p)
+                                                                : lens.observed(view, {p.x - c.x, p.y - c.y});
+                    if (mode == LensMode::undistort) q = {q.x + c.x, q.y + c.y};
                     if (!std::isfinite(q.x)) continue;
                     across = std::max(across, std::fabs(q.x - w / 2));
                     down = std::max(down, std::fabs(q.y - h / 2));
@@ -170,6 +188,45 @@ TEST(LensMap, CoveringCutsNothingOff) {
             EXPECT_LE(all.width / Real(2), across + 2);
             EXPECT_LE(all.height / Real(2), down + 2);
         }
+}
+
+// By the models' own formulas about (cx, cy), as OpenCV and 3DEqualizer have them: the principal point stays where it is.
+TEST(LensMap, KeepsThePrincipalPoint) {
+    const double fov = 80, d = 12, e = -6;
+    const Real w = kPicture.width, h = kPicture.height, cx = w / 2 + d, cy = h / 2 + e,
+               f = w / 2 / std::tan(Real(fov) * std::numbers::pi_v<Real> / 360),
+               diagonal = std::hypot(w, h) / 2, k1 = -0.1L, k2 = 0.02L, p1 = 0.002L, p2 = -0.003L;
+    const auto brown = [&](Real x, Real y) {
+        x = (x - cx) / f, y = (y - cy) / f;
+        const Real r2 = x * x + y * y, s = 1 + k1 * r2 + k2 * r2 * r2;
+        return Point<Real>{cx + f * (x * s + 2 * p1 * x * y + p2 * (r2 + 2 * x * x)),
+                           cy + f * (y * s + p1 * (r2 + 2 * y * y) + 2 * p2 * x * y)};
+    };
+    const auto three_de4 = [&](Real x, Real y) {
+        x = (x - cx) / diagonal, y = (y - cy) / diagonal;
+        const Real r2 = x * x + y * y, s = 1 + k1 * r2 + k2 * r2 * r2;
+        return Point<Real>{cx + diagonal * x * s, cy + diagonal * y * s};
+    };
+    const auto expect = [&](const char* lens, LensMode mode, const auto& formula) {
+        SCOPED_TRACE(lens);
+        const Chart chart(Projection::rectilinear, kPicture.width, kPicture.height, fov, PixelSpacing::edges,
+                          "", 1, LensModel::parse(lens));
+        const LensMap map(chart, mode, kPicture, kPicture, kPicture);
+        double most = 0;
+        for (int y = 0; y < kPicture.height; y += 5)
+            for (int x = 0; x < kPicture.width; x += 5) {
+                const Point<double> p = map.source_point(x + 0.5, y + 0.5);
+                const Point<Real> q = formula(x + 0.5L, y + 0.5L);
+                most = std::max(most, static_cast<double>(std::hypot(p.x - q.x, p.y - q.y)));
+            }
+        EXPECT_LT(most, 1e-9);
+    };
+    expect("brown:k1=-0.1,k2=0.02,p1=0.002,p2=-0.003,d=12,e=-6", LensMode::undistort, brown);
+    expect("3de4:k1=-0.1,k2=0.02,d=12,e=-6", LensMode::distort, three_de4);
+    const auto nothing = [](Real x, Real y) { return Point<Real>{x, y}; };
+    for (const LensMode mode : {LensMode::undistort, LensMode::distort})
+        for (const char* lens : {"3de4:k1=0,d=12,e=-6", "brown:d=12,e=-6", "ptlens:d=12,e=-6"})
+            expect(lens, mode, nothing);
 }
 
 TEST(LensMap, NeedsALens) {

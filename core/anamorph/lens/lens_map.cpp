@@ -61,15 +61,16 @@ Size LensMap::covering(const Chart& observed, LensMode mode, const Size& size) {
     const double scale = observed.scale_x(), per = observed.units_per_pixel().value();
     const double half_width = 0.5 * size.width * per, half_height = 0.5 * size.height * per;
     const double end = (undistort ? terms.ideal_end : terms.observed_end) * terms.unit.value();
-    const auto end_along = [&](const Constant& shift) {
-        return (end + (undistort ? 0 : std::fabs(shift.value()))) * scale;
-    };
+    const auto end_along = [&](const Constant& centre) { return (end + std::fabs(centre.value())) * scale; };
+    const Point<Interval> shift{terms.shift_x.as<Interval>(), terms.shift_y.as<Interval>()};
     double across = 0, down = 0;
     for (const double side : {-1.0, 1.0})
         for (const bool upright : {false, true}) {
             const auto place = [&](const Interval& s) {
-                return upright ? Point<Interval>{Interval(side * half_width), s * half_height}
-                               : Point<Interval>{s * half_width, Interval(side * half_height)};
+                const Point<Interval> p = upright
+                                              ? Point<Interval>{Interval(side * half_width), s * half_height}
+                                              : Point<Interval>{s * half_width, Interval(side * half_height)};
+                return undistort ? p : Point<Interval>{p.x - shift.x, p.y - shift.y};
             };
             const auto beyond = [&](const Point<Interval>& p) {
                 return (undistort ? lens.inside(p) : lens.sees(p)).hi < 0;
@@ -77,7 +78,9 @@ Size LensMap::covering(const Chart& observed, LensMode mode, const Size& size) {
             const auto on_side = [&](const Interval& s) {
                 const Point<Interval> p = place(s);
                 if (beyond(p)) return Point<Interval>{Interval(0), Interval(0)};
-                return undistort ? lens.ideal(p) : lens.observed(p);
+                if (!undistort) return lens.observed(p);
+                const Point<Interval> q = lens.ideal(p);
+                return Point<Interval>{q.x + shift.x, q.y + shift.y};
             };
             const auto x = [&](const Interval& s) { return on_side(s).x * scale; };
             const auto y = [&](const Interval& s) { return on_side(s).y * scale; };

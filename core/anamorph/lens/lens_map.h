@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The distortion of a lens taken off a picture, or put on one. Both pictures have the scale and the middle of the
-// observed one, so that only their sizes differ. Pixels, x right, y down, pixel centres at + 0.5.
+// observed one, so that only their sizes differ, and the lens's centre stands at the same place in both: there nothing is moved.
+// Pixels, x right, y down, pixel centres at + 0.5.
 #pragma once
 
 #include "anamorph/chart/chart_numbers.h"
@@ -23,16 +24,16 @@ class LensMap : public PlaneMap<LensMap> {
     /// The source point of a target point.
     template <class T>
     Point<T> source_point(const T& x, const T& y) const {
-        const Point<T> at = in_plane(x, y);
-        const Point<T> p = m_mode == LensMode::undistort ? lens().observed(at) : lens().ideal(at);
+        const Point<T> p = m_mode == LensMode::undistort ? lens().observed(about_axis(in_plane(x, y)))
+                                                         : about_middle(lens().ideal(in_plane(x, y)));
         const auto scale = m_scale.as<T>();
         return {p.x * scale + 0.5 * source_size().width, p.y * scale + 0.5 * source_size().height};
     }
     /// Positive before the lens ends.
     template <class T>
     T inside(const T& x, const T& y) const {
-        const Point<T> at = in_plane(x, y);
-        return m_mode == LensMode::undistort ? lens().sees(at) : lens().inside(at);
+        return m_mode == LensMode::undistort ? lens().sees(about_axis(in_plane(x, y)))
+                                             : lens().inside(in_plane(x, y));
     }
 
     /// The least size that shows all of a source of `size` pixels that has a counterpart, with the same middle and
@@ -46,6 +47,21 @@ class LensMap : public PlaneMap<LensMap> {
     Point<T> in_plane(const T& x, const T& y) const {
         return {(x - 0.5 * target_size().width) * m_per_x.as<T>(),
                 (y - 0.5 * target_size().height) * m_per_y.as<T>()};
+    }
+
+    /// A point of the ideal picture about the axis of sight, which meets it in the lens's centre, as the lens reads it.
+    template <class T>
+    Point<T> about_axis(const Point<T>& p) const {
+        const LensTerms& terms = lens().terms();
+        if (!terms.shifted) return p;
+        return {p.x - terms.shift_x.as<T>(), p.y - terms.shift_y.as<T>()};
+    }
+    /// And back.
+    template <class T>
+    Point<T> about_middle(const Point<T>& p) const {
+        const LensTerms& terms = lens().terms();
+        if (!terms.shifted) return p;
+        return {p.x + terms.shift_x.as<T>(), p.y + terms.shift_y.as<T>()};
     }
 
     Chart m_observed;

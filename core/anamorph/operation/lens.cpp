@@ -27,8 +27,8 @@ ParameterTable make_lens_table() {
             "the other way round, with the picture of the size that the lens is of"),
         text("lens",
              "MODEL:name=value,name=value with ptlens (a, b, c), brown (k1 to k6, p1, p2), 3de4 (k1, k2) or "
-             "kb4 (k1 to k4), and d, e, the shift of its centre in pixels; by default what the image says of "
-             "itself"),
+             "kb4 (k1 to k4), and d, e, the shift of its centre in pixels, which stays where it is; by "
+             "default what the image says of itself"),
         above(number("fov", "degrees", "", 0, 360,
                      "horizontal field of view of the picture that was taken through the lens, without the "
                      "distortion, for brown (below 180) and kb4, whose unit is the focal length; by default "
