@@ -197,6 +197,13 @@ TEST(Parameter, TypedValuesAreThoseThatAreWritten) {
     refuses("wrap", "Mirror");
     refuses("note", "");
     EXPECT_THAT(error_of([&] { typed.set("nonesuch", 1); }), HasSubstr("nonesuch"));
+    const ParameterTable defining = {rows::definitions("let", "")};
+    ParameterValues names(defining);
+    names.set("h", 0.25);
+    names.set("h", 0.5);
+    ASSERT_EQ(names.definitions().size(), 1u);
+    EXPECT_EQ(names.definitions()[0].value, "0.5");
+    EXPECT_THAT(error_of([&] { names.set("2h", 1); }), HasSubstr("2h"));
     EXPECT_EQ(typed.key(), written.key()) << "what is refused changes nothing";
 }
 

@@ -146,8 +146,8 @@ bool is_allowed(const Parameter& parameter, const std::string& text, const std::
 }
 
 /// Numbers as a recipe has them.
-std::string written(const Parameter& parameter, const std::vector<double>& values) {
-    const char* between = parameter.type == ParameterType::extent ? "x" : ",";
+std::string written(ParameterType type, const std::vector<double>& values) {
+    const char* between = type == ParameterType::extent ? "x" : ",";
     std::string text;
     for (const double value : values) text += (text.empty() ? "" : between) + shortest(value);
     return text;
@@ -335,21 +335,21 @@ void ParameterValues::define(const Assignment& name) {
         found->value = name.value;
 }
 
+/// Is it a name that is no parameter's, where such names are defined?
+bool ParameterValues::defines(std::string_view name) const {
+    return !find(*m_table, name) && takes_definitions(*m_table) && text_file::is_name(name);
+}
+
 void ParameterValues::assign(const std::vector<Assignment>& place) {
     std::set<std::string> seen;
     for (const Assignment& a : place) {
         const Parameter* parameter = find(*m_table, a.key);
-        const bool defines = !parameter && takes_definitions(*m_table) && text_file::is_name(a.key);
-        if (!parameter && !defines)
+        if (!parameter && !defines(a.key))
             throw Error(printable(a.key), printable(a.value),
                         "there is no such parameter: must be one of " + joined(names(*m_table)));
-        const std::string& name = defines ? a.key : parameter->name;
+        const std::string& name = parameter ? parameter->name : a.key;
         if (!seen.insert(name).second)
             throw Error(name, printable(a.value), "given twice in one place: must be given once");
-        if (defines) {
-            define(a);
-            continue;
-        }
         set(name, a.value);
     }
 }
@@ -360,16 +360,20 @@ const Parameter& ParameterValues::row_of(std::string_view name) const {
     return *parameter;
 }
 
-void ParameterValues::set(std::string_view name, const std::string& word) {
+void ParameterValues::set(std::string_view name, const std::string& text) {
+    if (defines(name)) return define({std::string(name), text});
     const Parameter& parameter = row_of(name);
-    std::vector<double> numbers = numbers_in(parameter, word);
-    if (!is_allowed(parameter, word, numbers)) throw Error(parameter.name, printable(word), parameter.rule());
-    m_given[parameter.name] = {word, std::move(numbers)};
+    std::vector<double> numbers = numbers_in(parameter, text);
+    if (!is_allowed(parameter, text, numbers)) throw Error(parameter.name, printable(text), parameter.rule());
+    m_given[parameter.name] = {text, std::move(numbers)};
 }
 
 void ParameterValues::set(std::string_view name, const std::vector<double>& values) {
+    const bool is_defined = defines(name);
+    const ParameterType type = is_defined ? ParameterType::numbers : row_of(name).type;
+    std::string text = written(type, values);
+    if (is_defined) return define({std::string(name), text});
     const Parameter& parameter = row_of(name);
-    std::string text = written(parameter, values);
     if (!are_allowed(parameter, values)) throw Error(parameter.name, printable(text), parameter.rule());
     m_given[parameter.name] = {std::move(text), values};
 }

@@ -75,14 +75,15 @@ class ParameterValues {
     /// unknown: whoever reads them has to say which are of no use.
     void assign(const std::vector<Assignment>& place);
 
-    ///@{
-    /// Takes one value, which need not be printed and read again: numbers for the types number, whole, toggle and numbers, width
-    /// and height for extent, words for all. Throws Error on a name that is not in the table and a value that is not allowed.
+    /// Takes one value as assign() takes what is written: of a parameter of type number, whole or toggle, or a name that is
+    /// defined. Throws Error on a name that is not known and a value that is not allowed.
     void set(std::string_view name, double value) { set(name, std::vector<double>{value}); }
+    /// The same of type numbers.
     void set(std::string_view name, const std::vector<double>& values);
+    /// The same of type extent.
     void set(std::string_view name, const Size& value);
-    void set(std::string_view name, const std::string& word);
-    ///@}
+    /// The same of any type, as it is written.
+    void set(std::string_view name, const std::string& text);
 
     const ParameterTable& table() const { return *m_table; }
     /// Is there such a parameter?
@@ -124,6 +125,7 @@ class ParameterValues {
     std::map<std::string, Given, std::less<>> m_given;
     std::vector<Assignment> m_definitions;
 
+    bool defines(std::string_view name) const;
     void define(const Assignment& name);
     const Parameter& row_of(std::string_view name) const;
     /// The numbers of a value that was given, else those of the default. Throws Error where it says none.
