@@ -35,8 +35,8 @@ def commands(folder):
 
 def files_compiled_together(folder, made):
     """Those that the commands name: what was configured before leaves others."""
-    names = set(re.findall(r"/Unity/(\w+\.cxx)\b", "\n".join(made)))
-    return {name: (folder / "core/CMakeFiles/anamorph_core.dir/Unity" / name).read_text() for name in sorted(names)}
+    names = set(re.findall(r"\bFOLDER/(\S+/Unity/\w+\.cxx)\b", "\n".join(made)))
+    return {name: (folder / name).read_text() for name in sorted(names)}
 
 
 def objects_with_headers(folder):

@@ -6,6 +6,7 @@
 #include <filesystem>
 
 namespace anamorph::command {
+using namespace figure;
 namespace {
 
 /// Takes a whole number from the beginning of a text.

@@ -18,9 +18,9 @@ struct FrameRange {
 
     bool several() const { return all || last > first; }
     /// The number of frames; for `all` it asks the motion.
-    int count(Motion& motion) const;
+    int count(figure::Motion& motion) const;
     /// Calls body for the frames in order. Throws Error where one is not performed.
-    void for_each(Motion& motion, const std::function<void(const FigureFrame&)>& body) const;
+    void for_each(figure::Motion& motion, const std::function<void(const figure::FigureFrame&)>& body) const;
 };
 
 std::optional<FrameRange> parse_frame_range(std::string_view text);

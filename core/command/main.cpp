@@ -29,6 +29,7 @@
 #include "writers.h"
 
 namespace anamorph::command {
+using namespace figure;
 namespace {
 
 constexpr NumberRow kThreadsRow{"threads", 0, 0, 1024, NumberRow::closed, true};

@@ -11,6 +11,7 @@
 #include "anamorph/parameter/text_file.h"
 
 namespace anamorph::command {
+using namespace figure;
 namespace {
 
 /// At most one byte more than a file may have: the parser says what is wrong with it.

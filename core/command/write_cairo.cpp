@@ -14,6 +14,7 @@
 #endif
 
 namespace anamorph::command {
+using namespace figure;
 
 #ifdef ANAMORPH_HAVE_CAIRO
 namespace {

@@ -8,6 +8,7 @@
 #include "writers.h"
 
 namespace anamorph::command {
+using namespace figure;
 namespace {
 
 /// Appends four decimals at most, with a point whatever the locale.

@@ -7,6 +7,7 @@
 #include "writers.h"
 
 namespace anamorph::command {
+using namespace figure;
 namespace {
 
 class Dots {

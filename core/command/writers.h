@@ -14,7 +14,7 @@ namespace anamorph::command {
 class DrawingWriter {
   public:
     virtual ~DrawingWriter() = default;
-    virtual void add(const Drawing& drawing) = 0;
+    virtual void add(const figure::Drawing& drawing) = 0;
     virtual void finish() {}
 };
 

@@ -19,6 +19,8 @@
 #include "pixels.h"
 
 namespace anamorph::bench {
+using namespace machine;
+using namespace surface;
 namespace {
 
 constexpr int kLeastSide = 512;

@@ -31,6 +31,7 @@
 #include "pixels.h"
 
 namespace anamorph::bench {
+using namespace surface;
 namespace {
 
 constexpr double kTols[] = {0.5, 0.125, 0.03125};

@@ -25,6 +25,7 @@
 #include "pixels.h"
 
 namespace anamorph::bench {
+using namespace figure;
 namespace {
 
 constexpr int kFrames = 512, kFigures = 3, kMany = 10000;

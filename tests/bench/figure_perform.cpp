@@ -15,6 +15,7 @@
 #include "bench.h"
 
 namespace anamorph::bench {
+using namespace figure;
 namespace {
 
 constexpr int kCalls = 80, kCallFrames = 24, kFrames = kCalls * kCallFrames, kAsked = 64;

@@ -22,6 +22,7 @@
 #include "bench.h"
 
 namespace anamorph::bench {
+using namespace figure;
 namespace {
 
 using figure_picture_cases::Scene;

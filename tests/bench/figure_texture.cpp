@@ -22,6 +22,7 @@
 #include "bench.h"
 
 namespace anamorph::bench {
+using namespace figure;
 namespace {
 
 constexpr int kTexture = 512, kFrames = 8, kBands = 6;

@@ -19,6 +19,7 @@
 #include "block_machine.h"
 
 namespace anamorph::bench {
+using namespace machine;
 namespace {
 
 constexpr int kTexture = 256, kMostScreen = 512;

@@ -6,6 +6,7 @@ cmake_minimum_required(VERSION 3.25)
 
 foreach(list PUBLIC DETAILS)
     string(REPLACE "|" ";" ${list} "${${list}}")
+    list(REMOVE_ITEM ${list} "") # of libraries without
     list(TRANSFORM ${list} REPLACE "^${CORE_DIR}/" "")
 endforeach()
 set(all_included "")

@@ -17,7 +17,7 @@ using Vector = std::array<Real, 3>;
 inline const Real kHalfTurn = std::acos(Real(-1));
 
 /// A point of a surface by its name.
-inline Vector oracle_surface(const std::string& name, const SurfaceShape& s, Real u, Real v) {
+inline Vector oracle_surface(const std::string& name, const surface::SurfaceShape& s, Real u, Real v) {
     const Real x = s.aspect * u - s.aspect / Real(2), y = Real(1) / 2 - v, degrees = kHalfTurn / 180;
     const Real east = s.angle * degrees * u - s.angle * degrees / 2;
     if (name == "plane") return {x, y, 0};
@@ -61,7 +61,7 @@ inline Vector oracle_surface(const std::string& name, const SurfaceShape& s, Rea
 struct OracleSight {
     Real x, y, ahead;
 };
-inline OracleSight oracle_sight(const CameraPose& pose, const Size& screen, const Vector& p) {
+inline OracleSight oracle_sight(const surface::CameraPose& pose, const Size& screen, const Vector& p) {
     const auto sub = [](const glm::dvec3& a, const glm::dvec3& b) {
         return Vector{Real(a.x) - b.x, Real(a.y) - b.y, Real(a.z) - b.z};
     };

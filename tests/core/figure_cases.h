@@ -27,28 +27,30 @@ inline std::string numbered(const char* name, int i) {
     return out;
 }
 
-inline Program program_of(const std::string& text, Dialect dialect = Dialect::classic) {
-    ScriptOptions options;
+inline figure::Program program_of(const std::string& text,
+                                  figure::Dialect dialect = figure::Dialect::classic) {
+    figure::ScriptOptions options;
     options.dialect = dialect;
-    return parse_program(text, "own.n", options);
+    return figure::parse_program(text, "own.n", options);
 }
 
-inline Performance perform(const std::string& text, Dialect dialect = Dialect::classic) {
-    return Performance(program_of(text, dialect));
+inline figure::Performance perform(const std::string& text,
+                                   figure::Dialect dialect = figure::Dialect::classic) {
+    return figure::Performance(program_of(text, dialect));
 }
 
-inline std::vector<FigureFrame> all_frames(Performance& performance) {
-    std::vector<FigureFrame> frames;
-    performance.for_each_frame([&](const FigureFrame& frame) {
+inline std::vector<figure::FigureFrame> all_frames(figure::Performance& performance) {
+    std::vector<figure::FigureFrame> frames;
+    performance.for_each_frame([&](const figure::FigureFrame& frame) {
         frames.push_back(frame);
         return true;
     });
     return frames;
 }
 
-inline const Body& body_named(const FigureFrame& frame, const std::string& name) {
-    const auto found =
-        std::find_if(frame.bodies.begin(), frame.bodies.end(), [&](const Body& b) { return b.name == name; });
+inline const figure::Body& body_named(const figure::FigureFrame& frame, const std::string& name) {
+    const auto found = std::find_if(frame.bodies.begin(), frame.bodies.end(),
+                                    [&](const figure::Body& b) { return b.name == name; });
     if (found == frame.bodies.end()) throw Error("no ellipsoid " + name);
     return *found;
 }
@@ -71,7 +73,7 @@ inline void expect_near(const glm::dvec3& value, const glm::dvec3& wanted, doubl
 
 /// The angle in degrees of the turn between two orientations.
 inline double turn_between(const glm::dmat3& a, const glm::dmat3& b) {
-    return angles_of_rotation(a * glm::transpose(b)).z;
+    return figure::angles_of_rotation(a * glm::transpose(b)).z;
 }
 
 inline std::optional<std::string> text_of_file(const std::string& path) {
@@ -82,7 +84,7 @@ inline std::optional<std::string> text_of_file(const std::string& path) {
 
 /// Fails unless every number of a frame is within two units of the last digit that the originals print: 0.2
 /// of a length, 0.2 degrees, 2 of a colour.
-inline void expect_as_printed(const FigureFrame& frame, const FigureFrame& printed) {
+inline void expect_as_printed(const figure::FigureFrame& frame, const figure::FigureFrame& printed) {
     constexpr double kTwoUnits = 0.2 + 1e-9;
     SCOPED_TRACE("frame " + std::to_string(printed.number));
     EXPECT_EQ(frame.number, printed.number);
@@ -90,7 +92,7 @@ inline void expect_as_printed(const FigureFrame& frame, const FigureFrame& print
     EXPECT_LE(turn_between(frame.observer, printed.observer), kTwoUnits);
     ASSERT_EQ(frame.bodies.size(), printed.bodies.size());
     for (std::size_t i = 0; i < frame.bodies.size(); ++i) {
-        const Body &ours = frame.bodies[i], &theirs = printed.bodies[i];
+        const figure::Body &ours = frame.bodies[i], &theirs = printed.bodies[i];
         SCOPED_TRACE(theirs.name);
         EXPECT_EQ(ours.name, theirs.name);
         expect_near(ours.shape.axes, theirs.shape.axes, kTwoUnits);

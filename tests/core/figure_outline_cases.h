@@ -16,8 +16,8 @@
 namespace anamorph::test {
 
 struct OutlineScene {
-    std::vector<Ellipsoid> bodies;
-    View view;
+    std::vector<figure::Ellipsoid> bodies;
+    figure::View view;
 };
 
 enum class Family { small, large, needle, tangent };
@@ -50,12 +50,12 @@ class SceneMaker {
         const glm::dvec3 a = direction(), b = glm::normalize(glm::cross(a, direction()));
         return {a, b, glm::cross(a, b)};
     }
-    Ellipsoid body(double reach, double least, double most) {
+    figure::Ellipsoid body(double reach, double least, double most) {
         return {point(reach), {between(least, most), between(least, most), between(least, most)}, rotation()};
     }
 
-    View view(bool perspective) {
-        View v;
+    figure::View view(bool perspective) {
+        figure::View v;
         v.rotation = rotation();
         if (whole(0, 3) == 0) v.rotation[0] = -v.rotation[0];
         v.center = point(20);
@@ -80,7 +80,7 @@ class SceneMaker {
                 break;
             case Family::needle:
                 for (int i = whole(3, 8); i > 0; --i) {
-                    Ellipsoid e = body(60, 20, 100);
+                    figure::Ellipsoid e = body(60, 20, 100);
                     const int k = whole(0, 2);
                     const double thin = std::pow(10, -between(1, 6));
                     if (whole(0, 1))
@@ -101,17 +101,17 @@ class SceneMaker {
     }
 
     /// A body that touches another: from outside or inside, on the surface or in the view, or along a curve.
-    Ellipsoid touching(const Ellipsoid& e, const View& view) {
+    figure::Ellipsoid touching(const figure::Ellipsoid& e, const figure::View& view) {
         const glm::dvec3 u = direction(), at = e.center + e.rotation * (e.axes * u),
                          normal = glm::normalize(e.rotation * (u / e.axes));
         switch (whole(0, 5)) {
             case 0: {  // outside, at a point
-                Ellipsoid t = body(0, 20, 80);
+                figure::Ellipsoid t = body(0, 20, 80);
                 t.center = at + support(t, -normal) * -1.0;
                 return t;
             }
             case 1: {  // inside, at a point: shrunk about it
-                Ellipsoid t = e;
+                figure::Ellipsoid t = e;
                 const double k = between(0.2, 0.9);
                 t.axes *= k;
                 t.center = at + (e.center - at) * k;
@@ -120,25 +120,25 @@ class SceneMaker {
             case 2: {  // outside in the view: the limbs' images touch in parallel projection
                 const glm::dvec3 d = glm::transpose(view.rotation) *
                                      glm::dvec3(glm::normalize(glm::dvec2(u) + glm::dvec2(1e-3, 0)), 0);
-                Ellipsoid t = body(0, 20, 80);
+                figure::Ellipsoid t = body(0, 20, 80);
                 t.center = e.center + support(e, d) + support(t, d) +
                            glm::transpose(view.rotation) * glm::dvec3(0, 0, between(-90, 90));
                 return t;
             }
             case 3: {  // about the same centre, along an axis or two
-                Ellipsoid t = e;
+                figure::Ellipsoid t = e;
                 t.axes[whole(0, 2)] *= between(0.3, 2);
                 if (whole(0, 1)) t.axes[whole(0, 2)] *= between(0.3, 2);
                 return t;
             }
             case 4: {  // equal, other axes first
-                Ellipsoid t = e;
+                figure::Ellipsoid t = e;
                 t.axes = {e.axes.y, e.axes.z, e.axes.x};
                 t.rotation = {e.rotation[1], e.rotation[2], e.rotation[0]};
                 return t;
             }
             default: {  // moved along the view
-                Ellipsoid t = e;
+                figure::Ellipsoid t = e;
                 t.center += glm::transpose(view.rotation) * glm::dvec3(0, 0, between(-90, 90));
                 return t;
             }
@@ -146,7 +146,7 @@ class SceneMaker {
     }
 
     /// From the centre to the surface point with normal `d`.
-    static glm::dvec3 support(const Ellipsoid& e, const glm::dvec3& d) {
+    static glm::dvec3 support(const figure::Ellipsoid& e, const glm::dvec3& d) {
         const glm::dvec3 along = e.axes * (glm::transpose(e.rotation) * d);
         return e.rotation * (e.axes * along / glm::length(along));
     }
@@ -161,24 +161,24 @@ using Real = long double;
 using Vec = glm::vec<3, Real>;
 using Mat = glm::mat<3, 3, Real>;
 
-inline Vec eye_of(const View& view) {
+inline Vec eye_of(const figure::View& view) {
     const Mat to_scene = glm::inverse(Mat(view.rotation));
     return Vec(view.center) - to_scene * Vec(0, 0, view.eye_distance);
 }
 /// From the observer through p.
-inline Vec ray_through(const View& view, const Vec& p) {
+inline Vec ray_through(const figure::View& view, const Vec& p) {
     if (view.perspective()) return p - eye_of(view);
     return glm::inverse(Mat(view.rotation)) * Vec(0, 0, 1);
 }
 
 /// R^-1 v / axes; axes may be zero only where v has no part along them.
-inline Vec to_unit(const Ellipsoid& e, const Vec& v) {
+inline Vec to_unit(const figure::Ellipsoid& e, const Vec& v) {
     const Vec own = glm::inverse(Mat(e.rotation)) * v;
     return own / Vec(std::fabs(e.axes.x), std::fabs(e.axes.y), std::fabs(e.axes.z));
 }
 
 /// Does the view ray meet the body's surface between the eye and p?
-inline bool hides(const Ellipsoid& e, const View& view, const Vec& p) {
+inline bool hides(const figure::Ellipsoid& e, const figure::View& view, const Vec& p) {
     const Vec ray = ray_through(view, p);
     int flat = -1, flats = 0;
     for (int k = 0; k < 3; ++k)
@@ -212,13 +212,13 @@ inline bool is_hidden(const OutlineScene& scene, std::size_t body, const Vec& p)
     return false;
 }
 
-inline double size_of(const Ellipsoid& e) {
+inline double size_of(const figure::Ellipsoid& e) {
     return std::max({std::fabs(e.axes.x), std::fabs(e.axes.y), std::fabs(e.axes.z)});
 }
 
 /// The distance of p from the limb of a solid body, relative to the body's size: to the point of the limb
 /// that is nearest in the unit sphere.
-inline double limb_distance(const Ellipsoid& e, const View& view, const Vec& p) {
+inline double limb_distance(const figure::Ellipsoid& e, const figure::View& view, const Vec& p) {
     const Vec toward = view.perspective() ? eye_of(view) - Vec(e.center) : -ray_through(view, p);
     const Vec pole = to_unit(e, toward);
     const Real height = view.perspective() ? 1 / glm::length(pole) : 0;
@@ -248,16 +248,16 @@ struct OutlineFindings {
     }
 };
 
-inline bool in_arcs(const std::vector<Arc>& arcs, double t) {
+inline bool in_arcs(const std::vector<figure::Arc>& arcs, double t) {
     constexpr double turn = 2 * std::numbers::pi;
-    return std::any_of(arcs.begin(), arcs.end(), [&](const Arc& a) {
+    return std::any_of(arcs.begin(), arcs.end(), [&](const figure::Arc& a) {
         return (t >= a.begin && t <= a.end) || (t + turn >= a.begin && t + turn <= a.end);
     });
 }
 
 /// May the truth about the sample be either?
-inline bool is_excused(const OutlineScene& scene, std::size_t i, const Outline& outline, double t, bool truth,
-                       OutlineFindings& found) {
+inline bool is_excused(const OutlineScene& scene, std::size_t i, const figure::Outline& outline, double t,
+                       bool truth, OutlineFindings& found) {
     for (const double step : {-1e-6, 1e-6, -5e-7, 5e-7})
         if (is_hidden(scene, i, Vec(outline.limb(t + step))) != truth) return ++found.near, true;
     const Real move = 1e-9L * size_of(scene.bodies[i]);
@@ -269,19 +269,19 @@ inline bool is_excused(const OutlineScene& scene, std::size_t i, const Outline& 
 }
 
 /// Compares the arcs of outlines with the truth, at even angles and on both sides of the arcs' ends.
-inline OutlineFindings examine(const OutlineScene& scene, const Outlines& outlines, int samples) {
+inline OutlineFindings examine(const OutlineScene& scene, const figure::Outlines& outlines, int samples) {
     constexpr double turn = 2 * std::numbers::pi;
     OutlineFindings found;
     for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
-        const Outline& outline = outlines.bodies[i];
+        const figure::Outline& outline = outlines.bodies[i];
         double covered = 0;
         for (const auto* arcs : {&outline.visible, &outline.hidden})
-            for (const Arc& a : *arcs) covered += a.length();
-        if (outline.kind == OutlineKind::whole && std::fabs(covered - turn) > 1e-12) ++found.gaps;
+            for (const figure::Arc& a : *arcs) covered += a.length();
+        if (outline.kind == figure::OutlineKind::whole && std::fabs(covered - turn) > 1e-12) ++found.gaps;
         std::vector<double> angles;
         for (int k = 0; k < samples; ++k) angles.push_back(turn * (k + 0.37) / samples);
         for (const auto* arcs : {&outline.visible, &outline.hidden})
-            for (const Arc& a : *arcs)
+            for (const figure::Arc& a : *arcs)
                 for (const double step : {-1e-5, -1.5e-6, 1.5e-6, 1e-5}) {
                     angles.push_back(std::fmod(a.begin + step + turn, turn));
                     angles.push_back(std::fmod(a.end + step + turn, turn));

@@ -19,8 +19,8 @@ using Real = long double;
 using RealVector = glm::vec<3, Real>;
 
 struct Scene {
-    std::vector<Ellipsoid> bodies;
-    View view;
+    std::vector<figure::Ellipsoid> bodies;
+    figure::View view;
     int width = 64, height = 48;
 };
 
@@ -41,7 +41,7 @@ struct Ray {
 
 /// The view ray through a point of the picture, in pixels from its upper left.
 inline Ray ray_at(const Scene& scene, Real x, Real y) {
-    const View& view = scene.view;
+    const figure::View& view = scene.view;
     const glm::mat<3, 3, Real> back = glm::transpose(glm::mat<3, 3, Real>(view.rotation));
     const Real up = scene.height - y;
     if (!view.perspective())
@@ -58,7 +58,7 @@ inline Met meet(const Scene& scene, Real x, Real y) {
     Met met;
     std::vector<Real> depths;
     for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
-        const Ellipsoid& e = scene.bodies[i];
+        const figure::Ellipsoid& e = scene.bodies[i];
         const glm::mat<3, 3, Real> own = glm::transpose(glm::mat<3, 3, Real>(e.rotation));
         const RealVector axes(e.axes), o = own * (ray.origin - RealVector(e.center)) / axes,
                                        d = own * ray.direction / axes;
@@ -104,8 +104,8 @@ class SceneMaker {
     }
     /// In a cube of that half side about the origin, the longest axis between `least` and `most`, others down
     /// to a share of 1 / aspect of it.
-    Ellipsoid body(double spread, double least, double most, double aspect) {
-        Ellipsoid e;
+    figure::Ellipsoid body(double spread, double least, double most, double aspect) {
+        figure::Ellipsoid e;
         for (int k = 0; k < 3; ++k) e.center[k] = number(-spread, spread);
         const double longest = std::exp(number(std::log(least), std::log(most)));
         for (int k = 0; k < 3; ++k) e.axes[k] = longest * std::exp(-number(0, std::log(aspect)));

@@ -1,9 +1,11 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""includes.py CORE_DIR
+"""includes.py CORE_DIR LIBRARY...
 
 What the core includes. No header of a host. Highway, in files for one instruction set at a time alone: *_lanes.cpp, and what they
-include as *-inl.h. And folders include each other one way only: no way leads from a folder to others and back.
+include as *-inl.h. And folders include each other one way only: no way leads from a folder to others and back. Each LIBRARY is
+NAME:FOLDERS:LINKS, with commas between its folders, or none where it has what no other has, and between the libraries that it links:
+its files include their own and those of these.
 """
 import collections
 import pathlib
@@ -18,6 +20,16 @@ OWN = re.compile(r'# *include *"anamorph/([^"]+)"')
 def folder_of(path):
     """What lies in none, below all others, is one too, but for the header that gathers all. Those of figures are many."""
     return "/".join(path.parts[:-1][:2 if path.parts[0] == "figure" else 1]) or "."
+
+
+def libraries_of(arguments):
+    """(library by folder, with "" for other folders; what each links, itself too)."""
+    owners, links = {}, {}
+    for argument in arguments:
+        name, folders, linked = argument.split(":")
+        owners.update((folder, name) for folder in folders.split(","))
+        links[name] = {name, *linked.split(",")}
+    return owners, links
 
 
 def way_back(arrows, start):
@@ -37,6 +49,13 @@ def way_back(arrows, start):
 
 def main():
     core = pathlib.Path(sys.argv[1]) / "anamorph"
+    owners, links = libraries_of(sys.argv[2:])
+    if "" not in owners:
+        sys.exit("no library has what no other has")
+
+    def library_of(path):
+        return owners.get(path.parts[0], owners[""])
+
     files = sorted(p for p in core.rglob("*") if p.suffix in (".h", ".cpp"))
     faults = [] if files else [f"no sources under {core}"]
     arrows = collections.defaultdict(dict)
@@ -48,6 +67,8 @@ def main():
         if HIGHWAY.search(text) and not name.name.endswith(("_lanes.cpp", "-inl.h")):
             faults.append(f"{name}: includes Highway: must be *_lanes.cpp")
         for other in OWN.findall(text):
+            if library_of(pathlib.PurePath(other)) not in links[library_of(name)]:
+                faults.append(f"{name}: includes {other} of a library that it does not link")
             here, there = folder_of(name), folder_of(pathlib.PurePath(other))
             if here != there and str(name) != "anamorph.h":
                 arrows[here].setdefault(there, f"{name} includes {other}")

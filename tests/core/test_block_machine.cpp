@@ -12,6 +12,8 @@
 #include "drape_oracle.h"
 
 namespace anamorph {
+using namespace machine;
+using namespace surface;
 namespace {
 
 CameraPose parallel_pose() {

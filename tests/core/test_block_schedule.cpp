@@ -10,6 +10,7 @@
 #include <string>
 
 namespace anamorph {
+using namespace machine;
 namespace {
 
 using S = MachineSchedule;

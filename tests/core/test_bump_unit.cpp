@@ -13,6 +13,7 @@
 #include "anamorph/operation/pano.h"
 
 namespace anamorph {
+using namespace machine;
 namespace {
 
 constexpr int kScreen = 512;

@@ -22,6 +22,7 @@
 #include "each_instruction_set.h"
 
 namespace anamorph {
+using namespace surface;
 namespace {
 
 using test::number_of;
@@ -931,11 +932,11 @@ TEST(Drape, BlocksHaveTheSameBitsInPartsAndOnEveryInstructionSet) {
             const std::vector<float> whole = drawn_in_parts(drape, source, scene.screen, scene.screen);
             EXPECT_GT(std::count_if(whole.begin(), whole.end(), [](float v) { return v > 0; }), 5000);
             EXPECT_EQ(whole, drawn_in_parts(drape, source, scene.screen, {37, 23}));
-            for (const char* const* set = simd::instruction_sets(); *set; ++set) {
+            for (const char* const* set = anamorph::simd::instruction_sets(); *set; ++set) {
                 SCOPED_TRACE(*set);
-                ASSERT_TRUE(simd::use_instruction_set(*set));
+                ASSERT_TRUE(anamorph::simd::use_instruction_set(*set));
                 const std::vector<float> points = Shown(scene, options).values(Output::stmap);
-                simd::use_instruction_set("");
+                anamorph::simd::use_instruction_set("");
                 EXPECT_EQ(points, Shown(scene, options).values(Output::stmap));
             }
         }

@@ -14,6 +14,7 @@
 #include "drape_scene.h"
 
 namespace anamorph {
+using namespace surface;
 namespace {
 
 using test::kHalfTurn;

@@ -10,6 +10,7 @@
 #include "drape_scene.h"
 
 namespace anamorph {
+using namespace surface;
 namespace {
 
 using test::kHalfTurn;

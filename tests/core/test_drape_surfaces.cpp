@@ -15,6 +15,7 @@
 #include "drape_scene.h"
 
 namespace anamorph {
+using namespace surface;
 namespace {
 
 using test::number_of;

@@ -10,6 +10,7 @@
 #include <random>
 
 namespace anamorph {
+using namespace figure;
 namespace {
 
 Ellipsoid ball(const glm::dvec3& center, double radius) {

@@ -11,6 +11,7 @@
 #include "anamorph/figure/language/script.h"
 
 namespace anamorph {
+using namespace figure;
 namespace {
 
 /// Single ellipsoids that are attached in one frame, in the order of `joints`.

@@ -9,6 +9,7 @@
 #include "anamorph/figure/outline/fit.h"
 
 namespace anamorph {
+using namespace figure;
 namespace {
 
 FigureFrame random_frame(std::mt19937& random, int bodies) {

@@ -8,6 +8,7 @@
 #include "figure_cases.h"
 
 namespace anamorph {
+using namespace figure;
 namespace {
 
 using namespace figure_cases;

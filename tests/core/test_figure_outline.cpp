@@ -5,6 +5,7 @@
 #include "figure_outline_cases.h"
 
 namespace anamorph {
+using namespace figure;
 namespace {
 
 TEST(FigureOutline, ArcsAgreeWithDepthTests) {

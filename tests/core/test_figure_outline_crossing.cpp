@@ -6,6 +6,7 @@
 #include "figure_outline_cases.h"
 
 namespace anamorph {
+using namespace figure;
 namespace {
 
 using test::Real;

@@ -15,6 +15,7 @@
 #include "anamorph/figure/language/script_table.h"
 
 namespace anamorph {
+using namespace figure;
 namespace {
 
 using testing::AllOf;

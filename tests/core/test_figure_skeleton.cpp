@@ -9,6 +9,7 @@
 #include "figure_outline_cases.h"
 
 namespace anamorph {
+using namespace figure;
 namespace {
 
 constexpr double kTurn = 2 * std::numbers::pi;

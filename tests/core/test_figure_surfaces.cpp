@@ -10,6 +10,7 @@
 #include "figure_picture_cases.h"
 
 namespace anamorph {
+using namespace figure;
 namespace {
 
 using namespace figure_picture_cases;

@@ -13,6 +13,7 @@
 #include "anamorph/morph/features_file.h"
 
 namespace anamorph {
+using namespace machine;
 namespace {
 
 std::string refusal_of(const std::function<void()>& read) {

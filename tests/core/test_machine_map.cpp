@@ -10,6 +10,7 @@
 #include "anamorph/operation/operation.h"
 
 namespace anamorph {
+using namespace machine;
 namespace {
 
 constexpr Size kSize{300, 200};

@@ -10,6 +10,7 @@
 #include "anamorph/figure/files/motion_file.h"
 
 namespace anamorph {
+using namespace figure;
 namespace {
 
 using testing::HasSubstr;

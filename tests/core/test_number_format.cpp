@@ -13,6 +13,7 @@
 #include "anamorph/number/half.h"
 
 namespace anamorph {
+using namespace machine;
 namespace {
 
 /// A value, and whether its last bit is 0.

@@ -16,6 +16,7 @@
 #include "anamorph/figure/outline/spheres.h"
 
 namespace anamorph {
+using namespace figure;
 namespace {
 
 TEST(NumberRow, SaysItsRange) {

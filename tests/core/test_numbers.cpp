@@ -18,6 +18,7 @@
 #include "projection_cases.h"
 
 namespace anamorph {
+using namespace machine;
 namespace {
 
 using Float16 = FormatNumber<kFloat16>;

@@ -181,7 +181,7 @@ TEST(MorphRequest, WhatARowAllowsIsWhatTheMorphTakes) {
             ++ends;
         }
     }
-    EXPECT_EQ(ends, 18);
+    EXPECT_EQ(ends, 14);
 }
 
 TEST(MorphRequest, WeightsAreNamedAsTheyWereGiven) {

@@ -16,6 +16,7 @@
 #include "places_file.h"
 
 namespace anamorph {
+using namespace surface;
 namespace {
 
 using namespace places;
@@ -347,7 +348,7 @@ Numbers normal_of(const SurfaceShape& shape, const Numbers& at) {
 
 /// In the order of surface_names().
 constexpr Numbers (*kNormals[])(const SurfaceShape&, const Numbers&) = {
-#define ANAMORPH_SURFACE(name, Type) normal_of<surfaces::Type>,
+#define ANAMORPH_SURFACE(name, Type) normal_of<shapes::Type>,
 #include "anamorph/surface/shape/list.h"
 #undef ANAMORPH_SURFACE
 };

@@ -14,6 +14,7 @@
 #include "mesh_cases.h"
 
 namespace anamorph {
+using namespace machine;
 namespace {
 
 std::string message_of_shader(const std::string& body) {

@@ -16,6 +16,7 @@
 #include "drape_scene.h"
 
 namespace anamorph {
+using namespace surface;
 namespace {
 
 using test::Scene;

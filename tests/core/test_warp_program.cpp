@@ -13,6 +13,7 @@
 #include "anamorph/operation/operation.h"
 
 namespace anamorph {
+using namespace machine;
 namespace {
 
 using testing::HasSubstr;

@@ -12,6 +12,7 @@
 #include "expect_error.h"
 
 using namespace anamorph;
+using namespace anamorph::figure;
 
 namespace {
 

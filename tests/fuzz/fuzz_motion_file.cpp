@@ -12,6 +12,7 @@
 #include "expect_error.h"
 
 using namespace anamorph;
+using namespace anamorph::figure;
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     const std::string_view text(reinterpret_cast<const char*>(data), size);

@@ -10,6 +10,7 @@
 #include "expect_error.h"
 
 using namespace anamorph;
+using namespace anamorph::surface;
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     if (size > 400) return 0;

@@ -39,7 +39,7 @@ void print(const anamorph::Operation& operation) {
 int main() {
     for (const anamorph::NumberRow& row : anamorph::kDeformRows) print(row);
     print(*anamorph::find_operation("drape"));
-    print(anamorph::kDrapeParallelScaleRow);
-    for (const anamorph::NumberRow& row : anamorph::kFigureRows) print(row);
+    print(anamorph::surface::kDrapeParallelScaleRow);
+    for (const anamorph::NumberRow& row : anamorph::figure::kFigureRows) print(row);
     for (const anamorph::NumberRow& row : anamorph::kProjectorRows) print(row);
 }

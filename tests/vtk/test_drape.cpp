@@ -279,13 +279,13 @@ void set(Drape* filter, const Case& c) {
 
 /// The operation's views have a width, VTK's a height.
 std::string fov_of(double view_angle, double aspect) {
-    const double half = anamorph::kPi / 360;
+    const double half = anamorph::surface::kPi / 360;
     return anamorph::shortest(std::atan(aspect * std::tan(view_angle * half)) / half);
 }
 
 std::vector<anamorph::Assignment> arguments_of(const Case& c) {
     const double aspect = 90.0 / 60.0;
-    return {{"surface", anamorph::surface_names()[static_cast<std::size_t>(c.surface)]},
+    return {{"surface", anamorph::surface::surface_names()[static_cast<std::size_t>(c.surface)]},
             {"angle", "222"},
             {"radius", "0.3"},
             {"tube", "0.13"},
@@ -325,7 +325,7 @@ std::vector<double> wanted_of(const Case& c, vtkImageData* texture) {
 }
 
 TEST(VtkDrape, EverySurfaceHasThePixelsOfTheOperation) {
-    ASSERT_EQ(anamorph::all_surface_names().size(), std::size_t{Drape::NumberOfSurfaces});
+    ASSERT_EQ(anamorph::surface::all_surface_names().size(), std::size_t{Drape::NumberOfSurfaces});
     for (int surface = Drape::PLANE; surface <= Drape::RIPPLES; ++surface)
         for (const bool parallel : {false, true})
             for (int i = 0; i < 9; ++i) {
@@ -440,24 +440,25 @@ TEST(VtkDrape, ShadingHasThePixelsOfTheOperation) {
         for (const int surface : {Drape::SPHERE, Drape::PAGE_TURN, Drape::RIPPLES}) {
             SCOPED_TRACE(testing::Message() << word << " " << surface);
             const int chosen = shading;
-            expect_pixels_of_operation({[=](Drape* f) {
-                                            f->SetSurface(surface);
-                                            f->SetShading(chosen);
-                                            f->SetNumberOfLights(2);
-                                            f->SetLight(0, 1, 2, 3);
-                                            f->SetLight(1, -3e5, 0, 1e5);
-                                            f->SetAmbient(0.1);
-                                            f->SetDiffuse(0.5);
-                                            f->SetSpecular(0.4);
-                                            f->SetShininess(9);
-                                        },
-                                        {{"surface", anamorph::surface_names()[std::size_t(surface)]},
-                                         {"shading", word},
-                                         {"light", "1,2,3,-3e5,0,1e5"},
-                                         {"ambient", "0.1"},
-                                         {"diffuse", "0.5"},
-                                         {"specular", "0.4"},
-                                         {"shininess", "9"}}});
+            expect_pixels_of_operation(
+                {[=](Drape* f) {
+                     f->SetSurface(surface);
+                     f->SetShading(chosen);
+                     f->SetNumberOfLights(2);
+                     f->SetLight(0, 1, 2, 3);
+                     f->SetLight(1, -3e5, 0, 1e5);
+                     f->SetAmbient(0.1);
+                     f->SetDiffuse(0.5);
+                     f->SetSpecular(0.4);
+                     f->SetShininess(9);
+                 },
+                 {{"surface", anamorph::surface::surface_names()[std::size_t(surface)]},
+                  {"shading", word},
+                  {"light", "1,2,3,-3e5,0,1e5"},
+                  {"ambient", "0.1"},
+                  {"diffuse", "0.5"},
+                  {"specular", "0.4"},
+                  {"shininess", "9"}}});
         }
 }
 

@@ -22,9 +22,9 @@
 namespace anamorph_vtk {
 namespace {
 
-using anamorph::Body;
 using anamorph::Error;
-using anamorph::FigureFrame;
+using anamorph::figure::Body;
+using anamorph::figure::FigureFrame;
 
 constexpr const char *kAxes = "Axes", *kOrientation = "Orientation";
 
@@ -57,7 +57,7 @@ void write_joints(const FigureFrame& frame, vtkFieldData* field) {
     auto* positions = new_array<vtkDoubleArray>("JointPosition", 3, count, field);
     auto* names = new_array<vtkStringArray>("JointName", 1, count, field);
     for (vtkIdType k = 0; k < count; ++k) {
-        const anamorph::Joint& joint = frame.joints[static_cast<std::size_t>(k)];
+        const anamorph::figure::Joint& joint = frame.joints[static_cast<std::size_t>(k)];
         bodies->SetTypedComponent(k, 0, joint.first);
         bodies->SetTypedComponent(k, 1, joint.second);
         set(positions, k, flipped(joint.position));
@@ -134,7 +134,7 @@ void write_figures(const FigureFrame& frame, bool joints, int precision, vtkPoly
         vertices->InsertNextCell(1, &i);
     }
     if (joints)
-        for (const anamorph::Joint& joint : frame.joints) {
+        for (const anamorph::figure::Joint& joint : frame.joints) {
             const vtkIdType ends[2] = {joint.first, joint.second};
             lines->InsertNextCell(2, ends);
         }
@@ -154,9 +154,9 @@ FigureData::FigureData(vtkPolyData* data) : m_data(data), m_size(data->GetNumber
     if (m_ghosts && m_ghosts->GetNumberOfTuples() != m_size) m_ghosts = nullptr;
 }
 
-std::optional<anamorph::Ellipsoid> FigureData::ellipsoid(vtkIdType i) const {
+std::optional<anamorph::figure::Ellipsoid> FigureData::ellipsoid(vtkIdType i) const {
     if (m_ghosts && (m_ghosts->GetValue(i) & vtkDataSetAttributes::HIDDENPOINT) != 0) return std::nullopt;
-    anamorph::Ellipsoid shape;
+    anamorph::figure::Ellipsoid shape;
     double center[3], q[4];
     m_data->GetPoint(i, center);
     m_axes->GetTuple(i, &shape.axes.x);
@@ -182,8 +182,8 @@ void allocate_cell_data(vtkPolyData* input, vtkIdType cells, vtkCellData* data) 
     data->CopyAllocate(points, cells);
 }
 
-std::vector<anamorph::Joint> joints_of(vtkPolyData* data) {
-    std::vector<anamorph::Joint> joints;
+std::vector<anamorph::figure::Joint> joints_of(vtkPolyData* data) {
+    std::vector<anamorph::figure::Joint> joints;
     vtkDataArray *bodies = field_array(data, "JointBodies", 2),
                  *positions = field_array(data, "JointPosition", 3);
     if (!bodies || !positions || bodies->GetNumberOfTuples() != positions->GetNumberOfTuples()) return joints;
@@ -191,7 +191,7 @@ std::vector<anamorph::Joint> joints_of(vtkPolyData* data) {
         const double first = bodies->GetComponent(k, 0), second = bodies->GetComponent(k, 1);
         const auto count = static_cast<double>(data->GetNumberOfPoints());
         if (!(first >= 0 && first < count && second >= 0 && second < count)) continue;
-        anamorph::Joint joint;
+        anamorph::figure::Joint joint;
         joint.first = static_cast<int>(first);
         joint.second = static_cast<int>(second);
         positions->GetTuple(k, &joint.position.x);
@@ -200,8 +200,8 @@ std::vector<anamorph::Joint> joints_of(vtkPolyData* data) {
     return joints;
 }
 
-anamorph::View script_view(vtkPolyData* data, double height) {
-    anamorph::View view;
+anamorph::figure::View script_view(vtkPolyData* data, double height) {
+    anamorph::figure::View view;
     view.scale = height / 1000;
     view.center = {500, 500, -500};
     view.rotation[2][2] = -1;

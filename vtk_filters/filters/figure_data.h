@@ -32,7 +32,8 @@ namespace anamorph_vtk {
 
 /// Points and arrays as above. The cells are a vertex for each ellipsoid and, with `joints`, a line for each
 /// joint, between the ellipsoids that it connects. `precision` is that of the points, as in vtkAlgorithm.
-void write_figures(const anamorph::FigureFrame& frame, bool joints, int precision, vtkPolyData* output);
+void write_figures(const anamorph::figure::FigureFrame& frame, bool joints, int precision,
+                   vtkPolyData* output);
 
 /// Ellipsoids read back, in VTK's space. Throws Error where an array is missing or not as it should be; no
 /// points need no arrays.
@@ -43,7 +44,7 @@ class FigureData {
     vtkIdType size() const { return m_size; }
     /// The axes are not negative, the rotation is orthonormal. Not a number anywhere, or the point is hidden
     /// (blanked): nothing.
-    std::optional<anamorph::Ellipsoid> ellipsoid(vtkIdType i) const;
+    std::optional<anamorph::figure::Ellipsoid> ellipsoid(vtkIdType i) const;
 
   private:
     vtkPolyData* m_data;
@@ -57,10 +58,10 @@ class FigureData {
 void allocate_cell_data(vtkPolyData* input, vtkIdType cells, vtkCellData* data);
 
 /// Joints as the field data has them, between points; those of points that are not there are left out.
-std::vector<anamorph::Joint> joints_of(vtkPolyData* data);
+std::vector<anamorph::figure::Joint> joints_of(vtkPolyData* data);
 
 /// The view of the script, in which the window of 1000 units is `height` pixels high; the origin of the
 /// screen is in its middle. Without the field data, that of a script that does not set it.
-anamorph::View script_view(vtkPolyData* data, double height);
+anamorph::figure::View script_view(vtkPolyData* data, double height);
 
 }  // namespace anamorph_vtk

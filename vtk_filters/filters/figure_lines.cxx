@@ -22,7 +22,7 @@ Bodies::Bodies(vtkPolyData* data) {
     std::vector<int> position(static_cast<std::size_t>(figures.size()), -1);
     for (std::size_t i = 0; i < ids.size(); ++i)
         position[static_cast<std::size_t>(ids[i])] = static_cast<int>(i);
-    for (anamorph::Joint joint : joints_of(data)) {
+    for (anamorph::figure::Joint joint : joints_of(data)) {
         joint.first = position[static_cast<std::size_t>(joint.first)];
         joint.second = position[static_cast<std::size_t>(joint.second)];
         if (joint.first >= 0 && joint.second >= 0) joints.push_back(joint);

@@ -20,10 +20,10 @@ namespace anamorph_vtk {
 struct Bodies {
     explicit Bodies(vtkPolyData* data);
 
-    std::vector<anamorph::Ellipsoid> shapes;
+    std::vector<anamorph::figure::Ellipsoid> shapes;
     std::vector<vtkIdType> ids;
-    std::vector<std::string> names;       ///< for messages
-    std::vector<anamorph::Joint> joints;  ///< between positions in `shapes`
+    std::vector<std::string> names;               ///< for messages
+    std::vector<anamorph::figure::Joint> joints;  ///< between positions in `shapes`
 };
 
 /// Collects polylines and vertices. Each has the arrays of the point of the input that it stands for but Axes

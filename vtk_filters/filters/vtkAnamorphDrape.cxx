@@ -77,7 +77,7 @@ const std::string& surface_word(int surface) {
     const int index = surface < vtkAnamorphDrape::POSITIONS  ? surface
                       : surface <= vtkAnamorphDrape::FORMULA ? kListed + surface - vtkAnamorphDrape::POSITIONS
                                                              : surface - 2;
-    return anamorph::all_surface_names().at(static_cast<std::size_t>(index));
+    return anamorph::surface::all_surface_names().at(static_cast<std::size_t>(index));
 }
 
 glm::dvec3 point(const char* name, const double* v) {
@@ -267,7 +267,7 @@ int vtkAnamorphDrape::FillInputPortInformation(int port, vtkInformation* info) {
 /// Throws anamorph::Error.
 anamorph::Size vtkAnamorphDrape::Screen() const {
     for (const int size : this->ViewSize) {
-        anamorph::kViewSizeRow.check(size, "ViewSize");
+        anamorph::figure::kViewSizeRow.check(size, "ViewSize");
         if (size > kMostViewSize)
             throw Error("ViewSize", std::to_string(size),
                         "must be an integer from 1 to " + std::to_string(kMostViewSize));
@@ -347,16 +347,16 @@ const anamorph::DrapeSurfaces& vtkAnamorphDrape::SurfacesOf(const anamorph::Para
 }
 
 /// Throws anamorph::Error.
-anamorph::DrapeOptions vtkAnamorphDrape::Options(const anamorph::ParameterValues& values,
-                                                 int components) const {
-    anamorph::DrapeOptions options;
+anamorph::surface::DrapeOptions vtkAnamorphDrape::Options(const anamorph::ParameterValues& values,
+                                                          int components) const {
+    anamorph::surface::DrapeOptions options;
     options.tol = values.number("tol");
     options.filter = anamorph::rows::chosen<anamorph::Filter>(values, "filter");
     if (this->Style == TEXTURE_COORDINATES) options.output = anamorph::Output::stmap;
-    if (this->Style == DEPTH) options.own = anamorph::DrapeOutput::depth;
-    if (this->Style == NORMAL) options.own = anamorph::DrapeOutput::normal;
+    if (this->Style == DEPTH) options.own = anamorph::surface::DrapeOutput::depth;
+    if (this->Style == NORMAL) options.own = anamorph::surface::DrapeOutput::normal;
     options.lighting = {
-        anamorph::rows::chosen<anamorph::DrapeShading>(values, "shading"),
+        anamorph::rows::chosen<anamorph::surface::DrapeShading>(values, "shading"),
         anamorph::drape_lights(this->Lights.empty() ? std::vector<double>{} : values.numbers("light")),
         values.number("ambient"),
         values.number("diffuse"),
@@ -374,13 +374,13 @@ anamorph::DrapeOptions vtkAnamorphDrape::Options(const anamorph::ParameterValues
 }
 
 /// Throws anamorph::Error.
-anamorph::Camera vtkAnamorphDrape::CameraOf(const anamorph::Size& screen) const {
-    anamorph::kDrapeParallelScaleRow.check(this->CameraParallelScale, "CameraParallelScale");
-    anamorph::kViewAngleRow.check(this->CameraViewAngle, "CameraViewAngle");
+anamorph::surface::Camera vtkAnamorphDrape::CameraOf(const anamorph::Size& screen) const {
+    anamorph::surface::kDrapeParallelScaleRow.check(this->CameraParallelScale, "CameraParallelScale");
+    anamorph::figure::kViewAngleRow.check(this->CameraViewAngle, "CameraViewAngle");
     // The core's cameras measure a view by its width, VTK's by its height.
     const double aspect = static_cast<double>(screen.width) / screen.height,
                  half_degree = anamorph::kPi / 360;
-    anamorph::CameraPose pose;
+    anamorph::surface::CameraPose pose;
     pose.position = point("CameraPosition", this->CameraPosition);
     pose.target = point("CameraFocalPoint", this->CameraFocalPoint);
     pose.up = point("CameraViewUp", this->CameraViewUp);
@@ -460,8 +460,8 @@ void vtkAnamorphDrape::Draw(vtkInformationVector** inputs, const int* extent, vt
     const anamorph::DrapeSurfaces& surfaces =
         this->SurfacesOf(values, inputs, static_cast<double>(pixels.size().width) / pixels.size().height);
     execution.progress(0.1);
-    const anamorph::Drape drape(surfaces.tree_of(surfaces.sum_of(values)), this->CameraOf(screen),
-                                pixels.size(), this->Options(values, channels));
+    const anamorph::surface::Drape drape(surfaces.tree_of(surfaces.sum_of(values)), this->CameraOf(screen),
+                                         pixels.size(), this->Options(values, channels));
     execution.progress(0.3);
 
     const Drawn drawn = drawn_by(this->Style, pixels.type(), channels);

@@ -34,8 +34,8 @@ glm::dvec3 point(const char* name, const double* v) {
 vtkAnamorphFigureAlgorithm::vtkAnamorphFigureAlgorithm() = default;
 vtkAnamorphFigureAlgorithm::~vtkAnamorphFigureAlgorithm() = default;
 
-anamorph::View vtkAnamorphFigureAlgorithm::ViewOf(vtkPolyData* figures) const {
-    for (const int size : this->ViewSize) anamorph::kViewSizeRow.check(size, "ViewSize");
+anamorph::figure::View vtkAnamorphFigureAlgorithm::ViewOf(vtkPolyData* figures) const {
+    for (const int size : this->ViewSize) anamorph::figure::kViewSizeRow.check(size, "ViewSize");
     const double height = this->ViewSize[1];
     if (this->ViewMode == SCRIPT) return anamorph_vtk::script_view(figures, height);
     const glm::dvec3 eye = point("CameraPosition", this->CameraPosition),
@@ -46,19 +46,20 @@ anamorph::View vtkAnamorphFigureAlgorithm::ViewOf(vtkPolyData* figures) const {
     const glm::dvec3 right = across / glm::length(across);
     if (!std::isfinite(right.x + right.y + right.z))
         throw Error("the camera's position and focal point, and its view up, span no plane");
-    anamorph::View view;
+    anamorph::figure::View view;
     view.center = focus;
     // Rows: what becomes x, y and z.
     view.rotation = glm::transpose(glm::dmat3(right, glm::cross(right, away), away));
     if (this->CameraParallelProjection) {
-        anamorph::kParallelScaleRow.check(this->CameraParallelScale, "CameraParallelScale");
+        anamorph::figure::kParallelScaleRow.check(this->CameraParallelScale, "CameraParallelScale");
         view.scale = height / (2 * this->CameraParallelScale);
     } else {
-        anamorph::kViewAngleRow.check(this->CameraViewAngle, "CameraViewAngle");
+        anamorph::figure::kViewAngleRow.check(this->CameraViewAngle, "CameraViewAngle");
         view.eye_distance = distance;
         view.near = kNear * distance;
         view.scale =
-            height / (2 * std::tan(0.5 * this->CameraViewAngle * anamorph::kRadiansPerDegree) * distance);
+            height /
+            (2 * std::tan(0.5 * this->CameraViewAngle * anamorph::figure::kRadiansPerDegree) * distance);
     }
     return view;
 }

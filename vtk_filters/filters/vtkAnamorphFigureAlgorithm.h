@@ -14,8 +14,11 @@
 #include "vtkPolyDataAlgorithm.h"
 
 namespace anamorph {
+// VTK's wrappers read no nested names here.
+namespace figure {
 struct View;
 }
+}  // namespace anamorph
 namespace anamorph_vtk {
 class Execution;
 }
@@ -68,7 +71,7 @@ class ANAMORPHFILTERS_EXPORT vtkAnamorphFigureAlgorithm : public vtkPolyDataAlgo
     ~vtkAnamorphFigureAlgorithm() override;
 
     /// The view of these ellipsoids. Throws anamorph::Error naming the property that is out of its range.
-    anamorph::View ViewOf(vtkPolyData* figures) const;
+    anamorph::figure::View ViewOf(vtkPolyData* figures) const;
     /// Writes the output, which is of the type that the filter says. What it throws becomes an error message and
     /// an empty output.
     virtual void Draw(vtkPolyData* input, vtkDataObject* output, anamorph_vtk::Execution& execution) = 0;

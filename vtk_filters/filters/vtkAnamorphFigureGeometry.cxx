@@ -30,9 +30,9 @@ vtkObjectFactoryNewMacro(vtkAnamorphFigureGeometry);
 
 namespace {
 
-using anamorph::Ellipsoid;
 using anamorph::Error;
-using anamorph::View;
+using anamorph::figure::Ellipsoid;
+using anamorph::figure::View;
 
 constexpr double kPi = std::numbers::pi;
 constexpr double kMostSteps = 1 << 12;  ///< either way
@@ -260,7 +260,7 @@ vtkAnamorphFigureGeometry::~vtkAnamorphFigureGeometry() = default;
 
 void vtkAnamorphFigureGeometry::Draw(vtkPolyData* input, vtkDataObject* data,
                                      anamorph_vtk::Execution& execution) {
-    anamorph::kSurfaceTolRow.check(this->Tolerance, "Tolerance");
+    anamorph::figure::kSurfaceTolRow.check(this->Tolerance, "Tolerance");
     const anamorph_vtk::FigureData figures(input);
     const View view = this->ToleranceMode == PIXELS ? this->ViewOf(input) : View();
     const double half_diagonal = 0.5 * std::hypot(this->ViewSize[0], this->ViewSize[1]);

@@ -34,7 +34,7 @@ vtkObjectFactoryNewMacro(vtkAnamorphFigureImage);
 
 namespace {
 
-using anamorph::FigureStyle;
+using anamorph::figure::FigureStyle;
 
 constexpr int kMostSide = 1 << 16;
 
@@ -51,20 +51,20 @@ struct Texture {
 };
 
 /// The bodies of a data set as a frame, in their colors.
-anamorph::FigureFrame frame_of(vtkPolyData* data, const anamorph_vtk::Bodies& bodies, bool textured) {
+anamorph::figure::FigureFrame frame_of(vtkPolyData* data, const anamorph_vtk::Bodies& bodies, bool textured) {
     auto* textures = vtkStringArray::SafeDownCast(data->GetPointData()->GetAbstractArray("Texture"));
     if (textures && textures->GetNumberOfTuples() != data->GetNumberOfPoints()) textures = nullptr;
     vtkDataArray* offsets = data->GetPointData()->GetArray("TextureOffset");
     if (offsets &&
         (offsets->GetNumberOfComponents() != 2 || offsets->GetNumberOfTuples() != data->GetNumberOfPoints()))
         offsets = nullptr;
-    anamorph::FigureFrame frame;
+    anamorph::figure::FigureFrame frame;
     auto* colors = vtkUnsignedCharArray::SafeDownCast(data->GetPointData()->GetArray("Color"));
     if (colors &&
         (colors->GetNumberOfComponents() < 3 || colors->GetNumberOfTuples() != data->GetNumberOfPoints()))
         colors = nullptr;
     for (std::size_t i = 0; i < bodies.shapes.size(); ++i) {
-        anamorph::Body body;
+        anamorph::figure::Body body;
         body.shape = bodies.shapes[i];
         body.name = bodies.names[i];
         if (colors)
@@ -166,17 +166,17 @@ void vtkAnamorphFigureImage::AskedExtent(int extent[6]) {
 }
 
 /// How the figures are drawn: textured, where the style is shaded and there are textures.
-anamorph::FigureLook vtkAnamorphFigureImage::GetLook() const {
+anamorph::figure::FigureLook vtkAnamorphFigureImage::GetLook() const {
     static constexpr FigureStyle kStyles[] = {FigureStyle::shaded, FigureStyle::outline, FigureStyle::stick,
                                               FigureStyle::depth, FigureStyle::id};
-    using anamorph::BodyMapping, anamorph::Lighting;
+    using anamorph::figure::BodyMapping, anamorph::figure::Lighting;
     static constexpr Lighting kLightings[] = {Lighting::rasel, Lighting::lambert, Lighting::blinn};
     static constexpr BodyMapping kMappings[] = {BodyMapping::latlong, BodyMapping::mirrored,
                                                 BodyMapping::linear, BodyMapping::octahedral};
-    anamorph::FigureLook look;
+    anamorph::figure::FigureLook look;
     look.style = kStyles[this->Style];
     look.light.lighting = kLightings[this->Lighting];
-    look.light.toward = anamorph::usual_light(look.light.lighting);
+    look.light.toward = anamorph::figure::usual_light(look.light.lighting);
     look.antialias = this->Antialias;
     if (this->Style != SHADED || this->Textures.empty()) return look;
     look.style = FigureStyle::textured;
@@ -187,13 +187,13 @@ anamorph::FigureLook vtkAnamorphFigureImage::GetLook() const {
 
 void vtkAnamorphFigureImage::Draw(vtkPolyData* input, vtkDataObject* output,
                                   anamorph_vtk::Execution& execution) {
-    anamorph::View view = this->ViewOf(input);
+    anamorph::figure::View view = this->ViewOf(input);
     const int width = this->ViewSize[0], height = this->ViewSize[1];
     if (width > kMostSide || height > kMostSide)
         throw anamorph::Error("ViewSize", std::to_string(std::max(width, height)),
                               "must be an integer from 1 to " + std::to_string(kMostSide));
     view.middle += 0.5 * glm::dvec2(width, height);
-    const anamorph::FigureLook look = this->GetLook();
+    const anamorph::figure::FigureLook look = this->GetLook();
     // In the order of their names.
     std::vector<std::unique_ptr<Texture>> textures;
     std::vector<const anamorph::Source*> sources;
@@ -203,8 +203,9 @@ void vtkAnamorphFigureImage::Draw(vtkPolyData* input, vtkDataObject* output,
         sources.push_back(&textures.back()->pyramid);
     }
     const anamorph_vtk::Bodies bodies(input);
-    const anamorph::FigurePicture picture(frame_of(input, bodies, look.style == FigureStyle::textured), view,
-                                          {width, height}, look, execution.stage(0, 0.3));
+    const anamorph::figure::FigurePicture picture(
+        frame_of(input, bodies, look.style == FigureStyle::textured), view, {width, height}, look,
+        execution.stage(0, 0.3));
     const int channels = anamorph::channels_of(look.style);
     int extent[6];
     this->AskedExtent(extent);

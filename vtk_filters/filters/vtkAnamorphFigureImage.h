@@ -28,8 +28,11 @@
 #include <vector>   // for all
 
 namespace anamorph {
+// VTK's wrappers read no nested names here.
+namespace figure {
 struct FigureLook;
 }
+}  // namespace anamorph
 
 class ANAMORPHFILTERS_EXPORT vtkAnamorphFigureImage : public vtkAnamorphFigureAlgorithm {
   public:
@@ -98,7 +101,7 @@ class ANAMORPHFILTERS_EXPORT vtkAnamorphFigureImage : public vtkAnamorphFigureAl
     vtkAnamorphFigureImage(const vtkAnamorphFigureImage&) = delete;
     void operator=(const vtkAnamorphFigureImage&) = delete;
 
-    anamorph::FigureLook GetLook() const;
+    anamorph::figure::FigureLook GetLook() const;
     void AskedExtent(int extent[6]);
 
     int Style = SHADED;

@@ -21,15 +21,15 @@ vtkObjectFactoryNewMacro(vtkAnamorphFigureOutline);
 
 namespace {
 
-using anamorph::Arc;
 using anamorph::Error;
-using anamorph::Outline;
+using anamorph::figure::Arc;
+using anamorph::figure::Outline;
 
 /// Longer arcs are closed.
 constexpr double kWholeTurn = 2 * std::numbers::pi - 1e-9;
 
 /// An arc of a curve, which may go over its end.
-std::vector<glm::dvec3> part_of(const anamorph::CrossingCurve& curve, const Arc& arc) {
+std::vector<glm::dvec3> part_of(const anamorph::figure::CrossingCurve& curve, const Arc& arc) {
     const auto& points = curve.points;
     const auto at = [&](double t) {
         const double below = std::floor(t);
@@ -44,10 +44,10 @@ std::vector<glm::dvec3> part_of(const anamorph::CrossingCurve& curve, const Arc&
 }
 
 /// Takes away what of outlines is inside of connections.
-void cut_out(const std::vector<anamorph::Connection>& connections, std::vector<Outline>& outlines) {
+void cut_out(const std::vector<anamorph::figure::Connection>& connections, std::vector<Outline>& outlines) {
     constexpr double turn = 2 * std::numbers::pi;
     std::vector<std::vector<Arc>> inside(outlines.size());
-    for (const anamorph::Connection& c : connections) {
+    for (const anamorph::figure::Connection& c : connections) {
         auto &first = inside[static_cast<std::size_t>(c.first)],
              &second = inside[static_cast<std::size_t>(c.second)];
         first.insert(first.end(), c.first_inside.begin(), c.first_inside.end());
@@ -58,7 +58,7 @@ void cut_out(const std::vector<anamorph::Connection>& connections, std::vector<O
         const auto without_inside = [&](const std::vector<Arc>& others) {
             std::vector<Arc> taken = inside[i];
             taken.insert(taken.end(), others.begin(), others.end());
-            return anamorph::complement_of(anamorph::union_of(taken, turn), turn);
+            return anamorph::figure::complement_of(anamorph::figure::union_of(taken, turn), turn);
         };
         const std::vector<Arc> visible = without_inside(outlines[i].hidden);
         outlines[i].hidden = without_inside(outlines[i].visible);
@@ -73,27 +73,28 @@ vtkAnamorphFigureOutline::~vtkAnamorphFigureOutline() = default;
 
 void vtkAnamorphFigureOutline::Draw(vtkPolyData* input, vtkDataObject* output,
                                     anamorph_vtk::Execution& execution) {
-    anamorph::kOutlineTolRow.check(this->Tolerance, "Tolerance");
+    anamorph::figure::kOutlineTolRow.check(this->Tolerance, "Tolerance");
     const anamorph_vtk::Bodies bodies(input);
-    const anamorph::View view = this->ViewOf(input);
-    anamorph::OutlineOptions options;
+    const anamorph::figure::View view = this->ViewOf(input);
+    anamorph::figure::OutlineOptions options;
     options.hide = false;
     options.names = bodies.names;
     // Limbs tell at once that there are too many chords, crossings late.
     if (this->Crossings)
-        for (const Outline& outline : anamorph::outlines(bodies.shapes, view, options).bodies)
+        for (const Outline& outline : anamorph::figure::outlines(bodies.shapes, view, options).bodies)
             for (const Arc& arc : outline.visible)
-                anamorph::chord_angles(outline, arc, view, this->Tolerance);
+                anamorph::figure::chord_angles(outline, arc, view, this->Tolerance);
     options.hide = this->Hidden != TRANSPARENT;
     options.crossings = this->Crossings;
     options.keep_hidden = this->Hidden == KEPT;
     options.tol = this->Tolerance;
     execution.progress(0.05);
-    anamorph::Outlines all = anamorph::outlines(bodies.shapes, view, options, execution.stage(0.1, 0.6));
-    std::vector<anamorph::Connection> connections;
+    anamorph::figure::Outlines all =
+        anamorph::figure::outlines(bodies.shapes, view, options, execution.stage(0.1, 0.6));
+    std::vector<anamorph::figure::Connection> connections;
     if (this->Connected) {
         connections =
-            anamorph::connections(bodies.joints, bodies.shapes, all, view, execution.stage(0.6, 0.7));
+            anamorph::figure::connections(bodies.joints, bodies.shapes, all, view, execution.stage(0.6, 0.7));
         cut_out(connections, all.bodies);
     }
 
@@ -110,7 +111,7 @@ void vtkAnamorphFigureOutline::Draw(vtkPolyData* input, vtkDataObject* output,
         const Outline& outline = all.bodies[i];
         add(outline, static_cast<int>(i), -1, [&](const Arc& arc) {
             std::vector<glm::dvec3> points;
-            for (const double angle : anamorph::chord_angles(outline, arc, view, this->Tolerance))
+            for (const double angle : anamorph::figure::chord_angles(outline, arc, view, this->Tolerance))
                 points.push_back(outline.limb(angle));
             if (arc.length() > kWholeTurn) points.back() = points.front();
             return points;
@@ -118,10 +119,10 @@ void vtkAnamorphFigureOutline::Draw(vtkPolyData* input, vtkDataObject* output,
         if (i % 64 == 63)
             execution.progress(0.7 + 0.2 * static_cast<double>(i) / static_cast<double>(all.bodies.size()));
     }
-    for (const anamorph::CrossingCurve& curve : all.crossings)
+    for (const anamorph::figure::CrossingCurve& curve : all.crossings)
         add(curve, curve.first, curve.second, [&](const Arc& arc) { return part_of(curve, arc); });
-    for (const anamorph::Connection& c : connections)
-        for (const anamorph::ConnectingStroke& stroke : c.strokes)
+    for (const anamorph::figure::Connection& c : connections)
+        for (const anamorph::figure::ConnectingStroke& stroke : c.strokes)
             add(stroke.line, c.first, c.second, [&](const Arc& arc) {
                 return std::vector<glm::dvec3>{glm::mix(stroke.line.from, stroke.line.to, arc.begin),
                                                glm::mix(stroke.line.from, stroke.line.to, arc.end)};

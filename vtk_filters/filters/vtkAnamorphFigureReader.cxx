@@ -28,14 +28,15 @@ vtkObjectFactoryNewMacro(vtkAnamorphFigureReader);
 namespace {
 
 using anamorph::Error;
-using anamorph::Motion;
+using anamorph::figure::Motion;
 using Executive = vtkStreamingDemandDrivenPipeline;
 
 constexpr int kMostLibraries = 1 << 16;
 constexpr int kMostSteps = 1000000;  ///< that are listed one by one
 
 /// A text of up to the size that a file may have, and a byte: the parser says what is wrong with more.
-std::optional<std::string> read_text(const std::string& path, std::size_t most = anamorph::kMaxScriptText) {
+std::optional<std::string> read_text(const std::string& path,
+                                     std::size_t most = anamorph::figure::kMaxScriptText) {
     std::error_code ignored;
     if (std::filesystem::is_directory(path, ignored)) return std::nullopt;
     std::ifstream in(path, std::ios::binary);
@@ -47,26 +48,26 @@ std::optional<std::string> read_text(const std::string& path, std::size_t most =
     return text;
 }
 
-anamorph::Script read_script(const std::string& path, const std::vector<std::string>& libraries,
-                             anamorph::Dialect dialect) {
+anamorph::figure::Script read_script(const std::string& path, const std::vector<std::string>& libraries,
+                                     anamorph::figure::Dialect dialect) {
     const std::optional<std::string> text = read_text(path);
     if (!text) throw Error("FileName", path, "there is no such file that can be read");
-    anamorph::ScriptOptions options;
+    anamorph::figure::ScriptOptions options;
     options.dialect = dialect;
     options.libraries = libraries;
     options.include = [&](const std::string& name) {
         const bool library = std::find(libraries.begin(), libraries.end(), name) != libraries.end();
         return read_text(library ? name : (std::filesystem::path(path).parent_path() / name).string());
     };
-    return anamorph::parse_script(*text, path, options);
+    return anamorph::figure::parse_script(*text, path, options);
 }
 
 /// The first error, and how many there are.
-std::string errors_of(const anamorph::Script& script) {
+std::string errors_of(const anamorph::figure::Script& script) {
     std::string first;
     int others = -1;
-    for (const anamorph::Diagnostic& d : script.diagnostics) {
-        if (d.severity != anamorph::Severity::error) continue;
+    for (const anamorph::figure::Diagnostic& d : script.diagnostics) {
+        if (d.severity != anamorph::figure::Severity::error) continue;
         if (first.empty()) first = d.text();
         ++others;
     }
@@ -77,20 +78,20 @@ std::string errors_of(const anamorph::Script& script) {
 std::unique_ptr<Motion> read_motion_file(const std::string& path) {
     const std::optional<std::string> text = read_text(path, anamorph::text_file::kMostBytes);
     if (!text) throw Error("FileName", path, "there is no such file that can be read");
-    return anamorph::read_motion(*text, path);
+    return anamorph::figure::read_motion(*text, path);
 }
 
 /// The script that a file is, performed, or its motion. Throws Error.
 std::unique_ptr<Motion> open_motion(const std::string& path, const std::vector<std::string>& libraries,
-                                    anamorph::Dialect dialect) {
+                                    anamorph::figure::Dialect dialect) {
     if (path.empty()) throw Error("FileName", "", "must be the name of a script");
-    if (anamorph::is_motion_file(path)) return read_motion_file(path);
+    if (anamorph::figure::is_motion_file(path)) return read_motion_file(path);
     std::vector<std::string> named;
     std::copy_if(libraries.begin(), libraries.end(), std::back_inserter(named),
                  [](const std::string& name) { return !name.empty(); });
-    anamorph::Script script = read_script(path, named, dialect);
+    anamorph::figure::Script script = read_script(path, named, dialect);
     if (!script.ok()) throw Error(errors_of(script));
-    return std::make_unique<anamorph::Performance>(std::move(script.program));
+    return std::make_unique<anamorph::figure::Performance>(std::move(script.program));
 }
 
 }  // namespace
@@ -133,8 +134,8 @@ int vtkAnamorphFigureReader::CanReadFile(const char* name) {
         char head[4096];
         in.read(head, sizeof head);
         if (std::find(head, head + in.gcount(), '\0') != head + in.gcount()) return 0;
-        if (anamorph::is_motion_file(name)) return read_motion_file(name) != nullptr;
-        const anamorph::Script script = read_script(name, {}, anamorph::Dialect::classic);
+        if (anamorph::figure::is_motion_file(name)) return read_motion_file(name) != nullptr;
+        const anamorph::figure::Script script = read_script(name, {}, anamorph::figure::Dialect::classic);
         return script.ok() || script.program.ellipsoids.size() > 1;
     } catch (const std::exception&) {
         return 0;
@@ -175,9 +176,9 @@ void vtkAnamorphFigureReader::AddLibrary(const char* name) {
 void vtkAnamorphFigureReader::Prepare() {
     if (this->Current && this->Current->since == this->GetMTime()) return;
     this->Current = nullptr;
-    this->Current = std::make_unique<Play>(
-        open_motion(this->FileName, this->Libraries,
-                    this->Dialect == STRICT ? anamorph::Dialect::strict : anamorph::Dialect::classic));
+    this->Current = std::make_unique<Play>(open_motion(
+        this->FileName, this->Libraries,
+        this->Dialect == STRICT ? anamorph::figure::Dialect::strict : anamorph::figure::Dialect::classic));
     this->Current->since = this->GetMTime();
     for (const std::string& warning : this->Current->motion->warnings()) vtkWarningMacro(<< warning);
 }

@@ -18,19 +18,19 @@ vtkObjectFactoryNewMacro(vtkAnamorphFigureSkeleton);
 
 namespace {
 
-using anamorph::Detail;
 using anamorph::Error;
-using anamorph::Stick;
+using anamorph::figure::Detail;
+using anamorph::figure::Stick;
 using anamorph_vtk::Bodies;
 
 std::vector<Stick> sticks_from_joint_to_joint(const Bodies& bodies) {
-    anamorph::FigureFrame frame;
-    for (const anamorph::Ellipsoid& shape : bodies.shapes) {
+    anamorph::figure::FigureFrame frame;
+    for (const anamorph::figure::Ellipsoid& shape : bodies.shapes) {
         frame.bodies.emplace_back();
         frame.bodies.back().shape = shape;
     }
     frame.joints = bodies.joints;
-    return anamorph::joint_sticks(frame);
+    return anamorph::figure::joint_sticks(frame);
 }
 
 }  // namespace
@@ -40,11 +40,11 @@ vtkAnamorphFigureSkeleton::~vtkAnamorphFigureSkeleton() = default;
 
 void vtkAnamorphFigureSkeleton::Draw(vtkPolyData* input, vtkDataObject* output,
                                      anamorph_vtk::Execution& execution) {
-    anamorph::kLevelOfDetailRow.check(this->LevelOfDetail, "LevelOfDetail");
-    anamorph::kSphereTolRow.check(this->Tolerance, "Tolerance");
+    anamorph::figure::kLevelOfDetailRow.check(this->LevelOfDetail, "LevelOfDetail");
+    anamorph::figure::kSphereTolRow.check(this->Tolerance, "Tolerance");
     const Bodies bodies(input);
     const std::vector<Detail> details =
-        anamorph::levels_of_detail(bodies.shapes, this->ViewOf(input), {this->LevelOfDetail});
+        anamorph::figure::levels_of_detail(bodies.shapes, this->ViewOf(input), {this->LevelOfDetail});
     execution.progress(0.3);
 
     static_assert(NONE == static_cast<int>(Detail::none) && DOT == static_cast<int>(Detail::dot) &&
@@ -58,21 +58,23 @@ void vtkAnamorphFigureSkeleton::Draw(vtkPolyData* input, vtkDataObject* output,
         if (details[i] == Detail::dot) add({bodies.shapes[i].center}, i, 0);
     const auto is_more_than_a_dot = [&](std::size_t i) { return details[i] > Detail::dot; };
     if (this->Mode == SPHERES) {
-        anamorph::SphereOptions options;
+        anamorph::figure::SphereOptions options;
         options.tol = this->Tolerance;
         for (std::size_t i = 0; i < details.size(); ++i) {
             execution.progress(0.3 + 0.6 * static_cast<double>(i) / static_cast<double>(details.size()));
             if (!is_more_than_a_dot(i)) continue;
-            const anamorph::SphereFill fill = anamorph::fill_with_spheres(bodies.shapes[i], options);
+            const anamorph::figure::SphereFill fill =
+                anamorph::figure::fill_with_spheres(bodies.shapes[i], options);
             if (!(fill.deviation <= this->Tolerance))
                 throw Error("Tolerance", anamorph::shortest(this->Tolerance),
                             "needs more than " + std::to_string(options.most_spheres) + " spheres for " +
                                 bodies.names[i]);
-            for (const anamorph::Sphere& sphere : fill.spheres) add({sphere.center}, i, sphere.radius);
+            for (const anamorph::figure::Sphere& sphere : fill.spheres)
+                add({sphere.center}, i, sphere.radius);
         }
     } else {
-        const std::vector<Stick> sticks =
-            this->Mode == AXES ? anamorph::axis_sticks(bodies.shapes) : sticks_from_joint_to_joint(bodies);
+        const std::vector<Stick> sticks = this->Mode == AXES ? anamorph::figure::axis_sticks(bodies.shapes)
+                                                             : sticks_from_joint_to_joint(bodies);
         for (const Stick& stick : sticks) {
             const auto body = static_cast<std::size_t>(stick.body);
             if (is_more_than_a_dot(body)) add({stick.from, stick.to}, body, 0);

@@ -106,7 +106,7 @@ class Shapes {
         m /= size;
         const bool covariance = m_arrays.shape == EllipsoidArrays::COVARIANCE;
         const glm::dmat3 square = covariance ? 0.5 * (m + glm::transpose(m)) : m * glm::transpose(m);
-        const glm::dmat3 turn = anamorph::eigenvectors(square);
+        const glm::dmat3 turn = anamorph::figure::eigenvectors(square);
         glm::dvec3 lengths;
         for (int k = 0; k < 3; ++k)
             lengths[k] = covariance ? std::sqrt(glm::dot(turn[k], square * turn[k]))

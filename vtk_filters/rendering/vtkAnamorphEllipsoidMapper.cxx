@@ -156,7 +156,8 @@ void add_body_textures(vtkShader* fragment, int mapping) {
     substitute(fragment, "//VTK::TMap::Dec",
                flag("LATLONG", vtkAnamorphEllipsoidMapper::LATLONG) +
                    flag("MIRRORED", vtkAnamorphEllipsoidMapper::MIRRORED) + anamorph_vtk::kBodyTexture +
-                   anamorph::body_mapping_glsl(static_cast<anamorph::BodyMapping>(mapping), "bodyMapping") +
+                   anamorph::figure::body_mapping_glsl(static_cast<anamorph::figure::BodyMapping>(mapping),
+                                                       "bodyMapping") +
                    "//VTK::TMap::Dec\n");
     substitute(fragment, "//VTK::UniformFlow::Impl",
                std::string(anamorph_vtk::kBodyTextureCoordinates) + "  //VTK::UniformFlow::Impl\n");

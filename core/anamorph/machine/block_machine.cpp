@@ -7,7 +7,7 @@
 
 #include "anamorph/error.h"
 
-namespace anamorph {
+namespace anamorph::machine {
 namespace {
 
 // Of the output image memory.
@@ -25,7 +25,7 @@ struct PixelRange {
 /// A block on the screen: its parallelogram, and the linear map from pixels to texels (2.11).
 class BlockOnScreen {
   public:
-    BlockOnScreen(const OkaBlock& block, const Size& picture, const Size& screen)
+    BlockOnScreen(const surface::OkaBlock& block, const Size& picture, const Size& screen)
         : m_x(block.centre.x + 0.5 * screen.width), m_y(block.centre.y + 0.5 * screen.height) {
         // a: pixels of the screen by texels.
         const double a11 = block.by_u.x / picture.width, a12 = block.by_v.x / picture.height,
@@ -103,7 +103,7 @@ class Drawer {
           m_frame(frame),
           m_format{NumberFormat::Kind::fixed, machine.address_bits, machine.fraction_bits} {}
 
-    void draw(const OkaBlock& block) {
+    void draw(const surface::OkaBlock& block) {
         const BlockOnScreen on_screen(block, m_picture, m_frame.screen);
         if (on_screen.is_flat()) return;
         const double(&b)[4] = on_screen.inverse();
@@ -160,18 +160,19 @@ class Drawer {
 
 }  // namespace
 
-BlockFrame run_block_machine(const BlockMachine& machine, const DrapedSurface& surface, const Camera& camera,
-                             const Size& picture) {
-    const OkaBlocks cut{machine.block, machine.overlap, false};
-    const Size count = oka_block_count(picture, cut);
-    std::vector<OkaBlock> blocks;
+BlockFrame run_block_machine(const BlockMachine& machine, const surface::DrapedSurface& surface,
+                             const surface::Camera& camera, const Size& picture) {
+    const surface::OkaBlocks cut{machine.block, machine.overlap, false};
+    const Size count = surface::oka_block_count(picture, cut);
+    std::vector<surface::OkaBlock> blocks;
     for (int j = 0; j < count.height; ++j)
         for (int i = 0; i < count.width; ++i)
-            if (OkaBlock block; oka_block(surface, camera, picture, cut, i, j, block))
+            if (surface::OkaBlock block; surface::oka_block(surface, camera, picture, cut, i, j, block))
                 blocks.push_back(block);
     // The list that hidden surfaces are removed by: from the farthest to the nearest.
-    std::stable_sort(blocks.begin(), blocks.end(),
-                     [](const OkaBlock& a, const OkaBlock& b) { return a.centre.z > b.centre.z; });
+    std::stable_sort(
+        blocks.begin(), blocks.end(),
+        [](const surface::OkaBlock& a, const surface::OkaBlock& b) { return a.centre.z > b.centre.z; });
     BlockFrame frame;
     frame.screen = camera.screen();
     if (double(frame.screen.width) * frame.screen.height > kMostPixels)
@@ -185,9 +186,9 @@ BlockFrame run_block_machine(const BlockMachine& machine, const DrapedSurface& s
     frame.block.resize(pixels, BlockFrame::kNone);
     frame.counts.blocks = static_cast<std::int64_t>(blocks.size());
     Drawer drawer(machine, picture, frame);
-    for (const OkaBlock& block : blocks) drawer.draw(block);
+    for (const surface::OkaBlock& block : blocks) drawer.draw(block);
     frame.counts.saturated = std::count(frame.beyond.begin(), frame.beyond.end(), true);
     return frame;
 }
 
-}  // namespace anamorph
+}  // namespace anamorph::machine

@@ -15,7 +15,7 @@
 #include "anamorph/parameter/number_row.h"
 #include "anamorph/surface/oka.h"
 
-namespace anamorph {
+namespace anamorph::machine {
 
 inline constexpr NumberRow kClockRow{"clock_mhz", 10, 0.001, 1e6};
 inline constexpr NumberRow kProcessorsRow{"processors", 2, 1, 4096, NumberRow::closed, true};
@@ -79,7 +79,7 @@ struct BlockFrame {
 
 /// Draws blocks from the farthest to the nearest, as their centres are. Throws Error where there are more than four million
 /// blocks.
-BlockFrame run_block_machine(const BlockMachine& machine, const DrapedSurface& surface, const Camera& camera,
-                             const Size& picture);
+BlockFrame run_block_machine(const BlockMachine& machine, const surface::DrapedSurface& surface,
+                             const surface::Camera& camera, const Size& picture);
 
-}  // namespace anamorph
+}  // namespace anamorph::machine

@@ -4,10 +4,11 @@
 #include <algorithm>
 #include <cmath>
 
-namespace anamorph {
+namespace anamorph::machine {
 
-BlockMachineMap::BlockMachineMap(const BlockMachine& machine, std::shared_ptr<const DrapedSurface> surface,
-                                 const Camera& camera, const Size& picture)
+BlockMachineMap::BlockMachineMap(const BlockMachine& machine,
+                                 std::shared_ptr<const surface::DrapedSurface> surface,
+                                 const surface::Camera& camera, const Size& picture)
     : BlockMap(camera.screen().width, camera.screen().height,
                {{0, 0, camera.screen().width, camera.screen().height}}),
       m_surface(std::move(surface)),
@@ -73,4 +74,4 @@ void BlockMachineMap::exact_rows(const Block& block, int begin, int end,
         }
 }
 
-}  // namespace anamorph
+}  // namespace anamorph::machine

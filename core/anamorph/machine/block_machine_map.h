@@ -7,7 +7,7 @@
 #include "anamorph/machine/block_machine.h"
 #include "anamorph/plan/block.h"
 
-namespace anamorph {
+namespace anamorph::machine {
 
 /// Source points are the machine's addresses, in pixels of the picture. Pixels of the screen where nothing is seen have none.
 /// A block's bound is the largest distance on the screen, in pixels, of what its pixels show from where it belongs: each is
@@ -15,8 +15,8 @@ namespace anamorph {
 class BlockMachineMap final : public BlockMap {
   public:
     /// Throws Error where there are more than four million blocks.
-    BlockMachineMap(const BlockMachine& machine, std::shared_ptr<const DrapedSurface> surface,
-                    const Camera& camera, const Size& picture);
+    BlockMachineMap(const BlockMachine& machine, std::shared_ptr<const surface::DrapedSurface> surface,
+                    const surface::Camera& camera, const Size& picture);
 
     const BlockFrame& frame() const { return m_frame; }
     /// Of a pixel, 0 where nothing is seen.
@@ -33,10 +33,10 @@ class BlockMachineMap final : public BlockMap {
   private:
     std::size_t pixel_at(double x, double y) const;
 
-    std::shared_ptr<const DrapedSurface> m_surface;
-    Camera m_camera;
+    std::shared_ptr<const surface::DrapedSurface> m_surface;
+    surface::Camera m_camera;
     Size m_picture;
     BlockFrame m_frame;
 };
 
-}  // namespace anamorph
+}  // namespace anamorph::machine

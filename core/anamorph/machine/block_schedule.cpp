@@ -7,7 +7,7 @@
 
 #include "anamorph/parameter/parameter.h"
 
-namespace anamorph {
+namespace anamorph::machine {
 namespace {
 
 /// Products for a block beside the surface's: affine transformation 9, projection 2, differences 4 (2.4 to 2.7), inverse 6
@@ -249,4 +249,4 @@ std::string schedule_svg(const MachineSchedule& schedule) {
     return Timeline(schedule).draw();
 }
 
-}  // namespace anamorph
+}  // namespace anamorph::machine

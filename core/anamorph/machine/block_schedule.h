@@ -10,7 +10,7 @@
 
 #include "anamorph/machine/block_machine.h"
 
-namespace anamorph {
+namespace anamorph::machine {
 
 /// A part of the machine and what it does in a frame, once the buffers have filled. What it works and waits is together the
 /// time of a frame.
@@ -60,4 +60,4 @@ std::string schedule_csv(const MachineSchedule& schedule);
 /// The first frames on their way through the stages and the buffers between them, over time.
 std::string schedule_svg(const MachineSchedule& schedule);
 
-}  // namespace anamorph
+}  // namespace anamorph::machine

@@ -8,7 +8,7 @@
 #include "anamorph/error.h"
 #include "anamorph/panorama/panorama_plan.h"
 
-namespace anamorph {
+namespace anamorph::machine {
 namespace {
 
 /// A texture holds one image, of limited size.
@@ -139,4 +139,4 @@ double BumpedPanorama::rounding(const Box& box, int piece) const {
     return m_map.exact_error<double>({box.x0 + 0.5, box.x1 - 0.5}, {box.y0 + 0.5, box.y1 - 0.5}, piece);
 }
 
-}  // namespace anamorph
+}  // namespace anamorph::machine

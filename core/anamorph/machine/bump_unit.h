@@ -15,7 +15,7 @@
 #include "anamorph/panorama/panorama_residual.h"
 #include "anamorph/parameter/number_row.h"
 
-namespace anamorph {
+namespace anamorph::machine {
 
 inline constexpr NumberRow kBumpSizeRow{"size", 256, 0, 4096, NumberRow::closed, true};
 inline constexpr NumberRow kBumpWeightRow{"weight_bits", 8, 0, 23, NumberRow::closed, true};
@@ -96,4 +96,4 @@ class BumpedPanorama final : public MachineMap {
     std::vector<BumpStage> m_stages;
 };
 
-}  // namespace anamorph
+}  // namespace anamorph::machine

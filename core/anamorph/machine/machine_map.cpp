@@ -5,7 +5,7 @@
 #include <cmath>
 #include <string>
 
-namespace anamorph {
+namespace anamorph::machine {
 namespace {
 
 constexpr int kBlockSide = 64;
@@ -152,4 +152,4 @@ void check_texture_side(const Size& source, int side) {
                     std::to_string(side) + " either way");
 }
 
-}  // namespace anamorph
+}  // namespace anamorph::machine

@@ -12,7 +12,7 @@
 #include "anamorph/geometry/size.h"
 #include "anamorph/plan/block.h"
 
-namespace anamorph {
+namespace anamorph::machine {
 
 /// Texture coordinates as a unit computed them: from 0 to 1 over the source image, u right, v down.
 struct UnitCoordinates {
@@ -68,4 +68,4 @@ class MachineMap : public BlockMap {
 /// Throws Error naming `machine` where a source is larger than textures of side x side.
 void check_texture_side(const Size& source, int side);
 
-}  // namespace anamorph
+}  // namespace anamorph::machine

@@ -11,7 +11,7 @@
 #include "anamorph/parameter/json_file.h"
 #include "anamorph/parameter/parameter.h"
 
-namespace anamorph {
+namespace anamorph::machine {
 namespace {
 
 using text_file::Json;
@@ -165,4 +165,4 @@ BlockMachine block_machine_from_text(std::string_view text) {
     return machine;
 }
 
-}  // namespace anamorph
+}  // namespace anamorph::machine

@@ -9,7 +9,7 @@
 #include "anamorph/machine/bump_unit.h"
 #include "anamorph/machine/shaded_warp.h"
 
-namespace anamorph {
+namespace anamorph::machine {
 
 /// Of the hardware of Kim 2003, chapter 4.
 inline constexpr const char* kBumpPreset = "embm-2003";
@@ -30,4 +30,4 @@ inline constexpr const char* kBlockPreset = "oka-1987";
 /// The same, with kBlockPreset and the names of the rows of block_machine.h.
 BlockMachine block_machine_from_text(std::string_view text);
 
-}  // namespace anamorph
+}  // namespace anamorph::machine

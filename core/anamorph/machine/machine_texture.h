@@ -7,7 +7,7 @@
 #include <cmath>
 #include <vector>
 
-namespace anamorph {
+namespace anamorph::machine {
 
 /// Texels of N numbers.
 template <std::size_t N>
@@ -62,4 +62,4 @@ class MachineTexture {
     std::vector<Texel> m_texels;
 };
 
-}  // namespace anamorph
+}  // namespace anamorph::machine

@@ -7,7 +7,7 @@
 #include "anamorph/error.h"
 #include "anamorph/parameter/parameter.h"
 
-namespace anamorph {
+namespace anamorph::machine {
 namespace {
 
 constexpr std::pair<const char*, NumberFormat> kNames[] = {
@@ -71,4 +71,4 @@ double nearest_normalised(const NumberFormat& format, double value, bool& beyond
 
 }  // namespace format_detail
 
-}  // namespace anamorph
+}  // namespace anamorph::machine

@@ -11,7 +11,7 @@
 
 #include "anamorph/number/number.h"
 
-namespace anamorph {
+namespace anamorph::machine {
 
 /// How a value is stored. Rounding is to nearest, ties to even.
 struct NumberFormat {
@@ -203,4 +203,4 @@ decltype(auto) with_format(const NumberFormat& format, const Body& body) {
     return body(FormatNumber<kFloat32>());
 }
 
-}  // namespace anamorph
+}  // namespace anamorph::machine

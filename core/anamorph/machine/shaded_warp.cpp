@@ -6,7 +6,7 @@
 #include "anamorph/machine/shader_run.h"
 #include "anamorph/mesh/mesh_residual.h"
 
-namespace anamorph {
+namespace anamorph::machine {
 
 const char* const kHermiteShader = R"(ps_2_0
 dcl t0.xy                ; linear texture coordinates
@@ -163,4 +163,4 @@ double ShadedWarp::rounding(const Box& box, int) const {
     return most;
 }
 
-}  // namespace anamorph
+}  // namespace anamorph::machine

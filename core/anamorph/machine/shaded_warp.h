@@ -15,7 +15,7 @@
 #include "anamorph/mesh/mesh_plan.h"
 #include "anamorph/parameter/number_row.h"
 
-namespace anamorph {
+namespace anamorph::machine {
 
 inline constexpr NumberRow kTableSizeRow{"table_size", 256, 2, 1024, NumberRow::closed, true};
 inline constexpr NumberRow kTableWeightRow{"weight_bits", 8, 0, 23, NumberRow::closed, true};
@@ -82,4 +82,4 @@ class ShadedWarp final : public MachineMap {
     std::vector<MachineTexture<4>> m_products;  ///< s1 to s4
 };
 
-}  // namespace anamorph
+}  // namespace anamorph::machine

@@ -9,7 +9,7 @@
 #include "anamorph/parameter/parameter.h"
 #include "anamorph/parameter/text_file.h"
 
-namespace anamorph {
+namespace anamorph::machine {
 namespace {
 
 struct OpcodeFacts {
@@ -598,4 +598,4 @@ std::string shader_listing(const ShaderProgram& program) {
     return text;
 }
 
-}  // namespace anamorph
+}  // namespace anamorph::machine

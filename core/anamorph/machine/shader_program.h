@@ -29,7 +29,7 @@
 #include <string_view>
 #include <vector>
 
-namespace anamorph {
+namespace anamorph::machine {
 
 enum class ShaderOpcode : std::uint8_t {
     texld,
@@ -117,4 +117,4 @@ ShaderProgram assemble_shader(std::string_view text, const std::string& name, co
 /// A program as text again, which assembles to the same.
 std::string shader_listing(const ShaderProgram& program);
 
-}  // namespace anamorph
+}  // namespace anamorph::machine

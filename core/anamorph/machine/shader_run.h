@@ -5,7 +5,7 @@
 #include "anamorph/machine/number_format.h"
 #include "anamorph/machine/shader_program.h"
 
-namespace anamorph {
+namespace anamorph::machine {
 
 /// Four components of a register, numbers T (FormatNumber).
 template <class T>
@@ -180,4 +180,4 @@ class ShaderMachine {
     std::array<Vector, ShaderProgram::kOutputs> m_outputs{};
 };
 
-}  // namespace anamorph
+}  // namespace anamorph::machine

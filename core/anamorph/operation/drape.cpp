@@ -83,14 +83,14 @@ ParameterTable accuracy_rows() {
                 {"summed_area", Filter::summed_area,
                  "the same of all texels, from a table of sums (Crow 1984)"}}),
         wrap("goes on as at the edge"),
-        number("tol", "pixels", kDrapeTolRow,
+        number("tol", "pixels", surface::kDrapeTolRow,
                "how far, on the screen, a point of the picture may be drawn from where it belongs"),
-        scheme({{"auto", DrapeScheme::automatic},
-                {"exact", DrapeScheme::exact},
-                {"oka", DrapeScheme::oka,
+        scheme({{"auto", surface::DrapeScheme::automatic},
+                {"exact", surface::DrapeScheme::exact},
+                {"oka", surface::DrapeScheme::oka,
                  "blocks of the picture as parallelograms, the nearer over the farther, with the tolerance "
                  "that comes out (Oka 1987)"},
-                {"oka-z", DrapeScheme::oka_z, "the same with a depth for each pixel"},
+                {"oka-z", surface::DrapeScheme::oka_z, "the same with a depth for each pixel"},
                 {"hardware", Word::kNone}}),
         text("machine",
              "of scheme hardware: oka-1987, the machine of Oka 1987, and what differs from it, "
@@ -107,9 +107,9 @@ ParameterTable look_rows() {
     using namespace rows;
     return {
         enumeration("shading", "none",
-                    {{"none", DrapeShading::none},
-                     {"gouraud", DrapeShading::gouraud},
-                     {"phong", DrapeShading::phong}},
+                    {{"none", surface::DrapeShading::none},
+                     {"gouraud", surface::DrapeShading::gouraud},
+                     {"phong", surface::DrapeShading::phong}},
                     "none; by the light at corners of patches; by the normals there"),
         vector("light", "0,0,1", "directions towards the lights, three numbers each"),
         number("ambient", "", "0.2", 0, 1000, "share of the colour that is seen without light"),
@@ -124,16 +124,17 @@ ParameterTable look_rows() {
               "colors, with alpha or without"),
         colorspace("color space to filter in; by default the source's own"),
         output(
-            {{"depth", DrapeOutput::depth,
+            {{"depth", surface::DrapeOutput::depth,
               "the distance ahead of the camera, infinite where nothing is seen"},
-             {"normal", DrapeOutput::normal, "the unit normal on the viewer's side"},
-             {"patch", DrapeOutput::patch,
+             {"normal", surface::DrapeOutput::normal, "the unit normal on the viewer's side"},
+             {"patch", surface::DrapeOutput::patch,
               "the number of the patch of the surface that is drawn, -1 where none is"},
-             {"coverage", DrapeOutput::coverage,
+             {"coverage", surface::DrapeOutput::coverage,
               "the share of the pixel in which the surface is seen, by which its colours are faded at edges "
               "into the background, and 0 or 1 with the filters nearest, bilinear and bicubic, which fade "
               "nothing"},
-             {"seen", DrapeOutput::seen, "1 where the surface is seen in the pixel's middle, else 0"}}),
+             {"seen", surface::DrapeOutput::seen,
+              "1 where the surface is seen in the pixel's middle, else 0"}}),
     };
 }
 
@@ -150,14 +151,14 @@ glm::dvec3 vector_of(const ParameterValues& values, const char* name) {
     return rows::three_numbers(values, name, -kFarthest, kFarthest);
 }
 
-CameraPose pose_of(const ParameterValues& values, double aspect) {
-    CameraPose pose;
+surface::CameraPose pose_of(const ParameterValues& values, double aspect) {
+    surface::CameraPose pose;
     pose.perspective = values.text("view") == "perspective";
     pose.fov = values.number("fov");
     pose.extent = values.given("extent") ? values.number("extent") : aspect;
     pose.position = values.given("camera")
                         ? vector_of(values, "camera")
-                        : glm::dvec3(0, 0, aspect / (2 * std::tan(pose.fov * (kPi / 360))));
+                        : glm::dvec3(0, 0, aspect / (2 * std::tan(pose.fov * (surface::kPi / 360))));
     pose.target = vector_of(values, "target");
     pose.up = vector_of(values, "up");
     return pose;
@@ -165,7 +166,7 @@ CameraPose pose_of(const ParameterValues& values, double aspect) {
 
 /// Rotations about x, y and z, one after the other, and a scale.
 glm::dmat3 matrix_of(const ParameterValues& values) {
-    const glm::dvec3 angles = vector_of(values, "rotate") * (kPi / 180);
+    const glm::dvec3 angles = vector_of(values, "rotate") * (surface::kPi / 180);
     const double scale = values.number("scale");
     glm::dmat3 matrix(scale);
     for (int axis = 0; axis < 3; ++axis) {
@@ -180,9 +181,9 @@ glm::dmat3 matrix_of(const ParameterValues& values) {
     return matrix;
 }
 
-DrapeOptions options_of(const ParameterValues& values) {
-    DrapeOptions options;
-    if (values.text("scheme") != "hardware") options.scheme = chosen<DrapeScheme>(values, "scheme");
+surface::DrapeOptions options_of(const ParameterValues& values) {
+    surface::DrapeOptions options;
+    if (values.text("scheme") != "hardware") options.scheme = chosen<surface::DrapeScheme>(values, "scheme");
     options.block = values.number("block");
     options.overlap = values.number("overlap");
     options.tol = values.number("tol");
@@ -190,8 +191,8 @@ DrapeOptions options_of(const ParameterValues& values) {
     options.wrap = chosen<Wrap>(values, "wrap");
     if (options.wrap == Wrap::automatic) options.wrap = Wrap::clamp;
     options.output = rows::chosen_output(values);
-    if (!rows::has_shared_output(values)) options.own = chosen<DrapeOutput>(values, "output");
-    options.lighting = {chosen<DrapeShading>(values, "shading"),
+    if (!rows::has_shared_output(values)) options.own = chosen<surface::DrapeOutput>(values, "output");
+    options.lighting = {chosen<surface::DrapeShading>(values, "shading"),
                         drape_lights(values.numbers("light")),
                         values.number("ambient"),
                         values.number("diffuse"),
@@ -204,13 +205,15 @@ DrapeOptions options_of(const ParameterValues& values) {
 }
 
 /// Of scheme hardware, which draws the bare picture. What is said of a machine is checked with the other schemes too.
-std::optional<BlockMachine> machine_of(const ParameterValues& values, const DrapeOptions& options) {
-    const BlockMachine machine =
-        values.given("machine") ? block_machine_from_text(values.text("machine")) : BlockMachine{};
+std::optional<machine::BlockMachine> machine_of(const ParameterValues& values,
+                                                const surface::DrapeOptions& options) {
+    const machine::BlockMachine machine = values.given("machine")
+                                              ? machine::block_machine_from_text(values.text("machine"))
+                                              : machine::BlockMachine{};
     if (values.text("scheme") != "hardware") return {};
-    if (options.lighting.shading != DrapeShading::none)
+    if (options.lighting.shading != surface::DrapeShading::none)
         throw Error("shading", values.text("shading"), "must be none with scheme=hardware");
-    if (options.own != DrapeOutput::shared)
+    if (options.own != surface::DrapeOutput::shared)
         throw Error("output", values.text("output"),
                     "must be color, stmap, error or bound with scheme=hardware");
     for (const char* name : {"background", "backdrop"})
@@ -262,27 +265,27 @@ class DrapeRequest {
         return values;
     }
     Size target(const ParameterValues& values) const { return rows::size_of(values, m_source); }
-    DrapeOptions options(const ParameterValues& values) const {
-        DrapeOptions options = options_of(values);
+    surface::DrapeOptions options(const ParameterValues& values) const {
+        surface::DrapeOptions options = options_of(values);
         options.alpha = m_alpha;
         options.backdrop_alpha = m_backdrop_alpha;
         return options;
     }
     const std::string& missing() const { return m_surfaces->missing(); }
 
-    Camera camera(const ParameterValues& values, const Size& screen) const {
+    surface::Camera camera(const ParameterValues& values, const Size& screen) const {
         return {pose_of(values, aspect()), matrix_of(values), vector_of(values, "move"), screen};
     }
     /// Of scheme hardware.
-    std::optional<BlockMachine> machine(const ParameterValues& values) const {
+    std::optional<machine::BlockMachine> machine(const ParameterValues& values) const {
         return machine_of(values, options(values));
     }
     const Size& source() const { return m_source; }
-    std::shared_ptr<const DrapedSurface> surface(const ParameterValues& values) const {
+    std::shared_ptr<const surface::DrapedSurface> surface(const ParameterValues& values) const {
         const auto tree = m_surfaces->tree_of(m_surfaces->sum_of(values));
         return {tree, &tree->tree.surface()};
     }
-    Drape drape(const ParameterValues& values, const Size& screen) const {
+    surface::Drape drape(const ParameterValues& values, const Size& screen) const {
         return {m_surfaces->tree_of(m_surfaces->sum_of(values)), camera(values, screen), m_source,
                 options(values)};
     }
@@ -342,15 +345,15 @@ class DrapeRequest {
     std::shared_ptr<const DrapeSurfaces> m_surfaces;
 };
 
-PixelKind pixels_of(const DrapeOptions& options) {
-    if (options.own == DrapeOutput::shared) return pixels_of(options.output);
-    return options.own == DrapeOutput::normal ? PixelKind::vector : PixelKind::value;
+PixelKind pixels_of(const surface::DrapeOptions& options) {
+    if (options.own == surface::DrapeOutput::shared) return pixels_of(options.output);
+    return options.own == surface::DrapeOutput::normal ? PixelKind::vector : PixelKind::value;
 }
 
 /// A drape of the first source.
 class SolvedDrape final : public SolvedPicture {
   public:
-    explicit SolvedDrape(Drape drape) : m_drape(std::move(drape)) {}
+    explicit SolvedDrape(surface::Drape drape) : m_drape(std::move(drape)) {}
 
     Attributes reached(const ParallelFor& parallel_for) const override {
         const Reached reached = m_drape.reached(parallel_for);
@@ -368,17 +371,17 @@ class SolvedDrape final : public SolvedPicture {
     }
 
   private:
-    Drape m_drape;
+    surface::Drape m_drape;
 };
 
 /// A drape of the first source by the machine of 1987.
 class SolvedByBlocks final : public SolvedPicture {
   public:
     SolvedByBlocks(const DrapeRequest& request, const ParameterValues& values, const Size& size)
-        : m_map(std::make_shared<BlockMachineMap>(*request.machine(values), request.surface(values),
-                                                  request.camera(values, size), request.source())),
-          m_schedule(schedule_of(*request.machine(values), m_map->frame().counts, size)) {
-        const DrapeOptions options = request.options(values);
+        : m_map(std::make_shared<machine::BlockMachineMap>(*request.machine(values), request.surface(values),
+                                                           request.camera(values, size), request.source())),
+          m_schedule(machine::schedule_of(*request.machine(values), m_map->frame().counts, size)) {
+        const surface::DrapeOptions options = request.options(values);
         const Chart flat(Projection::rectilinear, request.source().width, request.source().height);
         m_picture.maps = {{m_map, {{Border(flat, options.wrap)}}}};
         m_picture.filter = options.filter;
@@ -391,7 +394,7 @@ class SolvedByBlocks final : public SolvedPicture {
     }
 
     Attributes reached(const ParallelFor& parallel_for) const override {
-        const BlockCounts& counts = m_schedule.counts;
+        const machine::BlockCounts& counts = m_schedule.counts;
         return {{"anamorph:max_error", m_picture.reached(parallel_for).max_error},
                 {"anamorph:exact_fraction", 0.0},
                 {"anamorph:patches", static_cast<int>(counts.blocks)},
@@ -405,8 +408,8 @@ class SolvedByBlocks final : public SolvedPicture {
     }
 
   private:
-    std::shared_ptr<const BlockMachineMap> m_map;
-    MachineSchedule m_schedule;
+    std::shared_ptr<const machine::BlockMachineMap> m_map;
+    machine::MachineSchedule m_schedule;
     Picture m_picture;
 };
 
@@ -421,15 +424,15 @@ class Drapes final : public Pictures {
         const ParameterValues values = m_request->values_at(number);
         const std::optional<Size> size = level_size(m_request->target(values), level);
         if (!size) return {};
-        const DrapeOptions options = m_request->options(values);
+        const surface::DrapeOptions options = m_request->options(values);
         PictureRequest picture;
         picture.size = *size;
         picture.pixels = pixels_of(options);
         // What the paper's blocks and its machine come to is no tolerance that they hold.
         if (values.text("scheme") == "auto" || values.text("scheme") == "exact")
             picture.says = {{"anamorph:tol", options.tol}};
-        const bool plain = options.lighting.shading == DrapeShading::none && options.background.empty() &&
-                           !m_request->has_backdrop();
+        const bool plain = options.lighting.shading == surface::DrapeShading::none &&
+                           options.background.empty() && !m_request->has_backdrop();
         if (picture.pixels == PixelKind::color && options.filter == Filter::nearest && plain)
             picture.moves = 0;
         if (m_request->is_film()) picture.says.push_back({"anamorph:frame", number});

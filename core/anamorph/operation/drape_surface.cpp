@@ -17,8 +17,8 @@ namespace {
 // Weights are from minus this to this.
 constexpr double kMostWeight = 1e6;
 
-SurfaceShape shape_of(const ParameterValues& values, double aspect) {
-    SurfaceShape shape;
+surface::SurfaceShape shape_of(const ParameterValues& values, double aspect) {
+    surface::SurfaceShape shape;
     shape.aspect = aspect;
     shape.angle = values.number("angle");
     if (values.given("radius")) shape.radius = values.number("radius");
@@ -41,14 +41,14 @@ std::vector<std::string> blended(const ParameterValues& values) {
 }
 
 /// The surface and those that it is blended with, with weights of sum 1.
-std::vector<SurfaceSum::Part> parts_of(const ParameterValues& values) {
-    const std::vector<std::string>&names = all_surface_names(), blend = blended(values);
+std::vector<surface::SurfaceSum::Part> parts_of(const ParameterValues& values) {
+    const std::vector<std::string>&names = surface::all_surface_names(), blend = blended(values);
     const std::vector<double> weights =
         values.given("weights") ? values.numbers("weights") : std::vector<double>{};
     if (weights.size() != blend.size())
         throw Error("weights", std::to_string(weights.size()) + " numbers",
                     "must be as many as surfaces in blend, " + std::to_string(blend.size()));
-    std::vector<SurfaceSum::Part> parts = {{values.choice("surface"), 1}};
+    std::vector<surface::SurfaceSum::Part> parts = {{values.choice("surface"), 1}};
     for (std::size_t i = 0; i < blend.size(); ++i) {
         const auto found = std::find(names.begin(), names.end(), blend[i]);
         if (found == names.end())
@@ -70,32 +70,33 @@ std::vector<float> texels_of(const SideFile& file, const char* key, const SideFi
         throw Error(
             key, printable(file.name),
             "has " + std::to_string(image->channels()) + " channels: must have " + std::to_string(channels));
-    if (std::int64_t{size.width} * size.height > SampledField::kMostTexels)
+    if (std::int64_t{size.width} * size.height > surface::SampledField::kMostTexels)
         throw Error(key, printable(file.name),
                     "has " + std::to_string(size.width) + "x" + std::to_string(size.height) +
-                        " pixels: must have at most " + std::to_string(SampledField::kMostTexels));
+                        " pixels: must have at most " + std::to_string(surface::SampledField::kMostTexels));
     return image->read(channels);
 }
 
-std::shared_ptr<const SampledField> read_positions(const SideFile& file, const SideFileReader& reader) {
-    return read_once<SampledField>(file, "positions", [&] {
+std::shared_ptr<const surface::SampledField> read_positions(const SideFile& file,
+                                                            const SideFileReader& reader) {
+    return read_once<surface::SampledField>(file, "positions", [&] {
         Size size;
         const std::vector<float> texels = texels_of(file, "positions", reader, 3, size);
-        return SampledField(texels, size, 3);
+        return surface::SampledField(texels, size, 3);
     });
 }
 
 /// Heights are brightness, smoothed.
-std::shared_ptr<const SampledField> read_heights(const SideFile& file, double sigma,
-                                                 const SideFileReader& reader) {
-    return read_once<SampledField>(file, "height " + shortest(sigma), [&] {
+std::shared_ptr<const surface::SampledField> read_heights(const SideFile& file, double sigma,
+                                                          const SideFileReader& reader) {
+    return read_once<surface::SampledField>(file, "height " + shortest(sigma), [&] {
         const int channels = std::clamp(reader.image("height", file.name)->channels(), 1, 3);
         Size size;
         const std::vector<float> texels = texels_of(file, "height", reader, channels, size);
         std::vector<float> heights(texels.size() / static_cast<std::size_t>(channels));
         for (std::size_t i = 0; i < texels.size(); ++i)
             heights[i / static_cast<std::size_t>(channels)] += texels[i] / static_cast<float>(channels);
-        return SampledField(smoothed(heights, size, sigma), size, 1);
+        return surface::SampledField(surface::smoothed(heights, size, sigma), size, 1);
     });
 }
 
@@ -115,7 +116,7 @@ void check_formula_keys(const ParameterValues& values, bool has_formula) {
 }
 
 /// What is missing of a surface, in words.
-std::string missing_of(const char* key, const SampledField& field) {
+std::string missing_of(const char* key, const surface::SampledField& field) {
     if (field.missing_texels() == 0) return "";
     return std::to_string(field.missing_texels()) + " texels of " + key + ", the first at " +
            std::to_string(field.first_missing().x) + "," + std::to_string(field.first_missing().y);
@@ -127,7 +128,7 @@ ParameterTable drape_surface_rows() {
     using namespace rows;
     return {
         choice(
-            "surface", "plane", all_surface_names(),
+            "surface", "plane", surface::all_surface_names(),
             "undeformed the picture is 1 high, about the origin, in the plane z = 0, with x to the right "
             "and y up. cylinder: about the y axis; sphere: about the origin, with all latitudes; torus: "
             "about the y axis; page_turn: a sheet curls round a cylinder that rolls over it; waves, "
@@ -154,19 +155,19 @@ ParameterTable drape_surface_rows() {
         number("height_scale", "", "0.1", -1000, 1000, "how high brightness 1 is"),
         number("height_smooth", "texels", "1", 0, 100,
                "heights are smoothed by a Gaussian of that standard deviation; 0: not"),
-        number("angle", "degrees", kDrapeAngleRow,
+        number("angle", "degrees", surface::kDrapeAngleRow,
                "of cylinder, sphere and torus, the part of a turn that is covered"),
-        number("radius", "", kDrapeRadiusRow,
+        number("radius", "", surface::kDrapeRadiusRow,
                "of the surface; by default 0.5 (sphere, torus), 0.1 (page_turn), and for a cylinder such "
                "that the picture keeps its width"),
-        number("tube", "", kDrapeTubeRow, "radius of a torus's tube"),
-        number("amplitude", "", kDrapeAmplitudeRow, "of waves and ripples"),
-        number("wavelength", "", kDrapeWavelengthRow, "of waves and ripples"),
-        number("phase", "turns", kDrapePhaseRow, "of waves and ripples"),
+        number("tube", "", surface::kDrapeTubeRow, "radius of a torus's tube"),
+        number("amplitude", "", surface::kDrapeAmplitudeRow, "of waves and ripples"),
+        number("wavelength", "", surface::kDrapeWavelengthRow, "of waves and ripples"),
+        number("phase", "turns", surface::kDrapePhaseRow, "of waves and ripples"),
         number(
-            "direction", "degrees", kDrapeDirectionRow,
+            "direction", "degrees", surface::kDrapeDirectionRow,
             "counterclockwise from the x axis: where waves go, and where the part of a page that turns lies"),
-        number("turn", "", kDrapeTurnRow, "how far a page is turned"),
+        number("turn", "", surface::kDrapeTurnRow, "how far a page is turned"),
         file("deform",
              "a list of deformations, JSON or CSV, that move the surface; their u and v run from 0 to 1, v "
              "up"),
@@ -178,7 +179,7 @@ DrapeSurfaces::DrapeSurfaces(const OperationInput& input, double aspect) : m_asp
         const auto found = input.files.find(key);
         return found == input.files.end() ? nullptr : &found->second;
     };
-    const auto keep = [&](const char* key, std::shared_ptr<const SampledField> field) {
+    const auto keep = [&](const char* key, std::shared_ptr<const surface::SampledField> field) {
         if (const std::string what = missing_of(key, *field); !what.empty())
             m_missing += (m_missing.empty() ? "" : "; ") + what;
         return field;
@@ -202,14 +203,14 @@ SpaceFormula DrapeSurfaces::formula_of(const ParameterValues& values) const {
     return parse_surface(text, {m_aspect, values.given("frame") ? values.number("frame") : 0});
 }
 
-SurfaceSum DrapeSurfaces::sum_of(const ParameterValues& values) const {
-    SurfaceSum sum = m_files;
+surface::SurfaceSum DrapeSurfaces::sum_of(const ParameterValues& values) const {
+    surface::SurfaceSum sum = m_files;
     sum.parts = parts_of(values);
     sum.shape = shape_of(values, m_aspect);
     sum.height_scale = values.number("height_scale");
     const auto has = [&](const char* name) {
-        return std::any_of(sum.parts.begin(), sum.parts.end(), [&](const SurfaceSum::Part& part) {
-            return all_surface_names()[part.which] == name;
+        return std::any_of(sum.parts.begin(), sum.parts.end(), [&](const surface::SurfaceSum::Part& part) {
+            return surface::all_surface_names()[part.which] == name;
         });
     };
     check_formula_keys(values, has("formula"));
@@ -218,14 +219,14 @@ SurfaceSum DrapeSurfaces::sum_of(const ParameterValues& values) const {
     if (sampled && !sum.positions) throw Error("positions is not given: must be a picture of x, y and z");
     if (!sampled && sum.positions)
         throw Error("positions is given: surface must be positions, or blend name it");
-    for (const SurfaceSum::Part& part : sum.parts)
-        if (sum.heights && !has_smooth_normals(part.which))
-            throw Error("height is given: surface must not be " + all_surface_names()[part.which] +
+    for (const surface::SurfaceSum::Part& part : sum.parts)
+        if (sum.heights && !surface::has_smooth_normals(part.which))
+            throw Error("height is given: surface must not be " + surface::all_surface_names()[part.which] +
                         ", whose normals may turn abruptly");
     return sum;
 }
 
-std::shared_ptr<SharedTree> DrapeSurfaces::tree_of(const SurfaceSum& sum) const {
+std::shared_ptr<surface::SharedTree> DrapeSurfaces::tree_of(const surface::SurfaceSum& sum) const {
     constexpr std::size_t kKept = 4;
     const std::lock_guard lock(m_kept->mutex);
     auto& trees = m_kept->trees;
@@ -235,7 +236,7 @@ std::shared_ptr<SharedTree> DrapeSurfaces::tree_of(const SurfaceSum& sum) const 
         std::rotate(trees.begin(), known, known + 1);
         return trees.front().second;
     }
-    trees.insert(trees.begin(), {sum, std::make_shared<SharedTree>(make_surface(sum))});
+    trees.insert(trees.begin(), {sum, std::make_shared<surface::SharedTree>(surface::make_surface(sum))});
     if (trees.size() > kKept) trees.pop_back();
     return trees.front().second;
 }

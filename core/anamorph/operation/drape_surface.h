@@ -25,20 +25,21 @@ class DrapeSurfaces {
     /// What in the files is no number, in words; empty where there is nothing.
     const std::string& missing() const { return m_missing; }
     /// The surface of a frame's values, in which `frame` is the frame. Throws Error.
-    SurfaceSum sum_of(const ParameterValues& values) const;
+    surface::SurfaceSum sum_of(const ParameterValues& values) const;
     /// Its patches, which frames share as long as the surface stays.
-    std::shared_ptr<SharedTree> tree_of(const SurfaceSum& sum) const;
+    std::shared_ptr<surface::SharedTree> tree_of(const surface::SurfaceSum& sum) const;
 
   private:
     struct Kept {
         std::mutex mutex;
-        std::vector<std::pair<SurfaceSum, std::shared_ptr<SharedTree>>> trees;  ///< the last one first
+        std::vector<std::pair<surface::SurfaceSum, std::shared_ptr<surface::SharedTree>>>
+            trees;  ///< the last one first
     };
 
     SpaceFormula formula_of(const ParameterValues& values) const;
 
     double m_aspect;
-    SurfaceSum m_files;
+    surface::SurfaceSum m_files;
     std::string m_missing;
     std::unique_ptr<Kept> m_kept = std::make_unique<Kept>();
 };

@@ -32,12 +32,12 @@ constexpr double kChordError = 0.02;
 /// What else Filter::antialias may average by.
 const std::vector<rows::Word>& averages() {
     static const std::vector<rows::Word> words = {
-        {"trilinear", TextureAverage::trilinear,
+        {"trilinear", figure::TextureAverage::trilinear,
          "between the two levels of a pyramid next to the longer side of what a pixel shows (Williams 1983)"},
-        {"summed_area", TextureAverage::summed_area,
+        {"summed_area", figure::TextureAverage::summed_area,
          "the mean over the least rectangle along the texture's sides that covers what a pixel shows, from a "
          "table of sums (Crow 1984)"},
-        {"mrasel", TextureAverage::mrasel, "the nearest texel of the level that MRASEL takes"}};
+        {"mrasel", figure::TextureAverage::mrasel, "the nearest texel of the level that MRASEL takes"}};
     return words;
 }
 
@@ -47,11 +47,12 @@ Parameter texture_filter() {
     return row;
 }
 
-void read_filter(const ParameterValues& values, FigureLook& look) {
+void read_filter(const ParameterValues& values, figure::FigureLook& look) {
     const bool own = std::any_of(averages().begin(), averages().end(),
                                  [&](const rows::Word& word) { return word.name == values.text("filter"); });
     look.filter = own ? Filter::antialias : rows::chosen<Filter>(values, "filter");
-    look.average = own ? rows::chosen<TextureAverage>(values, "filter") : TextureAverage::footprint;
+    look.average =
+        own ? rows::chosen<figure::TextureAverage>(values, "filter") : figure::TextureAverage::footprint;
 }
 
 /// What is performed, and which of it.
@@ -63,7 +64,8 @@ ParameterTable script_rows() {
              "MRASEL (.mrasel); by default the recipe's name without .figure, and of a name that ends in .n, "
              ".nudes, .bvh, .cif or .mrasel that file itself"),
         file("library", "a file of figures without stop, included ahead of the script"),
-        enumeration("dialect", "classic", {{"classic", Dialect::classic}, {"strict", Dialect::strict}},
+        enumeration("dialect", "classic",
+                    {{"classic", figure::Dialect::classic}, {"strict", figure::Dialect::strict}},
                     "classic: as the programs of 2003 ran scripts, but abut and touch end in exact contact; "
                     "strict: as the language is documented"),
         whole("frame", "", "", 0, kMostFrameNumber,
@@ -82,13 +84,13 @@ ParameterTable style_rows() {
         mip(),
         enumeration(
             "style", "shaded",
-            {{"shaded", FigureStyle::shaded},
-             {"outline", FigureStyle::outline},
-             {"stick", FigureStyle::stick},
-             {"depth", FigureStyle::depth},
-             {"id", FigureStyle::id},
-             {"uv", FigureStyle::uv},
-             {"textured", FigureStyle::textured}},
+            {{"shaded", figure::FigureStyle::shaded},
+             {"outline", figure::FigureStyle::outline},
+             {"stick", figure::FigureStyle::stick},
+             {"depth", figure::FigureStyle::depth},
+             {"id", figure::FigureStyle::id},
+             {"uv", figure::FigureStyle::uv},
+             {"textured", figure::FigureStyle::textured}},
             "shaded, bodies in their colors; outline, without hidden lines; stick, from joint to joint; "
             "depth, from the eye, without perspective from the plane through the place, in units, 1e30 "
             "where there is no body; id, 1 for the first body, 0 for none; uv, the point of a body's "
@@ -101,7 +103,9 @@ ParameterTable style_rows() {
                "middle"),
         enumeration(
             "lighting", "rasel",
-            {{"rasel", Lighting::rasel}, {"lambert", Lighting::lambert}, {"blinn", Lighting::blinn}},
+            {{"rasel", figure::Lighting::rasel},
+             {"lambert", figure::Lighting::lambert},
+             {"blinn", figure::Lighting::blinn}},
             "of styles shaded and textured: rasel, soft from one pole of a body to the other; lambert; "
             "blinn, with highlights"),
         numbers("light", -kInfinity,
@@ -141,10 +145,10 @@ ParameterTable line_rows() {
         toggle("line_colors", "0", "of styles outline and stick: 1, lines in the colors of the bodies"),
         enumeration(
             "mapping", "latlong",
-            {{"latlong", BodyMapping::latlong},
-             {"mirrored", BodyMapping::mirrored},
-             {"linear", BodyMapping::linear},
-             {"octahedral", BodyMapping::octahedral}},
+            {{"latlong", figure::BodyMapping::latlong},
+             {"mirrored", figure::BodyMapping::mirrored},
+             {"linear", figure::BodyMapping::linear},
+             {"octahedral", figure::BodyMapping::octahedral}},
             "of styles uv and textured, how a texture lies on a body: latlong, once around, the seam at "
             "the back; mirrored, over the front and again over the back; linear, stripes stay straight; "
             "octahedral, without a pole"),
@@ -185,11 +189,12 @@ std::optional<std::string> text_or_none(const SideFileReader& reader, const std:
 }
 
 /// `on_include(name)` hears of what the script and its libraries include.
-Script read_script(const ParameterValues& values, const SideFiles& files, const SideFileReader& reader,
-                   const std::function<void(const std::string& file)>& on_include = {}) {
+figure::Script read_script(const ParameterValues& values, const SideFiles& files,
+                           const SideFileReader& reader,
+                           const std::function<void(const std::string& file)>& on_include = {}) {
     const SideFile& script = script_of(files);
-    ScriptOptions options;
-    options.dialect = rows::chosen<Dialect>(values, "dialect");
+    figure::ScriptOptions options;
+    options.dialect = rows::chosen<figure::Dialect>(values, "dialect");
     const auto library = files.find("library");
     if (library != files.end()) options.libraries = {library->second.name};
     options.include = [&](const std::string& name) {
@@ -198,7 +203,7 @@ Script read_script(const ParameterValues& values, const SideFiles& files, const 
         if (on_include && !is_library) on_include(file);
         return text_or_none(reader, file);
     };
-    return parse_script(reader.text(script.name), short_name(script), options);
+    return figure::parse_script(reader.text(script.name), short_name(script), options);
 }
 
 /// The file beside the script that a name means: that name, or one with the ending of a picture.
@@ -218,7 +223,8 @@ bool are_mips(const ParameterValues& values) {
 }
 
 bool is_textured(const ParameterValues& values) {
-    return are_mips(values) || rows::chosen<FigureStyle>(values, "style") == FigureStyle::textured;
+    return are_mips(values) ||
+           rows::chosen<figure::FigureStyle>(values, "style") == figure::FigureStyle::textured;
 }
 
 const char* const kTextureKey = "texture/";
@@ -233,12 +239,12 @@ LinkedFiles linked_files(const ParameterValues& values, const SideFiles& files,
         for (const std::string& name : names)
             linked.push_back({kTextureKey + name, picture_beside(file.name, name, reader), true});
     };
-    if (!is_motion_file(file.name))
+    if (!figure::is_motion_file(file.name))
         add_textures(read_script(values, files, reader, [&](const std::string& included) {
                          linked.push_back({"script/" + included, included});
                      }).program.images);
     else if (is_textured(values))
-        add_textures(read_motion(reader.text(file.name), short_name(file))->images());
+        add_textures(figure::read_motion(reader.text(file.name), short_name(file))->images());
     const auto backdrop = files.find("backdrop");
     if (backdrop != files.end()) linked.push_back({"picture/backdrop", backdrop->second.name, true});
     return linked;
@@ -247,7 +253,7 @@ LinkedFiles linked_files(const ParameterValues& values, const SideFiles& files,
 /// A motion that threads share.
 class Film {
   public:
-    explicit Film(std::unique_ptr<Motion> motion) : m_motion(std::move(motion)) {
+    explicit Film(std::unique_ptr<figure::Motion> motion) : m_motion(std::move(motion)) {
         for (const std::string& warning : m_motion->warnings())
             m_warnings += (m_warnings.empty() ? "" : "; ") + warning;
         m_first = m_motion->first_frame();
@@ -266,7 +272,7 @@ class Film {
         const std::lock_guard lock(*m_mutex);
         return m_motion->frame_count() > 0 ? m_first + i * m_step : 0;
     }
-    FigureFrame frame(int number) const {
+    figure::FigureFrame frame(int number) const {
         const std::lock_guard lock(*m_mutex);
         return m_motion->frame(number);
     }
@@ -274,18 +280,19 @@ class Film {
 
   private:
     std::unique_ptr<std::mutex> m_mutex = std::make_unique<std::mutex>();
-    std::unique_ptr<Motion> m_motion;
+    std::unique_ptr<figure::Motion> m_motion;
     std::string m_warnings;
     int m_first = 1, m_step = 1;
 };
 
-std::unique_ptr<Motion> open_motion(const OperationInput& input) {
+std::unique_ptr<figure::Motion> open_motion(const OperationInput& input) {
     const SideFile& file = script_of(input.files);
-    if (is_motion_file(file.name)) return read_motion(input.reader.text(file.name), short_name(file));
-    Script read = read_script(input.values, input.files, input.reader);
-    for (const Diagnostic& d : read.diagnostics)
-        if (d.severity == Severity::error) throw Error(d.text());
-    return std::make_unique<Performance>(std::move(read.program));
+    if (figure::is_motion_file(file.name))
+        return figure::read_motion(input.reader.text(file.name), short_name(file));
+    figure::Script read = read_script(input.values, input.files, input.reader);
+    for (const figure::Diagnostic& d : read.diagnostics)
+        if (d.severity == figure::Severity::error) throw Error(d.text());
+    return std::make_unique<figure::Performance>(std::move(read.program));
 }
 
 std::shared_ptr<const Film> read_film(const OperationInput& input) {
@@ -308,33 +315,34 @@ std::optional<glm::dvec3> three(const ParameterValues& values, const char* name,
 /// What is asked for, but the frame.
 struct FigureRequest {
     Size size;
-    FigureLook look;
+    figure::FigureLook look;
     std::optional<glm::dvec3> camera, place;
     double zoom = 1, eye_distance = HUGE_VAL;
     bool fit = false;
     std::string missing;  ///< textures
 
     /// `extent`: that the view is fitted to, where it is.
-    View view_of(const FigureFrame& frame, const SeenExtent& extent, const Size& of) const {
+    figure::View view_of(const figure::FigureFrame& frame, const figure::SeenExtent& extent,
+                         const Size& of) const {
         const glm::dvec2 page(of.width, of.height);
-        View view = view_in(frame, page);
-        if (camera) view.rotation = glm::mat3_cast(turn_xyz(*camera));
+        figure::View view = figure::view_in(frame, page);
+        if (camera) view.rotation = glm::mat3_cast(figure::turn_xyz(*camera));
         if (place) view.center = *place;
         view.eye_distance = eye_distance;
-        if (fit) fit_view(view, extent, page);
+        if (fit) figure::fit_view(view, extent, page);
         view.middle = 0.5 * page + zoom * (view.middle - 0.5 * page);
         view.scale *= zoom;
         return view;
     }
-    void add_extent(const FigureFrame& frame, SeenExtent& extent) const {
-        add_seen_extent(frame, view_of(frame, SeenExtent(), size), extent);
+    void add_extent(const figure::FigureFrame& frame, figure::SeenExtent& extent) const {
+        figure::add_seen_extent(frame, view_of(frame, figure::SeenExtent(), size), extent);
     }
 };
 
-Light read_light(const ParameterValues& values) {
-    Light light;
-    light.lighting = rows::chosen<Lighting>(values, "lighting");
-    light.toward = usual_light(light.lighting);
+figure::Light read_light(const ParameterValues& values) {
+    figure::Light light;
+    light.lighting = rows::chosen<figure::Lighting>(values, "lighting");
+    light.toward = figure::usual_light(light.lighting);
     if (const auto given = three(values, "light", -kFar, kFar)) {
         const double size = std::max({std::fabs(given->x), std::fabs(given->y), std::fabs(given->z)});
         if (size == 0) throw Error("light", printable(values.text("light")), "must not be 0,0,0");
@@ -347,7 +355,7 @@ Light read_light(const ParameterValues& values) {
 }
 
 /// A colour, or bands.
-void read_background(const ParameterValues& values, FigureLook& look) {
+void read_background(const ParameterValues& values, figure::FigureLook& look) {
     if (!values.given("background")) return;
     const std::vector<double>& numbers = values.numbers("background");
     if (numbers.size() % 4 != 0 || numbers.empty()) {
@@ -356,7 +364,7 @@ void read_background(const ParameterValues& values, FigureLook& look) {
     }
     double from = 0;
     for (std::size_t i = 0; i < numbers.size(); i += 4) {
-        const BackgroundBand band{numbers[i], {numbers[i + 1], numbers[i + 2], numbers[i + 3]}};
+        const figure::BackgroundBand band{numbers[i], {numbers[i + 1], numbers[i + 2], numbers[i + 3]}};
         const double most = std::max({band.color.r, band.color.g, band.color.b});
         if (!(band.end >= from && band.end <= 1 && most <= 255))
             throw Error(
@@ -370,12 +378,12 @@ void read_background(const ParameterValues& values, FigureLook& look) {
 FigureRequest read_request(const ParameterValues& values) {
     FigureRequest request;
     request.size = rows::size_of(values, {kDefaultSide, kDefaultSide});
-    FigureLook& look = request.look;
-    look.style = rows::chosen<FigureStyle>(values, "style");
+    figure::FigureLook& look = request.look;
+    look.style = rows::chosen<figure::FigureStyle>(values, "style");
     look.light = read_light(values);
     look.antialias = values.toggle("antialias");
     read_background(values, look);
-    look.mapping = rows::chosen<BodyMapping>(values, "mapping");
+    look.mapping = rows::chosen<figure::BodyMapping>(values, "mapping");
     read_filter(values, look);
     look.backdrop = values.given("backdrop");
     look.lines.tol = kChordError;
@@ -391,11 +399,12 @@ FigureRequest read_request(const ParameterValues& values) {
 
 class SolvedFigure final : public SolvedPicture {
   public:
-    SolvedFigure(FigurePicture picture, FigureStyle style) : m_picture(std::move(picture)), m_style(style) {}
+    SolvedFigure(figure::FigurePicture picture, figure::FigureStyle style)
+        : m_picture(std::move(picture)), m_style(style) {}
 
     /// Rays meet the bodies themselves; only curved lines are made of chords.
     Attributes reached(const ParallelFor&) const override {
-        const bool chords = m_style == FigureStyle::outline;
+        const bool chords = m_style == figure::FigureStyle::outline;
         return {{"anamorph:max_error", chords ? kChordError : 0.0},
                 {"anamorph:exact_fraction", chords ? 0.0 : 1.0}};
     }
@@ -406,8 +415,8 @@ class SolvedFigure final : public SolvedPicture {
     }
 
   private:
-    FigurePicture m_picture;
-    FigureStyle m_style;
+    figure::FigurePicture m_picture;
+    figure::FigureStyle m_style;
 };
 
 class Figures final : public Pictures {
@@ -419,10 +428,10 @@ class Figures final : public Pictures {
             throw Error("frame is not given and the script shows " + std::to_string(m_frames) +
                         " frames: must be given where there are more than " + std::to_string(kMostSubimages));
         if (!m_request.fit) return;
-        SeenExtent extent;
+        figure::SeenExtent extent;
         for (int i = 0; i < m_frames; ++i)
             m_request.add_extent(m_film->frame(m_frame ? *m_frame : m_film->number(i)), extent);
-        m_extent = std::make_shared<const SeenExtent>(extent);
+        m_extent = std::make_shared<const figure::SeenExtent>(extent);
     }
 
     int frames() const override { return m_frames; }
@@ -435,11 +444,11 @@ class Figures final : public Pictures {
         const int number = m_frame ? *m_frame : m_film->number(frame);
         describe(picture, number);
         picture.solve = [request = m_request, film = m_film, extent = m_extent, number, size = *size, level] {
-            FigureFrame scene = film->frame(number);
+            figure::FigureFrame scene = film->frame(number);
             FigureRequest r = request;
             r.look.lines.line_width = std::ldexp(r.look.lines.line_width, -level);
-            const View view = r.view_of(scene, *extent, size);
-            return std::make_unique<SolvedFigure>(FigurePicture(std::move(scene), view, size, r.look),
+            const figure::View view = r.view_of(scene, *extent, size);
+            return std::make_unique<SolvedFigure>(figure::FigurePicture(std::move(scene), view, size, r.look),
                                                   r.look.style);
         };
         return picture;
@@ -448,20 +457,20 @@ class Figures final : public Pictures {
   private:
     void describe(PictureRequest& picture, int number) const {
         switch (m_request.look.style) {
-            case FigureStyle::depth:
+            case figure::FigureStyle::depth:
                 picture.channels = {"Z"};
                 break;
-            case FigureStyle::id:
+            case figure::FigureStyle::id:
                 picture.channels = {"id"};
                 break;
-            case FigureStyle::uv:
+            case figure::FigureStyle::uv:
                 picture.pixels = PixelKind::point;
                 break;
             default:
                 picture.channels = {"R", "G", "B", "A"};
                 picture.says.push_back({"oiio:ColorSpace", std::string("sRGB")});
         }
-        const bool chords = m_request.look.style == FigureStyle::outline;
+        const bool chords = m_request.look.style == figure::FigureStyle::outline;
         picture.says.push_back({"anamorph:tol", chords ? kChordError : 0.0});
         picture.says.push_back({"anamorph:frame", number});
         if (!m_request.missing.empty())
@@ -473,7 +482,7 @@ class Figures final : public Pictures {
     std::shared_ptr<const Film> m_film;
     std::optional<int> m_frame;
     int m_frames = 1;
-    std::shared_ptr<const SeenExtent> m_extent = std::make_shared<const SeenExtent>();
+    std::shared_ptr<const figure::SeenExtent> m_extent = std::make_shared<const figure::SeenExtent>();
 };
 
 /// Pyramids of all textures.

@@ -179,8 +179,9 @@ LensModel lens_of(const ParameterValues& values, const std::string& name) {
 }
 
 /// Of scheme hardware. What is said of a machine is checked with the other schemes too.
-std::optional<BumpUnit> machine_of(const ParameterValues& values) {
-    const BumpUnit unit = values.given("machine") ? bump_unit_from_text(values.text("machine")) : BumpUnit{};
+std::optional<machine::BumpUnit> machine_of(const ParameterValues& values) {
+    const machine::BumpUnit unit =
+        values.given("machine") ? machine::bump_unit_from_text(values.text("machine")) : machine::BumpUnit{};
     if (values.text("scheme") != "hardware") return {};
     return unit;
 }
@@ -231,7 +232,7 @@ ReprojectRequest read_reproject_request(const ParameterValues& values, const Sou
     const Chart source(from, facts.width, facts.height, fov, spacing, "src", values.number("srcd"), srclens);
 
     ReprojectOptions options = read_reproject_options(values);
-    const std::optional<BumpUnit> machine = machine_of(values);
+    const std::optional<machine::BumpUnit> machine = machine_of(values);
     if (!machine) options.scheme = chosen<Scheme>(values, "scheme");
     return {source,
             read_target_chart(values, source),
@@ -256,7 +257,7 @@ namespace {
 class BumpedPicture {
   public:
     BumpedPicture(const ReprojectRequest& request)
-        : m_plan(std::make_shared<BumpedPanorama>(request.map(), *request.machine)) {
+        : m_plan(std::make_shared<machine::BumpedPanorama>(request.map(), *request.machine)) {
         m_picture.maps = {{m_plan, {{Border(request.source, request.options.wrap)}}}};
         m_picture.filter = request.options.filter;
         m_picture.output = request.options.output;
@@ -269,7 +270,7 @@ class BumpedPicture {
     }
 
   private:
-    std::shared_ptr<const BumpedPanorama> m_plan;
+    std::shared_ptr<const machine::BumpedPanorama> m_plan;
     Picture m_picture;
 };
 

@@ -23,7 +23,7 @@ struct ReprojectRequest {
     /// Why the source is taken for what it is: "given", "assumed from the 2:1 shape", "given, 90 degrees assumed" ...
     std::string source_reason;
     /// Of scheme hardware: what draws it, in place of options.scheme and tol.
-    std::optional<BumpUnit> machine = {};
+    std::optional<machine::BumpUnit> machine = {};
 
     Panorama map() const { return Panorama(source, target, orientation, held); }
 };

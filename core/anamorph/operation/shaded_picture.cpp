@@ -15,14 +15,15 @@
 namespace anamorph {
 namespace {
 
-std::shared_ptr<const ShadedWarp> shaded_warp(const WarpMap& map, const WarpRequest& request) {
+std::shared_ptr<const machine::ShadedWarp> shaded_warp(const WarpMap& map, const WarpRequest& request) {
     const ControlMesh* mesh = std::get_if<ControlMesh>(&map.shape);
     if (!mesh || mesh->direction == Direction::push)
-        throw Error("machine: " + std::string(kShaderPreset) + " draws meshes that pull, and no other warps");
+        throw Error("machine: " + std::string(machine::kShaderPreset) +
+                    " draws meshes that pull, and no other warps");
     check_tol(request.options.tol);
     const Mesh made(*mesh, request.target, request.source, request.options.amount, map.name);
-    return request.program ? std::make_shared<ShadedWarp>(made, *request.machine, *request.program)
-                           : std::make_shared<ShadedWarp>(made, *request.machine);
+    return request.program ? std::make_shared<machine::ShadedWarp>(made, *request.machine, *request.program)
+                           : std::make_shared<machine::ShadedWarp>(made, *request.machine);
 }
 
 Border border_of(const WarpRequest& request) {
@@ -48,7 +49,7 @@ class ShadedPicture {
     }
 
   private:
-    std::shared_ptr<const ShadedWarp> m_warp;
+    std::shared_ptr<const machine::ShadedWarp> m_warp;
     Picture m_picture;
 };
 
@@ -59,7 +60,7 @@ class ProgrammedPicture final : public SolvedPicture {
         : m_warp(shaded_warp(map, request)),
           m_border(border_of(request)),
           m_filter(request.options.filter),
-          m_is_map(reads_picture_once(*request.program)) {}
+          m_is_map(machine::reads_picture_once(*request.program)) {}
 
     Attributes reached(const ParallelFor& parallel_for) const override {
         if (!m_is_map) return {{"anamorph:exact_fraction", 0.0}};
@@ -111,7 +112,7 @@ class ProgrammedPicture final : public SolvedPicture {
         return ok;
     }
 
-    std::shared_ptr<const ShadedWarp> m_warp;
+    std::shared_ptr<const machine::ShadedWarp> m_warp;
     Border m_border;
     Filter m_filter;
     bool m_is_map;
@@ -119,17 +120,18 @@ class ProgrammedPicture final : public SolvedPicture {
 
 }  // namespace
 
-std::optional<ShaderProgram> read_shader(const OperationInput& input) {
+std::optional<machine::ShaderProgram> read_shader(const OperationInput& input) {
     const auto file = input.files.find("program");
     if (file == input.files.end()) return {};
     const std::string& name = file->second.name;
-    ShaderProgram program = assemble_shader(input.reader.text(name), name, kWarpSlots);
+    machine::ShaderProgram program =
+        machine::assemble_shader(input.reader.text(name), name, machine::kWarpSlots);
     if (input.values.text("scheme") != "hardware")
         throw Error("program", printable(name), "must be given with scheme=hardware only");
     if (input.sources[0].channels > 4)
         throw Error("src has " + std::to_string(input.sources[0].channels) +
                     " channels: must have at most 4 with program");
-    if (input.values.text("output") != "color" && !reads_picture_once(program))
+    if (input.values.text("output") != "color" && !machine::reads_picture_once(program))
         throw Error("output", input.values.text("output"),
                     "must be color with a program that does not read s0 exactly once");
     return program;

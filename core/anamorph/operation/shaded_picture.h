@@ -11,7 +11,7 @@
 namespace anamorph {
 
 /// The program that `program` names; none where it is not given. Throws Error naming the line.
-std::optional<ShaderProgram> read_shader(const OperationInput& input);
+std::optional<machine::ShaderProgram> read_shader(const OperationInput& input);
 
 /// Of a request with a machine. Throws Error.
 std::unique_ptr<const SolvedPicture> shaded_picture(const WarpMap& map, const WarpRequest& request);

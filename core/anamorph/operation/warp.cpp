@@ -58,9 +58,10 @@ ParameterTable make_warp_table() {
 }
 
 /// Of scheme hardware. What is said of a machine is checked with the other schemes too.
-std::optional<ShaderUnit> shader_of(const ParameterValues& values) {
-    const ShaderUnit unit =
-        values.given("machine") ? shader_unit_from_text(values.text("machine")) : ShaderUnit{};
+std::optional<machine::ShaderUnit> shader_of(const ParameterValues& values) {
+    const machine::ShaderUnit unit = values.given("machine")
+                                         ? machine::shader_unit_from_text(values.text("machine"))
+                                         : machine::ShaderUnit{};
     if (values.text("scheme") != "hardware") return {};
     return unit;
 }

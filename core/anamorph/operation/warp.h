@@ -20,8 +20,8 @@ struct WarpRequest {
     int step = 1;                        ///< of an ST-map: every step-th pixel is a vertex
     std::optional<Direction> direction;  ///< unless as the mesh says
     /// Of scheme hardware: what draws it, in place of options.scheme and tol.
-    std::optional<ShaderUnit> machine = {};
-    std::optional<ShaderProgram> program = {};  ///< of the user's, in place of ours
+    std::optional<machine::ShaderUnit> machine = {};
+    std::optional<machine::ShaderProgram> program = {};  ///< of the user's, in place of ours
 };
 
 /// Reads a table's values. Without `size` the picture has the source's; with one number, the source's shape.

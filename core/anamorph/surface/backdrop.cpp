@@ -6,7 +6,7 @@
 #include "anamorph/image/border.h"
 #include "anamorph/image/pixel.h"
 
-namespace anamorph {
+namespace anamorph::surface {
 
 void lay_over(const float* over, const float* under, int channels, int alpha, float share, float* to) {
     const float rest = 1 - std::clamp(alpha >= 0 ? over[alpha] : share, 0.0f, 1.0f);
@@ -59,4 +59,4 @@ bool Backdrop::at(int x, int y, float* pixel) {
     return ok;
 }
 
-}  // namespace anamorph
+}  // namespace anamorph::surface

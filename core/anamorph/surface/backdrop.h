@@ -9,7 +9,7 @@
 #include "anamorph/image/filter.h"
 #include "anamorph/image/point_sampler.h"
 
-namespace anamorph {
+namespace anamorph::surface {
 
 /// Which channel of a picture is alpha, -1 where none is, and whether colours have been multiplied with it.
 struct AlphaChannel {
@@ -52,4 +52,4 @@ class Backdrop {
     std::optional<PointSampler> m_sampler;
 };
 
-}  // namespace anamorph
+}  // namespace anamorph::surface

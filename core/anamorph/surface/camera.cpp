@@ -9,7 +9,7 @@
 #include "anamorph/parameter/parameter.h"
 #include "anamorph/surface/shape/shape.h"
 
-namespace anamorph {
+namespace anamorph::surface {
 namespace {
 
 std::string written(const glm::dvec3& p) {
@@ -44,4 +44,4 @@ Camera::Camera(const CameraPose& pose, const glm::dmat3& matrix, const glm::dvec
     m_near = m_perspective ? kNear * distance : -std::numeric_limits<double>::infinity();
 }
 
-}  // namespace anamorph
+}  // namespace anamorph::surface

@@ -10,7 +10,7 @@
 #include "anamorph/geometry/point.h"
 #include "anamorph/geometry/size.h"
 
-namespace anamorph {
+namespace anamorph::surface {
 
 /// What a user says of a camera.
 struct CameraPose {
@@ -64,4 +64,4 @@ class Camera {
     glm::dvec3 m_offset;
 };
 
-}  // namespace anamorph
+}  // namespace anamorph::surface

@@ -13,7 +13,7 @@
 #include "anamorph/parameter/parameter.h"
 #include "anamorph/surface/oka.h"
 
-namespace anamorph {
+namespace anamorph::surface {
 namespace {
 
 std::shared_ptr<const DrapeMap> map_of(SharedTree& surface, const Camera& camera, const Size& picture,
@@ -287,7 +287,7 @@ bool Drape::draw_values(const Box& box, const ImageView& view, const ParallelFor
                     canvas.store(x, y, 1, value);
                 }
         });
-        simd::finish_stores();
+        anamorph::simd::finish_stores();
     });
     if (m_options.own == DrapeOutput::coverage && averages(m_options.filter))
         for_edges(inside, parallel_for, [&](const std::vector<EdgePixel>& edges) {
@@ -440,7 +440,7 @@ void Drape::for_edges(const Box& box, const ParallelFor& parallel_for, const Bod
     parallel_for(static_cast<std::int64_t>(regions.size()), [&](std::int64_t i) {
         const Box part = intersection(m_map->region_box(regions[static_cast<std::size_t>(i)]), box);
         body(edges_in(*m_map, *m_map->region_at(part.x0, part.y0), part));
-        simd::finish_stores();
+        anamorph::simd::finish_stores();
     });
 }
 
@@ -482,4 +482,4 @@ bool Drape::draw(const Source* source, const Box& box, const ImageView& view, co
     return ok && (!averages(m_options.filter) || draw_edges(layers, inside, Canvas(view, box), parallel_for));
 }
 
-}  // namespace anamorph
+}  // namespace anamorph::surface

@@ -20,7 +20,7 @@
 #include "anamorph/surface/backdrop.h"
 #include "anamorph/surface/edges.h"
 
-namespace anamorph {
+namespace anamorph::surface {
 
 /// How light is added up.
 enum class DrapeShading {
@@ -135,4 +135,4 @@ class Drape {
     Picture m_picture;
 };
 
-}  // namespace anamorph
+}  // namespace anamorph::surface

@@ -7,7 +7,7 @@
 #include "anamorph/image/split_points.h"
 #include "anamorph/surface/polish.h"
 
-namespace anamorph {
+namespace anamorph::surface {
 namespace {
 
 constexpr std::size_t kKeptRegions = 8;
@@ -244,10 +244,10 @@ DrapeMap::Range DrapeMap::range_of(const SeenRegion& region, const Box& box) {
     const SeenPixels& pixels = region.pixels();
     const std::size_t first = pixels.index(box.x0, box.y0);
     const auto of = [&](const std::vector<double>& values) {
-        return simd::ends_of(
-            simd::ValueRows<double>{values.data() + first, pixels.stride, box.width(), box.height()});
+        return anamorph::simd::ends_of(anamorph::simd::ValueRows<double>{values.data() + first, pixels.stride,
+                                                                         box.width(), box.height()});
     };
-    const simd::Ends u = of(pixels.u), v = of(pixels.v);
+    const anamorph::simd::Ends u = of(pixels.u), v = of(pixels.v);
     return {{u.low, u.high}, {v.low, v.high}};
 }
 
@@ -385,4 +385,4 @@ Jacobian DrapeMap::jacobian_of(const Facet& facet, double x, double y) const {
             derivative(u, 2, m_picture.width), derivative(v, 2, m_picture.height)};
 }
 
-}  // namespace anamorph
+}  // namespace anamorph::surface

@@ -13,7 +13,7 @@
 #include "anamorph/surface/facet_raster.h"
 #include "anamorph/surface/oka.h"
 
-namespace anamorph {
+namespace anamorph::surface {
 
 /// Room for what is seen in regions, used again for others.
 using SeenPool = RoomPool<SeenPixels>;
@@ -131,4 +131,4 @@ class DrapeMap final : public BlockMap {
     std::shared_ptr<FacetPool> m_facet_pool;
 };
 
-}  // namespace anamorph
+}  // namespace anamorph::surface

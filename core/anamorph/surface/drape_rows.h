@@ -6,7 +6,7 @@
 
 #include "anamorph/parameter/number_row.h"
 
-namespace anamorph {
+namespace anamorph::surface {
 
 /// Degrees, of cylinder, sphere and torus: the part of a turn that is covered.
 inline constexpr NumberRow kDrapeAngleRow{"drape_angle", 180, 0.01, 360};
@@ -28,4 +28,4 @@ inline constexpr NumberRow kDrapeParallelScaleRow{"drape_parallel_scale", 0.5, 1
 /// By default that of the surface.
 inline constexpr NumberRow kDrapeRadiusRow{"drape_radius", NAN, 0.001, 1000};
 
-}  // namespace anamorph
+}  // namespace anamorph::surface

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace anamorph {
+namespace anamorph::surface {
 namespace {
 
 // Samples are drawn for squares of this side at a time.
@@ -134,4 +134,4 @@ std::vector<EdgePixel> edges_in(const DrapeMap& map, const SeenRegion& region, c
     return edges;
 }
 
-}  // namespace anamorph
+}  // namespace anamorph::surface

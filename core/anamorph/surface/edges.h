@@ -7,7 +7,7 @@
 
 #include "anamorph/surface/drape_map.h"
 
-namespace anamorph {
+namespace anamorph::surface {
 
 /// A part of a pixel that shows one patch.
 struct EdgePart {
@@ -35,4 +35,4 @@ inline constexpr int kEdgeSamples = 8;
 /// The edge pixels of `part` of a region.
 std::vector<EdgePixel> edges_in(const DrapeMap& map, const SeenRegion& region, const Box& part);
 
-}  // namespace anamorph
+}  // namespace anamorph::surface

@@ -7,7 +7,7 @@
 
 #include "anamorph/surface/facet_rows.h"
 
-namespace anamorph {
+namespace anamorph::surface {
 namespace {
 
 /// Do pixels on the edge from a to b belong to the facet inside? Of an edge and its reverse one does.
@@ -174,4 +174,4 @@ void FacetRaster::each_covered(const Box& box, int times, const Covered& covered
     });
 }
 
-}  // namespace anamorph
+}  // namespace anamorph::surface

@@ -14,7 +14,7 @@
 #include "anamorph/surface/facet_rows.h"
 #include "anamorph/surface/facets.h"
 
-namespace anamorph {
+namespace anamorph::surface {
 
 /// What is seen at the pixels of a box, row by row.
 struct SeenPixels {
@@ -67,4 +67,4 @@ class FacetRaster {
     std::vector<std::uint32_t>& m_lists;
 };
 
-}  // namespace anamorph
+}  // namespace anamorph::surface

@@ -4,7 +4,7 @@
 
 #include <cstddef>
 
-namespace anamorph::simd {
+namespace anamorph::surface::simd {
 
 /// A triangle as its edges' functions e_0, e_1 and e_2, integers up to 2^53 at all pixels and linear in them. A pixel
 /// whose e_i are all at least `least_i` is in it. There its nearness is sum e_i nearness_i, and its point
@@ -27,4 +27,4 @@ struct FacetPlanes {
 /// on all instruction sets.
 void draw_facet(const FacetSetup& facet, int width, int height, const FacetPlanes& to);
 
-}  // namespace anamorph::simd
+}  // namespace anamorph::surface::simd

@@ -7,7 +7,7 @@
 #include "hwy/highway.h"
 
 HWY_BEFORE_NAMESPACE();
-namespace anamorph::simd {
+namespace anamorph::surface::simd {
 namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
@@ -76,11 +76,11 @@ void DrawFacet(const FacetSetup& f, int width, int height, const FacetPlanes& to
 }
 
 }  // namespace HWY_NAMESPACE
-}  // namespace anamorph::simd
+}  // namespace anamorph::surface::simd
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
-namespace anamorph::simd {
+namespace anamorph::surface::simd {
 
 HWY_EXPORT(DrawFacet);
 
@@ -88,5 +88,5 @@ void draw_facet(const FacetSetup& facet, int width, int height, const FacetPlane
     HWY_DYNAMIC_DISPATCH(DrawFacet)(facet, width, height, to);
 }
 
-}  // namespace anamorph::simd
+}  // namespace anamorph::surface::simd
 #endif

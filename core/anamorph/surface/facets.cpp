@@ -10,7 +10,7 @@
 #include "anamorph/error.h"
 #include "anamorph/parameter/parameter.h"
 
-namespace anamorph {
+namespace anamorph::surface {
 namespace {
 
 // What turning a point into the camera's frame loses, in the size of the result and of the offset: sums of four products,
@@ -434,4 +434,4 @@ Facets cut_into_facets(SurfaceTree& tree, const Camera& camera, double tol) {
     return std::move(room.facets);
 }
 
-}  // namespace anamorph
+}  // namespace anamorph::surface

@@ -27,7 +27,7 @@
 #include "anamorph/surface/camera.h"
 #include "anamorph/surface/surface_tree.h"
 
-namespace anamorph {
+namespace anamorph::surface {
 
 /// A corner on the screen's grid.
 struct FacetCorner {
@@ -116,4 +116,4 @@ class TooManyPatches final : public Error {
 void cut_into_facets(SurfaceTree& tree, const Camera& camera, double tol, FacetRoom& room);
 Facets cut_into_facets(SurfaceTree& tree, const Camera& camera, double tol);
 
-}  // namespace anamorph
+}  // namespace anamorph::surface

@@ -15,7 +15,7 @@
 #include "anamorph/parameter/parameter.h"
 #include "anamorph/surface/seen_range.h"
 
-namespace anamorph {
+namespace anamorph::surface {
 namespace {
 
 constexpr int kMostBlocks = 1 << 22;
@@ -451,15 +451,15 @@ double OkaRaster::lost_by(const OkaBlock& block) const {
 
 double OkaRaster::quick_bound_of(std::size_t index) const {
     const OkaBlock block = block_of(m_room->blocks[index]);
-    return anamorph::quick_bound_of(block, *m_surface, m_camera, m_grid.half_u, m_grid.half_v) +
+    return surface::quick_bound_of(block, *m_surface, m_camera, m_grid.half_u, m_grid.half_v) +
            lost_by(block);
 }
 
 double OkaRaster::bound_of(std::size_t index) const {
     const OkaBlock block = block_of(m_room->blocks[index]);
     const double half_u = m_grid.half_u, half_v = m_grid.half_v;
-    return std::min(anamorph::quick_bound_of(block, *m_surface, m_camera, half_u, half_v),
-                    anamorph::bound_of(block, *m_surface, m_camera, half_u, half_v)) +
+    return std::min(surface::quick_bound_of(block, *m_surface, m_camera, half_u, half_v),
+                    surface::bound_of(block, *m_surface, m_camera, half_u, half_v)) +
            lost_by(block);
 }
 
@@ -487,4 +487,4 @@ double OkaRaster::most_bound(const ParallelFor& parallel_for) const {
     return most;
 }
 
-}  // namespace anamorph
+}  // namespace anamorph::surface

@@ -11,7 +11,7 @@
 #include "anamorph/surface/facets.h"
 #include "anamorph/surface/parallelogram_rows.h"
 
-namespace anamorph {
+namespace anamorph::surface {
 
 /// How a picture is cut into blocks.
 struct OkaBlocks {
@@ -110,4 +110,4 @@ class OkaRaster {
     std::unique_ptr<OkaRoom> m_room;
 };
 
-}  // namespace anamorph
+}  // namespace anamorph::surface

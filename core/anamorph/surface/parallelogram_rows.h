@@ -8,7 +8,7 @@
 #include "anamorph/geometry/box.h"
 #include "anamorph/surface/facet_rows.h"
 
-namespace anamorph::simd {
+namespace anamorph::surface::simd {
 
 /// A block of a picture on the screen.
 struct Parallelogram {
@@ -39,4 +39,4 @@ void draw_parallelograms(const Parallelogram* all, const std::uint32_t* list, st
                          const ParallelogramGrid& grid, const ParallelogramView& view, bool by_depth,
                          const FacetPlanes& to);
 
-}  // namespace anamorph::simd
+}  // namespace anamorph::surface::simd

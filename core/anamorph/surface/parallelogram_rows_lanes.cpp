@@ -8,7 +8,7 @@
 #include "hwy/highway.h"
 
 HWY_BEFORE_NAMESPACE();
-namespace anamorph::simd {
+namespace anamorph::surface::simd {
 namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
@@ -85,11 +85,11 @@ void DrawParallelograms(const Parallelogram* HWY_RESTRICT all, const std::uint32
 }
 
 }  // namespace HWY_NAMESPACE
-}  // namespace anamorph::simd
+}  // namespace anamorph::surface::simd
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
-namespace anamorph::simd {
+namespace anamorph::surface::simd {
 
 HWY_EXPORT(DrawParallelograms);
 
@@ -99,5 +99,5 @@ void draw_parallelograms(const Parallelogram* all, const std::uint32_t* list, st
     HWY_DYNAMIC_DISPATCH(DrawParallelograms)(all, list, count, grid, view, by_depth, to);
 }
 
-}  // namespace anamorph::simd
+}  // namespace anamorph::surface::simd
 #endif

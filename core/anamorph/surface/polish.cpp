@@ -6,7 +6,7 @@
 
 #include "anamorph/surface/seen_range.h"
 
-namespace anamorph {
+namespace anamorph::surface {
 namespace {
 
 constexpr int kMostSteps = 12;
@@ -93,4 +93,4 @@ PointPolish::Polished PointPolish::polish(double x, double y, double u, double v
     return to;
 }
 
-}  // namespace anamorph
+}  // namespace anamorph::surface

@@ -5,7 +5,7 @@
 #include "anamorph/surface/camera.h"
 #include "anamorph/surface/surface.h"
 
-namespace anamorph {
+namespace anamorph::surface {
 
 /// Finds points by Newton's method. Keeps references to its arguments; thread safe.
 class PointPolish {
@@ -33,4 +33,4 @@ class PointPolish {
     const Camera& m_camera;
 };
 
-}  // namespace anamorph
+}  // namespace anamorph::surface

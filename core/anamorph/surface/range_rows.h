@@ -2,7 +2,7 @@
 // How far vectors reach along axes, where no more is known of them than a range.
 #pragma once
 
-namespace anamorph::simd {
+namespace anamorph::surface::simd {
 
 /// All vectors within `radius` of `middle`, coordinate by coordinate.
 struct FloatRange {
@@ -17,4 +17,4 @@ struct Axes {
 /// |a . v| for the vectors v of each range and each axis, at most: |a . middle| + |a| . radius.
 void reach_along(const Axes& axes, const FloatRange* ranges, int count, double (*reach)[4]);
 
-}  // namespace anamorph::simd
+}  // namespace anamorph::surface::simd

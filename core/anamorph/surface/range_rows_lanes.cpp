@@ -7,7 +7,7 @@
 #include "hwy/highway.h"
 
 HWY_BEFORE_NAMESPACE();
-namespace anamorph::simd {
+namespace anamorph::surface::simd {
 namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
@@ -32,11 +32,11 @@ void ReachAlong(const Axes& axes, const FloatRange* HWY_RESTRICT ranges, int cou
 }
 
 }  // namespace HWY_NAMESPACE
-}  // namespace anamorph::simd
+}  // namespace anamorph::surface::simd
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
-namespace anamorph::simd {
+namespace anamorph::surface::simd {
 
 HWY_EXPORT(ReachAlong);
 
@@ -44,5 +44,5 @@ void reach_along(const Axes& axes, const FloatRange* ranges, int count, double (
     HWY_DYNAMIC_DISPATCH(ReachAlong)(axes, ranges, count, reach);
 }
 
-}  // namespace anamorph::simd
+}  // namespace anamorph::surface::simd
 #endif

@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <limits>
 
-namespace anamorph {
+namespace anamorph::surface {
 namespace {
 
 // The boxes of the pyramid's finest level are so many cells wide and high; each next level's, twice as many.
@@ -357,4 +357,4 @@ std::vector<float> smoothed(const std::vector<float>& texels, const Size& size, 
     return result;
 }
 
-}  // namespace anamorph
+}  // namespace anamorph::surface

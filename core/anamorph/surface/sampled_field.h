@@ -20,7 +20,7 @@
 #include "anamorph/number/interval.h"
 #include "anamorph/number/jet.h"
 
-namespace anamorph {
+namespace anamorph::surface {
 
 /// Thread safe.
 class SampledField {
@@ -133,4 +133,4 @@ class SampledField {
 /// The others stay as they are.
 std::vector<float> smoothed(const std::vector<float>& texels, const Size& size, double sigma);
 
-}  // namespace anamorph
+}  // namespace anamorph::surface

@@ -9,7 +9,7 @@
 #include "anamorph/surface/camera.h"
 #include "anamorph/surface/surface.h"
 
-namespace anamorph {
+namespace anamorph::surface {
 
 /// Taylor coefficients of the place on the screen, in pixels from its middle, of what has those of `range`. Infinite where
 /// a part may not be in front of the camera.
@@ -49,4 +49,4 @@ inline std::array<Jet<Interval, 2>, 2> seen_range(const Camera& camera, const Su
     return {seen(0), seen(1)};
 }
 
-}  // namespace anamorph
+}  // namespace anamorph::surface

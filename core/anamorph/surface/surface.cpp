@@ -9,7 +9,7 @@
 #include "anamorph/number/rounded.h"
 #include "anamorph/surface/shape/all.h"
 
-namespace anamorph {
+namespace anamorph::surface {
 namespace {
 
 /// What influence() encloses over a box of (u, v), for Wendland's kernel, which is smooth at r = 0 though r is not. With
@@ -392,7 +392,7 @@ std::unique_ptr<SurfacePart> make_part(const SurfaceSum& sum) {
 
 std::unique_ptr<SurfacePart> make_part_of(std::size_t which, const SurfaceSum& sum) {
     static const std::vector<MakePart> makers = {
-#define ANAMORPH_SURFACE(name, Type) make_part<surfaces::Type>,
+#define ANAMORPH_SURFACE(name, Type) make_part<shapes::Type>,
 #include "anamorph/surface/shape/list.h"
 #undef ANAMORPH_SURFACE
     };
@@ -447,7 +447,7 @@ const std::vector<std::string>& all_surface_names() {
 
 bool has_smooth_normals(std::size_t which) {
     static const std::vector<bool> smooth = {
-#define ANAMORPH_SURFACE(name, Type) HasNormal<surfaces::Type>,
+#define ANAMORPH_SURFACE(name, Type) HasNormal<shapes::Type>,
 #include "anamorph/surface/shape/list.h"
 #undef ANAMORPH_SURFACE
     };
@@ -467,4 +467,4 @@ std::shared_ptr<const DrapedSurface> make_surface(std::size_t which, const Surfa
     return make_surface(sum);
 }
 
-}  // namespace anamorph
+}  // namespace anamorph::surface

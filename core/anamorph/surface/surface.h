@@ -19,7 +19,7 @@
 #include "anamorph/surface/sampled_field.h"
 #include "anamorph/surface/shape/shape.h"
 
-namespace anamorph {
+namespace anamorph::surface {
 
 /// Position and its derivatives by u and v.
 struct SurfaceFrame {
@@ -92,4 +92,4 @@ std::shared_ptr<const DrapedSurface> make_surface(const SurfaceSum& sum);
 std::shared_ptr<const DrapedSurface> make_surface(std::size_t which, const SurfaceShape& shape,
                                                   const std::vector<Deformation>& deformations = {});
 
-}  // namespace anamorph
+}  // namespace anamorph::surface

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace anamorph {
+namespace anamorph::surface {
 namespace {
 
 /// What a camera's arithmetic may lose of a vector: sums of a few products, in units of 2^-53 of their parts.
@@ -192,4 +192,4 @@ SurfacePatch SurfaceTree::bounded(std::uint64_t iu, std::uint64_t iv, int level_
     return patch;
 }
 
-}  // namespace anamorph
+}  // namespace anamorph::surface

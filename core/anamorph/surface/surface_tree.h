@@ -13,7 +13,7 @@
 #include "anamorph/surface/range_rows.h"
 #include "anamorph/surface/surface.h"
 
-namespace anamorph {
+namespace anamorph::surface {
 
 /// All vectors within `radius` of `middle`, coordinate by coordinate; rounding of up to 2^-48 of their size included.
 struct VectorRange {
@@ -103,4 +103,4 @@ class SurfaceTree {
     std::vector<SurfaceSide> m_sides;
 };
 
-}  // namespace anamorph
+}  // namespace anamorph::surface

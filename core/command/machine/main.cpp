@@ -23,6 +23,8 @@
 #include "pfm.h"
 
 namespace anamorph::command {
+using namespace machine;
+using namespace surface;
 namespace {
 
 /// What the command line says.

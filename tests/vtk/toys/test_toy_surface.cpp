@@ -53,7 +53,7 @@ double off_the_toy(Drape& filter, double weight) {
 }
 
 TEST(ToySurface, HasAnEnumeratorAndPositionsKeepsItsValue) {
-    EXPECT_EQ(anamorph::surface_names().back(), "toy_saddle");
+    EXPECT_EQ(anamorph::surface::surface_names().back(), "toy_saddle");
     EXPECT_EQ(int{Drape::POSITIONS}, 7) << "saved states have that number";
     EXPECT_EQ(int{Drape::FORMULA}, 8) << "and that one";
     EXPECT_EQ(int{Drape::TOY_SADDLE}, 9);

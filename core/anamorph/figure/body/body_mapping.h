@@ -13,7 +13,7 @@
 
 #include "anamorph/number/number.h"
 
-namespace anamorph {
+namespace anamorph::figure {
 
 /// How a texture is laid around a body.
 enum class BodyMapping {
@@ -65,4 +65,4 @@ inline glm::dvec2 texture_point(BodyMapping mapping, const glm::dvec3& p) {
     return uv;
 }
 
-}  // namespace anamorph
+}  // namespace anamorph::figure

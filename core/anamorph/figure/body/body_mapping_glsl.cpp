@@ -3,7 +3,7 @@
 
 #include "anamorph/number/glsl_number.h"
 
-namespace anamorph {
+namespace anamorph::figure {
 
 std::string body_mapping_glsl(BodyMapping mapping, const std::string& name) {
     using Number = Jet1<GlslNumber>;
@@ -20,4 +20,4 @@ std::string body_mapping_glsl(BodyMapping mapping, const std::string& name) {
            values + "}\n";
 }
 
-}  // namespace anamorph
+}  // namespace anamorph::figure

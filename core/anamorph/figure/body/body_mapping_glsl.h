@@ -7,7 +7,7 @@
 
 #include "anamorph/figure/body/body_mapping.h"
 
-namespace anamorph {
+namespace anamorph::figure {
 
 /// Definitions for a shader of GLSL 1.50 or later, of what the function calls and of
 ///
@@ -17,4 +17,4 @@ namespace anamorph {
 /// are texture_point() of it, v down, and how that changes.
 std::string body_mapping_glsl(BodyMapping mapping, const std::string& name);
 
-}  // namespace anamorph
+}  // namespace anamorph::figure

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <glm/matrix.hpp>
 
-namespace anamorph {
+namespace anamorph::figure {
 
 glm::dmat3 eigenvectors(glm::dmat3 a) {
     glm::dmat3 v(1.0);
@@ -26,4 +26,4 @@ glm::dmat3 eigenvectors(glm::dmat3 a) {
     return {v[order[0]], v[order[1]], v[order[2]]};
 }
 
-}  // namespace anamorph
+}  // namespace anamorph::figure

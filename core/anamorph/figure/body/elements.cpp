@@ -5,7 +5,7 @@
 #include <numbers>
 #include <vector>
 
-namespace anamorph {
+namespace anamorph::figure {
 namespace {
 
 struct Named {
@@ -69,4 +69,4 @@ const ChemicalElement* find_element(std::string_view symbol) {
     return nullptr;
 }
 
-}  // namespace anamorph
+}  // namespace anamorph::figure

@@ -4,7 +4,7 @@
 #include <glm/vec3.hpp>
 #include <string_view>
 
-namespace anamorph {
+namespace anamorph::figure {
 
 /// What is drawn of a chemical element.
 struct ChemicalElement {
@@ -15,4 +15,4 @@ struct ChemicalElement {
 /// The element with a symbol; null where there is none. D is deuterium.
 const ChemicalElement* find_element(std::string_view symbol);
 
-}  // namespace anamorph
+}  // namespace anamorph::figure

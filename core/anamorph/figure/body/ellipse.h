@@ -7,7 +7,7 @@
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 
-namespace anamorph {
+namespace anamorph::figure {
 
 /// The points center + cosine cos(t) + sine sin(t). Vector: glm::dvec2 or glm::dvec3.
 template <class Vector>
@@ -47,4 +47,4 @@ inline PrincipalAxes principal_axes(const Ellipse<glm::dvec2>& e) {
     return axes;
 }
 
-}  // namespace anamorph
+}  // namespace anamorph::figure

@@ -5,7 +5,7 @@
 #include <glm/mat3x3.hpp>
 #include <glm/vec3.hpp>
 
-namespace anamorph {
+namespace anamorph::figure {
 
 /// The points center + rotation diag(axes) x with |x| <= 1.
 struct Ellipsoid {
@@ -16,4 +16,4 @@ struct Ellipsoid {
     bool operator==(const Ellipsoid&) const = default;
 };
 
-}  // namespace anamorph
+}  // namespace anamorph::figure

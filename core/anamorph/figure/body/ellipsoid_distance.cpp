@@ -6,7 +6,7 @@
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
 
-namespace anamorph {
+namespace anamorph::figure {
 namespace {
 
 constexpr double kThinnest = 1e-18;  // of the longest axis
@@ -86,4 +86,4 @@ EllipsoidContact contact_of(const Ellipsoid& first, const Ellipsoid& second) noe
     return contact;
 }
 
-}  // namespace anamorph
+}  // namespace anamorph::figure

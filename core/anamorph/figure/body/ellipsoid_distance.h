@@ -7,7 +7,7 @@
 
 #include "anamorph/figure/body/ellipsoid.h"
 
-namespace anamorph {
+namespace anamorph::figure {
 
 struct EllipsoidContact {
     /// Scaled about their centres by this factor, both touch from outside: below 1 they
@@ -34,4 +34,4 @@ inline double longest(const glm::dvec3& axes) {
     return std::max({axes.x, axes.y, axes.z});
 }
 
-}  // namespace anamorph
+}  // namespace anamorph::figure

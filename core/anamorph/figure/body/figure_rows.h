@@ -4,7 +4,7 @@
 
 #include "anamorph/parameter/number_row.h"
 
-namespace anamorph {
+namespace anamorph::figure {
 
 /// Maximum distance of a tessellated surface from its ellipsoid, in units of the scene or in pixels.
 inline constexpr NumberRow kSurfaceTolRow{"surface_tol", 0.25, 0, NumberRow::kNoEnd, NumberRow::above_least};
@@ -26,4 +26,4 @@ inline constexpr NumberRow kFigureRows[] = {kSurfaceTolRow,    kOutlineTolRow, k
                                             kLevelOfDetailRow, kViewSizeRow,   kParallelScaleRow,
                                             kViewAngleRow};
 
-}  // namespace anamorph
+}  // namespace anamorph::figure

@@ -12,7 +12,7 @@
 
 #include "anamorph/figure/body/ellipsoid.h"
 
-namespace anamorph {
+namespace anamorph::figure {
 
 /// An ellipsoid of a figure.
 struct Body {
@@ -49,4 +49,4 @@ struct FigureFrame {
     glm::dvec3 observe{0.0};   ///< the angles of `observer`
 };
 
-}  // namespace anamorph
+}  // namespace anamorph::figure

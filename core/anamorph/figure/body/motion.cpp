@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "anamorph/figure/body/motion.h"
 
-namespace anamorph {
+namespace anamorph::figure {
 
 int Motion::frame_count() {
     const long long first = first_frame(), last = last_frame();
@@ -31,4 +31,4 @@ const std::vector<std::string>& Motion::images() const {
     return none();
 }
 
-}  // namespace anamorph
+}  // namespace anamorph::figure

@@ -9,7 +9,7 @@
 
 #include "anamorph/figure/body/frame.h"
 
-namespace anamorph {
+namespace anamorph::figure {
 
 /// A motion must not be used by two threads at once.
 class Motion {
@@ -38,4 +38,4 @@ class Motion {
     virtual const std::vector<std::string>& images() const;
 };
 
-}  // namespace anamorph
+}  // namespace anamorph::figure

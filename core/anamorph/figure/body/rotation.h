@@ -10,7 +10,7 @@
 #include <glm/vec3.hpp>
 #include <numbers>
 
-namespace anamorph {
+namespace anamorph::figure {
 
 inline constexpr double kRadiansPerDegree = std::numbers::pi / 180, kTurn = 2 * std::numbers::pi;
 
@@ -65,4 +65,4 @@ inline glm::dvec3 xyz_of_rotation(const glm::dmat3& r) {
     return glm::dvec3(std::atan2(-r[2][1], r[2][2]), y, std::atan2(-r[1][0], r[0][0])) / kRadiansPerDegree;
 }
 
-}  // namespace anamorph
+}  // namespace anamorph::figure

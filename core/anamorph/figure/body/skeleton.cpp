@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-namespace anamorph {
+namespace anamorph::figure {
 namespace {
 
 Stick axis_stick(const Ellipsoid& body, int position) {
@@ -45,4 +45,4 @@ std::vector<Stick> joint_sticks(const FigureFrame& frame) {
     return sticks;
 }
 
-}  // namespace anamorph
+}  // namespace anamorph::figure

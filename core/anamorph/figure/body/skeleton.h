@@ -8,7 +8,7 @@
 
 #include "anamorph/figure/body/frame.h"
 
-namespace anamorph {
+namespace anamorph::figure {
 
 /// A straight line that stands for a body, or for part of one.
 struct Stick {
@@ -25,4 +25,4 @@ std::vector<Stick> axis_sticks(const FigureFrame& frame);
 /// between them instead. Bodies without joints have none.
 std::vector<Stick> joint_sticks(const FigureFrame& frame);
 
-}  // namespace anamorph
+}  // namespace anamorph::figure

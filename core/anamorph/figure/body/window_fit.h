@@ -8,7 +8,7 @@
 
 #include "anamorph/figure/body/ellipsoid.h"
 
-namespace anamorph {
+namespace anamorph::figure {
 
 /// An ellipsoid seen in a mirror along z. Its rotation is a turn, whatever it was.
 inline Ellipsoid mirrored(const Ellipsoid& e) {
@@ -44,4 +44,4 @@ class WindowFit {
     glm::dvec3 m_middle{0.0};
 };
 
-}  // namespace anamorph
+}  // namespace anamorph::figure

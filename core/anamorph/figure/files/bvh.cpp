@@ -9,7 +9,7 @@
 #include "anamorph/figure/files/motion_file.h"
 #include "anamorph/parameter/text_file.h"
 
-namespace anamorph {
+namespace anamorph::figure {
 namespace {
 
 constexpr int kMostJoints = 10000;
@@ -304,4 +304,4 @@ std::unique_ptr<Motion> read_bvh(std::string_view text, std::string_view name) {
     return std::make_unique<BvhMotion>(text, name);
 }
 
-}  // namespace anamorph
+}  // namespace anamorph::figure

@@ -21,7 +21,7 @@
 #include "anamorph/parameter/parameter.h"
 #include "anamorph/parameter/text_file.h"
 
-namespace anamorph {
+namespace anamorph::figure {
 namespace {
 
 constexpr std::size_t kMostAtoms = 20000, kMostBonds = 500000, kMostOperations = 1000, kMostWarnings = 20;
@@ -596,4 +596,4 @@ std::unique_ptr<Motion> read_cif(std::string_view text, std::string_view name) {
     return std::make_unique<CrystalMotion>(text, name);
 }
 
-}  // namespace anamorph
+}  // namespace anamorph::figure

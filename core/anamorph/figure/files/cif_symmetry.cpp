@@ -13,7 +13,7 @@
 
 #include "anamorph/parameter/text_file.h"
 
-namespace anamorph {
+namespace anamorph::figure {
 namespace {
 
 /// Images of an atom so close together are one, on a special position; Angstrom.
@@ -254,4 +254,4 @@ Crystal crystal_of(const std::vector<glm::dvec3>& places, const std::vector<doub
     return crystal;
 }
 
-}  // namespace anamorph
+}  // namespace anamorph::figure

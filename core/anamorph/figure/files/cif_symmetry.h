@@ -13,7 +13,7 @@
 #include <string_view>
 #include <vector>
 
-namespace anamorph {
+namespace anamorph::figure {
 
 /// p becomes turn p + shift.
 struct SymmetryOperation {
@@ -52,4 +52,4 @@ Crystal crystal_of(const std::vector<glm::dvec3>& places, const std::vector<doub
                    const std::vector<SymmetryOperation>& operations, const glm::dmat3& cell,
                    const CrystalLimits& limits);
 
-}  // namespace anamorph
+}  // namespace anamorph::figure

@@ -13,7 +13,7 @@
 #include "anamorph/parameter/parameter.h"
 #include "anamorph/parameter/text_file.h"
 
-namespace anamorph {
+namespace anamorph::figure {
 namespace {
 
 using text_file::excerpt;
@@ -222,4 +222,4 @@ std::vector<FigureFrame> parse_frames(std::string_view text, std::string_view na
     return frames;
 }
 
-}  // namespace anamorph
+}  // namespace anamorph::figure

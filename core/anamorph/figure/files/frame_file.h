@@ -21,7 +21,7 @@
 
 #include "anamorph/figure/body/frame.h"
 
-namespace anamorph {
+namespace anamorph::figure {
 
 /// The text of a frame. Throws Error where a number does not fit a 32-bit integer.
 std::string frame_text(const FigureFrame& frame);
@@ -47,4 +47,4 @@ class FrameReader {
 /// All frames of a text.
 std::vector<FigureFrame> parse_frames(std::string_view text, std::string_view name);
 
-}  // namespace anamorph
+}  // namespace anamorph::figure

@@ -7,7 +7,7 @@
 #include "anamorph/figure/files/mrasel_file.h"
 #include "anamorph/parameter/text_file.h"
 
-namespace anamorph {
+namespace anamorph::figure {
 namespace {
 
 /// Frames that are kept, in the order of the file.
@@ -57,4 +57,4 @@ std::unique_ptr<Motion> read_motion(std::string_view text, std::string_view name
     return std::make_unique<KeptFrames>(std::move(frames));
 }
 
-}  // namespace anamorph
+}  // namespace anamorph::figure

@@ -22,7 +22,7 @@
 
 #include "anamorph/figure/body/motion.h"
 
-namespace anamorph {
+namespace anamorph::figure {
 
 /// Whether a file with this name holds frames (.bvh, .cif, .3, .mrasel), in small letters or capitals.
 bool is_motion_file(std::string_view name);
@@ -35,4 +35,4 @@ std::unique_ptr<Motion> read_bvh(std::string_view text, std::string_view name);
 /// The same, of CIF.
 std::unique_ptr<Motion> read_cif(std::string_view text, std::string_view name);
 
-}  // namespace anamorph
+}  // namespace anamorph::figure

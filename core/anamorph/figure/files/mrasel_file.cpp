@@ -10,7 +10,7 @@
 #include "anamorph/parameter/parameter.h"
 #include "anamorph/parameter/text_file.h"
 
-namespace anamorph {
+namespace anamorph::figure {
 namespace {
 
 constexpr double kScreenRows = 512, kUnitsOfPixel = 1000 / kScreenRows;
@@ -99,4 +99,4 @@ FigureFrame mrasel_frame(std::string_view text, std::string_view name) {
     return frame;
 }
 
-}  // namespace anamorph
+}  // namespace anamorph::figure

@@ -14,9 +14,9 @@
 
 #include "anamorph/figure/body/frame.h"
 
-namespace anamorph {
+namespace anamorph::figure {
 
 /// Reads such a text. Throws Error naming the file (`name`) and the line.
 FigureFrame mrasel_frame(std::string_view text, std::string_view name);
 
-}  // namespace anamorph
+}  // namespace anamorph::figure

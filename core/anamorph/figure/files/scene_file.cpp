@@ -21,7 +21,7 @@
 #include "anamorph/parameter/parameter.h"
 #include "anamorph/version.h"
 
-namespace anamorph {
+namespace anamorph::figure {
 namespace {
 
 using Json = nlohmann::json;
@@ -473,4 +473,4 @@ std::string vtp_file(const FigureFrame& frame) {
     return to.text;
 }
 
-}  // namespace anamorph
+}  // namespace anamorph::figure

@@ -10,7 +10,7 @@
 
 #include "anamorph/figure/body/frame.h"
 
-namespace anamorph {
+namespace anamorph::figure {
 
 /// Frames as a binary glTF file (.glb): a node for each figure and in it one for each body, in metres, of
 /// which 500 units are one. Between frames places and half-axes go straight, turns the shortest way. Colors
@@ -27,4 +27,4 @@ std::string obj_file(const FigureFrame& frame);
 /// Programs without Anamorph read it as points. Names are UTF-8.
 std::string vtp_file(const FigureFrame& frame);
 
-}  // namespace anamorph
+}  // namespace anamorph::figure

@@ -8,7 +8,7 @@
 
 #include "anamorph/parameter/text_file.h"
 
-namespace anamorph {
+namespace anamorph::figure {
 namespace {
 
 const auto& table() {
@@ -107,4 +107,4 @@ SpaceGroup space_group(const SpaceGroupName& name) {
     return found;
 }
 
-}  // namespace anamorph
+}  // namespace anamorph::figure

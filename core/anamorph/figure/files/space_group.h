@@ -8,7 +8,7 @@
 
 #include "anamorph/figure/files/cif_symmetry.h"
 
-namespace anamorph {
+namespace anamorph::figure {
 
 /// How a file names its group; what it does not say is empty.
 struct SpaceGroupName {
@@ -29,4 +29,4 @@ struct SpaceGroup {
 /// setting open it is the first of the tables: unique axis b, cell choice 1, hexagonal axes where the cell has their angles.
 SpaceGroup space_group(const SpaceGroupName& name);
 
-}  // namespace anamorph
+}  // namespace anamorph::figure

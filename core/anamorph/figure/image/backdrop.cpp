@@ -5,7 +5,7 @@
 
 #include "anamorph/figure/image/body_texture.h"
 
-namespace anamorph {
+namespace anamorph::figure {
 
 glm::dvec4 band_color(const std::vector<BackgroundBand>& bands, int y, int height) {
     glm::dvec3 sum(0.0);
@@ -34,4 +34,4 @@ glm::dvec4 FigureBackdrop::color(int x, int y, const glm::dvec4& below) {
     return laid_over(own, own.a, below);
 }
 
-}  // namespace anamorph
+}  // namespace anamorph::figure

@@ -11,7 +11,7 @@
 #include "anamorph/image/footprint.h"
 #include "anamorph/image/point_sampler.h"
 
-namespace anamorph {
+namespace anamorph::figure {
 
 /// The mean colour, 0 to 1, and the alpha of a row of pixels in a picture of so many rows; the last band goes on
 /// to the bottom.
@@ -34,4 +34,4 @@ class FigureBackdrop {
     std::vector<float> m_pixel;
 };
 
-}  // namespace anamorph
+}  // namespace anamorph::figure

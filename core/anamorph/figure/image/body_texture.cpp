@@ -6,7 +6,7 @@
 
 #include "anamorph/number/jet.h"
 
-namespace anamorph {
+namespace anamorph::figure {
 namespace {
 
 /// What stands beyond the texture's edges: what the mapping continues with.
@@ -111,4 +111,4 @@ bool BodyTexture::read_level(Filter filter, int level, double u, double v, float
     return m_sampler.sample(filter, level, 0, u * scale[0], v * scale[1], pixel);
 }
 
-}  // namespace anamorph
+}  // namespace anamorph::figure

@@ -16,7 +16,7 @@
 #include "anamorph/image/point_sampler.h"
 #include "anamorph/image/summed_areas.h"
 
-namespace anamorph {
+namespace anamorph::figure {
 
 /// What is seen of a texture: a body's surface, the texture moved by `offset` texels.
 struct TexturedSurface {
@@ -62,4 +62,4 @@ class BodyTexture {
     std::vector<float> m_pixel, m_coarser;
 };
 
-}  // namespace anamorph
+}  // namespace anamorph::figure

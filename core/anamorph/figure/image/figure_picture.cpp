@@ -14,7 +14,7 @@
 #include "anamorph/image/pixel.h"
 #include "anamorph/image/strips.h"
 
-namespace anamorph {
+namespace anamorph::figure {
 namespace {
 
 using Values = std::array<float, 4>;
@@ -281,4 +281,4 @@ void FigurePicture::draw(const Box& box, const ImageView& pixels, const Parallel
     });
 }
 
-}  // namespace anamorph
+}  // namespace anamorph::figure

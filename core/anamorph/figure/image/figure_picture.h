@@ -24,7 +24,7 @@
 #include "anamorph/image/view.h"
 #include "anamorph/parallel_for.h"
 
-namespace anamorph {
+namespace anamorph::figure {
 
 /// What is drawn of a figure.
 enum class FigureStyle {
@@ -79,4 +79,4 @@ class FigurePicture {
     std::unique_ptr<const Impl> m_impl;
 };
 
-}  // namespace anamorph
+}  // namespace anamorph::figure

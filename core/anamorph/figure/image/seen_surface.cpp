@@ -5,7 +5,7 @@
 
 #include "anamorph/figure/outline/outline_body.h"
 
-namespace anamorph {
+namespace anamorph::figure {
 namespace {
 
 using Vector = glm::vec<3, long double>;
@@ -179,4 +179,4 @@ double SeenSurface::far_side(double dx, double dy) const {
     return (e1 * e1 + e2 * e2 + w * w) / (m_eye * w + root);
 }
 
-}  // namespace anamorph
+}  // namespace anamorph::figure

@@ -27,7 +27,7 @@
 #include "anamorph/geometry/box.h"
 #include "anamorph/number/number.h"
 
-namespace anamorph {
+namespace anamorph::figure {
 
 /// c + x dx + y dy.
 struct AffineOfPixel {
@@ -173,4 +173,4 @@ inline double depth_of(double nearness, bool perspective) {
     return perspective ? 1 / nearness : -nearness;
 }
 
-}  // namespace anamorph
+}  // namespace anamorph::figure

@@ -13,7 +13,7 @@
 #include <glm/geometric.hpp>
 #include <glm/vec3.hpp>
 
-namespace anamorph {
+namespace anamorph::figure {
 
 /// The formula of the intensity.
 enum class Lighting { rasel, lambert, blinn };
@@ -48,4 +48,4 @@ inline glm::dvec3 lit(const glm::dvec3& color, const Light& light, const glm::dv
     return seen;
 }
 
-}  // namespace anamorph
+}  // namespace anamorph::figure

@@ -6,7 +6,7 @@
 
 #include "anamorph/figure/outline/outline_body.h"
 
-namespace anamorph {
+namespace anamorph::figure {
 namespace {
 
 constexpr int kSide = VisibleSurfaces::kSide, kSamples = VisibleSurfaces::kSamples;
@@ -319,4 +319,4 @@ std::vector<VisiblePoint> VisibleSurfaces::points(const Box& box) const {
     return Tile(m_surfaces, box).take_points();
 }
 
-}  // namespace anamorph
+}  // namespace anamorph::figure

@@ -16,7 +16,7 @@
 #include "anamorph/figure/image/seen_surface.h"
 #include "anamorph/parallel_for.h"
 
-namespace anamorph {
+namespace anamorph::figure {
 
 /// What a pixel shows of a body.
 struct VisiblePart {
@@ -67,4 +67,4 @@ class VisibleSurfaces {
     bool m_perspective;
 };
 
-}  // namespace anamorph
+}  // namespace anamorph::figure

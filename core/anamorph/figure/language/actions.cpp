@@ -11,7 +11,7 @@
 #include "anamorph/parameter/parameter.h"
 #include "anamorph/parameter/text_file.h"
 
-namespace anamorph {
+namespace anamorph::figure {
 
 using text_file::excerpt;
 
@@ -420,4 +420,4 @@ void FigureAction::use_variables() const {
     }
 }
 
-}  // namespace anamorph
+}  // namespace anamorph::figure

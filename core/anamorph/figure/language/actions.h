@@ -9,7 +9,7 @@
 #include "anamorph/figure/language/program.h"
 #include "anamorph/figure/language/timing.h"
 
-namespace anamorph {
+namespace anamorph::figure {
 
 /// One action in one frame. All functions throw Error, naming the line of the script.
 class FigureAction {
@@ -115,4 +115,4 @@ class FigureAction {
 /// Throws Error when ellipsoids meet that `forbid` keeps apart.
 void check_overlaps(const Program& program, const FigureState& state, int frame);
 
-}  // namespace anamorph
+}  // namespace anamorph::figure

@@ -7,7 +7,7 @@
 #include "anamorph/figure/language/actions.h"
 #include "anamorph/parameter/text_file.h"
 
-namespace anamorph {
+namespace anamorph::figure {
 
 glm::dvec3 FigureAction::powers(const glm::dvec3& factors, double share) const {
     glm::dvec3 out;
@@ -128,4 +128,4 @@ void FigureAction::detach() const {
     m_state.topology = std::move(topology);
 }
 
-}  // namespace anamorph
+}  // namespace anamorph::figure

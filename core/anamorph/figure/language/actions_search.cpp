@@ -11,7 +11,7 @@
 #include "anamorph/figure/language/actions.h"
 #include "anamorph/parameter/text_file.h"
 
-namespace anamorph {
+namespace anamorph::figure {
 namespace {
 
 /// A function of an angle whose zero is looked for, in radians.
@@ -272,4 +272,4 @@ void check_overlaps(const Program& program, const FigureState& state, int frame)
     }
 }
 
-}  // namespace anamorph
+}  // namespace anamorph::figure

@@ -8,7 +8,7 @@
 
 #include "anamorph/figure/body/rotation.h"
 
-namespace anamorph {
+namespace anamorph::figure {
 namespace {
 
 std::size_t at(int index) {
@@ -235,4 +235,4 @@ FigureFrame frame_of(const FigureState& state, const Program& program, int numbe
     return frame;
 }
 
-}  // namespace anamorph
+}  // namespace anamorph::figure

@@ -11,7 +11,7 @@
 #include "anamorph/figure/body/frame.h"
 #include "anamorph/figure/language/program.h"
 
-namespace anamorph {
+namespace anamorph::figure {
 
 /// What joints connect at the moment. Shared between states until an action attaches or detaches.
 struct Topology {
@@ -101,4 +101,4 @@ Ellipsoid shape_of(const FigureState::Body& body);
 FigureState figures_at_rest(const Program& program);
 FigureFrame frame_of(const FigureState& state, const Program& program, int number);
 
-}  // namespace anamorph
+}  // namespace anamorph::figure

@@ -7,7 +7,7 @@
 #include "anamorph/figure/language/script_table.h"
 #include "anamorph/parameter/parameter.h"
 
-namespace anamorph {
+namespace anamorph::figure {
 namespace {
 
 struct Said {
@@ -190,4 +190,4 @@ std::string language_page(std::string_view word) {
     return page + "\n\n    " + found->meaning + "\n\nFor example:\n\n" + found->example;
 }
 
-}  // namespace anamorph
+}  // namespace anamorph::figure

@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-namespace anamorph {
+namespace anamorph::figure {
 
 /// A word of the language.
 struct LanguageWord {
@@ -20,4 +20,4 @@ std::vector<LanguageWord> language_words();
 /// The list of all words, or all about one, which may be shortened. Throws Error where there is no such word.
 std::string language_page(std::string_view word = {});
 
-}  // namespace anamorph
+}  // namespace anamorph::figure

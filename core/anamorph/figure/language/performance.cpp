@@ -12,7 +12,7 @@
 #include "anamorph/figure/language/figure_state.h"
 #include "anamorph/figure/language/script_parser.h"
 
-namespace anamorph {
+namespace anamorph::figure {
 namespace {
 
 constexpr int kMostUnknownFrames = 1000000;
@@ -321,4 +321,4 @@ const Program& Performance::program() const {
     return m_impl->program;
 }
 
-}  // namespace anamorph
+}  // namespace anamorph::figure

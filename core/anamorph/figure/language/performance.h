@@ -31,7 +31,7 @@
 #include "anamorph/figure/body/motion.h"
 #include "anamorph/figure/language/program.h"
 
-namespace anamorph {
+namespace anamorph::figure {
 
 /// What a performance reports, and how much it keeps.
 struct PerformanceOptions {
@@ -65,4 +65,4 @@ class Performance final : public Motion {
     std::unique_ptr<Impl> m_impl;
 };
 
-}  // namespace anamorph
+}  // namespace anamorph::figure

@@ -12,7 +12,7 @@
 #include <string>
 #include <vector>
 
-namespace anamorph {
+namespace anamorph::figure {
 
 /// Two ways to read scripts and to perform them.
 enum class Dialect {
@@ -148,4 +148,4 @@ const char* name_of(Action action);
 /// The word of the language.
 const char* name_of(Distribution distribution);
 
-}  // namespace anamorph
+}  // namespace anamorph::figure

@@ -9,7 +9,7 @@
 #include "anamorph/figure/language/script_parser.h"
 #include "anamorph/parameter/text_file.h"
 
-namespace anamorph {
+namespace anamorph::figure {
 namespace {
 
 using text_file::excerpt;
@@ -229,4 +229,4 @@ Program parse_program(std::string_view text, std::string_view name, const Script
     return std::move(script.program);
 }
 
-}  // namespace anamorph
+}  // namespace anamorph::figure

@@ -28,7 +28,7 @@
 
 #include "anamorph/figure/language/program.h"
 
-namespace anamorph {
+namespace anamorph::figure {
 
 /// Longer texts are refused.
 inline constexpr std::size_t kMaxScriptText = std::size_t{64} << 20;
@@ -73,4 +73,4 @@ Script parse_script(std::string_view text, std::string_view name, const ScriptOp
 /// The program alone. Throws Error with the first error's text.
 Program parse_program(std::string_view text, std::string_view name, const ScriptOptions& options = {});
 
-}  // namespace anamorph
+}  // namespace anamorph::figure

@@ -8,7 +8,7 @@
 
 #include "anamorph/parameter/text_file.h"
 
-namespace anamorph {
+namespace anamorph::figure {
 namespace {
 
 bool is_digit(char c) {
@@ -101,4 +101,4 @@ std::optional<double> read_script_number(std::string_view token, Dialect dialect
     return negative ? -value : value;
 }
 
-}  // namespace anamorph
+}  // namespace anamorph::figure

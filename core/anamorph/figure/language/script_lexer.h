@@ -7,7 +7,7 @@
 
 #include "anamorph/figure/language/program.h"
 
-namespace anamorph {
+namespace anamorph::figure {
 
 struct ScriptToken {
     std::string_view text;  ///< empty at the end of the text
@@ -43,4 +43,4 @@ bool looks_like_number(std::string_view token);
 /// over.
 std::optional<double> read_script_number(std::string_view token, Dialect dialect);
 
-}  // namespace anamorph
+}  // namespace anamorph::figure

@@ -5,7 +5,7 @@
 #include "anamorph/figure/language/script_parser.h"
 #include "anamorph/parameter/text_file.h"
 
-namespace anamorph {
+namespace anamorph::figure {
 
 void ScriptParser::movement(Distribution distribution) {
     Movement m;
@@ -121,4 +121,4 @@ void ScriptParser::resolve_pending() {
                   "the ellipsoid " + in_quotes(m_program.ellipsoids[i].name) + " is declared nowhere");
 }
 
-}  // namespace anamorph
+}  // namespace anamorph::figure

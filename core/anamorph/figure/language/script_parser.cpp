@@ -8,7 +8,7 @@
 
 #include "anamorph/parameter/text_file.h"
 
-namespace anamorph {
+namespace anamorph::figure {
 
 using script_table::Keyword;
 using text_file::excerpt;
@@ -452,4 +452,4 @@ void ScriptParser::view() {
     m_program.view = frames;
 }
 
-}  // namespace anamorph
+}  // namespace anamorph::figure

@@ -12,7 +12,7 @@
 #include "anamorph/figure/language/script_symbols.h"
 #include "anamorph/figure/language/script_table.h"
 
-namespace anamorph {
+namespace anamorph::figure {
 
 /// Numbers of frames beyond it are taken for it.
 inline constexpr int kLargestFrame = 1000000000;
@@ -117,4 +117,4 @@ inline bool runs_backwards(const Movement& m) {
 /// What only the whole program shows: rings of joints, figures in pieces, subroutines that call themselves.
 void check_program(Script& script);
 
-}  // namespace anamorph
+}  // namespace anamorph::figure

@@ -7,7 +7,7 @@
 
 #include "anamorph/parameter/text_file.h"
 
-namespace anamorph {
+namespace anamorph::figure {
 namespace {
 
 std::size_t column(OperandKind kind) {
@@ -242,4 +242,4 @@ std::string ScriptSymbols::nearest(char letter, std::string_view name) const {
     return nearest_of(name, candidates);
 }
 
-}  // namespace anamorph
+}  // namespace anamorph::figure

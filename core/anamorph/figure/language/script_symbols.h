@@ -11,7 +11,7 @@
 
 #include "anamorph/figure/language/program.h"
 
-namespace anamorph {
+namespace anamorph::figure {
 
 /// What the letters of script_table::Entry::operands are called in messages.
 const char* description_of(char letter);
@@ -49,4 +49,4 @@ class ScriptSymbols {
     std::unordered_map<std::string, std::array<int, kKinds>> m_indices;
 };
 
-}  // namespace anamorph
+}  // namespace anamorph::figure

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-namespace anamorph {
+namespace anamorph::figure {
 namespace script_table {
 namespace {
 
@@ -160,4 +160,4 @@ const char* name_of(Distribution distribution) {
     return "";
 }
 
-}  // namespace anamorph
+}  // namespace anamorph::figure

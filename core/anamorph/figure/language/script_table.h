@@ -8,7 +8,7 @@
 
 #include "anamorph/figure/language/program.h"
 
-namespace anamorph::script_table {
+namespace anamorph::figure::script_table {
 
 enum class Keyword {
     figure,
@@ -54,4 +54,4 @@ std::vector<std::string_view> words(bool of_actions);
 /// Whether `word` is a keyword, written in full.
 bool is_keyword(std::string_view word);
 
-}  // namespace anamorph::script_table
+}  // namespace anamorph::figure::script_table

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace anamorph {
+namespace anamorph::figure {
 namespace {
 
 /// 1 + ... + m, and 1 + 4 + ... + m^2.
@@ -40,4 +40,4 @@ Shares shares_of(Distribution distribution, double a, double n) {
     }
 }
 
-}  // namespace anamorph
+}  // namespace anamorph::figure

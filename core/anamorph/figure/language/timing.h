@@ -4,7 +4,7 @@
 
 #include "anamorph/figure/language/program.h"
 
-namespace anamorph {
+namespace anamorph::figure {
 
 struct Shares {
     double frac = 1;  ///< of the whole; they sum to 1
@@ -14,4 +14,4 @@ struct Shares {
 /// The shares of frame `a` of `n`, 1 <= a <= n. `repeat` gives 1 and 1.
 Shares shares_of(Distribution distribution, double a, double n);
 
-}  // namespace anamorph
+}  // namespace anamorph::figure

@@ -7,7 +7,7 @@
 #include "anamorph/figure/body/rotation.h"
 #include "anamorph/figure/outline/outline_arcs.h"
 
-namespace anamorph {
+namespace anamorph::figure {
 namespace {
 
 constexpr int kSteps = 256;
@@ -139,4 +139,4 @@ std::vector<Connection> connections(const FigureFrame& frame, const Outlines& ou
     return connections(frame.joints, shapes, outlines, view, parallel_for);
 }
 
-}  // namespace anamorph
+}  // namespace anamorph::figure

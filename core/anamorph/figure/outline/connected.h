@@ -10,7 +10,7 @@
 #include "anamorph/figure/outline/outline.h"
 #include "anamorph/parallel_for.h"
 
-namespace anamorph {
+namespace anamorph::figure {
 
 /// Along a common tangent, from its point of contact with the first body's limb to that with the second's.
 struct ConnectingStroke {
@@ -34,4 +34,4 @@ std::vector<Connection> connections(std::span<const Joint> joints, std::span<con
 std::vector<Connection> connections(const FigureFrame& frame, const Outlines& outlines, const View& view,
                                     const ParallelFor& parallel_for = serial_for);
 
-}  // namespace anamorph
+}  // namespace anamorph::figure

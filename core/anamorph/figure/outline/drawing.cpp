@@ -11,7 +11,7 @@
 #include "anamorph/figure/outline/level_of_detail.h"
 #include "anamorph/figure/outline/outline.h"
 
-namespace anamorph {
+namespace anamorph::figure {
 namespace {
 
 /// The rest is left for the rounding of numbers in a file (kTolRow).
@@ -321,4 +321,4 @@ Drawing draw(const FigureFrame& frame, const View& view, const glm::dvec2& size,
     return page.take();
 }
 
-}  // namespace anamorph
+}  // namespace anamorph::figure

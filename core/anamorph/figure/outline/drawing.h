@@ -13,7 +13,7 @@
 #include "anamorph/parallel_for.h"
 #include "anamorph/parameter/number_row.h"
 
-namespace anamorph {
+namespace anamorph::figure {
 
 /// What becomes of hidden lines; draw: bodies are transparent.
 enum class HiddenLines { remove, dash, draw };
@@ -71,4 +71,4 @@ struct Drawing {
 Drawing draw(const FigureFrame& frame, const View& view, const glm::dvec2& size,
              const DrawingOptions& options, const ParallelFor& parallel_for = serial_for);
 
-}  // namespace anamorph
+}  // namespace anamorph::figure

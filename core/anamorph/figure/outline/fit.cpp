@@ -6,7 +6,7 @@
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
 
-namespace anamorph {
+namespace anamorph::figure {
 namespace {
 
 constexpr double kMargin = 0.05;
@@ -52,4 +52,4 @@ void fit_view(View& view, const SeenExtent& extent, const glm::dvec2& size) {
     view.middle = 0.5 * size - view.scale * 0.5 * (extent.least + extent.most);
 }
 
-}  // namespace anamorph
+}  // namespace anamorph::figure

@@ -7,7 +7,7 @@
 #include "anamorph/figure/body/frame.h"
 #include "anamorph/figure/outline/outline_view.h"
 
-namespace anamorph {
+namespace anamorph::figure {
 
 /// A rectangle around figures as one looks at them, about the view's middle and in its scale 1.
 struct SeenExtent {
@@ -25,4 +25,4 @@ void add_seen_extent(const FigureFrame& frame, const View& view, SeenExtent& ext
 /// they have no extent, the scale stays.
 void fit_view(View& view, const SeenExtent& extent, const glm::dvec2& size);
 
-}  // namespace anamorph
+}  // namespace anamorph::figure

@@ -6,7 +6,7 @@
 #include "anamorph/figure/outline/outline.h"
 #include "anamorph/parameter/parameter.h"
 
-namespace anamorph {
+namespace anamorph::figure {
 namespace {
 
 /// The depth of the body's farthest point.
@@ -42,4 +42,4 @@ std::vector<Detail> levels_of_detail(std::span<const Ellipsoid> bodies, const Vi
     return details;
 }
 
-}  // namespace anamorph
+}  // namespace anamorph::figure

@@ -9,7 +9,7 @@
 #include "anamorph/figure/body/figure_rows.h"
 #include "anamorph/figure/outline/outline_view.h"
 
-namespace anamorph {
+namespace anamorph::figure {
 
 /// How a body is drawn, from least to most.
 enum class Detail : unsigned char { none, dot, line, ellipse, body };
@@ -27,4 +27,4 @@ struct DetailOptions {
 std::vector<Detail> levels_of_detail(std::span<const Ellipsoid> bodies, const View& view,
                                      const DetailOptions& options = {});
 
-}  // namespace anamorph
+}  // namespace anamorph::figure

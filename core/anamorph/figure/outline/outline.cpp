@@ -12,7 +12,7 @@
 #include "anamorph/figure/outline/outline_hiding.h"
 #include "anamorph/parameter/parameter.h"
 
-namespace anamorph {
+namespace anamorph::figure {
 namespace {
 
 /// Depth along the limb: w + reach cos(t - peak).
@@ -152,4 +152,4 @@ void hide_lines(std::span<SeenLine> lines, std::span<const Ellipsoid> bodies, co
     });
 }
 
-}  // namespace anamorph
+}  // namespace anamorph::figure

@@ -23,7 +23,7 @@
 #include "anamorph/figure/outline/outline_view.h"
 #include "anamorph/parallel_for.h"
 
-namespace anamorph {
+namespace anamorph::figure {
 
 /// Angles from `begin` to `end`, radians: 0 <= begin < 2 pi, begin < end <= begin + 2 pi.
 struct Arc {
@@ -112,4 +112,4 @@ void hide_lines(std::span<SeenLine> lines, std::span<const Ellipsoid> bodies, co
                 const std::vector<std::vector<int>>& ignored = {},
                 const ParallelFor& parallel_for = serial_for);
 
-}  // namespace anamorph
+}  // namespace anamorph::figure

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-namespace anamorph {
+namespace anamorph::figure {
 namespace {
 
 /// Cuts arcs at `period`.
@@ -95,4 +95,4 @@ std::vector<Arc> nearer_part(double from, double to, double near) {
     return {from < near ? Arc{0, s} : Arc{s, 1}};
 }
 
-}  // namespace anamorph
+}  // namespace anamorph::figure

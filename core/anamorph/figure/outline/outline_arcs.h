@@ -6,7 +6,7 @@
 
 #include "anamorph/figure/outline/outline.h"
 
-namespace anamorph {
+namespace anamorph::figure {
 
 /// Sorts and joins arcs with 0 <= begin <= period and end <= begin + period. On a closed range an arc that
 /// ends at `period` is joined to one that begins at 0.
@@ -23,4 +23,4 @@ void split(std::vector<Arc> hidden_parts, const std::vector<Arc>& cut, double pe
 /// The part of a line that is nearer than `near`, from the depths of its ends: 0 to 1, one arc or none.
 std::vector<Arc> nearer_part(double from, double to, double near);
 
-}  // namespace anamorph
+}  // namespace anamorph::figure

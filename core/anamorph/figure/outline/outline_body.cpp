@@ -7,7 +7,7 @@
 
 #include "anamorph/parameter/parameter.h"
 
-namespace anamorph {
+namespace anamorph::figure {
 namespace {
 
 using Real = long double;
@@ -247,4 +247,4 @@ std::vector<SeenBody> see_all(std::span<const Ellipsoid> bodies, const View& vie
     return seen;
 }
 
-}  // namespace anamorph
+}  // namespace anamorph::figure

@@ -11,7 +11,7 @@
 #include "anamorph/figure/outline/outline_roots.h"
 #include "anamorph/parallel_for.h"
 
-namespace anamorph {
+namespace anamorph::figure {
 
 /// A body in the coordinates of View::to_view, with d = p - (a point of the body).
 struct SeenBody {
@@ -50,4 +50,4 @@ SeenBody see(const Ellipsoid& body, const View& view);
 std::vector<SeenBody> see_all(std::span<const Ellipsoid> bodies, const View& view,
                               const std::vector<std::string>& names, const ParallelFor& parallel_for);
 
-}  // namespace anamorph
+}  // namespace anamorph::figure

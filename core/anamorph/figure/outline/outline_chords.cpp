@@ -8,7 +8,7 @@
 #include "anamorph/figure/outline/outline.h"
 #include "anamorph/parameter/parameter.h"
 
-namespace anamorph {
+namespace anamorph::figure {
 namespace {
 
 constexpr double kMostChords = 1 << 20;
@@ -82,4 +82,4 @@ std::vector<glm::dvec2> chords(const Outline& outline, const Arc& arc, const Vie
     return points;
 }
 
-}  // namespace anamorph
+}  // namespace anamorph::figure

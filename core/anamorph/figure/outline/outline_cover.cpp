@@ -10,7 +10,7 @@
 
 #include "anamorph/figure/outline/outline_hiding.h"
 
-namespace anamorph {
+namespace anamorph::figure {
 namespace {
 
 struct Range {
@@ -219,4 +219,4 @@ bool Surface::may_show_meeting(const SeenBody& other, const Part& part) const {
     return shows(part.corners, other, others, 0, others.size(), 0);
 }
 
-}  // namespace anamorph
+}  // namespace anamorph::figure

@@ -9,7 +9,7 @@
 
 #include "anamorph/figure/outline/outline_body.h"
 
-namespace anamorph {
+namespace anamorph::figure {
 
 /// Roundings of an operation or two per term of what decides whether a body hides something.
 inline constexpr double kHidingRounding = 32 * 0x1p-52;
@@ -68,4 +68,4 @@ class Surface {
     double m_size = 0;
 };
 
-}  // namespace anamorph
+}  // namespace anamorph::figure

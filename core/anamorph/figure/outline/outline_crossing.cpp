@@ -11,7 +11,7 @@
 #include "anamorph/figure/outline/outline_hiding.h"
 #include "anamorph/figure/outline/outline_loops.h"
 
-namespace anamorph {
+namespace anamorph::figure {
 namespace {
 
 /// R diag(a), which takes the unit sphere of a solid body to directions in view.
@@ -374,4 +374,4 @@ std::vector<CrossingCurve> crossing_curves(std::span<const Ellipsoid> bodies,
     return all;
 }
 
-}  // namespace anamorph
+}  // namespace anamorph::figure

@@ -8,7 +8,7 @@
 #include "anamorph/figure/outline/outline_body.h"
 #include "anamorph/parallel_for.h"
 
-namespace anamorph {
+namespace anamorph::figure {
 
 /// The loops of all pairs of `bodies` (as `seen` in `view`) that `options` ask for, in the order of the
 /// pairs.
@@ -16,4 +16,4 @@ std::vector<CrossingCurve> crossing_curves(std::span<const Ellipsoid> bodies,
                                            const std::vector<SeenBody>& seen, const View& view,
                                            const OutlineOptions& options, const ParallelFor& parallel_for);
 
-}  // namespace anamorph
+}  // namespace anamorph::figure

@@ -10,7 +10,7 @@
 #include "anamorph/figure/outline/outline_arcs.h"
 #include "anamorph/figure/outline/outline_cover.h"
 
-namespace anamorph {
+namespace anamorph::figure {
 namespace {
 
 /// row . (a point of the limb - origin), as the point moves along the limb.
@@ -204,4 +204,4 @@ std::vector<int> Overlaps::with(const ScreenBox& box) const {
     return found;
 }
 
-}  // namespace anamorph
+}  // namespace anamorph::figure

@@ -7,7 +7,7 @@
 
 #include "anamorph/figure/outline/outline_body.h"
 
-namespace anamorph {
+namespace anamorph::figure {
 
 /// Adds the arcs of the limb of `body` that `other` hides.
 void add_hidden(const SeenBody& body, const SeenBody& other, bool perspective, std::vector<Arc>& hidden);
@@ -43,4 +43,4 @@ class Overlaps {
     std::vector<double> m_right;  ///< the rightmost end of a limb up to there
 };
 
-}  // namespace anamorph
+}  // namespace anamorph::figure

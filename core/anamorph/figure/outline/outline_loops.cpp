@@ -19,7 +19,7 @@
 #include "anamorph/figure/body/rotation.h"
 #include "anamorph/figure/outline/outline_roots.h"
 
-namespace anamorph {
+namespace anamorph::figure {
 namespace {
 
 constexpr int kFirstStrips = 16, kDeepestStrip = 44;
@@ -496,4 +496,4 @@ glm::dvec3 point_between(const SphereCurve& curve, const glm::dvec3& p, const gl
     return u;
 }
 
-}  // namespace anamorph
+}  // namespace anamorph::figure

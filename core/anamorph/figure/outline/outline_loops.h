@@ -7,7 +7,7 @@
 #include <glm/vec3.hpp>
 #include <vector>
 
-namespace anamorph {
+namespace anamorph::figure {
 
 /// The curve |u| = 1, |matrix u + offset| = 1.
 struct SphereCurve {
@@ -32,4 +32,4 @@ std::vector<std::vector<glm::dvec3>> loops_of(const SphereCurve& curve, const Al
 /// The curve's point beside the part `s` of the chord from p to q, two neighbours of a loop.
 glm::dvec3 point_between(const SphereCurve& curve, const glm::dvec3& p, const glm::dvec3& q, double s);
 
-}  // namespace anamorph
+}  // namespace anamorph::figure

@@ -6,7 +6,7 @@
 
 #include "anamorph/figure/body/rotation.h"
 
-namespace anamorph {
+namespace anamorph::figure {
 namespace {
 
 constexpr int kIntervals = 8, kMostLevels = 40;
@@ -169,4 +169,4 @@ void add_roots(const Wave& f, Roots& roots) {
         roots.add(t < 0 ? t + kTurn : t >= kTurn ? t - kTurn : t);
 }
 
-}  // namespace anamorph
+}  // namespace anamorph::figure

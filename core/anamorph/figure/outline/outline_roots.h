@@ -9,7 +9,7 @@
 
 #include <cmath>
 
-namespace anamorph {
+namespace anamorph::figure {
 
 struct UnitVector {
     double cosine = 1, sine = 0;
@@ -58,4 +58,4 @@ struct Roots {
 void add_roots(const WaveSquares& f, Roots& roots);
 void add_roots(const Wave& f, Roots& roots);
 
-}  // namespace anamorph
+}  // namespace anamorph::figure

@@ -9,7 +9,7 @@
 
 #include "anamorph/figure/body/frame.h"
 
-namespace anamorph {
+namespace anamorph::figure {
 
 /// The observer looks along +z of q = rotation (p - center), with x to the right and y up: a smaller q.z is
 /// nearer. On the screen, in pixels with y up, p lies at middle + scale (q.x, q.y), in perspective at
@@ -60,4 +60,4 @@ inline View view_in(const FigureFrame& frame, const glm::dvec2& size) {
 /// Throws Error naming the field of `view` that is out of its range.
 void check(const View& view);
 
-}  // namespace anamorph
+}  // namespace anamorph::figure

@@ -18,7 +18,7 @@
 #include "anamorph/figure/outline/outline_body.h"
 #include "anamorph/parameter/parameter.h"
 
-namespace anamorph {
+namespace anamorph::figure {
 namespace {
 
 class Fill {
@@ -126,4 +126,4 @@ SphereFill fill_with_spheres(const Ellipsoid& body, const SphereOptions& options
     return fill;
 }
 
-}  // namespace anamorph
+}  // namespace anamorph::figure

@@ -8,7 +8,7 @@
 #include "anamorph/figure/body/ellipsoid.h"
 #include "anamorph/figure/body/figure_rows.h"
 
-namespace anamorph {
+namespace anamorph::figure {
 
 /// In units of the scene.
 struct Sphere {
@@ -34,4 +34,4 @@ struct SphereFill {
 /// Error when a value is not finite or larger than 1e25, tol is not positive or most_spheres is less than 1.
 SphereFill fill_with_spheres(const Ellipsoid& body, const SphereOptions& options = {});
 
-}  // namespace anamorph
+}  // namespace anamorph::figure

@@ -7,7 +7,7 @@
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
-namespace anamorph {
+namespace anamorph::figure {
 namespace {
 
 constexpr int kSampleRows = 16, kPixelSamples = kSampleRows * kSampleRows;
@@ -140,4 +140,4 @@ std::vector<LinePixel> StrokePixels::pixels(const Box& box) const {
     return out;
 }
 
-}  // namespace anamorph
+}  // namespace anamorph::figure

@@ -8,7 +8,7 @@
 #include "anamorph/figure/outline/drawing.h"
 #include "anamorph/geometry/box.h"
 
-namespace anamorph {
+namespace anamorph::figure {
 
 /// A pixel with red, green and blue multiplied by alpha.
 struct LinePixel {
@@ -28,4 +28,4 @@ class StrokePixels {
     std::vector<Box> m_boxes;  ///< of the strokes
 };
 
-}  // namespace anamorph
+}  // namespace anamorph::figure

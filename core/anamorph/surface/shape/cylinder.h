@@ -3,7 +3,7 @@
 
 #include "anamorph/surface/shape/shape.h"
 
-namespace anamorph::surfaces {
+namespace anamorph::surface::shapes {
 
 /// An upright cylinder about the y axis, of `radius`, of which the picture covers `angle`.
 class Cylinder {
@@ -29,4 +29,4 @@ class Cylinder {
     double m_turn, m_radius;
 };
 
-}  // namespace anamorph::surfaces
+}  // namespace anamorph::surface::shapes

@@ -5,7 +5,7 @@
 
 #include "anamorph/surface/shape/shape.h"
 
-namespace anamorph::surfaces {
+namespace anamorph::surface::shapes {
 
 /// A sheet that curls round a cylinder of `radius` that rolls over it, towards the viewer: up to the line where
 /// they touch the sheet stays, half a turn of it lies on the cylinder, the rest lies flat above the sheet.
@@ -43,4 +43,4 @@ class PageTurn {
     double m_radius, m_across, m_up, m_line;
 };
 
-}  // namespace anamorph::surfaces
+}  // namespace anamorph::surface::shapes

@@ -3,7 +3,7 @@
 
 #include "anamorph/surface/shape/shape.h"
 
-namespace anamorph::surfaces {
+namespace anamorph::surface::shapes {
 
 /// The picture as it is, flat.
 class Plane {
@@ -23,4 +23,4 @@ class Plane {
     SurfaceShape m_shape;
 };
 
-}  // namespace anamorph::surfaces
+}  // namespace anamorph::surface::shapes

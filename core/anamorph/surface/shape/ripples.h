@@ -3,7 +3,7 @@
 
 #include "anamorph/surface/shape/shape.h"
 
-namespace anamorph::surfaces {
+namespace anamorph::surface::shapes {
 
 /// Circular waves about the middle of the sheet, of `amplitude` and `wavelength`. Distances r are rounded off at the
 /// middle, as sqrt(r^2 + (wavelength / 8)^2), so that the surface is smooth there.
@@ -36,4 +36,4 @@ class Ripples {
     double m_waves;
 };
 
-}  // namespace anamorph::surfaces
+}  // namespace anamorph::surface::shapes

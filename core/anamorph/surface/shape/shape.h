@@ -7,7 +7,7 @@
 #include "anamorph/number/jet.h"
 #include "anamorph/number/number.h"
 
-namespace anamorph {
+namespace anamorph::surface {
 
 inline constexpr double kPi = 3.14159265358979323846;
 
@@ -49,4 +49,4 @@ SurfacePoint<T> normal_of_slopes(const T& along_x, const T& along_y) {
     return {-along_x / size, -along_y / size, T(1.0) / size};
 }
 
-}  // namespace anamorph
+}  // namespace anamorph::surface

@@ -3,7 +3,7 @@
 
 #include "anamorph/surface/shape/shape.h"
 
-namespace anamorph::surfaces {
+namespace anamorph::surface::shapes {
 
 /// A sphere of `radius` about the origin: the picture covers `angle` of longitude, and all latitudes.
 class Sphere {
@@ -33,4 +33,4 @@ class Sphere {
     double m_turn, m_radius;
 };
 
-}  // namespace anamorph::surfaces
+}  // namespace anamorph::surface::shapes

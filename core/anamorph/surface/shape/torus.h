@@ -3,7 +3,7 @@
 
 #include "anamorph/surface/shape/shape.h"
 
-namespace anamorph::surfaces {
+namespace anamorph::surface::shapes {
 
 /// A torus about the y axis: u goes round the axis at `radius` over `angle`, v once round the tube, of radius
 /// `tube`, from its inside over its top.
@@ -35,4 +35,4 @@ class Torus {
     double m_turn, m_radius, m_tube;
 };
 
-}  // namespace anamorph::surfaces
+}  // namespace anamorph::surface::shapes

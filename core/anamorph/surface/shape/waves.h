@@ -5,7 +5,7 @@
 
 #include "anamorph/surface/shape/shape.h"
 
-namespace anamorph::surfaces {
+namespace anamorph::surface::shapes {
 
 /// Plane waves on the sheet, of `amplitude` and `wavelength`, that go along `direction`.
 class Waves {
@@ -35,4 +35,4 @@ class Waves {
     double m_across, m_up;
 };
 
-}  // namespace anamorph::surfaces
+}  // namespace anamorph::surface::shapes

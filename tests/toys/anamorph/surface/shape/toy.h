@@ -3,7 +3,7 @@
 
 #include "anamorph/surface/shape/shape.h"
 
-namespace anamorph::surfaces {
+namespace anamorph::surface::shapes {
 
 /// A toy: z = (x^2 - y^2) / 2 over the plane.
 class ToySaddle {
@@ -24,4 +24,4 @@ class ToySaddle {
     SurfaceShape m_shape;
 };
 
-}  // namespace anamorph::surfaces
+}  // namespace anamorph::surface::shapes
