@@ -379,7 +379,7 @@ anamorph::surface::Camera vtkAnamorphDrape::CameraOf(const anamorph::Size& scree
     anamorph::figure::kViewAngleRow.check(this->CameraViewAngle, "CameraViewAngle");
     // The core's cameras measure a view by its width, VTK's by its height.
     const double aspect = static_cast<double>(screen.width) / screen.height,
-                 half_degree = anamorph::kPi / 360;
+                 half_degree = anamorph::surface::kPi / 360;
     anamorph::surface::CameraPose pose;
     pose.position = point("CameraPosition", this->CameraPosition);
     pose.target = point("CameraFocalPoint", this->CameraFocalPoint);

@@ -206,7 +206,7 @@ void vtkAnamorphFigureImage::Draw(vtkPolyData* input, vtkDataObject* output,
     const anamorph::figure::FigurePicture picture(
         frame_of(input, bodies, look.style == FigureStyle::textured), view, {width, height}, look,
         execution.stage(0, 0.3));
-    const int channels = anamorph::channels_of(look.style);
+    const int channels = anamorph::figure::channels_of(look.style);
     int extent[6];
     this->AskedExtent(extent);
     auto* image = vtkImageData::SafeDownCast(output);
