@@ -7,6 +7,7 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <numbers>
+#include <numeric>
 #include <random>
 #include <set>
 #include <tuple>
@@ -130,9 +131,10 @@ bool any_in(const PaintedTriangle& piece, const glm::dvec3& point, double texels
     return false;
 }
 
-/// Is a piece so narrow, as it is seen, that it counts as what its middle is (ShadowScale::thin)? By its height over the longest
-/// side in the plane that faces the projector.
-bool is_needle(const PaintedTriangle& piece, double texels, const Chart& chart) {
+/// Is a piece so narrow, as it is seen, that it counts as what its middle is (ShadowScale::thin), and does it? By its height over
+/// the longest side in the plane that faces the projector.
+bool is_as_its_middle(const PaintedTriangle& piece, double texels, const Chart& chart,
+                      const Triangles& before) {
     const auto& c = piece.corners;
     const glm::dvec3 axis = glm::normalize(c[0].point + c[1].point + c[2].point);
     glm::dvec3 flat[3];
@@ -140,7 +142,9 @@ bool is_needle(const PaintedTriangle& piece, double texels, const Chart& chart) 
     double longest = 0;
     for (std::size_t k = 0; k < 3; ++k) longest = std::max(longest, glm::length(flat[(k + 1) % 3] - flat[k]));
     const double height = glm::length(glm::cross(flat[1] - flat[0], flat[2] - flat[0])) / longest;
-    return height * chart.pixels_per_radian() <= texels;
+    const glm::dvec3 middle = (c[0].point + c[1].point + c[2].point) / 3.0;
+    return height * chart.pixels_per_radian() <= texels &&
+           is_hidden(middle, before) == (piece.painting == Painting::hidden);
 }
 
 /// Every point within pieces is as rays say, but next to borders of shadows.
@@ -149,7 +153,6 @@ void expect_as_rays_say(const Chart& chart, const Painted& painted, const Triang
     std::uniform_real_distribution<double> share(0, 1);
     for (const PaintedTriangle& p : painted.pieces) {
         if (p.painting != Painting::painted && p.painting != Painting::hidden) continue;
-        if (is_needle(p, std::min(tol, 1.0) / 32, chart)) continue;
         for (int i = 0; i < each; ++i) {
             double a = share(random), b = share(random);
             if (a + b > 1) a = 1 - a, b = 1 - b;
@@ -159,7 +162,8 @@ void expect_as_rays_say(const Chart& chart, const Painted& painted, const Triang
             if (says == is) continue;
             // What is lit may be hidden as part of a small piece; what is hidden is painted in narrow strips at most.
             const double texels = says ? std::min(tol, 1.0) : std::min(tol, 1.0) / 8;
-            EXPECT_TRUE(any_about(point, texels, chart, before, says) ||
+            EXPECT_TRUE(is_as_its_middle(p, std::min(tol, 1.0) / 32, chart, before) ||
+                        any_about(point, texels, chart, before, says) ||
                         any_in(p, point, texels, chart, before, says))
                 << (says ? "hidden but lit" : "painted but hidden") << " at " << point.x << " " << point.y
                 << " " << point.z;
@@ -243,15 +247,25 @@ TEST(Occluders, ManyTrianglesCastOneShadow) {
 }
 
 TEST(Occluders, RandomTrianglesBeforeAWall) {
-    for (unsigned seed = 1; seed <= 60; ++seed) {
+    std::vector<unsigned> seeds(40);
+    std::iota(seeds.begin(), seeds.end(), 1u);
+    // Of 6000 those in which needles of light, several texels long, were hidden.
+    seeds.insert(seeds.end(), {479, 3016, 5461});
+    for (const unsigned seed : seeds) {
         SCOPED_TRACE(seed);
         std::mt19937 random(seed);
         std::uniform_real_distribution<double> part(-1, 1);
+        // In this order, so that all compilers make the same scenes.
+        const auto place = [&] {
+            glm::dvec3 p;
+            for (int k = 0; k < 3; ++k) p[k] = part(random);
+            return p;
+        };
         Triangles before;
         for (int i = 0; i < 12; ++i) {
             Triangle t;
-            const glm::dvec3 about(part(random), part(random), -0.9 + 0.5 * part(random));
-            for (glm::dvec3& c : t) c = about + 0.4 * glm::dvec3(part(random), part(random), part(random));
+            const glm::dvec3 about = place() * glm::dvec3(1, 1, 0.5) - glm::dvec3(0, 0, 0.9);
+            for (glm::dvec3& c : t) c = about + 0.4 * place();
             before.push_back(t);
         }
         const Chart chart(Projection::cubemap, 64, 384);

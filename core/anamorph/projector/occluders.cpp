@@ -289,7 +289,7 @@ class ShadowParts {
         const bool dark_is_wide = m_all_dark || is_wide(m_dark);
         if (is_wide(light)) return dark_is_wide ? corner() : ShadowCover{ShadowCover::lit};
         // What has but strips of both is what most of it is.
-        return {!dark_is_wide && 2 * lit_area() > area(kWhole) ? ShadowCover::lit : ShadowCover::hidden};
+        return {!dark_is_wide && is_mostly_lit() ? ShadowCover::lit : ShadowCover::hidden};
     }
 
   private:
@@ -317,10 +317,10 @@ class ShadowParts {
         }
         return 0.5 * std::fabs(sum);
     }
-    double lit_area() const {
-        double sum = 0;
-        for (const Part& part : m_lit) sum += area(part);
-        return sum;
+    bool is_mostly_lit() const {
+        double lit = 0;
+        for (const Part& part : m_lit) lit += area(part);
+        return 2 * lit > area(kWhole);
     }
     /// Are points farther from the line through the two that are farthest apart?
     bool is_wide(const Part& part) const {
@@ -387,6 +387,7 @@ class ShadowParts {
         for (const Part& part : m_lit) points.insert(points.end(), part.begin(), part.end());
         const double whole = 2 * area(kWhole);
         ShadowCover best{ShadowCover::both};
+        best.mostly_lit = is_mostly_lit();
         double best_worth = 0;
         for (const glm::dvec3& l : points) {
             double within = HUGE_VAL;

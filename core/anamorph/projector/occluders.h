@@ -37,6 +37,7 @@ struct ShadowCover {
     /// Where it is both: weights of a point within the triangle, a corner of a shadow if there is one.
     glm::dvec3 corner{1. / 3};
     bool has_corner = false;  ///< is it one?
+    bool mostly_lit = false;  ///< is more than half of its area, where it is both?
 };
 
 /// Triangles that hide what is behind them from a point.

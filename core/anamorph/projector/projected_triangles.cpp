@@ -246,16 +246,19 @@ class Cutting {
         if (!set_texels(piece, tiny)) return put(piece, Painting::no_direction);
         const ShadowCover cover =
             m_shadows ? m_options.occluders->cover(points_of(c), shadow_scale()) : ShadowCover{};
+        bool lit = cover.share == ShadowCover::lit;
         if (cover.share == ShadowCover::both) {
             double seen = 0;
             for (std::size_t i = 0; i < 3; ++i)
                 seen = std::max(seen, texels_along(c[i].point, c[(i + 1) % 3].point));
-            if (!tiny && seen > least_shadow() && longest_side(c) > m_options.smallest &&
-                split_within(triangle, cover.corner))
-                return;
+            if (!tiny && seen > least_shadow() && longest_side(c) > m_options.smallest) {
+                if (split_within(triangle, cover.corner)) return;
+                // A needle that has been cut as often as may be is what most of it is.
+                lit = cover.mostly_lit;
+            }
         }
         // What is partly hidden and too small to split counts as hidden.
-        if (cover.share != ShadowCover::lit) return put(piece, Painting::hidden);
+        if (!lit) return put(piece, Painting::hidden);
         m_counts.max_error = std::max(m_counts.max_error, tiny ? m_options.tol : found.bound);
         clip(piece);
     }
