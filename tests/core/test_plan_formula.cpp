@@ -5,7 +5,7 @@
 #include <cstring>
 #include <random>
 
-#include "anamorph/plan/formula_planner.h"
+#include "anamorph/plan/formula_plan_impl.h"
 #include "block_points.h"
 
 namespace anamorph {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "anamorph/formula/text_plan.h"
 
-#include "anamorph/plan/formula_planner.h"
+#include "anamorph/plan/formula_plan_impl.h"
 
 namespace anamorph {
 

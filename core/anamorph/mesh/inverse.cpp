@@ -215,9 +215,9 @@ struct Bicubics : RegionData {
 };
 
 /// Plans one region.
-class InversePlanner {
+class InverseSubdivider {
   public:
-    InversePlanner(const InversePlan& plan, double tol, Blocks& blocks)
+    InverseSubdivider(const InversePlan& plan, double tol, Blocks& blocks)
         : m_plan(plan), m_mesh(plan.mesh()), m_tol(tol), m_blocks(blocks), m_writer(tol, blocks) {}
 
     void exact(const Box& box) {
@@ -653,11 +653,11 @@ InversePlan::InversePlan(Mesh mesh, WarpScheme scheme, double tol, const std::st
 }
 
 void InversePlan::plan(const Box& box, int, Blocks& blocks) const {
-    InversePlanner planner(*this, m_tol, blocks);
+    InverseSubdivider subdivider(*this, m_tol, blocks);
     if (m_tol == 0 || m_scheme == WarpScheme::exact)
-        planner.exact(box);
+        subdivider.exact(box);
     else
-        planner.region(box);
+        subdivider.region(box);
 }
 
 BlockPolynomial InversePlan::bicubic(const Block& block) const noexcept {

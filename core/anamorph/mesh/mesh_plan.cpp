@@ -89,10 +89,10 @@ bool has_small_cells(const Mesh& mesh, const Box& box) {
 }
 
 /// Plans one region; blocks are appended to `blocks`.
-class MeshPlanner {
+class CellSubdivider {
   public:
-    MeshPlanner(const Mesh& mesh, bool lattice, WarpScheme scheme, double tol, const ResidualTables* tables,
-                Blocks& blocks)
+    CellSubdivider(const Mesh& mesh, bool lattice, WarpScheme scheme, double tol,
+                   const ResidualTables* tables, Blocks& blocks)
         : m_mesh(mesh),
           m_lattice(lattice),
           m_scheme(scheme),
@@ -211,13 +211,13 @@ MeshPlan::MeshPlan(Mesh mesh, WarpScheme scheme, double tol)
 }
 
 void MeshPlan::plan(const Box& box, int, Blocks& blocks) const {
-    MeshPlanner planner(m_mesh, m_lattice, m_scheme, m_tol, m_tables.get(), blocks);
+    CellSubdivider subdivider(m_mesh, m_lattice, m_scheme, m_tol, m_tables.get(), blocks);
     if (m_tol == 0)
-        planner.exact(box);
+        subdivider.exact(box);
     else if (m_lattice && m_scheme != WarpScheme::exact)
-        planner.lattice(box);
+        subdivider.lattice(box);
     else
-        planner.region(box);
+        subdivider.region(box);
 }
 
 bool MeshPlan::exact(double x, double y, int, Point<double>& source_point, int& source_piece) const noexcept {

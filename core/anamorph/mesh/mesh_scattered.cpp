@@ -123,9 +123,9 @@ struct Run {
 };
 
 /// Plans one region.
-class ScatteredPlanner {
+class TriangleSubdivider {
   public:
-    ScatteredPlanner(const Scattered& map, double tol, Blocks& blocks, Pieces& records)
+    TriangleSubdivider(const Scattered& map, double tol, Blocks& blocks, Pieces& records)
         : m_map(map), m_blocks(blocks), m_records(records), m_writer(tol, blocks) {}
 
     void exact(const Box& box) {
@@ -373,11 +373,11 @@ ScatteredPlan::ScatteredPlan(Scattered map, WarpScheme scheme, double tol)
 
 void ScatteredPlan::plan(const Box& box, int, Blocks& blocks) const {
     const auto records = std::make_shared<Pieces>();
-    ScatteredPlanner planner(m_map, m_tol, blocks, *records);
+    TriangleSubdivider subdivider(m_map, m_tol, blocks, *records);
     if (m_tol == 0 || m_scheme == WarpScheme::exact)
-        planner.exact(box);
+        subdivider.exact(box);
     else
-        planner.region(box);
+        subdivider.region(box);
     if (!records->near.empty()) blocks.data = records;
 }
 
@@ -421,10 +421,10 @@ float ScatteredPlan::folds(double x, double y) const noexcept {
 std::int64_t ScatteredPlan::folded_pixels(const Box& box) const {
     Blocks unused;
     Pieces no_pieces;
-    ScatteredPlanner planner(m_map, m_tol, unused, no_pieces);
+    TriangleSubdivider subdivider(m_map, m_tol, unused, no_pieces);
     const int orientation = m_map.orientation() < 0 ? -1 : 1;
     return count_folded(
-        box, [&](const Box& b) { return planner.sign(b) * orientation; },
+        box, [&](const Box& b) { return subdivider.sign(b) * orientation; },
         [&](const Box& b) { return WarpPlan::folded_pixels(b); });
 }
 

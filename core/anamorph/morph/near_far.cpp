@@ -4,7 +4,7 @@
 // The proof of the bound stands where its parts are computed: what interpolation is off by in
 // near_far_interpolation.cpp, by facts about interpolation at Chebyshev's nodes; what rounding to float adds
 // in near_far_rounding.cpp, by counting; that a cell is kept only where both together hold the tolerance in
-// near_far_planner.cpp; what rounding in double is off by, where no cell holds it, in near_far_exact.cpp.
+// near_far_subdivider.cpp; what rounding in double is off by, where no cell holds it, in near_far_exact.cpp.
 #include "anamorph/morph/near_far.h"
 
 #include <algorithm>
@@ -12,7 +12,7 @@
 #include <limits>
 
 #include "anamorph/morph/near_far_line.h"
-#include "anamorph/morph/near_far_planner.h"
+#include "anamorph/morph/near_far_subdivider.h"
 #include "anamorph/plan/scheme.h"
 #include "anamorph/room_pool.h"
 
@@ -33,8 +33,8 @@ struct NearFar::State {
     FeatureMap map;  ///< along_curve
     NearFarOptions options;
     Chebyshev chebyshev;
-    std::vector<float> slopes;          ///< line by line: the most that its displacement changes over a pixel
-    RoomPool<NearFarPlanner> planners;  ///< which keep their memory from region to region
+    std::vector<float> slopes;  ///< line by line: the most that its displacement changes over a pixel
+    RoomPool<NearFarSubdivider> subdividers;  ///< which keep their memory from region to region
 
     State(const FeatureMap& given, const NearFarOptions& near_far)
         : map(given.along_curve()), options(near_far), chebyshev(degree_for(near_far.tol)) {
@@ -70,11 +70,11 @@ void NearFar::plan(const Box& box, int, Blocks& blocks) const {
     }
     const auto region = std::make_shared<Region>();
     State& state = *m_state;
-    auto planner = state.planners.take([&] {
-        return std::make_unique<NearFarPlanner>(state.map, state.options, state.chebyshev, state.slopes);
+    auto subdivider = state.subdividers.take([&] {
+        return std::make_unique<NearFarSubdivider>(state.map, state.options, state.chebyshev, state.slopes);
     });
-    planner->plan(box.x0, box.y0, *region);
-    state.planners.give_back(std::move(planner));
+    subdivider->plan(box.x0, box.y0, *region);
+    state.subdividers.give_back(std::move(subdivider));
 
     blocks.reserve(region->cells.size() * static_cast<std::size_t>(layers()));
     for (std::size_t i = 0; i < region->cells.size(); ++i) {

@@ -36,7 +36,7 @@
 // The displacement is S / W. With a sum off by dS and dW the quotient is off by (dS - D dW) / (W + dW). The
 // interpolant is linear in f, so dS - D dW is what it makes of the sum of w_i (D_i - D): each line counts
 // with |D_i - D| only. D is a mean of the D_i, which bounds |D - D*| for any reference D* (`spread`).
-#include "anamorph/morph/near_far_planner.h"
+#include "anamorph/morph/near_far_subdivider.h"
 
 #include <algorithm>
 #include <cmath>
@@ -56,14 +56,14 @@ constexpr double kUnderflow = 0x1p-112;
 // kBoundRounding leaves 28 u of that, more than 2^-42.
 constexpr double kUnderflowMoves = 0x1p-44;
 
-bool NearFarPlanner::floats_hold(const Known& known, double most, double reach) const {
+bool NearFarSubdivider::floats_hold(const Known& known, double most, double reach) const {
     const double lost = static_cast<double>(m_lines.size()) * (1 + known.farthest) * kUnderflow;
     // Displacements are at most `offset` and their reach long. NaN is not held.
     return (1 + known.offset) * most + reach < kMostSum && lost <= kUnderflowMoves * known.least;
 }
 
-Known NearFarPlanner::look(int x0, int y0, int size, Candidates& lines, simd::LineBounds& bounds,
-                           FarSums& sums, bool has_polynomial) const {
+Known NearFarSubdivider::look(int x0, int y0, int size, Candidates& lines, simd::LineBounds& bounds,
+                              FarSums& sums, bool has_polynomial) const {
     Known known;
     known.frame = {static_cast<float>(x0 + 0.5 * size - m_x), static_cast<float>(y0 + 0.5 * size - m_y),
                    static_cast<float>(0.5 * size)};
@@ -104,25 +104,25 @@ Known NearFarPlanner::look(int x0, int y0, int size, Candidates& lines, simd::Li
     return known;
 }
 
-double NearFarPlanner::quotient_error(const FarSums& sums, const Known& known) const {
+double NearFarSubdivider::quotient_error(const FarSums& sums, const Known& known) const {
     const double places = m_map.weights().b * m_place * (sums.near_reach + known.spread * sums.near);
     return (sums.error + known.spread * sums.value + known.offset * node_sum_rounding() * sums.most +
             places) /
            known.least;
 }
 
-double NearFarPlanner::node_sum_rounding() const {
+double NearFarSubdivider::node_sum_rounding() const {
     return m_chebyshev.lebesgue * m_chebyshev.lebesgue * simd::kNodeRounding;
 }
 
-simd::LineSums NearFarPlanner::select(Candidates& lines, const simd::LineBounds& bounds, const Known& known,
-                                      double budget) {
+simd::LineSums NearFarSubdivider::select(Candidates& lines, const simd::LineBounds& bounds,
+                                         const Known& known, double budget) {
     const double unit = budget > 0 ? 1 / (known.least * budget) : HUGE_VAL;
     return lines.select(bounds, static_cast<float>(known.spread), static_cast<float>(std::min(unit, 1e30)));
 }
 
-void NearFarPlanner::interpolate(const Candidates& lines, const CellFrame& frame, bool has_polynomial,
-                                 double* to) {
+void NearFarSubdivider::interpolate(const Candidates& lines, const CellFrame& frame, bool has_polynomial,
+                                    double* to) {
     const int k = m_chebyshev.k;
     const auto size = static_cast<std::size_t>(k * k * 8);
     if (lines.far_count == 0) {

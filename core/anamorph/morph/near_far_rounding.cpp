@@ -12,8 +12,8 @@
 // so is the view of one from a region's or a cell's centre. Whatever is off, it is a line again: all else is
 // proven for the map of the lines as double has them. Of that map, at a pixel, D is a mean of what the given
 // lines say, each off by `displacement`, with weights off by e_i in proportion, which moves it by the sum of
-// e_i l_i |D_i - D|: NearFarPlanner::bound_doubles.
-#include "anamorph/morph/near_far_planner.h"
+// e_i l_i |D_i - D|: NearFarSubdivider::bound_doubles.
+#include "anamorph/morph/near_far_subdivider.h"
 
 #include <algorithm>
 #include <cmath>
@@ -46,7 +46,7 @@ constexpr double kMostFarPlace = 8 * kRoundingUnit;
 
 }  // namespace
 
-bool NearFarPlanner::bound_doubles() {
+bool NearFarSubdivider::bound_doubles() {
     const double radius = std::numbers::sqrt2 * kHalfRegion;
     const double farthest = std::fabs(m_x) + std::fabs(m_y) + 2 * radius;
     double displacement = 0, weight = 0, reach = 0;
@@ -79,21 +79,21 @@ bool NearFarPlanner::bound_doubles() {
     return m_place <= kMostPlace;
 }
 
-double NearFarPlanner::center_rounding(double reach, double near_reach, double most, double slope,
-                                       double offset) const {
+double NearFarSubdivider::center_rounding(double reach, double near_reach, double most, double slope,
+                                          double offset) const {
     const double sums = (2 * simd::kSumRounding + 4 * kRoundingUnit) * (reach + offset * most);
     return m_chebyshev.lebesgue * m_chebyshev.lebesgue *
            (m_constant * reach + m_by_nearest * 11 * kHalfRegion * near_reach + sums +
             10 * kRoundingUnit * kHalfRegion * slope);
 }
 
-double NearFarPlanner::scale() const {
+double NearFarSubdivider::scale() const {
     double most = 0;
     for (const int k : m_options.shapes) most = std::max({most, m_map.scale(k).x, m_map.scale(k).y});
     return most;
 }
 
-double NearFarPlanner::base_rounding(const Known& known, int near) const {
+double NearFarSubdivider::base_rounding(const Known& known, int near) const {
     // The near lines' sums and the quotient: in numerator and denominator a product and a sum for each
     // line, 3 more for the polynomial and the quotient.
     const double value = known.mean + known.offset;
@@ -105,7 +105,7 @@ double NearFarPlanner::base_rounding(const Known& known, int near) const {
     return kRoundingUnit * (sums + std::numbers::sqrt2 * placed) + m_in_double;
 }
 
-double NearFarPlanner::far_rounding(const Known& known, const float* size) const {
+double NearFarSubdivider::far_rounding(const Known& known, const float* size) const {
     // A coefficient is rounded once; Horner's rule, K - 1 steps of a product and a sum, in t and then in s,
     // rounds a term 4 (K - 1) times at most. s and t are exact: multiples of 1 / (2 half), a power of two.
     // Of 4 K - 3 roundings up to 4 K + 4, 7 are room for those of `size`, K^2 additions, and of second
@@ -115,8 +115,8 @@ double NearFarPlanner::far_rounding(const Known& known, const float* size) const
            (moved + (known.spread + known.offset) * static_cast<double>(size[0])) / known.least;
 }
 
-NearRounding NearFarPlanner::near_rounding(Candidates& lines, const simd::LineBounds& bounds,
-                                           const Known& known, const FarSums& far) const {
+NearRounding NearFarSubdivider::near_rounding(Candidates& lines, const simd::LineBounds& bounds,
+                                              const Known& known, const FarSums& far) const {
     const double b = m_map.weights().b, half = static_cast<double>(known.frame.half);
     NearRounding out;
     double slope = 0;
@@ -166,7 +166,7 @@ NearRounding NearFarPlanner::near_rounding(Candidates& lines, const simd::LineBo
     return out;
 }
 
-NearError NearFarPlanner::near_error(const NearRounding& near, bool fine, double half) const {
+NearError NearFarSubdivider::near_error(const NearRounding& near, bool fine, double half) const {
     const double place =
         m_by_nearest * (fine ? simd::kFineRounding : 11 * half) + m_map.weights().b * m_place;
     // Where distances are cut off, weights have no bound.

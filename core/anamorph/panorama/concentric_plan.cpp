@@ -2,7 +2,7 @@
 #include "anamorph/panorama/concentric_plan.h"
 
 #include "anamorph/panorama/chart_jets.h"
-#include "anamorph/plan/formula_planner.h"
+#include "anamorph/plan/formula_plan_impl.h"
 
 namespace anamorph {
 

@@ -5,7 +5,7 @@
 #include "anamorph/panorama/direct_rows.h"
 #include "anamorph/panorama/panorama_residual.h"
 #include "anamorph/panorama/panorama_rows.h"
-#include "anamorph/plan/formula_planner.h"
+#include "anamorph/plan/formula_plan_impl.h"
 
 namespace anamorph {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the ways to plan and to draw a map cost, by which planners choose among them. A cost that is wrong makes pictures slower,
+// What the ways to plan and to draw a map cost, by which plans choose among them. A cost that is wrong makes pictures slower,
 // never a bound.
 #pragma once
 

@@ -3,30 +3,18 @@
 #pragma once
 
 #include <algorithm>
-#include <bit>
 #include <span>
 #include <type_traits>
 
 #include "anamorph/plan/block_writer.h"
+#include "anamorph/plan/boxes.h"
 #include "anamorph/plan/formula_plan.h"
 
-namespace anamorph::planner_detail {
+namespace anamorph::plan_detail {
 
 // The least pixels of a direct block, whose bases cost as much as some tens of them: in float, where double would need fewer
 // blocks; and where nothing larger holds the tolerance.
 inline constexpr int kLeastInFloat = 512, kLeastDirect = 128;
-
-inline Box sub_box(const Box& box, bool vertical_cut, bool second) {
-    Box b = box;
-    if (vertical_cut) {
-        const int cut = box.x0 + static_cast<int>(std::bit_ceil(static_cast<unsigned>(box.width()))) / 2;
-        (second ? b.x0 : b.x1) = cut;
-    } else {
-        const int cut = box.y0 + static_cast<int>(std::bit_ceil(static_cast<unsigned>(box.height()))) / 2;
-        (second ? b.y0 : b.y1) = cut;
-    }
-    return b;
-}
 
 /// What a region's direct blocks are read with.
 template <class Local>
@@ -171,4 +159,4 @@ class DirectBlocks {
     Bases m_bases;
 };
 
-}  // namespace anamorph::planner_detail
+}  // namespace anamorph::plan_detail

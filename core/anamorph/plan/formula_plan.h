@@ -4,7 +4,7 @@
 // too: that of their rounding, in double, or where that is not enough in long double.
 //
 // A map's plans are compiled once: the header of its plan declares `extern template class FormulaPlan<Map>`,
-// and one source file includes plan/formula_planner.h and instantiates it. See panorama/panorama_plan.h.
+// and one source file includes plan/formula_plan_impl.h and instantiates it. See panorama/panorama_plan.h.
 #pragma once
 
 #include <cstdint>

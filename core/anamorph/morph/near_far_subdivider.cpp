@@ -2,7 +2,7 @@
 // Cuts a region into cells until each is proven to hold the tolerance: its bound is the sum of what
 // near_far_interpolation.cpp and near_far_rounding.cpp prove, and the test is !(bound <= tol). The smallest
 // cells fall back on double (near_far_exact.cpp).
-#include "anamorph/morph/near_far_planner.h"
+#include "anamorph/morph/near_far_subdivider.h"
 
 #include <algorithm>
 #include <cmath>
@@ -17,7 +17,7 @@ namespace {
 // What floats hold of a line. A distance (before or behind, and beside) has a square below 2^127; that of a
 // point behind q is that of one before p, or less. A factor keeps its 24 bits. Whatever else is too large for
 // a float (the square of a displacement, a power near a line) makes a bound infinite or NaN, which holds no
-// tolerance; NearFarPlanner::look says what becomes of sums that are too large or too small.
+// tolerance; NearFarSubdivider::look says what becomes of sums that are too large or too small.
 constexpr float kMostDistance = 1e12f, kMostSlope = 1e9f;
 constexpr float kLeastFactor = 1e-25f, kMostFactor = 1e25f;
 // The least power of a distance, which has a relative error only if it is a normal float, from 2^-126
@@ -46,7 +46,7 @@ int most_near(int size) {
 
 }  // namespace
 
-void NearFarPlanner::plan(int x0, int y0, Region& region) {
+void NearFarSubdivider::plan(int x0, int y0, Region& region) {
     m_region = &region;
     region.cells.reserve(64);
     region.lines.reserve(128);
@@ -58,7 +58,7 @@ void NearFarPlanner::plan(int x0, int y0, Region& region) {
     settle(x0, y0, kRegion, 0, FarSums{}, false);
 }
 
-bool NearFarPlanner::gather() {
+bool NearFarSubdivider::gather() {
     const std::vector<int>& shapes = m_options.shapes;
     for (std::size_t n = 0; n < shapes.size(); ++n) {
         const Point<double> at = m_map(m_x, m_y, shapes[n]), scale = m_map.scale(shapes[n]);
@@ -88,13 +88,14 @@ bool NearFarPlanner::gather() {
     return bound_doubles();
 }
 
-bool NearFarPlanner::see(std::size_t i, double x, double y, FieldLine& to) const {
+bool NearFarSubdivider::see(std::size_t i, double x, double y, FieldLine& to) const {
     to = seen_from(m_map, i, m_options.shapes, x, y, m_reference.data(), m_unit);
     return to.factor > kLeastFactor && to.factor < kMostFactor && std::fabs(to.before) < kMostDistance &&
            std::fabs(to.beside) < kMostDistance;
 }
 
-void NearFarPlanner::settle(int x0, int y0, int size, std::size_t depth, FarSums sums, bool has_polynomial) {
+void NearFarSubdivider::settle(int x0, int y0, int size, std::size_t depth, FarSums sums,
+                               bool has_polynomial) {
     const Box box = intersection({x0, y0, x0 + size, y0 + size}, m_picture);
     if (box.empty()) return;
     Candidates& lines = level(depth);
@@ -122,8 +123,8 @@ void NearFarPlanner::settle(int x0, int y0, int size, std::size_t depth, FarSums
            has_polynomial);
 }
 
-void NearFarPlanner::divide(int x0, int y0, int size, std::size_t depth, const simd::LineBounds& bounds,
-                            const Known& known, FarSums sums, double budget, bool has_polynomial) {
+void NearFarSubdivider::divide(int x0, int y0, int size, std::size_t depth, const simd::LineBounds& bounds,
+                               const Known& known, FarSums sums, double budget, bool has_polynomial) {
     // Lines that are far from the whole cell go into its polynomial.
     Candidates& lines = level(depth);
     Candidates& rest = level(depth + 1);
@@ -147,8 +148,8 @@ void NearFarPlanner::divide(int x0, int y0, int size, std::size_t depth, const s
     }
 }
 
-bool NearFarPlanner::emit(const Box& box, Candidates& lines, const simd::LineBounds& bounds,
-                          const Known& known, const FarSums& sums, bool has_polynomial) {
+bool NearFarSubdivider::emit(const Box& box, Candidates& lines, const simd::LineBounds& bounds,
+                             const Known& known, const FarSums& sums, bool has_polynomial) {
     const int near = lines.near_count;
     const double off = sums.value / known.least;
     if (!(off < kMostWeightError)) return false;
@@ -205,7 +206,7 @@ bool NearFarPlanner::emit(const Box& box, Candidates& lines, const simd::LineBou
     return true;
 }
 
-void NearFarPlanner::exact(int x0, int y0, int size) {
+void NearFarSubdivider::exact(int x0, int y0, int size) {
     for (int y = y0; y < y0 + size; y += Block::kMaxSide)
         for (int x = x0; x < x0 + size; x += Block::kMaxSide) {
             const int side = std::min(size, Block::kMaxSide);

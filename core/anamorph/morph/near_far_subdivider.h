@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Plans a region in near/far: cells that hold the tolerance, by their bound.
 //
-// near_far_planner.cpp divides the region, near_far_interpolation.cpp bounds what far lines' polynomials are
+// near_far_subdivider.cpp divides the region, near_far_interpolation.cpp bounds what far lines' polynomials are
 // off by, and near_far_rounding.cpp what floats are.
 #pragma once
 
@@ -73,10 +73,10 @@ struct NearError {
 };
 
 /// Plans one region.
-class NearFarPlanner {
+class NearFarSubdivider {
   public:
-    NearFarPlanner(const FeatureMap& map, const NearFarOptions& options, const Chebyshev& chebyshev,
-                   const std::vector<float>& slopes)
+    NearFarSubdivider(const FeatureMap& map, const NearFarOptions& options, const Chebyshev& chebyshev,
+                      const std::vector<float>& slopes)
         : m_map(map),
           m_options(options),
           m_chebyshev(chebyshev),
@@ -97,7 +97,7 @@ class NearFarPlanner {
     /// A line as seen from a point, its displacement from the reference. False where floats cannot hold it.
     bool see(std::size_t i, double x, double y, FieldLine& to) const;
 
-    // Of a cell: near_far_planner.cpp.
+    // Of a cell: near_far_subdivider.cpp.
     /// `sums`: over the lines that are in the polynomial of `level(depth)` already, if it has one.
     void settle(int x0, int y0, int size, std::size_t depth, FarSums sums, bool has_polynomial);
     void divide(int x0, int y0, int size, std::size_t depth, const simd::LineBounds& bounds,

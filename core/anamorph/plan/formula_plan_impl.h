@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: Apache-2.0
+// FormulaPlan, defined. Included only by source files that instantiate it.
+#pragma once
+
+#include <algorithm>
+#include <memory>
+
+#include "anamorph/plan/direct_blocks.h"
+#include "anamorph/plan/exact_bounds.h"
+#include "anamorph/plan/formula_plan.h"
+#include "anamorph/plan/subdivider.h"
+
+namespace anamorph {
+
+template <class Map>
+FormulaPlan<Map>::FormulaPlan(const Map& map, const PlanOptions& options, const ReadOrders& orders)
+    : BlockMap(map.target_size().width, map.target_size().height, map.target_pieces()),
+      m_map(map),
+      m_options(options),
+      m_orders(orders) {
+    check_tol(options.tol);
+}
+
+template <class Map>
+void FormulaPlan<Map>::plan(const Box& box, int piece, Blocks& blocks) const {
+    using namespace plan_detail;
+    Blocks planned;
+    planned.reserve(2 * kRegion * kRegion / (kBlockWidth * kBlockHeight));
+    const auto records = std::make_shared<Records<typename Map::Local>>();
+    Subdivider<Map>(m_map, m_options, m_orders, box, piece, planned, *records).plan(box);
+    if constexpr (DirectMap<Map>)
+        planned = DirectBlocks<Map>(m_map, goal_of(m_options), m_orders, records->direct).placed(planned);
+    blocks.reserve(planned.size());
+    ExactBounds<Map> exact(m_map, m_options.tol, blocks);
+    for (const Block& block : planned)
+        if (block.kind == Block::Kind::exact)
+            exact.place(block);
+        else
+            blocks.push_back(block);
+    if (!records->terms.empty() || !records->precise.empty() || !records->direct.readings.empty())
+        blocks.data = records;
+}
+
+template <class Map>
+BlockPolynomial FormulaPlan<Map>::bicubic(const Block& block) const noexcept {
+    return plan_detail::cubic_of(block);
+}
+
+template <class Map>
+void FormulaPlan<Map>::exact_rows(const Block& block, int begin, int end,
+                                  const DoubleRows& to) const noexcept {
+    if (block.kind != Block::Kind::bicubic) return BlockMap::exact_rows(block, begin, end, to);
+    for (int row = begin; row < end; ++row) {
+        const std::ptrdiff_t at = (row - begin) * to.stride;
+        plan_detail::precise_row(block, row, to.x + at, to.y + at);
+        std::fill_n(to.piece + at, block.box.width(), block.source_piece);
+    }
+}
+
+template <class Map>
+bool FormulaPlan<Map>::exact(double x, double y, int piece, Point<double>& source_point,
+                             int& source_piece) const noexcept {
+    return m_map.exact(x, y, piece, source_point, source_piece);
+}
+
+template <class Map>
+bool FormulaPlan<Map>::truth(double x, double y, int piece, Point<long double>& source_point,
+                             int& source_piece) const noexcept {
+    return m_map.exact(static_cast<long double>(x), static_cast<long double>(y), piece, source_point,
+                       source_piece);
+}
+
+template <class Map>
+Jacobian FormulaPlan<Map>::jacobian(double x, double y, int piece) const noexcept {
+    using J = Jet1<double>;
+    const Point<J> p = m_map(J::variable(x, 1, 0), J::variable(y, 0, 1), m_map.local_around(x, y, piece));
+    return {p.x.c[1], p.y.c[1], p.x.c[2], p.y.c[2]};
+}
+
+template <class Map>
+NearBlock<typename Map::Local, float> FormulaPlan<Map>::near_in_float(const Block& block) {
+    return plan_detail::near_block<typename Map::Local, float>(block);
+}
+template <class Map>
+NearBlock<typename Map::Local, double> FormulaPlan<Map>::near_in_double(const Block& block) {
+    return plan_detail::near_block<typename Map::Local, double>(block);
+}
+
+}  // namespace anamorph
