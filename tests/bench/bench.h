@@ -17,7 +17,8 @@ struct Settings {
     int size = 2048;  ///< of the picture, pixels each way
     int threads = 1;
     int rounds = 15;
-    bool bounds = false;  ///< report bounds over true errors instead of times
+    bool bounds = false;     ///< report bounds over true errors instead of times
+    bool calibrate = false;  ///< report the planner's costs instead
 
     bool wants_case(const std::string& name) const { return lists(case_name, name); }
     bool wants_scheme(const std::string& name) const { return lists(scheme, name); }
@@ -96,6 +97,9 @@ struct Times {
 /// alike. Quick ones run twice in a row and the better of the two counts; slow ones sit out two rounds of
 /// three.
 std::vector<Times> time_interleaved(const std::vector<Timed>& contenders, int rounds);
+
+/// Prints what the planner's costs are on this machine.
+void print_costs(const Settings& settings);
 
 /// Mean, 99th percentile and largest of `errors`, which it reorders.
 Accuracy accuracy_of(std::vector<float>& errors);

@@ -13,9 +13,9 @@
 #include "anamorph/formula/text_plan.h"
 #include "anamorph/lens/lens_plan.h"
 #include "anamorph/panorama/panorama_plan.h"
-#include "anamorph/parameter/parameter.h"
 #include "bench.h"
 #include "drawn_map.h"
+#include "map_formulas.h"
 
 namespace anamorph::bench {
 namespace {
@@ -23,61 +23,17 @@ namespace {
 constexpr double kTols[] = {0.01, 0.001};
 // Of a text over the compiled map, once planned and with planning; and of its exact pixels.
 constexpr double kMostDrawn = 1.25, kMostOfAll = 1.6, kMostExact = 2.5;
-constexpr Orientation kTurned{30, 20, 10};
 
-/// A formula in pixels of a source, where its picture is square.
-DrawnMap text_map(const std::string& name, const Chart& source, int side, const FormulaText& text) {
-    const Size picture{side, side}, pixels{source.width(), source.height()};
-    const TextMap map(parse_formula(text, {picture, pixels}), picture, picture, pixels);
-    return {name + " text", source,
+DrawnMap text_map(const std::string& name, int side, const TextOf& text) {
+    const TextMap map = text.map(side);
+    return {name + " text", text.source,
             [map](const PlanOptions& options) { return std::make_shared<TextPlan>(map, options); }};
 }
-
-/// A view of a sphere whose ray is (dx, dy, dz), y down, of any length.
-std::vector<DrawnMap> view(const std::string& name, const Settings& settings, const Chart& target,
-                           const std::string& ray) {
-    const Chart sphere(Projection::equirectangular, 4 * settings.size, 2 * settings.size, 360);
-    const Panorama map(sphere, target, kTurned);
-    const glm::dmat3 turn = rotation(kTurned);
-    FormulaText text;
-    text.let = ray;
-    const char* const components[] = {"x", "y", "z"};
-    for (int row = 0; row < 3; ++row) {
-        text.let += std::string(";e") + components[row] + "=0";
-        for (int column = 0; column < 3; ++column)
-            text.let += "+(" + shortest(turn[column][row]) + ")*d" + components[column];
-    }
-    text.u = "src_width*(.5+atan2(ex,ez)/(2*pi))";
-    text.v = "src_height*(.5+atan2(ey,hypot(ex,ez))/pi)";
-    return {{name + " compiled", sphere,
-             [map](const PlanOptions& options) { return std::make_shared<PanoramaPlan>(map, options); }},
-            text_map(name, sphere, settings.size, text)};
-}
-
-std::vector<DrawnMap> lens(const Settings& settings) {
-    const int side = settings.size;
-    const Chart observed(Projection::rectilinear, side, side, 90, PixelSpacing::edges, "", 1,
-                         LensModel::parse("brown:k1=-0.2,k2=0.05,k3=-0.004"));
-    const Chart flat(Projection::rectilinear, side, side);
-    const Size size{side, side};
-    const LensMap map(observed, LensMode::undistort, size, size, size);
-    FormulaText text;
-    // The half picture spans 45 degrees: px and py are tangents.
-    text.let = "q=px^2+py^2;k=1+q*(-.2+q*(.05-.004*q))";
-    text.u = "width/2*(1+px*k)";
-    text.v = "height/2*(1-py*k)";
-    return {{"lens compiled", flat,
-             [map](const PlanOptions& options) { return std::make_shared<LensPlan>(map, options); }},
-            text_map("lens", flat, side, text)};
-}
-
-std::vector<DrawnMap> swirl(const Settings& settings) {
-    FormulaText text;
-    text.let = "b=a-2*exp(-4*r^2)";
-    text.u = "width/2*(1+r*cos(b))";
-    text.v = "height/2*(1-r*sin(b))";
-    const Chart flat(Projection::rectilinear, settings.size, settings.size);
-    return {text_map("swirl", flat, settings.size, text)};
+template <class Plan, class Map>
+std::vector<DrawnMap> both(const std::string& name, int side, const Map& map, const TextOf& text) {
+    return {{name + " compiled", text.source,
+             [map](const PlanOptions& options) { return std::make_shared<Plan>(map, options); }},
+            text_map(name, side, text)};
 }
 
 /// A text that is another map than the compiled one would be compared with it for nothing.
@@ -138,16 +94,16 @@ void measure(const Settings& settings, Report& report, const std::vector<DrawnMa
 
 void run(const Settings& settings, Report& report) {
     const int side = settings.size;
-    if (settings.wants_case("straight"))
-        measure(
-            settings, report,
-            view("straight", settings, Chart(Projection::rectilinear, side, side, 90), "dx=px;dy=-py;dz=1"));
-    if (settings.wants_case("fisheye"))
-        measure(settings, report,
-                view("fisheye", settings, Chart(Projection::fisheye, side, side, 180),
-                     "h=pi/2*r;dx=sin(h)*cos(a);dy=-sin(h)*sin(a);dz=cos(h)"));
-    if (settings.wants_case("lens")) measure(settings, report, lens(settings));
-    if (settings.wants_case("swirl")) measure(settings, report, swirl(settings));
+    const auto measure_view = [&](const std::string& name, const SphereView& view) {
+        if (settings.wants_case(name))
+            measure(settings, report, both<PanoramaPlan>(name, side, view.map, view.text));
+    };
+    measure_view("straight", straight_view(side));
+    measure_view("fisheye", fisheye_view(side));
+    const LensView lens = lens_view(side);
+    if (settings.wants_case("lens"))
+        measure(settings, report, both<LensPlan>("lens", side, lens.map, lens.text));
+    if (settings.wants_case("swirl")) measure(settings, report, {text_map("swirl", side, swirl_view(side))});
 }
 
 const RegisterOp registered({"map", run, nullptr});

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // speed_vs_error --csv FILE [--op NAME] [--size N] [--threads N] [--case NAME] [--scheme NAME] [--rounds N]
 // speed_vs_error --bounds [...]
+// speed_vs_error --calibrate [...]: what the planner's costs are here (costs.cpp).
 // --instructions NAME: one of Highway's instruction sets (AVX3, AVX2, SSE2 ...), in place of the machine's best.
 //
 // Measures how fast each scheme draws and how far it is from the exact map, next to what else one could use,
@@ -58,8 +59,8 @@ Settings parse(int argc, char** argv) {
     Settings s;
     for (int i = 1; i < argc; ++i) {
         const std::string_view option = argv[i];
-        if (option == "--bounds") {
-            s.bounds = true;
+        if (option == "--bounds" || option == "--calibrate") {
+            (option == "--bounds" ? s.bounds : s.calibrate) = true;
             continue;
         }
         if (i + 1 == argc) throw std::invalid_argument(std::string(option) + ": needs a value");
@@ -83,10 +84,11 @@ Settings parse(int argc, char** argv) {
         else
             throw std::invalid_argument(
                 std::string(option) +
-                ": must be one of --csv, --op, --size, --threads, --case, --scheme, --rounds "
-                "and --bounds");
+                ": must be one of --csv, --op, --size, --threads, --case, --scheme, --rounds, "
+                "--bounds and --calibrate");
     }
-    if (s.csv.empty() && !s.bounds) throw std::invalid_argument("--csv: a file to write is needed");
+    if (s.csv.empty() && !s.bounds && !s.calibrate)
+        throw std::invalid_argument("--csv: a file to write is needed");
     const auto known = [&](const Op& op) { return op.name == s.op; };
     if (s.op != "all" && std::none_of(ops().begin(), ops().end(), known)) {
         std::string names = "all";
@@ -176,6 +178,10 @@ void print_weakest(const Report& report) {
 
 int run(int argc, char** argv) {
     const Settings settings = parse(argc, argv);
+    if (settings.calibrate) {
+        print_costs(settings);
+        return 0;
+    }
     std::optional<anamorph::command::OutputFile> csv;
     if (!settings.bounds) {
         csv.emplace(settings.csv);  // before the work, which is long

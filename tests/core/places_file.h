@@ -28,18 +28,21 @@ the numbers are from.
       of a lens; also pixels=centers
   surface aspect=1.5 radius=0.4
       of a surface: members of SurfaceShape
+  map picture=480x320 source=600x400 turn=2
+      of a map: both sizes, and keys of its own
   tolerance 1e-9 1e-9
-      there in pixels, and back in degrees, of a lens in pixels; of a surface one number
+      there in pixels, and back in degrees, of a lens in pixels; of a surface and a map one number
   accept 30 -20
-      a ray's azimuth to the right and elevation up in degrees; an ideal pixel of a lens; u, v of a surface
+      a ray's azimuth to the right and elevation up in degrees; an ideal pixel of a lens; u, v of a surface; a point
+      of a map's picture, of one that pushes of its source
   expect 406.9 124.9
-      its pixel; of a lens the observed one; of a surface x, y and z; or none
+      its pixel; of a lens the observed one; of a surface x, y and z; of a map the point that it leads to; or none
   normal 0 0 1
       of a surface that has normals, behind expect
 Both ways are read, but for expect none. One alone: accept ray, accept pixel; accept ideal, accept observed.
   all ray
       every ray has a pixel; all pixel: every pixel has a ray. If not, a place with expect none lies within a
-      degree, or a pixel, of one that has a counterpart: just outside and just inside the end.
+      degree, or a pixel, of one that has a counterpart: just outside and just inside the end. Of a map: all point.
 )";
 
 /// What the files of one of the lists have.
@@ -52,6 +55,7 @@ struct FileKind {
 inline const FileKind kProjectionFiles{"projection", "chart", {"ray", "pixel"}, true, 2, 2};
 inline const FileKind kLensFiles{"lens", "chart", {"ideal", "observed"}, false, 2, 2};
 inline const FileKind kSurfaceFiles{"surface", "surface", {}, false, 3, 1};
+inline const FileKind kMapFiles{"map", "map", {"point"}, true, 2, 1};
 
 /// What is accepted and expected.
 struct Place {

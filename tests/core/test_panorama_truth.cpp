@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cstdlib>
+#include <optional>
 #include <random>
 
 #include "anamorph/image/footprint.h"
@@ -31,12 +32,14 @@ struct Scene {
     double tol;
     Scheme scheme = Scheme::automatic;
     Orientation held = {};
+    std::optional<PlanCosts> costs = {};
 
     Panorama map() const { return {chart_of(source), chart_of(target), look, held}; }
     PlanOptions options() const {
         PlanOptions options;
         options.scheme = scheme;
         options.tol = tol;
+        options.costs = costs;
         return options;
     }
 };
@@ -285,6 +288,34 @@ TEST(PanoramaTruth, NoPixelIsOverItsBoundThroughLenses) {
     RecordProperty("pixels", std::to_string(pixels));
 }
 
+// What is wrong about a cost makes plans slower.
+TEST(PanoramaTruth, NoBoundHangsOnACost) {
+    const Scene scenes[] = {{{equirectangular, 600, 300, 360}, {rectilinear, 260, 120, 90}, {30, 20, 10}, 0},
+                            {{cubemap, 1024, 6144, 90}, {fisheye, 120, 120, 180}, {-50, 70, 3}, 0}};
+    int changed = 0;
+    for (Scene scene : scenes)
+        for (const Scheme scheme : {Scheme::automatic, Scheme::blocks})
+            for (const double tol : {0.01, 1e-6}) {
+                scene.scheme = scheme;
+                scene.tol = tol;
+                scene.costs.reset();
+                const Findings usual = expect_truth(scene);
+                for (double PlanCosts::*which :
+                     {&PlanCosts::bound, &PlanCosts::further_bound, &PlanCosts::credit,
+                      &PlanCosts::bound_pixels, &PlanCosts::polynomial, &PlanCosts::rounding,
+                      &PlanCosts::double_pixel, &PlanCosts::direct_trial, &PlanCosts::direct_pixel,
+                      &PlanCosts::precise_pixel})
+                    for (const double times : {0.25, 4.0}) {
+                        scene.costs = PlanCosts{};
+                        *scene.costs.*which *= times;
+                        const Findings found = expect_truth(scene);
+                        changed += found.worst != usual.worst || found.cubic != usual.cubic;
+                    }
+            }
+    // Without this the costs would not have been read.
+    EXPECT_GT(changed, 0);
+}
+
 TEST(PanoramaTruth, TheWholePictureThroughALensIsUnderItsBounds) {
     const View sphere{equirectangular, 8192, 4096, 360};
     const auto lens = [](View view, const char* text) {
@@ -328,6 +359,8 @@ TEST(PanoramaTruth, CubicBlocksAreUnderTheirBounds) {
         for (const View& target : targets)
             for (const double tol : {1e-2, 1e-3, 1e-4, 1e-5, 1e-6}) {
                 Scene scene{source, target, {30, 20, 10}, tol};
+                // So that there are some.
+                scene.costs = PlanCosts{.double_pixel = 0.25};
                 for (const Scheme scheme : {Scheme::automatic, Scheme::blocks}) {
                     scene.scheme = scheme;
                     const Findings found = expect_truth(scene);

@@ -4,6 +4,8 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstdio>
+#include <filesystem>
 #include <fstream>
 #include <functional>
 #include <numbers>
@@ -11,6 +13,8 @@
 
 #include "anamorph/chart/chart.h"
 #include "anamorph/error.h"
+#include "anamorph/formula/formula_text.h"
+#include "anamorph/operation/operation.h"
 #include "anamorph/surface/shape/all.h"
 #include "anamorph/surface/surface.h"
 #include "places_file.h"
@@ -408,6 +412,99 @@ TEST(Places, OfEverySurface) {
         EXPECT_EQ(has_smooth_normals(which), !kNormals[which]({}, {0.5, 0.5}).empty());
         expect_none(compare_file(kSurfaceFiles, surface_names()[which], compare_surface(which)));
     }
+}
+
+// --- maps
+
+/// A recipe's text with the keys of a group.
+ParameterValues values_of_map(const std::string& map, const Group& group) {
+    std::ifstream in(ANAMORPH_MAPS "/" + map + ".map");
+    const std::string text{std::istreambuf_iterator<char>(in), {}};
+    ParameterValues values(*find_operation("map")->parameters);
+    values.assign(parse_recipe(text));
+    std::vector<Assignment> own;
+    for (const auto& [key, value] : group.settings)
+        if (key != "picture" && key != "source") own.push_back({key, value});
+    values.assign(own);
+    return values;
+}
+
+Size size_of(const Group& group, const std::string& name) {
+    int width = 0, height = 0;
+    if (std::sscanf(group.setting(name, "").c_str(), "%dx%d", &width, &height) != 2)
+        refuse(group.at, name + "=WIDTHxHEIGHT is missing");
+    return {width, height};
+}
+
+PlaneFormula formula_of_map(const std::string& map, const Group& group) {
+    const ParameterValues values = values_of_map(map, group);
+    FormulaText text;
+    text.u = values.text("u");
+    text.v = values.text("v");
+    text.definitions = values.definitions();
+    return parse_formula(text, {size_of(group, "picture"), size_of(group, "source"), values.number("frame"),
+                                false, values.text("direction") == "push"});
+}
+
+std::optional<Numbers> point_of_map(const PlaneFormula& formula, const Numbers& at) {
+    const double x = double(at[0]), y = double(at[1]);
+    if (!formula.is_everywhere && !(read_program<2>(formula.domain, x, y)[0] > 0)) return {};
+    const auto p = read_program<2>(formula.point, x, y);
+    return Numbers{p[0], p[1]};
+}
+
+/// What a group says of all points of its picture, or of its source.
+Complaints compare_all(const Group& group, const PlaneFormula& formula, const Size& size) {
+    if (group.all.empty()) return {};
+    for (int i = 0; i <= 60; ++i)
+        for (int j = 0; j <= 60; ++j) {
+            const Numbers at{Real(size.width) * i / 60, Real(size.height) * j / 60};
+            if (!point_of_map(formula, at))
+                return {group.at + ": not all: point " + written(at) + " has none"};
+        }
+    return {};
+}
+
+bool shows_end(const std::vector<Place>& places) {
+    for (const Place& out : places)
+        for (const Place& in : places)
+            if (!out.expect && in.expect && pixels_apart(out.accept, in.accept) <= 1) return true;
+    return false;
+}
+
+Compare compare_map(const std::string& map) {
+    return [map](const std::string& file, const std::vector<Group>& groups) {
+        Complaints wrong;
+        bool ends = false, ended = false;
+        for (const Group& group : groups) {
+            const PlaneFormula formula = formula_of_map(map, group);
+            const bool pushes = values_of_map(map, group).text("direction") == "push";
+            append(wrong, compare_all(group, formula, size_of(group, pushes ? "source" : "picture")));
+            for (const Place& place : group.places) {
+                const std::optional<Numbers> found = point_of_map(formula, place.accept);
+                if (found && place.expect)
+                    append(wrong, compare_vectors(place, "point", *found, *place.expect));
+                else if (found || place.expect)
+                    wrong.push_back(place.at + ": point is " + written(found) + ", expected " +
+                                    written(place.expect));
+            }
+            ends = ends || !formula.is_everywhere;
+            ended = ended || shows_end(group.places) || !group.all.empty();
+        }
+        if (ends && !ended) wrong.push_back(file + ": no place shows where it ends" + kFormat);
+        return wrong;
+    };
+}
+
+TEST(Places, OfEveryMap) {
+    int count = 0;
+    for (const auto& entry : std::filesystem::directory_iterator(ANAMORPH_MAPS)) {
+        if (entry.path().extension() != ".map") continue;
+        ++count;
+        const std::string name = entry.path().stem().string();
+        expect_none(compare_file(kMapFiles, name, compare_map(name)));
+    }
+    EXPECT_GT(count, 0);
 }
 
 // --- what is demanded of files

@@ -782,6 +782,7 @@ std::vector<Value> values_of(Maker& maker, NamedValues& names, const std::vector
     const std::set<std::string> given = define(maker, names, definitions);
     Parser::define(maker, names, "let", let, given, fixed);
     std::vector<Value> values;
+    values.reserve(expressions.size());
     for (const auto& [name, expression] : expressions)
         values.push_back(Parser(maker, names, name, expression).expression());
     for (const auto& [name, expression] : definitions)

@@ -30,11 +30,11 @@ class PushedMap {
   public:
     /// Source points cost most: a chord is the formula once, and takes some twelve of them.
     static constexpr PlanCosts kCosts{.bound = 60,
-                                      .further_bound = 20,
+                                      .further_bound = 4,
                                       .credit = 0.25,
                                       .bound_pixels = 96,
-                                      .polynomial = 8,
-                                      .rounding = 20,
+                                      .polynomial = 3,
+                                      .rounding = 8,
                                       .double_pixel = 0.02};
     static constexpr std::size_t kMostParts = std::size_t{1} << 19;
 

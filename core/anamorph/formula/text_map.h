@@ -5,6 +5,7 @@
 #include <cstdint>
 
 #include "anamorph/formula/formula_text.h"
+#include "anamorph/plan/costs.h"
 #include "anamorph/plan/formula_map.h"
 
 namespace anamorph {
@@ -19,6 +20,9 @@ Point<T> read_point(const FormulaProgram& program, const T& x, const T& y) {
 /// Pixels, x right, y down, pixel centres at + 0.5.
 class TextMap : public PlaneMap<TextMap> {
   public:
+    /// An exact pixel costs more than a compiled one, and jets cost less over it.
+    static constexpr PlanCosts kCosts{.bound = 400, .further_bound = 30, .polynomial = 20, .rounding = 45};
+
     /// `picture`: the size that the formula speaks of. `target`: the pixels that the picture has.
     TextMap(PlaneFormula formula, const Size& picture, const Size& target, const Size& source)
         : PlaneMap(target, source),

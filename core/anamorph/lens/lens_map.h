@@ -5,6 +5,7 @@
 #pragma once
 
 #include "anamorph/chart/chart_numbers.h"
+#include "anamorph/plan/costs.h"
 #include "anamorph/plan/formula_map.h"
 
 namespace anamorph {
@@ -15,6 +16,9 @@ enum class LensMode { undistort, distort };
 
 class LensMap : public PlaneMap<LensMap> {
   public:
+    static constexpr PlanCosts kCosts{
+        .bound = 200, .further_bound = 30, .polynomial = 18, .rounding = 20, .double_pixel = 0.5};
+
     /// `observed`: the chart that has the lens, of rectangular pixels edge to edge. `covered`: how much the target
     /// shows, in pixels of the observed picture. `target`: the pixels it has; `source`: those of the source. Throws
     /// Error when the chart has no lens.

@@ -82,7 +82,7 @@ ANAMORPH_UNROLLED inline void unroll(CountOf<Count>, const Body& body) {
     [&]<int... I>(std::integer_sequence<int, I...>) ANAMORPH_UNROLLED {
         (body(CountOf<I>{}), ...);
     }
-    (std::make_integer_sequence<int, (Count > 0 ? Count : 0)>{});
+    (std::make_integer_sequence<int, std::max(Count, 0)>{});
 }
 template <class Body>
 ANAMORPH_UNROLLED inline void unroll(int count, const Body& body) {

@@ -34,6 +34,7 @@ std::vector<double> even_angles(const Outline& outline, const Arc& arc, const Vi
     const double count = std::ceil(arc.length() / step * (1 - 0x1p-50));
     if (!(count <= kMostChords)) too_many(tol);
     std::vector<double> angles;
+    angles.reserve(static_cast<std::size_t>(count) + 1);
     for (int k = 0; k < count; ++k) angles.push_back(arc.begin + arc.length() * (k / count));
     angles.push_back(arc.end);
     return angles;

@@ -97,8 +97,8 @@ class StrokeCover {
     static void sample(int x, int y, const glm::dvec2& a, const glm::dvec2& b, double square,
                        std::bitset<kPixelSamples>& mask) {
         for (int i = 0; i < kPixelSamples; ++i) {
-            const glm::dvec2 p(x + (i % kSampleRows + 0.5) / kSampleRows,
-                               y + (i / kSampleRows + 0.5) / kSampleRows);
+            const int column = i % kSampleRows, row = i / kSampleRows;
+            const glm::dvec2 p(x + (column + 0.5) / kSampleRows, y + (row + 0.5) / kSampleRows);
             if (square_distance(p, a, b) <= square) mask.set(static_cast<std::size_t>(i));
         }
     }
