@@ -12,8 +12,9 @@ build_clang() {
 test_clang() {
     ctest --test-dir "$clang" -j "$jobs" --no-tests=error --no-label-summary -L core
 }
+# Kernels are written as Highway is, whose macros and names clang-tidy does not know.
 tidy() {
-    git ls-files 'core/*.cpp' 'oiio_ops/*.cpp' 'plugins/imageio/*.cpp' |
+    git ls-files 'core/*.cpp' 'oiio_ops/*.cpp' 'plugins/imageio/*.cpp' ':!*_lanes.cpp' |
         xargs -P "$jobs" -n 1 clang-tidy --quiet --warnings-as-errors='*' -p "$clang"
 }
 # On a machine where nothing was built before.

@@ -485,6 +485,16 @@ std::string joined(const std::vector<std::string>& words) {
     return out;
 }
 
+/// The spaces of a configuration that can be come to from one, and back.
+std::vector<std::string> spaces_from(const std::string& own, const OIIO::ColorConfig& config) {
+    std::vector<std::string> spaces;
+    for (const std::string& space : config.getColorSpaceNames())
+        if (space != own && config.createColorProcessor(own, space) &&
+            config.createColorProcessor(space, own))
+            spaces.push_back(space);
+    return spaces;
+}
+
 }  // namespace
 
 std::shared_ptr<const WorkingSpace> WorkingSpace::make(const std::string& name, const ImageSpec& spec) {
@@ -501,11 +511,10 @@ std::shared_ptr<const WorkingSpace> WorkingSpace::make(const std::string& name, 
     auto result = std::make_shared<WorkingSpace>();
     result->m_there = config.createColorProcessor(own, space);
     result->m_back = config.createColorProcessor(space, own);
-    if (!result->m_there || !result->m_back) {
+    if (!result->m_there || !result->m_back)
         throw Error("colorspace", printable(name),
                     "no way to it from \"" + own + "\": must be the role scene_linear or one of " +
-                        joined(config.getColorSpaceNames()));
-    }
+                        joined(spaces_from(own, config)));
     result->m_channels = spec.nchannels;
     if (unassociated_alpha_of(spec) < 0) result->m_alpha = spec.alpha_channel;
     return result;

@@ -125,6 +125,16 @@ TEST(Parameter, ErrorsNameParameterValueAndWhatIsAllowed) {
     says("yaw", "1\n2\t3", "finite");
 }
 
+TEST(Parameter, AKeyThatIsNearAnotherIsAskedAfter) {
+    const auto error = [](const std::string& key) { return error_of([&] { values({{key, "1"}}); }); };
+    EXPECT_THAT(error("jaw"),
+                HasSubstr("jaw=1: there is no such parameter, perhaps yaw is meant: must be one of"));
+    EXPECT_THAT(error("PICH"), HasSubstr("perhaps pitch is meant"));
+    EXPECT_THAT(error("outptu"), HasSubstr("perhaps output is meant"));
+    for (const std::string& far : {std::string("k"), std::string("elevation"), std::string(100000, 'y')})
+        EXPECT_THAT(error(far), HasSubstr("there is no such parameter: must be one of"));
+}
+
 TEST(Parameter, WholeNumbersAndLists) {
     const ParameterTable table = {rows::whole("count", "", "2", 1, 99, "some"),
                                   rows::numbers("parts", -rows::kInfinity, "more"),

@@ -359,6 +359,10 @@ TEST_F(Ops, FiltersInTheColorSpaceAskedFor) {
     read_pixels("s.tif.pano?size=20x20&colorspace=scene_linear&output=stmap");
     EXPECT_EQ(read_pixels("view.tif").bytes,
               read_pixels("s.tif.pano?size=20x20&colorspace=scene_linear").bytes);
+    // What is refused is not among what is allowed.
+    const std::string error = reproject(source, options({{"colorspace", "Rec709"}})).geterror();
+    EXPECT_THAT(error, HasSubstr("colorspace=Rec709: no way to it from \"sRGB\""));
+    EXPECT_THAT(error.substr(error.find("one of")), Not(HasSubstr("Rec709")));
     // An image that does not say its own.
     ImageBuf untagged = panorama(256, 128);
     untagged.specmod().erase_attribute("oiio:ColorSpace");

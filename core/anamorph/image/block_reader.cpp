@@ -387,7 +387,6 @@ bool BlockReader::rows(const Block& block, const Box& part, const Row& row) {
                     row(x, j, std::min(kMaxRow, part.x1 - x), m_values.data(), 1);
             return true;
         case Block::Kind::polynomial:
-            return polynomial_rows(block, part, row);
         case Block::Kind::bicubic:
             return polynomial_rows(block, part, row);
         case Block::Kind::computed:

@@ -7,9 +7,11 @@
 #include <cmath>
 #include <cstdio>
 #include <new>
+#include <numeric>
 #include <optional>
 #include <set>
 #include <stdexcept>
+#include <utility>
 
 #include "anamorph/parameter/text_file.h"
 
@@ -35,6 +37,31 @@ std::string joined(const std::vector<std::string>& words) {
     std::string out;
     for (const std::string& word : words) out += (out.empty() ? "" : ", ") + word;
     return out;
+}
+
+/// How many letters have to be put in, taken out or replaced to make one word of another (Levenshtein).
+std::size_t edits(std::string_view from, std::string_view to) {
+    std::vector<std::size_t> row(to.size() + 1);
+    std::iota(row.begin(), row.end(), std::size_t{0});
+    for (std::size_t i = 1; i <= from.size(); ++i) {
+        std::size_t diagonal = std::exchange(row[0], i);
+        for (std::size_t j = 1; j <= to.size(); ++j) {
+            const std::size_t replaced = diagonal + (from[i - 1] != to[j - 1]);
+            diagonal = std::exchange(row[j], std::min({row[j] + 1, row[j - 1] + 1, replaced}));
+        }
+    }
+    return row.back();
+}
+
+/// For an error: the word that may have been meant, if one is near.
+std::string meant(const std::string& word, const std::vector<std::string>& words) {
+    constexpr std::size_t kLongest = 64;
+    if (word.size() > kLongest) return {};
+    const std::string* best = nullptr;
+    std::size_t fewest = word.size() / 3 + 1;
+    for (const std::string& other : words)
+        if (const std::size_t count = edits(word, other); count < fewest) fewest = count, best = &other;
+    return best ? ", perhaps " + *best + " is meant" : "";
 }
 
 /// All of `text` as a finite number; locale-independent.
@@ -344,9 +371,12 @@ void ParameterValues::assign(const std::vector<Assignment>& place) {
     std::set<std::string> seen;
     for (const Assignment& a : place) {
         const Parameter* parameter = find(*m_table, a.key);
-        if (!parameter && !defines(a.key))
-            throw Error(printable(a.key), printable(a.value),
-                        "there is no such parameter: must be one of " + joined(names(*m_table)));
+        if (!parameter && !defines(a.key)) {
+            const std::vector<std::string> all = names(*m_table);
+            throw Error(
+                printable(a.key), printable(a.value),
+                "there is no such parameter" + meant(lower(a.key), all) + ": must be one of " + joined(all));
+        }
         const std::string& name = parameter ? parameter->name : a.key;
         if (!seen.insert(name).second)
             throw Error(name, printable(a.value), "given twice in one place: must be given once");
