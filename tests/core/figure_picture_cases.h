@@ -99,7 +99,8 @@ class SceneMaker {
         return std::uniform_real_distribution<double>(low, high)(m_random);
     }
     glm::dmat3 turn() {
-        const glm::dvec4 q(number(-1, 1), number(-1, 1), number(-1, 1), number(-1, 1));
+        // In braces: in their order, by every compiler.
+        const glm::dvec4 q{number(-1, 1), number(-1, 1), number(-1, 1), number(-1, 1)};
         return glm::mat3_cast(glm::normalize(glm::dquat(q.w, q.x, q.y, q.z)));
     }
     /// In a cube of that half side about the origin, the longest axis between `least` and `most`, others down

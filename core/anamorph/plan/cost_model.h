@@ -42,6 +42,7 @@ class CostModel {
     void pay_for_bounds(std::size_t at_once) {
         pay(m_costs.bound + m_costs.further_bound * (static_cast<double>(at_once) - 1));
     }
+    void pay_for_rounding() { pay(m_costs.rounding); }
     /// `alone`: with a bound of its own rounding.
     void pay_for_polynomial(bool alone) {
         pay(alone ? m_costs.polynomial + m_costs.rounding : m_costs.polynomial);

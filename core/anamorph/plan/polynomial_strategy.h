@@ -140,6 +140,16 @@ class PolynomialStrategy {
         }
     }
 
+    /// Where blocks of any size do not share what rounding costs them, the parts of one block may.
+    Bound with_rounding(Bound bound, const Box& block, const Parts& parts, const Local& local) {
+        const bool is_shared = bound.rounding < HUGE_VAL || parts.are != Parts::placed;
+        if (is_shared || pixels_of(block) < 2 * parts.width * parts.height) return bound;
+        m_account.pay_for_rounding();
+        const double rounding = m_bounds.rounding_over(block, half(parts.width), half(parts.height), local);
+        if (rounding <= kSharedRounding * m_tol) bound.rounding = rounding;
+        return bound;
+    }
+
     /// A Taylor polynomial, and how far it is from the map anywhere in its box, remainder and rounding.
     struct Expansion {
         Box box;

@@ -208,11 +208,11 @@ class Subdivider {
             m_costs.worth_a_bound(b) ? settle_quarters(b, true) : leave(b);
         };
         typename Polynomials::InTurn taylors(m_bounds, local, known);
-        const auto place_all = [&](const Box& within) {
+        const auto place_all = [&](const Box& within, const Bound& with) {
             if (!m_costs.worth_a_polynomial()) return leave(within);
             if (parts.are == Parts::renewed) return for_parts(within, renew);
             for_parts(within, [&](const Box& b) {
-                place_block(b, m_polynomials.expand(b, local, bound, taylors.of(b)), local, bound);
+                place_block(b, m_polynomials.expand(b, local, with, taylors.of(b)), local, with);
             });
         };
         const auto add_all = [&](const Box& within) {
@@ -220,10 +220,12 @@ class Subdivider {
         };
         if (parts.width > kBlockWidth || parts.height > kBlockHeight) {
             add_all(box);
-            return place_all(box);
+            return place_all(box, bound);
         }
         for_blocks(box, add_all);
-        for_blocks(box, [&](const Box& b) { unless_left(b, [&] { place_all(b); }); });
+        for_blocks(box, [&](const Box& b) {
+            unless_left(b, [&] { place_all(b, m_polynomials.with_rounding(bound, b, parts, local)); });
+        });
     }
     /// A part of an expansion's box as one polynomial block if that holds the tolerance, else in halves.
     void place_block(const Box& box, const Expansion& expansion, const Local& local, const Bound& bound) {
