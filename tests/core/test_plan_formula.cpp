@@ -141,6 +141,39 @@ TEST(FormulaPlan, BoundsOfRoundingHoldWhereItMatters) {
     EXPECT_GT(found.worst, 0);
 }
 
+// What the parts of a block share is no less than what any of them has by itself.
+TEST(FormulaPlan, SharedRoundingIsThatOfEveryPart) {
+    using namespace plan_detail;
+    const Lens lens({600, 400}, 1, {200, 100}, 300, 0.2, 0.1);
+    PlanOptions options;
+    const BoxBounds<Lens> bounds(lens, options, 0);
+    CostModel account({}, true, {});
+    PolynomialStrategy<Lens> polynomials(bounds, options.tol, account);
+    const Box block{384, 256, 448, 288};
+    const auto place = bounds.place_about(block);
+    PolynomialStrategy<Lens>::Known known;
+    polynomials.know({&block, 1}, place.local, &known);
+    const auto alone = polynomials.bound_of(known);
+    EXPECT_EQ(alone.rounding, HUGE_VAL);
+    using Parts = PolynomialStrategy<Lens>::Parts;
+    for (const auto& [width, height] : {std::pair{16, 16}, {32, 8}, {64, 16}}) {
+        const Parts parts{width, height, Parts::placed};
+        const double shared = polynomials.with_rounding(alone, block, parts, place.local).rounding;
+        double most = 0;
+        for_boxes(block, width, height, [&](const Box& part) {
+            const double own = bounds.rounding_over(part, half(width), half(height), place.local);
+            EXPECT_LE(own, shared * (1 + 1e-12));
+            most = std::max(most, own);
+        });
+        EXPECT_LT(shared, 4 * most);
+    }
+    // Nothing to share: one part, or none that is placed.
+    EXPECT_EQ(polynomials.with_rounding(alone, block, {64, 32, Parts::placed}, place.local).rounding,
+              HUGE_VAL);
+    EXPECT_EQ(polynomials.with_rounding(alone, block, {16, 16, Parts::renewed}, place.local).rounding,
+              HUGE_VAL);
+}
+
 TEST(FormulaPlan, LinearPartIsTheDerivativeAtTheCentre) {
     const Lens lens({600, 400}, 2, {200, 100}, 300, 0.2, 0.1);
     const LinearPart linear = linear_part(lens, 0);
