@@ -2,8 +2,8 @@
 // What the planner's costs are on this machine (speed_vs_error --calibrate), beside those that are in use: plan/costs.h, of which
 // credit and bound_pixels say how much is ventured and are not measured.
 //
-// All in exact pixels of the map. Pixels are drawn, from three channels of floats, by blocks that are there; what is in the way of a
-// polynomial's pixel is what another costs more. Where a map has too few blocks of a kind, there is a dash.
+// All in exact pixels of the map, on one thread. Pixels are drawn, from three channels of floats, by blocks that are there; what counts is
+// what one costs beyond a polynomial's in float. Where a map has too few blocks of a kind, there is a dash.
 #include <algorithm>
 #include <cstdio>
 #include <memory>
@@ -13,7 +13,6 @@
 
 #include "anamorph/formula/pushed_plan.h"
 #include "anamorph/formula/text_plan.h"
-#include "anamorph/image/block_sampler.h"
 #include "anamorph/lens/lens_plan.h"
 #include "anamorph/panorama/chart_jets.h"
 #include "anamorph/panorama/panorama_plan.h"
@@ -49,6 +48,20 @@ double share_of(const BlockMap& map, Block::Kind kind, bool precise) {
 /// What is drawn, and planned, of one map.
 template <class Map, class Plan>
 class Costs {
+    /// What is timed, in the order in which print() adds it.
+    enum What {
+        exact_picture,
+        float_picture,
+        double_picture,
+        direct_picture,
+        direct_in_double_picture,
+        bounds,
+        bounds_four_at_once,
+        four_polynomials,
+        roundings,
+        direct_trials
+    };
+
   public:
     Costs(const Settings& settings, const char* name, const Map& map, const Chart& source)
         : m_settings(settings), m_name(name), m_map(map), m_source(source), m_drawing(settings) {
@@ -64,22 +77,22 @@ class Costs {
         add_planning();
         const std::vector<Times> times = time_interleaved(m_timed, m_settings.rounds);
         const double pixels = double(m_settings.size) * m_settings.size;
-        const auto ns = [&](int i) { return times[static_cast<std::size_t>(i)].median; };
-        const double unit = (ns(0) - ns(1)) / pixels;
-        const auto each = [&](int i) { return ns(i) / (unit * static_cast<double>(m_places.size())); };
-        const auto beyond_polynomial = [&](int i) {
-            return m_is_drawn[static_cast<std::size_t>(i)] ? (ns(i) - ns(1)) / (pixels * unit) : kNone;
+        const auto ns = [&](What what) { return times[what].median; };
+        const double unit = (ns(exact_picture) - ns(float_picture)) / pixels;
+        const auto each = [&](What what) { return ns(what) / (unit * static_cast<double>(m_places.size())); };
+        const auto beyond_polynomial = [&](What what) {
+            return m_is_drawn[what] ? (ns(what) - ns(float_picture)) / (pixels * unit) : kNone;
         };
         const PlanCosts in_use = costs_of<Map>();
         std::printf("| %s | %.1f |", m_name, unit);
-        print_cell(each(5), in_use.bound);
-        print_cell((each(6) - each(5)) / 3, in_use.further_bound);
-        print_cell(each(7) / 4, in_use.polynomial);
-        print_cell(each(8), in_use.rounding);
-        print_cell(beyond_polynomial(2), in_use.double_pixel);
-        print_cell(DirectMap<Map> ? each(9) : kNone, in_use.direct_trial);
-        print_cell(beyond_polynomial(3), in_use.direct_pixel);
-        print_cell(beyond_polynomial(4), in_use.precise_pixel);
+        print_cell(each(bounds), in_use.bound);
+        print_cell((each(bounds_four_at_once) - each(bounds)) / 3, in_use.further_bound);
+        print_cell(each(four_polynomials) / 4, in_use.polynomial);
+        print_cell(each(roundings), in_use.rounding);
+        print_cell(beyond_polynomial(double_picture), in_use.double_pixel);
+        print_cell(DirectMap<Map> ? each(direct_trials) : kNone, in_use.direct_trial);
+        print_cell(beyond_polynomial(direct_picture), in_use.direct_pixel);
+        print_cell(beyond_polynomial(direct_in_double_picture), in_use.precise_pixel);
         std::printf("\n");
         std::fflush(stdout);
     }
@@ -98,16 +111,16 @@ class Costs {
         const auto blocks = std::make_shared<Plan>(m_map, options);
         m_is_drawn.push_back(share_of(*blocks, kind, precise) > kMost);
         const DrawnMap drawn{m_name, m_source, nullptr};
-        m_timed.push_back({[this, drawn, blocks] { m_drawing.draw(drawn, blocks); }, m_settings.threads});
+        m_timed.push_back({[this, drawn, blocks] { m_drawing.draw(drawn, blocks); }, 1});
     }
 
     /// Boxes on one branch of the map, of 4 x 4 blocks or, where there are none, of one.
     void place_boxes() {
-        const BoxBounds<Map> bounds(m_map, m_options, 0);
+        const BoxBounds<Map> over(m_map, m_options, 0);
         for (const int blocks : {4, 1}) {
             const auto add_box = [&](const Box& box) {
-                const auto place = bounds.place_about(box);
-                if (bounds.cover(box, place.local) == Cover::inside) m_places.push_back(place);
+                const auto place = over.place_about(box);
+                if (over.cover(box, place.local) == Cover::inside) m_places.push_back(place);
             };
             if (m_places.empty())
                 for_boxes({0, 0, m_settings.size, m_settings.size}, blocks * kBlockWidth,
@@ -120,10 +133,10 @@ class Costs {
     template <class Body>
     void add(const Body& body) {
         const auto all = [this, body] {
-            const BoxBounds<Map> bounds(m_map, m_options, 0);
+            const BoxBounds<Map> over(m_map, m_options, 0);
             CostModel account({}, true, {});
-            PolynomialStrategy<Map> polynomials(bounds, m_options.tol, account);
-            for (const auto& place : m_places) body(bounds, polynomials, place);
+            PolynomialStrategy<Map> polynomials(over, m_options.tol, account);
+            for (const auto& place : m_places) body(over, polynomials, place);
         };
         m_timed.push_back({all, 1});
     }
@@ -142,12 +155,12 @@ class Costs {
             keep(known[3].enclosed.x.c[0].lo);
         });
         // Four polynomials.
-        add([this](const auto& bounds, Polynomials& polynomials, const auto& place) {
+        add([this](const auto& over, Polynomials& polynomials, const auto& place) {
             const Known& known = m_known;
             const auto bound = polynomials.bound_of(known);
             const Quarters boxes(place.box);
             typename BoxBounds<Map>::Taylor taylors[4];
-            bounds.taylors_of(boxes, place.local, taylors);
+            over.taylors_of(boxes, place.local, taylors);
             Blocks blocks;
             Records<typename Map::Local> records;
             CostModel account({}, true, {});
@@ -161,24 +174,24 @@ class Costs {
             }
             keep(blocks.back().bound);
         });
-        add([](const auto& bounds, Polynomials&, const auto& place) {
+        add([](const auto& over, Polynomials&, const auto& place) {
             const Box block = middle_of(place.box);
-            keep(bounds.rounding_over(block, half(block.width()), half(block.height()), place.local));
+            keep(over.rounding_over(block, half(block.width()), half(block.height()), place.local));
         });
-        add([this](const auto& bounds, Polynomials&, const auto& place) {
+        add([this](const auto& over, Polynomials&, const auto& place) {
             if constexpr (DirectMap<Map>) {
                 const Box block = middle_of(place.box);
                 Bases bases;
                 keep(m_map
                          .template direct<float>(0.5 * (block.x0 + block.x1), 0.5 * (block.y0 + block.y1),
                                                  half(block.width()), half(block.height()),
-                                                 bounds.place_about(block).local, bases)
+                                                 over.place_about(block).local, bases)
                          .error);
             }
         });
-        const BoxBounds<Map> bounds(m_map, m_options, 0);
+        const BoxBounds<Map> over(m_map, m_options, 0);
         CostModel account({}, true, {});
-        PolynomialStrategy<Map>(bounds, m_options.tol, account)
+        PolynomialStrategy<Map>(over, m_options.tol, account)
             .know({&m_places[0].box, 1}, m_places[0].local, &m_known);
     }
     /// What is computed must not be left out.
@@ -204,11 +217,12 @@ void print_costs(const Settings& settings, const char* name, const Map& map, con
 
 }  // namespace
 
-void print_costs(const Settings& settings) {
+void print_costs(const Settings& given) {
+    Settings settings = given;
+    settings.threads = 1;
+    std::printf("| map | exact pixel, ns | bound | further bound | polynomial | rounding | pixel in double ");
     std::printf(
-        "| map | exact pixel, ns | bound | further bound | polynomial | rounding | pixel in double | direct "
-        "trial | "
-        "direct pixel | direct in double |\n|---|---|---|---|---|---|---|---|---|---|\n");
+        "| direct trial | direct pixel | direct in double |\n|---|---|---|---|---|---|---|---|---|---|\n");
     const int side = settings.size;
     const SphereView straight = straight_view(side), fisheye = fisheye_view(side);
     const LensView lens = lens_view(side);

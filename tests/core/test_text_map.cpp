@@ -730,6 +730,26 @@ TEST(TextMap, RowsHoldTheBoundOfExactPixelsOnEveryInstructionSet) {
     }
 }
 
+// Where no pixel holds the tolerance, those on a jump keep their bound to themselves.
+TEST(TextMap, BoundsOfAJumpAreNotThoseOfItsNeighbours) {
+    FormulaText text;
+    text.u = "x/3+if(sin(y)<sin(8.5),0,40)";
+    const TextMap map(parse_formula(text, {kPicture, kSource}), kPicture, kPicture, kSource);
+    for (const Scheme scheme : {Scheme::automatic, Scheme::exact}) {
+        PlanOptions options;
+        options.scheme = scheme;
+        options.tol = 1e-21;
+        const TextPlan plan(map, options);
+        int on_jump = 0;
+        for (std::int64_t region = 0; region < plan.regions(); ++region)
+            for (const Block& block : plan.blocks(region)) {
+                EXPECT_GT(block.bound, options.tol);
+                if (block.bound > 1e-9) on_jump += block.box.width() * block.box.height();
+            }
+        EXPECT_EQ(on_jump, kPicture.width);
+    }
+}
+
 // In a picture that is large enough for blocks none of them crosses a jump or a crease.
 TEST(TextMap, BlocksEndWhereFormulasJump) {
     const Size picture{384, 256};

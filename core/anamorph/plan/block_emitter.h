@@ -71,7 +71,7 @@ struct Fit {
     double error;  ///< of the cubic
 
     explicit Fit(const Point<Jet<double, 4>>& f)
-        : taylor(f), x(f.x), y(f.y), error(std::sqrt(square(x.error) + square(y.error))) {}
+        : taylor(f), x(f.x), y(f.y), error(length(x.error, y.error)) {}
 };
 
 /// Appends the blocks of one piece of the target, and enters in the account what they save.
@@ -101,7 +101,7 @@ class BlockEmitter {
     bool fit(const Box& box, const Local& local, const Fit& fit, double error) {
         if (!(fit.error + error <= m_tol)) return false;
         const Economized x(fit.x), y(fit.y);
-        return quadratic(box, local, x.c, y.c, std::sqrt(square(x.error) + square(y.error)) + error) ||
+        return quadratic(box, local, x.c, y.c, length(x.error, y.error) + error) ||
                cubic(box, local, fit.x.c, fit.y.c, fit.error + error);
     }
     /// True when the polynomial, off by `error` in double and evaluated in float, keeps the tolerance: then

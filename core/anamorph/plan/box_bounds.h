@@ -25,10 +25,6 @@ inline constexpr double kSharedRounding = 1.0 / 64;
 // Smaller boxes have too few blocks for looking at their halves.
 inline constexpr int kBoxOfRoundings = 4 * kBlockWidth * kBlockHeight;
 
-inline double length(double x, double y) {
-    return std::sqrt(x * x + y * y);
-}
-
 /// Of one piece of the target.
 template <FormulaMap Map>
 class BoxBounds {

@@ -2,6 +2,7 @@
 // What rounding costs exact pixels.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 
 #include "anamorph/plan/boxes.h"
@@ -16,6 +17,8 @@ inline constexpr double kExactGoal = 1e-4;
 inline constexpr int kPrecisePixels = 64;
 // Long double is at most so many times more precise: 11 bits less those by which constants are known worse.
 inline constexpr double kPreciseGain = 512;
+// Bounds above the tolerance are alike up to this factor.
+inline constexpr double kAlike = 4;
 
 /// Gives exact blocks the bound of their rounding, and cuts out of them the pixels that need long double.
 template <FormulaMap Map>
@@ -53,12 +56,13 @@ class ExactBounds {
             place(part);
         }
         if (m_blocks.size() != first + 2 || m_blocks[first].precise != m_blocks[first + 1].precise) return;
-        const double bound = larger(m_blocks[first].bound, m_blocks[first + 1].bound);
+        const double smaller = std::min(m_blocks[first].bound, m_blocks[first + 1].bound);
+        const double bound = std::max(m_blocks[first].bound, m_blocks[first + 1].bound);
+        if (!(bound <= m_goal || bound <= kAlike * smaller)) return;
         m_blocks.resize(first + 1);
         m_blocks[first].box = block.box;
         m_blocks[first].bound = bound;
     }
-    static double larger(double a, double b) { return a >= b ? a : b; }
     /// Infinite where none is known.
     template <class Real>
     double bound_of(const Block& block, const Interval& x, const Interval& y) const {

@@ -11,6 +11,14 @@
 
 namespace anamorph {
 
+namespace plan_detail {
+
+inline double length(double x, double y) {
+    return std::sqrt(x * x + y * y);
+}
+
+}  // namespace plan_detail
+
 /// Magnitudes of the Taylor coefficients of degree K over a box, one per power of the second variable:
 /// |remainder of the polynomial of degree K - 1| <= sum_j c[j] hx^(K-j) hy^j at offsets up to (hx, hy).
 template <int K>
