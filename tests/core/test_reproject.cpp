@@ -422,6 +422,27 @@ TEST(Reproject, ErrorPictureStaysUnderBoundPicture) {
     }
 }
 
+// A point on the seam of a map that ends in an outline has two images, and rounding chooses.
+TEST(Reproject, AtASeamEitherEndIsRight) {
+    for (const Projection from : {Projection::sinusoidal, Projection::hammer})
+        for (const double pitch : {0.0, 90.0}) {
+            const Panorama map(Chart(from, 64, 48), Chart(Projection::cubecross, 64, 48), {180, pitch, 45});
+            const auto drawn = [&](Output output) {
+                ReprojectOptions options;
+                options.output = output;
+                options.scheme = Scheme::exact;
+                Picture picture(PixelType::float32, 64, 48, 1);
+                Reprojection(map, options).draw(nullptr, {0, 0, 64, 48}, picture.view, serial_for);
+                return picture;
+            };
+            const Picture error = drawn(Output::error), bound = drawn(Output::bound);
+            for (int y = 0; y < 48; ++y)
+                for (int x = 0; x < 64; ++x)
+                    EXPECT_LE(error.at(x, y, 0), bound.at(x, y, 0) * (1 + 1e-6f))
+                        << name_of(from) << " " << x << " " << y;
+        }
+}
+
 TEST(Reproject, BoundsGoOnWhereSourcePointsDo) {
     using enum Projection;
     // The view looks past all four edges of the photograph.

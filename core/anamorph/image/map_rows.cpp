@@ -53,6 +53,13 @@ class PointRow {
     PointsInDouble m_exact;
 };
 
+/// Is a point on the outline of a chart that shows one meridian at both of its ends, so that its mirror image is the same place?
+bool is_at_both_ends(const Chart& source, const Point<double>& at, const Point<double>& mirrored) {
+    constexpr double kSame = 1e-9;
+    const Ray<double> a = source.ray(at.x, at.y), b = source.ray(mirrored.x, mirrored.y);
+    return std::hypot(a.x - b.x, a.y - b.y, a.z - b.z) <= kSame * std::hypot(a.x, a.y, a.z);
+}
+
 /// The distance from the truth at (x, y); the source's x is counted around one with azimuths.
 double error_of(const Found& used, const BlockMap& map, const Chart& source, double x, double y, int piece) {
     Point<long double> truth{}, at{used.at.x, used.at.y};
@@ -63,7 +70,12 @@ double error_of(const Found& used, const BlockMap& map, const Chart& source, dou
     if (true_piece != used.piece) at = source.point(source.ray(at.x, at.y, used.piece), true_piece);
     long double dx = at.x - truth.x;
     if (const double turn = source.turn(); turn < HUGE_VAL) dx -= std::round(dx / turn) * turn;
-    return static_cast<double>(std::hypot(dx, at.y - truth.y));
+    const auto distance = static_cast<double>(std::hypot(dx, at.y - truth.y));
+    if (distance < 1 || source.pieces().size() > 1) return distance;
+    // The truth may be the other end of a seam.
+    const Point<double> mirrored{source.width() - used.at.x, used.at.y};
+    if (!is_at_both_ends(source, used.at, mirrored)) return distance;
+    return std::min(distance, static_cast<double>(std::hypot(mirrored.x - truth.x, mirrored.y - truth.y)));
 }
 
 /// Source points as (u, v) of a chart.
