@@ -39,7 +39,7 @@ const char* const kLenses[] = {"ptlens:a=0.01,b=-0.03,c=0.02",
 
 /// Where a lens's centre is, from the picture's middle, in pixels: its last two values.
 Point<Real> centre_of(const View& view) {
-    const std::vector<double>& values = chart_of(view).lens()->model().values;
+    const std::vector<double> values = chart_of(view).lens()->model().values;
     return {values[values.size() - 2], values.back()};
 }
 

@@ -13,7 +13,6 @@ namespace anamorph {
 namespace {
 
 using text_file::excerpt;
-using text_file::fail;
 using text_file::in_entry;
 using text_file::Json;
 
