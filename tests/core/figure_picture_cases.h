@@ -99,8 +99,9 @@ class SceneMaker {
         return std::uniform_real_distribution<double>(low, high)(m_random);
     }
     glm::dmat3 turn() {
-        // In braces: in their order, by every compiler.
-        const glm::dvec4 q{number(-1, 1), number(-1, 1), number(-1, 1), number(-1, 1)};
+        // One by one: in this order, by every compiler.
+        glm::dvec4 q;
+        for (int k = 3; k >= 0; --k) q[k] = number(-1, 1);
         return glm::mat3_cast(glm::normalize(glm::dquat(q.w, q.x, q.y, q.z)));
     }
     /// In a cube of that half side about the origin, the longest axis between `least` and `most`, others down

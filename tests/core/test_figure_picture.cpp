@@ -119,7 +119,7 @@ TEST(FigurePicture, AlphaAndColorsAreTheMeanOfSamples) {
                 // A colour is that in the middle of samples: limbs are curved, and pixels here are large.
                 for (int c = 0; c < 3; ++c) {
                     const double wanted = static_cast<double>(sum[c]) / 256;
-                    EXPECT_NEAR(static_cast<double>(p[c]), wanted, 0.08);
+                    EXPECT_NEAR(static_cast<double>(p[c]), wanted, 0.05);
                     off += std::fabs(static_cast<double>(p[c]) - wanted);
                 }
             }
