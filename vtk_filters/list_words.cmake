@@ -60,10 +60,9 @@ macro(anamorph_list_words)
 
     set(projections "")
     foreach(list IN LISTS lists_projections)
-        read_list(${list} "^#include \"anamorph/chart/projection/([a-z0-9_]+)\\.h\"" names)
+        read_list(${list} "^ANAMORPH_PROJECTION\\(([a-z0-9_]+)," names)
         list(APPEND projections ${names})
     endforeach()
-    list(REMOVE_ITEM projections families)
     make_words(projection ${projections})
 endmacro()
 

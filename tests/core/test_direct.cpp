@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "anamorph/chart/chart_formulas.h"
 #include "anamorph/image/block_reader.h"
 #include "anamorph/image/block_sampler.h"
 #include "anamorph/panorama/direct_rows.h"

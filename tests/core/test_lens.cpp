@@ -9,7 +9,7 @@
 #include <cstdint>
 #include <random>
 
-#include "anamorph/chart/chart.h"
+#include "anamorph/chart/chart_formulas.h"
 #include "anamorph/error.h"
 #include "panorama_oracle.h"
 

@@ -9,7 +9,7 @@
 #include <cstring>
 #include <random>
 
-#include "anamorph/panorama/chart_jets.h"
+#include "anamorph/chart/chart_jets.h"
 #include "each_instruction_set.h"
 #include "panorama_oracle.h"
 

@@ -10,6 +10,7 @@
 #include <random>
 #include <type_traits>
 
+#include "anamorph/chart/chart_formulas.h"
 #include "anamorph/deform/deformation.h"
 #include "anamorph/mesh/mesh.h"
 #include "anamorph/morph/feature_lines.h"

@@ -7,6 +7,7 @@
 #include <optional>
 #include <random>
 
+#include "anamorph/chart/chart_formulas.h"
 #include "anamorph/image/footprint.h"
 #include "anamorph/panorama/panorama_plan.h"
 #include "anamorph/plan/taylor.h"

@@ -7,6 +7,7 @@
 #include <numbers>
 #include <random>
 
+#include "anamorph/chart/chart_formulas.h"
 #include "anamorph/panorama/concentric.h"
 #include "panorama_oracle.h"
 

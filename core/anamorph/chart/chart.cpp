@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "anamorph/chart/chart.h"
 
+#include "anamorph/chart/chart_formulas.h"
 #include "anamorph/error.h"
 #include "anamorph/parameter/parameter.h"
 
@@ -89,6 +90,11 @@ double natural_aspect(Projection projection, double fov) {
     return with_projection(projection, [&](auto formulas) { return formulas.aspect(fov); });
 }
 
+bool rows_turn(Projection projection) {
+    return with_projection(
+        projection, [](auto formulas) { return formulas.counted == Counted::azimuth && formulas.closes; });
+}
+
 double Chart::default_fov(Projection projection) {
     return fov_of(projection).standard;
 }
@@ -173,6 +179,18 @@ Chart Chart::resized(int width, int height) const {
     Chart chart(m_projection, width, height, m_fov, m_spacing, "", m_setting.distance.d);
     chart.m_lens = m_lens;
     return chart;
+}
+
+double Chart::pixels_per_radian() const {
+    return scale_x() * (m_lens ? m_lens->model().magnification() : 1) *
+           with_projection(m_projection, [](auto formulas) { return formulas.per_radian; });
+}
+
+double Chart::widest() const {
+    const double diameter =
+        m_lens ? 2 * m_lens->reach()
+               : with_projection(m_projection, [](auto formulas) -> double { return formulas.diameter; });
+    return diameter * std::max(scale_x(), scale_y()) * 1.25;
 }
 
 Branch Chart::branch_around(double x, double y, int piece) const {

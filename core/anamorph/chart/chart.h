@@ -8,6 +8,9 @@
 // the lens leads to that of the projection.
 //
 // Projections: chart/projection/, one a file, in the order of chart/projection/list.h.
+//
+// What is read from formulas is defined in chart_formulas.h, and compiled in chart_numbers.cpp for the numbers of chart_numbers.h and
+// chart_jets.h. Whoever reads a chart with another number includes chart_formulas.h.
 #pragma once
 
 #include <algorithm>
@@ -41,23 +44,6 @@ inline constexpr Projection kProjections[] = {
 #undef ANAMORPH_PROJECTION
 };
 
-namespace projection {
-#include "anamorph/chart/projection/list.h"
-}  // namespace projection
-
-/// body(P()) with the formulas of a projection, P of namespace projection.
-template <class Body>
-decltype(auto) with_projection(Projection projection, const Body& body) {
-    switch (projection) {
-#define ANAMORPH_PROJECTION(name, Type) \
-    case Projection::name:              \
-        return body(projection::Type());
-#include "anamorph/chart/projection/list.h"
-#undef ANAMORPH_PROJECTION
-    }
-    return body(projection::Equirectangular());
-}
-
 /// How a field of view spreads over W pixels: edge to edge, or from the first pixel's centre to the last
 /// one's.
 enum class PixelSpacing { edges, centers };
@@ -83,6 +69,8 @@ FaceGrid faces_of(Projection projection);
 inline bool has_faces(Projection projection) {
     return faces_of(projection).columns > 0;
 }
+/// Are the rows of its picture circles around the vertical axis, and those of 360 degrees closed?
+bool rows_turn(Projection projection);
 /// Height over width of a picture of a field of view in degrees.
 double natural_aspect(Projection projection, double fov);
 
@@ -142,10 +130,7 @@ class Chart {
     const Constant& pixels_per_unit() const { return m_sx; }
     const Constant& units_per_pixel() const { return m_per_x; }
     /// Pixels for a radian straight ahead of a piece.
-    double pixels_per_radian() const {
-        return scale_x() * (m_lens ? m_lens->model().magnification() : 1) *
-               with_projection(m_projection, [](auto formulas) { return formulas.per_radian; });
-    }
+    double pixels_per_radian() const;
     /// Source points of one ray lie so many pixels apart, or any multiple: a full turn, infinite where rows do
     /// not run around the sphere.
     double turn() const {
@@ -159,12 +144,7 @@ class Chart {
     /// is not 0 it then is at least half of the exact one, and the radius, for which formulas divide by its root, at most
     /// sqrt 2 R, or infinite, which is no point. The two are less than 2.42 R apart. Of the 2.5 R that are returned the rest is
     /// more than a thirtieth of 2 R, which is a pixel at least: far above the rounding of coordinates, which are below 2^24.
-    double widest() const {
-        const double diameter =
-            m_lens ? 2 * m_lens->reach()
-                   : with_projection(m_projection, [](auto formulas) -> double { return formulas.diameter; });
-        return diameter * std::max(scale_x(), scale_y()) * 1.25;
-    }
+    double widest() const;
 
     /// The local ray through an image point. Meaningful where inside() >= 0.
     template <class T>
@@ -182,6 +162,9 @@ class Chart {
     /// ends where their tangents are 1024 times those of its image's edges, and of 45 degrees.
     template <class T>
     T sees(const Ray<T>& local, int piece = 0) const;
+    /// The same but for the end of its lens.
+    template <class T>
+    T sees_without_lens(const Ray<T>& local, int piece = 0) const;
 
     /// Are there several pieces, and does each see all rays that are nearest to it?
     bool pieces_see_all() const { return m_pieces_see_all; }
@@ -217,15 +200,12 @@ class Chart {
         return local_point(transform(glm::transpose(branch(piece).axes), ray), branch(piece));
     }
 
-    /// Image and plane of a piece, in double: plane = (image - c) * per + the branch's centre.
-    struct Plane {
-        double cx, cy, sx, sy, per_x, per_y;
+    /// In double: pixels for a unit of the plane, and units for a pixel.
+    struct Scale {
+        double x, y, per_x, per_y;
     };
-    /// Image and plane of a piece.
-    Plane plane(int piece) const {
-        const Branch& b = branch(piece);
-        return {b.pixel_x, b.pixel_y, m_sx.value(), m_sy.value(), m_per_x.value(), m_per_y.value()};
-    }
+    /// That of all pieces.
+    Scale scale() const { return {m_sx.value(), m_sy.value(), m_per_x.value(), m_per_y.value()}; }
 
   private:
     template <class T>
@@ -251,64 +231,6 @@ class Chart {
 };
 
 // ---------------------------------------------------------------------------------------------------------
-
-template <class T>
-Point<T> Chart::to_observed_plane(const T& x, const T& y, const Branch& branch) const {
-    return {(x - branch.pixel_x) * m_per_x.as<T>() + branch.centre_x,
-            (y - branch.pixel_y) * m_per_y.as<T>() + branch.centre_y};
-}
-
-template <class T>
-Point<T> Chart::to_plane(const T& x, const T& y, const Branch& branch) const {
-    Point<T> p = to_observed_plane(x, y, branch);
-    if (m_lens) p = m_lens->ideal(p);
-    return p;
-}
-
-template <class T>
-T Chart::inside(const T& x, const T& y, int piece) const {
-    const Point<T> p = to_plane(x, y, branch(piece));
-    const T there =
-        with_projection(m_projection, [&](auto formulas) { return formulas.inside(p, branch(piece)); });
-    return m_lens ? min(there, m_lens->inside(to_observed_plane(x, y, branch(piece)))) : there;
-}
-
-template <class T>
-Ray<T> Chart::local_ray(const T& x, const T& y, const Branch& branch) const {
-    const Point<T> p = to_plane(x, y, branch);
-    return with_projection(m_projection, [&](auto formulas) { return formulas.ray(p, branch); });
-}
-
-template <class T>
-T Chart::sees(const Ray<T>& local, int piece) const {
-    const T there =
-        with_projection(m_projection, [&](auto formulas) { return formulas.sees(local, branch(piece)); });
-    if (!m_lens) return there;
-    // What the projection does not see may have no point in its plane.
-    const Point<T> p = with_projection(
-        m_projection, [&](auto formulas) -> Point<T> { return formulas.point(local, branch(piece)); });
-    return select(is_negative(there), there, min(there, m_lens->sees(p)));
-}
-
-template <class T>
-T Chart::crease(const T& x, const T& y, int piece) const {
-    // No projection of one piece that may have a lens has a crease.
-    const Point<T> p = to_observed_plane(x, y, branch(piece));
-    return with_projection(m_projection, [&](auto formulas) { return formulas.plane_crease(p); });
-}
-template <class T>
-T Chart::crease(const Ray<T>& local) const {
-    return with_projection(m_projection, [&](auto formulas) { return formulas.ray_crease(local); });
-}
-
-template <class T>
-Point<T> Chart::local_point(const Ray<T>& local, const Branch& branch) const {
-    Point<T> p = with_projection(m_projection,
-                                 [&](auto formulas) -> Point<T> { return formulas.point(local, branch); });
-    if (m_lens) p = m_lens->observed(p);
-    return {(p.x - branch.centre_x) * m_sx.as<T>() + branch.pixel_x,
-            (p.y - branch.centre_y) * m_sy.as<T>() + branch.pixel_y};
-}
 
 template <class T>
 int Chart::piece_of(const Ray<T>& ray) const {

@@ -1,8 +1,36 @@
 // SPDX-License-Identifier: Apache-2.0
+// All numbers in one file: a formula that changes is compiled here, and for vectors.
 #include "anamorph/chart/chart_numbers.h"
+
+#include "anamorph/chart/chart_formulas.h"
+#include "anamorph/chart/chart_glsl.h"
+#include "anamorph/chart/chart_jets.h"
+#include "anamorph/chart/chart_near.h"
 
 namespace anamorph {
 
+template <>
+GlslNumber lens_formula::radial_root(const LensTerms& lens, const GlslNumber& value) {
+    constexpr int kSteps = 10;
+    const GlslNumber goal = min(value, GlslNumber(lens.value_end));
+    GlslNumber low = 0, high = lens.end, t = min(near_root(lens, goal), high);
+    for (int i = 0; i < kSteps; ++i) {
+        const auto at = radial_at(lens, Series<GlslNumber, 1>::variable(t));
+        const GlslNumber off = at.c[0] - goal, step = t - off / at.c[1];
+        const GlslCondition below = is_negative(off);
+        low = select(below, t, low);
+        high = select(below, high, t);
+        t = min(max(step, low), high);
+    }
+    return t;
+}
+
 ANAMORPH_CHART_NUMBERS()
+ANAMORPH_CHART_POINTS(, simd::TaylorJets)
+ANAMORPH_CHART_POINTS(, simd::BoundJets)
+ANAMORPH_CHART_POINTS(, NearBound<float>)
+ANAMORPH_CHART_POINTS(, NearBound<double>)
+template Point<GlslJet> Chart::local_point(const Ray<GlslJet>&, const Branch&) const;
+template GlslNumber Chart::sees(const Ray<GlslNumber>&, int) const;
 
 }  // namespace anamorph

@@ -17,6 +17,10 @@ namespace anamorph {
 #define ANAMORPH_CHART_SIGHT(external, T)                             \
     external template T Chart::inside(const T&, const T&, int) const; \
     external template T Chart::sees(const Ray<T>&, int) const;
+/// Where they have a crease.
+#define ANAMORPH_CHART_CREASE(external, T)                            \
+    external template T Chart::crease(const T&, const T&, int) const; \
+    external template T Chart::crease(const Ray<T>&) const;
 /// With all such numbers.
 #define ANAMORPH_CHART_NUMBERS(external)                  \
     ANAMORPH_CHART_POINTS(external, double)               \
@@ -29,7 +33,12 @@ namespace anamorph {
     ANAMORPH_CHART_POINTS(external, Jet2<Interval>)       \
     ANAMORPH_CHART_SIGHT(external, double)                \
     ANAMORPH_CHART_SIGHT(external, long double)           \
-    ANAMORPH_CHART_SIGHT(external, Interval)
+    ANAMORPH_CHART_SIGHT(external, Interval)              \
+    ANAMORPH_CHART_SIGHT(external, Rounded<double>)       \
+    ANAMORPH_CHART_SIGHT(external, Rounded<long double>)  \
+    ANAMORPH_CHART_CREASE(external, double)               \
+    ANAMORPH_CHART_CREASE(external, Interval)             \
+    external template Interval Chart::sees_without_lens(const Ray<Interval>&, int) const;
 
 ANAMORPH_CHART_NUMBERS(extern)
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "anamorph/lens/lens_plan.h"
 
-#include "anamorph/panorama/chart_jets.h"
+#include "anamorph/chart/chart_jets.h"
 #include "anamorph/plan/formula_plan_impl.h"
 
 namespace anamorph {

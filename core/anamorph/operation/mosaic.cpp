@@ -23,8 +23,7 @@ const char* const kDistortion = "distortion";
 std::vector<std::string> turning_projections() {
     std::vector<std::string> names;
     for (const Projection p : kProjections)
-        if (with_projection(p, [](auto f) { return f.counted == Counted::azimuth && f.closes; }))
-            names.emplace_back(name_of(p));
+        if (rows_turn(p)) names.emplace_back(name_of(p));
     return names;
 }
 
@@ -54,7 +53,7 @@ ParameterTable make_mosaic_table() {
         whole("circle", "", "", 1, ConcentricStack::kMostCircles,
               "one panorama alone, in place of the mixture of the two nearest; stmap is of one alone, in 0 "
               "to 1 on it, by default of the middle one"),
-        as_pano("to"),
+        choice("to", "rectilinear", projection_name_list(), "projection of the picture"),
         as_pano("fov"),
         as_pano("d"),
         as_pano("yaw"),

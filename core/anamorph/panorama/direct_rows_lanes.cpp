@@ -58,6 +58,7 @@ template <class Number>
 HWY_INLINE bool somewhere(const Number&) {
     return true;
 }
+#include "anamorph/chart/chart_plane.h"
 #include "anamorph/chart/lens_formula.h"
 #include "anamorph/chart/projection/list.h"
 }  // namespace formulas
@@ -236,15 +237,14 @@ ANAMORPH_FLATTEN void TargetRays(const DirectBlock<Real>& block, Real x, Real y,
     // Copies, which no store below can change, stay in registers.
     const Branch branch = block.local.target;
     const glm::dmat3 rotation = block.local.rotation;
-    const Chart::Plane plane = block.target.plane(branch.piece);
+    const Chart::Scale scale = block.target.scale();
     const Rest lanes(hn::Iota(D<Real>(), 0));
     for (int i = 0; i < count; i += Rest::kCount) {
         t_next = block.bases.data();
         t_order<Order> = Order();
         const Number px(Base::next(BaseOperation::input, 0), lanes + Rest(x + static_cast<Real>(i)));
         const Number py(Base::next(BaseOperation::input, 0), Rest(hn::Set(D<Real>(), y)));
-        Point<Number> p{(px - plane.cx) * plane.per_x + branch.centre_x,
-                        (py - plane.cy) * plane.per_y + branch.centre_y};
+        Point<Number> p = formulas::plane_of_pixel(px, py, branch, scale.per_x, scale.per_y);
         if constexpr (Projection::lensed != Lensed::no)
             if (block.target.lens()) p = formulas::ideal_point(block.target.lens()->terms(), p);
         const Ray<Number> r = Transformed(rotation, Projection::ray(p, branch));
@@ -267,7 +267,7 @@ ANAMORPH_FLATTEN std::uint64_t SourcePoints(const DirectBlock<Real>& block, cons
     using Rest = L<Real>;
     using Number = N<Real, Order>;
     const Branch branch = block.local.source;
-    const Chart::Plane plane = block.source.plane(branch.piece);
+    const Chart::Scale scale = block.source.scale();
     const void* const first = t_next;
     std::uint64_t order = 0;
     for (int i = 0; i < count; i += Rest::kCount) {
@@ -279,11 +279,10 @@ ANAMORPH_FLATTEN std::uint64_t SourcePoints(const DirectBlock<Real>& block, cons
         Point<Number> p = Projection::point(r, branch);
         if constexpr (Projection::lensed != Lensed::no)
             if (block.source.lens()) p = formulas::observed_point(block.source.lens()->terms(), p);
-        const Number sx = (p.x - branch.centre_x) * plane.sx + plane.cx,
-                     sy = (p.y - branch.centre_y) * plane.sy + plane.cy;
-        (Rest(hn::Set(D<Real>(), block.middle.x)) + sx.rest).store(x + i);
-        (Rest(hn::Set(D<Real>(), block.middle.y)) + sy.rest).store(y + i);
-        order = OrderWith<Order>(sx, sy);
+        p = formulas::pixel_of_plane(p, branch, scale.x, scale.y);
+        (Rest(hn::Set(D<Real>(), block.middle.x)) + p.x.rest).store(x + i);
+        (Rest(hn::Set(D<Real>(), block.middle.y)) + p.y.rest).store(y + i);
+        order = OrderWith<Order>(p.x, p.y);
     }
     return order;
 }

@@ -133,9 +133,7 @@ SourceEdges Panorama::source_edges() const {
 bool Panorama::ends_by_lens(const Ray<Interval>& ray, const Local& local) const {
     // The lens's formula goes on behind its end; its root does not.
     if (!m_source.lens() || !m_source.lens()->terms().to_observed) return false;
-    const Interval there = with_projection(m_source.projection(),
-                                           [&](auto formulas) { return formulas.sees(ray, local.source); });
-    return there.lo > 0;
+    return m_source.sees_without_lens(ray, local.source.piece).lo > 0;
 }
 
 bool Panorama::is_unseen(const Ray<Interval>& ray, const Local& local) const {

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "anamorph/chart/chart_near.h"
 #include "anamorph/panorama/panorama.h"
 
 namespace anamorph {

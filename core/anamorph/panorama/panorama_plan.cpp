@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "anamorph/panorama/panorama_plan.h"
 
-#include "anamorph/panorama/chart_jets.h"
+#include "anamorph/chart/chart_jets.h"
 #include "anamorph/panorama/direct_rows.h"
 #include "anamorph/panorama/panorama_residual.h"
 #include "anamorph/panorama/panorama_rows.h"

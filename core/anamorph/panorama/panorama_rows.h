@@ -19,6 +19,12 @@ struct ExactRow {
     alignas(64) double seen[kExactRow];             ///< 1, or 0 where there is no source point
 };
 
+/// Rays of a row of target points, x right, y down and z forward, with room for kExactRow, and numbers that are not negative where
+/// there is one.
+struct RayRow {
+    alignas(64) double x[kExactRow], y[kExactRow], z[kExactRow], inside[kExactRow];
+};
+
 /// A rotation of rays by columns.
 using Turn = std::array<std::array<Constant, 3>, 3>;
 
@@ -27,5 +33,7 @@ using Turn = std::array<std::array<Constant, 3>, 3>;
 /// holds. The same bits on all instruction sets.
 void exact_row(const Chart& target, const Chart& source, const Turn& turn, int piece, double x, double y,
                int count, ExactRow& row);
+/// The same of rays that are there, as Panorama::exact<double> finds their points when it has turned them.
+void exact_points(const Chart& source, const Turn& turn, RayRow& rays, int count, ExactRow& row);
 
 }  // namespace anamorph::simd

@@ -19,17 +19,13 @@ template <class Tag>
 HWY_INLINE bool somewhere(const LaneMask<Tag>& condition) {
     return !hn::AllFalse(Tag(), condition.m);
 }
+#include "anamorph/chart/chart_plane.h"
 #include "anamorph/chart/lens_formula.h"
 #include "anamorph/chart/projection/list.h"
 }  // namespace formulas
 
 using D = hn::CappedTag<double, kExactRow>;
 using L = Lanes<D>;
-
-struct RowRays {
-    HWY_ALIGN double x[kExactRow], y[kExactRow], z[kExactRow];
-    HWY_ALIGN double inside[kExactRow];
-};
 
 /// As transform() in geometry/point.h.
 template <class Entry>
@@ -59,14 +55,13 @@ Matrix MatrixOf(const glm::dmat3& axes) {
 /// With the lens of the target, if it has one and its projection may have one.
 template <class Projection>
 void TargetRays(const Chart& target, const Matrix& turn, int piece, double x0, double y, int count,
-                RowRays& rays) {
+                RayRow& rays) {
     const Branch& branch = target.branch(piece);
-    const Chart::Plane plane = target.plane(piece);
+    const Chart::Scale scale = target.scale();
     const Matrix axes = MatrixOf(branch.axes);
-    const L py = L((y - plane.cy)) * plane.per_y + branch.centre_y, lanes(hn::Iota(D(), 0));
+    const L lanes(hn::Iota(D(), 0));
     for (int i = 0; i < count; i += L::kCount) {
-        const L x = lanes + L(i) + x0;
-        Point<L> p{(x - plane.cx) * plane.per_x + branch.centre_x, py};
+        Point<L> p = formulas::plane_of_pixel(lanes + L(i) + x0, L(y), branch, scale.per_x, scale.per_y);
         L inside(1);
         if constexpr (Projection::lensed != Lensed::no)
             if (target.lens()) {
@@ -95,8 +90,9 @@ HWY_INLINE L PieceOf(const Chart& source, const Ray<L>& r) {
 }
 
 template <class Projection>
-void SourcePoints(const Chart& source, const RowRays& rays, int count, ExactRow& row) {
+void SourcePoints(const Chart& source, const RayRow& rays, int count, ExactRow& row) {
     const int pieces = static_cast<int>(source.pieces().size());
+    const Chart::Scale scale = source.scale();
     for (int i = 0; i < count; i += L::kCount) {
         const Ray<L> r{L::load(rays.x + i), L::load(rays.y + i), L::load(rays.z + i)};
         const L piece = pieces > 1 ? PieceOf(source, r) : L(0);
@@ -106,7 +102,6 @@ void SourcePoints(const Chart& source, const RowRays& rays, int count, ExactRow&
             const LaneMask<D> here = is_zero(piece - L(k));
             if (hn::AllFalse(D(), here.m)) continue;
             const Branch& branch = source.branch(k);
-            const Chart::Plane plane = source.plane(k);
             const Ray<L> local = Transformed(MatrixOf(glm::transpose(branch.axes)), r);
             if (!source.pieces_see_all()) sees = select(here, Projection::sees(local, branch), sees);
             Point<L> p = Projection::point(local, branch);
@@ -115,8 +110,9 @@ void SourcePoints(const Chart& source, const RowRays& rays, int count, ExactRow&
                     seen = both(seen, L(0) < formulas::has_observed(source.lens()->terms(), p));
                     p = formulas::observed_point(source.lens()->terms(), p);
                 }
-            x = select(here, (p.x - branch.centre_x) * plane.sx + plane.cx, x);
-            y = select(here, (p.y - branch.centre_y) * plane.sy + plane.cy, y);
+            p = formulas::pixel_of_plane(p, branch, scale.x, scale.y);
+            x = select(here, p.x, x);
+            y = select(here, p.y, y);
         }
         seen = both(seen, L(0) < sees);
         // Finite: what is infinite or no number less itself is not zero.
@@ -128,18 +124,7 @@ void SourcePoints(const Chart& source, const RowRays& rays, int count, ExactRow&
     }
 }
 
-void ComputeExactRow(const Chart& target, const Chart& source, const Turn& turn, int piece, double x,
-                     double y, int count, ExactRow& row) {
-    RowRays rays;
-    const Matrix matrix = MatrixOf(turn);
-    switch (target.projection()) {
-#define ANAMORPH_PROJECTION(name, Type)                                       \
-    case Projection::name:                                                    \
-        TargetRays<formulas::Type>(target, matrix, piece, x, y, count, rays); \
-        break;
-#include "anamorph/chart/projection/list.h"
-#undef ANAMORPH_PROJECTION
-    }
+void AnySourcePoints(const Chart& source, const RayRow& rays, int count, ExactRow& row) {
     switch (source.projection()) {
 #define ANAMORPH_PROJECTION(name, Type)                         \
     case Projection::name:                                      \
@@ -150,6 +135,34 @@ void ComputeExactRow(const Chart& target, const Chart& source, const Turn& turn,
     }
 }
 
+void ComputeExactRow(const Chart& target, const Chart& source, const Turn& turn, int piece, double x,
+                     double y, int count, ExactRow& row) {
+    RayRow rays;
+    const Matrix matrix = MatrixOf(turn);
+    switch (target.projection()) {
+#define ANAMORPH_PROJECTION(name, Type)                                       \
+    case Projection::name:                                                    \
+        TargetRays<formulas::Type>(target, matrix, piece, x, y, count, rays); \
+        break;
+#include "anamorph/chart/projection/list.h"
+#undef ANAMORPH_PROJECTION
+    }
+    AnySourcePoints(source, rays, count, row);
+}
+
+/// Turns the rays.
+void ComputeExactPoints(const Chart& source, const Turn& turn, RayRow& rays, int count, ExactRow& row) {
+    const Matrix matrix = MatrixOf(turn);
+    for (int i = 0; i < count; i += L::kCount) {
+        const Ray<L> r =
+            Transformed(matrix, Ray<L>{L::load(rays.x + i), L::load(rays.y + i), L::load(rays.z + i)});
+        r.x.store(rays.x + i);
+        r.y.store(rays.y + i);
+        r.z.store(rays.z + i);
+    }
+    AnySourcePoints(source, rays, count, row);
+}
+
 }  // namespace HWY_NAMESPACE
 }  // namespace anamorph::simd
 HWY_AFTER_NAMESPACE();
@@ -158,10 +171,14 @@ HWY_AFTER_NAMESPACE();
 namespace anamorph::simd {
 
 HWY_EXPORT(ComputeExactRow);
+HWY_EXPORT(ComputeExactPoints);
 
 void exact_row(const Chart& target, const Chart& source, const Turn& turn, int piece, double x, double y,
                int count, ExactRow& row) {
     HWY_DYNAMIC_DISPATCH(ComputeExactRow)(target, source, turn, piece, x, y, count, row);
+}
+void exact_points(const Chart& source, const Turn& turn, RayRow& rays, int count, ExactRow& row) {
+    HWY_DYNAMIC_DISPATCH(ComputeExactPoints)(source, turn, rays, count, row);
 }
 
 }  // namespace anamorph::simd

@@ -1,30 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "anamorph/projector/panorama_glsl.h"
 
-#include "anamorph/number/glsl_number.h"
+#include "anamorph/chart/chart_glsl.h"
 
 namespace anamorph {
 
-/// By as many steps as the shader has lines for. They stay in a bracket.
-template <>
-GlslNumber lens_formula::radial_root(const LensTerms& lens, const GlslNumber& value) {
-    constexpr int kSteps = 10;
-    const GlslNumber goal = min(value, GlslNumber(lens.value_end));
-    GlslNumber low = 0, high = lens.end, t = min(near_root(lens, goal), high);
-    for (int i = 0; i < kSteps; ++i) {
-        const auto at = radial_at(lens, Series<GlslNumber, 1>::variable(t));
-        const GlslNumber off = at.c[0] - goal, step = t - off / at.c[1];
-        const GlslCondition below = is_negative(off);
-        low = select(below, t, low);
-        high = select(below, high, t);
-        t = min(max(step, low), high);
-    }
-    return t;
-}
-
 namespace {
-
-using GlslJet = Jet1<GlslNumber>;
 
 constexpr const char* kArguments =
     "(vec3 r, vec3 a, vec3 b, out vec2 texel, out vec2 alongA, out vec2 alongB)";

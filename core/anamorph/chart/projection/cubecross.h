@@ -1,8 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 // Six rectilinear faces of 90 degrees as a cross: up; left, front, right, back; down.
-#ifdef ANAMORPH_PROJECTION
-ANAMORPH_PROJECTION(cubecross, Cubecross)
-#else
 
 struct Cubecross : CubeFamily {
     static constexpr int columns = 4, rows = 3;
@@ -13,5 +10,3 @@ struct Cubecross : CubeFamily {
         return {{kUp, 1, 0}, {kLeft, 0, 1}, {kFront, 1, 1}, {kRight, 2, 1}, {kBack, 3, 1}, {kDown, 1, 2}};
     }
 };
-
-#endif

@@ -1,8 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 // Six rectilinear faces of 90 degrees in a vertical strip, in OpenEXR's order and orientation.
-#ifdef ANAMORPH_PROJECTION
-ANAMORPH_PROJECTION(cubemap, Cubemap)
-#else
 
 struct Cubemap : CubeFamily {
     static constexpr int columns = 1, rows = 6;
@@ -15,5 +12,3 @@ struct Cubemap : CubeFamily {
         return {{kLeft, 0, 0}, {kRight, 0, 1}, {up, 0, 2}, {down, 0, 3}, {kFront, 0, 4}, {kBack, 0, 5}};
     }
 };
-
-#endif

@@ -1,8 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 // Six rectilinear faces of 90 degrees: right, left, up; down, front, back. Each is upright as seen from inside.
-#ifdef ANAMORPH_PROJECTION
-ANAMORPH_PROJECTION(cubemap3x2, Cubemap3x2)
-#else
 
 struct Cubemap3x2 : CubeFamily {
     static constexpr int columns = 3, rows = 2;
@@ -13,5 +10,3 @@ struct Cubemap3x2 : CubeFamily {
         return {{kRight, 0, 0}, {kLeft, 1, 0}, {kUp, 2, 0}, {kDown, 0, 1}, {kFront, 1, 1}, {kBack, 2, 1}};
     }
 };
-
-#endif

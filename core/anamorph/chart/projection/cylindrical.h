@@ -1,8 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 // Cylindrical: X = azimuth, Y = tan(elevation) (Kim 2003, eq. 4.1 and 4.2).
-#ifdef ANAMORPH_PROJECTION
-ANAMORPH_PROJECTION(cylindrical, Cylindrical)
-#else
 
 struct Cylindrical : CylinderFamily {
     /// 90 degrees of elevation: 2 tan 45 over the azimuth.
@@ -26,5 +23,3 @@ struct Cylindrical : CylinderFamily {
         return {atan2(r.x, r.z) + s.around.angle, l.y / across_length(l)};
     }
 };
-
-#endif

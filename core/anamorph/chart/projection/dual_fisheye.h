@@ -1,9 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Two equidistant fisheyes side by side, as cameras with two lenses write them: the back on the left, the front on the
 // right (ffmpeg's v360 calls it dfisheye). The field of view is that of one of them.
-#ifdef ANAMORPH_PROJECTION
-ANAMORPH_PROJECTION(dual_fisheye, DualFisheye)
-#else
 
 struct DualFisheye : Fisheye {
     static constexpr int columns = 2, rows = 1;
@@ -28,5 +25,3 @@ struct DualFisheye : Fisheye {
         return r.z * (std::sin(s.half_width) * kSlack) - length(r.x, r.y) * std::cos(s.half_width);
     }
 };
-
-#endif

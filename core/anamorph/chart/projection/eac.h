@@ -1,9 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Equi-angular cube map: as a cube map, but on a face X is the angle atan(x / z) over 45 degrees. Left, front, right;
 // and below, each turned by 90 degrees: down, back, up. This is the layout that ffmpeg's v360 calls eac.
-#ifdef ANAMORPH_PROJECTION
-ANAMORPH_PROJECTION(eac, Eac)
-#else
 
 struct Eac : CubeFamily {
     static constexpr int columns = 3, rows = 2;
@@ -37,5 +34,3 @@ struct Eac : CubeFamily {
     static inline const Constant kEighth{std::numbers::pi_v<long double> / 4},
         kPerEighth{4 / std::numbers::pi_v<long double>};
 };
-
-#endif

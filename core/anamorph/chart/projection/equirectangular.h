@@ -1,8 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 // Equirectangular: X = azimuth, Y = elevation (down), both in radians.
-#ifdef ANAMORPH_PROJECTION
-ANAMORPH_PROJECTION(equirectangular, Equirectangular)
-#else
 
 struct Equirectangular : CylinderFamily {
     static constexpr std::string_view alias = "latlong";
@@ -28,5 +25,3 @@ struct Equirectangular : CylinderFamily {
         return {atan2(r.x, r.z) + s.around.angle, tilt(l.y, across_length(l), s.along)};
     }
 };
-
-#endif

@@ -1,9 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Equisolid: the radius is 2 sin(t / 2). Areas keep their proportions: it is Lambert's azimuthal equal-area
 // projection.
-#ifdef ANAMORPH_PROJECTION
-ANAMORPH_PROJECTION(equisolid, Equisolid)
-#else
 
 struct Equisolid : AxisFamily {
     static constexpr std::string_view alias = "lambert";
@@ -35,5 +32,3 @@ struct Equisolid : AxisFamily {
         return {select(behind, T(2), T(r.x * k)), select(behind, T(0), T(r.y * k))};
     }
 };
-
-#endif

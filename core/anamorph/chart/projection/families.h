@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 // What projections of one family share. Without a guard and a namespace, as list.h says.
-#ifndef ANAMORPH_PROJECTION
 
 inline constexpr long double kDegree = std::numbers::pi_v<long double> / 180;
 
@@ -154,5 +153,3 @@ T add_to_length(const T& n, const T& z, const T& rho_squared) {
     // Only one of the two divisors is used, and it is at least n.
     return select(behind, T(rho_squared / (n + select(behind, T(-z), z))), T(n + z));
 }
-
-#endif

@@ -1,8 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 // Fisheye, equidistant: the radius is t, the angle from the axis.
-#ifdef ANAMORPH_PROJECTION
-ANAMORPH_PROJECTION(fisheye, Fisheye)
-#else
 
 struct Fisheye : AxisFamily {
     static constexpr Counted counted = Counted::axis;
@@ -39,5 +36,3 @@ struct Fisheye : AxisFamily {
   private:
     static inline const Constant kHalfTurn{std::numbers::pi_v<long double>};
 };
-
-#endif

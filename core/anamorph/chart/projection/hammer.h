@@ -1,9 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Hammer: Lambert's equal-area projection of the ray with half the azimuth, stretched to twice the width:
 // X = 2 k cos e sin(a / 2), Y = k sin e, k = sqrt(2 / (1 + cos e cos(a / 2))).
-#ifdef ANAMORPH_PROJECTION
-ANAMORPH_PROJECTION(hammer, Hammer)
-#else
 
 struct Hammer : CylinderFamily {
     static constexpr bool closes = false;
@@ -40,5 +37,3 @@ struct Hammer : CylinderFamily {
         return {k * cos_e * sh * 2.0, k * r.y / n};
     }
 };
-
-#endif

@@ -1,14 +1,32 @@
 // SPDX-License-Identifier: Apache-2.0
-// All projections: one file and one line each.
+// All projections: one file each, and here one line in either part.
 //
-// A projection's file is read twice, so neither it nor this list has a guard or a namespace. Where
-// ANAMORPH_PROJECTION(name, Type) is defined, the file is that entry alone: an enumerator, a case of a switch, a
-// row of a table. Where it is not, the file is the formulas, included inside a namespace: the one of chart.h, and
-// one for every instruction set whose vectors read them.
+// Where ANAMORPH_PROJECTION(name, Type) is defined, this is what that makes of each: enumerators, cases of a switch, rows of a table.
+// Where it is not, this is their formulas, which are included inside a namespace: that of chart_formulas.h, and one for every
+// instruction set whose vectors read them. So neither this list nor the files have a guard or a namespace.
 //
 // The order is that of menus and documentation, and of numbers in saved states: new ones come last.
 //
 // clang-format off
+#ifdef ANAMORPH_PROJECTION
+ANAMORPH_PROJECTION(equirectangular, Equirectangular)
+ANAMORPH_PROJECTION(cylindrical, Cylindrical)
+ANAMORPH_PROJECTION(rectilinear, Rectilinear)
+ANAMORPH_PROJECTION(fisheye, Fisheye)
+ANAMORPH_PROJECTION(equisolid, Equisolid)
+ANAMORPH_PROJECTION(stereographic, Stereographic)
+ANAMORPH_PROJECTION(mercator, Mercator)
+ANAMORPH_PROJECTION(cubemap, Cubemap)
+ANAMORPH_PROJECTION(cubemap3x2, Cubemap3x2)
+ANAMORPH_PROJECTION(cubecross, Cubecross)
+ANAMORPH_PROJECTION(eac, Eac)
+ANAMORPH_PROJECTION(pannini, Pannini)
+ANAMORPH_PROJECTION(orthographic, Orthographic)
+ANAMORPH_PROJECTION(sinusoidal, Sinusoidal)
+ANAMORPH_PROJECTION(hammer, Hammer)
+ANAMORPH_PROJECTION(dual_fisheye, DualFisheye)
+ANAMORPH_PROJECTION(octahedral, Octahedral)
+#else
 #include "anamorph/chart/projection/families.h"
 
 #include "anamorph/chart/projection/equirectangular.h"
@@ -28,4 +46,5 @@
 #include "anamorph/chart/projection/hammer.h"
 #include "anamorph/chart/projection/dual_fisheye.h"
 #include "anamorph/chart/projection/octahedral.h"
+#endif
 // clang-format on

@@ -1,8 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 // Mercator: X = azimuth, Y = asinh(tan(elevation)).
-#ifdef ANAMORPH_PROJECTION
-ANAMORPH_PROJECTION(mercator, Mercator)
-#else
 
 struct Mercator : CylinderFamily {
     static double largest_tangent(double, double half_height) {
@@ -27,5 +24,3 @@ struct Mercator : CylinderFamily {
         return {p.x, asinh(p.y)};
     }
 };
-
-#endif

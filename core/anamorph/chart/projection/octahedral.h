@@ -1,9 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Octahedral: the sphere's rays on an octahedron |x| + |y| + |z| = 1, unfolded into a square: the front half is the
 // diamond in the middle, the back half is folded out at the four corners. The pieces are the quarters of the square.
-#ifdef ANAMORPH_PROJECTION
-ANAMORPH_PROJECTION(octahedral, Octahedral)
-#else
 
 struct Octahedral : AnyProjection {
     static constexpr FieldOfView fov{360, 360, false, true};
@@ -49,5 +46,3 @@ struct Octahedral : AnyProjection {
         return {(x - beyond) / n * x_side, (y - beyond) / n * y_side};
     }
 };
-
-#endif

@@ -1,8 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 // Orthographic: the radius is sin t, a globe seen from far away, from inside.
-#ifdef ANAMORPH_PROJECTION
-ANAMORPH_PROJECTION(orthographic, Orthographic)
-#else
 
 struct Orthographic : AxisFamily {
     static constexpr FieldOfView fov{180, 180};
@@ -29,5 +26,3 @@ struct Orthographic : AxisFamily {
         return {r.x / n, r.y / n};
     }
 };
-
-#endif

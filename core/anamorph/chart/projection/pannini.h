@@ -1,9 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The general Pannini projection (Sharpless, Postle and German 2010) with distance d: a cylinder seen from d behind its
 // axis. With S = (d + 1) / (d + cos a): X = S sin a, Y = S tan e. d = 0 is rectilinear.
-#ifdef ANAMORPH_PROJECTION
-ANAMORPH_PROJECTION(pannini, Pannini)
-#else
 
 struct Pannini : AnyProjection {
     static constexpr FieldOfView fov{180, 360, true};
@@ -66,5 +63,3 @@ struct Pannini : AnyProjection {
         return {r.x * k, r.y * k};
     }
 };
-
-#endif

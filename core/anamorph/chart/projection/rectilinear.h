@@ -1,8 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 // Rectilinear: a camera without distortion, X = x / z and Y = y / z.
-#ifdef ANAMORPH_PROJECTION
-ANAMORPH_PROJECTION(rectilinear, Rectilinear)
-#else
 
 struct Rectilinear : FlatFamily {
     static constexpr FieldOfView fov{90, 180, true};
@@ -19,5 +16,3 @@ struct Rectilinear : FlatFamily {
         return min(min(T(far - r.x), T(far + r.x)), min(T(far - r.y), T(far + r.y)));
     }
 };
-
-#endif

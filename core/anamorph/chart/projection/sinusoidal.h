@@ -1,8 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 // Sinusoidal: X = azimuth cos(elevation), Y = elevation. Areas keep their proportions.
-#ifdef ANAMORPH_PROJECTION
-ANAMORPH_PROJECTION(sinusoidal, Sinusoidal)
-#else
 
 struct Sinusoidal : CylinderFamily {
     static constexpr bool closes = false;
@@ -32,5 +29,3 @@ struct Sinusoidal : CylinderFamily {
         return {(atan2(r.x, r.z) + s.around.angle) * (rho / length(rho, l.y)), tilt(l.y, rho, s.along)};
     }
 };
-
-#endif

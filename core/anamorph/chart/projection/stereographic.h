@@ -1,8 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 // Stereographic: the radius is 2 tan(t / 2).
-#ifdef ANAMORPH_PROJECTION
-ANAMORPH_PROJECTION(stereographic, Stereographic)
-#else
 
 struct Stereographic : AxisFamily {
     static constexpr FieldOfView fov{180, 360, true};
@@ -22,5 +19,3 @@ struct Stereographic : AxisFamily {
         return {r.x * k, r.y * k};
     }
 };
-
-#endif

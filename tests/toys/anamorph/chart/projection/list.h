@@ -3,5 +3,9 @@
 // clang-format off
 #include_next <anamorph/chart/projection/list.h>
 
+#ifdef ANAMORPH_PROJECTION
+ANAMORPH_PROJECTION(toy, Toy)
+#else
 #include "anamorph/chart/projection/toy.h"
+#endif
 // clang-format on

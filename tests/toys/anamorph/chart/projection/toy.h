@@ -1,8 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 // A toy: X = azimuth, Y = 2 tan(elevation / 2).
-#ifdef ANAMORPH_PROJECTION
-ANAMORPH_PROJECTION(toy, Toy)
-#else
 
 struct Toy : CylinderFamily {
     template <class T>
@@ -23,5 +20,3 @@ struct Toy : CylinderFamily {
         return {atan2(r.x, r.z) + s.around.angle, l.y * 2.0 / (length + across)};
     }
 };
-
-#endif
