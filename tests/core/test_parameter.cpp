@@ -33,6 +33,7 @@ std::string error_of(const Body& body) {
 ParameterValues values(const std::vector<Assignment>& assignments) {
     ParameterValues v(*pano_operation().parameters);
     v.assign(assignments);
+    v.refuse_definitions();
     return v;
 }
 
@@ -330,10 +331,10 @@ TEST(RecipeName, RandomBytesGiveAnErrorOrAResult) {
 }
 
 TEST(ReprojectRequest, SaysFromWhereItCanBeKnown) {
-    EXPECT_EQ(request({}).source.projection(), Projection::equirectangular);
-    EXPECT_EQ(request({}, {64, 384, {}}).source.projection(), Projection::cubemap);
-    EXPECT_EQ(request({}, {2048, 1024, Projection::mercator}).source.projection(), Projection::mercator);
-    EXPECT_EQ(request({{"from", "latlong"}}, {300, 200, {}}).source.projection(),
+    EXPECT_EQ(request({}).source.chart.projection(), Projection::equirectangular);
+    EXPECT_EQ(request({}, {64, 384, {}}).source.chart.projection(), Projection::cubemap);
+    EXPECT_EQ(request({}, {2048, 1024, Projection::mercator}).source.chart.projection(), Projection::mercator);
+    EXPECT_EQ(request({{"from", "latlong"}}, {300, 200, {}}).source.chart.projection(),
               Projection::equirectangular);
     EXPECT_THAT(error_of([] {
                     request({}, {300, 200, {}});
@@ -388,7 +389,7 @@ TEST(ReprojectRequest, Lenses) {
                                           {"lens", "ptlens:b=0.02,c=-0.5,d=3"},
                                           {"fov", "60"}};
     const ReprojectRequest r = request(both, photo);
-    EXPECT_EQ(r.source.lens()->model().text(), "brown:k1=-0.1");
+    EXPECT_EQ(r.source.chart.lens()->model().text(), "brown:k1=-0.1");
     EXPECT_EQ(r.target.lens()->model().text(), "ptlens:b=0.02,c=-0.5,d=3");
     EXPECT_EQ(r.held.pitch, 5);
     EXPECT_EQ(r.orientation.pitch, 0);
@@ -401,9 +402,9 @@ TEST(ReprojectRequest, Lenses) {
     // What the image says of itself, unless its projection is another one or the recipe says something else.
     SourceFacts says = photo;
     says.lens = LensModel::parse("ptlens:b=-0.01");
-    EXPECT_EQ(request({}, says).source.lens()->model().text(), "ptlens:b=-0.01");
-    EXPECT_EQ(request({{"from", "fisheye"}}, says).source.lens(), nullptr);
-    EXPECT_EQ(request({{"srclens", "none"}}, says).source.lens(), nullptr);
+    EXPECT_EQ(request({}, says).source.chart.lens()->model().text(), "ptlens:b=-0.01");
+    EXPECT_EQ(request({{"from", "fisheye"}}, says).source.chart.lens(), nullptr);
+    EXPECT_EQ(request({{"srclens", "none"}}, says).source.chart.lens(), nullptr);
 }
 
 /// What a request draws of noise.

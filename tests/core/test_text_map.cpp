@@ -227,7 +227,16 @@ TEST(TextMap, ErrorsNameTheColumn) {
                 testing::HasSubstr("a number that double can hold"));
     std::string wide = "x";
     for (int i = 0; i < 100; ++i) wide = "sin(x*" + std::to_string(i + 2) + ")+(" + wide + ")";
-    EXPECT_THAT(error_of(wide), testing::HasSubstr("must be simpler"));
+    EXPECT_EQ(error_of(wide), "u and v: the formula needs more than 64 numbers at once: must be simpler");
+    std::string numbers = "x";
+    for (int i = 0; i < 300; ++i) numbers += "+x*" + std::to_string(i + 2);
+    EXPECT_EQ(error_of(numbers),
+              "u and v: the formula needs more than 256 different numbers: must be simpler");
+    std::string many = "k=x";
+    for (int i = 0; i < 9000; ++i) many += ";k=sin(k+" + std::to_string(i + 2) + ")";
+    EXPECT_THAT(error_of("k", many),
+                testing::AllOf(testing::StartsWith("let=k=x;k=sin(k+2)"),
+                               testing::EndsWith("needs more than 16384 operations: must be simpler")));
 }
 
 TextPlan plan_of(const FormulaText& text, const Size& picture) {

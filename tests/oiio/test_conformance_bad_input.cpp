@@ -47,6 +47,31 @@ void open_and_read(const std::string& name) {
         << name << ": " << input->geterror();
 }
 
+TEST_F(BadInput, ProjectionsThatAreText) {
+    for (const char* key :
+         {"ray_x=px", "ray_y=py", "ray_z=1", "point_x=lon", "point_y=lat", "let=k=1", "frame=1"})
+        expect_refused(key, "is of to=formula");
+    for (const char* key :
+         {"fov=90", "d=1", "lens=brown:k1=0.1", "scheme=direct", "scheme=hardware", "machine=embm-2003"})
+        expect_refused(std::string("to=formula&") + key, "to=formula");
+    expect_refused("to=formula&ray_x=px*", "ray_x=px*", "column 4: expected a number");
+    expect_refused("to=formula&point_y=lan", "point_y=lan",
+                   "column 1: expected a name that is known, not lan");
+    expect_refused("to=formula&point_x=px", "point_x=px", "expected a name that is known, not px");
+    expect_refused("to=formula&ray_x=1&point_x=lon",
+                   "ray_x, ray_y or ray_z and point_x or point_y are given");
+    expect_refused("to=formula&k=1", "k=1", "there is no such parameter, and no formula uses the name");
+    expect_refused("to=formula&frame=nan", "frame=nan");
+    for (const char* blind : {"ray_z=0&ray_x=0&ray_y=0", "ray_x=log(-1)", "point_x=1&point_y=1"})
+        expect_refused(std::string("to=formula&") + blind, "size is not given");
+    expect_refused("to=formula&point_x=1&point_y=1&size=20", "squeezes the source to a line or a point");
+    expect_refused("to=formula&point_x=if(lon+lat>0,lon,lon+1)&size=20", "point_x and point_y",
+                   "must be continuous");
+    open_and_read("city.exr.pano?to=formula&ray_x=px/0&size=20");
+    open_and_read("city.exr.pano?to=formula&ray_x=exp(exp(99*px))&size=20");
+    open_and_read("city.exr.pano?to=formula&ray_x=1e308*px&ray_y=1e308*py&ray_z=1e-308&size=20");
+}
+
 TEST_F(BadInput, conformance_20_sizes) {
     for (const char* size :
          {"0", "-1", "0x5", "5x0", "5x-5", "99999999999", "1048577", "1e3", "5x", "x", "4294967297x1"})

@@ -137,7 +137,7 @@ void vtkAnamorphPanoramaView::Draw(vtkInformationVector** inputs, const int* ext
     anamorph_vtk::Execution execution(this);
     const anamorph::Reprojection view(request.map(), request.options);
     const anamorph::MemorySource base(panorama.view(), anamorph_vtk::alpha_of(channels));
-    const anamorph::FaceGrid faces = anamorph::faces_of(request.source.projection());
+    const anamorph::FaceGrid faces = anamorph::faces_of(request.source.chart.projection());
     const anamorph::Pyramid source(base, std::max(1, faces.columns), std::max(1, faces.rows));
     const anamorph::Box box{extent[0], height - 1 - extent[3], extent[1] + 1, height - extent[2]};
     if (!view.draw(&source, box,

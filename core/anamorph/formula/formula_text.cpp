@@ -82,7 +82,7 @@ class Graph {
     Result add(const Node& node) {
         const auto [known, is_new] = m_known.try_emplace(node, static_cast<int>(m_nodes.size()));
         if (is_new) m_nodes.push_back(node);
-        if (m_nodes.size() > kMostNodes) throw Error("the formula needs more than 16384 operations");
+        if (m_nodes.size() > kMostNodes) throw Error("needs more than 16384 operations: must be simpler");
         return {known->second};
     }
 
@@ -104,8 +104,7 @@ class Registers {
                 std::fill_n(&m_free[i], count, false);
                 return static_cast<std::uint8_t>(i);
             }
-        throw Error("the formula needs more than " + std::to_string(m_free.size()) +
-                    " numbers at once: must be simpler");
+        throw Error("needs more than " + std::to_string(m_free.size()) + " numbers at once: must be simpler");
     }
     void give_back(std::uint8_t i) { m_free[i] = true; }
 
@@ -126,7 +125,7 @@ std::uint8_t place_of(std::vector<T>& values, const T& value) {
         return key_of(other) == key_of(value) && std::signbit(key_of(other)) == std::signbit(key_of(value));
     });
     if (known != values.end()) return static_cast<std::uint8_t>(known - values.begin());
-    if (values.size() == 256) throw Error("the formula needs more than 256 different numbers");
+    if (values.size() == 256) throw Error("needs more than 256 different numbers: must be simpler");
     values.push_back(value);
     return static_cast<std::uint8_t>(values.size() - 1);
 }
@@ -700,26 +699,44 @@ class Parser {
     int m_depth = 0;
 };
 
+/// What does not depend on the point.
+NamedValues settings_of(Maker& m, const FormulaSetting& setting) {
+    return {{"width", {m.number(setting.picture.width)}},
+            {"height", {m.number(setting.picture.height)}},
+            {"src_width", {m.number(setting.source.width)}},
+            {"src_height", {m.number(setting.source.height)}},
+            {"frame", {m.number(setting.frame)}},
+            {"pi", {m.constant(std::numbers::pi_v<long double>)}}};
+}
+
 NamedValues names_of(Maker& m, const FormulaSetting& setting) {
     const Size& place = setting.pushes ? setting.source : setting.picture;
     const double width = place.width, height = place.height;
     const Value x = m.x(), y = m.y(), per_half = m.number(0.5 * std::min(width, height));
     const Value px = m.quotient(m.difference(x, m.number(0.5 * width)), per_half),
                 py = m.quotient(m.difference(m.number(0.5 * height), y), per_half);
-    return {{"x", {x}},
-            {"y", {y}},
-            {"s", {m.quotient(x, m.number(width))}},
-            {"t", {m.quotient(y, m.number(height))}},
-            {"px", {px}},
-            {"py", {py}},
-            {"r", {m.root(m.sum(m.square(px), m.square(py)))}},
-            {"a", {m.angle(py, px)}},
-            {"width", {m.number(setting.picture.width)}},
-            {"height", {m.number(setting.picture.height)}},
-            {"src_width", {m.number(setting.source.width)}},
-            {"src_height", {m.number(setting.source.height)}},
-            {"frame", {m.number(setting.frame)}},
-            {"pi", {m.constant(std::numbers::pi_v<long double>)}}};
+    NamedValues names = settings_of(m, setting);
+    names.insert({{"x", {x}},
+                  {"y", {y}},
+                  {"s", {m.quotient(x, m.number(width))}},
+                  {"t", {m.quotient(y, m.number(height))}},
+                  {"px", {px}},
+                  {"py", {py}},
+                  {"r", {m.root(m.sum(m.square(px), m.square(py)))}},
+                  {"a", {m.angle(py, px)}}});
+    return names;
+}
+
+/// Of pixels of an equirectangular picture of all directions.
+NamedValues names_of(Maker& m, const FormulaSetting& setting, const Size& globe) {
+    const auto part = [&](const Value& at, int of) { return m.quotient(at, m.number(of)); };
+    const auto turns = [&](const Value& count, long double whole) {
+        return m.product(count, m.constant(whole * std::numbers::pi_v<long double>));
+    };
+    NamedValues names = settings_of(m, setting);
+    names["lon"] = {turns(m.difference(part(m.x(), globe.width), m.number(0.5)), 2)};
+    names["lat"] = {turns(m.difference(m.number(0.5), part(m.y(), globe.height)), 1)};
+    return names;
 }
 
 /// v counts up.
@@ -731,6 +748,20 @@ NamedValues names_of(Maker& m, const SurfaceSetting& setting) {
             {"pi", {m.constant(std::numbers::pi_v<long double>)}}};
 }
 
+/// What `parse` makes of a text. What is too much for a program is told of the text, too.
+template <class Parse>
+auto named(const std::string& name, const std::string& text, const Parse& parse) {
+    try {
+        return parse();
+    } catch (const Error& error) {
+        if (!error.parameter().empty()) throw;
+        throw Error(name, printable(text), error.what());
+    }
+}
+Value value_of(Maker& maker, NamedValues& names, const std::string& name, const std::string& expression) {
+    return named(name, expression, [&] { return Parser(maker, names, name, expression).expression(); });
+}
+
 /// Names by keys of their own. Returns them.
 std::set<std::string> define(Maker& maker, NamedValues& names, const std::vector<Assignment>& definitions) {
     std::set<std::string> given;
@@ -738,7 +769,7 @@ std::set<std::string> define(Maker& maker, NamedValues& names, const std::vector
         if (!given.count(name) && names.count(name))
             throw Error(printable(name), printable(expression),
                         "every formula has this name: must be another");
-        const Value value = Parser(maker, names, name, expression).expression();
+        const Value value = value_of(maker, names, name, expression);
         names.insert_or_assign(name, NamedValue{value});
         given.insert(name);
     }
@@ -780,11 +811,11 @@ std::vector<Value> values_of(Maker& maker, NamedValues& names, const std::vector
     for (const auto& [name, value] : names) fixed.insert(name);
     expect_words(definitions, let, expressions);
     const std::set<std::string> given = define(maker, names, definitions);
-    Parser::define(maker, names, "let", let, given, fixed);
+    named("let", let, [&] { Parser::define(maker, names, "let", let, given, fixed); });
     std::vector<Value> values;
     values.reserve(expressions.size());
     for (const auto& [name, expression] : expressions)
-        values.push_back(Parser(maker, names, name, expression).expression());
+        values.push_back(value_of(maker, names, name, expression));
     for (const auto& [name, expression] : definitions)
         if (!names.at(name).used) throw_unused(name, expression);
     return values;
@@ -795,6 +826,31 @@ std::optional<Result> domain_of(Maker& maker, const std::vector<Value>& values) 
     std::optional<Result> domain;
     for (const Value& value : values) domain = maker.needs(domain, value.domain);
     return domain;
+}
+
+/// What `make` makes of the domain of values; what is too much for a program is told of the keys.
+template <class Make>
+auto programs_of(const char* keys, Graph& graph, Maker& maker, const std::vector<Value>& values,
+                 const Make& make) {
+    try {
+        const std::optional<Result> domain = domain_of(maker, values);
+        return make(domain ? *domain : graph.number(1), !domain);
+    } catch (const Error& error) {
+        throw Error(std::string(keys) + ": the formula " + error.what());
+    }
+}
+
+PlaneFormula plane_formula(const char* keys, Graph& graph, Maker& maker, const std::vector<Value>& point) {
+    return programs_of(keys, graph, maker, point, [&](Result positive, bool is_everywhere) {
+        return PlaneFormula{graph.program({point[0].at, point[1].at}), graph.program({positive, positive}),
+                            is_everywhere};
+    });
+}
+SpaceFormula space_formula(const char* keys, Graph& graph, Maker& maker, const std::vector<Value>& point) {
+    return programs_of(keys, graph, maker, point, [&](Result positive, bool is_everywhere) {
+        return SpaceFormula{graph.program({point[0].at, point[1].at, point[2].at}), graph.program({positive}),
+                            is_everywhere};
+    });
 }
 
 bool is_same(const FormulaProgram& a, const FormulaProgram& b) {
@@ -821,22 +877,39 @@ PlaneFormula parse_formula(const FormulaText& text, const FormulaSetting& settin
         point[0] = maker.product(point[0], maker.number(to.width));
         point[1] = maker.product(point[1], maker.number(to.height));
     }
-    const std::optional<Result> domain = domain_of(maker, point);
-    const Result positive = domain ? *domain : graph.number(1);
-    return {graph.program({point[0].at, point[1].at}), graph.program({positive, positive}),
-            !domain.has_value()};
+    return plane_formula("u and v", graph, maker, point);
 }
 
 SpaceFormula parse_surface(const SurfaceText& text, const SurfaceSetting& setting) {
     Graph graph;
     Maker maker(graph);
     NamedValues names = names_of(maker, setting);
-    const std::vector<Value> point = values_of(maker, names, text.definitions, text.let,
-                                               {{"px", text.px}, {"py", text.py}, {"pz", text.pz}});
-    const std::optional<Result> domain = domain_of(maker, point);
-    const Result positive = domain ? *domain : graph.number(1);
-    return {graph.program({point[0].at, point[1].at, point[2].at}), graph.program({positive}),
-            !domain.has_value()};
+    return space_formula("px, py and pz", graph, maker,
+                         values_of(maker, names, text.definitions, text.let,
+                                   {{"px", text.px}, {"py", text.py}, {"pz", text.pz}}));
+}
+
+SpaceFormula parse_rays(const RayText& text, const FormulaSetting& setting) {
+    Graph graph;
+    Maker maker(graph);
+    NamedValues names = names_of(maker, setting);
+    std::vector<Value> ray = values_of(maker, names, text.definitions, text.let,
+                                       {{"ray_x", text.x}, {"ray_y", text.y}, {"ray_z", text.z}});
+    ray[1] = maker.negated(ray[1]);
+    return space_formula("ray_x, ray_y and ray_z", graph, maker, ray);
+}
+
+PlaneFormula parse_directions(const DirectionText& text, const FormulaSetting& setting, const Size& globe) {
+    Graph graph;
+    Maker maker(graph);
+    NamedValues names = names_of(maker, setting, globe);
+    std::vector<Value> point =
+        values_of(maker, names, text.definitions, text.let, {{"point_x", text.x}, {"point_y", text.y}});
+    const double width = setting.picture.width, height = setting.picture.height;
+    const Value half = maker.number(0.5 * std::min(width, height));
+    point[0] = maker.sum(maker.number(0.5 * width), maker.product(point[0], half));
+    point[1] = maker.difference(maker.number(0.5 * height), maker.product(point[1], half));
+    return plane_formula("point_x and point_y", graph, maker, point);
 }
 
 bool operator==(const SpaceFormula& a, const SpaceFormula& b) {

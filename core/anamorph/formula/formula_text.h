@@ -81,11 +81,11 @@ struct SurfaceSetting {
     double aspect = 1, frame = 0;
 };
 
-/// A text as programs of u and 1 - v.
+/// A text as programs: of a surface, of u and 1 - v.
 struct SpaceFormula {
     FormulaProgram point;   ///< x, y and z
-    FormulaProgram domain;  ///< positive where there is a surface
-    bool is_everywhere;     ///< there is one for all u and v
+    FormulaProgram domain;  ///< positive where there is a point, and so a surface or a ray
+    bool is_everywhere;     ///< there is one everywhere
 
     /// Do both compute the same?
     friend bool operator==(const SpaceFormula& a, const SpaceFormula& b);
@@ -93,5 +93,32 @@ struct SpaceFormula {
 
 /// Throws as parse_formula() does.
 SpaceFormula parse_surface(const SurfaceText& text, const SurfaceSetting& setting);
+
+/// A view: the ray of a point of a picture, of any length, by default of a flat picture whose smaller side covers 90 degrees.
+struct RayText {
+    std::string x = "px", y = "py", z = "1";   ///< to the right, up and forward
+    std::vector<Assignment> definitions = {};  ///< as those of FormulaText
+    std::string let = {};
+};
+
+/// The names of a formula of a picture. As programs of pixels, whose ray has y down, as all rays have. Errors name the
+/// expressions ray_x, ray_y and ray_z. Throws as parse_formula() does.
+SpaceFormula parse_rays(const RayText& text, const FormulaSetting& setting);
+
+/// The same view the other way: where in the picture a direction goes, from its middle in halves of its smaller side, by default in
+/// an equirectangular picture whose smaller side covers 180 degrees. Names of directions:
+///
+///   lon lat                 longitude, to the right from straight ahead, and latitude, upwards, in radians
+///
+/// and, as in formulas of a picture, width, height, src_width, src_height and frame.
+struct DirectionText {
+    std::string x = "lon/(pi/2)", y = "lat/(pi/2)";  ///< to the right and up
+    std::vector<Assignment> definitions = {};        ///< as those of FormulaText
+    std::string let = {};
+};
+
+/// As programs of pixels of `globe`, an equirectangular picture, that give pixels of the picture. Errors name the expressions point_x
+/// and point_y. Throws as parse_formula() does.
+PlaneFormula parse_directions(const DirectionText& text, const FormulaSetting& setting, const Size& globe);
 
 }  // namespace anamorph

@@ -70,10 +70,7 @@ double PlaneFrame::rounding(const Point<double>& z) const {
 }
 
 PushedFormula::PushedFormula(PlaneFormula formula, const Size& picture, const Size& target)
-    : m_formula(std::move(formula)),
-      m_is_scaled(!(picture == target)),
-      m_per_x(static_cast<long double>(target.width) / picture.width),
-      m_per_y(static_cast<long double>(target.height) / picture.height) {}
+    : m_formula(std::move(formula)), m_scale(picture, target) {}
 
 Matrix2 PushedFormula::derivative(const Point<double>& source) const {
     using J = Jet1<double>;

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "anamorph/formula/formula_text.h"
+#include "anamorph/formula/pixel_scale.h"
 #include "anamorph/geometry/matrix2.h"
 #include "anamorph/geometry/point.h"
 #include "anamorph/number/jets.h"
@@ -31,8 +32,7 @@ class PushedFormula {
     template <class T>
     Point<T> target_point(const T& x, const T& y) const {
         const auto [to_x, to_y] = read_program<2>(m_formula.point, x, y);
-        if (!m_is_scaled) return {to_x, to_y};
-        return {T(to_x * m_per_x.as<T>()), T(to_y * m_per_y.as<T>())};
+        return m_scale(to_x, to_y);
     }
     /// Of a source point.
     Matrix2 derivative(const Point<double>& source) const;
@@ -68,8 +68,7 @@ class PushedFormula {
     Point<BoundJet> over_quarters(const Point<Interval>& box, const PlaneFrame& frame) const;
 
     PlaneFormula m_formula;
-    bool m_is_scaled;
-    Constant m_per_x, m_per_y;
+    PixelScale m_scale;
 };
 
 namespace pushed_detail {

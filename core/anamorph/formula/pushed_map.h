@@ -94,6 +94,10 @@ class PushedMap {
 
     const PushedFormula& formula() const { return m_sheets.formula(); }
     Preimages preimages(double x, double y) const { return m_sheets.preimages(x, y); }
+    /// A box of the source with all points of a box of the target; nothing near a fold.
+    std::optional<PushedSheets::Reached> source_points(const Interval& x, const Interval& y) const {
+        return m_sheets.reached(x, y, {});
+    }
     /// The pixels of a box that have no source point.
     std::int64_t undefined_pixels(const Box& box) const;
 

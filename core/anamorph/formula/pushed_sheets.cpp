@@ -260,9 +260,8 @@ PushedSheets::PushedSheets(PushedFormula formula, const Size& target, const Size
         const Point<double> at = whole.source(cutter.stopped_at.x, cutter.stopped_at.y);
         const std::string place = " near source pixel " + std::to_string(std::lround(at.x)) + "," +
                                   std::to_string(std::lround(at.y));
-        throw Error("direction", "push",
-                    cutter.torn > kMostTorn
-                        ? std::string("the formula jumps, other than along a row or a column,") + place +
+        throw Error(cutter.torn > kMostTorn
+                        ? "the formula jumps, other than along a row or a column," + place +
                               ": must be continuous to be inverted"
                         : "the formula folds or ends at too many places to be inverted, as" + place);
     }
@@ -275,8 +274,7 @@ PushedSheets::PushedSheets(PushedFormula formula, const Size& target, const Size
     };
     const auto is_squeezed = [&](const Sheet& sheet) { return sheet.fold && area_of_fold(sheet) == 0; };
     if (!cutter.sheets.empty() && std::all_of(cutter.sheets.begin(), cutter.sheets.end(), is_squeezed))
-        throw Error("direction", "push",
-                    "the formula squeezes the source to a line or a point: must lead to an area");
+        throw Error("the formula squeezes the source to a line or a point: must lead to an area");
     const bool has_sheets = std::any_of(cutter.sheets.begin(), cutter.sheets.end(),
                                         [](const Sheet& sheet) { return !sheet.fold; });
     double turned = 0, straight = 0;

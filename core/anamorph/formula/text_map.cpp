@@ -12,16 +12,10 @@ namespace anamorph {
 void TextMap::exact_row(double x, double y, int count, double* to_x, double* to_y,
                         std::int32_t* piece) const {
     using simd::kProgramRow, simd::ProgramRow;
-    const double per_x = m_is_scaled ? m_per_x.as<double>() : 1,
-                 per_y = m_is_scaled ? m_per_y.as<double>() : 1;
     ProgramRow at, found, domain;
     for (int begin = 0; begin < count; begin += kProgramRow) {
         const int part = std::min(count - begin, kProgramRow);
-        for (int i = 0; i < kProgramRow; ++i) {
-            // What stands behind the last point is read, and left.
-            at.x[i] = (x + begin + std::min(i, part - 1)) * per_x;
-            at.y[i] = y * per_y;
-        }
+        at.set_points(x + begin, y, part, m_scale);
         simd::read_program_row(m_formula.point, at, part, found);
         if (!m_formula.is_everywhere) simd::read_program_row(m_formula.domain, at, part, domain);
         for (int i = 0; i < part; ++i) {

@@ -5,6 +5,7 @@
 #include <cstdint>
 
 #include "anamorph/formula/formula_text.h"
+#include "anamorph/formula/pixel_scale.h"
 #include "anamorph/plan/costs.h"
 #include "anamorph/plan/formula_map.h"
 
@@ -25,11 +26,7 @@ class TextMap : public PlaneMap<TextMap> {
 
     /// `picture`: the size that the formula speaks of. `target`: the pixels that the picture has.
     TextMap(PlaneFormula formula, const Size& picture, const Size& target, const Size& source)
-        : PlaneMap(target, source),
-          m_formula(std::move(formula)),
-          m_is_scaled(!(picture == target)),
-          m_per_x(static_cast<long double>(picture.width) / target.width),
-          m_per_y(static_cast<long double>(picture.height) / target.height) {}
+        : PlaneMap(target, source), m_formula(std::move(formula)), m_scale(target, picture) {}
 
     template <class T>
     Point<T> source_point(const T& x, const T& y) const {
@@ -52,13 +49,12 @@ class TextMap : public PlaneMap<TextMap> {
 
     template <class T>
     Point<T> read(const FormulaProgram& program, const T& x, const T& y) const {
-        if (!m_is_scaled) return read_point(program, x, y);
-        return read_point(program, T(x * m_per_x.as<T>()), T(y * m_per_y.as<T>()));
+        const Point<T> at = m_scale(x, y);
+        return read_point(program, at.x, at.y);
     }
 
     PlaneFormula m_formula;
-    bool m_is_scaled;
-    Constant m_per_x, m_per_y;
+    PixelScale m_scale;
 };
 
 }  // namespace anamorph

@@ -149,10 +149,19 @@ struct Row {
 /// The points from `first` on.
 template <int N>
 void ReadRow(const FormulaProgram& program, const ProgramRow& at, int first, ProgramRow& to) {
-    const auto [x, y] = read_program<2>(program, Row<N>(at.x + first), Row<N>(at.y + first));
-    for (int i = 0; i < N; i += kLanes) {
-        x.at(i).store(to.x + first + i);
-        y.at(i).store(to.y + first + i);
+    const auto store = [&](const auto& found) {
+        double* const parts[] = {to.x, to.y, to.z};
+        for (std::size_t k = 0; k < found.size(); ++k)
+            for (int i = 0; i < N; i += kLanes) found[k].at(i).store(parts[k] + first + i);
+    };
+    const Row<N> x(at.x + first), y(at.y + first);
+    switch (program.outputs.size()) {
+        case 1:
+            return store(read_program<1>(program, x, y));
+        case 2:
+            return store(read_program<2>(program, x, y));
+        default:
+            return store(read_program<3>(program, x, y));
     }
 }
 

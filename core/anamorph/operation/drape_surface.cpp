@@ -107,12 +107,7 @@ void check_formula_keys(const ParameterValues& values, bool has_formula) {
         if (values.given(name))
             throw Error(name, printable(values.text(name)),
                         "is of surface=formula: surface must be formula, or blend name it");
-    if (values.definitions().empty()) return;
-    std::string known;
-    for (const Parameter& row : values.table()) known += (known.empty() ? "" : ", ") + row.name;
-    const Assignment& first = values.definitions()[0];
-    throw Error(printable(first.key), printable(first.value),
-                "there is no such parameter: must be one of " + known);
+    values.refuse_definitions();
 }
 
 /// What is missing of a surface, in words.

@@ -11,8 +11,7 @@ namespace {
 class FlatPicture {
   public:
     FlatPicture(const FlatRequest& r, FlatMap map) : m_says(std::move(map.says)) {
-        const Chart flat(Projection::rectilinear, r.source.width, r.source.height);
-        m_picture.maps = {{std::move(map.blocks), {{Border(flat, r.wrap)}}}};
+        m_picture.maps = {{std::move(map.blocks), {{Border(r.source, r.wrap)}}}};
         m_picture.filter = r.filter;
         m_picture.output = r.output;
     }
@@ -47,6 +46,7 @@ class FlatPictures final : public Pictures {
         };
         return picture;
     }
+    SourceFaces faces() const override { return faces_of(m_request.source); }
 
   private:
     FlatRequest m_request;
@@ -56,7 +56,7 @@ class FlatPictures final : public Pictures {
 }  // namespace
 
 FlatRequest flat_request(const ParameterValues& values, const Size& source, const Size& target) {
-    FlatRequest r{source,
+    FlatRequest r{Chart(Projection::rectilinear, source.width, source.height),
                   target,
                   {},
                   rows::chosen<Filter>(values, "filter"),
@@ -66,6 +66,11 @@ FlatRequest flat_request(const ParameterValues& values, const Size& source, cons
     r.plan.tol = values.number("tol");
     r.plan.cull = ends_at_edges(r.wrap, r.output);
     return r;
+}
+
+SourceFaces faces_of(const Chart& source) {
+    const Box& face = source.pieces()[0].box;
+    return {source.width() / face.width(), source.height() / face.height()};
 }
 
 std::unique_ptr<const Pictures> flat_pictures(const FlatRequest& request, const MakeFlatMap& make_map) {

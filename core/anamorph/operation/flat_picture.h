@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The picture of an operation that is one map from a flat picture to another.
+// The picture of an operation that is one map from a picture to another.
 #pragma once
 
 #include <functional>
@@ -12,15 +12,18 @@
 namespace anamorph {
 
 struct FlatRequest {
-    Size source, target;
+    Chart source;
+    Size target;
     PlanOptions plan;
     Filter filter;
     Wrap wrap;
     Output output;
     Attributes says = {};  ///< besides the tolerance
+
+    Size source_size() const { return {source.width(), source.height()}; }
 };
 
-/// What rows of the table say: filter, wrap, output, scheme and tol.
+/// From a flat picture, with what rows of the table say: filter, wrap, output, scheme and tol.
 FlatRequest flat_request(const ParameterValues& values, const Size& source, const Size& target);
 
 /// The map, and what it says of its picture beyond what every picture reached.
@@ -30,6 +33,9 @@ struct FlatMap {
 };
 /// That of a picture of so many pixels.
 using MakeFlatMap = std::function<FlatMap(const Size& pixels)>;
+
+/// The faces of a picture that is a source.
+SourceFaces faces_of(const Chart& source);
 
 std::unique_ptr<const Pictures> flat_pictures(const FlatRequest& request, const MakeFlatMap& make_map);
 

@@ -100,7 +100,7 @@ std::unique_ptr<const Pictures> pictures_of_lens(const ParameterValues& values, 
     request.says = observed.says;
     return flat_pictures(request, [request, observed, mode](const Size& pixels) {
         return FlatMap{std::make_shared<LensPlan>(
-            LensMap(observed.chart, mode, request.target, pixels, request.source), request.plan)};
+            LensMap(observed.chart, mode, request.target, pixels, request.source_size()), request.plan)};
     });
 }
 

@@ -84,10 +84,14 @@ std::unique_ptr<const Pictures> pictures_of_map(const ParameterValues& values, c
     const PlaneFormula formula = parse_formula(text, setting);
     if (pushes)
         return pictures_of<PushedPlan>(request, [request, formula](const Size& pixels) {
-            return PushedMap(formula, request.target, pixels, request.source);
+            try {
+                return PushedMap(formula, request.target, pixels, request.source_size());
+            } catch (const Error& error) {
+                throw Error("direction", "push", error.what());
+            }
         });
     return pictures_of<TextPlan>(request, [request, formula](const Size& pixels) {
-        return TextMap(formula, request.target, pixels, request.source);
+        return TextMap(formula, request.target, pixels, request.source_size());
     });
 }
 

@@ -7,6 +7,8 @@
 #include <map>
 
 #include "anamorph/machine/machine_text.h"
+#include "anamorph/operation/flat_picture.h"
+#include "anamorph/operation/pano_formula.h"
 #include "anamorph/operation/panorama_attributes.h"
 #include "anamorph/operation/rows.h"
 #include "anamorph/operation/solved.h"
@@ -48,14 +50,14 @@ std::string limited_fovs() {
 
 ParameterTable make_pano_table() {
     using namespace rows;
-    return {
+    ParameterTable table = {
         image("src",
               "the source image; by default the recipe's name without .pano; in a name it stands last when "
               "it has arguments of its own"),
         choice("from", "", projection_name_list(),
                "projection of the source; by default what the image says of itself, else by its shape: 2:1 "
                "equirectangular, 1:6 cubemap (anamorph:from tells what was assumed)"),
-        choice("to", "rectilinear", projection_name_list(), "projection of the picture"),
+        projection_or_formula("to", "projection of the picture; formula: that of ray_x, ray_y and ray_z"),
         above(number(
             "srcfov", "degrees", "", 0, 360,
             "horizontal field of view of the source, edge to edge, or of each of its faces; by "
@@ -107,6 +109,9 @@ ParameterTable make_pano_table() {
         colorspace("color space to filter in; by default the source's own"),
         output(),
     };
+    const ParameterTable of_formula = ray_rows();
+    table.insert(table.end(), of_formula.begin(), of_formula.end());
+    return table;
 }
 
 Size natural_size(Projection projection, double fov, double width) {
@@ -223,24 +228,32 @@ ReprojectOptions read_reproject_options(const ParameterValues& values) {
     return options;
 }
 
-ReprojectRequest read_reproject_request(const ParameterValues& values, const SourceFacts& facts) {
+Attribute TakenSource::says() const {
+    return {"anamorph:from", std::string(name_of(chart.projection())) + " (" + reason + ")"};
+}
+
+TakenSource read_source(const ParameterValues& values, const SourceFacts& facts) {
     const auto [from, reason] = source_projection(values, facts);
     const auto spacing = chosen<PixelSpacing>(values, "pixels");
     const auto [fov, fov_reason] = source_field_of_view(values, facts, from, spacing);
     const bool says_lens = !values.given("srclens") && facts.lens && facts.projection == from;
     const LensModel srclens = says_lens ? *facts.lens : lens_of(values, "srclens");
-    const Chart source(from, facts.width, facts.height, fov, spacing, "src", values.number("srcd"), srclens);
+    return {Chart(from, facts.width, facts.height, fov, spacing, "src", values.number("srcd"), srclens),
+            reason + fov_reason};
+}
 
+Orientation read_held(const ParameterValues& values) {
+    return {values.number("srcyaw"), values.number("srcpitch"), values.number("srcroll")};
+}
+
+ReprojectRequest read_reproject_request(const ParameterValues& values, const SourceFacts& facts) {
+    const TakenSource source = read_source(values, facts);
     ReprojectOptions options = read_reproject_options(values);
     const std::optional<machine::BumpUnit> machine = machine_of(values);
     if (!machine) options.scheme = chosen<Scheme>(values, "scheme");
-    return {source,
-            read_target_chart(values, source),
-            read_orientation(values),
-            {values.number("srcyaw"), values.number("srcpitch"), values.number("srcroll")},
-            options,
-            reason + fov_reason,
-            machine};
+    return {
+        source, read_target_chart(values, source.chart), read_orientation(values), read_held(values), options,
+        machine};
 }
 
 std::optional<Chart> half_size(const Chart& chart) {
@@ -258,7 +271,7 @@ class BumpedPicture {
   public:
     BumpedPicture(const ReprojectRequest& request)
         : m_plan(std::make_shared<machine::BumpedPanorama>(request.map(), *request.machine)) {
-        m_picture.maps = {{m_plan, {{Border(request.source, request.options.wrap)}}}};
+        m_picture.maps = {{m_plan, {{Border(request.source.chart, request.options.wrap)}}}};
         m_picture.filter = request.options.filter;
         m_picture.output = request.options.output;
     }
@@ -292,8 +305,7 @@ class Panos final : public Pictures {
         if (picture.pixels == PixelKind::color && request.options.filter == Filter::nearest)
             picture.moves = 0;
         if (!request.machine) picture.says.push_back({"anamorph:tol", request.options.tol});
-        picture.says.push_back({"anamorph:from", std::string(name_of(request.source.projection())) + " (" +
-                                                     request.source_reason + ")"});
+        picture.says.push_back(request.source.says());
         picture.solve = [request]() -> std::unique_ptr<const SolvedPicture> {
             if (request.machine)
                 return std::make_unique<Solved<BumpedPicture>>(BumpedPicture(request),
@@ -303,11 +315,7 @@ class Panos final : public Pictures {
         return picture;
     }
 
-    SourceFaces faces() const override {
-        const Chart& source = m_request.source;
-        const Box& face = source.pieces()[0].box;
-        return {source.width() / face.width(), source.height() / face.height()};
-    }
+    SourceFaces faces() const override { return faces_of(m_request.source.chart); }
 
   private:
     ReprojectRequest m_request;
@@ -325,7 +333,9 @@ const Operation& pano_operation() {
         1,
         {"from=equirectangular&to=equirectangular&yaw=40&pitch=20", {}},
         [](const OperationInput& input) -> std::unique_ptr<const Pictures> {
-            return std::make_unique<Panos>(read_reproject_request(input.values, input.sources[0].facts));
+            const SourceFacts& facts = input.sources[0].facts;
+            if (has_formula(input.values)) return pictures_of_formula(input.values, facts);
+            return std::make_unique<Panos>(read_reproject_request(input.values, facts));
         }};
     return operation;
 }

@@ -14,18 +14,27 @@ namespace anamorph {
 
 const Operation& pano_operation();
 
+/// The source of a panorama.
+struct TakenSource {
+    Chart chart;
+    std::string
+        reason;  ///< why it is taken for this: "given", "assumed from the 2:1 shape", "given, 90 degrees assumed" ...
+
+    /// That as an attribute of what is drawn.
+    Attribute says() const;
+};
+
 /// A reprojection as asked for.
 struct ReprojectRequest {
-    Chart source, target;
+    TakenSource source;
+    Chart target;
     Orientation orientation;  ///< of the picture's camera
     Orientation held;         ///< of the source's
     ReprojectOptions options;
-    /// Why the source is taken for what it is: "given", "assumed from the 2:1 shape", "given, 90 degrees assumed" ...
-    std::string source_reason;
     /// Of scheme hardware: what draws it, in place of options.scheme and tol.
     std::optional<machine::BumpUnit> machine = {};
 
-    Panorama map() const { return Panorama(source, target, orientation, held); }
+    Panorama map() const { return Panorama(source.chart, target, orientation, held); }
 };
 
 /// Reads a table's values. Throws Error; it names `from` when the source does not say what it is.
@@ -39,8 +48,10 @@ struct ReprojectRequest {
 ReprojectRequest read_reproject_request(const ParameterValues& values, const SourceFacts& source);
 inline constexpr int kMaxDefaultSize = 16384;
 
-/// Parts of it, for tables with some of these rows: the picture (to, fov, d, lens, size), where its camera looks (yaw, pitch,
-/// roll), and all options (tol, filter, wrap, output) but the scheme. Throw Error.
+/// Parts of it, for tables with some of these rows: the source, how it was held, the picture (to, fov, d, lens, size), where its
+/// camera looks (yaw, pitch, roll), and all options (tol, filter, wrap, output) but the scheme. Throw Error.
+TakenSource read_source(const ParameterValues& values, const SourceFacts& source);
+Orientation read_held(const ParameterValues& values);
 Chart read_target_chart(const ParameterValues& values, const Chart& source);
 Orientation read_orientation(const ParameterValues& values);
 ReprojectOptions read_reproject_options(const ParameterValues& values);

@@ -197,6 +197,13 @@ std::vector<std::string> names(const ParameterTable& table) {
     return out;
 }
 
+[[noreturn]] void throw_unknown(const Assignment& given, const ParameterTable& table) {
+    const std::vector<std::string> all = names(table);
+    throw Error(
+        printable(given.key), printable(given.value),
+        "there is no such parameter" + meant(lower(given.key), all) + ": must be one of " + joined(all));
+}
+
 /// "key=value" cut at its first equals sign.
 std::optional<Assignment> to_assignment(std::string_view text) {
     const std::size_t equals = text.find('=');
@@ -367,16 +374,15 @@ bool ParameterValues::defines(std::string_view name) const {
     return !find(*m_table, name) && takes_definitions(*m_table) && text_file::is_name(name);
 }
 
+void ParameterValues::refuse_definitions() const {
+    if (!m_definitions.empty()) throw_unknown(m_definitions.front(), *m_table);
+}
+
 void ParameterValues::assign(const std::vector<Assignment>& place) {
     std::set<std::string> seen;
     for (const Assignment& a : place) {
         const Parameter* parameter = find(*m_table, a.key);
-        if (!parameter && !defines(a.key)) {
-            const std::vector<std::string> all = names(*m_table);
-            throw Error(
-                printable(a.key), printable(a.value),
-                "there is no such parameter" + meant(lower(a.key), all) + ": must be one of " + joined(all));
-        }
+        if (!parameter && !defines(a.key)) throw_unknown(a, *m_table);
         const std::string& name = parameter ? parameter->name : a.key;
         if (!seen.insert(name).second)
             throw Error(name, printable(a.value), "given twice in one place: must be given once");

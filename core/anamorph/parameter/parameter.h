@@ -110,6 +110,8 @@ class ParameterValues {
 
     /// What keys that are not in the table define, in the order in which they came first.
     const std::vector<Assignment>& definitions() const { return m_definitions; }
+    /// Where nothing reads what they define: throws Error of the first, as assign() does of a key that is unknown.
+    void refuse_definitions() const;
 
     /// All values as one text, which differs where any value does; `without`: the names of those left out.
     std::string key(const std::vector<std::string>& without = {}) const;

@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: Apache-2.0
+// Panoramas in a projection that is written as text: to=formula.
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "anamorph/operation/operation.h"
+
+namespace anamorph {
+
+/// A row of projections, and of "formula".
+Parameter projection_or_formula(const char* name, const std::string& doc);
+/// The rows of what the formula is.
+ParameterTable ray_rows();
+
+/// Is the picture's projection the formula's? Throws Error if not, and one is given.
+bool has_formula(const ParameterValues& values);
+/// The pictures where it is. Throws Error of what the formula has not, such as a field of view.
+std::unique_ptr<const Pictures> pictures_of_formula(const ParameterValues& values, const SourceFacts& facts);
+
+}  // namespace anamorph

@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "anamorph/panorama/formula_view.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "anamorph/number/program_rows.h"
+#include "anamorph/panorama/panorama_rows.h"
+
+namespace anamorph {
+namespace {
+
+bool may_be_zero(const Interval& a) {
+    return !(a.lo > 0 || a.hi < 0);
+}
+template <class Real>
+bool may_be_zero(const Rounded<Real>& a) {
+    return may_be_zero(Interval(a.range.lo - a.error, a.range.hi + a.error));
+}
+template <class T>
+bool may_be_none(const Ray<T>& r) {
+    return may_be_zero(r.x) && may_be_zero(r.y) && may_be_zero(r.z);
+}
+
+}  // namespace
+
+FormulaView::FormulaView(const Chart& source, SpaceFormula rays, const Size& picture, const Size& target,
+                         const Orientation& orientation, const Orientation& held)
+    : m_view(source, Chart(Projection::rectilinear, target.width, target.height), orientation, held),
+      m_rays(std::move(rays)),
+      m_scale(target, picture) {}
+
+FormulaView::Local FormulaView::local_around(double x, double y, int piece) const {
+    return m_view.local_around(x, y, piece, turned(ray(x, y)));
+}
+
+Cover FormulaView::cover(const Interval& x, const Interval& y, int, const Local& local,
+                         bool across_seam) const {
+    const Interval there = domain(x, y);
+    if (there.hi <= 0) return Cover::outside;
+    const Ray<Interval> r = ray(x, y);
+    if (!(there.lo > 0) || may_be_none(r)) return Cover::mixed;
+    return m_view.cover(transform(local.rotation, r, Panorama::kLocalError), local, across_seam);
+}
+
+template <class Real>
+double FormulaView::exact_error(const Interval& x, const Interval& y, int) const {
+    using R = Rounded<Real>;
+    const R px(x, 0, 0), py(y, 0, 0), there = domain(px, py);
+    if (there.range.hi + there.error <= 0) return 0;
+    if (!(lower_end(there) > 0)) return HUGE_VAL;
+    const Ray<R> r = ray(px, py);
+    return may_be_none(r) ? HUGE_VAL : m_view.exact_error(turned(r));
+}
+template double FormulaView::exact_error<double>(const Interval&, const Interval&, int) const;
+template double FormulaView::exact_error<long double>(const Interval&, const Interval&, int) const;
+
+void FormulaView::exact_row(double x, double y, int count, double* to_x, double* to_y,
+                            std::int32_t* piece) const {
+    using simd::ProgramRow;
+    constexpr int kPart = std::min(simd::kProgramRow, simd::kExactRow);
+    ProgramRow at, found, there;
+    for (int begin = 0; begin < count; begin += kPart) {
+        const int part = std::min(count - begin, kPart);
+        at.set_points(x + begin, y, part, m_scale);
+        simd::read_program_row(m_rays.point, at, part, found);
+        if (!m_rays.is_everywhere) simd::read_program_row(m_rays.domain, at, part, there);
+        simd::RayRow rays;
+        for (int i = 0; i < kPart; ++i) {
+            // What stands behind the last point may be no number.
+            const int k = std::min(i, part - 1);
+            rays.x[i] = found.x[k];
+            rays.y[i] = found.y[k];
+            rays.z[i] = found.z[k];
+            const bool is_there = m_rays.is_everywhere || there.x[k] > 0;
+            rays.inside[i] = is_there && (rays.x[i] != 0 || rays.y[i] != 0 || rays.z[i] != 0) ? 1 : -1;
+        }
+        simd::ExactRow points;
+        simd::exact_points(source(), m_view.turn(), rays, part, points);
+        for (int i = 0; i < part; ++i) {
+            const bool is_seen = points.seen[i] != 0;
+            to_x[begin + i] = is_seen ? points.x[i] : 0;
+            to_y[begin + i] = is_seen ? points.y[i] : 0;
+            piece[begin + i] = is_seen ? static_cast<std::int32_t>(points.piece[i]) : -1;
+        }
+    }
+}
+
+}  // namespace anamorph

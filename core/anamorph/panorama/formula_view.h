@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: Apache-2.0
+// The pull map of a panorama's picture whose rays are formulas that are text. Pixels, x right, y down, pixel centres at + 0.5.
+#pragma once
+
+#include "anamorph/formula/formula_text.h"
+#include "anamorph/formula/pixel_scale.h"
+#include "anamorph/panorama/panorama.h"
+#include "anamorph/plan/costs.h"
+
+namespace anamorph {
+
+/// As Panorama, from rays on; a point has none where a formula has no value or all three are 0.
+class FormulaView {
+  public:
+    static constexpr PlanCosts kCosts{.bound = 400, .further_bound = 30, .polynomial = 20, .rounding = 45};
+
+    /// `rays`: as parse_rays() makes them. `picture`: the size that they speak of. `target`: the pixels that the picture has.
+    /// Throws Error as Panorama does.
+    FormulaView(const Chart& source, SpaceFormula rays, const Size& picture, const Size& target,
+                const Orientation& orientation = {}, const Orientation& held = {});
+
+    const Chart& source() const { return m_view.source(); }
+
+    // As a FormulaMap.
+    using Local = Panorama::Local;
+    Size target_size() const { return m_view.target_size(); }
+    Size source_size() const { return m_view.source_size(); }
+    std::vector<Box> target_pieces() const { return m_view.target_pieces(); }
+    int source_piece(const Local& local) const { return m_view.source_piece(local); }
+    int period() const { return m_view.period(); }
+    SourceEdges source_edges() const { return m_view.source_edges(); }
+    Local local_around(double x, double y, int piece) const;
+    Cover cover(const Interval& x, const Interval& y, int piece, const Local& local, bool across_seam) const;
+
+    template <class T>
+    Point<T> operator()(const T& x, const T& y, const Local& local) const {
+        // The frame of the target's rays is not turned, as that of a flat picture.
+        return source().local_point(transform(local.rotation, ray(x, y), Panorama::kLocalError),
+                                    local.source);
+    }
+    template <std::floating_point Real>
+    bool exact(const Real& x, const Real& y, int, Point<Real>& source_point, int& source_piece) const {
+        if (!(domain(x, y) > 0)) return false;
+        const Ray<Real> r = ray(x, y);
+        return (r.x != 0 || r.y != 0 || r.z != 0) && m_view.exact(turned(r), source_point, source_piece);
+    }
+    template <class Real>
+    double exact_error(const Interval& x, const Interval& y, int piece) const;
+
+    /// The points (x + i, y): as exact() has them, within the same bound. `piece` is -1 where there is no source point.
+    void exact_row(double x, double y, int count, double* to_x, double* to_y, std::int32_t* piece) const;
+
+  private:
+    template <class T>
+    Ray<T> ray(const T& x, const T& y) const {
+        const Point<T> at = m_scale(x, y);
+        const auto [to_x, to_y, to_z] = read_program<3>(m_rays.point, at.x, at.y);
+        return {to_x, to_y, to_z};
+    }
+    /// Positive where there is a ray.
+    template <class T>
+    T domain(const T& x, const T& y) const {
+        if (m_rays.is_everywhere) return T(1);
+        const Point<T> at = m_scale(x, y);
+        return read_program<1>(m_rays.domain, at.x, at.y)[0];
+    }
+    /// The source's ray of a ray.
+    template <class T>
+    Ray<T> turned(const Ray<T>& r) const {
+        return transform([&](int column, int row) { return m_view.turn()[column][row].template as<T>(); }, r);
+    }
+
+    /// Of a flat picture of the same size, from its rays on.
+    Panorama m_view;
+    SpaceFormula m_rays;
+    PixelScale m_scale;
+};
+
+}  // namespace anamorph
