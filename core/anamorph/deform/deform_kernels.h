@@ -50,8 +50,9 @@ constexpr std::ptrdiff_t grid_sums(int row, int columns) {
     return std::ptrdiff_t{3} * row * blocks * kGridBlock;
 }
 
-/// Rows of a grid. Without sums (null) they start at zero and are not kept. out = base + sums * resolution,
-/// three numbers a point without gaps, rows of `columns` points; without base (null): the displacement alone.
+/// Rows of a grid. Without sums (null) they start at zero and are not kept. out = base + displacement, three
+/// numbers a point without gaps, rows of `columns` points; without base (null): the displacement alone. It is
+/// sums * resolution, plus the offset unless that is null, rounded once.
 template <class T>
 struct GridBand {
     const GridTerm* terms;
@@ -60,6 +61,7 @@ struct GridBand {
     int columns;
     std::int64_t* sums;
     double resolution;
+    const double* offset;  ///< as base
     const T* base;
     T* out;       ///< null: sums only
     bool all;     ///< write blocks too that no term reaches

@@ -223,33 +223,42 @@ HWY_INLINE void StorePoints(VT x, VT y, VT z, bool stream, T* out) {
     for (int i = 0; i < kValues; i += kAtOnce) hn::Stream(hn::Load(part, values + i), part, out + i);
 }
 
-/// out = base + sums * resolution for `count` <= kGridBlock points of a row, without gaps. The product is
-/// exact.
+/// Three numbers a point, of the points of a vector.
 template <class T>
-void WritePoints(const std::int64_t* sums, int count, double resolution, bool stream, const T* base, T* out) {
+HWY_INLINE void LoadPoints(const T* from, V (&to)[3]) {
+    const hn::Rebind<T, D> dt;
+    hn::Vec<decltype(dt)> x, y, z;
+    hn::LoadInterleaved3(dt, from, x, y, z);
+    to[0] = LoadDoubles(from, x);
+    to[1] = LoadDoubles(from, y);
+    to[2] = LoadDoubles(from, z);
+}
+
+/// out = base + (offset + sums * resolution) for `count` <= kGridBlock points of a row, without gaps. The
+/// product is exact.
+template <class T>
+void WritePoints(const std::int64_t* sums, int count, double resolution, bool stream, const double* offset,
+                 const T* base, T* out) {
     const D d;
     const DI di;
-    const hn::Rebind<T, D> dt;
     const V unit = hn::Set(d, resolution);
     int i = 0;
     for (; i + kLanes <= count; i += kLanes) {
-        V p[3] = {hn::Zero(d), hn::Zero(d), hn::Zero(d)};
-        if (base) {
-            hn::Vec<decltype(dt)> x, y, z;
-            hn::LoadInterleaved3(dt, base + 3 * i, x, y, z);
-            p[0] = LoadDoubles(base, x);
-            p[1] = LoadDoubles(base, y);
-            p[2] = LoadDoubles(base, z);
+        V p[3] = {hn::Zero(d), hn::Zero(d), hn::Zero(d)}, more[3] = {p[0], p[0], p[0]};
+        if (base) LoadPoints(base + 3 * i, p);
+        if (offset) LoadPoints(offset + 3 * i, more);
+        for (int c = 0; c < 3; ++c) {
+            const V sum = hn::ConvertTo(d, hn::LoadU(di, sums + c * kGridBlock + i));
+            p[c] = hn::Add(hn::MulAdd(sum, unit, more[c]), p[c]);
         }
-        for (int c = 0; c < 3; ++c)
-            p[c] = hn::MulAdd(hn::ConvertTo(d, hn::LoadU(di, sums + c * kGridBlock + i)), unit, p[c]);
         StorePoints(StoreAs(out, p[0]), StoreAs(out, p[1]), StoreAs(out, p[2]), stream, out + 3 * i);
     }
     for (; i < count; ++i)
         for (int c = 0; c < 3; ++c) {
             const double start = base ? static_cast<double>(base[3 * i + c]) : 0;
-            out[3 * i + c] =
-                static_cast<T>(static_cast<double>(sums[c * kGridBlock + i]) * resolution + start);
+            const double more = offset ? offset[3 * i + c] : 0;
+            const double moved = static_cast<double>(sums[c * kGridBlock + i]) * resolution + more;
+            out[3 * i + c] = static_cast<T>(moved + start);
         }
 }
 
@@ -282,6 +291,7 @@ void DeformBand(const GridBand<T>& band) {
                 T* const out = band.out + first;
                 const bool stream = band.stream && reinterpret_cast<std::uintptr_t>(out) % kStreamed == 0;
                 WritePoints(sums + 3 * r * kGridBlock, count, band.resolution, stream,
+                            band.offset ? band.offset + first : nullptr,
                             band.base ? band.base + first : nullptr, out);
             }
         }

@@ -129,7 +129,8 @@ bool goes_past_caches(int columns, int rows) {
 /// Draws terms on bands of rows; without sums nothing is kept.
 template <class T>
 void draw_terms(const GridTerms& ready, bool all, int columns, int rows, double resolution,
-                std::int64_t* sums, const T* base, T* out, const ParallelFor& parallel_for) {
+                std::int64_t* sums, const double* offsets, const T* base, T* out,
+                const ParallelFor& parallel_for) {
     constexpr int kBandRows = 16;
     const bool stream = goes_past_caches<T>(columns, rows);
     static_assert(kBandRows % simd::kGridRows == 0);
@@ -142,8 +143,8 @@ void draw_terms(const GridTerms& ready, bool all, int columns, int rows, double 
         std::vector<simd::GridTerm> terms;
         for (const simd::GridTerm& t : ready.terms)
             if (t.row_begin < band_end && begin < t.row_end) terms.push_back(t);
-        simd::deform_band(
-            {terms.data(), terms.size(), begin, band_end, columns, sums, resolution, base, out, all, stream});
+        simd::deform_band({terms.data(), terms.size(), begin, band_end, columns, sums, resolution, offsets,
+                           base, out, all, stream});
     });
 }
 
@@ -231,6 +232,13 @@ double DisplacementSum::error_bound() const {
     return (most + 0.5 * static_cast<double>(m_totals.count)) * m_options.resolution;
 }
 
+double DisplacementSum::most() const {
+    double most = 0;
+    for (const std::int64_t units : m_totals.units)
+        most = std::max(most, static_cast<double>(units) * (1 + 2 * simd::kKernelError * 0x1p-53));
+    return (most + 0.5 * static_cast<double>(m_totals.count)) * m_options.resolution;
+}
+
 // --- Grids
 
 DeformedGrid::DeformedGrid(std::vector<double> u, std::vector<double> v, const DeformOptions& options)
@@ -260,8 +268,8 @@ GridPart DeformedGrid::draw(bool all, const T* base, T* out, const ParallelFor& 
     while (next < terms.size() || (all && next == 0)) {
         const GridTerms ready = prepare(terms, next, m_u, m_v, m_sum);
         const bool write_all = all && next == terms.size();
-        draw_terms(ready, write_all, columns, rows, m_sum.options().resolution, m_sums.data(), base, out,
-                   parallel_for);
+        draw_terms(ready, write_all, columns, rows, m_sum.options().resolution, m_sums.data(), m_offsets,
+                   base, out, parallel_for);
         hull(part, ready.part);
         if (terms.empty()) break;
     }
@@ -273,9 +281,10 @@ GridPart DeformedGrid::draw(bool all, const T* base, T* out, const ParallelFor& 
         constexpr int kRowsAtOnce = 16;
         parallel_for((count + kRowsAtOnce - 1) / kRowsAtOnce, [&](std::int64_t i) {
             const int begin = first + static_cast<int>(i) * kRowsAtOnce;
-            simd::deform_band(simd::GridBand<T>{
-                nullptr, 0, begin, std::min(begin + kRowsAtOnce, first + count), columns, m_sums.data(),
-                m_sum.options().resolution, nullptr, displacement, true, goes_past_caches<T>(columns, rows)});
+            simd::deform_band(simd::GridBand<T>{nullptr, 0, begin,
+                                                std::min(begin + kRowsAtOnce, first + count), columns,
+                                                m_sums.data(), m_sum.options().resolution, m_offsets, nullptr,
+                                                displacement, true, goes_past_caches<T>(columns, rows)});
         });
     }
     return part;
@@ -429,7 +438,7 @@ double deform_grid(const std::vector<Deformation>& list, std::span<const double>
     const GridTerms ready = prepare(terms, next, u, v, sum);
     if (next == terms.size()) {
         draw_terms<T>(ready, true, static_cast<int>(u.size()), static_cast<int>(v.size()), options.resolution,
-                      nullptr, base, out, parallel_for);
+                      nullptr, nullptr, base, out, parallel_for);
     } else {
         DeformedGrid grid({u.begin(), u.end()}, {v.begin(), v.end()}, options);
         grid.apply(changes);
@@ -618,7 +627,8 @@ std::int64_t DeformedPoints::write_slots(std::size_t begin, std::size_t end, con
         for (std::size_t c = 0; c < 3; ++c) {
             const std::size_t k = 3 * static_cast<std::size_t>(m_point[slot]) + c;
             const double start = base ? static_cast<double>(base[k]) : 0;
-            const double moved = static_cast<double>(m_sums[c][slot]) * resolution;
+            const double more = m_offsets ? m_offsets[k] : 0;
+            const double moved = static_cast<double>(m_sums[c][slot]) * resolution + more;
             out[k] = static_cast<T>(moved + start);
             if (displacement) displacement[k] = static_cast<T>(moved);
         }

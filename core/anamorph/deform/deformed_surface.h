@@ -52,6 +52,8 @@ class DisplacementSum {
     void apply(std::span<const DeformationChange> changes);
     /// No component of the displacement is farther than this from eq. (4.1).
     double error_bound() const;
+    /// No component of the displacement is larger.
+    double most() const;
 
   private:
     struct Totals {
@@ -152,6 +154,11 @@ class DeformedGrid {
     void write(const T* base, T* out, const ParallelFor& parallel_for = serial_for,
                T* displacement = nullptr);
 
+    /// Adds to the displacements that are written from now on: three numbers a point, in double, which are not
+    /// copied; null: nothing, as at first. All points are to be written then.
+    void set_offsets(const double* offsets) { m_offsets = offsets; }
+
+    /// Of the sums, without offsets.
     double error_bound() const { return m_sum.error_bound(); }
 
     /// Gives `take` the derivatives of the displacement by a list at the points that changes reach, and at a
@@ -169,6 +176,7 @@ class DeformedGrid {
     DisplacementSum m_sum;
     std::vector<DeformationChange> m_pending;
     LineVector<std::int64_t> m_sums;  ///< simd::GridBand
+    const double* m_offsets = nullptr;
 };
 
 /// Writes base + displacement of all points of a grid once, faster than DeformedGrid, which can be edited.
@@ -206,6 +214,10 @@ class DeformedPoints {
                            const TakeSlopes& take, const ParallelFor& parallel_for = serial_for,
                            T* displacement = nullptr);
 
+    /// As that of DeformedGrid.
+    void set_offsets(const double* offsets) { m_offsets = offsets; }
+
+    /// Of the sums, without offsets.
     double error_bound() const { return m_sum.error_bound(); }
 
     /// It works as in DeformedGrid.
@@ -237,6 +249,7 @@ class DeformedPoints {
     std::vector<std::int32_t> m_point;     ///< by slot; -1 where it is empty
     LineVector<std::int64_t> m_sums[3];    ///< by slot
     std::vector<DeformationChange> m_pending;
+    const double* m_offsets = nullptr;
 };
 
 /// The displacement and its derivatives at points of the texture plane, added in double in an order of its

@@ -748,6 +748,13 @@ NamedValues names_of(Maker& m, const SurfaceSetting& setting) {
             {"pi", {m.constant(std::numbers::pi_v<long double>)}}};
 }
 
+NamedValues names_of_displacement(Maker& m, double frame) {
+    return {{"u", {m.x()}},
+            {"v", {m.y()}},
+            {"frame", {m.number(frame)}},
+            {"pi", {m.constant(std::numbers::pi_v<long double>)}}};
+}
+
 /// What `parse` makes of a text. What is too much for a program is told of the text, too.
 template <class Parse>
 auto named(const std::string& name, const std::string& text, const Parse& parse) {
@@ -910,6 +917,18 @@ PlaneFormula parse_directions(const DirectionText& text, const FormulaSetting& s
     point[0] = maker.sum(maker.number(0.5 * width), maker.product(point[0], half));
     point[1] = maker.difference(maker.number(0.5 * height), maker.product(point[1], half));
     return plane_formula("point_x and point_y", graph, maker, point);
+}
+
+SpaceFormula parse_displacement(const DisplacementText& text, double frame) {
+    Graph graph;
+    Maker maker(graph);
+    NamedValues names = names_of_displacement(maker, frame);
+    const auto or_zero = [](const std::string& expression) {
+        return expression.empty() ? std::string("0") : expression;
+    };
+    const std::vector<Value> moved = values_of(
+        maker, names, {}, text.let, {{"x", or_zero(text.x)}, {"y", or_zero(text.y)}, {"z", or_zero(text.z)}});
+    return space_formula("x, y and z", graph, maker, moved);
 }
 
 bool operator==(const SpaceFormula& a, const SpaceFormula& b) {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Formulas that are written as text: from a point of a picture to one of its source, or to one in space.
+// Formulas that are written as text: from a point of a picture to one of its source, or to one in space; and how far a point of
+// a surface moves.
 //
 // Text. Numbers as in 12, .5 and 1e-3, which are the doubles next to them, and pi; + - * / with the usual order, % (as mod),
 // ^ (a power, from right to left, before a minus sign); < <= > >= == !=, and, or, not make conditions, which
@@ -20,6 +21,11 @@
 //
 //   u v                     the point of the picture that is laid on it: from 0 at the left to 1, from 0 at the bottom to 1
 //   aspect                  width over height of that picture
+//   frame                   as above
+//
+// those of displacements:
+//
+//   u v                     the parameters of a point of a surface, as its host has them
 //   frame                   as above
 //
 // and those that definitions make before. Functions: sin cos tan asin acos atan(y) atan(y, x) atan2(y, x) sinh cosh tanh
@@ -81,7 +87,7 @@ struct SurfaceSetting {
     double aspect = 1, frame = 0;
 };
 
-/// A text as programs: of a surface, of u and 1 - v.
+/// A text as programs: of a surface, of u and 1 - v; of a displacement, of u and v.
 struct SpaceFormula {
     FormulaProgram point;   ///< x, y and z
     FormulaProgram domain;  ///< positive where there is a point, and so a surface or a ray
@@ -120,5 +126,14 @@ struct DirectionText {
 /// As programs of pixels of `globe`, an equirectangular picture, that give pixels of the picture. Errors name the expressions point_x
 /// and point_y. Throws as parse_formula() does.
 PlaneFormula parse_directions(const DirectionText& text, const FormulaSetting& setting, const Size& globe);
+
+/// How far points move, along each axis; what is empty is 0.
+struct DisplacementText {
+    std::string x, y, z;
+    std::string let;  ///< as that of FormulaText
+};
+
+/// A text as programs of u and v. Throws Error with the column, counted from 1, and what was expected there.
+SpaceFormula parse_displacement(const DisplacementText& text, double frame);
 
 }  // namespace anamorph
