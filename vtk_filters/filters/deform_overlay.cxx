@@ -5,7 +5,6 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <optional>
 
 #include "surface_normals.h"
 #include "vtkCellArray.h"
@@ -141,6 +140,7 @@ std::vector<std::vector<glm::dvec2>> paths_of(const Deformation& d) {
 }  // namespace
 
 void draw_overlay(const std::vector<Deformation>& list, const anamorph::DeformOptions& options,
+                  const std::optional<anamorph::FormulaDisplacement>& formula,
                   const std::vector<OverlayMesh>& meshes, const anamorph::ParameterPlane* plane,
                   vtkPolyData* overlay) {
     const SurfaceOfParameters surface(meshes);
@@ -183,7 +183,9 @@ void draw_overlay(const std::vector<Deformation>& list, const anamorph::DeformOp
         double p[3];
         const auto id = static_cast<vtkIdType>(i);
         points->GetPoint(id, p);
-        points->SetPoint(id, p[0] + jets[i].value.x, p[1] + jets[i].value.y, p[2] + jets[i].value.z);
+        glm::dvec3 moved = jets[i].value;
+        if (formula) moved += formula->jet(parameters[i]).value;
+        points->SetPoint(id, p[0] + moved.x, p[1] + moved.y, p[2] + moved.z);
     }
     overlay->SetPoints(points);
     overlay->SetLines(lines);

@@ -3,9 +3,11 @@
 #pragma once
 
 #include <glm/vec2.hpp>
+#include <optional>
 #include <vector>
 
 #include "anamorph/deform/deformed_surface.h"
+#include "anamorph/deform/formula_displacement.h"
 #include "anamorph/deform/plane_warp.h"
 
 class vtkPointSet;
@@ -19,9 +21,10 @@ struct OverlayMesh {
     const std::vector<glm::dvec2>* parameters;
 };
 
-/// Draws all of `list`, those that are not enabled too. Lines end where the meshes do, unless there is a
-/// plane to go on.
+/// Draws all of `list`, those that are not enabled too, on the surface that the list and the formula make.
+/// Lines end where the meshes do, unless there is a plane to go on.
 void draw_overlay(const std::vector<anamorph::Deformation>& list, const anamorph::DeformOptions& options,
+                  const std::optional<anamorph::FormulaDisplacement>& formula,
                   const std::vector<OverlayMesh>& meshes, const anamorph::ParameterPlane* plane,
                   vtkPolyData* overlay);
 

@@ -29,6 +29,8 @@ using anamorph::DeformationChange;
 using anamorph::DeformedGrid;
 using anamorph::DeformedPoints;
 using anamorph::Error;
+using anamorph::FormulaDisplacement;
+using anamorph::FormulaOffsets;
 using anamorph::ParallelFor;
 
 /// The values of the columns and rows if points are a grid: u depends on the column alone, v on the row
@@ -70,6 +72,17 @@ class MeshOf final : public DeformedMesh {
     bool fits(vtkPointSet* mesh, vtkDataArray* coordinates, const DeformSettings& settings) const override {
         return settings == m_settings && mesh->GetMTime() == m_mesh_time && coordinates == m_coordinates;
     }
+
+    void set_formula(const std::optional<FormulaDisplacement>& formula,
+                     const ParallelFor& parallel_for) override {
+        if (formula == m_formula) return;
+        m_formula = formula;
+        m_offsets = formula ? formula->offsets(m_parameters, parallel_for) : FormulaOffsets();
+        give_offsets();
+        forget_written();
+    }
+
+    const FormulaOffsets& offsets() const override { return m_offsets; }
 
     vtkIdType deform(const std::vector<Deformation>& list, vtkPointSet* out, Execution& execution,
                      double begin, double end) override {
@@ -129,9 +142,20 @@ class MeshOf final : public DeformedMesh {
             m_surface.emplace<DeformedGrid>(std::move(axes->u), std::move(axes->v), m_settings.options);
         else
             m_surface.emplace<DeformedPoints>(parameters, m_settings.options);
+        give_offsets();
         m_list.clear();
-        m_points = m_displacement = m_normals = nullptr;
+        forget_written();
     }
+
+    void give_offsets() {
+        const double* const values = m_formula ? m_offsets.values.data() : nullptr;
+        if (auto* grid = std::get_if<DeformedGrid>(&m_surface))
+            grid->set_offsets(values);
+        else
+            std::get<DeformedPoints>(m_surface).set_offsets(values);
+    }
+
+    void forget_written() { m_points = m_displacement = m_normals = nullptr; }
 
     /// Makes an array ours alone, to be written.
     void own(vtkSmartPointer<Array>& array) {
@@ -193,6 +217,7 @@ class MeshOf final : public DeformedMesh {
     }
     anamorph::TakeSlopes normals_writer() {
         return [this, to = m_normals->GetPointer(0)](const anamorph::SurfaceSlopes& slopes) {
+            if (m_formula) m_formula->add_slopes(m_parameters, slopes);
             m_surface_normals->write(slopes, to);
         };
     }
@@ -259,6 +284,8 @@ class MeshOf final : public DeformedMesh {
     std::vector<glm::dvec2> m_parameters;
     std::vector<vtkIdType> m_unmoved;  ///< points whose parameters are not finite
     std::variant<std::monostate, DeformedGrid, DeformedPoints> m_surface;
+    std::optional<FormulaDisplacement> m_formula;
+    FormulaOffsets m_offsets;  ///< of all points, which the surface refers to
     std::optional<SurfaceNormals> m_surface_normals;
     vtkSmartPointer<vtkDataArray> m_given;  ///< the undeformed mesh's normals, or null
     std::vector<Deformation> m_list;        ///< that the surface and the arrays are of

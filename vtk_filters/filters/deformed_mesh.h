@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A mesh that a list of deformations moves, kept from one execution of a filter to the next: while the mesh
+// A mesh that a list of deformations and a formula move, kept from one execution of a filter to the next: while the mesh
 // and the settings stay, only what an edit of the list reaches is computed again.
 //
 // Arrays that were handed out are written again only if nobody else holds them, and copied before otherwise.
@@ -8,9 +8,11 @@
 #include <glm/vec2.hpp>
 #include <limits>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "anamorph/deform/deformed_surface.h"
+#include "anamorph/deform/formula_displacement.h"
 #include "anamorph/deform/plane_warp.h"
 #include "execution.h"
 #include "vtkType.h"
@@ -47,6 +49,11 @@ class DeformedMesh {
 
     /// Is this what make() would make?
     virtual bool fits(vtkPointSet* mesh, vtkDataArray* coordinates, const DeformSettings& settings) const = 0;
+    /// What deform() adds from now on; all points are then written again, unless it is what was added before.
+    virtual void set_formula(const std::optional<anamorph::FormulaDisplacement>& formula,
+                             const anamorph::ParallelFor& parallel_for) = 0;
+    /// What the formula adds; nothing where there is none.
+    virtual const anamorph::FormulaOffsets& offsets() const = 0;
     /// Follows the list and gives `out`, a shallow copy of the mesh, its points and point arrays. Returns how
     /// many points were written. After an exception the object is to be thrown away.
     virtual vtkIdType deform(const std::vector<anamorph::Deformation>& list, vtkPointSet* out,

@@ -3,10 +3,15 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "anamorph/deform/formula_displacement.h"
 #include "anamorph/error.h"
+#include "anamorph/formula/formula_text.h"
+#include "anamorph/parameter/parameter.h"
 #include "automatic_plane.h"
 #include "deform_overlay.h"
 #include "deformation_numbers.h"
@@ -36,6 +41,7 @@ namespace {
 
 using anamorph::Deformation;
 using anamorph::Error;
+using anamorph::FormulaDisplacement;
 using anamorph_vtk::DeformedMesh;
 using anamorph_vtk::distributed;
 using anamorph_vtk::Numbers;
@@ -115,6 +121,26 @@ double resolution_for(const std::vector<Deformation>& list) {
     return std::ldexp(1., std::clamp(kStep * steps + kUsual - 48, -500, 500));
 }
 
+/// A formula as the core reads it. Throws Error that names the filter's property.
+FormulaDisplacement formula_of(const anamorph::DisplacementText& text, double frame) {
+    static const std::map<std::string, std::string> kProperties = {
+        {"x", "FormulaX"}, {"y", "FormulaY"}, {"z", "FormulaZ"}, {"let", "FormulaDefinitions"}};
+    try {
+        return FormulaDisplacement(parse_displacement(text, frame));
+    } catch (const Error& error) {
+        const auto property = kProperties.find(error.parameter());
+        if (property == kProperties.end()) throw;
+        throw Error(property->second + std::string(error.what()).substr(property->first.size()));
+    }
+}
+
+/// How far a list and a formula together may err.
+double error_of_both(const anamorph::DisplacementSum& sum, const anamorph::FormulaOffsets& offsets) {
+    // The sum becomes a double, and so does the whole; then come a few operations on what is not negative here.
+    const double rounding = 2 * 0x1p-53 * (sum.most() + offsets.most);
+    return (sum.error_bound() + offsets.error_bound + rounding) * (1 + 0x1p-49);
+}
+
 glm::dvec3 vector(const double* v) {
     return {v[0], v[1], v[2]};
 }
@@ -161,6 +187,11 @@ void vtkAnamorphDeform::PrintSelf(ostream& os, vtkIndent indent) {
         os << indent << name << ": " << v[0] << " " << v[1] << " " << v[2] << "\n";
     };
     os << indent << "FileName: " << (this->FileName ? this->FileName : "(none)") << "\n"
+       << indent << "FormulaX: " << this->FormulaX << "\n"
+       << indent << "FormulaY: " << this->FormulaY << "\n"
+       << indent << "FormulaZ: " << this->FormulaZ << "\n"
+       << indent << "FormulaDefinitions: " << this->FormulaDefinitions << "\n"
+       << indent << "Frame: " << this->Frame << "\n"
        << indent << "ParameterMode: " << (this->ParameterMode == PLANE ? "Plane" : "Texture coordinates")
        << "\n"
        << indent << "AutomaticPlane: " << this->AutomaticPlane << "\n";
@@ -177,6 +208,7 @@ void vtkAnamorphDeform::PrintSelf(ostream& os, vtkIndent indent) {
        << indent << "OutputPointsPrecision: " << this->OutputPointsPrecision << "\n"
        << indent << "ErrorBound: " << this->ErrorBound << "\n"
        << indent << "NumberOfPointsComputed: " << this->NumberOfPointsComputed << "\n"
+       << indent << "NumberOfUndefinedPoints: " << this->NumberOfUndefinedPoints << "\n"
        << indent << "Controller: " << this->Controller.Get() << "\n"
        << indent << "DeformationList:\n";
     this->DeformationList->PrintSelf(os, indent.GetNextIndent());
@@ -248,6 +280,13 @@ int vtkAnamorphDeform::ReadDeformations(const char* name) {
 int vtkAnamorphDeform::WriteDeformations(const char* name) {
     const bool first = !this->Controller || this->Controller->GetLocalProcessId() == 0;
     return first && name && *name ? this->DeformationList->WriteFile(name) : 1;
+}
+
+void vtkAnamorphDeform::SetText(std::string& member, const char* text) {
+    const std::string given = text ? text : "";
+    if (given == member) return;
+    member = given;
+    this->Modified();
 }
 
 void vtkAnamorphDeform::SetController(vtkMultiProcessController* controller) {
@@ -355,13 +394,18 @@ struct vtkAnamorphDeform::Run {
     std::vector<Leaf> leaves = {};
     anamorph_vtk::DeformSettings settings = {};
     std::vector<Deformation> list = {};
+    std::optional<FormulaDisplacement> formula = {};
+    anamorph::DisplacementSum sum{{}};  ///< of the list
 
     void copy_leaves(vtkDataObject* input);
     void choose_plane();
     /// The filter's own deformations, those of its file, and `more`.
     void gather_deformations(const std::vector<Numbers>& more);
+    void read_formula();
     void settle_precision();
     void deform_leaves();
+    /// Says of a leaf what is known of its displacement. mesh: null where there are no points.
+    void report(vtkPointSet* out, const DeformedMesh* mesh);
     void draw_overlay_of_meshes();
 };
 
@@ -423,15 +467,35 @@ void vtkAnamorphDeform::Run::gather_deformations(const std::vector<Numbers>& mor
     list = anamorph_vtk::checked_deformations(numbers);
 }
 
+void vtkAnamorphDeform::Run::read_formula() {
+    if (!std::isfinite(filter.Frame))
+        throw Error("Frame", anamorph::shortest(filter.Frame), "must be a finite number");
+    if (filter.FormulaX.empty() && filter.FormulaY.empty() && filter.FormulaZ.empty()) return;
+    formula = formula_of({filter.FormulaX, filter.FormulaY, filter.FormulaZ, filter.FormulaDefinitions},
+                         filter.Frame);
+}
+
 void vtkAnamorphDeform::Run::settle_precision() {
     settings.options.cutoff = filter.Cutoff;
     settings.options.resolution = resolution_for(list);
     settings.precision = filter.OutputPointsPrecision;
     settings.displacement = filter.ComputeDisplacement;
     settings.normals = filter.ComputeNormals;
-    anamorph::DisplacementSum sum(settings.options);
+    sum = anamorph::DisplacementSum(settings.options);
     sum.apply(difference({}, list));
     filter.ErrorBound = sum.error_bound();
+}
+
+void vtkAnamorphDeform::Run::report(vtkPointSet* out, const DeformedMesh* mesh) {
+    double bound = sum.error_bound();
+    if (formula) {
+        const anamorph::FormulaOffsets offsets = mesh ? mesh->offsets() : anamorph::FormulaOffsets();
+        bound = error_of_both(sum, offsets);
+        add_field_value(out, "anamorph:undefined_points", static_cast<double>(offsets.undefined));
+        filter.NumberOfUndefinedPoints += offsets.undefined;
+        filter.ErrorBound = std::max(filter.ErrorBound, bound);
+    }
+    add_field_value(out, "anamorph:error_bound", bound);
 }
 
 void vtkAnamorphDeform::Run::deform_leaves() {
@@ -441,17 +505,20 @@ void vtkAnamorphDeform::Run::deform_leaves() {
     const double share = filter.GenerateOverlay ? 0.9 : 1;
     for (std::size_t i = 0; i < leaves.size(); ++i) {
         auto& [in, out] = leaves[i];
-        add_field_value(out, "anamorph:error_bound", filter.ErrorBound);
         std::unique_ptr<DeformedMesh>& mesh = filter.Meshes->meshes[i];
         const double count = static_cast<double>(in->GetNumberOfPoints());
         vtkDataArray* coordinates =
             settings.on_plane || count == 0 ? nullptr : filter.GetInputArrayToProcess(0, in);
         if (count == 0 || (mesh && !mesh->fits(in, coordinates, settings))) mesh = nullptr;
         if (!mesh) mesh = DeformedMesh::make(in, coordinates, settings);
-        if (!mesh) continue;
-        filter.NumberOfPointsComputed +=
-            mesh->deform(list, out, execution, done / total * share, (done + count) / total * share);
-        done += count;
+        if (mesh) {
+            const double begin = done / total * share, end = (done + count) / total * share;
+            const double middle = formula ? begin + (end - begin) * 0.3 : begin;
+            mesh->set_formula(formula, execution.stage(begin, middle));
+            filter.NumberOfPointsComputed += mesh->deform(list, out, execution, middle, end);
+            done += count;
+        }
+        report(out, mesh.get());
     }
 }
 
@@ -464,17 +531,19 @@ void vtkAnamorphDeform::Run::draw_overlay_of_meshes() {
         if (filter.Meshes->meshes[i])
             meshes.push_back({leaves[i].in, &filter.Meshes->meshes[i]->parameters()});
     const bool whole = settings.on_plane && !distributed(filter.Controller);
-    draw_overlay(list, settings.options, meshes, whole ? &settings.plane : nullptr, overlay);
+    draw_overlay(list, settings.options, formula, meshes, whole ? &settings.plane : nullptr, overlay);
 }
 
 void vtkAnamorphDeform::Execute(vtkInformationVector** inputs, vtkInformationVector* outputs) {
     this->NumberOfPointsComputed = 0;
+    this->NumberOfUndefinedPoints = 0;
     Run run{*this, outputs};
     run.copy_leaves(vtkDataObject::GetData(inputs[0]));
     // What all ranks do together comes first: one that then fails does not keep the others waiting.
     const std::vector<Numbers> more = table_of(vtkTable::GetData(inputs[1]), this->Controller);
     run.choose_plane();
     run.gather_deformations(more);
+    run.read_formula();
     run.settle_precision();
     run.deform_leaves();
     run.draw_overlay_of_meshes();

@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 /**
  * @class vtkAnamorphDeform
- * @brief deform a surface by an editable list of bumps
+ * @brief deform a surface by an editable list of bumps and by a formula
  *
  * Free-form deformation of Oka 1987, section 4.1: the point of the surface that has the parameters (u, v)
  * moves by sum_i V_i F((u, v), c_i, a_i) (eq. 4.1), F a Gaussian (eq. 4.2) or a compact kernel. The list is
  * this filter's own (the methods below; vtkAnamorphDeformationList says what the nine numbers of a
- * deformation are), and those of a file and of a table on the second input beside it.
+ * deformation are), and those of a file and of a table on the second input beside it. A formula that is text, of
+ * u and v, may move the points as well, with bumps or without.
  *
  * Parameters are texture coordinates (the point array chosen with SetInputArrayToProcess(0, 0, 0, 0, name),
  * or the active ones), or those of a plane: p = Origin + u Axis1 + v Axis2 + a part across both. With
@@ -25,9 +26,14 @@
  * requested.
  *
  * Sums are in fixed point: the same bits for any order and history of the list, number of threads and cut
- * into pieces. While input and settings stay, only what an edit of the list reaches is computed again.
- * GetErrorBound() and the field array "anamorph:error_bound" say how far from eq. (4.1) a component of the
- * displacement can be, before it is rounded to the type of the points.
+ * into pieces. While input and settings stay, only what an edit of the list reaches is computed again. What the
+ * formula gives is added to the sum in double, before both are added to the point.
+ * GetErrorBound() and the field array "anamorph:error_bound" of each data set say how far a component of the
+ * displacement can be from eq. (4.1) plus the formula, before it is rounded to the type of the points. It holds
+ * where the formula jumps too, unless rounding decides on which side a point is, which then makes it as large as
+ * the jump. Where the formula has no value, or none that double holds, it does not move a point; with a formula,
+ * the field array "anamorph:undefined_points" says how many points these are. Normals take what has no derivative,
+ * as the tip of a cone, for level.
  *
  * The second output, with GenerateOverlay, is the paper's Fig. 4.1: a + at each centre and the oval of its
  * extent, on the deformed surface. Cell arrays: Deformation (position in the list), Enabled.
@@ -36,6 +42,7 @@
 #define vtkAnamorphDeform_h
 
 #include <memory>  // for the implementation
+#include <string>  // for the formulas
 
 #include "AnamorphFiltersModule.h"  // for the export macro
 #include "vtkPassInputTypeAlgorithm.h"
@@ -99,6 +106,31 @@ class ANAMORPHFILTERS_EXPORT vtkAnamorphDeform : public vtkPassInputTypeAlgorith
      * vtkAnamorphDeformationList::ReadTable. Of several ranks, tables that are the same count once.
      */
     void SetTableConnection(vtkAlgorithmOutput* output) { this->SetInputConnection(1, output); }
+
+    ///@{
+    /**
+     * What is added to x, y and z of a point, as text: formulas of u and v, the parameters in which the centres of
+     * bumps are given, and of frame, which is Frame; formula/formula_text.h says how they are written. Empty, the
+     * default, is 0. FormulaDefinitions makes names for all three, as in k=0.3;c=cos(k); it is not read while all
+     * three are empty.
+     */
+    void SetFormulaX(const char* text) { this->SetText(this->FormulaX, text); }
+    const char* GetFormulaX() { return this->FormulaX.c_str(); }
+    void SetFormulaY(const char* text) { this->SetText(this->FormulaY, text); }
+    const char* GetFormulaY() { return this->FormulaY.c_str(); }
+    void SetFormulaZ(const char* text) { this->SetText(this->FormulaZ, text); }
+    const char* GetFormulaZ() { return this->FormulaZ.c_str(); }
+    void SetFormulaDefinitions(const char* text) { this->SetText(this->FormulaDefinitions, text); }
+    const char* GetFormulaDefinitions() { return this->FormulaDefinitions.c_str(); }
+    ///@}
+
+    ///@{
+    /**
+     * The number that frame is in the formulas, finite. Default: 0.
+     */
+    vtkSetMacro(Frame, double);
+    vtkGetMacro(Frame, double);
+    ///@}
 
     enum ParameterModes { PLANE = 0, TEXTURE_COORDINATES = 1 };
     ///@{
@@ -201,11 +233,12 @@ class ANAMORPHFILTERS_EXPORT vtkAnamorphDeform : public vtkPassInputTypeAlgorith
 
     ///@{
     /**
-     * Of the last execution: how far a component of the displacement can be from eq. (4.1), and how many
-     * points were computed.
+     * Of the last execution: how far a component of the displacement can be from eq. (4.1) plus the formula, in
+     * any data set; how many points were computed; and at how many the formula has no value.
      */
     vtkGetMacro(ErrorBound, double);
     vtkGetMacro(NumberOfPointsComputed, vtkIdType);
+    vtkGetMacro(NumberOfUndefinedPoints, vtkIdType);
     ///@}
 
     vtkMTimeType GetMTime() override;
@@ -228,11 +261,14 @@ class ANAMORPHFILTERS_EXPORT vtkAnamorphDeform : public vtkPassInputTypeAlgorith
     void operator=(const vtkAnamorphDeform&) = delete;
 
     void Execute(vtkInformationVector** inputs, vtkInformationVector* outputs);
+    void SetText(std::string& member, const char* text);
 
     vtkSmartPointer<vtkAnamorphDeformationList> DeformationList;
     vtkSmartPointer<vtkDoubleArray> AllDeformations;
     vtkSmartPointer<vtkMultiProcessController> Controller;
     char* FileName = nullptr;
+    std::string FormulaX, FormulaY, FormulaZ, FormulaDefinitions;
+    double Frame = 0;
     int ParameterMode = PLANE;
     bool AutomaticPlane = true;
     double Origin[3] = {0, 0, 0}, Axis1[3] = {1, 0, 0}, Axis2[3] = {0, 1, 0};
@@ -241,7 +277,7 @@ class ANAMORPHFILTERS_EXPORT vtkAnamorphDeform : public vtkPassInputTypeAlgorith
     bool ComputeNormals = true, ComputeDisplacement = true, GenerateOverlay = false;
     int OutputPointsPrecision = DEFAULT_PRECISION;
     double ErrorBound = 0;
-    vtkIdType NumberOfPointsComputed = 0;
+    vtkIdType NumberOfPointsComputed = 0, NumberOfUndefinedPoints = 0;
 
     struct Kept;
     struct Run;
