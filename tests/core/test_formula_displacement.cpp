@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Displacements by formulas that are text: their values, derivatives and bounds, against the formulas written out in
-// long double; what has no value; the same bits for any number of threads.
+// Displacements by formulas that are text: their values, derivatives and bounds, against the formulas written
+// out in long double; what has no value; the same bits for any number of threads.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

@@ -1,16 +1,39 @@
 // SPDX-License-Identifier: Apache-2.0
 // Surfaces of any text: points in double lie within their rounding of long double, and both within the range of their box.
+// Displacements of any text lie within their bound.
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <string_view>
 
+#include "anamorph/deform/formula_displacement.h"
 #include "anamorph/surface/surface.h"
 #include "expect_error.h"
 
 using namespace anamorph;
 using namespace anamorph::surface;
+
+namespace {
+
+void check_displacement(const DisplacementText& text) {
+    const SpaceFormula formula = parse_displacement(text, 3);
+    const FormulaDisplacement displacement(formula);
+    for (const glm::dvec2 p : {glm::dvec2(0, .5), glm::dvec2(.3, .5), glm::dvec2(-.7, 2)}) {
+        const FormulaOffsets offsets = displacement.offsets(std::span(&p, 1));
+        // What has no value is either nowhere, or overflows on its way.
+        if (offsets.undefined > 0 || !std::isfinite(offsets.error_bound)) continue;
+        const long double u = p.x, v = p.y;
+        const bool has_value = formula.is_everywhere || read_program<1>(formula.domain, u, v)[0] > 0;
+        const long double exact = has_value ? read_program<3>(formula.point, u, v)[2] : 0;
+        // Long double rounds too.
+        const long double unit = 0x1p-60L * (std::fabs(exact) + 1);
+        fuzz::require(std::fabs(exact - offsets.values[2]) <= offsets.error_bound * (1 + 1e-3) + unit,
+                      "a displacement lies within its bound");
+    }
+}
+
+}  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     if (size > 400) return 0;
@@ -43,6 +66,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
                 fuzz::require(std::fabs(exact - z) <= lost * (1 + 1e-3) + 0x1p-64L,
                               "a point lies within its rounding");
             }
+        check_displacement({"", "", text.pz, text.let});
     });
     return 0;
 }

@@ -56,7 +56,8 @@ def make(folder):
     polygons.UpdatePipeline()
     deformed = AnamorphDeform(Input=polygons, Deformations=BUMPS)
     double = AnamorphDeform(Input=polygons, Deformations=BUMPS, OutputPointsPrecision=1, AutomaticPlane=0,
-                            Origin=[0.1, 0, 0], Axis1=[0, 1, 0.2], Axis2=[0, 0, 2])
+                            Origin=[0.1, 0, 0], Axis1=[0, 1, 0.2], Axis2=[0, 0, 2],
+                            FormulaX="a*sin(6*u+frame)", FormulaDefinitions="a=0.1", Frame=2)
     turned = AnamorphDeform(Input=relief, Deformations=TURN_BUMPS, ParameterMode=1)
     raised = AnamorphDeform(Input=relief, Deformations=BUMPS)
     between = AnamorphInbetween(Input=[deformed, double], Weights=[1.5, -0.5])

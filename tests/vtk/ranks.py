@@ -42,6 +42,7 @@ def part_of(mesh, begin, end):
 def deformed(mesh, with_controller, has_table):
     deform = anamorph.vtkAnamorphDeform()
     deform.SetInputData(mesh)
+    deform.SetFormulaX("0.1*sin(3*u)*v")
     if not with_controller:
         deform.SetController(None)
     table = vtkTable()

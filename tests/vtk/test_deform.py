@@ -31,7 +31,8 @@ assert "AutomaticPlane" in str(deform)
 for name, value in {"Cutoff": 1e-5, "ParameterMode": 1, "AutomaticPlane": False, "Origin": (1.0, 2.0, 3.0),
                     "Axis1": (0.0, 1.0, 0.0), "Axis2": (0.0, 0.0, 1.0), "ComputeNormals": False,
                     "ComputeDisplacement": False, "GenerateOverlay": True, "OutputPointsPrecision": 1,
-                    "FileName": "list.json"}.items():
+                    "FileName": "list.json", "FormulaX": "u", "FormulaY": "v*k", "FormulaZ": "frame",
+                    "FormulaDefinitions": "k=2", "Frame": 2.5}.items():
     other = anamorph.vtkAnamorphDeform()
     default = getattr(other, "Get" + name)()
     assert default != value, name
@@ -110,6 +111,20 @@ deform.GenerateOverlayOn()
 deform.Update()
 assert points_of(deform.GetOutput().GetPartition(1, 1)) == once
 assert deform.GetOverlay().GetNumberOfCells() == 3
+
+# Formulas, and points where they have no value.
+waves = anamorph.vtkAnamorphDeform()
+waves.SetInputConnection(plane.GetOutputPort())
+waves.SetFormulaZ("a*sin(6*u+frame)+sqrt(v)")
+waves.SetFormulaDefinitions("a=0.1")
+for frame in (0, 1.5):
+    waves.SetFrame(frame)
+    waves.Update()
+    for (x, y, _), (_, _, z) in zip(points_of(plane.GetOutput()), points_of(waves.GetOutput())):
+        expected = 0.1 * math.sin(6 * x + frame) + math.sqrt(y) if y > 0 else 0
+        assert abs(z - expected) <= waves.GetErrorBound() + 1e-15, (x, y, z)
+assert waves.GetNumberOfUndefinedPoints() == 21 * 11
+assert waves.GetOutput().GetFieldData().GetArray("anamorph:undefined_points").GetValue(0) == 21 * 11
 
 # The transform, forth and back.
 transform = anamorph.vtkAnamorphDeformTransform()

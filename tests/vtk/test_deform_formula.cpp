@@ -35,8 +35,8 @@ using Real = long double;
 using Three = std::array<Real, 3>;
 using Filter = vtkAnamorphDeform*;
 
-/// A square of n x n points of x and y in [-1, 1], with texture coordinates from 0 to 1. Not a grid in memory if a point
-/// is off by a hair.
+/// A square of n x n points of x and y in [-1, 1], with texture coordinates from 0 to 1. No grid in memory if a
+/// point is off by a hair.
 vtkSmartPointer<vtkPolyData> sheet(int n, int type = VTK_DOUBLE, bool is_grid = true) {
     vtkNew<vtkPoints> points;
     points->SetDataType(type);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A mesh that a list of deformations and a formula move, kept from one execution of a filter to the next: while the mesh
-// and the settings stay, only what an edit of the list reaches is computed again.
+// A mesh that a list of deformations and a formula move, kept from one execution of a filter to the next:
+// while the mesh and the settings stay, only what an edit of the list reaches is computed again.
 //
 // Arrays that were handed out are written again only if nobody else holds them, and copied before otherwise.
 #pragma once

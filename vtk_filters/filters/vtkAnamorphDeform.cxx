@@ -136,7 +136,7 @@ FormulaDisplacement formula_of(const anamorph::DisplacementText& text, double fr
 
 /// How far a list and a formula together may err.
 double error_of_both(const anamorph::DisplacementSum& sum, const anamorph::FormulaOffsets& offsets) {
-    // The sum becomes a double, and so does the whole; then come a few operations on what is not negative here.
+    // The sum becomes a double, and so does the whole. Then come a few operations on what is not negative.
     const double rounding = 2 * 0x1p-53 * (sum.most() + offsets.most);
     return (sum.error_bound() + offsets.error_bound + rounding) * (1 + 0x1p-49);
 }
@@ -489,7 +489,8 @@ void vtkAnamorphDeform::Run::settle_precision() {
 void vtkAnamorphDeform::Run::report(vtkPointSet* out, const DeformedMesh* mesh) {
     double bound = sum.error_bound();
     if (formula) {
-        const anamorph::FormulaOffsets offsets = mesh ? mesh->offsets() : anamorph::FormulaOffsets();
+        const anamorph::FormulaOffsets none;
+        const anamorph::FormulaOffsets& offsets = mesh ? mesh->offsets() : none;
         bound = error_of_both(sum, offsets);
         add_field_value(out, "anamorph:undefined_points", static_cast<double>(offsets.undefined));
         filter.NumberOfUndefinedPoints += offsets.undefined;

@@ -6,8 +6,8 @@
  * Free-form deformation of Oka 1987, section 4.1: the point of the surface that has the parameters (u, v)
  * moves by sum_i V_i F((u, v), c_i, a_i) (eq. 4.1), F a Gaussian (eq. 4.2) or a compact kernel. The list is
  * this filter's own (the methods below; vtkAnamorphDeformationList says what the nine numbers of a
- * deformation are), and those of a file and of a table on the second input beside it. A formula that is text, of
- * u and v, may move the points as well, with bumps or without.
+ * deformation are), and those of a file and of a table on the second input beside it. A formula of u and v
+ * that is text may move the points as well, with bumps or without.
  *
  * Parameters are texture coordinates (the point array chosen with SetInputArrayToProcess(0, 0, 0, 0, name),
  * or the active ones), or those of a plane: p = Origin + u Axis1 + v Axis2 + a part across both. With
@@ -26,14 +26,14 @@
  * requested.
  *
  * Sums are in fixed point: the same bits for any order and history of the list, number of threads and cut
- * into pieces. While input and settings stay, only what an edit of the list reaches is computed again. What the
- * formula gives is added to the sum in double, before both are added to the point.
+ * into pieces. While input and settings stay, only what an edit of the list reaches is computed again.
  * GetErrorBound() and the field array "anamorph:error_bound" of each data set say how far a component of the
- * displacement can be from eq. (4.1) plus the formula, before it is rounded to the type of the points. It holds
- * where the formula jumps too, unless rounding decides on which side a point is, which then makes it as large as
- * the jump. Where the formula has no value, or none that double holds, it does not move a point; with a formula,
- * the field array "anamorph:undefined_points" says how many points these are. Normals take what has no derivative,
- * as the tip of a cone, for level.
+ * displacement can be from eq. (4.1) plus the formula, before it is rounded to the type of the points.
+ *
+ * What the formula gives is added to the sum in double. Where it has no value, or none that double holds, it
+ * does not move a point: the field array "anamorph:undefined_points" of each data set says how many these are.
+ * Where rounding decides on which side of a jump a point is, the bound is as large as the jump. Normals take
+ * what has no derivative, as the tip of a cone, for level.
  *
  * The second output, with GenerateOverlay, is the paper's Fig. 4.1: a + at each centre and the oval of its
  * extent, on the deformed surface. Cell arrays: Deformation (position in the list), Enabled.
@@ -109,10 +109,10 @@ class ANAMORPHFILTERS_EXPORT vtkAnamorphDeform : public vtkPassInputTypeAlgorith
 
     ///@{
     /**
-     * What is added to x, y and z of a point, as text: formulas of u and v, the parameters in which the centres of
-     * bumps are given, and of frame, which is Frame; formula/formula_text.h says how they are written. Empty, the
-     * default, is 0. FormulaDefinitions makes names for all three, as in k=0.3;c=cos(k); it is not read while all
-     * three are empty.
+     * What is added to x, y and z of a point, as text: formulas of u and v, the parameters in which the
+     * centres of bumps are given, and of frame, which is Frame; formula/formula_text.h says how they are
+     * written. Empty, the default, is 0. FormulaDefinitions makes names for all three, as in k=0.3;c=cos(k);
+     * it is not read while all three are empty.
      */
     void SetFormulaX(const char* text) { this->SetText(this->FormulaX, text); }
     const char* GetFormulaX() { return this->FormulaX.c_str(); }
@@ -233,8 +233,8 @@ class ANAMORPHFILTERS_EXPORT vtkAnamorphDeform : public vtkPassInputTypeAlgorith
 
     ///@{
     /**
-     * Of the last execution: how far a component of the displacement can be from eq. (4.1) plus the formula, in
-     * any data set; how many points were computed; and at how many the formula has no value.
+     * Of the last execution: how far a component of the displacement can be from eq. (4.1) plus the formula,
+     * in any data set; how many points were computed; and at how many the formula has no value.
      */
     vtkGetMacro(ErrorBound, double);
     vtkGetMacro(NumberOfPointsComputed, vtkIdType);

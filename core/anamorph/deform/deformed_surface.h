@@ -154,8 +154,8 @@ class DeformedGrid {
     void write(const T* base, T* out, const ParallelFor& parallel_for = serial_for,
                T* displacement = nullptr);
 
-    /// Adds to the displacements that are written from now on: three numbers a point, in double, which are not
-    /// copied; null: nothing, as at first. All points are to be written then.
+    /// Adds to the displacements that are written from now on: three numbers a point, in double, which are
+    /// not copied; null: nothing, as at first. All points are to be written then.
     void set_offsets(const double* offsets) { m_offsets = offsets; }
 
     /// Of the sums, without offsets.

@@ -35,8 +35,8 @@ class FormulaDisplacement {
   public:
     explicit FormulaDisplacement(const SpaceFormula& formula);
 
-    /// At many points. The same bits for any number of threads and whatever other points there are, but for the bound.
-    /// Points that are not finite are not moved, and not counted.
+    /// At many points. The same bits for any number of threads, and but for the bound whatever other points
+    /// there are. Points that are not finite are not moved, and not counted.
     FormulaOffsets offsets(std::span<const glm::dvec2> points,
                            const ParallelFor& parallel_for = serial_for) const;
     /// At one point; 0 where there is no value, and derivatives are 0 where there are none.
