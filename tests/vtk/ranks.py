@@ -39,10 +39,10 @@ def part_of(mesh, begin, end):
     return part
 
 
-def deformed(mesh, with_controller, has_table):
+def deformed(mesh, with_controller, has_table, formula=""):
     deform = anamorph.vtkAnamorphDeform()
     deform.SetInputData(mesh)
-    deform.SetFormulaX("0.1*sin(3*u)*v")
+    deform.SetFormulaX(formula)
     if not with_controller:
         deform.SetController(None)
     table = vtkTable()
@@ -179,6 +179,17 @@ def check_failures(rank):
     assert errors_of(bake) and bake.GetOutput().GetNumberOfPoints() == 0
 
 
+def check_formula(mesh, part):
+    """A formula moves a part as it does the whole; the bound is that of the part."""
+    formula = "0.1*sin(3*u)*v"
+    whole, _ = deformed(mesh, False, True, formula)
+    points, deform = deformed(part, True, True, formula)
+    for point, moved in points.items():
+        assert moved == whole[point], (point, moved, whole[point])
+    _, without = deformed(part, True, True)
+    assert without.GetErrorBound() < deform.GetErrorBound() < without.GetErrorBound() + 1e-14
+
+
 def main():
     controller = vtkMultiProcessController.GetGlobalController()
     rank, ranks = controller.GetLocalProcessId(), controller.GetNumberOfProcesses()
@@ -201,6 +212,7 @@ def main():
             assert getattr(deform, name)() == getattr(serial, name)(), name
         for point, moved in points.items():
             assert moved == whole[point], (point, moved, whole[point])
+    check_formula(mesh, part)
     check_painted(mesh, part, controller)
     check_baked(rank, ranks)
     check_blocks(rank, ranks)

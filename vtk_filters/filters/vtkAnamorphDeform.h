@@ -234,7 +234,7 @@ class ANAMORPHFILTERS_EXPORT vtkAnamorphDeform : public vtkPassInputTypeAlgorith
     ///@{
     /**
      * Of the last execution: how far a component of the displacement can be from eq. (4.1) plus the formula,
-     * in any data set; how many points were computed; and at how many the formula has no value.
+     * in any data set of this rank; how many points were computed; and at how many the formula has no value.
      */
     vtkGetMacro(ErrorBound, double);
     vtkGetMacro(NumberOfPointsComputed, vtkIdType);
