@@ -60,7 +60,8 @@ double error_of(const Rounded<double>& rounded, const Interval& range, Certainty
     const bool is_open = has_value == Certainty::open;
     const Interval held = is_open ? hull(range, Interval(0)) : range;
     const double width = (held.hi - held.lo) * (1 + 1e-15);
-    const double error = is_open || width < rounded.error ? width : rounded.error;
+    // Of the two, the one that is less; NaN is none.
+    const double error = is_open ? width : std::fmin(rounded.error, width);
     return error >= 0 ? error : HUGE_VAL;
 }
 
