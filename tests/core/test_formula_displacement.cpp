@@ -14,6 +14,7 @@
 #include "anamorph/deform/formula_displacement.h"
 #include "anamorph/error.h"
 #include "anamorph/formula/formula_text.h"
+#include "each_instruction_set.h"
 
 namespace anamorph {
 namespace {
@@ -238,6 +239,51 @@ TEST(FormulaDisplacement, SameBitsForAnyThreadsAndCut) {
         EXPECT_TRUE(std::equal(part.values.begin(), part.values.end(),
                                all.values.begin() + static_cast<std::ptrdiff_t>(3 * first)));
     }
+}
+
+/// A grid of a width that fills no vector, deformed by a bump and by a formula: points are rounded from the base
+/// plus the sum and the offset.
+template <class T>
+void expect_offsets_added() {
+    constexpr int kColumns = 45, kRows = 7;
+    std::vector<double> u, v;
+    for (int i = 0; i < kColumns; ++i) u.push_back(.013 * i);
+    for (int j = 0; j < kRows; ++j) v.push_back(.1 * j);
+    std::vector<glm::dvec2> at;
+    std::vector<T> base;
+    for (const double y : v)
+        for (const double x : u) {
+            at.emplace_back(x, y);
+            base.insert(base.end(), {T(x), T(y), T(.3)});
+        }
+    const std::vector<Deformation> list = {{{.1, -.2, .3}, {.2, .3}, {.2, .2}}};
+    const auto changes = difference({}, list);
+    const std::vector<double> offsets = displacement({"sin(u)", "v/3", "exp(u*v)", ""}).offsets(at).values;
+    std::vector<double> sums(base.size());
+    deform_grid<double>(list, u, v, {}, nullptr, sums.data());
+
+    std::vector<T> of_grid(base.size()), moved(base.size()), of_points(base.size());
+    DeformedGrid grid(u, v);
+    grid.set_offsets(offsets.data());
+    grid.apply(changes);
+    grid.write<T>(base.data(), of_grid.data(), serial_for, moved.data());
+    DeformedPoints points(at);
+    points.set_offsets(offsets.data());
+    points.apply(changes);
+    points.write<T>(base.data(), of_points.data());
+    EXPECT_EQ(of_points, of_grid);
+    for (std::size_t k = 0; k < base.size(); ++k) {
+        const double displacement = sums[k] + offsets[k];
+        ASSERT_EQ(of_grid[k], static_cast<T>(displacement + base[k]));
+        ASSERT_EQ(moved[k], static_cast<T>(displacement));
+    }
+}
+
+TEST(FormulaDisplacement, OffsetsAreAddedToSums) {
+    test::on_every_instruction_set([] {
+        expect_offsets_added<float>();
+        expect_offsets_added<double>();
+    });
 }
 
 TEST(FormulaDisplacement, TextIsOfUAndVAndFrame) {
