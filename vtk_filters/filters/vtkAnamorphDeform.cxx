@@ -129,7 +129,8 @@ FormulaDisplacement formula_of(const anamorph::DisplacementText& text, double fr
         return FormulaDisplacement(parse_displacement(text, frame));
     } catch (const Error& error) {
         const auto property = kProperties.find(error.parameter());
-        if (property == kProperties.end()) throw;
+        if (property == kProperties.end())
+            throw Error(std::string("FormulaX, FormulaY and FormulaZ: ") + error.what());
         throw Error(property->second + std::string(error.what()).substr(property->first.size()));
     }
 }

@@ -103,29 +103,17 @@ double row_error(const SpaceFormula& formula, const FormulaRow& row, int begin, 
     return std::max(row_error(formula, row, begin, middle), row_error(formula, row, middle, end));
 }
 
-FormulaProgram with_outputs(FormulaProgram program, std::size_t a, std::size_t b) {
-    program.outputs = {program.outputs[a], program.outputs[b]};
-    return program;
-}
-
 }  // namespace
-
-FormulaDisplacement::FormulaDisplacement(const SpaceFormula& formula)
-    : m_formula(formula),
-      m_xy(with_outputs(formula.point, 0, 1)),
-      m_z(with_outputs(formula.point, 2, 2)),
-      m_domain(with_outputs(formula.domain, 0, 0)) {}
 
 FormulaDisplacement::Part FormulaDisplacement::compute(std::span<const glm::dvec2> points, std::size_t first,
                                                        double* values) const {
     FormulaRow row = row_of(points, first);
-    ProgramRow xy, z, domain;
-    simd::read_program_row(m_xy, row.at, row.count, xy);
-    simd::read_program_row(m_z, row.at, row.count, z);
-    if (!m_formula.is_everywhere) simd::read_program_row(m_domain, row.at, row.count, domain);
+    ProgramRow moved, domain;
+    simd::read_program_row(m_formula.point, row.at, row.count, moved);
+    if (!m_formula.is_everywhere) simd::read_program_row(m_formula.domain, row.at, row.count, domain);
     Part part;
     for (int i = 0; i < row.count; ++i) {
-        const double value[3] = {xy.x[i], xy.y[i], z.x[i]};
+        const double value[3] = {moved.x[i], moved.y[i], moved.z[i]};
         const bool is_finite = std::isfinite(value[0]) && std::isfinite(value[1]) && std::isfinite(value[2]);
         row.has_value[i] = is_finite && (m_formula.is_everywhere || domain.x[i] > 0);
         if (!row.has_value[i]) {

@@ -13,6 +13,7 @@
 #include <cstdint>
 #include <glm/vec2.hpp>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "anamorph/deform/deformation.h"
@@ -33,7 +34,7 @@ struct FormulaOffsets {
 /// A formula, and its derivatives.
 class FormulaDisplacement {
   public:
-    explicit FormulaDisplacement(const SpaceFormula& formula);
+    explicit FormulaDisplacement(SpaceFormula formula) : m_formula(std::move(formula)) {}
 
     /// At many points. The same bits for any number of threads, and but for the bound whatever other points
     /// there are. Points that are not finite are not moved, and not counted.
@@ -58,7 +59,6 @@ class FormulaDisplacement {
     Part compute(std::span<const glm::dvec2> points, std::size_t first, double* values) const;
 
     SpaceFormula m_formula;
-    FormulaProgram m_xy, m_z, m_domain;  ///< the same, for rows of points
 };
 
 }  // namespace anamorph
