@@ -299,6 +299,83 @@ TEST(FormulaView, DirectionsOfAnyFormulaHoldTheToleranceInAnySource) {
                                       {Scheme::automatic, Scheme::exact}, random, scenes);
 }
 
+/// How many of the pixels that two maps show have points that are farther apart than both bounds, and how many only one shows.
+template <class A, class B>
+std::pair<int, int> differences(const View& source, const Size& size, const A& a, const B& b) {
+    int apart = 0, alone = 0;
+    for (double y = 0.5; y < size.height; ++y)
+        for (double x = 0.5; x < size.width; ++x) {
+            Point<double> p{}, q{};
+            int piece_p = 0, piece_q = 0;
+            const bool has_p = a.exact(x, y, 0, p, piece_p), has_q = b.exact(x, y, 0, q, piece_q);
+            alone += has_p != has_q;
+            if (!has_p || !has_q) continue;
+            const Interval at_x(x), at_y(y);
+            const double bound =
+                a.template exact_error<double>(at_x, at_y, 0) + b.template exact_error<double>(at_x, at_y, 0);
+            apart += !(distance(source, p, {q.x, q.y}) <= bound * (1 + 1e-12)) || !std::isfinite(bound);
+        }
+    return {apart, alone};
+}
+
+TEST(FormulaView, ListedProjectionsAsTextAreTheSame) {
+    struct Listed {
+        Projection projection;
+        Size size;
+        double fov;
+        RayText text;
+    };
+    const Size square{90, 90}, wide{120, 60};
+    const Listed all[] = {
+        {equirectangular, wide, 360, {"cos(e)*sin(l)", "sin(e)", "cos(e)*cos(l)", {}, "l=px*pi/2;e=py*pi/2"}},
+        {cylindrical, square, 200, {"sin(l)", "py*w", "cos(l)", {}, "w=pi*100/180;l=px*w"}},
+        {rectilinear, square, 100, {"k*px", "k*py", "1", {}, "k=tan(pi*50/180)"}},
+        {fisheye, square, 180, {"k*px", "k*py", "cos(q)", {}, "q=r*pi/2;k=sin(q)/r"}},
+        {equisolid, square, 180, {"k*px", "k*py", "cos(q)", {}, "q=2*asin(r*sin(pi/4));k=sin(q)/r"}},
+        {stereographic, square, 180, {"2*px", "2*py", "1-r^2"}},
+        {mercator, square, 360, {"sin(px*pi)", "sinh(py*pi)", "cos(px*pi)"}},
+        {pannini,
+         square,
+         120,
+         {"X*S", "Y*S", "C", {}, "w=2*tan(pi/6);X=px*w;Y=py*w;q=X^2/4;C=(1-q)/(1+q);S=(C+1)/2"}},
+        {orthographic, square, 160, {"k*px", "k*py", "sqrt(1-(k*r)^2)", {}, "k=sin(pi*80/180)"}},
+    };
+    const Orientation look{33, -21, 12};
+    const View& source = kSources[0];
+    for (const Listed& listed : all) {
+        SCOPED_TRACE(std::string(name_of(listed.projection)));
+        const Scene scene{source, listed.size, listed.size, look, {}, {}};
+        const Chart target(listed.projection, listed.size.width, listed.size.height, listed.fov);
+        const auto [apart, alone] = differences(source, listed.size, scene.map(listed.text),
+                                                Panorama(oracle::chart_of(source), target, look));
+        EXPECT_EQ(apart, 0);
+        EXPECT_EQ(alone, 0);
+    }
+}
+
+TEST(FormulaView, ListedProjectionsAsTextOfDirectionsAreTheSame) {
+    struct Listed {
+        Projection projection;
+        DirectionText text;
+    };
+    const Listed all[] = {
+        {equirectangular, {}},
+        {sinusoidal, {"lon*cos(lat)/(pi/2)", "lat/(pi/2)"}},
+        {hammer, {"2*cos(lat)*sin(lon/2)/k", "sin(lat)/k", {}, "k=sqrt(1+cos(lat)*cos(lon/2))"}},
+    };
+    const Orientation look{33, -21, 12};
+    const View& source = kSources[0];
+    for (const Listed& listed : all) {
+        SCOPED_TRACE(std::string(name_of(listed.projection)));
+        const Scene scene{source, {120, 60}, {120, 60}, look, {}, {}};
+        const Chart target(listed.projection, 120, 60, 360);
+        const auto [apart, alone] = differences(source, {120, 60}, scene.map(listed.text),
+                                                Panorama(oracle::chart_of(source), target, look));
+        EXPECT_EQ(apart, 0);
+        EXPECT_EQ(alone, 0);
+    }
+}
+
 TEST(FormulaView, RowsAreExactOnEveryInstructionSet) {
     const Size picture{101, 67};
     for (const Rays& rays : kRays)
@@ -353,6 +430,49 @@ TEST(FormulaView, PixelsWithoutARayHaveNoSourcePoint) {
     const InverseView globe = scene.map(kDirections[2].text);
     EXPECT_FALSE(globe.exact(0.5, 0.5, 0, point, piece));
     EXPECT_TRUE(globe.exact(32.5, 30.5, 0, point, piece));
+}
+
+/// The largest bound of all pixels.
+template <class Plan>
+double largest_bound(const Plan& plan) {
+    double most = 0;
+    for (std::int64_t region = 0; region < plan.regions(); ++region)
+        for (const Block& block : plan.blocks(region)) most = std::max(most, block.bound);
+    return most;
+}
+
+TEST(FormulaView, PixelsWithoutARayAreCountedAndHaveNoBound) {
+    const Scene scene{kSources[0], {128, 64}, {128, 64}, {}, {}, {}};
+    const auto undefined = [&](const auto& map) {
+        const Box whole{0, 0, 128, 64};
+        return map.undefined_pixels(whole);
+    };
+    const FormulaViewPlan plan(scene.map(RayText{"if(s<0.25,0,px)", "if(s<0.25,0,py)", "if(s<0.25,0,1)"}),
+                               scene.options);
+    EXPECT_EQ(undefined(plan.map()), 32 * 64);
+    EXPECT_LE(largest_bound(plan), scene.options.tol);
+    EXPECT_EQ(undefined(scene.map(RayText{"0", "0", "0"})), 128 * 64);
+    EXPECT_EQ(undefined(scene.map(RayText{"px", "py", "sqrt(t-0.5)"})), 128 * 32);
+    EXPECT_EQ(undefined(scene.map(kRays[0].text)), 0);
+    // An equirectangular half of the globe, 64 pixels wide.
+    EXPECT_EQ(undefined(scene.map(DirectionText{"lon*k", "lat*k", {}, "k=if(lon>0,2/pi,sqrt(-1))"})),
+              64 * 64);
+}
+
+TEST(FormulaView, OfTwoDirectionsTheOneThatIsTakenHasItsOwnBound) {
+    const Scene scene{kSources[0], {101, 67}, {101, 67}, {40, 20, 10}, {}, {}};
+    for (const auto& [x, y] :
+         {std::pair("abs(lon)*2/pi", "lat*2/pi"), std::pair("lon*2/pi", "abs(lat)*2/pi")}) {
+        const InverseView map = scene.map(DirectionText{x, y});
+        int large = 0;
+        for (double row = 0.5; row < 67; ++row)
+            for (double column = 0.5; column < 101; ++column) {
+                const double bound = map.exact_error<double>(Interval(column), Interval(row), 0);
+                large += !(bound < 1e-6);
+            }
+        // But on the fold itself, a column or a row.
+        EXPECT_LE(large, 101) << x;
+    }
 }
 
 TEST(FormulaView, SmoothFormulasAreDrawnByBlocks) {

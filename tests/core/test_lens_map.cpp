@@ -9,6 +9,7 @@
 #include <random>
 
 #include "anamorph/error.h"
+#include "anamorph/formula/text_map.h"
 #include "anamorph/lens/lens_plan.h"
 #include "block_points.h"
 #include "panorama_oracle.h"
@@ -233,6 +234,44 @@ TEST(LensMap, NeedsALens) {
     EXPECT_THROW(
         LensMap(Chart(Projection::rectilinear, 10, 10), LensMode::distort, {10, 10}, {10, 10}, {10, 10}),
         Error);
+}
+
+TEST(LensMap, LensesAsTextAreTheSame) {
+    struct Written {
+        std::string lens;
+        LensMode mode;
+        std::string
+            let;  ///< X and Y in the model's unit, the unit w in pixels, and U and V on the other side
+    };
+    const std::string about = "X=(x-width/2)/w;Y=(y-height/2)/w;q=X*X+Y*Y;";
+    const Written all[] = {
+        {"ptlens:a=0.01,b=-0.03,c=0.02", LensMode::undistort,
+         "w=height/2;" + about + "n=sqrt(q);k=0.01*n^3-0.03*n^2+0.02*n+1-0.01+0.03-0.02;U=X*k;V=Y*k"},
+        {"3de4:k1=0.1,k2=0.03", LensMode::distort,
+         "w=hypot(width,height)/2;" + about + "k=1+0.1*q+0.03*q^2;U=X*k;V=Y*k"},
+        {"brown:k1=-0.1,k2=0.02,p1=0.002,p2=-0.003", LensMode::undistort,
+         "w=width/2/tan(pi*40/180);" + about +
+             "k=1-0.1*q+0.02*q^2;U=X*k+2*0.002*X*Y-0.003*(q+2*X^2);V=Y*k+0.002*(q+2*Y^2)-2*0.003*X*Y"},
+    };
+    for (const Written& written : all) {
+        SCOPED_TRACE(written.lens);
+        FormulaText text;
+        text.let = written.let;
+        text.u = "width/2+w*U";
+        text.v = "height/2+w*V";
+        const TextMap in_words(parse_formula(text, {kPicture, kPicture}), kPicture, kPicture, kPicture);
+        const LensMap compiled(chart_of(view_of(written.lens)), written.mode, kPicture, kPicture, kPicture);
+        for (double y = 0.5; y < kPicture.height; y += 3)
+            for (double x = 0.5; x < kPicture.width; x += 3) {
+                Point<double> p{}, q{};
+                int piece = 0;
+                ASSERT_TRUE(in_words.exact(x, y, 0, p, piece));
+                ASSERT_TRUE(compiled.exact(x, y, 0, q, piece)) << x << " " << y;
+                const double bound = in_words.exact_error<double>(Interval(x), Interval(y), 0) +
+                                     compiled.exact_error<double>(Interval(x), Interval(y), 0);
+                ASSERT_LE(std::hypot(p.x - q.x, p.y - q.y), bound) << x << " " << y;
+            }
+    }
 }
 
 }  // namespace

@@ -99,6 +99,7 @@ class ParameterEnds : public InFolder {
         if (key == "to" && faces.columns > 0)
             add("size", std::to_string(2 * faces.columns) + "x" + std::to_string(2 * faces.rows));
         if (key == "surface" && value == "positions") add("positions", "city.exr");
+        if (key == "frame" && operation.name == "pano") add("to", "formula");
         if (key == "frame" && operation.name == "figure") {
             write_text("long.nudes",
                        "figure f 1 e\nellipsoid e 200 300 100\nrepeat 0 1000000 spinby f e e 1 z\nstop\n");

@@ -9,8 +9,9 @@
 //
 // Projections: chart/projection/, one a file, in the order of chart/projection/list.h.
 //
-// What is read from formulas is defined in chart_formulas.h, and compiled in chart_numbers.cpp for the numbers of chart_numbers.h and
-// chart_jets.h. Whoever reads a chart with another number includes chart_formulas.h.
+// What is read from formulas is defined in chart_formulas.h, and compiled in chart_numbers.cpp for the numbers of chart_numbers.h,
+// chart_jets.h, chart_near.h and chart_glsl.h: a projection that changes is compiled there and for vectors alone. To read one with
+// another number takes the sources: chart_formulas.h is not installed.
 #pragma once
 
 #include <algorithm>

@@ -227,7 +227,16 @@ class Maker {
         return {a.at, needs(a.domain, positive.at), a.is_condition};
     }
     Value square(const Value& a) { return of_one(StepKind::square, a); }
-    Value root(const Value& a) { return of_one(StepKind::sqrt, a); }
+    Value root(const Value& a) {
+        const auto k = m_graph.known_number(a.at);
+        const double root = k && *k > 0 ? std::sqrt(*k) : 0;
+        if (k && program_detail::is_exact_product(root, root, *k)) return {m_graph.number(root), a.domain};
+        return of_one(StepKind::sqrt, a);
+    }
+    Value floor(const Value& a) {
+        if (const auto k = m_graph.known_number(a.at)) return {m_graph.number(std::floor(*k)), a.domain};
+        return of_one(StepKind::floor, a);
+    }
     Value sine(const Value& a) { return of_one(StepKind::sine_and_cosine, a); }
     Value cosine(const Value& a) {
         Value r = sine(a);
@@ -368,7 +377,7 @@ Value power(Maker& m, const Value& a, const Value& b) {
     return m.where(m.power(a, b), a);
 }
 Value modulo(Maker& m, const Value& a, const Value& b) {
-    return m.difference(a, m.product(b, m.of_one(StepKind::floor, m.quotient(a, b))));
+    return m.difference(a, m.product(b, m.floor(m.quotient(a, b))));
 }
 Value sign(Maker& m, const Value& a) {
     const Value zero = m.number(0);
@@ -419,11 +428,9 @@ const std::map<std::string, Function, std::less<>>& functions() {
         {"min", {2, 2, [](Maker& m, Values v) { return m.least(v[0], v[1]); }}},
         {"max", {2, 2, [](Maker& m, Values v) { return m.most(v[0], v[1]); }}},
         {"mod", {2, 2, [](Maker& m, Values v) { return modulo(m, v[0], v[1]); }}},
-        {"floor", {1, 1, [](Maker& m, Values v) { return m.of_one(StepKind::floor, v[0]); }}},
-        {"ceil",
-         {1, 1, [](Maker& m, Values v) { return m.negated(m.of_one(StepKind::floor, m.negated(v[0]))); }}},
-        {"round",
-         {1, 1, [](Maker& m, Values v) { return m.of_one(StepKind::floor, m.sum(v[0], m.number(0.5))); }}},
+        {"floor", {1, 1, [](Maker& m, Values v) { return m.floor(v[0]); }}},
+        {"ceil", {1, 1, [](Maker& m, Values v) { return m.negated(m.floor(m.negated(v[0]))); }}},
+        {"round", {1, 1, [](Maker& m, Values v) { return m.floor(m.sum(v[0], m.number(0.5))); }}},
         {"clamp", {3, 3, [](Maker& m, Values v) { return m.least(m.most(v[0], v[1]), v[2]); }}},
         {"mix",
          {3, 3, [](Maker& m, Values v) { return m.sum(v[0], m.product(m.difference(v[1], v[0]), v[2])); }}},

@@ -55,7 +55,7 @@ class PushedMap {
     /// `formula`: target pixels of a picture of size `picture`, at source pixels. `target`: the pixels that the picture has.
     /// Throws Error as PushedSheets does.
     PushedMap(PlaneFormula formula, const Size& picture, const Size& target, const Size& source,
-              std::size_t most_parts = kMostParts);
+              std::size_t most_parts = kMostParts, PushedSheets::NamePlace place = PushedSheets::pixel_name);
 
     Size target_size() const { return m_target; }
     Size source_size() const { return m_sheets.source_size(); }

@@ -247,8 +247,13 @@ class PushedSheets::Cell {
     bool m_looks_for_jumps;
 };
 
+std::string PushedSheets::pixel_name(const Point<double>& source) {
+    return "source pixel " + std::to_string(std::lround(source.x)) + "," +
+           std::to_string(std::lround(source.y));
+}
+
 PushedSheets::PushedSheets(PushedFormula formula, const Size& target, const Size& source,
-                           std::size_t most_parts)
+                           std::size_t most_parts, NamePlace name_place)
     : m_formula(std::move(formula)),
       m_source(source),
       m_most_visits(static_cast<int>(std::min(most_parts, kMostVisits))) {
@@ -257,9 +262,8 @@ PushedSheets::PushedSheets(PushedFormula formula, const Size& target, const Size
         {0, 0, double(target.width), double(target.height)},
         {kFoldSize, kMostCuts, most_parts, kMostTorn, kForeseen * static_cast<double>(most_parts)});
     if (!cutter.cut(whole)) {
-        const Point<double> at = whole.source(cutter.stopped_at.x, cutter.stopped_at.y);
-        const std::string place = " near source pixel " + std::to_string(std::lround(at.x)) + "," +
-                                  std::to_string(std::lround(at.y));
+        const std::string place =
+            " near " + name_place(whole.source(cutter.stopped_at.x, cutter.stopped_at.y));
         throw Error(cutter.torn > kMostTorn
                         ? "the formula jumps, other than along a row or a column," + place +
                               ": must be continuous to be inverted"
@@ -442,6 +446,7 @@ std::optional<PushedSheets::Reached> PushedSheets::reached(const Interval& x, co
         };
         put(all.z.x, z.x, span.x);
         put(all.z.y, z.y, span.y);
+        all.halves = all.halves + span;
         all.largest_sheet = {std::max(all.largest_sheet.x, w), std::max(all.largest_sheet.y, h)};
     });
     if (has_fold) return std::nullopt;

@@ -6,6 +6,7 @@
 #include <concepts>
 #include <cstddef>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "anamorph/formula/pushed_formula.h"
@@ -18,7 +19,12 @@ class PushedSheets {
   public:
     /// Throws Error where the formula folds, jumps or ends at so many places that the source would be cut into more parts than that.
     /// Nor are more looked at for one point.
-    PushedSheets(PushedFormula formula, const Size& target, const Size& source, std::size_t most_parts);
+    /// `place`: what errors call a source point.
+    using NamePlace = std::string (*)(const Point<double>& source);
+    PushedSheets(PushedFormula formula, const Size& target, const Size& source, std::size_t most_parts,
+                 NamePlace place = pixel_name);
+    /// "source pixel 12,40"
+    static std::string pixel_name(const Point<double>& source);
 
     const PushedFormula& formula() const { return m_formula; }
     const Size& source_size() const { return m_source; }
@@ -41,8 +47,13 @@ class PushedSheets {
     struct Reached {
         Point<Interval> z{{HUGE_VAL, -HUGE_VAL}, {HUGE_VAL, -HUGE_VAL}};
         Point<double> largest_sheet{0, 0};
+        Point<double> halves{0, 0};  ///< half the sizes of the boxes of all sheets together
 
         bool is_empty() const { return !(z.x.lo <= z.x.hi); }
+        /// Do boxes of sheets lie apart, as those of several source points of one target point?
+        bool is_apart() const {
+            return z.x.hi - z.x.lo > 2.1 * halves.x + 1 || z.y.hi - z.y.lo > 2.1 * halves.y + 1;
+        }
     };
     /// Nothing where a fold is near.
     std::optional<Reached> reached(const Interval& x, const Interval& y, const PlaneFrame& frame) const;

@@ -22,7 +22,13 @@ Point<T> read_point(const FormulaProgram& program, const T& x, const T& y) {
 class TextMap : public PlaneMap<TextMap> {
   public:
     /// An exact pixel costs more than a compiled one, and jets cost less over it.
-    static constexpr PlanCosts kCosts{.bound = 400, .further_bound = 30, .polynomial = 20, .rounding = 45};
+    static constexpr PlanCosts kCosts{.bound = 400,
+                                      .further_bound = 30,
+                                      .polynomial = 20,
+                                      .rounding = 45,
+                                      .direct_trial = 60,
+                                      .direct_pixel = 0.45,
+                                      .precise_pixel = 1};
 
     /// `picture`: the size that the formula speaks of. `target`: the pixels that the picture has.
     TextMap(PlaneFormula formula, const Size& picture, const Size& target, const Size& source)
@@ -36,6 +42,20 @@ class TextMap : public PlaneMap<TextMap> {
     T inside(const T& x, const T& y) const {
         return m_formula.is_everywhere ? T(1) : read(m_formula.domain, x, y).x;
     }
+
+    // As a DirectMap.
+
+    /// Is it made of what has a bound near the middle of a block?
+    bool may_be_direct() const;
+    /// As Panorama::direct().
+    template <class Real>
+    NearReading direct(double x, double y, double half_width, double half_height, const Local& local,
+                       Bases& bases) const;
+    /// The order in which bases are written and read: that of the program's steps, in both by read_program().
+    static constexpr std::uint64_t kReadInSteps = 1;
+
+    const FormulaProgram& program() const { return m_formula.point; }
+    const PixelScale& scale() const { return m_scale; }
 
     /// The points (x + i, y): as exact() has them, within the same bound. `piece` is 0, or -1 where there is no source point.
     void exact_row(double x, double y, int count, double* to_x, double* to_y, std::int32_t* piece) const;

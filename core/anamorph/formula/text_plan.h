@@ -11,10 +11,18 @@ extern template class FormulaPlan<TextMap>;
 
 class TextPlan final : public FormulaPlan<TextMap> {
   public:
-    using FormulaPlan::FormulaPlan;
+    using FormulaPlan::exact;
+    TextPlan(const TextMap& map, const PlanOptions& options);
 
-    /// Exact pixels by vectors.
+    /// Exact pixels by vectors, and direct ones in double.
     void exact_rows(const Block& block, int begin, int end, const DoubleRows& to) const noexcept override;
+    /// Direct ones in float.
+    void computed_row(const Block& block, int row, int begin, int end, float* x,
+                      float* y) const noexcept override;
+    void computed(std::span<const Block> layers, const PointRows* to) const noexcept override;
+
+  private:
+    void direct_rows(const Block& block, const Box& part, const PointRows& to) const;
 };
 
 }  // namespace anamorph

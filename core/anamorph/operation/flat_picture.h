@@ -2,6 +2,9 @@
 // The picture of an operation that is one map from a picture to another.
 #pragma once
 
+#include <algorithm>
+#include <atomic>
+#include <cstdint>
 #include <functional>
 #include <memory>
 
@@ -33,6 +36,27 @@ struct FlatMap {
 };
 /// That of a picture of so many pixels.
 using MakeFlatMap = std::function<FlatMap(const Size& pixels)>;
+
+/// Of a map's pixels, those that have no point of their own, wherever the source ends.
+template <class Map>
+double undefined_fraction(const Map& map, const ParallelFor& parallel_for) {
+    constexpr int kRows = 128;
+    const Size size = map.target_size();
+    std::atomic<std::int64_t> count{0};
+    parallel_for((size.height + kRows - 1) / kRows, [&](std::int64_t i) {
+        const int top = static_cast<int>(i) * kRows;
+        count += map.undefined_pixels({0, top, size.width, std::min(top + kRows, size.height)});
+    });
+    return static_cast<double>(count) / (static_cast<double>(size.width) * size.height);
+}
+/// A map that says how many these are.
+template <class Plan>
+FlatMap with_undefined_fraction(std::shared_ptr<const Plan> plan) {
+    return {
+        plan, [plan](const ParallelFor& parallel_for) {
+            return Attributes{{"anamorph:undefined_fraction", undefined_fraction(plan->map(), parallel_for)}};
+        }};
+}
 
 /// The faces of a picture that is a source.
 SourceFaces faces_of(const Chart& source);

@@ -1,8 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 // A picture drawn along a formula that is written as text.
-#include <algorithm>
-#include <atomic>
-
 #include "anamorph/formula/pushed_plan.h"
 #include "anamorph/formula/text_plan.h"
 #include "anamorph/operation/flat_picture.h"
@@ -40,33 +37,17 @@ ParameterTable make_map_table() {
         scheme({{"auto", Scheme::automatic},
                 {"exact", Scheme::exact},
                 {"blocks", Scheme::blocks},
-                {"residual", Scheme::residual}}),
+                {"residual", Scheme::residual},
+                {"direct", Scheme::direct}}),
         colorspace("color space to filter in; by default the source's own"),
         output(),
     };
 }
 
-/// Of the pixels, those whose middles have no source point.
-template <class Map>
-double undefined_fraction(const Map& map, const ParallelFor& parallel_for) {
-    constexpr int kRows = 128;
-    const Size size = map.target_size();
-    std::atomic<std::int64_t> count{0};
-    parallel_for((size.height + kRows - 1) / kRows, [&](std::int64_t i) {
-        const int top = static_cast<int>(i) * kRows;
-        count += map.undefined_pixels({0, top, size.width, std::min(top + kRows, size.height)});
-    });
-    return static_cast<double>(count) / (static_cast<double>(size.width) * size.height);
-}
-
 template <class Plan, class MakeMap>
 std::unique_ptr<const Pictures> pictures_of(const FlatRequest& request, const MakeMap& make_map) {
     return flat_pictures(request, [request, make_map](const Size& pixels) {
-        const auto plan = std::make_shared<Plan>(make_map(pixels), request.plan);
-        return FlatMap{plan, [plan](const ParallelFor& parallel_for) {
-                           return Attributes{{"anamorph:undefined_fraction",
-                                              undefined_fraction(plan->map(), parallel_for)}};
-                       }};
+        return with_undefined_fraction(std::make_shared<const Plan>(make_map(pixels), request.plan));
     });
 }
 
@@ -78,6 +59,8 @@ std::unique_ptr<const Pictures> pictures_of_map(const ParameterValues& values, c
     if (values.given("let")) text.let = values.text("let");
     text.definitions = values.definitions();
     const bool pushes = values.text("direction") == "push";
+    if (pushes && values.text("scheme") == "direct")
+        throw Error("scheme", "direct", "is of direction=pull: must be auto, exact, blocks or residual");
     const FormulaSetting setting{target, source, values.number("frame"), values.text("units") == "fractions",
                                  pushes};
     const FlatRequest request = flat_request(values, source, target);

@@ -48,11 +48,10 @@ DirectionText directions_of(const ParameterValues& values) {
 struct RayFormula {
     SpaceFormula rays;
 
-    std::shared_ptr<const BlockMap> plan(const Chart& source, const Size& picture, const Size& pixels,
-                                         const Orientation& look, const Orientation& held,
-                                         const PlanOptions& options) const {
-        return std::make_shared<FormulaViewPlan>(FormulaView(source, rays, picture, pixels, look, held),
-                                                 options);
+    FlatMap plan(const Chart& source, const Size& picture, const Size& pixels, const Orientation& look,
+                 const Orientation& held, const PlanOptions& options) const {
+        return with_undefined_fraction(std::make_shared<const FormulaViewPlan>(
+            FormulaView(source, rays, picture, pixels, look, held), options));
     }
     double pixels_per_radian(const Size& picture) const {
         using J = Jet1<double>;
@@ -67,15 +66,13 @@ struct RayFormula {
 struct DirectionFormula {
     PlaneFormula points;
 
-    std::shared_ptr<const BlockMap> plan(const Chart& source, const Size& picture, const Size& pixels,
-                                         const Orientation& look, const Orientation& held,
-                                         const PlanOptions& options) const {
+    FlatMap plan(const Chart& source, const Size& picture, const Size& pixels, const Orientation& look,
+                 const Orientation& held, const PlanOptions& options) const {
         try {
-            return std::make_shared<InverseViewPlan>(InverseView(source, points, picture, pixels, look, held),
-                                                     options);
+            return with_undefined_fraction(std::make_shared<const InverseViewPlan>(
+                InverseView(source, points, picture, pixels, look, held), options));
         } catch (const Error& error) {
-            throw Error("point_x and point_y, from a globe of " + std::to_string(InverseView::kGlobe.width) +
-                        "x" + std::to_string(InverseView::kGlobe.height) + " pixels: " + error.what());
+            throw Error("point_x and point_y: " + std::string(error.what()));
         }
     }
     double pixels_per_radian(const Size&) const {
@@ -124,7 +121,7 @@ std::unique_ptr<const Pictures> pictures_of(const Text& text, const ParameterVal
     const Orientation look = read_orientation(values), held = read_held(values);
     return flat_pictures(
         request, [formula = formula_of(text, setting), request, look, held](const Size& pixels) {
-            return FlatMap{formula.plan(request.source, request.target, pixels, look, held, request.plan)};
+            return formula.plan(request.source, request.target, pixels, look, held, request.plan);
         });
 }
 

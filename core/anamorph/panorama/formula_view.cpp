@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "anamorph/geometry/count_pixels.h"
 #include "anamorph/number/program_rows.h"
 #include "anamorph/panorama/panorama_rows.h"
 
@@ -20,6 +21,18 @@ bool may_be_zero(const Rounded<Real>& a) {
 template <class T>
 bool may_be_none(const Ray<T>& r) {
     return may_be_zero(r.x) && may_be_zero(r.y) && may_be_zero(r.z);
+}
+
+bool is_zero_all_over(const Interval& a) {
+    return a.lo == 0 && a.hi == 0;
+}
+template <class Real>
+bool is_zero_all_over(const Rounded<Real>& a) {
+    return is_zero_all_over(a.range) && a.error == 0 && a.radius == 0;
+}
+template <class T>
+bool is_none(const Ray<T>& r) {
+    return is_zero_all_over(r.x) && is_zero_all_over(r.y) && is_zero_all_over(r.z);
 }
 
 }  // namespace
@@ -39,8 +52,40 @@ Cover FormulaView::cover(const Interval& x, const Interval& y, int, const Local&
     const Interval there = domain(x, y);
     if (there.hi <= 0) return Cover::outside;
     const Ray<Interval> r = ray(x, y);
+    if (is_none(r)) return Cover::outside;
     if (!(there.lo > 0) || may_be_none(r)) return Cover::mixed;
     return m_view.cover(transform(local.rotation, r, Panorama::kLocalError), local, across_seam);
+}
+
+Certainty FormulaView::has_rays(const Interval& x, const Interval& y) const {
+    const DefinedInterval px(x), py(y);
+    const Interval there = domain(px, py);
+    const Ray<DefinedInterval> r = ray(px, py);
+    const Ray<Interval> all{r.x, r.y, r.z};
+    if (there.hi <= 0 || is_none(all)) return Certainty::no;
+    const bool is_finite = std::isfinite(magnitude(all.x) + magnitude(all.y) + magnitude(all.z));
+    return there.lo > 0 && is_finite && !may_be_none(all) ? Certainty::yes : Certainty::open;
+}
+
+std::int64_t FormulaView::undefined_pixels(const Box& box) const {
+    // Of fewer pixels, their own rays cost no more than intervals.
+    constexpr int kFew = 8;
+    const auto is_undefined = [&](const Box& b) {
+        const Certainty found = has_rays(Interval(b.x0 + 0.5, b.x1 - 0.5), Interval(b.y0 + 0.5, b.y1 - 0.5));
+        return found == Certainty::yes ? Certainty::no : found == Certainty::no ? Certainty::yes : found;
+    };
+    const auto is_small = [](const Box& b) { return b.width() <= kFew && b.height() <= kFew; };
+    return count_pixels(box, is_undefined, is_small, [&](const Box& b) {
+        std::int64_t count = 0;
+        for (int row = b.y0; row < b.y1; ++row)
+            for (int column = b.x0; column < b.x1; ++column) {
+                const double x = column + 0.5, y = row + 0.5;
+                const Ray<double> r = ray(x, y);
+                const bool is_finite = std::isfinite(r.x) && std::isfinite(r.y) && std::isfinite(r.z);
+                count += !(domain(x, y) > 0 && is_finite && (r.x != 0 || r.y != 0 || r.z != 0));
+            }
+        return count;
+    });
 }
 
 template <class Real>
@@ -50,6 +95,7 @@ double FormulaView::exact_error(const Interval& x, const Interval& y, int) const
     if (there.range.hi + there.error <= 0) return 0;
     if (!(lower_end(there) > 0)) return HUGE_VAL;
     const Ray<R> r = ray(px, py);
+    if (is_none(r)) return 0;
     return may_be_none(r) ? HUGE_VAL : m_view.exact_error(turned(r));
 }
 template double FormulaView::exact_error<double>(const Interval&, const Interval&, int) const;

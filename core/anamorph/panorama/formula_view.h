@@ -50,7 +50,13 @@ class FormulaView {
     /// The points (x + i, y): as exact() has them, within the same bound. `piece` is -1 where there is no source point.
     void exact_row(double x, double y, int count, double* to_x, double* to_y, std::int32_t* piece) const;
 
+    /// The pixels of a box that have no ray.
+    std::int64_t undefined_pixels(const Box& box) const;
+
   private:
+    /// Have all points of a box rays?
+    Certainty has_rays(const Interval& x, const Interval& y) const;
+
     template <class T>
     Ray<T> ray(const T& x, const T& y) const {
         const Point<T> at = m_scale(x, y);

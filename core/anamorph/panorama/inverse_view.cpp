@@ -3,12 +3,25 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string>
+
+#include "anamorph/parameter/parameter.h"
 
 namespace anamorph {
+namespace {
+
+/// "lon=30 and lat=-12.5 degrees"
+std::string direction_name(const Point<double>& globe) {
+    constexpr Size all = InverseView::kGlobe;
+    return "lon=" + brief(360 * (globe.x / all.width - 0.5)) +
+           " and lat=" + brief(180 * (0.5 - globe.y / all.height)) + " degrees";
+}
+
+}  // namespace
 
 InverseView::InverseView(const Chart& source, PlaneFormula points, const Size& picture, const Size& target,
                          const Orientation& orientation, const Orientation& held)
-    : m_globe(std::move(points), picture, target, kGlobe),
+    : m_globe(std::move(points), picture, target, kGlobe, PushedMap::kMostParts, direction_name),
       m_view(source, Chart(Projection::equirectangular, kGlobe.width, kGlobe.height), orientation, held) {}
 
 InverseView::Local InverseView::local_around(double x, double y, int piece) const {
@@ -34,9 +47,10 @@ double InverseView::error_from(const Point<Interval>& at, double error) const {
 
 template <class Real>
 double InverseView::exact_error(const Interval& x, const Interval& y, int piece) const {
-    if (const auto all = m_globe.source_points(x, y))
+    const auto all = m_globe.source_points(x, y);
+    if (all && !all->is_apart())
         return all->is_empty() ? 0 : error_from<Real>(all->z, m_globe.exact_error<Real>(x, y, piece));
-    // Near a fold, pixel by pixel.
+    // Near a fold, and where there are several points of which one is taken, pixel by pixel.
     double error = 0;
     for (double row = y.lo; row <= y.hi; ++row)
         for (double column = x.lo; column <= x.hi; ++column) {

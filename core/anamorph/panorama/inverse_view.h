@@ -51,6 +51,9 @@ class InverseView {
     template <class Real>
     double exact_error(const Interval& x, const Interval& y, int piece) const;
 
+    /// The pixels of a box that show no direction.
+    std::int64_t undefined_pixels(const Box& box) const { return m_globe.undefined_pixels(box); }
+
   private:
     /// Of points of the globe in a box, as they are computed off by `error` at most.
     template <class Real>

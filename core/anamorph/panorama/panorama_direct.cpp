@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "anamorph/chart/chart_near.h"
 #include "anamorph/panorama/panorama.h"
+#include "anamorph/plan/drawn_error.h"
 
 namespace anamorph {
 namespace {
@@ -39,20 +40,10 @@ NearReading Panorama::direct(double x, double y, double half_width, double half_
     const Point<NearBound<Real>> p = m_source.local_point(ray, local.source);
     const std::uint64_t order = ReadingOrder::joined(to_rays, order_with(p.x, p.y));
     WrittenBase::to = nullptr;
-    const auto error = [&](const NearBound<Real>& found) {
-        if constexpr (std::is_same_v<Real, double>) {
-            // Source pixels: the middle, which may be moved by whole turns, and what is added to it.
-            const double farthest = std::fabs(found.base.value) + found.rest.size() + period();
-            return found.rest.error + 2 * R::kUnit * farthest;
-        } else {
-            // The middle counts from the block's base, which is less than a pixel away, a hair aside. The sum is rounded,
-            // and once more when the sampler moves it by half a pixel (image/block_sampler.h).
-            const R offset = R::result(0.5, 1.5, 0, R::kUnit) + found.rest;
-            return offset.error + R::kUnit * (offset.computed_size() + 1);
-        }
-    };
-    return {
-        {p.x.base.value, p.y.base.value}, std::hypot(error(p.x), error(p.y)) * rounded_detail::kUp, order};
+    const double period_x = period();
+    return {{p.x.base.value, p.y.base.value},
+            std::hypot(drawn_error(p.x, period_x), drawn_error(p.y, period_x)) * rounded_detail::kUp,
+            order};
 }
 
 template NearReading Panorama::direct<float>(double, double, double, double, const Local&, Bases&) const;
