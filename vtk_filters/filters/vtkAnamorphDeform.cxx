@@ -129,9 +129,10 @@ FormulaDisplacement formula_of(const anamorph::DisplacementText& text, double fr
         return FormulaDisplacement(parse_displacement(text, frame));
     } catch (const Error& error) {
         const auto property = kProperties.find(error.parameter());
+        const std::string said = error.what();
         if (property == kProperties.end())
-            throw Error(std::string("FormulaX, FormulaY and FormulaZ: ") + error.what());
-        throw Error(property->second + std::string(error.what()).substr(property->first.size()));
+            throw Error("FormulaX, FormulaY and FormulaZ" + said.substr(said.find(": ")));
+        throw Error(property->second + said.substr(property->first.size()));
     }
 }
 

@@ -935,7 +935,7 @@ SpaceFormula parse_displacement(const DisplacementText& text, double frame) {
     };
     const std::vector<Value> moved = values_of(
         maker, names, {}, text.let, {{"x", or_zero(text.x)}, {"y", or_zero(text.y)}, {"z", or_zero(text.z)}});
-    return space_formula("together", graph, maker, moved);
+    return space_formula("x, y and z", graph, maker, moved);
 }
 
 bool operator==(const SpaceFormula& a, const SpaceFormula& b) {

@@ -133,7 +133,7 @@ struct DisplacementText {
     std::string let;  ///< as that of FormulaText
 };
 
-/// A text as programs of u and v. Throws Error with the column, counted from 1, and what was expected there.
+/// A text as programs of u and v. Errors name the expressions x, y and z. Throws as parse_formula() does.
 SpaceFormula parse_displacement(const DisplacementText& text, double frame);
 
 }  // namespace anamorph

@@ -17,12 +17,12 @@ namespace anamorph {
 /// Pixels, as those of PushedFormula.
 class PushedSheets {
   public:
+    /// What errors call a source point.
+    using NamePlace = std::string (*)(const Point<double>& source);
     /// Throws Error where the formula folds, jumps or ends at so many places that the source would be cut into more parts than that.
     /// Nor are more looked at for one point.
-    /// `place`: what errors call a source point.
-    using NamePlace = std::string (*)(const Point<double>& source);
     PushedSheets(PushedFormula formula, const Size& target, const Size& source, std::size_t most_parts,
-                 NamePlace place = pixel_name);
+                 NamePlace name_place = pixel_name);
     /// "source pixel 12,40"
     static std::string pixel_name(const Point<double>& source);
 
