@@ -25,6 +25,14 @@ class FlatPicture {
     std::function<Attributes(const ParallelFor&)> m_says;
 };
 
+/// Copied by itself, a variant with a string that memory is too short for ends the program (libstdc++ 12).
+Attribute copy_of(const Attribute& attribute) {
+    const auto* const text = std::get_if<std::string>(&attribute.value);
+    if (!text) return attribute;
+    std::string copy = *text;
+    return {attribute.name, std::move(copy)};
+}
+
 class FlatPictures final : public Pictures {
   public:
     FlatPictures(const FlatRequest& request, MakeFlatMap make_map)
@@ -37,7 +45,8 @@ class FlatPictures final : public Pictures {
         picture.size = *size;
         picture.pixels = pixels_of(m_request.output);
         picture.says = {{"anamorph:tol", m_request.plan.tol}};
-        picture.says.insert(picture.says.end(), m_request.says.begin(), m_request.says.end());
+        if (m_request.says)
+            for (const Attribute& attribute : *m_request.says) picture.says.push_back(copy_of(attribute));
         if (picture.pixels == PixelKind::color && m_request.filter == Filter::nearest) picture.moves = 0;
         picture.solve = [request = m_request, make_map = m_make_map, size = *size] {
             return std::make_unique<Solved<FlatPicture>>(
@@ -54,6 +63,12 @@ class FlatPictures final : public Pictures {
 };
 
 }  // namespace
+
+std::shared_ptr<const Attributes> saying(Attribute attribute) {
+    auto all = std::make_shared<Attributes>();
+    all->push_back(std::move(attribute));
+    return all;
+}
 
 FlatRequest flat_request(const ParameterValues& values, const Size& source, const Size& target) {
     FlatRequest r{Chart(Projection::rectilinear, source.width, source.height),

@@ -21,10 +21,13 @@ struct FlatRequest {
     Filter filter;
     Wrap wrap;
     Output output;
-    Attributes says = {};  ///< besides the tolerance
+    std::shared_ptr<const Attributes> says = {};  ///< besides the tolerance, if it says more
 
     Size source_size() const { return {source.width(), source.height()}; }
 };
+
+/// What a request says that says one thing.
+std::shared_ptr<const Attributes> saying(Attribute attribute);
 
 /// From a flat picture, with what rows of the table say: filter, wrap, output, scheme and tol.
 FlatRequest flat_request(const ParameterValues& values, const Size& source, const Size& target);

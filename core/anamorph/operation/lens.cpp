@@ -51,7 +51,7 @@ ParameterTable make_lens_table() {
 /// The picture as the lens gives it, and what was taken for its field of view, if that was not said outright.
 struct Observed {
     Chart chart;
-    Attributes says = {};
+    std::shared_ptr<const Attributes> says = {};
 };
 
 LensModel model_of(const ParameterValues& values, const SourceFacts& facts) {
@@ -69,7 +69,7 @@ Observed observed_picture(const ParameterValues& values, const SourceFacts& fact
     const bool fisheye = model.kind == LensModel::Kind::kb4;
     const bool by_focal_length = fisheye || model.kind == LensModel::Kind::brown;
     const Projection projection = fisheye ? Projection::fisheye : Projection::rectilinear;
-    const auto with = [&](double fov, Attributes says = {}) {
+    const auto with = [&](double fov, std::shared_ptr<const Attributes> says = {}) {
         return Observed{Chart(projection, size.width, size.height, fov, PixelSpacing::edges, "", 1, model),
                         std::move(says)};
     };
@@ -79,8 +79,8 @@ Observed observed_picture(const ParameterValues& values, const SourceFacts& fact
     if (facts.fov && facts.projection == projection) return with(*facts.fov);
     if (!fisheye && facts.focal_length) {
         const double fov = flat_field_of_view(size.width, *facts.focal_length);
-        return with(fov, {{"anamorph:fov",
-                           rounded_degrees(fov) + " degrees as " + facts.focal_length_said_by + " says"}});
+        return with(fov, saying({"anamorph:fov", rounded_degrees(fov) + " degrees as " +
+                                                     facts.focal_length_said_by + " says"}));
     }
     throw Error("fov is not given and the source does not say it: must be given for lens=" + model.text());
 }

@@ -117,7 +117,7 @@ std::unique_ptr<const Pictures> pictures_of(const Text& text, const ParameterVal
     ReprojectOptions options = read_reproject_options(values);
     options.scheme = rows::chosen<Scheme>(values, "scheme");
     const FlatRequest request{source.chart, size,           plan_options(options), options.filter,
-                              options.wrap, options.output, {source.says()}};
+                              options.wrap, options.output, saying(source.says())};
     const Orientation look = read_orientation(values), held = read_held(values);
     return flat_pictures(
         request, [formula = formula_of(text, setting), request, look, held](const Size& pixels) {
