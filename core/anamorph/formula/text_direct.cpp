@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "anamorph/formula/text_map.h"
-#include "anamorph/plan/drawn_error.h"
+#include "anamorph/plan/near_pixels.h"
 
 namespace anamorph {
 
@@ -53,12 +53,10 @@ bool TextMap::may_be_direct() const {
 template <class Real>
 NearReading TextMap::direct(double x, double y, double half_width, double half_height, const Local&,
                             Bases& bases) const {
-    using R = RestBound<Real>;
     BaseWriter writer{bases, {}};
     WrittenBase::to = &writer;
-    const NearBound<Real> px(WrittenBase::input(x), R(0, half_width, 0)),
-        py(WrittenBase::input(y), R(0, half_height, 0));
-    const Point<NearBound<Real>> p = source_point(px, py);
+    const Point<NearBound<Real>> pixels = pixels_near<Real>(x, y, half_width, half_height);
+    const Point<NearBound<Real>> p = source_point(pixels.x, pixels.y);
     WrittenBase::to = nullptr;
     return {{p.x.base.value, p.y.base.value},
             std::hypot(drawn_error(p.x, 0), drawn_error(p.y, 0)) * rounded_detail::kUp,

@@ -3,6 +3,7 @@
 
 #include "anamorph/formula/text_rows.h"
 #include "anamorph/plan/formula_plan_impl.h"
+#include "anamorph/plan/vector_rows.h"
 
 namespace anamorph {
 
@@ -25,11 +26,7 @@ void TextPlan::exact_rows(const Block& block, int begin, int end, const DoubleRo
     }
     if (block.precise || block.kind != Block::Kind::exact)
         return FormulaPlan::exact_rows(block, begin, end, to);
-    for (int row = begin; row < end; ++row) {
-        const std::ptrdiff_t at = (row - begin) * to.stride;
-        map().exact_row(block.box.x0 + 0.5, block.box.y0 + row + 0.5, block.box.width(), to.x + at, to.y + at,
-                        to.piece + at);
-    }
+    exact_rows_by_vectors(map(), block, begin, end, to);
 }
 
 /// Of a part of a block, counted from its corner.

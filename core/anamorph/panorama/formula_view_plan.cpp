@@ -3,6 +3,7 @@
 
 #include "anamorph/chart/chart_jets.h"
 #include "anamorph/plan/formula_plan_impl.h"
+#include "anamorph/plan/vector_rows.h"
 
 namespace anamorph {
 
@@ -12,11 +13,7 @@ void FormulaViewPlan::exact_rows(const Block& block, int begin, int end,
                                  const DoubleRows& to) const noexcept {
     if (block.precise || block.kind != Block::Kind::exact)
         return FormulaPlan::exact_rows(block, begin, end, to);
-    for (int row = begin; row < end; ++row) {
-        const std::ptrdiff_t at = (row - begin) * to.stride;
-        map().exact_row(block.box.x0 + 0.5, block.box.y0 + row + 0.5, block.box.width(), to.x + at, to.y + at,
-                        to.piece + at);
-    }
+    exact_rows_by_vectors(map(), block, begin, end, to);
 }
 
 }  // namespace anamorph

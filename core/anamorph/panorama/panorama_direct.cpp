@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "anamorph/chart/chart_near.h"
 #include "anamorph/panorama/panorama.h"
-#include "anamorph/plan/drawn_error.h"
+#include "anamorph/plan/near_pixels.h"
 
 namespace anamorph {
 namespace {
@@ -26,13 +26,11 @@ bool Panorama::may_be_direct() const {
 template <class Real>
 NearReading Panorama::direct(double x, double y, double half_width, double half_height, const Local& local,
                              Bases& bases) const {
-    using R = RestBound<Real>;
     BaseWriter writer{bases, {}};
     WrittenBase::to = &writer;
-    const NearBound<Real> px(WrittenBase::input(x), R(0, half_width, 0)),
-        py(WrittenBase::input(y), R(0, half_height, 0));
+    const Point<NearBound<Real>> pixels = pixels_near<Real>(x, y, half_width, half_height);
     // A row's rays and their points are numbered apart, as they are read apart (panorama/direct_rows_lanes.cpp).
-    Ray<NearBound<Real>> ray = local_ray(px, py, local);
+    Ray<NearBound<Real>> ray = local_ray(pixels.x, pixels.y, local);
     const std::uint64_t to_rays = order_with(ray.x, ray.y, ray.z);
     writer.order = {};
     for (NearBound<Real>* part : {&ray.x, &ray.y, &ray.z})

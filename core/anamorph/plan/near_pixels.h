@@ -1,13 +1,23 @@
 // SPDX-License-Identifier: Apache-2.0
-// What becomes of the error of a source point that is read near the middle of its block when the block is drawn.
+// The pixels of a block as they are read near its middle, and what becomes of their source points' errors when it is drawn.
 #pragma once
 
 #include <cmath>
 #include <type_traits>
 
+#include "anamorph/geometry/point.h"
 #include "anamorph/number/near_bound.h"
 
 namespace anamorph {
+
+/// The pixels of a block about (x, y), their centres up to half_width and half_height away, as the first bases that are written.
+template <class Real>
+Point<NearBound<Real>> pixels_near(double x, double y, double half_width, double half_height) {
+    using R = RestBound<Real>;
+    const NearBound<Real> px(WrittenBase::input(x), R(0, half_width, 0)),
+        py(WrittenBase::input(y), R(0, half_height, 0));
+    return {px, py};
+}
 
 /// Bounds the error of a coordinate. `period`: source pixels after which it comes back to the same place, or 0.
 template <class Real>
