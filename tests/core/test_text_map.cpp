@@ -676,6 +676,29 @@ TEST(TextMap, DirectPixelsAreTheSameOnEveryInstructionSetAndInAnyPart) {
     }
 }
 
+TEST(TextMap, DirectPixelsOfAnotherSizeHoldTheirBounds) {
+    constexpr int kTimes = 7;
+    const Size large{kTimes * kPicture.width, kTimes * kPicture.height};
+    FormulaText text;
+    text.u = "60*sin(0.1*x)";
+    text.v = "50+y*y/40+20*cos(0.2*y)";
+    const Formula u{text.u, [](Real x, Real, Real&) { return 60 * std::sin(x / kTimes / 10); }};
+    const Formula v{text.v, [](Real, Real y, Real&) {
+                        const Real at = y / kTimes;
+                        return 50 + at * at / 40 + 20 * std::cos(at / 5);
+                    }};
+    for (const double tol : {0.01, 1e-6}) {
+        PlanOptions options;
+        options.scheme = Scheme::direct;
+        options.tol = tol;
+        options.cull = false;
+        const TextMap map(parse_formula(text, {kPicture, kSource}), kPicture, large, kSource);
+        const Findings found = examine(TextPlan(map, options), tol, u, v);
+        EXPECT_EQ(found.over + found.above_tol + found.lost + found.extra + found.unknown, 0) << tol;
+        EXPECT_EQ(found.direct, found.pixels) << tol;
+    }
+}
+
 TEST(TextMap, JetsAcrossAJumpAreNotBounded) {
     using J = simd::BoundJets;
     const double one[] = {1, 1, 1, 1}, none[] = {0, 0, 0, 0};

@@ -50,7 +50,7 @@ class PushedSheets {
         Point<double> halves{0, 0};  ///< half the sizes of the boxes of all sheets together
 
         bool is_empty() const { return !(z.x.lo <= z.x.hi); }
-        /// Do boxes of sheets lie apart, as those of several source points of one target point?
+        /// Do boxes of sheets lie apart, as those of several source points of one target point? A hint: one box holds them all.
         bool is_apart() const {
             return z.x.hi - z.x.lo > 2.1 * halves.x + 1 || z.y.hi - z.y.lo > 2.1 * halves.y + 1;
         }

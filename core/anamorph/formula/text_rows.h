@@ -27,7 +27,7 @@ struct TextBlock {
 /// `to` on. What is computed and in what order is what TextMap::direct() bounds. The same bits on all instruction sets.
 void text_rows(const TextBlock<float>& block, const Box& part, const PointRows& to);
 
-/// The source points of row `row` of the block, likewise. There is room for 16 more.
+/// The source points of row `row` of the block, likewise.
 void text_row(const TextBlock<double>& block, int row, double* x, double* y);
 
 }  // namespace anamorph::simd

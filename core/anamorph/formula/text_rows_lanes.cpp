@@ -122,7 +122,7 @@ struct Pixels {
     }
 };
 
-/// `count` <= kTextRow pixels, whose rests across and down are those of `x` and `y`; there is room for kTextRow.
+/// kTextRow pixels whose rests across and down are those of `x` and `y`; their bases are set here.
 template <class Real>
 void ReadPixels(const TextBlock<Real>& block, Pixels<Real>& x, Pixels<Real>& y, Point<Pixels<Real>>& found) {
     t_next = block.bases.data();

@@ -152,14 +152,13 @@ ParameterTable ray_rows() {
     return {
         text("ray_x",
              "of to=formula: how far the ray of a pixel goes to the right, a formula of px, py, r, a, x, y, "
-             "s, t "
-             "and others (docs/map.md); px by default. Rays may have any length"),
+             "s, t and others (docs/map.md); px by default. Rays may have any length"),
         text("ray_y", "the same, up; py by default"),
         text("ray_z", "the same, forward; 1 by default"),
         text("point_x",
              "of to=formula, in place of rays: where in the picture a direction goes, to the right of its "
-             "middle "
-             "in halves of its smaller side, a formula of lon and lat, in radians; lon/(pi/2) by default"),
+             "middle in halves of its smaller side, a formula of lon and lat, in radians; lon/(pi/2) by "
+             "default"),
         text("point_y", "the same, up; lat/(pi/2) by default"),
         definitions("let",
                     "definitions before these, as in k=0.3;c=cos(k); any other key k=0.3 is one too, and "

@@ -82,7 +82,7 @@ std::int64_t FormulaView::undefined_pixels(const Box& box) const {
                 const double x = column + 0.5, y = row + 0.5;
                 const Ray<double> r = ray(x, y);
                 const bool is_finite = std::isfinite(r.x) && std::isfinite(r.y) && std::isfinite(r.z);
-                count += !(domain(x, y) > 0 && is_finite && (r.x != 0 || r.y != 0 || r.z != 0));
+                count += !(domain(x, y) > 0 && is_finite && has_length(r));
             }
         return count;
     });
@@ -119,7 +119,7 @@ void FormulaView::exact_row(double x, double y, int count, double* to_x, double*
             rays.y[i] = found.y[k];
             rays.z[i] = found.z[k];
             const bool is_there = m_rays.is_everywhere || there.x[k] > 0;
-            rays.inside[i] = is_there && (rays.x[i] != 0 || rays.y[i] != 0 || rays.z[i] != 0) ? 1 : -1;
+            rays.inside[i] = is_there && has_length(Ray<double>{found.x[k], found.y[k], found.z[k]}) ? 1 : -1;
         }
         simd::ExactRow points;
         simd::exact_points(source(), m_view.turn(), rays, part, points);

@@ -12,6 +12,7 @@ namespace anamorph {
 /// As Panorama, from rays on; a point has none where a formula has no value or all three are 0.
 class FormulaView {
   public:
+    /// Those of texts.
     static constexpr PlanCosts kCosts{.bound = 400, .further_bound = 30, .polynomial = 20, .rounding = 45};
 
     /// `rays`: as parse_rays() makes them. `picture`: the size that they speak of. `target`: the pixels that the picture has.
@@ -42,7 +43,7 @@ class FormulaView {
     bool exact(const Real& x, const Real& y, int, Point<Real>& source_point, int& source_piece) const {
         if (!(domain(x, y) > 0)) return false;
         const Ray<Real> r = ray(x, y);
-        return (r.x != 0 || r.y != 0 || r.z != 0) && m_view.exact(turned(r), source_point, source_piece);
+        return has_length(r) && m_view.exact(turned(r), source_point, source_piece);
     }
     template <class Real>
     double exact_error(const Interval& x, const Interval& y, int piece) const;
@@ -69,6 +70,10 @@ class FormulaView {
         if (m_rays.is_everywhere) return T(1);
         const Point<T> at = m_scale(x, y);
         return read_program<1>(m_rays.domain, at.x, at.y)[0];
+    }
+    template <std::floating_point Real>
+    static bool has_length(const Ray<Real>& r) {
+        return r.x != 0 || r.y != 0 || r.z != 0;
     }
     /// The source's ray of a ray.
     template <class T>
