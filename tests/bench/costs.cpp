@@ -11,10 +11,10 @@
 #include <string>
 #include <vector>
 
+#include "anamorph/chart/chart_jets.h"
 #include "anamorph/formula/pushed_plan.h"
 #include "anamorph/formula/text_plan.h"
 #include "anamorph/lens/lens_plan.h"
-#include "anamorph/chart/chart_jets.h"
 #include "anamorph/panorama/panorama_plan.h"
 #include "anamorph/plan/polynomial_strategy.h"
 #include "bench.h"

@@ -333,7 +333,8 @@ TEST(RecipeName, RandomBytesGiveAnErrorOrAResult) {
 TEST(ReprojectRequest, SaysFromWhereItCanBeKnown) {
     EXPECT_EQ(request({}).source.chart.projection(), Projection::equirectangular);
     EXPECT_EQ(request({}, {64, 384, {}}).source.chart.projection(), Projection::cubemap);
-    EXPECT_EQ(request({}, {2048, 1024, Projection::mercator}).source.chart.projection(), Projection::mercator);
+    EXPECT_EQ(request({}, {2048, 1024, Projection::mercator}).source.chart.projection(),
+              Projection::mercator);
     EXPECT_EQ(request({{"from", "latlong"}}, {300, 200, {}}).source.chart.projection(),
               Projection::equirectangular);
     EXPECT_THAT(error_of([] {

@@ -111,7 +111,8 @@ CardPicture ViewedPanorama::card_picture() const {
         anamorph::read_reproject_request(values, m_known.front().facts);
     if (request.target.projection() != anamorph::Projection::rectilinear || request.target.lens())
         refuse("views that are not rectilinear");
-    if (request.source.chart.spacing() != anamorph::PixelSpacing::edges) refuse("pixels from centre to centre");
+    if (request.source.chart.spacing() != anamorph::PixelSpacing::edges)
+        refuse("pixels from centre to centre");
     const anamorph::Source& source = m_stacks.front()->top();
     int level = 0;
     const auto fits = [&](const anamorph::Size& s) {
@@ -129,8 +130,8 @@ CardPicture ViewedPanorama::card_picture() const {
     if (!source.read(level, {0, 0, size.width, size.height}, stored.data(),
                      static_cast<std::ptrdiff_t>(values_of_row * type.size())))
         throw Error(m_stacks.front()->error());
-    CardPicture picture{request.source.chart.resized(size.width, size.height), request.held, values.number("srcd"),
-                        channels, std::vector<float>(count)};
+    CardPicture picture{request.source.chart.resized(size.width, size.height), request.held,
+                        values.number("srcd"), channels, std::vector<float>(count)};
     OIIO::convert_pixel_values(type, stored.data(), OIIO::TypeDesc::FLOAT, picture.pixels.data(),
                                static_cast<int>(count));
     return picture;
