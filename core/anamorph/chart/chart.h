@@ -31,14 +31,14 @@
 
 namespace anamorph {
 
-/// One a file of chart/projection/.
+/// The projections, each defined by a file of chart/projection/.
 enum class Projection {
 #define ANAMORPH_PROJECTION(name, Type) name,
 #include "anamorph/chart/projection/list.h"
 #undef ANAMORPH_PROJECTION
 };
 
-/// All of them, in the order of their list.
+/// All projections, in the order of chart/projection/list.h.
 inline constexpr Projection kProjections[] = {
 #define ANAMORPH_PROJECTION(name, Type) Projection::name,
 #include "anamorph/chart/projection/list.h"
@@ -49,33 +49,33 @@ inline constexpr Projection kProjections[] = {
 /// one's.
 enum class PixelSpacing { edges, centers };
 
-/// "equirectangular" and so on; "latlong" is an alias. Throws Error naming `parameter`.
+/// Finds a projection by its name ("equirectangular") or alias ("latlong"). Throws Error naming `parameter`.
 Projection projection_from_name(std::string_view name, const std::string& parameter = "projection");
-/// The name that recipes have for it; never an alias.
+/// The name of a projection in recipes; never an alias.
 std::string_view name_of(Projection projection);
-/// All names, separated by ", ", for messages and documentation.
+/// The names of all projections, separated by ", ", for messages and documentation.
 std::string projection_names();
-/// The names one by one, with the aliases behind.
+/// The names of all projections, followed by the aliases.
 std::vector<std::string> projection_name_list();
-/// Its default field of view and its limits.
+/// The default horizontal field of view of a projection and its limits, in degrees.
 FieldOfView fov_of(Projection projection);
-/// Faces across and down its picture; 0 where the picture is one piece of any shape.
+/// The numbers of faces across and down a picture; 0 where the picture is one piece of any shape.
 struct FaceGrid {
     int columns = 0, rows = 0;
     bool joined = false;  ///< the faces are parts of one picture, which has no edges where they meet
 };
-/// How its picture is divided into faces.
+/// How a projection's picture is divided into faces.
 FaceGrid faces_of(Projection projection);
-/// Is its picture divided into faces?
+/// Is a projection's picture divided into faces?
 inline bool has_faces(Projection projection) {
     return faces_of(projection).columns > 0;
 }
-/// Are the rows of its picture circles around the vertical axis, and those of 360 degrees closed?
+/// Are the rows of a projection's picture circles around the vertical axis, closed in a picture of 360 degrees?
 bool rows_turn(Projection projection);
-/// Height over width of a picture of a field of view in degrees.
+/// The height over the width of a projection's picture with a horizontal field of view in degrees.
 double natural_aspect(Projection projection, double fov);
 
-/// One smooth piece of a chart: where it stands in the image, and its axes (right, down, forward) as columns
+/// One smooth piece of a chart: its place in the image, and its axes (right, down, forward) as columns
 /// in the frame of rays. Layouts of faces have more than one.
 struct Piece {
     Box box;
@@ -88,25 +88,26 @@ struct Piece {
 struct Branch : Setting {
     int piece = 0;
     glm::dmat3 axes{1};
-    double pixel_x = 0, pixel_y = 0;  ///< of the image, where the piece's (centre_x, centre_y) stands
+    double pixel_x = 0, pixel_y = 0;  ///< the image point, in pixels, of the piece's (centre_x, centre_y)
 };
 
 /// A flat picture of directions: a projection, its field of view and its pixels.
 class Chart {
   public:
-    /// Of Pannini's d.
+    /// The largest accepted distance d of the Pannini projection.
     static constexpr double kMostDistance = 1000;
 
-    /// `fov`: the horizontal field of view of the whole image in degrees, or of each face; 0 takes the
-    /// projection's default (default_fov); without distortion. `d`: Pannini's distance. `prefix` is put before
-    /// "fov", "size", "d" and "lens" in errors. Throws Error.
+    /// `fov`: the horizontal field of view of the whole image without distortion, or of each face, in degrees; 0
+    /// takes the projection's default (default_fov). `d`: the distance of the Pannini projection. `prefix` is put
+    /// before "fov", "size", "d" and "lens" in errors. Throws Error on a value out of range.
     Chart(Projection projection, int width, int height, double fov = 0,
           PixelSpacing spacing = PixelSpacing::edges, const std::string& prefix = "", double d = 1,
           const LensModel& lens = {});
 
-    /// The field of view that a chart of this projection has unless it is given one, in degrees.
+    /// The horizontal field of view that a chart of this projection has unless it is given one, in degrees.
     static double default_fov(Projection projection);
-    /// The same picture with other pixels; faces stay square. Throws Error.
+    /// A chart of the same picture with another size in pixels. Throws Error on a size out of range, or one that does
+    /// not give square faces.
     Chart resized(int width, int height) const;
 
     Projection projection() const { return m_projection; }
@@ -115,29 +116,30 @@ class Chart {
     double fov() const { return m_fov; }
     PixelSpacing spacing() const { return m_spacing; }
     const std::vector<Piece>& pieces() const { return m_pieces; }
-    /// None of most pictures.
+    /// The lens of the picture; null where it has no distortion.
     const Lens* lens() const { return m_lens.get(); }
 
     /// Does azimuth close on itself in this image (a full turn)? Its period in pixels is then period().
     bool closed() const { return m_closed; }
-    /// Pixels of a full turn: the width, or one less where fields of view run between pixel centres.
+    /// The width of a full turn in pixels: that of the image, or one less where fields of view run between pixel centres.
     int period() const { return m_spacing == PixelSpacing::edges ? m_width : m_width - 1; }
     /// Do the first and last rows touch the poles (equirectangular over the full 180 degrees)?
     bool reaches_poles() const { return m_poles; }
     /// Pixels per unit of the chart plane at pieces()[0].
     double scale_x() const { return m_sx.value(); }
     double scale_y() const { return m_sy.value(); }
-    /// Across, known better than double holds them.
+    /// Pixels per unit of the chart plane along x, more precise than a double.
     const Constant& pixels_per_unit() const { return m_sx; }
     const Constant& units_per_pixel() const { return m_per_x; }
-    /// Pixels for a radian straight ahead of a piece.
+    /// Pixels per radian straight ahead of a piece.
     double pixels_per_radian() const;
-    /// Source points of one ray lie so many pixels apart, or any multiple: a full turn, infinite where rows do
-    /// not run around the sphere.
+    /// The distance in pixels, or any multiple of it, between two points of one ray: a full turn; infinite where rows
+    /// do not run around the sphere.
     double turn() const {
         return m_closed ? period() : m_turns ? 2 * std::numbers::pi * scale_x() : HUGE_VAL;
     }
-    /// A computed point of a ray and the exact one of another lie no farther apart, where the plane has an end; else infinite.
+    /// The largest distance, in pixels, of a computed point of a ray from the exact point of another, where the plane is
+    /// bounded; else infinite.
     ///
     /// Exact points lie within the plane's radius R of its middle. Computed ones do but for rounding, at most that of a lens's
     /// polynomial: 14 units of 2^-53 times its condition, which lens.cpp takes to be below 2^40. But straight behind, next to the
@@ -147,11 +149,11 @@ class Chart {
     /// more than a thirtieth of 2 R, which is a pixel at least: far above the rounding of coordinates, which are below 2^24.
     double widest() const;
 
-    /// The local ray through an image point. Meaningful where inside() >= 0.
+    /// The local ray through an image point; valid where inside() >= 0.
     template <class T>
     Ray<T> local_ray(const T& x, const T& y, const Branch& branch) const;
 
-    /// >= 0 where the image point has a ray; the sign holds for all members of an interval, or is open.
+    /// A number that is >= 0 where the image point has a ray. For an interval the sign holds for all members, or is open.
     template <class T>
     T inside(const T& x, const T& y, int piece = 0) const;
 
@@ -159,21 +161,22 @@ class Chart {
     template <class T>
     Point<T> local_point(const Ray<T>& local, const Branch& branch) const;
 
-    /// > 0 where a local ray is seen by the lens and lies on the piece. A lens that cannot see all directions
-    /// ends where their tangents are 1024 times those of its image's edges, and of 45 degrees.
+    /// A number that is > 0 where a local ray is seen by the lens and lies on the piece. A projection that cannot show all
+    /// directions ends where their tangents are 1024 times those of its image's edges, and of 45 degrees.
     template <class T>
     T sees(const Ray<T>& local, int piece = 0) const;
-    /// The same but for the end of its lens.
+    /// A number that is > 0 where the projection shows a local ray and the ray lies on the piece, whether or not the ray
+    /// is beyond the end of the distorting lens (Lens::sees()).
     template <class T>
     T sees_without_lens(const Ray<T>& local, int piece = 0) const;
 
     /// Are there several pieces, and does each see all rays that are nearest to it?
     bool pieces_see_all() const { return m_pieces_see_all; }
 
-    /// Of one sign where one smooth formula holds, at an image point.
+    /// A number for an image point that keeps its sign wherever one smooth formula holds.
     template <class T>
     T crease(const T& x, const T& y, int piece) const;
-    /// The same at a local ray.
+    /// A number for a local ray that keeps its sign wherever one smooth formula holds.
     template <class T>
     T crease(const Ray<T>& local) const;
     /// Do formulas count azimuths, or angles about the axis of sight?
@@ -201,11 +204,11 @@ class Chart {
         return local_point(transform(glm::transpose(branch(piece).axes), ray), branch(piece));
     }
 
-    /// In double: pixels for a unit of the plane, and units for a pixel.
+    /// Pixels per unit of the chart plane (x, y), and units per pixel (per_x, per_y), in double.
     struct Scale {
         double x, y, per_x, per_y;
     };
-    /// That of all pieces.
+    /// The scale, which all pieces have in common.
     Scale scale() const { return {m_sx.value(), m_sy.value(), m_per_x.value(), m_per_y.value()}; }
 
   private:

@@ -13,16 +13,16 @@ namespace anamorph::figure {
 /// A straight line that stands for a body, or for part of one.
 struct Stick {
     glm::dvec3 from{0.0}, to{0.0};  ///< in the scene
-    int body = 0;                   ///< position of the body that it stands for
+    int body = 0;                   ///< position of the body that the stick stands for
 };
 
 /// The longest axis of each body from end to end (the first of equal ones), in their order.
 std::vector<Stick> axis_sticks(std::span<const Ellipsoid> bodies);
-/// The same for the bodies of a frame.
+/// The longest axis of each body of a frame, as axis_sticks() of its ellipsoids.
 std::vector<Stick> axis_sticks(const FigureFrame& frame);
 
-/// For each body with joints: sticks from its centre to each of them; a body with two joints has one stick
-/// between them instead. Bodies without joints have none.
+/// The sticks of a frame's joints: from the centre of each body to each of its joints, but a body with two joints has
+/// one stick between them instead. Bodies without joints have no sticks.
 std::vector<Stick> joint_sticks(const FigureFrame& frame);
 
 }  // namespace anamorph::figure

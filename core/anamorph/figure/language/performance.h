@@ -33,19 +33,19 @@
 
 namespace anamorph::figure {
 
-/// What a performance reports, and how much it keeps.
+/// Options of a performance: its messages, and the memory that it uses.
 struct PerformanceOptions {
-    /// What `print` says and warnings, one line each, once for each frame however often it is performed.
+    /// Receives the output of `print` and warnings, one line each, once for each frame however often it is performed.
     std::function<void(const std::string& line)> message;
     std::size_t memory = std::size_t{32} << 20;  ///< bytes of states kept
 };
 
-/// Where frame numbers of the script are variables, asking for the last one performs it. Frames may be asked
-/// for up to the last that the script performs, shown or not; frame() throws Error, too, naming the line of
-/// the script where performing it fails.
+/// The motion that a program performs. Where frame numbers of the script are variables, last_frame() performs it to
+/// find the last one. Frames may be asked for up to the last that the script performs, shown or not; frame() also
+/// throws Error naming the line of the script where performing it fails.
 class Performance final : public Motion {
   public:
-    /// `program`: that of a script without errors.
+    /// `program`: the program of a script without errors.
     explicit Performance(Program program, PerformanceOptions options = {});
     ~Performance() override;
     Performance(Performance&&) noexcept;
