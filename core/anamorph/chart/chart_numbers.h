@@ -7,21 +7,22 @@
 
 namespace anamorph {
 
-/// From points to rays and back, read with T; `external` is extern, or nothing where they are compiled.
+/// Declares the functions from points to rays and back for the number T; `external` is extern, or nothing where they are
+/// compiled.
 #define ANAMORPH_CHART_POINTS(external, T)                                              \
     external template Ray<T> Chart::local_ray(const T&, const T&, const Branch&) const; \
     external template Point<T> Chart::local_point(const Ray<T>&, const Branch&) const;  \
     external template Point<T> Lens::ideal(const Point<T>&) const;                      \
     external template Point<T> Lens::observed(const Point<T>&) const;
-/// Whether there are such.
+/// Declares the functions that say whether an image point has a ray, and whether a ray is seen, for the number T.
 #define ANAMORPH_CHART_SIGHT(external, T)                             \
     external template T Chart::inside(const T&, const T&, int) const; \
     external template T Chart::sees(const Ray<T>&, int) const;
-/// Where they have a crease.
+/// Declares the functions that say where formulas have a crease, for the number T.
 #define ANAMORPH_CHART_CREASE(external, T)                            \
     external template T Chart::crease(const T&, const T&, int) const; \
     external template T Chart::crease(const Ray<T>&) const;
-/// With all such numbers.
+/// Declares the functions of charts and lenses for all numbers that most source files need.
 #define ANAMORPH_CHART_NUMBERS(external)                  \
     ANAMORPH_CHART_POINTS(external, double)               \
     ANAMORPH_CHART_POINTS(external, long double)          \
