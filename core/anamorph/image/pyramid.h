@@ -22,8 +22,8 @@ namespace anamorph {
 class Pyramid final : public Source {
   public:
     static constexpr int kTile = 128;
-    static constexpr int kLeast =
-        4;  ///< The smallest width and height of a level but the base, or of its pieces.
+    /// The smallest width and height, in texels, of a level but the base, or of its pieces.
+    static constexpr int kLeast = 4;
 
     /// An image of `columns` x `rows` pieces that must not mix (the faces of a cube) has levels only as long as the
     /// sizes of the pieces are even. The base is kept by reference. Throws std::bad_alloc.

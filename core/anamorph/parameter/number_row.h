@@ -13,7 +13,7 @@ namespace anamorph {
 
 struct NumberRow {
     static constexpr double kNoEnd = std::numeric_limits<double>::infinity();
-    enum Ends { closed, above_least, between };  ///< above_least: `least` is refused; between: both ends
+    enum Ends { closed, above_least, between };  ///< refused are: above_least, `least`; between, both
 
     const char* name;  ///< lower_snake
     double standard;   ///< the default; NaN where there is none

@@ -43,8 +43,8 @@ struct Parameter {
     std::string unit;
     std::string default_value;  ///< as written in a recipe; may be empty, which `documentation` then explains
     std::vector<std::string> choices;
-    std::vector<int>
-        enumerators;  ///< the value of each choice in an enumeration of the core, where there is one
+    /// The value of each choice in an enumeration of the core, where there is one.
+    std::vector<int> enumerators;
     double minimum = 0, maximum = 0;  ///< the range of a number, whole, numbers or extent
     bool above_minimum = false;       ///< the minimum itself is not accepted (for number and numbers)
     std::string documentation;        ///< one line

@@ -38,8 +38,8 @@ struct Block {
 
     Box box;
     Kind kind = Kind::exact;
-    bool precise =
-        false;  ///< exact blocks: in long double; bicubic and computed: in double, by BlockMap::exact_rows
+    /// Are exact blocks evaluated in long double, bicubic and computed ones in double (BlockMap::exact_rows)?
+    bool precise = false;
     int piece = 0;         ///< the piece of the target, which also says the layer (BlockMap)
     int source_piece = 0;  ///< the piece of the source; not set for exact blocks and those outside
     std::int32_t base_x = 0, base_y = 0;

@@ -19,10 +19,9 @@ namespace anamorph {
 /// The sizes, as seen from the centre, below which parts of shadows are neglected.
 struct ShadowScale {
     double per_radian = 1;  ///< texels per radian
-    double thin =
-        0;  ///< in texels: narrower strips of light or shadow are neglected, and a narrower triangle is lit
-            ///< or hidden as its middle is
-        double on_plane = 0;  ///< a ray as near to a plane as this, relative to its length, lies in it
+    /// In texels: narrower strips of light or shadow are neglected, and a narrower triangle is lit or hidden as its middle is.
+    double thin = 0;
+    double on_plane = 0;  ///< a ray as near to a plane as this, relative to its length, lies in it
 };
 
 /// How much of a triangle is in shadows.

@@ -31,8 +31,8 @@ double share_of(const Projector& projector, const glm::dvec3& point, const glm::
 
 /// A projector and its picture.
 struct ThrownPicture {
-    Projector projector;            ///< the projector, whose panorama has the size of the picture
-    const float* pixels = nullptr;  ///< not owned; rows from the top, channels beside each other
+    Projector projector;                   ///< the projector, whose panorama has the size of the picture
+    const float* pixels = nullptr;         ///< not owned; rows from the top, channels beside each other
     const Occluders* occluders = nullptr;  ///< centred on the projector's position; null: nothing is hidden
 };
 

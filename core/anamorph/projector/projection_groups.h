@@ -32,9 +32,9 @@ struct ProjectionGroup {
     /// The matrix of the linear part: its product with a ray r is (x r . d, y r . d, r . d), with the texel (x, y).
     glm::dmat3 linear{1};
     std::vector<std::array<float, 2>> residuals;  ///< texels, in rows from y' = -y_max, x' = -x_max
-    double bound =
-        0;  ///< proven bound, in texels, of the sum of both against the panorama's formula; or infinite
-        double linear_error = 0;  ///< the largest residual of the table, in texels
+    /// A proven bound, in texels, of the distance of the sum of both from the panorama's formula; infinite where unknown.
+    double bound = 0;
+    double linear_error = 0;  ///< the largest residual of the table, in texels
 };
 
 /// The directions of projection of a projector, with their tables.
