@@ -40,7 +40,7 @@ Series<T, N> operator*(const Series<T, N>& a, const Series<T, N>& b) {
     }
     return s;
 }
-/// q with q b = a: b_0 q_k = a_k - sum_(j<k) q_j b_(k-j)
+/// The quotient q with q b = a: b_0 q_k = a_k - sum_(j<k) q_j b_(k-j).
 template <class T, int N>
 Series<T, N> operator/(const Series<T, N>& a, const Series<T, N>& b) {
     Series<T, N> q;
@@ -52,7 +52,7 @@ Series<T, N> operator/(const Series<T, N>& a, const Series<T, N>& b) {
     return q;
 }
 
-/// What a constant is read as beside a number, or a series of numbers.
+/// A constant as a factor of a number, or of a series of numbers.
 template <class T>
 auto read_constant(const Constant& k, const T&) {
     return k.template as<T>();
@@ -62,7 +62,7 @@ T read_constant(const Constant& k, const Series<T, N>&) {
     return T(k.template as<T>());
 }
 
-/// c[0] + c[1] t + ..., by Horner's rule.
+/// The sum c[0] + c[1] t + ..., by Horner's rule.
 template <class T>
 T sum_of_powers(const Constant* c, int count, const T& t) {
     T sum = T(read_constant(c[count - 1], t));
@@ -70,7 +70,7 @@ T sum_of_powers(const Constant* c, int count, const T& t) {
     return sum;
 }
 
-/// S, with t = r where the polynomials are in r, else r^2.
+/// The factor S at t, with t = r where the polynomials are in r, else r^2.
 template <class T>
 T stretch_at(const LensTerms& lens, const T& t) {
     const T over = sum_of_powers(lens.over, lens.over_count, t);
@@ -78,14 +78,14 @@ T stretch_at(const LensTerms& lens, const T& t) {
     return over / sum_of_powers(lens.under, lens.under_count, t);
 }
 
-/// What t becomes: the radius |F|, or its square; of a lens without a tangential part.
+/// The distorted t: the radius |F|, or its square where t is a square; for a lens without a tangential part.
 template <class T>
 T radial_at(const LensTerms& lens, const T& t) {
     const T stretch = stretch_at(lens, t);
     return lens.in_radius ? T(t * stretch) : T(t * (stretch * stretch));
 }
 
-/// t of a point.
+/// The t of a point: its radius r, or r^2, as stretch_at() takes it.
 template <class T>
 T radial_of(const LensTerms& lens, const Point<T>& u) {
     const T squared = square(u.x) + square(u.y);
@@ -94,13 +94,13 @@ T radial_of(const LensTerms& lens, const Point<T>& u) {
     return select(centre, T(0), sqrt(T(select(centre, T(1), squared))));
 }
 
-/// S at a point.
+/// The factor S at a point.
 template <class T>
 T stretch_of(const LensTerms& lens, const Point<T>& u) {
     return stretch_at(lens, radial_of(lens, u));
 }
 
-/// F's tangential part, `squared` the distance from the centre.
+/// The tangential part of F; `squared` is the square of the distance from the centre.
 template <class T>
 Point<T> tangential_at(const LensTerms& lens, const Point<T>& u, const T& squared) {
     const T along = (u.x * lens.mx + u.y * lens.my) * 2.0;
@@ -111,7 +111,7 @@ Point<T> tangential_at(const LensTerms& lens, const Point<T>& u) {
     return tangential_at(lens, u, T(square(u.x) + square(u.y)));
 }
 
-/// F. Of lenses with a tangential part S is a function of r^2.
+/// The distorted point F(u). For lenses with a tangential part S is a function of r^2.
 template <class T>
 Point<T> distorted(const LensTerms& lens, const Point<T>& u) {
     if (!lens.tangential) {
@@ -123,7 +123,7 @@ Point<T> distorted(const LensTerms& lens, const Point<T>& u) {
     return {u.x * stretch + squared * lens.mx, u.y * stretch + squared * lens.my};
 }
 
-/// What rounding to T is relative to the number; 0 where that is not known.
+/// The unit roundoff of T, relative to the number; 0 where it is not known.
 template <class T>
 constexpr double unit_of() {
     if constexpr (requires { typename T::Scalar; })
@@ -134,14 +134,14 @@ constexpr double unit_of() {
         return 0;
 }
 
-/// Where the iteration for it begins.
+/// The first approximation of radial_root().
 template <class T>
 T near_root(const LensTerms& lens, const T& value) {
     return T(value * lens.slope);
 }
-/// t with radial_at(t) = value, which rises up to the lens's end: Newton's iteration in a bracket. It ends where
-/// what is missing is within kResidual roundings, which is all that is relied upon. Each lane stands still from then
-/// on, so it does not depend on its neighbours.
+/// Finds the root t of radial_at(t) = value, which rises up to the lens's end, by Newton's iteration in a bracket. It ends
+/// where the residual is within kResidual roundings, which is all that is relied upon. Each lane stands still from then on,
+/// so it does not depend on its neighbours.
 template <class T>
 T radial_root(const LensTerms& lens, const T& value) {
     // So many steps are Newton's where they stay in the bracket. Beyond, every other one halves it, more often than
@@ -167,7 +167,7 @@ T radial_root(const LensTerms& lens, const T& value) {
     return t;
 }
 
-/// The inverse of a power series without its constant: x with g_1 x + g_2 x^2 + ... = y, by powers of y (Lagrange).
+/// The inverse of a power series without its constant: the x with g_1 x + g_2 x^2 + ... = y, by powers of y (Lagrange).
 template <class T, int N>
 Series<T, N> reversed(const Series<T, N>& g) {
     static_assert(N >= 1 && N <= 5);
@@ -186,7 +186,7 @@ Series<T, N> reversed(const Series<T, N>& g) {
     return x;
 }
 
-/// shrink() by powers of what is added to a value, whose root is `t`.
+/// The Taylor series of shrink() about a value whose root is `t`.
 template <int N, class T>
 Series<T, N> shrink_series(const LensTerms& lens, const T& t) {
     using S = Series<T, N>;
@@ -195,19 +195,19 @@ Series<T, N> shrink_series(const LensTerms& lens, const T& t) {
     return S(T(1)) / stretch_at(lens, root);
 }
 
-/// u = v shrink(t of v) for v = F(u), of a lens without a tangential part.
+/// The factor by which F(u) = v is undone for a lens without a tangential part: u = v shrink(t of v).
 template <class T>
 T shrink(const LensTerms& lens, const T& value) {
     return T(1) / stretch_at(lens, radial_root(lens, value));
 }
 
-/// The same for a point.
+/// shrink() at a point v.
 template <class T>
 T shrink_of(const LensTerms& lens, const Point<T>& v) {
     return shrink(lens, radial_of(lens, v));
 }
 
-/// u whose radial part is v.
+/// The point u with S u = v, which undoes the radial part of the distortion.
 template <class T>
 Point<T> radially_undistorted(const LensTerms& lens, const Point<T>& v) {
     const T k = shrink_of(lens, v);
@@ -238,13 +238,13 @@ struct Slope {
         xy = (series.c[1] * (u.x * u.y) + u.x * lens.my + u.y * lens.mx) * 2.0;
         determinant = xx * yy - square(xy);
     }
-    /// Where the derivative takes to (x, y).
+    /// The vector that the derivative maps to (x, y).
     Point<T> solved(const T& x, const T& y) const {
         return {(yy * x - xy * y) / determinant, (xx * y - xy * x) / determinant};
     }
 };
 
-/// Newton's step towards u with F(u) = v, unless it leads out of the lens.
+/// A step of Newton's method towards u with F(u) = v, unless it leads out of the lens.
 template <class T>
 Point<T> newton_step(const LensTerms& lens, const Point<T>& v, const Point<T>& u) {
     const Slope<T> slope(lens, u);
@@ -256,8 +256,8 @@ Point<T> newton_step(const LensTerms& lens, const Point<T>& v, const Point<T>& u
     return {select(within, next.x, u.x), select(within, next.y, u.y)};
 }
 
-/// u with F(u) = v, of a lens with a tangential part: by Newton's iteration, which is fast, and then by steps that are
-/// sure to lead there until one is next to nothing, or too many to matter.
+/// Solves F(u) = v for a lens with a tangential part: by Newton's method, which is fast, and then by steps of nearer(),
+/// which are certain to converge, until one is negligible or kSteps are done.
 template <class T>
 Point<T> settled(const LensTerms& lens, const Point<T>& v) {
     Point<T> u = radially_undistorted(lens, v);
@@ -273,14 +273,14 @@ Point<T> settled(const LensTerms& lens, const Point<T>& v) {
     return u;
 }
 
-/// u with F(u) = v.
+/// Solves F(u) = v.
 template <class T>
 Point<T> undistorted(const LensTerms& lens, const Point<T>& v) {
     return lens.tangential ? settled(lens, v) : radially_undistorted(lens, v);
 }
 
-/// Is it derivatives or bounds that are read, for which it pays to leave out what changes nothing? A pixel's numbers are read
-/// faster without branches.
+/// Is T a number of derivatives or bounds, for which it pays to skip operations without effect? Pixels are computed faster
+/// without branches.
 template <class T>
 constexpr bool leaves_out() {
     return requires {
@@ -288,14 +288,14 @@ constexpr bool leaves_out() {
     };
 }
 
-/// Between the plane and the lens's own units (per_unit, unit).
+/// Converts a point between the units of the plane and of the lens: `scale` is per_unit or unit.
 template <class T>
 Point<T> scaled(const LensTerms& lens, const Point<T>& p, const Constant& scale) {
     if (leaves_out<T>() && !lens.has_unit) return p;
     const auto k = scale.as<T>();
     return {p.x * k, p.y * k};
 }
-/// A point of the observed plane in those units, about the lens's centre.
+/// A point of the observed plane in the lens's units, relative to the lens's centre.
 template <class T>
 Point<T> centred(const LensTerms& lens, const Point<T>& observed) {
     if (leaves_out<T>() && !lens.shifted) return scaled(lens, observed, lens.per_unit);
@@ -303,7 +303,7 @@ Point<T> centred(const LensTerms& lens, const Point<T>& observed) {
                   lens.per_unit);
 }
 
-/// The point of the ideal plane of one of the observed plane, and back.
+/// The point of the ideal plane for a point of the observed plane; observed_point() is its inverse.
 template <class T>
 Point<T> ideal_point(const LensTerms& lens, const Point<T>& observed) {
     const Point<T> p = centred(lens, observed);
@@ -317,7 +317,8 @@ Point<T> observed_point(const LensTerms& lens, const Point<T>& ideal) {
     return {q.x + lens.shift_x.as<T>(), q.y + lens.shift_y.as<T>()};
 }
 
-/// >= 0 where a point of the observed plane has one of the ideal plane; and the other way round.
+/// A number that is >= 0 where a point of the observed plane has one of the ideal plane; has_observed() is the same for a
+/// point of the ideal plane.
 template <class T>
 T has_ideal(const LensTerms& lens, const Point<T>& observed) {
     const Point<T> p = centred(lens, observed);

@@ -44,7 +44,7 @@
 template <class Base, class Rest>
 struct NearRest;
 
-/// What is known of a condition at the base, and what holds for the pixels.
+/// A condition at the base, and the same condition for the pixels.
 template <class AtBase, class AtRest>
 struct NearCondition {
     AtBase base;
@@ -67,11 +67,11 @@ struct Near {
     ANAMORPH_INLINE Near(double k) : base(k), rest(0.0) {}  // NOLINT: a number is one without a rest
     ANAMORPH_INLINE Near(const Base& b, const Rest& r) : base(b), rest(r) {}
 
-    /// A constant that is off by at most `error`, where that matters.
+    /// A constant with an error of at most `error`, for pairs that keep track of it.
     static Near near(double value, double error) requires requires { Pair::near(value, error); }
     { return Pair::near(value, error); }
 
-    /// The number itself, as a rest.
+    /// The number itself, base plus rest, as a rest.
     ANAMORPH_INLINE Rest whole() const { return Pair::of(base) + rest; }
 
     friend ANAMORPH_INLINE Near operator-(const Near& a) { return {-a.base, -a.rest}; }
@@ -127,7 +127,7 @@ struct Near {
         const Rest of_a = Pair::off(a.rest, a.base, 3);
         return {root, of_a / (Pair::of(root) + sqrt(a.whole()))};
     }
-    /// The root of A^2 + B^2: with L that of the bases, L'^2 - L^2 = da (A + a) + db (B + b), over L' + L.
+    /// The root L' of A^2 + B^2: with L that of the bases, L'^2 - L^2 = da (A + a) + db (B + b), over L' + L.
     friend ANAMORPH_INLINE Near length(const Near& a, const Near& b) {
         const Base square_a = a.base * a.base, square_b = b.base * b.base;
         const Base squared = square_a + square_b, root = sqrt(squared);
@@ -156,7 +156,7 @@ struct Near {
     friend ANAMORPH_INLINE Near tilt(const Near& across, const Near& ahead, const Heading&) {
         return atan2(across, ahead);
     }
-    /// sin t / t and cos t for t^2 = A, by their power series about a. With r^2 = a the coefficients of the first are
+    /// Finds sin t / t and cos t for t^2 = A, by their power series about a. With r^2 = a the coefficients of the first are
     /// (-1/2)^k j_k(r) / (r^k k!), j_k the spherical Bessel functions: at most 1 / (2 k + 1)!, which they are at 0. Those of
     /// the second are -1 / (2 k) times the ones before: at most 1 / (2 k)!. That much of the next power is left out.
     friend ANAMORPH_INLINE void sinc_cos(const Near& a, Near& sinc, Near& cosine) {
@@ -176,6 +176,7 @@ struct Near {
         sinc = {s[0], Pair::off(sum_s, Base(1.0), 16)};
         cosine = {c[0], Pair::off(sum_c, Base(1.0), 16)};
     }
+    /// Finds tanh A and 1 / cosh A.
     /// With t = tanh a and T = tanh da: tanh A - t = T (1 - t^2) / (1 + t T), and with the two 1 / cosh, c and C,
     /// 1 / cosh A - c = c (C - 1 - t T) / (1 + t T), C - 1 = -T^2 / (1 + C).
     friend ANAMORPH_INLINE Near scaled_sinh(const Near& a, Near& s) {
@@ -187,7 +188,8 @@ struct Near {
         s = {t, Pair::off(rt * (of_c * of_c) / over, Base(1.0), 32)};
         return {c, Pair::off(-(of_c * (rt * rt / (rc + Rest(1.0)) + turned) / over), c, 32)};
     }
-    /// asinh A - asinh a = asinh(A r - a R), r and R the roots of 1 + a^2 and 1 + A^2; A r - a R = da r - a (R - r).
+    /// The inverse hyperbolic sine: asinh A - asinh a = asinh(A r - a R), r and R the roots of 1 + a^2 and 1 + A^2;
+    /// A r - a R = da r - a (R - r).
     friend ANAMORPH_INLINE Near asinh(const Near& a) {
         const Base squared = a.base * a.base, root = sqrt(squared + Base(1.0)), result = asinh(a.base);
         const Rest of_a = Pair::of(a.base), of_root = Pair::of(root);
@@ -196,7 +198,7 @@ struct Near {
         return {result, Pair::off(asinh(a.rest * of_root - of_a * grown), result, 32)};
     }
 
-    /// c[0] + c[1] n + ..., by Horner's rule.
+    /// The sum c[0] + c[1] n + ..., by Horner's rule.
     template <std::size_t Count>
     static ANAMORPH_INLINE Near series(const Base (&c)[Count], const Rest& n) {
         Rest sum = Pair::of(c[Count - 1]);
@@ -212,7 +214,8 @@ struct Near {
         return NearCondition<decltype(is_zero(a.base)), decltype(is_zero(a.rest))>{is_zero(a.base),
                                                                                    is_zero(a.whole())};
     }
-    /// The base is what is chosen there. What is chosen elsewhere counts from it.
+    /// Selects a or b. The base is the one that is chosen at the base; the rest of a pixel where the other is chosen counts
+    /// from that base.
     template <class AtBase, class AtRest>
     friend ANAMORPH_INLINE Near select(const NearCondition<AtBase, AtRest>& where, const Near& a,
                                        const Near& b) {
@@ -224,8 +227,9 @@ struct Near {
     }
     friend ANAMORPH_INLINE Near min(const Near& a, const Near& b) { return select(is_negative(b - a), b, a); }
     friend ANAMORPH_INLINE Near max(const Near& a, const Near& b) { return select(is_negative(a - b), b, a); }
-    /// Where a root ends no bound is found, with or without a hair.
+    /// Returns the number unchanged: next to the end of a root no bound is found, whether or not small negative numbers count
+    /// as 0.
     friend ANAMORPH_INLINE Near without_hair(const Near& a) { return a; }
-    /// Nor is one where squares underflow.
+    /// Returns 1: where squares underflow no bound is found.
     friend ANAMORPH_INLINE double enlarger(const Near&, const Near&) { return 1; }
 };

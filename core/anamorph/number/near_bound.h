@@ -25,8 +25,8 @@ struct Heading;  // chart/projection/facts.h
 
 // --- rests ---
 
-/// Stands for the rests of all pixels of a block: the exact ones lie within `radius` of `middle`, and what is computed in
-/// Real, float or double, lies within `error` of them. Errors are passed on as by Rounded. A bound that cannot be had is
+/// Bounds the rests of all pixels of a block: the exact ones lie within `radius` of `middle`, and those that are computed in
+/// Real, float or double, lie within `error` of them. Errors are propagated as by Rounded. A bound that cannot be found is
 /// infinite or NaN: test !(error <= tol).
 template <class Real>
 struct RestBound {
@@ -40,8 +40,8 @@ struct RestBound {
     RestBound(double about, double spread, double bound) : middle(about), radius(spread), error(bound) {}
 
     static RestBound unbounded() { return {0, HUGE_VAL, HUGE_VAL}; }
-    /// Of these values, off by `bound` before they are rounded by `unit` of their size. The middle is itself rounded, and so
-    /// are the sums and products of which the others are made, fewer than 32 times, all of one sign.
+    /// The bound of values with an error of `bound` before they are rounded by `unit` of their size. The middle is rounded,
+    /// too, and so are the sums and products of which the others are made, fewer than 32 times, all of one sign.
     static ANAMORPH_INLINE RestBound result(double middle, double radius, double bound, double unit) {
         RestBound r{middle, radius + 0x1p-53 * std::fabs(middle), 0};
         r.radius = r.radius * rounded_detail::kUp + interval_detail::kSmallest;
@@ -57,7 +57,7 @@ struct RestBound {
         return result(middle, a.radius + interval_detail::kLibmMargin * std::fabs(middle), a.error, unit);
     }
 
-    /// Largest magnitude of the exact ones, and of the computed ones.
+    /// The largest magnitude of the exact rests; computed_size() is that of the computed ones.
     double size() const { return std::fabs(middle) + radius; }
     double computed_size() const { return size() + error; }
 
@@ -73,7 +73,7 @@ struct RestBound {
                           kUnit * a.computed_size() * b.computed_size(),
                       0);
     }
-    /// F / G - q = (F - q G) / G, and f - q g is a rounding of f; errors as of Rounded.
+    /// The quotient: F / G - q = (F - q G) / G, and f - q g is a rounding of f; errors are those of Rounded.
     friend ANAMORPH_INLINE RestBound operator/(const RestBound& f, const RestBound& g) {
         const double inverse = 1 / (std::fabs(g.middle) - g.radius);
         const double feedback = inverse * (g.error + 2 * kUnit * g.computed_size());
@@ -84,7 +84,7 @@ struct RestBound {
             (inverse * (f.error + 2 * kUnit * f.computed_size()) + feedback * (q + spread)) / (1 - feedback);
         return result(quotient, spread, bound, 0);
     }
-    /// sqrt F - sqrt f = (F - f) / (sqrt F + sqrt f)
+    /// The root: sqrt F - sqrt f = (F - f) / (sqrt F + sqrt f).
     friend ANAMORPH_INLINE RestBound sqrt(const RestBound& f) {
         const double low = f.middle - f.radius;
         if (!(low > f.error)) return unbounded();
@@ -109,7 +109,7 @@ struct RestBound {
     friend ANAMORPH_INLINE RestBound asinh(const RestBound& a) {
         return of_function(a, std::asinh, R::kLibm);
     }
-    /// tanh a, and 1 / cosh a, whose slope is at most |a|.
+    /// Writes tanh a into s and returns 1 / cosh a, whose slope is at most |a|.
     friend ANAMORPH_INLINE RestBound scaled_sinh(const RestBound& a, RestBound& s) {
         if (!(a.computed_size() <= 1)) return s = unbounded();
         s = of_function(a, std::tanh, R::kLibm);
@@ -121,9 +121,9 @@ struct RestBound {
         const double off = a.radius + a.error;
         return is_negative(Interval(a.middle - off, a.middle + off));
     }
-    /// No block is zero throughout, but for constants.
+    /// Is the rest zero in all of the block, as that of a constant is?
     friend bool is_zero(const RestBound& a) { return a.computed_size() == 0; }
-    /// One of two, which are the same where rounding decides between them.
+    /// Encloses a choice between two rests, which are the same where rounding decides between them.
     friend ANAMORPH_INLINE RestBound hull(const RestBound& a, const RestBound& b) {
         const double between = 0.5 * (a.middle + b.middle), apart = 0.5 * std::fabs(a.middle - b.middle);
         return result(between, apart + rounded_detail::larger(a.radius, b.radius),
@@ -133,14 +133,14 @@ struct RestBound {
 
 namespace rounded_detail {
 
-/// Errors of what lanes.h has for rests, in units of Real of the value.
+/// The errors of the functions of rests in lanes.h, in units of Real of the value.
 inline constexpr double kRestUnits = 4, kAngleUnits = 6, kTurnUnits = 5;
 inline constexpr double kEighth = 0.785398163397448, kTangentOfSixteenth = 0.414213562373095,
                         kTangentOfThreeSixteenths = 2.414213562373095;
 
 }  // namespace rounded_detail
 
-/// sin a and 1 - cos a, |a| <= pi / 4; unbounded beyond.
+/// Bounds sin a and 1 - cos a for |a| <= pi / 4; unbounded beyond.
 template <class Real>
 void sine_versine(const RestBound<Real>& a, RestBound<Real>& s, RestBound<Real>& v) {
     const double most = a.computed_size();
@@ -156,7 +156,8 @@ void sine_versine(const RestBound<Real>& a, RestBound<Real>& s, RestBound<Real>&
     v = RestBound<Real>::result(middle, radius + 4 * interval_detail::kLibmMargin * middle, a.error * most,
                                 unit);
 }
-/// As small_angle() in lanes.h; unbounded beyond |y| <= tan(3 pi / 8) x, also where x may be negative, exact or computed.
+/// Bounds the angle of (x, y) as small_angle() in lanes.h computes it; unbounded beyond |y| <= tan(3 pi / 8) x, also where x
+/// may be negative, exact or computed.
 template <class Real>
 RestBound<Real> small_angle(const RestBound<Real>& y, const RestBound<Real>& x) {
     const RestBound<Real> a = y / x;
@@ -168,7 +169,8 @@ RestBound<Real> small_angle(const RestBound<Real>& y, const RestBound<Real>& x) 
     return RestBound<Real>::of_function(a, std::atan, units * RestBound<Real>::kUnit);
 }
 
-/// As atan2() in lanes.h; unbounded where points, exact or computed, may lie on the half line of half a turn.
+/// Bounds the angle of (x, y) as atan2() in lanes.h computes it; unbounded where points, exact or computed, may lie on the
+/// negative x axis.
 template <class Real>
 RestBound<Real> any_angle(const RestBound<Real>& y, const RestBound<Real>& x) {
     const double left = x.middle - x.radius, top = y.middle - y.radius, bottom = y.middle + y.radius;
@@ -189,29 +191,30 @@ RestBound<Real> any_angle(const RestBound<Real>& y, const RestBound<Real>& x) {
 
 // --- bases ---
 
-/// The bases of readings of a formula, in order.
+/// The bases that evaluations of a formula have written, in order.
 using Bases = std::vector<double>;
 
-/// Where bases are written, behind those that are there, and in which order they come.
+/// The list to which bases are appended, and a checksum of their order.
 struct BaseWriter {
     Bases& bases;
     ReadingOrder order;
 };
 
-/// A base in double. The result of every operation is written down where WrittenBase::to points; decisions as 1 or 0.
+/// A base in double that is recorded: the result of every operation is appended to the list that WrittenBase::to points to;
+/// decisions as 1 or 0.
 struct WrittenBase {
     using Number = ReadingOrder::Number;
 
     static inline thread_local BaseWriter* to = nullptr;
 
     double value = 0;
-    Number number = 0;  ///< of the operation whose result it is; 0 of a constant
+    Number number = 0;  ///< number of the operation whose result it is; 0 for a constant
 
     WrittenBase() = default;
     WrittenBase(double k) : value(k) {}  // NOLINT: a number is a constant
     WrittenBase(double result, Number of) : value(result), number(of) {}
 
-    /// Whether a condition holds.
+    /// The result of a condition.
     struct Decision {
         bool holds;
         Number number;
@@ -272,7 +275,7 @@ struct WrittenBase {
         s = written(t, BaseOperation::scaled_sine, of);
         return written(c, BaseOperation::scaled_sine, of);
     }
-    /// The first coefficients of the series of sin t / t and cos t in powers of t^2, about a; NaN beyond half a turn.
+    /// Finds the first coefficients of the series of sin t / t and cos t in powers of t^2, about t^2 = a; NaN for a > 10.
     template <std::size_t N>
     friend void sinc_cos_series(const WrittenBase& a, WrittenBase (&s)[N], WrittenBase (&c)[N]) {
         double sinc[N], cosine[N];
@@ -299,7 +302,8 @@ struct NearRest<WrittenBase, RestBound<Real>> {
         const bool kept = static_cast<double>(static_cast<Real>(base.value)) == base.value;
         return kept ? R(base.value) : R::result(base.value, 0, 0, R::kUnit);
     }
-    /// Nor are bases known better than to the least scale, which is above what underflows.
+    /// Adds the rounding of a base to the errors of a rest. Bases are not known better than to the least scale, which is above
+    /// what underflows.
     static ANAMORPH_INLINE R off(const R& rest, const WrittenBase& base, double units) {
         const double by = units * (0x1p-53 * std::fabs(base.value) + kLeastScale);
         return {rest.middle, (rest.radius + by) * rounded_detail::kUp,
@@ -313,7 +317,7 @@ struct NearRest<WrittenBase, RestBound<Real>> {
     static R within(const R& rest, const R& other) {
         return other.radius < rest.radius ? R{other.middle, other.radius, rest.error} : rest;
     }
-    /// Which way it is found is written down: most angles are small.
+    /// Bounds the angle of (x, y), and writes down which way it is found: most angles are small.
     static R angle(const R& y, const R& x) {
         const R small = small_angle(y, x);
         const auto is_small =
@@ -333,7 +337,7 @@ struct NearRest<WrittenBase, RestBound<Real>> {
     }
 };
 
-/// Writes down the bases of a formula, and bounds what Real does to it near them.
+/// The number that writes down the bases of a formula, and bounds its rounding in Real near them.
 template <class Real>
 using NearBound = Near<WrittenBase, RestBound<Real>>;
 

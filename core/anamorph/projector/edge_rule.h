@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Whether an edge of a scene that receives a panorama (projector.h) is short enough, by the edge alone: neighbours that
-// share an edge split it in the same places, whatever process or thread they are in, and no crack opens between them. And
-// what is proven of a triangle with such sides.
+// Decides whether an edge of a scene that receives a panorama (projector.h) is short enough, by the edge alone: neighbours
+// that share an edge split it in the same places, whatever process or thread they are in, and no crack opens between them.
+// It also proves a bound of the error in a triangle with such sides.
 //
 // Texture coordinates are interpolated linearly in space (what a rasterizer does with perspective correction). Let F be the
 // map from space to the panorama, q = sum l_i q_i a point of a flat triangle. Taylor's formula about q gives
@@ -32,62 +32,64 @@
 
 namespace anamorph {
 
-/// What is known of an edge or a triangle.
+/// The verdicts on an edge or a triangle.
 enum class EdgeVerdict {
-    bounded,   ///< it is off by the bound at most
+    bounded,   ///< its error is proven to be at most the bound
     outside,   ///< no point of it is on the panorama
     tiny,      ///< as seen from the centre it is smaller than the tolerance, with a pole or an axis in it
     hopeless,  ///< an edge that is as short as one may be, and next to the centre; or it is not finite
     split,     ///< it has to be split, an edge in the middle
-    cut        ///< it has to be split at `at`
+    cut        ///< it has to be split at EdgeFinding::at
 };
 
-/// A verdict.
+/// A verdict on an edge or a triangle, with its numbers.
 struct EdgeFinding {
     EdgeVerdict verdict = EdgeVerdict::hopeless;
-    double bound = 0;     ///< in texels, where bounded; proven
-    double at = 0.5;      ///< from the end that was given first
+    double bound = 0;     ///< the proven bound of the error in texels, where bounded
+    double at = 0.5;      ///< the place of a cut, from 0 at the end that was given first to 1
     bool shadow = false;  ///< is it cut at the border of a shadow?
 };
 
-/// The rule.
+/// The rule by which edges are split, and triangles bounded.
 class EdgeRule {
   public:
-    /// `tol`: in texels. Edges are not split that are no longer than `smallest`. `single`: are points rounded to float?
+    /// `tol`: the tolerance in texels. Edges no longer than `smallest` (units of the scene) are not split. `single`: are points
+    /// rounded to float?
     EdgeRule(const Projector& projector, double tol, double smallest, bool single = false)
         : m_projector(projector), m_tol(tol), m_smallest(smallest), m_on_plane(single ? 0x1p-20 : 0x1p-40) {}
 
-    /// Of the edge from a to b. Both orders find the same, bit by bit, if they come as in_order() says.
+    /// Judges the edge from a to b. For the same bits from both sides, callers pass the ends in the order of in_order().
     EdgeFinding judge(const glm::dvec3& a, const glm::dvec3& b) const;
 
-    /// Of a triangle whose sides have been judged. It is never cut or hopeless.
+    /// Judges a triangle whose sides have been judged; it is never cut or hopeless.
     EdgeFinding judge(const std::array<glm::dvec3, 3>& corners) const;
 
-    /// Weights of the point of a triangle on the axis that azimuths are counted about, if that goes through within.
+    /// The weights of the point where the axis that azimuths are counted about passes through the inside of a triangle;
+    /// nothing where it does not.
     std::optional<glm::dvec3> axis_in(const std::array<glm::dvec3, 3>& corners) const;
 
-    /// The middle of a triangle's rays, scaled (scaled_ray): it is read on the piece of the panorama that this is on.
+    /// The mean of a triangle's rays, scaled (scaled_ray); a triangle is read on the piece of the panorama that this ray is on.
     static glm::dvec3 middle_of(const std::array<glm::dvec3, 3>& rays);
-    /// Whether a is first of the two.
+    /// Does a come before b in the order in which the ends of an edge are judged?
     static bool in_order(const glm::dvec3& a, const glm::dvec3& b);
-    /// How far from a plane, relative to its distance, a ray is taken to lie in it.
+    /// The distance from a plane, relative to a ray's length, within which the ray is taken to lie in the plane.
     double on_plane() const { return m_on_plane; }
 
   private:
-    /// The place on the way from a to b where a seam, a border of faces or a crease is crossed; -1 where none is.
+    /// The place on the way from a to b, from 0 to 1, where a seam, a border of faces or a crease is crossed; -1 where none is.
     double crossing(const glm::dvec3& a, const glm::dvec3& b) const;
     /// The faces that a ray is on: several on their borders.
     std::vector<std::size_t> faces_at(const glm::dvec3& ray) const;
-    /// The branches that an edge may be read on: those of the faces that its middle is on.
+    /// The branches on which an edge may be read: one for each face that its middle is on.
     std::vector<Branch> branches(const glm::dvec3& a, const glm::dvec3& b) const;
     /// The branch about the middle of rays, or half way between their azimuths where those are counted.
     Branch branch_between(const std::array<glm::dvec3, 3>& rays, const glm::dvec3& middle) const;
     EdgeFinding judge_rays(std::array<glm::dvec3, 3> rays, const std::vector<Branch>& branches, double share,
                            double wider) const;
 
-    /// Of the tolerance, for edges.
+    /// The share of the tolerance that edges have to hold.
     static constexpr double kShare = 0.9;
-    /// Boxes about edges are as much larger, so that triangles along them do not just fail.
+    /// The share by which boxes about edges are enlarged, so that triangles along them do not fail narrowly.
     static constexpr double kWider = 0.02;
 
     const Projector& m_projector;

@@ -2,7 +2,7 @@
 // Cylindrical: X = azimuth, Y = tan(elevation) (Kim 2003, eq. 4.1 and 4.2).
 
 struct Cylindrical : CylinderFamily {
-    /// 90 degrees of elevation: 2 tan 45 over the azimuth.
+    /// The default height covers 90 degrees of elevation: 2 tan 45 over the azimuth.
     static double aspect(double fov) { return 2 / (fov * std::numbers::pi / 180); }
 
     static double largest_tangent(double, double half_height) { return half_height; }

@@ -18,7 +18,8 @@ struct DualFisheye : Fisheye {
         return 1 * kSlack - (square(p.x) + square(p.y)) * (1 / (radius * radius));
     }
     static bool faces_see_all(const Setting& s) { return s.half_width >= std::numbers::pi / 2; }
-    /// Each shows its half, or what its lens sees of it: z / rho is at least that of an angle of half_width.
+    /// Each picture shows its half of the sphere, or what its lens sees of it: z / rho is at least that of an angle of
+    /// half_width.
     template <class T>
     static T sees(const Ray<T>& r, const Setting& s) {
         if (faces_see_all(s)) return r.z;

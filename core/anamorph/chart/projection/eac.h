@@ -15,7 +15,7 @@ struct Eac : CubeFamily {
         return {{kLeft, 0, 0}, {kFront, 1, 0}, {kRight, 2, 0}, {down, 0, 1}, {back, 1, 1}, {up, 2, 1}};
     }
 
-    /// (tan u, tan v, 1) cos u cos v.
+    /// The local ray (tan u, tan v, 1) cos u cos v.
     template <class T>
     static Ray<T> ray(const Point<T>& p, const Setting&) {
         const auto eighth = kEighth.as<T>();

@@ -14,15 +14,15 @@ struct Equisolid : AxisFamily {
     static T inside(const Point<T>& p, const Setting&) {
         return 4 * kSlack - (square(p.x) + square(p.y));
     }
-    /// sin t = r sqrt(1 - r^2 / 4), cos t = 1 - r^2 / 2.
+    /// The local ray, by sin t = r sqrt(1 - r^2 / 4) and cos t = 1 - r^2 / 2.
     template <class T>
     static Ray<T> ray(const Point<T>& p, const Setting&) {
         const T r2 = square(p.x) + square(p.y);
         const T k = sqrt(without_hair(T(1.0 - r2 * 0.25)));
         return {p.x * k, p.y * k, 1.0 - r2 * 0.5};
     }
-    /// Of a unit ray X = x / cos(t / 2) = x sqrt(2 / (1 + z)). Straight behind is all of the rim, of which one point is
-    /// taken.
+    /// The point of a local ray; for one of length 1, X = x / cos(t / 2) = x sqrt(2 / (1 + z)). The direction straight behind
+    /// is all of the rim, of which one point is taken.
     template <class T>
     static Point<T> point(const Ray<T>& r, const Setting&) {
         const T rho_squared = square(r.x) + square(r.y);

@@ -1,37 +1,37 @@
 // SPDX-License-Identifier: Apache-2.0
-// What projections of one family share. Without a guard and a namespace, as list.h says.
+// The members that projections of one family share. There is no include guard and no namespace, as list.h says.
 
 inline constexpr long double kDegree = std::numbers::pi_v<long double> / 180;
 
-/// tan of an angle of 0 to 90 degrees; the nearer to 90, the more the angle's distance from it matters, which
-/// is exact.
+/// The tangent of an angle of 0 to 90 degrees. Near 90 it is found from 90 degrees less the angle, which is exact.
 inline long double tan_of(long double degrees) {
     return degrees > 45 ? 1 / std::tan((90 - degrees) * kDegree) : std::tan(degrees * kDegree);
 }
 
-/// The defaults. `ray` and `point` are what a projection has to give:
+/// The defaults of all projections. A projection has to define `ray` and `point`:
 ///   Ray<T> ray(const Point<T>& plane, const Setting&)     the local ray of a point of the plane
 ///   Point<T> point(const Ray<T>& local, const Setting&)   the point of the plane of a local ray
 struct AnyProjection {
-    /// A second name.
+    /// An alias of the projection's name; empty where there is none.
     static constexpr std::string_view alias = "";
     static constexpr Counted counted = Counted::none;
-    /// Faces across and down the picture; each is square. 0: the picture is one piece of any shape.
+    /// The numbers of faces across and down the picture; each is square. 0: the picture is one piece of any shape.
     static constexpr int columns = 0, rows = 0;
     static std::vector<Face> faces() { return {}; }
-    /// Where the centre of a face stands in the plane, along x: -1 for a left one, 1 for a right one; and y.
+    /// The distance of the centres of faces from the middle of the plane, along x and along y, where faces are parts of one
+    /// picture; 0 where each has a plane of its own.
     static constexpr double face_centre = 0;
     /// Is every direction seen by the face that it is nearest to?
     static bool faces_see_all(const Setting&) { return true; }
     static constexpr Lensed lensed = Lensed::no;
-    /// Rows of a full turn close on themselves at a column.
+    /// Does a full turn fill whole rows, which close on themselves at a column?
     static constexpr bool closes = false;
-    /// The first and last row of a full picture are the poles.
+    /// Are the first and last row of a full picture the poles?
     static constexpr bool has_pole_rows = false;
 
     /// The width of the plane that a field of view in degrees covers.
     static long double width(long double degrees, const Setting&) { return degrees * kDegree; }
-    /// How many units of long double (2^-64 of the value) the pixels per unit of the plane, and their inverse, may be off.
+    /// The largest error of the pixels per unit of the plane, and of their inverse, in units of long double (2^-64 of them).
     ///
     /// kDegree is off by 2, of pi and of the quotient; an angle, a whole fraction of `degrees` times that, by 3. A sine of 0 to
     /// 90 degrees changes by x cot x, at most 1, of its angle's relative change, and libm adds 8 (Rounded::kLibm): 11. A tangent
@@ -39,31 +39,31 @@ struct AnyProjection {
     /// angle, sine or tangent times a power of two (a constant is exact), so they are off by 14 at most. Rows between pixel
     /// centres take most of what follows, a product and two quotients, and 1 more for the inverse: 18. Which is doubled nearly.
     static double width_units(long double, const Setting&) { return 32; }
-    /// Of a lens that shows what is straight behind all around its rim: the width of its whole plane.
+    /// The width of the whole plane of a projection that shows the direction straight behind all around its rim.
     static constexpr double diameter = HUGE_VAL;
     /// The largest tangent of a ray in the corner of a plane of twice this size; 0: there is no limit.
     static double largest_tangent(double, double) { return 0; }
-    /// The field of view's limits where they depend on the setting.
+    /// The largest field of view in degrees, where it depends on the setting.
     static double most_fov(const FieldOfView& fov, const Setting&) { return fov.most; }
-    /// Units of the plane for a radian straight ahead.
+    /// Units of the plane per radian straight ahead.
     static constexpr double per_radian = 1;
-    /// Height over width of a picture of a field of view in degrees.
+    /// The height over the width of a picture of a field of view in degrees.
     static double aspect(double) { return 1; }
 
-    /// A hair over a limit still counts, so that the last pixel of a full picture is never lost to rounding.
+    /// The tolerance of limits, so that the last pixel of a full picture is never lost to rounding.
     static constexpr double kSlack = 1 + 1e-12;
-    /// >= 0 where a point of the plane has a ray.
+    /// A number that is >= 0 where a point of the plane has a ray.
     template <class T>
     static T inside(const Point<T>&, const Setting&) {
         return T(1);
     }
-    /// > 0 where a local ray is seen, and lies on the face it is local to. A lens that cannot see all
-    /// directions ends where their tangents are as large as the setting's reach.
+    /// A number that is > 0 where a local ray is seen, and lies on the face it is local to. A projection that cannot show
+    /// all directions ends where their tangents are as large as the setting's reach.
     template <class T>
     static T sees(const Ray<T>&, const Setting&) {
         return T(1);
     }
-    /// Zero only where the formulas have a crease: of the plane, and among local rays.
+    /// A number that is 0 only where the formulas have a crease, in the plane; ray_crease() is the same for local rays.
     template <class T>
     static T plane_crease(const Point<T>&) {
         return T(1);
@@ -74,20 +74,20 @@ struct AnyProjection {
     }
 };
 
-/// X is the azimuth.
+/// The family of projections whose X is the azimuth.
 struct CylinderFamily : AnyProjection {
     static constexpr Counted counted = Counted::azimuth;
     static constexpr FieldOfView fov{360, 360};
     static constexpr bool closes = true;
 };
 
-/// The radius is a function of the angle t from the axis.
+/// The family of projections whose radius is a function of the angle t from the axis.
 struct AxisFamily : AnyProjection {
     static constexpr FieldOfView fov{180, 360};
     static constexpr Lensed lensed = Lensed::axial;
 };
 
-/// On a flat picture a ray stands where it meets the plane z = 1.
+/// The family of flat pictures, where a ray's point is where it meets the plane z = 1.
 struct FlatFamily : AnyProjection {
     template <class T>
     static Ray<T> ray(const Point<T>& p, const Setting&) {
@@ -99,7 +99,7 @@ struct FlatFamily : AnyProjection {
     }
 };
 
-/// Six faces, on each of which the forward component of a ray is the largest.
+/// The family of cube maps: six faces, on each of which the forward component of a ray is the largest.
 struct CubeFamily : FlatFamily {
     static constexpr FieldOfView fov{90, 90, false, true};
 
@@ -111,13 +111,13 @@ struct CubeFamily : FlatFamily {
     }
 };
 
-/// The root of x^2 + y^2.
+/// The square root of x^2 + y^2.
 template <class T>
 T length(const T& x, const T& y) {
     return sqrt(T(square(x) + square(y)));
 }
 
-/// sin t / t and cos t for the square of t.
+/// Finds sin t / t and cos t from the square of t.
 template <class T>
 void sinc_cos(const T& t_squared, T& sinc, T& cos) {
     const T t = sqrt(t_squared);
@@ -133,20 +133,20 @@ T tilt(const T& across, const T& ahead, const Heading& along) {
     return atan2(T(across * cos - ahead * sin), T(ahead * cos + across * sin)) + along.angle;
 }
 
-/// The same ray, longer where the squares of x and z would underflow.
+/// A ray of the same direction, made longer where the squares of x and z would underflow.
 template <class T>
 Ray<T> with_squares(const Ray<T>& r) {
     const auto k = enlarger(r.x, r.z);
     return {r.x * k, r.y * k, r.z * k};
 }
 
-/// The length of a ray across the vertical axis.
+/// The length of a ray's part perpendicular to the vertical axis.
 template <class T>
 T across_length(const Ray<T>& r) {
     return length(r.x, r.z);
 }
 
-/// n + z for n^2 = rho^2 + z^2, without cancelling where z is negative.
+/// The sum n + z for n^2 = rho^2 + z^2, without cancellation where z is negative.
 template <class T>
 T add_to_length(const T& n, const T& z, const T& rho_squared) {
     const auto behind = is_negative(z);

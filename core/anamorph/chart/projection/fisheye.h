@@ -10,7 +10,7 @@ struct Fisheye : AxisFamily {
     static T inside(const Point<T>& p, const Setting&) {
         return std::numbers::pi * std::numbers::pi * kSlack - (square(p.x) + square(p.y));
     }
-    /// sin t along the radius, cos t along the axis.
+    /// The local ray: sin t along the radius, cos t along the axis.
     template <class T>
     static Ray<T> ray(const Point<T>& p, const Setting& s) {
         const auto cos = measured<T>(s.around.cos, s.around.error),
@@ -20,7 +20,8 @@ struct Fisheye : AxisFamily {
         sinc_cos(T(square(u) + square(v)), k, ct);
         return {u * k, v * k, ct};
     }
-    /// Straight ahead t / rho is 1 / z; straight behind it is all of the rim, of which one point is taken.
+    /// The point of a local ray. Straight ahead t / rho is 1 / z; the direction straight behind is all of the rim, of which one
+    /// point is taken.
     template <class T>
     static Point<T> point(const Ray<T>& r, const Setting& s) {
         const T rho = length(r.x, r.y);

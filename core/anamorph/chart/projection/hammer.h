@@ -12,12 +12,12 @@ struct Hammer : CylinderFamily {
         return 2 * std::sqrt(2.0) / (8 * std::sin(fov * std::numbers::pi / 1440));
     }
 
-    /// Within half a turn each way.
+    /// A point has a ray within half a turn each way.
     template <class T>
     static T inside(const Point<T>& p, const Setting&) {
         return 2 * kSlack - (square(p.x) * 0.25 + square(p.y));
     }
-    /// The half ray (x, y, z) is a unit one; its azimuth is doubled and turned by `around`.
+    /// The local ray: the ray (x, y, z) with half the azimuth has length 1; its azimuth is doubled and turned by `around`.
     template <class T>
     static Ray<T> ray(const Point<T>& p, const Setting& s) {
         const T r2 = square(p.x) * 0.25 + square(p.y);

@@ -10,7 +10,7 @@ struct Mercator : CylinderFamily {
     static T sees(const Ray<T>& r, const Setting& s) {
         return Cylindrical::sees(r, s);
     }
-    /// tan e = sinh Y, divided by cosh Y, which never overflows.
+    /// The local ray, by tan e = sinh Y; it is divided by cosh Y, so that it never overflows.
     template <class T>
     static Ray<T> ray(const Point<T>& p, const Setting& s) {
         T sa, ca, se;

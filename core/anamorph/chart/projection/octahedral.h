@@ -21,7 +21,7 @@ struct Octahedral : AnyProjection {
     static T sees(const Ray<T>& r, const Setting& s) {
         return min(T(r.x * (s.centre_x < 0 ? -1.0 : 1.0)), T(r.y * (s.centre_y < 0 ? -1.0 : 1.0)));
     }
-    /// The diamond's edges.
+    /// The formulas have creases at the diamond's edges.
     template <class T>
     static T plane_crease(const Point<T>& p) {
         return 1.0 - (max(p.x, T(-p.x)) + max(p.y, T(-p.y)));

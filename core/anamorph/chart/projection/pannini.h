@@ -5,8 +5,8 @@
 struct Pannini : AnyProjection {
     static constexpr FieldOfView fov{180, 360, true};
 
-    /// cos a stays above this: nearer to the back the picture turns round (d > 1) or its scale has no end. Where it is -1 / d it
-    /// is rounded towards 0: near -1 an angle changes by many times what its cosine does.
+    /// The lower limit of cos a: nearer to the back the picture turns round (d > 1) or its scale has no end. Where it is -1 / d
+    /// it is rounded towards 0: near -1 an angle changes by many times what its cosine does.
     static double least_cosine(const Setting& s) {
         const double d = s.distance.d;
         if (d <= 1) return -d;
@@ -18,14 +18,15 @@ struct Pannini : AnyProjection {
         constexpr double kBelow = 1 - 8 * 0x1p-52;
         return std::min(most.most, 2 * std::acos(least_cosine(s)) * 180 / std::numbers::pi * kBelow);
     }
-    /// By t = tan(a / 2): sin a / (d + cos a) = 2 t / ((d + 1) + (d - 1) t^2), which cancels for d < 1 only.
+    /// The width, by t = tan(a / 2): sin a / (d + cos a) = 2 t / ((d + 1) + (d - 1) t^2), which cancels for d < 1 only.
     static long double width(long double degrees, const Setting& s) {
         const long double t = tan_of(degrees / 4);
         return 4 * (s.distance.d + 1.0L) * t / (s.distance.d + 1.0L + (s.distance.d - 1.0L) * t * t);
     }
-    /// t is off by 14 units (AnyProjection::width_units), 4 (d + 1) t by 16. Of the sum below, d + 1 is off by 1, (d - 1) t^2 by
-    /// 14 twice and 3 more, 31, and the sum itself by 1: all of it by 32 times its terms' magnitudes. With the quotient, and 4
-    /// for what is made of the width, that is 21 units and 32 times the magnitudes over the sum, which are at least 1.
+    /// The error as in AnyProjection::width_units: t is off by 14 units, 4 (d + 1) t by 16. Of the sum below, d + 1 is off by
+    /// 1, (d - 1) t^2 by 14 twice and 3 more, 31, and the sum itself by 1: all of it by 32 times its terms' magnitudes. With
+    /// the quotient, and 4 for what is computed from the width, that is 21 units and 32 times the magnitudes over the sum,
+    /// which are at least 1.
     static double width_units(long double degrees, const Setting& s) {
         const long double t = tan_of(degrees / 4), falling = (s.distance.d - 1.0L) * t * t;
         return 56 * static_cast<double>((s.distance.d + 1.0L + std::fabs(falling)) /
@@ -35,7 +36,7 @@ struct Pannini : AnyProjection {
         return std::max(half_width, half_height);
     }
 
-    /// Of d > 1, a picture ends where the cylinder's far side begins: X^2 (d^2 - 1) = (d + 1)^2.
+    /// For d > 1 a picture ends where the cylinder's far side begins: X^2 (d^2 - 1) = (d + 1)^2.
     template <class T>
     static T inside(const Point<T>& p, const Setting& s) {
         const double k = (s.distance.d - 1) / (s.distance.d + 1);
@@ -47,7 +48,7 @@ struct Pannini : AnyProjection {
         return min(min(T(r.z - rho * least_cosine(s)), min(T(far - r.x), T(far + r.x))),
                    min(T(far - r.y), T(far + r.y)));
     }
-    /// With k = X^2 / (d + 1)^2: (k + 1) cos a = sqrt(1 + k - k d^2) - k d, from X (d + cos a) = (d + 1) sin a.
+    /// The local ray, with k = X^2 / (d + 1)^2: (k + 1) cos a = sqrt(1 + k - k d^2) - k d, from X (d + cos a) = (d + 1) sin a.
     template <class T>
     static Ray<T> ray(const Point<T>& p, const Setting& s) {
         const auto per_sum = s.distance.per_sum.as<T>();

@@ -6,7 +6,7 @@ struct Sinusoidal : CylinderFamily {
 
     static double aspect(double fov) { return std::min(fov, 180.0) / fov; }
 
-    /// Up to half the picture's width times cos(elevation), and no further than the poles.
+    /// A point has a ray up to half the picture's width times cos(elevation), and no further than the poles.
     template <class T>
     static T inside(const Point<T>& p, const Setting& s) {
         constexpr double kQuarter = std::numbers::pi / 2;

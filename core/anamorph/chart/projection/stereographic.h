@@ -6,7 +6,7 @@ struct Stereographic : AxisFamily {
 
     static long double width(long double degrees, const Setting&) { return 4 * tan_of(degrees / 4); }
 
-    /// (sin t, cos t) (1 + r^2 / 4) = (r, 1 - r^2 / 4).
+    /// The local ray, by (sin t, cos t) (1 + r^2 / 4) = (r, 1 - r^2 / 4).
     template <class T>
     static Ray<T> ray(const Point<T>& p, const Setting&) {
         return {p.x, p.y, 1.0 - (square(p.x) + square(p.y)) * 0.25};
