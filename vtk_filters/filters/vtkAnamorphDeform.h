@@ -61,7 +61,7 @@ class ANAMORPHFILTERS_EXPORT vtkAnamorphDeform : public vtkPassInputTypeAlgorith
 
     ///@{
     /**
-     * The list, as vtkAnamorphDeformationList has it. Another object may be set, to be shared with another
+     * The list of deformations. Another object may be set, to be shared with another
      * filter or a transform.
      */
     void SetDeformationList(vtkAnamorphDeformationList* list);
@@ -84,8 +84,8 @@ class ANAMORPHFILTERS_EXPORT vtkAnamorphDeform : public vtkPassInputTypeAlgorith
 
     ///@{
     /**
-     * For hosts of tables and files: the list's numbers, nine components each; the list taken from a file or
-     * written to one (by rank 0). No name, nothing. Return 1, or 0 after an error.
+     * For hosts of tables and files: the list's numbers, nine components each; the list read from a file, or
+     * written to one (by rank 0). Without a name they do nothing. They return 1, or 0 after an error.
      */
     vtkDoubleArray* GetAllDeformations();
     int ReadDeformations(const char* name);
@@ -109,10 +109,10 @@ class ANAMORPHFILTERS_EXPORT vtkAnamorphDeform : public vtkPassInputTypeAlgorith
 
     ///@{
     /**
-     * What is added to x, y and z of a point, as text: formulas of u and v, the parameters in which the
+     * The formulas, as text, of what is added to x, y and z of a point: of u and v, the parameters in which the
      * centres of bumps are given, and of frame, which is Frame; formula/formula_text.h says how they are
-     * written. Empty, the default, is 0. FormulaDefinitions makes names for all three, as in k=0.3;c=cos(k);
-     * it is not read while all three are empty.
+     * written. An empty formula, the default, is 0. FormulaDefinitions defines names for all three, as in
+     * k=0.3;c=cos(k); it is not read while all three are empty.
      */
     void SetFormulaX(const char* text) { this->SetText(this->FormulaX, text); }
     const char* GetFormulaX() { return this->FormulaX.c_str(); }
@@ -126,7 +126,7 @@ class ANAMORPHFILTERS_EXPORT vtkAnamorphDeform : public vtkPassInputTypeAlgorith
 
     ///@{
     /**
-     * The number that frame is in the formulas, finite. Default: 0.
+     * The value of frame in the formulas, finite. Default: 0.
      */
     vtkSetMacro(Frame, double);
     vtkGetMacro(Frame, double);
@@ -135,7 +135,7 @@ class ANAMORPHFILTERS_EXPORT vtkAnamorphDeform : public vtkPassInputTypeAlgorith
     enum ParameterModes { PLANE = 0, TEXTURE_COORDINATES = 1 };
     ///@{
     /**
-     * What the parameters of a point are. Default: PLANE.
+     * The source of the parameters of a point. Default: PLANE.
      */
     vtkSetClampMacro(ParameterMode, int, PLANE, TEXTURE_COORDINATES);
     vtkGetMacro(ParameterMode, int);
@@ -145,8 +145,8 @@ class ANAMORPHFILTERS_EXPORT vtkAnamorphDeform : public vtkPassInputTypeAlgorith
 
     ///@{
     /**
-     * Whether the plane is taken from the bounds of the data. Default: on. It cannot be where pieces of the
-     * data are streamed through one process.
+     * Whether the plane is taken from the bounds of the data, which is not possible where pieces of the data
+     * are streamed through one process. Default: on.
      */
     vtkSetMacro(AutomaticPlane, bool);
     vtkGetMacro(AutomaticPlane, bool);
@@ -155,8 +155,8 @@ class ANAMORPHFILTERS_EXPORT vtkAnamorphDeform : public vtkPassInputTypeAlgorith
 
     ///@{
     /**
-     * The plane, if it is not automatic. Axes are any two that are not parallel; one Axis1 is 1 in u, one
-     * Axis2 is 1 in v. Defaults: (0, 0, 0), (1, 0, 0), (0, 1, 0).
+     * The plane, if it is not automatic. The axes are any two vectors that are not parallel; a step of Axis1 is 1
+     * in u, a step of Axis2 is 1 in v. Defaults: (0, 0, 0), (1, 0, 0), (0, 1, 0).
      */
     vtkSetVector3Macro(Origin, double);
     vtkGetVector3Macro(Origin, double);
@@ -168,8 +168,8 @@ class ANAMORPHFILTERS_EXPORT vtkAnamorphDeform : public vtkPassInputTypeAlgorith
 
     ///@{
     /**
-     * The plane of the last execution. FreezePlane() makes it that of the next ones too: it sets Origin,
-     * Axis1 and Axis2 to it, and AutomaticPlane off.
+     * The plane of the last execution. FreezePlane() keeps it for the next ones: it sets Origin, Axis1 and
+     * Axis2 to it, and AutomaticPlane off.
      */
     void FreezePlane();
     vtkGetVector3Macro(UsedOrigin, double);
@@ -179,7 +179,7 @@ class ANAMORPHFILTERS_EXPORT vtkAnamorphDeform : public vtkPassInputTypeAlgorith
 
     ///@{
     /**
-     * Gaussians are cut off where they are below this, from 0 (nowhere) to 0.5. Default: 1e-7.
+     * The value below which Gaussians are cut off, from 0 (nowhere) to 0.5. Default: 1e-7.
      */
     vtkSetMacro(Cutoff, double);
     vtkGetMacro(Cutoff, double);
@@ -216,7 +216,8 @@ class ANAMORPHFILTERS_EXPORT vtkAnamorphDeform : public vtkPassInputTypeAlgorith
     ///@{
     /**
      * The type of points, normals and displacements: vtkAlgorithm::SINGLE_PRECISION, DOUBLE_PRECISION, or
-     * DEFAULT_PRECISION: that of the input's points, and double for whole numbers. Default: the last.
+     * DEFAULT_PRECISION: that of the input's points, and double for whole numbers. Default:
+     * DEFAULT_PRECISION.
      */
     vtkSetClampMacro(OutputPointsPrecision, int, SINGLE_PRECISION, DEFAULT_PRECISION);
     vtkGetMacro(OutputPointsPrecision, int);
@@ -224,8 +225,8 @@ class ANAMORPHFILTERS_EXPORT vtkAnamorphDeform : public vtkPassInputTypeAlgorith
 
     ///@{
     /**
-     * Finds the automatic plane of all ranks and the tables of deformations they have. Every rank has to
-     * execute then. Default: the global controller; may be null.
+     * The controller by which all ranks find one automatic plane and each other's tables of deformations. Every
+     * rank has to execute then. Default: the global controller; may be null.
      */
     void SetController(vtkMultiProcessController* controller);
     vtkMultiProcessController* GetController();
@@ -233,8 +234,9 @@ class ANAMORPHFILTERS_EXPORT vtkAnamorphDeform : public vtkPassInputTypeAlgorith
 
     ///@{
     /**
-     * Of the last execution: how far a component of the displacement can be from eq. (4.1) plus the formula,
-     * in any data set of this rank; how many points were computed; and at how many the formula has no value.
+     * Numbers of the last execution: how far a component of the displacement can be from eq. (4.1) plus the
+     * formula, in any data set of this rank; how many points were computed; and at how many the formula has no
+     * value.
      */
     vtkGetMacro(ErrorBound, double);
     vtkGetMacro(NumberOfPointsComputed, vtkIdType);

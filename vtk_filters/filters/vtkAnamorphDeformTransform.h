@@ -33,7 +33,7 @@ class ANAMORPHFILTERS_EXPORT vtkAnamorphDeformTransform : public vtkWarpTransfor
 
     ///@{
     /**
-     * The list; one of its own until another is set.
+     * The list of deformations; one of the transform's own until another is set.
      */
     void SetDeformationList(vtkAnamorphDeformationList* list);
     vtkAnamorphDeformationList* GetDeformationList();
@@ -41,8 +41,8 @@ class ANAMORPHFILTERS_EXPORT vtkAnamorphDeformTransform : public vtkWarpTransfor
 
     ///@{
     /**
-     * The plane of the parameters. One Axis1 is 1 in u, one Axis2 is 1 in v. Defaults: (0, 0, 0), (1, 0, 0),
-     * (0, 1, 0).
+     * The plane of the parameters. A step of Axis1 is 1 in u, a step of Axis2 is 1 in v. Defaults: (0, 0, 0),
+     * (1, 0, 0), (0, 1, 0).
      */
     vtkSetVector3Macro(Origin, double);
     vtkGetVector3Macro(Origin, double);
@@ -59,11 +59,11 @@ class ANAMORPHFILTERS_EXPORT vtkAnamorphDeformTransform : public vtkWarpTransfor
      */
     int GetFold();
     /**
-     * The parameters of such a place, after GetFold() has said FOLD.
+     * The parameters of a place where the map folds, after GetFold() has returned FOLD.
      */
     vtkGetVector2Macro(FoldParameters, double);
     /**
-     * For how many points, since the transform was last changed, no inverse was found.
+     * The number of points, since the transform was last changed, for which no inverse was found.
      */
     vtkIdType GetNumberOfFailures();
 

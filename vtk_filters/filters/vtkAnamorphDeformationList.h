@@ -37,7 +37,7 @@ class ANAMORPHFILTERS_EXPORT vtkAnamorphDeformationList : public vtkObject {
 
     ///@{
     /**
-     * How many deformations there are: from 0 to 2^20. New ones move nothing.
+     * The number of deformations, from 0 to 2^20. New ones move nothing.
      */
     void SetNumberOfDeformations(int number);
     int GetNumberOfDeformations();
@@ -45,9 +45,9 @@ class ANAMORPHFILTERS_EXPORT vtkAnamorphDeformationList : public vtkObject {
 
     ///@{
     /**
-     * Edits. Positions count from 0; one that is not in the list is an error, and changes nothing.
-     * AddDeformation returns the position of the new one. After MoveDeformation what stood at `from` stands
-     * at `to`.
+     * Edits of the list. Positions count from 0; a position that is not in the list is an error, and changes
+     * nothing. AddDeformation returns the position of the new deformation. MoveDeformation moves the one at
+     * `from` to `to`.
      */
     int AddDeformation(double center_u, double center_v, double extent_u, double extent_v, double x, double y,
                        double z, double kernel = 0, double enabled = 1);
@@ -64,7 +64,7 @@ class ANAMORPHFILTERS_EXPORT vtkAnamorphDeformationList : public vtkObject {
 
     ///@{
     /**
-     * The nine numbers of a deformation. The pointer holds until the next call.
+     * The nine numbers of a deformation. The pointer is valid until the next call.
      */
     void GetDeformation(int position, double numbers[9]);
     double* GetDeformation(int position) VTK_SIZEHINT(9);
@@ -72,8 +72,8 @@ class ANAMORPHFILTERS_EXPORT vtkAnamorphDeformationList : public vtkObject {
 
     ///@{
     /**
-     * The list as a file, CSV if its name ends in .csv, else JSON. What is written reads back to the bit.
-     * Return 1, or 0 after an error; reading then leaves the list as it is.
+     * Read and write the list as a file, CSV if its name ends in .csv, else JSON. A file that is written reads
+     * back to the bit. Return 1, or 0 after an error; reading then leaves the list as it is.
      */
     int ReadFile(const char* name);
     int WriteFile(const char* name);
@@ -81,8 +81,8 @@ class ANAMORPHFILTERS_EXPORT vtkAnamorphDeformationList : public vtkObject {
 
     ///@{
     /**
-     * The list as a table with the columns named above; kernel (a number, or gaussian or wendland_c2) and
-     * enabled may be missing. Return 1, or 0 after an error, which leaves the list as it is.
+     * Read and write the list as a table with the columns named above; kernel (a number, or gaussian or wendland_c2)
+     * and enabled may be missing. ReadTable returns 1, or 0 after an error, which leaves the list as it is.
      */
     int ReadTable(vtkTable* table);
     void WriteTable(vtkTable* table);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 /**
  * @class   vtkAnamorphFigureAlgorithm
- * @brief   What filters of figures that depend on a view have in common: the view.
+ * @brief   The base class of filters of figures that depend on a view.
  *
  * The input is that of vtkAnamorphFigureReader, or any vtkPolyData with the arrays Axes and Orientation. A
  * point with a number that is not finite, or that is hidden (blanked), makes nothing; cells of a ghost point
@@ -33,8 +33,8 @@ class ANAMORPHFILTERS_EXPORT vtkAnamorphFigureAlgorithm : public vtkPolyDataAlgo
 
     ///@{
     /**
-     * SCRIPT, the default: as NUDES shows the figures, orthographically, a window of 1000 units that is as
-     * high as ViewSize; the input's field data says where it is. CAMERA: as the camera below.
+     * How the figures are viewed. SCRIPT, the default: as NUDES shows them, orthographically, a window of 1000
+     * units that is as high as ViewSize; the input's field data says where it is. CAMERA: as the camera below.
      */
     vtkSetClampMacro(ViewMode, int, SCRIPT, CAMERA);
     vtkGetMacro(ViewMode, int);
@@ -58,10 +58,10 @@ class ANAMORPHFILTERS_EXPORT vtkAnamorphFigureAlgorithm : public vtkPolyDataAlgo
     vtkSetMacro(CameraParallelProjection, bool);
     vtkGetMacro(CameraParallelProjection, bool);
     vtkBooleanMacro(CameraParallelProjection, bool);
-    /** Half the height of the view, in units; of parallel projection. */
+    /** Half the height of a view in parallel projection, in units. */
     vtkSetMacro(CameraParallelScale, double);
     vtkGetMacro(CameraParallelScale, double);
-    /** The angle of the view from its bottom to its top, degrees; of perspective. */
+    /** The angle of a view in perspective from its bottom to its top, in degrees. */
     vtkSetMacro(CameraViewAngle, double);
     vtkGetMacro(CameraViewAngle, double);
     ///@}
@@ -70,10 +70,10 @@ class ANAMORPHFILTERS_EXPORT vtkAnamorphFigureAlgorithm : public vtkPolyDataAlgo
     vtkAnamorphFigureAlgorithm();
     ~vtkAnamorphFigureAlgorithm() override;
 
-    /// The view of these ellipsoids. Throws anamorph::Error naming the property that is out of its range.
+    /// The view of the input's ellipsoids. Throws anamorph::Error naming the property that is out of its range.
     anamorph::figure::View ViewOf(vtkPolyData* figures) const;
-    /// Writes the output, which is of the type that the filter says. What it throws becomes an error message and
-    /// an empty output.
+    /// Writes the output, which is of the type that the filter says. An exception becomes an error message and an empty
+    /// output.
     virtual void Draw(vtkPolyData* input, vtkDataObject* output, anamorph_vtk::Execution& execution) = 0;
 
     int RequestData(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;

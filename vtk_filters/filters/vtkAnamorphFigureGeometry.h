@@ -38,14 +38,14 @@ class ANAMORPHFILTERS_EXPORT vtkAnamorphFigureGeometry : public vtkAnamorphFigur
     enum { UNITS, PIXELS };
 
     ///@{
-    /** UNITS of the scene, the default, or PIXELS of the view. */
+    /** The unit of the tolerance: UNITS of the scene, the default, or PIXELS of the view. */
     vtkSetClampMacro(ToleranceMode, int, UNITS, PIXELS);
     vtkGetMacro(ToleranceMode, int);
     ///@}
 
     ///@{
     /**
-     * Maximum distance of a surface from its ellipsoid; positive. The default is 0.25. More than 4,194,304
+     * The maximum distance of a surface from its ellipsoid; positive. The default is 0.25. More than 4,194,304
      * triangles are refused, which is some 0.8 GB; the message says which tolerance needs no more.
      */
     vtkSetMacro(Tolerance, double);
@@ -53,7 +53,7 @@ class ANAMORPHFILTERS_EXPORT vtkAnamorphFigureGeometry : public vtkAnamorphFigur
     ///@}
 
     ///@{
-    /** vtkAlgorithm::SINGLE_PRECISION (the default) or DOUBLE_PRECISION, of points. */
+    /** The precision of points: vtkAlgorithm::SINGLE_PRECISION (the default) or DOUBLE_PRECISION. */
     vtkSetClampMacro(OutputPointsPrecision, int, SINGLE_PRECISION, DOUBLE_PRECISION);
     vtkGetMacro(OutputPointsPrecision, int);
     ///@}

@@ -40,7 +40,7 @@ class ANAMORPHFILTERS_EXPORT vtkAnamorphFigureImage : public vtkAnamorphFigureAl
     vtkTypeMacro(vtkAnamorphFigureImage, vtkAnamorphFigureAlgorithm);
     void PrintSelf(ostream& os, vtkIndent indent) override;
 
-    /** The image. */
+    /** The image that is the output. */
     vtkImageData* GetOutput();
 
     /** The values of Style. */
@@ -49,7 +49,7 @@ class ANAMORPHFILTERS_EXPORT vtkAnamorphFigureImage : public vtkAnamorphFigureAl
     enum { RASEL, LAMBERT, BLINN };
 
     ///@{
-    /** What is drawn. SHADED by default. */
+    /** The style in which figures are drawn. SHADED by default. */
     vtkSetClampMacro(Style, int, SHADED, BODY_ID);
     vtkGetMacro(Style, int);
     ///@}
@@ -65,8 +65,8 @@ class ANAMORPHFILTERS_EXPORT vtkAnamorphFigureImage : public vtkAnamorphFigureAl
 
     ///@{
     /**
-     * Textures of the style SHADED, by their names: images of a slice whose scalars are 1 to 4 components of unsigned
-     * char, unsigned short or float, the last of 2 and of 4 alpha, the colors multiplied by it.
+     * Textures of the style SHADED, by their names: images of one slice whose scalars are 1 to 4 components of unsigned
+     * char, unsigned short or float; of 2 and of 4 the last one is alpha, by which the colors are multiplied.
      */
     void AddTexture(const char* name, vtkImageData* image);
     void RemoveAllTextures();
@@ -76,13 +76,13 @@ class ANAMORPHFILTERS_EXPORT vtkAnamorphFigureImage : public vtkAnamorphFigureAl
     enum { LATLONG, MIRRORED, LINEAR, OCTAHEDRAL };
 
     ///@{
-    /** How textures lie on bodies, as of vtkAnamorphEllipsoidMapper. LATLONG by default. */
+    /** How textures are mapped onto bodies (vtkAnamorphEllipsoidMapper::SetTextureMapping). LATLONG by default. */
     vtkSetClampMacro(TextureMapping, int, LATLONG, OCTAHEDRAL);
     vtkGetMacro(TextureMapping, int);
     ///@}
 
     ///@{
-    /** Whether colors are means over pixels. On by default; off: those in the middle of each. */
+    /** Whether colors are means over pixels. On by default; off: colors are those in the middles of pixels. */
     vtkSetMacro(Antialias, bool);
     vtkGetMacro(Antialias, bool);
     vtkBooleanMacro(Antialias, bool);

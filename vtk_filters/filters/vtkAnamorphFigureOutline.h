@@ -27,8 +27,8 @@ class ANAMORPHFILTERS_EXPORT vtkAnamorphFigureOutline : public vtkAnamorphFigure
 
     ///@{
     /**
-     * REMOVED, the default: hidden arcs are not in the output. KEPT: they are, and Visible tells them apart.
-     * TRANSPARENT: nothing hides anything.
+     * How hidden arcs are treated. REMOVED, the default: they are not in the output. KEPT: they are, and Visible tells
+     * them apart. TRANSPARENT: nothing hides anything.
      */
     vtkSetClampMacro(Hidden, int, REMOVED, TRANSPARENT);
     vtkGetMacro(Hidden, int);
@@ -43,8 +43,8 @@ class ANAMORPHFILTERS_EXPORT vtkAnamorphFigureOutline : public vtkAnamorphFigure
 
     ///@{
     /**
-     * Lead the outline of a body over to that of its neighbour at a joint along their common tangents, and
-     * leave out what of both is between these. Joints are those of the field data. Off by default.
+     * Whether the outline of a body is connected to that of its neighbour at a joint along their common tangents, and
+     * the arcs of both between these are left out. Joints are those of the field data. Off by default.
      */
     vtkSetMacro(Connected, bool);
     vtkGetMacro(Connected, bool);
@@ -52,13 +52,13 @@ class ANAMORPHFILTERS_EXPORT vtkAnamorphFigureOutline : public vtkAnamorphFigure
     ///@}
 
     ///@{
-    /** Maximum chord error, in pixels of the view; positive. The default is 0.1. */
+    /** The maximum chord error, in pixels of the view; positive. The default is 0.1. */
     vtkSetMacro(Tolerance, double);
     vtkGetMacro(Tolerance, double);
     ///@}
 
     ///@{
-    /** vtkAlgorithm::SINGLE_PRECISION or DOUBLE_PRECISION (the default), of points. */
+    /** The precision of points: vtkAlgorithm::SINGLE_PRECISION or DOUBLE_PRECISION (the default). */
     vtkSetClampMacro(OutputPointsPrecision, int, SINGLE_PRECISION, DOUBLE_PRECISION);
     vtkGetMacro(OutputPointsPrecision, int);
     ///@}

@@ -51,13 +51,13 @@ class ANAMORPHFILTERS_EXPORT vtkAnamorphFigureReader : public vtkPolyDataAlgorit
     const char* GetFileName() { return this->FileName.c_str(); }
     ///@}
 
-    /** 1 if the file is a motion, or a text that can be read as a script (with errors, if it declares
-     * ellipsoids). */
+    /** Returns 1 if the file is a motion, or a text that can be read as a script (with errors, if it declares
+    * ellipsoids). */
     virtual int CanReadFile(const char* name);
 
     ///@{
     /**
-     * CLASSIC, the default: as the programs of 2003 ran scripts. STRICT: as the language is documented; more
+     * How scripts are read. CLASSIC, the default: as the programs of 2003 ran them. STRICT: as the language is documented; more
      * faults are errors, limits of joints hold, `ground` ends grounded.
      */
     vtkSetClampMacro(Dialect, int, CLASSIC, STRICT);
@@ -83,7 +83,7 @@ class ANAMORPHFILTERS_EXPORT vtkAnamorphFigureReader : public vtkPolyDataAlgorit
     ///@}
 
     ///@{
-    /** vtkAlgorithm::SINGLE_PRECISION or DOUBLE_PRECISION (the default). */
+    /** The precision of points: vtkAlgorithm::SINGLE_PRECISION or DOUBLE_PRECISION (the default). */
     vtkSetClampMacro(OutputPointsPrecision, int, SINGLE_PRECISION, DOUBLE_PRECISION);
     vtkGetMacro(OutputPointsPrecision, int);
     ///@}
@@ -107,7 +107,7 @@ class ANAMORPHFILTERS_EXPORT vtkAnamorphFigureReader : public vtkPolyDataAlgorit
     std::vector<std::string> Libraries;
     bool Joints = false;
     int OutputPointsPrecision = DOUBLE_PRECISION;
-    std::unique_ptr<Play> Current;  ///< of the script as it was read last
+    std::unique_ptr<Play> Current;  ///< the performance of the script as it was read last
 };
 
 #endif

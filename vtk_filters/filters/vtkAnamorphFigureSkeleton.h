@@ -29,11 +29,11 @@ class ANAMORPHFILTERS_EXPORT vtkAnamorphFigureSkeleton : public vtkAnamorphFigur
 
     /** The values of Mode. */
     enum { AXES, JOINTS, SPHERES };
-    /** Numbers in the array Detail. */
+    /** The values of the array Detail. */
     enum { NONE, DOT, LINE, ELLIPSE, BODY };
 
     ///@{
-    /** AXES is the default. */
+    /** What figures are drawn as. AXES is the default. */
     vtkSetClampMacro(Mode, int, AXES, SPHERES);
     vtkGetMacro(Mode, int);
     ///@}
@@ -45,13 +45,13 @@ class ANAMORPHFILTERS_EXPORT vtkAnamorphFigureSkeleton : public vtkAnamorphFigur
     ///@}
 
     ///@{
-    /** Maximum distance of the surface from the spheres, in units; positive. The default is 1. */
+    /** The maximum distance of the surface from the spheres, in units; positive. The default is 1. */
     vtkSetMacro(Tolerance, double);
     vtkGetMacro(Tolerance, double);
     ///@}
 
     ///@{
-    /** vtkAlgorithm::SINGLE_PRECISION or DOUBLE_PRECISION (the default), of points. */
+    /** The precision of points: vtkAlgorithm::SINGLE_PRECISION or DOUBLE_PRECISION (the default). */
     vtkSetClampMacro(OutputPointsPrecision, int, SINGLE_PRECISION, DOUBLE_PRECISION);
     vtkGetMacro(OutputPointsPrecision, int);
     ///@}

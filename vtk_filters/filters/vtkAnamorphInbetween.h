@@ -49,7 +49,7 @@ class ANAMORPHFILTERS_EXPORT vtkAnamorphInbetween : public vtkPassInputTypeAlgor
     enum NormalsModes { DROP_NORMALS = 0, RENORMALIZE_NORMALS = 1 };
 
     ///@{
-    /** What the weights mean. WEIGHTED_SUM is the default. */
+    /** How the weights are applied. WEIGHTED_SUM is the default. */
     vtkSetClampMacro(Mode, int, WEIGHTED_SUM, DELTAS);
     vtkGetMacro(Mode, int);
     void SetModeToWeightedSum() { this->SetMode(WEIGHTED_SUM); }
@@ -73,12 +73,12 @@ class ANAMORPHFILTERS_EXPORT vtkAnamorphInbetween : public vtkPassInputTypeAlgor
     void SetNumberOfWeights(int count);
     int GetNumberOfWeights() { return static_cast<int>(this->Weights.size()); }
     void SetWeight(int index, double weight);
-    /** 0 where there is none. */
+    /** The weight of the input `index`; 0 where none is set. */
     double GetWeight(int index);
     ///@}
 
     ///@{
-    /** Divide weights by their sum (mode WEIGHTED_SUM only). Off by default: a sum other than 1 is an error.
+    /** Whether weights are divided by their sum (mode WEIGHTED_SUM only). Off by default: a sum other than 1 is an error.
      */
     vtkSetMacro(NormalizeWeights, bool);
     vtkGetMacro(NormalizeWeights, bool);
@@ -97,13 +97,12 @@ class ANAMORPHFILTERS_EXPORT vtkAnamorphInbetween : public vtkPassInputTypeAlgor
     ///@}
 
     ///@{
-    /** Keys: the weight of an input at a time. Those with the same time make a key frame. Any order. */
+    /** Keys: the weight of an input at a time, in any order. Keys with the same time make a key frame. */
     void SetNumberOfKeys(int count);
     int GetNumberOfKeys() { return static_cast<int>(this->Keys.size()); }
     void SetKey(int index, double time, int input, double weight);
     void AddKey(double time, int input, double weight);
-    /** SetKey with a row of a table of numbers. An input that is not an integer becomes -1, which no input
-     * has. */
+    /** Sets a key from a row of a table of numbers. An input that is not an integer becomes -1, which no input has. */
     void SetKeyNumbers(int index, double time, double input, double weight);
     void ClearKeys() { this->SetNumberOfKeys(0); }
     double GetKeyTime(int index);
@@ -112,14 +111,14 @@ class ANAMORPHFILTERS_EXPORT vtkAnamorphInbetween : public vtkPassInputTypeAlgor
     ///@}
 
     ///@{
-    /** Between key frames. LINEAR is the default. */
+    /** The interpolation between key frames. LINEAR is the default. */
     vtkSetClampMacro(Interpolation, int, STEP, MONOTONE_CUBIC);
     vtkGetMacro(Interpolation, int);
     ///@}
 
     ///@{
     /**
-     * What becomes of the arrays that are marked as normals: dropped, or blended and made unit length again
+     * How arrays that are marked as normals are treated: dropped, or blended and made unit length again
      * (the default). The latter is not the normal of the blended surface, only near to it; a filter that
      * computes normals from the points gives that. Normals that not all inputs have are dropped.
      */
@@ -129,8 +128,8 @@ class ANAMORPHFILTERS_EXPORT vtkAnamorphInbetween : public vtkPassInputTypeAlgor
 
     ///@{
     /**
-     * vtkAlgorithm::SINGLE_PRECISION, DOUBLE_PRECISION or DEFAULT_PRECISION: float if the points of all
-     * inputs are float, else double.
+     * The precision of points: vtkAlgorithm::SINGLE_PRECISION, DOUBLE_PRECISION or DEFAULT_PRECISION: float if
+     * the points of all inputs are float, else double.
      */
     vtkSetClampMacro(OutputPointsPrecision, int, SINGLE_PRECISION, DEFAULT_PRECISION);
     vtkGetMacro(OutputPointsPrecision, int);
@@ -171,7 +170,7 @@ class ANAMORPHFILTERS_EXPORT vtkAnamorphInbetween : public vtkPassInputTypeAlgor
     int Normals = RENORMALIZE_NORMALS;
     int OutputPointsPrecision = DEFAULT_PRECISION;
 
-    /// Pairs of data sets, with their modification times, whose topology was found to be the same.
+    /// The pairs of data sets, with their modification times, whose topology was found to be the same.
     using Pair = std::tuple<vtkDataObject*, vtkMTimeType, vtkDataObject*, vtkMTimeType>;
     std::set<Pair> SameTopology;
     void CheckTopology(const std::vector<vtkPointSet*>& surfaces, const std::string& part,

@@ -34,7 +34,8 @@ class ANAMORPHFILTERS_EXPORT vtkAnamorphPanoramaView : public vtkImageAlgorithm 
 
     ///@{
     /**
-     * Degrees that its width covers, or each of its faces; 0: what its projection has by default. Default: 0.
+     * The horizontal field of view of the panorama, or of each of its faces, in degrees; 0: the projection's default.
+     * Default: 0.
      */
     vtkSetMacro(FieldOfView, double);
     vtkGetMacro(FieldOfView, double);
@@ -42,7 +43,7 @@ class ANAMORPHFILTERS_EXPORT vtkAnamorphPanoramaView : public vtkImageAlgorithm 
 
     ///@{
     /**
-     * The distance d of Pannini's projection, which others do not read. Default: 1.
+     * The distance d of the Pannini projection, which other projections do not read. Default: 1.
      */
     vtkSetMacro(PanniniDistance, double);
     vtkGetMacro(PanniniDistance, double);
@@ -50,7 +51,7 @@ class ANAMORPHFILTERS_EXPORT vtkAnamorphPanoramaView : public vtkImageAlgorithm 
 
     ///@{
     /**
-     * Distortion of the lens that the panorama was taken through: MODEL:name=value,name=value with ptlens, brown, 3de4 or
+     * The distortion of the lens that the panorama was taken through: MODEL:name=value,name=value with ptlens, brown, 3de4 or
      * kb4. Default: none.
      */
     vtkSetStringMacro(Lens);
@@ -59,8 +60,8 @@ class ANAMORPHFILTERS_EXPORT vtkAnamorphPanoramaView : public vtkImageAlgorithm 
 
     ///@{
     /**
-     * Where the camera looks, in degrees: to the right of the panorama's middle, up, and turned clockwise; it is rolled first,
-     * then pitched, then turned. Default: 0.
+     * The orientation of the camera, in degrees: yaw to the right of the panorama's middle, pitch up, roll clockwise; it is
+     * rolled first, then pitched, then turned. Default: 0.
      */
     vtkSetMacro(Yaw, double);
     vtkGetMacro(Yaw, double);
@@ -72,7 +73,7 @@ class ANAMORPHFILTERS_EXPORT vtkAnamorphPanoramaView : public vtkImageAlgorithm 
 
     ///@{
     /**
-     * Degrees that the view's width covers, 0.01 to 179. Default: 90.
+     * The horizontal field of view of the view, 0.01 to 179 degrees. Default: 90.
      */
     vtkSetClampMacro(ViewAngle, double, 0.01, 179);
     vtkGetMacro(ViewAngle, double);
@@ -80,7 +81,7 @@ class ANAMORPHFILTERS_EXPORT vtkAnamorphPanoramaView : public vtkImageAlgorithm 
 
     ///@{
     /**
-     * Pixels of the view, each from 1 to 65536. Default: 500 x 500.
+     * The width and height of the view in pixels, each from 1 to 65536. Default: 500 x 500.
      */
     vtkSetVector2Macro(ViewSize, int);
     vtkGetVector2Macro(ViewSize, int);
@@ -88,14 +89,14 @@ class ANAMORPHFILTERS_EXPORT vtkAnamorphPanoramaView : public vtkImageAlgorithm 
 
     ///@{
     /**
-     * How far the texel that a pixel shows may be from the exact one, in texels, up to 1e6; 0: not at all. Default: 0.01.
+     * The largest distance of the texel that a pixel shows from the exact one, in texels, up to 1e6; 0: exact. Default: 0.01.
      */
     vtkSetClampMacro(Tolerance, double, 0, 1e6);
     vtkGetMacro(Tolerance, double);
     ///@}
 
     /**
-     * The largest bound of that in the view that was drawn last.
+     * The largest proven bound of that distance in the view that was drawn last, in texels.
      */
     vtkGetMacro(MaxError, double);
 

@@ -57,7 +57,7 @@ class ANAMORPHFILTERS_EXPORT vtkAnamorphProjectionBake : public vtkImageAlgorith
 
     ///@{
     /**
-     * Degrees that a panorama's width covers, or each of its faces; 0: what its projection has by default. Default: 0.
+     * The horizontal field of view of a panorama, or of each of its faces, in degrees; 0: the projection's default. Default: 0.
      */
     vtkSetMacro(FieldOfView, double);
     vtkGetMacro(FieldOfView, double);
@@ -65,7 +65,7 @@ class ANAMORPHFILTERS_EXPORT vtkAnamorphProjectionBake : public vtkImageAlgorith
 
     ///@{
     /**
-     * The distance d of Pannini's projection, which others do not read. Default: 1.
+     * The distance d of the Pannini projection, which other projections do not read. Default: 1.
      */
     vtkSetMacro(PanniniDistance, double);
     vtkGetMacro(PanniniDistance, double);
@@ -73,7 +73,7 @@ class ANAMORPHFILTERS_EXPORT vtkAnamorphProjectionBake : public vtkImageAlgorith
 
     ///@{
     /**
-     * Distortion of the lens that the panoramas were taken through: MODEL:name=value,name=value with ptlens, brown, 3de4 or
+     * The distortion of the lens that the panoramas were taken through: MODEL:name=value,name=value with ptlens, brown, 3de4 or
      * kb4. Default: none.
      */
     vtkSetStringMacro(Lens);
@@ -82,7 +82,7 @@ class ANAMORPHFILTERS_EXPORT vtkAnamorphProjectionBake : public vtkImageAlgorith
 
     ///@{
     /**
-     * The size of the texture. Default: 1024 x 1024.
+     * The width and height of the texture in texels. Default: 1024 x 1024.
      */
     vtkSetMacro(Width, int);
     vtkGetMacro(Width, int);
@@ -92,7 +92,7 @@ class ANAMORPHFILTERS_EXPORT vtkAnamorphProjectionBake : public vtkImageAlgorith
 
     ///@{
     /**
-     * How wide a panorama fades at its borders, in its texels. Default: 32.
+     * The width, in texels of a panorama, over which it fades at its borders. Default: 32.
      */
     vtkSetMacro(Fade, double);
     vtkGetMacro(Fade, double);
@@ -100,7 +100,8 @@ class ANAMORPHFILTERS_EXPORT vtkAnamorphProjectionBake : public vtkImageAlgorith
 
     ///@{
     /**
-     * How far beyond borders of triangles texels are painted, too, for filters that read across them. Default: 1.
+     * The width, in texels, of a margin around triangles that is painted, too, for filters that read across borders.
+     * Default: 1.
      */
     vtkSetMacro(Margin, double);
     vtkGetMacro(Margin, double);
@@ -108,7 +109,7 @@ class ANAMORPHFILTERS_EXPORT vtkAnamorphProjectionBake : public vtkImageAlgorith
 
     ///@{
     /**
-     * Whether what a projector does not see stays without it. Default: on.
+     * Whether points that a projector does not see receive nothing from it. Default: on.
      */
     vtkSetMacro(Occlusion, bool);
     vtkGetMacro(Occlusion, bool);
@@ -116,12 +117,12 @@ class ANAMORPHFILTERS_EXPORT vtkAnamorphProjectionBake : public vtkImageAlgorith
     ///@}
 
     /**
-     * One more panorama.
+     * Adds a panorama.
      */
     void AddPanoramaConnection(vtkAlgorithmOutput* output) { this->AddInputConnection(1, output); }
     void RemoveAllPanoramaConnections() { this->RemoveAllInputConnections(1); }
     /**
-     * What else casts shadows: a mesh, or all of those in composite data.
+     * The third input, which casts shadows, too: a mesh, or all meshes of composite data.
      */
     void SetOccluderConnection(vtkAlgorithmOutput* output) { this->SetInputConnection(2, output); }
 
@@ -155,7 +156,7 @@ class ANAMORPHFILTERS_EXPORT vtkAnamorphProjectionBake : public vtkImageAlgorith
     struct Projectors;
     struct Run;
 
-    /// A texture for every mesh of a tree.
+    /// Bakes a texture for every mesh of composite data.
     void BakeBlocks(vtkDataObjectTree* meshes, vtkInformationVector** inputs, vtkDataObjectTree* textures);
 
     std::unique_ptr<Projectors> Poses;

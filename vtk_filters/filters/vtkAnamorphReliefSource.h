@@ -40,8 +40,8 @@ class ANAMORPHFILTERS_EXPORT vtkAnamorphReliefSource : public vtkStructuredGridA
 
     ///@{
     /**
-     * The picture, in any format that VTK's image readers know. Not read if there is an input. A file that
-     * was written anew is read again after Modified().
+     * The name of the picture's file, in any format that VTK's image readers know. It is not read if there is an
+     * input. A file that was written anew is read again after Modified().
      */
     void SetFileName(const char* name);
     const char* GetFileName() { return this->FileName.c_str(); }
@@ -63,7 +63,7 @@ class ANAMORPHFILTERS_EXPORT vtkAnamorphReliefSource : public vtkStructuredGridA
     ///@}
 
     ///@{
-    /** Shorten an edge of the plane, around its middle, so that pixels are square. On by default. */
+    /** Whether an edge of the plane is shortened, around its middle, so that pixels are square. On by default. */
     vtkSetMacro(KeepAspect, bool);
     vtkGetMacro(KeepAspect, bool);
     vtkBooleanMacro(KeepAspect, bool);
@@ -83,8 +83,8 @@ class ANAMORPHFILTERS_EXPORT vtkAnamorphReliefSource : public vtkStructuredGridA
 
     ///@{
     /**
-     * Which component is the height, from 0, or LUMINANCE (the default): 0.2126 R + 0.7152 G + 0.0722 B of
-     * the numbers as stored; of pictures with less than three components, the first.
+     * The component that is the height, counted from 0, or LUMINANCE (the default): 0.2126 R + 0.7152 G + 0.0722 B
+     * of the numbers as stored; for pictures with less than three components, the first.
      */
     vtkSetClampMacro(Component, int, LUMINANCE, VTK_INT_MAX);
     vtkGetMacro(Component, int);
@@ -92,7 +92,7 @@ class ANAMORPHFILTERS_EXPORT vtkAnamorphReliefSource : public vtkStructuredGridA
 
     ///@{
     /**
-     * About every how many pixels there is a point, from 1 (the default). Points are evenly spread from the
+     * The approximate number of pixels from point to point, from 1 (the default). Points are evenly spread from the
      * first pixel to the last; they are on pixels if this divides width - 1 and height - 1, else heights are
      * interpolated (bilinearly).
      */
@@ -121,7 +121,7 @@ class ANAMORPHFILTERS_EXPORT vtkAnamorphReliefSource : public vtkStructuredGridA
     ///@}
 
     ///@{
-    /** vtkAlgorithm::SINGLE_PRECISION (the default) or DOUBLE_PRECISION. */
+    /** The precision of points: vtkAlgorithm::SINGLE_PRECISION (the default) or DOUBLE_PRECISION. */
     vtkSetClampMacro(OutputPointsPrecision, int, SINGLE_PRECISION, DOUBLE_PRECISION);
     vtkGetMacro(OutputPointsPrecision, int);
     ///@}
@@ -157,9 +157,9 @@ class ANAMORPHFILTERS_EXPORT vtkAnamorphReliefSource : public vtkStructuredGridA
     double Smoothing = 0;
     bool GenerateNormals = false;
     int OutputPointsPrecision = SINGLE_PRECISION;
-    vtkSmartPointer<vtkAlgorithm> Reader;  ///< of FileName
-    long long FileTime = 0;                ///< when the file was written that it reads
-    bool ReaderFailed = false;             ///< it made an error; not all of them set an error code
+    vtkSmartPointer<vtkAlgorithm> Reader;  ///< the reader of FileName
+    long long FileTime = 0;                ///< the time when the file that it reads was written
+    bool ReaderFailed = false;             ///< the reader made an error; not all readers set an error code
 };
 
 #endif

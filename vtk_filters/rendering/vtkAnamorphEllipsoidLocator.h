@@ -24,18 +24,18 @@ class ANAMORPHRENDERING_EXPORT vtkAnamorphEllipsoidLocator : public vtkAbstractC
     void PrintSelf(ostream& os, vtkIndent indent) override;
 
     ///@{
-    /** What draws the bodies; it is not kept alive. None by default: no body is found. */
+    /** The mapper that draws the bodies; it is not kept alive. None by default: no body is found. */
     void SetMapper(vtkAnamorphEllipsoidMapper* mapper);
     vtkAnamorphEllipsoidMapper* GetMapper();
     ///@}
 
     using vtkAbstractCellLocator::IntersectWithLine;
-    /** 1 if the line meets a body, `t` from p1 to p2, at x. `tol` is not needed; `cell` may be null. */
+    /** Returns 1 if the line meets a body, at `t` on the way from p1 to p2 and at x. `tol` is not used; `cell` may be null. */
     int IntersectWithLine(const double p1[3], const double p2[3], double tol, double& t, double x[3],
                           double pcoords[3], int& subId, vtkIdType& cellId, vtkGenericCell* cell) override;
 
     ///@{
-    /** Nothing: there is no structure to build, to free or to show. */
+    /** Do nothing: there is no structure to build, to free or to show. */
     void BuildLocator() override {}
     void FreeSearchStructure() override {}
     void GenerateRepresentation(int, vtkPolyData*) override {}

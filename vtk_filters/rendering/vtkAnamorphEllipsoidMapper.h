@@ -61,49 +61,49 @@ class ANAMORPHRENDERING_EXPORT vtkAnamorphEllipsoidMapper : public vtkOpenGLPoly
     vtkTypeMacro(vtkAnamorphEllipsoidMapper, vtkOpenGLPolyDataMapper);
     void PrintSelf(ostream& os, vtkIndent indent) override;
 
-    /** A vtkDataSet or vtkCompositeDataSet. */
+    /** The input is a vtkDataSet or vtkCompositeDataSet. */
     void SetInputData(vtkDataObject* data) { this->SetInputDataInternal(0, data); }
 
-    /** What is drawn, and how, is then that of `mapper`: its input, and its textures and display attributes themselves. */
+    /** Draws what `mapper` draws, in its way: shares its input, and its textures and display attributes themselves. */
     void ShallowCopy(vtkAbstractMapper* mapper) override;
 
     /** The values of Shape. */
     enum { AXES, TENSOR, COVARIANCE };
 
     ///@{
-    /** What the arrays mean; see above. AXES by default. */
+    /** How the arrays give the shapes of bodies, as described above. AXES by default. */
     vtkSetClampMacro(Shape, int, AXES, COVARIANCE);
     vtkGetMacro(Shape, int);
     ///@}
 
     ///@{
-    /** The array of half axes. "Axes" by default. */
+    /** The name of the array of half axes. "Axes" by default. */
     void SetAxesArray(const char* name);
     const char* GetAxesArray() { return this->AxesArray.c_str(); }
     ///@}
 
     ///@{
-    /** The array of quaternions; empty: bodies are not turned. "Orientation" by default. */
+    /** The name of the array of quaternions; empty: bodies are not turned. "Orientation" by default. */
     void SetOrientationArray(const char* name);
     const char* GetOrientationArray() { return this->OrientationArray.c_str(); }
     ///@}
 
     ///@{
-    /** The array of tensors. Empty by default. */
+    /** The name of the array of tensors. Empty by default. */
     void SetTensorArray(const char* name);
     const char* GetTensorArray() { return this->TensorArray.c_str(); }
     ///@}
 
     ///@{
-    /** All bodies are scaled by this about their centers; positive. The default is 1. */
+    /** The factor by which all bodies are scaled about their centers; positive. The default is 1. */
     vtkSetMacro(ScaleFactor, double);
     vtkGetMacro(ScaleFactor, double);
     ///@}
 
     ///@{
     /**
-     * A texture for bodies, the next in number from 0 on, and its name, which may be empty. Whether it is read between texels and by
-     * mipmaps is its own matter; it has to repeat (vtkTexture::RepeatOn, the default) for LATLONG.
+     * Adds a texture for bodies, the next in number from 0 on, and its name, which may be empty. The texture itself says
+     * whether it is interpolated and has mipmaps; it has to repeat (vtkTexture::RepeatOn, the default) for LATLONG.
      */
     void AddTexture(vtkTexture* texture, const char* name = "");
     void RemoveAllTextures();
@@ -112,7 +112,7 @@ class ANAMORPHRENDERING_EXPORT vtkAnamorphEllipsoidMapper : public vtkOpenGLPoly
 
     ///@{
     /**
-     * The array of the points that says which texture a body has: names, or numbers; a body without one has its
+     * The name of the array of the points that says which texture a body has: names, or numbers; a body without one has its
      * color. "Texture" by default.
      */
     void SetTextureArray(const char* name);
@@ -120,7 +120,7 @@ class ANAMORPHRENDERING_EXPORT vtkAnamorphEllipsoidMapper : public vtkOpenGLPoly
     ///@}
 
     ///@{
-    /** The array of 2 texels, right and down, by which a body's texture is moved. "TextureOffset" by default. */
+    /** The name of the array of 2 texels, right and down, by which a body's texture is moved. "TextureOffset" by default. */
     void SetTextureOffsetArray(const char* name);
     const char* GetTextureOffsetArray() { return this->TextureOffsetArray.c_str(); }
     ///@}
@@ -130,8 +130,8 @@ class ANAMORPHRENDERING_EXPORT vtkAnamorphEllipsoidMapper : public vtkOpenGLPoly
 
     ///@{
     /**
-     * How a texture lies on a body, its middle towards the observer of an unturned one. LATLONG, the default: once around, the
-     * seam at the back. MIRRORED: over the front and again over the back. LINEAR: stripes stay straight.
+     * How a texture is mapped onto a body, its middle towards the observer of an unturned one. LATLONG, the default: once
+     * around, the seam at the back. MIRRORED: over the front, mirrored over the back. LINEAR: stripes stay straight.
      * OCTAHEDRAL: without a pole.
      */
     vtkSetClampMacro(TextureMapping, int, LATLONG, OCTAHEDRAL);
@@ -140,10 +140,10 @@ class ANAMORPHRENDERING_EXPORT vtkAnamorphEllipsoidMapper : public vtkOpenGLPoly
 
     ///@{
     /**
-     * Where a line from `from` to `to`, in the coordinates of the data, first meets a body of `block`, the input or one of
-     * its blocks: the point of `block`, -1 if there is none; in `t`, how far along the line, 0 to 1, and in `cell` the
-     * cell that the point is in first, -1 if it is in none. Where the line begins in a body, it meets it where it
-     * leaves. Clipping planes are not heeded.
+     * Finds where a line from `from` to `to`, in the coordinates of the data, first meets a body of `block`, the input or one
+     * of its blocks. Returns the point of `block`, -1 if there is none, and sets `t` to the place along the line, 0 to 1, and
+     * `cell` to the first cell that the point is in, -1 if it is in none. Where the line begins in a body, it meets it where it
+     * leaves. Clipping planes are ignored.
      */
     vtkIdType IntersectWithLine(vtkDataSet* block, const double from[3], const double to[3], double& t,
                                 vtkIdType& cell);
@@ -161,18 +161,18 @@ class ANAMORPHRENDERING_EXPORT vtkAnamorphEllipsoidMapper : public vtkOpenGLPoly
     vtkCompositeDataDisplayAttributes* GetCompositeDataDisplayAttributes();
     ///@}
 
-    /** That of the blocks' attributes, too. */
+    /** The modification time, that of the blocks' attributes included. */
     vtkMTimeType GetMTime() override;
     bool HasOpaqueGeometry() override;
     bool HasTranslucentPolygonalGeometry() override;
 
-    /** The points that made no ellipsoid when the bounds were computed, or the picture drawn, last. */
+    /** The number of points that made no ellipsoid when the bounds were computed, or the picture drawn, last. */
     vtkIdType GetNumberOfSkippedPoints();
 
     void Render(vtkRenderer* renderer, vtkActor* actor) override;
     void RenderPiece(vtkRenderer* renderer, vtkActor* actor) override;
     void ReleaseGraphicsResources(vtkWindow* window) override;
-    /** Nothing: what is drawn for a selection are the ids. */
+    /** Does nothing: for a selection the ids themselves are drawn. */
     void ProcessSelectorPixelBuffers(vtkHardwareSelector*, std::vector<unsigned int>&, vtkProp*) override {}
 
   protected:

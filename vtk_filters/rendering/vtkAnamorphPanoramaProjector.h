@@ -27,7 +27,7 @@ class ANAMORPHRENDERING_EXPORT vtkAnamorphPanoramaProjector : public vtkObject {
 
     ///@{
     /**
-     * The picture. Default: none.
+     * The texture with the panorama. Default: none.
      */
     void SetPanorama(vtkTexture* panorama);
     vtkTexture* GetPanorama();
@@ -47,7 +47,8 @@ class ANAMORPHRENDERING_EXPORT vtkAnamorphPanoramaProjector : public vtkObject {
 
     ///@{
     /**
-     * Degrees that the panorama's width covers, or each of its faces; 0: what its projection has by default. Default: 0.
+     * The horizontal field of view of the panorama, or of each of its faces, in degrees; 0: the projection's default.
+     * Default: 0.
      */
     vtkSetMacro(FieldOfView, double);
     vtkGetMacro(FieldOfView, double);
@@ -55,7 +56,7 @@ class ANAMORPHRENDERING_EXPORT vtkAnamorphPanoramaProjector : public vtkObject {
 
     ///@{
     /**
-     * The distance d of Pannini's projection, which others do not read. Default: 1.
+     * The distance d of the Pannini projection, which other projections do not read. Default: 1.
      */
     vtkSetMacro(PanniniDistance, double);
     vtkGetMacro(PanniniDistance, double);
@@ -63,7 +64,7 @@ class ANAMORPHRENDERING_EXPORT vtkAnamorphPanoramaProjector : public vtkObject {
 
     ///@{
     /**
-     * Distortion of the lens that the panorama was taken through: MODEL:name=value,name=value with ptlens, brown, 3de4 or
+     * The distortion of the lens that the panorama was taken through: MODEL:name=value,name=value with ptlens, brown, 3de4 or
      * kb4. Default: none.
      */
     vtkSetStringMacro(Lens);
@@ -91,16 +92,16 @@ class ANAMORPHRENDERING_EXPORT vtkAnamorphPanoramaProjector : public vtkObject {
 
     ///@{
     /**
-     * What stands between the projector and the scene, in world coordinates: the scene itself, too, if it is to hide itself.
-     * What lies behind is not painted, as Shadows says. Default: none.
+     * The occluders between the projector and the scene, in world coordinates: the scene itself, too, if it is to hide itself.
+     * Points behind them are not painted, as Shadows says. Default: none.
      */
     void SetOccluderConnection(vtkAlgorithmOutput* output);
     void SetOccluderData(vtkPolyData* mesh);
-    /** Brought up to date; null: none. */
+    /** The occluders, brought up to date; null where there are none. */
     vtkPolyData* GetOccluders();
     ///@}
 
-    /// How it is found out what a fragment does not receive.
+    /// The ways to find whether a fragment is in shadow.
     enum ShadowModes {
         SHADOW_MAP = 0,  ///< by a map of distances around the projector, as fine as ShadowSize
         SHADOW_RAYS,  ///< by the ray to every fragment, which costs more and is exact but for the rounding of float
@@ -138,7 +139,7 @@ class ANAMORPHRENDERING_EXPORT vtkAnamorphPanoramaProjector : public vtkObject {
 
     ///@{
     /**
-     * How wide the panorama's border fades where several projectors meet, in texels. Default: 0.
+     * The width, in texels, over which the panorama fades at its border where several projectors meet. Default: 0.
      */
     vtkSetMacro(Fade, double);
     vtkGetMacro(Fade, double);

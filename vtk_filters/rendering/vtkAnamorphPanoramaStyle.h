@@ -25,8 +25,8 @@ class ANAMORPHRENDERING_EXPORT vtkAnamorphPanoramaStyle : public vtkInteractorSt
 
     ///@{
     /**
-     * Where the view looks, in degrees: to the right of (0, 0, -1), kept from -180 to below 180; and towards (0, 1, 0), kept
-     * within PitchRange. What is not finite changes nothing. Default: 0, 0.
+     * The direction of the view, in degrees: yaw to the right of (0, 0, -1), kept from -180 to below 180; and pitch towards
+     * (0, 1, 0), kept within PitchRange. A number that is not finite changes nothing. Default: 0, 0.
      */
     void SetYaw(double degrees);
     vtkGetMacro(Yaw, double);
@@ -36,7 +36,7 @@ class ANAMORPHRENDERING_EXPORT vtkAnamorphPanoramaStyle : public vtkInteractorSt
 
     ///@{
     /**
-     * Degrees that the width of the view covers, kept within FieldOfViewRange. Default: 90.
+     * The horizontal field of view in degrees, kept within FieldOfViewRange. Default: 90.
      */
     void SetFieldOfView(double degrees);
     vtkGetMacro(FieldOfView, double);
@@ -44,8 +44,8 @@ class ANAMORPHRENDERING_EXPORT vtkAnamorphPanoramaStyle : public vtkInteractorSt
 
     ///@{
     /**
-     * The least and the greatest pitch, within -90 to 90, and field of view, within 0.01 to 179. Others, and a greatest value
-     * below the least, change nothing. Defaults: -90, 90 and 5, 130.
+     * The least and the greatest pitch, within -90 to 90, and field of view, within 0.01 to 179, in degrees. Values out of
+     * range, and a greatest value below the least, change nothing. Defaults: -90, 90 and 5, 130.
      */
     void SetPitchRange(double least, double most);
     vtkGetVector2Macro(PitchRange, double);
@@ -55,7 +55,7 @@ class ANAMORPHRENDERING_EXPORT vtkAnamorphPanoramaStyle : public vtkInteractorSt
 
     ///@{
     /**
-     * Whether a camera is turned. Off: the view is for observers of InteractionEvent only. Default: on.
+     * Whether the view turns a camera. Off: the view is for observers of InteractionEvent only. Default: on.
      */
     vtkSetMacro(MoveCamera, bool);
     vtkGetMacro(MoveCamera, bool);
@@ -63,7 +63,7 @@ class ANAMORPHRENDERING_EXPORT vtkAnamorphPanoramaStyle : public vtkInteractorSt
     ///@}
 
     /**
-     * Makes the view that of the camera, for a view of some pixels; and tells observers.
+     * Turns the camera to the view, if MoveCamera is on, invokes InteractionEvent, and renders.
      */
     void Look();
 

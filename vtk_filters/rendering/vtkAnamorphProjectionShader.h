@@ -42,7 +42,7 @@ class ANAMORPHRENDERING_EXPORT vtkAnamorphProjectionShader : public vtkObject {
     void PrintSelf(ostream& os, vtkIndent indent) override;
     vtkMTimeType GetMTime() override;
 
-    /// As many may be thrown at a time.
+    /// The largest number of projectors at a time.
     static constexpr int MostProjectors = 8;
 
     ///@{
@@ -78,7 +78,7 @@ class ANAMORPHRENDERING_EXPORT vtkAnamorphProjectionShader : public vtkObject {
 
     ///@{
     /**
-     * Directions of projection, all around. Default: 4.
+     * The number of directions of projection, all around. Default: 4.
      */
     vtkSetClampMacro(NumberOfDirections, int, 3, 32);
     vtkGetMacro(NumberOfDirections, int);
@@ -86,7 +86,7 @@ class ANAMORPHRENDERING_EXPORT vtkAnamorphProjectionShader : public vtkObject {
 
     ///@{
     /**
-     * How far up and down a projection plane goes, at a distance of 1: 1 is 45 degrees. Default: 1.
+     * The extent of a projection plane up and down, at a distance of 1: 1 is 45 degrees. Default: 1.
      */
     vtkSetMacro(VerticalReach, double);
     vtkGetMacro(VerticalReach, double);
@@ -94,7 +94,7 @@ class ANAMORPHRENDERING_EXPORT vtkAnamorphProjectionShader : public vtkObject {
 
     ///@{
     /**
-     * Rows and columns of a table of residuals. Default: 256.
+     * The number of rows and of columns of a table of residuals. Default: 256.
      */
     vtkSetClampMacro(TableSize, int, 2, 4096);
     vtkGetMacro(TableSize, int);
@@ -102,20 +102,20 @@ class ANAMORPHRENDERING_EXPORT vtkAnamorphProjectionShader : public vtkObject {
 
     ///@{
     /**
-     * Pixels across and down a projection plane. Default: 1024.
+     * The width and height of a projection plane in pixels. Default: 1024.
      */
     vtkSetClampMacro(PlaneSize, int, 16, 8192);
     vtkGetMacro(PlaneSize, int);
     ///@}
 
     /**
-     * In mode RESIDUAL: how far what a fragment finds on an actor is from the panorama's formula at most, in texels, proven
-     * but for the rounding of float; of the last frame. 0 in other modes.
+     * The largest distance, in mode RESIDUAL, of the texels that fragments of an actor found in the last frame from those of
+     * the panorama's formula, in texels, proven but for the rounding of float; 0 in other modes.
      */
     double GetResidualBound(vtkActor* actor, int projector = 0);
 
     /**
-     * How often the map of what stands around a projector has been drawn, and what its rays are followed through been made, for
+     * The number of times that the shadow map of a projector has been drawn, and the tree of boxes for its rays been made, for
      * the window that an actor was last drawn in; 0 where there is none. Actors in one window share both.
      */
     int GetNumberOfShadowDraws(vtkActor* actor, int projector = 0);
@@ -131,7 +131,7 @@ class ANAMORPHRENDERING_EXPORT vtkAnamorphProjectionShader : public vtkObject {
 
     ///@{
     /**
-     * Throws onto an actor, from now on; and no longer. An actor takes part with one shader at a time.
+     * Add an actor onto which the projectors throw, or remove it. An actor takes part with one shader at a time.
      */
     void AddTo(vtkActor* actor);
     void RemoveFrom(vtkActor* actor);
