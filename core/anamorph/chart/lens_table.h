@@ -18,19 +18,19 @@ class LensTable {
   public:
     using Coefficients = LensCoefficients;
 
-    /// Of a lens that has no table yet; `corner`: the distance of the picture's farthest observed point.
+    /// Makes the table of a lens that has none yet; `corner`: the distance of the picture's farthest observed point.
     LensTable(const LensTerms& lens, double corner);
 
-    /// Of stretch_of() and of shrink_of() (chart/lens_formula.h), by powers of what is added to the square of the distance:
-    /// encloses those about every member.
+    /// Encloses the Taylor coefficients of stretch_of() (chart/lens_formula.h) about every member of `squared`, in powers of
+    /// the increment of the squared distance; shrink() does so for shrink_of().
     Coefficients stretch(const Interval& squared) const { return over(m_stretch, squared); }
     Coefficients shrink(const Interval& squared) const { return over(m_shrink, squared); }
 
-    /// Of shrink() by powers of what is added to a value, and as double computes them: up to degree 4 by
-    /// shrink_series() from the root that it finds. Unbounded where that is not known.
+    /// The Taylor coefficients of shrink() in powers of the increment of a value, and the error of computing them in double: up
+    /// to degree 4 by shrink_series() from the root that it finds. Unbounded where that is not known.
     ComputedSeries computed_shrink(const Interval& value) const;
 
-    /// Near the root of radial_at(t) = value, in [0, end].
+    /// An approximation of the root of radial_at(t) = value, in [0, end].
     double near_root(double value) const;
 
   private:
@@ -38,7 +38,7 @@ class LensTable {
         std::once_flag made, computed_made;
         Coefficients coefficients;
         ComputedSeries computed;
-        double middle = 0, root[4] = {};  ///< by powers of what is added to a value in the middle
+        double middle = 0, root[4] = {};  ///< the root in powers of the increment of a value in the middle
     };
     struct Rings {
         bool shrink = false;

@@ -34,9 +34,9 @@ class PushedFormula {
         const auto [to_x, to_y] = read_program<2>(m_formula.point, x, y);
         return m_scale(to_x, to_y);
     }
-    /// Of a source point.
+    /// The derivative of the map at a source point.
     Matrix2 derivative(const Point<double>& source) const;
-    /// Has it values all over a box of the source?
+    /// Has the formula values all over a box of the source?
     Certainty is_defined(const Interval& x, const Interval& y) const;
 
     /// Coefficients by powers of a frame's parameters: those of the series about the middle of a box of them, and what encloses
@@ -45,11 +45,11 @@ class PushedFormula {
     struct Series {
         Point<BoundJet> about, over;
     };
-    /// Of two boxes, each of a frame.
+    /// Finds the series of two boxes, each in a frame.
     void expand(const Point<Interval>* boxes, const PlaneFrame* frames, Series* found) const;
     Series series(const Point<Interval>& box, const PlaneFrame& frame) const;
-    /// The same where `serves` is asked of what encloses: that is narrowed by looking at quarters where it would serve if the formula
-    /// were its series about the middle.
+    /// Finds the series of a box for a purpose that `serves` tests: the enclosure is narrowed by evaluating quarters where it
+    /// would serve if the formula were its series about the middle.
     template <class Serves>
     Series series(const Point<Interval>& box, const PlaneFrame& frame, const Serves& serves) const {
         Series found = series(box, frame);
@@ -63,7 +63,7 @@ class PushedFormula {
     }
 
   private:
-    /// As if nothing were known but the series about the middle.
+    /// The series with the enclosure that it would have if the formula were its series about the middle.
     static Series hoped(const Series& series, const Point<Interval>& box);
     Point<BoundJet> over_quarters(const Point<Interval>& box, const PlaneFrame& frame) const;
 

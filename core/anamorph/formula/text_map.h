@@ -11,14 +11,14 @@
 
 namespace anamorph {
 
-/// Of a program that computes two.
+/// Evaluates a program that computes two numbers as a point.
 template <class T>
 Point<T> read_point(const FormulaProgram& program, const T& x, const T& y) {
     const auto [to_x, to_y] = read_program<2>(program, x, y);
     return {to_x, to_y};
 }
 
-/// Pixels, x right, y down, pixel centres at + 0.5.
+/// A pull map given as formulas in text. Pixels, x right, y down, pixel centres at + 0.5.
 class TextMap : public PlaneMap<TextMap> {
   public:
     /// An exact pixel costs more than a compiled one, and jets cost less over it.
@@ -43,11 +43,11 @@ class TextMap : public PlaneMap<TextMap> {
         return m_formula.is_everywhere ? T(1) : read(m_formula.domain, x, y).x;
     }
 
-    // As a DirectMap.
+    // The members that make this a DirectMap (plan/formula_map.h).
 
-    /// Is it made of what has a bound near the middle of a block?
+    /// Do all operations of the formula have a bound near the middle of a block?
     bool may_be_direct() const;
-    /// As Panorama::direct().
+    /// Evaluates the map near the middle of a block, as Panorama::direct() does.
     template <class Real>
     NearReading direct(double x, double y, double half_width, double half_height, const Local& local,
                        Bases& bases) const;

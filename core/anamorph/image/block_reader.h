@@ -25,10 +25,10 @@ struct PixelPoints {
     const Real *x = nullptr, *y = nullptr;
     std::ptrdiff_t row_stride = 0;  ///< entries; behind every row at least 16 more may be read
 };
-/// As offsets from the block's base in source pixels.
+/// The points of a block as offsets from its base, in source pixels.
 using BlockPoints = PixelPoints<float>;
 
-/// Room for the points of the blocks that the layers of a map have in one place.
+/// Buffers for the points of the blocks that the layers of a map have in one place.
 class BlockPlanes {
   public:
     explicit BlockPlanes(std::size_t layers);
@@ -44,7 +44,7 @@ class BlockPlanes {
     std::vector<PointRows> m_rows;
 };
 
-/// How far, in a coarse level's texels and along each axis, the point sampled there may be from the one that
+/// The largest distance, in a coarse level's texels and along each axis, of the point sampled there from the one that
 /// a block's bound holds for: in units of 2^-24, 1/2 for the place of the polynomial's origin past a whole
 /// texel of the level, 3 for the additions it goes through (two of Horner's rule, one of the sampler), and 1
 /// of kSamplerRounding; points from a table or in double lose less. The next power of two.
@@ -53,14 +53,14 @@ inline constexpr double kLevelRounding = 0x1p-21;
 /// The source points of a block's pixels in double.
 class PointsInDouble {
   public:
-    /// Rows [begin, end) of a block for which in_double() holds, counted from its first.
+    /// Reads rows [begin, end), counted from its first, of a block for which in_double() holds.
     void read(const BlockMap& map, const Block& block, int begin, int end);
-    /// All of a computed block, from its points in float.
+    /// Reads all of a computed block from its points in float.
     void take(const Block& block, const BlockPoints& from);
 
-    /// From the first row on that was read.
+    /// The points that were read, from their first row on.
     PixelPoints<double> points() const { return {m_x.data(), m_y.data(), m_stride}; }
-    /// Of the source, for the k-th of those rows; -1 where there is no source point.
+    /// The pieces of the source for the k-th of those rows; -1 where there is no source point.
     const std::int32_t* piece(int k) const { return m_piece.data() + k * m_stride; }
     Point<double> at(int i, int k) const {
         const std::ptrdiff_t n = k * m_stride + i;
@@ -75,8 +75,8 @@ class PointsInDouble {
     std::vector<std::int32_t> m_piece;
 };
 
-/// The offsets from the base of a polynomial, bicubic or computed block for row j of `part` of it; room for
-/// simd::kRowRoom floats each. Nothing is written for other kinds, nor for points in double.
+/// Writes the offsets from the base of a polynomial, bicubic or computed block for row j of `part` of it; x and y have
+/// room for simd::kRowRoom floats. Nothing is written for other kinds, nor for points in double.
 void block_row(const BlockMap& map, const Block& block, const Box& part, int j, float* x, float* y);
 
 /// Reads one source through one map; one per thread. The bits of a pixel depend on its block and the source,
@@ -96,13 +96,13 @@ class BlockReader {
     /// The arguments outlive the reader.
     BlockReader(const BlockMap& map, const Source& source, const Border& border, Filter filter);
 
-    /// Takes `count` pixels from (x, y) on, channel by channel; `one` is the value that stands for 1.
+    /// Receives `count` pixels from (x, y) on, channel by channel; `one` is the value that stands for 1.
     using Row = std::function<void(int x, int y, int count, const float* values, float one)>;
 
-    /// The pixels of `part` of a block, row by row; those without a source point are 0. False when the source
+    /// Gives the pixels of `part` of a block to `row`, row by row; those without a source point are 0. False when the source
     /// could not be read.
     bool rows(const Block& block, const Box& part, const Row& row);
-    /// The same with the points of a computed block already at hand.
+    /// Gives the pixels of `part` of a computed block to `row`, as above, from its points, which are known already.
     bool rows(const Block& block, const BlockPoints& points, const Box& part, const Row& row);
 
     /// Draws `part` of a block.

@@ -84,10 +84,10 @@ struct RowPoints {
         first = static_cast<float>(1 - block.width);
         cubic = block.degree == 3;
     }
-    /// Whole texels to be added from pixel i on, if there are any.
+    /// The whole texels to be added from pixel i on, or null; WholeY() has those along y.
     HWY_INLINE const int32_t* WholeX(int i) const { return whole_x ? whole_x + i : nullptr; }
     HWY_INLINE const int32_t* WholeY(int i) const { return whole_y ? whole_y + i : nullptr; }
-    /// body(i, x, y) for the points of pixels begin + i, begin + i + 1, ... of `count`, a vector at a time.
+    /// Calls body(i, x, y) for the points of pixels begin + i, begin + i + 1, ... of `count`, a vector at a time.
     template <class Body>
     HWY_INLINE void ForEach(int begin, int count, const Body& body) const {
         const Floats d;
@@ -152,7 +152,7 @@ HWY_INLINE hn::Vec<D> LoadHalves(D d, const hwy::float16_t* p) {
     }
 }
 
-/// As many channels from `p` as D has lanes, as floats.
+/// Loads as many channels from `p` as D has lanes, as floats.
 template <class D, class T>
 HWY_INLINE hn::Vec<D> LoadFloats(D d, const T* p) {
     if constexpr (std::is_same_v<T, float>) {
@@ -164,7 +164,7 @@ HWY_INLINE hn::Vec<D> LoadFloats(D d, const T* p) {
     }
 }
 
-/// Where taps fall: whole texels as an element offset, and the fractions.
+/// The positions of taps: whole texels as an element offset, and the fractions.
 template <int kCount>
 struct Positions {
     HWY_ALIGN int32_t offset[kCount];
@@ -175,7 +175,7 @@ struct Positions {
 /// whole ones, and the bits count up from its own.
 constexpr float kUnit = 3 << 22;
 
-/// Such whole numbers to integers; anything else gives any integer.
+/// Converts numbers to which kUnit was added to integers; the result is unspecified for others.
 HWY_INLINE hn::Vec<Ints> ToInts(hn::Vec<Floats> v) {
     const Ints di;
     const auto unit = hn::Set(Floats(), kUnit);
@@ -198,7 +198,7 @@ HWY_INLINE hn::Vec<Ints> OffsetsOf(hn::Vec<Floats> x, hn::Vec<Floats> y, hn::Vec
     return hn::Add(hn::Mul(ty, row), hn::Mul(tx, pixel));
 }
 
-/// The same into lanes i, i + 1, ... of positions.
+/// Stores the element offsets and fractions of texels (floor x, floor y) into entries i, i + 1, ... of positions.
 template <int kCount>
 HWY_INLINE void Locate(hn::Vec<Floats> x, hn::Vec<Floats> y, hn::Vec<Ints> row, hn::Vec<Ints> pixel, int i,
                        Positions<kCount>& p, const int32_t* whole_x = nullptr,
@@ -240,7 +240,7 @@ HWY_INLINE bool AllFinite(const uint16_t*, int) {
     return true;
 }
 
-/// The points of pixels [begin, end) of a row, to arrays with room for a vector behind.
+/// Stores the points of pixels [begin, end) of a row to arrays with room for a vector behind.
 HWY_INLINE void StorePoints(const Polynomials& block, int row, int begin, int end, float* HWY_RESTRICT x,
                             float* HWY_RESTRICT y) {
     const Floats d;
@@ -251,7 +251,7 @@ HWY_INLINE void StorePoints(const Polynomials& block, int row, int begin, int en
     });
 }
 
-/// Those of a drawing's row, put into x and y where they do not stand in memory.
+/// The points of a drawing's row; they are computed into x and y where they do not stand in memory.
 HWY_INLINE Offsets PointsOfRow(const Drawing& drawing, int row, float* HWY_RESTRICT x,
                                float* HWY_RESTRICT y) {
     const Polynomials& block = drawing.block;
@@ -265,12 +265,12 @@ HWY_INLINE Offsets PointsOfRow(const Drawing& drawing, int row, float* HWY_RESTR
     return {x, y, count};
 }
 
-/// Texels are fetched so many pixels before they are read, in whole rows of pixels, of which there is room for so many.
+/// The number of pixels by which texels are prefetched before they are read, and the number of rows for which there is room.
 constexpr int kAhead = 192, kRows = 8;
 
-/// Fetches what pixels read of one row of texels, `below` rows farther down: so many texels from `offset` elements on.
-/// Where those of neighbours lie far apart each pixel's own, of which a vector is loaded that may lie on two cache lines;
-/// elsewhere it takes a few pixels' first ones to fetch every line.
+/// Prefetches what pixels read of one row of texels, `below` rows farther down: `texels` from `offset` elements on. Where
+/// the texels of neighbours lie far apart, those of each pixel are fetched, of which a vector is loaded that may lie on two
+/// cache lines; elsewhere the first texels of a few pixels are enough to fetch every line.
 template <class T, int kChannels>
 HWY_INLINE void Fetch(const Texels& s, const int32_t* offset, int count, int below, int texels) {
     const auto* origin = reinterpret_cast<const T*>(s.texels + below * s.row_stride);
@@ -290,14 +290,14 @@ HWY_INLINE void Fetch(const Texels& s, const int32_t* offset, int count, int bel
     for (int i = 0; i < count; i += step) hwy::Prefetch(origin + offset[i]);
 }
 
-/// The two rows of a bilinear tap.
+/// Prefetches the two rows of a bilinear tap.
 template <class T, int kChannels>
 HWY_INLINE void FetchBilinear(const Texels& s, const int32_t* offset, int count) {
     Fetch<T, kChannels>(s, offset, count, 0, 2);
     Fetch<T, kChannels>(s, offset, count, 1, 2);
 }
 
-/// Where the pixels of a drawing's rows fall among its texels, of one bilinear tap.
+/// Finds the positions of the pixels of a drawing's rows among its texels, for one bilinear tap.
 template <class T, int kChannels>
 class RowLocator {
   public:

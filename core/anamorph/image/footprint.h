@@ -33,14 +33,14 @@ inline Jacobian covering_rectangle(const Jacobian& j) {
     return {std::fabs(j.x_i) + std::fabs(j.x_j), 0, 0, std::fabs(j.y_i) + std::fabs(j.y_j)};
 }
 
-/// Where the taps of a footprint are.
+/// The positions of the taps of a footprint.
 class TapOffsets {
   public:
-    /// `jacobian`: as given to the footprint; `scale`: texels of its level per texel of level 0.
+    /// `jacobian`: the one that the footprint was made for; `scale`: texels of its level per texel of level 0.
     TapOffsets(const Footprint& footprint, const Jacobian& jacobian,
                const std::array<double, 2>& scale) noexcept;
 
-    /// Of tap (i, j), in texels of the footprint's level.
+    /// The offset of tap (i, j), in texels of the footprint's level.
     Point<double> operator()(int i, int j) const noexcept {
         const double da = (i - 0.5 * (m_footprint.taps_a - 1)) * static_cast<double>(m_footprint.spacing_a);
         const double db = (j - 0.5 * (m_footprint.taps_b - 1)) * static_cast<double>(m_footprint.spacing_b);
@@ -68,8 +68,8 @@ class FootprintChooser {
     /// a coarser level is taken instead, and on the coarsest the average is thinner than the footprint.
     Footprint operator()(const Jacobian& jacobian) const noexcept;
 
-    /// Those of the source as far as none is larger than level 0, nor more than four times coarser, either
-    /// way, than the one before.
+    /// The number of levels in use: those of the source as far as none is larger than level 0, nor more than four times
+    /// coarser, either way, than the one before.
     int levels() const noexcept { return m_levels; }
     /// Texels of a level per texel of level 0, across and down.
     const std::array<double, 2>& scale(int level) const noexcept {

@@ -11,23 +11,25 @@
 
 namespace anamorph::machine {
 
-/// Of the hardware of Kim 2003, chapter 4.
+/// The name of the preset for the hardware of Kim 2003, chapter 4.
 inline constexpr const char* kBumpPreset = "embm-2003";
 
-/// `text`: as above, with any of size, texel, scaled, weight_bits, edge, arithmetic, address_bits and
-/// texture_side. Throws Error naming `machine` and the key.
+/// Parses a machine of kBumpPreset, with any of the keys size, texel, scaled, weight_bits, edge, arithmetic, address_bits
+/// and texture_side. Throws Error naming `machine` and the key.
 BumpUnit bump_unit_from_text(std::string_view text);
 
-/// Of the hardware of Kim 2003, chapter 5.
+/// The name of the preset for the hardware of Kim 2003, chapter 5.
 inline constexpr const char* kShaderPreset = "ps20";
 
-/// The same, with kShaderPreset, arithmetic, texel, table_size, weight_bits, address_bits and texture_side.
+/// Parses a machine of kShaderPreset, with any of the keys arithmetic, texel, table_size, weight_bits, address_bits and
+/// texture_side. Throws Error naming `machine` and the key.
 ShaderUnit shader_unit_from_text(std::string_view text);
 
-/// Of Oka 1987, section 3.
+/// The name of the preset for the machine of Oka 1987, section 3.
 inline constexpr const char* kBlockPreset = "oka-1987";
 
-/// The same, with kBlockPreset and the names of the rows of block_machine.h.
+/// Parses a machine of kBlockPreset, with any of the names of the rows of block_machine.h as keys. Throws Error naming
+/// `machine` and the key.
 BlockMachine block_machine_from_text(std::string_view text);
 
 }  // namespace anamorph::machine

@@ -13,7 +13,7 @@
 
 namespace anamorph::machine {
 
-/// How a value is stored. Rounding is to nearest, ties to even.
+/// The format in which a value is stored. Rounding is to nearest, ties to even.
 struct NumberFormat {
     enum class Kind : std::uint8_t {
         floating,   ///< 1 bit of sign, `bits` of exponent, `fraction` bits behind a leading 1
@@ -29,7 +29,7 @@ struct NumberFormat {
 };
 
 inline constexpr NumberFormat kFloat16{NumberFormat::Kind::floating, 5, 10, false, true};
-/// Of pixel shaders of 2003: 1, 7 and 16 bits.
+/// The format of pixel shaders of 2003: 1, 7 and 16 bits.
 inline constexpr NumberFormat kFloat24{NumberFormat::Kind::floating, 7, 16};
 inline constexpr NumberFormat kFloat32{NumberFormat::Kind::floating, 8, 23, false, true};
 /// -8 to 8 in steps of 2^-12: pixel shaders before floats.

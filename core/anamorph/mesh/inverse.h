@@ -25,8 +25,8 @@ class InversePlan final : public WarpPlan {
 
     const Mesh& mesh() const { return m_mesh; }
 
-    /// Of several source points: those where the mesh is not turned over first, of these the one in the cell
-    /// of level 0 with the largest number, row by row, of these the lowest, of these the rightmost.
+    /// Finds the source point of a target point. Of several source points it takes those where the mesh is not turned over, of
+    /// these the one in the cell of level 0 with the largest number, row by row, of these the lowest, of these the rightmost.
     bool exact(double x, double y, int piece, Point<double>& source_point,
                int& source_piece) const noexcept override;
     BlockPolynomial bicubic(const Block& block) const noexcept override;
@@ -36,7 +36,7 @@ class InversePlan final : public WarpPlan {
     std::int64_t folded_pixels(const Box& box) const override;
 
     static constexpr double kFoldSize = 1.0 / 4;
-    /// For a pixel near a fold.
+    /// The largest number of visits for a pixel near a fold.
     static constexpr int most_visits() { return 1024; }
 
     /// The target point of parameters z of a sheet.
@@ -48,7 +48,7 @@ class InversePlan final : public WarpPlan {
     Preimages preimages(double x, double y) const noexcept;
     /// Finds the source point of (x, y) on a sheet that is no fold. False where there is none.
     bool find(const Sheet& sheet, double x, double y, Preimage& found) const noexcept;
-    /// The same; `patch`: of its cell.
+    /// Finds the source point of (x, y) on a sheet that is no fold, with the `patch` of its cell. False where there is none.
     bool find(const Sheet& sheet, const Patch& patch, double x, double y, Preimage& found) const noexcept;
 
   protected:

@@ -86,19 +86,19 @@ class Mesh {
     /// its left (top) edge belongs to the neighbour instead.
     MeshCell leaf_at(double x, double y, bool left = false, bool above = false) const;
     Patch patch(const MeshCell& cell) const;
-    /// How far the map that a cell's patch stands for is, anywhere in the cell and in either coordinate, from
-    /// the one that the given numbers define: the rounding of lines, displacements and derivatives.
+    /// The largest distance, anywhere in the cell and in either coordinate, of the map of a cell's patch from the one that the
+    /// given numbers define: the rounding of lines, displacements and derivatives.
     double data_error(const MeshCell& cell, const Patch& patch) const;
 
-    /// The same over all cells of level 0 that meet a rectangle, from their vertices alone, and how large the
-    /// elements of each are together: cheaper than cell by cell, and more.
+    /// Bounds over all cells of level 0 that meet a rectangle, from their vertices alone: of data_error(), and of the sum of
+    /// the elements of each. They are cheaper than cell by cell, and wider.
     struct Rough {
         double data_error, size;
-        Point<double> low, high;  ///< of the displacements of their vertices and those around
+        Point<double> low, high;  ///< bounds of the displacements of their vertices and those around
     };
     Rough rough(double x0, double y0, double x1, double y1) const;
     bool has_levels() const { return !m_nodes.empty(); }
-    /// Of the vertices on a line of level 0, columns() + 1 of them.
+    /// The displacements of the vertices on a line of level 0, columns() + 1 of them.
     const Point<double>* displacements(int row) const { return m_values.data() + index(0, row); }
     /// The cell between two lines that a position falls into: [line, next line), the outermost at the ends.
     static int line_below(std::span<const double> lines, double at);
@@ -122,7 +122,7 @@ class Mesh {
             patch((x - patch.x0) / T(patch.x1 - patch.x0), (y - patch.y0) / T(patch.y1 - patch.y0));
         return {x * m_scale.x + d.x, y * m_scale.y + d.y};
     }
-    /// The same of the cell's own parameters, 0 to 1: nothing is lost where a cell is thin.
+    /// The map on one cell by the cell's own parameters, 0 to 1, without loss of precision where a cell is thin.
     template <class T>
     Point<T> inside(const Patch& patch, const T& s, const T& t) const {
         const Point<T> d = patch(s, t);
@@ -136,8 +136,8 @@ class Mesh {
     double orientation() const { return m_orientation; }
 
   private:
-    /// What is known at a vertex: displacement and derivatives per pixel; and how far each is from what the
-    /// given numbers define, in either coordinate.
+    /// The data of a vertex: displacement and derivatives per pixel; and the largest error of each against what the given
+    /// numbers define, in either coordinate.
     struct Knot {
         Point<double> f, fx, fy, fxy;
         double f_error = 0, fx_error = 0, fy_error = 0, fxy_error = 0;
@@ -168,8 +168,7 @@ class Mesh {
     /// A line's position with its rounding, whatever its level.
     Tracked<double> place(double line) const { return {line, m_line_rounding * std::fabs(line)}; }
     Knot knot_at(const MeshCell& cell, int corner) const;
-    /// How far each element of a patch's geometry is, in either coordinate, from what the given numbers
-    /// define.
+    /// The largest errors of the elements of a patch's geometry, in either coordinate, against what the given numbers define.
     using ElementErrors = std::array<std::array<double, 4>, 4>;
     ElementErrors element_errors(const MeshCell& cell) const;
     template <class Entry>

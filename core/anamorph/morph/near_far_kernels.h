@@ -24,38 +24,37 @@
 namespace anamorph::simd {
 
 inline constexpr int kComponents = 4;
-inline constexpr int kSums = 1 + kComponents;  ///< of weights, and of weighted displacements
-inline constexpr int kMaxDegree = 8;           ///< K: coefficients each way
+inline constexpr int kSums = 1 + kComponents;  ///< sums of weights, and of weighted displacements
+inline constexpr int kMaxDegree = 8;           ///< the largest K: coefficients each way
 
-/// u: what rounding to float changes, in proportion, at most.
+/// The unit roundoff u of float.
 inline constexpr float kFloatRounding = 0x1p-24f;
-/// R, in pixels.
+/// The half side R of a region, in pixels.
 inline constexpr float kRegionHalf = 64;
-/// Of a weight, in units of u: its factor is stored and multiplied by, 2; x^-b of a float is off by 3 (1 /
+/// The rounding of a weight, in units of u: its factor is stored and multiplied by, 2; x^-b of a float is off by 3 (1 /
 /// x^2 and 1 / sqrt(x) by 2; 2^t by 3), and through t = -b log2(x) by b (1.7 + 3 |log(x)|): log2(x) is off by
 /// |log2(x)| + 2.4 units, b and the product are rounded. tests/core measures it against long double.
 inline constexpr double kWeightRounding = 6;
 inline constexpr double kPowerRounding = 3;
 inline constexpr double kFineRounding = 0x1p-5;
-/// a + dist is never taken below this.
+/// The least value of a + dist; smaller ones count as this.
 inline constexpr float kLeastDistance = 1e-6f;
-/// Nor is its logarithm's size above this: distances end at 1e12 pixels.
+/// The largest magnitude of the logarithm of a + dist: distances end at 1e12 pixels.
 inline constexpr float kMostLog = 29;
 
-/// In units of u: the error of a weight in proportion, but for that of the line's place. `log`: at least
-/// |log(a + dist)|.
+/// The relative error of a weight in units of u, apart from that of the line's place. `log`: at least |log(a + dist)|.
 constexpr double weight_rounding(double b, double log) {
     const bool fast = b == 0 || b == 0.5 || b == 1 || b == 2;
     return 5 * b + kWeightRounding + (fast ? 0 : kPowerRounding * b * (1 + log));
 }
 
-/// What bounds allow for the rounding of a line's place, in pixels: kPlaceRelative a pixel of distance, and
+/// The rounding of a line's place that bounds allow for, in pixels: kPlaceRelative a pixel of distance, and
 /// kPlaceApart. A distance r and its sums and differences with a cell's diagonal (at most 1.5 R) err by u (6
 /// r + 11 R + 5 R) < 16 u r + 7e-5: more than 9e-4 is left.
 inline constexpr float kPlaceRelative = 16 * kFloatRounding, kPlaceApart = 1e-3f;
 
-/// In proportion, by how much sums over the kNodeRun lines that node_sums adds up in floats are off, and the
-/// products in them.
+/// The number of lines that node_sums adds up in float; below, the relative error of these sums and of the products in
+/// them.
 inline constexpr int kNodeRun = 16;
 inline constexpr double kNodeRounding = (kNodeRun + 2) * 0x1p-24;
 
@@ -69,8 +68,7 @@ constexpr int near_additions(int lines) {
 /// Sums of floats over lines: so many are added up in each of 16 lanes, those in four steps, and the rest in
 /// double.
 inline constexpr int kSumLanes = 16;
-/// In proportion, the most by which such a sum of positive numbers is off: 20 additions, and 4 steps to make
-/// each of them.
+/// The largest relative error of such a sum of positive numbers: 20 additions, and 4 steps to make each of them.
 inline constexpr double kSumRounding = 24 * 0x1p-24;
 
 /// A line as seen from the region's centre: how far the centre lies before p, behind q and beside the line;
@@ -78,12 +76,12 @@ inline constexpr double kSumRounding = 24 * 0x1p-24;
 struct FieldLine {
     float before, behind, beside, along_x, along_y, factor;
     float at[kComponents], right[kComponents], down[kComponents];
-    /// What the floats above leave of before, behind, beside and the direction.
+    /// The differences of the exact before, behind, beside and direction from the floats above.
     float before_rest, behind_rest, beside_rest, along_x_rest, along_y_rest;
 };
 
-/// The same, number by number: field f of line i stands at data[f * stride + i]. count may be any; up to the
-/// next multiple of 16 there is room, and lines of factor 0, as may be among the others.
+/// A table of FieldLines, field by field: field f of line i stands at data[f * stride + i]. count may be any; up to the
+/// next multiple of 16 there are lines of factor 0, as may be among the others.
 struct LineTable {
     enum Field {
         kBefore,
@@ -124,36 +122,36 @@ constexpr float third_error(int k) {
     return k == 4 ? 0.0165f : k == 5 ? 0.0081f : k == 6 ? 0.0051f : 0.0024f;
 }
 
-/// What is known of lines over a cell: arrays of as many numbers as LineTable has room for.
+/// Bounds of lines over a cell: arrays of as many numbers as LineTable has room for.
 struct LineBounds {
     float* most;   ///< the greatest weight in the cell
-    float* least;  ///< the least
+    float* least;  ///< the least weight in the cell
     float* value;  ///< most times the error of the weight in proportion, of its interpolation and by rounding
                    ///< at the nodes; infinite where unknown
     float* linear;   ///< the same of the weight times an offset in the cell, times the displacement's change
     float* nearest;  ///< a + dist, the least in the cell
-    float* displacement[kComponents];  ///< at the centre
+    float* displacement[kComponents];  ///< displacements at the centre
     double center[kSums];              ///< sums at the centre
     double least_sum;
 };
-/// K: coefficients each way (4, 5, 6 or 8); lebesgue: K's Lebesgue constant.
+/// Finds the bounds of lines over a cell. K: coefficients each way (4, 5, 6 or 8); lebesgue: K's Lebesgue constant.
 void bound_lines(const LineTable& lines, const CellFrame& cell, const WeightParameters& weights, int k,
                  float lebesgue, LineBounds& bounds);
 
-/// Sums over lines of what is known of them: m the greatest weight, r the greatest distance of the
+/// Sums over lines of their bounds: m the greatest weight, r the greatest distance of the
 /// displacement from a reference (the reach), d = a + dist.
 struct LineSums {
-    double value = 0;       ///< of the weights' errors
-    double error = 0;       ///< of the weighted displacements' errors
-    double least = 0;       ///< of the least weights
-    double most = 0;        ///< m
-    double reach = 0;       ///< m r
-    double slope = 0;       ///< m times the displacement's change per pixel
-    double near = 0;        ///< m / d
-    double near_reach = 0;  ///< m r / d
+    double value = 0;       ///< sum of the weights' errors
+    double error = 0;       ///< sum of the weighted displacements' errors
+    double least = 0;       ///< sum of the least weights
+    double most = 0;        ///< sum of m
+    double reach = 0;       ///< sum of m r
+    double slope = 0;       ///< sum of m times the displacement's change per pixel
+    double near = 0;        ///< sum of m / d
+    double near_reach = 0;  ///< sum of m r / d
     double farthest = 0;    ///< the greatest r
 };
-/// What bounds the spread of all lines' displacements.
+/// The sums that bound the spread of all lines' displacements.
 struct SpreadSums {
     double heavy = 0;       ///< the greatest r of lines with m > much
     double light = 0;       ///< sum m r of the others
@@ -163,17 +161,20 @@ struct SpreadSums {
     double slope = 0;       ///< sum of m times the displacement's change per pixel
     double near_reach = 0;  ///< sum m r / d
 };
+/// Bounds displacements over a cell.
 /// reach[i]: the greatest distance of a line's displacement from `center` (kComponents numbers) in the cell;
 /// error[i]: value * (the distance at the cell's centre) + linear + offset * most.
 SpreadSums bound_displacements(const LineTable& lines, const CellFrame& cell, const float* center, float much,
                                float offset, const LineBounds& bounds, float* reach, float* error);
 
-/// Far: lines whose parts, unit * (error + spread * value), are the least and together at most 1.
+/// A division of lines into near and far ones: far are those whose parts, unit * (error + spread * value), are the least
+/// and together at most 1.
 struct Selection {
-    int near = 0, far = 0;  ///< how many
+    int near = 0, far = 0;  ///< numbers of lines
     LineSums sums;          ///< over the far lines
 };
-/// near, far: their places in the table, with room for 16 more; part: room for as many numbers as LineTable.
+/// Selects the near and the far lines. near, far: their places in the table, with room for 16 more; part: room for as
+/// many numbers as LineTable.
 Selection select_lines(const LineTable& lines, const LineBounds& bounds, const float* reach,
                        const float* error, float spread, float unit, float* part, std::int32_t* near,
                        std::int32_t* far);
@@ -182,15 +183,15 @@ Selection select_lines(const LineTable& lines, const LineBounds& bounds, const f
 void node_sums(const FieldLine* lines, const std::int32_t* which, int count, const CellFrame& cell,
                const WeightParameters& weights, int k, const float* nodes, double* sums);
 
-/// to = L from R^T for K x K matrices of kSums numbers (8 doubles apart), plus `more` where that is not null.
+/// Computes to = L from R^T for K x K matrices of kSums numbers (8 doubles apart), plus `more` where that is not null.
 void transform(const double* left, const double* right, int k, const double* from, const double* more,
                double* to);
-/// The same for L and R that are 0 below the diagonal.
+/// Computes to = L from R^T for L and R that are 0 below the diagonal.
 void shift(const double* left, const double* right, int k, const double* from, double* to);
-/// Coefficients as floats, and the sums of their sizes (8 numbers).
+/// Rounds coefficients to float, and finds the sums of their magnitudes (8 numbers).
 void round_coefficients(const double* from, int k, float* to, float* sizes);
 
-/// The pixels of a cell of near lines and a polynomial in s, t in [-1, 1] (s = (x - cell.x) / cell.half):
+/// A cell of near lines and a polynomial in s, t in [-1, 1] (s = (x - cell.x) / cell.half):
 /// coefficient of t^n s^m for sum c at coefficients[(n * K + m) * 8 + c]; none with k = 0.
 struct FieldCell {
     CellFrame frame;
@@ -201,7 +202,7 @@ struct FieldCell {
     WeightParameters weights;
     bool fine = false;
 };
-/// Source points less the base, of `width` <= 64 pixels of `height` rows from (x, y) on (centres of pixels in
+/// The output for source points less the base, of `width` <= 64 pixels of `height` rows from (x, y) on (centres of pixels in
 /// the region's frame): offset[c] + slope[c] * (x or y) + displacement. Rows of each output are `stride` >=
 /// width + 16 floats apart.
 struct FieldOutput {

@@ -32,7 +32,7 @@ inline void add(simd::LineSums& to, const simd::LineSums& more) {
     to.farthest = std::max(to.farthest, more.farthest);
 }
 
-/// Sums over the lines that are far already, their reaches from `center`.
+/// Sums over the lines that are already far, whose reaches are relative to `center`.
 struct FarSums : simd::LineSums {
     Vector center{};
 
@@ -60,19 +60,19 @@ struct Known {
     bool finite;
 };
 
-/// What the near lines' rounding is made of: sums of how far a unit of a weight's relative error moves D,
-/// and one of its error by the place, per pixel; the least a + dist; and their displacements'.
+/// The parts of the near lines' rounding: sums of how far D is moved by a unit of a weight's relative error, and by its
+/// error from the place, per pixel; the least a + dist; and the errors of their displacements.
 struct NearRounding {
     double moved = 0, moved_by_place = 0, nearest = HUGE_VAL, displacements = 0;
 };
 
-/// And what it adds up to: by how far it moves D, but for the sum of weights that is off, too; and by how
-/// much weights are off, in proportion, at most.
+/// The total of the near lines' rounding: how far it moves D, apart from the error of the sum of weights; and the largest
+/// relative error of weights.
 struct NearError {
     double moved, weight;
 };
 
-/// Plans one region.
+/// Plans the blocks of one region.
 class NearFarSubdivider {
   public:
     NearFarSubdivider(const FeatureMap& map, const NearFarOptions& options, const Chebyshev& chebyshev,
@@ -92,12 +92,12 @@ class NearFarSubdivider {
         if (!m_levels[depth]) m_levels[depth] = std::make_unique<Candidates>();
         return *m_levels[depth];
     }
-    /// The lines as seen from the region's centre. False where floats cannot hold them.
+    /// Finds the lines as seen from the region's centre. False where floats cannot hold them.
     bool gather();
-    /// A line as seen from a point, its displacement from the reference. False where floats cannot hold it.
+    /// Finds a line as seen from a point, with its displacement relative to the reference. False where floats cannot hold it.
     bool see(std::size_t i, double x, double y, FieldLine& to) const;
 
-    // Of a cell: near_far_subdivider.cpp.
+    // The planning of a cell: near_far_subdivider.cpp.
     /// `sums`: over the lines that are in the polynomial of `level(depth)` already, if it has one.
     void settle(int x0, int y0, int size, std::size_t depth, FarSums sums, bool has_polynomial);
     void divide(int x0, int y0, int size, std::size_t depth, const simd::LineBounds& bounds,
@@ -113,26 +113,26 @@ class NearFarSubdivider {
                bool has_polynomial) const;
     /// Can floats hold the cell's sums? `most`, `reach`: m and m r of all lines (simd::LineSums).
     bool floats_hold(const Known& known, double most, double reach) const;
-    /// Of the quotient, by interpolation, by rounding at the nodes and by far lines' places in double.
+    /// The error of the quotient from interpolation, from rounding at the nodes and from far lines' places in double.
     double quotient_error(const FarSums& sums, const Known& known) const;
-    /// What adding up in floats at the nodes does to an interpolant.
+    /// The error of an interpolant from summation in float at the nodes.
     double node_sum_rounding() const;
     static simd::LineSums select(Candidates& lines, const simd::LineBounds& bounds, const Known& known,
                                  double budget);
-    /// The polynomial of a cell: what it has from above and the interpolant of the far lines' sums.
+    /// Finds the polynomial of a cell: the one inherited from the cell above plus the interpolant of the far lines' sums.
     void interpolate(const Candidates& lines, const CellFrame& frame, bool has_polynomial, double* to);
 
     // Rounding: near_far_rounding.cpp.
     /// Fills in m_place and m_in_double for a region. False where lines are farther off than floats allow for.
     bool bound_doubles();
-    /// Of the displacement at the centre times the sum of weights, from sums over all lines: m r, m r / d, m,
+    /// The rounding of the displacement at the centre times the sum of weights, from sums over all lines: m r, m r / d, m,
     /// m times the displacement's change per pixel. Of what a polynomial adds up, interpolation makes
     /// Lebesgue_K^2 as much.
     double center_rounding(double reach, double near_reach, double most, double slope, double offset) const;
     double scale() const;
-    /// Of adding up, dividing and placing, and of the lines in double: what no cutting of cells reduces.
+    /// The rounding of adding up, dividing and placing, and of the lines in double, which no subdivision of cells reduces.
     double base_rounding(const Known& known, int near) const;
-    /// Of a polynomial's coefficients and of Horner's rule: `size`, the sums of the coefficients' sizes.
+    /// The rounding of a polynomial's coefficients and of Horner's rule; `size`: the sums of the coefficients' sizes.
     double far_rounding(const Known& known, const float* size) const;
     /// A weight off by a factor 1 + e moves D by e l |D_i - D|, l the weight's part of all, which is l (1 -
     /// l) times the distance of D_i from the mean of the others.
@@ -148,11 +148,11 @@ class NearFarSubdivider {
     Region* m_region = nullptr;
     simd::WeightParameters m_weights;
     double m_x = 0, m_y = 0;  ///< the region's centre
-    double m_unit = 1;        ///< of weights
-    /// Relative errors of weights: by rounding, and by that of the place, per pixel and a + dist.
+    double m_unit = 1;        ///< the unit of weights
+    /// The relative errors of weights: from rounding, and from the rounding of the place, per pixel and a + dist.
     double m_constant = 0, m_by_nearest = 0;
-    /// In double: by how much near lines are out of place, in the target's pixels, and by how much all that is
-    /// no line's distance moves a point, in pixels of the shapes.
+    /// The rounding in double: of the places of near lines, in the target's pixels, and of a point by all that is no line's
+    /// distance, in pixels of the shapes.
     double m_place = 0, m_in_double = 0;
     Vector m_reference{};  ///< displacements are relative to this
     std::vector<FieldLine> m_lines;

@@ -20,7 +20,7 @@ struct TakenSource {
     std::string
         reason;  ///< why it is taken for this: "given", "assumed from the 2:1 shape", "given, 90 degrees assumed" ...
 
-    /// That as an attribute of what is drawn.
+    /// The source and the reason as an attribute of the picture.
     Attribute says() const;
 };
 
@@ -28,10 +28,10 @@ struct TakenSource {
 struct ReprojectRequest {
     TakenSource source;
     Chart target;
-    Orientation orientation;  ///< of the picture's camera
-    Orientation held;         ///< of the source's
+    Orientation orientation;  ///< orientation of the picture's camera
+    Orientation held;         ///< orientation of the source's camera
     ReprojectOptions options;
-    /// Of scheme hardware: what draws it, in place of options.scheme and tol.
+    /// The unit that draws the picture with scheme hardware, in place of options.scheme and tol.
     std::optional<machine::BumpUnit> machine = {};
 
     Panorama map() const { return Panorama(source.chart, target, orientation, held); }

@@ -27,19 +27,19 @@ struct Word {
 
     std::string name, meaning;
     int enumerator;
-    static constexpr int kNone = -1;  ///< of a word that is no enumerator, and is asked for itself
+    static constexpr int kNone = -1;  ///< enumerator of a word that is none, and is asked for itself
 };
 
 Parameter enumeration(const char* name, std::string value, const std::vector<Word>& words,
                       const std::string& doc);
-/// Of words that are counted, or mean what they say.
+/// A row of type choice whose words are counted, or mean what they say.
 Parameter choice(const char* name, std::string value, std::vector<std::string> choices,
                  const std::string& doc);
 Parameter number(const char* name, const char* unit, std::string value, double least, double most,
                  const std::string& doc);
-/// With the default and the range of a row that other hosts share.
+/// A row of type number with the default and the range of a row that other hosts share.
 Parameter number(const char* name, const char* unit, const NumberRow& shared, const std::string& doc);
-/// The same without the minimum itself.
+/// Returns a row of type number that does not accept its minimum.
 Parameter above(Parameter number);
 Parameter whole(const char* name, const char* unit, std::string value, int least, int most,
                 const std::string& doc);
@@ -82,12 +82,12 @@ Enumeration chosen(const ParameterValues& values, std::string_view name) {
 /// The horizontal field of view, in degrees, of a flat picture so many pixels wide, of a camera of that focal length in
 /// pixels.
 double flat_field_of_view(int width, double focal_length);
-/// Degrees in six digits, for what a picture says of itself.
+/// Degrees in six digits, for a picture's attributes.
 std::string rounded_degrees(double degrees);
 
 /// Has `output` one of the words that all operations share?
 bool has_shared_output(const ParameterValues& values);
-/// Of `output`: colour for the operation's own words.
+/// The value of the parameter `output`; colour for the operation's own words.
 Output chosen_output(const ParameterValues& values);
 
 }  // namespace anamorph::rows

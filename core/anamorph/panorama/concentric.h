@@ -38,13 +38,13 @@ struct ConcentricStack {
     double radius(int circle) const { return circles == 1 ? 0 : (2.0 * circle) / (circles - 1) - 1; }
     /// Horizontal offset of a line of sight through the viewpoint; 0 for a vertical one.
     double offset(const Ray<double>& ray) const;
-    /// By how much a circle counts for lines of sight with this offset: 1 at its own radius, 0 from those of its neighbours
-    /// on. Those of all circles add up to 1.
+    /// The weight of a circle for lines of sight with this offset: 1 at its own radius, 0 from the radii of its neighbours
+    /// on. The weights of all circles add up to 1.
     double weight(int circle, double offset) const;
-    /// How far heights may be from 1 times the true ones as they are drawn, in the direction of a ray, of things that are
-    /// `nearest` (above 1) or farther from the centre.
+    /// The largest relative error of drawn heights in the direction of a ray, for things that are `nearest` (above 1) or
+    /// farther from the centre.
     double vertical_distortion(const Ray<double>& ray, double nearest) const;
-    /// The same for all directions, to within a thousandth of it.
+    /// The largest relative error of drawn heights in all directions, to within a thousandth of it.
     double vertical_distortion(double nearest) const;
 };
 
@@ -66,7 +66,7 @@ class ConcentricMap {
     };
     Local local_around(double x, double y, int piece) const;
 
-    // As a FormulaMap.
+    // The members that make this a FormulaMap (plan/formula_map.h).
     Size target_size() const { return m_view.target_size(); }
     Size source_size() const { return m_view.source_size(); }
     std::vector<Box> target_pieces() const { return m_view.target_pieces(); }
@@ -106,8 +106,8 @@ class ConcentricMap {
         const Ray<T> u{r.x / length, r.y / length, r.z / length};
         return {u, u.z * px - u.x * pz, u.x * px + u.z * pz};
     }
-    /// How far the offset that a stack says of a ray as doubles have it (ConcentricStack::offset()) may be from the exact one,
-    /// together with what weight() loses of it, over a box of target points.
+    /// The largest error of the offset of a ray computed in double (ConcentricStack::offset()), together with the rounding of
+    /// weight(), over a box of target points.
     double offset_error(const Interval& x, const Interval& y, int piece) const;
 
     template <class T>

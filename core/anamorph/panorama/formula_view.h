@@ -9,10 +9,11 @@
 
 namespace anamorph {
 
-/// As Panorama, from rays on; a point has none where a formula has no value or all three are 0.
+/// A reprojection whose target is given by formulas of its rays; from rays on it is a Panorama. A point has no ray where a
+/// formula has no value or all three are 0.
 class FormulaView {
   public:
-    /// Those of texts.
+    /// The costs of maps given as text.
     static constexpr PlanCosts kCosts{.bound = 400, .further_bound = 30, .polynomial = 20, .rounding = 45};
 
     /// `rays`: as parse_rays() makes them. `picture`: the size that they speak of. `target`: the pixels that the picture has.
@@ -22,7 +23,7 @@ class FormulaView {
 
     const Chart& source() const { return m_view.source(); }
 
-    // As a FormulaMap.
+    // The members that make this a FormulaMap (plan/formula_map.h).
     using Local = Panorama::Local;
     Size target_size() const { return m_view.target_size(); }
     Size source_size() const { return m_view.source_size(); }
@@ -81,7 +82,7 @@ class FormulaView {
         return transform([&](int column, int row) { return m_view.turn()[column][row].template as<T>(); }, r);
     }
 
-    /// Of a flat picture of the same size, from its rays on.
+    /// The map from rays on, as of a flat picture of the same size.
     Panorama m_view;
     SpaceFormula m_rays;
     PixelScale m_scale;

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a map is over boxes of its target: where there is a source point, what its Taylor coefficients are, and what rounding
-// does to them.
+// Bounds of a map over boxes of its target: where there is a source point, its Taylor coefficients, and their rounding.
 #pragma once
 
 #include <algorithm>
@@ -25,7 +24,7 @@ inline constexpr double kSharedRounding = 1.0 / 64;
 // Smaller boxes have too few blocks for looking at their halves.
 inline constexpr int kBoxOfRoundings = 4 * kBlockWidth * kBlockHeight;
 
-/// Of one piece of the target.
+/// The bounds of a map on one piece of the target.
 template <FormulaMap Map>
 class BoxBounds {
   public:
@@ -38,7 +37,7 @@ class BoxBounds {
     struct Place {
         Box box;
         Local local;
-        double rounding = -1;  ///< what it costs any block in the box; negative until it is asked for
+        double rounding = -1;  ///< rounding of any block in the box; negative until it is asked for
     };
 
     BoxBounds(const Map& map, const PlanOptions& options, int piece)
@@ -78,7 +77,7 @@ class BoxBounds {
     bool lies_beyond(const Point<Jet<Interval, N>>& p) const {
         return lie_beyond(p.x.c[0], p.y.c[0], footprint_reach(p));
     }
-    /// The same for source points in these ranges, with texels that lie up to `reach` from them.
+    /// Does all that is read at source points in these ranges lie beyond an edge, with texels up to `reach` from them?
     bool lie_beyond(const Interval& x, const Interval& y, double reach) const {
         const Size size = m_map.source_size();
         const SourceEdges edges = m_map.source_edges();
@@ -88,7 +87,7 @@ class BoxBounds {
         return (edges.across && beyond(x, size.width)) || (edges.down && beyond(y, size.height));
     }
 
-    /// How far from its source point a pixel's texels lie at most, in source pixels (image/footprint.h).
+    /// The largest distance of a pixel's texels from its source point, in source pixels (image/footprint.h).
     ///
     /// Taps: a side of the footprint that is n texels of its level long has at most n + 1 taps, since the
     /// energy of w texels is at least 2 / (3 w), and two texels between them at most: they reach n texels
@@ -118,7 +117,7 @@ class BoxBounds {
         using J = Jet<Interval, N>;
         return m_map(J::variable(across(box), 1, 0), J::variable(down(box), 0, 1), local);
     }
-    /// The same over each of up to kJets boxes.
+    /// The map's Taylor coefficients over each of up to kJets boxes.
     Point<simd::BoundJets> enclose_all(std::span<const Box> boxes, const Local& local) const {
         Interval x[simd::kJets], y[simd::kJets];
         for (std::size_t i = 0; i < simd::kJets; ++i) {
@@ -159,12 +158,13 @@ class BoxBounds {
                      J::variable(0.5 * (box.y0 + box.y1), 0, half(box.height())), local);
     }
 
-    /// What rounding costs the blocks in a box, of up to a given size; or values, for a size of 0.
+    /// The rounding of the blocks in a box, of up to a given size; or of values, for a size of 0.
     double rounding_over(const Box& box, double half_width, double half_height, const Local& local) const {
         const auto t = taylor_rounding(m_map, across(box), down(box), half_width, half_height, local);
         return length(t.error.x + kRearranged * t.size.x, t.error.y + kRearranged * t.size.y);
     }
-    /// One bound for all blocks in a part of a place, if possible all of the place's. Infinite where each needs its own.
+    /// A bound of rounding for all blocks in a part of a place, if possible for all of the place. Infinite where each block
+    /// needs its own.
     double shared_rounding(const Box& part, Place& place) const {
         if (place.rounding < 0) place.rounding = shared_rounding(place.box, place.local);
         if (place.rounding < HUGE_VAL || part == place.box) return place.rounding;
@@ -172,11 +172,11 @@ class BoxBounds {
     }
 
   private:
-    /// A box's pixel centres, or all of it where blocks are made of values at its corners.
+    /// The range of a box's pixel centres along x, or all of it where blocks are made of values at its corners.
     Interval across(const Box& box) const { return {box.x0 + m_margin, box.x1 - m_margin}; }
     Interval down(const Box& box) const { return {box.y0 + m_margin, box.y1 - m_margin}; }
 
-    /// Outside when every pixel's footprint lies beyond the source image's edges.
+    /// The cover of a box, which is outside also when every pixel's footprint lies beyond the source image's edges.
     Cover culled(const Box& box, const Local& local) const {
         const Size size = m_map.source_size();
         const SourceEdges edges = m_map.source_edges();
@@ -191,7 +191,7 @@ class BoxBounds {
                                                                                      : Cover::inside;
     }
 
-    /// Found in halves where all of a box is too much at once.
+    /// A bound of rounding for all blocks in a box, found in halves where all of it is too much at once.
     double shared_rounding(const Box& box, const Local& local) const {
         const double rounding = rounding_over(box, half(std::min(2 * kBlockWidth, box.width())),
                                               half(std::min(2 * kBlockHeight, box.height())), local);
@@ -208,7 +208,7 @@ class BoxBounds {
     const Map& m_map;
     const PlanOptions& m_options;
     int m_piece;
-    double m_margin;  ///< of what is enclosed of a box: from its edges to the nodes that blocks are made of
+    double m_margin;  ///< distance from the edges of a box to the nodes that blocks are made of
 };
 
 }  // namespace anamorph::plan_detail

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where a map's Taylor polynomials serve as blocks, and how large these may be.
+// Decides where a map's Taylor polynomials serve as blocks, and how large these may be.
 #pragma once
 
 #include <algorithm>
@@ -33,14 +33,14 @@ class PolynomialStrategy {
     PolynomialStrategy(const BoxBounds<Map>& bounds, double tol, CostModel& costs)
         : m_bounds(bounds), m_tol(tol), m_account(costs) {}
 
-    /// What is computed of several boxes at once.
+    /// The enclosures and polynomials that are computed for several boxes at once.
     struct Known {
         Box box;
         Enclosed enclosed;
-        Taylor middle;                 ///< of the block in the middle
-        std::optional<Taylor> itself;  ///< of the box, where it may be one polynomial's
+        Taylor middle;                 ///< polynomial of the block in the middle
+        std::optional<Taylor> itself;  ///< polynomial of the box, where it may be one block
     };
-    /// Of up to kJets boxes.
+    /// Computes them for up to kJets boxes.
     void know(std::span<const Box> boxes, const Local& local, Known* known) {
         m_account.pay_for_bounds(boxes.size());
         Box middles[simd::kJets];
@@ -63,11 +63,11 @@ class PolynomialStrategy {
         for (std::size_t i = 0; i < boxes.size(); ++i) known[i].itself = taylors[i];
     }
 
-    /// What the map's Taylor coefficients over a box give the blocks in it.
+    /// The bounds that the map's Taylor coefficients over a box give for the blocks in it.
     struct Bound {
         Tail x, y;
-        double reach;  ///< of their footprints where some may lie beyond the image's edges; else -1
-        double rounding = HUGE_VAL;  ///< of any; infinite where each has its own
+        double reach;  ///< reach of their footprints where some may lie beyond the image's edges; else -1
+        double rounding = HUGE_VAL;  ///< rounding of any block; infinite where each has its own
     };
     Bound bound_of(const Known& known) const {
         const Enclosed& p = known.enclosed;
@@ -140,7 +140,7 @@ class PolynomialStrategy {
         }
     }
 
-    /// Where blocks of any size do not share what rounding costs them, the parts of one block may.
+    /// Adds a bound of rounding for the parts of one block, which may share one where blocks of any size do not.
     Bound with_rounding(Bound bound, const Box& block, const Parts& parts, const Local& local) {
         const bool is_shared = bound.rounding < HUGE_VAL || parts.are != Parts::placed;
         if (is_shared || pixels_of(block) < 2 * parts.width * parts.height) return bound;
@@ -250,7 +250,7 @@ class PolynomialStrategy {
         return count;
     }
 
-    /// What the terms of degree 5 would be if they were as much smaller than those of degree 4 as those than degree 3's.
+    /// An estimate of the terms of degree 5, as if they were to those of degree 4 as these are to those of degree 3.
     static double expected_tail(const Taylor& taylor) {
         const auto size = [&](int from, int to) {
             double x = 0, y = 0;

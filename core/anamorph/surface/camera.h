@@ -12,7 +12,7 @@
 
 namespace anamorph::surface {
 
-/// What a user says of a camera.
+/// The parameters of a camera.
 struct CameraPose {
     glm::dvec3 position{0, 0, 2}, target{0.0}, up{0, 1, 0};
     bool perspective = true;
@@ -31,10 +31,10 @@ class Camera {
     bool perspective() const { return m_perspective; }
     /// Pixels per unit of space, perspective: at a distance of 1.
     double focal() const { return m_focal; }
-    /// What lies less far ahead is not seen.
+    /// The distance of the near plane: points less far ahead are not seen.
     double near() const { return m_near; }
 
-    /// From the object to the camera's frame.
+    /// The matrix from the object to the camera's frame.
     const glm::dmat3& matrix() const { return m_matrix; }
     const glm::dvec3& offset() const { return m_offset; }
     glm::dvec3 in_frame(const glm::dvec3& object) const { return m_matrix * object + m_offset; }
@@ -50,7 +50,7 @@ class Camera {
 
     /// The weight of a point when what is linear in space is interpolated on the screen: 1 over its depth, or 1.
     double weight(const glm::dvec3& p) const { return m_perspective ? 1 / p.z : 1; }
-    /// Where a point of the camera's frame is seen: in pixels, from the middle of the screen.
+    /// The point on the screen of a point of the camera's frame, in pixels from the middle of the screen.
     Point<double> seen(const glm::dvec3& p) const {
         const double scale = m_focal * weight(p);
         return {p.x * scale, p.y * scale};

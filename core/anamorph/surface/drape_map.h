@@ -15,12 +15,12 @@
 
 namespace anamorph::surface {
 
-/// Room for what is seen in regions, used again for others.
+/// A pool of the buffers for the visible pixels of regions, which are reused.
 using SeenPool = RoomPool<SeenPixels>;
-/// Room for facets.
+/// A pool of the buffers for facets.
 using FacetPool = RoomPool<FacetRoom>;
 
-/// What is seen in a region.
+/// The visible facets of a region of the screen.
 class SeenRegion final : public RegionData {
   public:
     explicit SeenRegion(std::shared_ptr<SeenPool> pool) : m_pool(std::move(pool)), m_pixels(m_pool->take()) {}
@@ -28,7 +28,7 @@ class SeenRegion final : public RegionData {
     SeenRegion(const SeenRegion&) = delete;
     SeenRegion& operator=(const SeenRegion&) = delete;
 
-    /// Of the region, and one pixel more on each side that has one.
+    /// The pixels of the region, and one more on each side where the screen has one.
     SeenPixels& pixels() { return *m_pixels; }
     const SeenPixels& pixels() const { return *m_pixels; }
 
@@ -37,20 +37,20 @@ class SeenRegion final : public RegionData {
     std::unique_ptr<SeenPixels> m_pixels;
 };
 
-/// Points in pixels of a picture of `picture` pixels that lies on the surface. Pixels of the screen where nothing is
-/// seen have none. A block's bound is a distance on the screen, in pixels.
+/// The pull map from the screen to a picture of `picture` pixels that lies on the surface. Pixels of the screen that show
+/// nothing have no source point. A block's bound is a distance on the screen, in pixels.
 class DrapeMap final : public BlockMap {
   public:
-    /// Bounds of facets leave kFloatShare of `tol` to points in float; blocks for which that is too little have theirs in
-    /// double. With `surface`, that of the facets, each pixel's point is that of the surface itself (PointPolish), where
-    /// that can be told. `pool`: room that other maps may leave and use.
+    /// Makes the map of some facets. Their bounds leave kFloatShare of `tol` to points in float; blocks for which that is too
+    /// little have their points in double. With `surface`, which is that of the facets, each pixel has the point of the surface
+    /// itself (PointPolish), where that can be found.
     DrapeMap(Facets facets, const Camera& camera, const Size& picture, double tol,
              std::shared_ptr<const DrapedSurface> surface = nullptr);
-    /// Of the room's facets; `facet_pool` gets it back.
+    /// Makes the map of the facets in `room`, which `facet_pool` gets back. `pool`: buffers that maps share.
     DrapeMap(std::unique_ptr<FacetRoom> room, const Camera& camera, const Size& picture, double tol,
              std::shared_ptr<const DrapedSurface> surface, std::shared_ptr<SeenPool> pool,
              std::shared_ptr<FacetPool> facet_pool);
-    /// Of the paper's blocks. Their squares have the side kSquare.
+    /// Makes the map of the paper's blocks (Oka 1987), whose regions have the side kSquare.
     DrapeMap(std::shared_ptr<const OkaRaster> blocks, const Camera& camera, const Size& picture, double tol,
              std::shared_ptr<SeenPool> pool);
 
@@ -58,31 +58,31 @@ class DrapeMap final : public BlockMap {
     DrapeMap(const DrapeMap&) = delete;
     DrapeMap& operator=(const DrapeMap&) = delete;
 
-    /// Of the paper's blocks, made when they are asked for first.
+    /// The facets; those of the paper's blocks are made when they are first asked for.
     const Facets& facets() const;
-    /// Patches that are drawn: leaves of facets().
+    /// The number of patches that are drawn: the paper's blocks, or leaves of facets().
     std::size_t patches() const { return m_blocks ? m_blocks->count() : m_room->facets.leaves.size(); }
-    /// Of the two facets of one of the paper's blocks, the one that a point lies in; of others, the facet itself.
+    /// The facet that a point lies in: one of the two facets of one of the paper's blocks, else `facet` itself.
     const Facet& part_of(const Facet& facet, double u, double v) const;
     const Camera& camera() const { return m_camera; }
     const Size& picture() const { return m_picture; }
-    /// No block's bound is larger.
+    /// An upper bound of the bounds of all blocks, in pixels of the screen.
     double max_error(const ParallelFor& parallel_for = serial_for) const;
 
     /// Has each pixel a point of its own?
     bool exact_points() const { return m_surface != nullptr; }
-    /// Of all patches, for bound_at().
+    /// Finds the bounds of all patches, which bound_at() reads.
     void find_bounds(const ParallelFor& parallel_for) const { bounds(parallel_for); }
-    /// The bound of what is seen at a place of SeenPixels.
+    /// The bound of the patch that is seen at a place of SeenPixels.
     double bound_at(const SeenPixels& pixels, std::size_t at) const;
     double nearness_at(const SeenPixels& pixels, std::size_t at) const;
 
-    /// What is seen about a pixel of the screen.
+    /// The region of a pixel of the screen.
     std::shared_ptr<const SeenRegion> region_at(int x, int y) const;
-    /// What is seen in a box as FacetRaster::draw says, and, where each pixel has a point of its own, of sheets that lie too
-    /// near each other for facets to tell, the one whose own point is nearer.
+    /// Finds what is seen in a box as FacetRaster::draw does. Where each pixel has a point of its own, that decides between
+    /// layers of the surface that lie too near each other for facets to tell which is nearer.
     void see(const Box& box, SeenPixels& pixels, int times = 1) const;
-    /// Pixels of the picture per pixel of the screen, at a point of a facet's plane.
+    /// The derivative at a point of a facet's plane: pixels of the picture per pixel of the screen.
     Jacobian jacobian_of(const Facet& facet, double x, double y) const;
 
     bool exact(double x, double y, int piece, Point<double>& source_point,
@@ -92,7 +92,7 @@ class DrapeMap final : public BlockMap {
     void computed_row(const Block& block, int row, int begin, int end, float* x,
                       float* y) const noexcept override;
 
-    /// Side of the squares of the screen that are seen at once, which caches hold meanwhile.
+    /// The side of the squares of the screen that are rasterized at once, which fit the caches.
     static constexpr int kSquare = 128;
 
   protected:
@@ -105,7 +105,7 @@ class DrapeMap final : public BlockMap {
     void polish(SeenPixels& pixels) const;
     void cut(const SeenRegion& region, const Box& box, Blocks& blocks) const;
     double bound_of(const SeenRegion& region, const Box& box) const;
-    /// From the least to the greatest u and v.
+    /// The ranges of u and v, each from the least to the greatest.
     struct Range {
         double u[2], v[2];
     };
@@ -115,18 +115,18 @@ class DrapeMap final : public BlockMap {
     template <class Body>
     void for_leaves(const SeenRegion& region, const Box& box, const Body& body) const;
 
-    std::shared_ptr<const OkaRaster> m_blocks;  ///< or null
+    std::shared_ptr<const OkaRaster> m_blocks;  ///< the paper's blocks, or null
     mutable std::once_flag m_made;
     std::unique_ptr<FacetRoom> m_room;
     Camera m_camera;
     Size m_picture;
     double m_for_float;
-    /// Of leaves: their bounds, and FacetLeaf::by_u and by_v.
+    /// The largest bound of a leaf, and the largest FacetLeaf::by_u and by_v.
     double m_most_bound = 0, m_most_by_u = 0, m_most_by_v = 0;
     mutable std::once_flag m_bounded;
-    mutable std::vector<double> m_bounds;  ///< of leaves, when they are asked for
+    mutable std::vector<double> m_bounds;  ///< bounds of the patches, once they are asked for
     std::shared_ptr<const DrapedSurface> m_surface;
-    std::optional<FacetRaster> m_raster;  ///< where there are no blocks
+    std::optional<FacetRaster> m_raster;  ///< the raster of facets, where there are no blocks
     std::shared_ptr<SeenPool> m_pool;
     std::shared_ptr<FacetPool> m_facet_pool;
 };

@@ -36,7 +36,7 @@ Size oka_block_count(const Size& picture, const OkaBlocks& blocks);
 bool oka_block(const DrapedSurface& surface, const Camera& camera, const Size& picture,
                const OkaBlocks& blocks, int i, int j, OkaBlock& block);
 
-/// What the blocks that a camera sees are made of, used again for other views.
+/// The buffers of the blocks that a camera sees, reused for other views.
 struct OkaRoom {
     /// Columns and rows of squares of the screen, from the first to the last.
     struct Squares {
@@ -66,27 +66,27 @@ class OkaRaster {
     OkaRaster(const OkaRaster&) = delete;
     OkaRaster& operator=(const OkaRaster&) = delete;
 
-    /// As FacetRaster::draw. A pixel's facet is the first of its block's in facets(); nearness is that of linear depth,
-    /// and empty without.
+    /// Finds what is seen in a box, as FacetRaster::draw does. A pixel's facet is the first of its block's in facets();
+    /// nearness is that of linear depth, and empty without.
     void draw(const Box& box, SeenPixels& seen, int times = 1) const;
 
     std::size_t count() const { return m_room->blocks.size(); }
-    /// Of a block's centre.
+    /// The nearness of a block's centre.
     double nearness(std::size_t block) const { return -m_room->blocks[block].z; }
-    /// Pixels on the screen per unit of u and of v: at most, of all blocks.
+    /// The most pixels on the screen per unit of u; most_by_v() is the same per unit of v.
     double most_by_u() const { return m_most_by_u; }
     double most_by_v() const { return m_most_by_v; }
-    /// Two facets for each block, in the order of blocks; leaves have no bound. Corners are where they are, off any grid.
+    /// Makes two facets for each block, in the order of blocks; leaves have no bound. Corners are not rounded to a grid.
     Facets facets() const;
-    /// How far a point of a block may be seen from where it is drawn, pixels. By Taylor's formula (2.9) about the block's
-    /// centre, axis by axis, of g, the map to the screen, and the linear map a that is drawn, whatever it is made of,
+    /// The largest distance, in pixels, of a drawn point of a block from where it is seen. By Taylor's formula (2.9) about the
+    /// block's centre, axis by axis, of g, the map to the screen, and the linear map a that is drawn, whatever it is made of,
     ///     |g - a0 + (g_u - a1) s + (g_v - a2) t + g_uu s^2 / 2 + g_uv s t + g_vv t^2 / 2|
     /// with g, g_u and g_v at the centre and, for (s, t) in each sixteenth of each quarter of the block, a mean of the second
     /// derivatives over the quarters of that quarter that the way there from the centre passes, part by part of the way.
     /// Infinite where that is not known, and where a part of the block is missing.
     double bound_of(std::size_t block) const;
-    /// Of all blocks, the largest bound: only of those is it worked out of which a quick one does not say that another's is
-    /// larger.
+    /// The largest bound of all blocks. It is computed only for blocks of which a quick bound does not say that another
+    /// block's is larger.
     double most_bound(const ParallelFor& parallel_for) const;
 
   private:

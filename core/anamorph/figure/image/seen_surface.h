@@ -42,9 +42,9 @@ struct AffineOfPixel {
     double over_half_pixel() const { return 0.5 * (std::fabs(x) + std::fabs(y)); }
 };
 
-/// Where a ray meets a body.
+/// The point where a ray meets a body.
 struct SurfaceHit {
-    double nearness = -HUGE_VAL;  ///< -infinity: nowhere
+    double nearness = -HUGE_VAL;  ///< -infinity where it does not
     bool far_side = false;        ///< the body is seen from inside
 };
 
@@ -58,13 +58,13 @@ class SeenSurface {
 
     /// Pixels outside of it do not show the body.
     const Box& box() const { return m_box; }
-    /// No point of the body is nearer.
+    /// The largest nearness of any point of the body.
     double nearest() const { return m_nearest; }
     /// Part of the body may be nearer than View::near: then its near side is not a function on all of the
     /// pixels that show it.
     bool meets_near_plane() const { return m_meets_near; }
 
-    /// What is seen of the body at a point of the picture.
+    /// Finds what is seen of the body at a point of the picture.
     SurfaceHit hit(double x, double y) const {
         return m_meets_near ? cut_hit(x, y) : SurfaceHit{near_side(x, y), false};
     }
@@ -78,9 +78,10 @@ class SeenSurface {
         const double dx = x - m_at.x, dy = y - m_at.y, w = m_w(dx, dy);
         return discriminant(dx, dy, w) >= 0 && w > 0;
     }
-    /// Nothing of the body that the pixel around (x, y) shows is nearer; -infinity where it shows none.
+    /// An upper bound of the nearness of what the pixel around (x, y) shows of the body; -infinity where it shows nothing.
     double nearest_in_pixel(double x, double y) const;
-    /// Nothing of the body that the pixel shows is farther; -infinity where the body meets the near plane.
+    /// A lower bound of the nearness of what the pixel around (x, y) shows of the body; -infinity where the body meets the near
+    /// plane.
     double farthest_in_pixel(double x, double y) const {
         return m_meets_near ? -HUGE_VAL : m_lean(x - m_at.x, y - m_at.y) - m_lean.over_half_pixel();
     }
@@ -90,7 +91,7 @@ class SeenSurface {
         int x0, x1;
     };
     Columns columns(double y, int x0, int x1) const;
-    /// Where on the row at y the body is most likely seen: the middle of what is, if anything is.
+    /// The x at which the body is most likely seen on the row at y: the middle of what is seen of it, if anything is.
     double middle_of_row(double y) const;
 
     /// The point that is seen at (x, y), on the unit sphere of the body's own axes. Where rounding lets the ray
@@ -98,7 +99,7 @@ class SeenSurface {
     glm::dvec3 unit_point(double x, double y, bool far_side) const {
         return glm::normalize(m_unit * turned_point(x, y, far_side));
     }
-    /// The same for any number, such as a jet, but so far inside the limb that derivatives are finite.
+    /// unit_point() for any number, such as a jet, but kept so far inside the limb that derivatives are finite.
     template <class T>
     std::array<T, 3> unit_point_of(const T& x, const T& y, bool far_side) const {
         const std::array<T, 3> p = turned(x, y, far_side, kLeastRoot);
@@ -123,8 +124,8 @@ class SeenSurface {
         const std::array<double, 3> p = turned(x, y, far_side, 0);
         return {p[0], p[1], p[2]};
     }
-    /// In the coordinates that the axes of m_unit turn, of the unit sphere. D counts as `least` where it is
-    /// less.
+    /// The point of the unit sphere that is seen at (x, y), in the coordinates that m_unit rotates. D counts as `least` where
+    /// it is less.
     template <class T>
     std::array<T, 3> turned(const T& x, const T& y, bool far_side, double least) const;
     static double value_of(double number) { return number; }
@@ -168,7 +169,7 @@ std::array<T, 3> SeenSurface::turned(const T& x, const T& y, bool far_side, doub
     return {t * e1, t * e2, (w * root - m_eye * e) / length};
 }
 
-/// What a nearness is in units of the scene: the depth of the point, as View::to_view gives it.
+/// The depth of a point, as View::to_view gives it in units of the scene, from its nearness.
 inline double depth_of(double nearness, bool perspective) {
     return perspective ? 1 / nearness : -nearness;
 }
