@@ -17,7 +17,7 @@ std::vector<float> stmap_of(const Panorama& map, double tol) {
     const int w = map.target().width(), h = map.target().height();
     std::vector<float> uv(static_cast<std::size_t>(w * h * 2));
     const ImageView view = packed_view(reinterpret_cast<std::byte*>(uv.data()), PixelType::float32, w, h, 2);
-    EXPECT_TRUE(Reprojection(map, options).draw(nullptr, {0, 0, w, h}, view));
+    EXPECT_TRUE(reprojected_picture(map, options).draw(nullptr, {0, 0, w, h}, view));
     return uv;
 }
 
@@ -80,7 +80,8 @@ TEST(Draw, WhatStandsBeyondTheEdgesIsDrawn) {
         std::vector<float> drawn(1000 * 700, -1.0f);
         const ImageView view =
             packed_view(reinterpret_cast<std::byte*>(drawn.data()), PixelType::float32, 1000, 700, 1);
-        ASSERT_TRUE(Reprojection(Panorama(from, to, {}), options).draw(&source, {0, 0, 1000, 700}, view));
+        ASSERT_TRUE(
+            reprojected_picture(Panorama(from, to, {}), options).draw(&source, {0, 0, 1000, 700}, view));
         const float beyond = wrap == Wrap::automatic || wrap == Wrap::black ? 0.0f : 1.0f;
         SCOPED_TRACE(static_cast<int>(wrap));
         EXPECT_NEAR(drawn.front(), beyond, 1e-6);

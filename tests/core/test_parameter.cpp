@@ -421,7 +421,7 @@ std::vector<float> drawn(const std::vector<Assignment>& assignments, const Sourc
     std::vector<float> pixels(static_cast<std::size_t>(all.width()) * static_cast<std::size_t>(all.height()));
     const ImageView view = packed_view(reinterpret_cast<std::byte*>(pixels.data()), PixelType::float32,
                                        all.width(), all.height(), 1);
-    EXPECT_TRUE(Reprojection(r.map(), r.options).draw(&source, all, view));
+    EXPECT_TRUE(reprojected_picture(r.map(), r.options).draw(&source, all, view));
     return pixels;
 }
 

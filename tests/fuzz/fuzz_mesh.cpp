@@ -19,7 +19,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
         MeshWarpOptions options;
         options.tol = 1.0 / 16;
         options.amount = data[0] / 64.0;
-        const MeshWarp warp(map, 64, 48, 40, 32, options);
+        const Picture warp = warped_picture(map, {64, 48}, {40, 32}, options);
         Point<double> point{};
         int piece = 0;
         if (warp.blocks().exact(20.5, 16.5, 0, point, piece))

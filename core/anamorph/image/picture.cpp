@@ -253,6 +253,14 @@ bool draw_same(const Picture& picture, const Source& source, const Box& box, con
 
 }  // namespace
 
+bool Picture::reads(int source) const {
+    if (!shows_color()) return false;
+    for (const Map& map : maps)
+        for (const Layer& layer : map.layers)
+            if (layer.source == source) return true;
+    return false;
+}
+
 int Picture::channels(const Source* first) const {
     if (!shows_color()) return !value && output == Output::stmap ? 2 : 1;
     if (!first) throw Error("a picture in colour needs a source");

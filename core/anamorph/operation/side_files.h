@@ -11,7 +11,7 @@
 
 namespace anamorph {
 
-/// With an identity, which tells its states apart, what was read of a file is kept.
+/// A file. With an identity, which tells its states apart, what was read of it is kept.
 struct SideFile {
     std::string name, identity;
     bool image = false;  ///< it is opened as an image, and so may be a recipe
@@ -22,7 +22,7 @@ using SideFiles = std::map<std::string, SideFile>;  ///< by key; those that were
 class SideImage {
   public:
     virtual ~SideImage() = default;
-    /// As it is seen upright.
+    /// The size of the image as it is seen upright.
     virtual Size size() const = 0;
     virtual int channels() const = 0;
     /// The first `count` channels of all pixels, row by row, packed. Throws Error.
