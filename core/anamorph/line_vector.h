@@ -8,7 +8,7 @@
 
 namespace anamorph {
 
-/// Of memory that begins with a line of the cache.
+/// An allocator of memory that begins with a line of the cache.
 template <class T>
 struct LineAllocator {
     using value_type = T;
