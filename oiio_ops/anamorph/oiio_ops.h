@@ -55,7 +55,7 @@ bool morph(OIIO::ImageBuf& dst, const OIIO::ImageBuf& a, const OIIO::ImageBuf& b
 OIIO::ImageBuf morph(const OIIO::ImageBuf& a, const OIIO::ImageBuf& b,
                      const OIIO::ParamValueList& options = {}, OIIO::ROI roi = {}, int nthreads = 0);
 
-/// The same of two to eight pictures, in the order of the features' shapes; `shape_weights` says how much of
+/// A morph of two to eight pictures, in the order of the features' shapes; `shape_weights` says how much of
 /// each.
 bool morph(OIIO::ImageBuf& dst, const std::vector<const OIIO::ImageBuf*>& pictures,
            const OIIO::ParamValueList& options = {}, OIIO::ROI roi = {}, int nthreads = 0);

@@ -42,7 +42,7 @@ class ANAMORPHRENDERING_EXPORT vtkAnamorphProjectionShader : public vtkObject {
     void PrintSelf(ostream& os, vtkIndent indent) override;
     vtkMTimeType GetMTime() override;
 
-    /// As many may be thrown at a time.
+    /// The most projectors that may throw pictures at a time.
     static constexpr int MostProjectors = 8;
 
     ///@{

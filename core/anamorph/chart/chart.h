@@ -31,14 +31,14 @@
 
 namespace anamorph {
 
-/// One a file of chart/projection/.
+/// The projections, each in a file of chart/projection/.
 enum class Projection {
 #define ANAMORPH_PROJECTION(name, Type) name,
 #include "anamorph/chart/projection/list.h"
 #undef ANAMORPH_PROJECTION
 };
 
-/// All of them, in the order of their list.
+/// All projections, in the order of their list.
 inline constexpr Projection kProjections[] = {
 #define ANAMORPH_PROJECTION(name, Type) Projection::name,
 #include "anamorph/chart/projection/list.h"
@@ -53,24 +53,24 @@ enum class PixelSpacing { edges, centers };
 Projection projection_from_name(std::string_view name, const std::string& parameter = "projection");
 /// The name that recipes have for it; never an alias.
 std::string_view name_of(Projection projection);
-/// All names, separated by ", ", for messages and documentation.
+/// The names of all projections, separated by ", ", for messages and documentation.
 std::string projection_names();
 /// The names one by one, with the aliases behind.
 std::vector<std::string> projection_name_list();
-/// Its default field of view and its limits.
+/// A projection's default field of view and its limits.
 FieldOfView fov_of(Projection projection);
 /// Faces across and down its picture; 0 where the picture is one piece of any shape.
 struct FaceGrid {
     int columns = 0, rows = 0;
     bool joined = false;  ///< the faces are parts of one picture, which has no edges where they meet
 };
-/// How its picture is divided into faces.
+/// How a projection's picture is divided into faces.
 FaceGrid faces_of(Projection projection);
-/// Is its picture divided into faces?
+/// Is a projection's picture divided into faces?
 inline bool has_faces(Projection projection) {
     return faces_of(projection).columns > 0;
 }
-/// Are the rows of its picture circles around the vertical axis, and those of 360 degrees closed?
+/// Are the rows of a projection's picture circles around the vertical axis, and those of 360 degrees closed?
 bool rows_turn(Projection projection);
 /// Height over width of a picture of a field of view in degrees.
 double natural_aspect(Projection projection, double fov);
@@ -94,7 +94,7 @@ struct Branch : Setting {
 /// A flat picture of directions: a projection, its field of view and its pixels.
 class Chart {
   public:
-    /// Of Pannini's d.
+    /// The largest value of Pannini's d.
     static constexpr double kMostDistance = 1000;
 
     /// `fov`: the horizontal field of view of the whole image in degrees, or of each face; 0 takes the
@@ -115,7 +115,7 @@ class Chart {
     double fov() const { return m_fov; }
     PixelSpacing spacing() const { return m_spacing; }
     const std::vector<Piece>& pieces() const { return m_pieces; }
-    /// None of most pictures.
+    /// The lens; null where there is none, as in most pictures.
     const Lens* lens() const { return m_lens.get(); }
 
     /// Does azimuth close on itself in this image (a full turn)? Its period in pixels is then period().
@@ -127,7 +127,7 @@ class Chart {
     /// Pixels per unit of the chart plane at pieces()[0].
     double scale_x() const { return m_sx.value(); }
     double scale_y() const { return m_sy.value(); }
-    /// Across, known better than double holds them.
+    /// scale_x(), known better than double holds it.
     const Constant& pixels_per_unit() const { return m_sx; }
     const Constant& units_per_pixel() const { return m_per_x; }
     /// Pixels for a radian straight ahead of a piece.
@@ -163,17 +163,17 @@ class Chart {
     /// ends where their tangents are 1024 times those of its image's edges, and of 45 degrees.
     template <class T>
     T sees(const Ray<T>& local, int piece = 0) const;
-    /// The same but for the end of its lens.
+    /// What sees() says of a chart whose lens did not end.
     template <class T>
     T sees_without_lens(const Ray<T>& local, int piece = 0) const;
 
     /// Are there several pieces, and does each see all rays that are nearest to it?
     bool pieces_see_all() const { return m_pieces_see_all; }
 
-    /// Of one sign where one smooth formula holds, at an image point.
+    /// A function of image points that has one sign where one smooth formula holds.
     template <class T>
     T crease(const T& x, const T& y, int piece) const;
-    /// The same at a local ray.
+    /// crease() as a function of local rays.
     template <class T>
     T crease(const Ray<T>& local) const;
     /// Do formulas count azimuths, or angles about the axis of sight?
@@ -201,11 +201,11 @@ class Chart {
         return local_point(transform(glm::transpose(branch(piece).axes), ray), branch(piece));
     }
 
-    /// In double: pixels for a unit of the plane, and units for a pixel.
+    /// Pixels for a unit of the plane, and units for a pixel, in double.
     struct Scale {
         double x, y, per_x, per_y;
     };
-    /// That of all pieces.
+    /// The scale, which all pieces have in common.
     Scale scale() const { return {m_sx.value(), m_sy.value(), m_per_x.value(), m_per_y.value()}; }
 
   private:

@@ -43,13 +43,13 @@ struct LensModel {
     /// The models above.
     enum class Kind { none, ptlens, brown, three_de4, kb4 };
     Kind kind = Kind::none;
-    /// In the order of names().
+    /// The values of the model, in the order of names().
     std::vector<double> values;
 
     /// "none", or MODEL:name=value,name=value as in "ptlens:a=0.01,b=-0.03"; what is not named is 0. Throws Error
     /// naming `parameter`.
     static LensModel parse(std::string_view text, const std::string& parameter = "lens");
-    /// As parse() reads it.
+    /// The text that parse() reads as this model.
     std::string text() const;
     /// The names of a model's values.
     static const std::vector<std::string>& names(Kind kind);
@@ -63,7 +63,7 @@ class LensTable;
 struct LensTerms {
     /// Which way the formula goes.
     bool to_observed = true;
-    /// In units of the plane: the model's own unit, the other way round, and the centre.
+    /// The model's own unit in units of the plane, its reciprocal, and the centre.
     Constant unit, per_unit, shift_x, shift_y;
     /// Is the unit another than the plane's?
     bool has_unit = false;
@@ -106,21 +106,21 @@ inline bool somewhere(bool condition) {
 
 /// Taylor coefficients by powers of what is added to the square of the distance from the centre.
 using LensCoefficients = lens_formula::Series<Interval, 5>;
-/// Encloses those of S for all members.
+/// Encloses the coefficients of S about any member of `squared`.
 LensCoefficients stretch_coefficients(const LensTerms& lens, const Interval& squared);
-/// And those of shrink().
+/// Encloses the coefficients of shrink() about any member of `squared`.
 LensCoefficients shrink_coefficients(const LensTerms& lens, const Interval& squared);
 
 /// Taylor coefficients by powers of what is added to a value, and by how much double is off that computes them.
 struct ComputedSeries {
-    /// Of what double computes.
+    /// The degree up to which double computes them.
     static constexpr int kDegree = 4;
     /// Encloses the coefficients, and the next one.
     LensCoefficients exact;
     /// How far those that are computed are off.
     double error[kDegree + 1] = {};
 
-    /// Where nothing is known.
+    /// The series of which nothing is known.
     static ComputedSeries unbounded() {
         ComputedSeries series;
         std::fill(std::begin(series.exact.c), std::end(series.exact.c), Interval::all());
@@ -128,7 +128,7 @@ struct ComputedSeries {
         return series;
     }
 };
-/// Those of shrink() about any value of an interval.
+/// The series of shrink() about any value of an interval, as double computes it.
 ComputedSeries computed_shrink(const LensTerms& lens, const Interval& value);
 
 /// The root's first approximation for double, by the table.
@@ -137,20 +137,20 @@ double near_root(const LensTerms& lens, double value);
 /// stretch_of() for jets of intervals, by its coefficients.
 template <int N>
 Jet<Interval, N> stretch_of(const LensTerms& lens, const Point<Jet<Interval, N>>& u);
-/// And shrink_of().
+/// shrink() for jets of intervals, by its coefficients.
 template <int N>
 Jet<Interval, N> shrink_of(const LensTerms& lens, const Point<Jet<Interval, N>>& v);
 
 /// shrink() for numbers that need more than an iteration; lens_formula.h has it for the others.
 Interval shrink(const LensTerms& lens, const Interval& value);
-/// The same with its rounding.
+/// shrink() with its rounding.
 template <class Real>
 Rounded<Real> shrink(const LensTerms& lens, const Rounded<Real>& value);
-/// The same for jets.
+/// shrink() of jets.
 template <class T, int N>
 Jet<T, N> shrink(const LensTerms& lens, const Jet<T, N>& value);
 
-/// Near a known value by its Taylor polynomial there: the coefficients are bases, in falling order.
+/// shrink() near a known value by its Taylor polynomial there: the coefficients are bases, in falling order.
 template <class Real>
 NearBound<Real> shrink(const LensTerms& lens, const NearBound<Real>& value);
 
@@ -160,7 +160,7 @@ Point<NearBound<Real>> settled(const LensTerms&, const Point<NearBound<Real>>& v
     const auto unbounded = RestBound<Real>::unbounded();
     return {{v.x.base, unbounded}, {v.y.base, unbounded}};
 }
-/// And settled().
+/// The root that settled() finds, of all points of a box.
 Point<Interval> settled(const LensTerms& lens, const Point<Interval>& v);
 template <class Real>
 Point<Rounded<Real>> settled(const LensTerms& lens, const Point<Rounded<Real>>& v);
@@ -176,8 +176,8 @@ class Lens {
     struct Plane {
         long double half_width, half_height, per_x, per_y;
     };
-    /// Throws Error naming `parameter` where a projection of that kind has no such lens, and where the lens ends within
-    /// the largest circle that the picture holds. `projection`: its name.
+    /// A lens on a chart's plane. Throws Error naming `parameter` where a projection of that kind has no such lens, and where the
+    /// lens ends within the largest circle that the picture holds. `projection`: its name.
     Lens(const LensModel& model, Lensed lensed, const std::string& projection, const Plane& plane,
          const std::string& parameter);
 
@@ -242,7 +242,7 @@ std::optional<Rounded<double>> shrink_by_table(const LensTerms& lens, const Roun
 /// The least slope of radial_at() over an interval.
 double least_slope(const LensTerms& lens, const Interval& t);
 
-/// With its rounding, of all members.
+/// The root with its rounding, of all members.
 template <class Real>
 Rounded<Real> radial_root(const LensTerms& lens, const Rounded<Real>& value) {
     const Interval range = radial_root(lens, value.range);
@@ -271,7 +271,7 @@ double largest_row(const lens_formula::Slope<T>& slope, const Of& of) {
     return std::max(of(slope.xx), of(slope.yy)) + of(slope.xy);
 }
 
-/// Of numbers without jets.
+/// The root of numbers without jets.
 template <class Real>
 Point<Rounded<Real>> settled_values(const LensTerms& lens, const Point<Rounded<Real>>& v) {
     using R = Rounded<Real>;
@@ -311,7 +311,7 @@ double most_undistorted(const LensTerms& lens, const Point<R>& v) {
     const double x = v.x.computed_size(), y = v.y.computed_size();
     return (s + 2 * by * std::max(x, y) * (x + y)) * (1 + 0x1p-40);
 }
-/// And in tangential_at().
+/// The same bound for tangential_at().
 template <class R>
 double most_tangential(const LensTerms& lens, const Point<R>& u) {
     const double x = u.x.computed_size(), y = u.y.computed_size();

@@ -35,12 +35,12 @@ std::vector<Deformation> parse_deformations_file(std::string_view text, std::str
 
 /// The text of a file that reads back as the same list, to the bit.
 std::string deformations_json(const std::vector<Deformation>& list);
-/// The same as CSV.
+/// The text of a CSV file that reads back as the same list, to the bit.
 std::string deformations_csv(const std::vector<Deformation>& list);
 
 /// "gaussian", "wendland_c2".
 const char* name_of(DeformationKernel kernel);
-/// Throws Error on other names.
+/// The kernel of that name. Throws Error on other names.
 DeformationKernel kernel_named(std::string_view name);
 
 }  // namespace anamorph

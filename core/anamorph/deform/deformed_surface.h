@@ -41,7 +41,7 @@ struct DeformOptions {
 /// The sums of what lists add to the surface, in fixed point, with the bound of their error.
 class DisplacementSum {
   public:
-    /// Throws Error on options out of range.
+    /// An empty sum. Throws Error on options out of range.
     explicit DisplacementSum(const DeformOptions& options);
 
     const DeformOptions& options() const { return m_options; }
@@ -158,7 +158,7 @@ class DeformedGrid {
     /// not copied; null: nothing, as at first. All points are to be written then.
     void set_offsets(const double* offsets) { m_offsets = offsets; }
 
-    /// Of the sums, without offsets.
+    /// No component of a displacement is farther from eq. (4.1) than this, offsets aside.
     double error_bound() const { return m_sum.error_bound(); }
 
     /// Gives `take` the derivatives of the displacement by a list at the points that changes reach, and at a
@@ -190,15 +190,16 @@ double deform_grid(const std::vector<Deformation>& list, std::span<const double>
 /// that it reaches.
 class DeformedPoints {
   public:
-    /// Throws Error that names the point on values that are not finite, and on 2^31 points or more.
+    /// A surface of these points (u, v), not deformed yet. Throws Error that names the point on values that are not finite, and on
+    /// 2^31 points or more.
     DeformedPoints(std::span<const glm::dvec2> points, const DeformOptions& options = {});
 
-    /// As that of DeformedGrid.
+    /// Takes changes of the list; update() or write() carries them out. Throws Error if they are refused.
     void apply(std::span<const DeformationChange> changes);
     /// Takes one change.
     void apply(const DeformationChange& change) { apply(std::span(&change, 1)); }
 
-    /// It works as in DeformedGrid, and returns the number of points that were written.
+    /// Writes what changes have moved, as DeformedGrid::update() does; returns the number of points that were written.
     template <class T>
     std::int64_t update(const T* base, T* out, const ParallelFor& parallel_for = serial_for,
                         T* displacement = nullptr);
@@ -214,13 +215,13 @@ class DeformedPoints {
                            const TakeSlopes& take, const ParallelFor& parallel_for = serial_for,
                            T* displacement = nullptr);
 
-    /// As that of DeformedGrid.
+    /// Adds to the displacements that are written from now on, as DeformedGrid::set_offsets() does.
     void set_offsets(const double* offsets) { m_offsets = offsets; }
 
-    /// Of the sums, without offsets.
+    /// No component of a displacement is farther from eq. (4.1) than this, offsets aside.
     double error_bound() const { return m_sum.error_bound(); }
 
-    /// It works as in DeformedGrid.
+    /// Gives `take` the derivatives of the displacement, as DeformedGrid::slopes() does.
     void slopes(const std::vector<Deformation>& list, const std::vector<DeformationChange>* changes,
                 const TakeSlopes& take, const ParallelFor& parallel_for = serial_for) const;
 

@@ -26,7 +26,7 @@ class ParameterPlane {
   public:
     /// The parameters are x and y.
     ParameterPlane() = default;
-    /// Throws Error on axes that are parallel or zero, and on numbers that are not finite.
+    /// The plane through `origin` with these axes. Throws Error on axes that are parallel or zero, and on numbers that are not finite.
     ParameterPlane(glm::dvec3 origin, glm::dvec3 axis_u, glm::dvec3 axis_v);
 
     /// The result is not finite where p is not.
@@ -64,7 +64,7 @@ struct Fold {
 class PlaneWarp {
   public:
     PlaneWarp() = default;
-    /// Throws Error on a deformation that check_deformation refuses.
+    /// The map that a list makes over a plane. Throws Error on a deformation that check_deformation refuses.
     PlaneWarp(const ParameterPlane& plane, const std::vector<Deformation>& list);
 
     const ParameterPlane& plane() const { return m_plane; }

@@ -43,7 +43,7 @@ struct ControlMesh {
     int columns = 1, rows = 1;
     /// (columns + 1) (rows + 1) of them, row by row from the top left.
     std::vector<Point<double>> vertices;
-    /// The same as an ST-map that is taken pixel for pixel has it; then `vertices` is empty.
+    /// The vertices of an ST-map that is taken pixel for pixel; `vertices` is then empty.
     std::shared_ptr<const StSamples> samples;
     /// Vertices that are given, in `vertices` or in `samples`.
     std::size_t vertex_count() const { return samples ? samples->uv.size() / 2 : vertices.size(); }

@@ -51,7 +51,7 @@ Features parse_features_svg(std::string_view text, std::string_view name);
 /// Chooses by the end of the name: .csv, .svg, else JSON.
 Features parse_features_file(std::string_view text, std::string_view name);
 
-/// Throws Error naming the entry of the file that is one line too many.
+/// Checks how many lines there are. Throws Error naming the entry of the file that is one line too many.
 void check_feature_count(const Features& features, std::string_view file, const std::string& entry);
 
 }  // namespace anamorph

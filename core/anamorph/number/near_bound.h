@@ -40,7 +40,7 @@ struct RestBound {
     RestBound(double about, double spread, double bound) : middle(about), radius(spread), error(bound) {}
 
     static RestBound unbounded() { return {0, HUGE_VAL, HUGE_VAL}; }
-    /// Of these values, off by `bound` before they are rounded by `unit` of their size. The middle is itself rounded, and so
+    /// The bound of these values, off by `bound` before they are rounded by `unit` of their size. The middle is itself rounded, and so
     /// are the sums and products of which the others are made, fewer than 32 times, all of one sign.
     static ANAMORPH_INLINE RestBound result(double middle, double radius, double bound, double unit) {
         RestBound r{middle, radius + 0x1p-53 * std::fabs(middle), 0};
@@ -51,7 +51,7 @@ struct RestBound {
             r.error = HUGE_VAL;
         return r;
     }
-    /// Of a function of libm whose slope is at most 1, with this value at a.middle, which mostly is 0 there.
+    /// The bound of a function of libm whose slope is at most 1, with this value at a.middle, which mostly is 0 there.
     static RestBound of_function(const RestBound& a, double (*function)(double), double unit) {
         const double middle = a.middle == 0 ? 0 : function(a.middle);
         return result(middle, a.radius + interval_detail::kLibmMargin * std::fabs(middle), a.error, unit);
@@ -123,7 +123,7 @@ struct RestBound {
     }
     /// No block is zero throughout, but for constants.
     friend bool is_zero(const RestBound& a) { return a.computed_size() == 0; }
-    /// One of two, which are the same where rounding decides between them.
+    /// One of two numbers, which are the same where rounding decides between them.
     friend ANAMORPH_INLINE RestBound hull(const RestBound& a, const RestBound& b) {
         const double between = 0.5 * (a.middle + b.middle), apart = 0.5 * std::fabs(a.middle - b.middle);
         return result(between, apart + rounded_detail::larger(a.radius, b.radius),
@@ -156,7 +156,7 @@ void sine_versine(const RestBound<Real>& a, RestBound<Real>& s, RestBound<Real>&
     v = RestBound<Real>::result(middle, radius + 4 * interval_detail::kLibmMargin * middle, a.error * most,
                                 unit);
 }
-/// As small_angle() in lanes.h; unbounded beyond |y| <= tan(3 pi / 8) x, also where x may be negative, exact or computed.
+/// small_angle(), as lanes.h has it; unbounded beyond |y| <= tan(3 pi / 8) x, also where x may be negative, exact or computed.
 template <class Real>
 RestBound<Real> small_angle(const RestBound<Real>& y, const RestBound<Real>& x) {
     const RestBound<Real> a = y / x;
@@ -168,7 +168,7 @@ RestBound<Real> small_angle(const RestBound<Real>& y, const RestBound<Real>& x) 
     return RestBound<Real>::of_function(a, std::atan, units * RestBound<Real>::kUnit);
 }
 
-/// As atan2() in lanes.h; unbounded where points, exact or computed, may lie on the half line of half a turn.
+/// atan2(), as lanes.h has it; unbounded where points, exact or computed, may lie on the half line of half a turn.
 template <class Real>
 RestBound<Real> any_angle(const RestBound<Real>& y, const RestBound<Real>& x) {
     const double left = x.middle - x.radius, top = y.middle - y.radius, bottom = y.middle + y.radius;

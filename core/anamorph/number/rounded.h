@@ -198,7 +198,7 @@ void sin_cos(const Rounded<Real>& a, Rounded<Real>& s, Rounded<Real>& c) {
     s = a.is_zero() ? a : wave(sin(a.range));
     c = wave(cos(a.range));
 }
-/// As for Jet: over cosh of a's constant part.
+/// Returns 1, and puts sinh(a) into `s`, both over cosh of a's constant part, as Jet has them.
 template <class Real>
 Rounded<Real> scaled_sinh(const Rounded<Real>& a, Rounded<Real>& s) {
     using R = Rounded<Real>;
@@ -303,7 +303,7 @@ template <class Real>
 double lower_end(const Rounded<Real>& a) {
     return a.range.lo - a.radius - a.error;
 }
-/// Of all exact and all computed values.
+/// Are all exact and all computed values negative?
 template <class Real>
 Certainty is_negative(const Rounded<Real>& a) {
     const double off = a.radius + a.error;
@@ -324,7 +324,7 @@ inline double larger(double a, double b) {
 }
 }  // namespace rounded_detail
 
-/// One of two, which are the same where rounding decides between them.
+/// One of two numbers, which are the same where rounding decides between them.
 template <class Real>
 Rounded<Real> hull(const Rounded<Real>& a, const Rounded<Real>& b) {
     return {hull(a.range, b.range), rounded_detail::larger(a.radius, b.radius),
@@ -364,7 +364,7 @@ class Constant {
           m_value(static_cast<double>(value)),
           m_precise_error(value == 0 ? 0 : error),
           m_error(value == 0 ? 0 : (error + 0x1p-53 * std::fabs(m_value)) * rounded_detail::kUp) {}
-    /// From a few operations and one function of libm in long double: off by 32 units at most.
+    /// A constant from a few operations and one function of libm in long double: off by 32 units at most.
     explicit Constant(long double value)
         : Constant(value, std::fabs(static_cast<double>(value)) * 32 * Rounded<long double>::kUnit) {}
 

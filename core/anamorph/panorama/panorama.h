@@ -39,9 +39,9 @@ class Panorama {
         Branch target, source;
         glm::dmat3 rotation;
     };
-    /// For a neighbourhood of a target point.
+    /// The map about a target point, for its neighbourhood.
     Local local_around(double x, double y, int piece) const;
-    /// The same with the source's branch about another ray of it.
+    /// The map about a target point, with the source's branch about another ray of it.
     Local local_around(double x, double y, int piece, const Ray<double>& source_ray) const;
 
     // As a FormulaMap.
@@ -54,9 +54,9 @@ class Panorama {
     SourceEdges source_edges() const;
     /// Whether the points of a box have source points on one branch.
     Cover cover(const Interval& x, const Interval& y, int piece, const Local& local, bool across_seam) const;
-    /// Whether they have rays, on one branch of the target.
+    /// Whether the points of a box have rays, on one branch of the target.
     Cover target_cover(const Interval& x, const Interval& y, int piece) const;
-    /// The same for the source's local rays, of target points that have one.
+    /// Whether local rays of the source, of target points that have one, have source points on one branch.
     Cover cover(const Ray<Interval>& ray, const Local& local, bool across_seam) const;
 
     /// The source's ray of a target point.
@@ -100,7 +100,7 @@ class Panorama {
     /// infinite where it is not certain that there is one.
     template <class Real>
     double exact_error(const Interval& x, const Interval& y, int piece) const;
-    /// The same over rays of the source.
+    /// Bounds the rounding of exact<Real> over rays of the source.
     template <class Real>
     double exact_error(const Ray<Rounded<Real>>& ray) const;
 

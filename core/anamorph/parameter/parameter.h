@@ -52,7 +52,7 @@ struct Parameter {
 
     /// What a value may be: "a number from 0 to 10", "edges, centers".
     std::string accepted() const;
-    /// The same for a message: "must be a number from 0 to 10", "must be one of edges, centers".
+    /// The allowed values for a message: "must be a number from 0 to 10", "must be one of edges, centers".
     std::string rule() const;
 };
 
@@ -78,11 +78,11 @@ class ParameterValues {
     /// Takes one value as assign() takes what is written: of a parameter of type number, whole or toggle, or a name that is
     /// defined. Throws Error on a name that is not known and a value that is not allowed.
     void set(std::string_view name, double value) { set(name, std::vector<double>{value}); }
-    /// The same of type numbers.
+    /// Takes one value of type numbers.
     void set(std::string_view name, const std::vector<double>& values);
-    /// The same of type extent.
+    /// Takes one value of type extent.
     void set(std::string_view name, const Size& value);
-    /// The same of any type, as it is written.
+    /// Takes one value of any type, as it is written.
     void set(std::string_view name, const std::string& text);
 
     const ParameterTable& table() const { return *m_table; }
@@ -90,27 +90,27 @@ class ParameterValues {
     bool knows(std::string_view name) const;
     /// Was it assigned a value?
     bool given(std::string_view name) const { return m_given.find(name) != m_given.end(); }
-    /// As written, or the default.
+    /// The value as it was written, or the default.
     const std::string& text(std::string_view name) const;
-    /// For parameters of type number, whole, numbers, toggle and extent that were given or have a default. Numbers are those
+    /// The value of a parameter of type number, whole, numbers, toggle and extent that were given or have a default. Numbers are those
     /// that were given, read once.
     double number(std::string_view name) const;
-    /// Of a whole number.
+    /// The value of a whole number.
     int whole(std::string_view name) const;
-    /// Of a list of numbers.
+    /// The values of a list of numbers.
     std::vector<double> numbers(std::string_view name) const;
-    /// Of a toggle: is it on?
+    /// Is a toggle on?
     bool toggle(std::string_view name) const { return text(name) == "1"; }
     /// Which of its choices a row has, counted from 0.
     std::size_t choice(std::string_view name) const;
     /// What that choice means in its enumeration.
     int enumerator(std::string_view name) const;
-    /// Its height is -1 where only one number was given.
+    /// The value of an extent. Its height is -1 where only one number was given.
     Size extent(std::string_view name) const;
 
     /// What keys that are not in the table define, in the order in which they came first.
     const std::vector<Assignment>& definitions() const { return m_definitions; }
-    /// Where nothing reads what they define: throws Error of the first, as assign() does of a key that is unknown.
+    /// For operations that read no definitions: throws Error of the first, as assign() does of a key that is unknown.
     void refuse_definitions() const;
 
     /// All values as one text, which differs where any value does; `without`: the names of those left out.
@@ -156,7 +156,7 @@ std::string message_of(const std::exception& error, const std::string& what);
 
 /// A number in the fewest digits that read back as the same number.
 std::string shortest(double value);
-/// The same for a float.
+/// A float in the fewest digits that read back as the same float.
 std::string shortest(float value);
 /// A number to ten digits, for messages.
 std::string brief(double value);

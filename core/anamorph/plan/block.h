@@ -162,7 +162,7 @@ class BlockMap {
     /// The formula in double: the source point of a target point. False where there is none.
     virtual bool exact(double x, double y, int piece, Point<double>& source_point,
                        int& source_piece) const noexcept = 0;
-    /// Does exact() find one?
+    /// Does exact() find a source point?
     virtual bool seen(double x, double y, int piece) const noexcept;
     /// The source point as exactly as is known: what errors are measured against. In double if nothing better is.
     virtual bool truth(double x, double y, int piece, Point<long double>& source_point,

@@ -16,7 +16,7 @@ enum class Scheme { automatic, exact, blocks, residual, direct };
 /// (pairs of points, and meshes that push) know exact and automatic, and take the latter for the other two.
 enum class WarpScheme { automatic, exact, hermite, residual };
 
-/// Throws Error unless `tol`, in source pixels, is 0 (exact) or a finite number above it.
+/// Checks a tolerance. Throws Error unless `tol`, in source pixels, is 0 (exact) or a finite number above it.
 void check_tol(double tol);
 
 }  // namespace anamorph

@@ -57,10 +57,10 @@ class EdgeRule {
     EdgeRule(const Projector& projector, double tol, double smallest, bool single = false)
         : m_projector(projector), m_tol(tol), m_smallest(smallest), m_on_plane(single ? 0x1p-20 : 0x1p-40) {}
 
-    /// Of the edge from a to b. Both orders find the same, bit by bit, if they come as in_order() says.
+    /// What is found of the edge from a to b. Both orders find the same, bit by bit, if they come as in_order() says.
     EdgeFinding judge(const glm::dvec3& a, const glm::dvec3& b) const;
 
-    /// Of a triangle whose sides have been judged. It is never cut or hopeless.
+    /// What is found of a triangle whose sides have been judged. It is never cut or hopeless.
     EdgeFinding judge(const std::array<glm::dvec3, 3>& corners) const;
 
     /// Weights of the point of a triangle on the axis that azimuths are counted about, if that goes through within.
@@ -85,7 +85,7 @@ class EdgeRule {
     EdgeFinding judge_rays(std::array<glm::dvec3, 3> rays, const std::vector<Branch>& branches, double share,
                            double wider) const;
 
-    /// Of the tolerance, for edges.
+    /// The share of the tolerance that edges may take.
     static constexpr double kShare = 0.9;
     /// Boxes about edges are as much larger, so that triangles along them do not just fail.
     static constexpr double kWider = 0.02;

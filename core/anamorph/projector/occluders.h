@@ -27,14 +27,14 @@ struct ShadowScale {
 
 /// How much of a triangle is in shadows.
 struct ShadowCover {
-    /// Of the triangle.
+    /// How much of the triangle is hidden.
     enum Share {
         lit,     ///< none of it is hidden
         hidden,  ///< all of it is
         both     ///< some of it is
     };
     Share share = lit;  ///< what there is of shadows
-    /// Where it is both: weights of a point within the triangle, a corner of a shadow if there is one.
+    /// Weights of a point within the triangle where its share is both, a corner of a shadow if there is one.
     glm::dvec3 corner{1. / 3};
     bool has_corner = false;  ///< is it one?
     bool mostly_lit = false;  ///< is more than half of its area, where it is both?
@@ -43,7 +43,7 @@ struct ShadowCover {
 /// Triangles that hide what is behind them from a point.
 class Occluders {
   public:
-    /// As near to a point as this, relative to its distance from the centre, nothing hides it: a surface does not hide
+    /// Nothing as near to a point as this, relative to its distance from the centre, hides it: a surface does not hide
     /// itself, nor what touches it.
     static constexpr double kTouching = 0x1p-16;
 
@@ -57,7 +57,7 @@ class Occluders {
     /// The first place on the way from a to b, from 0 to 1, where a shadow begins or ends; -1 where there is none.
     /// Stretches shorter than `hair` do not count.
     double border(const glm::dvec3& a, const glm::dvec3& b, double hair, const ShadowScale& scale) const;
-    /// Of a triangle.
+    /// How much of a triangle is in shadows.
     ShadowCover cover(const std::array<glm::dvec3, 3>& triangle, const ShadowScale& scale) const;
 
     /// A triangle: it hides a point, of ray r from the centre, if normals[k] . r >= 0 for its three sides and
@@ -88,7 +88,7 @@ class Occluders {
 
     void build(std::vector<std::array<glm::dvec3, 3>>& triangles, std::size_t begin, std::size_t end);
     static bool meets(const Node& node, const std::vector<HalfSpace>& region);
-    /// Those that may be in a convex region, until `body` returns false.
+    /// Calls `body` with the occluders that may be in a convex region, until `body` returns false.
     void for_each_in(const std::vector<HalfSpace>& region,
                      const std::function<bool(const Occluder&)>& body) const;
     static std::vector<HalfSpace> region_before(const std::array<glm::dvec3, 3>& rays);

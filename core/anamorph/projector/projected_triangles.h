@@ -19,7 +19,7 @@ namespace anamorph {
 /// How a scene is painted.
 struct ProjectionOptions {
     double tol = kProjectionTolRow.standard;
-    /// In units of the scene: edges as short as this are not split any further. About 2^-20 of the scene serves points in
+    /// Edges as short as this, in units of the scene, are not split any further. About 2^-20 of the scene serves points in
     /// float.
     double smallest = 0;
     /// Are points of the scene kept in float? New ones are rounded to it.
@@ -68,7 +68,7 @@ struct PaintedCounts {
 /// Paints triangles.
 class ScenePainter {
   public:
-    /// Throws Error.
+    /// A painter of scenes for a projector. Throws Error where an option is out of its range.
     ScenePainter(const Projector& projector, const ProjectionOptions& options);
 
     /// Appends the pieces of a triangle. May be called from several threads at once; throws Error where there are too many

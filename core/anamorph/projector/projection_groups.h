@@ -49,9 +49,9 @@ class ProjectionGroups {
     /// 2 atan(x_max) - 2 pi / count is then within one of them.
     static std::vector<glm::dvec3> level_directions(int count);
 
-    /// In the order of the directions.
+    /// The groups, in the order of the directions.
     const std::vector<ProjectionGroup>& groups() const { return m_groups; }
-    /// As they were given.
+    /// The options that it was made with.
     const GroupOptions& options() const { return m_options; }
 
     /// The group that a triangle of the scene lies in, the one with it nearest to its middle; -1 where it has to be cut.

@@ -33,7 +33,7 @@ enum class Received {
 /// A panorama and its projector.
 class Projector {
   public:
-    /// Throws what frame_of() throws.
+    /// A panorama thrown from a pose. Throws what frame_of() throws.
     explicit Projector(const Chart& panorama, const ProjectorPose& pose = {});
 
     const Chart& panorama() const { return m_panorama; }
@@ -41,7 +41,7 @@ class Projector {
     /// frame_of() the pose.
     const glm::dmat3& frame() const { return m_frame; }
 
-    /// From the centre to a point of the scene, in the frame of rays (chart/chart.h), in units of the scene.
+    /// The ray from the centre to a point of the scene, in the frame of rays (chart/chart.h), in units of the scene.
     glm::dvec3 ray(const glm::dvec3& point) const { return (point - m_pose.position) * m_frame; }
 
     /// No ray of the panorama has a smaller part forward, relative to its length: a proven bound, -1 where none is known.

@@ -8,7 +8,7 @@ namespace anamorph {
 
 /// How far from the truth a point of the scene may be painted, in texels of the panorama.
 inline constexpr NumberRow kProjectionTolRow{"projection_tol", 0.125, 0, 1e6, NumberRow::above_least};
-/// Of the panorama, in texels.
+/// The width of the panorama, in texels.
 inline constexpr NumberRow kPanoramaWidthRow{"panorama_width", 4096, 1, 1 << 24, NumberRow::closed, true};
 inline constexpr NumberRow kPanoramaHeightRow{"panorama_height", 2048, 1, 1 << 24, NumberRow::closed, true};
 /// Degrees, of the panorama's width or of each of its faces; 0: what its projection has by default.

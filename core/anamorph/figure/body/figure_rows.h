@@ -19,7 +19,7 @@ inline constexpr NumberRow kLevelOfDetailRow{"level_of_detail", 0, 0};
 inline constexpr NumberRow kViewSizeRow{"view_size", 500, 1, NumberRow::kNoEnd, NumberRow::closed, true};
 /// Without perspective: half the height of what is seen, in units of the scene.
 inline constexpr NumberRow kParallelScaleRow{"camera_parallel_scale", 500, 0, 1e50, NumberRow::between};
-/// In perspective: the angle from bottom to top, in degrees.
+/// The angle from bottom to top of a view in perspective, in degrees.
 inline constexpr NumberRow kViewAngleRow{"camera_view_angle", 30, 0, 180, NumberRow::between};
 
 inline constexpr NumberRow kFigureRows[] = {kSurfaceTolRow,    kOutlineTolRow, kSphereTolRow,

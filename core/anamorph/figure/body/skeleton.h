@@ -18,10 +18,10 @@ struct Stick {
 
 /// The longest axis of each body from end to end (the first of equal ones), in their order.
 std::vector<Stick> axis_sticks(std::span<const Ellipsoid> bodies);
-/// The same for the bodies of a frame.
+/// The longest axis of each body of a frame, in their order.
 std::vector<Stick> axis_sticks(const FigureFrame& frame);
 
-/// For each body with joints: sticks from its centre to each of them; a body with two joints has one stick
+/// Sticks from joint to joint: for each body with joints, from its centre to each of them; a body with two joints has one stick
 /// between them instead. Bodies without joints have none.
 std::vector<Stick> joint_sticks(const FigureFrame& frame);
 

@@ -34,7 +34,7 @@ class FrameReader {
   public:
     /// `name` stands in messages (a file's name).
     FrameReader(std::string_view text, std::string_view name);
-    /// False at the end of the text or after the end record.
+    /// Reads the next frame. False at the end of the text or after the end record.
     bool read(FigureFrame& frame);
 
   private:

@@ -59,7 +59,7 @@ struct FigureLook {
 /// Channels of a picture: red, green, blue and alpha, colour multiplied by alpha; u and v; or one.
 int channels_of(FigureStyle style);
 
-/// Thread safe.
+/// A frame ready to be drawn, any part of it at a time. Thread safe.
 class FigurePicture {
   public:
     /// `view`: the origin of its screen is the picture's lower left corner. Throws Error as `outlines` does.

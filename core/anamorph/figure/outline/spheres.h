@@ -10,7 +10,7 @@
 
 namespace anamorph::figure {
 
-/// In units of the scene.
+/// A sphere, in units of the scene.
 struct Sphere {
     glm::dvec3 center{0.0};
     double radius = 0;
