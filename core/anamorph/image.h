@@ -9,6 +9,7 @@
 #include "anamorph/geometry/box.h"
 #include "anamorph/geometry/point.h"
 #include "anamorph/geometry/size.h"
+#include "anamorph/image/attribute.h"
 #include "anamorph/image/border.h"
 #include "anamorph/image/filter.h"
 #include "anamorph/image/picture.h"
